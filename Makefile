@@ -1,0 +1,69 @@
+# Every target makes its own environment; nothing but Python 3.11 or newer, its venv module and make is needed.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+RUN := OPENBLAS_NUM_THREADS=1 MPLBACKEND=Agg
+OUT := out
+
+.DEFAULT_GOAL := help
+.PHONY: help demo test lint docs bench lock clean
+
+help: ## list the targets
+	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1\t/' | expand -t 16
+
+demo: $(VENV)/runtime ## operate the reference rig and write the reproduction report to out/
+	$(BIN)/sonolube friction examples/rigs/tribometer.toml
+	$(BIN)/sonolube wear examples/rigs/tribometer.toml
+	$(RUN) $(BIN)/sonolube reproduce --out $(OUT)
+
+test: $(VENV)/test ## lint, type-check and run every test
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(RUN) $(BIN)/python -m pytest -n 2
+
+lint: $(VENV)/test ## mend what ruff can mend, then check style, types and architecture
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+docs: $(VENV)/docs ## build the documentation into out/docs
+	$(RUN) $(BIN)/sphinx-build -W --keep-going -b html docs $(OUT)/docs
+	@echo "$(OUT)/docs/index.html"
+
+bench: $(VENV)/test ## measure speed, each benchmark beside its rival
+	$(RUN) $(BIN)/python -m pytest benchmarks --benchmark-only --benchmark-columns=min,median,iqr,rounds
+
+lock: $(VENV)/uv ## pin and hash every dependency for Python 3.11 to 3.13
+	$(BIN)/uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-annotate \
+	    pyproject.toml -o requirements/runtime.txt
+	$(BIN)/uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-annotate \
+	    pyproject.toml --group test -c requirements/runtime.txt -o requirements/test.txt
+	$(BIN)/uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-annotate \
+	    pyproject.toml --group test --group docs -c requirements/test.txt -o requirements/docs.txt
+
+clean: ## remove the environment and everything generated
+	rm -rf $(VENV) $(OUT) .mypy_cache .pytest_cache .ruff_cache .hypothesis .import_linter_cache .benchmarks
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+# -- environments: one, which grows as targets ask for more
+
+$(VENV)/uv: requirements/uv.txt
+	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "sonolube needs Python 3.11 or newer; name one with: make PYTHON=python3.12 ...")'
+	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements/uv.txt
+	@touch $@
+
+$(VENV)/runtime: $(VENV)/uv requirements/runtime.txt pyproject.toml
+	$(BIN)/uv pip install --quiet --python $(BIN)/python --require-hashes -r requirements/runtime.txt
+	$(BIN)/uv pip install --quiet --python $(BIN)/python --no-deps --editable .
+	@touch $@
+
+$(VENV)/test: $(VENV)/runtime requirements/test.txt
+	$(BIN)/uv pip install --quiet --python $(BIN)/python --require-hashes -r requirements/test.txt
+	@touch $@
+
+$(VENV)/docs: $(VENV)/test requirements/docs.txt
+	$(BIN)/uv pip install --quiet --python $(BIN)/python --require-hashes -r requirements/docs.txt
+	@touch $@

@@ -1,0 +1,81 @@
+"""Checks of physical arguments, which name the argument, the value and its unit."""
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sonolube.errors import InvalidInput
+from sonolube.vocabulary import unit_of
+
+Floats = NDArray[np.float64]
+
+
+def require_finite(**values: ArrayLike) -> Floats:
+    """Return the first value as a float array; refuse any that is not a finite number.
+
+    Raises
+    ------
+    InvalidInput
+        Naming the argument, the first offending value and its unit.
+    """
+    return _require(np.isfinite, "must be finite", values)
+
+
+def require_positive(**values: ArrayLike) -> Floats:
+    """Return the first value as a float array; refuse any that is zero, negative or not finite.
+
+    Raises
+    ------
+    InvalidInput
+        Naming the argument, the first offending value and its unit.
+    """
+    return _require(lambda array: array > 0, "must be positive", values)
+
+
+def require_non_negative(**values: ArrayLike) -> Floats:
+    """Return the first value as a float array; refuse any that is negative or not finite.
+
+    Raises
+    ------
+    InvalidInput
+        Naming the argument, the first offending value and its unit.
+    """
+    return _require(lambda array: array >= 0, "must not be negative", values)
+
+
+def require_within(lower: float, upper: float, /, **values: ArrayLike) -> Floats:
+    """Return the first value as a float array; refuse any outside the closed range from `lower` to `upper`.
+
+    Raises
+    ------
+    InvalidInput
+        Naming the argument, the first offending value and its unit.
+    """
+    return _require(
+        lambda array: (array >= lower) & (array <= upper), f"must lie between {lower:g} and {upper:g}", values
+    )
+
+
+def _require(accepts: Callable[[Floats], NDArray[np.bool_]], demand: str, values: Mapping[str, ArrayLike]) -> Floats:
+    arrays = {name: _floats(name, value) for name, value in values.items()}
+    for name, array in arrays.items():
+        _refuse_unless(np.isfinite(array), array, name, "must be finite")
+        _refuse_unless(accepts(array), array, name, demand)
+    return next(iter(arrays.values()))
+
+
+def _refuse_unless(accepted: NDArray[np.bool_], array: Floats, name: str, demand: str) -> None:
+    if not np.all(accepted):
+        offender = float(array[~accepted].flat[0]) if array.ndim else float(array)
+        raise InvalidInput(f"{name} {demand}, got {offender!r} {unit_of(name)}".rstrip())
+
+
+def _floats(name: str, value: ArrayLike) -> Floats:
+    try:
+        array = np.asarray(value)
+    except ValueError:
+        array = np.asarray(None)
+    if array.dtype.kind not in "fiu":
+        raise InvalidInput(f"{name} must be a number or an array of numbers, got {value!r}")
+    return array.astype(np.float64, copy=False)

@@ -1,0 +1,57 @@
+"""The walls of the house: which room may know which, and what each may lean on."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import grimp
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PHYSICS = ("surfaces", "contact", "friction", "wear", "actuator", "metrics", "vibration")
+
+
+@pytest.fixture(scope="module")
+def graph() -> grimp.ImportGraph:
+    return grimp.build_graph("sonolube", include_external_packages=True, cache_dir=None)
+
+
+def test_data_flows_one_way() -> None:
+    linted = subprocess.run(
+        [Path(sys.executable).parent / "lint-imports", "--no-cache"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert linted.returncode == 0, linted.stdout
+
+
+def test_physics_leans_on_numpy_scipy_and_numba_only(graph: grimp.ImportGraph) -> None:
+    rooms = [f"sonolube.{room}" for room in PHYSICS]
+    modules = {module for room in rooms for module in {room, *graph.find_descendants(room)}}
+    outside = {
+        name
+        for module in modules
+        for name in graph.find_modules_directly_imported_by(module)
+        if not name.startswith("sonolube")
+    }
+    assert outside - set(sys.stdlib_module_names) <= {"numpy", "scipy", "numba"}
+
+
+def test_help_imports_nothing_heavy() -> None:
+    heavy = ("numpy", "scipy", "numba", "pandas", "xarray", "pint", "pydantic", "matplotlib", "jinja2")
+    code = (
+        "import sys\n"
+        "from sonolube.cli import main\n"
+        "try: main(['--help'])\n"
+        "except SystemExit: pass\n"
+        f"print([name for name in {heavy!r} if name in sys.modules], file=sys.stderr)"
+    )
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stderr.strip() == "[]"
+
+
+def test_no_file_outgrows_four_hundred_lines() -> None:
+    long = [path for path in (ROOT / "src").rglob("*.py") if len(path.read_text().splitlines()) > 400]
+    assert long == []

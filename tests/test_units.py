@@ -1,0 +1,77 @@
+"""Text with a unit is read once, and what is not a quantity of the right kind is refused in one line."""
+
+import contextlib
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from pytest import approx
+
+from sonolube.errors import InvalidInput
+from sonolube.units import convert, engineering, to_si
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "value"),
+    [
+        ("40N", "N", 40.0),
+        ("8 um", "m", 8e-6),
+        ("8 µm", "m", 8e-6),
+        ("2.25 mm2", "m2", 2.25e-6),
+        ("4.7e10/m2", "1/m2", 4.7e10),
+        ("22kHz", "Hz", 22e3),
+        ("0.0892 um/V", "m/V", 8.92e-8),
+        ("2.566e-2 mm3/m", "m2", 2.566e-11),
+        ("48.9 %", "", 0.489),
+        ("80 degC", "K", 353.15),
+        ("4 h", "s", 14400.0),
+    ],
+)
+def test_text_with_a_unit_becomes_si(text: str, unit: str, value: float) -> None:
+    assert to_si(text, unit=unit, name="x") == approx(value, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("text", "complaint"),
+    [
+        ("40mm", "--load 40mm is a length; wanted a force, such as 40N"),
+        ("40", "--load 40 has no unit; wanted a force, such as 40N"),
+        ("heavy", "--load 'heavy' is not a number with a unit; wanted a force, such as 40N"),
+        ("40 Nn", "--load 40 Nn: unknown unit 'Nn'; wanted a force, such as 40N"),
+        ("1e999 N", "--load 1e999 N is not finite"),
+        ("nan N", "--load 'nan N' is not a number with a unit; wanted a force, such as 40N"),
+    ],
+)
+def test_what_is_not_a_force_is_refused_with_the_remedy(text: str, complaint: str) -> None:
+    with pytest.raises(InvalidInput) as refusal:
+        to_si(text, unit="N", name="--load")
+    assert str(refusal.value) == complaint
+
+
+@given(st.text(max_size=40))
+def test_no_text_whatever_breaks_the_reader(text: str) -> None:
+    with contextlib.suppress(InvalidInput):
+        assert isinstance(to_si(text, unit="m", name="x"), float)
+
+
+@given(st.floats(1e-12, 1e12))
+def test_conversion_there_and_back_changes_nothing(value: float) -> None:
+    assert convert(convert(value, from_unit="m/s", to_unit="mm/s"), from_unit="mm/s", to_unit="m/s") == approx(value)
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (2.5e-6, "m", "2.5 um"),
+        (4.981e-9, "m2", "4980 um2"),
+        (0.0203, "m/s", "20.3 mm/s"),
+        (2e9, "N/m", "2 GN/m"),
+        (0.341, "", "0.341"),
+        (0.0, "N", "0 N"),
+        (2.566e-11, "m2", "25.7 um2"),
+        (9.53e-13, "m2", "0.953 um2"),
+        (2.25e-6, "m2", "2.25 mm2"),
+    ],
+)
+def test_numbers_are_written_as_people_write_them(value: float, unit: str, text: str) -> None:
+    assert engineering(value, unit) == text
