@@ -1,0 +1,121 @@
+"""What speaks against a contact."""
+
+from dataclasses import replace
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+from pytest import approx, mark, raises
+
+from sonolube.contact import (
+    ContactPair,
+    ExponentialHeights,
+    GaussianHeights,
+    RoughContact,
+    contact_doubts,
+    exponential_window,
+    normal_force,
+    separation,
+)
+from sonolube.errors import InvalidInput
+from sonolube.surfaces import Roughness
+
+PAIR = ContactPair(combined_modulus=59.57e9, poisson_ratio=0.33, yield_strength=410e6, mindlin_ratio=0.8)
+USUAL = RoughContact(
+    roughness=Roughness(rms_height=0.5e-6, summit_radius=20e-6, summit_density=5e9), pair=PAIR, nominal_area=1e-4
+)
+PUBLISHED = RoughContact(
+    roughness=Roughness(rms_height=6e-6, summit_radius=1.7e-6, summit_density=47e9), pair=PAIR, nominal_area=1e-4
+)
+
+
+def with_roughness_parameter(beta: float) -> RoughContact:
+    return replace(USUAL, roughness=replace(USUAL.roughness, summit_density=beta / (0.5e-6 * 20e-6)))
+
+
+@given(beta=st.floats(0.04, 0.6), factor=st.floats(1.1, 4), share=st.floats(0, 1))
+def test_within_the_window_both_height_laws_give_like_loads(beta: float, factor: float, share: float) -> None:
+    contact = with_roughness_parameter(beta)
+    window = exponential_window(contact, factor=factor)
+    if window is None:
+        return
+    d = (window[0] + share * (window[1] - window[0])) * 0.5e-6
+    gaussian = replace(contact, heights=GaussianHeights.from_roughness_parameter(roughness_parameter=beta))
+    ratio = float(normal_force(gaussian, separation=d) / normal_force(contact, separation=d))
+    assert 1 / factor * (1 - 1e-9) <= ratio <= factor * (1 + 1e-9)
+
+
+@mark.parametrize("beta", [0.05, 0.1, 0.48])
+def test_the_window_ends_where_the_loads_differ_by_the_factor(beta: float) -> None:
+    contact = with_roughness_parameter(beta)
+    window = exponential_window(contact)
+    assert window is not None
+    gaussian = replace(contact, heights=GaussianHeights.from_roughness_parameter(roughness_parameter=beta))
+    d = np.array(window) * 0.5e-6
+    ratios = normal_force(gaussian, separation=d) / normal_force(contact, separation=d)
+    assert ratios == approx([0.5, 0.5], rel=1e-6)
+
+
+def test_the_exponential_law_serves_rougher_surfaces_over_a_wider_window() -> None:
+    windows = [exponential_window(with_roughness_parameter(beta)) for beta in (0.04, 0.05, 0.1)]
+    widths = [window[1] - window[0] for window in windows if window]
+    assert len(widths) == 3
+    assert widths == sorted(widths)
+
+
+@mark.parametrize("beta", [0.015, 0.03])
+def test_smooth_surfaces_have_no_window(beta: float) -> None:
+    assert exponential_window(with_roughness_parameter(beta)) is None
+
+
+def test_a_contact_with_gaussian_heights_is_asked_about_the_default_exponential_law() -> None:
+    assert exponential_window(replace(USUAL, heights=GaussianHeights())) == exponential_window(USUAL)
+
+
+def test_a_window_of_no_width_is_refused() -> None:
+    with raises(InvalidInput, match=r"factor must exceed 1, got 1\.0"):
+        exponential_window(USUAL, factor=1.0)
+
+
+def test_nothing_speaks_against_a_usual_surface_under_a_usual_load() -> None:
+    assert contact_doubts(USUAL, separation=separation(USUAL, normal_load=[5.0, 40.0])) == ()
+
+
+def test_the_published_surface_is_doubted_for_its_roughness_parameter_alone() -> None:
+    (doubt,) = contact_doubts(PUBLISHED, separation=separation(PUBLISHED, normal_load=40.0))
+    assert doubt.startswith("roughness parameter 0.479 lies outside the usual 0.02 to 0.1")
+
+
+def test_mean_planes_that_meet_are_seen() -> None:
+    # the published model at 200 V peak to peak moves by more than it stands apart
+    d = separation(PUBLISHED, normal_load=40.0).item() - 18.2e-6
+    doubts = contact_doubts(PUBLISHED, separation=[d, 20e-6])
+    assert any("is not positive: the mean planes have met" in doubt for doubt in doubts)
+    assert any("real area is" in doubt for doubt in doubts)
+
+
+def test_separations_outside_the_window_advise_gaussian_heights() -> None:
+    doubts = contact_doubts(USUAL, separation=[1e-6, 3e-6])
+    (doubt,) = (doubt for doubt in doubts if "height" in doubt)
+    assert doubt.startswith("separation over rms height is 2.00 to 6.00;")
+    assert doubt.endswith("take gaussian heights")
+    gaussian = replace(USUAL, heights=GaussianHeights())
+    assert not any("gaussian" in doubt for doubt in contact_doubts(gaussian, separation=[1e-6, 3e-6]))
+
+
+def test_a_surface_without_a_window_is_doubted_at_every_separation() -> None:
+    doubts = contact_doubts(with_roughness_parameter(0.03), separation=1e-6)
+    assert any("nowhere within a factor of 2" in doubt for doubt in doubts)
+
+
+def test_too_few_summits_for_a_mean_are_seen() -> None:
+    (doubt,) = contact_doubts(replace(USUAL, nominal_area=1e-9), separation=1e-6)
+    assert doubt.startswith("only 0.07 asperities touch on the nominal 0.001 mm2")
+
+
+def test_a_steeper_exponential_law_is_judged_by_its_own_window() -> None:
+    steep = replace(PUBLISHED, heights=ExponentialHeights(amplitude=1e3, decay=5.0))
+    window, usual = exponential_window(steep), exponential_window(PUBLISHED)
+    assert window is not None
+    assert usual is not None
+    assert window[0] > usual[0]
