@@ -1,0 +1,35 @@
+"""Measures by which experiments on ultrasonic lubrication are compared."""
+
+from sonolube.metrics.efficiency import (
+    EfficiencyLine,
+    efficiency_at,
+    efficiency_coefficient,
+    friction_at_power,
+    power_for_friction,
+)
+from sonolube.metrics.kinematics import (
+    dot_spacing,
+    indentation_spacing,
+    linear_speed,
+    peak_vibration_velocity,
+    sliding_distance,
+    superimposed_speed,
+)
+from sonolube.metrics.reduction import friction_reduction, wear_rate, wear_reduction
+
+__all__ = [
+    "EfficiencyLine",
+    "dot_spacing",
+    "efficiency_at",
+    "efficiency_coefficient",
+    "friction_at_power",
+    "friction_reduction",
+    "indentation_spacing",
+    "linear_speed",
+    "peak_vibration_velocity",
+    "power_for_friction",
+    "sliding_distance",
+    "superimposed_speed",
+    "wear_rate",
+    "wear_reduction",
+]
