@@ -1,0 +1,26 @@
+"""Rigs: an experiment or a device as one record, read from a file, and what it does at its operating point."""
+
+from sonolube.rig.operating_point import (
+    ContactPoint,
+    FrictionPoint,
+    WearPoint,
+    contact_point,
+    friction_point,
+    wear_point,
+)
+from sonolube.rig.read import read_rig, rig_from
+from sonolube.rig.record import Rig
+from sonolube.rig.schema import rig_schema
+
+__all__ = [
+    "ContactPoint",
+    "FrictionPoint",
+    "Rig",
+    "WearPoint",
+    "contact_point",
+    "friction_point",
+    "read_rig",
+    "rig_from",
+    "rig_schema",
+    "wear_point",
+]

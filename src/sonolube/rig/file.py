@@ -1,0 +1,127 @@
+"""Rig files: what a rig looks like as TOML, and the schema of it."""
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from sonolube.rig.section import Section
+
+Text = Annotated[str, Field(min_length=1)]
+
+
+class RoughnessSection(Section):
+    """Combined roughness of both surfaces."""
+
+    rms_height: float
+    summit_radius: float
+    summit_density: float
+
+
+class BodySection(Section):
+    """One body: a material of the catalogue, its own properties, or a material with some properties replaced."""
+
+    material: Text | None = None
+    youngs_modulus: float | None = None
+    poisson_ratio: float | None = None
+    yield_strength: float | None = None
+
+
+class PairSection(Section):
+    """Both bodies together, where only their combined properties are known."""
+
+    combined_modulus: float
+    poisson_ratio: float
+    yield_strength: float
+
+
+class ContactSection(Section):
+    """The contact: its load, its bodies and their roughness."""
+
+    normal_load: float
+    nominal_area: float
+    roughness: RoughnessSection
+    softer: BodySection | None = None
+    harder: BodySection | None = None
+    pair: PairSection | None = None
+    height_distribution: Literal["exponential", "gaussian"] = "exponential"
+    asperity_law: Literal["elastic", "as_published", "corrected", "kogut_etsion", "jackson_green"] = "as_published"
+
+    @model_validator(mode="after")
+    def _one_description_of_the_bodies(self) -> Self:
+        both_bodies = self.softer is not None and self.harder is not None
+        any_body = self.softer is not None or self.harder is not None
+        if both_bodies == (self.pair is not None) or any_body != both_bodies:
+            raise ValueError("give either both tables contact.softer and contact.harder, or the table contact.pair")
+        return self
+
+
+class FrictionSection(Section):
+    """Friction without vibration."""
+
+    friction_coefficient: float
+
+
+class SlidingSection(Section):
+    """The macroscopic motion."""
+
+    sliding_speed: float
+
+
+class DriveSection(Section):
+    """The voltage on the actuator."""
+
+    voltage_peak_to_peak: float | None = None
+    voltage_offset: float = 0.0
+    frequency: float
+    waveform: Literal["sine", "square", "triangle", "sawtooth"] = "sine"
+
+
+class ActuatorSection(Section):
+    """What turns voltage into vibration."""
+
+    capacitance: float | None = None
+    amplitude_per_volt: float | None = None
+
+
+class WaveguideSection(Section):
+    """A half-wave bar whose lateral contraction vibrates the contact."""
+
+    length: float
+    thickness: float
+    poisson_ratio: float
+    axial_amplitude: float
+    position: float = 0.0
+
+
+class VibrationSection(Section):
+    """Vibration normal to the contact, as measured."""
+
+    vibration_amplitude: float
+
+
+class RigFile(Section):
+    """A rig of sonolube."""
+
+    title: Text
+    source: Text
+    contact: ContactSection
+    friction: FrictionSection
+    sliding: SlidingSection
+    drive: DriveSection | None = None
+    actuator: ActuatorSection | None = None
+    waveguide: WaveguideSection | None = None
+    vibration: VibrationSection | None = None
+    assumptions: dict[str, Text] = Field(default_factory=dict)
+
+    @model_validator(mode="after")
+    def _one_source_of_vibration(self) -> Self:
+        per_volt = self.actuator is not None and self.actuator.amplitude_per_volt is not None
+        if per_volt and (self.drive is None or self.drive.voltage_peak_to_peak is None):
+            raise ValueError("actuator.amplitude_per_volt needs drive.voltage_peak_to_peak")
+        if [per_volt, self.waveguide is not None, self.vibration is not None].count(True) != 1:
+            raise ValueError(
+                "give the vibration once: vibration.vibration_amplitude, actuator.amplitude_per_volt or table waveguide"
+            )
+        if self.waveguide is not None and self.drive is None:
+            raise ValueError("the table waveguide needs drive.frequency")
+        return self

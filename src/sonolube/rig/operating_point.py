@@ -1,0 +1,218 @@
+"""What a rig does at its operating point: contact, friction and wear, each as one record of results."""
+
+from dataclasses import dataclass
+
+from sonolube.actuator.drive_power import driver_power
+from sonolube.contact import (
+    contact_count,
+    contact_doubts,
+    normal_stiffness,
+    real_contact_area,
+    separation,
+    tangential_stiffness,
+)
+from sonolube.errors import OutsideRange
+from sonolube.friction import separating_half_period_ratio
+from sonolube.rig.record import Rig
+from sonolube.wear import cube_wear_rate, vibrating_cube_wear_rate
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ContactPoint:
+    """The contact of a rig at rest.
+
+    Parameters
+    ----------
+    normal_load : float
+        Force pressing the bodies together. [N]
+    separation : float
+        Distance of the mean planes. [m]
+    real_contact_area : float
+        Area of all touching asperities. [m2]
+    contact_count : float
+        Number of touching asperities. []
+    normal_stiffness : float
+        Slope of the load against the separation. [N/m]
+    tangential_stiffness : float
+        Bending stiffness of the cube, D 3.9. [N/m]
+    mindlin_ratio : float
+        Tangential over normal stiffness by Mindlin's theory, beside that of the cube. []
+    doubts : tuple of str
+        What speaks against trusting the numbers, each in one line.
+    """
+
+    normal_load: float
+    separation: float
+    real_contact_area: float
+    contact_count: float
+    normal_stiffness: float
+    tangential_stiffness: float
+    mindlin_ratio: float
+    doubts: tuple[str, ...]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FrictionPoint:
+    """Friction of a rig under its vibration.
+
+    Parameters
+    ----------
+    friction_force : float
+        Mean friction force with vibration. [N]
+    friction_coefficient : float
+        That force over the normal load. []
+    intrinsic_friction_force : float
+        Friction force without vibration. [N]
+    friction_ratio : float
+        Friction with vibration over friction without. []
+    friction_reduction : float
+        One minus that ratio. []
+    vibration_amplitude : float
+        Vibration normal to the contact, zero to peak. [m]
+    actuator_power : float or None
+        Power a linear amplifier supplies, D 1.9, where drive and capacitance are known. [W]
+    doubts : tuple of str
+        What speaks against trusting the numbers, each in one line.
+    """
+
+    friction_force: float
+    friction_coefficient: float
+    intrinsic_friction_force: float
+    friction_ratio: float
+    friction_reduction: float
+    vibration_amplitude: float
+    actuator_power: float | None
+    doubts: tuple[str, ...]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class WearPoint:
+    """Wear of the softer body of a rig under its vibration, by the cube model.
+
+    Parameters
+    ----------
+    wear_rate : float
+        Volume per sliding distance with vibration. [m2]
+    intrinsic_wear_rate : float
+        Volume per sliding distance without vibration. [m2]
+    wear_rate_ratio : float
+        The one over the other. []
+    wear_reduction : float
+        One minus that ratio. []
+    vibration_amplitude : float
+        Vibration normal to the contact, zero to peak. [m]
+    doubts : tuple of str
+        What speaks against trusting the numbers, each in one line.
+    """
+
+    wear_rate: float
+    intrinsic_wear_rate: float
+    wear_rate_ratio: float
+    wear_reduction: float
+    vibration_amplitude: float
+    doubts: tuple[str, ...]
+
+
+def contact_point(rig: Rig) -> ContactPoint:
+    """Return the state of the contact under the rig's load, without vibration.
+
+    Raises
+    ------
+    OutsideRange
+        If the surfaces would be pressed through each other, so that no separation is left.
+    """
+    gap = _separation(rig)
+    return ContactPoint(
+        normal_load=rig.normal_load,
+        separation=gap,
+        real_contact_area=float(real_contact_area(rig.contact, separation=gap)),
+        contact_count=float(contact_count(rig.contact, separation=gap)),
+        normal_stiffness=float(normal_stiffness(rig.contact, separation=gap)),
+        tangential_stiffness=float(tangential_stiffness(rig.contact, separation=gap)),
+        mindlin_ratio=rig.contact.pair.mindlin_ratio,
+        doubts=contact_doubts(rig.contact, separation=gap),
+    )
+
+
+def friction_point(rig: Rig) -> FrictionPoint:
+    """Return the friction of the rig under vibration, by the cube over the separating half period (D 3.15).
+
+    Raises
+    ------
+    OutsideRange
+        If the surfaces would be pressed through each other, so that no separation is left.
+    """
+    gap = _separation(rig)
+    ratio = float(
+        separating_half_period_ratio(
+            rig.contact, normal_load=rig.normal_load, vibration_amplitude=rig.vibration_amplitude
+        )
+    )
+    intrinsic = rig.friction_coefficient * rig.normal_load
+    return FrictionPoint(
+        friction_force=ratio * intrinsic,
+        friction_coefficient=ratio * rig.friction_coefficient,
+        intrinsic_friction_force=intrinsic,
+        friction_ratio=ratio,
+        friction_reduction=1 - ratio,
+        vibration_amplitude=rig.vibration_amplitude,
+        actuator_power=_actuator_power(rig),
+        doubts=_doubts(rig, gap),
+    )
+
+
+def wear_point(rig: Rig) -> WearPoint:
+    """Return the wear of the rig with and without vibration, by the cube (D 3.26 to 3.29 as they were evaluated).
+
+    Raises
+    ------
+    OutsideRange
+        If the surfaces would be pressed through each other, so that no separation is left.
+    """
+    gap = _separation(rig)
+    still = float(cube_wear_rate(rig.contact, normal_load=rig.normal_load))
+    vibrating = float(
+        vibrating_cube_wear_rate(rig.contact, normal_load=rig.normal_load, vibration_amplitude=rig.vibration_amplitude)
+    )
+    return WearPoint(
+        wear_rate=vibrating,
+        intrinsic_wear_rate=still,
+        wear_rate_ratio=vibrating / still,
+        wear_reduction=1 - vibrating / still,
+        vibration_amplitude=rig.vibration_amplitude,
+        doubts=_doubts(rig, gap),
+    )
+
+
+def _separation(rig: Rig) -> float:
+    gap = float(separation(rig.contact, normal_load=rig.normal_load))
+    if gap <= 0:
+        raise OutsideRange(
+            f"contact.normal_load {rig.normal_load:g} N leaves no separation between the surfaces (d = {gap:.3g} m): "
+            "lower the load or enlarge contact.nominal_area"
+        )
+    return gap
+
+
+def _doubts(rig: Rig, gap: float) -> tuple[str, ...]:
+    doubts = contact_doubts(rig.contact, separation=gap)
+    if rig.vibration_amplitude < gap:
+        return doubts
+    return (
+        *doubts,
+        f"vibration amplitude {rig.vibration_amplitude:.3g} m reaches the separation at rest, {gap:.3g} m: the "
+        "surfaces must ride higher under vibration than this model lets them; take a smaller amplitude",
+    )
+
+
+def _actuator_power(rig: Rig) -> float | None:
+    if rig.drive is None or rig.drive.voltage_peak_to_peak is None or rig.capacitance is None:
+        return None
+    return float(
+        driver_power(
+            capacitance=rig.capacitance,
+            voltage_maximum=abs(rig.drive.voltage_offset) + rig.drive.voltage_peak_to_peak / 2,
+            voltage_peak_to_peak=rig.drive.voltage_peak_to_peak,
+            frequency=rig.drive.frequency,
+        )
+    )

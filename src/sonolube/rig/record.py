@@ -1,0 +1,58 @@
+"""A rig: two bodies in contact, how they slide, and what vibrates one of them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+
+from sonolube.actuator.drive import Drive
+from sonolube.checks import require_non_negative, require_positive
+from sonolube.contact import RoughContact
+from sonolube.errors import InvalidInput
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Rig:
+    """Everything the models need to know of one experiment or device.
+
+    Parameters
+    ----------
+    title : str
+        What it is.
+    source : str
+        Where its numbers come from.
+    contact : RoughContact
+        The two rough surfaces.
+    normal_load : float
+        Force pressing the bodies together. [N]
+    friction_coefficient : float
+        Intrinsic coefficient of friction, measured without vibration. []
+    sliding_speed : float
+        Macroscopic relative speed. [m/s]
+    vibration_amplitude : float
+        Vibration normal to the contact, zero to peak. [m]
+    drive : Drive or None
+        Electrical drive of the actuator, where it is known.
+    capacitance : float or None
+        Capacitance of the actuator, where it is known. [F]
+    assumptions : mapping of str to str
+        Which entries no source gives, and what was assumed instead and why.
+    """
+
+    title: str
+    source: str
+    contact: RoughContact
+    normal_load: float
+    friction_coefficient: float
+    sliding_speed: float
+    vibration_amplitude: float
+    drive: Drive | None = None
+    capacitance: float | None = None
+    assumptions: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
+
+    def __post_init__(self) -> None:
+        require_positive(normal_load=self.normal_load, friction_coefficient=self.friction_coefficient)
+        require_non_negative(sliding_speed=self.sliding_speed, vibration_amplitude=self.vibration_amplitude)
+        if self.capacitance is not None:
+            require_positive(capacitance=self.capacitance)
+        if not self.title.strip():
+            raise InvalidInput("title must not be empty")
