@@ -1,0 +1,36 @@
+"""The dissertation reproduced: each published number beside the number computed for it, one module a chapter."""
+
+from sonolube.errors import UnknownName
+from sonolube.reproduce import chapter2, chapter3, chapter4
+from sonolube.reproduce.result import ReportFigure, Reproduction
+from sonolube.reproduce.row import Row, Verdict
+
+__all__ = ["ReportFigure", "Reproduction", "Row", "Verdict", "reproduction"]
+
+_CHAPTERS = {2: chapter2, 3: chapter3, 4: chapter4}
+
+
+def reproduction(*, chapter: int | None = None) -> Reproduction:
+    """Compute everything of the dissertation that models and formulas can give.
+
+    Parameters
+    ----------
+    chapter : int, optional
+        Only this chapter; all of them where absent.
+
+    Returns
+    -------
+    Reproduction
+
+    Raises
+    ------
+    UnknownName
+        If no number of that chapter can be computed.
+    """
+    if chapter is not None and chapter not in _CHAPTERS:
+        raise UnknownName.among(map(str, _CHAPTERS), kind="chapter", name=str(chapter))
+    chosen = [_CHAPTERS[chapter]] if chapter is not None else list(_CHAPTERS.values())
+    return Reproduction(
+        rows=tuple(row for module in chosen for row in module.rows()),
+        figures=tuple(figure for module in chosen for figure in module.figures()),
+    )

@@ -1,0 +1,119 @@
+"""Chapter 2, the experiments: what their printed numbers say of each other, and what models say of them."""
+
+from collections.abc import Iterator
+from functools import partial
+from itertools import chain
+from math import sqrt
+from typing import Literal
+
+import numpy as np
+
+from sonolube.actuator import driver_power, natural_frequency
+from sonolube.materials import material
+from sonolube.metrics import peak_vibration_velocity
+from sonolube.reproduce import chapter2_figures, chapter2_pairs, chapter2_tribometer, chapter2_welder
+from sonolube.reproduce.contacts import STEEL_ON_STEEL_NOTE, Bodies, poisson_friction_ratio
+from sonolube.reproduce.inputs import friction_drop, in_table, named, said
+from sonolube.reproduce.result import ReportFigure
+from sonolube.reproduce.row import Published, Row, cell, compare, over_rounding, stated, undetermined
+
+
+def rows() -> tuple[Row, ...]:
+    """Return the rows of chapter 2."""
+    return tuple(
+        chain(
+            _poisson_modes(),
+            _poisson_regions(),
+            _poisson_reductions(),
+            _flextensional_power(),
+            _flextensional_velocity(),
+            chapter2_tribometer.rows(),
+            chapter2_welder.rows(),
+            chapter2_pairs.rows(),
+        )
+    )
+
+
+def figures() -> tuple[ReportFigure, ...]:
+    """Return the figures of chapter 2."""
+    return chapter2_figures.figures()
+
+
+def _poisson_modes() -> Iterator[Row]:
+    for horn, alloy in (("aluminium", "aluminium_2024"), ("steel", "stainless_steel_316")):
+        density = material(alloy).value("density")
+        yield compare(
+            stated(f"2.1.3-first-mode-{horn}"),
+            over_rounding(
+                partial(_half_wave, density=density),
+                in_table("3.1", f"youngs_modulus_{horn}"),
+                said("2.1.2-waveguide-length"),
+            ),
+            f"Half a wave in a uniform bar with E of Table 3.1 and {density:g} kg/m3: no tapers, no rounded edges.",
+        )
+
+
+def _half_wave(youngs_modulus: float, length: float, *, density: float) -> float:
+    return float(natural_frequency(length=length, wave_speed=sqrt(youngs_modulus / density)))
+
+
+def _poisson_regions() -> Iterator[Row]:
+    for row, side in ((0, "start"), (0, "end"), (3, "start"), (3, "end")):
+        yield undetermined(cell("2.1", side, row), "a model of the motor effect, and the static friction of the block.")
+
+
+def _poisson_reductions() -> Iterator[Row]:
+    aluminium_horn = stated("2.1.5-reduction-aluminium-horn")
+    yield compare(
+        aluminium_horn,
+        over_rounding(friction_drop, said("2.1.5-coefficient-off"), said("2.1.5-coefficient-on")),
+        "D 2.1 from both coefficients; D calls all three numbers approximate.",
+    )
+    load = np.asarray(said("2.1.2-normal-load").value)
+    tests: tuple[tuple[Published, Bodies, Literal["aluminium", "steel"], str], ...] = (
+        (named(aluminium_horn, "cube"), "aluminium_steel", "aluminium", ""),
+        (stated("2.1.5-reduction-steel-on-aluminium"), "aluminium_steel", "steel", ""),
+        (stated("2.1.5-reduction-steel-on-steel"), "steel_steel", "steel", f" Assumed: {STEEL_ON_STEEL_NOTE}."),
+    )
+    for published, bodies, horn, remark in tests:
+        own, later = (
+            1 - float(poisson_friction_ratio(bodies=bodies, horn=horn, normal_load=load, axial_amplitude=number.value))
+            for number in (said("2.1.2-welder-amplitude"), said("4.3.5-waveguide-amplitude"))
+        )
+        yield compare(
+            published,
+            own,
+            f"Cube, D 3.15, {load:g} N, amplitude of D 2.1.2; with that of D 4.3.5 {100 * later:.1f} %.{remark}",
+        )
+
+
+def _flextensional_power() -> Iterator[Row]:
+    for level in (1, 2, 3):
+        power = driver_power(
+            capacitance=said("2.2.2-capacitance").value,
+            voltage_maximum=said(f"2.2.3-voltage-maximum-{level}").value,
+            voltage_peak_to_peak=said("2.2.5-voltage-peak-to-peak").value,
+            frequency=said("2.2.2-resonance").value,
+        )
+        yield compare(
+            stated(f"2.2.5-power-{level}"), float(power), "D 1.9: capacitance times both voltages times frequency."
+        )
+
+
+def _flextensional_velocity() -> Iterator[Row]:
+    swing = said("2.2.5-voltage-peak-to-peak").value / said("2.2.2-voltage").value * said("2.2.2-stroke").value
+    at_amplitude, at_stroke = (
+        float(peak_vibration_velocity(frequency=said("2.2.2-resonance").value, vibration_amplitude=amplitude))
+        for amplitude in (swing / 2, swing)
+    )
+    yield compare(
+        stated("2.2.5-vibration-velocity"),
+        at_amplitude,
+        f"2 pi f a, a half the stroke at this voltage; the whole stroke gives {1e3 * at_stroke:.0f} mm/s.",
+    )
+    yield compare(
+        stated("2.2.5-speed-of-no-reduction"),
+        at_amplitude,
+        "Where sliding and vibration are equally fast; of the vibration only the stroke far from resonance is printed.",
+    )
+    yield undetermined(stated("2.2.4-reduction"), "the friction forces, which are only plotted, and the roughness.")

@@ -1,0 +1,133 @@
+"""The reproduction report: whole, self-contained, and the same in every form."""
+
+import json
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+from sonolube.errors import InvalidInput, UnknownName
+from sonolube.files import write_whole
+from sonolube.report import summary, validation_object, write_report
+from sonolube.reproduce import Verdict, reproduction
+
+KEYS = (
+    "id",
+    "chapter",
+    "source",
+    "quantity",
+    "unit",
+    "published",
+    "published_low",
+    "published_high",
+    "computed",
+    "relative_error",
+    "verdict",
+    "note",
+)
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("report")
+    write_report(reproduction(chapter=3), folder=folder)
+    return folder
+
+
+class Collector(HTMLParser):
+    def __init__(self) -> None:
+        super().__init__()
+        self.addresses: list[str] = []
+        self.ids: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        for name, value in attrs:
+            if name in ("src", "href") and value:
+                self.addresses.append(value)
+            if name == "id" and value:
+                self.ids.append(value)
+
+
+def test_the_page_needs_nothing_but_itself(report: Path) -> None:
+    page = Collector()
+    text = (report / "reproduction.html").read_text(encoding="utf-8")
+    page.feed(text)
+    assert page.addresses
+    assert all(address.startswith(("data:", "#")) for address in page.addresses)
+    assert not re.search(r"url\(|@import|https?://", text)
+    assert len(page.ids) == len(set(page.ids))
+
+
+def test_every_row_stands_in_page_and_json_alike(report: Path) -> None:
+    rows = json.loads((report / "validation.json").read_text(encoding="utf-8"))["rows"]
+    page = Collector()
+    page.feed((report / "reproduction.html").read_text(encoding="utf-8"))
+    assert [row["id"] for row in rows] == [name for name in page.ids if name in {row["id"] for row in rows}]
+    assert all(tuple(row) == KEYS for row in rows)
+    assert {row["verdict"] for row in rows} <= {verdict.value for verdict in Verdict}
+
+
+def test_every_figure_comes_as_png_and_svg(report: Path) -> None:
+    names = {figure.name for figure in reproduction(chapter=3).figures}
+    assert {path.stem for path in (report / "figures").glob("*.png")} == names
+    assert {path.stem for path in (report / "figures").glob("*.svg")} == names
+
+
+def test_the_whole_dissertation_gives_what_was_promised() -> None:
+    result = reproduction()
+    identifiers = [row.id for row in result.rows]
+    assert len(result.rows) >= 150
+    assert len(identifiers) == len(set(identifiers))
+    assert {row.chapter for row in result.rows} == {2, 3, 4}
+    assert all(row.note for row in result.rows)
+    for row in result.rows:
+        reproduced = row.computed is not None and (
+            row.published_low - 1e-9 * abs(row.published_low)
+            <= row.computed
+            <= row.published_high + 1e-9 * abs(row.published_high)
+        )
+        assert reproduced == (row.verdict is Verdict.REPRODUCED), row
+
+
+@pytest.mark.parametrize(
+    ("pattern", "count"),
+    [(r"table-4\.1-actuator-power-\d+", 6), (r"2\.2\.5-power-\d", 3), (r"table-2\.5-vibration-contact-count-\d", 3)],
+)
+def test_powers_and_contacts_are_all_reproduced(pattern: str, count: int) -> None:
+    verdicts = [row.verdict for row in reproduction().rows if re.fullmatch(pattern, row.id)]
+    assert len(verdicts) >= count - 1  # zero volts draw no power and need no row
+    assert set(verdicts) == {Verdict.REPRODUCED}
+
+
+def test_the_summary_counts_what_the_json_counts(report: Path) -> None:
+    result = reproduction(chapter=3)
+    text = summary(result, written=[report / "reproduction.html"])
+    for verdict, count in validation_object(result)["verdicts"].items():
+        assert re.search(rf"{verdict}\s+{count}\b", text)
+    assert str(report / "reproduction.html") in text
+
+
+def test_a_chapter_without_numbers_is_refused() -> None:
+    with pytest.raises(UnknownName, match="unknown chapter '5'"):
+        reproduction(chapter=5)
+
+
+def test_a_folder_that_cannot_be_made_is_refused_and_leaves_nothing(tmp_path: Path) -> None:
+    (tmp_path / "taken").write_text("a file")
+    with pytest.raises(InvalidInput, match="cannot be written"):
+        write_report(reproduction(chapter=3), folder=tmp_path / "taken")
+    assert [path.name for path in tmp_path.iterdir()] == ["taken"]
+
+
+def test_a_failed_write_leaves_the_old_file_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = write_whole(tmp_path / "kept.txt", "old")
+
+    def fail(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Path, "replace", fail)
+    with pytest.raises(InvalidInput, match="No space left on device"):
+        write_whole(path, "new")
+    assert path.read_text() == "old"
+    assert [entry.name for entry in tmp_path.iterdir()] == ["kept.txt"]
