@@ -1,0 +1,5 @@
+"""The command `sonolube`."""
+
+from sonolube.cli.app import main
+
+__all__ = ["main"]

@@ -1,0 +1,61 @@
+"""The command line: which commands there are, and what a user reads when one is refused."""
+
+import sys
+from collections.abc import Sequence
+
+import typer
+
+from sonolube import __version__
+from sonolube.cli import catalogue, operate, reproduction
+from sonolube.errors import SonolubeError
+
+app = typer.Typer(
+    name="sonolube",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    help="Ultrasonic lubrication: friction and wear of two surfaces of which one vibrates.\n\n"
+    "Example: sonolube friction examples/rigs/tribometer.toml",
+)
+app.command()(reproduction.reproduce)
+app.command()(operate.contact)
+app.command()(operate.friction)
+app.command()(operate.wear)
+app.command()(catalogue.materials)
+app.command()(catalogue.published)
+app.command()(catalogue.schema)
+
+
+@app.callback(invoke_without_command=True)
+def _version(
+    version: bool = typer.Option(False, "--version", help="Print the version and stop.", is_eager=True),
+) -> None:
+    if version:
+        typer.echo(f"sonolube {__version__}")
+        raise typer.Exit
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the command line and exit: 0 after success, 2 after bad input, 130 after an interruption.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        What follows the command's name; what the shell gave where absent.
+    """
+    arguments = list(sys.argv[1:] if arguments is None else arguments)
+    command = " ".join(["sonolube", *[word for word in arguments[:1] if not word.startswith("-")]])
+    try:
+        code = app(args=arguments, prog_name="sonolube", standalone_mode=False)
+    except (SonolubeError, OSError) as refusal:
+        code = _refuse(command, str(refusal))
+    except typer.TyperException as refusal:
+        code = _refuse(command, getattr(refusal, "format_message", refusal.__str__)())
+    except (KeyboardInterrupt, typer.Abort):
+        code = 130
+    sys.exit(code if isinstance(code, int) else 0)
+
+
+def _refuse(command: str, reason: str) -> int:
+    typer.echo(f"{command}: {' '.join(reason.split())}", err=True)
+    return 2

@@ -1,0 +1,58 @@
+"""Commands on a rig: its contact, its friction, its wear."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+RigPath = Annotated[Path, typer.Argument(metavar="RIG.toml", help="The rig, as a TOML file.")]
+Load = Annotated[str | None, typer.Option(metavar="FORCE", help="Normal load instead of the rig's, such as 40N.")]
+Changes = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Replace an entry, such as sliding.sliding_speed=87mm/s."),
+]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object, all quantities in SI.")]
+
+
+def contact(rig: RigPath, load: Load = None, changes: Changes = None, json: Json = False) -> None:
+    """Contact of the rig at rest: separation, real area, stiffness.
+
+    Example: sonolube contact examples/rigs/poisson_al_steel.toml --load 40N
+    """
+    from sonolube.rig import contact_point
+
+    _operate(contact_point, rig, load, changes, json)
+
+
+def friction(rig: RigPath, load: Load = None, changes: Changes = None, json: Json = False) -> None:
+    """Friction of the rig with and without vibration.
+
+    Example: sonolube friction examples/rigs/collar.toml --set drive.voltage_peak_to_peak=14V
+    """
+    from sonolube.rig import friction_point
+
+    _operate(friction_point, rig, load, changes, json)
+
+
+def wear(rig: RigPath, load: Load = None, changes: Changes = None, json: Json = False) -> None:
+    """Wear of the rig's softer body with and without vibration.
+
+    Example: sonolube wear examples/rigs/tribometer.toml
+    """
+    from sonolube.rig import wear_point
+
+    _operate(wear_point, rig, load, changes, json)
+
+
+def _operate(model: Callable[..., Any], path: Path, load: str | None, changes: list[str] | None, as_json: bool) -> None:
+    from sonolube.cli.output import show
+    from sonolube.rig import read_rig
+    from sonolube.units import to_si
+
+    replaced = list(changes or ())
+    if load is not None:
+        to_si(load, unit="N", name="--load")
+        replaced.append(f"contact.normal_load={load}")
+    rig = read_rig(path, changes=replaced)
+    show(model(rig), rig=rig, as_json=as_json)

@@ -1,0 +1,121 @@
+"""The command line as its users meet it: in a process of its own."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+from pytest import approx
+
+from sonolube.vocabulary import quantity
+
+ROOT = Path(__file__).parents[2]
+RIGS = ROOT / "examples" / "rigs"
+
+
+def sonolube(*arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [Path(sys.executable).parent / "sonolube", *arguments], capture_output=True, text=True, check=False, cwd=ROOT
+    )
+
+
+def answer(*arguments: str) -> dict[str, Any]:
+    run = sonolube(*arguments, "--json")
+    assert run.returncode == 0, run.stderr
+    content: dict[str, Any] = json.loads(run.stdout)
+    return content
+
+
+@pytest.mark.parametrize(
+    ("command", "names"),
+    [
+        (
+            "contact",
+            ["separation", "real_contact_area", "contact_count", "normal_stiffness", "tangential_stiffness"],
+        ),
+        (
+            "friction",
+            [
+                "friction_force",
+                "friction_coefficient",
+                "friction_ratio",
+                "friction_reduction",
+                "vibration_amplitude",
+                "actuator_power",
+            ],
+        ),
+        ("wear", ["wear_rate", "vibration_amplitude"]),
+    ],
+)
+def test_a_command_answers_in_words_of_the_vocabulary_and_si(command: str, names: list[str]) -> None:
+    result = answer(command, str(RIGS / "tribometer.toml"))
+    for name in names:
+        assert result[name]["unit"] == quantity(name).unit
+        assert result[name]["value"] > 0
+
+
+def test_the_published_separation_of_18_um_is_one_command_away() -> None:
+    result = answer("contact", str(RIGS / "poisson_al_steel.toml"), "--load", "40N")
+    assert result["separation"]["value"] == approx(18.11e-6, abs=0.005e-6)
+    assert result["normal_load"] == {"value": 40.0, "unit": "N"}
+
+
+def test_friction_force_and_coefficient_belong_together() -> None:
+    result = answer("friction", str(RIGS / "power_map.toml"), "--set", "contact.normal_load=7N")
+    assert result["friction_force"]["value"] == approx(7 * result["friction_coefficient"]["value"])
+    assert result["friction_reduction"]["value"] == approx(1 - result["friction_ratio"]["value"])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "complaint"),
+    [
+        (
+            ["contact", "RIG", "--load", "40mm"],
+            "sonolube contact: --load 40mm is a length; wanted a force, such as 40N",
+        ),
+        (["contact", "RIG", "--load", "40"], "sonolube contact: --load 40 has no unit; wanted a force, such as 40N"),
+        (["contact", "RIG", "--load", "-3N"], "normal_load must be positive, got -3.0 N"),
+        (["contact", "RIG", "--load", "1e9N"], "leaves no separation"),
+        (["friction", "RIG", "--set", "drive.frequenzy=1kHz"], "drive.frequenzy: unknown key; did you mean frequency?"),
+        (["friction", "RIG", "--set", "drive"], "change 'drive' must look like drive.frequency=22kHz"),
+        (["wear", "none.toml"], "sonolube wear: none.toml: no such file"),
+        (["materials", "unobtainium"], "sonolube materials: unknown material 'unobtainium'"),
+        (["published", "9.9"], "sonolube published: unknown table '9.9'"),
+        (["reproduce", "--chapter", "7"], "sonolube reproduce:"),
+        (["contact"], "sonolube contact: Missing argument 'RIG.toml'"),
+        (["fricton", "RIG"], "sonolube fricton: No such command 'fricton'. Did you mean 'friction'?"),
+    ],
+)
+def test_bad_input_gets_one_clear_line_and_exit_code_2(arguments: list[str], complaint: str) -> None:
+    run = sonolube(*[str(RIGS / "tribometer.toml") if word == "RIG" else word for word in arguments])
+    assert run.returncode == 2
+    assert run.stdout == ""
+    assert complaint in run.stderr
+    assert len(run.stderr.splitlines()) == 1
+
+
+@pytest.mark.parametrize("command", ["reproduce", "contact", "friction", "wear", "materials", "published", "schema"])
+def test_help_of_every_command_shows_an_example(command: str) -> None:
+    run = sonolube(command, "--help")
+    assert run.returncode == 0
+    assert f"Example: sonolube {command}" in " ".join(run.stdout.split())
+
+
+def test_every_material_is_listed_with_its_sources() -> None:
+    listed = answer("materials")
+    assert "aluminium_2024" in listed
+    assert all(entry["source"] for entry in listed["m50"]["properties"].values())
+
+
+def test_a_published_table_is_shown_as_printed_with_its_doubts() -> None:
+    shown = answer("published", "2.5")
+    assert "2.237" in json.dumps(shown)
+    assert any(doubt["erratum"] == "E27" for doubt in shown["doubts"])
+
+
+def test_completion_for_the_shell_can_be_shown() -> None:
+    run = sonolube("--show-completion", "bash")
+    assert run.returncode == 0
+    assert "sonolube" in run.stdout
