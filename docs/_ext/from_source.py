@@ -1,0 +1,211 @@
+"""Pages that quote the product: tables and answers of commands, made at build time so that they cannot go stale.
+
+A page asks for a table by the comment `<!-- table: NAME -->` on a line of its own, and for the answer of a command by
+a block whose first line is ```` ```{answer} sonolube ... ````.
+"""
+
+import io
+import re
+import shlex
+import shutil
+import tempfile
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import chdir, contextmanager, redirect_stderr, redirect_stdout
+from itertools import chain
+from pathlib import Path
+from typing import Any, ClassVar
+
+from docutils import nodes
+from docutils.parsers.rst import directives
+from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxDirective
+
+from sonolube.cli import main
+from sonolube.materials import Material, SourcedValue, material, material_names
+from sonolube.published import errata
+from sonolube.rig import read_rig, rig_schema
+from sonolube.units import engineering, kind_of
+from sonolube.vocabulary import quantities
+
+DOCS = Path(__file__).parents[1]
+RIGS = DOCS.parent / "examples" / "rigs"
+
+
+def rig_keys() -> str:
+    """Return every table of a rig file with its keys, as sections."""
+    schema = rig_schema()
+    return "\n\n".join(_rig_table(name, table, schema) for name, table in _tables("", schema, schema))
+
+
+def example_rigs() -> str:
+    """Return the example rigs with the numbers that tell them apart."""
+    rigs = {path.name: read_rig(path) for path in sorted(RIGS.glob("*.toml"))}
+    return _grid(
+        ["File", "Rig", "Source", "Load", "Speed", "Amplitude", "Assumed"],
+        [
+            [
+                f"`{name}`",
+                _plain(rig.title),
+                _plain(rig.source),
+                engineering(rig.normal_load, "N"),
+                engineering(rig.sliding_speed, "m/s"),
+                engineering(rig.vibration_amplitude, "m"),
+                f"{len(rig.assumptions)}",
+            ]
+            for name, rig in rigs.items()
+        ],
+    )
+
+
+def errata_of_d() -> str:
+    """Return all errata of the dissertation."""
+    return _grid(
+        ["", "Where", "Printed", "Right", "Evidence"],
+        [[each.id, *map(_plain, (each.where, each.printed, each.right, each.evidence))] for each in errata()],
+    )
+
+
+def materials_with_sources() -> str:
+    """Return every material with its properties, as sections."""
+    return "\n\n".join(_material(material(name)) for name in material_names())
+
+
+def vocabulary() -> str:
+    """Return every quantity with its symbol and unit."""
+    return _grid(
+        ["Name", "Symbol", "Unit", "Meaning"],
+        [[f"`{each.name}`", f"${each.symbol}$", each.unit, _plain(each.meaning)] for each in quantities().values()],
+    )
+
+
+TABLES: Mapping[str, Callable[[], str]] = {
+    table.__name__: table for table in (rig_keys, example_rigs, errata_of_d, materials_with_sources, vocabulary)
+}
+
+
+class Answer(SphinxDirective):
+    """A command of the product and what it answers, run in a folder that holds `examples` and `my-rig.toml`.
+
+    The option `refused` says that the command is meant to end with exit code 2.
+    """
+
+    required_arguments = 1
+    final_argument_whitespace = True
+    option_spec: ClassVar = {"refused": directives.flag}
+
+    def run(self) -> list[nodes.Node]:
+        """Return the command and its answer as one block of text."""
+        self.env.note_reread()
+        command = self.arguments[0]
+        code, printed = answer(command)
+        if code != (2 if "refused" in self.options else 0):
+            raise self.error(f"exit code {code}:\n{printed}")
+        block = nodes.literal_block(text=f"$ {command}\n{printed}")
+        block["language"] = "console"
+        return [block]
+
+
+def answer(command: str) -> tuple[object, str]:
+    """Return the exit code of a command and what it printed, complaints included."""
+    printed = io.StringIO()
+    with workplace() as folder, chdir(folder), redirect_stdout(printed), redirect_stderr(printed):
+        try:
+            main(shlex.split(command)[1:])
+        except SystemExit as end:
+            return end.code, printed.getvalue().rstrip()
+    raise AssertionError("a command ends by exiting")
+
+
+@contextmanager
+def workplace() -> Iterator[Path]:
+    """Make a folder in which the commands of the pages work as they stand."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "examples").symlink_to(RIGS.parent)
+        shutil.copy(DOCS / "my-rig.toml", folder)
+        yield folder
+
+
+def fill(app: Sphinx, docname: str, source: list[str]) -> None:
+    """Put the tables asked for into a page before it is parsed."""
+    filled = re.sub(r"^<!-- table: (\w+) -->$", lambda asked: TABLES[asked[1]](), source[0], flags=re.MULTILINE)
+    if filled != source[0]:
+        app.env.note_reread()
+    source[0] = filled
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Make both known to Sphinx."""
+    app.add_directive("answer", Answer)
+    app.connect("source-read", fill)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
+
+
+def _tables(name: str, table: Mapping[str, Any], schema: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[str, Any]]]:
+    yield name, table
+    for key, entry in table.get("properties", {}).items():
+        inner = _inner_table(entry, schema)
+        if inner:
+            yield from _tables(f"{name}.{key}".lstrip("."), inner, schema)
+
+
+def _inner_table(entry: Mapping[str, Any], schema: Mapping[str, Any]) -> Mapping[str, Any] | None:
+    references = [option["$ref"] for option in entry.get("anyOf", [entry]) if "$ref" in option]
+    inner: Mapping[str, Any] | None = schema["$defs"][references[0].rpartition("/")[2]] if references else None
+    return inner
+
+
+def _rig_table(name: str, table: Mapping[str, Any], schema: Mapping[str, Any]) -> str:
+    heading = f"### `[{name}]`" if name else "### At the top"
+    required = table.get("required", ())
+    rows = [
+        [f"`{key}`", *_key(key, entry), _need(key, entry, required)]
+        for key, entry in table.get("properties", {}).items()
+        if not _inner_table(entry, schema)
+    ]
+    description = table.get("description", "")
+    grid = _grid(["Key", "Meaning", "Unit", "Write", ""], rows) if rows else ""
+    return "\n\n".join(filter(None, [heading, description, grid]))
+
+
+def _key(key: str, entry: Mapping[str, Any]) -> tuple[str, str, str]:
+    if key in quantities():
+        known = quantities()[key]
+        return _plain(known.meaning), known.unit or "none", _plain(kind_of(known.unit))
+    if "enum" in entry:
+        return key.replace("_", " ").capitalize(), "", "one of " + ", ".join(f"`{name}`" for name in entry["enum"])
+    if entry.get("type") == "object":
+        return "What no source gives, by key", "", "a reason for each key"
+    return key.capitalize(), "", "text"
+
+
+def _need(key: str, entry: Mapping[str, Any], required: Sequence[str]) -> str:
+    if key in required:
+        return "required"
+    default = entry.get("default")
+    return "optional" if default is None or default == {} else f"default `{default}`"
+
+
+def _material(shown: Material) -> str:
+    rows = [
+        [key.replace("_", " "), engineering(known.value, known.unit, digits=4), _source(known)]
+        for key, known in shown.properties.items()
+    ]
+    if shown.crystal_structure:
+        structure = shown.crystal_structure
+        rows.append(["crystal structure", _plain(structure.text), _plain(structure.source)])
+    return f"## {shown.title}\n\n`{shown.name}`\n\n" + _grid(["Property", "Value", "Source"], rows)
+
+
+def _source(known: SourcedValue) -> str:
+    return _plain("; ".join(filter(None, (known.source, known.condition, known.note))))
+
+
+def _grid(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    lines = chain([heads, ["---"] * len(heads)], rows)
+    return "\n".join("| " + " | ".join(cell.replace("\n", " ") for cell in line) + " |" for line in lines)
+
+
+def _plain(text: str) -> str:
+    """Return text that Markdown shows as it stands."""
+    return re.sub(r"([\\`*_{}\[\]<>#|$~^])", r"\\\1", text)

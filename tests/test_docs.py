@@ -1,0 +1,158 @@
+"""The documentation against the product: nothing missing, nothing stale, no dead ends."""
+
+import importlib
+import inspect
+import json
+import pkgutil
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import sonolube
+from sonolube.cli.app import app
+from sonolube.rig import rig_schema
+
+ROOT = Path(__file__).parents[1]
+DOCS = ROOT / "docs"
+PAGES = sorted(DOCS.rglob("*.md"))
+COMMANDS = {str(command.callback.__name__): command.callback for command in app.registered_commands if command.callback}
+PHYSICS = ("surfaces", "contact", "friction", "wear", "actuator", "metrics", "vibration")
+
+
+def text_of(*pages: Path) -> str:
+    return "\n".join(page.read_text(encoding="utf-8") for page in pages)
+
+
+def help_example(name: str) -> str:
+    found = re.search(r"Example: (sonolube .*)", COMMANDS[name].__doc__ or "")
+    assert found, f"{name} has no example"
+    return found[1].strip()
+
+
+def calls() -> list[tuple[str, bool]]:
+    """Commands on rigs that the pages show, and whether each is shown to be refused."""
+    text = text_of(*PAGES)
+    answered = re.findall(r"^```\{answer\} (sonolube .*)\n(:refused:)?", text, flags=re.MULTILINE)
+    typed = re.findall(r"^\$ (sonolube .*)$", text, flags=re.MULTILINE)
+    shown = {(call, bool(refused)) for call, refused in answered} | {(call, False) for call in typed}
+    return sorted((call, refused) for call, refused in shown if "examples/rigs/" in call or "my-rig.toml" in call)
+
+
+def documented_modules() -> set[str]:
+    return set(re.findall(r"^\.\. automodule:: (\S+)$", text_of(*DOCS.glob("reference/*.md")), flags=re.MULTILINE))
+
+
+def public_names(module_name: str) -> set[str]:
+    module = importlib.import_module(module_name)
+    own = {
+        name
+        for name, value in vars(module).items()
+        if not name.startswith("_")
+        and (inspect.isclass(value) or callable(value))
+        and getattr(value, "__module__", None) == module_name
+    }
+    return set(getattr(module, "__all__", own))
+
+
+def anchors_of(page: Path) -> set[str]:
+    headings = re.findall(r"^#+ (.*)$", text_of(page), flags=re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading).strip().lower().replace(" ", "-") for heading in headings}
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_command_has_a_section_with_its_example(name: str) -> None:
+    page = text_of(DOCS / "commands.md")
+    assert f"\n## {name}\n" in page
+    assert help_example(name) in page
+
+
+def test_no_section_describes_a_command_that_is_gone() -> None:
+    called = re.findall(r"^(?:```\{answer\}|\$) sonolube (\w\S*)", text_of(*PAGES), flags=re.MULTILINE)
+    assert set(called) <= set(COMMANDS)
+
+
+@pytest.mark.parametrize(("call", "refused"), calls())
+def test_a_command_of_the_pages_runs_as_it_stands(call: str, refused: bool, tmp_path: Path) -> None:
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    shutil.copy(DOCS / "my-rig.toml", tmp_path)
+    program = Path(sys.executable).parent / "sonolube"
+    run = subprocess.run([program, *shlex.split(call)[1:]], capture_output=True, text=True, check=False, cwd=tmp_path)
+    assert run.returncode == (2 if refused else 0), run.stderr
+
+
+def test_every_room_and_module_at_the_top_has_its_reference() -> None:
+    top = {f"sonolube.{module.name}" for module in pkgutil.iter_modules(sonolube.__path__)} - {"sonolube.cli"}
+    assert top <= documented_modules()
+
+
+def test_every_public_function_and_class_of_the_models_has_its_reference() -> None:
+    documented = {name for module in documented_modules() for name in public_names(module)}
+    for module in pkgutil.walk_packages(sonolube.__path__, "sonolube."):
+        if module.name.split(".")[1] in PHYSICS:
+            assert public_names(module.name) <= documented, module.name
+
+
+def test_public_names_that_automodule_passes_over_are_written_out() -> None:
+    page = text_of(*DOCS.glob("reference/*.md"))
+    for module_name in documented_modules():
+        module = importlib.import_module(module_name)
+        for name in getattr(module, "__all__", ()):
+            value = getattr(module, name)
+            if not (inspect.isclass(value) or callable(value)):
+                assert f".. py:data:: {name}\n   :module: {module_name}\n" in page
+
+
+def test_every_page_of_the_reference_is_in_its_contents() -> None:
+    listed = set(text_of(DOCS / "reference" / "index.md").split())
+    assert {page.stem for page in DOCS.glob("reference/*.md")} - {"index"} <= listed
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(DOCS).as_posix())
+def test_every_local_link_leads_somewhere(page: Path) -> None:
+    text = text_of(page)
+    for target in re.findall(r"\{doc\}`(?:[^`<]*<)?([^`>]+)>?`", text):
+        assert (page.parent / f"{target}.md").is_file(), target
+    for target in re.findall(r"\{download\}`(?:[^`<]*<)?([^`>]+)>?`|\{literalinclude\} (\S+)", text):
+        assert (page.parent / "".join(target)).is_file(), target
+    for target, anchor in re.findall(r"\]\((?!https?://)([^)#\s]*)#?([^)\s]*)\)", text):
+        linked = page.parent / target if target else page
+        assert linked.is_file(), target
+        assert not anchor or anchor in anchors_of(linked), anchor
+
+
+def test_the_schema_in_the_docs_is_that_of_the_product() -> None:
+    assert json.loads(text_of(DOCS / "rig.schema.json")) == rig_schema(), "run: sonolube schema > docs/rig.schema.json"
+
+
+@pytest.mark.parametrize("rig", sorted((ROOT / "examples" / "rigs").glob("*.toml")), ids=lambda path: path.stem)
+def test_the_first_line_of_an_example_rig_points_at_the_schema(rig: Path) -> None:
+    directive, _, target = rig.read_text(encoding="utf-8").splitlines()[0].partition(" ")
+    assert directive == "#:schema"
+    assert (rig.parent / target).resolve() == DOCS / "rig.schema.json"
+
+
+def test_every_verdict_is_explained() -> None:
+    from sonolube.reproduce import Verdict
+
+    page = text_of(DOCS / "validation.md")
+    assert all(f"\n`{verdict.value}`\n: " in page for verdict in Verdict)
+
+
+def test_every_choice_of_a_rig_file_is_explained_in_the_theory() -> None:
+    from sonolube.contact import ASPERITY_LAWS
+
+    page = text_of(DOCS / "theory" / "contact.md")
+    assert all(f"| `{name}` |" in page for name in ASPERITY_LAWS)
+
+
+def test_pages_load_nothing_from_elsewhere() -> None:
+    settings = text_of(*DOCS.glob("**/*.py"), *PAGES)
+    assert '"sphinx-mathjax-offline"' in settings
+    assert not re.findall(
+        r"(?:src|import|url)\s*[=(]\s*[\"']?https?://|\{image\} https?://|!\[[^\]]*\]\(https?://", settings
+    )

@@ -1,0 +1,45 @@
+"""The examples in code, each run as a user would run it."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+EXAMPLES = sorted((Path(__file__).parents[1] / "examples").glob("*.py"))
+
+
+def run(example: Path, folder: Path) -> list[str]:
+    done = subprocess.run(
+        [sys.executable, example, folder / "out"], capture_output=True, text=True, check=False, cwd=folder
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == ""
+    return done.stdout.splitlines()
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
+def test_an_example_runs_and_says_something(example: Path, tmp_path: Path) -> None:
+    assert run(example, tmp_path)
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
+def test_an_example_is_a_page_with_its_call_at_the_top(example: Path) -> None:
+    lines = example.read_text(encoding="utf-8").splitlines()
+    assert len(lines) <= 45
+    assert f"Run: python examples/{example.name}" in lines[2]
+
+
+def test_the_figure_lands_in_the_folder_asked_for(tmp_path: Path) -> None:
+    example = next(path for path in EXAMPLES if path.stem == "friction_against_amplitude")
+    written = [Path(line) for line in run(example, tmp_path)]
+    assert {path.suffix for path in written} == {".png", ".svg"}
+    assert all(path.parent == tmp_path / "out" and path.stat().st_size > 1000 for path in written)
+
+
+def test_the_wear_table_holds_the_published_rates_at_three_newton(tmp_path: Path) -> None:
+    example = next(path for path in EXAMPLES if path.stem == "wear_with_and_without")
+    row = next(line.split() for line in run(example, tmp_path) if line.split()[0] == "3.0")
+    # D Table 3.4: 2.566e-2 and 1.355e-2 mm3/m
+    assert float(row[1]) == pytest.approx(25.66, abs=0.015)
+    assert float(row[2]) == pytest.approx(13.55, abs=0.015)
