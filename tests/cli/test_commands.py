@@ -1,6 +1,7 @@
 """The command line as its users meet it: in a process of its own."""
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -115,7 +116,14 @@ def test_a_published_table_is_shown_as_printed_with_its_doubts() -> None:
     assert any(doubt["erratum"] == "E27" for doubt in shown["doubts"])
 
 
-def test_completion_for_the_shell_can_be_shown() -> None:
-    run = sonolube("--show-completion", "bash")
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_completion_can_be_had_for_every_shell(shell: str) -> None:
+    run = subprocess.run(
+        [Path(sys.executable).parent / "sonolube"],
+        capture_output=True,
+        text=True,
+        check=False,
+        env=os.environ | {"_SONOLUBE_COMPLETE": f"source_{shell}"},
+    )
     assert run.returncode == 0
-    assert "sonolube" in run.stdout
+    assert "_SONOLUBE_COMPLETE" in run.stdout

@@ -77,6 +77,7 @@ def test_units_of_any_size_mean_the_same_rig() -> None:
         ('"3 N"', '"-3 N"', "normal_load must be positive, got -3.0 N"),
         ('"3 N"', '"0 N"', "normal_load must be positive, got 0.0 N"),
         ('"3 N"', "3", "contact.normal_load: 3 has no unit; wanted a force, such as 40N"),
+        ('"3 N"', '"3e-251 N"', "contact.normal_load: 3e-251 N lies beyond any rig"),
         ('"3 N"', "nan", "contact.normal_load: nan has no unit; wanted a force, such as 40N"),
         ('"3 N"', "true", "contact.normal_load: True is not a force, such as 40N"),
         ('"6 um"', '"-6 um"', "contact.roughness: rms_height must be positive, got -6e-06 m"),

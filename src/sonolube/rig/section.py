@@ -9,6 +9,8 @@ from pydantic_core import CoreSchema
 from sonolube.units import kind_of, to_si
 from sonolube.vocabulary import quantities
 
+_BEYOND_ANY_RIG = 1e30  # in SI; keeps products of several quantities within what a float can hold
+
 
 class Section(BaseModel):
     """A table of a rig file; unknown keys are refused, text with a unit becomes SI."""
@@ -37,7 +39,10 @@ class Section(BaseModel):
 
 def _quantity_in_si(value: object, *, unit: str) -> float:
     if isinstance(value, str):
-        return to_si(value, unit=unit, name="").real
+        number = to_si(value, unit=unit, name="")
+        if number and not 1 / _BEYOND_ANY_RIG < abs(number) < _BEYOND_ANY_RIG:
+            raise ValueError(f"{value} lies beyond any rig")
+        return number
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise ValueError(f"{value!r} is not {kind_of(unit)}")
     if unit:
