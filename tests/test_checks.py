@@ -5,7 +5,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sonolube.checks import require_finite, require_non_negative, require_positive, require_within
+from sonolube.checks import (
+    require_finite,
+    require_finite_complex,
+    require_non_negative,
+    require_positive,
+    require_within,
+)
 from sonolube.errors import InvalidInput
 
 
@@ -37,3 +43,13 @@ def test_a_range_lets_pass_what_lies_inside_and_nothing_else(inside: float, outs
     assert require_within(0.0, 0.5, poisson_ratio=inside) == inside
     with pytest.raises(InvalidInput, match=r"poisson_ratio must lie between 0 and 0\.5"):
         require_within(0.0, 0.5, poisson_ratio=outside)
+
+
+def test_complex_amplitudes_pass_and_their_parts_are_checked() -> None:
+    passed = require_finite_complex(voltage_amplitude=[1, 2j])
+    assert passed.dtype == np.complex128
+    assert passed.tolist() == [1, 2j]
+    with pytest.raises(InvalidInput, match=r"voltage_amplitude must be finite, got inf V"):
+        require_finite_complex(voltage_amplitude=[1, complex(0, np.inf)])
+    with pytest.raises(InvalidInput, match=r"voltage_amplitude must be a number or an array of numbers, got '3 V'"):
+        require_finite_complex(voltage_amplitude="3 V")

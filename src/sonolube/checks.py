@@ -9,6 +9,7 @@ from sonolube.errors import InvalidInput
 from sonolube.vocabulary import unit_of
 
 Floats = NDArray[np.float64]
+Complexes = NDArray[np.complex128]
 
 
 def require_finite(**values: ArrayLike) -> Floats:
@@ -20,6 +21,20 @@ def require_finite(**values: ArrayLike) -> Floats:
         Naming the argument, the first offending value and its unit.
     """
     return _require(np.isfinite, "must be finite", values)
+
+
+def require_finite_complex(**values: ArrayLike) -> Complexes:
+    """Return the first value as a complex array; refuse any that is not a finite number, real or complex.
+
+    Raises
+    ------
+    InvalidInput
+        Naming the argument, the first offending value and its unit.
+    """
+    for name, value in values.items():
+        for part in _parts(value):
+            require_finite(**{name: part})
+    return np.asarray(next(iter(values.values())), dtype=np.complex128)
 
 
 def require_positive(**values: ArrayLike) -> Floats:
@@ -79,3 +94,11 @@ def _floats(name: str, value: ArrayLike) -> Floats:
     if array.dtype.kind not in "fiu":
         raise InvalidInput(f"{name} must be a number or an array of numbers, got {value!r}")
     return array.astype(np.float64, copy=False)
+
+
+def _parts(value: ArrayLike) -> tuple[ArrayLike, ...]:
+    try:
+        array = np.asarray(value)
+    except ValueError:
+        return (value,)
+    return (array.real, array.imag) if array.dtype.kind == "c" else (value,)

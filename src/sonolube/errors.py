@@ -48,6 +48,10 @@ class ModelRangeWarning(UserWarning):
     """A result stands, but outside the range in which its model was shown to hold."""
 
 
+class InconsistentCoupling(ModelRangeWarning):
+    """A stated coupling factor disagrees with the one that stroke, stiffness and capacitance imply."""
+
+
 def suggestion(name: str, known: Iterable[str]) -> str:
     """Return "did you mean ...?" where a known name comes close, else an empty text."""
     close = get_close_matches(name.lower(), list(known), n=1, cutoff=0.6)

@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sonolube.checks import Floats, require_non_negative, require_positive
+from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
 
 _NODES = 40  # 1e-12 for exponentials over up to a hundred decay lengths, and any amplitude below the separation
 _BLOCK = 4096  # points whose samples together still fit a processor's cache
@@ -50,6 +50,43 @@ def separating_half_period_mean(
         block = slice(start, start + _BLOCK)
         means[block] = weights @ value(gaps[block] + np.multiply.outer(sines, amplitudes[block]))
     return means.reshape(d.shape)
+
+
+def separating_mean(value: Callable[[Floats], Floats], *, displacement: ArrayLike) -> Floats:
+    """Return the mean of a quantity over the part of a sampled period in which the displacement is positive.
+
+    Parameters
+    ----------
+    value : callable
+        Gives the quantity, elementwise, for an array of displacements.
+    displacement : array_like, shape (n,)
+        Displacement from rest at uniform phases of one period. [m]
+
+    Returns
+    -------
+    ndarray, shape ()
+        In the unit of the quantity; its value at rest if the displacement is never positive.
+
+    Raises
+    ------
+    InvalidInput
+        If a displacement is not finite.
+
+    Notes
+    -----
+    Displacement and quantity are taken as linear between samples, so that the error falls with the square of their
+    distance.
+    """
+    x = require_finite(displacement=displacement)
+    before, values = np.roll(x, 1), value(np.maximum(x, 0.0))  # the rest of the period does not count
+    values_before = np.roll(values, 1)
+    rise = np.maximum(x, before) - np.minimum(x, before)
+    share = np.clip(np.maximum(x, before) / np.where(rise > 0, rise, 1.0), 0.0, 1.0)  # of the step spent above rest
+    share = np.where(rise > 0, share, np.where(x > 0, 1.0, 0.0))
+    above, below = np.where(x > before, values, values_before), np.where(x > before, values_before, values)
+    means = above + (below - above) * share / 2
+    time = np.sum(share)
+    return np.asarray(np.sum(share * means) / time if time > 0 else value(np.zeros(1))[0])
 
 
 @cache

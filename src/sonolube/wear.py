@@ -1,13 +1,16 @@
 """Wear: how much of the softer body leaves with the sliding."""
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_non_negative, require_positive
+from sonolube.contact.motion import GapMotion, converged_mean, load_balanced_motion
 from sonolube.contact.rough import RoughContact, real_contact_area, separation
-from sonolube.vibration import separating_half_period_mean
+from sonolube.vibration import separating_half_period_mean, separating_mean
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -139,6 +142,107 @@ def vibrating_cube_wear_rate(
     )
 
 
+def as_published_wear(contact: RoughContact, motion: GapMotion) -> Floats:
+    """Return wear with vibration over wear without: the cube averaged over the whole period. []
+
+    Parameters
+    ----------
+    contact : RoughContact
+    motion : GapMotion
+
+    Returns
+    -------
+    ndarray, shape ()
+
+    Raises
+    ------
+    OutsideRange
+        If the motion leaves the height law's range.
+
+    Notes
+    -----
+    About an unmoved mean the ratio exceeds 1: vibration would raise the wear.
+
+    References
+    ----------
+    .. [1] D 3.28.
+    """
+    d, at_rest = _separation_and_rate(contact, motion)
+    return converged_mean(
+        lambda sampled: np.asarray(np.mean(_wear_rate(contact, d + sampled.displacement) / at_rest)), motion
+    )
+
+
+def separating_half_period_wear(contact: RoughContact, motion: GapMotion) -> Floats:
+    """Return wear with vibration over wear without: the cube averaged while the gap is wider than at rest. []
+
+    Parameters
+    ----------
+    contact : RoughContact
+    motion : GapMotion
+
+    Returns
+    -------
+    ndarray, shape ()
+
+    Raises
+    ------
+    OutsideRange
+        If the motion leaves the height law's range.
+
+    Notes
+    -----
+    By this mean D computed its tables. `vibrating_cube_wear_rate` gives the same for a sine about an unmoved mean.
+
+    References
+    ----------
+    .. [1] D 3.15 for friction, and Table 3.4.
+    """
+    d, at_rest = _separation_and_rate(contact, motion)
+    return converged_mean(
+        lambda sampled: separating_mean(
+            lambda x: _wear_rate(contact, d + x) / at_rest, displacement=sampled.displacement
+        ),
+        motion,
+    )
+
+
+def load_balanced_wear(contact: RoughContact, motion: GapMotion) -> Floats:
+    """Return wear with vibration over wear without: as published, about the gap that balances the load. []
+
+    Parameters
+    ----------
+    contact : RoughContact
+    motion : GapMotion
+        Its own mean does not matter.
+
+    Returns
+    -------
+    ndarray, shape ()
+
+    Raises
+    ------
+    OutsideRange
+        If the motion leaves the height law's range.
+
+    Notes
+    -----
+    With the area in proportion to the force, its mean stays that at rest, and the ratio differs from 1 only by how
+    much lower the cube is while it carries: 1 + [l ln I0(a/l) - a I1(a/l)/I0(a/l)]/d.
+    """
+    return as_published_wear(contact, load_balanced_motion(contact, motion))
+
+
+WEAR_CLOSURES: Mapping[str, Callable[[RoughContact, GapMotion], Floats]] = MappingProxyType(
+    {
+        "as_published": as_published_wear,
+        "separating_half_period": separating_half_period_wear,
+        "load_balanced": load_balanced_wear,
+    }
+)
+"""What a known motion of the gap makes of wear, by name."""
+
+
 def specific_wear_rate(*, wear_rate: ArrayLike, normal_load: ArrayLike) -> Floats:
     """Return the volume lost per sliding distance and load. [m2/N]
 
@@ -203,6 +307,11 @@ def vibration_contact_count(*, frequency: ArrayLike, duration: ArrayLike) -> Flo
         If a frequency is not positive, a duration negative, or a value not finite.
     """
     return require_positive(frequency=frequency) * require_non_negative(duration=duration)
+
+
+def _separation_and_rate(contact: RoughContact, motion: GapMotion) -> tuple[Floats, Floats]:
+    d = separation(contact, normal_load=motion.normal_load)
+    return d, _wear_rate(contact, require_positive(separation=d))
 
 
 def _wear_rate(contact: RoughContact, d: Floats) -> Floats:

@@ -3,7 +3,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pytest import approx, raises
 
-from sonolube.actuator import driver_power
+from sonolube.actuator import dissipated_power, driver_power, peak_current, power_factor
 from sonolube.errors import InvalidInput
 
 
@@ -31,3 +31,50 @@ def test_a_period_moves_one_charge_through_the_highest_voltage(volts: float, fre
 def test_a_negative_voltage_is_refused_by_name() -> None:
     with raises(InvalidInput, match=r"voltage_peak_to_peak must not be negative, got -4\.0 V"):
         driver_power(capacitance=1e-6, voltage_maximum=4, voltage_peak_to_peak=-4, frequency=1e3)
+
+
+def test_a_resistor_turns_half_the_square_of_the_amplitude_into_heat() -> None:
+    assert dissipated_power(admittance=1 / 50, voltage_amplitude=[10.0, 10j]) == approx(np.array([1.0, 1.0]))
+
+
+def test_a_capacitance_takes_no_power_and_has_no_power_factor() -> None:
+    y = 2j * np.pi * 22e3 * 360e-9
+    assert dissipated_power(admittance=y, voltage_amplitude=13.0) == 0
+    assert power_factor(admittance=y, voltage_amplitude=13.0) == 0
+
+
+@given(real=st.floats(1e-6, 1), imaginary=st.floats(-1, 1), volts=st.floats(0.1, 100))
+def test_for_a_sine_the_power_factor_is_the_cosine_of_the_phase(real: float, imaginary: float, volts: float) -> None:
+    y = complex(real, imaginary)
+    assert power_factor(admittance=y, voltage_amplitude=volts) == approx(np.cos(np.angle(y)))
+    assert peak_current(admittance=y, voltage_amplitude=volts) == approx(abs(y) * volts)
+
+
+harmonics = st.lists(
+    st.tuples(
+        st.builds(complex, st.floats(0, 1), st.floats(-1, 1)), st.complex_numbers(max_magnitude=100, allow_nan=False)
+    ),
+    min_size=1,
+    max_size=6,
+)
+
+
+@given(harmonics=harmonics)
+def test_the_powers_of_harmonics_add_to_the_mean_of_voltage_times_current(
+    harmonics: list[tuple[complex, complex]],
+) -> None:
+    y, volts = np.array(harmonics).T
+    theta = np.arange(4096) * 2 * np.pi / 4096
+    waves = np.exp(1j * np.multiply.outer(np.arange(1, y.size + 1), theta))
+    voltage, current = (volts @ waves).real, ((y * volts) @ waves).real
+    power = float(dissipated_power(admittance=y, voltage_amplitude=volts).sum())
+    assert power == approx(float(np.mean(voltage * current)), abs=1e-9)
+    rms = np.sqrt(np.mean(voltage**2) * np.mean(current**2))
+    assert float(power_factor(admittance=y, voltage_amplitude=volts)) * rms == approx(power, abs=1e-9)
+    peak = float(np.abs(current).max())
+    assert 0.995 * peak <= float(peak_current(admittance=y, voltage_amplitude=volts)) <= peak * 1.0001 + 1e-12
+
+
+def test_an_admittance_that_is_not_finite_is_refused_by_name() -> None:
+    with raises(InvalidInput, match=r"admittance must be finite, got nan S"):
+        dissipated_power(admittance=complex(0, np.nan), voltage_amplitude=1.0)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import typer
 
 from sonolube import __version__
-from sonolube.cli import catalogue, operate, reproduction
+from sonolube.cli import catalogue, motion, operate, reproduction
 from sonolube.errors import SonolubeError
 
 app = typer.Typer(
@@ -21,6 +21,7 @@ app.command()(reproduction.reproduce)
 app.command()(operate.contact)
 app.command()(operate.friction)
 app.command()(operate.wear)
+app.command()(motion.response)
 app.command()(catalogue.materials)
 app.command()(catalogue.published)
 app.command()(catalogue.schema)

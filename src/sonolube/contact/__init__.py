@@ -20,6 +20,7 @@ from sonolube.contact.height_distribution import (
     HeightDistribution,
     height_density,
 )
+from sonolube.contact.motion import GapMotion, harmonic_motion, load_balanced_motion
 from sonolube.contact.pair import ContactPair, ElasticBody, contact_pair, like_bodies_mindlin_ratio
 from sonolube.contact.rough import (
     RoughContact,
@@ -45,6 +46,7 @@ __all__ = [
     "ElasticAsperity",
     "ElasticBody",
     "ExponentialHeights",
+    "GapMotion",
     "GaussianHeights",
     "HeightDistribution",
     "JacksonGreen",
@@ -62,8 +64,10 @@ __all__ = [
     "elastic_area",
     "elastic_load_share",
     "exponential_window",
+    "harmonic_motion",
     "height_density",
     "like_bodies_mindlin_ratio",
+    "load_balanced_motion",
     "mindlin_stiffness",
     "normal_force",
     "normal_stiffness",

@@ -1,7 +1,7 @@
 """The dissertation reproduced: each published number beside the number computed for it, one module a chapter."""
 
 from sonolube.errors import UnknownName
-from sonolube.reproduce import chapter2, chapter3, chapter4
+from sonolube.reproduce import chapter2, chapter3, chapter4, closure_comparison, closure_figures
 from sonolube.reproduce.result import ReportFigure, Reproduction
 from sonolube.reproduce.row import Row, Verdict
 
@@ -30,7 +30,9 @@ def reproduction(*, chapter: int | None = None) -> Reproduction:
     if chapter is not None and chapter not in _CHAPTERS:
         raise UnknownName.among(map(str, _CHAPTERS), kind="chapter", name=str(chapter))
     chosen = [_CHAPTERS[chapter]] if chapter is not None else list(_CHAPTERS.values())
+    predictions = [row for row in closure_comparison.rows() if chapter in (None, row.chapter)]
+    comparisons = [figure for figure in closure_figures.figures() if chapter in (None, figure.chapter)]
     return Reproduction(
-        rows=tuple(row for module in chosen for row in module.rows()),
-        figures=tuple(figure for module in chosen for figure in module.figures()),
+        rows=(*[row for module in chosen for row in module.rows()], *predictions),
+        figures=(*[figure for module in chosen for figure in module.figures()], *comparisons),
     )

@@ -1,5 +1,6 @@
 """Rigs: an experiment or a device as one record, read from a file, and what it does at its operating point."""
 
+from sonolube.rig.dataset import dataset, write_netcdf
 from sonolube.rig.operating_point import (
     ContactPoint,
     FrictionPoint,
@@ -10,17 +11,24 @@ from sonolube.rig.operating_point import (
 )
 from sonolube.rig.read import read_rig, rig_from
 from sonolube.rig.record import Rig
+from sonolube.rig.response import Response, frequency_grid, linear_response, touching_structure
 from sonolube.rig.schema import rig_schema
 
 __all__ = [
     "ContactPoint",
     "FrictionPoint",
+    "Response",
     "Rig",
     "WearPoint",
     "contact_point",
+    "dataset",
+    "frequency_grid",
     "friction_point",
+    "linear_response",
     "read_rig",
     "rig_from",
     "rig_schema",
+    "touching_structure",
     "wear_point",
+    "write_netcdf",
 ]

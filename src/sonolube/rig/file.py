@@ -56,9 +56,12 @@ class ContactSection(Section):
 
 
 class FrictionSection(Section):
-    """Friction without vibration."""
+    """Friction without vibration, and the closure that says what vibration makes of it."""
 
     friction_coefficient: float
+    closure: Literal[
+        "as_published", "separating_half_period", "load_balanced", "kinematic", "stick_slip", "coupled"
+    ] = "stick_slip"
 
 
 class SlidingSection(Section):
@@ -81,6 +84,31 @@ class ActuatorSection(Section):
 
     capacitance: float | None = None
     amplitude_per_volt: float | None = None
+
+
+class StackSection(Section):
+    """The piezoelectric stack."""
+
+    free_capacitance: float
+    free_stroke_per_volt: float
+    stack_stiffness: float
+    stack_damping: float
+    stack_mass: float = 0.0
+    lowest_voltage: float | None = None
+    highest_voltage: float | None = None
+    preload: float | None = None
+    coupling_factor: float | None = None
+
+
+class StructureSection(Section):
+    """The masses, springs and dampers that the stack drives: tip, reaction mass and arm."""
+
+    tip_mass: float
+    reaction_mass: float
+    arm_mass: float
+    arm_stiffness: float
+    arm_damping: float
+    tip_damping: float = 0.0
 
 
 class WaveguideSection(Section):
@@ -109,6 +137,8 @@ class RigFile(Section):
     sliding: SlidingSection
     drive: DriveSection | None = None
     actuator: ActuatorSection | None = None
+    stack: StackSection | None = None
+    structure: StructureSection | None = None
     waveguide: WaveguideSection | None = None
     vibration: VibrationSection | None = None
     assumptions: dict[str, Text] = Field(default_factory=dict)
@@ -124,4 +154,12 @@ class RigFile(Section):
             )
         if self.waveguide is not None and self.drive is None:
             raise ValueError("the table waveguide needs drive.frequency")
+        return self
+
+    @model_validator(mode="after")
+    def _structure_with_its_stack(self) -> Self:
+        if (self.stack is None) != (self.structure is None):
+            raise ValueError("the tables stack and structure belong together: give both or neither")
+        if self.structure is not None and (self.drive is None or self.drive.voltage_peak_to_peak is None):
+            raise ValueError("the table structure needs drive.frequency and drive.voltage_peak_to_peak")
         return self

@@ -9,6 +9,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from sonolube.actuator import PiezoStack
 from sonolube.actuator.drive import Drive
 from sonolube.actuator.waveguide import HalfWaveguide, normal_amplitude
 from sonolube.contact import (
@@ -20,6 +21,7 @@ from sonolube.contact import (
     contact_pair,
     like_bodies_mindlin_ratio,
 )
+from sonolube.dynamics import Structure, chain_structure, pin_on_disc_chain
 from sonolube.errors import InvalidInput, MissingProperty, SonolubeError, suggestion
 from sonolube.materials import material
 from sonolube.rig.file import BodySection, ContactSection, RigFile
@@ -145,6 +147,7 @@ def _rig(file: RigFile) -> Rig:
     if file.drive is not None:
         with _prefixed("drive"):
             drive = Drive(**file.drive.model_dump())
+    stack, structure = _stack_and_structure(file)
     return Rig(
         title=file.title,
         source=file.source,
@@ -155,8 +158,20 @@ def _rig(file: RigFile) -> Rig:
         vibration_amplitude=_vibration_amplitude(file, drive),
         drive=drive,
         capacitance=file.actuator.capacitance if file.actuator else None,
+        stack=stack,
+        structure=structure,
+        closure=file.friction.closure,
         assumptions=MappingProxyType(dict(file.assumptions)),
     )
+
+
+def _stack_and_structure(file: RigFile) -> tuple[PiezoStack | None, Structure | None]:
+    if file.stack is None or file.structure is None:
+        return None, None
+    with _prefixed("stack"):
+        stack = PiezoStack(**file.stack.model_dump())
+    with _prefixed("structure"):
+        return stack, chain_structure(pin_on_disc_chain(stack, **file.structure.model_dump()))
 
 
 def _contact(section: ContactSection) -> RoughContact:

@@ -4,9 +4,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
+from sonolube.actuator import PiezoStack
 from sonolube.actuator.drive import Drive
 from sonolube.checks import require_non_negative, require_positive
 from sonolube.contact import RoughContact
+from sonolube.dynamics import Structure
 from sonolube.errors import InvalidInput
 
 
@@ -34,6 +36,12 @@ class Rig:
         Electrical drive of the actuator, where it is known.
     capacitance : float or None
         Capacitance of the actuator, where it is known. [F]
+    stack : PiezoStack or None
+        Piezoelectric stack, where the structure is known.
+    structure : Structure or None
+        What the stack drives, where it is known.
+    closure : str
+        Name of the closure that turns a computed motion into friction.
     assumptions : mapping of str to str
         Which entries no source gives, and what was assumed instead and why.
     """
@@ -47,6 +55,9 @@ class Rig:
     vibration_amplitude: float
     drive: Drive | None = None
     capacitance: float | None = None
+    stack: PiezoStack | None = None
+    structure: Structure | None = None
+    closure: str = "stick_slip"
     assumptions: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
 
     def __post_init__(self) -> None:

@@ -1,0 +1,66 @@
+"""Speed of the friction closures at 16 sliding speeds, beside elements stepped through one by one."""
+
+import numpy as np
+import pytest
+from pytest_benchmark.fixture import BenchmarkFixture
+
+from sonolube.contact import ContactPair, GapMotion, RoughContact, harmonic_motion, load_balanced_motion
+from sonolube.friction import FRICTION_CLOSURES, stick_slip_ratio
+from sonolube.surfaces import Roughness
+
+CONTACT = RoughContact(
+    roughness=Roughness(rms_height=6e-6, summit_radius=1.5e-6, summit_density=4.7e10),
+    pair=ContactPair(combined_modulus=59.6e9, poisson_ratio=0.33, yield_strength=410e6, mindlin_ratio=0.8),
+    nominal_area=2.25e-6,
+)
+SPEEDS = np.geomspace(1e-3, 1.0, 16)
+POINTS = 10_000
+
+
+def motion(amplitude: float = 2.5e-6) -> GapMotion:
+    return load_balanced_motion(
+        CONTACT, harmonic_motion(CONTACT, normal_load=3.0, vibration_amplitude=amplitude, frequency=22e3)
+    )
+
+
+def stepped(gap: np.ndarray, *, elements: int = 500, periods: int = 2) -> np.ndarray:
+    """Return what the sampled stick-slip closure does, by first-order steps of numpy vectors: error about 1e-2."""
+    touch = np.linspace(gap.min(), gap.max() + 20, elements)
+    number = np.exp(-(touch - gap.min()))
+    grown = SPEEDS[:, np.newaxis] / (22e3 * gap.size * 1.5e-6)
+    force = np.maximum(touch - gap.max(), 0) * np.ones((SPEEDS.size, 1))
+    friction, limits = np.zeros_like(force), np.zeros(elements)
+    for period in range(periods):
+        for x in gap:
+            limit = np.maximum(touch - x, 0)
+            force = np.minimum(force + grown, limit)
+            if period == periods - 1:
+                friction += force
+                limits += limit
+    return np.asarray(np.trapezoid(number * friction, touch) / np.trapezoid(number * limits, touch))
+
+
+@pytest.mark.parametrize("name", FRICTION_CLOSURES)
+def test_a_closure_at_sixteen_speeds(benchmark: BenchmarkFixture, name: str) -> None:
+    extra = {"friction_coefficient": 0.3} if name == "coupled" else {}
+    one = motion()
+    FRICTION_CLOSURES[name](CONTACT, one, sliding_speed=SPEEDS, **extra)  # compiled outside the measurement
+    benchmark(lambda: FRICTION_CLOSURES[name](CONTACT, one, sliding_speed=SPEEDS, **extra))
+
+
+def test_stick_slip_beside_elements_stepped_one_by_one(benchmark: BenchmarkFixture) -> None:
+    gap = motion().displacement / 2e-6
+    result = benchmark(lambda: stepped(gap))
+    exact = FRICTION_CLOSURES["stick_slip"](CONTACT, motion(), sliding_speed=SPEEDS)
+    assert np.max(np.abs(result - exact)) < 0.02
+
+
+def test_stick_slip_of_sines_in_closed_form(benchmark: BenchmarkFixture) -> None:
+    random = np.random.default_rng(1)
+    drawn = {
+        "vibration_amplitude": random.uniform(0.1e-6, 14e-6, POINTS),
+        "sliding_speed": random.uniform(1e-3, 1.0, POINTS),
+    }
+    stick_slip_ratio(decay_length=2e-6, frequency=22e3, vibration_amplitude=1e-6, sliding_speed=0.1)
+    benchmark(lambda: stick_slip_ratio(decay_length=2e-6, frequency=22e3, **drawn))
+    benchmark.extra_info["points"] = POINTS

@@ -1,0 +1,39 @@
+"""Commands on how a rig moves: its response to small voltages."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from sonolube.cli.operate import Changes, Json, RigPath
+
+
+def response(
+    rig: RigPath,
+    lowest: Annotated[str, typer.Option("--from", metavar="FREQUENCY", help="Lowest frequency.")] = "1kHz",
+    highest: Annotated[str, typer.Option("--to", metavar="FREQUENCY", help="Highest frequency.")] = "100kHz",
+    changes: Changes = None,
+    out: Annotated[Path, typer.Option(help="Folder for the figure and the netCDF file.")] = Path("out"),
+    json: Json = False,
+) -> None:
+    """Linear response: tip amplitude per volt and electrical impedance over frequency.
+
+    Example: sonolube response examples/rigs/tribometer.toml --from 15kHz --to 35kHz
+    """
+    import json as json_module
+
+    from sonolube.cli.response_output import response_lines, response_object, write_response
+    from sonolube.errors import InvalidInput
+    from sonolube.rig import frequency_grid, linear_response, read_rig
+    from sonolube.units import to_si
+
+    low, high = (to_si(text, unit="Hz", name=name) for text, name in ((lowest, "--from"), (highest, "--to")))
+    if not 0 < low < high:
+        raise InvalidInput(f"--from {lowest} must lie above 0 Hz and below --to {highest}")
+    known = read_rig(rig, changes=list(changes or ()))
+    result = linear_response(known, frequency=frequency_grid(known, lowest=low, highest=high))
+    written = write_response(known, result, folder=out, name=f"{rig.stem}-response")
+    if json:
+        typer.echo(json_module.dumps(response_object(known, result, written), indent=2))
+    else:
+        typer.echo("\n".join(response_lines(known, result, written)))

@@ -1,0 +1,194 @@
+"""A linear structure with one electrical port and one contact: what dynamics knows of a rig, a horn or its modes."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
+from sonolube.errors import InvalidInput
+
+Complexes = NDArray[np.complex128]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Structure:
+    """Masses, dampers and springs, a piezoelectric stack among them, that touch another body at one point.
+
+    The coordinates x obey M x'' + C x' + K x = b V + c (F_n - F_N), where V is the drive voltage, F_n the contact force
+    and F_N the dead load; the contact's displacement, positive away from the other body, is c.x; the charge on the
+    stack is C_S V + b.x. Displacements start from the static equilibrium under the dead load without voltage.
+
+    Parameters
+    ----------
+    mass_matrix : ndarray, shape (n, n)
+        Symmetric, positive definite; the identity for modes.
+    damping_matrix : ndarray, shape (n, n)
+        Symmetric, positive semidefinite.
+    stiffness_matrix : ndarray, shape (n, n)
+        Symmetric, positive semidefinite, with the stack short-circuited; singular where the structure floats.
+    drive_vector : ndarray, shape (n,)
+        Force per volt, which is also charge per displacement.
+    contact_vector : ndarray, shape (n,)
+        Displacement of the contact per coordinate, which is also force per contact force.
+    clamped_capacitance : float
+        Capacitance of the stack with all coordinates held. [F]
+
+    Raises
+    ------
+    InvalidInput
+        If shapes disagree, a matrix is not symmetric, the masses are not positive or an energy could be negative.
+    """
+
+    mass_matrix: Floats
+    damping_matrix: Floats
+    stiffness_matrix: Floats
+    drive_vector: Floats
+    contact_vector: Floats
+    clamped_capacitance: float
+
+    def __post_init__(self) -> None:
+        require_non_negative(clamped_capacitance=self.clamped_capacitance)
+        n = len(self.mass_matrix)
+        for name in ("mass_matrix", "damping_matrix", "stiffness_matrix"):
+            matrix = require_finite(**{name: getattr(self, name)})
+            if matrix.shape != (n, n) or not np.allclose(matrix, matrix.T, rtol=1e-9, atol=0):
+                raise InvalidInput(f"{name} must be symmetric of shape ({n}, {n}), got shape {matrix.shape}")
+            scale = float(np.abs(matrix).max()) if n else 0.0
+            lowest = float(np.linalg.eigvalsh(matrix)[0])
+            if lowest < -1e-9 * scale or (name == "mass_matrix" and lowest <= 0):
+                demand = "positive definite" if name == "mass_matrix" else "positive semidefinite"
+                raise InvalidInput(f"{name} must be {demand}, got an eigenvalue of {lowest:.4g}")
+        for name in ("drive_vector", "contact_vector"):
+            vector = require_finite(**{name: getattr(self, name)})
+            if vector.shape != (n,):
+                raise InvalidInput(f"{name} must have shape ({n},), got {vector.shape}")
+
+    @property
+    def coordinates(self) -> int:
+        """Number of coordinates, n."""
+        return len(self.mass_matrix)
+
+
+def dynamic_stiffness(structure: Structure, *, frequency: ArrayLike) -> Complexes:
+    """Return K + i omega C - omega^2 M.
+
+    Parameters
+    ----------
+    structure : Structure
+    frequency : array_like, any shape
+        Frequency of the motion. [Hz]
+
+    Returns
+    -------
+    ndarray, shape of `frequency` with (n, n) appended
+
+    Raises
+    ------
+    InvalidInput
+        If a frequency is not positive.
+    """
+    omega = 2 * np.pi * require_positive(frequency=frequency)[..., np.newaxis, np.newaxis]
+    stiffness = structure.stiffness_matrix - omega**2 * structure.mass_matrix
+    return np.asarray(stiffness + 1j * omega * structure.damping_matrix, dtype=np.complex128)
+
+
+def contact_receptance(structure: Structure, *, frequency: ArrayLike) -> Complexes:
+    """Return displacement of the contact per force on it, the drive short-circuited, complex, in m/N.
+
+    Parameters
+    ----------
+    structure : Structure
+    frequency : array_like, any shape
+        Frequency of the force. [Hz]
+
+    Returns
+    -------
+    ndarray, shape of `frequency`
+
+    Raises
+    ------
+    InvalidInput
+        If a frequency is not positive.
+    """
+    return _response(structure, frequency, structure.contact_vector) @ structure.contact_vector
+
+
+def drive_receptance(structure: Structure, *, frequency: ArrayLike) -> Complexes:
+    """Return displacement of the free contact per volt, complex, in m/V.
+
+    Parameters
+    ----------
+    structure : Structure
+    frequency : array_like, any shape
+        Frequency of the voltage. [Hz]
+
+    Returns
+    -------
+    ndarray, shape of `frequency`
+
+    Raises
+    ------
+    InvalidInput
+        If a frequency is not positive.
+    """
+    return _response(structure, frequency, structure.drive_vector) @ structure.contact_vector
+
+
+def electrical_admittance(structure: Structure, *, frequency: ArrayLike) -> Complexes:
+    """Return current per voltage at the stack, the contact free, complex, in siemens.
+
+    Parameters
+    ----------
+    structure : Structure
+    frequency : array_like, any shape
+        Frequency of the voltage. [Hz]
+
+    Returns
+    -------
+    ndarray, shape of `frequency`
+
+    Raises
+    ------
+    InvalidInput
+        If a frequency is not positive.
+    """
+    omega = 2 * np.pi * require_positive(frequency=frequency)
+    motional = _response(structure, frequency, structure.drive_vector) @ structure.drive_vector
+    return 1j * omega * (structure.clamped_capacitance + motional)
+
+
+def with_contact_spring(structure: Structure, *, normal_stiffness: float, contact_damping: float = 0.0) -> Structure:
+    """Return the structure with a linear spring and damper at the contact, as small motions feel it.
+
+    Parameters
+    ----------
+    structure : Structure
+    normal_stiffness : float
+        Stiffness of the contact. [N/m]
+    contact_damping : float
+        Damping of the contact. [N s/m]
+
+    Returns
+    -------
+    Structure
+    """
+    k, c = (
+        require_non_negative(normal_stiffness=normal_stiffness),
+        require_non_negative(contact_damping=contact_damping),
+    )
+    share = np.multiply.outer(structure.contact_vector, structure.contact_vector)
+    return Structure(
+        mass_matrix=structure.mass_matrix,
+        damping_matrix=structure.damping_matrix + c * share,
+        stiffness_matrix=structure.stiffness_matrix + k * share,
+        drive_vector=structure.drive_vector,
+        contact_vector=structure.contact_vector,
+        clamped_capacitance=structure.clamped_capacitance,
+    )
+
+
+def _response(structure: Structure, frequency: ArrayLike, force: Floats) -> Complexes:
+    stiffness = dynamic_stiffness(structure, frequency=frequency)
+    forces = np.broadcast_to(force.astype(np.complex128)[:, np.newaxis], (*stiffness.shape[:-1], 1))
+    return np.asarray(np.linalg.solve(stiffness, forces)[..., 0], dtype=np.complex128)

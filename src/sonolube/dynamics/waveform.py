@@ -1,0 +1,305 @@
+"""Shapes of the drive voltage: one period about zero mean, from -1/2 to 1/2 where it is symmetric."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sonolube.checks import Complexes, Floats, require_finite, require_non_negative, require_positive
+from sonolube.errors import InvalidInput, UnknownName
+
+_TURN = 2 * np.pi
+
+
+@dataclass(frozen=True, slots=True)
+class Sine:
+    """Half the sine of the phase."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class PiecewiseLinear:
+    """A period of straight pieces, with or without jumps between them.
+
+    Parameters
+    ----------
+    starts_at : ndarray, shape (n,)
+        Phase at which each piece starts, rising, from 0 to less than 2 pi; the last one ends where the first starts.
+    first : ndarray, shape (n,)
+        Value at the start of each piece.
+    last : ndarray, shape (n,)
+        Value at its end.
+
+    Raises
+    ------
+    InvalidInput
+        If shapes disagree, phases do not rise within a turn, the mean is not zero or peak to peak is not one.
+    """
+
+    starts_at: Floats
+    first: Floats
+    last: Floats
+
+    def __post_init__(self) -> None:
+        start = require_finite(starts_at=self.starts_at, first=self.first, last=self.last)
+        if start.shape != (start.size,) or not start.size or not start.shape == self.first.shape == self.last.shape:
+            raise InvalidInput("starts_at, first and last must be arrays of one axis and the same length")
+        if start[0] < 0 or start[-1] >= _TURN or np.any(np.diff(start) <= 0):
+            raise InvalidInput("starts_at must rise, and lie between 0 and 2 pi, less than the latter")
+        mean, (lowest, highest) = float(self._lengths @ (self.first + self.last)) / (2 * _TURN), extremes(self)
+        if abs(mean) > 1e-9 or abs(highest - lowest - 1) > 1e-9:
+            raise InvalidInput(
+                f"a waveform must have mean 0 and peak to peak 1, got {mean:.4g} and {highest - lowest:.4g}"
+            )
+
+    @property
+    def _lengths(self) -> Floats:
+        return np.diff(self.starts_at, append=self.starts_at[0] + _TURN)
+
+    @property
+    def _slopes(self) -> Floats:
+        return (self.last - self.first) / self._lengths
+
+
+Waveform = Sine | PiecewiseLinear
+
+
+def sampled_waveform(samples: ArrayLike) -> PiecewiseLinear:
+    """Return the waveform through equally spaced samples of one period, brought to zero mean and unit height.
+
+    Parameters
+    ----------
+    samples : array_like, shape (n,)
+        At least two, not all equal; the first one at phase 0, and after the last one the first again.
+
+    Returns
+    -------
+    PiecewiseLinear
+        Straight between samples, without jumps.
+
+    Raises
+    ------
+    InvalidInput
+        If there are fewer than two samples, all are equal, or one is not finite.
+    """
+    given = np.asarray(samples, dtype=np.float64)
+    if given.ndim != 1 or given.size < 2:
+        raise InvalidInput(f"samples must be at least two on one axis, got shape {given.shape}")
+    if not np.all(np.isfinite(given)):
+        index = int(np.flatnonzero(~np.isfinite(given))[0])
+        raise InvalidInput(f"samples[{index}] must be finite, got {float(given[index])!r}")
+    height = float(np.ptp(given))
+    if height == 0:
+        raise InvalidInput(f"samples must not all be equal, got {float(given[0])!r} throughout")
+    values = (given - given.mean()) / height
+    starts_at = np.linspace(0.0, _TURN, given.size, endpoint=False, dtype=np.float64)
+    return PiecewiseLinear(starts_at=starts_at, first=values, last=np.roll(values, -1))
+
+
+def value(waveform: Waveform, *, phase: ArrayLike) -> Floats:
+    """Return the waveform at a phase; on a jump, what follows it.
+
+    Parameters
+    ----------
+    waveform : Waveform
+    phase : array_like, any shape
+        Phase in the period, any number of turns. [rad]
+
+    Returns
+    -------
+    ndarray, shape of `phase`
+
+    Raises
+    ------
+    InvalidInput
+        If a phase is not finite.
+    """
+    theta = require_finite(phase=phase)
+    if isinstance(waveform, Sine):
+        return np.asarray(0.5 * np.sin(theta))
+    theta = theta % _TURN
+    piece = np.searchsorted(waveform.starts_at, theta, side="right") - 1  # -1 before the first: the last piece, wrapped
+    into = (theta - waveform.starts_at[piece]) % _TURN
+    return np.asarray(waveform.first[piece] + waveform._slopes[piece] * into)
+
+
+def harmonics(waveform: Waveform, count: int) -> Complexes:
+    """Return the exact Fourier coefficients c_0 to c_count of the sum of c_k exp(i k phase) over k of both signs.
+
+    Parameters
+    ----------
+    waveform : Waveform
+    count : int
+        Highest harmonic.
+
+    Returns
+    -------
+    ndarray, shape (count + 1,)
+        The amplitude of harmonic k is 2 c_k; that of the mean, c_0, is zero.
+
+    Raises
+    ------
+    InvalidInput
+        If the count is negative.
+
+    Notes
+    -----
+    By parts, c_k is the sum over the starts of pieces of [jump/(ik) + change of slope/(ik)^2] exp(-ik phase)/(2 pi).
+    """
+    if count < 0:
+        raise InvalidInput(f"count must not be negative, got {count!r}")
+    coefficients = np.zeros(count + 1, dtype=np.complex128)
+    if isinstance(waveform, Sine):
+        coefficients[1:2] = -0.25j
+        return coefficients
+    ik = 1j * np.arange(1, count + 1)
+    turns = np.exp(-np.multiply.outer(ik, waveform.starts_at))
+    jump = waveform.first - np.roll(waveform.last, 1)
+    bend = waveform._slopes - np.roll(waveform._slopes, 1)
+    coefficients[1:] = (turns @ jump / ik + turns @ bend / ik**2) / _TURN
+    return coefficients
+
+
+def jumps(waveform: Waveform) -> Floats:
+    """Return the phases within one turn at which the waveform jumps, in order.
+
+    Parameters
+    ----------
+    waveform : Waveform
+
+    Returns
+    -------
+    ndarray, shape (number of jumps,)
+    """
+    if isinstance(waveform, Sine):
+        return np.empty(0)
+    return waveform.starts_at[np.abs(waveform.first - np.roll(waveform.last, 1)) > 1e-12]
+
+
+def extremes(waveform: Waveform) -> tuple[float, float]:
+    """Return the lowest and the highest value.
+
+    Parameters
+    ----------
+    waveform : Waveform
+
+    Returns
+    -------
+    lowest, highest : float
+        One apart; -1/2 and 1/2 for the named waveforms.
+    """
+    if isinstance(waveform, Sine):
+        return -0.5, 0.5
+    ends = np.concatenate([waveform.first, waveform.last])
+    return float(ends.min()), float(ends.max())
+
+
+def _pieces(*pieces: tuple[float, float, float]) -> PiecewiseLinear:
+    """Return the waveform of pieces, each given by its start in half turns, first and last value."""
+    start, first, last = np.array(pieces).T
+    return PiecewiseLinear(starts_at=start * np.pi, first=first, last=last)
+
+
+WAVEFORMS: Mapping[str, Waveform] = MappingProxyType(
+    {
+        "sine": Sine(),
+        "square": _pieces((0.0, 0.5, 0.5), (1.0, -0.5, -0.5)),
+        "triangle": _pieces((0.5, 0.5, -0.5), (1.5, -0.5, 0.5)),
+        "sawtooth": _pieces((1.0, -0.5, 0.5)),
+    }
+)
+"""The named waveforms, each with a fundamental in phase with the sine; the sawtooth rises, and jumps down."""
+
+
+def drive_voltage(
+    waveform: Waveform,
+    *,
+    voltage_offset: ArrayLike,
+    voltage_peak_to_peak: ArrayLike,
+    frequency: ArrayLike,
+    time: ArrayLike,
+) -> Floats:
+    """Return the drive voltage over time. [V]
+
+    Parameters
+    ----------
+    waveform : Waveform
+    voltage_offset : array_like
+        Mean voltage. [V]
+    voltage_peak_to_peak : array_like, broadcast against `voltage_offset`
+        Difference of the highest and the lowest voltage. [V]
+    frequency : array_like, broadcast against `voltage_offset`
+        Repetition frequency. [Hz]
+    time : array_like, broadcast against `voltage_offset`
+        Time; phase 0 is at 0. [s]
+
+    Returns
+    -------
+    ndarray, shape of the broadcast arguments
+
+    Raises
+    ------
+    InvalidInput
+        If a peak-to-peak voltage is negative, a frequency not positive, or a value not finite.
+    """
+    turns = require_positive(frequency=frequency) * require_finite(time=time)
+    swing = require_non_negative(voltage_peak_to_peak=voltage_peak_to_peak) * value(waveform, phase=_TURN * turns)
+    return require_finite(voltage_offset=voltage_offset) + swing
+
+
+RAMP_SHAPES = ("linear", "cosine")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class StartUpRamp:
+    """How the drive is switched on.
+
+    Parameters
+    ----------
+    duration : float
+        Time from nothing to full amplitude; zero for a switch. [s]
+    shape : str
+        "linear", or "cosine" for half a wave without corners.
+
+    Raises
+    ------
+    InvalidInput
+        If the duration is negative.
+    UnknownName
+        If the shape is unknown.
+    """
+
+    duration: float
+    shape: str = "linear"
+
+    def __post_init__(self) -> None:
+        require_non_negative(duration=self.duration)
+        if self.shape not in RAMP_SHAPES:
+            raise UnknownName.among(RAMP_SHAPES, kind="ramp", name=self.shape)
+
+
+def ramp_factor(ramp: StartUpRamp, *, time: ArrayLike) -> Floats:
+    """Return the share of the full amplitude. []
+
+    Parameters
+    ----------
+    ramp : StartUpRamp
+    time : array_like, any shape
+        Time since the start; before it there is no drive. [s]
+
+    Returns
+    -------
+    ndarray, shape of `time`
+        From 0 to 1.
+
+    Raises
+    ------
+    InvalidInput
+        If a time is not finite.
+    """
+    t = require_finite(time=time)
+    if ramp.duration == 0:
+        return np.where(t >= 0, 1.0, 0.0)
+    share = np.clip(t / ramp.duration, 0.0, 1.0)
+    return share if ramp.shape == "linear" else 0.5 - 0.5 * np.cos(np.pi * share)

@@ -1,0 +1,120 @@
+"""The linear response of a rig: how its tip moves and what its stack draws per volt, over frequency."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sonolube.checks import Floats, require_positive
+from sonolube.contact import normal_stiffness, separation
+from sonolube.dynamics import Structure, drive_receptance, electrical_admittance, modes, with_contact_spring
+from sonolube.errors import InvalidInput
+from sonolube.rig.record import Rig
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Response:
+    """Small motions of a rig at rest under its load, the contact a spring of its stiffness there.
+
+    Parameters
+    ----------
+    frequency : ndarray, shape (n,)
+        Frequency of the drive. [Hz]
+    amplitude_per_volt : ndarray, shape (n,)
+        Amplitude of the contact, zero to peak, per volt peak to peak. [m/V]
+    impedance : ndarray, shape (n,)
+        Magnitude of the stack's electrical impedance. [ohm]
+    phase : ndarray, shape (n,)
+        Its phase: voltage ahead of current. [rad]
+    """
+
+    frequency: Floats
+    amplitude_per_volt: Floats
+    impedance: Floats
+    phase: Floats
+
+
+def linear_response(rig: Rig, *, frequency: ArrayLike) -> Response:
+    """Return how the rig responds to small voltages.
+
+    Parameters
+    ----------
+    rig : Rig
+        With a stack and a structure.
+    frequency : array_like, shape (n,)
+        Frequencies asked for. [Hz]
+
+    Returns
+    -------
+    Response
+
+    Raises
+    ------
+    InvalidInput
+        If the rig has no structure, or a frequency is not positive.
+
+    Notes
+    -----
+    D figure 3.12 in kind. Contact forces that are not small against the load need `simulate`.
+    """
+    f = np.atleast_1d(require_positive(frequency=frequency))
+    touching = touching_structure(rig)
+    impedance = 1 / electrical_admittance(touching, frequency=f)
+    return Response(
+        frequency=f,
+        amplitude_per_volt=np.abs(drive_receptance(touching, frequency=f)) / 2,
+        impedance=np.abs(impedance),
+        phase=np.angle(impedance),
+    )
+
+
+def touching_structure(rig: Rig) -> Structure:
+    """Return the rig's structure with the contact as a spring of its stiffness at rest.
+
+    Raises
+    ------
+    InvalidInput
+        If the rig has no structure.
+    """
+    gap = separation(rig.contact, normal_load=rig.normal_load)
+    stiffness = float(normal_stiffness(rig.contact, separation=gap))
+    return with_contact_spring(require_structure(rig), normal_stiffness=stiffness)
+
+
+def require_structure(rig: Rig) -> Structure:
+    """Return the structure of a rig.
+
+    Raises
+    ------
+    InvalidInput
+        If it has none.
+    """
+    if rig.structure is None:
+        raise InvalidInput(f"{rig.title}: the tables stack and structure are missing; give them to compute its motion")
+    return rig.structure
+
+
+def frequency_grid(rig: Rig, *, lowest: float, highest: float, points: int = 2000) -> Floats:
+    """Return frequencies that draw a response whole: evenly spread on a logarithmic axis, and crowded at resonances.
+
+    Parameters
+    ----------
+    rig : Rig
+        With a stack and a structure.
+    lowest, highest : float
+        Ends of the range, in Hz.
+    points : int
+        How many are spread evenly.
+
+    Returns
+    -------
+    ndarray
+        In Hz, rising.
+    """
+    spread = np.geomspace(lowest, highest, points)
+    natural = modes(touching_structure(rig))
+    offsets = np.sinh(np.linspace(-6, 6, 201)) / np.sinh(6)
+    widths = np.maximum(20 * natural.damping_ratio, 1e-4)
+    crowded = (natural.natural_frequency[:, np.newaxis] * (1 + widths[:, np.newaxis] * offsets)).ravel()
+    inside = crowded[(crowded > lowest) & (crowded < highest)]
+    return np.unique(np.concatenate([spread, inside]))

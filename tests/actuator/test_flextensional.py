@@ -1,0 +1,126 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from pytest import approx, raises
+
+from sonolube.actuator import FlextensionalActuator, PiezoStack, amplified, equivalent_stack, free_stroke
+from sonolube.dynamics.chain import GROUND, LumpedChain, chain_structure
+from sonolube.dynamics.linear import modes
+from sonolube.dynamics.structure import electrical_admittance
+from sonolube.errors import InvalidInput
+
+# D 2.2.2: 52 um at 150 V, 16 kHz, 1.53 uF; force, mass and quality factor, which it does not print, of that order
+APA = FlextensionalActuator(
+    stroke=52e-6,
+    stroke_voltage=150.0,
+    blocked_force=190.0,
+    resonance_frequency=16e3,
+    free_capacitance=1.53e-6,
+    actuator_mass=10e-3,
+    mechanical_quality_factor=100.0,
+)
+STACK = PiezoStack(
+    free_capacitance=1.53e-6,
+    free_stroke_per_volt=60e-9,
+    stack_stiffness=80e6,
+    stack_damping=100.0,
+    stack_mass=3e-3,
+    preload=1000.0,
+)
+
+
+def test_four_volts_peak_to_peak_move_the_ends_by_1_4_micrometres() -> None:
+    # E35: half of it at 16 kHz is the vibration velocity of 70 mm/s, where D has 150
+    stroke = float(free_stroke(equivalent_stack(APA), stack_voltage=4.0))
+    assert stroke == approx(1.39e-6, rel=0.005)
+    assert np.pi * 16e3 * stroke == approx(0.070, rel=0.01)
+
+
+def test_the_equivalent_stack_on_its_effective_mass_rings_as_the_data_sheet_says() -> None:
+    held = chain_structure(
+        LumpedChain(
+            masses={"end": APA.effective_mass},
+            springs=(),
+            dampers=(),
+            stack=equivalent_stack(APA),
+            stack_between=("end", GROUND),
+            contact="end",
+        )
+    )
+    found = modes(held)
+    assert found.natural_frequency == approx(16e3)
+    assert found.damping_ratio == approx(1 / 200)
+
+
+def test_free_at_both_ends_two_equal_masses_take_twice_the_effective_mass_each() -> None:
+    free = chain_structure(
+        LumpedChain(
+            masses={"near": 2 * APA.effective_mass, "far": 2 * APA.effective_mass},
+            springs=(),
+            dampers=(),
+            stack=equivalent_stack(APA),
+            stack_between=("near", "far"),
+            contact="near",
+        )
+    )
+    assert modes(free).natural_frequency[1] == approx(16e3)
+
+
+@given(ratio=st.floats(0.1, 30))
+def test_a_lever_changes_neither_the_coupling_nor_the_energies(ratio: float) -> None:
+    out = amplified(STACK, amplification_ratio=ratio)
+    assert out.derived_coupling_factor == approx(STACK.derived_coupling_factor)
+    assert out.clamped_capacitance == approx(STACK.clamped_capacitance)
+    assert float(free_stroke(out, stack_voltage=1.0)) == approx(ratio * float(free_stroke(STACK, stack_voltage=1.0)))
+    work = out.stack_stiffness * float(free_stroke(out, stack_voltage=1.0)) ** 2
+    assert work == approx(STACK.stack_stiffness * float(free_stroke(STACK, stack_voltage=1.0)) ** 2)
+    assert out.preload == approx(1000.0 / ratio)
+
+
+@given(ratio=st.floats(0.1, 30), frequency=st.floats(10, 1e5))
+def test_a_mass_at_the_levers_end_looks_heavier_to_the_drive_by_the_square_of_the_ratio(
+    ratio: float, frequency: float
+) -> None:
+    def admittance(stack: PiezoStack, mass: float) -> complex:
+        chain = LumpedChain(
+            masses={"end": mass}, springs=(), dampers=(), stack=stack, stack_between=("end", GROUND), contact="end"
+        )
+        return complex(electrical_admittance(chain_structure(chain), frequency=frequency))
+
+    direct = admittance(STACK, 0.05 * ratio**2)
+    assert admittance(amplified(STACK, amplification_ratio=ratio), 0.05) == approx(direct, rel=1e-9)
+
+
+def test_two_levers_in_a_row_multiply() -> None:
+    twice = amplified(amplified(STACK, amplification_ratio=2.0), amplification_ratio=3.0)
+    once = amplified(STACK, amplification_ratio=6.0)
+    assert twice.stack_stiffness == approx(once.stack_stiffness)
+    assert twice.stack_mass == approx(once.stack_mass)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"stroke": 0.0}, r"stroke must be positive, got 0\.0 m"),
+        (
+            {"resonance_frequency": 100.0},
+            r"moves 9\.26 kg, more than actuator_mass, 0\.01 kg; was it measured with a load\?",
+        ),
+    ],
+)
+def test_a_data_sheet_that_cannot_be_is_refused(changes: dict[str, float], message: str) -> None:
+    with raises(InvalidInput, match=message):
+        replace(APA, **changes)
+
+
+def test_a_data_sheet_that_promises_energy_from_nothing_is_refused() -> None:
+    with raises(InvalidInput, match="the coupling factor would exceed 1"):
+        equivalent_stack(replace(APA, blocked_force=700.0))
+
+
+def test_a_ratio_of_zero_is_refused() -> None:
+    with raises(InvalidInput, match=r"amplification_ratio must be positive, got 0\.0"):
+        amplified(STACK, amplification_ratio=0)
