@@ -127,3 +127,22 @@ def test_completion_can_be_had_for_every_shell(shell: str) -> None:
     )
     assert run.returncode == 0
     assert "_SONOLUBE_COMPLETE" in run.stdout
+
+
+@pytest.mark.parametrize("command", ["simulate", "response", "transient"])
+def test_a_command_on_motion_answers_with_status_or_files_and_writes_them_whole(command: str, tmp_path: Path) -> None:
+    extra = {"simulate": [], "response": ["--out", str(tmp_path)], "transient": ["--out", str(tmp_path)]}[command]
+    if command == "transient":
+        extra += ["--duration", "0.01s"]
+    result = answer(command, str(RIGS / "tribometer.toml"), *extra)
+    files = [Path(name) for name in result.get("files", [])]
+    assert sorted(files) == sorted(tmp_path.iterdir())
+    assert all(path.stat().st_size > 1000 for path in files)
+    assert files or result["status"] == "periodic"
+
+
+def test_what_identify_writes_is_a_rig_that_simulates(tmp_path: Path) -> None:
+    path = tmp_path / "identified.toml"
+    run = sonolube("identify", "rig", str(RIGS / "tribometer.toml"), "--out", str(path))
+    assert run.returncode == 0, run.stderr
+    assert answer("simulate", str(path))["vibration_amplitude"]["value"] == approx(2.5e-6, rel=0.02)

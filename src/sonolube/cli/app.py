@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import typer
 
 from sonolube import __version__
-from sonolube.cli import catalogue, motion, operate, reproduction
+from sonolube.cli import catalogue, identification, motion, operate, reproduction
 from sonolube.errors import SonolubeError
 
 app = typer.Typer(
@@ -21,7 +21,10 @@ app.command()(reproduction.reproduce)
 app.command()(operate.contact)
 app.command()(operate.friction)
 app.command()(operate.wear)
+app.command()(operate.simulate)
 app.command()(motion.response)
+app.command()(motion.transient)
+app.add_typer(identification.identify, name="identify")
 app.command()(catalogue.materials)
 app.command()(catalogue.published)
 app.command()(catalogue.schema)

@@ -1,4 +1,4 @@
-"""Commands on how a rig moves: its response to small voltages."""
+"""Commands on how a rig moves: its response to small voltages, and its start from rest."""
 
 from pathlib import Path
 from typing import Annotated
@@ -37,3 +37,32 @@ def response(
         typer.echo(json_module.dumps(response_object(known, result, written), indent=2))
     else:
         typer.echo("\n".join(response_lines(known, result, written)))
+
+
+def transient(
+    rig: RigPath,
+    lasting: Annotated[str, typer.Option("--duration", metavar="TIME", help="How long to follow the rig.")] = "0.1s",
+    changes: Changes = None,
+    out: Annotated[Path, typer.Option(help="Folder for the figure and the netCDF file.")] = Path("out"),
+    json: Json = False,
+) -> None:
+    """Start-up from rest: settling of the tip's vibration, step by step.
+
+    Example: sonolube transient examples/rigs/tribometer.toml --duration 0.06s
+    """
+    import json as json_module
+
+    from sonolube.cli.progress import progress
+    from sonolube.cli.transient_output import start_up_lines, start_up_object, write_start_up
+    from sonolube.rig import read_rig, start_up
+    from sonolube.units import to_si
+
+    seconds = to_si(lasting, unit="s", name="--duration")
+    known = read_rig(rig, changes=list(changes or ()))
+    with progress("marching"):
+        result = start_up(known, duration=seconds)
+        written = write_start_up(known, result, folder=out, name=f"{rig.stem}-transient")
+    if json:
+        typer.echo(json_module.dumps(start_up_object(known, result, written), indent=2))
+    else:
+        typer.echo("\n".join(start_up_lines(known, result, written)))

@@ -45,6 +45,16 @@ def wear(rig: RigPath, load: Load = None, changes: Changes = None, json: Json = 
     _operate(wear_point, rig, load, changes, json)
 
 
+def simulate(rig: RigPath, load: Load = None, changes: Changes = None, json: Json = False) -> None:
+    """Multi-scale model: drive, structure and contact in one steady vibration, and the friction and wear under it.
+
+    Example: sonolube simulate examples/rigs/tribometer.toml --set drive.voltage_peak_to_peak=25.9V
+    """
+    from sonolube.rig import simulate as simulated
+
+    _operate(simulated, rig, load, changes, json)
+
+
 def _operate(model: Callable[..., Any], path: Path, load: str | None, changes: list[str] | None, as_json: bool) -> None:
     from sonolube.cli.output import show
     from sonolube.rig import read_rig

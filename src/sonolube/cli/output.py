@@ -15,22 +15,24 @@ def show(result: Any, *, rig: Rig, as_json: bool) -> None:
     """Print a record of results of one rig, with what was assumed and what is doubtful."""
     values = {field.name: getattr(result, field.name) for field in fields(result)}
     quantified = {name: value for name, value in values.items() if name in quantities() and value is not None}
+    told = {name: value for name, value in values.items() if isinstance(value, str)}
     if as_json:
-        typer.echo(json.dumps(_object(quantified, rig, values["doubts"]), indent=2, allow_nan=False))
+        typer.echo(json.dumps(_object(quantified, told, rig, values["doubts"]), indent=2, allow_nan=False))
     else:
-        typer.echo("\n".join(_lines(quantified, rig, values["doubts"])))
+        typer.echo("\n".join(_lines(quantified, told, rig, values["doubts"])))
 
 
-def _object(quantified: dict[str, float], rig: Rig, doubts: tuple[str, ...]) -> dict[str, Any]:
+def _object(quantified: dict[str, float], told: dict[str, str], rig: Rig, doubts: tuple[str, ...]) -> dict[str, Any]:
     return {
         "rig": rig.title,
+        **told,
         **{name: {"value": value, "unit": quantities()[name].unit} for name, value in quantified.items()},
         "doubts": list(doubts),
         "assumptions": dict(rig.assumptions),
     }
 
 
-def _lines(quantified: dict[str, float], rig: Rig, doubts: tuple[str, ...]) -> list[str]:
+def _lines(quantified: dict[str, float], told: dict[str, str], rig: Rig, doubts: tuple[str, ...]) -> list[str]:
     width = max(len(quantities()[name].meaning) for name in quantified)
     return [
         f"{rig.title}, {engineering(rig.normal_load, 'N')}",
@@ -38,6 +40,7 @@ def _lines(quantified: dict[str, float], rig: Rig, doubts: tuple[str, ...]) -> l
             f"  {quantities()[name].meaning:<{width}}  {engineering(value, quantities()[name].unit)}"
             for name, value in quantified.items()
         ],
+        *[f"  {name:<{width}}  {text}" for name, text in told.items() if name != "status"],
         *[f"  doubt: {doubt}" for doubt in doubts],
         *[f"  assumed {key}: {reason}" for key, reason in rig.assumptions.items()],
     ]

@@ -19,6 +19,7 @@ from sonolube.dynamics.linear import (
     resonance_frequencies,
     static_contact,
 )
+from sonolube.dynamics.periodic import Status, SteadyStates, steady_state
 from sonolube.dynamics.structure import (
     Structure,
     contact_receptance,
@@ -27,6 +28,7 @@ from sonolube.dynamics.structure import (
     electrical_admittance,
     with_contact_spring,
 )
+from sonolube.dynamics.transient import march, trajectory
 from sonolube.dynamics.waveform import (
     RAMP_SHAPES,
     WAVEFORMS,
@@ -59,6 +61,8 @@ __all__ = [
     "Spring",
     "StartUpRamp",
     "StaticContact",
+    "Status",
+    "SteadyStates",
     "Structure",
     "Waveform",
     "chain_structure",
@@ -71,6 +75,7 @@ __all__ = [
     "extremes",
     "harmonics",
     "jumps",
+    "march",
     "modal_structure",
     "modes",
     "pin_on_disc_chain",
@@ -79,6 +84,8 @@ __all__ = [
     "resonance_frequencies",
     "sampled_waveform",
     "static_contact",
+    "steady_state",
+    "trajectory",
     "value",
     "with_contact_spring",
 ]

@@ -24,10 +24,10 @@ class GapLaw(Protocol):
     def force_damping(self) -> float:
         """Damping tau of the contact in proportion to its force, F_n (1 - tau x'). [s/m]"""
 
-    def force(self, displacement: Floats, normal_load: Floats) -> Floats:
+    def force(self, displacement: Floats, normal_load: Floats | float) -> Floats:
         """Return the elastic contact force, never negative. [N]"""
 
-    def stiffness(self, displacement: Floats, normal_load: Floats) -> Floats:
+    def stiffness(self, displacement: Floats, normal_load: Floats | float) -> Floats:
         """Return its fall per displacement. [N/m]"""
 
 
@@ -52,11 +52,11 @@ class ExponentialGap:
         require_positive(decay_length=self.decay_length)
         require_non_negative(force_damping=self.force_damping)
 
-    def force(self, displacement: Floats, normal_load: Floats) -> Floats:
+    def force(self, displacement: Floats, normal_load: Floats | float) -> Floats:
         """Return the elastic contact force. [N]"""
         return normal_load * np.exp(-displacement / self.decay_length)
 
-    def stiffness(self, displacement: Floats, normal_load: Floats) -> Floats:
+    def stiffness(self, displacement: Floats, normal_load: Floats | float) -> Floats:
         """Return its fall per displacement. [N/m]"""
         return self.force(displacement, normal_load) / self.decay_length
 
@@ -90,15 +90,15 @@ class HertzGap:
         """Force over approach to the power 3/2, in N/m^1.5."""
         return 4 / 3 * self.combined_modulus * math.sqrt(self.tip_radius)
 
-    def force(self, displacement: Floats, normal_load: Floats) -> Floats:
+    def force(self, displacement: Floats, normal_load: Floats | float) -> Floats:
         """Return the elastic contact force. [N]"""
         return self.coefficient * self._approach(displacement, normal_load) ** 1.5
 
-    def stiffness(self, displacement: Floats, normal_load: Floats) -> Floats:
+    def stiffness(self, displacement: Floats, normal_load: Floats | float) -> Floats:
         """Return its fall per displacement. [N/m]"""
         return 1.5 * self.coefficient * np.sqrt(self._approach(displacement, normal_load))
 
-    def _approach(self, displacement: Floats, normal_load: Floats) -> Floats:
+    def _approach(self, displacement: Floats, normal_load: Floats | float) -> Floats:
         return np.maximum((normal_load / self.coefficient) ** (2 / 3) - displacement, 0.0)
 
 
@@ -122,10 +122,10 @@ class LinearGap:
     def __post_init__(self) -> None:
         require_non_negative(normal_stiffness=self.normal_stiffness, force_damping=self.force_damping)
 
-    def force(self, displacement: Floats, normal_load: Floats) -> Floats:
+    def force(self, displacement: Floats, normal_load: Floats | float) -> Floats:
         """Return the elastic contact force. [N]"""
         return np.maximum(normal_load - self.normal_stiffness * displacement, 0.0)
 
-    def stiffness(self, displacement: Floats, normal_load: Floats) -> Floats:
+    def stiffness(self, displacement: Floats, normal_load: Floats | float) -> Floats:
         """Return its fall per displacement. [N/m]"""
         return np.where(self.force(displacement, normal_load) > 0, self.normal_stiffness, 0.0)

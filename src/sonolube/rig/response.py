@@ -5,9 +5,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from sonolube.actuator.drive import Drive
 from sonolube.checks import Floats, require_positive
-from sonolube.contact import normal_stiffness, separation
-from sonolube.dynamics import Structure, drive_receptance, electrical_admittance, modes, with_contact_spring
+from sonolube.contact import ExponentialHeights, decay_length, normal_stiffness, separation
+from sonolube.dynamics import (
+    ExponentialGap,
+    Structure,
+    drive_receptance,
+    electrical_admittance,
+    modes,
+    with_contact_spring,
+)
 from sonolube.errors import InvalidInput
 from sonolube.rig.record import Rig
 
@@ -92,6 +100,34 @@ def require_structure(rig: Rig) -> Structure:
     if rig.structure is None:
         raise InvalidInput(f"{rig.title}: the tables stack and structure are missing; give them to compute its motion")
     return rig.structure
+
+
+def require_drive(rig: Rig) -> Drive:
+    """Return the drive of a rig.
+
+    Raises
+    ------
+    InvalidInput
+        If its voltage is not known.
+    """
+    if rig.drive is None or rig.drive.voltage_peak_to_peak is None:
+        raise InvalidInput(f"{rig.title}: drive.voltage_peak_to_peak is missing; give it to compute a motion")
+    return rig.drive
+
+
+def gap_law_of(rig: Rig) -> ExponentialGap:
+    """Return the contact of a rig as dynamics takes it.
+
+    Raises
+    ------
+    InvalidInput
+        If its heights are not exponential.
+    """
+    if not isinstance(rig.contact.heights, ExponentialHeights):
+        raise InvalidInput(
+            f"contact.height_distribution {rig.contact.heights.name}: motions are computed for exponential heights only"
+        )
+    return ExponentialGap(decay_length=float(decay_length(rig.contact)))
 
 
 def frequency_grid(rig: Rig, *, lowest: float, highest: float, points: int = 2000) -> Floats:

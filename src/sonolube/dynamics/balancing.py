@@ -1,0 +1,271 @@
+"""Solving a chunk of points: first guess, balance, finer where needed, up the ramp where all else fails."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sonolube.checks import Complexes, Floats
+from sonolube.dynamics.contact_lanes import Law
+from sonolube.dynamics.contact_port import ContactPort
+from sonolube.dynamics.growth_kernel import growth_rates
+from sonolube.dynamics.harmonic_kernel import (
+    CONVERGED,
+    DIVERGED,
+    NEEDS_HARMONICS,
+    NEEDS_SAMPLES,
+    TAIL,
+    Integers,
+    Points,
+    Resolution,
+    balance,
+)
+from sonolube.dynamics.motion_kernel import Measures, measure
+from sonolube.dynamics.one_harmonic import Guesses, first_guesses
+
+MOST_HARMONICS = 64
+_MOST_SAMPLES, _MOST_COUPLED = 2048, 32
+_ITERATIONS = 12
+_RAMP = 24  # steps of voltage on the way up
+_KICKS = 8  # a radian of the structure's fastest mode
+GROWTH = 1e-6  # per period, beyond what rounding may feign
+_DISTINCT = 1e-4  # relative difference of amplitude that makes two solutions
+
+
+class Solutions(NamedTuple):
+    """Steady states of a chunk, one row of each array to a point; NaN where there is none."""
+
+    mean: Floats
+    harmonics: Complexes
+    mean_force: Floats
+    charge: Complexes
+    amplitude: Floats
+    turns: Floats
+    lowest_displacement: Floats
+    force: Floats
+    lost: Floats
+    growing: NDArray[np.bool_]
+    rival_amplitude: Floats
+    count: Integers  # type: ignore[assignment]
+
+
+def solve(
+    port: ContactPort,
+    law: Law,
+    omega: Floats,
+    load: Floats,
+    voltage: Complexes,
+    free_mean: Floats,
+    *,
+    least: int,
+    falling: bool,
+    stability: bool,
+) -> Solutions:
+    """Find and measure the steady states of a chunk of points.
+
+    Parameters
+    ----------
+    port : ContactPort
+    law : Law
+    omega, load, free_mean : ndarray, shape (p,)
+        Angular frequency, in rad/s, dead load, in N, and mean displacement without contact, in m.
+    voltage : ndarray of complex, shape (p, K)
+        Harmonics of the drive, in V.
+    least : int
+        Harmonics to take and couple at least.
+    falling : bool
+        Whether to take the larger of several vibrations.
+    stability : bool
+        Whether to judge stability.
+
+    Returns
+    -------
+    Solutions
+    """
+    points = _points(omega, load, voltage, free_mean)
+    guesses = Guesses(np.empty_like(omega), np.empty_like(omega))
+    resolution = Resolution(*np.zeros((3, omega.size), dtype=np.int64))
+    first_guesses(port, law, TAIL, falling, points, resolution, guesses)
+    if least > 1:
+        _raise_to(least, resolution)
+    points, solved = _refine(port, law, points, resolution)
+    if not solved.all():
+        points = _up_the_ramp(port, law, points, resolution, solved)
+    found = _measured(port, law, points, resolution, solved, stability)
+    double = np.flatnonzero(solved & (guesses.highest > guesses.lowest * (1 + _DISTINCT)))
+    if double.size:
+        _find_rivals(port, law, points, double, falling, stability, found)
+    return found
+
+
+def _points(omega: Floats, load: Floats, voltage: Complexes, free_mean: Floats) -> Points:
+    return Points(
+        omega,
+        load,
+        voltage,
+        free_mean,
+        np.empty_like(omega),
+        np.zeros((omega.size, max(16, voltage.shape[1])), dtype=np.complex128),
+        np.empty_like(omega),
+        np.zeros_like(voltage),
+    )
+
+
+def _raise_to(least: int, resolution: Resolution) -> None:
+    np.maximum(resolution.harmonics, least, out=resolution.harmonics)
+    np.maximum(resolution.coupled, min(least, _MOST_COUPLED), out=resolution.coupled)
+    np.maximum(resolution.samples, 4 * resolution.harmonics, out=resolution.samples)
+
+
+def _refine(port: ContactPort, law: Law, points: Points, resolution: Resolution) -> tuple[Points, NDArray[np.bool_]]:
+    """Balance all points, those that did not succeed again with more harmonics or samples."""
+    outcome = np.full(points.omega.size, DIVERGED)
+    pending = np.arange(points.omega.size)
+    for attempt in range(9):
+        points = _with_room(points, int(resolution.harmonics[pending].max(initial=0)))
+        # like beside like, since a block of lanes works as finely as its most demanding point
+        demand = (resolution.samples[pending] * 64 + resolution.harmonics[pending]) * 64 + resolution.coupled[pending]
+        chosen = pending[np.argsort(demand)]
+        balance(
+            port,
+            law,
+            points,
+            resolution,
+            chosen,
+            _ITERATIONS + 4 * attempt,
+            outcome,
+        )
+        pending = np.flatnonzero(outcome != CONVERGED)
+        pending = pending[_finer(resolution, pending, outcome[pending])]
+        if not pending.size:
+            break
+    return points, outcome == CONVERGED
+
+
+def _finer(resolution: Resolution, pending: Integers, outcome: Integers) -> NDArray[np.bool_]:
+    """Ask for more of what each point lacked; return which of them can still have it."""
+    harmonics, coupled, samples = (values[pending] for values in resolution)
+    alone = (outcome == DIVERGED) & (coupled >= np.minimum(harmonics, _MOST_COUPLED))
+    coupled = np.where(outcome == DIVERGED, np.minimum(4 * coupled, _MOST_COUPLED), coupled)
+    harmonics = np.where((outcome == NEEDS_HARMONICS) | alone, 2 * harmonics, harmonics)
+    samples = np.where((outcome == NEEDS_SAMPLES) | alone, 2 * samples, samples)
+    possible = (harmonics <= MOST_HARMONICS) & (samples <= _MOST_SAMPLES)
+    resolution.harmonics[pending[possible]] = harmonics[possible]
+    resolution.coupled[pending[possible]] = np.minimum(coupled, harmonics)[possible]
+    resolution.samples[pending[possible]] = np.maximum(samples, 4 * harmonics)[possible]
+    return possible
+
+
+def _with_room(points: Points, harmonics: int) -> Points:
+    missing = harmonics - points.harmonics.shape[1]
+    if missing <= 0:
+        return points
+    return points._replace(harmonics=np.pad(points.harmonics, ((0, 0), (0, missing))))
+
+
+def _up_the_ramp(
+    port: ContactPort, law: Law, points: Points, resolution: Resolution, solved: NDArray[np.bool_]
+) -> Points:
+    """Follow the remaining points from a low voltage in small steps."""
+    lost = np.flatnonzero(~solved)
+    whole = Points(*(np.ascontiguousarray(values[lost]) for values in points))  # type: ignore[arg-type]
+    part = whole._replace(voltage=whole.voltage / _RAMP)
+    own = Resolution(*np.zeros((3, lost.size), dtype=np.int64))
+    guesses = Guesses(np.empty(lost.size), np.empty(lost.size))
+    first_guesses(port, law, TAIL, False, part, own, guesses)
+    good = np.zeros(lost.size, dtype=bool)
+    for step in range(1, _RAMP + 1):
+        growth = step / max(step - 1, 1)
+        part = part._replace(voltage=whole.voltage * (step / _RAMP), harmonics=part.harmonics * growth)
+        _raise_to(16, own)
+        part, good = _refine(port, law, part, own)
+    points = _with_room(points, part.harmonics.shape[1])
+    points.harmonics[lost, : part.harmonics.shape[1]] = part.harmonics
+    for values, answers in (
+        (points.mean, part.mean),
+        (points.mean_force, part.mean_force),
+        (points.charge, part.charge),
+    ):
+        values[lost] = answers
+    for values, answers in zip(resolution, own, strict=True):  # type: ignore[assignment]
+        values[lost] = answers
+    solved[lost] = good
+    return points
+
+
+def _measured(
+    port: ContactPort, law: Law, points: Points, resolution: Resolution, solved: NDArray[np.bool_], stability: bool
+) -> Solutions:
+    count = points.omega.size
+    points.mean[~solved], points.harmonics[~solved] = 0.0, 0.0
+    motion = (points.omega, points.load, points.mean, points.harmonics, resolution.harmonics)
+    measures = measured(law, *motion)
+    growing = np.zeros(count, dtype=bool)
+    if stability:
+        growing = growth(port, law, *motion, resolution.samples) > GROWTH
+    width = int(resolution.harmonics[solved].max(initial=1))
+    found = Solutions(
+        points.mean,
+        np.ascontiguousarray(points.harmonics[:, :width]),
+        points.mean_force,
+        points.charge,
+        measures.amplitude,
+        measures.turns,
+        measures.lowest_displacement,
+        measures.force,
+        measures.lost,
+        growing,
+        np.full(count, np.nan),
+        resolution.harmonics,
+    )
+    for values in found[:-3]:
+        values[~solved] = np.nan
+    return found
+
+
+def measured(law: Law, omega: Floats, load: Floats, mean: Floats, harmonics: Complexes, count: Integers) -> Measures:
+    """Return what `measure` writes."""
+    shapes = ((omega.size,), (omega.size, 2), (omega.size,), (omega.size, 2), (omega.size,))
+    measures = Measures(*(np.empty(shape) for shape in shapes))
+    measure(law, omega, load, mean, harmonics, count, measures)
+    return measures
+
+
+def growth(
+    port: ContactPort,
+    law: Law,
+    omega: Floats,
+    load: Floats,
+    mean: Floats,
+    harmonics: Complexes,
+    count: Integers,
+    samples: Integers,
+) -> Floats:
+    """Return the logarithm of the largest modulus of the multipliers, at least as many kicks a period as samples."""
+    rates = np.empty(omega.size)
+    fastest = np.sqrt(np.abs(port.determinant).max()) / omega
+    kicks = np.maximum(samples, np.ceil(_KICKS * fastest).astype(np.int64))
+    chosen = np.argsort(kicks * (MOST_HARMONICS + 1) + count)
+    growth_rates(port, law, omega, load, mean, harmonics, count, kicks, chosen, rates)
+    return rates
+
+
+def _find_rivals(
+    port: ContactPort,
+    law: Law,
+    points: Points,
+    double: Integers,
+    falling: bool,
+    stability: bool,
+    found: Solutions,
+) -> None:
+    """Where one harmonic has two solutions, look for the other one and write its amplitude if it is there to stay."""
+    other = _points(points.omega[double], points.load[double], points.voltage[double], points.free_mean[double])
+    guesses = Guesses(np.empty(double.size), np.empty(double.size))
+    resolution = Resolution(*np.zeros((3, double.size), dtype=np.int64))
+    first_guesses(port, law, TAIL, not falling, other, resolution, guesses)
+    other, solved = _refine(port, law, other, resolution)
+    rivals = _measured(port, law, other, resolution, solved, stability)
+    own = found.amplitude[double]
+    real = solved & ~rivals.growing & (np.abs(rivals.amplitude - own) > _DISTINCT * own)
+    found.rival_amplitude[double[real]] = rivals.amplitude[real]

@@ -1,0 +1,364 @@
+"""Harmonic balance on lanes: Newton's method on the contact's harmonics, many points side by side.
+
+The unknowns of a point are the contact's mean displacement and harmonics X_1 to X_H,
+x = mean + Re sum X_k exp(i k theta). They satisfy S_0 (mean - free mean) = mean F_n - F_N and
+X_k = H_k V_k + G_k Phi_k, with Phi_k the harmonics of the contact force. Newton's method takes the mean and the first
+harmonics together, as many as the contact couples noticeably; the harmonics beyond follow by substitution. Alternating
+between time and frequency, a pair of samples theta and -theta share their cosines and sines.
+"""
+
+from typing import NamedTuple
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from sonolube.checks import Complexes, Floats
+from sonolube.dynamics.contact_lanes import EXPONENTIAL, Law, contact_rows, reach
+from sonolube.dynamics.contact_port import ContactPort, receptances
+from sonolube.dynamics.lanes import INSIDE, KERNEL, LANES, add_combination
+from sonolube.dynamics.newton_kernel import newton_step
+
+Integers = NDArray[np.int64]
+
+CONVERGED, DIVERGED, NEEDS_HARMONICS, NEEDS_SAMPLES = 0, 1, 2, 3
+_COARSE, _FINE = 1e-6, 1e-8  # last steps relative to the amplitude: of the loop, and of the pass that confirms it
+TAIL = 3e-7  # harmonics left out, relative to the amplitude
+_ALIASED = 1e-6  # the highest harmonic of the force that the samples resolve, relative to the mean
+_LARGEST_STEP = 2.0  # in lengths over which the contact changes
+
+
+class Points(NamedTuple):
+    """Steady states to find, one entry of each array to a point; harmonics hold the first guess and then the result."""
+
+    omega: Floats  # (p,) rad/s
+    load: Floats  # (p,) N
+    voltage: Complexes  # (p, K)
+    free_mean: Floats  # (p,) m, without contact
+    mean: Floats  # (p,) m
+    harmonics: Complexes  # (p, room)
+    mean_force: Floats  # (p,) N
+    charge: Complexes  # (p, K) C, harmonics of the charge
+
+
+class Samples(NamedTuple):
+    """The contact over one period: instants theta_j from 0 to pi, each with its mirror image -theta_j."""
+
+    cosines: Floats  # (instants, instants): of j k 2 pi / count
+    sines: Floats
+    velocity: Floats  # (2, H + 1, lanes): harmonics of velocity over omega
+    parts: Floats  # (2, 2, lanes): even and odd parts of displacement and velocity
+    sides: Floats  # (2, 3, lanes): force, stiffness and damping, ahead and behind
+    work: Floats  # (3, lanes)
+    sums: Floats  # (3, 2, instants, lanes): weighted sums and differences of force, stiffness and damping
+
+
+class Lanes(NamedTuple):
+    """What a block of points brings along, one lane each."""
+
+    omega: Floats
+    load: Floats
+    length: Floats
+    free_mean: Floats
+    size: Floats  # of the last step, in m
+    scale: Floats  # of the motion, in m
+
+
+class Resolution(NamedTuple):
+    """How finely each point is to be resolved, one entry of each array to a point."""
+
+    harmonics: Integers
+    coupled: Integers  # of them, those in Newton's matrix
+    samples: Integers
+
+
+@numba.njit(**KERNEL)
+def balance(
+    port: ContactPort,
+    law: Law,
+    points: Points,
+    resolution: Resolution,
+    chosen: Integers,
+    iterations: int,
+    outcome: Integers,
+) -> None:
+    """Find the steady states of the chosen points.
+
+    Parameters
+    ----------
+    port : ContactPort
+    law : Law
+    points : Points
+    resolution : Resolution
+    chosen : ndarray of int
+        Points to solve, like beside like: a block of lanes is resolved as finely as its most demanding point.
+    iterations : int
+        Most iterations.
+    outcome : ndarray of int, shape (p,)
+        Written at the chosen points: CONVERGED, DIVERGED (nothing else is written), NEEDS_HARMONICS or NEEDS_SAMPLES.
+    """
+    most, rows = _finest(resolution.harmonics, chosen), 2 * _finest(resolution.coupled, chosen) + 1
+    answers = np.empty((most + 1, 6, LANES))
+    linear = np.empty((2, most + 1, LANES))
+    unknown = np.empty((2, most + 1, LANES))
+    step = np.empty((2, most + 1, LANES))
+    spectra = np.empty((3, 2, 2 * most + 2, LANES))
+    matrix = np.empty((rows + 2, rows + 1, LANES))
+    row = np.empty((6, LANES))
+    lanes = Lanes(row[0], row[1], row[2], row[3], row[4], row[5])
+    instants = _finest(resolution.samples, chosen) // 2 + 1
+    samples = Samples(
+        np.empty((instants, instants)),
+        np.empty((instants, instants)),
+        np.empty((2, most + 1, LANES)),
+        np.empty((2, 2, LANES)),
+        np.empty((2, 3, LANES)),
+        np.empty((3, LANES)),
+        np.empty((3, 2, instants, LANES)),
+    )
+    tabulated = 0
+    for start in range(0, chosen.size, LANES):
+        block = chosen[start : start + LANES]
+        h, n = _finest(resolution.harmonics, block), _finest(resolution.coupled, block)
+        count = _finest(resolution.samples, block)
+        _gather(law, points, block, h, unknown, lanes)
+        for k in range(1, h + 1):
+            receptances(port, 0, lanes.omega, k, answers[k, 0], answers[k, 1])
+            _linear_part(port, points.voltage, block, lanes.omega, k, answers[k], linear)
+        if count != tabulated:
+            _trigonometry(count, samples)
+            tabulated = count
+        final = False
+        for iteration in range(iterations):
+            final = final or iteration == iterations - 1
+            _contact_spectra(law, unknown, lanes, h, count, 2 * h if final else max(h, 2 * n), samples, spectra)
+            _residual(port.static_stiffness, unknown, answers, linear, spectra, lanes, h, step)
+            newton_step(port.static_stiffness, answers, spectra, law.damping > 0, lanes.omega, h, n, matrix, step)
+            largest = _advance(unknown, step, h, lanes)
+            if final:
+                break
+            final = largest < _COARSE
+        _judge(port, block, h, spectra, lanes, linear, outcome)
+        _scatter(port, points, resolution, block, h, unknown, answers, spectra, lanes, outcome)
+
+
+@numba.njit(**INSIDE)
+def _finest(values: Integers, chosen: Integers) -> int:
+    most = np.int64(0)
+    for point in chosen:
+        most = max(most, values[point])
+    return int(most)
+
+
+@numba.njit(**INSIDE)
+def _gather(law: Law, points: Points, block: Integers, h: int, unknown: Floats, lanes: Lanes) -> None:
+    for lane in range(LANES):
+        point = block[min(lane, block.size - 1)]
+        lanes.omega[lane], lanes.load[lane] = points.omega[point], points.load[point]
+        lanes.length[lane] = reach(law, points.load[point])
+        lanes.free_mean[lane] = points.free_mean[point]
+        unknown[0, 0, lane], unknown[1, 0, lane] = points.mean[point], 0.0
+        for k in range(1, h + 1):
+            guess = points.harmonics[point, k - 1]
+            unknown[0, k, lane], unknown[1, k, lane] = guess.real, guess.imag
+
+
+@numba.njit(**INSIDE)
+def _linear_part(
+    port: ContactPort, voltage: Complexes, block: Integers, omega: Floats, k: int, answer: Floats, linear: Floats
+) -> None:
+    driven = k <= voltage.shape[1]
+    if driven:
+        receptances(port, 1, omega, k, answer[2], answer[3])
+        receptances(port, 2, omega, k, answer[4], answer[5])
+    for lane in range(LANES):
+        v = voltage[block[min(lane, block.size - 1)], k - 1] if driven else 0j
+        linear[0, k, lane] = answer[2, lane] * v.real - answer[3, lane] * v.imag if driven else 0.0
+        linear[1, k, lane] = answer[2, lane] * v.imag + answer[3, lane] * v.real if driven else 0.0
+
+
+@numba.njit(**INSIDE)
+def _trigonometry(count: int, samples: Samples) -> None:
+    angle = 2 * np.pi / count
+    turn = np.arange(count) * angle
+    cosines, sines = np.cos(turn), np.sin(turn)
+    for j in range(count // 2 + 1):
+        for k in range(count // 2 + 1):
+            samples.cosines[j, k] = cosines[j * k % count]
+            samples.sines[j, k] = sines[j * k % count]
+
+
+@numba.njit(**INSIDE)
+def _contact_spectra(
+    law: Law, unknown: Floats, lanes: Lanes, h: int, count: int, orders: int, samples: Samples, spectra: Floats
+) -> None:
+    """Write (1/2 pi) int f exp(-i m theta) of force, stiffness and damping, m up to `orders`; last, the highest."""
+    damped = law.damping > 0
+    parallel = law.kind == EXPONENTIAL and not damped  # the stiffness is then the force over l
+    quantities = 3 if damped else (1 if parallel else 2)
+    half, highest = count // 2, spectra.shape[2] - 1
+    if damped:
+        for k in range(1, h + 1):
+            for lane in range(LANES):
+                samples.velocity[0, k, lane] = -k * unknown[1, k, lane]
+                samples.velocity[1, k, lane] = k * unknown[0, k, lane]
+    for j in range(half + 1):
+        weight = (0.5 if j == 0 or j == half else 1.0) / count
+        _sample_pair(law, unknown, lanes, h, j, weight, quantities, samples)
+    for quantity in range(quantities):
+        for part in range(2):
+            table = samples.sines if part else samples.cosines
+            for m in range(orders + 2):
+                order, row = (m, m) if m <= orders else (half - 1, highest)
+                target = spectra[quantity, part, row]
+                for lane in range(LANES):
+                    target[lane] = 0.0
+                add_combination(target, table[order], samples.sums[quantity, part], 0, half)
+    if parallel:
+        for part in range(2):
+            for m in range(orders + 1):
+                for lane in range(LANES):
+                    spectra[1, part, m, lane] = spectra[0, part, m, lane] / law.parameter
+
+
+@numba.njit(**INSIDE)
+def _sample_pair(
+    law: Law, unknown: Floats, lanes: Lanes, h: int, j: int, weight: float, quantities: int, samples: Samples
+) -> None:
+    """Write weighted sums and differences of force, stiffness and damping at the j-th instant and its mirror image."""
+    even, odd = samples.parts[0, 0], samples.parts[0, 1]
+    for lane in range(LANES):
+        even[lane] = unknown[0, 0, lane]
+        odd[lane] = 0.0
+    add_combination(even, samples.cosines[j], unknown[0], 1, h)
+    add_combination(odd, samples.sines[j], unknown[1], 1, h)
+    if law.damping > 0:
+        samples.parts[1, :, :] = 0.0
+        add_combination(samples.parts[1, 0], samples.cosines[j], samples.velocity[0], 1, h)
+        add_combination(samples.parts[1, 1], samples.sines[j], samples.velocity[1], 1, h)
+    x, v = samples.work[0], samples.work[1]
+    for side in range(2):
+        sign = 2.0 * side - 1.0
+        for lane in range(LANES):
+            x[lane] = even[lane] + sign * odd[lane]
+        if law.damping > 0:
+            for lane in range(LANES):
+                v[lane] = lanes.omega[lane] * (samples.parts[1, 0, lane] + sign * samples.parts[1, 1, lane])
+        force, slope, drag = samples.sides[side, 0], samples.sides[side, 1], samples.sides[side, 2]
+        contact_rows(law, lanes.load, lanes.length, x, v, samples.work[2], force, slope, drag)
+    for quantity in range(quantities):
+        ahead, behind = samples.sides[0, quantity], samples.sides[1, quantity]
+        total, difference = samples.sums[quantity, 0, j], samples.sums[quantity, 1, j]
+        for lane in range(LANES):
+            total[lane] = weight * (behind[lane] + ahead[lane])
+            difference[lane] = weight * (behind[lane] - ahead[lane])
+
+
+@numba.njit(**INSIDE)
+def _residual(
+    static_stiffness: float,
+    unknown: Floats,
+    answers: Floats,
+    linear: Floats,
+    spectra: Floats,
+    lanes: Lanes,
+    h: int,
+    step: Floats,
+) -> None:
+    """Write minus the residual of every equation."""
+    for lane in range(LANES):
+        excess = spectra[0, 0, 0, lane] - lanes.load[lane]
+        step[0, 0, lane] = excess - static_stiffness * (unknown[0, 0, lane] - lanes.free_mean[lane])
+    for k in range(1, h + 1):
+        g_re, g_im, re, im = answers[k, 0], answers[k, 1], spectra[0, 0, k], spectra[0, 1, k]
+        for lane in range(LANES):
+            own_re, own_im = linear[0, k, lane] - unknown[0, k, lane], linear[1, k, lane] - unknown[1, k, lane]
+            step[0, k, lane] = own_re + 2 * (g_re[lane] * re[lane] - g_im[lane] * im[lane])
+            step[1, k, lane] = own_im + 2 * (g_re[lane] * im[lane] + g_im[lane] * re[lane])
+
+
+@numba.njit(**INSIDE)
+def _advance(unknown: Floats, step: Floats, h: int, lanes: Lanes) -> float:
+    """Take the step, shortened where it exceeds what the contact's reach allows; return its largest relative size."""
+    size, scale = lanes.size, lanes.scale
+    for lane in range(LANES):
+        size[lane] = abs(step[0, 0, lane])
+        scale[lane] = 1e-3 * lanes.length[lane]
+    for k in range(1, h + 1):
+        for lane in range(LANES):
+            size[lane] += abs(step[0, k, lane]) + abs(step[1, k, lane])
+    for lane in range(LANES):
+        step[1, 0, lane] = min(1.0, _LARGEST_STEP * lanes.length[lane] / size[lane])
+        unknown[0, 0, lane] += step[1, 0, lane] * step[0, 0, lane]
+    for k in range(1, h + 1):
+        for lane in range(LANES):
+            unknown[0, k, lane] += step[1, 0, lane] * step[0, k, lane]
+            unknown[1, k, lane] += step[1, 0, lane] * step[1, k, lane]
+            scale[lane] += abs(unknown[0, k, lane]) + abs(unknown[1, k, lane])
+    largest = 0.0
+    for lane in range(LANES):
+        relative = size[lane] / scale[lane]
+        if not relative <= largest:  # also when it is not a number
+            largest = relative if relative < np.inf else np.inf
+    return largest
+
+
+@numba.njit(**INSIDE)
+def _judge(
+    port: ContactPort,
+    block: Integers,
+    h: int,
+    spectra: Floats,
+    lanes: Lanes,
+    work: Floats,
+    outcome: Integers,
+) -> None:
+    """Say which points converged, and which of them were resolved finely enough."""
+    top, tail = spectra.shape[2] - 1, work[0, 0]
+    tail[:] = 0.0
+    for k in range(h + 1, 2 * h + 1):
+        receptances(port, 0, lanes.omega, k, work[0, 1], work[1, 1])
+        for lane in range(LANES):
+            receptance = work[0, 1, lane] ** 2 + work[1, 1, lane] ** 2
+            force = spectra[0, 0, k, lane] ** 2 + spectra[0, 1, k, lane] ** 2
+            tail[lane] = max(tail[lane], 4 * receptance * force)
+    for lane in range(block.size):
+        highest = np.hypot(spectra[0, 0, top, lane], spectra[0, 1, top, lane])
+        verdict = CONVERGED
+        if not lanes.size[lane] <= _FINE * lanes.scale[lane]:
+            verdict = DIVERGED
+        elif highest > _ALIASED * max(spectra[0, 0, 0, lane], 1e-3 * lanes.load[lane]):
+            verdict = NEEDS_SAMPLES
+        elif tail[lane] > (TAIL * lanes.scale[lane]) ** 2:
+            verdict = NEEDS_HARMONICS
+        outcome[block[lane]] = verdict
+
+
+@numba.njit(**INSIDE)
+def _scatter(
+    port: ContactPort,
+    points: Points,
+    resolution: Resolution,
+    block: Integers,
+    h: int,
+    unknown: Floats,
+    answers: Floats,
+    spectra: Floats,
+    lanes: Lanes,
+    outcome: Integers,
+) -> None:
+    for lane in range(block.size):
+        point = block[lane]
+        if outcome[point] == DIVERGED:
+            continue
+        mean = unknown[0, 0, lane]
+        resolution.harmonics[point] = h
+        points.mean[point] = mean
+        points.mean_force[point] = lanes.load[lane] + port.static_stiffness * (mean - lanes.free_mean[lane])
+        for k in range(1, h + 1):
+            points.harmonics[point, k - 1] = complex(unknown[0, k, lane], unknown[1, k, lane])
+        for k in range(1, min(points.voltage.shape[1], h) + 1):
+            own = port.clamped_capacitance + complex(answers[k, 4, lane], answers[k, 5, lane])
+            reaction = complex(answers[k, 2, lane], answers[k, 3, lane])
+            force = 2 * complex(spectra[0, 0, k, lane], spectra[0, 1, k, lane])
+            points.charge[point, k - 1] = own * points.voltage[point, k - 1] + reaction * force

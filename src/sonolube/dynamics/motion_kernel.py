@@ -1,0 +1,200 @@
+"""What a periodic motion does at the contact: its turning points, its forces and how long the contact is lost."""
+
+from typing import NamedTuple
+
+import numba
+import numpy as np
+
+from sonolube.checks import Complexes, Floats
+from sonolube.dynamics.contact_lanes import EXPONENTIAL, HERTZ, LOST, Law, loss_displacement
+from sonolube.dynamics.harmonic_kernel import Integers
+from sonolube.dynamics.lanes import INSIDE, KERNEL
+
+_PLAIN = 0.7  # share of the higher harmonics' accelerations up to which a motion surely turns only twice
+_SLOW = 0.05  # share of the peak velocity below which a minimum of the speed is nearly a turn
+_SCAN = 16  # samples per harmonic to find the turns of any other motion
+
+
+class Measures(NamedTuple):
+    """Measures of the motion, one entry of each array to a point."""
+
+    amplitude: Floats  # (p,) m, half of peak to peak
+    turns: Floats  # (p, 2): phases of the upper and the lower turn; NaN where there are more
+    lowest_displacement: Floats  # (p,) m
+    force: Floats  # (p, 2) N: highest and lowest
+    lost: Floats  # (p,) share of the period
+
+
+@numba.njit(**KERNEL)
+def measure(
+    law: Law,
+    omega: Floats,
+    load: Floats,
+    mean: Floats,
+    harmonics: Complexes,
+    count: Integers,
+    measures: Measures,
+) -> None:
+    """Measure every motion.
+
+    Parameters
+    ----------
+    law : Law
+    omega, load, mean : ndarray, shape (p,)
+        Angular frequency, in rad/s, dead load, in N, and mean displacement, in m.
+    harmonics : ndarray of complex, shape (p, room)
+    count : ndarray of int, shape (p,)
+        Harmonics of each motion.
+    measures : Measures
+        Written.
+    """
+    for point in range(omega.size):
+        own = harmonics[point, : count[point]]
+        beyond = loss_displacement(law, load[point])
+        start, end = -np.arctan2(own[0].imag, own[0].real), np.nan
+        if _surely_turns_twice(own):
+            end = start + np.pi
+        else:
+            start, end = _two_turns(own)
+        if start < np.inf:
+            upper, high = _turn(own, start)
+            lower, low = _turn(own, end)
+            high, low = mean[point] + high, mean[point] + low
+            measures.turns[point, 0], measures.turns[point, 1] = upper, lower
+            measures.force[point, 0] = contact_force(law, load[point], low, 0.0)
+            measures.force[point, 1] = contact_force(law, load[point], high, 0.0)
+            measures.lost[point] = 1.0 if low >= beyond else 0.0
+            if low < beyond < high:
+                level = beyond - mean[point]
+                after = _crossing(own, level, upper, lower if lower > upper else lower + 2 * np.pi)
+                before = _crossing(own, level, upper, lower if lower < upper else lower - 2 * np.pi)
+                measures.lost[point] = (after - before) / (2 * np.pi)
+        else:
+            measures.turns[point, :] = np.nan
+            high, low = _scan(law, omega[point], load[point], mean[point], own, measures, point)
+        if law.damping > 0.0:
+            _scan(law, omega[point], load[point], mean[point], own, measures, point)
+        measures.amplitude[point] = 0.5 * (high - low)
+        measures.lowest_displacement[point] = low
+
+
+@numba.njit(**INSIDE)
+def contact_force(law: Law, load: float, x: float, v: float) -> float:
+    """Return the contact force, in N."""
+    if law.kind == EXPONENTIAL:
+        force = load * np.exp(min(-x / law.parameter, 700.0))
+    elif law.kind == HERTZ:
+        force = law.parameter * max((load / law.parameter) ** (2 / 3) - x, 0.0) ** 1.5
+    else:
+        force = max(load - law.parameter * x, 0.0)
+    return float(force * max(1 - law.damping * v, 0.0))
+
+
+@numba.njit(**INSIDE)
+def _surely_turns_twice(own: Complexes) -> bool:
+    higher = 0.0
+    for k in range(2, own.size + 1):
+        higher += k * k * abs(own[k - 1])
+    return bool(higher < _PLAIN * abs(own[0]))
+
+
+@numba.njit(**INSIDE)
+def _two_turns(own: Complexes) -> tuple[float, float]:
+    """Return about where a motion turns down and up, or NaN if it turns, or nearly turns, more than twice."""
+    count = _SCAN * own.size
+    rates = np.empty(count)
+    for j in range(count):
+        rates[j] = swing(own, 2 * np.pi * j / count)[1]
+    slow = _SLOW * np.max(np.abs(rates))
+    upper = lower = np.nan
+    for j in range(count):
+        before, here, after = rates[j - 1], rates[j], rates[(j + 1) % count]
+        if before > 0 >= here:
+            if not np.isnan(upper):
+                return np.nan, np.nan
+            upper = 2 * np.pi * (j - 1 + before / (before - here)) / count
+        elif before <= 0 < here:
+            if not np.isnan(lower):
+                return np.nan, np.nan
+            lower = 2 * np.pi * (j - 1 + before / (before - here)) / count
+        elif abs(here) < slow and abs(here) <= abs(before) and abs(here) <= abs(after) and here * after > 0:
+            return np.nan, np.nan
+    return upper, lower
+
+
+@numba.njit(**INSIDE)
+def swing(own: Complexes, phase: float) -> tuple[float, float, float]:
+    """Return displacement about the mean and its first two derivatives by phase."""
+    cosine, sine = np.cos(phase), np.sin(phase)
+    c, s, x, rate, bend = 1.0, 0.0, 0.0, 0.0, 0.0
+    for k in range(1, own.size + 1):
+        c, s = c * cosine - s * sine, c * sine + s * cosine
+        real, imaginary = own[k - 1].real * c - own[k - 1].imag * s, own[k - 1].real * s + own[k - 1].imag * c
+        x += real
+        rate -= k * imaginary
+        bend -= k * k * real
+    return x, rate, bend
+
+
+@numba.njit(**INSIDE)
+def _turn(own: Complexes, phase: float) -> tuple[float, float]:
+    """Return the phase nearby at which the velocity vanishes, and the displacement there about the mean."""
+    for _ in range(20):
+        x, rate, bend = swing(own, phase)
+        step = rate / bend
+        phase -= step
+        if abs(step) < 1e-5:  # Newton's next step would be of the order of its square
+            break
+    return phase, x - 0.5 * rate * step
+
+
+@numba.njit(**INSIDE)
+def _crossing(own: Complexes, level: float, upper: float, lower: float) -> float:
+    """Return the phase between two turns at which a displacement is passed."""
+    inside, outside = upper, lower
+    phase = upper + (lower - upper) / np.pi * np.arccos(min(max(level / abs(own[0]), -0.99), 0.99))
+    for _ in range(60):
+        x, rate, _ = swing(own, phase)
+        if x > level:
+            inside = phase
+        else:
+            outside = phase
+        step = (x - level) / rate
+        phase -= step
+        if (phase - inside) * (phase - outside) >= 0:
+            phase = 0.5 * (inside + outside)
+        elif abs(step) < 1e-4:
+            break
+    return float(phase)
+
+
+@numba.njit(**INSIDE)
+def _scan(
+    law: Law, omega: float, load: float, mean: float, own: Complexes, measures: Measures, point: int
+) -> tuple[float, float]:
+    """Measure a motion of many turns, or one whose force lags, by samples with parabolas through the extremes."""
+    count = max(_SCAN * own.size, 256)
+    x, force = np.empty(count), np.empty(count)
+    lost, threshold = 0.0, LOST * load
+    for j in range(count):
+        displacement, rate, _ = swing(own, 2 * np.pi * j / count)
+        x[j] = mean + displacement
+        force[j] = contact_force(law, load, x[j], omega * rate)
+    for j in range(count):
+        here, after = force[j] - threshold, force[(j + 1) % count] - threshold
+        if here < 0 and after < 0:
+            lost += 1
+        elif here * after < 0:
+            lost += max(-here, -after) / abs(here - after)
+    measures.force[point, 0] = _highest(force)
+    measures.force[point, 1] = max(-_highest(-force), 0.0)
+    measures.lost[point] = lost / count
+    return _highest(x), -_highest(-x)
+
+
+@numba.njit(**INSIDE)
+def _highest(samples: Floats) -> float:
+    top = np.argmax(samples)
+    before, here, after = samples[top - 1], samples[top], samples[(top + 1) % samples.size]
+    bend = 2 * here - before - after
+    return float(here if bend <= 0 else here + (after - before) ** 2 / (8 * bend))

@@ -1,0 +1,281 @@
+"""Means of the friction of a contact that slides while it vibrates along its normal, for many sliding speeds at once.
+
+The mean of v_r/sqrt(v_r^2 + v^2) over a period has branch points close to the real axis wherever the vibration velocity
+v passes through zero, so that even samples converge slowly. For one sine, theta = am(u) with uniform u takes them away
+from the axis, whatever the sliding speed; for a motion that turns twice, a Moebius map of the circle first moves its
+two turns a half turn apart. What remains is analytic in a wide strip, and the trapezoidal rule converges geometrically.
+"""
+
+from functools import lru_cache
+from typing import NamedTuple
+
+import numba
+import numpy as np
+from scipy.special import ellipkm1
+
+from sonolube.checks import Complexes, Floats
+from sonolube.dynamics.contact_lanes import Law, contact_rows, reach
+from sonolube.dynamics.harmonic_kernel import Integers
+from sonolube.dynamics.lanes import INSIDE, KERNEL, LANES
+from sonolube.dynamics.motion_kernel import contact_force, swing
+
+_ROWS = 4  # steps of crowding to a decade of the ratio of the slowest sliding to the vibration's peak velocity
+_STEEPEST = 24  # most such steps
+_CELLS, _FEWEST_CELLS = 64, 1024  # per harmonic, for motions that turn more than twice
+
+
+class Crowded(NamedTuple):
+    """Points exp(i phi) of the circle, crowded at +-i, one row to each step of crowding; weights sum to one."""
+
+    cosine: Floats  # (rows, most)
+    sine: Floats
+    weight: Floats  # zero beyond the row's count
+    count: Integers  # type: ignore[assignment]
+
+
+@lru_cache(maxsize=8)
+def crowded_points(extra: int) -> Crowded:
+    """Return the points for each step of the ratio of sliding speed to peak velocity.
+
+    Parameters
+    ----------
+    extra : int
+        Points added to the six per e-fold that hold 1e-6, for the sake of a steep contact force.
+
+    Returns
+    -------
+    Crowded
+    """
+    ratios = 10.0 ** (-np.arange(_STEEPEST + 1) / _ROWS)
+    count = 8 * np.ceil((6 * np.log(4 / ratios) + extra + 4) / 8).astype(np.int64)
+    cosine, sine, weight = np.zeros((3, ratios.size, count.max()))
+    for row, (ratio, samples) in enumerate(zip(ratios, count, strict=True)):
+        complement = ratio**2 / (1 + ratio**2)
+        u = 4 * ellipkm1(complement) * (np.arange(samples) + 0.5) / samples
+        phase = _jacobi_amplitude(u, complement)
+        density = np.sqrt(complement + (1 - complement) * np.cos(phase) ** 2)
+        cosine[row, :samples], sine[row, :samples] = np.cos(phase), np.sin(phase)
+        weight[row, :samples] = density / density.sum()
+    return Crowded(cosine, sine, weight, count)
+
+
+def _jacobi_amplitude(u: Floats, complement: float) -> Floats:
+    """Return am(u | 1 - complement) by descending Landen steps, which a complement near zero does not disturb."""
+    means, differences = [1.0], [0.0]
+    root = np.sqrt(complement)
+    while abs(means[-1] - root) > 1e-16 * means[-1] and len(means) < 12:
+        differences.append(0.5 * (means[-1] - root))
+        means, root = [*means, 0.5 * (means[-1] + root)], np.sqrt(means[-1] * root)
+    phase = 2.0 ** (len(means) - 1) * means[-1] * u
+    for mean, difference in zip(means[:0:-1], differences[:0:-1], strict=True):
+        phase = 0.5 * (phase + np.arcsin(difference / mean * np.sin(phase)))
+    return np.asarray(phase)
+
+
+@numba.njit(**KERNEL)
+def sliding_means(
+    law: Law,
+    omega: Floats,
+    load: Floats,
+    mean: Floats,
+    harmonics: Complexes,
+    count: Integers,
+    turns: Floats,
+    crowding: Integers,
+    chosen: Integers,
+    speeds: Floats,
+    crowded: Crowded,
+    kinematic: Floats,
+    loaded: Floats,
+) -> None:
+    """Write the means of v_r/sqrt(v_r^2 + v^2), plain and weighted by the contact force over the dead load.
+
+    Parameters
+    ----------
+    law : Law
+    omega, load, mean : ndarray, shape (p,)
+        Angular frequency, in rad/s, dead load, in N, and mean displacement, in m.
+    harmonics : ndarray of complex, shape (p, room)
+    count : ndarray of int, shape (p,)
+        Harmonics of each motion.
+    turns : ndarray, shape (p, 2)
+        Phases of the two turns.
+    crowding : ndarray of int, shape (p,)
+        Row of `crowded` for each motion.
+    chosen : ndarray of int
+        Motions to treat, like beside like.
+    speeds : ndarray, shape (s,)
+        Sliding speeds v_r, in m/s, none of them zero.
+    crowded : Crowded
+    kinematic, loaded : ndarray, shape (p, s)
+    """
+    most = 0
+    for point in chosen:
+        most = max(most, count[point])
+    rows, motion = np.empty((18, LANES)), np.empty((2, most + 1, LANES))
+    plain, weighed = np.empty((speeds.size, LANES)), np.empty((speeds.size, LANES))
+    for start in range(0, chosen.size, LANES):
+        block = chosen[start : start + LANES]
+        h, row = 0, 0
+        for point in block:
+            h, row = max(h, count[point]), max(row, crowding[point])
+        for lane in range(LANES):
+            point = block[min(lane, block.size - 1)]
+            half = 0.5 * (turns[point, 0] - turns[point, 1])
+            half -= np.pi * np.floor(half / np.pi)
+            rows[0, lane] = np.tan(0.25 * np.pi - 0.5 * half)
+            rows[1, lane], rows[2, lane] = np.cos(turns[point, 0] - half), np.sin(turns[point, 0] - half)
+            rows[3, lane], rows[4, lane], rows[5, lane] = omega[point], load[point], reach(law, load[point])
+            rows[6, lane] = mean[point]
+            for k in range(1, h + 1):
+                value = harmonics[point, k - 1] if k <= count[point] else 0j
+                motion[0, k, lane], motion[1, k, lane] = value.real, value.imag
+        plain[:] = 0.0
+        weighed[:] = 0.0
+        for j in range(crowded.count[row]):
+            cosine, sine, weight = crowded.cosine[row, j], crowded.sine[row, j], crowded.weight[row, j]
+            _motion_at(cosine, sine, weight, motion, h, rows)
+            _add_ratios(law, speeds, rows, plain, weighed)
+        for lane in range(block.size):
+            for s in range(speeds.size):
+                kinematic[block[lane], s], loaded[block[lane], s] = plain[s, lane], weighed[s, lane]
+
+
+@numba.njit(**INSIDE)
+def _motion_at(cosine: float, sine: float, weight: float, motion: Floats, h: int, rows: Floats) -> None:
+    """Write displacement, velocity and weight at a crowded point, mapped so that points crowd at the turns."""
+    alpha, re, im, omega, mean = rows[0], rows[1], rows[2], rows[3], rows[6]
+    z_re, z_im, p_re, p_im, x, v, share = rows[7], rows[8], rows[9], rows[10], rows[11], rows[12], rows[13]
+    for lane in range(LANES):
+        # z = exp(i ...) (w + alpha)/(1 + alpha w) for w = cosine + i sine
+        below = 1 / (1 + 2 * alpha[lane] * cosine + alpha[lane] * alpha[lane])
+        w_re = (cosine * (1 + alpha[lane] * alpha[lane]) + 2 * alpha[lane]) * below
+        stretch = (1 - alpha[lane] * alpha[lane]) * below
+        z_re[lane] = re[lane] * w_re - im[lane] * sine * stretch
+        z_im[lane] = re[lane] * sine * stretch + im[lane] * w_re
+        share[lane] = weight * stretch
+    for lane in range(LANES):
+        p_re[lane], p_im[lane] = 1.0, 0.0
+        x[lane], v[lane] = mean[lane], 0.0
+    for k in range(1, h + 1):
+        a, b = motion[0, k], motion[1, k]
+        for lane in range(LANES):
+            q_re = p_re[lane] * z_re[lane] - p_im[lane] * z_im[lane]
+            q_im = p_re[lane] * z_im[lane] + p_im[lane] * z_re[lane]
+            x[lane] += a[lane] * q_re - b[lane] * q_im
+            v[lane] -= k * (a[lane] * q_im + b[lane] * q_re)
+            p_re[lane], p_im[lane] = q_re, q_im
+    for lane in range(LANES):
+        v[lane] *= omega[lane]
+
+
+@numba.njit(**INSIDE)
+def _add_ratios(law: Law, speeds: Floats, rows: Floats, plain: Floats, weighed: Floats) -> None:
+    load, length, x, v, share, square = rows[4], rows[5], rows[11], rows[12], rows[13], rows[7]
+    work, force, slope, drag = rows[14], rows[15], rows[16], rows[17]
+    contact_rows(law, load, length, x, v, work, force, slope, drag)
+    for lane in range(LANES):
+        force[lane] *= share[lane] / load[lane]
+        square[lane] = v[lane] * v[lane]
+    for s in range(speeds.size):
+        speed, own_plain, own_weighed = speeds[s], plain[s], weighed[s]
+        for lane in range(LANES):
+            ratio = speed / np.sqrt(square[lane] + speed * speed)
+            own_plain[lane] += share[lane] * ratio
+            own_weighed[lane] += force[lane] * ratio
+
+
+@numba.njit(**KERNEL)
+def sliding_means_by_cells(
+    law: Law,
+    omega: Floats,
+    load: Floats,
+    mean: Floats,
+    harmonics: Complexes,
+    count: Integers,
+    chosen: Integers,
+    speeds: Floats,
+    kinematic: Floats,
+    loaded: Floats,
+) -> None:
+    """Write what `sliding_means` writes, for any number of turns: exact for a linear velocity between samples.
+
+    Parameters
+    ----------
+    law : Law
+    omega, load, mean, harmonics, count, chosen, speeds, kinematic, loaded
+        As in `sliding_means`.
+    """
+    for point in chosen:
+        own = harmonics[point, : count[point]]
+        kinematic[point, :] = 0.0
+        loaded[point, :] = 0.0
+        _by_cells(law, omega[point], load[point], mean[point], own, speeds, kinematic[point], loaded[point])
+
+
+@numba.njit(**INSIDE)
+def _by_cells(
+    law: Law,
+    omega: float,
+    load: float,
+    mean: float,
+    own: Complexes,
+    speeds: Floats,
+    kinematic: Floats,
+    loaded: Floats,
+) -> None:
+    """Integrate over cells in which the velocity is linear, exactly."""
+    cells = max(_CELLS * own.size, _FEWEST_CELLS)
+    last_velocity, last_force = 0.0, 0.0
+    last_rapidity = np.zeros(speeds.size)
+    for j in range(cells + 1):
+        x, rate, _ = swing(own, 2 * np.pi * j / cells)
+        here = omega * rate
+        force = contact_force(law, load, mean + x, here) / load
+        if j == 0:
+            last_rapidity[:] = np.arcsinh(here / speeds)
+        else:
+            for s in range(speeds.size):
+                v, rise, rapidity = speeds[s], here - last_velocity, np.arcsinh(here / speeds[s])
+                if abs(rise) > 1e-6 * v:
+                    ratio = v * (rapidity - last_rapidity[s]) / rise
+                else:
+                    ratio = v / np.sqrt(v * v + here * here)
+                last_rapidity[s] = rapidity
+                kinematic[s] += ratio / cells
+                loaded[s] += 0.5 * (force + last_force) * ratio / cells
+        last_velocity, last_force = here, force
+
+
+def crowding_of(ratio: Floats) -> Integers:
+    """Return the row of `crowded_points` for a ratio of sliding speed to peak velocity."""
+    steps = np.ceil(-_ROWS * np.log10(np.maximum(ratio, 10.0 ** (-_STEEPEST / _ROWS))))
+    return np.asarray(np.maximum(steps, 0).astype(np.int64))
+
+
+def phases_of(turns: Floats, ratio: float) -> tuple[Complexes, Floats]:
+    """Return points exp(i theta) and weights for means over one period, crowded at the turns where there are two.
+
+    Parameters
+    ----------
+    turns : ndarray, shape (2,)
+        Phases of the two turns, or NaN.
+    ratio : float
+        Least sliding speed over peak velocity.
+
+    Returns
+    -------
+    points, weights : ndarray, shape (samples,)
+    """
+    if np.isnan(turns[0]):
+        samples = 2**15
+        return np.exp(2j * np.pi * np.arange(samples) / samples), np.full(samples, 1 / samples)
+    half = 0.5 * (turns[0] - turns[1]) % np.pi
+    alpha = np.tan(0.25 * np.pi - 0.5 * half)
+    crowded = crowded_points(32)
+    row = int(crowding_of(np.float64(ratio)))  # type: ignore[arg-type]
+    inside = slice(0, crowded.count[row])
+    w = crowded.cosine[row, inside] + 1j * crowded.sine[row, inside]
+    density = (1 - alpha**2) / np.abs(1 + alpha * w) ** 2
+    points = np.exp(1j * (turns[0] - half)) * (w + alpha) / (1 + alpha * w)
+    return points, crowded.weight[row, inside] * density

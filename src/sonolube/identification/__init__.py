@@ -1,0 +1,25 @@
+"""Identification: the parameters of a model from what is known of the system outside, doubts and gaps told."""
+
+from sonolube.identification.compatibility import Compatibility, compatibility
+from sonolube.identification.fact import Fact, Observe, Relation, misses
+from sonolube.identification.identify import identify
+from sonolube.identification.record import Direction, Estimate, Identification, Reading
+from sonolube.identification.rig_tables import rig_tables
+from sonolube.identification.tribometer import PinOnDiscTest, observer
+
+__all__ = [
+    "Compatibility",
+    "Direction",
+    "Estimate",
+    "Fact",
+    "Identification",
+    "Observe",
+    "PinOnDiscTest",
+    "Reading",
+    "Relation",
+    "compatibility",
+    "identify",
+    "misses",
+    "observer",
+    "rig_tables",
+]

@@ -1,0 +1,111 @@
+"""How a rig starts up from rest: marched in time until its vibration stands."""
+
+import math
+from dataclasses import dataclass
+
+from sonolube.checks import require_positive
+from sonolube.dynamics import WAVEFORMS
+from sonolube.dynamics.attractor import beat, settling_time
+from sonolube.dynamics.trajectories import Trajectory
+from sonolube.dynamics.transient import march, trajectory
+from sonolube.errors import InvalidInput
+from sonolube.rig.record import Rig
+from sonolube.rig.response import gap_law_of, require_drive, require_structure
+
+_WINDOWS = 400
+_LONGEST = 200_000  # periods whose every step still fits a figure's memory
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class StartUp:
+    """The first moments of a rig under its drive.
+
+    Parameters
+    ----------
+    status : str
+        "marched", "coarse" or "diverged".
+    reason : str
+        What to do about a status other than "marched".
+    settling_time : float
+        Time after which the amplitude stays within 2 % of its last value. [s]
+    vibration_amplitude : float
+        Amplitude of the first harmonic of the tip at the end. [m]
+    mean_displacement : float
+        Mean displacement of the tip at the end. [m]
+    beat_frequency : float
+        Frequency of the slow oscillation beside the ultrasonic one. [Hz]
+    trajectory : Trajectory
+        Every step.
+    """
+
+    status: str
+    reason: str
+    settling_time: float
+    vibration_amplitude: float
+    mean_displacement: float
+    beat_frequency: float
+    trajectory: Trajectory
+
+
+def start_up(rig: Rig, *, duration: float) -> StartUp:
+    """Return how a rig starts up from rest when its drive is switched on.
+
+    Parameters
+    ----------
+    rig : Rig
+        With a stack, a structure and a drive voltage.
+    duration : float
+        How long to follow it. [s]
+
+    Returns
+    -------
+    StartUp
+
+    Raises
+    ------
+    InvalidInput
+        If the rig has no structure, or the duration is not from 8 to 200 000 periods of the drive.
+
+    Notes
+    -----
+    D figure 3.13 in kind.
+    """
+    structure, drive = require_structure(rig), require_drive(rig)
+    periods = math.ceil(float(require_positive(duration=duration)) * drive.frequency)
+    if not 8 <= periods <= _LONGEST:
+        raise InvalidInput(f"duration must be from 8 to {_LONGEST} periods of the drive, got {periods}")
+    assert drive.voltage_peak_to_peak is not None
+    waveform, law = WAVEFORMS[drive.waveform], gap_law_of(rig)
+    window = max(1, periods // _WINDOWS)
+    marched = march(
+        structure,
+        law,
+        normal_load=rig.normal_load,
+        frequency=drive.frequency,
+        voltage_peak_to_peak=drive.voltage_peak_to_peak,
+        voltage_offset=drive.voltage_offset,
+        waveform=waveform,
+        periods=periods // window * window,
+        periods_per_window=window,
+    )
+    every_step = trajectory(
+        structure,
+        law,
+        normal_load=rig.normal_load,
+        frequency=drive.frequency,
+        voltage_peak_to_peak=drive.voltage_peak_to_peak,
+        voltage_offset=drive.voltage_offset,
+        waveform=waveform,
+        periods=periods,
+    )
+    envelope = marched.envelope
+    slow = beat(displacement=envelope.mean_displacement, interval=window / drive.frequency)
+    return StartUp(
+        status=str(marched.status),
+        reason=str(marched.advice),
+        settling_time=float(settling_time(envelope)),
+        vibration_amplitude=float(envelope.first_harmonic_amplitude[-1]),
+        mean_displacement=float(envelope.mean_displacement[-1]),
+        beat_frequency=float(slow.beat_frequency),
+        trajectory=every_step,
+    )

@@ -1,0 +1,137 @@
+"""Identification of a single oscillator, whose every answer is known in closed form."""
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+from pytest import approx, raises
+
+from sonolube.checks import Floats
+from sonolube.errors import InvalidInput, UnknownName
+from sonolube.identification import Fact, Identification, identify
+
+BOUNDS = {"tip_mass": (0.01, 10.0), "arm_stiffness": (1.0, 1e6), "arm_damping": (1e-3, 1e3)}
+MASS, STIFFNESS, DAMPING = 0.4, 1000.0, 0.5
+
+
+def oscillator(parameters: Mapping[str, Floats]) -> Mapping[str, Floats]:
+    m, k, c = parameters["tip_mass"], parameters["arm_stiffness"], parameters["arm_damping"]
+    omega = np.sqrt(k / m)
+    return {
+        "rate": omega,
+        "quality": np.sqrt(k * m) / c,
+        "impedance": np.sqrt(k * m),
+        "weight": m,
+        "half_rate": omega / 2,
+    }
+
+
+def fact(name: str, value: float | None = None, *, within: float = 0.01, rank: int = 1) -> Fact:
+    truth = oscillator(
+        {"tip_mass": np.array(MASS), "arm_stiffness": np.array(STIFFNESS), "arm_damping": np.array(DAMPING)}
+    )
+    number = float(truth[name]) if value is None else value
+    return Fact(name=name, value=number, tolerance=within * number, rank=rank)
+
+
+def identified(*facts: Fact, seed: int = 0) -> Identification:
+    return identify(oscillator, facts=facts, bounds=BOUNDS, seed=seed)
+
+
+def test_what_the_facts_determine_is_recovered() -> None:
+    found = identified(fact("rate"), fact("quality"), fact("weight"))
+    values = [estimate.value for estimate in found.estimates.values()]
+    assert values == approx([MASS, STIFFNESS, DAMPING], rel=1e-4)
+    assert found.conflicts == ()
+    assert found.free_directions == ()
+
+
+def test_intervals_are_those_of_error_propagation_by_extremes() -> None:
+    # k = m omega^2: extremes at the ends of both tolerances
+    stiffness = identified(fact("rate"), fact("quality"), fact("weight")).estimates["arm_stiffness"]
+    assert stiffness.lower == approx(STIFFNESS * 0.99**3, rel=2e-3)
+    assert stiffness.upper == approx(STIFFNESS * 1.01**3, rel=2e-3)
+    assert not stiffness.lower_is_bound
+    assert not stiffness.upper_is_bound
+
+
+def test_a_frequency_alone_leaves_mass_and_stiffness_free_in_proportion() -> None:
+    found = identified(fact("rate"))
+    free = np.array([list(direction.exponents.values()) for direction in found.free_directions])
+    assert len(free) == 2
+    # both the common scale of mass and stiffness, and damping, lie in the free plane
+    for wanted in (np.array([1, 1, 0]) / math.sqrt(2), np.array([0, 0, 1])):
+        assert np.linalg.norm(free @ wanted) == approx(1, abs=1e-6)
+    assert found.estimates["arm_damping"].lower_is_bound
+    assert found.estimates["arm_damping"].upper_is_bound
+    assert found.estimates["arm_stiffness"].value / found.estimates["tip_mass"].value == approx(
+        STIFFNESS / MASS, rel=1e-4
+    )
+
+
+def test_what_no_fact_settles_stays_at_the_middle_of_its_bounds() -> None:
+    assert identified(fact("rate")).estimates["arm_damping"].value == approx(1.0, rel=1e-2)
+
+
+def test_facts_that_contradict_each_other_are_named_and_rank_decides() -> None:
+    wrong = fact("half_rate", 50.0, rank=2)  # the rate is 50/s, so half of it is not
+    found = identified(wrong, fact("rate"), fact("weight"))
+    assert found.conflicts == (frozenset({"rate", "half_rate"}),)
+    assert found.kept == {"rate", "weight"}
+    assert [reading.kept for reading in found.readings] == [{"rate", "weight"}, {"half_rate", "weight"}]
+    assert found.readings[0].misses["half_rate"] == approx(-50, rel=1e-2)
+    assert found.rest_holds_without("rate")
+    assert not found.rest_holds_without("weight")
+    assert found.estimates["arm_stiffness"].value == approx(STIFFNESS, rel=1e-3)
+
+
+def test_three_facts_can_clash_though_any_two_hold() -> None:
+    # sqrt(k m) and m fix the rate to half of what is asked
+    found = identified(fact("impedance"), fact("weight"), fact("rate", 100.0))
+    assert found.conflicts == (frozenset({"impedance", "weight", "rate"}),)
+    assert {reading.kept for reading in found.readings} == {
+        frozenset({"impedance", "weight"}),
+        frozenset({"impedance", "rate"}),
+        frozenset({"weight", "rate"}),
+    }
+
+
+def test_a_limit_ends_an_interval() -> None:
+    light = Fact(name="weight", value=5.0, tolerance=0.1, rank=1, relation="<=")
+    found = identified(fact("rate"), fact("quality"), light)
+    assert found.estimates["tip_mass"].upper == approx(5.1, rel=1e-2)
+    assert found.conflicts == ()
+
+
+def test_the_same_seed_gives_the_same_answer_and_another_agrees() -> None:
+    facts = fact("rate"), fact("weight"), fact("half_rate", 50.0)
+    assert identified(*facts, seed=3) == identified(*facts, seed=3)
+    other = identified(*facts, seed=4)
+    assert other.conflicts == identified(*facts, seed=3).conflicts
+    assert other.estimates["arm_stiffness"].value == approx(STIFFNESS, rel=1e-3)
+
+
+def test_a_fact_beyond_every_system_is_refused() -> None:
+    with raises(InvalidInput, match="fact weight cannot be met by any parameters within the bounds"):
+        identified(fact("rate"), fact("weight", 50.0))
+
+
+def test_no_facts_or_one_twice_are_refused() -> None:
+    with raises(InvalidInput, match="facts must not be empty"):
+        identified()
+    with raises(InvalidInput, match="facts must differ in name, got rate twice"):
+        identified(fact("rate"), fact("rate"))
+
+
+def test_a_fact_of_nothing_observed_is_refused_before_any_search() -> None:
+    with raises(UnknownName, match="unknown observable 'colour'"):
+        identified(Fact(name="colour", value=1.0, tolerance=0.1, rank=1))
+
+
+def test_bounds_have_to_rise_and_be_positive() -> None:
+    with raises(InvalidInput, match="bounds of tip_mass must rise, got 2 and 1"):
+        identify(oscillator, facts=[fact("rate")], bounds={**BOUNDS, "tip_mass": (2.0, 1.0)})
+    with raises(InvalidInput, match=r"tip_mass must be positive, got 0\.0 kg"):
+        identify(oscillator, facts=[fact("rate")], bounds={**BOUNDS, "tip_mass": (0.0, 1.0)})
+    with raises(InvalidInput, match="bounds must name at least one free parameter"):
+        identify(oscillator, facts=[fact("rate")], bounds={})

@@ -1,0 +1,97 @@
+"""The multi-scale model of the tribometer: what the dissertation says of it, and what holds whatever the numbers."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pytest import approx
+from scipy.special import i0
+
+from sonolube.errors import InvalidInput
+from sonolube.rig import Simulation, read_rig, simulate
+
+RIGS = Path(__file__).parents[2] / "examples" / "rigs"
+
+
+def tribometer(*changes: str) -> Simulation:
+    return simulate(read_rig(RIGS / "tribometer.toml", changes=changes))
+
+
+STILL = tribometer("drive.voltage_peak_to_peak=0V", "drive.voltage_offset=0V")
+DRIVEN = tribometer()
+
+
+def test_28_volts_give_the_amplitude_measured() -> None:
+    assert DRIVEN.status == "periodic"
+    assert DRIVEN.vibration_amplitude == approx(2.5e-6, rel=0.01)
+
+
+@pytest.mark.parametrize("volts", [5.1, 10.3, 15.5, 20.7, 25.9])
+def test_the_amplitude_is_proportional_to_the_voltage_as_table_4_1_prints(volts: float) -> None:
+    amplitude = tribometer(f"drive.voltage_peak_to_peak={volts}V").vibration_amplitude
+    assert amplitude == approx(2.31e-6 / 25.9 * volts, rel=0.01)
+
+
+def test_the_tip_rises_until_the_mean_force_is_the_load_again() -> None:
+    decay = 6e-6 / 3
+    assert DRIVEN.mean_displacement == approx(decay * np.log(i0(DRIVEN.vibration_amplitude / decay)), rel=1e-3)
+
+
+def test_without_voltage_nothing_moves_and_friction_is_what_it_was() -> None:
+    assert STILL.vibration_amplitude == approx(0.0, abs=1e-15)
+    assert STILL.friction_ratio == approx(1.0, abs=1e-6)
+    assert STILL.dissipated_power == approx(0.0, abs=1e-12)
+    assert STILL.wear_rate * 1e9 == approx(2.566e-2, abs=0.5e-5)  # mm3/m, D Table 3.4
+
+
+def test_waveforms_move_the_tip_by_their_fundamentals_alone() -> None:
+    # of a square, triangle and sawtooth of equal swing: 4/pi, 8/pi^2 and 2/pi of the sine's
+    amplitudes = {
+        name: tribometer(f"drive.waveform={name}").vibration_amplitude for name in ("square", "triangle", "sawtooth")
+    }
+    ratios = [amplitudes[name] / DRIVEN.vibration_amplitude for name in ("square", "triangle", "sawtooth")]
+    assert ratios == approx([4 / np.pi, 8 / np.pi**2, 2 / np.pi], rel=0.01)
+
+
+def test_waveforms_rank_as_section_3_3_5_says() -> None:
+    ranked = [
+        tribometer(f"drive.waveform={name}").friction_ratio for name in ("square", "sine", "triangle", "sawtooth")
+    ]
+    assert ranked == sorted(ranked)
+
+
+def test_friction_at_20_mm_per_second_lies_within_the_scatter_of_table_2_3() -> None:
+    assert DRIVEN.friction_force == approx(0.379, abs=0.041)
+
+
+def test_faster_sliding_leaves_more_friction() -> None:
+    ratios = [tribometer(f"sliding.sliding_speed={speed}mm/s").friction_ratio for speed in (20.3, 40.6, 87, 500)]
+    assert np.all(np.diff(ratios) > 0)
+    assert ratios[-1] == approx(1.0, abs=0.01)
+
+
+def test_every_closure_finds_less_friction_at_20_mm_per_second() -> None:
+    ratios = {
+        name: tribometer(f"friction.closure={name}").friction_ratio
+        for name in ("as_published", "separating_half_period", "load_balanced", "kinematic", "stick_slip", "coupled")
+    }
+    assert all(0 < ratio < 1 for ratio in ratios.values()), ratios
+
+
+def test_tension_in_a_stack_without_stated_preload_is_told() -> None:
+    assert any("no preload is stated" in doubt for doubt in DRIVEN.doubts)
+
+
+def test_a_voltage_beyond_the_stack_is_refused() -> None:
+    with pytest.raises(InvalidInput, match="the drive goes up to 28 V; the stack bears no more than 20 V"):
+        tribometer("stack.highest_voltage=20V")
+
+
+def test_gaussian_heights_are_refused_with_the_reason() -> None:
+    with pytest.raises(InvalidInput, match="motions are computed for exponential heights only"):
+        tribometer("contact.height_distribution=gaussian")
+
+
+def test_a_rig_without_structure_says_what_is_missing() -> None:
+    with pytest.raises(InvalidInput, match="the tables stack and structure are missing"):
+        simulate(read_rig(RIGS / "collar.toml"))
