@@ -108,7 +108,7 @@ class Answer(SphinxDirective):
 def answer(command: str) -> tuple[object, str]:
     """Return the exit code of a command and what it printed, complaints included."""
     printed = io.StringIO()
-    with workplace() as folder, chdir(folder), redirect_stdout(printed), redirect_stderr(printed):
+    with scratch_folder() as folder, chdir(folder), redirect_stdout(printed), redirect_stderr(printed):
         try:
             main(shlex.split(command)[1:])
         except SystemExit as end:
@@ -117,7 +117,7 @@ def answer(command: str) -> tuple[object, str]:
 
 
 @contextmanager
-def workplace() -> Iterator[Path]:
+def scratch_folder() -> Iterator[Path]:
     """Make a folder in which the commands of the pages work as they stand."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
