@@ -97,7 +97,7 @@ def stick_slip_ratio(
 
     An element slips until the gap closes faster than its spring stretches, and grips from its touch, or from that
     phase, until its limit has fallen to its force. With h half the phase it grips and m the middle of that phase, this
-    asks for sin m = v h/sin h, v = v_r l/(omega a D_c); the force it then lacks is 2 |cos m| (sin h - h cos h) in a
+    asks for sin m = v h/sin h, v = v_r l/(omega a D_c); the force it then lacks is 2 abs(cos m) (sin h - h cos h) in a
     period, and the sum over all elements one integral over h, here to 1e-12.
     """
     length, a, f, v_r, D_c = np.broadcast_arrays(
