@@ -6,7 +6,7 @@ RUN := OPENBLAS_NUM_THREADS=1 MPLBACKEND=Agg
 OUT := out
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint docs bench lock clean
+.PHONY: help demo test lint docs bench fuzz lock clean
 
 help: ## list the targets
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1\t/' | expand -t 16
@@ -32,8 +32,12 @@ docs: $(VENV)/docs ## build the documentation into out/docs
 	$(RUN) $(BIN)/sphinx-build -W --keep-going -b html docs $(OUT)/docs
 	@echo "$(OUT)/docs/index.html"
 
-bench: $(VENV)/test ## measure speed, each benchmark beside its rival
+bench: $(VENV)/bench ## measure speed, each benchmark beside its rival
 	$(RUN) $(BIN)/python -m pytest benchmarks --benchmark-only --benchmark-columns=min,median,iqr,rounds
+
+fuzz: $(VENV)/test ## read 100,000 damaged surface and impedance files of each format
+	$(RUN) $(BIN)/python tests/measurement/test_surface_file_fuzz.py 100000
+	$(RUN) $(BIN)/python tests/measurement/test_impedance_file_fuzz.py 100000
 
 lock: $(VENV)/uv ## pin and hash every dependency for Python 3.11 to 3.13
 	$(BIN)/uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-annotate \
@@ -42,6 +46,8 @@ lock: $(VENV)/uv ## pin and hash every dependency for Python 3.11 to 3.13
 	    pyproject.toml --group test -c requirements/runtime.txt -o requirements/test.txt
 	$(BIN)/uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-annotate \
 	    pyproject.toml --group test --group docs -c requirements/test.txt -o requirements/docs.txt
+	$(BIN)/uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-annotate \
+	    pyproject.toml --group test --group bench -c requirements/test.txt -o requirements/bench.txt
 
 clean: ## remove the environment and everything generated
 	rm -rf $(VENV) $(OUT) .mypy_cache .pytest_cache .ruff_cache .hypothesis .import_linter_cache .benchmarks
@@ -66,4 +72,8 @@ $(VENV)/test: $(VENV)/runtime requirements/test.txt
 
 $(VENV)/docs: $(VENV)/test requirements/docs.txt
 	$(BIN)/uv pip install --quiet --python $(BIN)/python --require-hashes -r requirements/docs.txt
+	@touch $@
+
+$(VENV)/bench: $(VENV)/test requirements/bench.txt
+	$(BIN)/uv pip install --quiet --python $(BIN)/python --require-hashes -r requirements/bench.txt
 	@touch $@

@@ -20,6 +20,10 @@ class MissingProperty(SonolubeError, LookupError):
     """A property for which no source is known, and so no value is given."""
 
 
+class NoGroove(SonolubeError):
+    """A scan in which nothing stands out as a wear groove or scar; what was seen instead is in its text."""
+
+
 class UnknownName(SonolubeError, LookupError):
     """A name that stands in none of the tables."""
 
