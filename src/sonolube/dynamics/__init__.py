@@ -9,7 +9,7 @@ from sonolube.dynamics.chain import (
     modal_structure,
     pin_on_disc_chain,
 )
-from sonolube.dynamics.gap_law import ExponentialGap, GapLaw, HertzGap, LinearGap
+from sonolube.dynamics.gap_law import ExponentialGap, GapLaw, HertzGap, LinearGap, TabulatedGap
 from sonolube.dynamics.linear import (
     Modes,
     StaticContact,
@@ -64,6 +64,7 @@ __all__ = [
     "Status",
     "SteadyStates",
     "Structure",
+    "TabulatedGap",
     "Waveform",
     "chain_structure",
     "contact_receptance",

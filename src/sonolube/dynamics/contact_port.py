@@ -85,17 +85,19 @@ def _above_rounding(shares: Floats) -> np.ndarray:
 
 
 @numba.njit(**INSIDE)
-def receptances(port: ContactPort, which: int, omega: Floats, order: int, real: Floats, imaginary: Floats) -> None:
+def receptances(
+    port: ContactPort, constant: Floats, slope: Floats, omega: Floats, order: float, real: Floats, imaginary: Floats
+) -> None:
     """Write a receptance of each lane at a multiple of its angular frequency.
 
     Parameters
     ----------
     port : ContactPort
-    which : int
-        Row of `ContactPort.constant`.
+    constant, slope : ndarray, shape (m,)
+        Rows of `ContactPort.constant` and `ContactPort.slope`.
     omega : ndarray, shape (lanes,)
         Angular frequency, in rad/s.
-    order : int
+    order : float
         The multiple.
     real, imaginary : ndarray, shape (lanes,)
         The receptance.
@@ -104,11 +106,11 @@ def receptances(port: ContactPort, which: int, omega: Floats, order: int, real: 
         real[lane], imaginary[lane] = 0.0, 0.0
     for pair in range(port.trace.size):
         determinant, trace = port.determinant[pair], port.trace[pair] * order
-        constant, slope = port.constant[which, pair], port.slope[which, pair] * order
+        still, rising = constant[pair], slope[pair] * order
         for lane in range(LANES):
             re = determinant - (order * omega[lane]) ** 2
             im = -trace * omega[lane]
             inverse = 1 / (re * re + im * im)
-            rise = slope * omega[lane]
-            real[lane] += (constant * re + rise * im) * inverse
-            imaginary[lane] += (rise * re - constant * im) * inverse
+            rise = rising * omega[lane]
+            real[lane] += (still * re + rise * im) * inverse
+            imaginary[lane] += (rise * re - still * im) * inverse

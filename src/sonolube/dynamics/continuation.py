@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from sonolube.checks import Complexes, Floats, require_positive
 from sonolube.dynamics.balance_equations import PointEquations
 from sonolube.dynamics.balancing import GROWTH, growth, measured
-from sonolube.dynamics.contact_lanes import law_of, reach
+from sonolube.dynamics.contact_lanes import EXPONENTIAL, TABULATED, law_of, reach
 from sonolube.dynamics.contact_port import contact_port
 from sonolube.dynamics.gap_law import GapLaw
 from sonolube.dynamics.periodic import Status, steady_state
@@ -131,7 +131,7 @@ def response_curve(
         voltage_harmonics=np.ones(1, dtype=np.complex128),
         voltage_offset=0.0,
         orders=orders,
-        samples=8 * orders if law.kind == 0 else max(8 * orders, 512),
+        samples=8 * orders if law.kind in (EXPONENTIAL, TABULATED) else max(8 * orders, 512),
     )
     start = steady_state(
         structure, gap_law, normal_load=load, frequency=hertz.flat[0], voltage_amplitude=volts.flat[0], stability=False

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Complexes, Floats, require_positive
 from sonolube.dynamics.balance_equations import Balance, PointEquations
-from sonolube.dynamics.gap_law import ExponentialGap, GapLaw, HertzGap, LinearGap
+from sonolube.dynamics.gap_law import ExponentialGap, GapLaw, HertzGap, LinearGap, TabulatedGap
 from sonolube.dynamics.linear import static_contact
 from sonolube.dynamics.periodic import Status, SteadyStates
 from sonolube.dynamics.sliding_kernel import phases_of
@@ -98,7 +98,7 @@ def gradients(
 
     def column(which: int, *inner: int) -> dict[str, Floats]:
         return {
-            name: np.array([row[name][which] for row in rows], dtype=np.float64).reshape(*shape, *inner)
+            name: np.array([row[name][which] for row in rows], dtype=np.float64).reshape((*shape, *inner))
             for name in names
         }
 
@@ -174,6 +174,9 @@ def _by_law(gap_law: GapLaw, balance: Balance) -> dict[str, Floats]:
             "tip_radius": by_coefficient * 0.5 * coefficient / gap_law.tip_radius,
             "combined_modulus": by_coefficient * coefficient / gap_law.combined_modulus,
         }
+    if isinstance(gap_law, TabulatedGap):
+        at_rest = gap_law.stiffness(np.zeros(()), load)
+        return found | {"normal_load": share * gap_law.stiffness(x, load) / at_rest}
     assert isinstance(gap_law, LinearGap)
     return found | {"normal_load": share * (elastic > 0), "normal_stiffness": -share * x * (elastic > 0)}
 

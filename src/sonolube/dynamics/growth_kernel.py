@@ -10,10 +10,10 @@ import numba
 import numpy as np
 
 from sonolube.checks import Complexes, Floats
-from sonolube.dynamics.contact_lanes import Law, contact_rows, reach
+from sonolube.dynamics.contact_lanes import Law, contact_rows, rest
 from sonolube.dynamics.contact_port import ContactPort
-from sonolube.dynamics.harmonic_kernel import Integers
-from sonolube.dynamics.lanes import INSIDE, KERNEL, LANES, add_combination
+from sonolube.dynamics.harmonic_kernel import Integers, finest
+from sonolube.dynamics.lanes import INSIDE, KERNEL, LANES, combine
 
 _SQUARINGS = 22  # 2e-7 of growth a period are then told from none
 
@@ -47,27 +47,24 @@ def growth_rates(
     rates : ndarray, shape (p,)
         Written at the chosen points.
     """
-    size, most = 2 * port.trace.size, 0
-    for point in chosen:
-        most = max(most, count[point])
+    size, most = 2 * port.trace.size, finest(count, chosen)
     period, square = np.empty((size, size, LANES)), np.empty((size, size, LANES))
     free, senses, rows = np.empty((2 * size, LANES)), np.empty((3, size, LANES)), np.empty((9, LANES))
-    motion = np.empty((4, most + 1, LANES))
+    motion, turn = np.zeros((2, 2 * most + 2, LANES)), np.empty(2 * most + 2)
     for start in range(0, chosen.size, LANES):
         block = chosen[start : start + LANES]
-        h, kicks = 0, 0
-        for point in block:
-            h, kicks = max(h, count[point]), max(kicks, steps[point])
+        h, kicks = finest(count, block), finest(steps, block)
         for lane in range(LANES):
             point = block[min(lane, block.size - 1)]
             rows[0, lane], rows[1, lane] = omega[point], load[point]
-            rows[2, lane], motion[0, 0, lane] = reach(law, load[point]), mean[point]
+            rows[2, lane], motion[0, 0, lane] = rest(law, load[point]), mean[point]
+            motion[:, h + 1, lane] = 0.0
             for k in range(1, h + 1):
                 value = harmonics[point, k - 1] if k <= count[point] else 0j
-                motion[0, k, lane], motion[1, k, lane] = value.real, value.imag
-                motion[2, k, lane], motion[3, k, lane] = -k * value.imag, k * value.real
+                motion[0, k, lane], motion[0, h + 1 + k, lane] = value.real, value.imag
+                motion[1, k, lane], motion[1, h + 1 + k, lane] = -k * value.imag, k * value.real
             _free_motion(port, 2 * np.pi / (kicks * omega[point]), lane, free)
-        _one_period(port, law, motion, h, kicks, free, period, senses, rows)
+        _one_period(port, law, motion, turn, h, kicks, free, period, senses, rows)
         _grow(period, square, rows[3], rows[4])
         for lane in range(block.size):
             rates[block[lane]] = rows[3, lane]
@@ -96,6 +93,7 @@ def _one_period(
     port: ContactPort,
     law: Law,
     motion: Floats,
+    turn: Floats,
     h: int,
     kicks: int,
     free: Floats,
@@ -105,22 +103,21 @@ def _one_period(
 ) -> None:
     """Write the matrix of one period of alternating kicks and free motions."""
     size = period.shape[0]
-    gain = np.sum(port.velocity * port.push)
+    gain = 0.0
+    for pair in range(port.trace.size):
+        gain += port.velocity[pair, 0] * port.push[pair, 0] + port.velocity[pair, 1] * port.push[pair, 1]
     x, v, work, force, slope, drag = rows[3], rows[4], rows[5], rows[6], rows[7], rows[8]
-    orders = np.arange(h + 1)
     period[:] = 0.0
     for j in range(size):
         period[j, j] = 1.0
         senses[0, j], senses[1, j] = port.displacement[j // 2, j % 2], port.velocity[j // 2, j % 2]
     for kick in range(kicks):
-        cosines, sines = np.cos(2 * np.pi / kicks * kick * orders), -np.sin(2 * np.pi / kicks * kick * orders)
-        for lane in range(LANES):
-            x[lane], v[lane] = motion[0, 0, lane], 0.0
-        add_combination(x, cosines, motion[0], 1, h)
-        add_combination(x, sines, motion[1], 1, h)
+        for k in range(h + 1):
+            phase = 2 * np.pi / kicks * kick * k
+            turn[k], turn[h + 1 + k] = np.cos(phase), -np.sin(phase)
+        combine(x, turn, motion[0], 2 * h + 1)
         if law.damping > 0:
-            add_combination(v, cosines, motion[2], 1, h)
-            add_combination(v, sines, motion[3], 1, h)
+            combine(v, turn, motion[1], 2 * h + 1)
             for lane in range(LANES):
                 v[lane] *= rows[0, lane]
         contact_rows(law, rows[1], rows[2], x, v, work, force, slope, drag)

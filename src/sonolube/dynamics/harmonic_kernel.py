@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.checks import Complexes, Floats
-from sonolube.dynamics.contact_lanes import EXPONENTIAL, Law, contact_rows, reach
+from sonolube.dynamics.contact_lanes import EXPONENTIAL, Law, contact_rows, reach, rest
 from sonolube.dynamics.contact_port import ContactPort, receptances
-from sonolube.dynamics.lanes import INSIDE, KERNEL, LANES, add_combination
+from sonolube.dynamics.lanes import INSIDE, KERNEL, LANES, combine
 from sonolube.dynamics.newton_kernel import newton_step
 
 Integers = NDArray[np.int64]
@@ -58,7 +58,8 @@ class Lanes(NamedTuple):
 
     omega: Floats
     load: Floats
-    length: Floats
+    length: Floats  # over which the contact changes, in m
+    resting: Floats  # where it rests
     free_mean: Floats
     size: Floats  # of the last step, in m
     scale: Floats  # of the motion, in m
@@ -97,16 +98,16 @@ def balance(
     outcome : ndarray of int, shape (p,)
         Written at the chosen points: CONVERGED, DIVERGED (nothing else is written), NEEDS_HARMONICS or NEEDS_SAMPLES.
     """
-    most, rows = _finest(resolution.harmonics, chosen), 2 * _finest(resolution.coupled, chosen) + 1
+    most, rows = finest(resolution.harmonics, chosen), 2 * finest(resolution.coupled, chosen) + 1
     answers = np.empty((most + 1, 6, LANES))
     linear = np.empty((2, most + 1, LANES))
     unknown = np.empty((2, most + 1, LANES))
     step = np.empty((2, most + 1, LANES))
     spectra = np.empty((3, 2, 2 * most + 2, LANES))
     matrix = np.empty((rows + 2, rows + 1, LANES))
-    row = np.empty((6, LANES))
-    lanes = Lanes(row[0], row[1], row[2], row[3], row[4], row[5])
-    instants = _finest(resolution.samples, chosen) // 2 + 1
+    row = np.empty((7, LANES))
+    lanes = Lanes(row[0], row[1], row[2], row[3], row[4], row[5], row[6])
+    instants = finest(resolution.samples, chosen) // 2 + 1
     samples = Samples(
         np.empty((instants, instants)),
         np.empty((instants, instants)),
@@ -119,11 +120,11 @@ def balance(
     tabulated = 0
     for start in range(0, chosen.size, LANES):
         block = chosen[start : start + LANES]
-        h, n = _finest(resolution.harmonics, block), _finest(resolution.coupled, block)
-        count = _finest(resolution.samples, block)
+        h, n = finest(resolution.harmonics, block), finest(resolution.coupled, block)
+        count = finest(resolution.samples, block)
         _gather(law, points, block, h, unknown, lanes)
         for k in range(1, h + 1):
-            receptances(port, 0, lanes.omega, k, answers[k, 0], answers[k, 1])
+            receptances(port, port.constant[0], port.slope[0], lanes.omega, float(k), answers[k, 0], answers[k, 1])
             _linear_part(port, points.voltage, block, lanes.omega, k, answers[k], linear)
         if count != tabulated:
             _trigonometry(count, samples)
@@ -131,7 +132,7 @@ def balance(
         final = False
         for iteration in range(iterations):
             final = final or iteration == iterations - 1
-            _contact_spectra(law, unknown, lanes, h, count, 2 * h if final else max(h, 2 * n), samples, spectra)
+            _contact_spectra(law, unknown, lanes, h, count, 2 * h if final else h + n, samples, spectra)
             _residual(port.static_stiffness, unknown, answers, linear, spectra, lanes, h, step)
             newton_step(port.static_stiffness, answers, spectra, law.damping > 0, lanes.omega, h, n, matrix, step)
             largest = _advance(unknown, step, h, lanes)
@@ -143,7 +144,8 @@ def balance(
 
 
 @numba.njit(**INSIDE)
-def _finest(values: Integers, chosen: Integers) -> int:
+def finest(values: Integers, chosen: Integers) -> int:
+    """Return the largest of the chosen points' values."""
     most = np.int64(0)
     for point in chosen:
         most = max(most, values[point])
@@ -155,7 +157,7 @@ def _gather(law: Law, points: Points, block: Integers, h: int, unknown: Floats, 
     for lane in range(LANES):
         point = block[min(lane, block.size - 1)]
         lanes.omega[lane], lanes.load[lane] = points.omega[point], points.load[point]
-        lanes.length[lane] = reach(law, points.load[point])
+        lanes.length[lane], lanes.resting[lane] = reach(law, points.load[point]), rest(law, points.load[point])
         lanes.free_mean[lane] = points.free_mean[point]
         unknown[0, 0, lane], unknown[1, 0, lane] = points.mean[point], 0.0
         for k in range(1, h + 1):
@@ -169,8 +171,8 @@ def _linear_part(
 ) -> None:
     driven = k <= voltage.shape[1]
     if driven:
-        receptances(port, 1, omega, k, answer[2], answer[3])
-        receptances(port, 2, omega, k, answer[4], answer[5])
+        receptances(port, port.constant[1], port.slope[1], omega, float(k), answer[2], answer[3])
+        receptances(port, port.constant[2], port.slope[2], omega, float(k), answer[4], answer[5])
     for lane in range(LANES):
         v = voltage[block[min(lane, block.size - 1)], k - 1] if driven else 0j
         linear[0, k, lane] = answer[2, lane] * v.real - answer[3, lane] * v.imag if driven else 0.0
@@ -179,13 +181,10 @@ def _linear_part(
 
 @numba.njit(**INSIDE)
 def _trigonometry(count: int, samples: Samples) -> None:
-    angle = 2 * np.pi / count
-    turn = np.arange(count) * angle
-    cosines, sines = np.cos(turn), np.sin(turn)
     for j in range(count // 2 + 1):
         for k in range(count // 2 + 1):
-            samples.cosines[j, k] = cosines[j * k % count]
-            samples.sines[j, k] = sines[j * k % count]
+            phase = 2 * np.pi / count * (j * k % count)
+            samples.cosines[j, k], samples.sines[j, k] = np.cos(phase), np.sin(phase)
 
 
 @numba.njit(**INSIDE)
@@ -198,7 +197,7 @@ def _contact_spectra(
     quantities = 3 if damped else (1 if parallel else 2)
     half, highest = count // 2, spectra.shape[2] - 1
     if damped:
-        for k in range(1, h + 1):
+        for k in range(h + 1):
             for lane in range(LANES):
                 samples.velocity[0, k, lane] = -k * unknown[1, k, lane]
                 samples.velocity[1, k, lane] = k * unknown[0, k, lane]
@@ -210,10 +209,7 @@ def _contact_spectra(
             table = samples.sines if part else samples.cosines
             for m in range(orders + 2):
                 order, row = (m, m) if m <= orders else (half - 1, highest)
-                target = spectra[quantity, part, row]
-                for lane in range(LANES):
-                    target[lane] = 0.0
-                add_combination(target, table[order], samples.sums[quantity, part], 0, half)
+                combine(spectra[quantity, part, row], table[order], samples.sums[quantity, part], half)
     if parallel:
         for part in range(2):
             for m in range(orders + 1):
@@ -227,15 +223,11 @@ def _sample_pair(
 ) -> None:
     """Write weighted sums and differences of force, stiffness and damping at the j-th instant and its mirror image."""
     even, odd = samples.parts[0, 0], samples.parts[0, 1]
-    for lane in range(LANES):
-        even[lane] = unknown[0, 0, lane]
-        odd[lane] = 0.0
-    add_combination(even, samples.cosines[j], unknown[0], 1, h)
-    add_combination(odd, samples.sines[j], unknown[1], 1, h)
+    combine(even, samples.cosines[j], unknown[0], h)
+    combine(odd, samples.sines[j], unknown[1], h)
     if law.damping > 0:
-        samples.parts[1, :, :] = 0.0
-        add_combination(samples.parts[1, 0], samples.cosines[j], samples.velocity[0], 1, h)
-        add_combination(samples.parts[1, 1], samples.sines[j], samples.velocity[1], 1, h)
+        combine(samples.parts[1, 0], samples.cosines[j], samples.velocity[0], h)
+        combine(samples.parts[1, 1], samples.sines[j], samples.velocity[1], h)
     x, v = samples.work[0], samples.work[1]
     for side in range(2):
         sign = 2.0 * side - 1.0
@@ -245,7 +237,7 @@ def _sample_pair(
             for lane in range(LANES):
                 v[lane] = lanes.omega[lane] * (samples.parts[1, 0, lane] + sign * samples.parts[1, 1, lane])
         force, slope, drag = samples.sides[side, 0], samples.sides[side, 1], samples.sides[side, 2]
-        contact_rows(law, lanes.load, lanes.length, x, v, samples.work[2], force, slope, drag)
+        contact_rows(law, lanes.load, lanes.resting, x, v, samples.work[2], force, slope, drag)
     for quantity in range(quantities):
         ahead, behind = samples.sides[0, quantity], samples.sides[1, quantity]
         total, difference = samples.sums[quantity, 0, j], samples.sums[quantity, 1, j]
@@ -317,7 +309,7 @@ def _judge(
     top, tail = spectra.shape[2] - 1, work[0, 0]
     tail[:] = 0.0
     for k in range(h + 1, 2 * h + 1):
-        receptances(port, 0, lanes.omega, k, work[0, 1], work[1, 1])
+        receptances(port, port.constant[0], port.slope[0], lanes.omega, float(k), work[0, 1], work[1, 1])
         for lane in range(LANES):
             receptance = work[0, 1, lane] ** 2 + work[1, 1, lane] ** 2
             force = spectra[0, 0, k, lane] ** 2 + spectra[0, 1, k, lane] ** 2

@@ -55,9 +55,11 @@ def exponentials(argument: Floats, result: Floats, scale: Floats) -> None:
 
 
 @numba.njit(**INSIDE)
-def add_combination(target: Floats, coefficients: Floats, sources: Floats, first: int, last: int) -> None:
-    """Add the sum of coefficients[i] * sources[i] for i from `first` to `last`, four at a time."""
-    i = first
+def combine(target: Floats, coefficients: Floats, sources: Floats, last: int) -> None:
+    """Write the sum of coefficients[i] * sources[i] for i up to and including `last`, four at a time."""
+    for lane in range(LANES):
+        target[lane] = 0.0
+    i = 0
     while i + 3 <= last:
         a, b, c, d = coefficients[i], coefficients[i + 1], coefficients[i + 2], coefficients[i + 3]
         p, q, r, s = sources[i], sources[i + 1], sources[i + 2], sources[i + 3]

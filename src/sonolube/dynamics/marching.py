@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.checks import Floats
-from sonolube.dynamics.gap_law import ExponentialGap, GapLaw, HertzGap, LinearGap
+from sonolube.dynamics.gap_law import ExponentialGap, GapLaw, HertzGap, LinearGap, TabulatedGap
 from sonolube.dynamics.marching_kernel import LANES, STATISTICS, march_lanes, rows
 from sonolube.dynamics.state_pairs import StatePairs
 from sonolube.dynamics.step_filter import StepFilter, step_filter
@@ -165,6 +165,7 @@ def march_points(
     final = np.empty((chunks, 1, m, width))
     yielded = np.empty((2, count))
     state = rows((0,) * (m // 2)).state
+    cells = gap_law.cells if isinstance(gap_law, TabulatedGap) else np.empty((0, 4))
 
     def march_chunk(chunk: int, filters: StepFilter, which: NDArray[np.intp], lanes: NDArray[np.intp]) -> None:
         numbers = _numbers(contact_rows, gap_law, filters, which, points, start, lanes)
@@ -172,6 +173,7 @@ def march_points(
             (0,) * (m // 2),
             (0,) * gap_law.kind,
             (0,) * (gap_law.force_damping > 0),
+            cells,
             numbers,
             _drive(filters, which, points, lanes),
             _aligned(np.empty((steps + 4) * m * LANES)),
@@ -278,13 +280,16 @@ def _aligned(values: Floats) -> Floats:
 
 
 def _law_constants(gap_law: GapLaw, load: Floats) -> Floats:
+    none = np.zeros_like(load)
     match gap_law:
         case ExponentialGap():
-            first, second = 1 / gap_law.decay_length, 0.0 * load
+            first, second, third = 1 / gap_law.decay_length, none, none
         case HertzGap():
-            first, second = gap_law.coefficient, (load / gap_law.coefficient) ** (2 / 3)
+            first, second, third = gap_law.coefficient, (load / gap_law.coefficient) ** (2 / 3), none
         case LinearGap():
-            first, second = gap_law.normal_stiffness, 0.0 * load
+            first, second, third = gap_law.normal_stiffness, none, none
+        case TabulatedGap():
+            first, second, third = gap_law.cells_per_length, gap_law.rest_position(load), np.log(load)
         case _:
             raise InvalidInput(f"gap_law must be one that marching knows, got {type(gap_law).__name__}")
-    return np.stack([load, np.full_like(load, first), second, np.full_like(load, gap_law.force_damping)])
+    return np.stack([load, np.full_like(load, first), second, third, np.full_like(load, gap_law.force_damping)])

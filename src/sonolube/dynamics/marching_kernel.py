@@ -11,6 +11,7 @@ import numba
 import numpy as np
 
 from sonolube.checks import Floats
+from sonolube.dynamics.force_table import log_force_at
 
 LANES = 32
 STATISTICS = 8  # of the contact: highest, lowest, sum, cosine and sine sum of x; sum, highest and lowest of F_n
@@ -59,43 +60,53 @@ def rows(pairs: tuple[int, ...]) -> Rows:
         fixed,  # displacement ahead per recent force
         fixed + 5 * LANES,  # velocity ahead per recent force
         fixed + 10 * LANES,  # recent forces less the load, newest first
-        fixed + 15 * LANES,  # contact law: load, two constants, damping
-        fixed + 19 * LANES,  # statistics
-        fixed + 27 * LANES,  # displacements now and ahead without contact
-        fixed + 32 * LANES,  # velocities likewise
-        fixed + 37 * LANES,  # forces less the load, now and ahead
-        fixed + 42 * LANES,  # displacements ahead per force
-        fixed + 62 * LANES,  # velocities ahead per force
-        fixed + 82 * LANES,  # one where a lane starts anew
-        fixed + 83 * LANES,
+        fixed + 15 * LANES,  # contact law: load, three constants, damping
+        fixed + 20 * LANES,  # statistics
+        fixed + 28 * LANES,  # displacements now and ahead without contact
+        fixed + 33 * LANES,  # velocities likewise
+        fixed + 38 * LANES,  # forces less the load, now and ahead
+        fixed + 43 * LANES,  # displacements ahead per force
+        fixed + 63 * LANES,  # velocities ahead per force
+        fixed + 83 * LANES,  # one where a lane starts anew
+        fixed + 84 * LANES,
     )
 
 
 @numba.njit(cache=True, fastmath=_MATHS, error_model="numpy")
-def _contact_force(kind: tuple[int, ...], damped: tuple[int, ...], x: float, v: float, lanes: Floats, law: int) -> Any:
-    """Return F_n of one lane; the exponential is right to 1e-13."""
+def _exponential(argument: float) -> float:
+    """Return exp(argument) to 1e-13, the argument held between -32 and 32."""
+    u = min(max(argument, -_LARGEST_EXPONENT), _LARGEST_EXPONENT) / 256
+    uu = u * u
+    power = (1 / 720 + u * (1 / 5040)) + uu * (1 / 40320 + u * (1 / 362880))
+    power = (1.0 + u) + uu * ((1 / 2 + u * (1 / 6)) + uu * ((1 / 24 + u * (1 / 120)) + uu * power))
+    power *= power
+    power *= power
+    power *= power
+    power *= power
+    power *= power
+    power *= power
+    power *= power
+    power *= power
+    return power
+
+
+@numba.njit(cache=True, fastmath=_MATHS, error_model="numpy")
+def _contact_force(
+    kind: tuple[int, ...], damped: tuple[int, ...], cells: Floats, x: float, v: float, lanes: Floats, law: int
+) -> Any:
+    """Return F_n of one lane."""
     load, first, second = lanes[law], lanes[law + LANES], lanes[law + 2 * LANES]
     if len(kind) == 0:
-        u = min(max(-x * first, -_LARGEST_EXPONENT), _LARGEST_EXPONENT) / 256
-        uu = u * u
-        power = (1 / 720 + u * (1 / 5040)) + uu * (1 / 40320 + u * (1 / 362880))
-        power = (1.0 + u) + uu * ((1 / 2 + u * (1 / 6)) + uu * ((1 / 24 + u * (1 / 120)) + uu * power))
-        power *= power
-        power *= power
-        power *= power
-        power *= power
-        power *= power
-        power *= power
-        power *= power
-        power *= power
-        force = load * power
+        force = load * _exponential(-x * first)
     elif len(kind) == 1:
         approach = max(second - x, 0.0)
         force = first * approach * np.sqrt(approach)
-    else:
+    elif len(kind) == 2:
         force = max(load - first * x, 0.0)
+    else:
+        force = load * _exponential(log_force_at(cells, second + first * x)[0] - lanes[law + 3 * LANES])
     if len(damped):
-        force *= max(1.0 - lanes[law + 3 * LANES] * v, 0.0)
+        force *= max(1.0 - lanes[law + 4 * LANES] * v, 0.0)
     return force
 
 
@@ -104,6 +115,7 @@ def _step(
     pairs: tuple[int, ...],
     kind: tuple[int, ...],
     damped: tuple[int, ...],
+    cells: Floats,
     lanes: Floats,
     drive: Floats,
     cosine: float,
@@ -132,7 +144,7 @@ def _step(
             p = at.v_foreseen + lane
             held = lanes[p] * newest + lanes[p + LANES] * second + lanes[p + 2 * LANES] * third
             v += held + lanes[p + 3 * LANES] * fourth + lanes[p + 4 * LANES] * oldest
-        force = _contact_force(kind, damped, x, v, lanes, law)
+        force = _contact_force(kind, damped, cells, x, v, lanes, law)
         lanes[forces + 4 * LANES], lanes[forces + 3 * LANES], lanes[forces + 2 * LANES] = fourth, third, second
         lanes[forces + LANES], lanes[forces] = newest, force - lanes[law]
         lanes[statistics] = max(lanes[statistics], x)
@@ -179,12 +191,14 @@ def _move_freely(pairs: tuple[int, ...], lanes: Floats, table: Floats, step: int
 
 
 @numba.njit(cache=True, fastmath=_MATHS, error_model="numpy")
-def _collocate(pairs: tuple[int, ...], kind: tuple[int, ...], damped: tuple[int, ...], lanes: Floats) -> None:
+def _collocate(
+    pairs: tuple[int, ...], kind: tuple[int, ...], damped: tuple[int, ...], cells: Floats, lanes: Floats
+) -> None:
     """Write the forces now and at the next four steps, each by the motion that all of them bring about."""
     at = rows(pairs)
     for lane in range(LANES):
         law = at.law + lane
-        force = _contact_force(kind, damped, lanes[at.x_free + lane], lanes[at.v_free + lane], lanes, law)
+        force = _contact_force(kind, damped, cells, lanes[at.x_free + lane], lanes[at.v_free + lane], lanes, law)
         for j in range(5):
             lanes[at.forces_ahead + j * LANES + lane] = force - lanes[law]
     for _ in range(_SWEEPS):
@@ -198,7 +212,7 @@ def _collocate(pairs: tuple[int, ...], kind: tuple[int, ...], damped: tuple[int,
                     x += lanes[at.x_ahead + (5 * i + j) * LANES + lane] * force
                     if len(damped):
                         v += lanes[at.v_ahead + (5 * i + j) * LANES + lane] * force
-                force = _contact_force(kind, damped, x, v, lanes, law)
+                force = _contact_force(kind, damped, cells, x, v, lanes, law)
                 lanes[at.forces_ahead + ahead] = force - lanes[law]
 
 
@@ -207,6 +221,7 @@ def _start(
     pairs: tuple[int, ...],
     kind: tuple[int, ...],
     damped: tuple[int, ...],
+    cells: Floats,
     lanes: Floats,
     table: Floats,
     step: int,
@@ -219,7 +234,7 @@ def _start(
     at = rows(pairs)
     _complete_state(pairs, lanes)
     _move_freely(pairs, lanes, table, step)
-    _collocate(pairs, kind, damped, lanes)
+    _collocate(pairs, kind, damped, cells, lanes)
     for j in range(5):
         for lane in range(LANES):
             past = 0.0
@@ -311,6 +326,7 @@ def march_lanes(
     pairs: tuple[int, ...],
     kind: tuple[int, ...],
     damped: tuple[int, ...],
+    cells: Floats,
     lanes: Floats,
     drive: Floats,
     table: Floats,
@@ -331,6 +347,8 @@ def march_lanes(
     ----------
     pairs, kind, damped : tuple of int
         Known by their lengths: number of pairs of states; contact law; whether it is damped.
+    cells : ndarray, shape (n, 4)
+        Table of a tabulated law, empty for any other.
     lanes : ndarray
         Rows of lanes, `rows` says which; on return the state stands among them.
     drive : ndarray
@@ -368,8 +386,8 @@ def march_lanes(
             now = first + step
             may_start = now == 0 or first_end - 1 <= now <= last_end + 1 or jumps.size > 0
             if may_start and _mark(lanes, at.mark, now, step, ramp_steps, jumps):
-                _start(pairs, kind, damped, lanes, table, step, backward)
-            _step(pairs, kind, damped, lanes, table[step * row : (step + 1) * row], cosines[step], sines[step])
+                _start(pairs, kind, damped, cells, lanes, table, step, backward)
+            _step(pairs, kind, damped, cells, lanes, table[step * row : (step + 1) * row], cosines[step], sines[step])
             if now >= unrecorded:
                 _complete_state(pairs, lanes)
                 _copy(lanes, at.state, recorded[now - unrecorded, :-1])

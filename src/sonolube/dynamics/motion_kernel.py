@@ -6,7 +6,9 @@ import numba
 import numpy as np
 
 from sonolube.checks import Complexes, Floats
-from sonolube.dynamics.contact_lanes import EXPONENTIAL, HERTZ, LOST, Law, loss_displacement
+from sonolube.dynamics.contact_lanes import EXPONENTIAL, HERTZ, LOST, TABULATED, Law, loss_displacement, rest
+from sonolube.dynamics.force_table import log_force_at
+from sonolube.dynamics.gap_law import LARGEST_EXPONENT
 from sonolube.dynamics.harmonic_kernel import Integers
 from sonolube.dynamics.lanes import INSIDE, KERNEL
 
@@ -61,8 +63,9 @@ def measure(
             lower, low = _turn(own, end)
             high, low = mean[point] + high, mean[point] + low
             measures.turns[point, 0], measures.turns[point, 1] = upper, lower
-            measures.force[point, 0] = contact_force(law, load[point], low, 0.0)
-            measures.force[point, 1] = contact_force(law, load[point], high, 0.0)
+            resting = rest(law, load[point])
+            measures.force[point, 0] = contact_force(law, load[point], resting, low, 0.0)
+            measures.force[point, 1] = contact_force(law, load[point], resting, high, 0.0)
             measures.lost[point] = 1.0 if low >= beyond else 0.0
             if low < beyond < high:
                 level = beyond - mean[point]
@@ -79,12 +82,15 @@ def measure(
 
 
 @numba.njit(**INSIDE)
-def contact_force(law: Law, load: float, x: float, v: float) -> float:
-    """Return the contact force, in N."""
+def contact_force(law: Law, load: float, resting: float, x: float, v: float) -> float:
+    """Return the contact force, in N, of a contact that rests where `rest` says."""
     if law.kind == EXPONENTIAL:
-        force = load * np.exp(min(-x / law.parameter, 700.0))
+        force = load * np.exp(min(-x / law.parameter, LARGEST_EXPONENT))
     elif law.kind == HERTZ:
-        force = law.parameter * max((load / law.parameter) ** (2 / 3) - x, 0.0) ** 1.5
+        force = law.parameter * max(resting - x, 0.0) ** 1.5
+    elif law.kind == TABULATED:
+        log_force = log_force_at(law.cells, resting + law.parameter * x)[0]
+        force = np.exp(min(max(log_force, -LARGEST_EXPONENT), LARGEST_EXPONENT))
     else:
         force = max(load - law.parameter * x, 0.0)
     return float(force * max(1 - law.damping * v, 0.0))
@@ -102,10 +108,11 @@ def _surely_turns_twice(own: Complexes) -> bool:
 def _two_turns(own: Complexes) -> tuple[float, float]:
     """Return about where a motion turns down and up, or NaN if it turns, or nearly turns, more than twice."""
     count = _SCAN * own.size
-    rates = np.empty(count)
+    rates, fastest = np.empty(count), 0.0
     for j in range(count):
         rates[j] = swing(own, 2 * np.pi * j / count)[1]
-    slow = _SLOW * np.max(np.abs(rates))
+        fastest = max(fastest, abs(rates[j]))
+    slow = _SLOW * fastest
     upper = lower = np.nan
     for j in range(count):
         before, here, after = rates[j - 1], rates[j], rates[(j + 1) % count]
@@ -175,26 +182,30 @@ def _scan(
     """Measure a motion of many turns, or one whose force lags, by samples with parabolas through the extremes."""
     count = max(_SCAN * own.size, 256)
     x, force = np.empty(count), np.empty(count)
-    lost, threshold = 0.0, LOST * load
+    lost, threshold, resting = 0.0, LOST * load, rest(law, load)
     for j in range(count):
         displacement, rate, _ = swing(own, 2 * np.pi * j / count)
         x[j] = mean + displacement
-        force[j] = contact_force(law, load, x[j], omega * rate)
+        force[j] = contact_force(law, load, resting, x[j], omega * rate)
     for j in range(count):
         here, after = force[j] - threshold, force[(j + 1) % count] - threshold
         if here < 0 and after < 0:
             lost += 1
         elif here * after < 0:
             lost += max(-here, -after) / abs(here - after)
-    measures.force[point, 0] = _highest(force)
-    measures.force[point, 1] = max(-_highest(-force), 0.0)
+    measures.force[point, 0] = _extreme(force, 1.0)
+    measures.force[point, 1] = max(_extreme(force, -1.0), 0.0)
     measures.lost[point] = lost / count
-    return _highest(x), -_highest(-x)
+    return _extreme(x, 1.0), _extreme(x, -1.0)
 
 
 @numba.njit(**INSIDE)
-def _highest(samples: Floats) -> float:
-    top = np.argmax(samples)
+def _extreme(samples: Floats, sign: float) -> float:
+    """Return the highest of samples of a period, or with a negative sign the lowest."""
+    top = 0
+    for j in range(samples.size):
+        if sign * samples[j] > sign * samples[top]:
+            top = j
     before, here, after = samples[top - 1], samples[top], samples[(top + 1) % samples.size]
     bend = 2 * here - before - after
-    return float(here if bend <= 0 else here + (after - before) ** 2 / (8 * bend))
+    return float(here if sign * bend <= 0 else here + (after - before) ** 2 / (8 * bend))

@@ -6,12 +6,15 @@ import numba
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.dynamics.contact_lanes import EXPONENTIAL, HERTZ, Law, reach
+from sonolube.dynamics.contact_lanes import EXPONENTIAL, HERTZ, TABULATED, Law, reach, rest
 from sonolube.dynamics.contact_port import ContactPort, receptances
+from sonolube.dynamics.force_table import log_force_at
+from sonolube.dynamics.gap_law import LARGEST_EXPONENT
 from sonolube.dynamics.harmonic_kernel import Points, Resolution
 from sonolube.dynamics.lanes import INSIDE, KERNEL, LANES
 
 _ABSCISSAE = np.cos(np.pi * (np.arange(64) + 0.5) / 64)  # of the mean over a period of what depends on cos theta
+_FEWER_ABSCISSAE = np.cos(np.pi * (np.arange(24) + 0.5) / 24)  # for a force without corners
 _WEAK = 0.2  # contact stiffness times receptance up to which substitution finds the only solution
 _GRID = 32
 # polynomials for the modified Bessel functions, lowest power first (Abramowitz and Stegun 9.8.1 to 9.8.4)
@@ -81,8 +84,8 @@ def first_guesses(
     for start in range(0, total, LANES):
         for lane in range(LANES):
             omega[lane] = points.omega[min(start + lane, total - 1)]
-        receptances(port, 0, omega, 1, answer[0], answer[1])
-        receptances(port, 1, omega, 1, answer[2], answer[3])
+        receptances(port, port.constant[0], port.slope[0], omega, 1.0, answer[0], answer[1])
+        receptances(port, port.constant[1], port.slope[1], omega, 1.0, answer[2], answer[3])
         for lane in range(min(LANES, total - start)):
             point = start + lane
             receptance = complex(answer[0, lane], answer[1, lane])
@@ -191,7 +194,7 @@ def _one_harmonic(
     lower, upper = min(free_mean, 0.0), max(free_mean, amplitude)
     if static_stiffness == 0.0:
         lower, upper = 0.0, amplitude
-    mean = lower
+    mean, small = lower, 1e-6 * (amplitude + 1e-3 * reach(law, load))
     force, opposing, slope = _force_moments(law, load, mean, amplitude)
     for _ in range(60):
         excess = static_stiffness * (mean - free_mean) - (force - load)
@@ -200,11 +203,13 @@ def _one_harmonic(
         else:
             upper = mean
         step = excess / (static_stiffness + slope)
+        if law.kind == TABULATED and static_stiffness == 0.0:
+            step = np.log(load / force) * force / slope  # in the logarithm the force is nearly straight
         mean -= step
         if not lower <= mean <= upper:
             mean = 0.5 * (lower + upper)
         force, opposing, slope = _force_moments(law, load, mean, amplitude)
-        if abs(step) < 1e-6 * (amplitude + 1e-3 * reach(law, load)):
+        if abs(step) < small:
             break
     return mean, opposing
 
@@ -216,11 +221,14 @@ def _force_moments(law: Law, load: float, mean: float, amplitude: float) -> tupl
         beta = amplitude / law.parameter
         force = load * np.exp(min(_bessel_logarithm(beta) - mean / law.parameter, 600.0))
         return force, 2 * force * _bessel_ratio(beta), force / law.parameter
-    force, opposing, slope = 0.0, 0.0, 0.0
+    force, opposing, slope, resting = 0.0, 0.0, 0.0, rest(law, load)
+    if law.kind == TABULATED:
+        force, opposing, slope = _tabulated_moments(law, resting, mean, amplitude)
+        return force, opposing, slope
     for cosine in _ABSCISSAE:
         x = mean + amplitude * cosine
         if law.kind == HERTZ:
-            approach = max((load / law.parameter) ** (2 / 3) - x, 0.0)
+            approach = max(resting - x, 0.0)
             rate = 1.5 * law.parameter * np.sqrt(approach)
             now = rate * approach / 1.5
         else:
@@ -229,6 +237,18 @@ def _force_moments(law: Law, load: float, mean: float, amplitude: float) -> tupl
         force += now / _ABSCISSAE.size
         slope += rate / _ABSCISSAE.size
         opposing -= 2 * now * cosine / _ABSCISSAE.size
+    return force, opposing, slope
+
+
+@numba.njit(**INSIDE)
+def _tabulated_moments(law: Law, resting: float, mean: float, amplitude: float) -> tuple[float, float, float]:
+    force, opposing, slope = 0.0, 0.0, 0.0
+    for cosine in _FEWER_ABSCISSAE:
+        log_force, change = log_force_at(law.cells, resting + law.parameter * (mean + amplitude * cosine))
+        now = np.exp(min(max(log_force, -LARGEST_EXPONENT), LARGEST_EXPONENT)) / _FEWER_ABSCISSAE.size
+        force += now
+        slope -= law.parameter * change * now
+        opposing -= 2 * now * cosine
     return force, opposing, slope
 
 
@@ -270,14 +290,16 @@ def _choose_resolution(
     amplitude: float,
     resolution: Resolution,
 ) -> None:
-    """Choose harmonics, coupled harmonics and samples from those of an exponential force."""
+    """Choose harmonics, coupled harmonics and samples from those of an exponential force of the decay at rest."""
     given = points.voltage.shape[1]
-    if law.kind != EXPONENTIAL or given > 1:
+    if (law.kind != EXPONENTIAL and law.kind != TABULATED) or given > 1:
         harmonics = max(8, given)
         resolution.harmonics[point], resolution.coupled[point] = harmonics, min(harmonics, 8)
         resolution.samples[point] = max(64, 4 * harmonics)
         return
-    beta, load, omega = amplitude / law.parameter, points.load[point], points.omega[point]
+    load, omega = points.load[point], points.omega[point]
+    length = reach(law, load)
+    beta = amplitude / length
     harmonics, coupled, order, share = 2, 1, 1, 1.0
     while order < 64:
         share *= beta / (order - 0.5 + np.sqrt((order + 0.5) ** 2 + beta**2))  # I_k/I_(k-1), D. E. Amos
@@ -290,7 +312,7 @@ def _choose_resolution(
             receptance += np.sqrt(above / below)
         if 2 * load * share * receptance > 0.5 * tolerance * amplitude:
             harmonics = max(order, 2)
-        if 2 * load / law.parameter * receptance * share > _WEAK / 10:
+        if 2 * load / length * receptance * share > _WEAK / 10:
             coupled = order
         order += 1
     harmonics = max(harmonics, coupled)

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,6 +23,8 @@ from sonolube.dynamics.contact_port import contact_port
 from sonolube.dynamics.gap_law import GapLaw
 from sonolube.dynamics.structure import Structure
 from sonolube.errors import InvalidInput
+
+Result = TypeVar("Result")
 
 _CHUNK = 4096  # points solved together, to bound the memory
 
@@ -81,7 +84,7 @@ class SteadyStates:
     harmonic_count : ndarray of int, shape (...)
         Harmonics of the contact that the point needed.
     rival_amplitude : ndarray, shape (...)
-        Amplitude of another steady state under the same drive, in m; NaN where none was found.
+        Amplitude of another steady state under the same drive; NaN where none was found. [m]
     """
 
     structure: Structure
@@ -127,14 +130,29 @@ class SteadyStates:
             other, this = (float(values[point]) * 1e6 for values in (self.rival_amplitude, self.vibration_amplitude))
             return (
                 f"several: another vibration of {other:.4g} um is as possible as this one of {this:.4g} um;"
-                " which one appears depends on how the voltage got there"
+                " which one appears depends on how the voltage got there" + self.hopping(point)
             )
         if status is Status.NOT_CONVERGED:
             return (
                 "not_converged: no vibration at the drive's own period was found within 64 harmonics of the contact;"
                 " follow it from a lower voltage with response_curve, add damping, or march the point in time"
             )
-        return "periodic: the vibration repeats with the drive"
+        return "periodic: the vibration repeats with the drive" + self.hopping(point)
+
+    def hopping(self, point: int | tuple[int, ...]) -> str:
+        """Say for how long one point's contact is lost; empty where it is not.
+
+        Parameters
+        ----------
+        point : int or tuple of int
+            Index into the batch.
+
+        Returns
+        -------
+        str
+        """
+        share = float(self.lost_contact_share[point])
+        return f"; it hops, without contact for {share:.2%} of the time" if share > 0 else ""
 
 
 def steady_state(
@@ -196,6 +214,9 @@ def steady_state(
     Only the contact is nonlinear, so that the unknowns are its mean and harmonics alone. The force is sampled in time
     and transformed, as many samples and harmonics as the point needs; errors of amplitude and mean force relative to
     the equations stay below 1e-6. The memory is bounded by working through chunks of points.
+
+    Other vibrations of the same period are looked for where a single harmonic has several solutions. Motions of other
+    periods beside a stable vibration are not: bouncing hard at a few hundred hertz, a start from rest can end in one.
     """
     if not 1 <= least_harmonics <= 64:
         raise InvalidInput(f"least_harmonics must lie between 1 and 64, got {least_harmonics!r}")
@@ -213,8 +234,7 @@ def steady_state(
     omega, loads = 2 * np.pi * flat(f), flat(load)
     free_mean = port.displacement_per_volt * flat(offset)
 
-    def part(start: int) -> Solutions:
-        chosen = slice(start, start + _CHUNK)
+    def part(chosen: slice) -> Solutions:
         return solve(
             port,
             law,
@@ -227,7 +247,7 @@ def steady_state(
             stability=stability,
         )
 
-    found = _gather(_in_threads(part, range(0, max(omega.size, 1), _CHUNK), workers))
+    found = _gather(in_threads(part, omega.size, workers))
     current = 1j * omega[:, np.newaxis] * np.arange(1, voltage.shape[1] + 1) * found.charge
     closed = np.zeros(omega.size, dtype=bool) if rest is None else found.lowest_displacement <= -flat(rest)
     return SteadyStates(
@@ -268,23 +288,29 @@ def _drive(amplitude: ArrayLike | None, harmonics: ArrayLike | None) -> Complexe
     return drive
 
 
-def _in_threads(part: Callable[[int], Solutions], starts: range, workers: int) -> list[Solutions]:
+def in_threads(part: Callable[[slice], Result], points: int, workers: int) -> list[Result]:
+    """Return what `part` makes of one chunk of the points after another, shared among threads."""
     if workers < 1:
         raise InvalidInput(f"workers must be at least 1, got {workers!r}")
+    chunks = [slice(start, start + _CHUNK) for start in range(0, max(points, 1), _CHUNK)]
     if workers == 1:
-        return [part(start) for start in starts]
+        return [part(chunk) for chunk in chunks]
     with ThreadPoolExecutor(workers) as pool:
-        return list(pool.map(part, starts))
+        return list(pool.map(part, chunks))
 
 
 def _gather(parts: list[Solutions]) -> Solutions:
     if len(parts) == 1:
         return parts[0]
     room = max(part.harmonics.shape[1] for part in parts)
-    widened = [
-        part._replace(harmonics=np.pad(part.harmonics, ((0, 0), (0, room - part.harmonics.shape[1])))) for part in parts
-    ]
-    return Solutions(*(np.concatenate(columns) for columns in zip(*widened, strict=True)))
+    harmonics = np.zeros((sum(part.mean.size for part in parts), room), dtype=np.complex128)
+    start = 0
+    for part in parts:
+        harmonics[start : start + part.mean.size, : part.harmonics.shape[1]] = part.harmonics
+        start += part.mean.size
+    narrow = (part._replace(harmonics=part.harmonics[:0, :1]) for part in parts)
+    gathered = Solutions(*(np.concatenate(columns) for columns in zip(*narrow, strict=True)))
+    return gathered._replace(harmonics=harmonics)
 
 
 def _status(found: Solutions) -> NDArray[np.int8]:
