@@ -1,0 +1,165 @@
+"""Sums over the pixels of a map, in one pass each; missing pixels count for nothing."""
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from sonolube.checks import Floats
+
+__all__: list[str] = []  # of use in this room only
+_LANES = 8  # running extremes side by side, which a vector unit takes at once
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
+def extent(height: Floats) -> tuple[int, float, float, float]:
+    """Return how many pixels were measured, and their sum, lowest and highest."""
+    rows, columns = height.shape
+    lowest = np.full(_LANES, np.inf)
+    highest = np.full(_LANES, -np.inf)
+    count, total = 0, 0.0
+    for row in range(rows):
+        line = height[row]
+        measured, part = 0, 0.0
+        for column in range(columns):
+            z = line[column]
+            measured += z == z
+            part += z if z == z else 0.0
+        count += measured
+        total += part
+        whole = columns - columns % _LANES
+        for column in range(0, whole, _LANES):
+            for lane in range(_LANES):
+                z = line[column + lane]
+                lowest[lane] = z if z < lowest[lane] else lowest[lane]
+                highest[lane] = z if z > highest[lane] else highest[lane]
+        for column in range(whole, columns):
+            z = line[column]
+            lowest[0] = z if z < lowest[0] else lowest[0]
+            highest[0] = z if z > highest[0] else highest[0]
+    return count, total, lowest.min(), highest.max()
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
+def central_sums(height: Floats, mean: float) -> tuple[float, float, float, float]:
+    """Return the sums of the modulus, square, cube and fourth power of the deviation from `mean`."""
+    first, second, third, fourth = 0.0, 0.0, 0.0, 0.0
+    for row in range(height.shape[0]):
+        line = height[row]
+        a, b, c, d = 0.0, 0.0, 0.0, 0.0
+        for column in range(height.shape[1]):
+            z = line[column]
+            deviation = z - mean if z == z else 0.0
+            square = deviation * deviation
+            a += abs(deviation)
+            b += square
+            c += square * deviation
+            d += square * square
+        first += a
+        second += b
+        third += c
+        fourth += d
+    return first, second, third, fourth
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
+def slope_sums(height: Floats, spacing_x: float, spacing_y: float) -> tuple[int, float, float]:
+    """Return the number of cells of four measured pixels, and the sums of square slope and excess of area over them.
+
+    Each cell is cut into triangles along either diagonal; the four corners' triangles count a quarter each.
+    """
+    per_x, per_y = 1 / spacing_x**2, 1 / spacing_y**2
+    cells, squares, excess = 0.0, 0.0, 0.0
+    for row in range(height.shape[0] - 1):
+        here, above = height[row], height[row + 1]
+        count, a, b = 0.0, 0.0, 0.0
+        for column in range(height.shape[1] - 1):
+            sw, se, nw, ne = here[column], here[column + 1], above[column], above[column + 1]
+            south, north = (se - sw) * (se - sw) * per_x, (ne - nw) * (ne - nw) * per_x
+            west, east = (nw - sw) * (nw - sw) * per_y, (ne - se) * (ne - se) * per_y
+            square = 0.5 * (south + north + west + east)
+            # sqrt(1 + s) - 1 without cancellation
+            more = (south + west) / (1 + np.sqrt(1 + south + west))
+            more += (south + east) / (1 + np.sqrt(1 + south + east))
+            more += (north + west) / (1 + np.sqrt(1 + north + west))
+            more += (north + east) / (1 + np.sqrt(1 + north + east))
+            whole = square == square
+            count += 1.0 if whole else 0.0
+            a += square if whole else 0.0
+            b += 0.25 * more if whole else 0.0
+        cells += count
+        squares += a
+        excess += b
+    return int(cells), squares, excess
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
+def differences_along_rows(height: Floats) -> tuple[float, float, float, float]:
+    """Return count and sum of squares of first, then of second differences of neighbours in a row."""
+    firsts, slopes, seconds, bends = 0.0, 0.0, 0.0, 0.0
+    for row in range(height.shape[0]):
+        z = height[row]
+        a, b, c, d = 0.0, 0.0, 0.0, 0.0
+        for column in range(height.shape[1] - 1):
+            step = z[column + 1] - z[column]
+            a += 1.0 if step == step else 0.0
+            b += step * step if step == step else 0.0
+        for column in range(height.shape[1] - 2):
+            bend = z[column] - 2 * z[column + 1] + z[column + 2]
+            c += 1.0 if bend == bend else 0.0
+            d += bend * bend if bend == bend else 0.0
+        firsts, slopes, seconds, bends = firsts + a, slopes + b, seconds + c, bends + d
+    return firsts, slopes, seconds, bends
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
+def differences_along_columns(height: Floats) -> tuple[float, float, float, float]:
+    """Return count and sum of squares of first, then of second differences of neighbours in a column."""
+    firsts, slopes, seconds, bends = 0.0, 0.0, 0.0, 0.0
+    for row in range(1, height.shape[0]):
+        z0, z1 = height[row - 1], height[row]
+        z2 = height[min(row + 1, height.shape[0] - 1)]
+        inside = 1.0 if row + 1 < height.shape[0] else 0.0
+        a, b, c, d = 0.0, 0.0, 0.0, 0.0
+        for column in range(height.shape[1]):
+            step = z1[column] - z0[column]
+            bend = z0[column] - 2 * z1[column] + z2[column]
+            a += 1.0 if step == step else 0.0
+            b += step * step if step == step else 0.0
+            c += 1.0 if bend == bend else 0.0
+            d += bend * bend if bend == bend else 0.0
+        firsts, slopes, seconds, bends = firsts + a, slopes + b, seconds + inside * c, bends + inside * d
+    return firsts, slopes, seconds, bends
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy")
+def highest_of_eight(height: Floats) -> tuple[int, NDArray[np.int64]]:
+    """Return how many pixels have eight measured neighbours, and the flat places of those above all their eight."""
+    rows, columns = height.shape
+    found = np.empty(max(rows * columns // 4 + 1, 1), dtype=np.int64)  # two summits never touch
+    candidates, count = 0, 0
+    for row in range(1, rows - 1):
+        south, here, north = height[row - 1], height[row], height[row + 1]
+        whole = 0
+        for column in range(1, columns - 1):
+            west, east = column - 1, column + 1
+            z = here[column]
+            around = here[west] + here[east]
+            around += south[west] + south[column] + south[east] + north[west] + north[column] + north[east]
+            whole += z + around == z + around
+        candidates += whole
+        for column in range(1, columns - 1):
+            west, east = column - 1, column + 1
+            z = here[column]
+            if (
+                (z > here[west])
+                & (z > here[east])
+                & (z > south[west])
+                & (z > south[column])
+                & (z > south[east])
+                & (z > north[west])
+                & (z > north[column])
+                & (z > north[east])
+            ):
+                found[count] = row * columns + column
+                count += 1
+    return candidates, found[:count].copy()

@@ -1,0 +1,175 @@
+"""Local polynomials under a Gaussian weight, at every pixel at once.
+
+The sums over the neighbourhood of every pixel are correlations, taken by Fourier transform; what is missing or outside
+weighs nothing, so edges and holes need no extrapolation. Where a neighbourhood does not decide a coefficient the
+polynomial loses that term and no other.
+"""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+from scipy import fft
+
+from sonolube.checks import Complexes, Floats
+
+REACH = 3.2  # in widths of the weight, which has fallen to 1e-14 there
+_STRIP = 1 << 21  # pixels treated at a time, which bounds the memory
+_UNDECIDED = 1e-6  # of the sum of weights: a pivot below it is noise
+_UNWEIGHTED = 1e-9  # of the weight of a full neighbourhood
+
+Widths = tuple[float | None, float | None]
+"""Of the weight exp(-pi (distance/width)**2), in pixels down the rows and along the columns; None: not that way."""
+
+
+def local_regression(z: Floats, weights: Floats, *, widths: Widths, order: int) -> Floats:
+    """Return at every pixel the value there of the polynomial fitted around it.
+
+    Parameters
+    ----------
+    z : ndarray, shape (rows, columns)
+        Heights, finite also where they weigh nothing.
+    weights : ndarray, shape of `z`
+        What each pixel counts, from 0 to 1.
+    widths : pair of float or None
+        Widths of the Gaussian weight in pixels.
+    order : int
+        0 for the weighted mean, 2 for a local paraboloid.
+
+    Returns
+    -------
+    ndarray, shape of `z`
+        NaN where no pixel within reach counts.
+    """
+    if order == 0:
+        return _patch_regression(z, weights, widths, order)
+    fitted = np.empty_like(z)
+    for kept, strip, inside in _strips(z.shape, widths[0]):
+        fitted[kept] = _patch_regression(z[strip], weights[strip], widths, order)[inside]
+    return fitted
+
+
+def _strips(shape: tuple[int, ...], width: float | None) -> Iterator[tuple[slice, slice, slice]]:
+    """Return strips of rows: which to keep, which to treat with their surroundings, where the kept are in these."""
+    halo = 0 if width is None else int(np.ceil(REACH * width))
+    rows = max(_STRIP // shape[1], halo, 1)
+    for first in range(0, shape[0], rows):
+        start, stop = max(first - halo, 0), min(first + rows + halo, shape[0])
+        last = min(first + rows, shape[0])
+        yield slice(first, last), slice(start, stop), slice(first - start, last - start)
+
+
+def _patch_regression(z: Floats, weights: Floats, widths: Widths, order: int) -> Floats:
+    sums = _Correlation.of(z.shape, widths, order)
+    uniform = bool(np.all(weights == 1))
+    spectrum_z = sums.forward(z if uniform else weights * z)
+    spectrum_w = None if uniform else sums.forward(weights)
+
+    def moment(power_y: int, power_x: int) -> Floats:
+        if spectrum_w is None:
+            return sums.of_ones(power_y, power_x)
+        return sums.backward(spectrum_w, power_y, power_x)
+
+    if order == 0:
+        weight = moment(0, 0)
+        fitted = sums.backward(spectrum_z, 0, 0)
+        np.divide(fitted, weight, out=fitted, where=weight > _UNWEIGHTED * sums.full_weight)
+        fitted[weight <= _UNWEIGHTED * sums.full_weight] = np.nan
+        return fitted
+    terms = [(a, b) for a in range(order + 1) for b in range(order + 1 - a) if widths[0] is not None or a == 0]
+    terms.reverse()  # the constant last, so that elimination alone yields it
+    powers = sorted({(a + c, b + d) for a, b in terms for c, d in terms})
+    moments = np.empty((len(powers), *z.shape))
+    for plane, (a, b) in zip(moments, powers, strict=True):
+        plane[...] = moment(a, b)
+    values = np.empty((len(terms), *z.shape))
+    for plane, (a, b) in zip(values, terms, strict=True):
+        plane[...] = sums.backward(spectrum_z, a, b)
+    table = np.array([[powers.index((a + c, b + d)) for c, d in terms] for a, b in terms])
+    fitted = np.empty(z.size)
+    _constant_terms(
+        moments.reshape(len(powers), -1), values.reshape(len(terms), -1), table, _UNWEIGHTED * sums.full_weight, fitted
+    )
+    return fitted.reshape(z.shape)
+
+
+class _Correlation(NamedTuple):
+    """Sums over neighbourhoods: weight times powers of the distance, in a unit that keeps them near one."""
+
+    shape: tuple[int, int]
+    lines: tuple[Floats | None, Floats]  # by power: the sums of a line of ones, down and along
+    spectra: tuple[Complexes | None, Complexes]  # by power
+    full_weight: float
+
+    @classmethod
+    def of(cls, shape: tuple[int, ...], widths: Widths, order: int) -> "_Correlation":
+        rows, columns = shape
+        width_y, width_x = widths
+        assert width_x is not None
+        spectrum_x, line_x = _line(columns, width_x, order)
+        full = min(width_x, columns)
+        if width_y is None:
+            return cls((rows, columns), (None, line_x), (None, spectrum_x), full)
+        spectrum_y, line_y = _line(rows, width_y, order)
+        full *= min(width_y, rows)
+        return cls((rows, columns), (line_y, line_x), (spectrum_y, spectrum_x), full)
+
+    def forward(self, field: Floats) -> Complexes:
+        down, along = self.spectra
+        spectrum = fft.rfft(field, along.shape[1], axis=1)
+        return np.asarray(spectrum if down is None else fft.fft(spectrum, down.shape[1], axis=0, overwrite_x=True))
+
+    def backward(self, spectrum: Complexes, power_y: int, power_x: int) -> Floats:
+        down, along = self.spectra
+        product = spectrum * along[power_x, : along.shape[1] // 2 + 1]
+        if down is not None:
+            product *= down[power_y][:, None]
+            product = fft.ifft(product, axis=0, overwrite_x=True)[: self.shape[0]]
+        return np.asarray(fft.irfft(product, along.shape[1], axis=1, overwrite_x=True)[:, : self.shape[1]])
+
+    def of_ones(self, power_y: int, power_x: int) -> Floats:
+        down, along = self.lines
+        column = np.ones(self.shape[0]) if down is None else down[power_y]
+        return np.outer(column, along[power_x])
+
+
+def _line(count: int, width: float, order: int) -> tuple[Complexes, Floats]:
+    """Return the spectra of weight times power of distance along one axis, and their sums over a line of ones."""
+    reach = min(int(np.ceil(REACH * width)), count - 1)
+    size = fft.next_fast_len(count + reach, real=True)
+    k = np.arange(-reach, reach + 1)
+    power = np.arange(2 * order + 1)[:, None]
+    kernel = np.zeros((power.size, size))
+    kernel[:, -k % size] = np.exp(-np.pi * (k / width) ** 2) * (k / min(width, count)) ** power
+    spectra = fft.fft(kernel)
+    return spectra, np.real(fft.ifft(spectra * fft.fft(np.ones(count), size)))[:, :count]
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy")
+def _constant_terms(
+    moments: Floats, values: Floats, table: NDArray[np.int64], least_weight: float, fitted: Floats
+) -> None:
+    """Solve the normal equations of every pixel for their last unknown, by elimination; weak terms drop out."""
+    terms = table.shape[0]
+    a = np.empty((terms, terms))
+    b = np.empty(terms)
+    for pixel in range(fitted.size):
+        weight = moments[table[terms - 1, terms - 1], pixel]
+        if weight <= least_weight:
+            fitted[pixel] = np.nan
+            continue
+        for i in range(terms):
+            b[i] = values[i, pixel]
+            for j in range(i + 1):
+                a[i, j] = moments[table[i, j], pixel]
+        for i in range(terms - 1):
+            if a[i, i] <= _UNDECIDED * weight:
+                continue
+            for j in range(i + 1, terms):
+                factor = a[j, i] / a[i, i]
+                b[j] -= factor * b[i]
+                for k in range(i + 1, j + 1):
+                    a[j, k] -= factor * a[k, i]
+        fitted[pixel] = b[terms - 1] / a[terms - 1, terms - 1]

@@ -1,0 +1,67 @@
+"""Volumes of ASTM G99, and a ball's scar measured against the ball."""
+
+import math
+
+import numpy as np
+from pytest import approx, mark, raises
+from scipy.integrate import quad
+
+from sonolube.checks import Floats
+from sonolube.errors import InvalidInput, NoGroove
+from sonolube.surfaces import HeightMap, ball_cap_volume, disc_groove_volume, worn_cap
+
+RADIUS, PIXEL = 4e-3, 4e-6
+
+
+def ball(scar_diameter: float, *, noise: float = 0.05e-6, missing: float = 0.05) -> HeightMap:
+    x, y = np.meshgrid((np.arange(320) - 150) * PIXEL, (np.arange(240) - 130) * PIXEL)
+    whole = np.sqrt(RADIUS**2 - x**2 - y**2) - RADIUS
+    height: Floats = np.minimum(whole, math.sqrt(RADIUS**2 - scar_diameter**2 / 4) - RADIUS)
+    rng = np.random.default_rng(0)
+    height = height + noise * rng.standard_normal(height.shape)
+    height[rng.random(height.shape) < missing] = np.nan
+    return HeightMap(height=height, spacing_x=PIXEL, spacing_y=PIXEL)
+
+
+def test_the_groove_of_a_ball_is_its_segment_swept_around_the_ring() -> None:
+    width, r = 1.5e-3, 2e-3
+    section, _ = quad(lambda s: math.sqrt(r**2 - s**2) - math.sqrt(r**2 - width**2 / 4), -width / 2, width / 2)
+    volume = disc_groove_volume(groove_diameter=50e-3, groove_width=width, tip_radius=r)
+    assert volume == approx(math.pi * 50e-3 * section, rel=1e-9)
+
+
+def test_the_cap_is_the_solid_of_revolution() -> None:
+    d, r = 1.5e-3, 2e-3
+    volume, _ = quad(lambda z: math.pi * (r**2 - z**2), math.sqrt(r**2 - d**2 / 4), r, epsabs=0, epsrel=1e-12)
+    assert ball_cap_volume(scar_diameter=d, tip_radius=r) == approx(volume, rel=1e-9)
+
+
+def test_a_small_scar_keeps_its_digits() -> None:
+    d, r = 1e-6, 5e-3
+    assert ball_cap_volume(scar_diameter=d, tip_radius=r) == approx(math.pi * d**4 / (64 * r), rel=1e-7)
+
+
+def test_a_hemisphere_is_the_largest_cap() -> None:
+    assert ball_cap_volume(scar_diameter=2.0, tip_radius=1.0) == approx(2 / 3 * math.pi)
+    with raises(InvalidInput, match=r"scar_diameter must not exceed the ball's diameter, got 2\.1 m"):
+        ball_cap_volume(scar_diameter=2.1, tip_radius=1.0)
+
+
+@mark.parametrize("known", [None, RADIUS])
+def test_a_flat_on_a_ball_is_measured_as_the_cap_it_lacks(known: float | None) -> None:
+    scar = worn_cap(ball(0.4e-3), tip_radius=known)
+    volume = float(ball_cap_volume(scar_diameter=0.4e-3, tip_radius=RADIUS))
+    assert scar.tip_radius == approx(RADIUS, rel=1e-3)
+    assert scar.wear_volume == approx(volume, abs=max(4 * scar.wear_volume_uncertainty, 2e-3 * volume))
+    assert scar.scar_diameter == approx(0.4e-3, rel=0.03)
+
+
+def test_an_unworn_ball_has_no_scar() -> None:
+    with raises(NoGroove, match="no scar found"):
+        worn_cap(ball(1e-9))
+
+
+def test_a_dish_is_no_ball() -> None:
+    dish = ball(0.4e-3)
+    with raises(InvalidInput, match="bends upwards"):
+        worn_cap(dish.with_height(-dish.height))

@@ -1,0 +1,44 @@
+"""Marks along a track repeat at the spacing at which they were made."""
+
+from pytest import approx, mark
+
+from sonolube.metrics import indentation_spacing
+from sonolube.surfaces import GrooveShape, GrooveTrack, ScannedField, generated_groove, measure_groove, track_marks
+
+FIELD = ScannedField(field_shape=(240, 320), spacing_x=7.5e-6, spacing_y=7.5e-6)
+TRACK = GrooveTrack(track_direction=0.3, track_curvature=1 / 29e-3, track_offset=0.0)
+
+
+@mark.parametrize("speed", [20.3e-3, 40.6e-3, 87e-3])
+def test_the_spacing_of_indentations_is_speed_times_period(speed: float) -> None:
+    spacing = float(indentation_spacing(sliding_speed=speed, period=0.01))  # D 2.4: 0.203, 0.406, 0.87 mm
+    shape = GrooveShape(groove_width=0.7e-3, groove_depth=60e-6, indentation_spacing=spacing, indentation_share=0.05)
+    found = track_marks(measure_groove(generated_groove(shape, track=TRACK, seed=2, field=FIELD).scan))
+    assert found.dot_spacing == approx(spacing, rel=0.01)
+    assert found.dot_spacing_uncertainty is not None
+    assert found.dot_spacing_uncertainty < 0.01 * spacing
+
+
+def test_dots_of_the_vibration_show_where_pixels_are_fine_enough() -> None:
+    field = ScannedField(
+        field_shape=(240, 320),
+        spacing_x=0.5e-6,
+        spacing_y=0.5e-6,
+        tilt=0.1e-6,
+        waviness_amplitude=0.0,
+        rms_height=0.02e-6,
+    )
+    shape = GrooveShape(
+        groove_width=50e-6, groove_depth=2e-6, indentation_spacing=3.95e-6, indentation_share=0.05
+    )  # 87 mm/s at 22 kHz
+    track = GrooveTrack(track_direction=0.3, track_curvature=0.0, track_offset=0.0)
+    found = track_marks(measure_groove(generated_groove(shape, track=track, seed=0, field=field).scan))
+    assert found.dot_spacing == approx(3.95e-6, rel=0.005)
+
+
+def test_an_even_groove_has_no_marks_and_says_why() -> None:
+    shape = GrooveShape(groove_width=0.7e-3, groove_depth=60e-6)
+    for seed in range(4):
+        found = track_marks(measure_groove(generated_groove(shape, track=TRACK, seed=seed, field=FIELD).scan))
+        assert found.dot_spacing is None
+        assert "no wave along the track" in found.reason
