@@ -145,3 +145,8 @@ def test_mindlins_memory_length_is_hand_computed() -> None:
 def test_a_memory_length_of_zero_is_refused_by_name() -> None:
     with raises(InvalidInput, match=r"memory_length must be positive, got 0\.0 m"):
         stick_slip(CONTACT, two_harmonics(), sliding_speed=0.1, memory_length=0.0)
+
+
+@given(beta=st.floats(1e-3, 40), short=st.floats(0, 1e-9))
+def test_sliding_a_rounding_error_slower_than_all_slipping_changes_nothing(beta: float, short: float) -> None:
+    assert ratio(beta, 1 - short) == approx(1, abs=1e-12)

@@ -34,6 +34,7 @@ from sonolube.contact.rough import (
     plasticity_index,
     real_contact_area,
     separation,
+    separation_range,
 )
 from sonolube.contact.validity import contact_doubts, exponential_window
 
@@ -75,5 +76,6 @@ __all__ = [
     "plasticity_index",
     "real_contact_area",
     "separation",
+    "separation_range",
     "tangential_stiffness",
 ]

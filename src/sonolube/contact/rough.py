@@ -91,6 +91,22 @@ def separation(contact: RoughContact, *, normal_load: ArrayLike) -> Floats:
     return sums.force.inverse(load) * contact.roughness.rms_height
 
 
+def separation_range(contact: RoughContact) -> tuple[float, float]:
+    """Return the least and the greatest separation for which the height law is evaluated. [m]
+
+    Parameters
+    ----------
+    contact : RoughContact
+
+    Returns
+    -------
+    tuple of float
+        The greatest is infinite for exponential heights.
+    """
+    sums, Rq = _sums(contact), contact.roughness.rms_height
+    return sums.lowest * Rq, sums.highest * Rq
+
+
 def normal_force(contact: RoughContact, *, separation: ArrayLike) -> Floats:
     """Return the normal force of all asperities. [N]
 
@@ -346,9 +362,8 @@ def _sums(contact: RoughContact) -> AsperitySums:
 
 def _sums_and_separation(contact: RoughContact, separation: ArrayLike) -> tuple[AsperitySums, Floats]:
     d = require_finite(separation=separation)
-    sums, Rq = _sums(contact), contact.roughness.rms_height
-    _require_range(contact, sums.lowest * Rq, sums.highest * Rq, "separation", "m", d)
-    return sums, d / Rq
+    _require_range(contact, *separation_range(contact), "separation", "m", d)
+    return _sums(contact), d / contact.roughness.rms_height
 
 
 def _require_range(contact: RoughContact, low: float, high: float, name: str, unit: str, values: Floats) -> None:

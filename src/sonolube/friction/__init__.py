@@ -1,43 +1,106 @@
 """Friction: its laws, and what vibration makes of them."""
 
 from sonolube.friction.bristle import Holder, coupled
-from sonolube.friction.closures import (
-    FRICTION_CLOSURES,
-    as_published,
-    kinematic,
-    load_balanced,
-    separating_half_period,
-)
+from sonolube.friction.closures import FRICTION_CLOSURES, as_published, kinematic, load_balanced, separating_half_period
 from sonolube.friction.coulomb import CoulombFriction, coulomb_friction, friction_coefficient
 from sonolube.friction.cube import as_published_ratio, separating_half_period_ratio, steady_deformation
 from sonolube.friction.dahl import DahlFriction, dahl_friction, dahl_friction_history
+from sonolube.friction.driven import DrivenSlide, driven_slide
+from sonolube.friction.elliptical import contact_share, elliptical_traction_ratio
+from sonolube.friction.forming import (
+    ZINC_STRESS_RATIO,
+    acoustic_intensity,
+    intensity_for_stress_ratio,
+    softened_stress_ratio,
+    superposed_mean_stress,
+)
+from sonolube.friction.in_plane import oblique_vibration_ratio, parallel_vibration_ratio, transverse_vibration_ratio
+from sonolube.friction.lubrication import (
+    BoundaryLubricant,
+    Method,
+    MethodCoefficients,
+    Regime,
+    StribeckCurve,
+    asperity_load_share,
+    best_method,
+    hersey_number,
+    lubrication_regime,
+    method_coefficients,
+    stribeck_coefficient,
+)
 from sonolube.friction.lugre import LuGreFriction, LuGreHistory, lugre_friction_history, lugre_steady_friction
+from sonolube.friction.spring_coupled import (
+    SpringContact,
+    approximate_oscillation_ratio,
+    balanced_approach,
+    critical_speed,
+    longitudinal_oscillation_ratio,
+    normal_oscillation_ratio,
+    static_plateau,
+)
+from sonolube.friction.spring_motion import guided_critical_speed, guided_oscillation_ratio, oscillation_ratio
 from sonolube.friction.stick_slip import mindlin_memory_length, stick_slip, stick_slip_ratio
+from sonolube.friction.stick_slip_batch import SINE_TOLERANCE, stick_slip_ratios
 from sonolube.friction.vibrated_dahl import dahl_under_vibration
 
 __all__ = [
     "FRICTION_CLOSURES",
+    "SINE_TOLERANCE",
+    "ZINC_STRESS_RATIO",
+    "BoundaryLubricant",
     "CoulombFriction",
     "DahlFriction",
+    "DrivenSlide",
     "Holder",
     "LuGreFriction",
     "LuGreHistory",
+    "Method",
+    "MethodCoefficients",
+    "Regime",
+    "SpringContact",
+    "StribeckCurve",
+    "acoustic_intensity",
+    "approximate_oscillation_ratio",
     "as_published",
     "as_published_ratio",
+    "asperity_load_share",
+    "balanced_approach",
+    "best_method",
+    "contact_share",
     "coulomb_friction",
     "coupled",
+    "critical_speed",
     "dahl_friction",
     "dahl_friction_history",
     "dahl_under_vibration",
+    "driven_slide",
+    "elliptical_traction_ratio",
     "friction_coefficient",
+    "guided_critical_speed",
+    "guided_oscillation_ratio",
+    "hersey_number",
+    "intensity_for_stress_ratio",
     "kinematic",
     "load_balanced",
+    "longitudinal_oscillation_ratio",
+    "lubrication_regime",
     "lugre_friction_history",
     "lugre_steady_friction",
+    "method_coefficients",
     "mindlin_memory_length",
+    "normal_oscillation_ratio",
+    "oblique_vibration_ratio",
+    "oscillation_ratio",
+    "parallel_vibration_ratio",
     "separating_half_period",
     "separating_half_period_ratio",
+    "softened_stress_ratio",
+    "static_plateau",
     "steady_deformation",
     "stick_slip",
     "stick_slip_ratio",
+    "stick_slip_ratios",
+    "stribeck_coefficient",
+    "superposed_mean_stress",
+    "transverse_vibration_ratio",
 ]

@@ -17,6 +17,7 @@ from sonolube.contact.motion import GapMotion, converged_mean, open_separation, 
 from sonolube.contact.rough import RoughContact
 from sonolube.errors import InvalidInput, ModelRangeWarning
 
+__all__ = ["Holder", "coupled"]  # the rest is of use in this room only
 _NEWTON, _PERIODS = 60, 4000
 
 
@@ -144,8 +145,8 @@ def coupled(
             k = k / (1 + k / holder.holder_stiffness)
             return _with_spring(k, limit, *slides, float(dahl_exponent))
         rigid = _with_spring(k, limit, *slides, float(dahl_exponent))
-        forces, settled = _with_mass(
-            k, limit, *slides, float(dahl_exponent), *_propagators(holder, step), rigid / holder.holder_stiffness
+        forces, settled = with_mass(
+            k, limit, *slides, float(dahl_exponent), *propagators(holder, step), rigid / holder.holder_stiffness
         )
         return forces
 
@@ -160,7 +161,7 @@ def coupled(
     return forces.reshape(v_r.shape)
 
 
-def _propagators(holder: Holder, step: float) -> tuple[Floats, Floats, Floats]:
+def propagators(holder: Holder, step: float) -> tuple[Floats, Floats, Floats]:
     """Return how state (y, dy/dt) of the holder, and a force rising linearly over a step, make its next state."""
     m, c, K = holder.holder_mass, holder.holder_damping, holder.holder_stiffness
     rates = np.zeros((4, 4))
@@ -202,7 +203,7 @@ def _with_spring(k: Floats, limit: Floats, slides: Floats, steady: Floats, expon
 
 
 @numba.njit(cache=True)
-def _with_mass(
+def with_mass(
     k: Floats,
     limit: Floats,
     slides: Floats,

@@ -10,6 +10,7 @@ from scipy.special import i0e
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
 from sonolube.contact.motion import GapMotion, converged_mean, shifted
 from sonolube.contact.rough import RoughContact, decay_length, separation
+from sonolube.friction.spring_element import half_grip
 
 EMPIRICAL_MEMORY_LENGTH = 1.5e-6
 """Sliding distance over which an asperity forgets. [m]
@@ -175,11 +176,11 @@ def _harmonic_ratio(beta: Floats, v: Floats, i0e_beta: Floats, nodes: Floats, we
     ratio = np.ones(beta.size)
     for i in range(beta.size):
         b, speed = beta[i], v[i]
-        if speed >= 1.0 or b == 0.0:
+        if speed >= 1.0 - 1e-12 or b == 0.0:  # what still grips there lacks less than 1e-23
             continue
         # elements that touch at phase theta_0 = m - h: from pi - arcsin v, where none grips, to arcsin v, where all do
         last = sqrt(1 - speed * speed)
-        longest = _half_grip(speed, max(asin(speed), acos(min(1.0, _NEGLIGIBLE / b - last))))
+        longest = half_grip(speed, max(asin(speed), acos(min(1.0, _NEGLIGIBLE / b - last))))
         lacking = 0.0
         for j in range(nodes.size):
             left = (1 - nodes[j]) / 2
@@ -190,19 +191,6 @@ def _harmonic_ratio(beta: Floats, v: Floats, i0e_beta: Floats, nodes: Floats, we
             lacking += weights[j] * left * longest * density
         ratio[i] = 1 - b * lacking / (pi * i0e_beta[i])
     return ratio
-
-
-@numba.njit(cache=True)
-def _half_grip(v: float, touch: float) -> float:
-    """Return half the phase for which an element that touches at a phase grips: m - h = touch, sin m = v h/sin h."""
-    low, high = 0.0, pi
-    for _ in range(52):
-        h = (low + high) / 2
-        if pi - asin(min(1.0, v * h / sin(h))) - h > touch:
-            low = h
-        else:
-            high = h
-    return low
 
 
 @numba.njit(cache=True)

@@ -15,17 +15,29 @@ from sonolube.metrics.kinematics import (
     sliding_distance,
     superimposed_speed,
 )
+from sonolube.metrics.motor import (
+    DCMotor,
+    current_under_friction,
+    friction_from_current,
+    motor_from_two_states,
+    motor_speed,
+)
 from sonolube.metrics.reduction import friction_reduction, wear_rate, wear_reduction
 
 __all__ = [
+    "DCMotor",
     "EfficiencyLine",
+    "current_under_friction",
     "dot_spacing",
     "efficiency_at",
     "efficiency_coefficient",
     "friction_at_power",
+    "friction_from_current",
     "friction_reduction",
     "indentation_spacing",
     "linear_speed",
+    "motor_from_two_states",
+    "motor_speed",
     "peak_vibration_velocity",
     "power_for_friction",
     "sliding_distance",

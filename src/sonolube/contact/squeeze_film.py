@@ -1,0 +1,170 @@
+"""Squeeze-film levitation: the mean pressure of a gas film between a flat and a vibrating flat."""
+
+import math
+import warnings
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sonolube.checks import Floats, require_non_negative, require_positive
+from sonolube.errors import InvalidInput, ModelRangeWarning, OutsideRange
+
+AIR_VISCOSITY = 1.82e-5
+"""Of air at 20 degC. [Pa s]"""
+
+ATMOSPHERE = 101325.0
+"""Standard atmospheric pressure. [Pa]"""
+
+LEAST_SQUEEZE_NUMBER = 100.0
+"""Squeeze number below which gas escaping at the rim costs an eighth of the load or more. []"""
+
+
+def squeeze_number(
+    *,
+    face_radius: ArrayLike,
+    film_thickness: ArrayLike,
+    frequency: ArrayLike,
+    viscosity: ArrayLike = AIR_VISCOSITY,
+    ambient_pressure: ArrayLike = ATMOSPHERE,
+) -> Floats:
+    """Return the squeeze number 12 mu omega R^2/(p_a h^2) of a circular face. []
+
+    Parameters
+    ----------
+    face_radius : array_like, any shape
+        Radius of the face. [m]
+    film_thickness : array_like, broadcastable to `face_radius`
+        Mean distance of the faces. [m]
+    frequency : array_like, broadcastable to `face_radius`
+        Frequency of the vibration. [Hz]
+    viscosity : array_like, broadcastable to `face_radius`
+        Dynamic viscosity of the gas. [Pa s]
+    ambient_pressure : array_like, broadcastable to `face_radius`
+        Pressure around the face. [Pa]
+
+    Returns
+    -------
+    ndarray, the broadcast shape
+        High where the gas has no time to leave within a period.
+
+    Raises
+    ------
+    InvalidInput
+        If an argument is not positive.
+    """
+    R, h = require_positive(face_radius=face_radius), require_positive(film_thickness=film_thickness)
+    omega = 2 * math.pi * require_positive(frequency=frequency)
+    mu, p_a = require_positive(viscosity=viscosity), require_positive(ambient_pressure=ambient_pressure)
+    return np.asarray(12 * mu * omega * R**2 / (p_a * h**2))
+
+
+def squeeze_film_pressure(
+    *, vibration_amplitude: ArrayLike, film_thickness: ArrayLike, ambient_pressure: ArrayLike
+) -> Floats:
+    """Return the mean excess pressure of a film that has no time to leave. [Pa]
+
+    Parameters
+    ----------
+    vibration_amplitude : array_like, any shape
+        Amplitude of the vibration along the normal, alike over the face. [m]
+    film_thickness : array_like, broadcastable to `vibration_amplitude`
+        Mean distance of the faces. [m]
+    ambient_pressure : array_like, broadcastable to `vibration_amplitude`
+        Pressure around the face. [Pa]
+
+    Returns
+    -------
+    ndarray, the broadcast shape
+        5/4 p_a (a/h)^2 for small amplitudes.
+
+    Raises
+    ------
+    InvalidInput
+        If a gap or pressure is not positive, or an amplitude negative or as large as the gap.
+
+    Notes
+    -----
+    Isothermal gas, smooth parallel faces much wider than the gap, and the limit of high squeeze number. Inside, p h
+    keeps one value over the period; the rim, where p is the ambient pressure, makes its square the mean of h^3 over
+    the mean of h.
+
+    References
+    ----------
+    .. [1] E. O. J. Salbu, J. Basic Eng. 86, 355 (1964). doi:10.1115/1.3653080
+    .. [2] W. E. Langlois, Q. Appl. Math. 20, 131 (1962).
+    """
+    a, h = (
+        require_non_negative(vibration_amplitude=vibration_amplitude),
+        require_positive(film_thickness=film_thickness),
+    )
+    if np.any(a >= h):
+        raise InvalidInput("vibration_amplitude must be smaller than the gap: the faces would touch")
+    excursion = np.square(a / h)
+    p_a = require_positive(ambient_pressure=ambient_pressure)
+    return np.asarray(p_a * (np.sqrt((1 + 1.5 * excursion) / (1 - excursion)) - 1))
+
+
+def levitation_gap(
+    *,
+    normal_load: ArrayLike,
+    vibration_amplitude: ArrayLike,
+    face_radius: ArrayLike,
+    frequency: ArrayLike,
+    viscosity: ArrayLike = AIR_VISCOSITY,
+    ambient_pressure: ArrayLike = ATMOSPHERE,
+) -> Floats:
+    """Return the mean gap at which a gas film carries a load on a circular face. [m]
+
+    Parameters
+    ----------
+    normal_load : array_like, any shape
+        Force pressing the bodies together. [N]
+    vibration_amplitude : array_like, broadcastable to `normal_load`
+        Amplitude of the vibration along the normal, alike over the face. [m]
+    face_radius : array_like, broadcastable to `normal_load`
+        Radius of the face. [m]
+    frequency : array_like, broadcastable to `normal_load`
+        Frequency of the vibration. [Hz]
+    viscosity : array_like, broadcastable to `normal_load`
+        Dynamic viscosity of the gas. [Pa s]
+    ambient_pressure : array_like, broadcastable to `normal_load`
+        Pressure around the face. [Pa]
+
+    Returns
+    -------
+    ndarray, the broadcast shape
+        Above the amplitude, whatever the load; whether so thin a film exists is for the roughness to say.
+
+    Raises
+    ------
+    InvalidInput
+        If an argument is not positive.
+    OutsideRange
+        If the load is so low that the gap would be wider than a tenth of the face's radius.
+
+    Warns
+    -----
+    ModelRangeWarning
+        Where the squeeze number is below `LEAST_SQUEEZE_NUMBER`: the rim leaks, and the film carries less.
+
+    References
+    ----------
+    .. [1] E. O. J. Salbu, J. Basic Eng. 86, 355 (1964). doi:10.1115/1.3653080
+    """
+    load, a = require_positive(normal_load=normal_load), require_positive(vibration_amplitude=vibration_amplitude)
+    R, p_a = require_positive(face_radius=face_radius), require_positive(ambient_pressure=ambient_pressure)
+    square = np.square(1 + load / (math.pi * R**2 * p_a))
+    h = a * np.sqrt((1.5 + square) / (square - 1))
+    if np.any(h > 0.1 * R):
+        raise OutsideRange(f"normal_load {np.min(load):.3g} N is too low: the film would exceed a tenth of face_radius")
+    sigma = squeeze_number(
+        face_radius=R, film_thickness=h, frequency=frequency, viscosity=viscosity, ambient_pressure=p_a
+    )
+    if np.any(sigma < LEAST_SQUEEZE_NUMBER):
+        warnings.warn(
+            f"squeeze number {sigma.min():.3g} is below {LEAST_SQUEEZE_NUMBER:g}: gas escapes at the rim, and the film "
+            "is thinner than this",
+            ModelRangeWarning,
+            stacklevel=2,
+        )
+    return np.asarray(h)

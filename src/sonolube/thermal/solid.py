@@ -1,0 +1,45 @@
+"""A solid as heat sees it."""
+
+from dataclasses import dataclass
+
+from sonolube.checks import require_positive
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ThermalSolid:
+    """What heat meets in a homogeneous, isotropic solid.
+
+    Parameters
+    ----------
+    thermal_conductivity : float
+        Heat flux per gradient of the temperature. [W/(m K)]
+    density : float
+        Mass density. [kg/m3]
+    specific_heat_capacity : float
+        Heat per mass and kelvin. [J/(kg K)]
+
+    Raises
+    ------
+    InvalidInput
+        If a value is not positive and finite.
+
+    Notes
+    -----
+    Properties are constants: for rises of some tens of kelvin.
+    """
+
+    thermal_conductivity: float
+    density: float
+    specific_heat_capacity: float
+
+    def __post_init__(self) -> None:
+        require_positive(
+            thermal_conductivity=self.thermal_conductivity,
+            density=self.density,
+            specific_heat_capacity=self.specific_heat_capacity,
+        )
+
+    @property
+    def thermal_diffusivity(self) -> float:
+        """Conductivity over heat capacity per volume. [m2/s]"""
+        return self.thermal_conductivity / (self.density * self.specific_heat_capacity)

@@ -1,0 +1,120 @@
+"""Stick-slip of very many vibrations at once: what single sines, single motions and bounds say of it."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from pytest import approx, raises
+from scipy.special import i0e
+
+from sonolube.contact import ContactPair, GapMotion, RoughContact, load_balanced_motion, normal_force, separation
+from sonolube.errors import InvalidInput
+from sonolube.friction import SINE_TOLERANCE, stick_slip, stick_slip_ratio, stick_slip_ratios
+from sonolube.surfaces import Roughness
+
+CONTACT = RoughContact(  # D Table 3.2
+    roughness=Roughness(rms_height=6e-6, summit_radius=1.5e-6, summit_density=4.7e10),
+    pair=ContactPair(combined_modulus=59.6e9, poisson_ratio=0.33, yield_strength=410e6, mindlin_ratio=0.8),
+    nominal_area=2.25e-6,
+)
+DECAY_LENGTH, MEMORY_LENGTH, FREQUENCY, LOAD = 2e-6, 1.5e-6, 22e3, 3.0
+OMEGA = 2 * np.pi * FREQUENCY
+
+
+def balanced_mean(harmonics: np.ndarray) -> float:
+    """Rise at which exponential heights carry the load under a motion, by 4096 phases."""
+    turning = np.exp(2j * np.pi * np.multiply.outer(np.arange(4096) / 4096, np.arange(1, harmonics.size + 1)))
+    return float(DECAY_LENGTH * np.log(np.mean(np.exp(-(turning @ harmonics).real / DECAY_LENGTH))))
+
+
+def ratios(harmonics: np.ndarray, speeds: np.ndarray) -> np.ndarray:
+    return stick_slip_ratios(
+        decay_length=DECAY_LENGTH,
+        mean_displacement=[balanced_mean(harmonics)],
+        harmonics=[harmonics],
+        frequency=[FREQUENCY],
+        sliding_speed=speeds,
+        vibration=np.zeros(speeds.size, dtype=int),
+        memory_length=MEMORY_LENGTH,
+    )
+
+
+@settings(max_examples=60, deadline=None)
+@given(log_beta=st.floats(-7, 5), log_v=st.floats(-12, 1))
+def test_a_sine_has_the_ratio_of_sines(log_beta: float, log_v: float) -> None:
+    amplitude = np.exp(log_beta) * DECAY_LENGTH
+    speed = np.exp(log_v) * OMEGA * amplitude * MEMORY_LENGTH / DECAY_LENGTH
+    beta = np.exp(log_beta)
+    found = stick_slip_ratios(
+        decay_length=DECAY_LENGTH,
+        mean_displacement=[DECAY_LENGTH * (np.log(i0e(beta)) + beta)],
+        harmonics=[[amplitude + 0j]],
+        frequency=[FREQUENCY],
+        sliding_speed=[speed],
+        vibration=[0],
+        memory_length=MEMORY_LENGTH,
+    )
+    known = stick_slip_ratio(
+        decay_length=DECAY_LENGTH,
+        vibration_amplitude=amplitude,
+        frequency=FREQUENCY,
+        sliding_speed=speed,
+        memory_length=MEMORY_LENGTH,
+    )
+    assert found[0] == approx(float(known), abs=5e-6)
+
+
+@pytest.mark.parametrize(
+    "harmonics",
+    [
+        [2.5e-6, 3e-10],
+        [2.5e-6 * np.exp(0.7j), 4e-8 * np.exp(2j)],
+        [6e-6, 2e-7 * np.exp(-1j), 4e-8j],
+        [1e-5 * np.exp(-2j), 3e-7, 5e-8 * np.exp(1j)],
+    ],
+)
+def test_a_motion_with_harmonics_has_the_ratio_of_elements_followed_in_time(harmonics: list[complex]) -> None:
+    own = np.array(harmonics, dtype=complex)
+    turning = np.exp(2j * np.pi * np.multiply.outer(np.arange(2048) / 2048, np.arange(1, own.size + 1)))
+    x = (turning @ own).real
+    force = normal_force(CONTACT, separation=separation(CONTACT, normal_load=LOAD) + x)
+    motion = load_balanced_motion(
+        CONTACT, GapMotion(displacement=x, normal_force=force, frequency=FREQUENCY, normal_load=LOAD)
+    )
+    speeds = np.array([5e-3, 40e-3, 0.2, 0.5])
+    followed = stick_slip(CONTACT, motion, sliding_speed=speeds, memory_length=MEMORY_LENGTH)
+    assert ratios(own, speeds) == approx(followed, abs=3e-5 + SINE_TOLERANCE * (abs(own[1]) < 1e-9))
+
+
+@settings(max_examples=40, deadline=None)
+@given(share=st.floats(1e-5, 0.03), lag=st.floats(-np.pi, np.pi), speed=st.floats(2e-3, 0.6))
+def test_harmonics_change_friction_by_no_more_than_they_change_the_gap(share: float, lag: float, speed: float) -> None:
+    amplitude = 3e-6
+    own = np.array([amplitude, share * amplitude * np.exp(1j * lag)])
+    beta = amplitude / DECAY_LENGTH
+    sine = float(
+        stick_slip_ratio(
+            decay_length=DECAY_LENGTH,
+            vibration_amplitude=amplitude,
+            frequency=FREQUENCY,
+            sliding_speed=speed,
+            memory_length=MEMORY_LENGTH,
+        )
+    )
+    about_the_same_mean = sine * i0e(beta) * np.exp(beta - balanced_mean(own) / DECAY_LENGTH)
+    change = np.log(ratios(own, np.array([speed]))[0] / about_the_same_mean)
+    assert abs(change) <= share * beta + 1e-5
+
+
+def test_a_motion_that_closes_twice_in_a_period_is_left_to_others() -> None:
+    assert np.isnan(ratios(np.array([1e-6, 2e-6]), np.array([0.05])))
+
+
+def test_what_does_not_fit_together_is_refused_by_name() -> None:
+    given_well = {"decay_length": 2e-6, "mean_displacement": [0.0], "harmonics": [[1e-6]], "frequency": [22e3]}
+    with raises(InvalidInput, match="vibration must lie between 0 and 0, got 1 to 1"):
+        stick_slip_ratios(**given_well, sliding_speed=[0.1], vibration=[1])  # type: ignore[arg-type]
+    with raises(InvalidInput, match="sliding_speed must be positive"):
+        stick_slip_ratios(**given_well, sliding_speed=[0.0], vibration=[0])  # type: ignore[arg-type]
+    with raises(InvalidInput, match="must agree in vibrations"):
+        stick_slip_ratios(**(given_well | {"frequency": [1.0, 2.0]}), sliding_speed=[1.0], vibration=[0])  # type: ignore[arg-type]
