@@ -1,0 +1,52 @@
+"""A gigabyte of TDMS reduced to 2 s windows, in bounded memory."""
+
+import resource
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from nptdms import ChannelObject, TdmsWriter
+from pytest_benchmark.fixture import BenchmarkFixture
+
+CHANNELS = ("friction_force", "normal_load", "stack_voltage", "motor_current", "temperature", "magnetic_flux_density")
+SAMPLE_RATE = 50_000.0
+CHUNK = 100_000
+GIGABYTE = 1_000_000_000
+
+REDUCE = """
+import sys
+from pathlib import Path
+from sonolube.measurement.windows import streamed_window_statistics
+reduced = streamed_window_statistics(Path(sys.argv[1]))
+assert all(windows.time.size > 200 for windows in reduced.values())
+"""
+
+
+def write_recording(path: Path, size: int) -> None:
+    signals = np.random.default_rng(1).normal(1.0, 0.1, (len(CHANNELS), CHUNK))
+    with TdmsWriter(path) as writer:
+        for _ in range(size // (8 * CHUNK * len(CHANNELS)) + 1):
+            writer.write_segment(
+                [
+                    ChannelObject("DAQ", name, signal, {"wf_increment": 1 / SAMPLE_RATE})
+                    for name, signal in zip(CHANNELS, signals, strict=True)
+                ]
+            )
+
+
+@pytest.fixture(scope="module")
+def gigabyte(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("recording") / "gigabyte.tdms"
+    write_recording(path, GIGABYTE)
+    return path
+
+
+def test_a_gigabyte_is_reduced_to_windows_in_a_fresh_process(benchmark: BenchmarkFixture, gigabyte: Path) -> None:
+    benchmark.pedantic(  # type: ignore[no-untyped-call]
+        lambda: subprocess.run([sys.executable, "-c", REDUCE, gigabyte], check=True), rounds=1, iterations=1
+    )
+    peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * 1024
+    benchmark.extra_info["peak_memory_bytes"] = peak
+    assert peak < 500_000_000

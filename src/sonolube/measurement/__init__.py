@@ -1,0 +1,1 @@
+"""Measurement: what instruments wrote, read into labelled records, and what it says of friction, wear and vibration."""

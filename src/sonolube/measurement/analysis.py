@@ -1,0 +1,333 @@
+"""From a recording to the record that a report shows: one function an analysis, each taking a dataset."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from sonolube.checks import Floats
+from sonolube.errors import InvalidInput, suggestion
+from sonolube.measurement.friction import MotorFriction, friction_from_motor_current, motor_friction_uncertainty
+from sonolube.measurement.friction_loops import FrictionLoops, FrictionWork, friction_loops, frictional_work
+from sonolube.measurement.rotation import Rotation, pulse_times, revolutions_at, rotation
+from sonolube.measurement.staircase import StaircaseStep, staircase, voltage_envelope
+from sonolube.measurement.steady_state import SteadyState, steady_state
+from sonolube.measurement.stick_slip import StickSlipEstimate, stick_slip
+from sonolube.measurement.windows import DEFAULT_WINDOW, WindowStatistics, window_statistics
+from sonolube.measurement.wobble import Wobble, remove_wobble
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RunningIn:
+    """A test in windows, and where its friction and its fluctuation become steady.
+
+    Parameters
+    ----------
+    windows : WindowStatistics
+        Friction in consecutive windows.
+    friction : SteadyState
+        Of the windows' means.
+    fluctuation : SteadyState
+        Of the fluctuation in the windows, which takes longer when the pin vibrates.
+    """
+
+    windows: WindowStatistics
+    friction: SteadyState
+    fluctuation: SteadyState
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FrictionCycles:
+    """The work of friction in all and, of a reciprocating motion, in each cycle.
+
+    Parameters
+    ----------
+    work : FrictionWork
+        Along the recording.
+    loops : FrictionLoops or None
+        Cycle by cycle; None where the velocity does not turn positive twice.
+    """
+
+    work: FrictionWork
+    loops: FrictionLoops | None
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class MotorFrictionTrace:
+    """Friction force over time as the motor's current tells it.
+
+    Parameters
+    ----------
+    time : ndarray, shape (windows,)
+        Middle of each window. [s]
+    friction_force : ndarray, shape (windows,)
+        Mean in each window. [N]
+    friction_force_uncertainty : ndarray, shape (windows,)
+        Standard uncertainty, the scatter of the current in the window included. [N]
+    """
+
+    time: Floats
+    friction_force: Floats
+    friction_force_uncertainty: Floats
+
+
+def channel(recording: "xr.Dataset", name: str) -> Floats:
+    """Return the values of a channel, or of the recording's time.
+
+    Raises
+    ------
+    InvalidInput
+        If the recording has no such channel, with those it has.
+    """
+    if name not in recording.variables:
+        names = [str(known) for known in recording.variables]
+        title = recording.attrs.get("file_name", "the recording")
+        raise InvalidInput(
+            f"{title} has no channel {name!r}; {suggestion(name, names) or 'it has ' + ', '.join(names)}"
+        )
+    values: Floats = recording[name].to_numpy()
+    return values
+
+
+def analyse_windows(
+    recording: "xr.Dataset", *, of: str = "friction_force", window_duration: float = DEFAULT_WINDOW
+) -> WindowStatistics:
+    """Return mean and fluctuation of a channel in consecutive windows.
+
+    Parameters
+    ----------
+    recording : xarray.Dataset
+    of : str
+        The channel.
+    window_duration : float
+        Duration of each window. [s]
+
+    Returns
+    -------
+    WindowStatistics
+    """
+    values = channel(recording, of)
+    return window_statistics(
+        values,
+        time=channel(recording, "time"),
+        window_duration=window_duration,
+        channel=of,
+        unit=str(recording[of].attrs.get("units", "")),
+    )
+
+
+def analyse_running_in(
+    recording: "xr.Dataset", *, sliding_speed: float, window_duration: float = DEFAULT_WINDOW
+) -> RunningIn:
+    """Return where friction and its fluctuation become steady.
+
+    Parameters
+    ----------
+    recording : xarray.Dataset
+        With `friction_force`.
+    sliding_speed : float
+        Speed of the sliding. [m/s]
+    window_duration : float
+        Duration of each window. [s]
+
+    Returns
+    -------
+    RunningIn
+
+    References
+    ----------
+    .. [1] D 2.3.3, Table 2.3.
+    """
+    windows = analyse_windows(recording, window_duration=window_duration)
+    return RunningIn(
+        windows=windows,
+        friction=steady_state(time=windows.time, friction_force=windows.mean, sliding_speed=sliding_speed),
+        fluctuation=steady_state(time=windows.time, friction_force=windows.fluctuation, sliding_speed=sliding_speed),
+    )
+
+
+def analyse_staircase(
+    recording: "xr.Dataset", *, shortest_step: float = 1.0, settling_time: float = 0.5
+) -> tuple[StaircaseStep, ...]:
+    """Return the friction at each step of the voltage.
+
+    Parameters
+    ----------
+    recording : xarray.Dataset
+        With `friction_force`, and `voltage_peak_to_peak` or the alternating `stack_voltage`.
+    shortest_step : float
+        Seconds below which a level is a transition, not a step.
+    settling_time : float
+        Left out at the start of each step. [s]
+
+    Returns
+    -------
+    tuple of StaircaseStep
+
+    References
+    ----------
+    .. [1] D 4.1.2, figure 4.3, Table 4.2.
+    """
+    time = channel(recording, "time")
+    if "voltage_peak_to_peak" in recording:
+        level = channel(recording, "voltage_peak_to_peak")
+    else:
+        level = voltage_envelope(time=time, stack_voltage=channel(recording, "stack_voltage"))
+    return staircase(
+        time=time,
+        friction_force=channel(recording, "friction_force"),
+        voltage_peak_to_peak=level,
+        shortest_step=shortest_step,
+        settling_time=settling_time,
+    )
+
+
+def analyse_cycles(recording: "xr.Dataset") -> FrictionCycles:
+    """Return the work of friction, in all and cycle by cycle.
+
+    Parameters
+    ----------
+    recording : xarray.Dataset
+        With `friction_force` and `relative_velocity`.
+
+    Returns
+    -------
+    FrictionCycles
+
+    References
+    ----------
+    .. [1] D 4.5.4, figure 4.57.
+    """
+    time, force = channel(recording, "time"), channel(recording, "friction_force")
+    velocity = channel(recording, "relative_velocity")
+    try:
+        loops = friction_loops(time=time, friction_force=force, relative_velocity=velocity)
+    except InvalidInput:  # one stroke, such as a rod pulled through a ring
+        loops = None
+    work = frictional_work(time=time, friction_force=force, relative_velocity=velocity)
+    return FrictionCycles(work=work, loops=loops)
+
+
+def analyse_stick_slip(recording: "xr.Dataset", *, least_fall: float | None = None) -> StickSlipEstimate:
+    """Return frequency and amplitude of stick-slip.
+
+    Parameters
+    ----------
+    recording : xarray.Dataset
+        With `friction_force`, without gaps.
+    least_fall : float or None
+        The least fall, in N, that is a slip.
+
+    Returns
+    -------
+    StickSlipEstimate
+
+    References
+    ----------
+    .. [1] D 2.3.2 to 2.3.4.
+    """
+    return stick_slip(
+        time=channel(recording, "time"), friction_force=channel(recording, "friction_force"), least_fall=least_fall
+    )
+
+
+def analyse_rotation(
+    recording: "xr.Dataset", *, groove_diameter: float, magnets: int = 1, prominence: float = 0.25
+) -> Rotation:
+    """Return the turning of the disc.
+
+    Parameters
+    ----------
+    recording : xarray.Dataset
+        With `magnetic_flux_density`.
+    groove_diameter : float
+        Diameter of the circle under the pin. [m]
+    magnets : int
+        Magnets at the rim.
+    prominence : float
+        Height of the weakest pulse that counts, as a share of the strongest.
+
+    Returns
+    -------
+    Rotation
+
+    References
+    ----------
+    .. [1] D 4.1.1.
+    """
+    pulses = pulse_times(
+        time=channel(recording, "time"),
+        magnetic_flux_density=channel(recording, "magnetic_flux_density"),
+        prominence=prominence,
+    )
+    return rotation(time=pulses, groove_diameter=groove_diameter, magnets=magnets)
+
+
+def analyse_wobble(
+    recording: "xr.Dataset", *, turning: Rotation | None = None, rotation_speed: float | None = None, harmonics: int = 3
+) -> Wobble:
+    """Return the friction without what the turning disc's wobble adds.
+
+    Parameters
+    ----------
+    recording : xarray.Dataset
+        With `friction_force`.
+    turning : Rotation or None
+        From `analyse_rotation`.
+    rotation_speed : float or None
+        Instead of it, where the speed is constant. [1/s]
+    harmonics : int
+        How many multiples of the rotation are taken away.
+
+    Returns
+    -------
+    Wobble
+
+    Raises
+    ------
+    InvalidInput
+        If not exactly one of `turning` and `rotation_speed` is given.
+
+    References
+    ----------
+    .. [1] D 2.3.3 and 4.1.2 on the wobble of the disc.
+    """
+    time = channel(recording, "time")
+    if (turning is None) == (rotation_speed is None):
+        raise InvalidInput("give either turning, from the pulses, or a constant rotation_speed")
+    turns = revolutions_at(turning, time=time) if turning is not None else (rotation_speed or 0.0) * (time - time[0])
+    return remove_wobble(revolutions=turns, friction_force=channel(recording, "friction_force"), harmonics=harmonics)
+
+
+def analyse_motor_current(
+    recording: "xr.Dataset", *, motor: MotorFriction, window_duration: float = DEFAULT_WINDOW
+) -> MotorFrictionTrace:
+    """Return the friction that the motor's current tells, in windows.
+
+    Parameters
+    ----------
+    recording : xarray.Dataset
+        With `motor_current`.
+    motor : MotorFriction
+    window_duration : float
+        Duration of each window. [s]
+
+    Returns
+    -------
+    MotorFrictionTrace
+
+    References
+    ----------
+    .. [1] D 2.4.4.
+    """
+    windows = analyse_windows(recording, of="motor_current", window_duration=window_duration)
+    known = windows.samples > 1
+    error = windows.deviation[known] / windows.samples[known] ** 0.5
+    return MotorFrictionTrace(
+        time=windows.time[known],
+        friction_force=friction_from_motor_current(motor, motor_current=windows.mean[known]),
+        friction_force_uncertainty=motor_friction_uncertainty(
+            motor, motor_current=windows.mean[known], motor_current_uncertainty=error
+        ),
+    )

@@ -1,0 +1,204 @@
+"""What the columns of an instrument's export mean: quantity, unit, calibration, and how the text is written."""
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+from sonolube.checks import require_finite, require_positive
+from sonolube.errors import InvalidInput, UnknownName, suggestion
+from sonolube.units import to_si
+from sonolube.vocabulary import quantity
+
+AXES = ("time", "revolutions")
+_KEYS = {"title", "axis", "text", "channels", "rows"}
+_AXIS_KEYS = {"quantity", "column", "unit", "gain", "offset", "sample_rate"}
+_TEXT_KEYS = {"separator", "decimal_sign", "lines_to_skip", "missing", "encoding"}
+_CHANNEL_KEYS = {"column", "unit", "gain", "offset"}
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ChannelSource:
+    """Where a channel comes from.
+
+    Parameters
+    ----------
+    column : str
+        What the file calls it, line breaks written as spaces.
+    unit : str or None
+        Unit of the calibrated value; None to take the file's.
+    gain, offset : float
+        Calibration: the value is what is read times the gain, plus the offset.
+
+    Raises
+    ------
+    InvalidInput
+        If the calibration is not finite, or the gain zero.
+    """
+
+    column: str
+    unit: str | None = None
+    gain: float = 1.0
+    offset: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_finite(gain=self.gain, offset=self.offset)
+        if self.gain == 0:
+            raise InvalidInput(f"gain of column {self.column!r} must not be zero")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class TextLayout:
+    """How a text export is written.
+
+    Parameters
+    ----------
+    separator : str
+        Between cells; empty to find it out.
+    decimal_sign : str
+        "." or ","; empty to find it out.
+    lines_to_skip : int
+        Lines before the line of column names.
+    missing : tuple of str
+        Texts that stand for no value, beside empty cells.
+    encoding : str
+        Of the text.
+
+    Raises
+    ------
+    InvalidInput
+        If the separator is longer than one character, the decimal sign is neither of both, or both are the same.
+    """
+
+    separator: str = ""
+    decimal_sign: str = ""
+    lines_to_skip: int = 0
+    missing: tuple[str, ...] = ("NA", "N/A", "NaN", "nan", "-", "#N/A", "null")
+    encoding: str = "utf-8-sig"
+
+    def __post_init__(self) -> None:
+        if len(self.separator) > 1 or self.separator in ('"', "\n", "\r"):
+            raise InvalidInput(f"separator must be one character, got {self.separator!r}")
+        if self.decimal_sign not in ("", ".", ","):
+            raise InvalidInput(f'decimal_sign must be "." or ",", got {self.decimal_sign!r}')
+        if self.separator and self.separator == self.decimal_sign:
+            raise InvalidInput(f"separator and decimal_sign are both {self.separator!r}")
+        if self.lines_to_skip < 0:
+            raise InvalidInput(f"lines_to_skip must not be negative, got {self.lines_to_skip}")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RecordingMapping:
+    """What the columns of a file mean.
+
+    Parameters
+    ----------
+    channels : mapping of str to ChannelSource
+        Sources by the vocabulary's names.
+    axis : ChannelSource or None
+        The column along which the values stand; None where `sample_rate` or the file gives it.
+    along : str
+        What the axis is: "time", or "revolutions" for exports with one row a cycle.
+    sample_rate : float or None
+        Rows per second, where no column gives the time. [Hz]
+    text : TextLayout
+        How a text export is written.
+    rows : mapping of str to str
+        Cells that a row must have to be taken, by column: one test out of a file of many.
+    title : str
+        What the recording is.
+
+    Raises
+    ------
+    UnknownName
+        If a channel's name is not in the vocabulary.
+    InvalidInput
+        If the axis is unknown, or both a column and a sample rate give it.
+    """
+
+    channels: Mapping[str, ChannelSource]
+    axis: ChannelSource | None = None
+    along: str = "time"
+    sample_rate: float | None = None
+    text: TextLayout = field(default_factory=TextLayout)
+    rows: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
+    title: str = ""
+
+    def __post_init__(self) -> None:
+        for name in self.channels:
+            quantity(name)
+        if self.along not in AXES:
+            raise InvalidInput(f"axis.quantity must be one of {', '.join(AXES)}, got {self.along!r}")
+        if self.sample_rate is not None:
+            require_positive(sample_rate=self.sample_rate)
+            if self.axis is not None:
+                raise InvalidInput("axis: give a column or a sample_rate, not both")
+
+
+def read_mapping(path: Path) -> RecordingMapping:
+    """Return the mapping that a TOML file describes.
+
+    Parameters
+    ----------
+    path : Path
+        Sections `axis`, `text`, `rows` and one `channels.NAME` a channel, NAME being a word of the vocabulary.
+
+    Returns
+    -------
+    RecordingMapping
+
+    Raises
+    ------
+    InvalidInput
+        Naming the file and the key, if the file is missing, is no TOML, or a key or a value is not understood.
+    """
+    try:
+        content = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as failure:
+        raise InvalidInput(f"{path}: cannot be read: {failure.strerror}") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as failure:
+        raise InvalidInput(f"{path}: {failure}") from None
+    try:
+        return _mapping(content)
+    except UnknownName as failure:
+        raise InvalidInput(f"{path}: channels: {failure}") from None
+    except (InvalidInput, TypeError) as failure:
+        raise InvalidInput(f"{path}: {failure}") from None
+
+
+def _mapping(content: dict[str, Any]) -> RecordingMapping:
+    _refuse_unknown(content, _KEYS, "")
+    axis, text = _section(content, "axis", _AXIS_KEYS), _section(content, "text", _TEXT_KEYS)
+    channels = _section(content, "channels", None)
+    along = axis.pop("quantity", "time")
+    rate = axis.pop("sample_rate", None)
+    if "missing" in text:
+        text["missing"] = tuple(text["missing"])
+    return RecordingMapping(
+        title=str(content.get("title", "")),
+        channels=MappingProxyType(
+            {name: ChannelSource(**_section(channels, name, _CHANNEL_KEYS, "channels.")) for name in channels}
+        ),
+        axis=ChannelSource(**axis) if axis else None,
+        along=along,
+        sample_rate=to_si(rate, unit="Hz", name="axis.sample_rate") if isinstance(rate, str) else rate,
+        text=TextLayout(**text),
+        rows=MappingProxyType({name: str(value) for name, value in _section(content, "rows", None).items()}),
+    )
+
+
+def _section(content: Mapping[str, Any], name: str, known: set[str] | None, prefix: str = "") -> dict[str, Any]:
+    section = content.get(name, {})
+    if not isinstance(section, dict):
+        raise InvalidInput(f"{prefix}{name} must be a section, got {section!r}")
+    if known is not None:
+        _refuse_unknown(section, known, f"{prefix}{name}.")
+    return dict(section)
+
+
+def _refuse_unknown(section: Mapping[str, Any], known: set[str], prefix: str) -> None:
+    for key in section:
+        if key not in known:
+            raise InvalidInput(f"{prefix}{key}: unknown key; {suggestion(key, known) or 'known: ' + ', '.join(known)}")
