@@ -5,10 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from pytest import approx
+from scipy.optimize import brentq
 from scipy.special import i0
 
+from sonolube.contact import normal_force, separation
 from sonolube.errors import InvalidInput
-from sonolube.rig import Simulation, read_rig, simulate
+from sonolube.rig import Simulation, read_rig, simulate, start_up
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"
 
@@ -19,6 +21,7 @@ def tribometer(*changes: str) -> Simulation:
 
 STILL = tribometer("drive.voltage_peak_to_peak=0V", "drive.voltage_offset=0V")
 DRIVEN = tribometer()
+GAUSSIAN = read_rig(RIGS / "tribometer.toml", changes=("contact.height_distribution=gaussian",))
 
 
 def test_28_volts_give_the_amplitude_measured() -> None:
@@ -87,9 +90,22 @@ def test_a_voltage_beyond_the_stack_is_refused() -> None:
         tribometer("stack.highest_voltage=20V")
 
 
-def test_gaussian_heights_are_refused_with_the_reason() -> None:
-    with pytest.raises(InvalidInput, match="motions are computed for exponential heights only"):
-        tribometer("contact.height_distribution=gaussian")
+def test_gaussian_heights_lift_the_tip_until_the_mean_force_is_the_load_again() -> None:
+    result, contact = simulate(GAUSSIAN), GAUSSIAN.contact
+    resting = separation(contact, normal_load=GAUSSIAN.normal_load)
+    sine = result.vibration_amplitude * np.cos(2 * np.pi * (np.arange(256) + 0.5) / 256)
+    risen = brentq(
+        lambda rise: float(np.mean(normal_force(contact, separation=resting + rise + sine))) - GAUSSIAN.normal_load,
+        0.0,
+        result.vibration_amplitude,
+    )
+    assert result.mean_displacement == approx(risen, rel=1e-3)
+
+
+def test_gaussian_heights_start_up_to_their_steady_vibration() -> None:
+    result, started = simulate(GAUSSIAN), start_up(GAUSSIAN, duration=0.1)
+    assert started.vibration_amplitude == approx(result.vibration_amplitude, rel=1e-3)
+    assert started.mean_displacement == approx(result.mean_displacement, rel=0.01)
 
 
 def test_a_rig_without_structure_says_what_is_missing() -> None:

@@ -1,7 +1,11 @@
 """Rigs: an experiment or a device as one record, read from a file, and what it does at its operating point."""
 
-from sonolube.rig.dataset import dataset, write_netcdf
+from sonolube.rig.closure import friction_ratios
+from sonolube.rig.dataset import dataset, gridded, write_netcdf
 from sonolube.rig.edit import with_tables
+from sonolube.rig.ensemble import OperatingPoints, operating_points, steady_states
+from sonolube.rig.heat import HeatPoint, heat_point, thermal_solid
+from sonolube.rig.least_power import least_power_study
 from sonolube.rig.operating_point import (
     ContactPoint,
     FrictionPoint,
@@ -10,16 +14,29 @@ from sonolube.rig.operating_point import (
     friction_point,
     wear_point,
 )
-from sonolube.rig.read import read_rig, rig_from
+from sonolube.rig.parametric_study import frequency_study, load_study, speed_study, voltage_study, waveform_study
+from sonolube.rig.point_batch import NUMBERS, STATUSES, PointBatch, point_batch
+from sonolube.rig.read import read_rig, rig_from, structure_by_stack
 from sonolube.rig.record import Rig
+from sonolube.rig.regime import RegimeMap, RegimePoint, regime_map, regime_point, wear_of_materials
 from sonolube.rig.response import Response, frequency_grid, linear_response, touching_structure
 from sonolube.rig.schema import rig_schema
 from sonolube.rig.simulation import Simulation, simulate
 from sonolube.rig.start_up import StartUp, start_up
+from sonolube.rig.steady_motion import gap_motion
+from sonolube.rig.study_figures import STUDY_FIGURES
 
 __all__ = [
+    "NUMBERS",
+    "STATUSES",
+    "STUDY_FIGURES",
     "ContactPoint",
     "FrictionPoint",
+    "HeatPoint",
+    "OperatingPoints",
+    "PointBatch",
+    "RegimeMap",
+    "RegimePoint",
     "Response",
     "Rig",
     "Simulation",
@@ -28,14 +45,32 @@ __all__ = [
     "contact_point",
     "dataset",
     "frequency_grid",
+    "frequency_study",
     "friction_point",
+    "friction_ratios",
+    "gap_motion",
+    "gridded",
+    "heat_point",
+    "least_power_study",
     "linear_response",
+    "load_study",
+    "operating_points",
+    "point_batch",
     "read_rig",
+    "regime_map",
+    "regime_point",
     "rig_from",
     "rig_schema",
     "simulate",
+    "speed_study",
     "start_up",
+    "steady_states",
+    "structure_by_stack",
+    "thermal_solid",
     "touching_structure",
+    "voltage_study",
+    "waveform_study",
+    "wear_of_materials",
     "wear_point",
     "with_tables",
     "write_netcdf",

@@ -2,7 +2,10 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+from numpy.typing import NDArray
 
 from sonolube import __version__
 from sonolube.checks import Floats
@@ -11,6 +14,13 @@ from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:
     import xarray as xr
+
+_NOTHING: Mapping[str, str] = MappingProxyType({})
+_TEXTS = {
+    "status": "What is known of the point",
+    "reason": "What its status means, and what to try",
+    "waveform": "Shape of the drive voltage",
+}
 
 
 def dataset(values: Mapping[str, Floats], *, along: str, title: str) -> "xr.Dataset":
@@ -34,17 +44,55 @@ def dataset(values: Mapping[str, Floats], *, along: str, title: str) -> "xr.Data
     UnknownName
         If a name is not in the vocabulary.
     """
+    others = {name: array for name, array in values.items() if name != along}
+    return gridded(others, axes={along: values[along]}, title=title)
+
+
+def gridded(
+    values: Mapping[str, NDArray[Any]],
+    *,
+    axes: Mapping[str, NDArray[Any]],
+    title: str,
+    about: Mapping[str, str] = _NOTHING,
+) -> "xr.Dataset":
+    """Return arrays over a grid as a dataset, each with the unit and the meaning of the vocabulary.
+
+    Parameters
+    ----------
+    values : mapping of str to ndarray
+        Arrays by their names: quantities of the vocabulary, or texts about the points. An array of n axes runs over the
+        first n of the grid.
+    axes : mapping of str to ndarray
+        Coordinates of the grid, in the order of its axes.
+    title : str
+        What the dataset holds.
+    about : mapping of str to str
+        What else is to be known of it.
+
+    Returns
+    -------
+    xarray.Dataset
+
+    Raises
+    ------
+    UnknownName
+        If a name is not in the vocabulary.
+    """
     import xarray as xr
 
-    def labelled(name: str) -> "tuple[str, Floats, dict[str, str]]":
-        known = quantity(name)
-        return along, values[name], {"units": known.unit or "1", "long_name": known.meaning}
-
+    names = tuple(axes)
     return xr.Dataset(
-        {name: labelled(name) for name in values if name != along},
-        coords={along: labelled(along)},
-        attrs={"title": title, "source": f"sonolube {__version__}"},
+        {name: (names[: array.ndim], array, _labels(name)) for name, array in values.items()},
+        coords={name: (name, array, _labels(name)) for name, array in axes.items()},
+        attrs={"title": title, "source": f"sonolube {__version__}", **about},
     )
+
+
+def _labels(name: str) -> dict[str, str]:
+    if name in _TEXTS:
+        return {"long_name": _TEXTS[name]}
+    known = quantity(name)
+    return {"units": known.unit or "1", "long_name": known.meaning}
 
 
 def write_netcdf(results: "xr.Dataset", *, path: Path) -> Path:

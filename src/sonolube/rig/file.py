@@ -62,6 +62,10 @@ class FrictionSection(Section):
     closure: Literal[
         "as_published", "separating_half_period", "load_balanced", "kinematic", "stick_slip", "coupled"
     ] = "stick_slip"
+    memory_length: float | None = None
+    in_plane_fraction: float | None = None
+    in_plane_phase: float | None = None
+    holder_stiffness: float | None = None
 
 
 class SlidingSection(Section):
@@ -71,12 +75,15 @@ class SlidingSection(Section):
 
 
 class DriveSection(Section):
-    """The voltage on the actuator."""
+    """The voltage on the actuator, and how it comes up when switched on."""
 
     voltage_peak_to_peak: float | None = None
     voltage_offset: float = 0.0
     frequency: float
-    waveform: Literal["sine", "square", "triangle", "sawtooth"] = "sine"
+    waveform: Literal["sine", "square", "triangle", "sawtooth", "sampled"] = "sine"
+    waveform_samples: list[float] | None = None
+    ramp_duration: float = 0.0
+    ramp_shape: Literal["linear", "cosine"] = "linear"
 
 
 class ActuatorSection(Section):

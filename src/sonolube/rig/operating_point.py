@@ -1,8 +1,7 @@
 """What a rig does at its operating point: contact, friction and wear, each as one record of results."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from sonolube.actuator.drive_power import driver_power
 from sonolube.contact import (
     contact_count,
     contact_doubts,
@@ -13,6 +12,8 @@ from sonolube.contact import (
 )
 from sonolube.errors import OutsideRange
 from sonolube.friction import separating_half_period_ratio
+from sonolube.rig.closure import friction_ratio, sine_under_load
+from sonolube.rig.excitation import amplifier_power
 from sonolube.rig.record import Rig
 from sonolube.wear import cube_wear_rate, vibrating_cube_wear_rate
 
@@ -67,6 +68,8 @@ class FrictionPoint:
         Friction with vibration over friction without. []
     friction_reduction : float
         One minus that ratio. []
+    closure : str
+        Name of the closure that gave it.
     vibration_amplitude : float
         Vibration normal to the contact, zero to peak. [m]
     actuator_power : float or None
@@ -80,6 +83,7 @@ class FrictionPoint:
     intrinsic_friction_force: float
     friction_ratio: float
     friction_reduction: float
+    closure: str
     vibration_amplitude: float
     actuator_power: float | None
     doubts: tuple[str, ...]
@@ -134,20 +138,34 @@ def contact_point(rig: Rig) -> ContactPoint:
     )
 
 
-def friction_point(rig: Rig) -> FrictionPoint:
-    """Return the friction of the rig under vibration, by the cube over the separating half period (D 3.15).
+def friction_point(rig: Rig, *, closure: str | None = None) -> FrictionPoint:
+    """Return the friction of the rig under its vibration, taken for a sine.
+
+    Parameters
+    ----------
+    rig : Rig
+    closure : str, optional
+        Name of the closure; where absent the cube over the separating half period (D 3.15), whatever the rig's own.
+
+    Returns
+    -------
+    FrictionPoint
 
     Raises
     ------
+    InvalidInput
+        If the rig says of memory, holder or in-plane motion what the closure does not take, or no frequency.
     OutsideRange
         If the surfaces would be pressed through each other, so that no separation is left.
+    UnknownName
+        If there is no such closure.
     """
     gap = _separation(rig)
-    ratio = float(
-        separating_half_period_ratio(
-            rig.contact, normal_load=rig.normal_load, vibration_amplitude=rig.vibration_amplitude
-        )
-    )
+    if closure is None:
+        closure, ratio = "separating_half_period", _by_the_cube(rig)
+    else:
+        chosen = replace(rig, closure=closure)
+        ratio = friction_ratio(chosen, sine_under_load(chosen))
     intrinsic = rig.friction_coefficient * rig.normal_load
     return FrictionPoint(
         friction_force=ratio * intrinsic,
@@ -155,9 +173,18 @@ def friction_point(rig: Rig) -> FrictionPoint:
         intrinsic_friction_force=intrinsic,
         friction_ratio=ratio,
         friction_reduction=1 - ratio,
+        closure=closure,
         vibration_amplitude=rig.vibration_amplitude,
         actuator_power=_actuator_power(rig),
         doubts=_doubts(rig, gap),
+    )
+
+
+def _by_the_cube(rig: Rig) -> float:
+    return float(
+        separating_half_period_ratio(
+            rig.contact, normal_load=rig.normal_load, vibration_amplitude=rig.vibration_amplitude
+        )
     )
 
 
@@ -208,11 +235,4 @@ def _doubts(rig: Rig, gap: float) -> tuple[str, ...]:
 def _actuator_power(rig: Rig) -> float | None:
     if rig.drive is None or rig.drive.voltage_peak_to_peak is None or rig.capacitance is None:
         return None
-    return float(
-        driver_power(
-            capacitance=rig.capacitance,
-            voltage_maximum=abs(rig.drive.voltage_offset) + rig.drive.voltage_peak_to_peak / 2,
-            voltage_peak_to_peak=rig.drive.voltage_peak_to_peak,
-            frequency=rig.drive.frequency,
-        )
-    )
+    return float(amplifier_power(rig.drive, capacitance=rig.capacitance))

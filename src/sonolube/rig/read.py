@@ -1,7 +1,7 @@
 """Reading a rig from its file: from text to the records that the models take."""
 
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from types import MappingProxyType
@@ -24,6 +24,7 @@ from sonolube.contact import (
 from sonolube.dynamics import Structure, chain_structure, pin_on_disc_chain
 from sonolube.errors import InvalidInput, MissingProperty, SonolubeError, suggestion
 from sonolube.materials import material
+from sonolube.rig.excitation import waveform_of
 from sonolube.rig.file import BodySection, ContactSection, RigFile
 from sonolube.rig.record import Rig
 from sonolube.surfaces import Roughness
@@ -72,6 +73,34 @@ def rig_from(content: Mapping[str, Any]) -> Rig:
         raise InvalidInput(_first_complaint(refusal)) from None
     _require_known_assumptions(file, content)
     return _rig(file)
+
+
+def structure_by_stack(path: str | Path) -> tuple[PiezoStack, Callable[[PiezoStack], Structure]]:
+    """Read a rig's stack, and its structure as it would be with another stack.
+
+    Parameters
+    ----------
+    path : str or Path
+        The rig's file, with the tables `stack` and `structure`.
+
+    Returns
+    -------
+    stack : PiezoStack
+    in_structure : callable
+        Returns the structure with a stack in it, all else as the file says.
+
+    Raises
+    ------
+    InvalidInput
+        As `read_rig`, or if the file lacks the tables.
+    """
+    path = Path(path)
+    stack = read_rig(path).stack
+    section = RigFile.model_validate(_parsed(path)).structure
+    if stack is None or section is None:
+        raise InvalidInput(f"{path}: the tables stack and structure are missing")
+    entries = section.model_dump()
+    return stack, lambda other: chain_structure(pin_on_disc_chain(other, **entries))
 
 
 def _parsed(path: Path) -> dict[str, Any]:
@@ -147,20 +176,20 @@ def _rig(file: RigFile) -> Rig:
     if file.drive is not None:
         with _prefixed("drive"):
             drive = Drive(**file.drive.model_dump())
+            waveform_of(drive)
     stack, structure = _stack_and_structure(file)
     return Rig(
         title=file.title,
         source=file.source,
         contact=_contact(file.contact),
         normal_load=file.contact.normal_load,
-        friction_coefficient=file.friction.friction_coefficient,
+        **file.friction.model_dump(),
         sliding_speed=file.sliding.sliding_speed,
         vibration_amplitude=_vibration_amplitude(file, drive),
         drive=drive,
         capacitance=file.actuator.capacitance if file.actuator else None,
         stack=stack,
         structure=structure,
-        closure=file.friction.closure,
         assumptions=MappingProxyType(dict(file.assumptions)),
     )
 

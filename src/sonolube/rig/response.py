@@ -7,10 +7,19 @@ from numpy.typing import ArrayLike
 
 from sonolube.actuator.drive import Drive
 from sonolube.checks import Floats, require_positive
-from sonolube.contact import ExponentialHeights, decay_length, normal_stiffness, separation
+from sonolube.contact import (
+    ExponentialHeights,
+    decay_length,
+    normal_force,
+    normal_stiffness,
+    separation,
+    separation_range,
+)
 from sonolube.dynamics import (
     ExponentialGap,
+    GapLaw,
     Structure,
+    TabulatedGap,
     drive_receptance,
     electrical_admittance,
     modes,
@@ -18,6 +27,8 @@ from sonolube.dynamics import (
 )
 from sonolube.errors import InvalidInput
 from sonolube.rig.record import Rig
+
+_POINTS = 2101  # of the table of a contact's force: 50 to the deviation of the summits' heights
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -115,22 +126,24 @@ def require_drive(rig: Rig) -> Drive:
     return rig.drive
 
 
-def gap_law_of(rig: Rig) -> ExponentialGap:
-    """Return the contact of a rig as dynamics takes it.
+def gap_law_of(rig: Rig) -> GapLaw:
+    """Return the contact of a rig as dynamics takes it: in closed form for exponential heights, by a table otherwise.
 
-    Raises
-    ------
-    InvalidInput
-        If its heights are not exponential.
+    Notes
+    -----
+    Between the points of the table the force keeps within 1e-9 of that of the contact.
     """
-    if not isinstance(rig.contact.heights, ExponentialHeights):
-        raise InvalidInput(
-            f"contact.height_distribution {rig.contact.heights.name}: motions are computed for exponential heights only"
-        )
-    return ExponentialGap(decay_length=float(decay_length(rig.contact)))
+    if isinstance(rig.contact.heights, ExponentialHeights):
+        return ExponentialGap(decay_length=float(decay_length(rig.contact)))
+    d = np.linspace(*separation_range(rig.contact), _POINTS)
+    return TabulatedGap(
+        separation=d,
+        normal_force=normal_force(rig.contact, separation=d),
+        normal_stiffness=normal_stiffness(rig.contact, separation=d),
+    )
 
 
-def frequency_grid(rig: Rig, *, lowest: float, highest: float, points: int = 2000) -> Floats:
+def frequency_grid(rig: Rig, *, lowest: float, highest: float, points: int = 2000, crowded: int = 201) -> Floats:
     """Return frequencies that draw a response whole: evenly spread on a logarithmic axis, and crowded at resonances.
 
     Parameters
@@ -141,6 +154,8 @@ def frequency_grid(rig: Rig, *, lowest: float, highest: float, points: int = 200
         Ends of the range, in Hz.
     points : int
         How many are spread evenly.
+    crowded : int
+        How many crowd at each resonance.
 
     Returns
     -------
@@ -149,8 +164,8 @@ def frequency_grid(rig: Rig, *, lowest: float, highest: float, points: int = 200
     """
     spread = np.geomspace(lowest, highest, points)
     natural = modes(touching_structure(rig))
-    offsets = np.sinh(np.linspace(-6, 6, 201)) / np.sinh(6)
+    offsets = np.sinh(np.linspace(-6, 6, crowded)) / np.sinh(6)
     widths = np.maximum(20 * natural.damping_ratio, 1e-4)
-    crowded = (natural.natural_frequency[:, np.newaxis] * (1 + widths[:, np.newaxis] * offsets)).ravel()
-    inside = crowded[(crowded > lowest) & (crowded < highest)]
+    near = (natural.natural_frequency[:, np.newaxis] * (1 + widths[:, np.newaxis] * offsets)).ravel()
+    inside = near[(near > lowest) & (near < highest)]
     return np.unique(np.concatenate([spread, inside]))

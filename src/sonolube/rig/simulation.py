@@ -1,5 +1,6 @@
 """The multi-scale model of a rig: drive, structure and contact in one steady vibration, and what it does to sliding."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
@@ -7,19 +8,13 @@ import numpy as np
 
 from sonolube.actuator import stack_doubts
 from sonolube.actuator.drive import Drive
-from sonolube.actuator.drive_power import driver_power
 from sonolube.contact import GapMotion, contact_doubts, separation
-from sonolube.dynamics import WAVEFORMS, Structure, harmonics
-from sonolube.dynamics.periodic import Status, SteadyStates, steady_state
-from sonolube.dynamics.sliding import motion
-from sonolube.errors import InvalidInput
-from sonolube.friction import FRICTION_CLOSURES
+from sonolube.rig.closure import friction_ratio, wear_closure, wear_rate_ratio
+from sonolube.rig.excitation import amplifier_power, voltage_harmonics, voltage_range
 from sonolube.rig.record import Rig
-from sonolube.rig.response import gap_law_of, require_drive, require_structure
-from sonolube.wear import WEAR_CLOSURES, cube_wear_rate
-
-_VOLTAGE_HARMONICS = 64  # of a square wave the tip feels the 65th by less than 1e-5 of the first
-_SAMPLES = 1024
+from sonolube.rig.response import require_drive, require_structure
+from sonolube.rig.steady_motion import SteadyMotion, steady_motion
+from sonolube.wear import cube_wear_rate
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -29,15 +24,27 @@ class Simulation:
     Parameters
     ----------
     status : str
-        "periodic", "unstable" or "several", as the steady state was found.
+        "periodic", "unstable", "several" or "not_converged", as harmonic balance found it.
     reason : str
-        What the status means, and what to try.
+        What the status means, what the tip does, and what to try.
+    attractor : str
+        What the tip's motion is: "periodic", "subharmonic", "beating", "chaotic" or "settling".
+    repetition_periods : int
+        Periods of the drive after which the motion repeats, zero where it does not. []
     vibration_amplitude : float
-        Vibration of the tip, zero to peak. [m]
+        Vibration of the tip, zero to peak; the mean over periods of the drive where these differ. [m]
+    lowest_amplitude, highest_amplitude : float or None
+        The least and the largest of any period, where these differ. [m]
+    rival_amplitude : float or None
+        Vibration of the tip in another steady motion under the same drive, where one was found. [m]
+    beat_frequency : float or None
+        Frequency of a slow motion of the tip beside the vibration. [Hz]
+    beat_amplitude : float or None
+        Its amplitude. [m]
     mean_displacement : float
         Rise of the tip from rest under the load. [m]
     lost_contact_share : float
-        Share of the period in which the contact carries less than a hundredth of the load. []
+        Share of the time in which the contact carries less than a hundredth of the load. []
     friction_force : float
         Mean friction force with vibration. [N]
     friction_coefficient : float
@@ -50,6 +57,8 @@ class Simulation:
         One minus that ratio. []
     closure : str
         Name of the closure that gave friction.
+    wear_closure : str
+        Name of the closure that gave wear: that of friction where wear has one of its name.
     wear_rate : float
         Volume of the softer body per sliding distance with vibration, by the cube over the separating half period. [m2]
     actuator_power : float
@@ -58,11 +67,20 @@ class Simulation:
         Mean electrical power that stays in stack, dampers and contact. [W]
     doubts : tuple of str
         What speaks against trusting the numbers, each in one line.
+    motion : GapMotion
+        One repetition of the tip's motion, or a stretch of one that does not repeat.
     """
 
     status: str
     reason: str
+    attractor: str
+    repetition_periods: int
     vibration_amplitude: float
+    lowest_amplitude: float | None
+    highest_amplitude: float | None
+    rival_amplitude: float | None
+    beat_frequency: float | None
+    beat_amplitude: float | None
     mean_displacement: float
     lost_contact_share: float
     friction_force: float
@@ -72,18 +90,20 @@ class Simulation:
     friction_reduction: float
     closure: str
     wear_rate: float
+    wear_closure: str
     actuator_power: float
     dissipated_power: float
     doubts: tuple[str, ...]
+    motion: GapMotion
 
 
 def simulate(rig: Rig) -> Simulation:
-    """Return the steady vibration of a rig under its drive, and friction and wear under it.
+    """Return the steady motion of a rig under its drive, and friction and wear under it.
 
     Parameters
     ----------
     rig : Rig
-        With a stack, a structure and a drive voltage, its heights exponential.
+        With a stack, a structure and a drive voltage.
 
     Returns
     -------
@@ -92,32 +112,35 @@ def simulate(rig: Rig) -> Simulation:
     Raises
     ------
     InvalidInput
-        If the rig has no structure, its heights are not exponential, its voltage goes beyond the stack's limits, or no
-        steady vibration was found.
+        If the rig has no structure, its voltage goes beyond the stack's limits, or no
+        motion was found.
+
+    Notes
+    -----
+    A vibration that repeats with the drive is found by harmonic balance; where that is unstable, not the only one or
+    not found, the rig is marched from rest, as `steady_motion` says.
     """
-    structure, drive = require_structure(rig), require_drive(rig)
+    require_structure(rig)
+    drive = require_drive(rig)
+    assert rig.stack is not None
     gap = float(separation(rig.contact, normal_load=rig.normal_load))
-    states = steady_state(
-        structure,
-        gap_law_of(rig),
-        normal_load=rig.normal_load,
-        frequency=drive.frequency,
-        voltage_harmonics=_voltage_harmonics(drive),
-        voltage_offset=drive.voltage_offset,
-        separation=gap,
-    )
-    if states.status == Status.NOT_CONVERGED:
-        raise InvalidInput(f"{rig.title}: {states.reason(())}")
-    moving = _gap_motion(rig, states, drive)
-    ratio = _friction_ratio(rig, moving)
-    wear_ratio = float(WEAR_CLOSURES["separating_half_period"](rig.contact, moving))
+    moving = steady_motion(rig)
+    ratio = _mean(partial(friction_ratio, rig), moving.motions)
+    wear_ratio = _mean(partial(wear_rate_ratio, rig), moving.motions)
     intrinsic = rig.friction_coefficient * rig.normal_load
     return Simulation(
-        status=Status(int(states.status)).name.lower(),
-        reason=states.reason(()),
-        vibration_amplitude=float(states.vibration_amplitude),
-        mean_displacement=float(states.mean_displacement),
-        lost_contact_share=float(states.lost_contact_share),
+        status=moving.status,
+        reason=moving.reason,
+        attractor=moving.attractor,
+        repetition_periods=moving.repetition_periods,
+        vibration_amplitude=moving.vibration_amplitude,
+        lowest_amplitude=moving.lowest_amplitude if moving.repetition_periods != 1 else None,
+        highest_amplitude=moving.highest_amplitude if moving.repetition_periods != 1 else None,
+        rival_amplitude=moving.rival_amplitude,
+        beat_frequency=moving.beat_frequency,
+        beat_amplitude=moving.beat_amplitude,
+        mean_displacement=moving.mean_displacement,
+        lost_contact_share=moving.lost_contact_share,
         friction_force=ratio * intrinsic,
         friction_coefficient=ratio * rig.friction_coefficient,
         intrinsic_friction_force=intrinsic,
@@ -125,63 +148,31 @@ def simulate(rig: Rig) -> Simulation:
         friction_reduction=1 - ratio,
         closure=rig.closure,
         wear_rate=wear_ratio * float(cube_wear_rate(rig.contact, normal_load=rig.normal_load)),
-        actuator_power=_actuator_power(rig, drive),
-        dissipated_power=float(states.dissipated_power),
-        doubts=(*contact_doubts(rig.contact, separation=gap), *_doubts(rig, states, structure, drive)),
+        wear_closure=wear_closure(rig),
+        actuator_power=float(amplifier_power(drive, capacitance=rig.stack.free_capacitance)),
+        dissipated_power=moving.dissipated_power,
+        doubts=(*contact_doubts(rig.contact, separation=gap), *_doubts(rig, moving, drive)),
+        motion=moving.motions[0],
     )
 
 
-def _friction_ratio(rig: Rig, moving: GapMotion) -> float:
-    closure = FRICTION_CLOSURES[rig.closure]
-    if rig.closure == "coupled":  # the one closure whose limit is the friction itself
-        closure = partial(closure, friction_coefficient=rig.friction_coefficient)
-    return float(closure(rig.contact, moving, sliding_speed=rig.sliding_speed))
+def _mean(of: Callable[[GapMotion], float], motions: tuple[GapMotion, ...]) -> float:
+    """Return the mean over time, which stretches of a motion share unequally."""
+    return float(np.average([of(motion) for motion in motions], weights=[1 / motion.frequency for motion in motions]))
 
 
-def _voltage_harmonics(drive: Drive) -> np.ndarray[tuple[int], np.dtype[np.complex128]]:
-    assert drive.voltage_peak_to_peak is not None
-    count = 1 if drive.waveform == "sine" else _VOLTAGE_HARMONICS
-    return 2 * drive.voltage_peak_to_peak * harmonics(WAVEFORMS[drive.waveform], count)[1:]
-
-
-def _gap_motion(rig: Rig, states: SteadyStates, drive: Drive) -> GapMotion:
-    period = motion(states, (), samples=_SAMPLES)
-    return GapMotion(
-        displacement=period.displacement,
-        normal_force=period.normal_force,
-        frequency=drive.frequency,
-        normal_load=rig.normal_load,
-    )
-
-
-def _actuator_power(rig: Rig, drive: Drive) -> float:
+def _doubts(rig: Rig, moving: SteadyMotion, drive: Drive) -> tuple[str, ...]:
     assert rig.stack is not None
     assert drive.voltage_peak_to_peak is not None
-    return float(
-        driver_power(
-            capacitance=rig.stack.free_capacitance,
-            voltage_maximum=abs(drive.voltage_offset) + drive.voltage_peak_to_peak / 2,
-            voltage_peak_to_peak=drive.voltage_peak_to_peak,
-            frequency=drive.frequency,
-        )
-    )
-
-
-def _doubts(rig: Rig, states: SteadyStates, structure: Structure, drive: Drive) -> tuple[str, ...]:
-    assert rig.stack is not None
-    assert drive.voltage_peak_to_peak is not None
-    # the stack's elongation in complex amplitude, from the charge on it: q = C_S V + b.x
-    charge = complex(states.current_harmonics[0]) / (2j * np.pi * drive.frequency)
-    voltage = complex(states.voltage_harmonics[0])
-    elongation = (charge - structure.clamped_capacitance * voltage) / rig.stack.charge_per_elongation
+    voltage = complex(voltage_harmonics(drive)[0])
     doubts = stack_doubts(
         rig.stack,
-        voltage_offset=drive.voltage_offset,
+        voltage_offset=float(sum(voltage_range(drive))) / 2,
         voltage_peak_to_peak=drive.voltage_peak_to_peak,
-        elongation=elongation * abs(voltage) / voltage if voltage else 0.0,
+        elongation=moving.elongation * abs(voltage) / voltage if voltage else 0.0,
         frequency=drive.frequency,
     )
-    if bool(states.gap_closed):
+    if moving.gap_closed:
         doubts = (
             *doubts,
             "the mean planes meet within the period: asperities no longer stand alone; lower the voltage",

@@ -4,11 +4,11 @@ import math
 from dataclasses import dataclass
 
 from sonolube.checks import require_positive
-from sonolube.dynamics import WAVEFORMS
 from sonolube.dynamics.attractor import beat, settling_time
 from sonolube.dynamics.trajectories import Trajectory
 from sonolube.dynamics.transient import march, trajectory
 from sonolube.errors import InvalidInput
+from sonolube.rig.excitation import ramp_of, waveform_of
 from sonolube.rig.record import Rig
 from sonolube.rig.response import gap_law_of, require_drive, require_structure
 
@@ -48,7 +48,7 @@ class StartUp:
 
 
 def start_up(rig: Rig, *, duration: float) -> StartUp:
-    """Return how a rig starts up from rest when its drive is switched on.
+    """Return how a rig starts up from rest when its drive is switched on, at once or by the drive's ramp.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def start_up(rig: Rig, *, duration: float) -> StartUp:
     if not 8 <= periods <= _LONGEST:
         raise InvalidInput(f"duration must be from 8 to {_LONGEST} periods of the drive, got {periods}")
     assert drive.voltage_peak_to_peak is not None
-    waveform, law = WAVEFORMS[drive.waveform], gap_law_of(rig)
+    waveform, ramp, law = waveform_of(drive), ramp_of(drive), gap_law_of(rig)
     window = max(1, periods // _WINDOWS)
     marched = march(
         structure,
@@ -85,6 +85,7 @@ def start_up(rig: Rig, *, duration: float) -> StartUp:
         voltage_peak_to_peak=drive.voltage_peak_to_peak,
         voltage_offset=drive.voltage_offset,
         waveform=waveform,
+        ramp=ramp,
         periods=periods // window * window,
         periods_per_window=window,
     )
@@ -96,6 +97,7 @@ def start_up(rig: Rig, *, duration: float) -> StartUp:
         voltage_peak_to_peak=drive.voltage_peak_to_peak,
         voltage_offset=drive.voltage_offset,
         waveform=waveform,
+        ramp=ramp,
         periods=periods,
     )
     envelope = marched.envelope

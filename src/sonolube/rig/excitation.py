@@ -1,0 +1,118 @@
+"""A rig's drive as dynamics takes it: waveform, harmonics, ramp, extremes and power."""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sonolube.actuator.drive import Drive
+from sonolube.actuator.drive_power import driver_power
+from sonolube.checks import Complexes, Floats, require_non_negative
+from sonolube.dynamics import WAVEFORMS, Sine, StartUpRamp, Waveform, extremes, harmonics, sampled_waveform
+
+_VOLTAGE_HARMONICS = 64  # of a square wave the tip feels the 65th by less than 1e-5 of the first
+
+
+def waveform_of(drive: Drive) -> Waveform:
+    """Return the shape of the drive voltage.
+
+    Raises
+    ------
+    InvalidInput
+        If samples are fewer than two, all equal or not finite.
+    """
+    return WAVEFORMS[drive.waveform] if drive.waveform_samples is None else sampled_waveform(drive.waveform_samples)
+
+
+def ramp_of(drive: Drive) -> StartUpRamp:
+    """Return how the drive is switched on.
+
+    Raises
+    ------
+    UnknownName
+        If its shape is unknown.
+    """
+    return StartUpRamp(duration=drive.ramp_duration, shape=drive.ramp_shape)
+
+
+def voltage_harmonics(drive: Drive, *, voltage_peak_to_peak: ArrayLike | None = None) -> Complexes:
+    """Return the harmonics of drives of one waveform, V = offset + Re sum V_k exp(2 pi i k f t), in V.
+
+    Parameters
+    ----------
+    drive : Drive
+    voltage_peak_to_peak : array_like, optional
+        Swings instead of the drive's own. [V]
+
+    Returns
+    -------
+    ndarray of complex, shape of `voltage_peak_to_peak` with the harmonics appended
+    """
+    waveform = waveform_of(drive)
+    count = 1 if isinstance(waveform, Sine) else _VOLTAGE_HARMONICS
+    return 2 * _swing(drive, voltage_peak_to_peak)[..., np.newaxis] * harmonics(waveform, count)[1:]
+
+
+def voltage_range(
+    drive: Drive, *, voltage_peak_to_peak: ArrayLike | None = None, voltage_offset: ArrayLike | None = None
+) -> tuple[Floats, Floats]:
+    """Return the lowest and the highest voltage of drives of one waveform, in V.
+
+    Parameters
+    ----------
+    drive : Drive
+    voltage_peak_to_peak : array_like, optional
+        Swings instead of the drive's own. [V]
+    voltage_offset : array_like, optional
+        Means instead of the drive's own. [V]
+
+    Returns
+    -------
+    pair of ndarray
+    """
+    offset = np.asarray(drive.voltage_offset if voltage_offset is None else voltage_offset, dtype=np.float64)
+    lowest, highest = (offset + _swing(drive, voltage_peak_to_peak) * part for part in extremes(waveform_of(drive)))
+    return lowest, highest
+
+
+def amplifier_power(
+    drive: Drive,
+    *,
+    capacitance: float,
+    voltage_peak_to_peak: ArrayLike | None = None,
+    voltage_offset: ArrayLike | None = None,
+    frequency: ArrayLike | None = None,
+) -> Floats:
+    """Return the power that a linear amplifier supplies, its rail at the drive's highest voltage. [W]
+
+    Parameters
+    ----------
+    drive : Drive
+    capacitance : float
+        Capacitance of the actuator. [F]
+    voltage_peak_to_peak : array_like, optional
+        Swings instead of the drive's own. [V]
+    voltage_offset : array_like, optional
+        Means instead of the drive's own. [V]
+    frequency : array_like, optional
+        Frequencies instead of the drive's own. [Hz]
+
+    Returns
+    -------
+    ndarray, shape of the broadcast arguments
+
+    References
+    ----------
+    .. [1] D 1.9.
+    """
+    lowest, highest = voltage_range(drive, voltage_peak_to_peak=voltage_peak_to_peak, voltage_offset=voltage_offset)
+    return driver_power(
+        capacitance=capacitance,
+        voltage_maximum=np.maximum(np.abs(lowest), np.abs(highest)),
+        voltage_peak_to_peak=_swing(drive, voltage_peak_to_peak),
+        frequency=drive.frequency if frequency is None else frequency,
+    )
+
+
+def _swing(drive: Drive, voltage_peak_to_peak: ArrayLike | None) -> Floats:
+    return require_non_negative(
+        voltage_peak_to_peak=drive.voltage_peak_to_peak or 0.0 if voltage_peak_to_peak is None else voltage_peak_to_peak
+    )

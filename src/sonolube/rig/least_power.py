@@ -1,0 +1,124 @@
+"""The voltage and the power that a friction ratio takes at each drive frequency."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sonolube.checks import Floats, require_positive, require_within
+from sonolube.rig.dataset import gridded
+from sonolube.rig.ensemble import Advance, OperatingPoints, operating_points
+from sonolube.rig.record import Rig
+from sonolube.rig.response import require_drive
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+OUT_OF_REACH = "out_of_reach"
+"""Status of a frequency at which the highest voltage does not bring friction down to the ratio."""
+
+_LOWEST = 1e-4  # of the highest voltage, at which no friction is lost
+_ROUNDS = 40
+_CLOSE = 1e-4  # relative error of the voltage
+
+
+def least_power_study(
+    rig: Rig,
+    *,
+    frequency: ArrayLike,
+    friction_ratio: float,
+    voltage_maximum: float = 200.0,
+    advance: Advance | None = None,
+) -> "xr.Dataset":
+    """Return the voltage that brings friction down to a ratio at each drive frequency, and the power it takes.
+
+    Parameters
+    ----------
+    rig : Rig
+        With a stack, a structure and a drive voltage.
+    frequency : array_like, shape (n,)
+        Frequencies of the drive. [Hz]
+    friction_ratio : float
+        Friction with vibration over friction without, to be had. []
+    voltage_maximum : float
+        Highest swing of the drive to try, peak to peak; the offset goes with it in the rig's own proportion. [V]
+    advance : callable, optional
+        Told how many rounds of the search are done, and of how many at most.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `frequency`; where the ratio is out of reach there are no numbers but a status and a reason.
+
+    Raises
+    ------
+    InvalidInput
+        If the rig has no structure, a frequency or voltage is not positive, or the ratio does not lie between 0 and 1.
+
+    Notes
+    -----
+    By regula falsi (the Illinois variant) on the logarithm of the voltage, to a relative error of 1e-4. Takes friction
+    to fall as the voltage rises; of a closure that lets it rise again, any voltage may be found that gives the ratio.
+
+    References
+    ----------
+    .. [1] D 3.3.5, figure 3.17 (b).
+    """
+    f = np.atleast_1d(require_positive(frequency=frequency))
+    wanted = float(require_within(0.0, 1.0, friction_ratio=friction_ratio))
+    highest = float(require_positive(voltage_maximum=voltage_maximum))
+    top = _points(rig, f, np.full(f.shape, highest))
+    reached = top.friction_ratio <= wanted
+    log_volts = np.full(f.shape, np.log(highest))
+    log_volts[reached] = _search(rig, f[reached], wanted, top.friction_ratio[reached], np.log(highest), advance)
+    found = _points(rig, f, np.exp(log_volts))
+    missed = ~reached & ~top.failed
+    numbers = {
+        name: np.where(reached, getattr(found, name), np.nan)
+        for name in (
+            "voltage_peak_to_peak",
+            "friction_ratio",
+            "vibration_amplitude",
+            "actuator_power",
+            "dissipated_power",
+        )
+    }
+    status, reason = found.status.astype(object), found.reason.astype(object)
+    status[missed] = OUT_OF_REACH
+    reason[missed] = f"out_of_reach: {highest:g} V do not bring friction down so far; drive nearer to a resonance"
+    return gridded(
+        {"status": status.astype(np.str_), "reason": reason.astype(np.str_)} | numbers,
+        axes={"frequency": f},
+        title=f"Voltage and power for a friction ratio of {wanted:g}, {rig.title}",
+        about={"rig": rig.title, "closure": rig.closure},
+    )
+
+
+def _search(rig: Rig, f: Floats, wanted: float, at_top: Floats, top: float, advance: Advance | None) -> Floats:
+    """Return the logarithm of the voltage that gives the ratio at each frequency."""
+    low, high = np.full(f.shape, top + np.log(_LOWEST)), np.full(f.shape, top)
+    above, below = np.full(f.shape, 1.0) - wanted, at_top - wanted
+    last = np.zeros(f.shape)
+    for done in range(_ROUNDS):
+        going = np.flatnonzero(high - low > _CLOSE)
+        if advance is not None:
+            advance(done if going.size else _ROUNDS, _ROUNDS)
+        if not going.size:
+            break
+        span, a, b = high[going] - low[going], above[going], below[going]
+        guess = low[going] + span * np.clip(a / (a - b), _CLOSE / 3, 1 - _CLOSE / 3)
+        miss = _points(rig, f[going], np.exp(guess)).friction_ratio - wanted
+        left = miss > 0
+        low[going], high[going] = np.where(left, guess, low[going]), np.where(left, high[going], guess)
+        # an end that stays twice running counts half
+        above[going] = np.where(left, miss, np.where(last[going] == -1, a / 2, a))
+        below[going] = np.where(left, np.where(last[going] == 1, b / 2, b), miss)
+        last[going] = np.where(left, 1, -1)
+    return high
+
+
+def _points(rig: Rig, f: Floats, volts: Floats) -> OperatingPoints:
+    drive = require_drive(rig)
+    assert drive.voltage_peak_to_peak is not None
+    share = drive.voltage_offset / drive.voltage_peak_to_peak if drive.voltage_peak_to_peak else 0.0
+    return operating_points(rig, frequency=f, voltage_peak_to_peak=volts, voltage_offset=share * volts)

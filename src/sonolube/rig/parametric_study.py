@@ -1,0 +1,312 @@
+"""How voltage, sliding speed, drive frequency, waveform and load act on the friction of a rig, as labelled datasets."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sonolube.checks import Floats, require_non_negative, require_positive
+from sonolube.dynamics import WAVEFORMS, Status, modes
+from sonolube.dynamics.sliding import motion
+from sonolube.errors import InvalidInput
+from sonolube.rig.dataset import gridded
+from sonolube.rig.ensemble import Advance, OperatingPoints, operating_points, steady_states
+from sonolube.rig.record import Rig
+from sonolube.rig.response import require_drive, require_structure, touching_structure
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_GRAVITY = 9.80665  # m/s2
+_PHASES = 128
+_ARM = -1  # place of the loading arm among the coordinates of a chain
+_POINT = (
+    "status",
+    "reason",
+    "friction_ratio",
+    "friction_reduction",
+    "friction_force",
+    "vibration_amplitude",
+    "vibration_velocity",
+    "mean_displacement",
+    "lost_contact_share",
+    "actuator_power",
+    "dissipated_power",
+)
+
+
+def voltage_study(rig: Rig, *, voltage_peak_to_peak: ArrayLike, advance: Advance | None = None) -> "xr.Dataset":
+    """Return the rig over drive voltages: its points, and one period of its contact at each.
+
+    Parameters
+    ----------
+    rig : Rig
+        With a stack, a structure and a drive voltage.
+    voltage_peak_to_peak : array_like, shape (n,)
+        Swings of the drive; its offset goes with them in the rig's own proportion. [V]
+    advance : callable, optional
+        Told how many points are done, and of how many.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `voltage_peak_to_peak`, and `phase` where a period is shown.
+
+    Raises
+    ------
+    InvalidInput
+        If the rig has no structure, or a voltage has no meaning.
+
+    References
+    ----------
+    .. [1] D 3.3.5, figure 3.15.
+    """
+    volts = np.atleast_1d(require_non_negative(voltage_peak_to_peak=voltage_peak_to_peak))
+    offset = _offset(rig, volts)
+    points = operating_points(rig, voltage_peak_to_peak=volts, voltage_offset=offset, advance=advance)
+    phase = 2 * np.pi * np.arange(_PHASES) / _PHASES
+    displacement, normal_force = _periods(rig, volts, offset)
+    return gridded(
+        _values(points) | {"displacement": displacement, "normal_force": normal_force},
+        axes={"voltage_peak_to_peak": volts, "phase": phase},
+        title=f"Friction over drive voltage, {rig.title}",
+        about=_about(rig),
+    )
+
+
+def speed_study(
+    rig: Rig, *, sliding_speed: ArrayLike, voltage_peak_to_peak: ArrayLike | None = None, advance: Advance | None = None
+) -> "xr.Dataset":
+    """Return the rig over sliding speeds, at some drive voltages.
+
+    Parameters
+    ----------
+    rig : Rig
+        With a stack, a structure and a drive voltage.
+    sliding_speed : array_like, shape (n,)
+        Macroscopic relative speeds. [m/s]
+    voltage_peak_to_peak : array_like, shape (m,), optional
+        Swings of the drive, the rig's own where absent; its offset goes with them in proportion. [V]
+    advance : callable, optional
+        Told how many vibrations are done, and of how many.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `voltage_peak_to_peak` and `sliding_speed`; `velocity_ratio` is sliding speed over the highest speed of the
+        vibration.
+
+    Raises
+    ------
+    InvalidInput
+        If the rig has no structure, or a speed or voltage is not positive.
+
+    References
+    ----------
+    .. [1] D 3.50, figure 3.16.
+    """
+    volts = _volts(rig, voltage_peak_to_peak)
+    speeds = np.atleast_1d(require_positive(sliding_speed=sliding_speed))
+    points = operating_points(
+        rig,
+        voltage_peak_to_peak=volts[:, np.newaxis],
+        voltage_offset=_offset(rig, volts)[:, np.newaxis],
+        sliding_speed=speeds,
+        advance=advance,
+    )
+    return gridded(
+        _values(points) | {"velocity_ratio": speeds / points.vibration_velocity},
+        axes={"voltage_peak_to_peak": volts, "sliding_speed": speeds},
+        title=f"Friction over sliding speed, {rig.title}",
+        about=_about(rig),
+    )
+
+
+def frequency_study(
+    rig: Rig, *, frequency: ArrayLike, voltage_peak_to_peak: ArrayLike | None = None, advance: Advance | None = None
+) -> "xr.Dataset":
+    """Return the rig over drive frequencies, at some drive voltages.
+
+    Parameters
+    ----------
+    rig : Rig
+        With a stack, a structure and a drive voltage.
+    frequency : array_like, shape (n,)
+        Frequencies of the drive, such as `frequency_grid` gives. [Hz]
+    voltage_peak_to_peak : array_like, shape (m,), optional
+        Swings of the drive, the rig's own where absent; its offset goes with them in proportion. [V]
+    advance : callable, optional
+        Told how many points are done, and of how many.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `voltage_peak_to_peak` and `frequency`.
+
+    Raises
+    ------
+    InvalidInput
+        If the rig has no structure, or a frequency or voltage is not positive.
+
+    References
+    ----------
+    .. [1] D 3.3.5, figure 3.17.
+    """
+    volts = _volts(rig, voltage_peak_to_peak)
+    f = np.atleast_1d(require_positive(frequency=frequency))
+    points = operating_points(
+        rig,
+        voltage_peak_to_peak=volts[:, np.newaxis],
+        voltage_offset=_offset(rig, volts)[:, np.newaxis],
+        frequency=f,
+        advance=advance,
+    )
+    return gridded(
+        _values(points),
+        axes={"voltage_peak_to_peak": volts, "frequency": f},
+        title=f"Friction over drive frequency, {rig.title}",
+        about=_about(rig),
+    )
+
+
+def waveform_study(rig: Rig, *, advance: Advance | None = None) -> "xr.Dataset":
+    """Return the rig under each named waveform at its own voltage, and one period of its contact under each.
+
+    Parameters
+    ----------
+    rig : Rig
+        With a stack, a structure and a drive voltage.
+    advance : callable, optional
+        Told how many waveforms are done, and of how many.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `waveform`, and `phase` where a period is shown.
+
+    Raises
+    ------
+    InvalidInput
+        If the rig has no structure.
+
+    References
+    ----------
+    .. [1] D 3.3.5, figure 3.18.
+    """
+    drive = require_drive(rig)
+    assert drive.voltage_peak_to_peak is not None
+    shaped = [replace(rig, drive=replace(drive, waveform=name)) for name in WAVEFORMS]
+    points = _one_by_one(shaped, operating_points, advance)
+    swing, offset = np.array([drive.voltage_peak_to_peak]), np.array([drive.voltage_offset])
+    periods = [_periods(one, swing, offset) for one in shaped]
+    displacement, normal_force = (np.concatenate(rows) for rows in zip(*periods, strict=True))
+    return gridded(
+        points | {"displacement": displacement, "normal_force": normal_force},
+        axes={"waveform": np.array(list(WAVEFORMS)), "phase": 2 * np.pi * np.arange(_PHASES) / _PHASES},
+        title=f"Friction under waveforms of equal swing, {rig.title}",
+        about=_about(rig),
+    )
+
+
+def load_study(rig: Rig, *, normal_load: ArrayLike, advance: Advance | None = None) -> "xr.Dataset":
+    """Return the rig over normal loads, which are weights that hang on the loading arm.
+
+    Parameters
+    ----------
+    rig : Rig
+        With a stack, a structure whose last coordinate is the loading arm, and a drive voltage, its heights
+        exponential.
+    normal_load : array_like, shape (n,)
+        Forces pressing the bodies together. [N]
+    advance : callable, optional
+        Told how many loads are done, and of how many.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `normal_load`; `natural_frequency` is that of the slowest vibration of the rig on its contact, the arm's.
+
+    Raises
+    ------
+    InvalidInput
+        If the rig has no structure, a load is not positive, or leaves no mass on the arm.
+
+    Notes
+    -----
+    A load that differs from the rig's own adds to the mass of the arm, or takes from it, what weighs the difference.
+
+    References
+    ----------
+    .. [1] D 4.1.2, figures 4.7 and 4.8.
+    """
+    loads = np.atleast_1d(require_positive(normal_load=normal_load))
+    loaded = [_weighted(rig, float(load)) for load in loads]
+    points = _one_by_one(loaded, operating_points, advance)
+    return gridded(
+        points | {"natural_frequency": np.array([_slowest(one) for one in loaded])},
+        axes={"normal_load": loads},
+        title=f"Friction over normal load, {rig.title}",
+        about=_about(rig),
+    )
+
+
+def _values(points: OperatingPoints) -> dict[str, NDArray[Any]]:
+    return {name: getattr(points, name) for name in _POINT}
+
+
+def _one_by_one(
+    rigs: list[Rig], study: Callable[[Rig], OperatingPoints], advance: Advance | None
+) -> dict[str, NDArray[Any]]:
+    every = []
+    for done, rig in enumerate(rigs, start=1):
+        every.append(_values(study(rig)))
+        if advance is not None:
+            advance(done, len(rigs))
+    return {name: np.stack([one[name] for one in every]) for name in _POINT}
+
+
+def _volts(rig: Rig, voltage: ArrayLike | None) -> Floats:
+    own = require_drive(rig).voltage_peak_to_peak
+    assert own is not None
+    return np.atleast_1d(require_positive(voltage_peak_to_peak=own if voltage is None else voltage))
+
+
+def _offset(rig: Rig, volts: Floats) -> Floats:
+    """Return the offset that stands to each voltage as the rig's own to its own."""
+    drive = require_drive(rig)
+    if not drive.voltage_peak_to_peak:
+        return np.full(volts.shape, drive.voltage_offset)
+    return volts * drive.voltage_offset / drive.voltage_peak_to_peak
+
+
+def _periods(rig: Rig, volts: Floats, offset: Floats) -> tuple[Floats, Floats]:
+    """Return displacement and normal force of the contact over a period at each voltage, NaN where none was found."""
+    states = steady_states(rig, voltage_peak_to_peak=volts, voltage_offset=offset)
+    displacement, normal_force = np.full((2, volts.size, _PHASES), np.nan)
+    for point in np.flatnonzero(states.status != Status.NOT_CONVERGED):
+        period = motion(states, int(point), samples=_PHASES)
+        displacement[point], normal_force[point] = period.displacement, period.normal_force
+    return displacement, normal_force
+
+
+def _weighted(rig: Rig, load: float) -> Rig:
+    structure = require_structure(rig)
+    mass = structure.mass_matrix.copy()
+    mass[_ARM, _ARM] += (load - rig.normal_load) / _GRAVITY
+    if mass[_ARM, _ARM] <= 0:
+        raise InvalidInput(
+            f"normal_load {load:g} N leaves no mass on the loading arm: it is {rig.normal_load - load:.3g} N less than"
+            " the rig's own"
+        )
+    return replace(rig, normal_load=load, structure=replace(structure, mass_matrix=mass))
+
+
+def _slowest(rig: Rig) -> float:
+    natural = modes(touching_structure(rig))
+    return float(natural.natural_frequency[~natural.rigid].min())
+
+
+def _about(rig: Rig) -> Mapping[str, str]:
+    return {"rig": rig.title, "closure": rig.closure}

@@ -1,0 +1,132 @@
+"""Many operating points at once: what linear theory and single points say of them, and a status for each."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pytest import approx
+from scipy.special import ellipk
+
+from sonolube.dynamics import drive_receptance
+from sonolube.errors import InvalidInput
+from sonolube.rig import Rig, operating_points, read_rig, simulate, touching_structure
+
+RIGS = Path(__file__).parents[2] / "examples" / "rigs"
+TRIBOMETER = read_rig(RIGS / "tribometer.toml")
+
+
+def with_closure(name: str) -> Rig:
+    return replace(TRIBOMETER, closure=name)
+
+
+def test_small_vibrations_are_those_of_linear_theory_at_every_frequency() -> None:
+    frequency = np.geomspace(2e3, 90e3, 25)
+    amplitude = operating_points(TRIBOMETER, voltage_peak_to_peak=0.01, frequency=frequency).vibration_amplitude
+    assert amplitude == approx(np.abs(drive_receptance(touching_structure(TRIBOMETER), frequency=frequency)) * 0.005)
+
+
+def test_the_amplitude_is_proportional_to_small_voltages() -> None:
+    volts = np.array([0.01, 0.02, 0.05])
+    amplitude = operating_points(TRIBOMETER, voltage_peak_to_peak=volts).vibration_amplitude
+    assert amplitude / volts == approx(np.full(3, amplitude[0] / volts[0]), rel=1e-6)
+
+
+def test_the_kinematic_closure_is_the_elliptic_integral_of_a_sine() -> None:
+    # mean of v_r/sqrt(v_r^2 + (w a cos)^2) is 2/pi K(m)/sqrt(1 + q^2), q = w a/v_r, m = q^2/(1 + q^2); of 2 V the
+    # vibration is a sine to 1e-4
+    speeds = np.array([1e-3, 5e-3, 20e-3, 100e-3])
+    points = operating_points(with_closure("kinematic"), voltage_peak_to_peak=2.0, sliding_speed=speeds)
+    q = 2 * np.pi * 22e3 * points.vibration_amplitude / speeds
+    expected = 2 / np.pi * ellipk(q**2 / (1 + q**2)) / np.sqrt(1 + q**2)
+    assert points.friction_ratio == approx(expected, rel=1e-3)
+
+
+@pytest.mark.parametrize("closure", ["kinematic", "stick_slip"])
+def test_fast_sliding_feels_no_vibration(closure: str) -> None:
+    assert operating_points(with_closure(closure), sliding_speed=100.0).friction_ratio == approx(1, abs=1e-4)
+
+
+def test_the_peak_velocity_is_that_of_the_sine() -> None:
+    point = operating_points(TRIBOMETER)
+    assert point.vibration_velocity == approx(2 * np.pi * 22e3 * point.vibration_amplitude, rel=2e-3)
+
+
+def test_the_amplifiers_power_is_that_of_table_4_1() -> None:
+    volts = np.array([5.1, 10.3, 15.5, 20.7, 25.9])
+    points = operating_points(TRIBOMETER, voltage_peak_to_peak=volts, voltage_offset=volts / 2)
+    assert points.actuator_power == approx([0.21, 0.84, 1.9, 3.39, 5.31], abs=0.005)
+
+
+def test_what_stays_in_the_rig_is_what_its_dampers_take() -> None:
+    # the stack's force in phase with its velocity ends in the dampers; at resonance the tip's takes c w^2 a^2/2 = 42 W
+    point = operating_points(TRIBOMETER)
+    taken = 702 * (2 * np.pi * 22e3 * point.vibration_amplitude) ** 2 / 2
+    assert taken < point.dissipated_power < 1.1 * taken
+
+
+@pytest.mark.parametrize("closure", ["stick_slip", "kinematic", "coupled"])
+def test_a_batch_is_its_single_points(closure: str) -> None:
+    rig = with_closure(closure)
+    volts, speeds = np.array([[10.0], [60.0]]), np.array([5e-3, 87e-3])
+    batch = operating_points(rig, voltage_peak_to_peak=volts, sliding_speed=speeds)
+    assert rig.drive is not None
+    for row, column in np.ndindex(2, 2):
+        one = replace(
+            rig,
+            drive=replace(rig.drive, voltage_peak_to_peak=float(volts[row, 0])),
+            sliding_speed=float(speeds[column]),
+        )
+        alone = simulate(one)
+        for name in ("friction_ratio", "friction_force", "vibration_amplitude", "dissipated_power", "actuator_power"):
+            assert getattr(batch, name)[row, column] == approx(getattr(alone, name), rel=1e-5), name
+        assert batch.status[row, column] == alone.status
+
+
+def test_loads_and_frequencies_keep_their_order() -> None:
+    frequency, load = np.array([23e3, 21e3, 22e3]), np.array([[3.0], [1.0]])
+    batch = operating_points(TRIBOMETER, frequency=frequency, normal_load=load)
+    assert batch.vibration_amplitude.argmax(axis=1).tolist() == [2, 2]
+    assert batch.friction_force == approx(batch.friction_ratio * TRIBOMETER.friction_coefficient * load)
+
+
+def test_one_impossible_point_does_not_spoil_the_others() -> None:
+    assert TRIBOMETER.stack is not None
+    weak = replace(TRIBOMETER, stack=replace(TRIBOMETER.stack, highest_voltage=100.0))
+    points = operating_points(weak, voltage_peak_to_peak=[28.0, 400.0], normal_load=[[3.0], [1e9]])
+    assert points.status.tolist() == [["periodic", "refused"], ["refused", "refused"]]
+    assert points.failed.tolist() == [[False, True], [True, True]]
+    assert points.reason[0, 1] == "the drive goes up to 214 V; the stack bears no more than 100 V"
+    assert "leaves no separation" in points.reason[1, 0]
+
+
+def test_where_no_point_is_possible_each_says_why() -> None:
+    points = operating_points(TRIBOMETER, normal_load=[1e8, 1e9])
+    assert points.status.tolist() == ["refused", "refused"]
+
+
+def test_standstill_among_speeds_says_why_it_has_no_friction() -> None:
+    points = operating_points(TRIBOMETER, sliding_speed=[0.0, 20.3e-3])
+    assert points.status.tolist() == ["refused", "periodic"]
+    assert "sliding_speed must be positive" in points.reason[0]
+    assert points.friction_ratio[1] == approx(simulate(TRIBOMETER).friction_ratio)
+
+
+def test_progress_counts_each_vibration_once() -> None:
+    told: list[tuple[int, int]] = []
+    operating_points(
+        TRIBOMETER,
+        voltage_peak_to_peak=[[10.0], [20.0]],
+        sliding_speed=[0.01, 0.02, 0.03],
+        advance=lambda done, total: told.append((done, total)),
+    )
+    assert told == [(1, 2), (2, 2)]
+
+
+def test_what_has_no_meaning_is_refused_by_name() -> None:
+    with pytest.raises(InvalidInput, match=r"normal_load must be positive, got -1\.0 N"):
+        operating_points(TRIBOMETER, normal_load=-1.0)
+    with pytest.raises(InvalidInput, match="matching shapes"):
+        operating_points(TRIBOMETER, frequency=[1e3, 2e3], normal_load=[1.0, 2.0, 3.0])
+    with pytest.raises(InvalidInput, match="stack and structure are missing"):
+        operating_points(read_rig(RIGS / "collar.toml"))

@@ -1,0 +1,72 @@
+"""Heat and lubrication of a rig from its file."""
+
+from pathlib import Path
+
+import pytest
+from pytest import approx, raises
+
+from sonolube.errors import InvalidInput, MissingProperty
+from sonolube.friction import BoundaryLubricant
+from sonolube.materials import material
+from sonolube.rig import (
+    HeatPoint,
+    Rig,
+    heat_point,
+    read_rig,
+    regime_map,
+    regime_point,
+    thermal_solid,
+    wear_of_materials,
+)
+
+RIG = Path(__file__).parents[2] / "examples" / "rigs" / "tribometer.toml"
+LUBRICANT = BoundaryLubricant(film_coefficient=0.25, full_asperity_pressure=10e6)
+
+
+def heat_of(rig: Rig, *, vibration_heat_rate: float = 0.0) -> HeatPoint:
+    return heat_point(
+        rig,
+        pin=thermal_solid("stainless_steel_316"),
+        disc=thermal_solid("aluminium_2024"),
+        heat_capacity=1.5,
+        thermal_conductance=0.05,
+        duration=50.0,
+        vibration_heat_rate=vibration_heat_rate,
+    )
+
+
+def test_without_heat_of_vibration_a_rig_cools_as_much_as_its_friction_falls() -> None:
+    found = heat_of(read_rig(RIG))
+    assert found.temperature_rise_ratio == approx(found.friction_ratio)
+    assert found.frictional_heat_rate == approx(found.friction_ratio * 0.341 * 3 * 0.0203)
+
+
+def test_heat_of_vibration_comes_on_top() -> None:
+    rig = read_rig(RIG)
+    without, with_heat = (heat_of(rig, vibration_heat_rate=q) for q in (0.0, 0.02))
+    assert with_heat.temperature_rise / without.temperature_rise == approx(1 + 0.02 / without.frictional_heat_rate)
+    assert len(without.doubts) == len(with_heat.doubts) + 1
+
+
+def test_a_rig_at_rest_has_no_heat_of_friction() -> None:
+    with raises(InvalidInput, match=r"sliding\.sliding_speed must be positive"):
+        heat_of(read_rig(RIG, changes=["sliding.sliding_speed=0m/s"]))
+
+
+def test_the_map_holds_the_best_of_the_point_in_its_middle() -> None:
+    rig = read_rig(RIG)
+    about = regime_map(rig, lubricant=LUBRICANT)
+    middle = about.best.shape[0] // 2, about.best.shape[1] // 2
+    assert about.sliding_speed[middle[1]] == approx(rig.sliding_speed)
+    assert about.best[middle] == regime_point(rig, lubricant=LUBRICANT).best == "ultrasonic"
+
+
+def test_a_material_without_a_structure_is_refused_by_name() -> None:
+    with raises(MissingProperty, match="stainless_steel_304 has no crystal_structure"):
+        wear_of_materials(material("stainless_steel_304"), material("m50"))
+
+
+@pytest.mark.parametrize("name", ["uncoated_steel", "powder_coating"])
+def test_a_material_without_thermal_properties_is_refused(name: str) -> None:
+    with raises(MissingProperty, match="no thermal_conductivity"):
+        thermal_solid(name)
