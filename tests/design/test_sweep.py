@@ -1,0 +1,194 @@
+"""Sweeps: the points of single computations, whatever the order, the chunks and the interruptions."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from pytest import approx, raises
+
+from sonolube.design import SweepPlan, grid_plan, latin_hypercube_plan, list_plan, sweep
+from sonolube.errors import InvalidInput
+from sonolube.rig import operating_points, read_rig
+
+RIG_FILE = Path(__file__).parents[2] / "examples" / "rigs" / "tribometer.toml"
+VOLTS, SPEEDS = "drive.voltage_peak_to_peak", "sliding.sliding_speed"
+
+
+def small_plan() -> SweepPlan:
+    return grid_plan(
+        RIG_FILE,
+        over={
+            SPEEDS: np.geomspace(5e-3, 0.3, 7),
+            "contact.roughness.rms_height": [5e-6, 6e-6],
+            VOLTS: np.linspace(2, 28, 5),
+        },
+    )
+
+
+def test_a_grid_is_its_single_points() -> None:
+    found = sweep(small_plan())
+    assert dict(found.sizes) == {
+        "rms_height": 2,
+        "voltage_peak_to_peak": 5,
+        "sliding_speed": 7,
+        "reasons": found.sizes["reasons"],
+    }
+    volts, speeds = found["voltage_peak_to_peak"].values, found["sliding_speed"].values
+    for height in (5e-6, 6e-6):
+        rig = read_rig(RIG_FILE, changes=[f"contact.roughness.rms_height={height} m"])
+        known = operating_points(rig, voltage_peak_to_peak=volts[:, np.newaxis], sliding_speed=speeds)
+        rows = found.sel(rms_height=height)
+        for name in ("vibration_amplitude", "vibration_velocity", "actuator_power", "dissipated_power"):
+            assert rows[name].values == approx(getattr(known, name), rel=1e-4), name
+        assert rows["friction_ratio"].values == approx(known.friction_ratio, abs=1e-4)
+
+
+def test_a_closure_other_than_stick_slip_is_swept_too() -> None:
+    plan = grid_plan(RIG_FILE, over={"friction.closure": ["stick_slip", "kinematic"], SPEEDS: [0.02, 0.2]})
+    found = sweep(plan)["friction_ratio"]
+    for name in ("stick_slip", "kinematic"):
+        rig = read_rig(RIG_FILE, changes=[f"friction.closure={name}"])
+        known = operating_points(rig, sliding_speed=[0.02, 0.2]).friction_ratio
+        assert found.sel(closure=name).values == approx(known, abs=1e-4)
+
+
+def test_a_point_that_cannot_be_had_keeps_its_reason_and_spoils_no_other() -> None:
+    plan = list_plan(
+        RIG_FILE,
+        over={
+            "contact.roughness.rms_height": [6e-6, -1.0, 6e-6, 6e-6],
+            "contact.normal_load": [3.0, 3.0, 1e9, 3.0],
+            SPEEDS: [0.02, 0.02, 0.02, 0.0],
+        },
+    )
+    found = sweep(plan)
+    names = found["status"].attrs["flag_meanings"].split()
+    assert [names[code] for code in found["status"].values] == ["periodic", "refused", "refused", "refused"]
+    reasons = found["reason_text"].values[found["reason"].values]
+    assert "rms_height must be positive" in reasons[1]
+    assert "leaves no separation" in reasons[2]
+    assert "sliding_speed must be positive" in reasons[3]
+    assert np.isnan(found["friction_ratio"].values).tolist() == [False, True, True, True]
+
+
+def test_a_latin_hypercube_meets_every_part_of_each_range_once() -> None:
+    over = {VOLTS: (2.0, 28.0), SPEEDS: (0.01, 0.2)}
+    drawn = latin_hypercube_plan(RIG_FILE, over=over, points=20, seed=3)
+    for key, (low, high) in over.items():
+        parts = np.floor(20 * (drawn.values[key] - low) / (high - low)).astype(int)
+        assert sorted(parts) == list(range(20))
+    assert drawn.digest == latin_hypercube_plan(RIG_FILE, over=over, points=20, seed=3).digest
+    assert drawn.digest != latin_hypercube_plan(RIG_FILE, over=over, points=20, seed=4).digest
+
+
+@pytest.mark.parametrize("workers", [1, 3])
+def test_threads_and_files_change_no_bit(workers: int, tmp_path: Path) -> None:
+    in_memory = sweep(small_plan(), chunk_points=11)
+    in_file = sweep(small_plan(), folder=tmp_path, chunk_points=11, workers=workers)
+    codes = ["reason", "reason_text"]
+    assert in_file.drop_vars(codes).identical(in_memory.drop_vars(codes))
+    texts = (found["reason_text"].values[found["reason"].values] for found in (in_memory, in_file))
+    assert np.array_equal(*texts)
+
+
+def test_the_size_of_chunks_does_not_matter() -> None:
+    for name, known in sweep(small_plan()).drop_vars(["status", "reason", "reason_text"]).items():
+        assert sweep(small_plan(), chunk_points=11)[name].values == approx(known.values, rel=1e-6, abs=1e-9), name
+
+
+def test_a_second_run_does_only_what_is_missing(tmp_path: Path) -> None:
+    first = sweep(small_plan(), folder=tmp_path, chunk_points=11).load()
+    first.close()
+    chunks = sorted(tmp_path.glob("chunk-*.npz"))
+    times = {path: path.stat().st_mtime_ns for path in chunks}
+    damaged, lost = chunks[2], chunks[4]
+    damaged.write_bytes(damaged.read_bytes()[:-9] + b"different")
+    lost.unlink()
+    told: list[tuple[int, int]] = []
+    second = sweep(small_plan(), folder=tmp_path, chunk_points=11, advance=lambda *far: told.append(far)).load()
+    assert second.identical(first)
+    assert told == [(48, 70), (59, 70), (70, 70)]
+    assert sorted(tmp_path.glob("chunk-*.npz")) == chunks
+    assert {path for path in chunks if path.stat().st_mtime_ns != times[path]} == {damaged, lost}
+
+
+def test_a_sweep_killed_on_its_way_ends_as_if_it_had_not_been(tmp_path: Path) -> None:
+    program = (
+        "import sys, time, numpy as np\n"
+        "from sonolube.design import grid_plan, sweep\n"
+        f"over = {{{VOLTS!r}: np.linspace(2, 28, 40), {SPEEDS!r}: np.geomspace(5e-3, 0.3, 50)}}\n"
+        f"plan = grid_plan({str(RIG_FILE)!r}, over=over)\n"
+        "sweep(plan, folder=sys.argv[1], chunk_points=50, advance=lambda done, of: time.sleep(0.05))\n"
+    )
+    killed, whole = tmp_path / "killed", tmp_path / "whole"
+    run = subprocess.Popen([sys.executable, "-c", program, str(killed)])
+    deadline = time.monotonic() + 300
+    while len(list(killed.glob("chunk-*.npz"))) < 5 and time.monotonic() < deadline:
+        time.sleep(0.01)
+    os.kill(run.pid, signal.SIGKILL)
+    run.wait()
+    kept = len(list(killed.glob("chunk-*.npz")))
+    assert 5 <= kept < 40
+    assert not (killed / "sweep.nc").exists()
+    plan = grid_plan(RIG_FILE, over={VOLTS: np.linspace(2, 28, 40), SPEEDS: np.geomspace(5e-3, 0.3, 50)})
+    done: list[int] = []
+    again = sweep(plan, folder=killed, chunk_points=50, advance=lambda far, of: done.append(far))
+    assert done[0] == 50 * kept
+    assert again.identical(sweep(plan, folder=whole, chunk_points=50))
+
+
+def test_the_file_of_a_folder_reads_as_any_other(tmp_path: Path) -> None:
+    made = sweep(small_plan(), folder=tmp_path)
+    made.close()
+    with xr.open_dataset(tmp_path / "sweep.nc") as found:
+        assert found["friction_ratio"].attrs["units"] == "1"
+        assert found["vibration_amplitude"].attrs["units"] == "m"
+        assert found["rms_height"].attrs["key"] == "contact.roughness.rms_height"
+
+
+def test_another_sweep_in_the_folder_is_refused(tmp_path: Path) -> None:
+    sweep(small_plan(), folder=tmp_path).close()
+    with raises(InvalidInput, match="holds another sweep"):
+        sweep(grid_plan(RIG_FILE, over={VOLTS: [10.0]}), folder=tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("over", "said"),
+    [
+        ({"drive.voltage": [1.0]}, "drive.voltage: unknown key"),
+        ({VOLTS: [-3.0]}, r"voltage_peak_to_peak must not be negative, got -3\.0 V"),
+        ({"contact.roughness.rms_height": [-1.0]}, "rms_height must be positive"),
+        ({"friction.closure": ["sticky"]}, "friction.closure"),
+        ({VOLTS: []}, "at least one"),
+        ({}, "needs a key"),
+    ],
+)
+def test_what_cannot_be_swept_is_refused_by_key(over: dict[str, list[float]], said: str) -> None:
+    with raises(InvalidInput, match=said):
+        grid_plan(RIG_FILE, over=over)
+
+
+def test_rows_of_a_list_must_be_of_one_length() -> None:
+    with raises(InvalidInput, match=r"got 2 of drive\.voltage_peak_to_peak, 1 of sliding\.sliding_speed"):
+        list_plan(RIG_FILE, over={VOLTS: [1.0, 2.0], SPEEDS: [0.1]})
+
+
+def test_a_cluster_without_dask_says_what_to_install() -> None:
+    try:
+        import distributed  # noqa: F401
+    except ImportError:
+        with raises(InvalidInput, match=r"pip install 'sonolube\[cluster\]'"):
+            sweep(small_plan(), scheduler="local")
+
+
+def test_a_local_cluster_gives_the_same_bits() -> None:
+    pytest.importorskip("distributed", reason="Dask is not installed")
+    assert sweep(small_plan(), scheduler="local", chunk_points=11, workers=2).identical(
+        sweep(small_plan(), chunk_points=11)
+    )
