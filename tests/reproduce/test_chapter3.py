@@ -61,12 +61,6 @@ def test_steel_on_steel_disagrees_at_the_stated_amplitude_and_says_so() -> None:
     assert "50.0 to 51.1 %" in row.note  # at the other amplitude that is printed for the same welder
 
 
-def test_what_needs_unprinted_masses_is_not_claimed() -> None:
-    row = ROWS["3.3.4-settling-time"]
-    assert row.verdict is Verdict.UNDETERMINED
-    assert "m1" in row.note
-
-
 def test_every_row_has_a_note_and_a_number_of_its_own() -> None:
     def complete(row: Row) -> bool:
         return bool(row.note) and row.published_low <= row.published <= row.published_high
@@ -88,4 +82,4 @@ def test_every_axis_says_what_it_shows(figure: object) -> None:
     labels = [label for axes in drawn.axes for label in (axes.get_xlabel(), axes.get_ylabel()) if label]
     plt.close(drawn)
     assert len(labels) >= 2
-    assert all("[" in label or "ratio" in label or "over" in label or "Number" in label for label in labels)
+    assert all(any(word in label for word in ("[", "ratio", "over", "Number", "Waveform")) for label in labels)

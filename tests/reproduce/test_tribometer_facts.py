@@ -7,6 +7,7 @@ from pytest import approx
 
 from sonolube.identification import Identification
 from sonolube.reproduce.tribometer_facts import (
+    IDENTIFIED,
     tribometer_facts,
     tribometer_identification,
     tribometer_stack,
@@ -88,3 +89,9 @@ def test_the_arms_damping_is_not_to_be_had_from_the_facts(found: Identification)
     assert damping.lower_is_bound
     assert damping.upper_is_bound
     assert found.free_directions[0].exponents["arm_damping"] == approx(1, abs=0.05)
+
+
+@pytest.mark.slow
+def test_the_rounded_parameters_are_those_identified(found: Identification) -> None:
+    for name, value in IDENTIFIED.items():
+        assert found.estimates[name].value == approx(value, rel=0.01), name

@@ -14,16 +14,19 @@ from scipy.special import i0
 from sonolube.figure import publication_style
 from sonolube.friction import stick_slip_ratio
 from sonolube.reproduce import closure_comparison, closure_figures
-from sonolube.reproduce.closure_comparison import (
-    FITTED_ON,
+from sonolube.reproduce.closure_comparison import ALL_FITTED, FITTED_ON, fits, judged
+from sonolube.reproduce.closure_fit import (
     Fit,
+    criteria,
     errors_left_out,
     errors_of,
-    fits,
     fitted,
     information,
+    left_out,
     measured_in,
+    profile_interval,
 )
+from sonolube.reproduce.closure_parameters import RIGS
 from sonolube.reproduce.closure_variants import VARIANTS
 from sonolube.reproduce.experiments import SETS, friction_tests, measured_ratios
 from sonolube.reproduce.result import ReportFigure
@@ -59,8 +62,8 @@ def test_the_tribometers_scatter_is_carried_on() -> None:
     ("name", "values", "sets", "known", "tolerance"),
     [
         ("load-balanced", (), "A", 0.31, 0.005),
-        ("kinematic", (0.32,), "B", 0.48, 0.005),
-        ("kinematic", (0.32,), "CDEFG", 0.09, 0.025),
+        ("kinematic-fitted", (0.32,), "B", 0.48, 0.005),
+        ("kinematic-fitted", (0.32,), "CDEFG", 0.09, 0.025),
         ("stick-slip-mindlin", (), "A", 0.06, 0.005),
         ("stick-slip-mindlin", (), "B", 0.65, 0.005),
         ("stick-slip-mindlin", (), "CDEFG", 0.26, 0.01),
@@ -107,7 +110,7 @@ def test_the_fitted_memory_length_lies_in_its_known_range() -> None:
 
 
 def test_the_fits_are_the_best_within_their_bounds() -> None:
-    for name in ("stick-slip", "kinematic-fitted", "coupled-compliant"):
+    for name in ("stick-slip", "kinematic-fitted"):
         fit = fitted(NAMED[name], FITTED_ON)
         (parameter,) = fit.variant.parameters
         tried = np.geomspace(parameter.low, parameter.high, 60)
@@ -146,26 +149,81 @@ def test_even_free_lengths_do_not_give_table_4_2() -> None:
     assert best == approx(0.13, abs=0.005)
 
 
-def test_in_plane_motion_gives_table_4_2_without_spoiling_the_rest() -> None:
-    for name in ("stick-slip-in-plane", "coupled-in-plane"):
-        fit = fitted(NAMED[name], "ABCDEFG")
-        assert errors_of(fit, measured_in("B")).rms < 0.07
-    moved, still = fitted(NAMED["stick-slip-in-plane"], "ABCDEFG"), fitted(NAMED["stick-slip"], "ABCDEFG")
-    assert errors_of(moved, measured_in(FITTED_ON)).rms < 0.11
-    with_motion, without = (information(fit, measured_in("ABCDEFG")) for fit in (moved, still))
-    assert with_motion is not None
-    assert without is not None
-    assert with_motion.akaike < without.akaike - 10
-    assert with_motion.schwarz < without.schwarz - 10
+def test_in_plane_motion_within_its_bounds_is_worth_its_two_parameters() -> None:
+    moved, still = (judged(NAMED[name], ALL_FITTED).information for name in ("stick-slip-in-plane", "stick-slip"))
+    assert moved is not None
+    assert still is not None
+    assert moved.free == still.free + 2
+    assert moved.akaike < still.akaike - 10
+    assert moved.schwarz < still.schwarz - 10
+
+
+def test_more_in_plane_motion_reaches_ten_per_cent_only_on_what_it_has_seen() -> None:
+    # the median error falls below a tenth in the fit, but not where a table is predicted by the others
+    pins = judged(NAMED["stick-slip-in-plane-pins"], ALL_FITTED)
+    assert pins.seen.median_relative < 0.1
+    assert pins.unseen.median_relative > 0.2
+    fewer = judged(NAMED["stick-slip-in-plane"], ALL_FITTED).information
+    assert fewer is not None
+    assert pins.information is not None
+    assert fewer.akaike < pins.information.akaike
+    assert fewer.schwarz < pins.information.schwarz
+
+
+def test_no_closure_predicts_table_4_2_from_the_other_tables() -> None:
+    # with 0.045 measured at 25.9 V, all of normal motion predict more than half
+    for name in ("stick-slip", "stick-slip-in-plane", "kinematic-fitted"):
+        fit = left_out(NAMED[name], ALL_FITTED)[ALL_FITTED.index("B")]
+        ratio = fit.predict(measured_in("B")[-1])
+        assert ratio is not None
+        assert ratio > 0.5
 
 
 def test_the_information_criteria_are_hand_computed() -> None:
     fit = fitted(NAMED["kinematic-fitted"], FITTED_ON)
-    criteria = information(fit, measured_in(FITTED_ON))
+    found = information(fit, measured_in(FITTED_ON))
     surprise = 2 * 10 * np.log(errors_of(fit, measured_in(FITTED_ON)).rms)
-    assert criteria is not None
-    assert criteria.akaike == approx(surprise + 2 * 2)  # the share and the error
-    assert criteria.schwarz == approx(surprise + 2 * np.log(10))
+    assert found is not None
+    # the share and the error: k = 2, and 2 k (k + 1)/(n - k - 1) = 12/7 for ten tests
+    assert found.akaike == approx(surprise + 2 * 2 + 12 / 7)
+    assert found.schwarz == approx(surprise + 2 * np.log(10))
+    assert criteria(0.1, count=4, free=2).akaike == np.inf
+
+
+def test_the_memory_length_is_known_to_a_third() -> None:
+    fit = fitted(NAMED["stick-slip"], FITTED_ON)
+    low, high = profile_interval(fit, 0)
+    assert 1e-6 < low < fit.values[0] < high < 2.5e-6
+    # at either end the squares have grown by exp(3.841/n): written out on the closed form
+    tests = measured_in(FITTED_ON)
+
+    def squares(memory_length: float) -> float:
+        predicted = stick_slip_ratio(
+            decay_length=2e-6,
+            vibration_amplitude=[test.vibration_amplitude for test in tests],
+            frequency=[test.frequency for test in tests],
+            sliding_speed=[test.sliding_speed for test in tests],
+            memory_length=memory_length,
+        )
+        return float(np.sum((predicted - measured_ratios(tests)) ** 2))
+
+    for end in (low, high):
+        assert squares(end) / squares(fit.values[0]) == approx(np.exp(3.841 / 10), rel=5e-3)
+
+
+def test_each_parameter_of_a_rig_leaves_the_others_rigs_alone() -> None:
+    variant = NAMED["coupled-per-rig"]
+    assert [parameter.matters_in for parameter in variant.parameters] == ["ACDEF", "B", "G"]
+    before, after = (variant.predict(measured_in("A")[0], 1e-7, other, 1e-7) for other in (1e-8, 1e-6))
+    assert before == after
+    assert "".join(sorted("".join(RIGS.values()))) == "ABCDEFGH"
+
+
+def test_every_bound_has_its_reason() -> None:
+    for variant in VARIANTS:
+        for parameter in variant.parameters:
+            assert len(parameter.reason) > 20 or parameter.is_angle
+            assert parameter.low <= parameter.rest <= parameter.high or parameter.name == "holder_compliance"
 
 
 def test_a_closure_that_does_not_reach_a_test_says_so() -> None:
@@ -177,16 +235,17 @@ def test_a_closure_that_does_not_reach_a_test_says_so() -> None:
 def test_no_fit_leaves_its_bounds() -> None:
     for fit in fits():
         for parameter, value in zip(fit.variant.parameters, fit.values, strict=True):
-            assert parameter.low <= value <= parameter.high
+            assert parameter.low <= value <= parameter.high or value == parameter.rest
 
 
-def test_the_printed_and_the_default_closure_have_a_row_for_every_reduction_they_reach() -> None:
+def test_each_reported_closure_has_a_row_for_every_reduction_it_reaches() -> None:
     rows = {row.id: row for row in closure_comparison.rows()}
     reductions = [test for test in friction_tests() if test.published]
     assert len(rows) == len(closure_comparison.REPORTED) * len(reductions) - 2  # the welder closes the gap as published
     row = rows["closure-stick-slip-A-1"]
     assert (row.source, row.unit, row.published) == ("Table 2.5", "%", 62.22)
     assert row.note.startswith("Stick-slip, memory length fitted; fitted on sets A, C, D, E, F, G: memory_length 1.6")
+    assert row.note.endswith("measured 0.370.")
 
 
 @pytest.mark.parametrize("figure", closure_figures.figures(), ids=lambda figure: figure.name)

@@ -7,6 +7,7 @@ kept as the digits printed, so that their resolution is known; what speaks again
 from sonolube.published.captions import Figure, figure, figures
 from sonolube.published.misprints import Doubt, Erratum, errata, erratum
 from sonolube.published.number import PrintedNumber, parse_printed
+from sonolube.published.previous_studies import PreviousStudy, previous_studies
 from sonolube.published.running_text import Statement, statement, statements
 from sonolube.published.tidy_table import Column, Role, Table, table, table_ids
 
@@ -15,6 +16,7 @@ __all__ = [
     "Doubt",
     "Erratum",
     "Figure",
+    "PreviousStudy",
     "PrintedNumber",
     "Role",
     "Statement",
@@ -24,6 +26,7 @@ __all__ = [
     "figure",
     "figures",
     "parse_printed",
+    "previous_studies",
     "statement",
     "statements",
     "table",

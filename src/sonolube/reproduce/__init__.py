@@ -1,7 +1,17 @@
 """The dissertation reproduced: each published number beside the number computed for it, one module a chapter."""
 
 from sonolube.errors import UnknownName
-from sonolube.reproduce import chapter2, chapter3, chapter4, closure_comparison, closure_figures
+from sonolube.reproduce import (
+    chapter2,
+    chapter3,
+    chapter4,
+    closure_comparison,
+    closure_dispute,
+    closure_dynamics,
+    closure_error_figures,
+    closure_figures,
+    model_comparison_figures,
+)
 from sonolube.reproduce.result import ReportFigure, Reproduction
 from sonolube.reproduce.row import Row, Verdict
 
@@ -30,8 +40,18 @@ def reproduction(*, chapter: int | None = None) -> Reproduction:
     if chapter is not None and chapter not in _CHAPTERS:
         raise UnknownName.among(map(str, _CHAPTERS), kind="chapter", name=str(chapter))
     chosen = [_CHAPTERS[chapter]] if chapter is not None else list(_CHAPTERS.values())
-    predictions = [row for row in closure_comparison.rows() if chapter in (None, row.chapter)]
-    comparisons = [figure for figure in closure_figures.figures() if chapter in (None, figure.chapter)]
+    predictions = [
+        row
+        for module in (closure_comparison, closure_dispute, closure_dynamics)
+        for row in module.rows()
+        if chapter in (None, row.chapter)
+    ]
+    comparisons = [
+        figure
+        for module in (closure_figures, closure_error_figures, model_comparison_figures)
+        for figure in module.figures()
+        if chapter in (None, figure.chapter)
+    ]
     return Reproduction(
         rows=(*[row for module in chosen for row in module.rows()], *predictions),
         figures=(*[figure for module in chosen for figure in module.figures()], *comparisons),

@@ -8,10 +8,16 @@ from typing import Literal
 
 import numpy as np
 
-from sonolube.actuator import driver_power, natural_frequency
+from sonolube.actuator import natural_frequency
 from sonolube.materials import material
-from sonolube.metrics import peak_vibration_velocity
-from sonolube.reproduce import chapter2_figures, chapter2_pairs, chapter2_tribometer, chapter2_welder
+from sonolube.reproduce import (
+    chapter2_figures,
+    chapter2_flextensional,
+    chapter2_motor,
+    chapter2_pairs,
+    chapter2_tribometer,
+    chapter2_welder,
+)
 from sonolube.reproduce.contacts import STEEL_ON_STEEL_NOTE, Bodies, poisson_friction_ratio
 from sonolube.reproduce.inputs import friction_drop, in_table, named, said
 from sonolube.reproduce.result import ReportFigure
@@ -25,10 +31,10 @@ def rows() -> tuple[Row, ...]:
             _poisson_modes(),
             _poisson_regions(),
             _poisson_reductions(),
-            _flextensional_power(),
-            _flextensional_velocity(),
+            chapter2_flextensional.rows(),
             chapter2_tribometer.rows(),
             chapter2_welder.rows(),
+            chapter2_motor.rows(),
             chapter2_pairs.rows(),
         )
     )
@@ -85,35 +91,3 @@ def _poisson_reductions() -> Iterator[Row]:
             own,
             f"Cube, D 3.15, {load:g} N, amplitude of D 2.1.2; with that of D 4.3.5 {100 * later:.1f} %.{remark}",
         )
-
-
-def _flextensional_power() -> Iterator[Row]:
-    for level in (1, 2, 3):
-        power = driver_power(
-            capacitance=said("2.2.2-capacitance").value,
-            voltage_maximum=said(f"2.2.3-voltage-maximum-{level}").value,
-            voltage_peak_to_peak=said("2.2.5-voltage-peak-to-peak").value,
-            frequency=said("2.2.2-resonance").value,
-        )
-        yield compare(
-            stated(f"2.2.5-power-{level}"), float(power), "D 1.9: capacitance times both voltages times frequency."
-        )
-
-
-def _flextensional_velocity() -> Iterator[Row]:
-    swing = said("2.2.5-voltage-peak-to-peak").value / said("2.2.2-voltage").value * said("2.2.2-stroke").value
-    at_amplitude, at_stroke = (
-        float(peak_vibration_velocity(frequency=said("2.2.2-resonance").value, vibration_amplitude=amplitude))
-        for amplitude in (swing / 2, swing)
-    )
-    yield compare(
-        stated("2.2.5-vibration-velocity"),
-        at_amplitude,
-        f"2 pi f a, a half the stroke at this voltage; the whole stroke gives {1e3 * at_stroke:.0f} mm/s.",
-    )
-    yield compare(
-        stated("2.2.5-speed-of-no-reduction"),
-        at_amplitude,
-        "Where sliding and vibration are equally fast; of the vibration only the stroke far from resonance is printed.",
-    )
-    yield undetermined(stated("2.2.4-reduction"), "the friction forces, which are only plotted, and the roughness.")

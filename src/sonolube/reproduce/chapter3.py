@@ -1,4 +1,4 @@
-"""Chapter 3: the contact, friction and wear of the cube, and what the multi-scale model leaves open."""
+"""Chapter 3: contact, friction and wear of the cube, and the multi-scale model of the tribometer."""
 
 import math
 from collections.abc import Iterator
@@ -9,7 +9,9 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.contact import decay_length, normal_force, real_contact_area, separation, tangential_stiffness
 from sonolube.published import statement, table
-from sonolube.reproduce.chapter3_figures import figures
+from sonolube.reproduce import chapter3_study
+from sonolube.reproduce.chapter3_figures import cube_figures
+from sonolube.reproduce.chapter3_study_figures import study_figures
 from sonolube.reproduce.contacts import (
     STEEL_ON_STEEL_NOTE,
     Bodies,
@@ -18,6 +20,7 @@ from sonolube.reproduce.contacts import (
     poisson_friction_ratio,
     wear_contact,
 )
+from sonolube.reproduce.result import ReportFigure
 from sonolube.reproduce.row import Row, cell, compare, over_rounding, stated, undetermined
 from sonolube.wear import cube_wear_rate, vibrating_cube_wear_rate
 
@@ -28,7 +31,11 @@ _POISSON_TESTS: tuple[tuple[Bodies, Literal["aluminium", "steel"]], ...] = (
     ("aluminium_steel", "aluminium"),
     ("steel_steel", "steel"),
 )
-_UNPRINTED_SYSTEM = "m1, m2, m3, k2, c1 and c2 of the system in D 3.3.1 are not printed."
+
+
+def figures() -> tuple[ReportFigure, ...]:
+    """Return the figures of chapter 3."""
+    return (*cube_figures(), *study_figures())
 
 
 def rows() -> Iterator[Row]:
@@ -37,6 +44,7 @@ def rows() -> Iterator[Row]:
     yield from _friction_rows()
     yield from _wear_rows()
     yield from _multi_scale_rows()
+    yield from chapter3_study.rows()
 
 
 def _contact_rows() -> Iterator[Row]:
@@ -151,15 +159,6 @@ def _multi_scale_rows() -> Iterator[Row]:
     )
     yield compare(cell("3.5", "coupling_factor", 0), coupling, "k^2 = (N d33)^2 k_p/C with C free.")
     yield _hopping_row()
-    for name, missing in (
-        ("3.3.4-settling-time", _UNPRINTED_SYSTEM),
-        ("3.3.4-residual-frequency", _UNPRINTED_SYSTEM),
-        ("3.3.4-amplitude", _UNPRINTED_SYSTEM),
-        ("3.3.4-error", _UNPRINTED_SYSTEM),
-        ("3.3.5-voltage-knee", _UNPRINTED_SYSTEM),
-        ("3.3.6-error", _UNPRINTED_SYSTEM),
-    ):
-        yield undetermined(stated(name), missing)
 
 
 def _hopping_row() -> Row:

@@ -29,8 +29,8 @@ _PAIRS: tuple[tuple[str, Bodies], ...] = (
 )
 
 
-def figures() -> tuple[ReportFigure, ...]:
-    """Return the figures of chapter 3."""
+def cube_figures() -> tuple[ReportFigure, ...]:
+    """Return the figures of sections 3.1 and 3.2."""
     return (
         ReportFigure(
             name="figure-3-2a-separation",

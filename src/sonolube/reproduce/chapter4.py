@@ -6,44 +6,52 @@ import numpy as np
 from scipy.constants import epsilon_0
 
 from sonolube.metrics import peak_vibration_velocity, superimposed_speed
-from sonolube.reproduce.chapter4_figures import figures
+from sonolube.reproduce.chapter3_study_figures import load_figures
+from sonolube.reproduce.chapter4_cutter import cutter_rows
+from sonolube.reproduce.chapter4_figures import application_figures
+from sonolube.reproduce.chapter4_load import load_rows
 from sonolube.reproduce.chapter4_power import amplitudes, power_map_rows, power_row, reduction_by_the_line, stresses
+from sonolube.reproduce.chapter4_regimes import regime_figures, regime_rows
+from sonolube.reproduce.chapter4_thermal import thermal_rows
+from sonolube.reproduce.chapter4_thermal_figures import thermal_figures
 from sonolube.reproduce.inputs import friction_drop, published_ends, said
 from sonolube.reproduce.power_map import example_points, printed
+from sonolube.reproduce.result import ReportFigure
 from sonolube.reproduce.row import Row, cell, compare, over_rounding, stated, undetermined
 
 __all__ = ["figures", "rows"]
+
+
+def figures() -> tuple[ReportFigure, ...]:
+    """Return the figures of chapter 4."""
+    return (*load_figures(), *regime_figures(), *thermal_figures(), *application_figures())
 
 
 def rows() -> tuple[Row, ...]:
     """Return the rows of chapter 4."""
     return (
         *power_map_rows(),
+        *load_rows(),
         *_lubrication_settings(),
+        *regime_rows(),
         *_temperature_settings(),
         *_superimposed_speeds(),
         _raised_speed(),
         *_speed_rises(),
         _example_reduction(),
+        *thermal_rows(),
         *_skin_replica(),
+        *cutter_rows(),
         *_collar_stack(),
         *(undetermined(stated(name), missing) for name, missing in _MISSING.items()),
     )
 
 
 _COATED = "friction forces on coated plates, only drawn (Fig. 4.33); printed as forces, meant as coefficients (E18)"
-_MOLYKOTE = "friction under Molykote, which is only drawn (Figs. 4.24 to 4.27)"
-_THERMAL = "a thermal model, and the thermal resistances of the contact and of the thermocouple's bond"
 _FINITE_ELEMENTS = "a finite-element model of the collar, whose drawings (appendix C) came along as captions only"
 _MISSING = {
-    "4.1.2-arm-frequency": "masses and stiffness of the gymbal arm",
     "4.1.3-friction-coated-first": _COATED,
     "4.1.3-friction-coated-last": _COATED,
-    "4.2.4-speed-ultrasonic-best": _MOLYKOTE,
-    "4.2.4-speed-ultrasonic-useless": _MOLYKOTE,
-    "4.3.5-temperature-peak": _THERMAL,
-    "4.3.5-tribometer-temperature-peak": _THERMAL,
-    "4.3.5-foil-temperature-peak": _THERMAL,
     "4.5.2-breathing-mode-first": _FINITE_ELEMENTS,
     "4.5.2-torsional-mode-first": _FINITE_ELEMENTS,
     "4.5.2-breathing-mode-revised": _FINITE_ELEMENTS,

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 _SIDE_BY_SIDE = 3.0  # mm/s between points of one speed
 
 
-def figures() -> tuple[ReportFigure, ...]:
+def application_figures() -> tuple[ReportFigure, ...]:
     """Return the figures of chapter 4."""
     return (
         ReportFigure(

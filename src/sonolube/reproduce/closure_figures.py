@@ -16,7 +16,8 @@ from sonolube.friction import (
     separating_half_period,
     stick_slip,
 )
-from sonolube.reproduce.closure_comparison import FITTED_ON, Fit, errors_of, fits, measured_in
+from sonolube.reproduce.closure_comparison import FITTED_ON, fits
+from sonolube.reproduce.closure_fit import Fit, errors_of, measured_in
 from sonolube.reproduce.experiments import SETS, friction_tests
 from sonolube.reproduce.result import ReportFigure
 
@@ -125,7 +126,7 @@ def _curves(speeds: "Floats") -> Iterator[tuple[str, "Floats"]]:
 def _predicted_against_measured() -> "Figure":
     from matplotlib import pyplot as plt
 
-    figure, panels = plt.subplots(3, 4, figsize=(8.6, 7.2), sharex=True, sharey=True)
+    figure, panels = plt.subplots(3, 5, figsize=(10.5, 7.2), sharex=True, sharey=True)
     for axes, fit in zip(panels.flat, fits(), strict=True):
         _one_closure(axes, fit)
     for axes in panels[-1]:

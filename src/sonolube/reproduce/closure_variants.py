@@ -1,9 +1,8 @@
-"""The closures as they are set against experiment: what each leaves free, between which bounds, and its predictions."""
+"""The closures as they are set against experiment: what each leaves free, and its predictions."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cache
-from math import pi
+from functools import cache, lru_cache
 from typing import Final
 
 from sonolube.contact import (
@@ -26,36 +25,18 @@ from sonolube.friction import (
     stick_slip,
     stick_slip_ratio,
 )
-from sonolube.reproduce.experiments import FrictionTest
-
-IN_PLANE_SET: Final = "B"
-"""The one set whose rig is allowed parasitic in-plane motion."""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Parameter:
-    """A parameter that a fit may choose.
-
-    Parameters
-    ----------
-    name : str
-        Its name, a word of the vocabulary where it is a quantity.
-    unit : str
-        Unit for the report.
-    start : tuple of float
-        Values from which the fit sets out, SI.
-    low, high : float
-        The physical bounds, SI.
-    matters_in : str
-        Letters of the sets that can tell it; empty for all.
-    """
-
-    name: str
-    unit: str
-    start: tuple[float, ...]
-    low: float
-    high: float
-    matters_in: str = ""
+from sonolube.reproduce.closure_parameters import (
+    AREA,
+    COEFFICIENT,
+    COMPLIANCE,
+    FITTED_RIGS,
+    IN_PLANE,
+    MEMORY,
+    SHARE,
+    Parameter,
+    of_rigs,
+)
+from sonolube.reproduce.experiments import Circumstances, FrictionTest
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -71,7 +52,7 @@ class ClosureVariant:
     parameters : tuple of Parameter
         What a fit may choose; empty where nothing is fitted.
     ratio : callable
-        Gives the friction ratio of a test for values of these parameters.
+        Gives the friction ratio of a test for values of these parameters, by name.
     """
 
     name: str
@@ -79,12 +60,30 @@ class ClosureVariant:
     parameters: tuple[Parameter, ...]
     ratio: Callable[..., float]
 
-    def predict(self, test: FrictionTest, *values: float) -> float | None:
+    def predict(self, test: Circumstances, *values: float) -> float | None:
         """Return the friction ratio of a test; None where the model does not reach, as where the gap would close. []"""
-        try:
-            return float(self.ratio(test, *values))
-        except OutsideRange:
-            return None
+        answer = _remembered(self.ratio, test, self._told(test, values))
+        return None if isinstance(answer, str) else answer
+
+    def refusal(self, test: Circumstances, *values: float) -> str | None:
+        """Return why the model does not reach a test; None where it does."""
+        answer = _remembered(self.ratio, test, self._told(test, values))
+        return answer if isinstance(answer, str) else None
+
+    def _told(self, test: Circumstances, values: tuple[float, ...]) -> tuple[tuple[str, float], ...]:
+        return tuple(
+            (parameter.name, value)
+            for parameter, value in zip(self.parameters, values, strict=True)
+            if parameter.matters_to(test.set_name)
+        )
+
+
+@lru_cache(maxsize=4096)
+def _remembered(ratio: Callable[..., float], test: Circumstances, values: tuple[tuple[str, float], ...]) -> float | str:
+    try:
+        return float(ratio(test, **dict(values)))
+    except OutsideRange as reason:
+        return str(reason)
 
 
 def _sine(test: FrictionTest, nominal_area_factor: float = 1.0) -> tuple[RoughContact, GapMotion]:
@@ -138,15 +137,22 @@ def _stick_slip(test: FrictionTest, memory_length: float) -> float:
     )
 
 
-def _mindlin(test: FrictionTest) -> float:
-    length = mindlin_memory_length(
-        test.contact, friction_coefficient=test.friction_coefficient, normal_load=test.normal_load
-    )
-    return _stick_slip(test, float(length))
+def stick_slip_in_plane(
+    test: FrictionTest, *, memory_length: float, in_plane_fraction: float = 0.0, phase: float = 0.0
+) -> float:
+    """Return the ratio of a test by stick-slip about a balanced mean. []
 
-
-def _stick_slip_in_plane(test: FrictionTest, memory_length: float, in_plane_fraction: float, phase: float) -> float:
-    if test.set_name != IN_PLANE_SET:
+    Parameters
+    ----------
+    test : FrictionTest
+    memory_length : float
+        Sliding distance over which an asperity forgets. [m]
+    in_plane_fraction : float
+        Motion along the sliding direction over that along the normal. []
+    phase : float
+        Lag of the in-plane motion behind the normal one. [rad]
+    """
+    if in_plane_fraction == 0:
         return _stick_slip(test, memory_length)
     contact, motion = _sine(test)
     return float(
@@ -161,13 +167,20 @@ def _stick_slip_in_plane(test: FrictionTest, memory_length: float, in_plane_frac
     )
 
 
-def _coupled(test: FrictionTest, holder_compliance: float = 0.0) -> float:
-    return _coupled_in_plane(test, holder_compliance, 0.0, 0.0)
+def mindlin_stick_slip(test: FrictionTest, friction_coefficient_factor: float = 1.0) -> float:
+    """Return the ratio of a test by stick-slip with Mindlin's memory length. []"""
+    length = mindlin_memory_length(
+        test.contact,
+        friction_coefficient=friction_coefficient_factor * test.friction_coefficient,
+        normal_load=test.normal_load,
+    )
+    return _stick_slip(test, float(length))
 
 
-def _coupled_in_plane(test: FrictionTest, holder_compliance: float, in_plane_fraction: float, phase: float) -> float:
+def _coupled(
+    test: FrictionTest, holder_compliance: float = 0.0, in_plane_fraction: float = 0.0, phase: float = 0.0
+) -> float:
     contact, motion = _sine(test)
-    parasitic = test.set_name == IN_PLANE_SET
     return float(
         coupled(
             contact,
@@ -175,81 +188,68 @@ def _coupled_in_plane(test: FrictionTest, holder_compliance: float, in_plane_fra
             sliding_speed=test.sliding_speed,
             friction_coefficient=test.friction_coefficient,
             holder=Holder(holder_stiffness=1 / holder_compliance) if holder_compliance > 0 else Holder(),
-            in_plane_fraction=in_plane_fraction if parasitic else 0.0,
+            in_plane_fraction=in_plane_fraction,
             phase=phase,
         )
     )
 
 
-# An and Y0 only move the gap at rest, and one factor stands for both
-_AREA: Final = Parameter(name="nominal_area_factor", unit="", start=(0.5, 2.0), low=0.1, high=10.0)
-_SHARE: Final = Parameter(name="amplitude_share", unit="", start=(0.3,), low=0.05, high=1.0)
-_MEMORY: Final = Parameter(name="memory_length", unit="m", start=(1.5e-6,), low=0.1e-6, high=10e-6)
-# a steel pin some centimetres long bends by no more than this at its tip
-_COMPLIANCE: Final = Parameter(name="holder_compliance", unit="m/N", start=(1e-7, 5e-7), low=1e-9, high=2e-6)
-_FRACTION: Final = Parameter(
-    name="in_plane_fraction", unit="", start=(0.15, 0.4), low=0.0, high=1.0, matters_in=IN_PLANE_SET
-)
-_PHASE: Final = Parameter(
-    name="phase", unit="rad", start=(0.0, pi / 2, pi, 3 * pi / 2), low=-pi, high=3 * pi, matters_in=IN_PLANE_SET
-)
+_IN_PLANE_OF_MAP: Final = of_rigs(IN_PLANE, "power map")
+_IN_PLANE_OF_PINS: Final = of_rigs(IN_PLANE, "tribometer", "power map")
 
-VARIANTS: Final = (
-    ClosureVariant(
-        name="as-published",
-        meaning="D 3.46 to 3.48: k_t(t) cos(theta) over the whole period about an unmoved mean",
-        parameters=(),
-        ratio=_as_published,
-    ),
-    ClosureVariant(
-        name="separating-half-period",
-        meaning="D 3.15: k_t(t) over the separating half period",
-        parameters=(),
-        ratio=_separating,
-    ),
-    ClosureVariant(
-        name="load-balanced",
-        meaning="as published, about the mean that balances the load",
-        parameters=(),
-        ratio=_load_balanced,
-    ),
-    ClosureVariant(
-        name="load-balanced-fitted",
-        meaning="the same with a factor on the nominal area (or yield strength)",
-        parameters=(_AREA,),
-        ratio=_load_balanced,
-    ),
-    ClosureVariant(name="kinematic", meaning="cos(theta) alone", parameters=(), ratio=_kinematic),
-    ClosureVariant(
-        name="kinematic-fitted",
-        meaning="cos(theta) alone with a share of the amplitude",
-        parameters=(_SHARE,),
-        ratio=_kinematic,
-    ),
-    ClosureVariant(
-        name="stick-slip-mindlin", meaning="stick-slip, memory length after Mindlin", parameters=(), ratio=_mindlin
-    ),
-    ClosureVariant(
-        name="stick-slip", meaning="stick-slip, memory length fitted", parameters=(_MEMORY,), ratio=_stick_slip
-    ),
-    ClosureVariant(
-        name="stick-slip-in-plane",
-        meaning="stick-slip, with in-plane motion on the rig of Table 4.2",
-        parameters=(_MEMORY, _FRACTION, _PHASE),
-        ratio=_stick_slip_in_plane,
-    ),
-    ClosureVariant(name="coupled", meaning="one bristle with Mindlin's stiffness", parameters=(), ratio=_coupled),
-    ClosureVariant(
-        name="coupled-compliant",
-        meaning="one bristle, holder's compliance fitted",
-        parameters=(_COMPLIANCE,),
-        ratio=_coupled,
-    ),
-    ClosureVariant(
-        name="coupled-in-plane",
-        meaning="one bristle, compliance fitted, with in-plane motion on the rig of Table 4.2",
-        parameters=(_COMPLIANCE, _FRACTION, _PHASE),
-        ratio=_coupled_in_plane,
-    ),
+VARIANTS: Final = tuple(
+    ClosureVariant(name=name, meaning=meaning, parameters=parameters, ratio=ratio)
+    for name, meaning, parameters, ratio in (
+        (
+            "as-published",
+            "D 3.46 to 3.48: k_t(t) cos(theta) over the whole period about an unmoved mean",
+            (),
+            _as_published,
+        ),
+        ("separating-half-period", "D 3.15: k_t(t) over the separating half period", (), _separating),
+        ("load-balanced", "as published, about the mean that balances the load", (), _load_balanced),
+        (
+            "load-balanced-per-rig",
+            "the same with each rig's own factor on the nominal area times yield strength",
+            of_rigs((AREA,), *FITTED_RIGS),
+            _load_balanced,
+        ),
+        ("kinematic", "cos(theta) alone", (), _kinematic),
+        ("kinematic-fitted", "cos(theta) alone with a share of the amplitude", (SHARE,), _kinematic),
+        ("stick-slip-mindlin", "stick-slip, memory length after Mindlin", (), mindlin_stick_slip),
+        (
+            "stick-slip-mindlin-per-rig",
+            "the same with each rig's own factor on the friction coefficient",
+            of_rigs((COEFFICIENT,), *FITTED_RIGS),
+            mindlin_stick_slip,
+        ),
+        ("stick-slip", "stick-slip, memory length fitted", (MEMORY,), _stick_slip),
+        (
+            "stick-slip-in-plane",
+            "stick-slip, with in-plane motion on the rig of Table 4.2",
+            (MEMORY, *_IN_PLANE_OF_MAP),
+            stick_slip_in_plane,
+        ),
+        (
+            "stick-slip-in-plane-pins",
+            "stick-slip, with in-plane motion of either piezo-driven pin",
+            (MEMORY, *_IN_PLANE_OF_PINS),
+            stick_slip_in_plane,
+        ),
+        (
+            "stick-slip-in-plane-per-rig",
+            "stick-slip, with in-plane motion on every rig",
+            (MEMORY, *of_rigs(IN_PLANE, *FITTED_RIGS)),
+            stick_slip_in_plane,
+        ),
+        ("coupled", "one bristle with Mindlin's stiffness", (), _coupled),
+        ("coupled-per-rig", "one bristle, each holder's compliance", of_rigs((COMPLIANCE,), *FITTED_RIGS), _coupled),
+        (
+            "coupled-in-plane",
+            "one bristle, each holder's compliance, with in-plane motion on the rig of Table 4.2",
+            (*of_rigs((COMPLIANCE,), *FITTED_RIGS), *_IN_PLANE_OF_MAP),
+            _coupled,
+        ),
+    )
 )
 """Every closure that is compared."""

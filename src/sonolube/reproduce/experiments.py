@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 from functools import cache
 from math import hypot
-from typing import Final
+from typing import Final, Protocol
 
 import numpy as np
 
@@ -29,6 +29,29 @@ SETS: Final = {
 _UNPRINTED_COEFFICIENT: Final = 0.26  # of steel on steel in D 3.1.4, where set H only has it drawn
 _TITANIUM_COEFFICIENT: Final = 0.4  # forces of titanium on titanium are only drawn; near steel on titanium's 0.44
 _FLEXTENSIONAL_AREA: Final = 50e-6  # the actuator's flats, 10.5 mm by about 5 mm
+
+
+class Circumstances(Protocol):
+    """What a model is asked about: as much of a test, or of a rig, as the model needs."""
+
+    def __hash__(self) -> int:
+        """Circumstances are compared by value, so that no prediction is computed twice."""
+
+    @property
+    def label(self) -> str:
+        """Its set and its number in the set."""
+
+    @property
+    def set_name(self) -> str:
+        """Letter of its set."""
+
+
+class Measured(Circumstances, Protocol):
+    """Circumstances under which friction was measured."""
+
+    @property
+    def friction_ratio(self) -> float:
+        """Friction with vibration over friction without. []"""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -22,6 +22,16 @@ BOUNDS = {
     "arm_damping": (1.0, 1e3),
     "tip_damping": (0.1, 1e4),
 }
+IDENTIFIED = {
+    "tip_mass": 0.1093,
+    "reaction_mass": 2.41,
+    "arm_mass": 0.602,
+    "arm_stiffness": 4.56e5,
+    "arm_damping": 90.0,
+    "tip_damping": 702.0,
+}
+"""What `tribometer_identification` finds, rounded, in SI."""
+
 _GRAVITY = 9.80665  # m/s2
 _HALF_POWER = 0.5**0.5
 _ARM_HEAVIEST = 1.0  # kg
