@@ -85,6 +85,28 @@ def test_friction_force_and_coefficient_belong_together() -> None:
         (["materials", "unobtainium"], "sonolube materials: unknown material 'unobtainium'"),
         (["published", "9.9"], "sonolube published: unknown table '9.9'"),
         (["reproduce", "--chapter", "7"], "sonolube reproduce:"),
+        (["study", "RIG", "--of", "voltage", "--to", "3kHz"], "--to 3kHz is a frequency; wanted a voltage"),
+        (["study", "RIG", "--of", "load", "--from", "0N"], "--from 0N must lie above 0 N and must lie below --to 9N"),
+        (
+            ["study", "RIG", "--of", "speed", "--from", "2m/s"],
+            "--from 2m/s must lie above 0 m/s and must lie",
+        ),
+        (["study", "RIG", "--of", "waveform", "--points", "5"], "have no meaning for --of waveform"),
+        (["study", "RIG", "--of", "load", "--voltage", "5V"], "--voltage has no meaning for --of load"),
+        (["study", "RIG", "--of", "colour"], "sonolube study: Invalid value for '--of'"),
+        (["study", "RIG"], "sonolube study: Missing option '--of'"),
+        (
+            ["thermal", "RIG", "--pin", "m50", "--disc", "powder_coating"],
+            "powder_coating has no thermal_conductivity",
+        ),
+        (
+            ["regime", "RIG", "--film-coefficient", "0.1", "--asperity-pressure", "10mm"],
+            "--asperity-pressure 10mm is a length",
+        ),
+        (
+            ["regime", "RIG", "--film-coefficient", "0.1", "--asperity-pressure", "10MPa", "--pin", "m50"],
+            "--pin and --disc belong together",
+        ),
         (["contact"], "sonolube contact: Missing argument 'RIG.toml'"),
         (["fricton", "RIG"], "sonolube fricton: No such command 'fricton'. Did you mean 'friction'?"),
     ],
@@ -97,7 +119,9 @@ def test_bad_input_gets_one_clear_line_and_exit_code_2(arguments: list[str], com
     assert len(run.stderr.splitlines()) == 1
 
 
-@pytest.mark.parametrize("command", ["reproduce", "contact", "friction", "wear", "materials", "published", "schema"])
+@pytest.mark.parametrize(
+    "command", ["reproduce", "contact", "friction", "wear", "study", "materials", "published", "schema"]
+)
 def test_help_of_every_command_shows_an_example(command: str) -> None:
     run = sonolube(command, "--help")
     assert run.returncode == 0
@@ -131,18 +155,46 @@ def test_completion_can_be_had_for_every_shell(shell: str) -> None:
 
 @pytest.mark.parametrize("command", ["simulate", "response", "transient"])
 def test_a_command_on_motion_answers_with_status_or_files_and_writes_them_whole(command: str, tmp_path: Path) -> None:
-    extra = {"simulate": [], "response": ["--out", str(tmp_path)], "transient": ["--out", str(tmp_path)]}[command]
-    if command == "transient":
-        extra += ["--duration", "0.01s"]
+    extra = ["--out", str(tmp_path), *(["--duration", "0.01s"] if command == "transient" else [])]
     result = answer(command, str(RIGS / "tribometer.toml"), *extra)
     files = [Path(name) for name in result.get("files", [])]
     assert sorted(files) == sorted(tmp_path.iterdir())
     assert all(path.stat().st_size > 1000 for path in files)
-    assert files or result["status"] == "periodic"
+    assert sorted(path.suffix for path in files) == [".nc", ".png", ".svg"]
+
+
+def test_a_study_tells_its_least_friction_and_writes_figure_and_netcdf(tmp_path: Path) -> None:
+    range_ = ["--from", "10V", "--to", "30V", "--points", "3"]
+    result = answer("study", str(RIGS / "tribometer.toml"), "--of", "voltage", *range_, "--out", str(tmp_path))
+    assert sorted(Path(name).suffix for name in result["files"]) == [".nc", ".png", ".svg"]
+    assert sorted(Path(name) for name in result["files"]) == sorted(tmp_path.iterdir())
+    (best,) = result["least_friction"]
+    assert best["voltage_peak_to_peak"] == {"value": 30.0, "unit": "V"}
+    assert (result["points"], result["without_result"]) == (3, [])
+
+
+def test_a_study_keeps_a_reason_for_what_the_stack_does_not_bear(tmp_path: Path) -> None:
+    limit = ["--set", "stack.highest_voltage=50V", "--points", "5"]
+    run = sonolube("study", str(RIGS / "tribometer.toml"), "--of", "voltage", *limit, "--out", str(tmp_path))
+    assert run.returncode == 0, run.stderr
+    assert "the stack bears no more than 50 V" in run.stdout
+    assert "least friction       ratio 0.154 at 50 V" in run.stdout
 
 
 def test_what_identify_writes_is_a_rig_that_simulates(tmp_path: Path) -> None:
     path = tmp_path / "identified.toml"
     run = sonolube("identify", "rig", str(RIGS / "tribometer.toml"), "--out", str(path))
     assert run.returncode == 0, run.stderr
-    assert answer("simulate", str(path))["vibration_amplitude"]["value"] == approx(2.5e-6, rel=0.02)
+    simulated = answer("simulate", str(path), "--out", str(tmp_path))
+    assert simulated["vibration_amplitude"]["value"] == approx(2.5e-6, rel=0.02)
+
+
+def test_heat_and_regime_answer_with_the_figure_they_wrote(tmp_path: Path) -> None:
+    solids = ["--pin", "stainless_steel_316", "--disc", "aluminium_2024", "--out", str(tmp_path)]
+    heat = answer("thermal", str(RIGS / "tribometer.toml"), *solids)
+    assert heat["temperature_rise_ratio"]["value"] == approx(heat["friction_ratio"]["value"])
+    lubricant = ["--film-coefficient", "0.25", "--asperity-pressure", "10MPa"]
+    regime = answer("regime", str(RIGS / "tribometer.toml"), *lubricant, *solids)
+    assert regime["best"] == "ultrasonic"
+    assert regime["wear"]["kind"] == "abrasive"
+    assert sorted(map(Path, [*heat["files"], *regime["files"]])) == sorted(tmp_path.iterdir())

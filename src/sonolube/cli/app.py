@@ -6,7 +6,23 @@ from collections.abc import Sequence
 import typer
 
 from sonolube import __version__
-from sonolube.cli import catalogue, identification, motion, operate, reproduction
+from sonolube.cli import (
+    catalogue,
+    comparison,
+    control,
+    identification,
+    literature,
+    mapping,
+    measure,
+    modal,
+    motion,
+    operate,
+    regime,
+    reproduction,
+    study,
+    sweep,
+    thermal,
+)
 from sonolube.errors import SonolubeError
 
 app = typer.Typer(
@@ -24,9 +40,19 @@ app.command()(operate.wear)
 app.command()(operate.simulate)
 app.command()(motion.response)
 app.command()(motion.transient)
+app.command()(modal.modes)
+app.command()(study.study)
+app.command()(comparison.compare)
+app.command()(thermal.thermal)
+app.command()(regime.regime)
+app.command()(control.control)
+app.command()(sweep.sweep)
+app.command()(mapping.map)
 app.add_typer(identification.identify, name="identify")
+app.add_typer(measure.measure, name="measure")
 app.command()(catalogue.materials)
 app.command()(catalogue.published)
+app.command()(literature.literature)
 app.command()(catalogue.schema)
 
 

@@ -2,9 +2,12 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+
+if TYPE_CHECKING:
+    from sonolube.rig import Rig
 
 RigPath = Annotated[Path, typer.Argument(metavar="RIG.toml", help="The rig, as a TOML file.")]
 Load = Annotated[str | None, typer.Option(metavar="FORCE", help="Normal load instead of the rig's, such as 40N.")]
@@ -25,14 +28,24 @@ def contact(rig: RigPath, load: Load = None, changes: Changes = None, json: Json
     _operate(contact_point, rig, load, changes, json)
 
 
-def friction(rig: RigPath, load: Load = None, changes: Changes = None, json: Json = False) -> None:
+def friction(
+    rig: RigPath,
+    load: Load = None,
+    closure: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Closure, such as stick_slip, instead of the cube's half period.")
+    ] = None,
+    changes: Changes = None,
+    json: Json = False,
+) -> None:
     """Friction of the rig with and without vibration.
 
     Example: sonolube friction examples/rigs/collar.toml --set drive.voltage_peak_to_peak=14V
     """
+    from functools import partial
+
     from sonolube.rig import friction_point
 
-    _operate(friction_point, rig, load, changes, json)
+    _operate(partial(friction_point, closure=closure), rig, load, changes, json)
 
 
 def wear(rig: RigPath, load: Load = None, changes: Changes = None, json: Json = False) -> None:
@@ -45,18 +58,37 @@ def wear(rig: RigPath, load: Load = None, changes: Changes = None, json: Json = 
     _operate(wear_point, rig, load, changes, json)
 
 
-def simulate(rig: RigPath, load: Load = None, changes: Changes = None, json: Json = False) -> None:
+def simulate(
+    rig: RigPath,
+    load: Load = None,
+    changes: Changes = None,
+    out: Annotated[Path, typer.Option(help="Folder for the figure and the netCDF file.")] = Path("out"),
+    json: Json = False,
+) -> None:
     """Multi-scale model: drive, structure and contact in one steady vibration, and the friction and wear under it.
 
     Example: sonolube simulate examples/rigs/tribometer.toml --set drive.voltage_peak_to_peak=25.9V
     """
+    from sonolube.cli.output import show
+    from sonolube.cli.progress import progress
+    from sonolube.cli.simulation_output import write_simulation
     from sonolube.rig import simulate as simulated
 
-    _operate(simulated, rig, load, changes, json)
+    known = _rig(rig, load, changes)
+    with progress("simulating"):
+        result = simulated(known)
+        written = write_simulation(known, result, folder=out, name=f"{rig.stem}-simulation")
+    show(result, rig=known, as_json=json, written=written)
 
 
 def _operate(model: Callable[..., Any], path: Path, load: str | None, changes: list[str] | None, as_json: bool) -> None:
     from sonolube.cli.output import show
+
+    rig = _rig(path, load, changes)
+    show(model(rig), rig=rig, as_json=as_json)
+
+
+def _rig(path: Path, load: str | None, changes: list[str] | None) -> "Rig":
     from sonolube.rig import read_rig
     from sonolube.units import to_si
 
@@ -64,5 +96,4 @@ def _operate(model: Callable[..., Any], path: Path, load: str | None, changes: l
     if load is not None:
         to_si(load, unit="N", name="--load")
         replaced.append(f"contact.normal_load={load}")
-    rig = read_rig(path, changes=replaced)
-    show(model(rig), rig=rig, as_json=as_json)
+    return read_rig(path, changes=replaced)

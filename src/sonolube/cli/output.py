@@ -1,7 +1,9 @@
 """How results are printed: a few lines for people, or one JSON object for programs."""
 
 import json
+from collections.abc import Sequence
 from dataclasses import fields
+from pathlib import Path
 from typing import Any
 
 import typer
@@ -11,15 +13,17 @@ from sonolube.units import engineering
 from sonolube.vocabulary import quantities
 
 
-def show(result: Any, *, rig: Rig, as_json: bool) -> None:
-    """Print a record of results of one rig, with what was assumed and what is doubtful."""
+def show(result: Any, *, rig: Rig, as_json: bool, written: Sequence[Path] = ()) -> None:
+    """Print a record of results of one rig, with what was assumed, what is doubtful and the files written."""
     values = {field.name: getattr(result, field.name) for field in fields(result)}
     quantified = {name: value for name, value in values.items() if name in quantities() and value is not None}
     told = {name: value for name, value in values.items() if isinstance(value, str)}
     if as_json:
-        typer.echo(json.dumps(_object(quantified, told, rig, values["doubts"]), indent=2, allow_nan=False))
+        files = {"files": [str(path) for path in written]} if written else {}
+        typer.echo(json.dumps(_object(quantified, told, rig, values["doubts"]) | files, indent=2, allow_nan=False))
     else:
-        typer.echo("\n".join(_lines(quantified, told, rig, values["doubts"])))
+        lines = _lines(quantified, told, rig, values["doubts"]) + [f"  {path}" for path in written]
+        typer.echo("\n".join(lines))
 
 
 def _object(quantified: dict[str, float], told: dict[str, str], rig: Rig, doubts: tuple[str, ...]) -> dict[str, Any]:

@@ -1,0 +1,55 @@
+"""The axes of a map, as asked for or as fits a rig."""
+
+import numpy as np
+
+from sonolube.checks import Floats
+from sonolube.cli.sweep_range import values_of
+from sonolube.errors import InvalidInput
+from sonolube.rig import Rig
+from sonolube.rig.response import require_drive, require_structure
+
+_KEYS = {
+    "sliding.sliding_speed": "sliding_speed",
+    "contact.normal_load": "normal_load",
+    "drive.voltage_peak_to_peak": "voltage_peak_to_peak",
+    "drive.frequency": "frequency",
+}
+_TAKEN = {
+    "velocity-stress": ("sliding_speed", "normal_load", "voltage_peak_to_peak"),
+    "velocity-power": ("sliding_speed", "voltage_peak_to_peak", "normal_load"),
+    "frequency-voltage": ("frequency", "voltage_peak_to_peak"),
+}
+
+
+def axes_of(rig: Rig, kind: str, over: list[str]) -> dict[str, Floats]:
+    """Return the values of each axis of a kind of map.
+
+    Raises
+    ------
+    InvalidInput
+        If the rig cannot be mapped, or a key is no axis of that map.
+    """
+    require_structure(rig)
+    axes = _usual(rig, kind)
+    for key, values in values_of(over).items():
+        name = _KEYS.get(key)
+        if name not in axes:
+            known = ", ".join(long for long, short in _KEYS.items() if short in axes)
+            raise InvalidInput(f"--over {key}: no axis of a {kind} map; its axes are {known}")
+        axes[name] = values.astype(np.float64)
+    return axes
+
+
+def _usual(rig: Rig, kind: str) -> dict[str, Floats]:
+    drive = require_drive(rig)
+    assert drive.voltage_peak_to_peak is not None
+    volts = drive.voltage_peak_to_peak or 1.0
+    many = kind != "velocity-stress"
+    loads = rig.normal_load * (np.linspace(0.6, 1.8, 7) if many else np.linspace(0.6, 1.8, 25))
+    usual = {
+        "sliding_speed": np.linspace(10e-3, 0.2, 77),
+        "normal_load": loads,
+        "voltage_peak_to_peak": volts * (np.linspace(0.02, 1, 50) if many else np.linspace(0.2, 1, 5)),
+        "frequency": drive.frequency * np.linspace(0.8, 1.2, 161),
+    }
+    return {name: usual[name] for name in _TAKEN[kind]}

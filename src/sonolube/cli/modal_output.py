@@ -1,0 +1,100 @@
+"""How modes are told and drawn."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sonolube.checks import Floats
+from sonolube.fem import ConvergedModes, Mesh
+from sonolube.figure import publication_style, write_figure
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_EXAGGERATION = 0.08  # of the part's extent, for the largest displacement drawn
+
+
+def modes_lines(
+    part: str, material: str, found: ConvergedModes, names: Sequence[str], written: Sequence[Path]
+) -> list[str]:
+    """Return what a user reads of modes."""
+    rows = range(found.modes.rigid, len(names))
+    width = max(len(names[row]) for row in rows)
+    free = f"{found.modes.rigid} rigid motions, " if found.modes.rigid else "held, "
+    return [
+        f"{part} of {material}: {free}{found.nodes[-1]} nodes in the last of {len(found.nodes)} meshes",
+        *[
+            f"  {names[row]:<{width}}  {found.natural_frequency[row]:>10.1f} Hz  +-{found.frequency_error[row]:.2g}"
+            for row in rows
+        ],
+        *[f"  {path}" for path in written],
+    ]
+
+
+def modes_object(
+    part: str, material: str, found: ConvergedModes, names: Sequence[str], written: Sequence[Path]
+) -> dict[str, Any]:
+    """Return modes as one JSON object, all quantities in SI."""
+    rows = range(found.modes.rigid, len(names))
+    return {
+        "part": part,
+        "material": material,
+        "rigid_motions": found.modes.rigid,
+        "nodes": list(found.nodes),
+        "modes": [
+            {
+                "name": names[row],
+                "natural_frequency": {"value": float(found.natural_frequency[row]), "unit": "Hz"},
+                "frequency_error": {"value": float(found.frequency_error[row]), "unit": ""},
+            }
+            for row in rows
+        ],
+        "files": [str(path) for path in written],
+    }
+
+
+def write_modes(found: ConvergedModes, names: Sequence[str], *, folder: Path, part: str) -> list[Path]:
+    """Draw each elastic mode into a file of its own and return the files."""
+    files = []
+    for row in range(found.modes.rigid, len(names)):
+        title = f"{names[row]}, {found.natural_frequency[row]:.0f} Hz"
+        figure = mode_figure(found.model.mesh, found.modes.shapes[row], title=title)
+        name = f"{part}-{row - found.modes.rigid + 1}-{names[row].replace(' ', '-')}"
+        files += write_figure(figure, folder=folder, name=name, forms=("png",))
+    return files
+
+
+def mode_figure(mesh: Mesh, shape: Floats, *, title: str) -> "Figure":
+    """Return a picture of a mode: the deformed surface over the outline at rest, coloured by displacement."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize
+    from matplotlib.figure import Figure
+    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
+    surface = np.concatenate([face for name, face in mesh.faces.items() if "|" not in name])
+    patches = surface[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]].reshape(-1, 3)  # four flat ones for a curved one
+    size = np.linalg.norm(shape, axis=1)
+    extent = np.ptp(mesh.nodes, axis=0)
+    millimetres = 1e3 * (mesh.nodes + shape * _EXAGGERATION * extent.max() / size.max())
+    colours = ScalarMappable(norm=Normalize(0, 1), cmap="viridis")
+    with publication_style():
+        figure = Figure(figsize=(5.2, 4.4))
+        axes = figure.add_subplot(projection="3d", computed_zorder=False)
+        level = (size / size.max())[patches].mean(axis=1)
+        body = Poly3DCollection(millimetres[patches], facecolors=colours.to_rgba(level), linewidths=0)
+        body.set_rasterized(True)
+        axes.add_collection3d(body)
+        middle, half = (
+            1e3 * (mesh.nodes.max(axis=0) + mesh.nodes.min(axis=0)) / 2,
+            1e3 * extent * 0.5 + 90 * extent.max(),
+        )
+        axes.set(**{f"{k}lim": (middle[i] - half[i], middle[i] + half[i]) for i, k in enumerate("xyz")})
+        axes.set_box_aspect(half, zoom=0.82)
+        axes.set_title(title)
+        for name, label in (("x", axes.set_xlabel), ("y", axes.set_ylabel), ("z", axes.set_zlabel)):
+            label(f"{name} [mm]", labelpad=8)
+        axes.locator_params(nbins=4)
+        figure.colorbar(colours, ax=axes, shrink=0.6, pad=0.12, label="displacement over its largest")
+    return figure

@@ -1,0 +1,40 @@
+"""Figures of force gauges."""
+
+from typing import TYPE_CHECKING
+
+from sonolube.checks import Floats
+from sonolube.figure import COLOURS
+from sonolube.measurement.calibration import ForceEstimate, HysteresisCalibration, force_with_hysteresis
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def loops(x: Floats, force: Floats, calibration: HysteresisCalibration) -> "Figure":
+    """Return force over displacement, measured and of the model, over what is left between them."""
+    import matplotlib.pyplot as plt
+
+    figure, (top, bottom) = plt.subplots(2, 1, figsize=(5.0, 4.8), sharex=True, height_ratios=(3, 1))
+    model = force_with_hysteresis(calibration, displacement=x).applied_force
+    um = 1e6 * x
+    top.plot(um, force, ".", color="0.55", markersize=3, label="measured")
+    top.plot(um, model, color=COLOURS[1], linewidth=1, label="Preisach's model")
+    bottom.plot(um, force - model, ".", color=COLOURS[0], markersize=2)
+    bottom.axhline(0, color="0.5", linewidth=0.6)
+    top.set(ylabel="force (N)")
+    bottom.set(xlabel="displacement (um)", ylabel="left over (N)")
+    top.legend()
+    return figure
+
+
+def force(t: Floats, told: ForceEstimate) -> "Figure":
+    """Return the force over time with its uncertainty."""
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(figsize=(6.4, 3.0))
+    f, u = told.applied_force, told.applied_force_uncertainty
+    axes.fill_between(t, f - u, f + u, color=COLOURS[5], alpha=0.6, linewidth=0, label="standard uncertainty")
+    axes.plot(t, f, color=COLOURS[0], linewidth=1)
+    axes.set(xlabel="time (s)", ylabel="force (N)")
+    axes.legend()
+    return figure

@@ -1,0 +1,134 @@
+"""Figures of friction recordings."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sonolube.checks import Floats
+from sonolube.figure import COLOURS, MARKERS
+from sonolube.measurement.analysis import MotorFrictionTrace
+from sonolube.measurement.staircase import StaircaseStep
+from sonolube.measurement.steady_state import SteadyState
+from sonolube.measurement.windows import WindowStatistics
+from sonolube.vocabulary import quantities
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_BINS = 1500  # of a trace, more than a page resolves
+_WIDE = (7.0, 3.2)
+_LABELS = {"friction_force": "friction force (N)", "friction_coefficient": "coefficient of friction"}
+
+
+def trace(
+    t: Floats | None, signal: Floats | None, *, windows: WindowStatistics, steady: SteadyState | None
+) -> "Figure":
+    """Return the samples with windows and where the steady state begins; without samples, where they are too many."""
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(figsize=_WIDE)
+    if t is not None and signal is not None:
+        middle, low, high = _envelope(t, signal)
+        axes.fill_between(middle, low, high, color="0.8", linewidth=0.4, label="samples, lowest to highest")
+    mean, rms = windows.mean, windows.fluctuation
+    axes.fill_between(
+        windows.time, mean - rms, mean + rms, color=COLOURS[5], alpha=0.6, linewidth=0, label="RMS fluctuation"
+    )
+    axes.plot(windows.time, mean, color=COLOURS[0], label=f"mean of {windows.window_duration:g} s")
+    if steady is not None and steady.steady:
+        start = windows.time[0] + steady.start_time
+        axes.axvline(start, color=COLOURS[1], linestyle="--", label=f"steady after {steady.sliding_distance:.3g} m")
+    axes.set(xlabel="time (s)", ylabel=_LABELS.get(windows.channel, windows.channel))
+    figure.legend(loc="outside upper center", ncols=4)
+    return figure
+
+
+def by_cycle(cycles: Floats, signal: Floats, name: str) -> "Figure":
+    """Return a signal with one value a cycle."""
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(figsize=_WIDE)
+    axes.plot(cycles, signal, marker=".", linewidth=0.8, markersize=3)
+    axes.set(xlabel="cycle", ylabel=_LABELS.get(name, name))
+    return figure
+
+
+def staircase(steps: Sequence[StaircaseStep]) -> "Figure":
+    """Return friction and its reduction over the voltage."""
+    import matplotlib.pyplot as plt
+
+    figure, (left, right) = plt.subplots(1, 2, figsize=_WIDE)
+    left.errorbar(
+        [step.voltage_peak_to_peak for step in steps],
+        [step.friction_force for step in steps],
+        yerr=[step.friction_force_uncertainty for step in steps],
+        marker=MARKERS[0],
+        linestyle="none",
+        capsize=2,
+    )
+    driven = [step for step in steps if step.friction_reduction is not None]
+    right.errorbar(
+        [step.voltage_peak_to_peak for step in driven],
+        [100 * (step.friction_reduction or 0.0) for step in driven],
+        yerr=[100 * (step.friction_reduction_uncertainty or 0.0) for step in driven],
+        marker=MARKERS[1],
+        color=COLOURS[1],
+        linestyle="none",
+        capsize=2,
+    )
+    left.set(xlabel="voltage, peak to peak (V)", ylabel="friction force (N)")
+    right.set(xlabel="voltage, peak to peak (V)", ylabel="friction reduction (%)")
+    for axes in (left, right):
+        axes.set(xlim=(0, None), ylim=(min(0.0, axes.get_ylim()[0]), 1.06 * axes.get_ylim()[1]))
+    return figure
+
+
+def loops(velocity: Floats, force: Floats) -> "Figure":
+    """Return friction over velocity."""
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(figsize=(4.2, 3.4))
+    stride = max(1, velocity.size // 20_000)
+    axes.plot(velocity[::stride], force[::stride], linewidth=0.8)
+    axes.axhline(0, color="0.5", linewidth=0.6)
+    axes.axvline(0, color="0.5", linewidth=0.6)
+    axes.set(xlabel="velocity (m/s)", ylabel="friction force (N)")
+    return figure
+
+
+def motor_trace(found: MotorFrictionTrace) -> "Figure":
+    """Return the friction that a motor's current tells."""
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(figsize=_WIDE)
+    axes.errorbar(
+        found.time, found.friction_force, yerr=found.friction_force_uncertainty, marker=MARKERS[0], elinewidth=0.8
+    )
+    axes.set(xlabel="time (s)", ylabel="friction force (N)")
+    return figure
+
+
+def comparison(without: Sequence[float], with_vibration: Sequence[float], level: str) -> "Figure":
+    """Return single tests and the means of both kinds."""
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(figsize=(3.8, 3.2))
+    for place, (tests, name) in enumerate([(without, "without"), (with_vibration, "with")]):
+        spread = 0.04 * (np.arange(len(tests)) - (len(tests) - 1) / 2)
+        axes.plot(place + spread, tests, MARKERS[place], color=COLOURS[place], label=f"{name}: {len(tests)} tests")
+        axes.hlines(float(np.mean(tests)), place - 0.25, place + 0.25, color=COLOURS[place])
+    label = _LABELS.get(level) or (quantities()[level].meaning if level in quantities() else "steady friction (N)")
+    axes.set(xticks=[0, 1], xticklabels=["without", "with vibration"], ylabel=label, xlim=(-0.5, 1.5))
+    axes.set_ylim(0, 1.06 * axes.get_ylim()[1])
+    return figure
+
+
+def _envelope(time: Floats, signal: Floats) -> tuple[Floats, Floats, Floats]:
+    """Return lowest and highest sample in bins of equal numbers, which a page shows as the trace itself."""
+    size = max(1, -(-time.size // _BINS))
+    starts = np.arange(0, time.size, size)
+    low = np.fmin.reduceat(signal, starts)
+    high = np.fmax.reduceat(signal, starts)
+    middle = (time[starts] + time[np.minimum(starts + size, time.size) - 1]) / 2
+    return middle, low, high

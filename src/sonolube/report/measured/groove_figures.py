@@ -1,0 +1,118 @@
+"""Figures of wear grooves."""
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sonolube.checks import Floats
+from sonolube.figure import COLOURS, MARKERS
+from sonolube.measurement.wear_ring import WearRing
+from sonolube.report.measured.surface_figures import length_scale, show_map
+from sonolube.surfaces import HeightMap
+from sonolube.surfaces.groove import Groove
+from sonolube.surfaces.track_marks import TrackMarks
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_BLOCKS = 110  # along the longer side of a view
+_SINGLE = 9  # sections shown
+
+
+def view(groove: Groove) -> "Figure":
+    """Return the groove in three dimensions."""
+    import matplotlib.pyplot as plt
+
+    figure = plt.figure(figsize=(6.4, 4.2))
+    axes: Any = figure.add_subplot(projection="3d")
+    levelled = groove.levelled
+    size = max(1, math.ceil(max(levelled.height.shape) / _BLOCKS))
+    z = 1e6 * _block_means(levelled.height, size)
+    y, x = (
+        1e3 * size * step * np.arange(n)
+        for step, n in zip((levelled.spacing_y, levelled.spacing_x), z.shape, strict=True)
+    )
+    low, high = np.nanquantile(z, [0.002, 0.998])
+    axes.plot_surface(*np.meshgrid(x, y), z, cmap="cividis", vmin=low, vmax=high, rstride=1, cstride=1, linewidth=0)
+    axes.set(xlabel="x (mm)", ylabel="y (mm)", zlabel="height (um)")
+    axes.set_box_aspect((x[-1], y[-1], 0.35 * x[-1]), zoom=0.92)
+    axes.invert_yaxis()  # as on the map, whose first row is the top
+    axes.view_init(elev=38, azim=-62)
+    return figure
+
+
+def sections(groove: Groove) -> "Figure":
+    """Return single sections and the mean one with its edges."""
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(figsize=(6.4, 3.2))
+    single = groove.sections
+    for at in np.linspace(0, single.along.size - 1, _SINGLE + 2).round().astype(int)[1:-1]:
+        axes.plot(1e3 * single.across, 1e6 * single.height[at], color="0.7", linewidth=0.6)
+    mean = groove.section
+    shown = (mean.across >= single.across[0]) & (mean.across <= single.across[-1])
+    axes.plot(1e3 * mean.across[shown], 1e6 * mean.height[shown], color=COLOURS[0], label="mean section")
+    axes.axhline(0, color=COLOURS[1], linewidth=1, linestyle="--", label="unworn surface")
+    edges = 1e3 * groove.groove_width * np.array([-0.5, 0.5])
+    axes.plot(edges, [0, 0], MARKERS[1], color=COLOURS[1], label="edges")
+    axes.set(xlabel="distance from the track (mm)", ylabel="height (um)")
+    figure.legend(loc="outside upper center", ncols=3)
+    return figure
+
+
+def height_map(levelled: HeightMap, worn: NDArray[np.bool_]) -> "Figure":
+    """Return heights as colours, with a line round what is worn."""
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(figsize=(5.0, 3.4))
+    show_map(axes, levelled)
+    _, per_metre = length_scale(levelled.x)
+    x, y = per_metre * levelled.x, per_metre * levelled.y
+    axes.contour(x, y, worn.astype(float), levels=[0.5], colors="white", linewidths=0.8)
+    return figure
+
+
+def ring(found: WearRing) -> "Figure":
+    """Return the area of each scan's section, with mean and interval."""
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(figsize=(4.6, 3.0))
+    area = 1e12 * found.section_area
+    around = math.pi * found.groove_diameter
+    low, high = (1e12 * end / around for end in found.wear_volume_interval)
+    place = np.arange(1, area.size + 1)
+    axes.axhspan(low, high, color=COLOURS[5], alpha=0.4, linewidth=0, label="95 %")
+    axes.axhline(float(area.mean()), color=COLOURS[0], linewidth=1.2, label="mean")
+    axes.plot(place, area, MARKERS[1], color=COLOURS[1], label="scans")
+    axes.set(xlabel="scan", ylabel="section (um$^2$)", xticks=place)
+    figure.legend(loc="outside upper center", ncols=3)
+    return figure
+
+
+def marks(found: TrackMarks) -> "Figure":
+    """Return the spectrum along the track over its background."""
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(figsize=(4.6, 3.0))
+    inner = found.wavenumber > 0
+    k = found.wavenumber[inner]
+    axes.loglog(k, found.profile_spectral_density[inner], linewidth=1, label="along the track")
+    background = np.broadcast_to(found.background, found.wavenumber.shape)[inner]
+    axes.loglog(k, background, "--", color=COLOURS[1], label="background")
+    if found.dot_spacing is not None:
+        axes.axvline(1 / found.dot_spacing, color="0.4", linewidth=0.8, linestyle=":")
+    axes.set(xlabel="wavenumber (1/m)", ylabel="power spectral density (m$^3$)")
+    axes.legend()
+    return figure
+
+
+def _block_means(height: Floats, size: int) -> Floats:
+    """Return means over square blocks of pixels, missing ones left out; NaN where a block has none."""
+    rows, columns = (n // size * size for n in height.shape)
+    blocks = height[:rows, :columns].reshape(rows // size, size, columns // size, size)
+    measured = np.isfinite(blocks)
+    count = measured.sum(axis=(1, 3))
+    total = np.where(measured, blocks, 0.0).sum(axis=(1, 3))
+    return np.where(count, total / np.maximum(count, 1), np.nan)

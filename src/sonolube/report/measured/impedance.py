@@ -1,0 +1,149 @@
+"""Impedance spectra as sheets: the equivalent circuit that fits, and the stack of a structure."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from sonolube.actuator import PiezoStack
+from sonolube.dynamics import Structure
+from sonolube.identification.impedance import fit_circuit
+from sonolube.identification.spectral_residual import LOG_COMPLEX
+from sonolube.identification.stack import fit_stack
+from sonolube.measurement.impedance_files import read_impedance
+from sonolube.measurement.impedance_spectrum import ImpedanceSpectrum
+from sonolube.measurement.logarithmic_fit import Interval
+from sonolube.report.measured import impedance_figures as figures
+from sonolube.report.measured.sheet import Part, Sheet, SheetFigure, Value, known, sheet_of
+from sonolube.units import engineering
+from sonolube.vocabulary import quantities
+
+
+@dataclass(frozen=True, slots=True)
+class StackInStructure:
+    """A stack as its maker states it, and the structure as it would be with another."""
+
+    stack: PiezoStack
+    in_structure: Callable[[PiezoStack], Structure]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ImpedanceSettings:
+    """What the fit to a spectrum depends on.
+
+    Parameters
+    ----------
+    branches : int or None
+        How many modes; None takes as many as a criterion bears out.
+    residual : str
+        "log-complex" or "linear-magnitude".
+    series_resistance : float
+        Of the leads, as known. [ohm]
+    sweep : str or None
+        Which of several sweeps of a file.
+    stack : StackInStructure or None
+        Whose parameters are sought; None fits a circuit.
+    """
+
+    branches: int | None = None
+    residual: str = LOG_COMPLEX
+    series_resistance: float = 0.0
+    sweep: str | None = None
+    stack: StackInStructure | None = None
+
+
+def impedance_sheet(path: Path, *, settings: ImpedanceSettings) -> Sheet:
+    """Return the circuit, or the stack, that an impedance file bears out.
+
+    Parameters
+    ----------
+    path : Path
+        In any format of `read_impedance`.
+    settings : ImpedanceSettings
+
+    Returns
+    -------
+    Sheet
+
+    Raises
+    ------
+    InvalidInput
+        If the file cannot be read, or nothing fits it.
+    """
+    spectrum = read_impedance(path, sweep=settings.sweep)
+    part = _circuit(spectrum, settings) if settings.stack is None else _stack(spectrum, settings, settings.stack)
+    f = spectrum.frequency
+    ends = " to ".join(engineering(float(end), "Hz", digits=6) for end in (f[0], f[-1]))
+    source = {
+        "format": spectrum.file_format,
+        "sweep": spectrum.sweep,
+        "points": f"{f.size}, {ends}",
+        "residual": settings.residual,
+        "sha256": spectrum.sha256,
+    }
+    return sheet_of([part], title=path.name, source=source)
+
+
+def _circuit(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings) -> Part:
+    fit = fit_circuit(
+        spectrum,
+        branches=settings.branches,
+        residual=settings.residual,
+        series_resistance=settings.series_resistance,
+    )
+    drawn = SheetFigure(
+        name="fit",
+        title="Impedance with the circuit that fits",
+        caption=f"Measured and fitted by the {fit.residual} residual, and what is left over: share of the magnitude"
+        " and radians of the phase.",
+        draw=partial(figures.circuit, spectrum, fit.circuit),
+    )
+    circle = SheetFigure(
+        name="admittance",
+        title="Admittance circle",
+        caption="Susceptance over conductance; a mode draws a circle.",
+        draw=partial(figures.admittance_circle, spectrum, fit.circuit),
+    )
+    values = (*_values(fit.intervals), _rms(fit.residual_rms, fit.residual))
+    return Part(values=values, figures=(drawn, circle), doubts=fit.doubts)
+
+
+def _stack(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings, sought: StackInStructure) -> Part:
+    fit = fit_stack(spectrum, sought.stack, in_structure=sought.in_structure, residual=settings.residual)
+    charge = fit.charge_per_elongation
+    values = (
+        *_values(fit.intervals),
+        Value(
+            name="force_per_volt",
+            label="Blocked force per volt",
+            value=charge.value,
+            unit="N/V",
+            interval=(charge.lower, charge.upper),
+        ),
+        _rms(fit.residual_rms, fit.residual),
+    )
+    drawn = SheetFigure(
+        name="fit",
+        title="Impedance with the stack that fits",
+        caption=f"Measured, and that of the structure with the stack found by the {fit.residual} residual.",
+        draw=partial(figures.stack, spectrum, sought.in_structure(fit.stack)),
+    )
+    return Part(values=values, figures=(drawn,), doubts=fit.doubts)
+
+
+def _values(intervals: Mapping[str, Interval]) -> tuple[Value, ...]:
+    return tuple(_value(name, interval) for name, interval in intervals.items())
+
+
+def _value(name: str, interval: Interval) -> Value:
+    ends = (interval.lower, interval.upper)
+    if name in quantities():
+        return known(name, interval.value, interval=ends)
+    base, _, branch = name.rpartition("_")
+    word = quantities()[base]
+    label = f"{word.meaning}, branch {branch}"
+    return Value(name=name, label=label, value=interval.value, unit=word.unit, interval=ends)
+
+
+def _rms(rms: float, residual: str) -> Value:
+    return Value(name="residual_rms", label=f"Root mean square of the {residual} residual", value=rms, unit="")

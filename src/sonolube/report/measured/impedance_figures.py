@@ -1,0 +1,58 @@
+"""Figures of impedance spectra."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sonolube.actuator import ButterworthVanDyke, circuit_admittance
+from sonolube.checks import Complexes
+from sonolube.dynamics.structure import Structure, electrical_admittance
+from sonolube.figure import COLOURS
+from sonolube.measurement.impedance_spectrum import ImpedanceSpectrum
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def circuit(spectrum: ImpedanceSpectrum, fitted: ButterworthVanDyke) -> "Figure":
+    """Return magnitude and phase, measured and of a circuit, over what is left between them."""
+    return _fit(spectrum, circuit_admittance(fitted, frequency=spectrum.frequency))
+
+
+def stack(spectrum: ImpedanceSpectrum, fitted: Structure) -> "Figure":
+    """Return magnitude and phase, measured and of a structure, over what is left between them."""
+    return _fit(spectrum, electrical_admittance(fitted, frequency=spectrum.frequency))
+
+
+def admittance_circle(spectrum: ImpedanceSpectrum, fitted: ButterworthVanDyke) -> "Figure":
+    """Return susceptance over conductance, measured and fitted."""
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(figsize=(3.8, 3.6))
+    fine = np.geomspace(spectrum.frequency[0], spectrum.frequency[-1], 4000)
+    model = 1e3 * circuit_admittance(fitted, frequency=fine)
+    measured = 1e3 * spectrum.admittance
+    axes.plot(measured.real, measured.imag, ".", color="0.45", markersize=4, label="measured")
+    axes.plot(model.real, model.imag, color=COLOURS[1], linewidth=1.2, label="fitted")
+    axes.set(xlabel="conductance (mS)", ylabel="susceptance (mS)", aspect="equal")
+    axes.legend()
+    return figure
+
+
+def _fit(spectrum: ImpedanceSpectrum, model: Complexes) -> "Figure":
+    import matplotlib.pyplot as plt
+
+    f = spectrum.frequency / 1e3
+    figure, (top, middle, bottom) = plt.subplots(3, 1, figsize=(6.4, 5.4), sharex=True, height_ratios=(2, 1.5, 1))
+    for axes, of in ((top, np.abs), (middle, lambda z: np.degrees(np.angle(z)))):
+        axes.plot(f, of(spectrum.impedance), ".", color="0.45", markersize=3, label="measured")
+        axes.plot(f, of(1 / model), color=COLOURS[1], linewidth=1.2, label="fitted")
+    left_over = np.log(model / spectrum.admittance)
+    bottom.plot(f, left_over.real, color=COLOURS[0], linewidth=1, label="magnitude")
+    bottom.plot(f, left_over.imag, "--", color=COLOURS[2], linewidth=1, label="phase")
+    top.set(yscale="log", ylabel="impedance (ohm)")
+    middle.set(ylabel="phase (deg)", ylim=(-100, 100), yticks=[-90, 0, 90])
+    bottom.set(xlabel="frequency (kHz)", ylabel="residual")
+    top.legend()
+    bottom.legend(ncols=2)
+    return figure

@@ -1,0 +1,57 @@
+"""Figures of a turning disc."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sonolube.checks import Floats
+from sonolube.figure import COLOURS, MARKERS
+from sonolube.measurement.rotation import Rotation
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_TURNS_SHOWN = 6
+
+
+def speed(turning: Rotation) -> "Figure":
+    """Return the rotation speed turn by turn, with the speed at the groove on the right."""
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(figsize=(6.4, 3.0))
+    turns = turning.rotation_speed
+    begun = turning.time[: turns.size]
+    axes.plot(begun, turns, marker=".", linewidth=0.8, markersize=4)
+    axes.axhline(turning.mean_rotation_speed, color=COLOURS[1], linestyle="--", linewidth=1.2, label="mean")
+    axes.set(xlabel="time (s)", ylabel="rotation speed (1/s)")
+    per_turn = float(turning.sliding_speed[0] / turns[0])
+
+    def at_groove(rotation_speed: Any) -> Any:
+        return rotation_speed * per_turn
+
+    def at_disc(sliding_speed: Any) -> Any:
+        return sliding_speed / per_turn
+
+    right = axes.secondary_yaxis("right", functions=(at_groove, at_disc))
+    right.set_ylabel("speed at the groove (m/s)")
+    axes.legend()
+    return figure
+
+
+def pulses(t: Floats, flux_density: Floats, turning: Rotation) -> "Figure":
+    """Return the first turns of the probe's reading with the pulses in it."""
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(figsize=(6.4, 3.0))
+    end = float(np.interp(_TURNS_SHOWN, turning.revolutions, turning.time))
+    shown = t <= end + 0.02 * (end - t[0])
+    axes.plot(t[shown], flux_density[shown], color="0.5", linewidth=0.8, label="reading")
+    early = turning.time <= end
+    for which, name, place in ((early & ~turning.repaired, "pulses", 0), (early & turning.repaired, "put in", 1)):
+        if which.any():
+            at = turning.time[which]
+            height = np.interp(at, t, flux_density)
+            axes.plot(at, height, MARKERS[place], color=COLOURS[place], linestyle="none", label=name)
+    axes.set(xlabel="time (s)", ylabel="magnetic flux density (T)")
+    figure.legend(loc="outside upper center", ncols=3)
+    return figure

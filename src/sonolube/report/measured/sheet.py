@@ -1,0 +1,201 @@
+"""A sheet: what one file was measured to say, with where it came from."""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from sonolube.errors import InvalidInput
+from sonolube.units import engineering
+from sonolube.vocabulary import quantities
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Cell = float | str | None
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Value:
+    """One number that a file was measured to say.
+
+    Parameters
+    ----------
+    name : str
+        For programs; a word of the vocabulary where it has one.
+    label : str
+        For people.
+    value : float
+        In SI.
+    unit : str
+        Its SI unit; empty for a pure number.
+    uncertainty : float or None
+        Standard uncertainty, in the same unit.
+    interval : tuple of two float, or None
+        Ends of a confidence interval.
+    """
+
+    name: str
+    label: str
+    value: float
+    unit: str
+    uncertainty: float | None = None
+    interval: tuple[float, float] | None = None
+
+    @property
+    def text(self) -> str:
+        """The value as people write it, with how well it is known."""
+        told = engineering(self.value, self.unit, digits=self._digits)
+        number, _, unit = told.partition(" ")
+        scale = 10.0 ** round(math.log10(self.value / float(number))) if float(number) else 1.0
+        if self.uncertainty is not None:
+            return f"{number} ± {self.uncertainty / scale:.2g} {unit}".rstrip()
+        if self.interval is not None:
+            lower, upper = (end / scale for end in self.interval)
+            return f"{number} {unit}".rstrip() + f" ({lower:.4g} to {upper:.4g})"
+        return told
+
+    @property
+    def _digits(self) -> int:
+        """Significant digits that the uncertainty leaves a meaning, three to eight; four where none is known."""
+        if not self.uncertainty or not self.value:
+            return 4
+        return min(8, max(3, math.floor(math.log10(abs(self.value))) - math.floor(math.log10(self.uncertainty)) + 2))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Column:
+    """A column of a table: its name for programs, its heading for people, and its SI unit."""
+
+    name: str
+    label: str
+    unit: str = ""
+
+    def text(self, cell: Cell) -> str:
+        """Return a cell as people write it; empty where there is nothing."""
+        if cell is None or (isinstance(cell, float) and not math.isfinite(cell)):
+            return ""
+        return cell if isinstance(cell, str) else engineering(cell, self.unit, digits=4)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SheetTable:
+    """A table of a sheet: cells are numbers in SI, words, or None."""
+
+    name: str
+    title: str
+    columns: tuple[Column, ...]
+    rows: tuple[tuple[Cell, ...], ...]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class SheetFigure:
+    """A figure of a sheet, drawn when the page is made."""
+
+    name: str
+    title: str
+    caption: str
+    draw: Callable[[], "Figure"]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Sheet:
+    """What one file was measured to say.
+
+    Parameters
+    ----------
+    title : str
+        The file's name, or what was compared.
+    source : mapping of str to str
+        Where it came from: file, format, digest and what the instrument says of itself.
+    values : tuple of Value
+        The numbers, those that matter most first.
+    tables : tuple of SheetTable
+        What comes in rows.
+    figures : tuple of SheetFigure
+        What is drawn.
+    doubts : tuple of str
+        What speaks against the numbers, one line each.
+    not_found : tuple of str
+        What was looked for and not found, with the reason.
+    """
+
+    title: str
+    source: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
+    values: tuple[Value, ...] = ()
+    tables: tuple[SheetTable, ...] = ()
+    figures: tuple[SheetFigure, ...] = ()
+    doubts: tuple[str, ...] = ()
+    not_found: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Part:
+    """What one analysis adds to a sheet; fields as those of `Sheet`."""
+
+    values: tuple[Value, ...] = ()
+    tables: tuple[SheetTable, ...] = ()
+    figures: tuple[SheetFigure, ...] = ()
+    doubts: tuple[str, ...] = ()
+    not_found: tuple[str, ...] = ()
+
+
+def sheet_of(parts: Sequence[Part], *, title: str, source: Mapping[str, str]) -> Sheet:
+    """Return the sheet to which analyses add up, in their order."""
+    return Sheet(
+        title=title,
+        source={key: text for key, text in source.items() if text},
+        values=tuple(value for part in parts for value in part.values),
+        tables=tuple(table for part in parts for table in part.tables),
+        figures=tuple(figure for part in parts for figure in part.figures),
+        doubts=tuple(doubt for part in parts for doubt in part.doubts),
+        not_found=tuple(reason for part in parts for reason in part.not_found),
+    )
+
+
+def attempted(analysis: Callable[[], Part], *, what: str) -> Part:
+    """Return what an analysis gives, or that it was not possible on this file, with its reason."""
+    try:
+        return analysis()
+    except InvalidInput as refusal:
+        return Part(not_found=(f"{what}: {refusal}",))
+
+
+def known(
+    name: str,
+    value: float,
+    *,
+    label: str = "",
+    uncertainty: float | None = None,
+    interval: tuple[float, float] | None = None,
+) -> Value:
+    """Return a value whose name is a word of the vocabulary, which gives its unit and, where none is given, its label.
+
+    Parameters
+    ----------
+    name : str
+        Of the vocabulary.
+    value : float
+        In SI.
+    label : str
+        What people read instead of the vocabulary's meaning.
+    uncertainty : float or None
+        Standard uncertainty.
+    interval : tuple of two float, or None
+        Ends of a confidence interval.
+
+    Returns
+    -------
+    Value
+    """
+    word = quantities()[name]
+    return Value(
+        name=name, label=label or word.meaning, value=value, unit=word.unit, uncertainty=uncertainty, interval=interval
+    )
+
+
+def column(name: str, label: str = "") -> Column:
+    """Return a column whose name is a word of the vocabulary."""
+    word = quantities()[name]
+    return Column(name=name, label=label or word.meaning, unit=word.unit)

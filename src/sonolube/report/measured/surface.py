@@ -1,0 +1,312 @@
+"""Height maps as sheets: parameters of ISO 25178-2 and of profiles, spectra, summits for the contact models."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from functools import partial
+from pathlib import Path
+from types import MappingProxyType
+
+from sonolube.errors import InvalidInput
+from sonolube.measurement.surface_files import SurfaceFile, read_surface_file
+from sonolube.report.measured import surface_figures as figures
+from sonolube.report.measured.sheet import (
+    Column,
+    Part,
+    Sheet,
+    SheetFigure,
+    SheetTable,
+    Value,
+    attempted,
+    column,
+    known,
+    sheet_of,
+)
+from sonolube.surfaces import (
+    HeightMap,
+    against_sampling_interval,
+    areal_spectrum,
+    autocorrelation,
+    feature_parameters,
+    functional_parameters,
+    height_parameters,
+    high_pass,
+    hybrid_parameters,
+    level,
+    low_pass,
+    material_ratio_curve,
+    profile_statistics,
+    radial_spectrum,
+    roughness,
+    spatial_parameters,
+    spectral_moments,
+    summits,
+    waviness_lengths,
+)
+from sonolube.units import engineering
+
+_SYMBOLS: Mapping[str, str] = MappingProxyType(
+    {
+        "mean_roughness": "Sa",
+        "rms_height": "Sq",
+        "peak_height": "Sp",
+        "valley_depth": "Sv",
+        "total_height": "Sz",
+        "skewness": "Ssk",
+        "kurtosis": "Sku",
+        "rms_slope": "Sdq",
+        "developed_area_ratio": "Sdr",
+        "autocorrelation_length": "Sal",
+        "texture_aspect_ratio": "Str",
+        "texture_direction": "Std",
+        "core_height": "Sk",
+        "reduced_peak_height": "Spk",
+        "reduced_valley_depth": "Svk",
+        "peak_material_ratio": "Smr1",
+        "valley_material_ratio": "Smr2",
+        "peak_material_volume": "Vmp",
+        "core_material_volume": "Vmc",
+        "core_void_volume": "Vvc",
+        "valley_void_volume": "Vvv",
+        "peak_density": "Spd",
+        "mean_peak_curvature": "Spc",
+    }
+)
+_LABELS: Mapping[str, str] = MappingProxyType(
+    {
+        "mean_roughness": "mean deviation of heights",
+        "rms_height": "standard deviation of heights",
+        "peak_height": "highest above the mean",
+        "valley_depth": "deepest below the mean",
+        "total_height": "highest to deepest",
+        "skewness": "skewness",
+        "kurtosis": "kurtosis",
+        "rms_slope": "root mean square slope",
+        "developed_area_ratio": "excess of area",
+        "autocorrelation_length": "autocorrelation length",
+        "texture_aspect_ratio": "texture aspect ratio",
+        "texture_direction": "direction of the lay",
+        "core_height": "height of the core",
+        "reduced_peak_height": "peaks above the core",
+        "reduced_valley_depth": "valleys below the core",
+        "peak_material_ratio": "share of peaks",
+        "valley_material_ratio": "share that is not valleys",
+        "peak_material_volume": "material of the peaks per area",
+        "core_material_volume": "material of the core per area",
+        "core_void_volume": "void of the core per area",
+        "valley_void_volume": "void of the valleys per area",
+        "peak_density": "significant hills per area",
+        "mean_peak_curvature": "mean curvature of their peaks",
+    }
+)
+_PROFILE = ("mean_roughness", "rms_height", "peak_height", "valley_depth", "total_height", "mean_section_height")
+_PROFILE_LABELS = ("Ra", "Rq", "Rp", "Rv", "Rt", "Rz")
+_COARSENINGS = (1, 2, 4, 8)  # times the pixel, at which summits are sought
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SurfaceSettings:
+    """What the numbers of a height map depend on.
+
+    Parameters
+    ----------
+    spacing_x, spacing_y : float or None
+        Distance of neighbouring columns and rows, for files that do not say. [m]
+    length_unit : str or None
+        Unit of the lengths, for files that do not say.
+    degree : int
+        Of the form taken off first: 1 a plane, 2 with cylinder and sphere.
+    robust : bool
+        Whether pixels far from the form lose their weight.
+    short_cutoff_length : float or None
+        Shorter waves are taken off, as noise. [m]
+    long_cutoff_length : float or None
+        Longer waves are taken off, as waviness. [m]
+    """
+
+    spacing_x: float | None = None
+    spacing_y: float | None = None
+    length_unit: str | None = None
+    degree: int = 1
+    robust: bool = False
+    short_cutoff_length: float | None = None
+    long_cutoff_length: float | None = None
+
+
+def surface_sheet(path: Path, *, settings: SurfaceSettings) -> Sheet:
+    """Return what a surface file says.
+
+    Parameters
+    ----------
+    path : Path
+        In any format of `read_surface_file`.
+    settings : SurfaceSettings
+
+    Returns
+    -------
+    Sheet
+
+    Raises
+    ------
+    InvalidInput
+        If the file cannot be read, levelled or filtered as asked, or its heights have no parameters.
+    """
+    file = read_surface_file(
+        path, spacing_x=settings.spacing_x, spacing_y=settings.spacing_y, length_unit=settings.length_unit
+    )
+    levelled = level(file.height_map, degree=settings.degree, robust=settings.robust)
+    surface = _filtered(levelled, settings)
+    parts = [_part(height_parameters(surface))]
+    for measure in (hybrid_parameters, spatial_parameters, functional_parameters, feature_parameters):
+        name = measure.__name__.replace("_", " ")
+        parts.append(attempted(lambda measure=measure: _part(measure(surface)), what=name))  # type: ignore[misc]
+    parts += [
+        attempted(partial(_summits, surface), what="summits"),
+        attempted(partial(_profiles, surface), what="profile parameters"),
+        attempted(partial(_sampling, surface), what="summits at coarser sampling"),
+        attempted(partial(_waviness, levelled), what="waviness"),
+        _figures(surface),
+    ]
+    return sheet_of(parts, title=path.name, source=surface_source(file))
+
+
+def surface_source(file: SurfaceFile) -> dict[str, str]:
+    """Return where a height map came from, for its sheet."""
+    rows, columns = file.height_map.height.shape
+    step_x, step_y = file.height_map.spacing_x, file.height_map.spacing_y
+    return {
+        "format": file.format_name,
+        "title": file.title,
+        "instrument": file.instrument,
+        "measured": f"{file.measured_at:%Y-%m-%d %H:%M}" if file.measured_at else "",
+        "pixels": f"{columns} x {rows}, {engineering(step_x, 'm', digits=4)} x {engineering(step_y, 'm', digits=4)}",
+        "field": f"{engineering(columns * step_x, 'm', digits=4)} x {engineering(rows * step_y, 'm', digits=4)}",
+        "not measured": f"{file.height_map.missing_share:.2%}",
+        "sha256": file.sha256,
+    }
+
+
+def _filtered(levelled: HeightMap, settings: SurfaceSettings) -> HeightMap:
+    short, long = settings.short_cutoff_length, settings.long_cutoff_length
+    if short is not None and long is not None and short >= long:
+        raise InvalidInput(f"the short cutoff, {short:.3g} m, must be below the long one, {long:.3g} m")
+    surface = levelled
+    if short is not None:
+        surface = low_pass(surface, cutoff_length=short)
+    if long is not None:
+        surface = high_pass(surface, cutoff_length=long)
+    return surface
+
+
+def _part(record: object) -> Part:
+    names = [each.name for each in fields(record) if each.name in _SYMBOLS]  # type: ignore[arg-type]
+    small = not getattr(record, "decays_everywhere", True)
+    return Part(
+        values=tuple(known(name, getattr(record, name), label=f"{_SYMBOLS[name]}, {_LABELS[name]}") for name in names),
+        doubts=("Str is an upper bound: the map is too small for its texture",) if small else (),
+    )
+
+
+def _summits(surface: HeightMap) -> Part:
+    counted, moments = summits(surface), spectral_moments(surface)
+    for_contact = roughness(surface)
+    return Part(
+        values=(
+            known("summit_density", counted.summit_density),
+            known("summit_radius", counted.summit_radius),
+            known("summit_height_deviation", counted.summit_height_deviation),
+            known("mean_summit_height", counted.mean_summit_height),
+            known("bandwidth", moments.bandwidth, label="Bandwidth of the spectrum, Nayak's alpha"),
+            known("roughness_parameter", for_contact.roughness_parameter),
+        )
+    )
+
+
+def _profiles(surface: HeightMap) -> Part:
+    rows = []
+    for along in ("rows", "columns"):
+        if min(surface.height.shape) > 1 or surface.height.shape[along == "rows"] > 1:
+            found = profile_statistics(surface, along=along)
+            for kind, record in (("mean", found.mean), ("deviation", found.spread)):
+                rows.append((f"{found.profile_count} {along}", kind, *(getattr(record, name) for name in _PROFILE)))
+    columns = (Column(name="profiles", label="Profiles"), Column(name="statistic", label=""))
+    measured = tuple(column(name, label) for name, label in zip(_PROFILE, _PROFILE_LABELS, strict=True))
+    table = SheetTable(name="profiles", title="Profile parameters", columns=(*columns, *measured), rows=tuple(rows))
+    return Part(tables=(table,))
+
+
+def _sampling(surface: HeightMap) -> Part:
+    pixel = math.sqrt(surface.spacing_x * surface.spacing_y)
+    rows: list[tuple[float, ...]] = []
+    for times in _COARSENINGS:
+        try:
+            found = against_sampling_interval(surface, sampling_interval=times * pixel)
+        except InvalidInput:
+            break
+        rows.append(
+            (
+                float(found.sampling_interval[0]),
+                float(found.rms_height[0]),
+                float(found.summit_radius[0]),
+                float(found.summit_density[0]),
+            )
+        )
+    names = ("sampling_interval", "rms_height", "summit_radius", "summit_density")
+    labels = ("Interval", "Deviation of summit heights", "Summit radius", "Summit density")
+    table = SheetTable(
+        name="sampling",
+        title="Roughness for the contact models, by sampling interval",
+        columns=tuple(column(name, label) for name, label in zip(names, labels, strict=True)),
+        rows=tuple(rows),
+    )
+    return Part(tables=(table,)) if rows else Part()
+
+
+def _waviness(levelled: HeightMap) -> Part:
+    rows = [
+        (along, float(length)) for along in ("rows", "columns") for length in waviness_lengths(levelled, along=along)
+    ]
+    columns = (Column(name="along", label="Along"), column("waviness_length", "Wavelength"))
+    return Part(tables=(SheetTable(name="waviness", title="Waviness", columns=columns, rows=tuple(rows)),))
+
+
+def _figures(surface: HeightMap) -> Part:
+    drawn = [
+        SheetFigure(
+            name="heights",
+            title="Heights",
+            caption="The surface as evaluated, levelled and filtered; what was not measured is left white.",
+            draw=partial(figures.heights, surface),
+        ),
+        SheetFigure(
+            name="abbott",
+            title="Abbott curve",
+            caption="Share of the surface at or above each height, with the core by its equivalent line.",
+            draw=partial(figures.abbott, material_ratio_curve(surface)),
+        ),
+    ]
+    try:
+        spectrum = radial_spectrum(areal_spectrum(surface))
+        correlation = autocorrelation(surface)
+    except InvalidInput as refusal:
+        return Part(figures=tuple(drawn), not_found=(f"spectrum: {refusal}",))
+    drawn += [
+        SheetFigure(
+            name="spectrum",
+            title="Power spectrum",
+            caption="Areal power spectral density, averaged over direction; the grid's ends are where it means least.",
+            draw=partial(figures.spectrum, spectrum),
+        ),
+        SheetFigure(
+            name="autocorrelation",
+            title="Autocorrelation",
+            caption="Along rows and columns; Sal is where it first falls to 0.2 in any direction.",
+            draw=partial(figures.correlation, correlation),
+        ),
+    ]
+    return Part(figures=tuple(drawn))
+
+
+def value_of(sheet: Sheet, name: str) -> Value | None:
+    """Return a value of a sheet by its name; None where it has none."""
+    return next((value for value in sheet.values if value.name == name), None)

@@ -1,0 +1,239 @@
+"""Vibrometer recordings as sheets: amplitudes at the drive frequency, per volt, and how points move together."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+from itertools import pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sonolube.checks import Complexes, Floats
+from sonolube.errors import InvalidInput
+from sonolube.measurement.analysis import channel
+from sonolube.measurement.assembly import in_si
+from sonolube.measurement.mapping import RecordingMapping
+from sonolube.measurement.recording import read_recording
+from sonolube.measurement.vibration import (
+    OperatingShape,
+    amplitude_per_volt,
+    complex_amplitudes,
+    modal_assurance,
+    operating_shape,
+)
+from sonolube.report.measured import vibration_figures as figures
+from sonolube.report.measured.friction import recording_source
+from sonolube.report.measured.sheet import (
+    Column,
+    Part,
+    Sheet,
+    SheetFigure,
+    SheetTable,
+    Value,
+    attempted,
+    column,
+    known,
+    sheet_of,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_STRETCHES = 8  # of a recording, whose scatter tells how well an amplitude is known
+_LEAST_PERIODS = 2.0  # in each
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class VibrationSettings:
+    """What amplitudes depend on.
+
+    Parameters
+    ----------
+    frequency : float
+        Of the drive. [Hz]
+    mapping : RecordingMapping or None
+        What the columns mean.
+    modes : ndarray of shape (points, modes), or None
+        Computed shapes at the points recorded, one a column, to compare with.
+    """
+
+    frequency: float
+    mapping: RecordingMapping | None = None
+    modes: Floats | None = None
+
+
+def vibration_sheet(path: Path, *, settings: VibrationSettings) -> Sheet:
+    """Return how the recorded points vibrate at the drive frequency.
+
+    Parameters
+    ----------
+    path : Path
+        A recording whose channels in metres or metres per second are points, and whose one in volts, if any, the drive.
+    settings : VibrationSettings
+
+    Returns
+    -------
+    Sheet
+
+    Raises
+    ------
+    InvalidInput
+        If the file cannot be read, records no motion, or is too short or too coarse for the frequency.
+    """
+    recording = read_recording(path, mapping=settings.mapping)
+    points, signals, velocities = _points(recording, path)
+    time, f = channel(recording, "time"), settings.frequency
+    per_rate = np.where(velocities, 1 / (2j * np.pi * f), 1.0)
+    motion = complex_amplitudes(time=time, signals=signals, frequency=f) * per_rate
+    errors = _errors(time, signals, f) * np.abs(per_rate)
+    moving = int(np.argmax(np.abs(motion)))
+    values = [known("vibration_amplitude", float(abs(motion[moving])), uncertainty=_or_none(errors[moving]))]
+    drive = _drive_voltage(recording, time, f)
+    if drive is not None:
+        swing = 2 * abs(drive)
+        values += [
+            known("voltage_peak_to_peak", swing),
+            known(
+                "amplitude_per_volt",
+                float(abs(motion[moving])) / swing,
+                uncertainty=None if np.isnan(errors[moving]) else float(errors[moving]) / swing,
+            ),
+        ]
+        motion = motion * np.exp(-1j * np.angle(drive))
+    shape = operating_shape(motion)
+    parts = [Part(values=tuple(values), tables=(_table(points, motion, errors),))]
+    if len(points) > 1:
+        parts.append(_shape(points, shape))
+        if settings.modes is not None:
+            parts.append(attempted(partial(_assurance, motion, settings.modes), what="likeness to modes"))
+    return sheet_of(parts, title=path.name, source=recording_source(recording))
+
+
+def proportion_sheet(sheets: Sequence[Sheet]) -> Sheet:
+    """Return whether the greatest amplitude is in proportion to the voltage, over recordings at several voltages.
+
+    Parameters
+    ----------
+    sheets : sequence of Sheet
+        As `vibration_sheet` gives them; those without a voltage are passed over.
+
+    Returns
+    -------
+    Sheet
+    """
+    pairs = [
+        (found["voltage_peak_to_peak"], found["vibration_amplitude"])
+        for sheet in sheets
+        if "voltage_peak_to_peak" in (found := {value.name: value.value for value in sheet.values})
+    ]
+    return sheet_of(
+        [attempted(partial(_proportion, pairs), what="proportion")],
+        title=f"amplitude over voltage, {len(pairs)} recordings",
+        source={},
+    )
+
+
+def _points(recording: "xr.Dataset", path: Path) -> tuple[list[str], Floats, Floats]:
+    names, signals, velocities = [], [], []
+    for name in map(str, recording):
+        unit = str(recording[name].attrs.get("units", ""))
+        for si, is_velocity in (("m", False), ("m/s", True)):
+            try:
+                values = in_si(channel(recording, name), written_unit=unit, unit=si, name=name)
+            except InvalidInput:
+                continue
+            names.append(name)
+            signals.append(values)
+            velocities.append(is_velocity)
+    if not names:
+        raise InvalidInput(f"{path}: no channel is a displacement or a velocity; give units, or a mapping")
+    return names, np.stack(signals), np.array(velocities)
+
+
+def _drive_voltage(recording: "xr.Dataset", time: Floats, frequency: float) -> complex | None:
+    for name in map(str, recording):
+        if str(recording[name].attrs.get("units", "")) == "V":
+            return complex(complex_amplitudes(time=time, signals=channel(recording, name), frequency=frequency)[0])
+    return None
+
+
+def _errors(time: Floats, signals: Floats, frequency: float) -> Floats:
+    """Standard errors of the amplitudes, from their scatter over stretches; NaN where the recording is too short."""
+    edges = np.linspace(0, time.size, _STRETCHES + 1).astype(int)
+    if np.diff(edges).min() < 2 or (time[edges[1] - 1] - time[0]) * frequency < _LEAST_PERIODS:
+        return np.full(signals.shape[0], np.nan)
+    each = np.stack(
+        [
+            complex_amplitudes(time=time[first:last], signals=signals[:, first:last], frequency=frequency)
+            for first, last in pairwise(edges.tolist())
+        ]
+    )
+    return np.asarray(np.abs(each).std(axis=0, ddof=1) / np.sqrt(_STRETCHES))
+
+
+def _or_none(error: float) -> float | None:
+    return None if np.isnan(error) else float(error)
+
+
+def _table(points: Sequence[str], motion: Complexes, errors: Floats) -> SheetTable:
+    columns = (
+        Column(name="point", label="Point"),
+        column("vibration_amplitude", "Amplitude"),
+        Column(name="vibration_amplitude_uncertainty", label="Its uncertainty", unit="m"),
+        Column(name="phase", label="Phase", unit="rad"),
+    )
+    rows = tuple(
+        (name, float(abs(x)), _or_none(error), float(np.angle(x)))
+        for name, x, error in zip(points, motion, errors, strict=True)
+    )
+    return SheetTable(name="points", title="Points", columns=columns, rows=rows)
+
+
+def _shape(points: Sequence[str], shape: OperatingShape) -> Part:
+    value = Value(
+        name="standing_share", label="Share of the motion that stands in step", value=shape.standing_share, unit=""
+    )
+    drawn = SheetFigure(
+        name="shape",
+        title="Operating shape",
+        caption="Motion in step with the whole, greatest 1, and the phase of each point from it.",
+        draw=partial(figures.shape, points, shape),
+    )
+    return Part(values=(value,), figures=(drawn,))
+
+
+def _assurance(motion: Complexes, modes: Floats) -> Part:
+    likeness = modal_assurance(motion, modes)[0]
+    columns = (Column(name="mode", label="Mode"), Column(name="assurance", label="Modal assurance"))
+    rows = tuple((f"{place}", float(value)) for place, value in enumerate(likeness, start=1))
+    drawn = SheetFigure(
+        name="assurance",
+        title="Likeness to computed modes",
+        caption="Modal assurance criterion of the operating shape with each mode: 1 in proportion, 0 orthogonal.",
+        draw=partial(figures.assurance, likeness),
+    )
+    table = SheetTable(name="modes", title="Likeness to computed modes", columns=columns, rows=rows)
+    return Part(tables=(table,), figures=(drawn,))
+
+
+def _proportion(pairs: Sequence[tuple[float, float]]) -> Part:
+    volts, amplitudes = (np.array([pair[which] for pair in pairs]) for which in range(2))
+    found = amplitude_per_volt(voltage_peak_to_peak=volts, vibration_amplitude=amplitudes)
+    values = (
+        known("amplitude_per_volt", found.amplitude_per_volt, interval=(found.lower, found.upper)),
+        known("amplitude_deviation", found.amplitude_deviation),
+        Value(
+            name="curvature_p", label="Chance of such a curvature by scatter alone", value=found.curvature_p, unit=""
+        ),
+    )
+    doubts: tuple[str, ...] = ()
+    if not found.proportional:
+        doubts = (f"amplitude is not in proportion to voltage: the slope changes by {found.curvature:+.0%}",)
+    drawn = SheetFigure(
+        name="proportion",
+        title="Amplitude over voltage",
+        caption="Each recording, and the line through the origin with its 95 % interval.",
+        draw=partial(figures.proportion, volts, amplitudes, found),
+    )
+    return Part(values=values, figures=(drawn,), doubts=doubts)

@@ -1,0 +1,51 @@
+"""The command on natural modes, in a process of its own."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pytest import approx
+
+pytest.importorskip("netgen.occ", reason="netgen-mesher is not installed")
+pytest.importorskip("skfem", reason="scikit-fem is not installed")
+
+
+def modes(*arguments: str) -> "subprocess.CompletedProcess[str]":
+    code = "from sonolube.cli import main; main()"
+    return subprocess.run(
+        [sys.executable, "-c", code, "modes", *arguments], capture_output=True, text=True, check=False
+    )
+
+
+def test_a_steel_bar_is_answered_with_the_axial_mode_of_bar_theory_and_pictures(tmp_path: Path) -> None:
+    sizes = ("--set", "length=60mm", "--set", "radius=6mm", "--count", "6", "--tolerance", "0.02")
+    run = modes("cylinder", *sizes, "--material", "stainless_steel_304", "--out", str(tmp_path), "--json")
+    assert run.returncode == 0, run.stderr
+    answer = json.loads(run.stdout)
+    found = {mode["name"]: mode["natural_frequency"]["value"] for mode in answer["modes"]}
+    rayleigh = 1 - (np.pi * 0.29 * 0.1) ** 2 / 4
+    assert answer["rigid_motions"] == 6
+    assert found["axial 1"] == approx(np.sqrt(200e9 / 8000) / 0.12 * rayleigh, rel=3e-3)
+    assert found["torsional 1"] == approx(np.sqrt(200e9 / 2.58 / 8000) / 0.12, rel=5e-3)
+    assert all(Path(file).stat().st_size > 10_000 for file in answer["files"])
+    assert len(answer["files"]) == 6
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        (("blok",), "unknown part 'blok'; did you mean block?"),
+        (("block", "--set", "length=1mm"), "a block needs width, thickness; give each as --set width=20mm"),
+        (("block", "--set", "lenght=1mm"), "unknown size of a block 'lenght'; did you mean length?"),
+        (("block", "--set", "length=3N"), "length=3N"),
+        (("none.step",), "none.step: no such file"),
+    ],
+)
+def test_what_is_no_part_is_refused_in_one_line(arguments: tuple[str, ...], line: str) -> None:
+    run = modes(*arguments)
+    assert run.returncode == 2
+    assert len(run.stderr.strip().splitlines()) == 1
+    assert line.split("=")[0] in run.stderr

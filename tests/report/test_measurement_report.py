@@ -1,0 +1,202 @@
+"""Measured files as sheets, pages and JSON: the numbers arrive with their units and doubts, and nothing is lost."""
+
+import json
+import re
+from pathlib import Path
+from types import MappingProxyType
+
+import numpy as np
+import pytest
+from pytest import approx, raises
+
+from sonolube.errors import InvalidInput
+from sonolube.report import (
+    MeasurementReport,
+    measurement_lines,
+    measurement_object,
+    read_test_sheet,
+    test_sheet_table,
+    write_measurement_report,
+)
+from sonolube.report.measured.friction import FrictionSettings, friction_sheet
+from sonolube.report.measured.friction_comparison import comparison_sheet
+from sonolube.report.measured.impedance import ImpedanceSettings, impedance_sheet
+from sonolube.report.measured.sheet import Sheet, known
+from sonolube.report.measured.surface import SurfaceSettings, surface_sheet
+from sonolube.surfaces import SingleScaleSpectrum, gaussian_surface
+
+RB5100 = Path(__file__).parents[3] / "shared" / "data" / "impedance" / "RB5100.txt"
+NPY = SurfaceSettings(spacing_x=1e-6, spacing_y=1e-6)
+
+
+def recording_file(path: Path, level: float, *, seed: int = 0, duration: float = 60.0) -> Path:
+    time = np.arange(0.0, duration, 0.01)
+    force = level + 0.02 * np.random.default_rng(seed).standard_normal(time.size)
+    lines = [f"{t:.2f},{f:.6f}" for t, f in zip(time, force, strict=True)]
+    path.write_text("\n".join(["time (s),friction_force (N)", *lines]) + "\n", encoding="utf-8")
+    return path
+
+
+def values(sheet: Sheet) -> dict[str, float]:
+    return {value.name: value.value for value in sheet.values}
+
+
+def report_of(*sheets: Sheet) -> MeasurementReport:
+    return MeasurementReport(
+        title="friction", settings=MappingProxyType({}), sheets=sheets, refused=MappingProxyType({})
+    )
+
+
+@pytest.fixture(scope="module")
+def plate(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    spectrum = SingleScaleSpectrum(correlation_length=5e-6)
+    surface = gaussian_surface(
+        rms_height=0.4e-6, spectrum=spectrum, shape=(128, 160), spacing_x=1e-6, spacing_y=1e-6, seed=1
+    )
+    path = tmp_path_factory.mktemp("plates") / "plate.npy"
+    np.save(path, surface.height)
+    return path
+
+
+@pytest.fixture
+def page(plate: Path, tmp_path: Path) -> str:
+    friction = friction_sheet(recording_file(tmp_path / "a<b>.csv", 0.5), settings=FrictionSettings(sliding_speed=0.02))
+    report = report_of(friction, surface_sheet(plate, settings=NPY))
+    return write_measurement_report(report, path=tmp_path / "page.html").read_text(encoding="utf-8")
+
+
+def test_the_page_needs_no_other_file(page: str) -> None:
+    assert "data:image/png;base64," in page
+    sources = re.findall(r"""(?:src|href|url|import)\s*[=(]\s*["']?([^"')\s>]+)""", page)
+    assert all(source.startswith(("data:", "#")) for source in sources)
+    assert not re.search(r"https?://|<script|@import|<link", page)
+
+
+def test_a_file_cannot_write_into_the_page(page: str) -> None:
+    assert "a<b>" not in page
+    assert "a&lt;b&gt;" in page
+
+
+def test_a_mean_arrives_with_unit_uncertainty_digest_and_version(tmp_path: Path) -> None:
+    sheet = friction_sheet(recording_file(tmp_path / "test.csv", 0.5), settings=FrictionSettings(sliding_speed=0.02))
+    told = json.loads(json.dumps(measurement_object(report_of(sheet)), allow_nan=False))
+    force = told["results"][0]["values"]["friction_force"]
+    assert force["unit"] == "N"
+    assert force["value"] == approx(0.5, abs=5 * force["uncertainty"])
+    assert force["uncertainty"] == approx(0.02 / 6000**0.5, rel=0.3)
+    assert re.fullmatch("[0-9a-f]{64}", told["results"][0]["source"]["sha256"])
+    assert told["version"]
+
+
+def test_a_test_that_is_steady_from_the_start_slid_nothing_before(tmp_path: Path) -> None:
+    sheet = friction_sheet(recording_file(tmp_path / "test.csv", 0.5), settings=FrictionSettings(sliding_speed=0.02))
+    assert values(sheet)["steady_distance"] == 0.0
+    assert values(sheet)["steady_friction_force"] == approx(0.5, rel=0.01)
+
+
+def test_what_was_sought_and_not_found_is_told_with_its_reason(tmp_path: Path) -> None:
+    sheet = friction_sheet(recording_file(tmp_path / "test.csv", 0.5), settings=FrictionSettings())
+    assert any(line.startswith("  not found: stick-slip: ") for line in measurement_lines(report_of(sheet)))
+
+
+def test_three_tests_with_and_three_without_give_the_reduction_and_its_interval(tmp_path: Path) -> None:
+    without, vibrated = (
+        [
+            friction_sheet(
+                recording_file(tmp_path / f"{name}{i}.csv", mean * factor, seed=i), settings=FrictionSettings()
+            )
+            for i, factor in enumerate((0.95, 1.0, 1.05))
+        ]
+        for name, mean in (("off", 1.0), ("on", 0.6))
+    )
+    found = next(v for v in comparison_sheet(vibrated, without).values if v.name == "friction_reduction")
+    assert found.value == approx(0.4, abs=0.005)
+    assert found.interval is not None
+    assert 0 < found.interval[0] < found.value < found.interval[1] < 1
+
+
+def test_one_test_of_each_kind_gives_a_reduction_that_nobody_can_vouch_for(tmp_path: Path) -> None:
+    one, other = (
+        friction_sheet(recording_file(tmp_path / f"{mean}.csv", mean), settings=FrictionSettings())
+        for mean in (0.6, 1.0)
+    )
+    sheet = comparison_sheet([one], [other])
+    assert values(sheet)["friction_reduction"] == approx(0.4, abs=0.01)
+    assert any("at least two tests" in reason for reason in sheet.not_found)
+
+
+def test_friction_by_the_motor_balances_its_torque(tmp_path: Path) -> None:
+    from sonolube.measurement.friction import MotorFriction
+
+    path = tmp_path / "motor.csv"
+    lines = [f"{0.1 * i:.1f},{1.5 + 0.001 * (-1) ** i}" for i in range(100)]
+    path.write_text("\n".join(["time (s),motor_current (A)", *lines]) + "\n", encoding="utf-8")
+    motor = MotorFriction(torque_constant=0.5, idle_current=1.0, groove_diameter=0.05)
+    sheet = friction_sheet(path, settings=FrictionSettings(motor=motor))
+    assert values(sheet)["friction_force"] == approx(0.5 * 0.5 / 0.025, rel=1e-3)  # torque over the groove's radius
+
+
+def test_a_surface_of_known_deviation_has_it(plate: Path) -> None:
+    sheet = surface_sheet(plate, settings=NPY)
+    found = values(sheet)
+    assert found["rms_height"] == approx(0.4e-6, rel=0.1)
+    assert found["kurtosis"] == approx(3.0, abs=0.4)
+    assert found["summit_density"] > 0
+    assert {table.name for table in sheet.tables} >= {"profiles", "sampling", "waviness"}
+
+
+def test_cutoffs_in_the_wrong_order_are_refused(plate: Path) -> None:
+    settings = SurfaceSettings(spacing_x=1e-6, spacing_y=1e-6, short_cutoff_length=5e-5, long_cutoff_length=1e-5)
+    with raises(InvalidInput, match="must be below the long one"):
+        surface_sheet(plate, settings=settings)
+
+
+def test_a_profile_has_no_areal_parameters_and_is_refused_by_name(tmp_path: Path) -> None:
+    np.save(tmp_path / "line.npy", np.sin(np.arange(200.0))[np.newaxis])
+    with raises(InvalidInput, match="at least 2 rows"):
+        surface_sheet(tmp_path / "line.npy", settings=NPY)
+
+
+@pytest.mark.skipif(not RB5100.is_file(), reason="RB5100.txt is not beside the project; see shared/data")
+def test_the_linear_residual_on_the_measured_transducer_gives_the_known_circuit() -> None:
+    found = values(impedance_sheet(RB5100, settings=ImpedanceSettings(residual="linear-magnitude", branches=1)))
+    assert found["parallel_capacitance"] == approx(1.574e-9, rel=0.01)
+    assert found["series_frequency_1"] == approx(154_397, rel=0.001)
+    assert found["parallel_frequency_1"] == approx(182_966, rel=0.001)
+    assert found["mechanical_quality_factor_1"] == approx(73, rel=0.03)
+
+
+TEST = """
+[parameters]
+normal_load = "2N"
+sliding_speed = "20.3mm/s"
+atmosphere = "laboratory air, 22 degC, 40 % relative humidity"
+
+[pin]
+material = "AISI 440C"
+
+[disc]
+material = "aluminium 2024"
+"""
+
+
+def test_the_test_sheet_keeps_the_order_and_says_what_nobody_stated(tmp_path: Path) -> None:
+    (tmp_path / "test.toml").write_text(TEST, encoding="utf-8")
+    sheet = Sheet(title="trace.csv", values=(known("friction_force", 0.5, uncertainty=0.1),))
+    table = test_sheet_table(read_test_sheet(tmp_path / "test.toml"), [sheet])
+    assert list(table) == [
+        "Test parameters",
+        "Materials and specimens",
+        "Apparatus and procedure",
+        "Wear",
+        "Friction",
+    ]
+    assert table["Test parameters"][0] == ("Load", "2N")
+    assert ("Sliding distance", "not stated") in table["Test parameters"]
+    assert ("Coefficient of friction at 2 N, trace.csv", "0.25 ± 0.05") in table["Friction"]
+
+
+def test_a_misspelt_key_of_a_test_sheet_is_answered_with_the_right_one(tmp_path: Path) -> None:
+    (tmp_path / "test.toml").write_text('[parameters]\nnormal_lod = "2N"\n', encoding="utf-8")
+    with raises(InvalidInput, match=r"parameters\.normal_lod: unknown key; did you mean normal_load\?"):
+        read_test_sheet(tmp_path / "test.toml")
