@@ -8,7 +8,18 @@ import grimp
 import pytest
 
 ROOT = Path(__file__).parents[1]
-PHYSICS = ("surfaces", "contact", "friction", "wear", "actuator", "dynamics", "metrics", "vibration")
+PHYSICS = (
+    "surfaces",
+    "contact",
+    "friction",
+    "wear",
+    "wear_regimes",
+    "thermal",
+    "actuator",
+    "dynamics",
+    "metrics",
+    "vibration",
+)
 
 
 @pytest.fixture(scope="module")

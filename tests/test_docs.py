@@ -21,7 +21,7 @@ ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
 PAGES = sorted(DOCS.rglob("*.md"))
 COMMANDS = {str(command.callback.__name__): command.callback for command in app.registered_commands if command.callback}
-PHYSICS = ("surfaces", "contact", "friction", "wear", "actuator", "metrics", "vibration")
+PHYSICS = ("surfaces", "contact", "friction", "wear", "wear_regimes", "thermal", "actuator", "metrics", "vibration")
 
 
 def text_of(*pages: Path) -> str:
@@ -73,7 +73,7 @@ def test_every_command_has_a_section_with_its_example(name: str) -> None:
 
 def test_no_section_describes_a_command_that_is_gone() -> None:
     called = re.findall(r"^(?:```\{answer\}|\$) sonolube (\w\S*)", text_of(*PAGES), flags=re.MULTILINE)
-    assert set(called) <= set(COMMANDS)
+    assert set(called) <= set(COMMANDS) | {str(group.name) for group in app.registered_groups}
 
 
 @pytest.mark.parametrize(("call", "refused"), calls())

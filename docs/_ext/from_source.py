@@ -174,6 +174,8 @@ def _key(key: str, entry: Mapping[str, Any]) -> tuple[str, str, str]:
         return _plain(known.meaning), known.unit or "none", _plain(kind_of(known.unit))
     if "enum" in entry:
         return key.replace("_", " ").capitalize(), "", "one of " + ", ".join(f"`{name}`" for name in entry["enum"])
+    if any(option.get("type") == "array" for option in entry.get("anyOf", [entry])):
+        return key.replace("_", " ").capitalize(), "", "numbers, such as `[0, 1, 0.5]`"
     if entry.get("type") == "object":
         return "What no source gives, by key", "", "a reason for each key"
     return key.capitalize(), "", "text"

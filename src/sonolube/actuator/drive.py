@@ -3,31 +3,52 @@
 from dataclasses import dataclass
 
 from sonolube.checks import require_finite, require_non_negative, require_positive
+from sonolube.errors import InvalidInput
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Drive:
-    """A periodic drive voltage.
+    """A periodic drive voltage, and how it is switched on.
 
     Parameters
     ----------
     voltage_peak_to_peak : float or None
         Difference of the highest and the lowest voltage; None where the supply does not tell. [V]
     voltage_offset : float
-        Mean of the highest and the lowest voltage. [V]
+        Mean voltage. [V]
     frequency : float
         Repetition frequency. [Hz]
     waveform : str
-        Shape of one period, such as "sine".
+        Shape of one period, such as "sine"; "sampled" for the one that the samples tell.
+    waveform_samples : sequence of float or None
+        Equally spaced samples of one period in any unit; their mean and height do not matter.
+    ramp_duration : float
+        Time over which voltage and offset come up from nothing; zero for a switch. [s]
+    ramp_shape : str
+        How they come up, such as "linear".
+
+    Raises
+    ------
+    InvalidInput
+        If a value is not finite, a voltage swing or duration negative, the frequency not positive, or samples are given
+        for another waveform than "sampled", or none for that.
     """
 
     frequency: float
     voltage_peak_to_peak: float | None = None
     voltage_offset: float = 0.0
     waveform: str = "sine"
+    waveform_samples: tuple[float, ...] | None = None
+    ramp_duration: float = 0.0
+    ramp_shape: str = "linear"
 
     def __post_init__(self) -> None:
         if self.voltage_peak_to_peak is not None:
             require_non_negative(voltage_peak_to_peak=self.voltage_peak_to_peak)
         require_finite(voltage_offset=self.voltage_offset)
         require_positive(frequency=self.frequency)
+        require_non_negative(ramp_duration=self.ramp_duration)
+        if (self.waveform == "sampled") != (self.waveform_samples is not None):
+            raise InvalidInput('waveform "sampled" and waveform_samples belong together: give both or neither')
+        if self.waveform_samples is not None:
+            object.__setattr__(self, "waveform_samples", tuple(self.waveform_samples))
