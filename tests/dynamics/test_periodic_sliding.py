@@ -96,7 +96,7 @@ def test_without_sliding_a_vibrating_contact_has_no_mean_friction() -> None:
 
 def test_friction_rises_with_speed_towards_that_without_vibration() -> None:
     means = sliding_friction(random_states(50), sliding_speed=np.geomspace(1e-3, 1e3, 20))
-    assert (np.diff(means.kinematic, axis=1) > -1e-6).all()  # means are good to a millionth
+    assert (np.diff(means.kinematic, axis=1) > 0).all()
     assert means.kinematic[:, -1] == approx(np.ones(50), abs=1e-4)
     assert means.loaded[:, -1] == approx(np.ones(50), abs=1e-4)
 

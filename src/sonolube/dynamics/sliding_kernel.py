@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 import numba
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ellipkm1
 
 from sonolube.checks import Complexes, Floats
@@ -19,8 +18,6 @@ from sonolube.dynamics.contact_lanes import Law, contact_rows, rest
 from sonolube.dynamics.harmonic_kernel import Integers, finest
 from sonolube.dynamics.lanes import INSIDE, KERNEL, LANES
 from sonolube.dynamics.motion_kernel import contact_force, swing
-
-Singles = NDArray[np.float32]
 
 _ROWS = 4  # steps of crowding to a decade of the ratio of the slowest sliding to the vibration's peak velocity
 _STEEPEST = 24  # most such steps
@@ -114,12 +111,7 @@ def sliding_means(
     """
     most = finest(count, chosen)
     rows, motion = np.empty((18, LANES)), np.empty((2, most + 1, LANES))
-    # the many ratios go in single precision: a millionth is enough, and a register holds twice as many
-    slowness = np.empty(speeds.size, dtype=np.float32)
-    for s in range(speeds.size):
-        slowness[s] = 1 / speeds[s]
-    single = np.empty((3, LANES), dtype=np.float32)
-    plain, weighed = np.empty((speeds.size, LANES), np.float32), np.empty((speeds.size, LANES), np.float32)
+    plain, weighed = np.empty((speeds.size, LANES)), np.empty((speeds.size, LANES))
     for start in range(0, chosen.size, LANES):
         block = chosen[start : start + LANES]
         h, row = finest(count, block), finest(crowding, block)
@@ -134,12 +126,12 @@ def sliding_means(
             for k in range(1, h + 1):
                 value = harmonics[point, k - 1] if k <= count[point] else 0j
                 motion[0, k, lane], motion[1, k, lane] = value.real, value.imag
-        plain[:] = np.float32(0)
-        weighed[:] = np.float32(0)
+        plain[:] = 0.0
+        weighed[:] = 0.0
         for j in range(crowded.count[row]):
             cosine, sine, weight = crowded.cosine[row, j], crowded.sine[row, j], crowded.weight[row, j]
             _motion_at(cosine, sine, weight, motion, h, rows)
-            _add_ratios(law, slowness, rows, single, plain, weighed)
+            _add_ratios(law, speeds, rows, plain, weighed)
         for lane in range(block.size):
             for s in range(speeds.size):
                 kinematic[block[lane], s], loaded[block[lane], s] = plain[s, lane], weighed[s, lane]
@@ -173,23 +165,20 @@ def _motion_at(cosine: float, sine: float, weight: float, motion: Floats, h: int
         v[lane] *= omega[lane]
 
 
-@numba.njit(**{**INSIDE, "fastmath": {*INSIDE["fastmath"], "arcp"}})  # a quotient as an inverse root, still to 1e-7
-def _add_ratios(law: Law, slowness: Singles, rows: Floats, single: Singles, plain: Singles, weighed: Singles) -> None:
-    load, resting, x, v, share = rows[4], rows[5], rows[11], rows[12], rows[13]
+@numba.njit(**INSIDE)
+def _add_ratios(law: Law, speeds: Floats, rows: Floats, plain: Floats, weighed: Floats) -> None:
+    load, resting, x, v, share, square = rows[4], rows[5], rows[11], rows[12], rows[13], rows[7]
     work, force, slope, drag = rows[14], rows[15], rows[16], rows[17]
-    velocity, weight, weight_by_force = single[0], single[1], single[2]
     contact_rows(law, load, resting, x, v, work, force, slope, drag)
     for lane in range(LANES):
-        velocity[lane], weight[lane] = v[lane], share[lane]
-        weight_by_force[lane] = force[lane] * share[lane] / load[lane]
-    one = np.float32(1)
-    for s in range(slowness.size):
-        slow, own_plain, own_weighed = slowness[s], plain[s], weighed[s]
+        force[lane] *= share[lane] / load[lane]
+        square[lane] = v[lane] * v[lane]
+    for s in range(speeds.size):
+        speed, own_plain, own_weighed = speeds[s], plain[s], weighed[s]
         for lane in range(LANES):
-            tangent = velocity[lane] * slow
-            ratio = one / np.sqrt(tangent * tangent + one)
-            own_plain[lane] += weight[lane] * ratio
-            own_weighed[lane] += weight_by_force[lane] * ratio
+            ratio = speed / np.sqrt(square[lane] + speed * speed)
+            own_plain[lane] += share[lane] * ratio
+            own_weighed[lane] += force[lane] * ratio
 
 
 @numba.njit(**KERNEL)
