@@ -67,7 +67,7 @@ def heading(text: str) -> Heading | None:
     Parameters
     ----------
     text : str
-        Such as "|Z|(Ohm)", "Freq [kHz]", "Re(Z)/ohm" or "phase (deg)". A phase must say its unit; else the unit is SI.
+        Such as ``|Z|(Ohm)``, "Freq [kHz]", "Re(Z)/ohm" or "phase (deg)". A phase must say its unit; else it is SI.
 
     Returns
     -------

@@ -224,7 +224,7 @@ def modal_assurance(first: ArrayLike, second: ArrayLike) -> Floats:
 
     Notes
     -----
-    |a^H b|^2/((a^H a)(b^H b)), blind to scale and common phase. It does not weigh by mass: computed modes that are
+    abs(a^H b)^2/((a^H a)(b^H b)), blind to scale and common phase. It does not weigh by mass: computed modes that are
     orthogonal in mass need not give zero among themselves, nor do few points tell alike modes apart.
 
     References

@@ -45,8 +45,8 @@ def moving_band_rise(
 
     Notes
     -----
-    Jaeger's integrand exp(-u) K0(|u|) has the antiderivative u exp(-u) [K0(|u|) - sgn(u) K1(|u|)], and so needs no
-    quadrature.
+    Jaeger's integrand exp(-u) K0(abs u) has the antiderivative u exp(-u) [K0(abs u) - sgn(u) K1(abs u)], and so needs
+    no quadrature.
 
     References
     ----------

@@ -50,7 +50,7 @@ def largest_swing(amplifier: Amplifier, *, admittance: complex, frequency: float
 
     Notes
     -----
-    A sine of swing U draws up to |Y| U/2 and changes by up to pi f U per time.
+    A sine of swing U draws up to abs(Y) U/2 and changes by up to pi f U per time.
     """
     require_positive(frequency=frequency)
     by_current = 2 * amplifier.current_maximum / abs(admittance) if admittance else inf

@@ -19,8 +19,8 @@ _MOST_STEPS = 5_000_000
 class DraggedMass:
     """A mass held by a spring against a belt, with friction that falls with speed.
 
-    m x'' + c x' + k x = F(v_b - x'), with F(v) = R(|v|) [F_c + (F_s - F_c) exp(-(v/v_s)^2)] sgn v, and at rest on the
-    belt whatever holds it there up to R(0) F_s.
+    m x'' + c x' + k x = F(v_b - x'), with F(v) = R(abs(v)) [F_c + (F_s - F_c) exp(-(v/v_s)^2)] sgn v, and at rest on
+    the belt whatever holds it there up to R(0) F_s.
 
     Parameters
     ----------

@@ -42,7 +42,7 @@ class VibrationMode:
     Notes
     -----
     a' = -(sigma + i (omega - omega_r)) a + sigma u, for light damping and changes slow against the period. With it go
-    the power g u Re(a)/8 that the motion takes, g |a|^2/8 that it loses, and g |a|^2/(16 sigma) that it holds.
+    the power g u Re(a)/8 that the motion takes, g abs(a)^2/8 that it loses, and g abs(a)^2/(16 sigma) that it holds.
     """
 
     natural_frequency: float
