@@ -42,3 +42,11 @@ def test_an_even_groove_has_no_marks_and_says_why() -> None:
         found = track_marks(measure_groove(generated_groove(shape, track=TRACK, seed=seed, field=FIELD).scan))
         assert found.dot_spacing is None
         assert "no wave along the track" in found.reason
+
+
+def test_the_pixels_that_a_slanting_track_crosses_are_no_marks() -> None:
+    # pi/2 - 1.5 between track and pixel columns: it crosses one every 3.75 um/sin(0.0708), 53 um
+    for seed in (1, 7, 13, 19):
+        track = GrooveTrack(track_direction=1.5, track_curvature=0.0, track_offset=1.5e-4)
+        shape = GrooveShape(groove_width=0.9e-3, groove_depth=60e-6)
+        assert track_marks(measure_groove(generated_groove(shape, track=track, seed=seed).scan)).dot_spacing is None

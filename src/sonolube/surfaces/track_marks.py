@@ -10,6 +10,7 @@ from scipy import fft
 from sonolube.checks import Floats, require_within
 from sonolube.errors import InvalidInput
 from sonolube.surfaces.groove import Groove
+from sonolube.surfaces.groove_sections import cross_sections
 
 _FINER = 8  # steps of wavenumber to the one that the length of the track resolves
 _LEAST_PERIODS = 2.0
@@ -73,7 +74,7 @@ def track_marks(groove: Groove, *, inner_share: float = 0.6, lane_points: int = 
 
     Notes
     -----
-    Each lane loses its mean, its trend and the mean section; missing points count as zero; the window is Hann's. The
+    Heights lose the mean section, each lane its mean and trend; missing points count as zero; the window is Hann's. The
     spectrum is the mean over lanes, so that marks need not stand abreast. A mark stands out where its power is 8 times
     that of the power law through the spectrum beside it. Spacings from 2.5 points to half the track are seen.
     `sonolube.metrics.dot_spacing` and `indentation_spacing` say what to expect: 3.95 um for 22 kHz at 87 mm/s, which
@@ -116,12 +117,14 @@ def track_marks(groove: Groove, *, inner_share: float = 0.6, lane_points: int = 
 
 
 def _lanes(groove: Groove, inner_share: float, lane_points: int) -> tuple[Floats, float]:
-    sections = groove.sections
-    middle = np.abs(sections.across) <= inner_share * groove.groove_width / 2
-    height = sections.height[:, middle].T  # (points, sections)
+    # less the section at each pixel's own distance: on slopes, the nearest pixel of a slanting track would step
+    across, _ = groove.track.across_and_along(groove.levelled)
+    flat = groove.levelled.with_height(groove.levelled.height - groove.section.at(across))
+    reach = inner_share * groove.groove_width / 2
+    sections = cross_sections(flat, groove.track, reach=(-reach, reach))
+    height = sections.height.T  # (points, sections)
     height = height[: max(1, len(height) // lane_points) * lane_points]
     measured = np.isfinite(height)
-    height = height - np.nanmean(np.where(measured.any(axis=1, keepdims=True), height, 0.0), axis=1, keepdims=True)
     shape = (-1, min(lane_points, len(height)), height.shape[1])
     count = measured.reshape(shape).sum(axis=1)
     lanes = np.where(measured, height, 0.0).reshape(shape).sum(axis=1) / np.maximum(count, 1)
