@@ -56,6 +56,10 @@ class InconsistentCoupling(ModelRangeWarning):
     """A stated coupling factor disagrees with the one that stroke, stiffness and capacitance imply."""
 
 
+class GpuUnused(UserWarning):
+    """A GPU was asked for, but the processor computed; the answers are the same, only later."""
+
+
 def suggestion(name: str, known: Iterable[str]) -> str:
     """Return "did you mean ...?" where a known name comes close, else an empty text."""
     close = get_close_matches(name.lower(), list(known), n=1, cutoff=0.6)

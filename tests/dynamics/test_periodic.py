@@ -291,6 +291,8 @@ def test_an_undamped_resonance_has_no_steady_state_and_says_so() -> None:
         ({"voltage_amplitude": None}, "give either voltage_amplitude or voltage_harmonics"),
         ({"least_harmonics": 65}, "least_harmonics must lie between 1 and 64, got 65"),
         ({"workers": 0}, "workers must be at least 1, got 0"),
+        ({"voltage_amplitude": []}, r"there are no points to compute: .* have shapes \(\), \(\), \(0,\), \(\), \(\)"),
+        ({"voltage_amplitude": [1, 2], "frequency": [1, 2, 3]}, "must have matching shapes"),
     ],
 )
 def test_nonsense_is_refused_by_name(wrong: dict[str, float], message: str) -> None:

@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 from pytest import approx, raises
 from scipy.special import ellipk
 
+from sonolube.dynamics.balancing import measured
+from sonolube.dynamics.contact_lanes import law_of
 from sonolube.dynamics.gap_law import ExponentialGap
 from sonolube.dynamics.periodic import SteadyStates, steady_state
 from sonolube.dynamics.sliding import motion, sliding_friction
@@ -80,6 +82,25 @@ def test_a_motion_of_many_turns_is_averaged_as_well() -> None:
     assert means.loaded[0] == approx(loaded, rel=1e-4)
 
 
+@pytest.mark.parametrize("richness", [0.05, 0.3, 0.9, 1.8, 4.0])
+def test_shoulders_between_two_turns_are_averaged_as_well(richness: float) -> None:
+    random, orders = np.random.default_rng(4), np.arange(2, 6)
+    higher = random.normal(size=(24, 4)) + 1j * random.normal(size=(24, 4))
+    higher *= richness / np.sum(orders**2 * (np.abs(higher.real) + np.abs(higher.imag)), axis=1, keepdims=True)
+    harmonics = np.asarray(2e-6 * np.column_stack([np.ones(24), higher]), dtype=np.complex128)
+    states = steady_state(TRIBOMETER, ROUGH, normal_load=3.0, frequency=20e3, voltage_amplitude=np.zeros(24))
+    motion = (np.full(24, 2 * np.pi * 20e3), np.full(24, 3.0), np.full(24, 1e-6))
+    turns = measured(law_of(ROUGH), *motion, harmonics, np.full(24, 5)).turns
+    states = replace(
+        states, mean_displacement=motion[2], harmonics=harmonics, turns=turns, harmonic_count=np.full(24, 5)
+    )
+    means = sliding_friction(states, sliding_speed=SPEEDS)
+    for point in np.flatnonzero(np.isfinite(turns[:, 0])):
+        kinematic, loaded = brute_force(states, int(point))
+        assert means.kinematic[point] == approx(kinematic, rel=2e-5)
+        assert means.loaded[point] == approx(loaded, rel=2e-5)
+
+
 def test_a_still_contact_feels_no_reduction() -> None:
     states = steady_state(TRIBOMETER, ROUGH, normal_load=3.0, frequency=22e3, voltage_amplitude=0.0)
     means = sliding_friction(states, sliding_speed=SPEEDS)
@@ -104,3 +125,26 @@ def test_friction_rises_with_speed_towards_that_without_vibration() -> None:
 def test_a_negative_speed_is_refused_by_name() -> None:
     with raises(InvalidInput, match=r"sliding_speed must not be negative, got -1\.0 m/s"):
         sliding_friction(random_states(1), sliding_speed=-1.0)
+
+
+@pytest.mark.parametrize("tolerance", [1e-5, 1e-4, 1e-3])
+def test_a_looser_tolerance_is_kept_with_fewer_harmonics(tolerance: float) -> None:
+    frequency, load = np.linspace(18e3, 26e3, 64), np.linspace(1.0, 10.0, 64)
+    exact, loose = (
+        steady_state(
+            TRIBOMETER,
+            ROUGH,
+            normal_load=load[::-1],
+            frequency=frequency,
+            voltage_amplitude=np.geomspace(0.5, 14.0, 64),
+            relative_tolerance=error,
+        )
+        for error in (1e-6, tolerance)
+    )
+    assert loose.harmonic_count.mean() < exact.harmonic_count.mean()
+    assert loose.vibration_amplitude == approx(exact.vibration_amplitude, rel=tolerance)
+    assert loose.mean_normal_force == approx(exact.mean_normal_force, rel=tolerance)
+    speeds = np.geomspace(1e-3, 1.0, 7)
+    means, known = (sliding_friction(states, sliding_speed=speeds) for states in (loose, exact))
+    assert means.loaded == approx(known.loaded, rel=3 * tolerance)
+    assert means.kinematic == approx(known.kinematic, rel=3 * tolerance)

@@ -1,5 +1,6 @@
 """Dynamics: how a structure vibrates against its contact, and how it gets there."""
 
+from sonolube.dynamics.backend import Backend
 from sonolube.dynamics.chain import (
     GROUND,
     Damper,
@@ -20,6 +21,7 @@ from sonolube.dynamics.linear import (
     static_contact,
 )
 from sonolube.dynamics.periodic import Status, SteadyStates, steady_state
+from sonolube.dynamics.sliding import SlidingMeans, sliding_friction, steady_friction
 from sonolube.dynamics.structure import (
     Structure,
     contact_receptance,
@@ -49,6 +51,7 @@ __all__ = [
     "GROUND",
     "RAMP_SHAPES",
     "WAVEFORMS",
+    "Backend",
     "Damper",
     "ExponentialGap",
     "GapLaw",
@@ -58,6 +61,7 @@ __all__ = [
     "Modes",
     "PiecewiseLinear",
     "Sine",
+    "SlidingMeans",
     "Spring",
     "StartUpRamp",
     "StaticContact",
@@ -84,7 +88,9 @@ __all__ = [
     "ramp_factor",
     "resonance_frequencies",
     "sampled_waveform",
+    "sliding_friction",
     "static_contact",
+    "steady_friction",
     "steady_state",
     "trajectory",
     "value",

@@ -60,6 +60,7 @@ def solve(
     least: int,
     falling: bool,
     stability: bool,
+    tolerance: float,
 ) -> Solutions:
     """Find and measure the steady states of a chunk of points.
 
@@ -77,6 +78,8 @@ def solve(
         Whether to take the larger of several vibrations.
     stability : bool
         Whether to judge stability.
+    tolerance : float
+        Largest relative error of amplitude and force.
 
     Returns
     -------
@@ -85,16 +88,16 @@ def solve(
     points = _points(omega, load, voltage, free_mean)
     guesses = Guesses(np.empty_like(omega), np.empty_like(omega))
     resolution = Resolution(*np.zeros((3, omega.size), dtype=np.int64))
-    first_guesses(port, law, TAIL, falling, points, resolution, guesses)
+    first_guesses(port, law, TAIL * tolerance, falling, points, resolution, guesses)
     if least > 1:
         _raise_to(least, resolution)
-    points, solved = _refine(port, law, points, resolution)
+    points, solved = _refine(port, law, points, resolution, tolerance)
     if not solved.all():
-        points = _up_the_ramp(port, law, points, resolution, solved)
+        points = _up_the_ramp(port, law, points, resolution, solved, tolerance)
     found = _measured(port, law, points, resolution, solved, stability)
     double = np.flatnonzero(solved & (guesses.highest > guesses.lowest * (1 + _DISTINCT)))
     if double.size:
-        _find_rivals(port, law, points, double, falling, stability, found)
+        _find_rivals(port, law, points, double, falling, stability, tolerance, found)
     return found
 
 
@@ -117,24 +120,18 @@ def _raise_to(least: int, resolution: Resolution) -> None:
     np.maximum(resolution.samples, 4 * resolution.harmonics, out=resolution.samples)
 
 
-def _refine(port: ContactPort, law: Law, points: Points, resolution: Resolution) -> tuple[Points, NDArray[np.bool_]]:
+def _refine(
+    port: ContactPort, law: Law, points: Points, resolution: Resolution, tolerance: float
+) -> tuple[Points, NDArray[np.bool_]]:
     """Balance all points, those that did not succeed again with more harmonics or samples."""
     outcome = np.full(points.omega.size, DIVERGED)
     pending = np.arange(points.omega.size)
     for attempt in range(9):
         points = _with_room(points, int(resolution.harmonics[pending].max(initial=0)))
         # like beside like, since a block of lanes works as finely as its most demanding point
-        demand = (resolution.samples[pending] * 64 + resolution.harmonics[pending]) * 64 + resolution.coupled[pending]
-        chosen = pending[np.argsort(demand)]
-        balance(
-            port,
-            law,
-            points,
-            resolution,
-            chosen,
-            _ITERATIONS + 4 * attempt,
-            outcome,
-        )
+        demand = resolution.samples[pending] // 2 * MOST_HARMONICS + resolution.harmonics[pending] - MOST_HARMONICS - 1
+        chosen = pending[np.argsort(demand.astype(np.uint16), kind="stable")]  # by counting, that is, at once
+        balance(port, law, points, resolution, chosen, tolerance, _ITERATIONS + 4 * attempt, outcome)
         pending = np.flatnonzero(outcome != CONVERGED)
         pending = pending[_finer(resolution, pending, outcome[pending])]
         if not pending.size:
@@ -164,7 +161,12 @@ def _with_room(points: Points, harmonics: int) -> Points:
 
 
 def _up_the_ramp(
-    port: ContactPort, law: Law, points: Points, resolution: Resolution, solved: NDArray[np.bool_]
+    port: ContactPort,
+    law: Law,
+    points: Points,
+    resolution: Resolution,
+    solved: NDArray[np.bool_],
+    tolerance: float,
 ) -> Points:
     """Follow the remaining points from a low voltage in small steps."""
     lost = np.flatnonzero(~solved)
@@ -172,13 +174,13 @@ def _up_the_ramp(
     part = whole._replace(voltage=whole.voltage / _RAMP)
     own = Resolution(*np.zeros((3, lost.size), dtype=np.int64))
     guesses = Guesses(np.empty(lost.size), np.empty(lost.size))
-    first_guesses(port, law, TAIL, False, part, own, guesses)
+    first_guesses(port, law, TAIL * tolerance, False, part, own, guesses)
     good = np.zeros(lost.size, dtype=bool)
     for step in range(1, _RAMP + 1):
         growth = step / max(step - 1, 1)
         part = part._replace(voltage=whole.voltage * (step / _RAMP), harmonics=part.harmonics * growth)
         _raise_to(16, own)
-        part, good = _refine(port, law, part, own)
+        part, good = _refine(port, law, part, own, tolerance)
     points = _with_room(points, part.harmonics.shape[1])
     points.harmonics[lost, : part.harmonics.shape[1]] = part.harmonics
     for values, answers in (
@@ -257,14 +259,15 @@ def _find_rivals(
     double: Integers,
     falling: bool,
     stability: bool,
+    tolerance: float,
     found: Solutions,
 ) -> None:
     """Where one harmonic has two solutions, look for the other one and write its amplitude if it is there to stay."""
     other = _points(points.omega[double], points.load[double], points.voltage[double], points.free_mean[double])
     guesses = Guesses(np.empty(double.size), np.empty(double.size))
     resolution = Resolution(*np.zeros((3, double.size), dtype=np.int64))
-    first_guesses(port, law, TAIL, not falling, other, resolution, guesses)
-    other, solved = _refine(port, law, other, resolution)
+    first_guesses(port, law, TAIL * tolerance, not falling, other, resolution, guesses)
+    other, solved = _refine(port, law, other, resolution, tolerance)
     rivals = _measured(port, law, other, resolution, solved, stability)
     own = found.amplitude[double]
     real = solved & ~rivals.growing & (np.abs(rivals.amplitude - own) > _DISTINCT * own)

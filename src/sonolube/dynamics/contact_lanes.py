@@ -39,6 +39,12 @@ def law_of(gap_law: GapLaw) -> Law:
 
 
 @numba.njit(**INSIDE)
+def parallel(law: Law) -> bool:
+    """Return whether the stiffness goes with the force, which is then as smooth as the motion."""
+    return bool(law.kind == EXPONENTIAL and law.damping == 0.0)
+
+
+@numba.njit(**INSIDE)
 def rest(law: Law, load: float) -> float:
     """Return where the contact rests under a dead load: a sphere's approach, in m, or cells from a table's start."""
     if law.kind == HERTZ:

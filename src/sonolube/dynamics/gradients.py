@@ -11,7 +11,7 @@ from sonolube.dynamics.balance_equations import Balance, PointEquations
 from sonolube.dynamics.gap_law import ExponentialGap, GapLaw, HertzGap, LinearGap, TabulatedGap
 from sonolube.dynamics.linear import static_contact
 from sonolube.dynamics.periodic import Status, SteadyStates
-from sonolube.dynamics.sliding_kernel import phases_of
+from sonolube.dynamics.sliding_kernel import fineness_of, phases_of
 from sonolube.dynamics.structure import Structure
 from sonolube.errors import InvalidInput
 
@@ -127,7 +127,8 @@ def _one_state(
     names = list(residuals)
     moved = -np.linalg.solve(balance.jacobian, np.array([residuals[name] for name in names]).T).T
     slowest = speeds.min(initial=np.inf) / (balance.omega * abs(states.harmonics[index][0]) + 1e-300)
-    z, weights = phases_of(states.turns[index], min(slowest, 1.0))
+    fineness = int(fineness_of(states.harmonics[index].reshape(1, -1))[0])
+    z, weights = phases_of(states.turns[index], min(slowest, 1.0), fineness)
     extremes = _extreme_phases(states, index)
     return {
         name: _outputs(balance, change, extremes, z, weights, speeds, 2 * np.pi if name == "frequency" else 0.0)

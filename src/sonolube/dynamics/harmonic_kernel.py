@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.checks import Complexes, Floats
-from sonolube.dynamics.contact_lanes import EXPONENTIAL, Law, contact_rows, reach, rest
+from sonolube.dynamics.contact_lanes import Law, contact_rows, parallel, reach, rest
 from sonolube.dynamics.contact_port import ContactPort, receptances
 from sonolube.dynamics.lanes import INSIDE, KERNEL, LANES, combine
 from sonolube.dynamics.newton_kernel import newton_step
@@ -22,9 +22,9 @@ from sonolube.dynamics.newton_kernel import newton_step
 Integers = NDArray[np.int64]
 
 CONVERGED, DIVERGED, NEEDS_HARMONICS, NEEDS_SAMPLES = 0, 1, 2, 3
-_COARSE, _FINE = 1e-6, 1e-8  # last steps relative to the amplitude: of the loop, and of the pass that confirms it
-TAIL = 3e-7  # harmonics left out, relative to the amplitude
-_ALIASED = 1e-6  # the highest harmonic of the force that the samples resolve, relative to the mean
+# In tolerances, relative to the amplitude: the harmonics left out, the last step of the loop, and that of the pass that
+# confirms it.
+TAIL, _NEARLY, _EXACTLY = 0.3, 1.0, 0.01
 _LARGEST_STEP = 2.0  # in lengths over which the contact changes
 
 
@@ -80,6 +80,7 @@ def balance(
     points: Points,
     resolution: Resolution,
     chosen: Integers,
+    tolerance: float,
     iterations: int,
     outcome: Integers,
 ) -> None:
@@ -93,6 +94,8 @@ def balance(
     resolution : Resolution
     chosen : ndarray of int
         Points to solve, like beside like: a block of lanes is resolved as finely as its most demanding point.
+    tolerance : float
+        Largest relative error of amplitude and force.
     iterations : int
         Most iterations.
     outcome : ndarray of int, shape (p,)
@@ -138,8 +141,11 @@ def balance(
             largest = _advance(unknown, step, h, lanes)
             if final:
                 break
-            final = largest < _COARSE
-        _judge(port, block, h, spectra, lanes, linear, outcome)
+            final = largest < _NEARLY * tolerance
+        # The samples mistake harmonic count - h for harmonic h. Those of an exponential force fall ever faster, which
+        # bounds it by the highest one that they resolve: a_(count - h) <= a_k^((count - h)/k), a_0 = 1.
+        aliased = tolerance ** ((0.5 * count - 1) / (count - h)) if parallel(law) else tolerance
+        _judge(port, block, h, spectra, lanes, tolerance, aliased, linear, outcome)
         _scatter(port, points, resolution, block, h, unknown, answers, spectra, lanes, outcome)
 
 
@@ -193,8 +199,7 @@ def _contact_spectra(
 ) -> None:
     """Write (1/2 pi) int f exp(-i m theta) of force, stiffness and damping, m up to `orders`; last, the highest."""
     damped = law.damping > 0
-    parallel = law.kind == EXPONENTIAL and not damped  # the stiffness is then the force over l
-    quantities = 3 if damped else (1 if parallel else 2)
+    quantities = 3 if damped else (1 if parallel(law) else 2)
     half, highest = count // 2, spectra.shape[2] - 1
     if damped:
         for k in range(h + 1):
@@ -210,7 +215,7 @@ def _contact_spectra(
             for m in range(orders + 2):
                 order, row = (m, m) if m <= orders else (half - 1, highest)
                 combine(spectra[quantity, part, row], table[order], samples.sums[quantity, part], half)
-    if parallel:
+    if parallel(law):
         for part in range(2):
             for m in range(orders + 1):
                 for lane in range(LANES):
@@ -302,6 +307,8 @@ def _judge(
     h: int,
     spectra: Floats,
     lanes: Lanes,
+    tolerance: float,
+    aliased: float,
     work: Floats,
     outcome: Integers,
 ) -> None:
@@ -317,11 +324,11 @@ def _judge(
     for lane in range(block.size):
         highest = np.hypot(spectra[0, 0, top, lane], spectra[0, 1, top, lane])
         verdict = CONVERGED
-        if not lanes.size[lane] <= _FINE * lanes.scale[lane]:
+        if not lanes.size[lane] <= _EXACTLY * tolerance * lanes.scale[lane]:
             verdict = DIVERGED
-        elif highest > _ALIASED * max(spectra[0, 0, 0, lane], 1e-3 * lanes.load[lane]):
+        elif highest > aliased * max(spectra[0, 0, 0, lane], 1e-3 * lanes.load[lane]):
             verdict = NEEDS_SAMPLES
-        elif tail[lane] > (TAIL * lanes.scale[lane]) ** 2:
+        elif tail[lane] > (TAIL * tolerance * lanes.scale[lane]) ** 2:
             verdict = NEEDS_HARMONICS
         outcome[block[lane]] = verdict
 

@@ -15,7 +15,7 @@ from sonolube.dynamics.force_table import log_force_at
 
 LANES = 32
 STATISTICS = 8  # of the contact: highest, lowest, sum, cosine and sine sum of x; sum, highest and lowest of F_n
-_MATHS = {"contract", "nsz"}
+_MATHS = {"nsz"}  # as lanes.KERNEL, and for its reason
 _LARGEST_EXPONENT = 32.0
 _INSTANT = 1e-200  # steps: a ramp without duration has ended when it starts
 _SWEEPS = 8  # by which a start without a past converges; each gains the feedback of the force over four steps

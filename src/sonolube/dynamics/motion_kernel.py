@@ -13,6 +13,7 @@ from sonolube.dynamics.harmonic_kernel import Integers
 from sonolube.dynamics.lanes import INSIDE, KERNEL
 
 _PLAIN = 0.7  # share of the higher harmonics' accelerations up to which a motion surely turns only twice
+_CLEAR = 0.95  # level over amplitude up to which it is passed well away from the turns
 _SLOW = 0.05  # share of the peak velocity below which a minimum of the speed is nearly a turn
 _SCAN = 16  # samples per harmonic to find the turns of any other motion
 
@@ -53,14 +54,15 @@ def measure(
     for point in range(omega.size):
         own = harmonics[point, : count[point]]
         beyond = loss_displacement(law, load[point])
-        start, end = -np.arctan2(own[0].imag, own[0].real), np.nan
-        if _surely_turns_twice(own):
-            end = start + np.pi
+        size = np.sqrt(own[0].real * own[0].real + own[0].imag * own[0].imag)
+        if _surely_turns_twice(own, size):
+            above = own[0].conjugate() / size  # where the first harmonic turns
+            below = -above
         else:
-            start, end = _two_turns(own)
-        if start < np.inf:
-            upper, high = _turn(own, start)
-            lower, low = _turn(own, end)
+            above, below = _two_turns(own)
+        if not np.isnan(above.real):
+            upper, high = _turn(own, above)
+            lower, low = _turn(own, below)
             high, low = mean[point] + high, mean[point] + low
             measures.turns[point, 0], measures.turns[point, 1] = upper, lower
             resting = rest(law, load[point])
@@ -68,10 +70,7 @@ def measure(
             measures.force[point, 1] = contact_force(law, load[point], resting, high, 0.0)
             measures.lost[point] = 1.0 if low >= beyond else 0.0
             if low < beyond < high:
-                level = beyond - mean[point]
-                after = _crossing(own, level, upper, lower if lower > upper else lower + 2 * np.pi)
-                before = _crossing(own, level, upper, lower if lower < upper else lower - 2 * np.pi)
-                measures.lost[point] = (after - before) / (2 * np.pi)
+                measures.lost[point] = _share_above(own, beyond - mean[point], size, upper, lower)
         else:
             measures.turns[point, :] = np.nan
             high, low = _scan(law, omega[point], load[point], mean[point], own, measures, point)
@@ -97,16 +96,16 @@ def contact_force(law: Law, load: float, resting: float, x: float, v: float) -> 
 
 
 @numba.njit(**INSIDE)
-def _surely_turns_twice(own: Complexes) -> bool:
+def _surely_turns_twice(own: Complexes, size: float) -> bool:
     higher = 0.0
     for k in range(2, own.size + 1):
-        higher += k * k * abs(own[k - 1])
-    return bool(higher < _PLAIN * abs(own[0]))
+        higher += k * k * (abs(own[k - 1].real) + abs(own[k - 1].imag))
+    return bool(higher < _PLAIN * size)
 
 
 @numba.njit(**INSIDE)
-def _two_turns(own: Complexes) -> tuple[float, float]:
-    """Return about where a motion turns down and up, or NaN if it turns, or nearly turns, more than twice."""
+def _two_turns(own: Complexes) -> tuple[complex, complex]:
+    """Return exp(i phase) about where a motion turns down and up, NaN if it turns, or nearly does, more than twice."""
     count = _SCAN * own.size
     rates, fastest = np.empty(count), 0.0
     for j in range(count):
@@ -118,21 +117,26 @@ def _two_turns(own: Complexes) -> tuple[float, float]:
         before, here, after = rates[j - 1], rates[j], rates[(j + 1) % count]
         if before > 0 >= here:
             if not np.isnan(upper):
-                return np.nan, np.nan
+                return complex(np.nan), complex(np.nan)
             upper = 2 * np.pi * (j - 1 + before / (before - here)) / count
         elif before <= 0 < here:
             if not np.isnan(lower):
-                return np.nan, np.nan
+                return complex(np.nan), complex(np.nan)
             lower = 2 * np.pi * (j - 1 + before / (before - here)) / count
         elif abs(here) < slow and abs(here) <= abs(before) and abs(here) <= abs(after) and here * after > 0:
-            return np.nan, np.nan
-    return upper, lower
+            return complex(np.nan), complex(np.nan)
+    return np.exp(1j * upper), np.exp(1j * lower)
 
 
 @numba.njit(**INSIDE)
 def swing(own: Complexes, phase: float) -> tuple[float, float, float]:
     """Return displacement about the mean and its first two derivatives by phase."""
-    cosine, sine = np.cos(phase), np.sin(phase)
+    x, rate, bend = _swing_at(own, np.cos(phase), np.sin(phase))
+    return x, rate, bend
+
+
+@numba.njit(**INSIDE)
+def _swing_at(own: Complexes, cosine: float, sine: float) -> tuple[float, float, float]:
     c, s, x, rate, bend = 1.0, 0.0, 0.0, 0.0, 0.0
     for k in range(1, own.size + 1):
         c, s = c * cosine - s * sine, c * sine + s * cosine
@@ -144,15 +148,48 @@ def swing(own: Complexes, phase: float) -> tuple[float, float, float]:
 
 
 @numba.njit(**INSIDE)
-def _turn(own: Complexes, phase: float) -> tuple[float, float]:
+def _turn(own: Complexes, near: complex) -> tuple[float, float]:
     """Return the phase nearby at which the velocity vanishes, and the displacement there about the mean."""
+    cosine, sine = near.real, near.imag
     for _ in range(20):
-        x, rate, bend = swing(own, phase)
+        x, rate, bend = _swing_at(own, cosine, sine)
         step = rate / bend
-        phase -= step
+        # back by 2 arctan(step/2), which keeps the pair on the circle and needs no sine
+        share = 1 / (1 + 0.25 * step * step)
+        along, across = (1 - 0.25 * step * step) * share, step * share
+        cosine, sine = cosine * along + sine * across, sine * along - cosine * across
         if abs(step) < 1e-5:  # Newton's next step would be of the order of its square
             break
-    return phase, x - 0.5 * rate * step
+    return np.arctan2(sine, cosine), x - 0.5 * rate * step
+
+
+@numba.njit(**INSIDE)
+def _share_above(own: Complexes, level: float, size: float, upper: float, lower: float) -> float:
+    """Return the share of the period in which a motion of two turns lies above a level between them."""
+    cosine = level / size
+    if abs(cosine) < _CLEAR and _surely_turns_twice(own, size):
+        turn, aside = own[0].conjugate() / size, 1j * np.sqrt(1 - cosine * cosine)
+        after, sure = _passage(own, level, turn * (cosine + aside))
+        before, also = _passage(own, level, turn * (cosine - aside))
+        if sure and also:
+            angle = after * before.conjugate()
+            return float(np.arctan2(angle.imag, angle.real) / (2 * np.pi) % 1.0)
+    end = _crossing(own, level, upper, lower if lower > upper else lower + 2 * np.pi)
+    start = _crossing(own, level, upper, lower if lower < upper else lower - 2 * np.pi)
+    return float((end - start) / (2 * np.pi))
+
+
+@numba.njit(**INSIDE)
+def _passage(own: Complexes, level: float, near: complex) -> tuple[complex, bool]:
+    """Return exp(i phase) nearby at which a displacement is passed, and whether three steps sufficed."""
+    step = np.inf
+    for _ in range(3):
+        x, rate, _ = _swing_at(own, near.real, near.imag)
+        step = (x - level) / rate
+        near *= complex(1.0, -0.5 * step) / complex(1.0, 0.5 * step)
+        if abs(step) < 1e-4:
+            break
+    return near, abs(step) < 1e-4
 
 
 @numba.njit(**INSIDE)

@@ -6,42 +6,26 @@ import numba
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.dynamics.contact_lanes import EXPONENTIAL, HERTZ, TABULATED, Law, reach, rest
+from sonolube.dynamics.contact_lanes import EXPONENTIAL, HERTZ, TABULATED, Law, parallel, reach, rest
 from sonolube.dynamics.contact_port import ContactPort, receptances
 from sonolube.dynamics.force_table import log_force_at
 from sonolube.dynamics.gap_law import LARGEST_EXPONENT
 from sonolube.dynamics.harmonic_kernel import Points, Resolution
 from sonolube.dynamics.lanes import INSIDE, KERNEL, LANES
+from sonolube.dynamics.one_harmonic_lanes import (
+    LARGE_0,
+    LARGE_1,
+    SMALL_0,
+    SMALL_1,
+    WEAK,
+    Block,
+    choose_orders,
+    substitute,
+)
 
 _ABSCISSAE = np.cos(np.pi * (np.arange(64) + 0.5) / 64)  # of the mean over a period of what depends on cos theta
 _FEWER_ABSCISSAE = np.cos(np.pi * (np.arange(24) + 0.5) / 24)  # for a force without corners
-_WEAK = 0.2  # contact stiffness times receptance up to which substitution finds the only solution
 _GRID = 32
-# polynomials for the modified Bessel functions, lowest power first (Abramowitz and Stegun 9.8.1 to 9.8.4)
-_SMALL_0 = (1.0, 3.5156229, 3.0899424, 1.2067492, 0.2659732, 0.0360768, 0.0045813)
-_SMALL_1 = (0.5, 0.87890594, 0.51498869, 0.15084934, 0.02658733, 0.00301532, 0.00032411)
-_LARGE_0 = (
-    0.39894228,
-    0.01328592,
-    0.00225319,
-    -0.00157565,
-    0.00916281,
-    -0.02057706,
-    0.02635537,
-    -0.01647633,
-    0.00392377,
-)
-_LARGE_1 = (
-    0.39894228,
-    -0.03988024,
-    -0.00362018,
-    0.00163801,
-    -0.01031555,
-    0.02282967,
-    -0.02895312,
-    0.01787654,
-    -0.00420059,
-)
 
 
 class Guesses(NamedTuple):
@@ -78,42 +62,84 @@ def first_guesses(
     guesses : Guesses
         Written.
     """
-    static_stiffness = port.static_stiffness
-    omega, answer = np.empty(LANES), np.empty((4, LANES))
-    total = points.omega.size
-    for start in range(0, total, LANES):
-        for lane in range(LANES):
-            omega[lane] = points.omega[min(start + lane, total - 1)]
-        receptances(port, port.constant[0], port.slope[0], omega, 1.0, answer[0], answer[1])
-        receptances(port, port.constant[1], port.slope[1], omega, 1.0, answer[2], answer[3])
-        for lane in range(min(LANES, total - start)):
-            point = start + lane
-            receptance = complex(answer[0, lane], answer[1, lane])
-            free = complex(answer[2, lane], answer[3, lane]) * points.voltage[point, 0]
-            _balance_amplitude(law, static_stiffness, points, point, receptance, abs(free), guesses)
-            amplitude = guesses.highest[point] if highest else guesses.lowest[point]
-            _place(law, static_stiffness, points, point, receptance, free, amplitude)
-            _choose_resolution(port, law, tolerance, points, point, guesses.highest[point], resolution)
+    rows, answer = np.empty((5, LANES)), np.empty((4, LANES))
+    block = Block(rows[0], rows[1], rows[2], rows[3], rows[4])
+    work, orders = np.empty((7, LANES)), np.empty((3, LANES))
+    easy = parallel(law) and port.static_stiffness == 0.0
+    exponential = (law.kind == EXPONENTIAL or law.kind == TABULATED) and points.voltage.shape[1] == 1
+    for start in range(0, points.omega.size, LANES):
+        end = min(start + LANES, points.omega.size)
+        _gather(port, law, points, start, end, block, answer)
+        if easy:
+            substitute(block, answer, work)
+        for point in range(start, end):
+            if easy and block.strength[point - start] < WEAK:
+                amplitude, force = block.amplitude[point - start], work[0, point - start]
+                guesses.lowest[point] = guesses.highest[point] = amplitude
+                mean = law.parameter * _bessel_logarithm(amplitude / law.parameter)
+            else:
+                _balance_amplitude(law, port.static_stiffness, points, point, answer[:, point - start], guesses)
+                block.amplitude[point - start] = guesses.highest[point]
+                amplitude = guesses.highest[point] if highest else guesses.lowest[point]
+                load, free_mean = points.load[point], points.free_mean[point]
+                mean, force = _one_harmonic(law, load, port.static_stiffness, free_mean, amplitude)
+            _place(points, point, answer[:, point - start], amplitude, mean, force)
+        if exponential:
+            choose_orders(port, tolerance, block, work, orders)
+            _resolve(parallel(law), start, end, orders, resolution)
+        else:
+            _resolve_plainly(points.voltage.shape[1], start, end, resolution)
 
 
 @numba.njit(**INSIDE)
-def _place(
-    law: Law, static_stiffness: float, points: Points, point: int, receptance: complex, free: complex, amplitude: float
-) -> None:
+def _gather(port: ContactPort, law: Law, points: Points, start: int, end: int, block: Block, answer: Floats) -> None:
+    """Write a block of points, and the real and imaginary parts of its receptances and free motions."""
+    for lane in range(LANES):
+        point = min(start + lane, end - 1)
+        block.omega[lane], block.load[lane] = points.omega[point], points.load[point]
+        block.length[lane] = reach(law, points.load[point])
+    receptances(port, port.constant[0], port.slope[0], block.omega, 1.0, answer[0], answer[1])
+    receptances(port, port.constant[1], port.slope[1], block.omega, 1.0, answer[2], answer[3])
+    for lane in range(LANES):
+        v = points.voltage[min(start + lane, end - 1), 0]
+        re, im = answer[2, lane], answer[3, lane]
+        answer[2, lane], answer[3, lane] = re * v.real - im * v.imag, re * v.imag + im * v.real
+
+
+@numba.njit(**INSIDE)
+def _place(points: Points, point: int, answer: Floats, amplitude: float, mean: float, force: float) -> None:
     """Write mean and first harmonic of the motion with this amplitude."""
-    mean, force = _one_harmonic(law, points.load[point], static_stiffness, points.free_mean[point], amplitude)
     points.mean[point] = mean
     points.harmonics[point, :] = 0.0
     if amplitude > 0:
+        free, receptance = complex(answer[2], answer[3]), complex(answer[0], answer[1])
         points.harmonics[point, 0] = free * amplitude / (amplitude + receptance * force)
 
 
 @numba.njit(**INSIDE)
+def _resolve(falls_fast: bool, start: int, end: int, orders: Floats, resolution: Resolution) -> None:
+    for point in range(start, end):
+        harmonics, order = int(orders[0, point - start]), int(orders[2, point - start])
+        needed = order + harmonics + 5 if falls_fast else 2 * (order + 2)
+        resolution.harmonics[point], resolution.coupled[point] = harmonics, int(orders[1, point - start])
+        resolution.samples[point] = max(4 * harmonics, 2 * (needed // 2))
+
+
+@numba.njit(**INSIDE)
+def _resolve_plainly(given: int, start: int, end: int, resolution: Resolution) -> None:
+    harmonics = max(8, given)
+    for point in range(start, end):
+        resolution.harmonics[point], resolution.coupled[point] = harmonics, min(harmonics, 8)
+        resolution.samples[point] = max(64, 4 * harmonics)
+
+
+@numba.njit(**INSIDE)
 def _balance_amplitude(
-    law: Law, static_stiffness: float, points: Points, point: int, receptance: complex, free: float, guesses: Guesses
+    law: Law, static_stiffness: float, points: Points, point: int, answer: Floats, guesses: Guesses
 ) -> None:
     """Solve |a + G force(a)| = free amplitude for its lowest and highest solution."""
     load, free_mean = points.load[point], points.free_mean[point]
+    receptance, free = complex(answer[0], answer[1]), abs(complex(answer[2], answer[3]))
     guesses.lowest[point] = guesses.highest[point] = free
     if free == 0.0:
         return
@@ -121,7 +147,7 @@ def _balance_amplitude(
     at_rest = _opposing(law, static_stiffness, load, free_mean, 1e-3 * length) / (1e-3 * length)
     force = _opposing(law, static_stiffness, load, free_mean, free)
     strength = abs(receptance) * max(at_rest, force / free)
-    if strength < _WEAK:
+    if strength < WEAK:
         amplitude = free
         for _ in range(3):
             amplitude = free / abs(1 + receptance * force / amplitude)
@@ -259,11 +285,11 @@ def _bessel_ratio(beta: float) -> float:
     if beta < 3.75:
         t = (beta / 3.75) ** 2
         for power in range(6, -1, -1):
-            i0, i1 = _SMALL_0[power] + t * i0, _SMALL_1[power] + t * i1
+            i0, i1 = SMALL_0[power] + t * i0, SMALL_1[power] + t * i1
         return beta * i1 / i0
     t = 3.75 / beta
     for power in range(8, -1, -1):
-        i0, i1 = _LARGE_0[power] + t * i0, _LARGE_1[power] + t * i1
+        i0, i1 = LARGE_0[power] + t * i0, LARGE_1[power] + t * i1
     return i1 / i0
 
 
@@ -273,48 +299,8 @@ def _bessel_logarithm(beta: float) -> float:
     i0 = 0.0
     if beta < 3.75:
         for power in range(6, -1, -1):
-            i0 = _SMALL_0[power] + (beta / 3.75) ** 2 * i0
+            i0 = SMALL_0[power] + (beta / 3.75) ** 2 * i0
         return float(np.log(i0))
     for power in range(8, -1, -1):
-        i0 = _LARGE_0[power] + 3.75 / beta * i0
+        i0 = LARGE_0[power] + 3.75 / beta * i0
     return float(beta + np.log(i0 / np.sqrt(beta)))
-
-
-@numba.njit(**INSIDE)
-def _choose_resolution(
-    port: ContactPort,
-    law: Law,
-    tolerance: float,
-    points: Points,
-    point: int,
-    amplitude: float,
-    resolution: Resolution,
-) -> None:
-    """Choose harmonics, coupled harmonics and samples from those of an exponential force of the decay at rest."""
-    given = points.voltage.shape[1]
-    if (law.kind != EXPONENTIAL and law.kind != TABULATED) or given > 1:
-        harmonics = max(8, given)
-        resolution.harmonics[point], resolution.coupled[point] = harmonics, min(harmonics, 8)
-        resolution.samples[point] = max(64, 4 * harmonics)
-        return
-    load, omega = points.load[point], points.omega[point]
-    length = reach(law, load)
-    beta = amplitude / length
-    harmonics, coupled, order, share = 2, 1, 1, 1.0
-    while order < 64:
-        share *= beta / (order - 0.5 + np.sqrt((order + 0.5) ** 2 + beta**2))  # I_k/I_(k-1), D. E. Amos
-        if share < tolerance:
-            break
-        receptance, s = 0.0, order * omega
-        for pair in range(port.trace.size):
-            above = port.constant[0, pair] ** 2 + (port.slope[0, pair] * s) ** 2
-            below = (port.determinant[pair] - s * s) ** 2 + (port.trace[pair] * s) ** 2
-            receptance += np.sqrt(above / below)
-        if 2 * load * share * receptance > 0.5 * tolerance * amplitude:
-            harmonics = max(order, 2)
-        if 2 * load / length * receptance * share > _WEAK / 10:
-            coupled = order
-        order += 1
-    harmonics = max(harmonics, coupled)
-    resolution.harmonics[point], resolution.coupled[point] = harmonics, coupled
-    resolution.samples[point] = max(4 * harmonics, 2 * (order + 2))

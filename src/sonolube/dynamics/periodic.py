@@ -1,10 +1,8 @@
 """The steady state of a structure that vibrates against its contact, by harmonic balance, for many points at once."""
 
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import TypeVar
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,16 +15,14 @@ from sonolube.checks import (
     require_non_negative,
     require_positive,
 )
-from sonolube.dynamics.balancing import Solutions, solve
+from sonolube.dynamics.backend import Backend
+from sonolube.dynamics.balancing import Solutions
 from sonolube.dynamics.contact_lanes import law_of
 from sonolube.dynamics.contact_port import contact_port
 from sonolube.dynamics.gap_law import GapLaw
+from sonolube.dynamics.sharing import Asked, shared
 from sonolube.dynamics.structure import Structure
 from sonolube.errors import InvalidInput
-
-Result = TypeVar("Result")
-
-_CHUNK = 4096  # points solved together, to bound the memory
 
 
 class Status(IntEnum):
@@ -85,6 +81,8 @@ class SteadyStates:
         Harmonics of the contact that the point needed.
     rival_amplitude : ndarray, shape (...)
         Amplitude of another steady state under the same drive; NaN where none was found. [m]
+    relative_tolerance : float
+        Largest relative error of amplitude and force.
     """
 
     structure: Structure
@@ -107,6 +105,7 @@ class SteadyStates:
     turns: Floats
     harmonic_count: NDArray[np.int64]
     rival_amplitude: Floats
+    relative_tolerance: float
 
     def reason(self, point: int | tuple[int, ...]) -> str:
         """Say what the status of one point means, and what to try.
@@ -167,8 +166,10 @@ def steady_state(
     separation: ArrayLike | None = None,
     falling: bool = False,
     least_harmonics: int = 1,
+    relative_tolerance: float = 1e-6,
     stability: bool = True,
     workers: int = 1,
+    backend: Backend = "cpu",
 ) -> SteadyStates:
     """Return the periodic vibration of a structure against its contact.
 
@@ -194,10 +195,16 @@ def steady_state(
     least_harmonics : int
         Harmonics of the contact to take at least, from 1 to 64, and to couple fully; more than the point needs makes
         neighbouring points comparable to the last digit.
+    relative_tolerance : float
+        Largest error of amplitude and mean force relative to the equations' exact answer, from 1e-6 to 1e-3; a looser
+        one takes fewer harmonics.
     stability : bool
         Whether to judge stability, which takes about as long as finding the vibration.
     workers : int
         Threads to share the work.
+    backend : {"cpu", "gpu"}
+        Whether an NVIDIA GPU takes the points that it can; the others, and all where there is none, are the
+        processor's.
 
     Returns
     -------
@@ -207,25 +214,97 @@ def steady_state(
     Raises
     ------
     InvalidInput
-        If a frequency or load is not positive, a value not finite, or the drive not given in exactly one way.
+        If a frequency or load is not positive, a value not finite, the drive not given in exactly one way, there are no
+        points, or `least_harmonics` or `relative_tolerance` is out of its range.
+
+    Warns
+    -----
+    GpuUnused
+        If a GPU was asked for and there is none, or it does not serve this contact, structure or drive.
 
     Notes
     -----
     Only the contact is nonlinear, so that the unknowns are its mean and harmonics alone. The force is sampled in time
-    and transformed, as many samples and harmonics as the point needs; errors of amplitude and mean force relative to
-    the equations stay below 1e-6. The memory is bounded by working through chunks of points.
+    and transformed, as many samples and harmonics as the point needs. The memory is bounded by working through chunks
+    of points.
 
     Other vibrations of the same period are looked for where a single harmonic has several solutions. Motions of other
     periods beside a stable vibration are not: bouncing hard at a few hundred hertz, a start from rest can end in one.
     """
+    return solved(
+        structure,
+        gap_law,
+        normal_load=normal_load,
+        frequency=frequency,
+        drive=drive_harmonics(voltage_amplitude, voltage_harmonics),
+        voltage_offset=voltage_offset,
+        separation=separation,
+        falling=falling,
+        least_harmonics=least_harmonics,
+        relative_tolerance=relative_tolerance,
+        stability=stability,
+        workers=workers,
+        backend=backend,
+    ).states
+
+
+class Solved(NamedTuple):
+    """Steady states, and of the points that a GPU did its means of friction."""
+
+    states: SteadyStates
+    means: Floats  # (2, p, s): plain and weighted by the force
+    averaged: NDArray[np.bool_]  # (p,): which have them
+
+
+def solved(
+    structure: Structure,
+    gap_law: GapLaw,
+    *,
+    normal_load: ArrayLike,
+    frequency: ArrayLike,
+    drive: Complexes,
+    voltage_offset: ArrayLike = 0.0,
+    separation: ArrayLike | None = None,
+    falling: bool = False,
+    least_harmonics: int = 1,
+    relative_tolerance: float = 1e-6,
+    stability: bool = True,
+    workers: int = 1,
+    backend: Backend = "cpu",
+    speeds: Floats | None = None,
+) -> Solved:
+    """Return what `steady_state` does for the harmonics of a drive, and on a GPU means of friction at some speeds.
+
+    Parameters
+    ----------
+    structure, gap_law, falling, least_harmonics, relative_tolerance, stability, workers, backend
+        As `steady_state` takes them.
+    normal_load : array_like
+        Dead load on the contact. [N]
+    frequency : array_like
+        Frequency of the drive. [Hz]
+    drive : ndarray of complex, shape (..., K)
+        Harmonics of the drive, in V.
+    voltage_offset : array_like
+        Mean of the drive. [V]
+    separation : array_like, optional
+        Separation at rest under the dead load. [m]
+    speeds : ndarray, shape (s,), optional
+        Sliding speeds, in m/s, none of them zero.
+
+    Returns
+    -------
+    Solved
+    """
     if not 1 <= least_harmonics <= 64:
         raise InvalidInput(f"least_harmonics must lie between 1 and 64, got {least_harmonics!r}")
+    if not 1e-6 <= relative_tolerance <= 1e-3:
+        raise InvalidInput(f"relative_tolerance must lie between 1e-6 and 1e-3, got {relative_tolerance!r}")
     load, f = require_positive(normal_load=normal_load), require_positive(frequency=frequency)
-    drive = _drive(voltage_amplitude, voltage_harmonics)
     offset = require_finite(voltage_offset=voltage_offset)
     rest = None if separation is None else require_positive(separation=separation)
-    shape = np.broadcast_shapes(load.shape, f.shape, drive.shape[:-1], offset.shape, () if rest is None else rest.shape)
-    port, law = contact_port(structure), law_of(gap_law)
+    shape = _batch(load.shape, f.shape, drive.shape[:-1], offset.shape, () if rest is None else rest.shape)
+    port = contact_port(structure)
 
     def flat(values: Floats) -> Floats:
         return np.ascontiguousarray(np.broadcast_to(values, shape)).reshape(-1)
@@ -233,24 +312,14 @@ def steady_state(
     voltage = np.ascontiguousarray(np.broadcast_to(drive, (*shape, drive.shape[-1]))).reshape(-1, drive.shape[-1])
     omega, loads = 2 * np.pi * flat(f), flat(load)
     free_mean = port.displacement_per_volt * flat(offset)
-
-    def part(chosen: slice) -> Solutions:
-        return solve(
-            port,
-            law,
-            omega[chosen],
-            loads[chosen],
-            voltage[chosen],
-            free_mean[chosen],
-            least=least_harmonics,
-            falling=falling,
-            stability=stability,
-        )
-
-    found = _gather(in_threads(part, omega.size, workers))
+    points = Asked(
+        port, law_of(gap_law), omega, loads, voltage, free_mean, least_harmonics, falling, stability, relative_tolerance
+    )
+    answered = shared(points, gap_law, np.empty(0) if speeds is None else speeds, workers=workers, backend=backend)
+    found = answered.solutions
     current = 1j * omega[:, np.newaxis] * np.arange(1, voltage.shape[1] + 1) * found.charge
     closed = np.zeros(omega.size, dtype=bool) if rest is None else found.lowest_displacement <= -flat(rest)
-    return SteadyStates(
+    states = SteadyStates(
         structure=structure,
         gap_law=gap_law,
         normal_load=loads.reshape(shape),
@@ -271,10 +340,27 @@ def steady_state(
         turns=found.turns.reshape(*shape, 2),
         harmonic_count=found.count.reshape(shape),
         rival_amplitude=found.rival_amplitude.reshape(shape),
+        relative_tolerance=relative_tolerance,
     )
+    return Solved(states, answered.means, answered.done)
 
 
-def _drive(amplitude: ArrayLike | None, harmonics: ArrayLike | None) -> Complexes:
+def _batch(*shapes: tuple[int, ...]) -> tuple[int, ...]:
+    """Return the shape of the points that arguments of some shapes make together."""
+    told = ", ".join(map(str, shapes))
+    try:
+        shape = np.broadcast_shapes(*shapes)
+    except ValueError:
+        raise InvalidInput(f"load, frequency, voltage, offset and gap must have matching shapes, got {told}") from None
+    if 0 in shape:
+        raise InvalidInput(
+            f"there are no points to compute: load, frequency, voltage, offset and gap have shapes {told}"
+        )
+    return shape
+
+
+def drive_harmonics(amplitude: ArrayLike | None, harmonics: ArrayLike | None) -> Complexes:
+    """Return the harmonics of a drive, given in exactly one way."""
     if (amplitude is None) == (harmonics is None):
         raise InvalidInput("give either voltage_amplitude or voltage_harmonics")
     if amplitude is not None:
@@ -286,31 +372,6 @@ def _drive(amplitude: ArrayLike | None, harmonics: ArrayLike | None) -> Complexe
             f"voltage_harmonics must have 1 to 64 harmonics along the last axis, got shape {drive.shape}"
         )
     return drive
-
-
-def in_threads(part: Callable[[slice], Result], points: int, workers: int) -> list[Result]:
-    """Return what `part` makes of one chunk of the points after another, shared among threads."""
-    if workers < 1:
-        raise InvalidInput(f"workers must be at least 1, got {workers!r}")
-    chunks = [slice(start, start + _CHUNK) for start in range(0, max(points, 1), _CHUNK)]
-    if workers == 1:
-        return [part(chunk) for chunk in chunks]
-    with ThreadPoolExecutor(workers) as pool:
-        return list(pool.map(part, chunks))
-
-
-def _gather(parts: list[Solutions]) -> Solutions:
-    if len(parts) == 1:
-        return parts[0]
-    room = max(part.harmonics.shape[1] for part in parts)
-    harmonics = np.zeros((sum(part.mean.size for part in parts), room), dtype=np.complex128)
-    start = 0
-    for part in parts:
-        harmonics[start : start + part.mean.size, : part.harmonics.shape[1]] = part.harmonics
-        start += part.mean.size
-    narrow = (part._replace(harmonics=part.harmonics[:0, :1]) for part in parts)
-    gathered = Solutions(*(np.concatenate(columns) for columns in zip(*narrow, strict=True)))
-    return gathered._replace(harmonics=harmonics)
 
 
 def _status(found: Solutions) -> NDArray[np.int8]:

@@ -100,8 +100,9 @@ def force_in_motion(gap_law: GapLaw, x: Floats, v: Floats, load: Floats) -> Floa
 
 
 def _advice(ran_away: bool, unstable: bool, coarse: bool, corner: bool, finer: float, steps: int) -> str:
+    remedy = f"take {finer:.0f} steps a period, or less voltage" if np.isfinite(finer) else "take less voltage"
     reasons = {
-        f"the contact ran away; take {finer:.0f} steps a period, or less voltage": ran_away,
+        f"the contact ran away; {remedy}": ran_away,
         f"{steps} steps a period are too few to follow the contact at its stiffest; take {finer:.0f}": unstable,
         f"{steps} steps a period leave more than {_COARSE:g} of error in the force; take {finer:.0f}": coarse,
     }

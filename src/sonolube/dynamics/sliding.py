@@ -3,20 +3,29 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats, require_non_negative
+from sonolube.dynamics.backend import Backend
 from sonolube.dynamics.balancing import MOST_HARMONICS
 from sonolube.dynamics.contact_lanes import EXPONENTIAL, law_of
-from sonolube.dynamics.periodic import Status, SteadyStates, in_threads
+from sonolube.dynamics.gap_law import GapLaw
+from sonolube.dynamics.harmonic_kernel import Integers
+from sonolube.dynamics.lanes import LANES
+from sonolube.dynamics.periodic import Status, SteadyStates, drive_harmonics, solved
+from sonolube.dynamics.sharing import in_threads
 from sonolube.dynamics.sliding_kernel import (
+    Crowded,
     crowded_points,
     crowding_of,
+    fineness_of,
     sliding_means,
     sliding_means_by_cells,
 )
+from sonolube.dynamics.structure import Structure
 from sonolube.errors import InvalidInput
 
+_SINGLE = 1e-5  # tolerance from which single precision suffices
 _STEEP, _STEEPEST = 1.6, 64  # points more for each decay length of amplitude, and at most
 
 
@@ -91,6 +100,87 @@ def motion(states: SteadyStates, point: int | tuple[int, ...], *, samples: int =
     )
 
 
+def steady_friction(
+    structure: Structure,
+    gap_law: GapLaw,
+    *,
+    sliding_speed: ArrayLike,
+    normal_load: ArrayLike,
+    frequency: ArrayLike,
+    voltage_amplitude: ArrayLike | None = None,
+    voltage_harmonics: ArrayLike | None = None,
+    voltage_offset: ArrayLike = 0.0,
+    relative_tolerance: float = 1e-6,
+    stability: bool = True,
+    workers: int = 1,
+    backend: Backend = "cpu",
+) -> tuple[SteadyStates, SlidingMeans]:
+    """Return steady states and their kinematic friction factors, which a GPU finds in one go.
+
+    Parameters
+    ----------
+    structure : Structure
+    gap_law : GapLaw
+    sliding_speed : array_like, shape (speeds,)
+        Sliding speeds, each met with every state. [m/s]
+    normal_load : array_like
+        Dead load on the contact. [N]
+    frequency : array_like
+        Frequency of the drive. [Hz]
+    voltage_amplitude : array_like, optional
+        Amplitude of a sinusoidal drive. [V]
+    voltage_harmonics : array_like of complex, optional
+        Harmonics of any other drive along the last axis, in V.
+    voltage_offset : array_like
+        Mean of the drive. [V]
+    relative_tolerance : float
+        Largest error of amplitude and mean force.
+    stability : bool
+        Whether to judge stability.
+    workers : int
+        Threads to share the work of the processor.
+    backend : {"cpu", "gpu"}
+        Whether an NVIDIA GPU takes the points that it can.
+
+    Returns
+    -------
+    SteadyStates
+        As of `steady_state`.
+    SlidingMeans
+        As of `sliding_friction`.
+
+    Raises
+    ------
+    InvalidInput
+        As `steady_state` and `sliding_friction` do.
+
+    Warns
+    -----
+    GpuUnused
+        If a GPU was asked for and there is none, or it does not serve this contact, structure or drive.
+    """
+    speeds = _speeds(sliding_speed)
+    moving = speeds > 0
+    found = solved(
+        structure,
+        gap_law,
+        normal_load=normal_load,
+        frequency=frequency,
+        drive=drive_harmonics(voltage_amplitude, voltage_harmonics),
+        voltage_offset=voltage_offset,
+        relative_tolerance=relative_tolerance,
+        stability=stability,
+        workers=workers,
+        backend=backend,
+        speeds=speeds[moving],
+    )
+    means = _friction(found.states, speeds, workers, ~found.averaged)
+    if found.averaged.any():
+        for values, ready in zip((means.kinematic, means.loaded), found.means, strict=True):
+            values.reshape(-1, speeds.size)[np.ix_(found.averaged, moving)] = ready[found.averaged]
+    return found.states, means
+
+
 def sliding_friction(states: SteadyStates, *, sliding_speed: ArrayLike, workers: int = 1) -> SlidingMeans:
     """Return the kinematic friction factors of every steady state at every sliding speed.
 
@@ -120,41 +210,58 @@ def sliding_friction(states: SteadyStates, *, sliding_speed: ArrayLike, workers:
     ----------
     .. [1] D 3.46 and 3.48, with the resultant speed below the fraction line, as the text means it.
     """
+    every = np.ones(states.frequency.size, dtype=bool)
+    return _friction(states, _speeds(sliding_speed), workers, every)
+
+
+def _speeds(sliding_speed: ArrayLike) -> Floats:
     speeds = np.atleast_1d(require_non_negative(sliding_speed=sliding_speed))
     if speeds.ndim != 1:
         raise InvalidInput(f"sliding_speed must be one number or one row of numbers, got shape {speeds.shape}")
-    shape = states.mean_displacement.shape
+    return speeds
+
+
+def _friction(states: SteadyStates, speeds: Floats, workers: int, wanted: NDArray[np.bool_]) -> SlidingMeans:
+    """Return the means of the states that are wanted; those of the others are zero."""
+    shape, lost = states.mean_displacement.shape, states.status.reshape(-1) == Status.NOT_CONVERGED
     moving = speeds > 0
-    if states.mean_displacement.size and moving.all():
-        kinematic, loaded = _means(states, speeds, workers)
+    if moving.all() and wanted.any():
+        kinematic, loaded = _means(states, speeds, workers, wanted)
     else:
-        kinematic, loaded = np.zeros((2, states.mean_displacement.size, speeds.size))
-        if kinematic.size and moving.any():
-            kinematic[:, moving], loaded[:, moving] = _means(states, speeds[moving], workers)
-    lost = states.status.reshape(-1) == Status.NOT_CONVERGED
+        kinematic, loaded = np.zeros((2, wanted.size, speeds.size))
+        if moving.any() and wanted.any():
+            kinematic[:, moving], loaded[:, moving] = _means(states, speeds[moving], workers, wanted)
     kinematic[lost] = loaded[lost] = np.nan
     return SlidingMeans(kinematic=kinematic.reshape(*shape, -1), loaded=loaded.reshape(*shape, -1))
 
 
-def _means(states: SteadyStates, speeds: Floats, workers: int) -> tuple[Floats, Floats]:
+def _means(states: SteadyStates, speeds: Floats, workers: int, wanted: NDArray[np.bool_]) -> tuple[Floats, Floats]:
     law = law_of(states.gap_law)
     omega, turns = 2 * np.pi * states.frequency.reshape(-1), states.turns.reshape(-1, 2)
     harmonics, count = states.harmonics.reshape(omega.size, -1), states.harmonic_count.reshape(-1)
     motion = (omega, states.normal_load.reshape(-1), states.mean_displacement.reshape(-1), harmonics, count)
-    kinematic, loaded = np.empty((2, omega.size, speeds.size))
+    kinematic, loaded = np.zeros((2, omega.size, speeds.size))
     steepness = (
         np.nanmax(states.vibration_amplitude, initial=0.0) / law.parameter if law.kind == EXPONENTIAL else np.inf
     )
     crowding = crowding_of(speeds.min() / (omega * np.abs(harmonics[:, 0]) + 1e-300))
     twice = np.isfinite(turns[:, 0])
-    chosen = np.argsort(crowding * (MOST_HARMONICS + 1) + count)
-    chosen = chosen[twice[chosen]]
-    crowded = crowded_points(int(min(np.ceil(_STEEP * steepness), _STEEPEST)))
+    demand = crowding * (MOST_HARMONICS + 1) + count
+    chosen = np.argsort(demand.astype(np.uint16), kind="stable")  # by counting, that is, at once
+    chosen = chosen[(twice & wanted)[chosen]]
+    fineness = fineness_of(harmonics)[chosen]
+    extra = int(min(np.ceil(_STEEP * steepness), _STEEPEST))
+    scratch = 2 * speeds.size + 3 if states.relative_tolerance >= _SINGLE else 0
 
-    def part(points: slice) -> None:
-        sliding_means(law, *motion, turns, crowding, chosen[points], speeds, crowded, kinematic, loaded)
+    for fine in np.unique(fineness):
+        alike = chosen[fineness == fine]
+        crowded = crowded_points(extra, max(0.1 * states.relative_tolerance, 1e-6) ** int(fine))
 
-    in_threads(part, chosen.size, workers)
-    if not twice.all():
-        sliding_means_by_cells(law, *motion, np.flatnonzero(~twice), speeds, kinematic, loaded)
+        def part(points: slice, alike: Integers = alike, crowded: Crowded = crowded) -> None:
+            singles = np.empty((scratch, LANES), dtype=np.float32)
+            sliding_means(law, *motion, turns, crowding, alike[points], speeds, crowded, singles, kinematic, loaded)
+
+        in_threads(part, alike.size, workers)
+    if not twice[wanted].all():
+        sliding_means_by_cells(law, *motion, np.flatnonzero(~twice & wanted), speeds, kinematic, loaded)
     return kinematic, loaded

@@ -21,7 +21,9 @@ from sonolube.dynamics.motion_kernel import contact_force, swing
 
 _ROWS = 4  # steps of crowding to a decade of the ratio of the slowest sliding to the vibration's peak velocity
 _STEEPEST = 24  # most such steps
-_CELLS, _FEWEST_CELLS = 64, 1024  # per harmonic, for motions that turn more than twice
+# Accelerations of the higher harmonics over that of the first, and up to each how many times as many points it takes.
+_RICHNESS, _FINENESS = np.array([0.1, 1.0, 2.0]), np.array([1, 2, 4, 16])
+_CELLS, _FEWEST_CELLS = 256, 4096  # per harmonic, for motions that turn more than twice
 
 
 class Crowded(NamedTuple):
@@ -34,20 +36,23 @@ class Crowded(NamedTuple):
 
 
 @lru_cache(maxsize=8)
-def crowded_points(extra: int) -> Crowded:
+def crowded_points(extra: int, tolerance: float = 1e-6) -> Crowded:
     """Return the points for each step of the ratio of sliding speed to peak velocity.
 
     Parameters
     ----------
     extra : int
-        Points added to the six per e-fold that hold 1e-6, for the sake of a steep contact force.
+        Points added for the sake of a steep contact force.
+    tolerance : float
+        Relative error to hold.
 
     Returns
     -------
     Crowded
     """
     ratios = 10.0 ** (-np.arange(_STEEPEST + 1) / _ROWS)
-    count = 8 * np.ceil((6 * np.log(4 / ratios) + extra + 4) / 8).astype(np.int64)
+    digits = -np.log10(tolerance)  # each takes one point per e-fold
+    count = 8 * np.ceil((digits * np.log(4 / ratios) + extra + 4) / 8).astype(np.int64)
     cosine, sine, weight = np.zeros((3, ratios.size, count.max()))
     for row, (ratio, samples) in enumerate(zip(ratios, count, strict=True)):
         complement = ratio**2 / (1 + ratio**2)
@@ -85,6 +90,7 @@ def sliding_means(
     chosen: Integers,
     speeds: Floats,
     crowded: Crowded,
+    singles: Floats,
     kinematic: Floats,
     loaded: Floats,
 ) -> None:
@@ -107,11 +113,15 @@ def sliding_means(
     speeds : ndarray, shape (s,)
         Sliding speeds v_r, in m/s, none of them zero.
     crowded : Crowded
+    singles : ndarray of float32, shape (2 s + 3, lanes) or (0, lanes)
+        Scratch for sums in single precision, which holds 1e-5; empty for double precision.
     kinematic, loaded : ndarray, shape (p, s)
     """
     most = finest(count, chosen)
     rows, motion = np.empty((18, LANES)), np.empty((2, most + 1, LANES))
     plain, weighed = np.empty((speeds.size, LANES)), np.empty((speeds.size, LANES))
+    single = singles.shape[0] > 0
+    brief, sums = singles[:3], singles[3:]
     for start in range(0, chosen.size, LANES):
         block = chosen[start : start + LANES]
         h, row = finest(count, block), finest(crowding, block)
@@ -126,15 +136,19 @@ def sliding_means(
             for k in range(1, h + 1):
                 value = harmonics[point, k - 1] if k <= count[point] else 0j
                 motion[0, k, lane], motion[1, k, lane] = value.real, value.imag
-        plain[:] = 0.0
-        weighed[:] = 0.0
+        plain[:], weighed[:], singles[:] = 0.0, 0.0, 0.0
         for j in range(crowded.count[row]):
             cosine, sine, weight = crowded.cosine[row, j], crowded.sine[row, j], crowded.weight[row, j]
             _motion_at(cosine, sine, weight, motion, h, rows)
-            _add_ratios(law, speeds, rows, plain, weighed)
+            _weigh(law, rows)
+            if single:
+                _add_ratios_singly(speeds, rows, brief, sums[: speeds.size], sums[speeds.size :])
+            else:
+                _add_ratios(speeds, rows[7], rows[13], rows[15], plain, weighed)
         for lane in range(block.size):
             for s in range(speeds.size):
-                kinematic[block[lane], s], loaded[block[lane], s] = plain[s, lane], weighed[s, lane]
+                kinematic[block[lane], s] = sums[s, lane] if single else plain[s, lane]
+                loaded[block[lane], s] = sums[speeds.size + s, lane] if single else weighed[s, lane]
 
 
 @numba.njit(**INSIDE)
@@ -166,13 +180,31 @@ def _motion_at(cosine: float, sine: float, weight: float, motion: Floats, h: int
 
 
 @numba.njit(**INSIDE)
-def _add_ratios(law: Law, speeds: Floats, rows: Floats, plain: Floats, weighed: Floats) -> None:
+def _weigh(law: Law, rows: Floats) -> None:
+    """Write velocity squared, and the contact force times the point's weight over the dead load."""
     load, resting, x, v, share, square = rows[4], rows[5], rows[11], rows[12], rows[13], rows[7]
     work, force, slope, drag = rows[14], rows[15], rows[16], rows[17]
     contact_rows(law, load, resting, x, v, work, force, slope, drag)
     for lane in range(LANES):
         force[lane] *= share[lane] / load[lane]
         square[lane] = v[lane] * v[lane]
+
+
+@numba.njit(**INSIDE)
+def _add_ratios_singly(speeds: Floats, rows: Floats, brief: Floats, plain: Floats, weighed: Floats) -> None:
+    square, share, force = brief[0], brief[1], brief[2]
+    for lane in range(LANES):
+        square[lane], share[lane], force[lane] = rows[7, lane], rows[13, lane], rows[15, lane]
+    for s in range(speeds.size):
+        speed, own_plain, own_weighed = np.float32(speeds[s]), plain[s], weighed[s]
+        for lane in range(LANES):
+            ratio = speed / np.sqrt(square[lane] + speed * speed)
+            own_plain[lane] += share[lane] * ratio
+            own_weighed[lane] += force[lane] * ratio
+
+
+@numba.njit(**INSIDE)
+def _add_ratios(speeds: Floats, square: Floats, share: Floats, force: Floats, plain: Floats, weighed: Floats) -> None:
     for s in range(speeds.size):
         speed, own_plain, own_weighed = speeds[s], plain[s], weighed[s]
         for lane in range(LANES):
@@ -251,7 +283,31 @@ def crowding_of(ratio: Floats) -> Integers:
     return np.asarray(np.maximum(steps, 0).astype(np.int64))
 
 
-def phases_of(turns: Floats, ratio: float) -> tuple[Complexes, Floats]:
+def fineness_of(harmonics: Complexes) -> Integers:
+    """Return how many times as many points motions of two turns need, since their higher harmonics carry shoulders.
+
+    Parameters
+    ----------
+    harmonics : ndarray of complex, shape (p, room)
+
+    Returns
+    -------
+    ndarray of int, shape (p,)
+        1, 2, 4 or 16.
+
+    Notes
+    -----
+    A velocity that nearly vanishes between its turns brings further branch points near the axis. Doubling the points
+    squares the error; the steps hold 1e-5 for speeds down to a thousandth of the peak velocity.
+    """
+    parts = np.abs(np.ascontiguousarray(harmonics).view(np.float64))
+    accelerations = np.repeat(np.arange(1.0, harmonics.shape[1] + 1) ** 2, 2)
+    first = parts[:, 0] + parts[:, 1]
+    richness = (parts @ accelerations - first) / np.maximum(first, 1e-300)
+    return np.asarray(_FINENESS[np.searchsorted(_RICHNESS, richness)])
+
+
+def phases_of(turns: Floats, ratio: float, fineness: int) -> tuple[Complexes, Floats]:
     """Return points exp(i theta) and weights for means over one period, crowded at the turns where there are two.
 
     Parameters
@@ -260,6 +316,8 @@ def phases_of(turns: Floats, ratio: float) -> tuple[Complexes, Floats]:
         Phases of the two turns, or NaN.
     ratio : float
         Least sliding speed over peak velocity.
+    fineness : int
+        As by `fineness_of`.
 
     Returns
     -------
@@ -270,7 +328,7 @@ def phases_of(turns: Floats, ratio: float) -> tuple[Complexes, Floats]:
         return np.exp(2j * np.pi * np.arange(samples) / samples), np.full(samples, 1 / samples)
     half = 0.5 * (turns[0] - turns[1]) % np.pi
     alpha = np.tan(0.25 * np.pi - 0.5 * half)
-    crowded = crowded_points(32)
+    crowded = crowded_points(32, 1e-6**fineness)
     row = int(crowding_of(np.float64(ratio)))  # type: ignore[arg-type]
     inside = slice(0, crowded.count[row])
     w = crowded.cosine[row, inside] + 1j * crowded.sine[row, inside]

@@ -1,0 +1,104 @@
+"""Steady states with friction at 16 sliding speeds and stability on a GPU, beside what the card could do.
+
+Points are those of `test_steady_state_speed.py`. The time is that of the whole call, transfers included. Bytes are what
+points bring along and answers take; what spills from a thread's registers to its own memory is not counted. Operations
+are counted from the algorithm at the harmonics, samples and steps that each point took, sums, products, quotients and
+roots as one each, sines and exponentials as twenty. The bars are the card's own: bandwidth from its bus, peak from its
+multiprocessors, their units for doubles and its clock.
+"""
+
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from pytest_benchmark.fixture import BenchmarkFixture
+
+from sonolube.contact import decay_length
+from sonolube.dynamics import ExponentialGap, drive_receptance
+from sonolube.dynamics.backend import device_name
+from sonolube.dynamics.contact_lanes import law_of
+from sonolube.dynamics.contact_port import contact_port
+from sonolube.rig import read_rig
+
+RIG = read_rig(Path(__file__).parent.parent / "examples" / "rigs" / "tribometer.toml")
+LENGTH = float(decay_length(RIG.contact))
+SPEEDS = np.geomspace(1e-3, 1.0, 16)
+POINTS = int(os.environ.get("SONOLUBE_GPU_POINTS", "1000000"))
+# per multiprocessor and clock, by compute capability (NVIDIA, CUDA C++ Programming Guide, arithmetic instructions)
+DOUBLES = {(6, 0): 32, (7, 0): 32, (8, 0): 32, (9, 0): 64, (10, 0): 64}
+FEW_DOUBLES = 2
+HARD = 20  # operations that a sine or an exponential counts for
+
+
+def drawn(points: int) -> dict[str, Any]:
+    assert RIG.structure is not None
+    random = np.random.default_rng(1)
+    frequency, load = random.uniform(18e3, 26e3, points), random.uniform(1.0, 10.0, points)
+    volts = random.uniform(0.5e-6, 14e-6, points) / np.abs(drive_receptance(RIG.structure, frequency=frequency))
+    return {"omega": 2 * np.pi * frequency, "load": load, "voltage": volts[:, np.newaxis].astype(complex)}
+
+
+def operations(found: Any, pairs: int, phases: NDArray[np.float64]) -> float:
+    """Return how many operations the points took."""
+    h, samples, n, steps = (values[found.done].astype(float) for values in found.effort)
+    size, rows = 2.0 * pairs, 2 * n + 1
+    instant = 2 * HARD + 10 * h + 2 * HARD + 10 * (h + n + 1)
+    step = (samples / 2 + 1) * instant + 16 * h + 12 * rows**2 + 2 / 3 * rows**3
+    kick = 3 * HARD + 16 * h + 7 * size**2
+    growth = samples * kick + 22 * (2 * size**3 + 3 * size**2)
+    means = phases * (20 + 16 * h + HARD + 9 * SPEEDS.size)
+    return float(np.sum(steps * step + growth + means))
+
+
+def phases_of(found: Any, omega: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the phases that each point's means took, at least."""
+    from sonolube.dynamics.gpu.sliding_means import crowded_levels
+    from sonolube.dynamics.sliding_kernel import crowding_of
+
+    fastest = omega[found.done] * np.abs(found.solutions.harmonics[found.done, 0])
+    return np.asarray(crowded_levels(1e-7).numbers[0][crowding_of(SPEEDS[0] / fastest)], dtype=np.float64)
+
+
+def limits() -> dict[str, float]:
+    """Return the card's bandwidth, in bytes per second, and its peak of operations on doubles, in 1/s."""
+    import numba.cuda
+
+    card: Any = numba.cuda.get_current_device()  # type: ignore[no-untyped-call]
+    doubles = DOUBLES.get(tuple(card.compute_capability), FEW_DOUBLES)
+    return {
+        "bandwidth": 2e3 * card.MEMORY_CLOCK_RATE * card.GLOBAL_MEMORY_BUS_WIDTH / 8,
+        "peak": 2 * doubles * 1e3 * card.CLOCK_RATE * card.MULTIPROCESSOR_COUNT,
+    }
+
+
+@pytest.mark.gpu
+@pytest.mark.skipif(not device_name("gpu"), reason="there is no NVIDIA GPU with numba-cuda here")
+def test_steady_states_with_friction_beside_the_limits_of_the_card(benchmark: BenchmarkFixture) -> None:
+    from sonolube.dynamics.gpu import solve_on_gpu
+
+    assert RIG.structure is not None
+    port, law, given = contact_port(RIG.structure), law_of(ExponentialGap(decay_length=LENGTH)), drawn(POINTS)
+    chosen = {"speeds": SPEEDS, "least": 1, "falling": False, "stability": True, "tolerance": 1e-6}
+
+    def solved(count: int) -> Any:
+        own = {name: values[:count] for name, values in given.items()}
+        return solve_on_gpu(port, law, own["omega"], own["load"], own["voltage"], np.zeros(count), **chosen)  # type: ignore[arg-type]
+
+    solved(1000)  # compiles
+    found = benchmark.pedantic(solved, args=(POINTS,), rounds=5)  # type: ignore[no-untyped-call]
+    assert found.done.mean() > 0.99
+    assert benchmark.stats is not None
+    seconds, card = benchmark.stats.stats.min, limits()
+    bytes_moved = 8.0 * POINTS * (3 + 2 + 10 + 24 + 2 + 2 * SPEEDS.size + 5)
+    done = operations(found, port.trace.size, phases_of(found, given["omega"]))
+    benchmark.extra_info |= {
+        "device": device_name("gpu"),
+        "points a second": POINTS / seconds,
+        "bytes a second": bytes_moved / seconds,
+        "share of the bandwidth": bytes_moved / seconds / card["bandwidth"],
+        "operations a second": done / seconds,
+        "share of the peak": done / seconds / card["peak"],
+    }

@@ -1,0 +1,151 @@
+"""Who solves the points asked for: threads of the processor, or a GPU and the processor what the GPU leaves."""
+
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sonolube.checks import Complexes, Floats
+from sonolube.dynamics.backend import Backend, available, unused
+from sonolube.dynamics.balancing import Solutions, solve
+from sonolube.dynamics.contact_lanes import Law
+from sonolube.dynamics.contact_port import ContactPort
+from sonolube.dynamics.gap_law import GapLaw
+from sonolube.errors import InvalidInput
+
+Result = TypeVar("Result")
+
+_CHUNK = 4096  # points that a thread solves together, to bound the memory
+
+
+class Asked(NamedTuple):
+    """Points to solve, as `sonolube.dynamics.balancing.solve` takes them."""
+
+    port: ContactPort
+    law: Law
+    omega: Floats
+    load: Floats
+    voltage: Complexes
+    free_mean: Floats
+    least: int
+    falling: bool
+    stability: bool
+    tolerance: float
+
+
+class Shared(NamedTuple):
+    """Steady states, and means of friction of those points that a GPU did."""
+
+    solutions: Solutions
+    means: Floats  # (2, p, s): plain and weighted by the force
+    done: NDArray[np.bool_]  # (p,): by the GPU
+
+
+def shared(asked: Asked, gap_law: GapLaw, speeds: Floats, *, workers: int, backend: Backend) -> Shared:
+    """Solve the points on the backend asked for.
+
+    Parameters
+    ----------
+    asked : Asked
+    gap_law : GapLaw
+        What `asked.law` was made of.
+    speeds : ndarray, shape (s,)
+        Sliding speeds to average friction at where a GPU does it, in m/s, none of them zero.
+    workers : int
+        Threads of the processor.
+    backend : {"cpu", "gpu"}
+
+    Returns
+    -------
+    Shared
+    """
+    if not _on_gpu(asked, gap_law, backend):
+        means, done = np.empty((2, asked.omega.size, 0)), np.zeros(asked.omega.size, dtype=bool)
+        return Shared(_on_cpu(asked, np.arange(asked.omega.size), workers), means, done)
+    from sonolube.dynamics.gpu import solve_on_gpu
+
+    found = solve_on_gpu(
+        asked.port,
+        asked.law,
+        asked.omega,
+        asked.load,
+        asked.voltage,
+        asked.free_mean,
+        speeds=speeds,
+        least=asked.least,
+        falling=asked.falling,
+        stability=asked.stability,
+        tolerance=asked.tolerance,
+    )
+    left = np.flatnonzero(~found.done)
+    solutions = _filled(found.solutions, left, _on_cpu(asked, left, workers)) if left.size else found.solutions
+    return Shared(solutions, found.means, found.done)
+
+
+def _on_gpu(asked: Asked, gap_law: GapLaw, backend: Backend) -> bool:
+    """Return whether a GPU is asked for, there, and serves the points; warn where it is not or does not."""
+    if available(backend) == "cpu":
+        return False
+    from sonolube.dynamics.gpu import unserved
+
+    reason = unserved(asked.port, gap_law, harmonics=max(asked.least, asked.voltage.shape[1]))
+    return not reason or unused(reason) == "gpu"
+
+
+def _on_cpu(asked: Asked, chosen: NDArray[np.intp], workers: int) -> Solutions:
+    def part(own: slice) -> Solutions:
+        points = chosen[own]
+        return solve(
+            asked.port,
+            asked.law,
+            asked.omega[points],
+            asked.load[points],
+            asked.voltage[points],
+            asked.free_mean[points],
+            least=asked.least,
+            falling=asked.falling,
+            stability=asked.stability,
+            tolerance=asked.tolerance,
+        )
+
+    return _gather(in_threads(part, chosen.size, workers))
+
+
+def in_threads(part: Callable[[slice], Result], points: int, workers: int) -> list[Result]:
+    """Return what `part` makes of one chunk of the points after another, shared among threads."""
+    if workers < 1:
+        raise InvalidInput(f"workers must be at least 1, got {workers!r}")
+    chunks = [slice(start, start + _CHUNK) for start in range(0, max(points, 1), _CHUNK)]
+    if workers == 1:
+        return [part(chunk) for chunk in chunks]
+    with ThreadPoolExecutor(workers) as pool:
+        return list(pool.map(part, chunks))
+
+
+def _gather(parts: list[Solutions]) -> Solutions:
+    if len(parts) == 1:
+        return parts[0]
+    room = max(part.harmonics.shape[1] for part in parts)
+    harmonics = np.zeros((sum(part.mean.size for part in parts), room), dtype=np.complex128)
+    start = 0
+    for part in parts:
+        harmonics[start : start + part.mean.size, : part.harmonics.shape[1]] = part.harmonics
+        start += part.mean.size
+    narrow = (part._replace(harmonics=part.harmonics[:0, :1]) for part in parts)
+    gathered = Solutions(*(np.concatenate(columns) for columns in zip(*narrow, strict=True)))
+    return gathered._replace(harmonics=harmonics)
+
+
+def _filled(found: Solutions, left: NDArray[np.intp], others: Solutions) -> Solutions:
+    """Return solutions of which some rows come from elsewhere."""
+    room = max(found.harmonics.shape[1], others.harmonics.shape[1])
+    harmonics = np.zeros((found.mean.size, room), dtype=np.complex128)
+    harmonics[:, : found.harmonics.shape[1]] = found.harmonics
+    harmonics[left] = 0.0
+    harmonics[left, : others.harmonics.shape[1]] = others.harmonics
+    for name in Solutions._fields:
+        if name != "harmonics":
+            getattr(found, name)[left] = getattr(others, name)
+    return found._replace(harmonics=harmonics)
