@@ -8,7 +8,6 @@ import pytest
 from pytest import approx, raises
 
 pytest.importorskip("netgen.occ", reason="netgen-mesher is not installed")
-pytest.importorskip("skfem", reason="scikit-fem is not installed")
 
 from sonolube.errors import InvalidInput
 from sonolube.fem import (
@@ -142,3 +141,28 @@ def test_an_open_surface_from_a_step_file_is_refused(tmp_path: Path) -> None:
     cylinder(radius=R, length=L).shape.faces[0].WriteStep(str(tmp_path / "open.step"))
     with raises(InvalidInput, match="no closed solid"):
         read_step(tmp_path / "open.step")
+
+
+def test_a_step_file_of_a_sheet_without_thickness_is_refused(tmp_path: Path) -> None:
+    block(length=R, width=r, thickness=FILLET).shape.faces[0].WriteStep(str(tmp_path / "sheet.step"))
+    with raises(InvalidInput, match="no closed solid"):
+        read_step(tmp_path / "sheet.step")
+
+
+@pytest.mark.parametrize(
+    ("corners", "message"),
+    [
+        ([(0, 0), (20, 20), (20, 0), (0, 20)], "must be one closed body with a volume"),  # both halves cancel
+        ([(0, 0), (30, 20), (30, 0), (0, 10)], "could not be meshed; is it open, or does it cut itself"),
+    ],
+)
+def test_a_step_file_of_a_prism_whose_sides_cross_is_refused(
+    tmp_path: Path, corners: list[tuple[int, int]], message: str
+) -> None:
+    occ = pytest.importorskip("netgen.occ")
+    outline = occ.WorkPlane(occ.Axes((0, 0, 0), n=occ.Z, h=occ.X)).MoveTo(*corners[0])
+    for corner in corners[1:]:
+        outline = outline.LineTo(*corner)
+    outline.Close().Face().Extrude(10).WriteStep(str(tmp_path / "crossed.step"))
+    with raises(InvalidInput, match=message):
+        mesh_of(read_step(tmp_path / "crossed.step"), element_size=8e-3)

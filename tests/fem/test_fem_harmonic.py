@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from pytest import approx, raises
-
-pytest.importorskip("skfem", reason="scikit-fem is not installed")
+from scipy.sparse import block_array
+from scipy.sparse.linalg import splu
 
 from sonolube.dynamics import drive_receptance, electrical_admittance
 from sonolube.errors import InvalidInput
@@ -13,16 +13,21 @@ from sonolube.fem import (
     Fixed,
     Model,
     Output,
+    ReducedModel,
     box_mesh,
     contact_structure,
     direct_response,
     harmonic_response,
     isotropic,
+    mesh_of,
     natural_modes,
+    of_order,
     poled,
     reduced,
     resonances_of,
+    ring,
 )
+from sonolube.fem.system import system
 from sonolube.materials import coupling_factors, piezo_ceramic
 
 PZT = piezo_ceramic("pzt4")
@@ -30,9 +35,10 @@ L, W = 0.01, 0.004
 TIP = {"tip": Output(face="+x", along="x")}
 
 
-def bar(*, lossless: bool, along_axis: bool = True, **held: tuple[Fixed, ...]) -> Model:
+def bar(*, lossless: bool, along_axis: bool = True, order: int = 2, **held: tuple[Fixed, ...]) -> Model:
     """A bar along x, poled and driven along x, or poled and driven across."""
-    mesh = box_mesh(length=L, width=W, thickness=W, divisions=(6, 2, 2))
+    divisions = (6, 2, 2) if order == 2 else (2, 1, 1)
+    mesh = of_order(box_mesh(length=L, width=W, thickness=W, divisions=divisions), order=order)
     direction = (1.0, 0.0, 0.0) if along_axis else (0.0, 0.0, 1.0)
     ends = ("-x", "+x") if along_axis else ("-z", "+z")
     return Model(
@@ -127,6 +133,85 @@ def test_dynamics_sees_the_response_of_the_finite_elements() -> None:
     expected = harmonic_response(few, frequency=f)
     assert drive_receptance(structure, frequency=f) == approx(expected.displacement_per_volt[0], rel=0.03)
     assert electrical_admittance(structure, frequency=f).imag == approx(expected.admittance.imag, rel=5e-3)
+
+
+def charge_per_force(few: ReducedModel, frequency: float) -> complex:
+    """Charge on the grounded electrode per newton on the first output."""
+    dynamic = few.stiffness - (2 * np.pi * frequency) ** 2 * np.eye(len(few.drive))
+    moved = np.linalg.solve(dynamic, few.participation[0].astype(np.complex128))
+    return complex(few.drive @ moved)
+
+
+@pytest.mark.parametrize("order", [2, 4])
+def test_charge_per_force_is_displacement_per_volt(order: int) -> None:
+    # Reciprocity, of the full equations against the reduced ones: a force's charge on the shorted electrode.
+    model = bar(lossless=False, order=order)
+    few = reduced(model, count=12, outputs=TIP)
+    for frequency in (30e3, 90e3, 150e3):
+        charge = charge_per_force(few, frequency)
+        driven = direct_response(model, frequency=[frequency], outputs=TIP).displacement_per_volt[0, 0]
+        assert charge == approx(driven, rel=2e-3)
+
+
+@pytest.mark.parametrize("order", [2, 4])
+def test_the_power_taken_is_the_power_lost(order: int) -> None:
+    # Half the loss stiffness times the square of the motion, at omega, and the dielectric loss of the fields.
+    model = bar(lossless=False, order=order)
+    equations = system(model)
+    for frequency in (40e3, 120e3):
+        omega = 2 * np.pi * frequency
+        elastic = equations.stiffness + 1j * equations.stiffness_loss - omega**2 * equations.mass
+        dielectric = equations.dielectric - 1j * equations.dielectric_loss
+        blocks = [[elastic, equations.coupling], [equations.coupling.T, -dielectric]]
+        charge = equations.drive_dielectric - 1j * equations.drive_dielectric_loss
+        right = np.concatenate([-equations.drive_coupling, charge])
+        solution = splu(block_array(blocks, format="csc")).solve(right)
+        u, p = solution[: len(equations.moving)], solution[len(equations.moving) :]
+        lost = (u.conj() @ (equations.stiffness_loss @ u)).real
+        lost += (p.conj() @ (equations.dielectric_loss @ p)).real
+        lost += 2 * (p.conj() @ equations.drive_dielectric_loss).real - equations.drive_capacitance.imag
+        taken = direct_response(model, frequency=[frequency], outputs=TIP).admittance[0].real / 2
+        assert taken == approx(omega * lost / 2, rel=1e-6)
+
+
+def test_a_wide_ring_breathes_far_below_the_resonance_of_its_one_dimensional_stack() -> None:
+    # 38 mm across, a hole of 15 mm, 20 mm long. One dimension: half a wave along it, 1/(2 L) sqrt(1/(s33 rho)).
+    # A thin ring breathes at sqrt(1/(s11 rho))/(2 pi R) of its mean radius. Computed elsewhere: 74.0 and 40.7 kHz.
+    pytest.importorskip("netgen.occ", reason="netgen-mesher is not installed")
+    compliance = np.linalg.inv(PZT.stiffness_short_circuit)
+    density = PZT.material.value("density")
+    along = np.sqrt(1 / (compliance[2, 2] * density)) / (2 * 0.02)
+    thin_ring = np.sqrt(1 / (compliance[0, 0] * density)) / (2 * np.pi * 0.01325)
+    body = ring(outer_radius=0.019, inner_radius=0.0075, length=0.02)
+    model = Model(
+        mesh=mesh_of(body, element_size=0.02, order=3),
+        media={"ring": poled(PZT, along=(0.0, 0.0, 1.0), lossless=True)},
+        electrodes=Electrodes(driven=("+z",), grounded=("-z",)),
+    )
+    series, _, coupling = resonances_of(reduced(model, count=12, outputs={"end": Output(face="+z", along="z")}))
+    breathing = series[np.flatnonzero(coupling > 0.3)[0]]
+    assert along == approx(74.0e3, rel=0.02)
+    assert breathing == approx(40.7e3, rel=0.02)
+    assert breathing == approx(thin_ring, rel=0.05)
+
+
+def test_a_face_that_is_held_stands_still_and_takes_nothing_from_the_rest() -> None:
+    model = bar(lossless=False, fixed=(Fixed(face="-x", along="xyz"),))
+    f = [40e3, 120e3]
+    both = harmonic_response(
+        reduced(model, count=8, outputs={"root": Output(face="-x", along="x"), **TIP}), frequency=f
+    )
+    assert np.all(both.displacement_per_volt[0] == 0)
+    alone = harmonic_response(reduced(model, count=8, outputs=TIP), frequency=f)
+    assert both.displacement_per_volt[1] == approx(alone.displacement_per_volt[0], rel=1e-9)
+
+
+def test_the_impedance_alone_needs_no_output() -> None:
+    model = bar(lossless=False)
+    few = harmonic_response(reduced(model, count=12, outputs={}), frequency=[90e3])
+    full = direct_response(model, frequency=[90e3], outputs={})
+    assert few.displacement_per_volt.shape == full.displacement_per_volt.shape == (0, 1)
+    assert few.admittance == approx(full.admittance, rel=1e-3)
 
 
 def test_what_cannot_be_driven_is_refused() -> None:

@@ -1,4 +1,4 @@
-"""Matrices of ten-node tetrahedra: mass, stiffness, piezoelectric coupling and permittivity.
+"""Matrices of tetrahedra: mass, stiffness, piezoelectric coupling and permittivity.
 
 All stiffnesses contract one array, the integrals of products of gradients, G_akbl = int dN_a/dx_k dN_b/dx_l dV, with
 the tensor of the medium: c_ikjl for displacements, e_lik for the coupling, eps_kl for potentials.
@@ -11,18 +11,15 @@ from scipy import sparse
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.fem.kernel import elements
-from sonolube.fem.mesh import Integers, Mesh
+from sonolube.fem.mesh import Mesh
 from sonolube.fem.model import Model
+from sonolube.fem.simplex import Integers, quadrature, shape_functions
 
 POTENTIAL_SCALE = 1e10
 """Volts to the unit of potential, so that elastic and dielectric stiffnesses are of one size."""
 
 _VOIGT = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])
-QUADRATURE_DEGREE = 5
-"""Four is exact for the mass of elements with straight edges, but its rule has a negative weight."""
-
-_CHUNK = 4096  # elements at a time, which bounds the memory taken
+_CHUNK = 2**22  # gradients at a time, which bounds the memory taken
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -78,10 +75,9 @@ def assemble(model: Model) -> Matrices:
         medium = model.media[region]
         own = mesh.elements[mesh.region_of_element == index]
         c = medium.elastic_stiffness[_VOIGT[:, :, np.newaxis, np.newaxis], _VOIGT]  # c_ikjl
-        for begin in range(0, len(own), _CHUNK):
-            cells = own[begin : begin + _CHUNK]
-            moves = (3 * cells[:, :, np.newaxis] + np.arange(3)).reshape(len(cells), 30)
-            masses, products = _integrals(mesh.nodes[cells])
+        for cells in _chunks(own, mesh.order):
+            moves = _moves(cells)
+            masses, products = _integrals(mesh.nodes[cells], mesh.order)
             stiffness = _contracted(products, c.transpose(1, 3, 0, 2).reshape(9, 9), (3, 3))
             sums["mass"].add(cells, cells, medium.density * masses)  # alike in all directions
             sums["stiffness"].add(moves, moves, stiffness)
@@ -100,6 +96,28 @@ def assemble(model: Model) -> Matrices:
     matrices = {name: total.matrix() for name, total in sums.items()}
     matrices["mass"] = sparse.csc_array(sparse.kron(matrices["mass"], sparse.eye_array(3)))
     return Matrices(**matrices)
+
+
+def mass_matrix(model: Model) -> sparse.csc_array:
+    """Return the mass matrix of a body in one direction, shape (n, n).
+
+    Parameters
+    ----------
+    model : Model
+
+    Returns
+    -------
+    sparse matrix, shape (n, n)
+    """
+    mesh = model.mesh
+    places, weights = quadrature(2 * mesh.order, corners=4)
+    value, slope = shape_functions(mesh.order, places)
+    density = np.array([model.media[region].density for region in mesh.regions])[mesh.region_of_element]
+    jacobian = np.einsum("eax,adq->eqdx", mesh.nodes[mesh.elements], slope, optimize=True)
+    mass = np.linalg.det(jacobian) * weights * density[:, np.newaxis]
+    total = _Sum((mesh.size, mesh.size))
+    total.add(mesh.elements, mesh.elements, (value * mass[:, np.newaxis]) @ value.T)
+    return total.matrix()
 
 
 def face_weights(mesh: Mesh, name: str) -> Floats:
@@ -141,43 +159,46 @@ class _Sum:
         return sparse.coo_array((values, (rows, columns)), shape=self.shape).tocsc()
 
 
-def _integrals(corners: Floats) -> tuple[Floats, Floats]:
-    """Return int N_a N_b, shape (e, 10, 10), and int dN_a/dx_k dN_b/dx_l, shape (e, 10, 10, 9), of elements."""
-    fem = elements()
-    element = fem.ElementTetP2()
-    points, weights = fem.quadrature.get_quadrature(element.refdom, QUADRATURE_DEGREE)
-    basis = [element.lbasis(points, a) for a in range(10)]
-    value = np.array([shape for shape, _ in basis])  # (a, q)
-    slope = np.array([gradient for _, gradient in basis])  # (a, d, q)
-    jacobian = np.einsum("eax,adq->eqdx", corners, slope, optimize=True)
+def _chunks(cells: Integers, order: int) -> list[Integers]:
+    places, _ = quadrature(2 * order, corners=4)
+    return np.array_split(cells, 1 + cells.size * len(places) * 3 // _CHUNK)
+
+
+def _moves(cells: Integers) -> Integers:
+    """Return the displacement unknowns of elements or triangles, node by node."""
+    return (3 * cells[:, :, np.newaxis] + np.arange(3)).reshape(len(cells), -1)
+
+
+def _integrals(nodes: Floats, order: int) -> tuple[Floats, Floats]:
+    """Return int N_a N_b, shape (e, a, a), and int dN_a/dx_k dN_b/dx_l, shape (e, a, a, 9), of elements."""
+    places, weights = quadrature(2 * order, corners=4)
+    value, slope = shape_functions(order, places)
+    count, size = nodes.shape[:2]
+    jacobian = np.einsum("eax,adq->eqdx", nodes, slope, optimize=True)
     volume = np.linalg.det(jacobian) * weights
     if not np.all(volume > 0):
         raise InvalidInput("a curved element is turned inside out; mesh the body with smaller elements")
-    gradient = np.linalg.solve(jacobian, np.moveaxis(slope, -1, 0)[np.newaxis].transpose(0, 1, 3, 2))  # (e, q, k, a)
-    masses = np.einsum("aq,bq,eq->eab", value, value, volume, optimize=True)
-    scaled = (gradient * np.sqrt(volume)[:, :, np.newaxis, np.newaxis]).reshape(len(corners), len(weights), 30)
-    products = (scaled.transpose(0, 2, 1) @ scaled).reshape(len(corners), 3, 10, 3, 10)
-    return masses, products.transpose(0, 2, 4, 1, 3).reshape(len(corners), 10, 10, 9)
+    masses = (value * volume[:, np.newaxis]) @ value.T
+    inverse = np.linalg.inv(jacobian) * np.sqrt(volume)[:, :, np.newaxis, np.newaxis]
+    gradient = (inverse @ slope.transpose(2, 1, 0)).reshape(count, len(weights), 3 * size)  # (e, q, ka)
+    products = (gradient.transpose(0, 2, 1) @ gradient).reshape(count, 3, size, 3, size)
+    return masses, products.transpose(0, 2, 4, 1, 3).reshape(count, size, size, 9)
 
 
 def _contracted(products: Floats, tensor: Floats, components: tuple[int, int]) -> Floats:
     """Return element matrices from products of gradients and a tensor of shape (9, components)."""
-    size, (left, right) = len(products), components
-    matrices = (products @ tensor).reshape(size, 10, 10, left, right)
-    return matrices.transpose(0, 1, 3, 2, 4).reshape(size, 10 * left, 10 * right)
+    (count, size), (left, right) = products.shape[:2], components
+    matrices = (products @ tensor).reshape(count, size, size, left, right)
+    return matrices.transpose(0, 1, 3, 2, 4).reshape(count, size * left, size * right)
 
 
 def _face_masses(mesh: Mesh, triangles: Integers) -> Floats:
-    """Return int N_a N_b dA of six-node triangles, shape (t, 6, 6)."""
-    fem = elements()
-    element = fem.ElementTriP2()
-    points, weights = fem.quadrature.get_quadrature(element.refdom, QUADRATURE_DEGREE)
-    basis = [element.lbasis(points, a) for a in range(6)]
-    value = np.array([shape for shape, _ in basis])
-    slope = np.array([gradient for _, gradient in basis])
+    """Return int N_a N_b dA of triangles, shape (t, b, b)."""
+    places, weights = quadrature(2 * mesh.order, corners=3)
+    value, slope = shape_functions(mesh.order, places)
     tangents = np.einsum("tax,adq->tqdx", mesh.nodes[triangles], slope, optimize=True)
     area = np.linalg.norm(np.cross(tangents[:, :, 0], tangents[:, :, 1]), axis=-1) * weights
-    return np.asarray(np.einsum("aq,bq,tq->tab", value, value, area, optimize=True))
+    return np.asarray((value * area[:, np.newaxis]) @ value.T)
 
 
 def _spring(
@@ -187,5 +208,5 @@ def _spring(
     masses = _face_masses(mesh, triangles)
     direction = np.eye(3) if along is None else np.outer(along, along) / np.dot(along, along)
     matrices = stiffness / masses.sum() * np.einsum("tab,ij->taibj", masses, direction)
-    moves = (3 * triangles[:, :, np.newaxis] + np.arange(3)).reshape(len(triangles), 18)
-    return moves, moves, matrices.reshape(len(triangles), 18, 18)
+    moves = _moves(triangles)
+    return moves, moves, matrices.reshape(len(triangles), moves.shape[1], moves.shape[1])

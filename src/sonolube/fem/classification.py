@@ -5,10 +5,11 @@ from enum import StrEnum
 
 import numpy as np
 from numpy.polynomial import legendre
+from scipy import sparse
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.fem.assembly import assemble
+from sonolube.fem.assembly import mass_matrix
 from sonolube.fem.mesh import Mesh
 from sonolube.fem.model import DIRECTIONS, Model
 from sonolube.fem.modes import NaturalModes
@@ -52,11 +53,12 @@ def participation(model: Model, modes: NaturalModes, *, axis: str) -> dict[Motio
     """
     if axis not in DIRECTIONS or len(axis) != 1:
         raise InvalidInput(f"axis must be x, y or z, got {axis!r}")
-    mass = assemble(model).mass
+    mass = mass_matrix(model)
+    weight = np.asarray(mass.sum(axis=0))
     flat = modes.shapes.reshape(len(modes.shapes), -1)
     shares = {}
-    for kind, fields in _fields(model.mesh, np.asarray(mass.diagonal()[::3]), DIRECTIONS.index(axis)).items():
-        loaded = mass @ fields.T
+    for kind, fields in _fields(model.mesh, weight, DIRECTIONS.index(axis)).items():
+        loaded = _loaded(mass, fields)
         gram, projected = fields @ loaded, flat @ loaded
         energy = np.einsum("kf,kf->k", projected, np.linalg.lstsq(gram, projected.T, rcond=1e-10)[0].T)
         shares[kind] = np.clip(energy, 0.0, 1.0)  # the shapes have unit modal mass
@@ -90,6 +92,12 @@ def mode_names(model: Model, modes: NaturalModes, *, axis: str) -> tuple[str, ..
         seen[kind] += 1
         names.append(f"{kind} {seen[kind]}")
     return tuple(names)
+
+
+def _loaded(mass: sparse.csc_array, fields: Floats) -> Floats:
+    """Return mass times fields of three directions, shape (3n, f)."""
+    by_node = fields.reshape(len(fields), -1, 3).transpose(1, 2, 0)
+    return np.asarray(mass @ by_node.reshape(len(by_node), -1)).reshape(-1, len(fields))
 
 
 def _fields(mesh: Mesh, weight: Floats, axis: int) -> dict[Motion, Floats]:

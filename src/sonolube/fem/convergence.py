@@ -1,31 +1,34 @@
-"""Modes to a stated accuracy: meshes refined until the estimated error is small enough."""
+"""Modes to a stated accuracy: orders of elements raised, then meshes refined, until the error is small enough."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
+from sonolube.fem.grading import graded
 from sonolube.fem.model import Model
 from sonolube.fem.modes import NaturalModes, NotConverged, natural_modes
+from sonolube.fem.orders import of_order
 
+_ORDERS = range(2, 7)  # on one mesh; the next is a finer one
 _REFINEMENT = 0.62  # of the element size from mesh to mesh: some four times the unknowns
-_SMOOTH_ORDER = 4.0  # at which frequencies converge with quadratic elements in smooth bodies
-_ORDERS = (1.0, 3.0)  # taken for the error: the lowest is that of corners that re-enter, where stress is singular
-_ORDER_UNMEASURED = 2.0  # with two meshes only
+_NEEDED = 3  # orders on a mesh before its error can be told
+_RATIOS = (0.25, 0.6)  # between which errors are taken to fall from order to order, for the estimate of the error
+_UNEVEN = 0.1  # of the change before, of which a change that happens to be small is taken to be
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class ConvergedModes:
-    """Modes of the finest mesh with frequencies extrapolated to vanishing element size.
+    """Modes of the last mesh with frequencies extrapolated to elements of any order.
 
     Parameters
     ----------
     model : Model
-        On the finest mesh.
+        On the last mesh, of the highest order.
     modes : NaturalModes
-        On the finest mesh.
+        On the last mesh.
     natural_frequency : ndarray, shape (k,)
         Extrapolated natural frequencies, zero for rigid motions. [Hz]
     frequency_error : ndarray, shape (k,)
@@ -33,7 +36,7 @@ class ConvergedModes:
     nodes : tuple of int
         Number of nodes of each mesh.
     history : ndarray, shape (meshes, k)
-        Natural frequencies in Hz on each mesh, in order of refinement.
+        Natural frequencies in Hz on each mesh, in order of computation.
     """
 
     model: Model
@@ -51,6 +54,7 @@ def converged_modes(
     element_size: float,
     relative_tolerance: float = 1e-3,
     most_nodes: int = 60_000,
+    judged: Callable[[Model, NaturalModes], Sequence[int]] | None = None,
     advance: Callable[[str, int, int], None] | None = None,
 ) -> ConvergedModes:
     """Return modes whose estimated relative error in frequency is within a tolerance.
@@ -58,15 +62,17 @@ def converged_modes(
     Parameters
     ----------
     model_at : callable
-        From the largest edge of an element in m to the model on such a mesh.
+        From the largest edge of an element in m to the model on such a mesh, of any order.
     count : int
         Number of elastic modes.
     element_size : float
-        Largest edge of an element in the first mesh. [m]
+        Largest edge of an element in the first mesh; coarse ones, as long as the body is thick, are the fastest. [m]
     relative_tolerance : float
         Largest estimated relative error of any frequency.
     most_nodes : int
         Meshes with more nodes than this are not tried.
+    judged : callable, optional
+        Which rows of the modes must be known so well; all where absent.
     advance : callable, optional
         Told what is being done, how many meshes are done and of how many, as far as one knows.
 
@@ -81,38 +87,40 @@ def converged_modes(
 
     Notes
     -----
-    Frequencies on each mesh lie above the true ones where the geometry is met exactly, and fall to them as the element
-    size to the power of four in smooth bodies, of less at corners that re-enter. Richardson's extrapolation with a
-    power of four takes out the smooth part. The error is the last change of frequency extrapolated with the power
-    measured on the last three meshes, held between one and three: free meshes change unevenly, so it is cautious.
+    On one mesh the order of its elements rises from two to six. In smooth bodies errors then fall by one factor after
+    the other of five to ten, and more slowly at corners that re-enter and where bodies are bonded. Elements of each
+    order follow the body's curves to that order, so that their error in shape falls along. Next to edges that
+    re-enter elements are cut to be thin across them. Where order six is not enough the mesh is refined, and cut once
+    more.
 
     References
     ----------
-    .. [1] P. J. Roache, J. Fluids Eng. 116, 405 (1994). doi:10.1115/1.2910291
+    .. [1] I. Babuška and M. Suri, SIAM Rev. 36, 578 (1994). doi:10.1137/1036141
     """
     require_positive(element_size=element_size, relative_tolerance=relative_tolerance)
     history: list[Floats] = []
     nodes: list[int] = []
-    size, reached = element_size, np.inf
+    size, level, reached = element_size, 1, np.inf
     while True:
-        model = model_at(size)
-        if nodes and model.mesh.size <= nodes[-1]:  # the geometry, not the size, sets this mesh
-            size *= _REFINEMENT
-            continue
-        if nodes and model.mesh.size > most_nodes:
-            raise NotConverged(
-                f"the modes are within {reached:.2g} of their frequencies, not within {relative_tolerance:.2g}, on "
-                f"{nodes[-1]} nodes; the next mesh has {model.mesh.size}: allow more, "
-                "or ask for fewer modes or less accuracy"
-            )
-        modes = natural_modes(model, count=count)
-        history.append(modes.natural_frequency)
-        nodes.append(model.mesh.size)
-        if advance:
-            advance(f"{model.mesh.size} nodes", len(nodes), len(nodes) + 1)
-        if len(nodes) > 1:
-            frequency, error = extrapolated(np.array(history), nodes=tuple(nodes))
-            reached = float(error.max())
+        base = model_at(size)
+        mesh = graded(base.mesh, levels=level)
+        for step, order in enumerate(_ORDERS, start=1):
+            model = replace(base, mesh=of_order(mesh, order=order))
+            if nodes and model.mesh.size > most_nodes:
+                raise NotConverged(
+                    f"the modes are within {reached:.2g} of their frequencies, not within {relative_tolerance:.2g}, "
+                    f"on {nodes[-1]} nodes; the next mesh has {model.mesh.size}: allow more, "
+                    "or ask for fewer modes or less accuracy"
+                )
+            modes = natural_modes(model, count=count)
+            history.append(modes.natural_frequency)
+            nodes.append(model.mesh.size)
+            if advance:
+                advance(f"{model.mesh.size} nodes", len(nodes), len(nodes) + 1)
+            if step < _NEEDED:
+                continue
+            frequency, error = extrapolated(np.array(history[-step:]))
+            reached = float(error[list(judged(model, modes))].max() if judged else error.max())
             if reached <= relative_tolerance:
                 return ConvergedModes(
                     model=model,
@@ -122,40 +130,31 @@ def converged_modes(
                     nodes=tuple(nodes),
                     history=np.array(history),
                 )
-        size *= _REFINEMENT
+        size, level = size * _REFINEMENT, level + 1
 
 
-def extrapolated(history: Floats, *, nodes: tuple[int, ...]) -> tuple[Floats, Floats]:
-    """Return frequencies at vanishing element size and their estimated relative errors.
+def extrapolated(history: Floats) -> tuple[Floats, Floats]:
+    """Return frequencies at an order of elements beyond all bounds and their estimated relative errors.
 
     Parameters
     ----------
-    history : ndarray, shape (meshes, k)
-        Natural frequencies in Hz on two meshes or more, in order of refinement.
-    nodes : tuple of int
-        Number of nodes of each mesh, the inverse cube of its element size.
+    history : ndarray, shape (orders, k)
+        Natural frequencies in Hz for three successive orders or more.
 
     Returns
     -------
     tuple of two ndarray, shape (k,)
+
+    Notes
+    -----
+    The changes still to come are taken to fall as the last two did, by a constant factor; the error is their sum with
+    a factor of a quarter at least, and more where the last change is smaller than a tenth of the one before.
     """
-    if len(history) < 2 or len(history) != len(nodes):
-        raise InvalidInput(f"extrapolation needs two meshes or more, got {len(history)}")
-    size = np.asarray(nodes, dtype=np.float64) ** (-1 / 3)
-    ratio = size[-2] / size[-1]
-    change = history[-2] - history[-1]
-    frequency = history[-1] - change / (ratio**_SMOOTH_ORDER - 1)
-    error = np.abs(change) / (ratio ** _measured_order(history, size) - 1)
+    if len(history) < _NEEDED:
+        raise InvalidInput(f"extrapolation needs three orders or more, got {len(history)}")
+    before, last = np.abs(np.diff(history[-_NEEDED:], axis=0))
+    ratio = np.divide(last, before, out=np.zeros_like(last), where=before > 0)
+    falling, cautious = np.clip(ratio, 0.0, _RATIOS[1]), np.clip(ratio, *_RATIOS)
+    frequency = history[-1] - (history[-2] - history[-1]) * falling / (1 - falling)
+    error = np.maximum(last, _UNEVEN * before) * cautious / (1 - cautious)
     return frequency, np.divide(error, frequency, out=np.zeros_like(error), where=frequency > 0)
-
-
-def _measured_order(history: Floats, size: Floats) -> Floats:
-    """Return the order of convergence at which the last two changes of frequency agree, held within its bounds."""
-    if len(history) < 3:
-        return np.full(history.shape[1], _ORDER_UNMEASURED)
-    coarse, middle, fine = size[-3:]
-    orders = np.linspace(*_ORDERS, 41)[:, np.newaxis]
-    expected = (coarse**orders - middle**orders) / (middle**orders - fine**orders)
-    first, second = np.abs(np.diff(history[-3:], axis=0))
-    ratio = np.divide(first, second, out=np.full_like(second, np.inf), where=second > 0)
-    return np.asarray(orders[np.argmin(np.abs(expected - np.minimum(ratio, 1e9)), axis=0), 0])

@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 
 from sonolube.errors import InvalidInput
-from sonolube.fem.kernel import MILLIMETRE, cad
+from sonolube.fem.kernel import MILLIMETRE, cad, silenced
 
 _AXES = "xyz"
+_LEAST_FILLED = 1e-9  # of the box around a body
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -50,7 +51,8 @@ def read_step(path: Path) -> Geometry:
         raise InvalidInput(f"{path}: no such file")
     occ = cad()
     try:
-        shape = occ.OCCGeometry(str(path)).shape
+        with silenced():
+            shape = occ.OCCGeometry(str(path)).shape
     except Exception as failure:  # the kernel has no narrower class
         raise InvalidInput(f"{path}: not a STEP file that can be read: {failure}") from None
     solids = list(shape.solids)
@@ -120,10 +122,12 @@ def one_body(shape: Any, name: str) -> Geometry:
         If the shape is open, empty or in several pieces.
     """
     solids = list(shape.solids)
-    if len(solids) != 1 or not solids[0].mass > 0:
+    if len(solids) != 1:
         raise InvalidInput(f"{name} must be one closed body with a volume, got {len(solids)} solids")
     solid = solids[0]
     low, high = (np.array([corner.x, corner.y, corner.z]) for corner in solid.bounding_box)
+    if not solid.mass > _LEAST_FILLED * np.prod(high - low):
+        raise InvalidInput(f"{name} must be one closed body with a volume: it has no thickness, or its faces cut it")
     for face in solid.faces:
         centre = np.array([face.center.x, face.center.y, face.center.z])
         ends = [(axis, end) for axis in range(3) for end in (low, high) if _at(centre, end, high - low, axis)]

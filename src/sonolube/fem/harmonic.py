@@ -16,8 +16,8 @@ from sonolube.checks import Complexes, Floats, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.fem.assembly import face_weights
 from sonolube.fem.model import DIRECTIONS, Model
-from sonolube.fem.modes import modes_of, shift_for
-from sonolube.fem.system import System, factorised, shifted, system
+from sonolube.fem.modes import NaturalModes, modes_of, shift_for
+from sonolube.fem.system import Solve, System, factorised, shifted, system
 
 _KRYLOV = 2  # vectors for each input: its response far below resonance and the first correction to it
 _RIGID = 1e-9  # square of frequency over the largest, below which a motion is rigid
@@ -97,6 +97,36 @@ def reduced(model: Model, *, count: int, outputs: Mapping[str, Output]) -> Reduc
     count : int
         Number of elastic modes; frequencies up to about two thirds of the last are well described.
     outputs : mapping of str to Output
+        What to observe, and where forces act; may be empty, and those on a face that is held stay at zero.
+
+    Returns
+    -------
+    ReducedModel
+
+    Raises
+    ------
+    InvalidInput
+        If nothing is driven.
+    """
+    equations = system(model)
+    inverse = shifted(equations, shift=shift_for(model))
+    modes = modes_of(model, equations, inverse=inverse, count=count)
+    return reduction_of(model, equations, inverse=inverse, modes=modes, outputs=outputs)
+
+
+def reduction_of(
+    model: Model, equations: System, *, inverse: Solve, modes: NaturalModes, outputs: Mapping[str, Output]
+) -> ReducedModel:
+    """Return what `reduced` does, of equations already assembled and factorised and of modes already known.
+
+    Parameters
+    ----------
+    model : Model
+    equations : System
+    inverse : callable
+        What `shifted` returns for the shift of `shift_for`.
+    modes : NaturalModes
+    outputs : mapping of str to Output
         What to observe, and where forces act.
 
     Returns
@@ -110,9 +140,6 @@ def reduced(model: Model, *, count: int, outputs: Mapping[str, Output]) -> Reduc
     """
     if not model.is_piezoelectric or not model.electrodes.driven:
         raise InvalidInput("nothing is driven: a piezoelectric region with a driven electrode is needed")
-    equations = system(model)
-    inverse = shifted(equations, shift=shift_for(model))
-    modes = modes_of(model, equations, inverse=inverse, count=count)
     shapes = modes.shapes.reshape(len(modes.shapes), -1)[:, equations.moving].T
     observed = observers(model, equations, outputs)
     vectors = np.column_stack([_drive(equations, lossless=True)[0].real, observed.T])
@@ -241,7 +268,7 @@ def observers(model: Model, equations: System, outputs: Mapping[str, Output]) ->
     for row, output in zip(rows, outputs.values(), strict=True):
         weights = face_weights(model.mesh, output.face)
         row[:, DIRECTIONS.index(output.along)] = weights / weights.sum()
-    return np.asarray(rows.reshape(len(outputs), -1)[:, equations.moving])
+    return np.asarray(rows.reshape(len(outputs), 3 * model.mesh.size)[:, equations.moving])
 
 
 def _dielectric(equations: System, *, lossless: bool) -> sparse.csc_array:
@@ -269,6 +296,8 @@ def _extended(basis: Floats, vectors: Floats, mass: sparse.csc_array) -> Floats:
     """Return the basis with what is new in the vectors, orthonormal in the metric of mass."""
     for vector in vectors.T:
         length = np.sqrt(vector @ (mass @ vector))
+        if not length:  # of an output that is held
+            continue
         rest = vector / length
         for _ in range(2):  # once more against rounding
             rest = rest - basis @ (basis.T @ (mass @ rest))

@@ -1,6 +1,11 @@
-"""The optional parts that finite elements stand on, imported when first needed."""
+"""The CAD kernel, an optional part, imported when first needed."""
 
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 from sonolube.errors import SonolubeError
@@ -21,22 +26,21 @@ def cad() -> Any:
     MissingPart
         If netgen-mesher is not installed.
     """
-    return _part("netgen.occ", "netgen-mesher")
-
-
-def elements() -> Any:
-    """Return the library of elements and quadratures, `skfem`.
-
-    Raises
-    ------
-    MissingPart
-        If scikit-fem is not installed.
-    """
-    return _part("skfem", "scikit-fem")
-
-
-def _part(module: str, package: str) -> Any:
     try:
-        return import_module(module)
+        return import_module("netgen.occ")
     except ImportError:
-        raise MissingPart(f"finite elements need {package}; install it with: pip install sonolube[fem]") from None
+        raise MissingPart("bodies and their meshes need netgen-mesher: pip install sonolube[fem]") from None
+
+
+@contextmanager
+def silenced() -> Iterator[None]:
+    """Keep standard output free of what the CAD kernel prints there on its own, while inside."""
+    sys.stdout.flush()
+    own = os.dup(1)
+    try:
+        with Path(os.devnull).open("wb") as nowhere:
+            os.dup2(nowhere.fileno(), 1)
+        yield
+    finally:
+        os.dup2(own, 1)
+        os.close(own)

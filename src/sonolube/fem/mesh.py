@@ -1,38 +1,42 @@
-"""Meshes of ten-node tetrahedra, whose edges may be curved."""
+"""Meshes of tetrahedra of order two or higher, whose edges may be curved."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from math import comb
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sonolube.checks import Floats, require_finite, require_positive
 from sonolube.errors import InvalidInput, UnknownName
+from sonolube.fem.simplex import EDGES, Integers, lattice
 
-Integers = NDArray[np.int64]
+MOST_ORDER = 8
+"""The highest order of an element; beyond it shape functions on even nodes lose digits."""
 
-EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
-"""Corners between which the nodes five to ten of a tetrahedron lie, in order."""
+_ORDERS = {comb(order + 3, 3): order for order in range(2, MOST_ORDER + 1)}  # by the number of an element's nodes
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Mesh:
-    """Ten-node tetrahedra in named regions, between named faces.
+    """Tetrahedra of one order, ten-node or higher, in named regions, between named faces.
 
     Parameters
     ----------
     nodes : ndarray, shape (n, 3)
         Coordinates in m.
-    elements : ndarray of int, shape (m, 10)
+    elements : ndarray of int, shape (m, a)
         Nodes of each tetrahedron: four corners, the fourth on the side to which the first three turn right-handed, then
-        the nodes on the edges 01, 12, 02, 03, 13 and 23.
+        the nodes on the edges 01, 12, 02, 03, 13 and 23, on the sides and inside. There are 10 of them in an element of
+        order two, 20 of order three, 35, 56 and 84 up to order six.
     region_of_element : ndarray of int, shape (m,)
         Index into `regions`.
     regions : tuple of str
         Names of the bodies.
-    faces : mapping of str to ndarray of int, shape (k, 6)
-        Triangles of each named face: three corners, then the nodes on the edges 01, 12 and 02. Faces between two bodies
-        are called "one|other".
+    faces : mapping of str to ndarray of int, shape (k, b)
+        Triangles of each named face: three corners, then the nodes on the edges 01, 12 and 02, then those inside. Faces
+        between two bodies are called "one|other".
+    curves : callable, optional
+        From an order to where the nodes of each tetrahedron stand on the body itself, shape (m, a, 3) in m.
 
     Raises
     ------
@@ -45,16 +49,20 @@ class Mesh:
     region_of_element: Integers
     regions: tuple[str, ...]
     faces: Mapping[str, Integers]
+    curves: Callable[[int], Floats] | None = None
 
     def __post_init__(self) -> None:
         require_finite(nodes=self.nodes)
-        if self.elements.ndim != 2 or self.elements.shape[1] != 10 or not len(self.elements):
-            raise InvalidInput(f"elements must have shape (m, 10) with m > 0, got {self.elements.shape}")
+        if self.elements.ndim != 2 or self.elements.shape[1] not in _ORDERS or not len(self.elements):
+            raise InvalidInput(
+                f"elements must have shape (m, a) with m > 0 and a one of {', '.join(map(str, _ORDERS))}, "
+                f"got {self.elements.shape}"
+            )
         if self.elements.min() < 0 or self.elements.max() >= len(self.nodes):
             raise InvalidInput("elements name nodes that do not exist")
         corner = self.nodes[self.elements[:, :4]]
         volume = np.linalg.det(corner[:, 1:] - corner[:, :1]) / 6
-        if not np.all(volume > 1e-9 * np.abs(volume).max()):
+        if not np.all(volume > 1e-13 * np.abs(volume).max()):
             raise InvalidInput(
                 f"{int(np.sum(~(volume > 0)))} elements are flat or turned inside out; mesh the body anew"
             )
@@ -63,6 +71,11 @@ class Mesh:
     def size(self) -> int:
         """Number of nodes, n."""
         return len(self.nodes)
+
+    @property
+    def order(self) -> int:
+        """Degree of the polynomials in an element."""
+        return _ORDERS[self.elements.shape[1]]
 
     def face_nodes(self, name: str) -> Integers:
         """Return the nodes on the face of this name, in increasing order.
@@ -88,6 +101,29 @@ class Mesh:
         if name not in self.regions:
             raise UnknownName.among(self.regions, kind="region", name=name)
         return np.unique(self.elements[self.region_of_element == self.regions.index(name)])
+
+
+def flat_triangles(mesh: Mesh, *, face: str) -> Integers:
+    """Return small flat triangles between all nodes of a face, such as a picture or a file of facets takes.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    face : str
+        Name of the face.
+
+    Returns
+    -------
+    ndarray of int, shape (t, 3)
+        The square of the order as many as the face has elements.
+
+    Raises
+    ------
+    UnknownName
+        If no face has this name.
+    """
+    mesh.face_nodes(face)
+    return mesh.faces[face][:, _flat(mesh.order)].reshape(-1, 3)
 
 
 def box_mesh(*, length: float, width: float, thickness: float, divisions: tuple[int, int, int]) -> Mesh:
@@ -129,6 +165,18 @@ def box_mesh(*, length: float, width: float, thickness: float, divisions: tuple[
         regions=("block",),
         faces=faces,
     )
+
+
+def _flat(order: int) -> Integers:
+    """Return the triangles between neighbouring nodes of a triangle, turning as it does."""
+    number = {tuple(place): k for k, place in enumerate(lattice(order, corners=3).tolist())}
+    triangles = []
+    for _, i, j in lattice(order, corners=3).tolist():
+        upright, turned = ((i, j), (i + 1, j), (i, j + 1)), ((i + 1, j), (i + 1, j + 1), (i, j + 1))
+        for triangle, reach in ((upright, 1), (turned, 2)):
+            if i + j + reach <= order:
+                triangles.append([number[order - a - b, a, b] for a, b in triangle])
+    return np.array(triangles)
 
 
 def _kuhn() -> Integers:

@@ -7,26 +7,28 @@ import numpy as np
 
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.fem.assembly import QUADRATURE_DEGREE
 from sonolube.fem.geometry import Geometry
-from sonolube.fem.kernel import MILLIMETRE, cad, elements
-from sonolube.fem.mesh import EDGES, Integers, Mesh
+from sonolube.fem.kernel import MILLIMETRE, cad
+from sonolube.fem.mesh import Mesh
+from sonolube.fem.orders import of_order, unfolded
+from sonolube.fem.simplex import Integers, lattice
 
 # From the mesher's order of nodes to ours: it turns the other way round, and has its edges in another order.
 _TETRAHEDRON = [0, 2, 1, 3, 5, 7, 4, 6, 9, 8]
 _TRIANGLE = [0, 1, 2, 5, 3, 4]
-_FOLDED = 1e-3  # smallest over mean volume per unit of an element that is taken as it is
-_UNTANGLING = 3  # straightening an element can fold a neighbour
+_ELEMENTS_TO_A_RADIUS = 1.5  # with fewer, elements fold as they are curved
 
 
-def mesh_of(geometry: Geometry, *, element_size: float) -> Mesh:
-    """Return a mesh of curved ten-node tetrahedra.
+def mesh_of(geometry: Geometry, *, element_size: float, order: int = 2) -> Mesh:
+    """Return a mesh of curved tetrahedra, ten-node ones if not told otherwise.
 
     Parameters
     ----------
     geometry : Geometry
     element_size : float
         Largest edge of an element; edges are shorter where the geometry is finer. [m]
+    order : int
+        Degree of the polynomials in an element, from 2 to 8.
 
     Returns
     -------
@@ -42,8 +44,14 @@ def mesh_of(geometry: Geometry, *, element_size: float) -> Mesh:
         raw = (
             cad()
             .OCCGeometry(geometry.shape)
-            .GenerateMesh(maxh=element_size / MILLIMETRE, grading=0.5, curvaturesafety=1.0)
+            .GenerateMesh(
+                maxh=element_size / MILLIMETRE,
+                grading=0.5,
+                curvaturesafety=_ELEMENTS_TO_A_RADIUS,
+                parallel_meshing=False,  # its threads wait on each other ten times as long as they mesh
+            )
         )
+        straight = raw.Copy()
         raw.SecondOrder()
     except Exception as failure:  # the mesher has no narrower class
         raise InvalidInput(f"the body could not be meshed; is it open, or does it cut itself? ({failure})") from None
@@ -52,14 +60,24 @@ def mesh_of(geometry: Geometry, *, element_size: float) -> Mesh:
         raise InvalidInput("the mesher found no volume: the geometry is open or has no thickness")
     tetrahedra = cells["nodes"][:, _TETRAHEDRON].astype(np.int64) - 1
     mesh = Mesh(
-        nodes=_untangled(np.asarray(raw.Coordinates(), dtype=np.float64) * MILLIMETRE, tetrahedra),
+        nodes=unfolded(np.asarray(raw.Coordinates(), dtype=np.float64) * MILLIMETRE, tetrahedra, order=2),
         elements=tetrahedra,
         region_of_element=cells["index"].astype(np.int64) - 1,
         regions=geometry.regions,
         faces=_faces(raw, geometry.regions),
+        curves=lambda degree: _curved(straight, degree),
     )
     _require_filled(mesh, geometry)
-    return mesh
+    return of_order(mesh, order=order)
+
+
+def _curved(straight: Any, order: int) -> Floats:
+    """Return where the nodes of each tetrahedron stand once its straight edges follow the body."""
+    straight.Curve(order)
+    places = lattice(order, corners=4)[:, [0, 2, 1]] / order  # the mesher's fourth corner is the origin
+    nodes = np.zeros((len(straight.Elements3D()), len(places), 3))
+    straight.CalcElementMapping(np.ascontiguousarray(places), nodes)
+    return nodes * MILLIMETRE
 
 
 def _faces(raw: Any, regions: tuple[str, ...]) -> dict[str, Integers]:
@@ -71,20 +89,6 @@ def _faces(raw: Any, regions: tuple[str, ...]) -> dict[str, Integers]:
         name = "|".join(regions[side] for side in sides) if len(sides) == 2 else face.bcname
         by_name[name].append(nodes[triangles["index"] == number])
     return {name: np.concatenate(parts) for name, parts in by_name.items()}
-
-
-def _untangled(nodes: Floats, tetrahedra: Integers) -> Floats:
-    """Return the nodes with the edges of elements straight where curving them has folded the element."""
-    fem = elements()
-    points, _ = fem.quadrature.get_quadrature(fem.ElementTetP2.refdom, QUADRATURE_DEGREE)
-    slope = np.array([fem.ElementTetP2().lbasis(points, a)[1] for a in range(10)])
-    straightened = nodes.copy()
-    for _ in range(_UNTANGLING):
-        volume = np.linalg.det(np.einsum("eax,adq->eqdx", straightened[tetrahedra], slope, optimize=True))
-        folded = tetrahedra[volume.min(axis=1) < _FOLDED * np.abs(volume).mean(axis=1)]
-        for k, (a, b) in enumerate(EDGES):
-            straightened[folded[:, 4 + k]] = (straightened[folded[:, a]] + straightened[folded[:, b]]) / 2
-    return straightened
 
 
 def _require_filled(mesh: Mesh, geometry: Geometry) -> None:

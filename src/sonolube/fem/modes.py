@@ -4,13 +4,18 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse.linalg import LinearOperator, eigsh
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.fem.mesh import Mesh
 from sonolube.fem.model import DIRECTIONS, Model
 from sonolube.fem.system import Solve, System, on_nodes, shifted, system
+
+_BLOCK = 8  # vectors to a step: modes of one frequency are all found up to as many
+_RESIDUAL = 1e-5  # of a mode over its eigenvalue; the frequency is right to its square
+_MOST_STEPS = 60
+_SAME = 1e-14  # square of the smallest over the largest length that can be told apart in a block
+_ROUNDING = 1e-26  # square of what rounding leaves of a vector
 
 
 class NotConverged(SonolubeError, ArithmeticError):
@@ -64,13 +69,15 @@ def natural_modes(model: Model, *, count: int) -> NaturalModes:
 
     Notes
     -----
-    Implicitly restarted Lanczos iteration about a negative shift, which keeps the factorised matrix definite though a
-    free body has six zero frequencies; rigid motions are known and taken out beforehand. It is fastest with
-    OPENBLAS_NUM_THREADS=1 in the environment: its products are small.
+    Block Lanczos iteration about a negative shift, which keeps the factorised matrix definite though a free body has
+    six zero frequencies; rigid motions are known and taken out beforehand. Eight vectors drawn at random begin it, so
+    that no mode is passed over where up to eight frequencies coincide. It is fastest with OPENBLAS_NUM_THREADS=1 in
+    the environment: its products are small.
 
     References
     ----------
-    .. [1] R. B. Lehoucq, D. C. Sorensen and C. Yang, ARPACK Users' Guide (1998). doi:10.1137/1.9780898719628
+    .. [1] R. G. Grimes, J. G. Lewis and H. D. Simon, SIAM J. Matrix Anal. Appl. 15, 228 (1994).
+       doi:10.1137/S0895479888151111
     """
     equations = system(model)
     return modes_of(model, equations, inverse=shifted(equations, shift=shift_for(model)), count=count)
@@ -93,27 +100,16 @@ def modes_of(model: Model, equations: System, *, inverse: Solve, count: int) -> 
     NaturalModes
     """
     rigid = _free_rigid_motions(model).reshape(-1, 3 * model.mesh.size)[:, equations.moving].T
-    size, most = len(equations.moving), len(equations.moving) - rigid.shape[1] - 2
+    most = len(equations.moving) - rigid.shape[1] - 2
     if not 1 <= count <= most:
         raise InvalidInput(f"count must be from 1 to {most} on this mesh, got {count}")
-    shift, still = shift_for(model), np.zeros(rigid.shape[1])
-    known = _orthonormal(rigid, equations.mass)
-    squares = still
-    wanted = count
-    # One Lanczos iteration can pass over a mode of the same frequency as another, so those found are taken out and
-    # the iteration asked for one more, until it has none below.
-    while wanted:
-        fresh, vectors = _lowest(equations.mass, inverse, shift=shift, count=wanted, known=known)
-        complete = len(squares) > len(still) and fresh.min() >= squares.max()
-        if complete:
-            break
-        squares, known = np.concatenate([squares, fresh]), np.hstack([known, vectors])
-        wanted = min(1, size - known.shape[1] - 2)
-    order = np.argsort(squares)[: len(still) + count]
+    still, _ = _orthonormal(rigid, equations.mass, rounding=0.0)
+    squares, moving = _lowest(equations.mass, inverse, shift=shift_for(model), count=count, known=still)
+    squares = np.concatenate([np.zeros(still.shape[1]), squares])
     return NaturalModes(
-        natural_frequency=np.sqrt(np.maximum(squares[order], 0.0)) / (2 * np.pi),
-        shapes=on_nodes(model, equations, known[:, order]),
-        rigid=len(still),
+        natural_frequency=np.sqrt(np.maximum(squares, 0.0)) / (2 * np.pi),
+        shapes=on_nodes(model, equations, np.hstack([still, moving])),
+        rigid=still.shape[1],
     )
 
 
@@ -121,32 +117,39 @@ def _lowest(
     mass: sparse.csc_array, inverse: Solve, *, shift: float, count: int, known: Floats
 ) -> tuple[Floats, Floats]:
     """Return omega^2 and shapes of the lowest modes besides those known, which are orthonormal."""
-    size = mass.shape[0]
-    loaded = mass @ known
-
-    def remaining(moves: Floats) -> Floats:
-        return np.asarray(moves - known @ (loaded.T @ moves))
-
-    start = remaining(np.random.default_rng(1 + known.shape[1]).standard_normal(size))
-    try:
-        squares, vectors = eigsh(
-            mass,  # stands for the stiffness, of which only the shape is read
-            k=count,
-            M=mass,
-            sigma=shift,
-            OPinv=LinearOperator((size, size), matvec=lambda force: remaining(inverse(force)), dtype=np.float64),
-            v0=start,
-            ncv=min(size - 1, max(2 * count + 1, count + 20)),
-            tol=1e-9,
-        )
-    except ArithmeticError as failure:
-        raise NotConverged(f"the modes did not converge ({failure}); ask for fewer, or check the mesh") from None
-    return squares, _orthonormal(remaining(vectors), mass)
+    size, first = len(known), known.shape[1]
+    random = np.random.default_rng(1)
+    basis, projected = known, np.zeros((0, 0))  # the latter the inverse times mass, on the basis
+    fresh = loaded = np.zeros((size, 0))
+    for _ in range(_MOST_STEPS + count):
+        if not fresh.shape[1]:  # at first, or where a space of its own is found whole
+            drawn = inverse(mass @ random.standard_normal((size, _BLOCK)))
+            fresh, loaded = _beside(basis, drawn, mass)
+        basis = np.hstack([basis, fresh])
+        block = inverse(loaded)
+        columns, added = basis.T @ (mass @ block), fresh.shape[1]
+        fresh, loaded = _beside(basis, block - basis @ columns, mass, rounding=_ROUNDING * np.sum(columns**2))
+        columns, beyond = columns[first:], loaded.T @ block
+        projected = np.block([[projected, columns[:-added]], [columns[:-added].T, columns[-added:]]])
+        values, mixtures = (part[..., : -count - 1 : -1] for part in np.linalg.eigh((projected + projected.T) / 2))
+        residual = np.linalg.norm(beyond @ mixtures[-added:], axis=0)
+        if basis.shape[1] == size or (len(values) == count and np.all(residual < _RESIDUAL * values)):
+            return shift + 1 / values, basis[:, first:] @ mixtures
+    raise NotConverged("the modes did not converge; ask for fewer, or check the mesh")
 
 
-def _orthonormal(vectors: Floats, mass: sparse.csc_array) -> Floats:
-    triangle = np.linalg.cholesky(vectors.T @ (mass @ vectors)) if vectors.shape[1] else np.eye(0)
-    return np.asarray(np.linalg.solve(triangle, vectors.T).T)
+def _beside(basis: Floats, block: Floats, mass: sparse.csc_array, *, rounding: float = 0.0) -> tuple[Floats, Floats]:
+    """Return what is new in a block beside a basis, orthonormal in the metric of mass, and its product with mass."""
+    fresh, loaded = _orthonormal(block, mass, rounding=rounding)
+    return _orthonormal(fresh - basis @ (basis.T @ loaded), mass, rounding=0.0)  # once more against rounding
+
+
+def _orthonormal(block: Floats, mass: sparse.csc_array, *, rounding: float) -> tuple[Floats, Floats]:
+    loaded = mass @ block
+    squares, turns = np.linalg.eigh(block.T @ loaded)
+    told = squares > max(_SAME * squares.max(initial=0.0), rounding)
+    scaled = turns[:, told] / np.sqrt(squares[told])
+    return np.asarray(block @ scaled), np.asarray(loaded @ scaled)
 
 
 def shift_for(model: Model) -> float:

@@ -99,7 +99,7 @@ def cylinder(*, radius: float, length: float) -> Geometry:
     Geometry
     """
     require_positive(radius=radius, length=length)
-    return _turned([(0.0, radius), (length, radius)], "cylinder")
+    return turned([(0.0, radius), (length, radius)], "cylinder")
 
 
 def ring(*, outer_radius: float, inner_radius: float, length: float) -> Geometry:
@@ -198,12 +198,12 @@ def stepped_horn(
     total = length + end_length
     step = [(0.0, radius), (length, radius), (length, end_radius + edge_radius)]
     if not edge_radius:
-        return _turned([*step, (total, end_radius)], "horn")
+        return turned([*step, (total, end_radius)], "horn")
     angle = np.linspace(0.0, np.pi / 2, 9)[1:]
     fillet = zip(
         length + edge_radius * (1 - np.cos(angle)), end_radius + edge_radius * (1 - np.sin(angle)), strict=True
     )
-    return _turned([*step, *fillet, (total, end_radius)], "horn", smooth=(3, 4 + angle.size))
+    return turned([*step, *fillet, (total, end_radius)], "horn", smooth=(3, 4 + angle.size))
 
 
 def conical_horn(*, radius: float, end_radius: float, length: float) -> Geometry:
@@ -221,7 +221,7 @@ def conical_horn(*, radius: float, end_radius: float, length: float) -> Geometry
     Geometry
     """
     require_positive(radius=radius, end_radius=end_radius, length=length)
-    return _turned([(0.0, radius), (length, end_radius)], "horn")
+    return turned([(0.0, radius), (length, end_radius)], "horn")
 
 
 def exponential_horn(*, radius: float, end_radius: float, length: float) -> Geometry:
@@ -241,7 +241,7 @@ def exponential_horn(*, radius: float, end_radius: float, length: float) -> Geom
     require_positive(radius=radius, end_radius=end_radius, length=length)
     place = np.linspace(0.0, length, 17)
     radii = radius * (end_radius / radius) ** (place / length)
-    return _turned(list(zip(place, radii, strict=True)), "horn", smooth=(1, 1 + place.size))
+    return turned(list(zip(place, radii, strict=True)), "horn", smooth=(1, 1 + place.size))
 
 
 def booster(
@@ -275,7 +275,7 @@ def booster(
         raise InvalidInput(f"flange_radius must exceed both radii, got {flange_radius!r} m")
     behind = length + flange_thickness
     outline = [(0.0, radius), (length, radius), (length, flange_radius), (behind, flange_radius)]
-    return _turned([*outline, (behind, end_radius), (behind + end_length, end_radius)], "booster")
+    return turned([*outline, (behind, end_radius), (behind + end_length, end_radius)], "booster")
 
 
 PARTS: Mapping[str, Callable[..., Geometry]] = {
@@ -291,8 +291,22 @@ PARTS: Mapping[str, Callable[..., Geometry]] = {
 """The parametric bodies by name."""
 
 
-def _turned(outline: list[tuple[float, float]], name: str, smooth: tuple[int, int] = (0, 0)) -> Geometry:
-    """Return the body of revolution of (z, radius) points; those of `smooth`, counted from 1, lie on a spline."""
+def turned(outline: list[tuple[float, float]], name: str, smooth: tuple[int, int] = (0, 0)) -> Geometry:
+    """Return the body of revolution about z of an outline.
+
+    Parameters
+    ----------
+    outline : list of tuple of two float
+        Place along z and radius of each corner, in m.
+    name : str
+        What to call it.
+    smooth : tuple of two int
+        The corners, counted from 1, from the first to before the second, that lie on a spline.
+
+    Returns
+    -------
+    Geometry
+    """
     occ = cad()
     points = [occ.Pnt(float(r) / MILLIMETRE, 0.0, float(z) / MILLIMETRE) for z, r in outline]
     corners = [occ.Pnt(0, 0, points[0].z), *points, occ.Pnt(0, 0, points[-1].z)]

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from sonolube.checks import Floats, require_positive
 from sonolube.dynamics import Structure, modal_structure
 from sonolube.errors import UnknownName
 from sonolube.fem.harmonic import ReducedModel
@@ -44,4 +45,37 @@ def contact_structure(model: ReducedModel, *, contact: str, outwards: float = 1.
         drive_participation=shapes.T @ model.drive.real,
         contact_participation=outwards * shapes.T @ model.participation[model.outputs.index(contact)],
         clamped_capacitance=model.clamped_capacitance.real,
+    )
+
+
+def under_free_body(structure: Structure, *, body_mass: float) -> Structure:
+    """Return a structure together with a rigid body that rests on its contact and is held by nothing else.
+
+    Parameters
+    ----------
+    structure : Structure
+        Its contact's positive direction leads away from the body.
+    body_mass : float
+        Mass of the body. [kg]
+
+    Returns
+    -------
+    Structure
+        The contact's displacement is now that of the body less that of the structure: the gap.
+    """
+    n = structure.coordinates
+    mass = float(require_positive(body_mass=body_mass))
+
+    def bordered(matrix: Floats, corner: float) -> Floats:
+        whole = np.zeros((n + 1, n + 1))
+        whole[:n, :n], whole[n, n] = matrix, corner
+        return whole
+
+    return Structure(
+        mass_matrix=bordered(structure.mass_matrix, mass),
+        damping_matrix=bordered(structure.damping_matrix, 0.0),
+        stiffness_matrix=bordered(structure.stiffness_matrix, 0.0),
+        drive_vector=np.append(structure.drive_vector, 0.0),
+        contact_vector=np.append(structure.contact_vector, 1.0),
+        clamped_capacitance=structure.clamped_capacitance,
     )

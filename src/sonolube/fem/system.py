@@ -18,8 +18,8 @@ from scipy.sparse.linalg import splu
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.fem.assembly import POTENTIAL_SCALE, assemble
-from sonolube.fem.mesh import Integers
 from sonolube.fem.model import DIRECTIONS, Model
+from sonolube.fem.simplex import Integers
 
 Solve = Callable[[NDArray[Any]], NDArray[Any]]
 

@@ -1,0 +1,319 @@
+"""A length tuned until a named mode rings at a frequency, and what a mass on a face does to it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.linalg import eigh
+
+from sonolube.checks import Floats, require_non_negative, require_positive
+from sonolube.errors import InvalidInput
+from sonolube.fem.assembly import face_weights
+from sonolube.fem.classification import mode_names
+from sonolube.fem.convergence import converged_modes
+from sonolube.fem.harmonic import Output, observers
+from sonolube.fem.model import DIRECTIONS, Model
+from sonolube.fem.modes import NaturalModes, NotConverged, natural_modes, shift_for
+from sonolube.fem.orders import of_order
+from sonolube.fem.system import shifted, system
+
+Advance = Callable[[str, int, int], None]
+
+_COARSE_ORDER = 3
+_COARSE = 1e-3  # of the frequency: as far as free meshes of one size agree
+_ON_TARGET = 5e-4
+_STEPS = 12
+_FIRST_STEP, _LARGEST_STEP = 0.05, 0.2  # of the length; the first must stand out from the meshes' scatter
+_APART = 0.03  # of the length, from which lengths tell the slope in spite of the scatter
+_CORRECTIONS = 5
+_UNMOVED = 0.05  # square of the face's motion over the greatest, below which a mode is mixed at most
+_FAR = 1e3  # square of the frequency that stands for all modes above, over the last's
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class NamedMode:
+    """A mode of a name, followed over meshes until its frequency is known.
+
+    Parameters
+    ----------
+    model : Model
+        On the finest mesh.
+    modes : NaturalModes
+        On the finest mesh.
+    names : tuple of str
+        Their names.
+    row : int
+        Which of them it is.
+    frequency : float
+        Its frequency, extrapolated to elements of any order. [Hz]
+    frequency_error : float
+        Estimated error of that over itself. []
+    """
+
+    model: Model
+    modes: NaturalModes
+    names: tuple[str, ...]
+    row: int
+    frequency: float
+    frequency_error: float
+
+    @property
+    def shape(self) -> Floats:
+        """Displacements of the nodes in the mode, shape (n, 3), of a modal mass of 1 kg."""
+        return np.asarray(self.modes.shapes[self.row])
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class TunedMode:
+    """A length at which a mode rings at a wanted frequency.
+
+    Parameters
+    ----------
+    length : float
+        The length found. [m]
+    mode : NamedMode
+        The mode at that length.
+    frequency_per_length : float
+        Change of its frequency with the length. [Hz/m]
+    """
+
+    length: float
+    mode: NamedMode
+    frequency_per_length: float
+
+
+def named_mode(
+    model_at: Callable[[float], Model],
+    *,
+    name: str,
+    axis: str,
+    element_size: float,
+    count: int = 12,
+    relative_tolerance: float = 3e-3,
+    most_nodes: int = 60_000,
+    advance: Advance | None = None,
+) -> NamedMode:
+    """Return the mode of a name as well known as asked; other modes may be less well known.
+
+    Parameters
+    ----------
+    model_at : callable
+        From the largest edge of an element in m to the model on such a mesh.
+    name : str
+        Such as "axial 1".
+    axis : str
+        The body's axis.
+    element_size : float
+        Largest edge of an element in the first mesh. [m]
+    count : int
+        Number of elastic modes to look at.
+    relative_tolerance : float
+        Largest estimated relative error of the frequency.
+    most_nodes : int
+        Meshes with more nodes than this are not tried.
+    advance : callable, optional
+        Told what is being done, how many meshes are done and of how many, as far as one knows.
+
+    Returns
+    -------
+    NamedMode
+
+    Raises
+    ------
+    InvalidInput
+        If there is no mode of this name.
+    NotConverged
+        If the next mesh would have more than `most_nodes` nodes.
+    """
+
+    def row(model: Model, modes: NaturalModes) -> int:
+        return _row(mode_names(model, modes, axis=axis), name)
+
+    found = converged_modes(
+        model_at,
+        count=count,
+        element_size=element_size,
+        relative_tolerance=relative_tolerance,
+        most_nodes=most_nodes,
+        judged=lambda model, modes: (row(model, modes),),
+        advance=advance,
+    )
+    own = row(found.model, found.modes)
+    return NamedMode(
+        model=found.model,
+        modes=found.modes,
+        names=mode_names(found.model, found.modes, axis=axis),
+        row=own,
+        frequency=float(found.natural_frequency[own]),
+        frequency_error=float(found.frequency_error[own]),
+    )
+
+
+def tuned_mode(
+    model_at: Callable[[float, float], Model],
+    *,
+    name: str,
+    axis: str,
+    frequency: float,
+    length: float,
+    element_size: float,
+    count: int = 12,
+    relative_tolerance: float = 3e-3,
+    advance: Advance | None = None,
+) -> TunedMode:
+    """Return the length at which the mode of a name has a frequency.
+
+    Parameters
+    ----------
+    model_at : callable
+        From the length and the largest edge of an element, both in m, to the model.
+    name : str
+        Such as "axial 1".
+    axis : str
+        The body's axis.
+    frequency : float
+        Frequency wanted. [Hz]
+    length : float
+        Length to start from. [m]
+    element_size : float
+        Largest edge of an element in the first mesh. [m]
+    count : int
+        Number of elastic modes to look at.
+    relative_tolerance : float
+        Largest estimated relative error of the frequency.
+    advance : callable, optional
+        Told what is being done, how many steps are done and of how many, as far as one knows.
+
+    Returns
+    -------
+    TunedMode
+        Its frequency is within 5e-4 of the one wanted, or within its error.
+
+    Raises
+    ------
+    InvalidInput
+        If there is no mode of this name.
+    NotConverged
+        If no length near the start gives the frequency.
+
+    Notes
+    -----
+    The secant method, kept in the bracket once there is one, on meshes of one size; then meshes are refined, and the
+    length is corrected for what that changed.
+    """
+    require_positive(frequency=frequency, length=length, element_size=element_size)
+    tried: dict[float, float] = {}
+
+    def coarse(at: float) -> float:
+        model = model_at(at, element_size)
+        model = replace(model, mesh=of_order(model.mesh, order=_COARSE_ORDER))
+        modes = natural_modes(model, count=count)
+        if advance:
+            advance(f"{at * 1e3:.2f} mm", 0, 1)
+        tried[at] = float(modes.natural_frequency[_row(mode_names(model, modes, axis=axis), name)])
+        return tried[at]
+
+    place = _secant(coarse, frequency, length)
+    while len(distant := _distant(tried, place)) < 2:
+        coarse(place * (1 - _APART if distant and distant[0] > place else 1 + _APART))
+    slope = _slope(tried, place)
+    for _ in range(_CORRECTIONS):
+        mode = named_mode(
+            lambda size, at=place: model_at(at, size),  # type: ignore[misc]
+            name=name,
+            axis=axis,
+            count=count,
+            element_size=element_size,
+            relative_tolerance=relative_tolerance,
+            advance=advance,
+        )
+        missed = mode.frequency - frequency
+        if abs(missed) <= max(_ON_TARGET, mode.frequency_error) * frequency:
+            return TunedMode(length=place, mode=mode, frequency_per_length=slope)
+        place -= missed / slope
+    raise NotConverged(f"{name} came within {abs(missed):.3g} Hz of {frequency:g} Hz; allow less error of the meshes")
+
+
+def loaded_frequencies(modes: NaturalModes, model: Model, *, face: str, along: str, tool_mass: float) -> Floats:
+    """Return natural frequencies in Hz with a rigid mass on a face that moves with its mean in one direction.
+
+    Parameters
+    ----------
+    modes : NaturalModes
+    model : Model
+        Whose modes they are.
+    face : str
+        Where the mass sits.
+    along : str
+        Direction in which it counts, "x", "y" or "z".
+    tool_mass : float
+        Mass. [kg]
+
+    Returns
+    -------
+    ndarray, shape (k,)
+        In the order of the modes.
+
+    Notes
+    -----
+    What the modes above those given yield to the mass is one static solution, taken as one more mode far above.
+    """
+    mass = float(require_non_negative(tool_mass=tool_mass))
+    output = Output(face=face, along=along)
+    weights = face_weights(model.mesh, face)
+    moves = modes.shapes[:, :, DIRECTIONS.index(along)] @ weights / weights.sum()
+    squares = (2 * np.pi * modes.natural_frequency) ** 2
+    equations, shift = system(model), shift_for(model)
+    pull = observers(model, equations, {"tool": output})[0]
+    yields = float(pull @ shifted(equations, shift=shift)(pull) - np.sum(moves**2 / (squares - shift)))
+    above = _FAR * squares.max()
+    squares, moves = np.append(squares, above), np.append(moves, np.sqrt(max(yields, 0.0) * above))
+    yielding = moves**2 > _UNMOVED * np.max(moves[:-1] ** 2)  # a mass lowers these without changing their order
+    own = moves[yielding]
+    squares[yielding] = eigh(
+        np.diag(squares[yielding]), np.eye(len(own)) + mass * np.outer(own, own), eigvals_only=True
+    )
+    return np.asarray(np.sqrt(np.maximum(squares[:-1], 0.0)) / (2 * np.pi))
+
+
+def _row(names: tuple[str, ...], mode: str) -> int:
+    if mode not in names:
+        elastic = [name for name in names if not name.startswith("rigid")]
+        raise InvalidInput(f"no mode called {mode!r} among the first {len(elastic)}: {', '.join(elastic)}")
+    return names.index(mode)
+
+
+def _distant(tried: dict[float, float], place: float) -> list[float]:
+    """Return the two lengths tried that are nearest to one, but far enough from it and each other for a slope."""
+    distant: list[float] = []
+    for length in sorted(tried, key=lambda length: abs(length - place)):
+        if all(abs(length - other) >= 0.99 * _APART * place for other in (place, *distant)):
+            distant.append(length)
+    return distant[:2]
+
+
+def _slope(tried: dict[float, float], place: float) -> float:
+    """Return how frequency changes with length, of a power law whose exponent changes evenly."""
+    lengths = [place, *_distant(tried, place)]
+    x, y = np.log(lengths) - np.log(place), np.log([tried[length] for length in lengths])
+    exponent = np.polyfit(x, y, 2)[1]
+    return float(exponent * tried[place] / place)
+
+
+def _secant(frequency_at: Callable[[float], float], wanted: float, start: float) -> float:
+    """Return a length at which the frequency is the one wanted; frequencies fall as the length grows."""
+    place, missed = start, frequency_at(start) / wanted - 1
+    other = place * (1 + float(np.sign(missed) * np.clip(abs(missed), _FIRST_STEP, _LARGEST_STEP)))
+    below, above = 0.0, np.inf  # lengths known to be too short and too long
+    for _ in range(_STEPS):
+        if abs(missed) < _COARSE:
+            return place
+        below, above = (max(below, place), above) if missed > 0 else (below, min(above, place))
+        last, last_missed = place, missed
+        place, missed = other, frequency_at(other) / wanted - 1
+        slope = (missed - last_missed) / (place - last) if place != last else -1 / place
+        step = -missed / slope if slope < 0 else missed * place
+        other = place + float(np.clip(step, -_LARGEST_STEP * place, _LARGEST_STEP * place))
+        low, high = (max(below, place), above) if missed > 0 else (below, min(above, place))
+        other = other if low < other < high else (low + min(high, 2 * place)) / 2
+    raise NotConverged(f"no length near {start:.4g} m rings at {wanted:g} Hz; start nearer, or change another size")
