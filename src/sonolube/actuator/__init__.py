@@ -1,15 +1,31 @@
 """Actuators: what drives the vibration, and what carries it to the contact."""
 
+from sonolube.actuator.amplifier_need import AmplifierNeed, amplifier_need
 from sonolube.actuator.as_published import as_published_impedance
-from sonolube.actuator.drive_power import dissipated_power, driver_power, peak_current, power_factor
-from sonolube.actuator.equivalent_circuit import (
-    Branch,
-    ButterworthVanDyke,
-    Resonances,
-    circuit_admittance,
-    resonances,
+from sonolube.actuator.catalogue import (
+    KINDS,
+    CatalogueActuator,
+    catalogue_actuator,
+    catalogue_names,
+    catalogue_stack,
+    read_catalogue,
 )
+from sonolube.actuator.drive_power import dissipated_power, driver_power, peak_current, power_factor
+from sonolube.actuator.equivalent_circuit import Branch, ButterworthVanDyke, Resonances, circuit_admittance, resonances
 from sonolube.actuator.flextensional import FlextensionalActuator, amplified, equivalent_stack
+from sonolube.actuator.horn import ThinHorn, thin_conical_horn, thin_exponential_horn, thin_stepped_horn
+from sonolube.actuator.matching import (
+    Admittance,
+    MatchingNetwork,
+    input_admittance,
+    l_match,
+    matched_band,
+    matched_power_factor,
+    parallel_inductor,
+    series_inductor,
+    voltage_gain,
+)
+from sonolube.actuator.preload_bolt import BoltLoad, PreloadBolt, bolt_load, bolted
 from sonolube.actuator.stack import (
     PiezoStack,
     blocked_admittance,
@@ -32,18 +48,32 @@ from sonolube.actuator.waveguide import (
 )
 
 __all__ = [
+    "KINDS",
+    "Admittance",
+    "AmplifierNeed",
+    "BoltLoad",
     "Branch",
     "ButterworthVanDyke",
+    "CatalogueActuator",
     "FlextensionalActuator",
     "HalfWaveguide",
     "Locus",
+    "MatchingNetwork",
     "PiezoStack",
+    "PreloadBolt",
     "Resonances",
+    "ThinHorn",
     "amplified",
+    "amplifier_need",
     "as_published_impedance",
     "axial_displacement",
     "blocked_admittance",
     "blocked_force",
+    "bolt_load",
+    "bolted",
+    "catalogue_actuator",
+    "catalogue_names",
+    "catalogue_stack",
     "circuit_admittance",
     "dissipated_power",
     "driver_power",
@@ -51,14 +81,25 @@ __all__ = [
     "free_admittance",
     "free_stroke",
     "in_plane_amplitude",
+    "input_admittance",
+    "l_match",
     "locus",
+    "matched_band",
+    "matched_power_factor",
     "natural_frequency",
     "normal_amplitude",
     "normal_displacement",
+    "parallel_inductor",
     "peak_current",
     "power_factor",
+    "read_catalogue",
     "require_allowed_voltage",
     "resonances",
+    "series_inductor",
     "stack_doubts",
     "stack_force",
+    "thin_conical_horn",
+    "thin_exponential_horn",
+    "thin_stepped_horn",
+    "voltage_gain",
 ]

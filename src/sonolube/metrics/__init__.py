@@ -7,6 +7,16 @@ from sonolube.metrics.efficiency import (
     friction_at_power,
     power_for_friction,
 )
+from sonolube.metrics.efficiency_fit import (
+    FEWEST_RUNS,
+    EfficiencyFit,
+    PowerEstimate,
+    efficiency_band,
+    fit_efficiency,
+    power_estimate,
+    prediction_band,
+    require_covered,
+)
 from sonolube.metrics.kinematics import (
     dot_spacing,
     indentation_spacing,
@@ -25,12 +35,17 @@ from sonolube.metrics.motor import (
 from sonolube.metrics.reduction import friction_reduction, wear_rate, wear_reduction
 
 __all__ = [
+    "FEWEST_RUNS",
     "DCMotor",
+    "EfficiencyFit",
     "EfficiencyLine",
+    "PowerEstimate",
     "current_under_friction",
     "dot_spacing",
     "efficiency_at",
+    "efficiency_band",
     "efficiency_coefficient",
+    "fit_efficiency",
     "friction_at_power",
     "friction_from_current",
     "friction_reduction",
@@ -39,7 +54,10 @@ __all__ = [
     "motor_from_two_states",
     "motor_speed",
     "peak_vibration_velocity",
+    "power_estimate",
     "power_for_friction",
+    "prediction_band",
+    "require_covered",
     "sliding_distance",
     "superimposed_speed",
     "wear_rate",

@@ -1,0 +1,91 @@
+"""The catalogue of actuators: numbers with sources, stacks that conserve energy, files of one's own."""
+
+import math
+from pathlib import Path
+
+import pytest
+from pytest import approx, raises
+
+from sonolube.actuator import (
+    FlextensionalActuator,
+    catalogue_actuator,
+    catalogue_names,
+    catalogue_stack,
+    equivalent_stack,
+    read_catalogue,
+)
+from sonolube.errors import InvalidInput, MissingProperty, UnknownName
+
+
+@pytest.mark.parametrize("name", catalogue_names())
+def test_every_actuator_has_its_source_and_gives_no_more_energy_than_it_takes(name: str) -> None:
+    actuator = catalogue_actuator(name)
+    assert actuator.source.startswith(("Dissertation", "Micromechatronics", "PiezoDrive", "Mechano", "Noliac"))
+    if actuator.complete:
+        stack = catalogue_stack(actuator, frequency=20e3, mechanical_quality_factor=80.0)
+        assert 0.5 < stack.derived_coupling_factor < 0.9
+    else:
+        with raises(MissingProperty, match="prints no blocked_force"):
+            catalogue_stack(actuator, frequency=20e3, mechanical_quality_factor=80.0)
+
+
+@pytest.mark.parametrize("name", [name for name in catalogue_names() if name.startswith("sa0")])
+def test_a_bar_of_the_printed_mass_and_stiffness_resonates_about_where_the_sheet_says(name: str) -> None:
+    # a uniform bar with free ends: f = sqrt(k/m)/2; force over range is softer than small signals
+    actuator = catalogue_actuator(name)
+    assert actuator.actuator_mass is not None
+    implied = math.sqrt(actuator.stiffness / actuator.actuator_mass) / 2
+    assert 0.45 < implied / actuator.resonance_frequency < 1.1
+
+
+def test_damping_takes_the_share_of_energy_that_the_quality_factor_says() -> None:
+    stack = catalogue_stack(catalogue_actuator("sa050510"), frequency=20e3, mechanical_quality_factor=80.0)
+    assert stack.stack_damping * 2 * math.pi * 20e3 / stack.stack_stiffness == approx(1 / 80)
+    assert stack.stack_stiffness == approx(900 / 14e-6)
+    assert stack.free_stroke_per_volt == approx(14e-6 / 180)
+
+
+def test_a_file_of_ones_own_makes_a_flextensional_actuator_usable(tmp_path: Path) -> None:
+    path = tmp_path / "own.toml"
+    path.write_text(
+        '[sources]\nsheet = "a sheet"\n[amplified]\ntitle = "x"\nkind = "flextensional"\nsource = "sheet"\n'
+        "stroke = 52e-6\nstroke_voltage = 150.0\nblocked_force = 190.0\nfree_capacitance = 1.53e-6\n"
+        "resonance_frequency = 16e3\n"
+    )
+    found = read_catalogue(path)["amplified"]
+    assert found.source == "a sheet"
+    like = FlextensionalActuator(
+        stroke=52e-6,
+        stroke_voltage=150.0,
+        blocked_force=190.0,
+        resonance_frequency=16e3,
+        free_capacitance=1.53e-6,
+        actuator_mass=10e-3,
+        mechanical_quality_factor=80.0,
+    )
+    assert found.moving_mass == approx(like.effective_mass)
+    stack = catalogue_stack(found, frequency=16e3, mechanical_quality_factor=80.0)
+    assert stack.stack_damping == approx(equivalent_stack(like).stack_damping)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("x = 3", "x: must be a table"),
+        ('[x]\ntitle = "x"\nkind = "stack"\nsource = "s"\nstroke = 1.0', "x.stroke_voltage: missing"),
+        ("[x]\nstrok = 1.0", "did you mean stroke"),
+        ("not toml", "own.toml"),
+    ],
+)
+def test_a_file_that_makes_no_catalogue_is_refused_by_entry(text: str, said: str, tmp_path: Path) -> None:
+    path = tmp_path / "own.toml"
+    path.write_text(text)
+    with raises(InvalidInput, match=said):
+        read_catalogue(path)
+
+
+def test_more_preload_than_the_sheet_allows_is_refused() -> None:
+    with raises(InvalidInput, match="must not exceed 450 N, which sa050510 bears"):
+        catalogue_stack(catalogue_actuator("sa050510"), frequency=2e4, mechanical_quality_factor=80, preload=500.0)
+    with raises(UnknownName, match="did you mean sa050510"):
+        catalogue_actuator("sa05051")
