@@ -1,6 +1,7 @@
 """Bulk temperature against the equations of conduction, solved here by differences and by energy."""
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from pytest import approx, raises
@@ -21,6 +22,11 @@ from sonolube.thermal import (
 STEEL = ThermalSolid(thermal_conductivity=16.2, density=8000.0, specific_heat_capacity=500.0)
 PIN = HeatedPin(solid=STEEL, pin_radius=2e-3, length=0.03, convection_coefficient=40.0)
 DISC = HeatedDisc(solid=STEEL, thickness=2e-3, track_radius=0.014, disc_radius=0.04, convection_coefficient=15.0)
+
+
+@pytest.mark.parametrize("depth", [1e-3, 10.0])
+def test_before_any_time_has_passed_nothing_is_warm_however_deep(depth: float) -> None:
+    assert half_space_rise(STEEL, heat_flux=1e4, time=[0.0, 1e-12], depth=depth) == approx([0.0, 0.0], abs=0)
 
 
 def test_a_half_space_stores_all_the_heat_it_got() -> None:

@@ -1,5 +1,6 @@
 """Moving sources against quadratures of point sources written here a second time."""
 
+import mpmath
 import numpy as np
 import pytest
 from pytest import approx
@@ -15,6 +16,7 @@ from sonolube.thermal import (
     moving_rectangle_rise,
     stationary_rise,
 )
+from sonolube.thermal.band_integral import integrals_between
 
 STEEL = ThermalSolid(thermal_conductivity=16.2, density=8000.0, specific_heat_capacity=500.0)
 HALF = 1e-4
@@ -35,6 +37,13 @@ def test_the_band_is_jaegers_integral(speed: float, place: float) -> None:
     expected = FLUX / (np.pi * STEEL.thermal_conductivity) * integral
     rise = moving_band_rise(STEEL, heat_flux=FLUX, half_length=HALF, sliding_speed=speed, distance_ahead=place)
     assert rise == approx(expected, rel=1e-6)
+
+
+@pytest.mark.parametrize("u", [-300.0, -2.5, -2.0, -1.999, -0.1, -1e-6, 0.0, 1e-6, 0.1, 1.999, 2.0, 2.5, 8.0])
+def test_the_compiled_integral_has_thirteen_digits_of_a_slow_one(u: float) -> None:
+    slow = mpmath.quad(lambda t: mpmath.exp(-t) * mpmath.besselk(0, abs(t)), [0, u / 16, u / 4, u])
+    fast = integrals_between(np.zeros(1), np.array([u]))[0]
+    assert fast == approx(float(slow), rel=1e-10, abs=1e-13)
 
 
 def test_a_fast_band_is_hottest_at_its_trailing_edge_by_jaegers_limit() -> None:

@@ -9,10 +9,7 @@ of 11.92 x 10.93 x 9.86 mm of aluminium, its density and the stiffnesses found f
 from dataclasses import replace
 
 import numpy as np
-import pytest
 from pytest import approx
-
-pytest.importorskip("skfem", reason="scikit-fem is not installed")
 
 from sonolube.fem import (
     FaceSpring,

@@ -29,9 +29,16 @@ from sonolube.friction.lubrication import (
     stribeck_coefficient,
 )
 from sonolube.friction.lugre import LuGreFriction, LuGreHistory, lugre_friction_history, lugre_steady_friction
+from sonolube.friction.published_approximations import (
+    approximate_guided_ratio,
+    approximate_longitudinal_ratio,
+    approximate_oscillation_ratio,
+    approximate_transverse_ratio,
+    longitudinal_static_ratio,
+    transverse_static_ratio,
+)
 from sonolube.friction.spring_coupled import (
     SpringContact,
-    approximate_oscillation_ratio,
     balanced_approach,
     critical_speed,
     longitudinal_oscillation_ratio,
@@ -42,6 +49,7 @@ from sonolube.friction.spring_motion import guided_critical_speed, guided_oscill
 from sonolube.friction.stick_slip import mindlin_memory_length, stick_slip, stick_slip_ratio
 from sonolube.friction.stick_slip_batch import SINE_TOLERANCE, stick_slip_ratios
 from sonolube.friction.vibrated_dahl import dahl_under_vibration
+from sonolube.friction.vibrated_lugre import lugre_under_vibration
 
 __all__ = [
     "FRICTION_CLOSURES",
@@ -60,7 +68,10 @@ __all__ = [
     "SpringContact",
     "StribeckCurve",
     "acoustic_intensity",
+    "approximate_guided_ratio",
+    "approximate_longitudinal_ratio",
     "approximate_oscillation_ratio",
+    "approximate_transverse_ratio",
     "as_published",
     "as_published_ratio",
     "asperity_load_share",
@@ -83,9 +94,11 @@ __all__ = [
     "kinematic",
     "load_balanced",
     "longitudinal_oscillation_ratio",
+    "longitudinal_static_ratio",
     "lubrication_regime",
     "lugre_friction_history",
     "lugre_steady_friction",
+    "lugre_under_vibration",
     "method_coefficients",
     "mindlin_memory_length",
     "normal_oscillation_ratio",
@@ -102,5 +115,6 @@ __all__ = [
     "stick_slip_ratios",
     "stribeck_coefficient",
     "superposed_mean_stress",
+    "transverse_static_ratio",
     "transverse_vibration_ratio",
 ]

@@ -1,6 +1,5 @@
 """A slider before the springs of its contact, under oscillation along the normal or along the sliding."""
 
-import warnings
 from dataclasses import dataclass
 from typing import Literal
 
@@ -8,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
-from sonolube.errors import InvalidInput, ModelRangeWarning, OutsideRange
+from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.friction.spring_element import (
     flat_under_load,
     flat_under_stroke,
@@ -278,59 +277,6 @@ def longitudinal_oscillation_ratio(
     if contact.profile == "flat":
         return flat_under_stroke(stroke, v).reshape(u.shape)
     return parabolic_under_stroke(stroke, v, *_NODES).reshape(u.shape)
-
-
-def approximate_oscillation_ratio(
-    contact: SpringContact, *, approach: ArrayLike, normal_amplitude: ArrayLike, velocity_ratio: ArrayLike
-) -> Floats:
-    """Return friction under an oscillation along the normal in the published approximation, over friction without. []
-
-    Parameters
-    ----------
-    contact : SpringContact
-    approach : array_like
-        Mean approach. [m]
-    normal_amplitude : array_like
-        Amplitude along the surface normal. [m]
-    velocity_ratio : array_like
-        Sliding speed over `critical_speed`. []
-
-    Returns
-    -------
-    ndarray, shape of the broadcast arguments
-
-    Raises
-    ------
-    InvalidInput
-        If a speed is not positive, the amplitude negative, or a value not finite.
-    OutsideRange
-        If the bodies never touch.
-
-    Warns
-    -----
-    ModelRangeWarning
-        If contact is lost for part of the period, for which the approximation was not made.
-
-    Notes
-    -----
-    1 - (1 - plateau) [3/4 (1 - v)^2 + 1/4 (1 - v)^4]: published for constant stiffness, where the plateau is 1 - a/u,
-    and there within 0.0144 a/u of the exact ratio, always below it. With the plateau of the parabolic profile, for
-    which it was not published, within 0.023 while the bodies touch.
-
-    References
-    ----------
-    .. [1] M. Popov, V. L. Popov and N. V. Popov, Friction 5, 45 (2017). doi:10.1007/s40544-016-0136-4
-    """
-    plateau = static_plateau(contact, approach=approach, normal_amplitude=normal_amplitude)
-    if np.any(require_finite(normal_amplitude=normal_amplitude) > require_finite(approach=approach)):
-        warnings.warn(
-            "normal_amplitude exceeds the approach: contact is lost for part of the period, for which the"
-            " approximation was not made; normal_oscillation_ratio holds there",
-            ModelRangeWarning,
-            stacklevel=2,
-        )
-    left = 1 - np.minimum(require_positive(velocity_ratio=velocity_ratio), 1.0)
-    return 1 - (1 - plateau) * (0.75 * left**2 + 0.25 * left**4)
 
 
 def _approach(approach: ArrayLike, normal_amplitude: ArrayLike) -> tuple[Floats, Floats]:

@@ -10,6 +10,7 @@ from sonolube.contact.rough import RoughContact, normal_force
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.metrics import peak_vibration_velocity
 
+__all__ = ["dahl_under_vibration"]  # the rest is of use in this room only
 _BLOCK = 512  # points marched together, to bound the memory of their samples
 
 
@@ -126,7 +127,7 @@ def _mean_over_period(
     slides = np.diff(v_r * edges + v_1 * np.sin(edges), axis=1) / omega
     shares = np.diff(edges, axis=1) / (2 * np.pi)
     k_t, limit = tangential_stiffness(contact, separation=gap), mu * normal_force(contact, separation=gap)
-    return _periodic_mean(k_t, limit, slides, shares)
+    return periodic_mean(k_t, limit, slides, shares)
 
 
 def _step_edges(v_r: Floats, v_1: Floats, steps: int) -> Floats:
@@ -139,7 +140,8 @@ def _step_edges(v_r: Floats, v_1: Floats, steps: int) -> Floats:
 
 
 @numba.njit(cache=True)
-def _periodic_mean(stiffness: Floats, limit: Floats, slides: Floats, shares: Floats) -> Floats:
+def periodic_mean(stiffness: Floats, limit: Floats, slides: Floats, shares: Floats) -> Floats:
+    """Return the mean force of each row of steps over its steady period, `shares` of which they last."""
     means = np.empty(stiffness.shape[0])
     for point in range(means.size):
         # after every step the deformation is kept * (that at the start) + gained; so is the running mean of the force

@@ -22,7 +22,7 @@ from sonolube.thermal.flash import (
 from sonolube.thermal.jaeger import moving_band_rise, moving_rectangle_rise
 from sonolube.thermal.network import ThermalNetwork, network_rise
 from sonolube.thermal.solid import ThermalSolid
-from sonolube.thermal.source import EllipticSource, HeatSource, RectangularSource
+from sonolube.thermal.source import EllipticSource, HeatSource, HertzianSource, RectangularSource
 from sonolube.thermal.two_factors import (
     ContactHistory,
     HeatedContact,
@@ -47,6 +47,7 @@ __all__ = [
     "HeatedContact",
     "HeatedDisc",
     "HeatedPin",
+    "HertzianSource",
     "RectangularSource",
     "ThermalNetwork",
     "ThermalSolid",

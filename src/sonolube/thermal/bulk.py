@@ -10,6 +10,8 @@ from sonolube.checks import Floats, require_non_negative, require_positive, requ
 from sonolube.errors import InvalidInput
 from sonolube.thermal.solid import ThermalSolid
 
+_FARTHEST = 40.0  # depth over reach of the heat beyond which a float holds no rise
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class HeatedPin:
@@ -140,7 +142,7 @@ def half_space_rise(solid: ThermalSolid, *, heat_flux: ArrayLike, time: ArrayLik
     """
     q = require_non_negative(heat_flux=heat_flux)
     reach = 2 * np.sqrt(solid.thermal_diffusivity * require_non_negative(time=time))
-    z = require_non_negative(depth=depth) / np.maximum(reach, np.finfo(np.float64).tiny)
+    z = np.minimum(require_non_negative(depth=depth) / np.maximum(reach, 1e-200), _FARTHEST)
     below = np.exp(-(z**2)) / np.sqrt(np.pi) - z * erfc(z)
     return np.asarray(q * reach / solid.thermal_conductivity * below)
 
