@@ -24,7 +24,7 @@ lines = [f"{'asperities':<14}{'heights':<14}{'separation':<14}real area under 10
 for law in ASPERITY_LAWS.values():
     for heights in HEIGHT_DISTRIBUTIONS.values():
         contact = RoughContact(roughness=roughness, pair=pair, nominal_area=1e-4, heights=heights(), asperity=law)
-        gap = separation(contact, normal_load=10.0)
-        area = real_contact_area(contact, separation=gap)
+        gap = float(separation(contact, normal_load=10.0))
+        area = float(real_contact_area(contact, separation=gap))
         lines.append(f"{law.name:<14}{heights.name:<14}{engineering(gap, 'm'):<14}{engineering(area, 'm2')}")
 print("\n".join(lines))

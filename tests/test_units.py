@@ -1,6 +1,7 @@
 """Text with a unit is read once, and what is not a quantity of the right kind is refused in one line."""
 
 import contextlib
+import math
 
 import pytest
 from hypothesis import given
@@ -8,7 +9,7 @@ from hypothesis import strategies as st
 from pytest import approx
 
 from sonolube.errors import InvalidInput
-from sonolube.units import convert, engineering, to_si
+from sonolube.units import convert, engineering, rise_to_si, to_si
 
 
 @pytest.mark.parametrize(
@@ -25,6 +26,12 @@ from sonolube.units import convert, engineering, to_si
         ("48.9 %", "", 0.489),
         ("80 degC", "K", 353.15),
         ("4 h", "s", 14400.0),
+        ("6.67 rpm", "1/s", 6.67 / 60),
+        ("90 deg/s", "1/s", 0.25),
+        ("6.67/min", "1/s", 6.67 / 60),
+        ("22 kHz", "1/s", 22e3),
+        ("60 rpm", "rad/s", 2 * math.pi),
+        ("90 deg", "rad", math.pi / 2),
     ],
 )
 def test_text_with_a_unit_becomes_si(text: str, unit: str, value: float) -> None:
@@ -71,7 +78,26 @@ def test_conversion_there_and_back_changes_nothing(value: float) -> None:
         (2.566e-11, "m2", "25.7 um2"),
         (9.53e-13, "m2", "0.953 um2"),
         (2.25e-6, "m2", "2.25 mm2"),
+        (1.355e-9, "m3", "1.35 mm3"),
+        (3e-13, "m3", "0.0003 mm3"),
+        (2.4e-14, "m3", "0.000024 mm3"),
+        (5e-15, "m3", "5000 um3"),
+        (0.1093, "kg", "109 g"),
+        (2.41, "kg", "2.41 kg"),
     ],
 )
 def test_numbers_are_written_as_people_write_them(value: float, unit: str, text: str) -> None:
     assert engineering(value, unit) == text
+
+
+def test_a_rise_of_temperature_is_no_temperature() -> None:
+    assert rise_to_si("40 K", name="--warming") == 40.0
+    assert rise_to_si("72 delta_degF", name="--warming") == approx(40.0)
+    for text in ("40 degC", "40 degF"):
+        with pytest.raises(InvalidInput, match=f"^--warming {text} is a temperature; wanted a rise of it, such as 40K"):
+            rise_to_si(text, name="--warming")
+
+
+def test_a_share_is_no_angle() -> None:
+    with pytest.raises(InvalidInput, match="40 % is a pure number; wanted a speed"):
+        to_si("40 %", unit="m/s", name="speed")

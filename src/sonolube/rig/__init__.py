@@ -2,6 +2,7 @@
 
 from sonolube.rig.closure import friction_ratios
 from sonolube.rig.dataset import dataset, gridded, write_netcdf
+from sonolube.rig.distribution import Distribution, LogNormal, Normal, Uniform
 from sonolube.rig.edit import with_tables
 from sonolube.rig.ensemble import OperatingPoints, operating_points, steady_states
 from sonolube.rig.heat import HeatPoint, heat_point, thermal_solid
@@ -16,7 +17,7 @@ from sonolube.rig.operating_point import (
 )
 from sonolube.rig.parametric_study import frequency_study, load_study, speed_study, voltage_study, waveform_study
 from sonolube.rig.point_batch import NUMBERS, STATUSES, PointBatch, point_batch
-from sonolube.rig.read import read_rig, rig_from, structure_by_stack
+from sonolube.rig.read import read_rig, rig_content, rig_from, structure_by_stack, structure_entries
 from sonolube.rig.record import Rig
 from sonolube.rig.regime import RegimeMap, RegimePoint, regime_map, regime_point, wear_of_materials
 from sonolube.rig.response import Response, frequency_grid, linear_response, touching_structure
@@ -31,8 +32,11 @@ __all__ = [
     "STATUSES",
     "STUDY_FIGURES",
     "ContactPoint",
+    "Distribution",
     "FrictionPoint",
     "HeatPoint",
+    "LogNormal",
+    "Normal",
     "OperatingPoints",
     "PointBatch",
     "RegimeMap",
@@ -41,6 +45,7 @@ __all__ = [
     "Rig",
     "Simulation",
     "StartUp",
+    "Uniform",
     "WearPoint",
     "contact_point",
     "dataset",
@@ -59,6 +64,7 @@ __all__ = [
     "read_rig",
     "regime_map",
     "regime_point",
+    "rig_content",
     "rig_from",
     "rig_schema",
     "simulate",
@@ -66,6 +72,7 @@ __all__ = [
     "start_up",
     "steady_states",
     "structure_by_stack",
+    "structure_entries",
     "thermal_solid",
     "touching_structure",
     "voltage_study",

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from sonolube.actuator.stack import require_allowed_voltage
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
 from sonolube.contact import GapMotion, separation
+from sonolube.dynamics.backend import Backend
 from sonolube.dynamics.periodic import Status, SteadyStates, steady_state
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.rig.closure import friction_ratios
@@ -19,6 +20,9 @@ from sonolube.rig.steady_motion import gap_motion
 
 REFUSED = "refused"
 """Status of an operating point that a limit of the stack, the contact or the closure rules out."""
+
+SETTINGS = ("voltage_peak_to_peak", "voltage_offset", "frequency", "normal_load")
+"""What is set of a point beside its sliding speed, in the order of the rows that hold it."""
 
 Advance = Callable[[int, int], None]
 
@@ -106,8 +110,7 @@ class Settings:
     @classmethod
     def of_columns(cls, columns: Floats) -> "Settings":
         """Return settings from their rows, in the order of the fields."""
-        names = ("voltage_peak_to_peak", "voltage_offset", "frequency", "normal_load")
-        return cls(**dict(zip(names, columns, strict=True)))
+        return cls(**dict(zip(SETTINGS, columns, strict=True)))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -128,6 +131,7 @@ def operating_points(
     normal_load: ArrayLike | None = None,
     sliding_speed: ArrayLike | None = None,
     advance: Advance | None = None,
+    backend: Backend = "cpu",
 ) -> OperatingPoints:
     """Return what a rig does at many operating points; what is not given is the rig's own.
 
@@ -147,6 +151,8 @@ def operating_points(
         Macroscopic relative speed. [m/s]
     advance : callable, optional
         Told how many vibrations are done, and of how many.
+    backend : {"cpu", "gpu"}
+        Whether an NVIDIA GPU finds the vibrations that it can.
 
     Returns
     -------
@@ -157,6 +163,11 @@ def operating_points(
     InvalidInput
         If the rig has no structure, a setting has no meaning or shapes do not match.
         A point that cannot be had is no reason: it gets its status.
+
+    Warns
+    -----
+    GpuUnused
+        If a GPU was asked for and there is none, or it does not serve the rig's contact or structure.
 
     Notes
     -----
@@ -171,9 +182,9 @@ def operating_points(
     rest = separation(rig.contact, normal_load=settings.normal_load)
     refusals = _refusals(rig, settings, rest)
     possible = np.array([not text for text in refusals], dtype=bool)
-    states = (
-        steady_states_of(rig, Settings.of_columns(distinct[:, possible]), rest[possible]) if possible.any() else None
-    )
+    states = None
+    if possible.any():
+        states = steady_states_of(rig, Settings.of_columns(distinct[:, possible]), rest[possible], backend)
     place = np.cumsum(possible) - 1
 
     status, reason = np.full((2, speeds.size), REFUSED, dtype=object)
@@ -186,13 +197,10 @@ def operating_points(
             reason[members] = refusals[setting]
         if advance is not None:
             advance(setting + 1, possible.size)
-    u, offset, f, load = (column.reshape(shape) for column in columns)
+    columns = columns.reshape(4, *shape)
     amplitude, velocity, rise, lost, dissipated, closed, ratio = numbers.reshape(7, *shape)
     return OperatingPoints(
-        voltage_peak_to_peak=u,
-        voltage_offset=offset,
-        frequency=f,
-        normal_load=load,
+        **dict(zip(SETTINGS, columns, strict=True)),
         sliding_speed=speeds.reshape(shape),
         status=status.astype(np.str_).reshape(shape),
         reason=reason.astype(np.str_).reshape(shape),
@@ -200,20 +208,42 @@ def operating_points(
         vibration_velocity=velocity,
         mean_displacement=rise,
         lost_contact_share=lost,
-        friction_ratio=ratio,
-        friction_reduction=1 - ratio,
-        friction_coefficient=ratio * rig.friction_coefficient,
-        friction_force=ratio * rig.friction_coefficient * load,
-        actuator_power=amplifier_power(
+        **friction_and_power(rig, columns, friction_ratio=ratio),
+        dissipated_power=dissipated,
+        gap_closed=closed == 1,
+    )
+
+
+def friction_and_power(rig: Rig, columns: Floats, *, friction_ratio: Floats) -> dict[str, Floats]:
+    """Return by name what follows from the friction ratio and the settings of points.
+
+    Parameters
+    ----------
+    rig : Rig
+    columns : ndarray
+        Settings as `broadcast` returns them.
+    friction_ratio : ndarray
+        At each point. []
+
+    Returns
+    -------
+    dict of str to ndarray
+    """
+    assert rig.stack is not None
+    u, offset, f, load = columns
+    return {
+        "friction_ratio": friction_ratio,
+        "friction_reduction": 1 - friction_ratio,
+        "friction_coefficient": friction_ratio * rig.friction_coefficient,
+        "friction_force": friction_ratio * rig.friction_coefficient * load,
+        "actuator_power": amplifier_power(
             require_drive(rig),
             capacitance=rig.stack.free_capacitance,
             voltage_peak_to_peak=u,
             voltage_offset=offset,
             frequency=f,
         ),
-        dissipated_power=dissipated,
-        gap_closed=closed == 1,
-    )
+    }
 
 
 def steady_states(
@@ -288,7 +318,7 @@ def _refusals(rig: Rig, settings: Settings, rest: Floats) -> list[str]:
     return refusals
 
 
-def steady_states_of(rig: Rig, settings: Settings, rest: Floats) -> SteadyStates:
+def steady_states_of(rig: Rig, settings: Settings, rest: Floats, backend: Backend = "cpu") -> SteadyStates:
     """Return the steady vibrations of a rig under drives and loads, of which the separations at rest are known."""
     return steady_state(
         require_structure(rig),
@@ -298,6 +328,7 @@ def steady_states_of(rig: Rig, settings: Settings, rest: Floats) -> SteadyStates
         voltage_harmonics=voltage_harmonics(require_drive(rig), voltage_peak_to_peak=settings.voltage_peak_to_peak),
         voltage_offset=settings.voltage_offset,
         separation=rest,
+        backend=backend,
     )
 
 

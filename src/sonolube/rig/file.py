@@ -2,7 +2,7 @@
 
 from typing import Annotated, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from sonolube.rig.section import Section
 
@@ -149,6 +149,20 @@ class RigFile(Section):
     waveguide: WaveguideSection | None = None
     vibration: VibrationSection | None = None
     assumptions: dict[str, Text] = Field(default_factory=dict)
+    uncertainty: dict[str, Text] = Field(
+        default_factory=dict,
+        description='Distributions by dotted key, such as "contact.normal_load" = "normal 3 %"',
+        examples=[{"contact.roughness.rms_height": "normal 0.5 um", "friction.memory_length": "uniform 1 um to 2 um"}],
+    )
+
+    @field_validator("uncertainty", mode="before")
+    @classmethod
+    def _keys_in_quotes(cls, table: object) -> object:
+        for key, value in table.items() if isinstance(table, dict) else ():
+            if isinstance(value, dict):
+                inner = next(iter(value), "normal_load")
+                raise ValueError(f'put the whole key in quotes, such as "{key}.{inner}" = "normal 3 %"')
+        return table
 
     @model_validator(mode="after")
     def _one_source_of_vibration(self) -> Self:

@@ -9,6 +9,7 @@ from sonolube.errors import InvalidInput
 from sonolube.materials import material
 from sonolube.rig.closure import friction_ratio, sine_under_load
 from sonolube.rig.record import Rig
+from sonolube.rig.response import rest_separation
 from sonolube.thermal import (
     ContactHistory,
     EllipticSource,
@@ -125,9 +126,12 @@ def heat_point(
     ------
     InvalidInput
         If the rig does not slide, has no frequency, or a value is not positive.
+    OutsideRange
+        If the load leaves no separation.
     """
     if rig.sliding_speed <= 0:
         raise InvalidInput("sliding.sliding_speed must be positive for heat of friction")
+    rest_separation(rig)
     require_positive(heat_capacity=heat_capacity, thermal_conductance=thermal_conductance, duration=duration)
     require_non_negative(vibration_heat_rate=vibration_heat_rate)
     radius = float(np.sqrt(rig.contact.nominal_area / np.pi))

@@ -7,14 +7,13 @@ from sonolube.contact import (
     contact_doubts,
     normal_stiffness,
     real_contact_area,
-    separation,
     tangential_stiffness,
 )
-from sonolube.errors import OutsideRange
 from sonolube.friction import separating_half_period_ratio
 from sonolube.rig.closure import friction_ratio, sine_under_load
 from sonolube.rig.excitation import amplifier_power
 from sonolube.rig.record import Rig
+from sonolube.rig.response import rest_separation
 from sonolube.wear import cube_wear_rate, vibrating_cube_wear_rate
 
 
@@ -125,7 +124,7 @@ def contact_point(rig: Rig) -> ContactPoint:
     OutsideRange
         If the surfaces would be pressed through each other, so that no separation is left.
     """
-    gap = _separation(rig)
+    gap = rest_separation(rig)
     return ContactPoint(
         normal_load=rig.normal_load,
         separation=gap,
@@ -160,7 +159,7 @@ def friction_point(rig: Rig, *, closure: str | None = None) -> FrictionPoint:
     UnknownName
         If there is no such closure.
     """
-    gap = _separation(rig)
+    gap = rest_separation(rig)
     if closure is None:
         closure, ratio = "separating_half_period", _by_the_cube(rig)
     else:
@@ -196,7 +195,7 @@ def wear_point(rig: Rig) -> WearPoint:
     OutsideRange
         If the surfaces would be pressed through each other, so that no separation is left.
     """
-    gap = _separation(rig)
+    gap = rest_separation(rig)
     still = float(cube_wear_rate(rig.contact, normal_load=rig.normal_load))
     vibrating = float(
         vibrating_cube_wear_rate(rig.contact, normal_load=rig.normal_load, vibration_amplitude=rig.vibration_amplitude)
@@ -209,16 +208,6 @@ def wear_point(rig: Rig) -> WearPoint:
         vibration_amplitude=rig.vibration_amplitude,
         doubts=_doubts(rig, gap),
     )
-
-
-def _separation(rig: Rig) -> float:
-    gap = float(separation(rig.contact, normal_load=rig.normal_load))
-    if gap <= 0:
-        raise OutsideRange(
-            f"contact.normal_load {rig.normal_load:g} N leaves no separation between the surfaces (d = {gap:.3g} m): "
-            "lower the load or enlarge contact.nominal_area"
-        )
-    return gap
 
 
 def _doubts(rig: Rig, gap: float) -> tuple[str, ...]:

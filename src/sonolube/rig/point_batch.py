@@ -7,13 +7,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats
 from sonolube.contact import ExponentialHeights, decay_length, separation
+from sonolube.dynamics.backend import Backend
 from sonolube.dynamics.periodic import Status, SteadyStates
 from sonolube.dynamics.velocity_kernel import highest_velocities
 from sonolube.errors import SonolubeError
 from sonolube.friction.stick_slip import EMPIRICAL_MEMORY_LENGTH
 from sonolube.friction.stick_slip_batch import stick_slip_ratios
-from sonolube.rig.ensemble import Settings, broadcast, friction_of, steady_states_of
-from sonolube.rig.excitation import amplifier_power, voltage_range
+from sonolube.rig.ensemble import Settings, broadcast, friction_and_power, friction_of, steady_states_of
+from sonolube.rig.excitation import voltage_range
 from sonolube.rig.record import Rig
 from sonolube.rig.response import require_drive, require_structure
 from sonolube.rig.steady_motion import gap_motion
@@ -76,6 +77,7 @@ def point_batch(
     frequency: ArrayLike | None = None,
     normal_load: ArrayLike | None = None,
     sliding_speed: ArrayLike | None = None,
+    backend: Backend = "cpu",
 ) -> PointBatch:
     """Return what a rig does at very many operating points; what is not given is the rig's own.
 
@@ -93,6 +95,8 @@ def point_batch(
         Force pressing the bodies together; the structure stays as it is. [N]
     sliding_speed : array_like, optional
         Macroscopic relative speed. [m/s]
+    backend : {"cpu", "gpu"}
+        Whether an NVIDIA GPU finds the vibrations that it can.
 
     Returns
     -------
@@ -103,6 +107,11 @@ def point_batch(
     ------
     InvalidInput
         If the rig has no structure, a setting has no meaning or shapes do not match.
+
+    Warns
+    -----
+    GpuUnused
+        If a GPU was asked for and there is none, or it does not serve the rig's contact or structure.
 
     Notes
     -----
@@ -123,7 +132,7 @@ def point_batch(
     possible = np.flatnonzero(refusal == 0)
     failures: dict[int, str] = {}
     if possible.size:
-        states = steady_states_of(rig, Settings.of_columns(columns[:, first[possible]]), rest[possible])
+        states = steady_states_of(rig, Settings.of_columns(columns[:, first[possible]]), rest[possible], backend)
         status[possible] = states.status
         reason[possible] = states.status
         numbers[:, possible] = _measures(states)
@@ -137,27 +146,15 @@ def point_batch(
             reasons = (*reasons, text)
         point_status[point], point_reason[point] = _REFUSED, reasons.index(text)
     amplitude, velocity, rise, lost, dissipated = numbers[:, which]
-    intrinsic = rig.friction_coefficient
-    u, offset, f, load = columns
+    found = friction_and_power(rig, columns, friction_ratio=ratio) | {
+        "vibration_amplitude": amplitude,
+        "vibration_velocity": velocity,
+        "mean_displacement": rise,
+        "lost_contact_share": lost,
+        "dissipated_power": dissipated,
+    }
     return PointBatch(
-        numbers={
-            "friction_ratio": ratio,
-            "friction_reduction": 1 - ratio,
-            "friction_coefficient": ratio * intrinsic,
-            "friction_force": ratio * intrinsic * load,
-            "vibration_amplitude": amplitude,
-            "vibration_velocity": velocity,
-            "mean_displacement": rise,
-            "lost_contact_share": lost,
-            "actuator_power": amplifier_power(
-                require_drive(rig),
-                capacitance=rig.stack.free_capacitance,
-                voltage_peak_to_peak=u,
-                voltage_offset=offset,
-                frequency=f,
-            ),
-            "dissipated_power": dissipated,
-        },
+        numbers={name: found[name] for name in NUMBERS},
         status=point_status,
         reason=point_reason,
         reasons=reasons,

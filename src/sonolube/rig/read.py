@@ -27,6 +27,7 @@ from sonolube.materials import material
 from sonolube.rig.excitation import waveform_of
 from sonolube.rig.file import BodySection, ContactSection, RigFile
 from sonolube.rig.record import Rig
+from sonolube.rig.uncertainty import distributions_of
 from sonolube.surfaces import Roughness
 
 _LARGEST_FILE = 1_000_000  # bytes; a rig is a page of text
@@ -51,12 +52,51 @@ def read_rig(path: str | Path, *, changes: Sequence[str] = ()) -> Rig:
     InvalidInput
         In one line that names the file, the key and the value.
     """
+    content = rig_content(path, changes=changes)
+    with _prefixed(str(path)):
+        return rig_from(content)
+
+
+def rig_content(path: str | Path, *, changes: Sequence[str] = ()) -> dict[str, Any]:
+    """Return the content of a rig's file, its entries as they are written.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    changes : sequence of str
+        Entries to replace, such as "drive.voltage_peak_to_peak=25.9V".
+
+    Returns
+    -------
+    dict
+
+    Raises
+    ------
+    InvalidInput
+        If the file cannot be read or is no TOML, or a change cannot be made.
+    """
     path = Path(path)
     with _prefixed(str(path)):
         content = _parsed(path)
         for change in changes:
             _apply(change, content)
-        return rig_from(content)
+        return content
+
+
+def structure_entries(content: Mapping[str, Any]) -> dict[str, float]:
+    """Return the table `structure` of a rig's file, in SI.
+
+    Raises
+    ------
+    InvalidInput
+        If the content is no rig's, or has no such table.
+    """
+    rig_from(content)
+    section = RigFile.model_validate(content).structure
+    if section is None:
+        raise InvalidInput("structure: missing; give the tables stack and structure to compute a motion")
+    return section.model_dump()
 
 
 def rig_from(content: Mapping[str, Any]) -> Rig:
@@ -107,7 +147,7 @@ def _parsed(path: Path) -> dict[str, Any]:
     try:
         if path.stat().st_size > _LARGEST_FILE:
             raise InvalidInput("larger than a rig file can be (1 MB)")
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except FileNotFoundError:
         raise InvalidInput("no such file") from None
     except OSError as failure:
@@ -191,6 +231,7 @@ def _rig(file: RigFile) -> Rig:
         stack=stack,
         structure=structure,
         assumptions=MappingProxyType(dict(file.assumptions)),
+        uncertainty=distributions_of(file),
     )
 
 

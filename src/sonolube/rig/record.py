@@ -10,6 +10,7 @@ from sonolube.checks import require_finite, require_non_negative, require_positi
 from sonolube.contact import RoughContact
 from sonolube.dynamics import Structure
 from sonolube.errors import InvalidInput
+from sonolube.rig.distribution import Distribution
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -52,6 +53,8 @@ class Rig:
         Stiffness of the holder along the sliding direction, for coupled; rigid where it is not given. [N/m]
     assumptions : mapping of str to str
         Which entries no source gives, and what was assumed instead and why.
+    uncertainty : mapping of str to Distribution
+        How uncertain entries are spread, by dotted key of the file.
     """
 
     title: str
@@ -71,6 +74,7 @@ class Rig:
     in_plane_phase: float | None = None
     holder_stiffness: float | None = None
     assumptions: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
+    uncertainty: Mapping[str, Distribution] = field(default_factory=lambda: MappingProxyType({}))
 
     def __post_init__(self) -> None:
         require_positive(normal_load=self.normal_load, friction_coefficient=self.friction_coefficient)

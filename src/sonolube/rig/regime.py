@@ -17,6 +17,7 @@ from sonolube.friction import (
 from sonolube.materials import Material
 from sonolube.rig.closure import friction_ratios, sine_under_load
 from sonolube.rig.record import Rig
+from sonolube.rig.response import rest_separation
 from sonolube.wear_regimes import CrystalStructure, WearAssessment, WearingBody, assess_wear
 
 _SPAN = 10.0  # how far the map reaches to either side of the rig's point, as a factor
@@ -95,6 +96,7 @@ def regime_point(rig: Rig, *, lubricant: BoundaryLubricant, smallest_gain: float
     InvalidInput
         If the rig does not slide or has no frequency, or the gain does not lie between 0 and 1.
     """
+    rest_separation(rig)
     pressure = rig.normal_load / rig.contact.nominal_area
     found = _coefficients(rig, lubricant, sliding_speed=rig.sliding_speed, nominal_pressure=pressure)
     return RegimePoint(

@@ -25,7 +25,7 @@ from sonolube.dynamics import (
     modes,
     with_contact_spring,
 )
-from sonolube.errors import InvalidInput
+from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.rig.record import Rig
 
 _POINTS = 2101  # of the table of a contact's force: 50 to the deviation of the summits' heights
@@ -87,6 +87,23 @@ def linear_response(rig: Rig, *, frequency: ArrayLike) -> Response:
     )
 
 
+def rest_separation(rig: Rig) -> float:
+    """Return the separation of a rig's surfaces at rest. [m]
+
+    Raises
+    ------
+    OutsideRange
+        If the surfaces would be pressed through each other, so that no separation is left.
+    """
+    gap = float(separation(rig.contact, normal_load=rig.normal_load))
+    if gap <= 0:
+        raise OutsideRange(
+            f"contact.normal_load {rig.normal_load:g} N leaves no separation between the surfaces (d = {gap:.3g} m): "
+            "lower the load or enlarge contact.nominal_area"
+        )
+    return gap
+
+
 def touching_structure(rig: Rig) -> Structure:
     """Return the rig's structure with the contact as a spring of its stiffness at rest.
 
@@ -94,9 +111,10 @@ def touching_structure(rig: Rig) -> Structure:
     ------
     InvalidInput
         If the rig has no structure.
+    OutsideRange
+        If its load leaves no separation.
     """
-    gap = separation(rig.contact, normal_load=rig.normal_load)
-    stiffness = float(normal_stiffness(rig.contact, separation=gap))
+    stiffness = float(normal_stiffness(rig.contact, separation=rest_separation(rig)))
     return with_contact_spring(require_structure(rig), normal_stiffness=stiffness)
 
 

@@ -8,11 +8,11 @@ import numpy as np
 
 from sonolube.actuator import stack_doubts
 from sonolube.actuator.drive import Drive
-from sonolube.contact import GapMotion, contact_doubts, separation
+from sonolube.contact import GapMotion, contact_doubts
 from sonolube.rig.closure import friction_ratio, wear_closure, wear_rate_ratio
 from sonolube.rig.excitation import amplifier_power, voltage_harmonics, voltage_range
 from sonolube.rig.record import Rig
-from sonolube.rig.response import require_drive, require_structure
+from sonolube.rig.response import require_drive, require_structure, rest_separation
 from sonolube.rig.steady_motion import SteadyMotion, steady_motion
 from sonolube.wear import cube_wear_rate
 
@@ -123,7 +123,7 @@ def simulate(rig: Rig) -> Simulation:
     require_structure(rig)
     drive = require_drive(rig)
     assert rig.stack is not None
-    gap = float(separation(rig.contact, normal_load=rig.normal_load))
+    gap = rest_separation(rig)
     moving = steady_motion(rig)
     ratio = _mean(partial(friction_ratio, rig), moving.motions)
     wear_ratio = _mean(partial(wear_rate_ratio, rig), moving.motions)

@@ -10,7 +10,7 @@ from sonolube.dynamics.transient import march, trajectory
 from sonolube.errors import InvalidInput
 from sonolube.rig.excitation import ramp_of, waveform_of
 from sonolube.rig.record import Rig
-from sonolube.rig.response import gap_law_of, require_drive, require_structure
+from sonolube.rig.response import gap_law_of, require_drive, require_structure, rest_separation
 
 _WINDOWS = 400
 _LONGEST = 200_000  # periods whose every step still fits a figure's memory
@@ -71,6 +71,7 @@ def start_up(rig: Rig, *, duration: float) -> StartUp:
     D figure 3.13 in kind.
     """
     structure, drive = require_structure(rig), require_drive(rig)
+    rest_separation(rig)
     periods = math.ceil(float(require_positive(duration=duration)) * drive.frequency)
     if not 8 <= periods <= _LONGEST:
         raise InvalidInput(f"duration must be from 8 to {_LONGEST} periods of the drive, got {periods}")
