@@ -3,6 +3,7 @@
 from sonolube.identification.compatibility import Compatibility, compatibility
 from sonolube.identification.fact import Fact, Observe, Relation, misses
 from sonolube.identification.identify import identify
+from sonolube.identification.posterior import Posterior, posterior
 from sonolube.identification.record import Direction, Estimate, Identification, Reading
 from sonolube.identification.rig_tables import rig_tables
 from sonolube.identification.tribometer import PinOnDiscTest, observer
@@ -15,11 +16,13 @@ __all__ = [
     "Identification",
     "Observe",
     "PinOnDiscTest",
+    "Posterior",
     "Reading",
     "Relation",
     "compatibility",
     "identify",
     "misses",
     "observer",
+    "posterior",
     "rig_tables",
 ]

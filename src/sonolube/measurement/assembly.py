@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _LABEL_AND_UNIT = re.compile(r"^(.*?)\s*(?:\[([^\[\]]*)\]|\(([^()]*)\))\s*$", re.DOTALL)
+_BEYOND_ANY_SENSOR = 1e30  # in any unit; keeps powers of samples within what a float can hold
 _AXIS_LABELS = {"time", "t", "x_value", "timestamp", "elapsed_time"}
 
 # What instruments write, as (factor, unit): pint takes rpm for an angular speed and gauss for a unit of another system.
@@ -67,7 +68,7 @@ def assemble(
     ------
     InvalidInput
         If there are no rows or no channels, a column that the mapping names is missing, a unit is of another kind,
-        the axis does not increase, a value is infinite, or a channel holds no value at all.
+        the axis does not increase, a value is infinite or beyond 1e30, or a channel holds no value at all.
     """
     import xarray as xr
 
@@ -131,9 +132,11 @@ def _channel(
 ) -> tuple[Floats, dict[str, str | float]]:
     column = _column(table, path, source.column)
     values = column.values
-    infinite = np.isinf(values)
-    if infinite.any():
-        raise InvalidInput(f"{path}: {table.place(int(np.argmax(infinite)))}: {column.label!r} is infinite")
+    beyond = np.abs(values) > _BEYOND_ANY_SENSOR
+    if beyond.any():
+        row = int(np.argmax(beyond))
+        told = "infinite" if np.isinf(values[row]) else f"{values[row]:g}, beyond any sensor"
+        raise InvalidInput(f"{path}: {table.place(row)}: {column.label!r} is {told}")
     if values.size and not partial and np.isnan(values).all():
         raise InvalidInput(f"{path}: {column.label!r} holds no value among {values.size}")
     written = source.unit if source.unit is not None else _name_and_unit(column)[1]

@@ -155,7 +155,7 @@ def read_mapping(path: Path) -> RecordingMapping:
         Naming the file and the key, if the file is missing, is no TOML, or a key or a value is not understood.
     """
     try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
+        content = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except OSError as failure:
         raise InvalidInput(f"{path}: cannot be read: {failure.strerror}") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as failure:

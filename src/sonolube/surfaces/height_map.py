@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
 
+_BEYOND_ANY_SURFACE = 1e6  # m; powers of heights stay within what a float can hold
+
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class HeightMap:
@@ -40,6 +42,8 @@ class HeightMap:
             raise InvalidInput(f"height must be a matrix of numbers, got shape {z.shape} of {z.dtype}")
         if np.isinf(z).any():
             raise InvalidInput("height must be finite, or NaN where it was not measured; got an infinite value")
+        if (np.abs(z) > _BEYOND_ANY_SURFACE).any():
+            raise InvalidInput(f"height lies beyond any surface, {np.nanmax(np.abs(z)):g} m: look at its unit")
         if not np.isfinite(z).any():
             raise InvalidInput(f"height holds no measured pixel among {z.size}")
         object.__setattr__(self, "height", z.astype(np.float64, copy=False))
