@@ -38,10 +38,12 @@ class InMemory:
     Parameters
     ----------
     plan : SweepPlan
+    device : str
+        Name of the GPU at hand, which did what it serves, or empty.
     """
 
-    def __init__(self, plan: SweepPlan) -> None:
-        self._plan, self._reasons = plan, _Reasons()
+    def __init__(self, plan: SweepPlan, device: str = "") -> None:
+        self._plan, self._device, self._reasons = plan, device, _Reasons()
         self._columns: dict[str, NDArray[Any]] = {name: np.empty(plan.points) for name in NUMBERS}
         self._columns |= {name: np.empty(plan.points, dtype=kind) for name, kind in _CODES.items()}
 
@@ -70,7 +72,7 @@ class InMemory:
         }
         texts = np.array(list(self._reasons.places), dtype=np.str_)
         variables["reason_text"] = ("reasons", texts, _labels("reason_text"))
-        return xr.Dataset(variables, coords=_coordinates(self._plan), attrs=_attributes(self._plan))
+        return xr.Dataset(variables, coords=_coordinates(self._plan), attrs=_attributes(self._plan, self._device))
 
 
 class InFile:
@@ -81,10 +83,12 @@ class InFile:
     plan : SweepPlan
     folder : Path
         Where the file sweep.nc is to appear.
+    device : str
+        Name of the GPU at hand, which did what it serves, or empty.
     """
 
-    def __init__(self, plan: SweepPlan, folder: Path) -> None:
-        self._plan, self._path, self._reasons = plan, folder / "sweep.nc", _Reasons()
+    def __init__(self, plan: SweepPlan, folder: Path, device: str = "") -> None:
+        self._plan, self._path, self._device, self._reasons = plan, folder / "sweep.nc", device, _Reasons()
 
     def __enter__(self) -> Self:
         import h5netcdf
@@ -94,7 +98,7 @@ class InFile:
         self._unfinished = Path(name)
         self._file: Any = h5netcdf.File(name, "w")
         self._file.dimensions = dict(zip(_dimensions(self._plan), self._plan.shape, strict=True))
-        self._file.attrs.update(_attributes(self._plan))
+        self._file.attrs.update(_attributes(self._plan, self._device))
         for name, (dimension, array, attributes) in _coordinates(self._plan).items():
             self._write_variable(name, (dimension,), array, attributes)
         for name in (*NUMBERS, *_CODES):
@@ -173,9 +177,10 @@ def _coordinates(plan: SweepPlan) -> dict[str, tuple[str, NDArray[Any], dict[str
     }
 
 
-def _attributes(plan: SweepPlan) -> dict[str, str]:
+def _attributes(plan: SweepPlan, device: str) -> dict[str, str]:
     title = str(plan.content["title"])
-    return {"title": f"Sweep of {title}", "rig": title, "source": f"sonolube {__version__}", "sweep": plan.digest}
+    own = {"title": f"Sweep of {title}", "rig": title, "source": f"sonolube {__version__}", "sweep": plan.digest}
+    return own | ({"device": device} if device else {})
 
 
 def _labels(name: str) -> dict[str, Any]:

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sonolube.checks import Floats
+from sonolube.design.maps import PLACES
 from sonolube.errors import InvalidInput
 from sonolube.units import engineering
 
@@ -22,11 +23,6 @@ _AXES = {
     "nominal_pressure": (1e-6, "Nominal stress [MPa]"),
     "frequency": (1e-3, "Drive frequency [kHz]"),
     "voltage_peak_to_peak": (1.0, "Voltage, peak to peak [V]"),
-}
-_PANELS = {  # across, up, and one panel to each
-    "velocity-stress": ("sliding_speed", "nominal_pressure", "voltage_peak_to_peak"),
-    "velocity-power": ("sliding_speed", "actuator_power", "normal_load"),
-    "frequency-voltage": ("frequency", "voltage_peak_to_peak", None),
 }
 
 
@@ -47,7 +43,7 @@ def map_figure(mapped: "xr.Dataset", *, measured: "xr.Dataset | None" = None) ->
     """
     from matplotlib.figure import Figure
 
-    across, up, panel = _PANELS[mapped.attrs["map"]]
+    across, up, panel = PLACES[mapped.attrs["map"]]
     parts = _parts(mapped, panel)
     columns = _columns(len(parts))
     rows = -(-len(parts) // columns)
@@ -140,7 +136,7 @@ def measured_figure(mapped: "xr.Dataset", runs: "xr.Dataset") -> "Figure":
     """
     from matplotlib.figure import Figure
 
-    across, up, _ = _PANELS[mapped.attrs["map"]]
+    across, up, _ = PLACES[mapped.attrs["map"]]
     x, y, reduction = _surface(mapped, across, up)
     uncertainty = 100 * mapped["friction_reduction_uncertainty"].transpose(mapped[up].dims[0], mapped[across].dims[0])
     figure = Figure(figsize=(8.0, 3.6))
@@ -183,7 +179,7 @@ def map_page(mapped: "xr.Dataset") -> str:
         raise InvalidInput(
             "an interactive map needs Plotly, which is not installed: pip install 'sonolube[web]', or take PNG or PDF"
         ) from None
-    across, up, panel = _PANELS[mapped.attrs["map"]]
+    across, up, panel = PLACES[mapped.attrs["map"]]
     parts = _parts(mapped, panel)
     columns = _columns(len(parts))
     titles = None if panel is None else [_told(part, panel) for part in parts]

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats, require_non_negative, require_positive
+from sonolube.dynamics.backend import Backend, available, device_name
 from sonolube.errors import InvalidInput
 from sonolube.rig import NUMBERS, STATUSES, Rig, gridded, point_batch
 from sonolube.rig.response import require_drive
@@ -20,7 +21,12 @@ SATURATION = 0.05
 
 
 def velocity_stress_map(
-    rig: Rig, *, sliding_speed: ArrayLike, normal_load: ArrayLike, voltage_peak_to_peak: ArrayLike
+    rig: Rig,
+    *,
+    sliding_speed: ArrayLike,
+    normal_load: ArrayLike,
+    voltage_peak_to_peak: ArrayLike,
+    backend: Backend = "cpu",
 ) -> "xr.Dataset":
     """Return friction reduction over sliding speed and nominal stress, at some drive voltages.
 
@@ -34,6 +40,8 @@ def velocity_stress_map(
         Forces pressing the bodies together; the structure stays as it is. [N]
     voltage_peak_to_peak : array_like, shape (p,)
         Swings of the drive, one to a panel; the offset goes with them in the rig's own proportion. [V]
+    backend : {"cpu", "gpu"}
+        Whether an NVIDIA GPU finds the vibrations that it can; its name then stands in the attribute `device`.
 
     Returns
     -------
@@ -46,6 +54,11 @@ def velocity_stress_map(
     InvalidInput
         If the rig has no structure, or a value is not positive.
 
+    Warns
+    -----
+    GpuUnused
+        If a GPU was asked for and there is none, or it does not serve the rig's contact or structure.
+
     References
     ----------
     .. [1] D figures 4.9 and 4.10.
@@ -53,6 +66,7 @@ def velocity_stress_map(
     return _mapped(
         rig,
         "velocity-stress",
+        backend,
         voltage_peak_to_peak=voltage_peak_to_peak,
         normal_load=normal_load,
         sliding_speed=sliding_speed,
@@ -60,7 +74,12 @@ def velocity_stress_map(
 
 
 def velocity_power_map(
-    rig: Rig, *, sliding_speed: ArrayLike, voltage_peak_to_peak: ArrayLike, normal_load: ArrayLike
+    rig: Rig,
+    *,
+    sliding_speed: ArrayLike,
+    voltage_peak_to_peak: ArrayLike,
+    normal_load: ArrayLike,
+    backend: Backend = "cpu",
 ) -> "xr.Dataset":
     """Return friction reduction over sliding speed and the amplifier's power, under some loads, and its ridge.
 
@@ -74,6 +93,8 @@ def velocity_power_map(
         Swings of the drive that give the powers; the offset goes with them in the rig's own proportion. [V]
     normal_load : array_like, shape (p,)
         Forces pressing the bodies together, one to a panel; the structure stays as it is. [N]
+    backend : {"cpu", "gpu"}
+        Whether an NVIDIA GPU finds the vibrations that it can; its name then stands in the attribute `device`.
 
     Returns
     -------
@@ -87,6 +108,11 @@ def velocity_power_map(
     InvalidInput
         If the rig has no structure, or a value is not positive.
 
+    Warns
+    -----
+    GpuUnused
+        If a GPU was asked for and there is none, or it does not serve the rig's contact or structure.
+
     References
     ----------
     .. [1] D figures 4.11, 4.12, 4.20 and B.1 to B.6.
@@ -94,6 +120,7 @@ def velocity_power_map(
     found = _mapped(
         rig,
         "velocity-power",
+        backend,
         normal_load=normal_load,
         voltage_peak_to_peak=voltage_peak_to_peak,
         sliding_speed=sliding_speed,
@@ -104,7 +131,9 @@ def velocity_power_map(
     return found.assign(sufficient_power=(("normal_load", "sliding_speed"), ridge, labels))
 
 
-def frequency_voltage_map(rig: Rig, *, frequency: ArrayLike, voltage_peak_to_peak: ArrayLike) -> "xr.Dataset":
+def frequency_voltage_map(
+    rig: Rig, *, frequency: ArrayLike, voltage_peak_to_peak: ArrayLike, backend: Backend = "cpu"
+) -> "xr.Dataset":
     """Return friction reduction over drive frequency and voltage, at the rig's load and speed.
 
     Parameters
@@ -115,6 +144,8 @@ def frequency_voltage_map(rig: Rig, *, frequency: ArrayLike, voltage_peak_to_pea
         Frequencies of the drive. [Hz]
     voltage_peak_to_peak : array_like, shape (m,)
         Swings of the drive; the offset goes with them in the rig's own proportion. [V]
+    backend : {"cpu", "gpu"}
+        Whether an NVIDIA GPU finds the vibrations that it can; its name then stands in the attribute `device`.
 
     Returns
     -------
@@ -125,8 +156,13 @@ def frequency_voltage_map(rig: Rig, *, frequency: ArrayLike, voltage_peak_to_pea
     ------
     InvalidInput
         If the rig has no structure, or a value is not positive.
+
+    Warns
+    -----
+    GpuUnused
+        If a GPU was asked for and there is none, or it does not serve the rig's contact or structure.
     """
-    return _mapped(rig, "frequency-voltage", voltage_peak_to_peak=voltage_peak_to_peak, frequency=frequency)
+    return _mapped(rig, "frequency-voltage", backend, voltage_peak_to_peak=voltage_peak_to_peak, frequency=frequency)
 
 
 def sufficient_power(*, friction_reduction: ArrayLike, actuator_power: ArrayLike) -> Floats:
@@ -164,7 +200,8 @@ def sufficient_power(*, friction_reduction: ArrayLike, actuator_power: ArrayLike
     return found
 
 
-def _mapped(rig: Rig, kind: str, **axes: ArrayLike) -> "xr.Dataset":
+def _mapped(rig: Rig, kind: str, backend: Backend, **axes: ArrayLike) -> "xr.Dataset":
+    backend = available(backend)
     values = {name: np.atleast_1d(require_positive(**{name: array})) for name, array in axes.items()}
     for name, array in values.items():
         if array.ndim != 1 or np.any(np.diff(array) <= 0):
@@ -172,14 +209,13 @@ def _mapped(rig: Rig, kind: str, **axes: ArrayLike) -> "xr.Dataset":
     shape = tuple(array.size for array in values.values())
     mesh = dict(zip(values, np.meshgrid(*values.values(), indexing="ij"), strict=True))
     share = _offset_share(rig)
-    points = point_batch(rig, **mesh, voltage_offset=share * mesh["voltage_peak_to_peak"])
+    points = point_batch(rig, **mesh, voltage_offset=share * mesh["voltage_peak_to_peak"], backend=backend)
     columns: dict[str, NDArray[Any]] = {name: points.numbers[name].reshape(shape) for name in NUMBERS}
     columns["status"] = np.array(STATUSES)[points.status].reshape(shape)
     columns["reason"] = np.array(points.reasons)[points.reason].reshape(shape)
     power = columns.pop("actuator_power")
-    found = gridded(
-        columns, axes=values, title=f"Friction reduction, {rig.title}", about={"rig": rig.title, "map": kind}
-    )
+    about = {"rig": rig.title, "map": kind} | ({"device": device_name(backend)} if backend == "gpu" else {})
+    found = gridded(columns, axes=values, title=f"Friction reduction, {rig.title}", about=about)
     labels = {"units": "W", "long_name": "Power of a linear amplifier, D 1.9"}
     if "frequency" in values:
         return found.assign_coords(actuator_power=(tuple(values), power, labels))
@@ -204,4 +240,13 @@ MAPS: Mapping[str, Callable[..., "xr.Dataset"]] = MappingProxyType(
         "frequency-voltage": frequency_voltage_map,
     }
 )
-"""The maps by kind; each takes a rig and the axes that its docstring names."""
+"""The maps by kind; each takes a rig, the axes that its docstring names, and a backend."""
+
+PLACES: Mapping[str, tuple[str, str, str | None]] = MappingProxyType(
+    {
+        "velocity-stress": ("sliding_speed", "nominal_pressure", "voltage_peak_to_peak"),
+        "velocity-power": ("sliding_speed", "actuator_power", "normal_load"),
+        "frequency-voltage": ("frequency", "voltage_peak_to_peak", None),
+    }
+)
+"""What each kind of map has across, up, and one panel to each of."""

@@ -3,7 +3,6 @@
 import copy
 import hashlib
 import json
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from sonolube import __version__
 from sonolube.checks import require_finite, require_non_negative, require_positive
 from sonolube.errors import InvalidInput, SonolubeError
-from sonolube.rig import NUMBERS, Rig, read_rig, rig_from
+from sonolube.rig import NUMBERS, Rig, read_rig, rig_content, rig_from
 from sonolube.vocabulary import quantities
 
 SETTINGS = {
@@ -205,15 +204,7 @@ def _plan(rig_file: str | Path, over: Mapping[str, ArrayLike], changes: Sequence
         raise InvalidInput("a sweep needs a key to run over, such as drive.voltage_peak_to_peak")
     values = {key: np.atleast_1d(np.asarray(array)) for key, array in over.items()}
     read_rig(rig_file, changes=changes)  # refuses a file that is none by its name
-    content = tomllib.loads(Path(rig_file).read_text(encoding="utf-8"))
-    plan = SweepPlan(content=content, values=values, grid=grid)
-    for change in changes:
-        key, _, text = change.partition("=")
-        *tables, name = key.strip().split(".")
-        place = content
-        for table in tables:
-            place = place.setdefault(table, {})
-        place[name] = text.strip()
+    plan = SweepPlan(content=rig_content(rig_file, changes=changes), values=values, grid=grid)
     for key, array in values.items():
         _check_values(plan, key, array)
     if not grid and len({array.size for array in values.values()}) > 1:

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager, nullcontext
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 from sonolube.design.chunk_store import ChunkStore
 from sonolube.design.gathering import InFile, InMemory
 from sonolube.design.plan import SETTINGS, SweepPlan
+from sonolube.dynamics.backend import Backend, available, device_name
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.rig import NUMBERS, STATUSES, PointBatch, point_batch
 
@@ -32,6 +34,7 @@ def sweep(
     workers: int = 1,
     scheduler: str | None = None,
     advance: Advance | None = None,
+    backend: Backend = "cpu",
 ) -> "xr.Dataset":
     """Return what a rig does at every point of a plan, with a status for each.
 
@@ -49,6 +52,8 @@ def sweep(
         Address of a Dask scheduler, or "local" for a cluster of this machine's processes; needs the extra `cluster`.
     advance : callable, optional
         Told how many points are done, and of how many.
+    backend : {"cpu", "gpu"}
+        Whether an NVIDIA GPU finds the vibrations that it can; its name then stands in the attribute `device`.
 
     Returns
     -------
@@ -61,20 +66,28 @@ def sweep(
     InvalidInput
         If the rig has no structure, the folder holds another sweep, or Dask is missing.
 
+    Warns
+    -----
+    GpuUnused
+        If a GPU was asked for and there is none here, or it does not serve a rig's contact or structure.
+
     Notes
     -----
     A point that cannot be had is no reason to stop: it gets its status, and NaN. Each chunk depends on its points
     alone, so that threads, clusters and interruptions change no bit of the result; chunks of another size, whose points
-    share their solves otherwise, change it by less than 1e-6.
+    share their solves otherwise, change it by less than 1e-6. So does a GPU, whose sweeps have folders of their own.
     """
     if chunk_points < 1 or workers < 1:
         raise InvalidInput(f"chunk_points and workers must be at least 1, got {chunk_points} and {workers}")
-    store = None
+    backend = available(backend)
+    device, store = device_name(backend), None
     if folder is not None:
-        store = ChunkStore(folder=Path(folder), digest=plan.digest, chunk_points=chunk_points)
+        store = ChunkStore(
+            folder=Path(folder), digest=plan.digest + ("-gpu" if device else ""), chunk_points=chunk_points
+        )
         store.open()
     count = -(-plan.points // chunk_points)
-    with InMemory(plan) if store is None else InFile(plan, store.folder) as gathered:
+    with InMemory(plan, device) if store is None else InFile(plan, store.folder, device) as gathered:
         done = 0
         missing = []
         for chunk in range(count):
@@ -87,7 +100,9 @@ def sweep(
         if advance is not None and done:
             advance(done, plan.points)
         with _executor(workers, scheduler) as pool:
-            for chunk, batch in _computed(pool, plan, missing, chunk_points, 2 * workers):
+            for chunk, batch in _computed(
+                pool, partial(points_of, plan, backend=backend), plan.points, missing, chunk_points, 2 * workers
+            ):
                 if store is not None:
                     store.write(chunk, batch)
                 gathered.take(chunk * chunk_points, batch)
@@ -97,7 +112,7 @@ def sweep(
         return gathered.dataset()
 
 
-def points_of(plan: SweepPlan, start: int, stop: int) -> PointBatch:
+def points_of(plan: SweepPlan, start: int, stop: int, *, backend: Backend = "cpu") -> PointBatch:
     """Return the points of a plan from one place to before another.
 
     Parameters
@@ -105,6 +120,8 @@ def points_of(plan: SweepPlan, start: int, stop: int) -> PointBatch:
     plan : SweepPlan
     start, stop : int
         Places among all points.
+    backend : {"cpu", "gpu"}
+        Whether an NVIDIA GPU finds the vibrations that it can.
 
     Returns
     -------
@@ -116,15 +133,14 @@ def points_of(plan: SweepPlan, start: int, stop: int) -> PointBatch:
     parts, places = [], []
     for members in _alike(others, stop - start):
         changes = {key: array[members[0]] for key, array in others.items()}
-        parts.append(
-            _points_of_one_rig(plan, changes, {name: array[members] for name, array in settings.items()}, members.size)
-        )
+        own = {name: array[members] for name, array in settings.items()}
+        parts.append(_points_of_one_rig(plan, changes, own, members.size, backend))
         places.append(members)
     return _joined(parts, places, stop - start)
 
 
 def _points_of_one_rig(
-    plan: SweepPlan, changes: dict[str, Any], settings: dict[str, NDArray[Any]], count: int
+    plan: SweepPlan, changes: dict[str, Any], settings: dict[str, NDArray[Any]], count: int, backend: Backend
 ) -> PointBatch:
     try:
         rig = plan.rig(changes)
@@ -137,7 +153,7 @@ def _points_of_one_rig(
         )
     if not settings:
         settings = {"sliding_speed": np.full(count, rig.sliding_speed)}
-    return point_batch(rig, **settings)
+    return point_batch(rig, **settings, backend=backend)
 
 
 def _alike(others: dict[str, NDArray[Any]], count: int) -> list[NDArray[np.intp]]:
@@ -165,15 +181,15 @@ def _joined(parts: list[PointBatch], places: list[NDArray[np.intp]], count: int)
 
 
 def _computed(
-    pool: Executor, plan: SweepPlan, chunks: list[int], size: int, ahead: int
+    pool: Executor, computed: Callable[[int, int], PointBatch], points: int, chunks: list[int], size: int, ahead: int
 ) -> Iterator[tuple[int, PointBatch]]:
     """Yield chunks as they are done, a few at a time under way."""
     waiting, under_way = iter(chunks), {}
     try:
         while True:
             for chunk in waiting:
-                stop = min((chunk + 1) * size, plan.points)
-                under_way[pool.submit(points_of, plan, chunk * size, stop)] = chunk
+                stop = min((chunk + 1) * size, points)
+                under_way[pool.submit(computed, chunk * size, stop)] = chunk
                 if len(under_way) >= ahead:
                     break
             if not under_way:

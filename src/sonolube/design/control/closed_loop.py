@@ -13,6 +13,7 @@ from sonolube.design.control.tracking import FrequencyTracker, next_frequency
 from sonolube.design.control.vibration import VibrationMode, next_envelope, sensed_phase
 from sonolube.errors import InvalidInput
 
+_MOST_SHIFT = 0.1  # of the resonance, up to which its shift may be taken as linear in the temperature
 _FAINT = 0.02  # of the swing allowed, below which the phase of the current tells nothing
 
 
@@ -29,6 +30,11 @@ class Drift:
     frequency_per_temperature : float
         Relative change of the resonance per temperature. [1/K]
 
+    Raises
+    ------
+    InvalidInput
+        If a value is not finite, the time not positive, or the resonance shifts by more than a tenth.
+
     Notes
     -----
     Stiffness alone follows the temperature; damping ratio, capacitance and friction stay.
@@ -44,6 +50,11 @@ class Drift:
             frequency_per_temperature=self.frequency_per_temperature,
         )
         require_positive(warming_time=self.warming_time)
+        if abs(self.frequency_per_temperature * self.final_temperature_rise) > _MOST_SHIFT:
+            raise InvalidInput(
+                f"final_temperature_rise must shift the resonance by no more than a tenth, got"
+                f" {self.final_temperature_rise:g} K at {self.frequency_per_temperature:g} of it per kelvin"
+            )
 
     def shift(self, time: float) -> float:
         """Return the relative change of the resonance at a time."""

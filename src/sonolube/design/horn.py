@@ -1,0 +1,270 @@
+"""Horns tuned to a frequency, and what a designer asks of them: neighbours, face, gain, node, stress and trim."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from sonolube.checks import Floats
+from sonolube.design.horn_shapes import Body
+from sonolube.errors import InvalidInput
+from sonolube.fem import Medium, Model, NamedMode, TunedMode, mesh_of, mode_names, natural_modes, tuned_mode
+from sonolube.fem.fields import equivalent_stress, on_nodes_mean, stresses
+from sonolube.fem.model import DIRECTIONS
+from sonolube.fem.orders import of_order
+from sonolube.fem.tuning import loaded_frequencies
+from sonolube.materials import Material
+
+_ELEMENTS_ACROSS = 2.5  # of a horn as thick as a cube of its volume would be, in the first mesh
+_SLICES = 48  # across the axis, over which motion is averaged
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class HornDesign:
+    """A tuned horn.
+
+    Parameters
+    ----------
+    body : Body
+    tuned : TunedMode
+        Its length, frequency and mode.
+    displacement_gain : float
+        Mean displacement of the working face over that of the driven one. []
+    face_uniformity : float
+        Least over greatest displacement along the axis on the working face; negative where parts move against. []
+    face_asymmetry : float
+        What a plane through these displacements rises over the face, over its mean. []
+    node_position : float
+        Where sections stand still, from the driven face. [m]
+    stress_per_displacement : float
+        Greatest equivalent stress per displacement of the working face. [Pa/m]
+    stress_change : float
+        Relative change of it from the mesh before: large where corners are sharp, and then it has no limit.
+    neighbours : tuple of (str, float)
+        Name and frequency in Hz of the elastic modes found, the tuned one left out, by distance.
+    """
+
+    body: Body
+    tuned: TunedMode
+    displacement_gain: float
+    face_uniformity: float
+    face_asymmetry: float
+    node_position: float
+    stress_per_displacement: float
+    stress_change: float
+    neighbours: tuple[tuple[str, float], ...] = field(default=())
+
+    @property
+    def working_face(self) -> str:
+        """Name of the face that works."""
+        return f"+{self.body.axis}"
+
+
+def designed_horn(
+    body: Body,
+    *,
+    medium: Medium,
+    frequency: float,
+    mode: str = "axial 1",
+    relative_tolerance: float = 3e-3,
+    advance: Callable[[str, int, int], None] | None = None,
+) -> HornDesign:
+    """Return a horn whose length is tuned so that a named mode has a frequency.
+
+    Parameters
+    ----------
+    body : Body
+    medium : Medium
+        What it is made of.
+    frequency : float
+        Frequency at which it shall ring. [Hz]
+    mode : str
+        Name of the mode.
+    relative_tolerance : float
+        Largest estimated relative error of the frequency.
+    advance : callable, optional
+        Told what is being done.
+
+    Returns
+    -------
+    HornDesign
+
+    Raises
+    ------
+    InvalidInput
+        If no mode has this name or the body lacks a flat working or driven face.
+    NotConverged
+        If no length near the start gives the frequency.
+    """
+
+    def model_at(length: float, element_size: float) -> Model:
+        geometry = body.at(length)
+        return Model(mesh=mesh_of(geometry, element_size=element_size), media={geometry.regions[0]: medium})
+
+    tuned = tuned_mode(
+        model_at,
+        name=mode,
+        axis=body.axis,
+        frequency=frequency,
+        length=body.length,
+        element_size=float(body.at(body.length).volume ** (1 / 3) / _ELEMENTS_ACROSS),
+        relative_tolerance=relative_tolerance,
+        advance=advance,
+    )
+    found = tuned.mode
+    peak = _peak_stress(found.model, found.shape, body.axis)
+    return HornDesign(
+        body=body,
+        tuned=tuned,
+        displacement_gain=abs(
+            float(face_motion(found.model, found.shape, f"+{body.axis}", body.axis).mean())
+            / float(face_motion(found.model, found.shape, f"-{body.axis}", body.axis).mean())
+        ),
+        face_uniformity=_uniformity(face_motion(found.model, found.shape, f"+{body.axis}", body.axis)),
+        face_asymmetry=_asymmetry(found, body.axis),
+        node_position=_node(found, body.axis),
+        stress_per_displacement=peak,
+        stress_change=_stress_change(found, mode, body.axis, peak),
+        neighbours=_neighbours(found),
+    )
+
+
+def amplitude_limits(design: HornDesign, *, material: Material) -> dict[str, float]:
+    """Return the amplitude of the working face in m at which the peak stress reaches each known strength.
+
+    Parameters
+    ----------
+    design : HornDesign
+    material : Material
+
+    Returns
+    -------
+    dict of str to float
+        By "fatigue_strength" and "yield_strength", where the material has them.
+    """
+    return {
+        name: material.value(name) / design.stress_per_displacement
+        for name in ("fatigue_strength", "yield_strength")
+        if name in material.properties
+    }
+
+
+def loaded_frequency(design: HornDesign, *, tool_mass: float) -> float:
+    """Return the frequency of the tuned mode with a rigid tool on the working face. [Hz]
+
+    Parameters
+    ----------
+    design : HornDesign
+    tool_mass : float
+        Its mass. [kg]
+
+    Returns
+    -------
+    float
+    """
+    found = design.tuned.mode
+    loaded = loaded_frequencies(
+        found.modes, found.model, face=design.working_face, along=design.body.axis, tool_mass=tool_mass
+    )
+    own = found.modes.natural_frequency[found.row]
+    return float(loaded[found.row] / own * found.frequency)  # with the error of the mesh taken out
+
+
+def face_motion(model: Model, shape: Floats, face: str, axis: str) -> Floats:
+    """Return displacements along an axis of the nodes on a face.
+
+    Parameters
+    ----------
+    model : Model
+    shape : ndarray, shape (n, 3)
+    face : str
+    axis : str
+
+    Returns
+    -------
+    ndarray, shape (nodes of the face,)
+    """
+    return np.asarray(shape[model.mesh.face_nodes(face), DIRECTIONS.index(axis)])
+
+
+def nodal_stress(model: Model, shape: Floats) -> Floats:
+    """Return the equivalent stress at the nodes, averaged over the elements that meet there.
+
+    Parameters
+    ----------
+    model : Model
+    shape : ndarray, shape (n, 3)
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        In Pa for displacements in m.
+    """
+    at_corners = stresses(model, shape)
+    return equivalent_stress(
+        np.stack([on_nodes_mean(model.mesh, at_corners[:, :, component]) for component in range(6)], axis=-1)
+    )
+
+
+def _peak_stress(model: Model, shape: Floats, axis: str) -> float:
+    return float(nodal_stress(model, shape).max() / abs(face_motion(model, shape, f"+{axis}", axis).mean()))
+
+
+def _stress_change(found: NamedMode, name: str, axis: str, peak: float) -> float:
+    """Return by how much the peak stress differs from that of elements of one order less."""
+    model = replace(found.model, mesh=of_order(found.model.mesh, order=found.model.mesh.order - 1))
+    modes = natural_modes(model, count=len(found.names) - found.modes.rigid)
+    names = mode_names(model, modes, axis=axis)
+    return abs(_peak_stress(model, modes.shapes[names.index(name)], axis) / peak - 1) if name in names else np.inf
+
+
+def _uniformity(moves: Floats) -> float:
+    ordered = moves * np.sign(moves.mean())
+    return float(ordered.min() / ordered.max())
+
+
+def _asymmetry(found: NamedMode, axis: str) -> float:
+    nodes = found.model.mesh.face_nodes(f"+{axis}")
+    across = found.model.mesh.nodes[nodes][:, [k for k in range(3) if k != DIRECTIONS.index(axis)]]
+    columns = np.column_stack([np.ones(len(nodes)), across - across.mean(axis=0)])
+    plane = np.linalg.lstsq(columns, found.shape[nodes, DIRECTIONS.index(axis)], rcond=None)[0]
+    return float(np.ptp(columns[:, 1:] @ plane[1:]) / abs(plane[0]))
+
+
+def _node(found: NamedMode, axis: str) -> float:
+    """Return where the mean motion of sections changes sign for the first time."""
+    place, moves = section_motion(found, axis)
+    turn = np.flatnonzero(np.diff(np.sign(moves)))
+    if not turn.size:
+        raise InvalidInput("no section of this mode stands still; is it an axial mode?")
+    k = int(turn[0])
+    start = float(found.model.mesh.nodes[:, DIRECTIONS.index(axis)].min())
+    return float(place[k] - moves[k] * (place[k + 1] - place[k]) / (moves[k + 1] - moves[k])) - start
+
+
+def section_motion(found: NamedMode, axis: str) -> tuple[Floats, Floats]:
+    """Return places along an axis in m and the mean motion along it there.
+
+    Parameters
+    ----------
+    found : NamedMode
+    axis : str
+
+    Returns
+    -------
+    tuple of two ndarray
+        One value for each slice that holds nodes.
+    """
+    along = DIRECTIONS.index(axis)
+    place = found.model.mesh.nodes[:, along]
+    edges = np.linspace(place.min(), place.max(), _SLICES + 1)
+    which = np.clip(np.digitize(place, edges) - 1, 0, _SLICES - 1)
+    count = np.bincount(which, minlength=_SLICES)
+    means = [np.bincount(which, own, minlength=_SLICES)[count > 0] for own in (place, found.shape[:, along])]
+    return means[0] / count[count > 0], means[1] / count[count > 0]
+
+
+def _neighbours(found: NamedMode) -> tuple[tuple[str, float], ...]:
+    elastic = range(found.modes.rigid, len(found.names))
+    others = [(found.names[k], float(found.modes.natural_frequency[k])) for k in elastic if k != found.row]
+    return tuple(sorted(others, key=lambda mode: abs(mode[1] - found.frequency)))

@@ -1,0 +1,156 @@
+"""Uncertainty carried through a rig: each sample the rig it says, and outcomes whose spread has a closed form."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pytest import approx, raises
+from scipy import stats
+
+from sonolube.design import (
+    band_figure,
+    indices_figure,
+    outcomes_of,
+    propagate,
+    sobol_indices,
+    spread,
+    spread_figure,
+    spread_of,
+)
+from sonolube.errors import InvalidInput, UnknownName
+from sonolube.rig import operating_points, read_rig, wear_point
+
+RIGS = Path(__file__).parents[2] / "examples" / "rigs"
+UNCERTAIN = RIGS / "tribometer_uncertain.toml"
+SPEED = "sliding.sliding_speed"
+
+
+def rig_with(tmp_path: Path, table: str, base: str = "tribometer") -> Path:
+    path = tmp_path / "rig.toml"
+    path.write_text((RIGS / f"{base}.toml").read_text(encoding="utf-8") + f"\n[uncertainty]\n{table}\n")
+    return path
+
+
+def test_every_sample_is_the_rig_that_it_says() -> None:
+    found = propagate(UNCERTAIN, samples=32)
+    for sample in (0, 17):
+        row = found.isel(sample=sample)
+        changes = [
+            f"{row[name].attrs['key']}={float(row[name])!r} {row[name].attrs['units']}"
+            for name in ("normal_load", "rms_height", "summit_radius", "tip_damping", "memory_length")
+        ]
+        changes += [f"contact.nominal_area={float(row['nominal_area'])!r} m2"]
+        changes += [f"stack.free_stroke_per_volt={float(row['free_stroke_per_volt'])!r} m/V"]
+        known = operating_points(read_rig(UNCERTAIN, changes=changes))
+        assert float(row["friction_ratio"]) == approx(float(known.friction_ratio), abs=1e-4)
+        assert float(row["vibration_amplitude"]) == approx(float(known.vibration_amplitude), rel=1e-4)
+
+
+def test_what_is_in_proportion_to_a_normal_entry_is_normal(tmp_path: Path) -> None:
+    # the power of D 1.9 is in proportion to the capacitance, 360 nF 28 V 28 V 22 kHz = 6.209 W
+    path = rig_with(tmp_path, '"stack.free_capacitance" = "normal 5 %"')
+    found = spread_of(propagate(path, of="actuator_power", samples=256))
+    exact = stats.norm(6.209, 0.05 * 6.209)
+    assert found.mean.value == approx(exact.mean(), rel=1e-3)
+    assert found.deviation.value == approx(exact.std(), rel=0.02)
+    assert found.quantiles[0.95].value == approx(exact.ppf(0.95), rel=0.005)
+
+
+def test_of_a_product_of_two_entries_the_indices_are_closed(tmp_path: Path) -> None:
+    # friction without vibration, mu F: relative variances a2 and b2 make a2 + b2 + a2 b2
+    path = rig_with(
+        tmp_path,
+        '"contact.normal_load" = "normal 10 %"\n"friction.friction_coefficient" = "uniform 30 %"\n'
+        '"contact.nominal_area" = "normal 5 %"',
+        "poisson_al_steel",
+    )
+    result = propagate(path, of="intrinsic_friction_force", samples=64, indices=True)
+    found = sobol_indices(result["intrinsic_friction_force"].values)
+    a2, b2 = 0.1**2, 0.3**2 / 3
+    whole = a2 + b2 + a2 * b2
+    assert found.first == approx(np.array([a2, b2, 0]) / whole, abs=0.06)
+    assert found.total == approx(np.array([a2 * (1 + b2), b2 * (1 + a2), 0]) / whole, abs=0.06)
+    mean = read_rig(path).friction_coefficient * read_rig(path).normal_load
+    assert found.standard_deviation == approx(mean * np.sqrt(whole), rel=0.06)
+
+
+def test_a_rig_without_structure_is_carried_through_its_cube(tmp_path: Path) -> None:
+    path = rig_with(tmp_path, '"contact.roughness.rms_height" = "normal 5 %"', "poisson_al_steel")
+    found = propagate(path, of="wear_rate_ratio", samples=32)
+    height = float(found["rms_height"][5])
+    known = wear_point(read_rig(path, changes=[f"contact.roughness.rms_height={height!r} m"]))
+    assert float(found["wear_rate_ratio"][5]) == approx(known.wear_rate_ratio, rel=1e-9)
+    assert "vibration_velocity" not in outcomes_of(read_rig(path))
+
+
+def test_a_sample_that_cannot_be_had_keeps_its_reason(tmp_path: Path) -> None:
+    # the drive goes up to 28 V
+    path = rig_with(tmp_path, '"stack.highest_voltage" = "uniform 27 V to 29 V"')
+    found = propagate(path, samples=64)
+    refused = found["highest_voltage"].values < 28
+    assert np.array_equal(np.isnan(found["friction_ratio"].values), refused)
+    reasons = found["reason_text"].values[found["reason"].values[refused]]
+    assert all("that the stack bears" in str(reason) for reason in reasons)
+    assert spread_of(found).found == np.sum(~refused)
+
+
+def test_over_a_key_every_sample_is_taken_at_every_value() -> None:
+    speeds = np.array([0.01, 0.05, 0.2])
+    band = propagate(UNCERTAIN, samples=32, over={SPEED: speeds})
+    assert band["friction_ratio"].dims == ("sample", "sliding_speed")
+    alone = propagate(UNCERTAIN, samples=32, changes=[f"{SPEED}=50 mm/s"])
+    assert band["friction_ratio"].values[:, 1] == approx(alone["friction_ratio"].values, abs=1e-4)
+    assert np.all(np.diff(np.median(band["friction_ratio"].values, axis=0)) > 0)
+
+
+def test_what_is_swept_is_not_uncertain(tmp_path: Path) -> None:
+    path = rig_with(tmp_path, '"contact.normal_load" = "normal 5 %"\n"sliding.sliding_speed" = "normal 50 %"')
+    found = propagate(path, samples=32, over={SPEED: [0.02, 0.04]})
+    assert found.attrs["uncertain"] == ["contact.normal_load"]
+    assert found["sliding_speed"].values.tolist() == [0.02, 0.04]
+
+
+def test_joint_draws_stay_together() -> None:
+    draws = np.linspace(600.0, 800.0, 40)
+    joint = {"structure.tip_damping": draws, "structure.reaction_mass": draws / 300}
+    found = propagate(RIGS / "tribometer.toml", samples=64, joint=joint)
+    assert found["tip_damping"].values == approx(300 * found["reaction_mass"].values)
+    assert np.unique(found["tip_damping"].values).size == 40
+    assert spread(found["vibration_amplitude"].values, stretch=found["stretch"].values).deviation.value > 0
+
+
+def test_a_second_run_goes_on_in_the_same_folder(tmp_path: Path) -> None:
+    once, again = (propagate(UNCERTAIN, samples=32, folder=tmp_path)["friction_ratio"].values for _ in range(2))
+    assert np.array_equal(once, again)
+    assert len(list(tmp_path.glob("chunk-*.npz"))) == 1
+
+
+def test_figures_carry_units_and_what_was_asked_for(tmp_path: Path) -> None:
+    plain = spread_figure(propagate(UNCERTAIN, samples=32, of="vibration_amplitude"))
+    assert plain.axes[0].get_xlabel() == "Vibration amplitude, zero to peak [µm]"
+    band = band_figure(propagate(UNCERTAIN, samples=32, over={SPEED: np.geomspace(0.01, 0.2, 5)}))
+    assert band.axes[0].get_xlabel() == "Sliding speed [mm/s]"
+    assert band.axes[0].get_xscale() == "log"
+    path = rig_with(tmp_path, '"friction.friction_coefficient" = "normal 5 %"', "poisson_al_steel")
+    result = propagate(path, samples=32, of="friction_force", indices=True)
+    bars = indices_figure(result, sobol_indices(result["friction_force"].values))
+    assert [label.get_text() for label in bars.axes[0].get_yticklabels()] == ["friction.friction_coefficient"]
+
+
+def test_what_cannot_be_asked_is_refused() -> None:
+    with raises(InvalidInput, match=r"table uncertainty is missing"):
+        propagate(RIGS / "tribometer.toml")
+    with raises(InvalidInput, match=r"leave out over and joint"):
+        propagate(UNCERTAIN, indices=True, over={SPEED: [0.02]})
+    with raises(UnknownName, match=r"unknown outcome 'friction_rato'; did you mean friction_ratio\?"):
+        propagate(UNCERTAIN, of="friction_rato")
+    with raises(InvalidInput, match=r"contact.normal_lod: unknown key"):
+        propagate(UNCERTAIN, over={"contact.normal_lod": [3.0]})
+
+
+@pytest.mark.parametrize("keys", [0, 3])
+def test_a_band_runs_over_one_or_two_keys(keys: int) -> None:
+    over = {SPEED: [0.02], "drive.frequency": [22e3], "drive.voltage_peak_to_peak": [20.0]}
+    found = propagate(UNCERTAIN, samples=32, over=dict(list(over.items())[:keys]))
+    with raises(InvalidInput, match=rf"one or two swept keys, got {keys}"):
+        band_figure(found)
