@@ -1,5 +1,6 @@
 """Numbers of D's running text that follow from other printed numbers, derived again."""
 
+import re
 from collections.abc import Callable
 from functools import partial
 from itertools import product
@@ -7,9 +8,10 @@ from operator import mul, sub, truediv
 
 import numpy as np
 import pytest
+from pytest import approx
 
 from sonolube.errors import InvalidInput
-from sonolube.published import PrintedNumber, parse_printed, statement, statements, table
+from sonolube.published import PrintedNumber, erratum, parse_printed, statement, statements, table
 
 Place = tuple[str, str, int]
 Span = tuple[float, float]
@@ -148,3 +150,18 @@ def test_every_doubted_statement_that_is_put_right_is_derived_again() -> None:
         if put_right(entry.number, entry.right, entry.unit, entry.quantity) is not entry.number
     }
     assert settled <= set(STATED)
+
+
+def test_the_rings_of_the_collar_would_have_to_be_wider_than_printed_to_breathe_as_low() -> None:
+    # N16: rings breathe at c/(2 pi R), and turn oval at (6/sqrt 5) c h/(2 pi sqrt(12) R^2), Hoppe, for a wall h.
+    names = ("inner-ring-outer-diameter", "inner-ring-inner-diameter", "breathing-mode-first", "breathing-mode-revised")
+    outer, inner, first, revised = (statement(f"4.5.2-{name}").number.value for name in names)
+    speed, radius = np.sqrt(200e9 / 8000.0), (outer + inner) / 4
+    breathing = speed / (2 * np.pi * radius)
+    oval = 6 / np.sqrt(5) * speed * (outer - inner) / 2 / (2 * np.pi * np.sqrt(12) * radius**2)
+    assert breathing == approx(84e3, rel=0.01)
+    assert oval == approx(43e3, rel=0.01)
+    assert first < oval < first * 1.1
+    assert speed / (np.pi * revised) == approx(59e-3, rel=0.01)
+    assert speed / (np.pi * revised) > 3 * statement("4.5.4-rod-diameter").number.value
+    assert {"84 kHz", "59 mm", "19 mm", "43 kHz"} <= set(re.findall(r"\d+ (?:kHz|mm)", erratum("N16").evidence))

@@ -19,9 +19,9 @@ from sonolube.reproduce.compared_models import COMPARED_MODELS, compared_models
 from sonolube.reproduce.compared_rig import vibrated_rig
 from sonolube.reproduce.earlier_experiments import earlier_tests
 from sonolube.reproduce.experiments import FrictionTest
-from sonolube.reproduce.literature_variants import VibratedRig
 from sonolube.reproduce.model_comparison import ComparedFit, compare_models, predict_rig
 from sonolube.reproduce.model_comparison_table import comparison_csv, comparison_dataset
+from sonolube.reproduce.vibrated_rig import VibratedRig
 from sonolube.rig import read_rig
 
 NAMED = {model.name: model for model in COMPARED_MODELS}
@@ -147,6 +147,17 @@ def test_earlier_studies_along_the_sliding_lie_on_the_arcsine(published: tuple[C
     assert predicted == approx([1.0, 2 / pi * np.arcsin(0.62 / 6.64)], abs=1e-9)
 
 
+def test_friction_made_by_lugres_bristles_is_traced_to_their_stiffness() -> None:
+    lugre, test = NAMED["lugre"], measured_in("A")[0]
+    ratios = np.array([ratio("lugre", each, 0.3) for each in measured_in(ALL_FITTED)])
+    best, *_ = compare_models(compared_models(("lugre", "spring-flat", "kinematic")), among=made_up(ratios))
+    assert best.model is lugre
+    assert best.parameters[0].value == approx(0.3, rel=0.2)
+    # bristles that yield keep their force while the load falls: between the mean and the harmonic mean of the load
+    spring_back = i0(test.vibration_amplitude / 2e-6) ** -2
+    assert spring_back < ratio("lugre", test, 0.02) < ratio("lugre", test, 1.0) < 1
+
+
 @pytest.mark.parametrize("phase", [-2.0, -0.4, 0.6, 1.5])
 def test_the_phase_of_a_hidden_motion_means_the_same_to_every_model(phase: float) -> None:
     # a rigid contact of exponential heights: N falls as exp(-x/l), friction turns with the velocity
@@ -158,6 +169,7 @@ def test_the_phase_of_a_hidden_motion_means_the_same_to_every_model(phase: float
     rigid = float(np.mean(pressed * turned))
     assert ratio("dahl-in-plane", test, fraction, phase) == approx(rigid, abs=0.05)
     assert ratio("stick-slip-in-plane", test, 1e-8, fraction, phase) == approx(rigid, abs=0.1)  # some memory is left
+    assert ratio("lugre-in-plane", test, 1e4, 1.0, 1.0, fraction, phase) == approx(rigid, abs=0.05)
     linear = float(np.mean((1 - a / length * np.cos(theta)) * turned))
     assert ratio("elliptical", test, fraction, phase) == approx(linear, abs=1e-4)
 

@@ -13,6 +13,8 @@ from sonolube.materials import material
 from sonolube.reproduce import (
     chapter2_figures,
     chapter2_flextensional,
+    chapter2_horn,
+    chapter2_horn_figures,
     chapter2_motor,
     chapter2_pairs,
     chapter2_tribometer,
@@ -21,7 +23,7 @@ from sonolube.reproduce import (
 from sonolube.reproduce.contacts import STEEL_ON_STEEL_NOTE, Bodies, poisson_friction_ratio
 from sonolube.reproduce.inputs import friction_drop, in_table, named, said
 from sonolube.reproduce.result import ReportFigure
-from sonolube.reproduce.row import Published, Row, cell, compare, over_rounding, stated, undetermined
+from sonolube.reproduce.row import Published, Row, compare, over_rounding, stated
 
 
 def rows() -> tuple[Row, ...]:
@@ -29,7 +31,7 @@ def rows() -> tuple[Row, ...]:
     return tuple(
         chain(
             _poisson_modes(),
-            _poisson_regions(),
+            chapter2_horn.rows(),
             _poisson_reductions(),
             chapter2_flextensional.rows(),
             chapter2_tribometer.rows(),
@@ -42,7 +44,7 @@ def rows() -> tuple[Row, ...]:
 
 def figures() -> tuple[ReportFigure, ...]:
     """Return the figures of chapter 2."""
-    return chapter2_figures.figures()
+    return (*chapter2_figures.figures(), *chapter2_horn_figures.figures())
 
 
 def _poisson_modes() -> Iterator[Row]:
@@ -61,11 +63,6 @@ def _poisson_modes() -> Iterator[Row]:
 
 def _half_wave(youngs_modulus: float, length: float, *, density: float) -> float:
     return float(natural_frequency(length=length, wave_speed=sqrt(youngs_modulus / density)))
-
-
-def _poisson_regions() -> Iterator[Row]:
-    for row, side in ((0, "start"), (0, "end"), (3, "start"), (3, "end")):
-        yield undetermined(cell("2.1", side, row), "a model of the motor effect, and the static friction of the block.")
 
 
 def _poisson_reductions() -> Iterator[Row]:

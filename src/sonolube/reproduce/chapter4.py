@@ -7,9 +7,12 @@ from scipy.constants import epsilon_0
 
 from sonolube.metrics import peak_vibration_velocity, superimposed_speed
 from sonolube.reproduce.chapter3_study_figures import load_figures
+from sonolube.reproduce.chapter4_collar import collar_rows
+from sonolube.reproduce.chapter4_collar_figures import collar_figures
 from sonolube.reproduce.chapter4_cutter import cutter_rows
 from sonolube.reproduce.chapter4_figures import application_figures
 from sonolube.reproduce.chapter4_load import load_rows
+from sonolube.reproduce.chapter4_maps import map_figures, map_rows
 from sonolube.reproduce.chapter4_power import amplitudes, power_map_rows, power_row, reduction_by_the_line, stresses
 from sonolube.reproduce.chapter4_regimes import regime_figures, regime_rows
 from sonolube.reproduce.chapter4_thermal import thermal_rows
@@ -24,13 +27,21 @@ __all__ = ["figures", "rows"]
 
 def figures() -> tuple[ReportFigure, ...]:
     """Return the figures of chapter 4."""
-    return (*load_figures(), *regime_figures(), *thermal_figures(), *application_figures())
+    return (
+        *map_figures(),
+        *load_figures(),
+        *regime_figures(),
+        *thermal_figures(),
+        *application_figures(),
+        *collar_figures(),
+    )
 
 
 def rows() -> tuple[Row, ...]:
     """Return the rows of chapter 4."""
     return (
         *power_map_rows(),
+        *map_rows(),
         *load_rows(),
         *_lubrication_settings(),
         *regime_rows(),
@@ -43,22 +54,15 @@ def rows() -> tuple[Row, ...]:
         *_skin_replica(),
         *cutter_rows(),
         *_collar_stack(),
+        *collar_rows(),
         *(undetermined(stated(name), missing) for name, missing in _MISSING.items()),
     )
 
 
 _COATED = "friction forces on coated plates, only drawn (Fig. 4.33); printed as forces, meant as coefficients (E18)"
-_FINITE_ELEMENTS = "a finite-element model of the collar, whose drawings (appendix C) came along as captions only"
 _MISSING = {
     "4.1.3-friction-coated-first": _COATED,
     "4.1.3-friction-coated-last": _COATED,
-    "4.5.2-breathing-mode-first": _FINITE_ELEMENTS,
-    "4.5.2-torsional-mode-first": _FINITE_ELEMENTS,
-    "4.5.2-breathing-mode-revised": _FINITE_ELEMENTS,
-    "4.5.3-mode-closed-top": _FINITE_ELEMENTS,
-    "4.5.3-mode-open-top": _FINITE_ELEMENTS,
-    "4.5.4-reduction": "normal load along the rod, and the amplitude of the ring, which is only drawn (Fig. 4.55)",
-    "4.5.4-work-reduction": "force and velocity along the pull, which are only drawn (Fig. 4.57)",
 }
 
 

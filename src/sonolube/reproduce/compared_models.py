@@ -83,6 +83,8 @@ _LITERATURE: Final = {
     "elliptical": (_NORMAL, "D 2.1.4"),
     "dahl": (_RUBBING, "D 3.10 and 3.11; Dahl 1968"),
     "dahl-in-plane": (_RUBBING, "D 3.10 and 3.11; Dahl 1968"),
+    "lugre": (_RUBBING, "Canudas de Wit, Olsson, Astrom and Lischinsky 1995"),
+    "lugre-in-plane": (_RUBBING, "Canudas de Wit, Olsson, Astrom and Lischinsky 1995"),
     "dahl-driven": ((*_ALONG, "holder_stiffness", "holder_mass"), "Gutowski and Leus 2012"),
 }
 

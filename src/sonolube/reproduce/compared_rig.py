@@ -1,7 +1,7 @@
 """A rig's operating point as the compared models see it."""
 
 from sonolube.errors import InvalidInput
-from sonolube.reproduce.literature_variants import VibratedRig
+from sonolube.reproduce.vibrated_rig import VibratedRig
 from sonolube.rig import Rig
 
 

@@ -16,7 +16,7 @@ from sonolube.reproduce.closure_parameters import Parameter
 from sonolube.reproduce.compared_models import COMPARED_MODELS, ComparedModel
 from sonolube.reproduce.earlier_experiments import EARLIER_SETS
 from sonolube.reproduce.experiments import SETS, Circumstances, Measured
-from sonolube.reproduce.literature_variants import VibratedRig
+from sonolube.reproduce.vibrated_rig import VibratedRig
 
 Advance = Callable[[str, int, int], None]
 

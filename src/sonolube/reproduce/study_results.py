@@ -8,9 +8,8 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.dynamics import modes
-from sonolube.reproduce.contacts import steel_on_steel_contact
-from sonolube.reproduce.inputs import in_table, said
-from sonolube.reproduce.tribometer_rig import tribometer_rig
+from sonolube.reproduce.inputs import said
+from sonolube.reproduce.tribometer_rig import plate_rig, tribometer_rig
 from sonolube.rig import (
     StartUp,
     frequency_grid,
@@ -87,17 +86,8 @@ def over_waveform(closure: str = "stick_slip") -> "xr.Dataset":
 @cache
 def over_load() -> "xr.Dataset":
     """Return the tribometer with the steel plates and weights of section 4.1, at the settings of its example test."""
-    rig, highest = tribometer_rig(), in_table("4.1", "voltage_peak_to_peak", 14).value
-    assert rig.drive is not None
     loads = said("4.1.1-normal-load")
-    on_steel = replace(
-        rig,
-        contact=steel_on_steel_contact(nominal_area=in_table("4.1", "nominal_area").value),
-        friction_coefficient=said("4.1.2-friction-off").value / said("4.1.2-normal-load").value,
-        sliding_speed=said("4.1.2-sliding-speed").value,
-        drive=replace(rig.drive, voltage_peak_to_peak=highest, voltage_offset=highest / 2),
-    )
-    return load_study(on_steel, normal_load=np.arange(loads.low, loads.high + 0.125, 0.25))
+    return load_study(plate_rig(), normal_load=np.arange(loads.low, loads.high + 0.125, 0.25))
 
 
 @cache

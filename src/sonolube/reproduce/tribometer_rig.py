@@ -1,8 +1,10 @@
 """The modified tribometer as a rig, from published tables and what their facts leave of the unprinted structure."""
 
+from dataclasses import replace
+
 from sonolube.actuator.drive import Drive
 from sonolube.dynamics import chain_structure, pin_on_disc_chain
-from sonolube.reproduce.contacts import wear_contact
+from sonolube.reproduce.contacts import steel_on_steel_contact, wear_contact
 from sonolube.reproduce.inputs import exact, in_table, said
 from sonolube.reproduce.tribometer_facts import tribometer_stack
 from sonolube.rig import Rig
@@ -49,4 +51,25 @@ def tribometer_rig(*, closure: str = "stick_slip") -> Rig:
         structure=chain_structure(pin_on_disc_chain(stack, **IDENTIFIED)),
         closure=closure,
         assumptions={"structure": IDENTIFIED_NOTE},
+    )
+
+
+def plate_rig() -> Rig:
+    """Return the tribometer with the uncoated steel plates of section 4.1, as its example test runs it.
+
+    Returns
+    -------
+    Rig
+    """
+    rig, highest = tribometer_rig(), in_table("4.1", "voltage_peak_to_peak", 14).value
+    assert rig.drive is not None
+    return replace(
+        rig,
+        title="Tribometer with uncoated steel plates",
+        source="D Tables 4.1 and 4.2",
+        contact=steel_on_steel_contact(nominal_area=in_table("4.1", "nominal_area").value),
+        friction_coefficient=said("4.1.2-friction-off").value / said("4.1.2-normal-load").value,
+        normal_load=said("4.1.2-normal-load").value,
+        sliding_speed=said("4.1.2-sliding-speed").value,
+        drive=replace(rig.drive, voltage_peak_to_peak=highest, voltage_offset=highest / 2),
     )
