@@ -31,7 +31,7 @@ def test_the_collar_gets_a_controller_its_source_and_its_report(
     assert "quality factor 50" in answer["assumptions"]["resonance"]
     assert {Path(name).suffix for name in answer["files"]} == {".html", ".png", ".svg", ".nc", ".c", ".csv"}
     assert all(Path(name).stat().st_size > 0 for name in answer["files"])
-    assert "http" not in (tmp_path / "collar-control.html").read_text(encoding="utf-8").lower()
+    assert "http" not in (tmp_path / "control.html").read_text(encoding="utf-8").lower()
 
 
 @pytest.mark.parametrize(

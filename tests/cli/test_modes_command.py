@@ -10,7 +10,6 @@ import pytest
 from pytest import approx
 
 pytest.importorskip("netgen.occ", reason="netgen-mesher is not installed")
-pytest.importorskip("skfem", reason="scikit-fem is not installed")
 
 
 def modes(*arguments: str) -> "subprocess.CompletedProcess[str]":
@@ -42,10 +41,20 @@ def test_a_steel_bar_is_answered_with_the_axial_mode_of_bar_theory_and_pictures(
         (("block", "--set", "lenght=1mm"), "unknown size of a block 'lenght'; did you mean length?"),
         (("block", "--set", "length=3N"), "length=3N"),
         (("none.step",), "none.step: no such file"),
+        (("block", "--set", "length=1e300m", "--set", "width=1mm"), "length 1e300m lies beyond any part"),
     ],
 )
 def test_what_is_no_part_is_refused_in_one_line(arguments: tuple[str, ...], line: str) -> None:
     run = modes(*arguments)
-    assert run.returncode == 2
+    assert (run.returncode, run.stdout) == (2, "")
     assert len(run.stderr.strip().splitlines()) == 1
     assert line.split("=")[0] in run.stderr
+
+
+def test_a_damaged_step_file_is_refused_and_the_kernel_kept_quiet(tmp_path: Path) -> None:
+    path = tmp_path / "horn.step"
+    path.write_text("ISO-10303-21;\nHEADER;\n")
+    run = modes(str(path))
+    assert (run.returncode, run.stdout) == (2, "")
+    assert "not a STEP file that can be read" in run.stderr
+    assert len(run.stderr.strip().splitlines()) == 1

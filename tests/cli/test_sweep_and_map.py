@@ -8,6 +8,7 @@ import xarray as xr
 from pytest import CaptureFixture, approx, raises
 
 from sonolube.cli import main
+from sonolube.dynamics.backend import device_name
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"
 TRIBOMETER, POWER_MAP = str(RIGS / "tribometer.toml"), str(RIGS / "power_map.toml")
@@ -36,6 +37,17 @@ def test_a_sweep_tells_its_least_friction_and_writes_what_goes_on(tmp_path: Path
     code, _, err = answer(capsys, *call[:3], f"{VOLTS}=5V", "--out", str(tmp_path))
     assert code == 2
     assert "holds another sweep" in err
+
+
+@pytest.mark.skipif(bool(device_name("gpu")), reason="there is a GPU")
+@pytest.mark.parametrize("call", [("sweep", TRIBOMETER, "--over", f"{VOLTS}=14V,28V", "--json"), ("map", POWER_MAP)])
+def test_without_a_gpu_one_line_says_so(call: tuple[str, ...], tmp_path: Path, capsys: CaptureFixture[str]) -> None:
+    over = ("--over", f"{VOLTS}=10V,20V", "--over", "sliding.sliding_speed=10mm/s,20mm/s", "--form", "png")
+    drawn = over if call[0] == "map" else ()
+    code, _, err = answer(capsys, *call, *drawn, "--backend", "gpu", "--out", str(tmp_path))
+    assert code == 0
+    assert [line for line in err.splitlines() if "GPU" in line] == [err.strip()]
+    assert err.startswith("backend gpu: computed on the CPU: ")
 
 
 def test_drawn_points_are_as_many_as_asked_for(tmp_path: Path, capsys: CaptureFixture[str]) -> None:
@@ -84,10 +96,46 @@ def test_a_map_draws_measured_runs_and_maps_them_where_they_are_enough(
     assert json.loads(out)["map"] == "velocity-power"
     written = {Path(path).name for path in json.loads(out)["files"]}
     name = "power_map-velocity-power"
-    assert written == {f"{name}.png", f"{name}.nc", f"{name}-measured.png", f"{name}-measured.nc"}
+    assert written == {"map.html", f"{name}.png", f"{name}.nc", f"{name}-measured.png", f"{name}-measured.nc"}
     with xr.open_dataset(tmp_path / f"{name}-measured.nc") as found:
         middle = found.sel(sliding_speed=0.1, actuator_power=3.0, method="nearest")
         assert float(middle["friction_reduction"]) == approx(0.38, abs=0.01)
+
+
+def test_the_report_of_a_sweep_tells_what_was_asked_and_which_points_failed(
+    tmp_path: Path, capsys: CaptureFixture[str]
+) -> None:
+    over = ("--over", "contact.roughness.rms_height=6um,-6um", "--over", "friction.closure=stick_slip,kinematic")
+    code, _, _ = answer(capsys, "sweep", TRIBOMETER, *over, "--set", f"{VOLTS}=20V", "--out", str(tmp_path))
+    page = (tmp_path / "sweep.html").read_text(encoding="utf-8")
+    assert code == 0
+    for told in (
+        "contact.roughness.rms_height=6um,-6um",
+        f"{VOLTS}=20V",
+        "0 (default)",
+        "Points without a result",
+        "periodic",
+    ):
+        assert told in page
+    assert "4, 2 with a result" in page
+
+
+@pytest.mark.parametrize(
+    "over", [(f"{VOLTS}=5V:28V:9",), (f"{VOLTS}=5V:28V:9", "sliding.sliding_speed=5mm/s:0.1m/s:9")]
+)
+def test_a_sweep_draws_what_it_ran_over(over: tuple[str, ...], tmp_path: Path, capsys: CaptureFixture[str]) -> None:
+    asked = [word for key in over for word in ("--over", key)]
+    code, out, _ = answer(capsys, "sweep", TRIBOMETER, *asked, "--json", "--out", str(tmp_path))
+    assert code == 0
+    assert {Path(path).name for path in json.loads(out)["files"]} == {
+        "sweep.html",
+        "sweep.png",
+        "sweep.svg",
+        "sweep.nc",
+    }
+    drawing = (tmp_path / "sweep.svg").read_text(encoding="utf-8")
+    assert "Drive voltage, peak to peak [V]" in drawing
+    assert ("Sliding speed [mm/s]" in drawing) == (len(over) == 2)
 
 
 @pytest.mark.parametrize(

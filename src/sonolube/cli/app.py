@@ -7,23 +7,31 @@ import typer
 
 from sonolube import __version__
 from sonolube.cli import (
+    actuators,
     catalogue,
     comparison,
     control,
+    efficiency,
+    horn,
     identification,
+    impedance,
     literature,
     mapping,
     measure,
     modal,
     motion,
     operate,
+    optimise,
     regime,
     reproduction,
     study,
     sweep,
     thermal,
+    uncertainty,
 )
 from sonolube.errors import SonolubeError
+
+_LONGEST = 1200  # characters of a complaint, which may quote what was given
 
 app = typer.Typer(
     name="sonolube",
@@ -41,6 +49,8 @@ app.command()(operate.simulate)
 app.command()(motion.response)
 app.command()(motion.transient)
 app.command()(modal.modes)
+app.add_typer(horn.horn, name="horn")
+app.add_typer(impedance.impedance, name="impedance")
 app.command()(study.study)
 app.command()(comparison.compare)
 app.command()(thermal.thermal)
@@ -48,9 +58,13 @@ app.command()(regime.regime)
 app.command()(control.control)
 app.command()(sweep.sweep)
 app.command()(mapping.map)
+app.command()(uncertainty.uncertainty)
+app.command()(optimise.optimise)
+app.command()(efficiency.efficiency)
 app.add_typer(identification.identify, name="identify")
 app.add_typer(measure.measure, name="measure")
 app.command()(catalogue.materials)
+app.command()(actuators.actuators)
 app.command()(catalogue.published)
 app.command()(literature.literature)
 app.command()(catalogue.schema)
@@ -81,11 +95,17 @@ def main(arguments: Sequence[str] | None = None) -> None:
         code = _refuse(command, str(refusal))
     except typer.TyperException as refusal:
         code = _refuse(command, getattr(refusal, "format_message", refusal.__str__)())
+    except MemoryError as refusal:
+        code = _refuse(command, f"does not fit into memory; ask for fewer points: {refusal}")
     except (KeyboardInterrupt, typer.Abort):
         code = 130
     sys.exit(code if isinstance(code, int) else 0)
 
 
 def _refuse(command: str, reason: str) -> int:
-    typer.echo(f"{command}: {' '.join(reason.split())}", err=True)
+    told = " ".join(reason.replace("Value error, ", "").split())
+    if len(told) > _LONGEST:
+        told = f"{told[: _LONGEST // 2]} ... {told[-_LONGEST // 2 :]}"
+    if told:
+        typer.echo(f"{command}: {told}", err=True)
     return 2

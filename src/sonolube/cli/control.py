@@ -23,6 +23,7 @@ class FeedForward(StrEnum):
 
 
 def control(
+    context: typer.Context,
     rig: RigPath,
     friction: Annotated[
         str | None, typer.Option(metavar="FORCE", help="Friction wanted; half way to the least where absent.")
@@ -52,7 +53,7 @@ def control(
     stick_slip: Annotated[bool, typer.Option("--stick-slip", help="Also drag the slider until it sticks.")] = False,
     lasting: Annotated[str, typer.Option("--duration", metavar="TIME", help="How long to run.")] = "0.2s",
     changes: Changes = None,
-    out: Annotated[Path, typer.Option(help="Folder for report, figures, netCDF, C source and table.")] = Path("out"),
+    out: Annotated[Path, typer.Option(help="Folder for control.html, figures, netCDF, C source, table.")] = Path("out"),
     json: Json = False,
 ) -> None:
     """Friction control: a tuned controller, its run in closed loop, its C source and its lookup table.
@@ -63,11 +64,12 @@ def control(
     from math import inf
 
     from sonolube.cli.control_output import control_lines, control_object, suppressed, write_control
+    from sonolube.cli.design_page import asked_of, settings_of
     from sonolube.cli.progress import progress
     from sonolube.design.control import Amplifier, ControlSettings, Disturbance, Drift, control_study
     from sonolube.errors import InvalidInput
     from sonolube.rig import read_rig
-    from sonolube.units import to_si
+    from sonolube.units import rise_to_si, to_si
 
     def si(text: str | None, unit: str, name: str, otherwise: float) -> float:
         return otherwise if text is None else to_si(text, unit=unit, name=name)
@@ -76,6 +78,8 @@ def control(
     duration, per_second = to_si(lasting, unit="s", name="--duration"), to_si(rate, unit="Hz", name="--rate")
     if per_second <= 0 or duration <= 0:
         raise InvalidInput(f"--rate {rate} and --duration {lasting} must be positive")
+    if to_si(delay, unit="s", name="--delay") > duration:
+        raise InvalidInput(f"--delay {delay} must not exceed --duration {lasting}")
     own = known.drive.voltage_peak_to_peak if known.drive is not None else None
     amplifier = Amplifier(
         voltage_maximum=si(voltage_limit, "V", "--voltage-limit", own or 0.0),
@@ -95,7 +99,7 @@ def control(
             friction_factor=factor, friction_force_deviation=to_si(noise, unit="N", name="--noise")
         ),
         drift=Drift(
-            final_temperature_rise=to_si(warming, unit="K", name="--warming"),
+            final_temperature_rise=rise_to_si(warming, name="--warming"),
             warming_time=si(warmed_in, "s", "--warming-time", duration / 4),
         ),
     )
@@ -105,7 +109,9 @@ def control(
         line = _line(known, efficiency) if feed_forward is FeedForward.EFFICIENCY else None
         study = control_study(known, settings, mode=mode, line=line)
         belt = suppressed(known, study) if stick_slip else None
-        written = write_control(known, settings, study, belt, supposed, folder=out, name=f"{rig.stem}-control")
+        asked = [*asked_of(context, title=known.title, source=known.source), *settings_of(known)]
+        name = f"{rig.stem}-control"
+        written = write_control(known, settings, study, belt, supposed, asked=asked, folder=out, name=name)
     if json:
         answer = control_object(known, settings, study, belt, supposed, written)
         typer.echo(json_module.dumps(answer, indent=2, allow_nan=False))

@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 
 from sonolube.cli.control_figures import belt_figure, course_figure, design_figure
+from sonolube.cli.design_page import notes_of
+from sonolube.cli.output import closing_lines
 from sonolube.design.control import (
     ControlSettings,
     ControlStudy,
@@ -22,7 +24,7 @@ from sonolube.design.control import (
 )
 from sonolube.figure import publication_style
 from sonolube.files import write_whole
-from sonolube.report import Finding, write_findings
+from sonolube.report import Finding, FindingTable, write_findings
 from sonolube.rig import Rig, dataset, write_netcdf
 from sonolube.units import engineering
 from sonolube.vocabulary import quantity
@@ -139,9 +141,7 @@ def control_lines(
         f"{rig.title}, {engineering(rig.normal_load, 'N')}, {engineering(rig.sliding_speed, 'm/s')}, "
         f"closure {rig.closure}",
         *[f"  {name:<20} {value}" for name, value in _facts(settings, study, belt)],
-        *[f"  doubt: {doubt}" for doubt in _doubts(study)],
-        *[f"  assumed {key}: {reason}" for key, reason in _assumed(rig, belt, supposed).items()],
-        *[f"  {path}" for path in written],
+        *closing_lines(written, assumptions=_assumed(rig, belt, supposed), doubts=_doubts(study)),
     ]
 
 
@@ -152,6 +152,7 @@ def write_control(
     belt: Suppression | None,
     supposed: Mapping[str, str],
     *,
+    asked: list[tuple[str, str]],
     folder: Path,
     name: str,
 ) -> list[Path]:
@@ -190,12 +191,13 @@ def write_control(
             )
         page = write_findings(
             title=f"Friction control of {rig.title}",
+            asked=asked,
             facts=_facts(settings, study, belt),
+            tables=[_lookup(study)],
             figures=figures,
-            notes=[f"doubt: {doubt}" for doubt in _doubts(study)]
-            + [f"assumed {key}: {reason}" for key, reason in _assumed(rig, belt, supposed).items()],
+            notes=notes_of(_doubts(study), _assumed(rig, belt, supposed)),
             folder=folder,
-            name=name,
+            name="control",
         )
     source = controller_source(study.controller, study.tracker, title=rig.title)
     return [
@@ -204,6 +206,18 @@ def write_control(
         write_whole(folder / f"{name}.c", source),
         write_whole(folder / f"{name}.csv", lookup_table(study.controller)),
     ]
+
+
+def _lookup(study: ControlStudy) -> FindingTable:
+    """Return the map from friction to voltage at about a dozen places."""
+    plant = study.plant
+    places = np.unique(np.linspace(0, plant.friction_force.size - 1, 12).round().astype(int))
+    rows = zip(plant.voltage_peak_to_peak[places], plant.friction_force[places], strict=True)
+    return FindingTable(
+        title=f"Friction by the rig's model, at {places.size} of the map's {plant.friction_force.size} voltages",
+        heads=("drive, peak to peak", "friction"),
+        rows=tuple((engineering(float(volts), "V"), engineering(float(force), "N")) for volts, force in rows),
+    )
 
 
 def _doubts(study: ControlStudy) -> tuple[str, ...]:

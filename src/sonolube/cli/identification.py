@@ -30,7 +30,7 @@ def identify_rig(
         read_rig(base)
     with progress("identifying"):
         tables = rig_tables(tribometer_identification(seed=seed), tribometer_stack())
-    text = tables if base is None else with_tables(base.read_text(encoding="utf-8"), tables)
+    text = tables if base is None else with_tables(base.read_text(encoding="utf-8-sig"), tables)
     if out is None:
         typer.echo(text, nl=False)
     else:

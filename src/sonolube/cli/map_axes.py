@@ -14,7 +14,7 @@ _KEYS = {
     "drive.voltage_peak_to_peak": "voltage_peak_to_peak",
     "drive.frequency": "frequency",
 }
-_TAKEN = {
+_TAKEN = {  # across, up, and a panel to each
     "velocity-stress": ("sliding_speed", "normal_load", "voltage_peak_to_peak"),
     "velocity-power": ("sliding_speed", "voltage_peak_to_peak", "normal_load"),
     "frequency-voltage": ("frequency", "voltage_peak_to_peak"),
@@ -27,7 +27,7 @@ def axes_of(rig: Rig, kind: str, over: list[str]) -> dict[str, Floats]:
     Raises
     ------
     InvalidInput
-        If the rig cannot be mapped, or a key is no axis of that map.
+        If the rig cannot be mapped, a key is no axis of that map, or across or up there is but one value.
     """
     require_structure(rig)
     axes = _usual(rig, kind)
@@ -36,6 +36,8 @@ def axes_of(rig: Rig, kind: str, over: list[str]) -> dict[str, Floats]:
         if name not in axes:
             known = ", ".join(long for long, short in _KEYS.items() if short in axes)
             raise InvalidInput(f"--over {key}: no axis of a {kind} map; its axes are {known}")
+        if values.size < 2 and name in _TAKEN[kind][:2]:
+            raise InvalidInput(f"--over {key}: a {kind} map runs over it, and needs at least 2 values")
         axes[name] = values.astype(np.float64)
     return axes
 

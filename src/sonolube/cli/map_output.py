@@ -5,10 +5,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sonolube.design import map_figure, map_page, measured_figure, measured_map
+from sonolube.cli.design_page import notes_of, status_counts, status_tables
+from sonolube.cli.output import closing_lines
+from sonolube.design import PLACES, map_figure, map_page, measured_figure, measured_map
 from sonolube.errors import InvalidInput
-from sonolube.figure import publication_style, write_figure
+from sonolube.figure import publication_style
 from sonolube.files import write_whole
+from sonolube.report import Finding, FindingTable, write_findings
 from sonolube.rig import Rig, write_netcdf
 from sonolube.units import engineering
 from sonolube.vocabulary import quantity
@@ -16,33 +19,44 @@ from sonolube.vocabulary import quantity
 if TYPE_CHECKING:
     import xarray as xr
 
-_PLACES = {
-    "velocity-stress": ("sliding_speed", "nominal_pressure", "voltage_peak_to_peak"),
-    "velocity-power": ("sliding_speed", "actuator_power", "normal_load"),
-    "frequency-voltage": ("frequency", "voltage_peak_to_peak", None),
-}
 _FEWEST = 6  # runs that can be interpolated
+_COLUMNS = ("friction_reduction", "sliding_speed", "actuator_power")
+_MEASURED = "The measured runs alone: friction reduction between them by a Gaussian process, and its uncertainty."
 _TOLD = ("friction_reduction", "sliding_speed", "normal_load", "frequency", "voltage_peak_to_peak", "actuator_power")
 
 
 def write_map(
-    mapped: "xr.Dataset", runs: "xr.Dataset | None", *, folder: Path, name: str, forms: list[str]
+    rig: Rig,
+    mapped: "xr.Dataset",
+    runs: "xr.Dataset | None",
+    *,
+    asked: list[tuple[str, str]],
+    folder: Path,
+    name: str,
+    forms: list[str],
 ) -> list[Path]:
-    """Write a map as figures, page and netCDF, that of the measured runs beside, and return the files."""
+    """Write the report of a map, its figures and netCDF, that of the measured runs beside, and return the files."""
     page = map_page(mapped) if "html" in forms else None  # refuses before anything is written
-    across, up, panel = _PLACES[mapped.attrs["map"]]
+    across, up, panel = PLACES[mapped.attrs["map"]]
     missing = [] if runs is None else [axis for axis in (across, up) if axis not in runs]
     if missing:
         raise InvalidInput(f"measured runs need a column {missing[0]} for a {mapped.attrs['map']} map")
     between = _interpolated(mapped, runs, across, up, panel)
-    drawn = tuple(form for form in forms if form != "html")
-    written = []
     with publication_style():
-        if drawn:
-            figure = map_figure(mapped, measured=runs)
-            written += write_figure(figure, folder=folder, name=name, forms=drawn)
-        if drawn and between is not None and runs is not None:
-            written += write_figure(measured_figure(between, runs), folder=folder, name=f"{name}-measured", forms=drawn)
+        figures = [Finding(name=name, caption=_caption(mapped, runs), figure=map_figure(mapped, measured=runs))]
+        if between is not None and runs is not None:
+            figures.append(Finding(name=f"{name}-measured", caption=_MEASURED, figure=measured_figure(between, runs)))
+    written = write_findings(
+        title=f"Friction reduction over {_lower(across)} and {_lower(up)}: {rig.title}",
+        asked=asked,
+        facts=[("points", f"{mapped['status'].size}"), *_facts(mapped), *_facts_of_runs(runs, between)],
+        tables=[*_panel_table(mapped, panel), *status_tables(status_counts(mapped), _failures(mapped))],
+        figures=figures,
+        notes=notes_of((), rig.assumptions),
+        folder=folder,
+        name="map",
+        forms=[form for form in forms if form != "html"],
+    )
     if page is not None:
         written.append(write_whole(folder / f"{name}.html", page))
     if between is not None:
@@ -100,22 +114,78 @@ def map_object(rig: Rig, mapped: "xr.Dataset", written: list[Path]) -> dict[str,
 
 def map_lines(rig: Rig, mapped: "xr.Dataset", written: list[Path]) -> list[str]:
     """Return what a map shows as lines."""
-    failed = np.isnan(mapped["friction_reduction"].values)
-    lines = [f"{rig.title}, {mapped['status'].size} points, closure {rig.closure}"]
+    return [
+        f"{rig.title}, {mapped['status'].size} points, closure {rig.closure}",
+        *[f"  {name:<20} {value}" for name, value in _facts(mapped)],
+        *[f"  without result       {points}: {reason}" for reason, points in _failures(mapped)],
+        *closing_lines(written, assumptions=rig.assumptions),
+    ]
+
+
+def _facts(mapped: "xr.Dataset") -> list[tuple[str, str]]:
+    facts = []
     best = [engineering(value, quantity(name).unit) for name, value in _best(mapped).items()]
     if best:
-        lines.append(f"  most reduction       {best[0]} at {', '.join(best[1:])}")
-    ridge = mapped["sufficient_power"].values if "sufficient_power" in mapped else np.array([])
-    if np.isfinite(ridge).any():
-        low, high = (engineering(float(pick(ridge)), "W") for pick in (np.nanmin, np.nanmax))
-        lines.append(f"  ridge                {low} to {high}; beyond it doubling the power buys less than 5 %")
-    if failed.any():
-        lines.append(f"  without result       {failed.sum()}: {mapped['reason'].values[failed][0]}")
+        facts.append(("most reduction", f"{best[0]} at {', '.join(best[1:])}"))
+    ridge = _ridge(mapped)
+    if ridge:
+        facts.append(("ridge", f"{ridge}; beyond it doubling the power buys less than 5 %"))
+    return facts
+
+
+def _facts_of_runs(runs: "xr.Dataset | None", between: "xr.Dataset | None") -> list[tuple[str, str]]:
+    if runs is None:
+        return []
+    told = f"{runs.sizes['run']}"
+    if between is None:
+        return [("measured runs", f"{told}; {_FEWEST} make a map of their own")]
+    scatter, error = (100 * float(between.attrs[name]) for name in ("scatter", "leave_one_out_error"))
+    left_out = f"a run left out is missed by {error:.2g} %"
+    return [("measured runs", f"{told}; they scatter by {scatter:.2g} % about a smooth map, and {left_out}")]
+
+
+def _panel_table(mapped: "xr.Dataset", panel: str | None) -> list[FindingTable]:
+    """Return the most reduction at each load or voltage, and the ridge where the map has one."""
+    if panel is None:
+        return []
+    rows = []
+    for index in range(mapped.sizes[panel]):
+        part = mapped.isel({panel: index})
+        at = {name: engineering(value, quantity(name).unit) for name, value in _best(part).items()}
+        value = engineering(float(part[panel]), quantity(panel).unit)
+        rows.append((value, *(at.get(name, "") for name in _COLUMNS), _ridge(part)))
+    heads = (quantity(panel).meaning, *(quantity(name).meaning for name in _COLUMNS), "Ridge")
+    with_ridge = any(row[-1] for row in rows)
+    shown = slice(None) if with_ridge else slice(-1)
     return [
-        *lines,
-        *[f"  assumed {key}: {reason}" for key, reason in rig.assumptions.items()],
-        *map("  {}".format, written),
+        FindingTable(title="Most reduction", heads=heads[shown], rows=tuple(tuple(row[shown]) for row in rows)),
     ]
+
+
+def _ridge(mapped: "xr.Dataset") -> str:
+    ridge = mapped["sufficient_power"].values if "sufficient_power" in mapped else np.array([])
+    if not np.isfinite(ridge).any():
+        return ""
+    low, high = (engineering(float(pick(ridge)), "W") for pick in (np.nanmin, np.nanmax))
+    return f"{low} to {high}"
+
+
+def _failures(mapped: "xr.Dataset") -> list[tuple[str, int]]:
+    failed = np.isnan(mapped["friction_reduction"].values)
+    reasons, counts = np.unique(mapped["reason"].values[failed], return_counts=True)
+    return [(str(reason), int(count)) for reason, count in zip(reasons, counts, strict=True)]
+
+
+def _caption(mapped: "xr.Dataset", runs: "xr.Dataset | None") -> str:
+    told = "Friction reduction by the model."
+    if _ridge(mapped):
+        told += " Dashed: the power beyond which doubling it reduces friction by less than another 5 %."
+    return told if runs is None else f"{told} Circles: measured runs, with their reductions in percent."
+
+
+def _lower(name: str) -> str:
+    meaning = quantity(name).meaning.partition(",")[0]
+    return meaning[:1].lower() + meaning[1:]
 
 
 def _best(mapped: "xr.Dataset") -> dict[str, float]:

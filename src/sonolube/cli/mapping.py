@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from sonolube.cli.backend import Backend, BackendName, told_if_unused
 from sonolube.cli.operate import Changes, Json, RigPath
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ class Form(StrEnum):
 
 
 def map(  # noqa: A001 - the command's name
+    context: typer.Context,
     rig: RigPath,
     kind: Annotated[Kind, typer.Option(help="What to map friction reduction over.")] = Kind.VELOCITY_POWER,
     over: Annotated[
@@ -48,7 +50,8 @@ def map(  # noqa: A001 - the command's name
         list[Form] | None, typer.Option("--form", help="png, pdf, svg or an interactive html; may come again.")
     ] = None,
     changes: Changes = None,
-    out: Annotated[Path, typer.Option(help="Folder for the figures and the netCDF file.")] = Path("out"),
+    backend: BackendName = Backend.CPU,
+    out: Annotated[Path, typer.Option(help="Folder for the report map.html, figures and netCDF file.")] = Path("out"),
     json: Json = False,
 ) -> None:
     """Map of friction reduction: over sliding speed and stress, speed and power, or drive frequency and voltage.
@@ -57,6 +60,7 @@ def map(  # noqa: A001 - the command's name
     """
     import json as json_module
 
+    from sonolube.cli.design_page import asked_of, settings_of
     from sonolube.cli.map_axes import axes_of
     from sonolube.cli.map_output import map_lines, map_object, write_map
     from sonolube.cli.progress import progress
@@ -67,10 +71,12 @@ def map(  # noqa: A001 - the command's name
     known = read_rig(rig, changes=list(changes or ()))
     axes = axes_of(known, kind.value, list(over or ()))
     runs: xr.Dataset | None = None if measured is None else read_runs(measured)
-    with progress("mapping"):
-        result = MAPS[kind.value](known, **axes)
+    with told_if_unused(), progress("mapping"):
+        result = MAPS[kind.value](known, **axes, backend=backend.value)
         wanted = [form.value for form in forms or (Form.PNG, Form.PDF)]
-        written = write_map(result, runs, folder=out, name=f"{rig.stem}-{kind.value}", forms=wanted)
+        asked = [*asked_of(context, title=known.title, source=known.source), *settings_of(known)]
+        name = f"{rig.stem}-{kind.value}"
+        written = write_map(known, result, runs, asked=asked, folder=out, name=name, forms=wanted)
     if json:
         typer.echo(json_module.dumps(map_object(known, result, written), indent=2, allow_nan=False))
     else:

@@ -116,8 +116,8 @@ def answer(
     if as_json:
         told = measurement_object(report) | ({"files": [str(path) for path in written]} if written else {})
         typer.echo(json.dumps(told, indent=2, allow_nan=False))
-    else:
-        typer.echo("\n".join([*measurement_lines(report), *(f"report: {path}" for path in written)]))
+    elif lines := [*measurement_lines(report), *(f"report: {path}" for path in written)]:
+        typer.echo("\n".join(lines))
     for reason in refused.values():
         typer.echo(f"sonolube measure: {reason}", err=True)
     if refused:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.fem import ConvergedModes, Mesh
+from sonolube.fem import ConvergedModes, Mesh, flat_triangles
 from sonolube.figure import publication_style, write_figure
 
 if TYPE_CHECKING:
@@ -66,23 +66,22 @@ def write_modes(found: ConvergedModes, names: Sequence[str], *, folder: Path, pa
     return files
 
 
-def mode_figure(mesh: Mesh, shape: Floats, *, title: str) -> "Figure":
-    """Return a picture of a mode: the deformed surface over the outline at rest, coloured by displacement."""
+def mode_figure(mesh: Mesh, shape: Floats, *, title: str, share: float = 1.0) -> "Figure":
+    """Return a picture of a mode at a share of its amplitude: the deformed surface, coloured by displacement."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
     from matplotlib.figure import Figure
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-    surface = np.concatenate([face for name, face in mesh.faces.items() if "|" not in name])
-    patches = surface[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]].reshape(-1, 3)  # four flat ones for a curved one
+    patches = np.concatenate([flat_triangles(mesh, face=name) for name in mesh.faces if "|" not in name])
     size = np.linalg.norm(shape, axis=1)
     extent = np.ptp(mesh.nodes, axis=0)
-    millimetres = 1e3 * (mesh.nodes + shape * _EXAGGERATION * extent.max() / size.max())
+    millimetres = 1e3 * (mesh.nodes + share * shape * _EXAGGERATION * extent.max() / size.max())
     colours = ScalarMappable(norm=Normalize(0, 1), cmap="viridis")
     with publication_style():
         figure = Figure(figsize=(5.2, 4.4))
         axes = figure.add_subplot(projection="3d", computed_zorder=False)
-        level = (size / size.max())[patches].mean(axis=1)
+        level = abs(share) * (size / size.max())[patches].mean(axis=1)
         body = Poly3DCollection(millimetres[patches], facecolors=colours.to_rgba(level), linewidths=0)
         body.set_rasterized(True)
         axes.add_collection3d(body)
@@ -91,7 +90,7 @@ def mode_figure(mesh: Mesh, shape: Floats, *, title: str) -> "Figure":
             1e3 * extent * 0.5 + 90 * extent.max(),
         )
         axes.set(**{f"{k}lim": (middle[i] - half[i], middle[i] + half[i]) for i, k in enumerate("xyz")})
-        axes.set_box_aspect(half, zoom=0.82)
+        axes.set_box_aspect(half, zoom=0.74)
         axes.set_title(title)
         for name, label in (("x", axes.set_xlabel), ("y", axes.set_ylabel), ("z", axes.set_zlabel)):
             label(f"{name} [mm]", labelpad=8)

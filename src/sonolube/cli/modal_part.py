@@ -1,17 +1,35 @@
 """From what a user types to a part: its name, or a STEP file, and its sizes."""
 
 import inspect
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from sonolube.checks import Floats
+from sonolube.design.horn_shapes import Body, horn_body, own_body
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.fem import PARTS, Geometry, Mesh, read_step
+from sonolube.fem import (
+    PARTS,
+    TRANSDUCERS,
+    Geometry,
+    Medium,
+    Mesh,
+    Transducer,
+    medium_of,
+    mesh_of,
+    poled_part,
+    read_step,
+)
+from sonolube.materials import Material
+from sonolube.materials import material as material_of
 from sonolube.units import to_si
 from sonolube.vocabulary import quantities
 
+_BEYOND_ANY_PART = 1e6  # m; the CAD kernel fails on larger ones in words of its own
 _ELEMENTS_ACROSS = 1.6  # of a part as thick as a cube of its volume would be
+_COARSE = 0.02  # m, coarse enough to show the axes of most parts
 
 
 def named_part(part: str, sizes: Sequence[str]) -> Geometry:
@@ -20,7 +38,7 @@ def named_part(part: str, sizes: Sequence[str]) -> Geometry:
     Parameters
     ----------
     part : str
-        A name of `PARTS`, or a path that ends in .step or .stp.
+        A name of `PARTS` or `TRANSDUCERS`, or a path that ends in .step or .stp.
     sizes : sequence of str
         Such as "length=127mm".
 
@@ -35,13 +53,116 @@ def named_part(part: str, sizes: Sequence[str]) -> Geometry:
     InvalidInput
         If a size is missing or not a length.
     """
-    if Path(part).suffix.lower() in {".step", ".stp"}:
-        if sizes:
-            raise InvalidInput("a STEP file has its sizes; --set is for parts by name")
-        return read_step(Path(part))
+    if _is_step(part):
+        return _own(part, sizes)
+    if part in TRANSDUCERS:
+        return transducer_of(part, sizes).geometry
     if part not in PARTS:
-        raise UnknownName.among(PARTS, kind="part", name=part)
-    parameters = inspect.signature(PARTS[part]).parameters
+        raise UnknownName.among((*PARTS, *TRANSDUCERS), kind="part", name=part)
+    return PARTS[part](**sizes_of(part, PARTS[part], sizes))
+
+
+def named_media(part: str, sizes: Sequence[str], material: str) -> dict[str, Medium]:
+    """Return what each region of a part is made of: one material, or what a transducer has of its own.
+
+    Parameters
+    ----------
+    part : str
+        As in `named_part`.
+    sizes : sequence of str
+        As in `named_part`.
+    material : str
+        Name of the material of a part that is no transducer.
+
+    Returns
+    -------
+    dict of str to Medium
+    """
+    if part in TRANSDUCERS:
+        return dict(transducer_of(part, sizes).media)
+    return dict.fromkeys(named_part(part, sizes).regions, medium_of(material_of(material)))
+
+
+def transducer_of(part: str, sizes: Sequence[str], **wired: str) -> Transducer:
+    """Return the transducer of this name, or a part or STEP file of one ceramic between two electrodes.
+
+    Parameters
+    ----------
+    part : str
+        A name of `TRANSDUCERS` or `PARTS`, or a path that ends in .step or .stp.
+    sizes : sequence of str
+        Such as "length=12mm".
+    **wired : str
+        Of a part that is no transducer: `ceramic`, `along`, `driven` and `grounded`.
+
+    Returns
+    -------
+    Transducer
+    """
+    if part not in TRANSDUCERS:
+        return poled_part(named_part(part, sizes), **wired)
+    function = TRANSDUCERS[part]
+    return function(**sizes_of(part, function, sizes))
+
+
+def horn_of(
+    shape: str, sizes: Sequence[str], *, frequency: float, material: Material, tune: str, axis: str | None
+) -> Body:
+    """Return the horn of this shape, or that of a STEP file.
+
+    Parameters
+    ----------
+    shape : str
+        A name of `SHAPES`, or a path that ends in .step or .stp.
+    sizes : sequence of str
+        Such as "radius=20mm".
+    frequency : float
+        Frequency at which it shall ring. [Hz]
+    material : Material
+    tune : str
+        Which size is tuned.
+    axis : str or None
+        Axis of the part of a STEP file; its longest where absent.
+
+    Returns
+    -------
+    Body
+    """
+    if _is_step(shape):
+        geometry = _own(shape, sizes)
+        return own_body(geometry, axis=axis or longest_axis(mesh_of(geometry, element_size=_COARSE)))
+    given = {}
+    for entry in sizes:
+        name, _, value = entry.partition("=")
+        given[name] = to_si(value, unit="m", name=name)
+    speed = (material.value("youngs_modulus") / material.value("density")) ** 0.5
+    return horn_body(shape, frequency=frequency, wave_speed=speed, sizes=given, tune=tune)
+
+
+def sizes_of(part: str, function: Callable[..., Any], sizes: Sequence[str]) -> dict[str, float]:
+    """Return the sizes a part's function takes, in SI.
+
+    Parameters
+    ----------
+    part : str
+        Name of the part.
+    function : callable
+        What makes it.
+    sizes : sequence of str
+        Such as "length=127mm".
+
+    Returns
+    -------
+    dict of str to float
+
+    Raises
+    ------
+    UnknownName
+        If the part has no such size.
+    InvalidInput
+        If a size is missing or of another unit.
+    """
+    parameters = inspect.signature(function).parameters
     known = {name: entry for name, entry in parameters.items() if name in quantities()}
     given = {}
     for entry in sizes:
@@ -49,10 +170,12 @@ def named_part(part: str, sizes: Sequence[str]) -> Geometry:
         if name not in known:
             raise UnknownName.among(known, kind=f"size of a {part}", name=name)
         given[name] = to_si(value, unit=quantities()[name].unit, name=name)
+        if given[name] and not 1 / _BEYOND_ANY_PART < abs(given[name]) < _BEYOND_ANY_PART:
+            raise InvalidInput(f"{name} {value} lies beyond any part")
     missing = [name for name, entry in known.items() if entry.default is entry.empty and name not in given]
     if missing:
         raise InvalidInput(f"a {part} needs {', '.join(missing)}; give each as --set {missing[0]}=20mm")
-    return PARTS[part](**given)
+    return given
 
 
 def starting_size(geometry: Geometry) -> float:
@@ -63,3 +186,30 @@ def starting_size(geometry: Geometry) -> float:
 def longest_axis(mesh: Mesh) -> str:
     """Return the axis along which a mesh is longest, "x", "y" or "z"."""
     return "xyz"[int(np.argmax(np.ptp(mesh.nodes, axis=0)))]
+
+
+def points_of(path: Path) -> Floats:
+    """Return points in m from a table of x, y and z in mm with commas between, shape (p, 3).
+
+    Raises
+    ------
+    InvalidInput
+        If the file is no such table.
+    """
+    try:
+        points = np.loadtxt(path, delimiter=",", comments="#", ndmin=2, dtype=np.float64)
+    except (OSError, ValueError) as failure:
+        raise InvalidInput(f"{path}: is no table of numbers with commas between: {failure}") from None
+    if points.shape[1] != 3 or not np.all(np.isfinite(points)):
+        raise InvalidInput(f"{path}: needs the three columns x, y and z in mm, got {points.shape[1]}")
+    return np.asarray(1e-3 * points)
+
+
+def _is_step(part: str) -> bool:
+    return Path(part).suffix.lower() in {".step", ".stp"}
+
+
+def _own(part: str, sizes: Sequence[str]) -> Geometry:
+    if sizes:
+        raise InvalidInput("a STEP file has its sizes; --set is for parts by name")
+    return read_step(Path(part))

@@ -1,7 +1,7 @@
 """How results are printed: a few lines for people, or one JSON object for programs."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -22,8 +22,17 @@ def show(result: Any, *, rig: Rig, as_json: bool, written: Sequence[Path] = ()) 
         files = {"files": [str(path) for path in written]} if written else {}
         typer.echo(json.dumps(_object(quantified, told, rig, values["doubts"]) | files, indent=2, allow_nan=False))
     else:
-        lines = _lines(quantified, told, rig, values["doubts"]) + [f"  {path}" for path in written]
-        typer.echo("\n".join(lines))
+        closing = closing_lines(written, assumptions=rig.assumptions, doubts=values["doubts"])
+        typer.echo("\n".join([*_lines(quantified, told, rig), *closing]))
+
+
+def closing_lines(written: Sequence[Path], *, assumptions: Mapping[str, str], doubts: Sequence[str] = ()) -> list[str]:
+    """Return what every answer ends with: what is doubtful, what was assumed, and the files written."""
+    return [
+        *[f"  doubt: {doubt}" for doubt in doubts],
+        *[f"  assumed {key}: {reason}" for key, reason in assumptions.items()],
+        *[f"  {path}" for path in written],
+    ]
 
 
 def _object(quantified: dict[str, float], told: dict[str, str], rig: Rig, doubts: tuple[str, ...]) -> dict[str, Any]:
@@ -36,7 +45,7 @@ def _object(quantified: dict[str, float], told: dict[str, str], rig: Rig, doubts
     }
 
 
-def _lines(quantified: dict[str, float], told: dict[str, str], rig: Rig, doubts: tuple[str, ...]) -> list[str]:
+def _lines(quantified: dict[str, float], told: dict[str, str], rig: Rig) -> list[str]:
     width = max(len(quantities()[name].meaning) for name in quantified)
     return [
         f"{rig.title}, {engineering(rig.normal_load, 'N')}",
@@ -45,6 +54,4 @@ def _lines(quantified: dict[str, float], told: dict[str, str], rig: Rig, doubts:
             for name, value in quantified.items()
         ],
         *[f"  {name:<{width}}  {text}" for name, text in told.items() if name != "status"],
-        *[f"  doubt: {doubt}" for doubt in doubts],
-        *[f"  assumed {key}: {reason}" for key, reason in rig.assumptions.items()],
     ]

@@ -11,8 +11,9 @@ Advance = Callable[[str, int, int], None]
 
 @contextmanager
 def progress(title: str) -> Iterator[Advance]:
-    """Show a bar while inside; call what it yields with (what, how many are done, of how many)."""
+    """Show a bar while inside, on a terminal; call what it yields with (what, how many are done, of how many)."""
+    console = Console(stderr=True)
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
         task = bar.add_task(title, total=None)
         yield lambda what, done, total: bar.update(task, description=f"{title}: {what}", completed=done, total=total)

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sonolube.cli.output import closing_lines
 from sonolube.figure import publication_style, write_figure
 from sonolube.friction import Method
 from sonolube.rig import RegimeMap, RegimePoint, Rig
@@ -47,9 +48,7 @@ def regime_lines(rig: Rig, result: RegimePoint, wear: WearAssessment | None, wri
         f"  on asperities  {100 * result.asperity_load_share:.3g} % of the load through the lubricant",
         f"  closure        {result.closure}",
         *([] if wear is None else _wear_lines(wear)),
-        *[f"  doubt: {doubt}" for doubt in result.doubts],
-        *[f"  assumed {key}: {reason}" for key, reason in rig.assumptions.items()],
-        *[f"  {path}" for path in written],
+        *closing_lines(written, assumptions=rig.assumptions, doubts=result.doubts),
     ]
 
 

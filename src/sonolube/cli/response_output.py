@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sonolube.cli.output import closing_lines
 from sonolube.dynamics import modes
 from sonolube.figure import COLOURS, publication_style, write_figure
 from sonolube.rig import Response, Rig, dataset, touching_structure, write_netcdf
@@ -36,8 +37,7 @@ def response_lines(rig: Rig, result: Response, written: list[Path]) -> list[str]
         f"  natural frequencies  {resonances}",
         f"  largest amplitude    {engineering(float(result.amplitude_per_volt[best]), 'm')} per volt peak to peak "
         f"at {engineering(float(result.frequency[best]), 'Hz', digits=4)}",
-        *[f"  assumed {key}: {reason}" for key, reason in rig.assumptions.items()],
-        *[f"  {path}" for path in written],
+        *closing_lines(written, assumptions=rig.assumptions),
     ]
 
 

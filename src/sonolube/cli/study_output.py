@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sonolube.cli.output import closing_lines
+from sonolube.errors import InvalidInput
 from sonolube.figure import publication_style, write_figure
 from sonolube.rig import STUDY_FIGURES, Rig, write_netcdf
 from sonolube.units import engineering
@@ -39,13 +41,14 @@ def study_lines(rig: Rig, of: str, study: "xr.Dataset", written: list[Path]) -> 
         f"{rig.title}, {engineering(rig.normal_load, 'N')}, {study['status'].size} points, closure {rig.closure}",
         *[f"  {line}" for line in _LINES[of](study)],
         *[f"  without result: {count} of {study['status'].size}: {reason}" for reason, count in _failures(study)],
-        *[f"  assumed {key}: {reason}" for key, reason in rig.assumptions.items()],
-        *[f"  {path}" for path in written],
+        *closing_lines(written, assumptions=rig.assumptions),
     ]
 
 
 def write_study(study: "xr.Dataset", of: str, *, folder: Path, name: str) -> list[Path]:
-    """Write a study as a figure and as netCDF, and return the files."""
+    """Write a study as a figure and as netCDF, and return the files; refuse one of which no point has a result."""
+    if np.isnan(study["friction_ratio"].values).all():
+        raise InvalidInput(f"no point has a result: {_failures(study)[0][0]}")
     with publication_style():
         figure = STUDY_FIGURES[of](study)
         figure.suptitle(study.attrs["rig"], fontsize=9)

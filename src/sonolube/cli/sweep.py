@@ -2,18 +2,15 @@
 
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from sonolube.cli.backend import Backend, BackendName, told_if_unused
 from sonolube.cli.operate import Changes, Json, RigPath
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from sonolube.design import SweepPlan
-
-_TOLD = ("friction_ratio", "vibration_amplitude", "actuator_power", "dissipated_power")
 
 
 class Sample(StrEnum):
@@ -25,6 +22,7 @@ class Sample(StrEnum):
 
 
 def sweep(
+    context: typer.Context,
     rig: RigPath,
     over: Annotated[
         list[str],
@@ -44,11 +42,12 @@ def sweep(
         str | None, typer.Option(metavar="ADDRESS", help="Dask scheduler to work on, or local for processes here.")
     ] = None,
     chunk: Annotated[int, typer.Option(help="Points computed and kept together.", min=1)] = 100_000,
+    backend: BackendName = Backend.CPU,
     changes: Changes = None,
     out: Annotated[
         Path | None,
         typer.Option(
-            help="Folder for the chunks and the netCDF file, where a run that was broken off goes on;"
+            help="Folder for report, figure, netCDF file and chunks, where a run that was broken off goes on;"
             " one of its own in out where absent."
         ),
     ] = None,
@@ -61,11 +60,15 @@ def sweep(
     import json as json_module
 
     from sonolube.cli.progress import progress
+    from sonolube.cli.sweep_output import sweep_lines, sweep_object, write_sweep
     from sonolube.design import sweep as swept
+    from sonolube.dynamics.backend import available
 
     plan = _plan(rig, over, sample, points, seed, list(changes or ()))
-    folder = out or Path("out") / f"{rig.stem}-sweep-{plan.digest[:8]}"
-    with progress("sweeping") as advance:
+    with told_if_unused():
+        chosen = available(backend.value)
+    folder = out or Path("out") / f"{rig.stem}-sweep-{plan.digest[:8]}{'-gpu' if chosen == 'gpu' else ''}"
+    with told_if_unused(), progress("sweeping") as advance:
         result = swept(
             plan,
             folder=folder,
@@ -73,9 +76,12 @@ def sweep(
             workers=workers,
             scheduler=scheduler,
             advance=lambda done, total: advance("points", done, total),
+            backend=chosen,
         )
-    told = _summary(plan, result, folder / "sweep.nc")
-    typer.echo(json_module.dumps(told, indent=2, allow_nan=False) if json else "\n".join(_lines(told)))
+    told = sweep_object(plan, result)
+    written = write_sweep(context, plan, result, told, folder=folder)
+    told["files"] = [str(path) for path in (*written, folder / "sweep.nc")]
+    typer.echo(json_module.dumps(told, indent=2, allow_nan=False) if json else "\n".join(sweep_lines(told)))
 
 
 def _plan(rig: Path, over: list[str], sample: Sample, points: int | None, seed: int, changes: list[str]) -> "SweepPlan":
@@ -90,57 +96,3 @@ def _plan(rig: Path, over: list[str], sample: Sample, points: int | None, seed: 
     if points is not None:
         raise InvalidInput(f"--points has no meaning for --sample {sample}; it is for lhs")
     return (grid_plan if sample is Sample.GRID else list_plan)(rig, over=values_of(over), changes=changes)
-
-
-def _summary(plan: "SweepPlan", result: "xr.Dataset", path: Path) -> dict[str, Any]:
-    import numpy as np
-
-    from sonolube.vocabulary import quantity
-
-    ratio = result["friction_ratio"].values.ravel()
-    names = result["status"].attrs["flag_meanings"].split()
-    codes, counts = np.unique(result["status"].values, return_counts=True)
-    failed = np.isnan(ratio)
-    reasons, failures = np.unique(result["reason"].values.ravel()[failed], return_counts=True)
-    least = {}
-    if not failed.all():
-        place = int(np.nanargmin(ratio))
-        settings = {key: array[0] for key, array in plan.rows(place, place + 1).items()}
-        least = {key: value.item() for key, value in settings.items()}
-        least |= {name: _number(result[name].values.ravel()[place], quantity(name).unit) for name in _TOLD}
-    return {
-        "rig": result.attrs["rig"],
-        "points": int(ratio.size),
-        "statuses": {names[code]: int(count) for code, count in zip(codes, counts, strict=True)},
-        "without_result": [
-            {"reason": str(result["reason_text"].values[code]), "points": int(count)}
-            for code, count in zip(reasons, failures, strict=True)
-        ],
-        "least_friction": least,
-        "files": [str(path)],
-    }
-
-
-def _number(value: float, unit: str) -> dict[str, Any]:
-    return {"value": float(value), "unit": unit}
-
-
-def _lines(told: dict[str, Any]) -> list[str]:
-    from sonolube.units import engineering
-    from sonolube.vocabulary import quantities
-
-    lines = [f"{told['rig']}, {told['points']} points"]
-    lines += [f"  {name:<14} {count}" for name, count in told["statuses"].items()]
-    lines += [f"  without result: {row['points']}: {row['reason']}" for row in told["without_result"]]
-    if told["least_friction"]:
-        lines.append("  least friction")
-    for key, value in told["least_friction"].items():
-        if isinstance(value, dict):
-            text = engineering(value["value"], value["unit"])
-        elif isinstance(value, str):
-            text = value
-        else:
-            known = quantities().get(key.rpartition(".")[2])
-            text = engineering(value, known.unit if known else "")
-        lines.append(f"    {key:<28} {text}")
-    return [*lines, *[f"  {path}" for path in told["files"]]]

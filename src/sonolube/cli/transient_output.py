@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sonolube.cli.output import closing_lines
 from sonolube.dynamics.trajectories import Trajectory
 from sonolube.figure import COLOURS, publication_style, write_figure
 from sonolube.rig import Rig, StartUp, dataset, write_netcdf
@@ -38,8 +39,7 @@ def start_up_lines(rig: Rig, result: StartUp, written: list[Path]) -> list[str]:
         f"  mean displacement    {engineering(result.mean_displacement, 'm')}",
         f"  slow oscillation     {engineering(result.beat_frequency, 'Hz')}",
         f"  status               {result.status}" + (f": {result.reason}" if result.reason else ""),
-        *[f"  assumed {key}: {reason}" for key, reason in rig.assumptions.items()],
-        *[f"  {path}" for path in written],
+        *closing_lines(written, assumptions=rig.assumptions),
     ]
 
 

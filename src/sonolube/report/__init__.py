@@ -1,6 +1,6 @@
 """Reports: results as a page that people read and a file that programs read."""
 
-from sonolube.report.findings import Finding, write_findings
+from sonolube.report.findings import Finding, FindingTable, write_findings
 from sonolube.report.measurement import (
     MeasurementReport,
     measurement_lines,
@@ -12,6 +12,7 @@ from sonolube.report.test_sheet import TestSheet, read_test_sheet, test_sheet_ta
 
 __all__ = [
     "Finding",
+    "FindingTable",
     "MeasurementReport",
     "TestSheet",
     "measurement_lines",

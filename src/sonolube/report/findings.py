@@ -1,8 +1,10 @@
-"""A self-contained page of findings: what was asked, the numbers found, the figures."""
+"""A self-contained page of findings: what was asked, the numbers found, the figures, what is in doubt."""
 
 import base64
+import platform
 from collections.abc import Sequence
 from dataclasses import dataclass
+from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,6 +14,8 @@ from sonolube.files import write_whole
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+_RESTS_ON = ("numpy", "scipy", "numba", "xarray", "matplotlib")  # what the numbers and the figures are computed with
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -32,6 +36,24 @@ class Finding:
     figure: "Figure"
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FindingTable:
+    """A table of numbers of a page.
+
+    Parameters
+    ----------
+    title : str
+    heads : tuple of str
+        Of the columns, each with its unit.
+    rows : tuple of tuple of str
+        As many cells to a row as there are heads.
+    """
+
+    title: str
+    heads: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+
+
 def write_findings(
     *,
     title: str,
@@ -40,8 +62,11 @@ def write_findings(
     notes: Sequence[str],
     folder: Path,
     name: str,
+    asked: Sequence[tuple[str, str]] = (),
+    tables: Sequence[FindingTable] = (),
+    forms: Sequence[str] = ("png", "svg"),
 ) -> list[Path]:
-    """Write a page and its figures as PNG and SVG.
+    """Write a page, and its figures beside it.
 
     Parameters
     ----------
@@ -55,6 +80,11 @@ def write_findings(
         Where to; made where it is missing.
     name : str
         Of the page's file, without `.html`.
+    asked : sequence of pair of str
+        What was asked: rig, ranges, settings.
+    tables : sequence of FindingTable
+    forms : sequence of str
+        In which each figure is written beside the page: png, svg or pdf. The page holds its own.
 
     Returns
     -------
@@ -72,13 +102,20 @@ def write_findings(
     pictures = []
     for finding in figures:
         png = rendered(finding.figure, "png")
-        files.append(write_whole(folder / f"{finding.name}.png", png))
-        files.append(write_whole(folder / f"{finding.name}.svg", rendered(finding.figure, "svg")))
+        for form in forms:
+            content = png if form == "png" else rendered(finding.figure, form)
+            files.append(write_whole(folder / f"{finding.name}.{form}", content))
         pictures.append((finding, base64.b64encode(png).decode()))
     environment = Environment(
         loader=PackageLoader("sonolube.report"), autoescape=True, undefined=StrictUndefined, trim_blocks=True
     )
     page = environment.get_template("findings.html").render(
-        version=__version__, title=title, facts=facts, pictures=pictures, notes=notes
+        title=title, asked=asked, facts=facts, tables=tables, pictures=pictures, notes=notes, versions=_versions()
     )
     return [write_whole(folder / f"{name}.html", page), *files]
+
+
+def _versions() -> str:
+    """Return what computed the page."""
+    rests_on = ", ".join(f"{package} {version(package)}" for package in _RESTS_ON)
+    return f"sonolube {__version__}; Python {platform.python_version()}, {rests_on}"

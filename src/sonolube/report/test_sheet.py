@@ -79,7 +79,7 @@ def read_test_sheet(path: Path) -> TestSheet:
         Naming the file and the key, if it cannot be read or a key or value is not understood.
     """
     try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
+        content = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except OSError as failure:
         raise InvalidInput(f"{path}: cannot be read: {failure.strerror}") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as failure:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sonolube.checks import require_positive
 from sonolube.errors import InvalidInput
 from sonolube.measurement.analysis import (
     analyse_cycles,
@@ -65,6 +66,11 @@ class FrictionSettings:
         Turns per time, to take away what the disc's wobble adds. [1/s]
     motor : MotorFriction or None
         To tell friction by the motor's current.
+
+    Raises
+    ------
+    InvalidInput
+        If a duration or speed is not positive.
     """
 
     mapping: RecordingMapping | None = None
@@ -72,6 +78,13 @@ class FrictionSettings:
     sliding_speed: float | None = None
     rotation_speed: float | None = None
     motor: MotorFriction | None = None
+
+    def __post_init__(self) -> None:
+        require_positive(window_duration=self.window_duration)
+        if self.sliding_speed is not None:
+            require_positive(sliding_speed=self.sliding_speed)
+        if self.rotation_speed is not None:
+            require_positive(rotation_speed=self.rotation_speed)
 
 
 def friction_sheet(path: Path, *, settings: FrictionSettings) -> Sheet:
@@ -164,10 +177,12 @@ def _windows(recording: "xr.Dataset", windows: WindowStatistics, steady: SteadyS
 
 def _fluctuation(windows: WindowStatistics) -> Value:
     span = engineering(windows.window_duration, "s")
+    known = np.isfinite(windows.fluctuation)  # of windows with a sample
+    squares, weights = windows.fluctuation[known] ** 2, windows.samples[known]
     return Value(
         name=f"{windows.channel}_fluctuation",
         label=f"Root mean square of the fluctuation in windows of {span}",
-        value=float(np.sqrt(np.average(windows.fluctuation**2, weights=windows.samples))),
+        value=float(np.sqrt(np.average(squares, weights=weights))),
         unit=windows.unit,
     )
 

@@ -46,6 +46,8 @@ class Value:
     @property
     def text(self) -> str:
         """The value as people write it, with how well it is known."""
+        if not math.isfinite(self.value):
+            return "not known"
         told = engineering(self.value, self.unit, digits=self._digits)
         number, _, unit = told.partition(" ")
         scale = 10.0 ** round(math.log10(self.value / float(number))) if float(number) else 1.0

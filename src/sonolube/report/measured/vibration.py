@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sonolube.checks import Complexes, Floats
+from sonolube.checks import Complexes, Floats, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.measurement.analysis import channel
 from sonolube.measurement.assembly import in_si
@@ -56,11 +56,19 @@ class VibrationSettings:
         What the columns mean.
     modes : ndarray of shape (points, modes), or None
         Computed shapes at the points recorded, one a column, to compare with.
+
+    Raises
+    ------
+    InvalidInput
+        If the frequency is not positive.
     """
 
     frequency: float
     mapping: RecordingMapping | None = None
     modes: Floats | None = None
+
+    def __post_init__(self) -> None:
+        require_positive(frequency=self.frequency)
 
 
 def vibration_sheet(path: Path, *, settings: VibrationSettings) -> Sheet:
