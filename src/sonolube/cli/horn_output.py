@@ -99,7 +99,7 @@ def write_horn(design: HornDesign, *, folder: Path, name: str) -> list[Path]:
     """Draw profile, motion and stress along the axis, and the mode; return the files."""
     mode = design.tuned.mode
     title = f"{mode.names[mode.row]}, {mode.frequency:.0f} Hz"
-    picture = mode_figure(mode.model.mesh, mode.shape, title=title)
+    picture = mode_figure(mode.model.mesh, mode.displacement, title=title)
     return [
         *write_figure(axis_figure(design), folder=folder, name=f"{name}-axis"),
         *write_figure(picture, folder=folder, name=f"{name}-mode", forms=("png",)),
@@ -111,7 +111,7 @@ def axis_figure(design: HornDesign) -> "Figure":
     from matplotlib.figure import Figure
 
     mode, axis = design.tuned.mode, design.body.axis
-    working = float(face_motion(mode.model, mode.shape, design.working_face, axis).mean())
+    working = float(face_motion(mode.model, mode.displacement, design.working_face, axis).mean())
     place, moves = section_motion(mode, axis)
     along = mode.model.mesh.nodes[:, DIRECTIONS.index(axis)]
     start = along.min()
@@ -124,7 +124,7 @@ def axis_figure(design: HornDesign) -> "Figure":
         motion.plot(1e3 * (place - start), moves / working, color=COLOURS[0])
         motion.axhline(0, color="0.4", linewidth=0.8)
         motion.set(ylabel="Axial displacement\nover the tip's [-]")
-        level = nodal_stress(mode.model, mode.shape) / abs(working)
+        level = nodal_stress(mode.model, mode.displacement) / abs(working)
         middles, highest = _highest(along, level)
         stress.plot(1e3 * (middles - start), 1e-12 * highest, color=COLOURS[1])
         stress.set(xlabel="Distance from the driven face [mm]", ylabel="Peak stress\n[MPa per µm]", ylim=(0, None))

@@ -112,15 +112,15 @@ def designed_horn(
         advance=advance,
     )
     found = tuned.mode
-    peak = _peak_stress(found.model, found.shape, body.axis)
+    peak = _peak_stress(found.model, found.displacement, body.axis)
     return HornDesign(
         body=body,
         tuned=tuned,
         displacement_gain=abs(
-            float(face_motion(found.model, found.shape, f"+{body.axis}", body.axis).mean())
-            / float(face_motion(found.model, found.shape, f"-{body.axis}", body.axis).mean())
+            float(face_motion(found.model, found.displacement, f"+{body.axis}", body.axis).mean())
+            / float(face_motion(found.model, found.displacement, f"-{body.axis}", body.axis).mean())
         ),
-        face_uniformity=_uniformity(face_motion(found.model, found.shape, f"+{body.axis}", body.axis)),
+        face_uniformity=_uniformity(face_motion(found.model, found.displacement, f"+{body.axis}", body.axis)),
         face_asymmetry=_asymmetry(found, body.axis),
         node_position=_node(found, body.axis),
         stress_per_displacement=peak,
@@ -227,7 +227,7 @@ def _asymmetry(found: NamedMode, axis: str) -> float:
     nodes = found.model.mesh.face_nodes(f"+{axis}")
     across = found.model.mesh.nodes[nodes][:, [k for k in range(3) if k != DIRECTIONS.index(axis)]]
     columns = np.column_stack([np.ones(len(nodes)), across - across.mean(axis=0)])
-    plane = np.linalg.lstsq(columns, found.shape[nodes, DIRECTIONS.index(axis)], rcond=None)[0]
+    plane = np.linalg.lstsq(columns, found.displacement[nodes, DIRECTIONS.index(axis)], rcond=None)[0]
     return float(np.ptp(columns[:, 1:] @ plane[1:]) / abs(plane[0]))
 
 
@@ -260,7 +260,7 @@ def section_motion(found: NamedMode, axis: str) -> tuple[Floats, Floats]:
     edges = np.linspace(place.min(), place.max(), _SLICES + 1)
     which = np.clip(np.digitize(place, edges) - 1, 0, _SLICES - 1)
     count = np.bincount(which, minlength=_SLICES)
-    means = [np.bincount(which, own, minlength=_SLICES)[count > 0] for own in (place, found.shape[:, along])]
+    means = [np.bincount(which, own, minlength=_SLICES)[count > 0] for own in (place, found.displacement[:, along])]
     return means[0] / count[count > 0], means[1] / count[count > 0]
 
 

@@ -58,7 +58,7 @@ class NamedMode:
     frequency_error: float
 
     @property
-    def shape(self) -> Floats:
+    def displacement(self) -> Floats:
         """Displacements of the nodes in the mode, shape (n, 3), of a modal mass of 1 kg."""
         return np.asarray(self.modes.shapes[self.row])
 
