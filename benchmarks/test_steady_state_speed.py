@@ -42,6 +42,7 @@ GAP_LAW = ExponentialGap(decay_length=DECAY_LENGTH)
 SPEEDS = np.geomspace(1e-3, 1.0, 16)
 HARMONICS = 5  # of the rival in JAX, the fewest that hold 1e-4 in the friction
 TOLERANCE = 1e-4  # of ours
+SPINNING = 0.05  # s, for which threads of JAX may go on after an answer
 MARCHED = 0.05  # s, that a rival marches to its steady state
 
 
@@ -226,7 +227,8 @@ def jax_balance(points: dict[str, Array], *, by_hand: bool) -> Callable[[], Any]
     return lambda: jax.block_until_ready(batched(*arguments))
 
 
-def seconds(call: Callable[[], Any]) -> float:
+def seconds(call: Callable[[], Any], *, pause: float = 0.0) -> float:
+    time.sleep(pause)
     return timeit.timeit(call, number=1)
 
 
@@ -264,8 +266,8 @@ def test_the_same_points_beside_jax(benchmark: BenchmarkFixture, by_hand: bool) 
         first, _, ratios = ours(points)
         assert np.abs(amplitude / first - 1).max() < 1e-4
         assert np.abs(friction / ratios - 1).max() < 1e-4
-        # in turns, so that whatever else the machine does burdens both alike
-        spent = [(seconds(rival), seconds(lambda: ours(points))) for _ in range(15)]
+        # in turns, so that whatever else the machine does burdens both alike; JAX's threads spin for a while afterwards
+        spent = [(seconds(rival), seconds(lambda: ours(points), pause=SPINNING)) for _ in range(25)]
         benchmark.pedantic(ours, args=(points,), rounds=5)  # type: ignore[no-untyped-call]
     theirs, own = np.transpose(spent)
     benchmark.extra_info |= {

@@ -1,22 +1,27 @@
 """Steady states by the kernel for GPUs beside the processor's: in CUDA's simulator, and on a GPU where there is one."""
 
 import json
+import math
 import os
 import subprocess
 import sys
 import warnings
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
+import numba.cuda
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 from pytest import approx, raises
 
-from sonolube.dynamics.backend import available, device_name
+from sonolube.dynamics.backend import _tried_gpu, available, device_name
 from sonolube.dynamics.gap_law import ExponentialGap, HertzGap
 from sonolube.dynamics.periodic import Status, SteadyStates, steady_state
 from sonolube.dynamics.sliding import SlidingMeans, motion, sliding_friction, steady_friction
+from sonolube.dynamics.sliding_kernel import crowded_points
 from sonolube.dynamics.structure import Structure, drive_receptance
 from sonolube.errors import GpuUnused, InvalidInput
 
@@ -121,7 +126,8 @@ def simulated() -> dict[str, Any]:
     """What the kernel answers in CUDA's simulator, which must be chosen before numba is imported."""
     code = (
         f"import json, sys; sys.path.insert(0, {str(Path(__file__).parent)!r}); import test_gpu as t;"
-        "print(json.dumps({'apart': t.compare_all(10), 'errors': t.errors_of_friction(6), 'told': t.unserved()}))"
+        "print(json.dumps({'apart': t.compare_all(10), 'errors': t.errors_of_friction(6), 'told': t.unserved(),"
+        "'row': t.row_of_the_slowest(), 'pieces': t.pieces_are_the_whole(), 'welded': t.welded()}))"
     )
     run = subprocess.run(
         [sys.executable, "-c", code],
@@ -150,6 +156,73 @@ def test_what_the_kernel_does_not_serve_is_named(simulated: dict[str, Any]) -> N
         "computed on the CPU: the GPU serves contacts without force_damping",
         "computed on the CPU: the GPU serves up to 12 harmonics, not 20",
     ]
+
+
+def row_of_the_slowest() -> int:
+    """Return the row of crowded phases for no sliding at all, where the logarithm rounds down."""
+    from sonolube.dynamics.gpu import sliding_means
+
+    rounded = SimpleNamespace(log10=lambda x: math.nextafter(math.log10(x), -math.inf), ceil=math.ceil)
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(sliding_means, "math", rounded)
+        return int(sliding_means.row_of(0.0))
+
+
+def test_the_slowest_sliding_finds_phases_in_the_table_however_its_logarithm_rounds(simulated: dict[str, Any]) -> None:
+    assert simulated["row"] == crowded_points(0).count.size - 1
+
+
+def pieces_are_the_whole() -> bool:
+    """Return whether answers are the same where blocks and chunks hold two points, the last of them one."""
+    from sonolube.dynamics.gpu import launching, threads
+
+    given = points(3, 15e3, 30e3)
+    whole, means = steady_friction(structure(), ROUGH, sliding_speed=SPEEDS, backend="gpu", **given)
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(launching, "THREADS", 2)
+        patched.setattr(threads, "THREADS", 2)
+        patched.setattr(threads, "_ROOM", 1)
+        parts, shares = steady_friction(structure(), ROUGH, sliding_speed=SPEEDS, backend="gpu", **given)
+    return np.array_equal(whole.harmonics, parts.harmonics) and np.array_equal(means.loaded, shares.loaded)
+
+
+def test_answers_do_not_depend_on_blocks_and_chunks(simulated: dict[str, Any]) -> None:
+    assert simulated["pieces"]
+
+
+def welded(backend: Any = "gpu") -> list[list[int]]:
+    """Return statuses of masses joined by a damper that nothing moves, and of one mass in their place."""
+    stiff = 2e9 * np.outer([-1.0, 1.0], [-1.0, 1.0])
+    one = Structure(
+        mass_matrix=np.diag([0.15, 0.85]),
+        damping_matrix=1.5e-8 * stiff,
+        stiffness_matrix=stiff,
+        drive_vector=17.36 * np.array([-1.0, 1.0]),
+        contact_vector=np.array([1.0, 0.0]),
+        clamped_capacitance=2.093e-7,
+    )
+    joined = replace(structure(), damping_matrix=30.0 * np.outer(STACK, STACK) + 1e9 * np.outer(ARM, ARM))
+    frequency, load, swing = np.array([10e3, 24e3]), np.array([30.0, 5.0]), 8e-6
+    given: dict[str, Any] = {
+        "normal_load": load,
+        "frequency": frequency,
+        "voltage_amplitude": np.abs(swing / drive_receptance(one, frequency=frequency)),
+    }
+    return [steady_state(body, ROUGH, backend=backend, **given).status.tolist() for body in (joined, one)]
+
+
+def test_growth_is_judged_beside_a_damper_that_welds(simulated: dict[str, Any]) -> None:
+    # its motion dies out faster than any exponent of a double
+    for joined, one in (simulated["welded"], welded("cpu")):
+        assert joined == one
+        assert Status.UNSTABLE in one
+        assert Status.PERIODIC in one
+
+
+@pytest.mark.skipif(numba.cuda.implementation != "Built-in", reason="numba-cuda is installed")
+def test_numba_alone_is_not_enough_for_a_gpu(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(numba.cuda, "is_available", lambda: True)
+    assert _tried_gpu() == ("", "numba-cuda is missing: pip install 'sonolube[gpu]'")
 
 
 def errors_of_friction(count: int) -> tuple[float, float]:

@@ -8,9 +8,8 @@ from numpy.typing import NDArray
 from pytest import approx, raises
 from scipy.special import ellipk
 
-from sonolube.dynamics.balancing import measured
-from sonolube.dynamics.contact_lanes import law_of
 from sonolube.dynamics.gap_law import ExponentialGap
+from sonolube.dynamics.motion_measures import measure
 from sonolube.dynamics.periodic import SteadyStates, steady_state
 from sonolube.dynamics.sliding import motion, sliding_friction
 from sonolube.dynamics.structure import Structure, drive_receptance
@@ -90,7 +89,7 @@ def test_shoulders_between_two_turns_are_averaged_as_well(richness: float) -> No
     harmonics = np.asarray(2e-6 * np.column_stack([np.ones(24), higher]), dtype=np.complex128)
     states = steady_state(TRIBOMETER, ROUGH, normal_load=3.0, frequency=20e3, voltage_amplitude=np.zeros(24))
     motion = (np.full(24, 2 * np.pi * 20e3), np.full(24, 3.0), np.full(24, 1e-6))
-    turns = measured(law_of(ROUGH), *motion, harmonics, np.full(24, 5)).turns
+    turns = measure(ROUGH, *motion, harmonics, np.full(24, 5)).turns
     states = replace(
         states, mean_displacement=motion[2], harmonics=harmonics, turns=turns, harmonic_count=np.full(24, 5)
     )

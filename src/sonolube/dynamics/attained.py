@@ -8,8 +8,10 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.dynamics.attractor import Attractors, describe
-from sonolube.dynamics.gap_law import GapLaw
+from sonolube.dynamics.gap_law import GapLaw, TabulatedGap
 from sonolube.dynamics.linear import poles
+from sonolube.dynamics.state_pairs import state_pairs
+from sonolube.dynamics.step_filter import fewest_steps
 from sonolube.dynamics.structure import Structure, with_contact_spring
 from sonolube.dynamics.trajectories import Trajectories, Trajectory
 from sonolube.dynamics.transient import AT_ONCE, march, trajectory
@@ -20,6 +22,10 @@ _DECAYS = 12.0  # of the slowest small motion, after which a transient is 6e-6 o
 _FEWEST, _MOST = 256, 200_000  # periods to march
 _COARSEST, _FINEST = 16, 1024  # steps a period to try
 _RECORDED = 128  # steps a period recorded at least
+_MOST_STEPS = 20_000_000  # to march, which take seconds
+_MOST_STEPS = 2**23  # marched with steps that follow, which take seconds
+_TABLE_COSTS = 8  # times as much a step as a force with a formula
+_MOST_RECORDED = 2**19  # steps
 _PATIENCE = 40  # times to march on where the motion still changes
 _GROWS, _SHRINKS = 1.02, 0.7  # ratios of the spread of strobed instants beyond which a motion still changes
 _AT_REST = 1e-7  # spread over the peak-to-peak displacement below which it is nothing but rounding
@@ -47,6 +53,8 @@ class Attained:
         Half of the displacement from peak to peak in each period of the record, in m.
     dissipated_power : float
         Mean power that dampers and contact turn to heat. [W]
+    settled : bool
+        Whether it was marched for as long as small motions take to die out.
     """
 
     attractor: Attractors
@@ -55,6 +63,7 @@ class Attained:
     record: Trajectory
     amplitudes: Floats
     dissipated_power: float
+    settled: bool
 
     @property
     def periods(self) -> int:
@@ -133,7 +142,8 @@ def attained_motion(
     -----
     Steps are halved until they follow the contact, or 1024 a period do not, which the attractor's description then
     tells. A motion whose instants, seen once a period, still draw apart or together is marched on, forty times at most:
-    what leaves an unstable vibration can take long to show.
+    what leaves an unstable vibration can take long to show. Some 8 million steps are all that it gets, a million on a
+    table: where these are fewer than transients need, `settled` is false.
     """
     settling = settling_periods(structure, gap_law, normal_load=normal_load, frequency=frequency)
     watched = _sixteens(settling / _DECAYS)  # a decay time holds several turns of a motion that is hardly damped
@@ -148,15 +158,23 @@ def attained_motion(
         waveform=waveform,
         strobed_periods=settling,
     )
-    periods, steps = settling + math.ceil(ramp.duration * frequency), _COARSEST
+    most = _MOST_STEPS // (_TABLE_COSTS if isinstance(gap_law, TabulatedGap) else 1)
+    rising, steps = math.ceil(ramp.duration * frequency), _first_steps(structure, frequency)
+    if rising * steps > most:
+        raise InvalidInput(f"a ramp of {ramp.duration:g} s is {rising} periods of the drive, too many to march")
     with np.errstate(over="ignore", invalid="ignore"):  # of steps too coarse to follow
-        marched = go(periods=periods, ramp=ramp, steps_per_period=steps)
-        while marched.status != "marched" and steps < _FINEST:
-            steps *= 2
-            marched = go(periods=periods, ramp=ramp, steps_per_period=steps)
+        for periods in (rising + min(settling, _FEWEST), rising + settling):  # what runs away does so soon
+            while True:
+                periods = min(periods, most // steps)
+                marched = go(periods=periods, ramp=ramp, steps_per_period=steps)
+                if marched.status == "marched" or steps >= _FINEST:
+                    break
+                steps *= 2
     if marched.status == "diverged":
         raise InvalidInput(f"no motion to follow at {frequency:.6g} Hz under {normal_load:.4g} N: {marched.advice}")
     for _ in range(_PATIENCE):
+        if (periods + settling) * steps > most:
+            break
         earlier = marched
         marched = go(periods=settling, initial_state=earlier.final_state, steps_per_period=steps)
         periods += settling
@@ -176,6 +194,7 @@ def attained_motion(
     )
     recorded = int(attractor.order) or _sixteens(_BEATS * _per_beat(attractor, frequency))
     finer = max(steps, _RECORDED)
+    recorded = min(recorded, _MOST_RECORDED // finer)
     record = trajectory(
         structure,
         gap_law,
@@ -196,7 +215,13 @@ def attained_motion(
         record=record,
         amplitudes=np.ptp(each, axis=1) / 2,
         dissipated_power=_dissipated(structure, gap_law, record, normal_load),
+        settled=periods - rising >= settling,
     )
+
+
+def _first_steps(structure: Structure, frequency: float) -> int:
+    fewest = fewest_steps(state_pairs(structure), frequency=frequency)
+    return int(min(_COARSEST * 2 ** max(math.ceil(math.log2(fewest / _COARSEST)), 0), _FINEST))
 
 
 def _changes(earlier: Trajectories, later: Trajectories) -> bool:

@@ -1,6 +1,7 @@
 """What a trajectory settles to: a period, several, a beat, chaos, or nothing; and how long it takes."""
 
 import math
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
@@ -9,12 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive, require_within
-from sonolube.dynamics.gap_law import GapLaw
+from sonolube.dynamics.backend import Backend
+from sonolube.dynamics.gap_law import LOST, GapLaw
 from sonolube.dynamics.structure import Structure
 from sonolube.dynamics.trajectories import ContactMotion, Envelope, State, Trajectories
 from sonolube.dynamics.transient import AT_ONCE, march
 from sonolube.dynamics.waveform import Waveform
-from sonolube.errors import InvalidInput
+from sonolube.errors import GpuUnused, InvalidInput
 
 _HIGHEST_ORDER = 8  # subharmonics looked for
 _SAME = 1e-3  # spread of strobed instants, over the peak-to-peak displacement, that counts as repetition
@@ -22,8 +24,8 @@ _SHRINKS = 0.7  # spread in the later half of the strobed instants, over that in
 _CHAOTIC = 0.02  # growth of a disturbance a period, as an exponent
 _SURE = 0.005  # exponent that a disturbance of a stable motion can seem to have
 _ROUND = 16  # periods for which a disturbance grows before it is made small again
+_MOST_ROUNDS = 64  # in which a disturbance is watched
 _DISTURBANCE = 1e-6  # over the motion itself
-_LOST = 0.01  # force over load below which contact counts as lost
 _RECORDED = 32  # periods in which a loss of contact is looked for
 _FINER = 8  # instants to a step in which its loss is looked for
 
@@ -92,6 +94,7 @@ def describe(
     periods: int = 256,
     steps_per_period: int = 16,
     workers: int = 1,
+    backend: Backend = "cpu",
 ) -> Attractors:
     """March on from where a trajectory ended, and say what it settled to.
 
@@ -117,6 +120,8 @@ def describe(
         As for `march`.
     workers : int
         As for `march`.
+    backend : {"cpu", "gpu"}
+        As for `march`.
 
     Returns
     -------
@@ -127,11 +132,16 @@ def describe(
     InvalidInput
         As `march` does, or if the periods are no multiple of 16 or too few.
 
+    Warns
+    -----
+    GpuUnused
+        As `march` does.
+
     Notes
     -----
     The motion repeats after p periods if displacement and velocity, seen once a period, return to within a thousandth
     of the peak-to-peak displacement at every p-th instant. The exponent is that of two trajectories which start a
-    millionth apart and are brought together again every 16 periods, from the later half of the time. [1]_
+    millionth apart and are brought together again every 16 periods, 64 times at most, from the later half of this. [1]_
 
     References
     ----------
@@ -147,7 +157,14 @@ def describe(
         require_finite(voltage_offset=voltage_offset),
     )
     go = partial(
-        march, structure, gap_law, waveform=waveform, steps_per_period=steps_per_period, ramp=AT_ONCE, workers=workers
+        march,
+        structure,
+        gap_law,
+        waveform=waveform,
+        steps_per_period=steps_per_period,
+        ramp=AT_ONCE,
+        workers=workers,
+        backend=backend,
     )
     watched = go(
         normal_load=load,
@@ -173,7 +190,10 @@ def describe(
     diverged = watched.status == "diverged"
     repeats = _repeats(watched, f)
     at_rest = gap_law.stiffness(np.zeros_like(load), load)
-    exponent = _exponent(structure, both, watched.final_state, f, at_rest, periods // _ROUND)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", GpuUnused)  # which was told already
+        rounds = min(periods // _ROUND, _MOST_ROUNDS)
+        exponent = _exponent(structure, both, watched.final_state, f, at_rest, rounds)
     slow = beat(displacement=watched.strobed.displacement, interval=1 / f)
     kind = np.select(
         [diverged, repeats.order == 1, repeats.order > 1, exponent > _CHAOTIC, repeats.shrinking],
@@ -333,7 +353,7 @@ def _lost_contact_share(gap_law: GapLaw, motion: ContactMotion, load: Floats, ra
         start + s * (3 * (after - before) - 2 * start - end + s * (2 * (before - after) + start + end))
     )
     weight = load[..., np.newaxis, np.newaxis]
-    return np.asarray(np.mean(gap_law.force(between, weight) < _LOST * weight, axis=(-2, -1)))
+    return np.asarray(np.mean(gap_law.force(between, weight) < LOST * weight, axis=(-2, -1)))
 
 
 def _descriptions(found: Attractors, advice: NDArray[np.str_]) -> NDArray[np.str_]:

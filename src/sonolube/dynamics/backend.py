@@ -80,9 +80,12 @@ def _tried_gpu() -> tuple[str, str]:
     cuda: Any = numba.cuda  # which has no types
     if not cuda.is_available():
         return "", f"no NVIDIA GPU with its driver and CUDA was found; the extra is {_INSTALL}"
+    simulated = bool(getattr(numba.config, "ENABLE_CUDASIM", 0))
+    if cuda.implementation == "Built-in" and not simulated:  # which does not compile the kernels any more
+        return "", f"numba-cuda is missing: {_INSTALL}"
     from sonolube.dynamics.gpu.threads import trial
 
     if not trial():
         return "", "the GPU does not count to one"
-    name = "CUDA simulator" if getattr(numba.config, "ENABLE_CUDASIM", 0) else cuda.get_current_device().name
+    name = "CUDA simulator" if simulated else cuda.get_current_device().name
     return (name.decode() if isinstance(name, bytes) else str(name)), ""

@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.checks import Complexes, Floats
-from sonolube.dynamics.contact_lanes import Law
-from sonolube.dynamics.contact_port import ContactPort
+from sonolube.dynamics.contact_lanes import law_of, resting_place
+from sonolube.dynamics.contact_port import ContactPort, receptance
+from sonolube.dynamics.gap_law import GapLaw, length_of_change
 from sonolube.dynamics.growth_kernel import growth_rates
 from sonolube.dynamics.harmonic_kernel import (
     CONVERGED,
@@ -19,15 +20,17 @@ from sonolube.dynamics.harmonic_kernel import (
     Points,
     Resolution,
     balance,
+    workspace,
 )
-from sonolube.dynamics.motion_kernel import Measures, measure
-from sonolube.dynamics.one_harmonic import Guesses, first_guesses
+from sonolube.dynamics.motion_measures import measure
+from sonolube.dynamics.one_harmonic import FirstGuess, first_guess
 
 MOST_HARMONICS = 64
 _MOST_SAMPLES, _MOST_COUPLED = 2048, 32
 _ITERATIONS = 12
 _RAMP = 24  # steps of voltage on the way up
 _KICKS = 8  # a radian of the structure's fastest mode
+_MOST_KICKS = 2**22  # a period, which take seconds
 GROWTH = 1e-6  # per period, beyond what rounding may feign
 _DISTINCT = 1e-4  # relative difference of amplitude that makes two solutions
 
@@ -51,7 +54,7 @@ class Solutions(NamedTuple):
 
 def solve(
     port: ContactPort,
-    law: Law,
+    gap_law: GapLaw,
     omega: Floats,
     load: Floats,
     voltage: Complexes,
@@ -67,7 +70,7 @@ def solve(
     Parameters
     ----------
     port : ContactPort
-    law : Law
+    gap_law : GapLaw
     omega, load, free_mean : ndarray, shape (p,)
         Angular frequency, in rad/s, dead load, in N, and mean displacement without contact, in m.
     voltage : ndarray of complex, shape (p, K)
@@ -85,33 +88,34 @@ def solve(
     -------
     Solutions
     """
-    points = _points(omega, load, voltage, free_mean)
-    guesses = Guesses(np.empty_like(omega), np.empty_like(omega))
-    resolution = Resolution(*np.zeros((3, omega.size), dtype=np.int64))
-    first_guesses(port, law, TAIL * tolerance, falling, points, resolution, guesses)
+    free = _of_orders(port, 1, omega, voltage.shape[1]) * voltage
+    drive = (omega, load, free_mean, free)
+    guess = first_guess(port, gap_law, *drive, tolerance=TAIL * tolerance, highest=falling)
+    resolution = guess.resolution
     if least > 1:
         _raise_to(least, resolution)
-    points, solved = _refine(port, law, points, resolution, tolerance)
+    points, solved = _refine(port, gap_law, _points(gap_law, *drive, guess), resolution, tolerance)
     if not solved.all():
-        points = _up_the_ramp(port, law, points, resolution, solved, tolerance)
-    found = _measured(port, law, points, resolution, solved, stability)
-    double = np.flatnonzero(solved & (guesses.highest > guesses.lowest * (1 + _DISTINCT)))
+        points = _up_the_ramp(port, gap_law, points, resolution, solved, tolerance)
+    found = _measured(port, gap_law, points, voltage, resolution, solved, stability)
+    double = np.flatnonzero(solved & (guess.highest > guess.lowest * (1 + _DISTINCT)))
     if double.size:
-        _find_rivals(port, law, points, double, falling, stability, tolerance, found)
+        _find_rivals(port, gap_law, points, voltage, double, falling, stability, tolerance, found)
     return found
 
 
-def _points(omega: Floats, load: Floats, voltage: Complexes, free_mean: Floats) -> Points:
-    return Points(
-        omega,
-        load,
-        voltage,
-        free_mean,
-        np.empty_like(omega),
-        np.zeros((omega.size, max(16, voltage.shape[1])), dtype=np.complex128),
-        np.empty_like(omega),
-        np.zeros_like(voltage),
-    )
+def _of_orders(port: ContactPort, which: int, omega: Floats, orders: int) -> Complexes:
+    return receptance(port, which, omega[:, np.newaxis] * np.arange(1, orders + 1))
+
+
+def _points(
+    gap_law: GapLaw, omega: Floats, load: Floats, free_mean: Floats, free: Complexes, guess: FirstGuess
+) -> Points:
+    room = max(int(guess.resolution.harmonics.max()), free.shape[1])
+    harmonics = np.zeros((omega.size, room), dtype=np.complex128)
+    harmonics[:, 0] = guess.harmonic
+    length, resting = length_of_change(gap_law, load), resting_place(gap_law, load)
+    return Points(omega, load, length, resting, free_mean, free, guess.mean, harmonics, np.zeros_like(free))
 
 
 def _raise_to(least: int, resolution: Resolution) -> None:
@@ -121,17 +125,18 @@ def _raise_to(least: int, resolution: Resolution) -> None:
 
 
 def _refine(
-    port: ContactPort, law: Law, points: Points, resolution: Resolution, tolerance: float
+    port: ContactPort, gap_law: GapLaw, points: Points, resolution: Resolution, tolerance: float
 ) -> tuple[Points, NDArray[np.bool_]]:
     """Balance all points, those that did not succeed again with more harmonics or samples."""
-    outcome = np.full(points.omega.size, DIVERGED)
+    law, outcome = law_of(gap_law), np.full(points.omega.size, DIVERGED)
     pending = np.arange(points.omega.size)
     for attempt in range(9):
         points = _with_room(points, int(resolution.harmonics[pending].max(initial=0)))
         # like beside like, since a block of lanes works as finely as its most demanding point
         demand = resolution.samples[pending] // 2 * MOST_HARMONICS + resolution.harmonics[pending] - MOST_HARMONICS - 1
         chosen = pending[np.argsort(demand.astype(np.uint16), kind="stable")]  # by counting, that is, at once
-        balance(port, law, points, resolution, chosen, tolerance, _ITERATIONS + 4 * attempt, outcome)
+        work = workspace(*(int(values[chosen].max()) for values in resolution))
+        balance(port, law, points, resolution, chosen, tolerance, _ITERATIONS + 4 * attempt, outcome, work)
         pending = np.flatnonzero(outcome != CONVERGED)
         pending = pending[_finer(resolution, pending, outcome[pending])]
         if not pending.size:
@@ -162,7 +167,7 @@ def _with_room(points: Points, harmonics: int) -> Points:
 
 def _up_the_ramp(
     port: ContactPort,
-    law: Law,
+    gap_law: GapLaw,
     points: Points,
     resolution: Resolution,
     solved: NDArray[np.bool_],
@@ -171,46 +176,51 @@ def _up_the_ramp(
     """Follow the remaining points from a low voltage in small steps."""
     lost = np.flatnonzero(~solved)
     whole = Points(*(np.ascontiguousarray(values[lost]) for values in points))  # type: ignore[arg-type]
-    part = whole._replace(voltage=whole.voltage / _RAMP)
-    own = Resolution(*np.zeros((3, lost.size), dtype=np.int64))
-    guesses = Guesses(np.empty(lost.size), np.empty(lost.size))
-    first_guesses(port, law, TAIL * tolerance, False, part, own, guesses)
+    drive = (whole.omega, whole.load, whole.free_mean, whole.free / _RAMP)
+    guess = first_guess(port, gap_law, *drive, tolerance=TAIL * tolerance, highest=False)
+    part, own = _points(gap_law, *drive, guess), guess.resolution
     good = np.zeros(lost.size, dtype=bool)
     for step in range(1, _RAMP + 1):
         growth = step / max(step - 1, 1)
-        part = part._replace(voltage=whole.voltage * (step / _RAMP), harmonics=part.harmonics * growth)
+        part = part._replace(free=whole.free * (step / _RAMP), harmonics=part.harmonics * growth)
         _raise_to(16, own)
-        part, good = _refine(port, law, part, own, tolerance)
+        part, good = _refine(port, gap_law, part, own, tolerance)
     points = _with_room(points, part.harmonics.shape[1])
     points.harmonics[lost, : part.harmonics.shape[1]] = part.harmonics
-    for values, answers in (
-        (points.mean, part.mean),
-        (points.mean_force, part.mean_force),
-        (points.charge, part.charge),
-    ):
-        values[lost] = answers
-    for values, answers in zip(resolution, own, strict=True):  # type: ignore[assignment]
+    points.mean[lost], points.force[lost] = part.mean, part.force
+    for values, answers in zip(resolution, own, strict=True):
         values[lost] = answers
     solved[lost] = good
     return points
 
 
 def _measured(
-    port: ContactPort, law: Law, points: Points, resolution: Resolution, solved: NDArray[np.bool_], stability: bool
+    port: ContactPort,
+    gap_law: GapLaw,
+    points: Points,
+    voltage: Complexes,
+    resolution: Resolution,
+    solved: NDArray[np.bool_],
+    stability: bool,
 ) -> Solutions:
     count = points.omega.size
+    if stability:
+        solved &= ~too_slow(port, points.omega)
     points.mean[~solved], points.harmonics[~solved] = 0.0, 0.0
     motion = (points.omega, points.load, points.mean, points.harmonics, resolution.harmonics)
-    measures = measured(law, *motion)
+    measures = measure(gap_law, *motion)
     growing = np.zeros(count, dtype=bool)
     if stability:
-        growing = growth(port, law, *motion, resolution.samples) > GROWTH
+        growing = growth(port, gap_law, *motion, resolution.samples) > GROWTH
+    orders = voltage.shape[1]
+    charge = (port.clamped_capacitance + _of_orders(port, 2, points.omega, orders)) * voltage
+    charge += _of_orders(port, 1, points.omega, orders) * points.force
     width = int(resolution.harmonics[solved].max(initial=1))
     found = Solutions(
         points.mean,
         np.ascontiguousarray(points.harmonics[:, :width]),
-        points.mean_force,
-        points.charge,
+        points.load + port.static_stiffness * (points.mean - points.free_mean),
+        charge,
         measures.amplitude,
         measures.turns,
         measures.lowest_displacement,
@@ -225,17 +235,18 @@ def _measured(
     return found
 
 
-def measured(law: Law, omega: Floats, load: Floats, mean: Floats, harmonics: Complexes, count: Integers) -> Measures:
-    """Return what `measure` writes."""
-    shapes = ((omega.size,), (omega.size, 2), (omega.size,), (omega.size, 2), (omega.size,))
-    measures = Measures(*(np.empty(shape) for shape in shapes))
-    measure(law, omega, load, mean, harmonics, count, measures)
-    return measures
+def too_slow(port: ContactPort, omega: Floats) -> NDArray[np.bool_]:
+    """Return at which angular frequencies, in rad/s, a period holds too many swings of the fastest mode to judge."""
+    return np.asarray(_KICKS * _fastest(port) > _MOST_KICKS * omega)
+
+
+def _fastest(port: ContactPort) -> float:
+    return float(np.sqrt(np.abs(port.determinant).max()))
 
 
 def growth(
     port: ContactPort,
-    law: Law,
+    gap_law: GapLaw,
     omega: Floats,
     load: Floats,
     mean: Floats,
@@ -245,17 +256,20 @@ def growth(
 ) -> Floats:
     """Return the logarithm of the largest modulus of the multipliers, at least as many kicks a period as samples."""
     rates = np.empty(omega.size)
-    fastest = np.sqrt(np.abs(port.determinant).max()) / omega
-    kicks = np.maximum(samples, np.ceil(_KICKS * fastest).astype(np.int64))
+    needed = np.where(too_slow(port, omega), 0.0, np.ceil(_KICKS * _fastest(port) / omega))
+    kicks = np.maximum(samples, needed.astype(np.int64))
     chosen = np.argsort(kicks * (MOST_HARMONICS + 1) + count)
-    growth_rates(port, law, omega, load, mean, harmonics, count, kicks, chosen, rates)
+    growth_rates(
+        port, law_of(gap_law), omega, load, resting_place(gap_law, load), mean, harmonics, count, kicks, chosen, rates
+    )
     return rates
 
 
 def _find_rivals(
     port: ContactPort,
-    law: Law,
+    gap_law: GapLaw,
     points: Points,
+    voltage: Complexes,
     double: Integers,
     falling: bool,
     stability: bool,
@@ -263,12 +277,10 @@ def _find_rivals(
     found: Solutions,
 ) -> None:
     """Where one harmonic has two solutions, look for the other one and write its amplitude if it is there to stay."""
-    other = _points(points.omega[double], points.load[double], points.voltage[double], points.free_mean[double])
-    guesses = Guesses(np.empty(double.size), np.empty(double.size))
-    resolution = Resolution(*np.zeros((3, double.size), dtype=np.int64))
-    first_guesses(port, law, TAIL * tolerance, not falling, other, resolution, guesses)
-    other, solved = _refine(port, law, other, resolution, tolerance)
-    rivals = _measured(port, law, other, resolution, solved, stability)
+    drive = (points.omega[double], points.load[double], points.free_mean[double], points.free[double])
+    guess = first_guess(port, gap_law, *drive, tolerance=TAIL * tolerance, highest=not falling)
+    other, solved = _refine(port, gap_law, _points(gap_law, *drive, guess), guess.resolution, tolerance)
+    rivals = _measured(port, gap_law, other, voltage[double], guess.resolution, solved, stability)
     own = found.amplitude[double]
     real = solved & ~rivals.growing & (np.abs(rivals.amplitude - own) > _DISTINCT * own)
     found.rival_amplitude[double[real]] = rivals.amplitude[real]

@@ -6,14 +6,13 @@ import numba
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.dynamics.force_table import log_force_at, position_of
+from sonolube.dynamics.force_table import log_force_at
 from sonolube.dynamics.gap_law import ExponentialGap, GapLaw, HertzGap, LinearGap, TabulatedGap
-from sonolube.dynamics.lanes import INSIDE, KERNEL, LANES, exponentials
+from sonolube.dynamics.lanes import INSIDE, LANES, exponentials
 from sonolube.errors import InvalidInput
 
 EXPONENTIAL, HERTZ, LINEAR, TABULATED = ExponentialGap.kind, HertzGap.kind, LinearGap.kind, TabulatedGap.kind
 _NO_CELLS = np.empty((0, 4))
-LOST = 0.01  # share of the dead load below which contact counts as lost
 
 
 class Law(NamedTuple):
@@ -38,44 +37,19 @@ def law_of(gap_law: GapLaw) -> Law:
     raise InvalidInput(f"gap_law must be one of the laws of sonolube.dynamics.gap_law, got {gap_law!r}")
 
 
+def resting_place(gap_law: GapLaw, load: Floats) -> Floats:
+    """Return where the contact rests under a dead load: a sphere's approach, in m, or cells from a table's start."""
+    if isinstance(gap_law, HertzGap):
+        return np.asarray((load / gap_law.coefficient) ** (2 / 3))
+    if isinstance(gap_law, TabulatedGap):
+        return gap_law.rest_position(load)
+    return np.zeros_like(load)
+
+
 @numba.njit(**INSIDE)
 def parallel(law: Law) -> bool:
     """Return whether the stiffness goes with the force, which is then as smooth as the motion."""
     return bool(law.kind == EXPONENTIAL and law.damping == 0.0)
-
-
-@numba.njit(**INSIDE)
-def rest(law: Law, load: float) -> float:
-    """Return where the contact rests under a dead load: a sphere's approach, in m, or cells from a table's start."""
-    if law.kind == HERTZ:
-        return float((load / law.parameter) ** (2 / 3))
-    if law.kind == TABULATED:
-        return float(position_of(law.cells, np.log(load)))
-    return 0.0
-
-
-@numba.njit(**KERNEL)
-def reach(law: Law, load: float) -> float:
-    """Return the length over which the contact changes under a dead load, in m."""
-    if law.kind == EXPONENTIAL:
-        return law.parameter
-    if law.kind == HERTZ:
-        return float(rest(law, load))
-    if law.kind == TABULATED:
-        return float(-1 / (law.parameter * log_force_at(law.cells, rest(law, load))[1]))
-    return load / law.parameter
-
-
-@numba.njit(**INSIDE)
-def loss_displacement(law: Law, load: float) -> float:
-    """Return the displacement beyond which contact counts as lost, in m."""
-    if law.kind == EXPONENTIAL:
-        return float(-law.parameter * np.log(LOST))
-    if law.kind == HERTZ:
-        return float(rest(law, load) * (1 - LOST ** (2 / 3)))
-    if law.kind == TABULATED:
-        return float((position_of(law.cells, np.log(LOST * load)) - rest(law, load)) / law.parameter)
-    return (1 - LOST) * load / law.parameter
 
 
 @numba.njit(**INSIDE)
@@ -85,7 +59,6 @@ def contact_rows(
     resting: Floats,
     x: Floats,
     v: Floats,
-    work: Floats,
     force: Floats,
     slope: Floats,
     drag: Floats,
@@ -96,11 +69,9 @@ def contact_rows(
     ----------
     law : Law
     load, resting : ndarray, shape (lanes,)
-        Dead load, in N, and `rest`.
+        Dead load, in N, and `resting_place`.
     x, v : ndarray, shape (lanes,)
         Displacement, in m, and velocity, in m/s; the latter is not read without damping.
-    work : ndarray, shape (lanes,)
-        Scratch.
     force, slope, drag : ndarray, shape (lanes,)
         Results in N, N/m and N s/m; the last is scratch without damping.
     """
@@ -108,7 +79,7 @@ def contact_rows(
         rate = 1 / law.parameter
         for lane in range(LANES):
             slope[lane] = -x[lane] * rate
-        exponentials(slope, force, work)
+        exponentials(slope, force)
         for lane in range(LANES):
             force[lane] *= load[lane]
             slope[lane] = force[lane] * rate
@@ -118,7 +89,7 @@ def contact_rows(
             slope[lane] = 1.5 * law.parameter * np.sqrt(approach)
             force[lane] = slope[lane] * approach / 1.5
     elif law.kind == TABULATED:
-        _tabulated_rows(law, resting, x, work, force, slope, drag)
+        _tabulated_rows(law, resting, x, force, slope, drag)
     else:
         for lane in range(LANES):
             touching = load[lane] - law.parameter * x[lane]
@@ -134,11 +105,9 @@ def contact_rows(
 
 
 @numba.njit(**INSIDE)
-def _tabulated_rows(
-    law: Law, resting: Floats, x: Floats, work: Floats, force: Floats, slope: Floats, change: Floats
-) -> None:
+def _tabulated_rows(law: Law, resting: Floats, x: Floats, force: Floats, slope: Floats, change: Floats) -> None:
     for lane in range(LANES):
         slope[lane], change[lane] = log_force_at(law.cells, resting[lane] + law.parameter * x[lane])
-    exponentials(slope, force, work)
+    exponentials(slope, force)
     for lane in range(LANES):
         slope[lane] = -law.parameter * change[lane] * force[lane]

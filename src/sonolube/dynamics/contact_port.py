@@ -1,11 +1,12 @@
 """A structure as the kernels of the steady state see it: pairs of states between an electrical port and a contact."""
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numba
 import numpy as np
 
-from sonolube.checks import Floats
+from sonolube.checks import Complexes, Floats
 from sonolube.dynamics.lanes import INSIDE, LANES
 from sonolube.dynamics.linear import modes, static_contact
 from sonolube.dynamics.state_pairs import state_pairs
@@ -34,6 +35,7 @@ class ContactPort(NamedTuple):
     clamped_capacitance: float  # in F
 
 
+@lru_cache(maxsize=16)
 def contact_port(structure: Structure) -> ContactPort:
     """Return the structure as its contact and its drive see it.
 
@@ -82,6 +84,33 @@ def contact_port(structure: Structure) -> ContactPort:
 def _above_rounding(shares: Floats) -> np.ndarray:
     size = np.abs(shares).max(axis=1)
     return np.asarray(size > _NEGLIGIBLE * size.max(initial=0.0))
+
+
+def receptance(port: ContactPort, which: int, omega: Floats) -> Complexes:
+    """Return a receptance at angular frequencies.
+
+    Parameters
+    ----------
+    port : ContactPort
+    which : {0, 1, 2}
+        Row of `ContactPort.constant` and `ContactPort.slope`.
+    omega : ndarray
+        Angular frequency, in rad/s.
+
+    Returns
+    -------
+    ndarray of complex
+    """
+    real, imaginary = np.zeros((2, *omega.shape))
+    square = np.square(omega)
+    for constant, slope, determinant, trace in zip(
+        port.constant[which], port.slope[which], port.determinant, port.trace, strict=True
+    ):
+        re, im, rise = determinant - square, -trace * omega, slope * omega
+        below = 1 / (re * re + im * im)
+        real += (constant * re + rise * im) * below
+        imaginary += (rise * re - constant * im) * below
+    return np.asarray(real + 1j * imaginary)
 
 
 @numba.njit(**INSIDE)

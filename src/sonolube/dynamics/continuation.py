@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from sonolube.checks import Complexes, Floats, require_positive
 from sonolube.dynamics.balance_equations import PointEquations
-from sonolube.dynamics.balancing import GROWTH, growth, measured
-from sonolube.dynamics.contact_lanes import EXPONENTIAL, TABULATED, law_of, reach
+from sonolube.dynamics.balancing import GROWTH, growth
 from sonolube.dynamics.contact_port import contact_port
-from sonolube.dynamics.gap_law import GapLaw
+from sonolube.dynamics.gap_law import ExponentialGap, GapLaw, TabulatedGap, length_of_change
+from sonolube.dynamics.motion_measures import measure
 from sonolube.dynamics.periodic import Status, steady_state
 from sonolube.dynamics.structure import Structure
 from sonolube.errors import InvalidInput
@@ -123,7 +123,6 @@ def response_curve(
         raise InvalidInput("give a pair, where the curve starts and ends, for either voltage_amplitude or frequency")
     along: Literal["voltage", "frequency"] = "voltage" if volts.shape else "frequency"
     first, last = (float(values) for values in (volts if along == "voltage" else hertz))
-    law = law_of(gap_law)
     equations = PointEquations(
         structure=structure,
         gap_law=gap_law,
@@ -131,7 +130,7 @@ def response_curve(
         voltage_harmonics=np.ones(1, dtype=np.complex128),
         voltage_offset=0.0,
         orders=orders,
-        samples=8 * orders if law.kind in (EXPONENTIAL, TABULATED) else max(8 * orders, 512),
+        samples=8 * orders if isinstance(gap_law, ExponentialGap | TabulatedGap) else max(8 * orders, 512),
     )
     start = steady_state(
         structure, gap_law, normal_load=load, frequency=hertz.flat[0], voltage_amplitude=volts.flat[0], stability=False
@@ -144,7 +143,7 @@ def response_curve(
         fixed=float(hertz if along == "voltage" else volts),
         first=first,
         last=last,
-        length=float(reach(law, load)),
+        length=float(length_of_change(gap_law, load)),
     )
     rows = list(path.follow(equations.stack(float(start.mean_displacement), start.harmonics), most_points))
     return _curve(path, np.array(rows), complete=abs(rows[-1][-1] - 0.5) == 0.5)
@@ -309,7 +308,7 @@ def _path_of(curve: ResponseCurve) -> _Path:
         fixed=float(other[0]),
         first=float(curve.parameter[0]),
         last=float(curve.parameter[-1]),
-        length=float(reach(law_of(curve.equations.gap_law), curve.equations.normal_load)),
+        length=float(length_of_change(curve.equations.gap_law, curve.equations.normal_load)),
     )
 
 
@@ -331,10 +330,10 @@ def _curve(path: _Path, rows: Floats, *, complete: bool) -> ResponseCurve:
     harmonics = (rows[:, 1 : own.orders + 1] + 1j * rows[:, own.orders + 1 : -1]) * path.length
     other = np.full(mean.shape, path.fixed)
     volts, hertz = (parameter, other) if path.along == "voltage" else (other, parameter)
-    law = law_of(own.gap_law)
     loads, counts = np.full(mean.shape, own.normal_load), np.full(mean.shape, own.orders)
-    measures = measured(law, 2 * np.pi * hertz, loads, mean, harmonics, counts)  # type: ignore[arg-type]
-    rates = growth(contact_port(own.structure), law, 2 * np.pi * hertz, loads, mean, harmonics, counts, 4 * counts)  # type: ignore[arg-type]
+    motion = (own.gap_law, 2 * np.pi * hertz, loads, mean, harmonics, counts)
+    measures = measure(*motion)  # type: ignore[arg-type]
+    rates = growth(contact_port(own.structure), *motion, 4 * counts)  # type: ignore[arg-type]
     return ResponseCurve(
         along=path.along,
         voltage_amplitude=volts,

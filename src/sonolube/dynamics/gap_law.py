@@ -10,6 +10,8 @@ from sonolube.checks import Floats, require_finite, require_non_negative, requir
 from sonolube.dynamics.force_table import log_forces, positions_of, table_cells
 from sonolube.errors import InvalidInput
 
+LOST = 0.01
+"""Share of the dead load below which contact counts as lost. []"""
 LARGEST_EXPONENT = 700.0
 """Largest logarithm of a force in N, and minus the smallest, that laws by a table give. []"""
 _STEEPEST = 3.0  # slope over rise per cell up to which a cubic between two points is monotone (Fritsch and Carlson)
@@ -35,6 +37,9 @@ class GapLaw(Protocol):
 
     def stiffness(self, displacement: Floats, normal_load: Floats | float) -> Floats:
         """Return its fall per displacement. [N/m]"""
+
+    def loss_displacement(self, normal_load: Floats | float) -> Floats:
+        """Return the displacement beyond which contact counts as lost. [m]"""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -65,6 +70,10 @@ class ExponentialGap:
     def stiffness(self, displacement: Floats, normal_load: Floats | float) -> Floats:
         """Return its fall per displacement. [N/m]"""
         return self.force(displacement, normal_load) / self.decay_length
+
+    def loss_displacement(self, normal_load: Floats | float) -> Floats:
+        """Return the displacement beyond which contact counts as lost. [m]"""
+        return np.full(np.shape(normal_load), -self.decay_length * math.log(LOST))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -104,6 +113,10 @@ class HertzGap:
         """Return its fall per displacement. [N/m]"""
         return 1.5 * self.coefficient * np.sqrt(self._approach(displacement, normal_load))
 
+    def loss_displacement(self, normal_load: Floats | float) -> Floats:
+        """Return the displacement beyond which contact counts as lost. [m]"""
+        return np.asarray((normal_load / self.coefficient) ** (2 / 3) * (1 - LOST ** (2 / 3)))
+
     def _approach(self, displacement: Floats, normal_load: Floats | float) -> Floats:
         return np.maximum((normal_load / self.coefficient) ** (2 / 3) - displacement, 0.0)
 
@@ -135,6 +148,11 @@ class LinearGap:
     def stiffness(self, displacement: Floats, normal_load: Floats | float) -> Floats:
         """Return its fall per displacement. [N/m]"""
         return np.where(self.force(displacement, normal_load) > 0, self.normal_stiffness, 0.0)
+
+    def loss_displacement(self, normal_load: Floats | float) -> Floats:
+        """Return the displacement beyond which contact counts as lost, infinite without stiffness. [m]"""
+        with np.errstate(divide="ignore"):
+            return np.divide((1 - LOST) * np.asarray(normal_load), self.normal_stiffness)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -231,7 +249,13 @@ class TabulatedGap:
     def stiffness(self, displacement: Floats, normal_load: Floats | float) -> Floats:
         """Return its fall per displacement. [N/m]"""
         force, decay = self._force_and_decay(displacement, normal_load)
-        return force * decay
+        with np.errstate(over="ignore"):
+            return np.asarray(force * decay)
+
+    def loss_displacement(self, normal_load: Floats | float) -> Floats:
+        """Return the displacement beyond which contact counts as lost. [m]"""
+        load = np.asarray(normal_load)
+        return np.asarray((self.rest_position(LOST * load) - self.rest_position(load)) / self.cells_per_length)
 
     def _force_and_decay(self, displacement: Floats, normal_load: Floats | float) -> tuple[Floats, Floats]:
         position = self.rest_position(normal_load) + self.cells_per_length * np.asarray(displacement)
@@ -239,3 +263,17 @@ class TabulatedGap:
         log_forces(self.cells, position.ravel(), logs, slopes)
         force = np.exp(np.clip(logs, -LARGEST_EXPONENT, LARGEST_EXPONENT))
         return force.reshape(position.shape), -self.cells_per_length * slopes.reshape(position.shape)
+
+
+def length_of_change(gap_law: GapLaw, load: Floats | float) -> Floats:
+    """Return the length over which the force at rest changes, infinite without stiffness, in m.
+
+    Parameters
+    ----------
+    gap_law : GapLaw
+    load : ndarray or float
+        Dead load in N.
+    """
+    rest = np.zeros(np.shape(load))
+    with np.errstate(divide="ignore"):
+        return np.divide(load, gap_law.stiffness(rest, load))

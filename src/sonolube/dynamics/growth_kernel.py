@@ -10,10 +10,10 @@ import numba
 import numpy as np
 
 from sonolube.checks import Complexes, Floats
-from sonolube.dynamics.contact_lanes import Law, contact_rows, rest
+from sonolube.dynamics.contact_lanes import Law, contact_rows
 from sonolube.dynamics.contact_port import ContactPort
 from sonolube.dynamics.harmonic_kernel import Integers, finest
-from sonolube.dynamics.lanes import INSIDE, KERNEL, LANES, combine
+from sonolube.dynamics.lanes import INSIDE, KERNEL, LANES, ONCE, combine
 
 _SQUARINGS = 22  # 2e-7 of growth a period are then told from none
 
@@ -24,6 +24,7 @@ def growth_rates(
     law: Law,
     omega: Floats,
     load: Floats,
+    resting: Floats,
     mean: Floats,
     harmonics: Complexes,
     count: Integers,
@@ -37,8 +38,8 @@ def growth_rates(
     ----------
     port : ContactPort
     law : Law
-    omega, load, mean : ndarray, shape (p,)
-        Angular frequency, in rad/s, dead load, in N, and mean displacement, in m.
+    omega, load, resting, mean : ndarray, shape (p,)
+        Angular frequency, in rad/s, dead load, in N, `resting_place`, and mean displacement, in m.
     harmonics : ndarray of complex, shape (p, room)
     count, steps : ndarray of int, shape (p,)
         Harmonics of each motion, and kicks in a period.
@@ -49,7 +50,7 @@ def growth_rates(
     """
     size, most = 2 * port.trace.size, finest(count, chosen)
     period, square = np.empty((size, size, LANES)), np.empty((size, size, LANES))
-    free, senses, rows = np.empty((2 * size, LANES)), np.empty((3, size, LANES)), np.empty((9, LANES))
+    free, senses, rows = np.empty((2 * size, LANES)), np.empty((3, size, LANES)), np.empty((8, LANES))
     motion, turn = np.zeros((2, 2 * most + 2, LANES)), np.empty(2 * most + 2)
     for start in range(0, chosen.size, LANES):
         block = chosen[start : start + LANES]
@@ -57,7 +58,7 @@ def growth_rates(
         for lane in range(LANES):
             point = block[min(lane, block.size - 1)]
             rows[0, lane], rows[1, lane] = omega[point], load[point]
-            rows[2, lane], motion[0, 0, lane] = rest(law, load[point]), mean[point]
+            rows[2, lane], motion[0, 0, lane] = resting[point], mean[point]
             motion[:, h + 1, lane] = 0.0
             for k in range(1, h + 1):
                 value = harmonics[point, k - 1] if k <= count[point] else 0j
@@ -77,18 +78,19 @@ def _free_motion(port: ContactPort, duration: float, lane: int, free: Floats) ->
         half = 0.5 * port.trace[pair]
         square = half * half - port.determinant[pair]
         angle = np.sqrt(abs(square)) * duration
-        even, odd = np.cos(angle), np.sin(angle)
-        if square > 0:
-            even, odd = np.cosh(angle), np.sinh(angle)
-        odd = odd / angle * duration if angle > 1e-9 else duration
         fading = np.exp(half * duration)
+        even, odd = fading * np.cos(angle), fading * np.sin(angle)
+        if square > 0:  # the slower and the faster exponential, neither of which overflows
+            slow, fast = np.exp(half * duration + angle), np.exp(half * duration - angle)
+            even, odd = 0.5 * (slow + fast), 0.5 * (slow - fast)
+        odd = odd / angle * duration if angle > 1e-9 else fading * duration
         for i in range(2):
             for j in range(2):
                 own = even - odd * half if i == j else 0.0
-                free[4 * pair + 2 * i + j, lane] = fading * (own + odd * port.generator[pair, i, j])
+                free[4 * pair + 2 * i + j, lane] = own + odd * port.generator[pair, i, j]
 
 
-@numba.njit(**INSIDE)
+@numba.njit(**ONCE)
 def _one_period(
     port: ContactPort,
     law: Law,
@@ -106,7 +108,7 @@ def _one_period(
     gain = 0.0
     for pair in range(port.trace.size):
         gain += port.velocity[pair, 0] * port.push[pair, 0] + port.velocity[pair, 1] * port.push[pair, 1]
-    x, v, work, force, slope, drag = rows[3], rows[4], rows[5], rows[6], rows[7], rows[8]
+    x, v, force, slope, drag = rows[3], rows[4], rows[5], rows[6], rows[7]
     period[:] = 0.0
     for j in range(size):
         period[j, j] = 1.0
@@ -120,7 +122,7 @@ def _one_period(
             combine(v, turn, motion[1], 2 * h + 1)
             for lane in range(LANES):
                 v[lane] *= rows[0, lane]
-        contact_rows(law, rows[1], rows[2], x, v, work, force, slope, drag)
+        contact_rows(law, rows[1], rows[2], x, v, force, slope, drag)
         for lane in range(LANES):
             slope[lane] *= -2 * np.pi / (kicks * rows[0, lane])
         if law.damping > 0:

@@ -14,17 +14,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.checks import Complexes, Floats
-from sonolube.dynamics.contact_lanes import Law, contact_rows, parallel, reach, rest
+from sonolube.dynamics.contact_lanes import Law, contact_rows, parallel
 from sonolube.dynamics.contact_port import ContactPort, receptances
-from sonolube.dynamics.lanes import INSIDE, KERNEL, LANES, combine
+from sonolube.dynamics.lanes import INSIDE, KERNEL, LANES, ONCE, combine
 from sonolube.dynamics.newton_kernel import newton_step
 
 Integers = NDArray[np.int64]
 
 CONVERGED, DIVERGED, NEEDS_HARMONICS, NEEDS_SAMPLES = 0, 1, 2, 3
-# In tolerances, relative to the amplitude: the harmonics left out, the last step of the loop, and that of the pass that
-# confirms it.
-TAIL, _NEARLY, _EXACTLY = 0.3, 1.0, 0.01
+# In tolerances, relative to the amplitude: the harmonics left out, and the last step of Newton's method.
+TAIL, _EXACTLY = 0.3, 0.01
 _LARGEST_STEP = 2.0  # in lengths over which the contact changes
 
 
@@ -33,12 +32,13 @@ class Points(NamedTuple):
 
     omega: Floats  # (p,) rad/s
     load: Floats  # (p,) N
-    voltage: Complexes  # (p, K)
+    length: Floats  # (p,) m, over which the contact changes
+    resting: Floats  # (p,): where it rests, as by `resting_place`
     free_mean: Floats  # (p,) m, without contact
+    free: Complexes  # (p, K) m, harmonics likewise
     mean: Floats  # (p,) m
-    harmonics: Complexes  # (p, room)
-    mean_force: Floats  # (p,) N
-    charge: Complexes  # (p, K) C, harmonics of the charge
+    harmonics: Complexes  # (p, room) m
+    force: Complexes  # (p, K) N, harmonics of the contact force, written
 
 
 class Samples(NamedTuple):
@@ -49,7 +49,7 @@ class Samples(NamedTuple):
     velocity: Floats  # (2, H + 1, lanes): harmonics of velocity over omega
     parts: Floats  # (2, 2, lanes): even and odd parts of displacement and velocity
     sides: Floats  # (2, 3, lanes): force, stiffness and damping, ahead and behind
-    work: Floats  # (3, lanes)
+    work: Floats  # (2, lanes)
     sums: Floats  # (3, 2, instants, lanes): weighted sums and differences of force, stiffness and damping
 
 
@@ -73,6 +73,52 @@ class Resolution(NamedTuple):
     samples: Integers
 
 
+class Workspace(NamedTuple):
+    """Rows that a block of points is solved in."""
+
+    answers: Floats  # (H + 1, 2, lanes): receptances of the contact
+    linear: Floats  # (2, H + 1, lanes): motion without contact
+    unknown: Floats  # (2, H + 1, lanes): motion
+    step: Floats  # (2, H + 1, lanes)
+    spectra: Floats  # (3, 2, 2 H + 1, lanes): of force, stiffness and damping
+    matrix: Floats  # (rows + 2, rows + 1, lanes): Newton's, and two rows to spare
+    lanes: Lanes
+    samples: Samples
+
+
+def workspace(harmonics: int, coupled: int, samples: int) -> Workspace:
+    """Return room for points of some resolution.
+
+    Parameters
+    ----------
+    harmonics, coupled, samples : int
+        The largest of `Resolution`.
+
+    Returns
+    -------
+    Workspace
+    """
+    most, rows, instants = harmonics + 1, 2 * coupled + 1, samples // 2 + 1
+    return Workspace(
+        answers=np.empty((most, 2, LANES)),
+        linear=np.empty((2, most, LANES)),
+        unknown=np.empty((2, most, LANES)),
+        step=np.empty((2, most, LANES)),
+        spectra=np.empty((3, 2, 2 * most - 1, LANES)),
+        matrix=np.empty((rows + 2, rows + 1, LANES)),
+        lanes=Lanes(*np.empty((7, LANES))),
+        samples=Samples(
+            np.empty((instants, instants)),
+            np.empty((instants, instants)),
+            np.empty((2, most, LANES)),
+            np.empty((2, 2, LANES)),
+            np.empty((2, 3, LANES)),
+            np.empty((2, LANES)),
+            np.empty((3, 2, instants, LANES)),
+        ),
+    )
+
+
 @numba.njit(**KERNEL)
 def balance(
     port: ContactPort,
@@ -83,6 +129,7 @@ def balance(
     tolerance: float,
     iterations: int,
     outcome: Integers,
+    work: Workspace,
 ) -> None:
     """Find the steady states of the chosen points.
 
@@ -100,53 +147,37 @@ def balance(
         Most iterations.
     outcome : ndarray of int, shape (p,)
         Written at the chosen points: CONVERGED, DIVERGED (nothing else is written), NEEDS_HARMONICS or NEEDS_SAMPLES.
+    work : Workspace
+        For the finest of the chosen points' resolutions.
     """
-    most, rows = finest(resolution.harmonics, chosen), 2 * finest(resolution.coupled, chosen) + 1
-    answers = np.empty((most + 1, 6, LANES))
-    linear = np.empty((2, most + 1, LANES))
-    unknown = np.empty((2, most + 1, LANES))
-    step = np.empty((2, most + 1, LANES))
-    spectra = np.empty((3, 2, 2 * most + 2, LANES))
-    matrix = np.empty((rows + 2, rows + 1, LANES))
-    row = np.empty((7, LANES))
-    lanes = Lanes(row[0], row[1], row[2], row[3], row[4], row[5], row[6])
-    instants = finest(resolution.samples, chosen) // 2 + 1
-    samples = Samples(
-        np.empty((instants, instants)),
-        np.empty((instants, instants)),
-        np.empty((2, most + 1, LANES)),
-        np.empty((2, 2, LANES)),
-        np.empty((2, 3, LANES)),
-        np.empty((3, LANES)),
-        np.empty((3, 2, instants, LANES)),
-    )
+    answers, linear, unknown, step = work.answers, work.linear, work.unknown, work.step
+    spectra, matrix, lanes, samples = work.spectra, work.matrix, work.lanes, work.samples
     tabulated = 0
     for start in range(0, chosen.size, LANES):
         block = chosen[start : start + LANES]
         h, n = finest(resolution.harmonics, block), finest(resolution.coupled, block)
         count = finest(resolution.samples, block)
-        _gather(law, points, block, h, unknown, lanes)
+        _gather(points, block, h, unknown, linear, lanes)
         for k in range(1, h + 1):
             receptances(port, port.constant[0], port.slope[0], lanes.omega, float(k), answers[k, 0], answers[k, 1])
-            _linear_part(port, points.voltage, block, lanes.omega, k, answers[k], linear)
         if count != tabulated:
             _trigonometry(count, samples)
             tabulated = count
-        final = False
-        for iteration in range(iterations):
-            final = final or iteration == iterations - 1
-            _contact_spectra(law, unknown, lanes, h, count, 2 * h if final else h + n, samples, spectra)
+        for _ in range(iterations):
+            quantities = _sample(law, unknown, lanes, h, count, samples)
+            _transform(samples, quantities, count, 0, h + n + 1, spectra)
+            if quantities == 1:
+                _follow_force(law, h + n + 1, spectra)
             _residual(port.static_stiffness, unknown, answers, linear, spectra, lanes, h, step)
             newton_step(port.static_stiffness, answers, spectra, law.damping > 0, lanes.omega, h, n, matrix, step)
-            largest = _advance(unknown, step, h, lanes)
-            if final:
+            if _advance(unknown, step, h, lanes) <= _EXACTLY * tolerance:
                 break
-            final = largest < _NEARLY * tolerance
+        _transform(samples, 1, count, h + n + 1, 2 * h + 1, spectra)
         # The samples mistake harmonic count - h for harmonic h. Those of an exponential force fall ever faster, which
         # bounds it by the highest one that they resolve: a_(count - h) <= a_k^((count - h)/k), a_0 = 1.
         aliased = tolerance ** ((0.5 * count - 1) / (count - h)) if parallel(law) else tolerance
-        _judge(port, block, h, spectra, lanes, tolerance, aliased, linear, outcome)
-        _scatter(port, points, resolution, block, h, unknown, answers, spectra, lanes, outcome)
+        _judge(port, block, h, count, samples, spectra, lanes, tolerance, aliased, linear, outcome)
+        _scatter(points, resolution, block, h, unknown, spectra, outcome)
 
 
 @numba.njit(**INSIDE)
@@ -159,30 +190,18 @@ def finest(values: Integers, chosen: Integers) -> int:
 
 
 @numba.njit(**INSIDE)
-def _gather(law: Law, points: Points, block: Integers, h: int, unknown: Floats, lanes: Lanes) -> None:
+def _gather(points: Points, block: Integers, h: int, unknown: Floats, linear: Floats, lanes: Lanes) -> None:
     for lane in range(LANES):
         point = block[min(lane, block.size - 1)]
         lanes.omega[lane], lanes.load[lane] = points.omega[point], points.load[point]
-        lanes.length[lane], lanes.resting[lane] = reach(law, points.load[point]), rest(law, points.load[point])
+        lanes.length[lane], lanes.resting[lane] = points.length[point], points.resting[point]
         lanes.free_mean[lane] = points.free_mean[point]
         unknown[0, 0, lane], unknown[1, 0, lane] = points.mean[point], 0.0
         for k in range(1, h + 1):
             guess = points.harmonics[point, k - 1]
             unknown[0, k, lane], unknown[1, k, lane] = guess.real, guess.imag
-
-
-@numba.njit(**INSIDE)
-def _linear_part(
-    port: ContactPort, voltage: Complexes, block: Integers, omega: Floats, k: int, answer: Floats, linear: Floats
-) -> None:
-    driven = k <= voltage.shape[1]
-    if driven:
-        receptances(port, port.constant[1], port.slope[1], omega, float(k), answer[2], answer[3])
-        receptances(port, port.constant[2], port.slope[2], omega, float(k), answer[4], answer[5])
-    for lane in range(LANES):
-        v = voltage[block[min(lane, block.size - 1)], k - 1] if driven else 0j
-        linear[0, k, lane] = answer[2, lane] * v.real - answer[3, lane] * v.imag if driven else 0.0
-        linear[1, k, lane] = answer[2, lane] * v.imag + answer[3, lane] * v.real if driven else 0.0
+            free = points.free[point, k - 1] if k <= points.free.shape[1] else 0j
+            linear[0, k, lane], linear[1, k, lane] = free.real, free.imag
 
 
 @numba.njit(**INSIDE)
@@ -193,14 +212,15 @@ def _trigonometry(count: int, samples: Samples) -> None:
             samples.cosines[j, k], samples.sines[j, k] = np.cos(phase), np.sin(phase)
 
 
-@numba.njit(**INSIDE)
-def _contact_spectra(
-    law: Law, unknown: Floats, lanes: Lanes, h: int, count: int, orders: int, samples: Samples, spectra: Floats
-) -> None:
-    """Write (1/2 pi) int f exp(-i m theta) of force, stiffness and damping, m up to `orders`; last, the highest."""
+@numba.njit(**ONCE)
+def _sample(law: Law, unknown: Floats, lanes: Lanes, h: int, count: int, samples: Samples) -> int:
+    """Write the sums of samples of the force, and of stiffness and damping as far as they are functions of their own.
+
+    Return how many of the three.
+    """
     damped = law.damping > 0
     quantities = 3 if damped else (1 if parallel(law) else 2)
-    half, highest = count // 2, spectra.shape[2] - 1
+    half = count // 2
     if damped:
         for k in range(h + 1):
             for lane in range(LANES):
@@ -209,17 +229,26 @@ def _contact_spectra(
     for j in range(half + 1):
         weight = (0.5 if j == 0 or j == half else 1.0) / count
         _sample_pair(law, unknown, lanes, h, j, weight, quantities, samples)
+    return quantities
+
+
+@numba.njit(**INSIDE)
+def _transform(samples: Samples, quantities: int, count: int, first: int, end: int, spectra: Floats) -> None:
+    """Write (1/2 pi) int f exp(-i m theta) of force, stiffness and damping for the orders m before `end`."""
     for quantity in range(quantities):
-        for part in range(2):
-            table = samples.sines if part else samples.cosines
-            for m in range(orders + 2):
-                order, row = (m, m) if m <= orders else (half - 1, highest)
-                combine(spectra[quantity, part, row], table[order], samples.sums[quantity, part], half)
-    if parallel(law):
-        for part in range(2):
-            for m in range(orders + 1):
-                for lane in range(LANES):
-                    spectra[1, part, m, lane] = spectra[0, part, m, lane] / law.parameter
+        for m in range(first, end):
+            combine(spectra[quantity, 0, m], samples.cosines[m], samples.sums[quantity, 0], count // 2)
+            combine(spectra[quantity, 1, m], samples.sines[m], samples.sums[quantity, 1], count // 2)
+
+
+@numba.njit(**INSIDE)
+def _follow_force(law: Law, end: int, spectra: Floats) -> None:
+    """Write the stiffness that goes with the force."""
+    rate = 1 / law.parameter
+    for part in range(2):
+        for m in range(end):
+            for lane in range(LANES):
+                spectra[1, part, m, lane] = spectra[0, part, m, lane] * rate
 
 
 @numba.njit(**INSIDE)
@@ -242,7 +271,7 @@ def _sample_pair(
             for lane in range(LANES):
                 v[lane] = lanes.omega[lane] * (samples.parts[1, 0, lane] + sign * samples.parts[1, 1, lane])
         force, slope, drag = samples.sides[side, 0], samples.sides[side, 1], samples.sides[side, 2]
-        contact_rows(law, lanes.load, lanes.resting, x, v, samples.work[2], force, slope, drag)
+        contact_rows(law, lanes.load, lanes.resting, x, v, force, slope, drag)
     for quantity in range(quantities):
         ahead, behind = samples.sides[0, quantity], samples.sides[1, quantity]
         total, difference = samples.sums[quantity, 0, j], samples.sums[quantity, 1, j]
@@ -305,6 +334,8 @@ def _judge(
     port: ContactPort,
     block: Integers,
     h: int,
+    count: int,
+    samples: Samples,
     spectra: Floats,
     lanes: Lanes,
     tolerance: float,
@@ -313,20 +344,22 @@ def _judge(
     outcome: Integers,
 ) -> None:
     """Say which points converged, and which of them were resolved finely enough."""
-    top, tail = spectra.shape[2] - 1, work[0, 0]
+    half, tail, real, imaginary = count // 2, work[0, 0], work[0, 1], work[1, 1]
     tail[:] = 0.0
     for k in range(h + 1, 2 * h + 1):
-        receptances(port, port.constant[0], port.slope[0], lanes.omega, float(k), work[0, 1], work[1, 1])
+        receptances(port, port.constant[0], port.slope[0], lanes.omega, float(k), real, imaginary)
         for lane in range(LANES):
-            receptance = work[0, 1, lane] ** 2 + work[1, 1, lane] ** 2
+            receptance = real[lane] ** 2 + imaginary[lane] ** 2
             force = spectra[0, 0, k, lane] ** 2 + spectra[0, 1, k, lane] ** 2
             tail[lane] = max(tail[lane], 4 * receptance * force)
+    combine(real, samples.cosines[half - 1], samples.sums[0, 0], half)
+    combine(imaginary, samples.sines[half - 1], samples.sums[0, 1], half)
     for lane in range(block.size):
-        highest = np.hypot(spectra[0, 0, top, lane], spectra[0, 1, top, lane])
+        highest = real[lane] * real[lane] + imaginary[lane] * imaginary[lane]
         verdict = CONVERGED
         if not lanes.size[lane] <= _EXACTLY * tolerance * lanes.scale[lane]:
             verdict = DIVERGED
-        elif highest > aliased * max(spectra[0, 0, 0, lane], 1e-3 * lanes.load[lane]):
+        elif highest > (aliased * max(spectra[0, 0, 0, lane], 1e-3 * lanes.load[lane])) ** 2:
             verdict = NEEDS_SAMPLES
         elif tail[lane] > (TAIL * tolerance * lanes.scale[lane]) ** 2:
             verdict = NEEDS_HARMONICS
@@ -335,29 +368,15 @@ def _judge(
 
 @numba.njit(**INSIDE)
 def _scatter(
-    port: ContactPort,
-    points: Points,
-    resolution: Resolution,
-    block: Integers,
-    h: int,
-    unknown: Floats,
-    answers: Floats,
-    spectra: Floats,
-    lanes: Lanes,
-    outcome: Integers,
+    points: Points, resolution: Resolution, block: Integers, h: int, unknown: Floats, spectra: Floats, outcome: Integers
 ) -> None:
     for lane in range(block.size):
         point = block[lane]
         if outcome[point] == DIVERGED:
             continue
-        mean = unknown[0, 0, lane]
         resolution.harmonics[point] = h
-        points.mean[point] = mean
-        points.mean_force[point] = lanes.load[lane] + port.static_stiffness * (mean - lanes.free_mean[lane])
+        points.mean[point] = unknown[0, 0, lane]
         for k in range(1, h + 1):
             points.harmonics[point, k - 1] = complex(unknown[0, k, lane], unknown[1, k, lane])
-        for k in range(1, min(points.voltage.shape[1], h) + 1):
-            own = port.clamped_capacitance + complex(answers[k, 4, lane], answers[k, 5, lane])
-            reaction = complex(answers[k, 2, lane], answers[k, 3, lane])
-            force = 2 * complex(spectra[0, 0, k, lane], spectra[0, 1, k, lane])
-            points.charge[point, k - 1] = own * points.voltage[point, k - 1] + reaction * force
+        for k in range(1, min(points.force.shape[1], h) + 1):
+            points.force[point, k - 1] = complex(2 * spectra[0, 0, k, lane], 2 * spectra[0, 1, k, lane])

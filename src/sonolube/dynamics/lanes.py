@@ -4,11 +4,9 @@ Each function here works on rows, one entry to a point, and writes its result wh
 overlap, and no operation mixes lanes.
 """
 
-import math
 from typing import Any
 
 import numba
-import numpy as np
 
 from sonolube.checks import Floats
 
@@ -22,24 +20,22 @@ INSIDE: dict[str, Any] = {  # for what only kernels call, which spares it everyt
     "no_cpython_wrapper": True,
     "no_cfunc_wrapper": True,
 }
+# For large functions called in one place: compiled within it, they take a fifth of the compiling less.
+ONCE: dict[str, Any] = INSIDE | {"inline": "always"}
 
-_LOG2_E = math.log2(math.e)
-_LN_2_HIGH, _LN_2_LOW = 0.6931471803691238, 1.9082149292705877e-10  # their sum is ln 2; the first has trailing zeros
-_ROUNDER = 6755399441055744.0  # 1.5 * 2**52: adding it rounds to an integer, which then stands in the lowest bits
+_HALVINGS = 10
 _LARGEST = 700.0
 
 
 @numba.njit(**INSIDE)
-def exponentials(argument: Floats, result: Floats, scale: Floats) -> None:
-    """Write exp(argument) to within 2e-14, the argument held between -700 and 700."""
+def exponentials(argument: Floats, result: Floats) -> None:
+    """Write exp(argument), held between -700 and 700, to within 4e-13 for arguments below 100.
+
+    The argument is halved ten times, and the series squared as often.
+    """
     for lane in range(LANES):
-        x = min(max(argument[lane], -_LARGEST), _LARGEST)
-        shifted = x * _LOG2_E + _ROUNDER
-        power = shifted - _ROUNDER
-        r = (x - power * _LN_2_HIGH) - power * _LN_2_LOW
-        series = 1 / 3628800 + r / 39916800
-        series = 1 / 362880 + r * series
-        series = 1 / 40320 + r * series
+        r = min(max(argument[lane], -_LARGEST), _LARGEST) / 2**_HALVINGS
+        series = 1 / 40320 + r / 362880
         series = 1 / 5040 + r * series
         series = 1 / 720 + r * series
         series = 1 / 120 + r * series
@@ -47,13 +43,10 @@ def exponentials(argument: Floats, result: Floats, scale: Floats) -> None:
         series = 1 / 6 + r * series
         series = 0.5 + r * series
         series = 1 + r * series
-        result[lane] = 1 + r * series
-        scale[lane] = shifted
-    bits = scale.view(np.int64)
-    for lane in range(LANES):
-        bits[lane] = (bits[lane] + 1023) << 52
-    for lane in range(LANES):
-        result[lane] *= scale[lane]
+        series = 1 + r * series
+        for _ in range(_HALVINGS):
+            series *= series
+        result[lane] = series
 
 
 @numba.njit(**INSIDE)

@@ -201,17 +201,21 @@ def march_points(
             ]
             for job in jobs:
                 job.result()
-    seen = _points_last(statistics, count)
-    if gap_law.force_damping == 0:
-        seen[:, 6] = gap_law.force(seen[:, 1], points.normal_load)
-        seen[:, 7] = gap_law.force(seen[:, 0], points.normal_load)
     return Marched(
-        statistics=seen,
+        statistics=elastic_extremes(_points_last(statistics, count), gap_law, points.normal_load),
         recorded=_points_last(recorded, count),
         strobed=_points_last(strobed, count),
         final=_points_last(final, count)[0],
         yielded=yielded,
     )
+
+
+def elastic_extremes(statistics: Floats, gap_law: GapLaw, load: Floats) -> Floats:
+    """Return statistics whose highest and lowest force, where nothing damps the contact, are those of its extremes."""
+    if gap_law.force_damping == 0:
+        statistics[:, 6] = gap_law.force(statistics[:, 1], load)
+        statistics[:, 7] = gap_law.force(statistics[:, 0], load)
+    return statistics
 
 
 def _off_steps(turns: Floats, steps: int) -> bool:
@@ -262,7 +266,7 @@ def _numbers(
         np.moveaxis(filters.recent[which], 0, -1),
         np.moveaxis(filters.foreseen[which], 0, -1),
         np.zeros(5 * LANES),
-        _law_constants(gap_law, points.normal_load[lanes]),
+        law_constants(gap_law, points.normal_load[lanes]),
         np.zeros(at.x_ahead - at.statistics),
         np.moveaxis(filters.ahead[which], 0, -1),
         np.zeros(LANES),
@@ -279,7 +283,8 @@ def _aligned(values: Floats) -> Floats:
     return flat
 
 
-def _law_constants(gap_law: GapLaw, load: Floats) -> Floats:
+def law_constants(gap_law: GapLaw, load: Floats) -> Floats:
+    """Return the rows that evaluate a contact law: dead load, three constants, damping; points last."""
     none = np.zeros_like(load)
     match gap_law:
         case ExponentialGap():

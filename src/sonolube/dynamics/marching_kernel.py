@@ -17,8 +17,8 @@ LANES = 32
 STATISTICS = 8  # of the contact: highest, lowest, sum, cosine and sine sum of x; sum, highest and lowest of F_n
 _MATHS = {"nsz"}  # as lanes.KERNEL, and for its reason
 _LARGEST_EXPONENT = 32.0
-_INSTANT = 1e-200  # steps: a ramp without duration has ended when it starts
-_SWEEPS = 8  # by which a start without a past converges; each gains the feedback of the force over four steps
+INSTANT = 1e-200  # steps: a ramp without duration has ended when it starts
+SWEEPS = 8  # by which a start without a past converges; each gains the feedback of the force over four steps
 
 
 class Rows(NamedTuple):
@@ -73,7 +73,7 @@ def rows(pairs: tuple[int, ...]) -> Rows:
 
 
 @numba.njit(cache=True, fastmath=_MATHS, error_model="numpy")
-def _exponential(argument: float) -> float:
+def exponential(argument: float) -> float:
     """Return exp(argument) to 1e-13, the argument held between -32 and 32."""
     u = min(max(argument, -_LARGEST_EXPONENT), _LARGEST_EXPONENT) / 256
     uu = u * u
@@ -97,14 +97,14 @@ def _contact_force(
     """Return F_n of one lane."""
     load, first, second = lanes[law], lanes[law + LANES], lanes[law + 2 * LANES]
     if len(kind) == 0:
-        force = load * _exponential(-x * first)
+        force = load * exponential(-x * first)
     elif len(kind) == 1:
         approach = max(second - x, 0.0)
         force = first * approach * np.sqrt(approach)
     elif len(kind) == 2:
         force = max(load - first * x, 0.0)
     else:
-        force = load * _exponential(log_force_at(cells, second + first * x)[0] - lanes[law + 3 * LANES])
+        force = load * exponential(log_force_at(cells, second + first * x)[0] - lanes[law + 3 * LANES])
     if len(damped):
         force *= max(1.0 - lanes[law + 4 * LANES] * v, 0.0)
     return force
@@ -201,7 +201,7 @@ def _collocate(
         force = _contact_force(kind, damped, cells, lanes[at.x_free + lane], lanes[at.v_free + lane], lanes, law)
         for j in range(5):
             lanes[at.forces_ahead + j * LANES + lane] = force - lanes[law]
-    for _ in range(_SWEEPS):
+    for _ in range(SWEEPS):
         for lane in range(LANES):
             law = at.law + lane
             for i in range(4):
@@ -250,7 +250,7 @@ def _start(
 @numba.njit(cache=True, fastmath=_MATHS, error_model="numpy")
 def _ramp(share: Floats, time: float, ramp_steps: Floats, cosine_shaped: bool) -> None:
     for lane in range(LANES):
-        share[lane] = min((time + _INSTANT) / (ramp_steps[lane] + _INSTANT), 1.0)
+        share[lane] = min((time + INSTANT) / (ramp_steps[lane] + INSTANT), 1.0)
     if cosine_shaped:
         for lane in range(LANES):
             share[lane] = 0.5 - 0.5 * np.cos(np.pi * share[lane])

@@ -3,10 +3,10 @@
 import numba
 
 from sonolube.checks import Floats
-from sonolube.dynamics.lanes import INSIDE, LANES
+from sonolube.dynamics.lanes import INSIDE, LANES, ONCE
 
 
-@numba.njit(**INSIDE)
+@numba.njit(**ONCE)
 def newton_step(
     static_stiffness: float,
     answers: Floats,

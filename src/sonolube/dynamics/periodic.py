@@ -16,8 +16,7 @@ from sonolube.checks import (
     require_positive,
 )
 from sonolube.dynamics.backend import Backend
-from sonolube.dynamics.balancing import Solutions
-from sonolube.dynamics.contact_lanes import law_of
+from sonolube.dynamics.balancing import Solutions, too_slow
 from sonolube.dynamics.contact_port import contact_port
 from sonolube.dynamics.gap_law import GapLaw
 from sonolube.dynamics.sharing import Asked, shared
@@ -131,12 +130,21 @@ class SteadyStates:
                 f"several: another vibration of {other:.4g} um is as possible as this one of {this:.4g} um;"
                 " which one appears depends on how the voltage got there" + self.hopping(point)
             )
+        if status is Status.NOT_CONVERGED and self.beyond_judgement(point):
+            return (
+                f"not_converged: {float(self.frequency[point]):.3g} Hz is too slow beside the structure's fastest mode"
+                " for its stability to be judged; raise the frequency, or lump light masses together"
+            )
         if status is Status.NOT_CONVERGED:
             return (
                 "not_converged: no vibration at the drive's own period was found within 64 harmonics of the contact;"
                 " follow it from a lower voltage with response_curve, add damping, or march the point in time"
             )
         return "periodic: the vibration repeats with the drive" + self.hopping(point)
+
+    def beyond_judgement(self, point: int | tuple[int, ...]) -> bool:
+        """Return whether one point's drive is too slow beside the fastest mode for its stability to be judged."""
+        return bool(too_slow(contact_port(self.structure), 2 * np.pi * self.frequency[point]))
 
     def hopping(self, point: int | tuple[int, ...]) -> str:
         """Say for how long one point's contact is lost; empty where it is not.
@@ -313,9 +321,9 @@ def solved(
     omega, loads = 2 * np.pi * flat(f), flat(load)
     free_mean = port.displacement_per_volt * flat(offset)
     points = Asked(
-        port, law_of(gap_law), omega, loads, voltage, free_mean, least_harmonics, falling, stability, relative_tolerance
+        port, gap_law, omega, loads, voltage, free_mean, least_harmonics, falling, stability, relative_tolerance
     )
-    answered = shared(points, gap_law, np.empty(0) if speeds is None else speeds, workers=workers, backend=backend)
+    answered = shared(points, np.empty(0) if speeds is None else speeds, workers=workers, backend=backend)
     found = answered.solutions
     current = 1j * omega[:, np.newaxis] * np.arange(1, voltage.shape[1] + 1) * found.charge
     closed = np.zeros(omega.size, dtype=bool) if rest is None else found.lowest_displacement <= -flat(rest)

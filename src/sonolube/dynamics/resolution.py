@@ -75,11 +75,12 @@ def resolution(marched: Marched, contact_rows: Floats, gap_law: GapLaw, load: Fl
     unstable, coarse = ~(2 * feedback <= _FEEDBACK), error > _COARSE
     finer = 4 * np.ceil(steps / 4 * np.clip(np.sqrt(4 * feedback / _FEEDBACK), 2.0, 4.0))
     corner = np.any(weakest == 0, axis=1) & (not isinstance(gap_law, ExponentialGap) or gap_law.force_damping > 0)
+    advice = [""] * load.size
+    for i in np.flatnonzero(ran_away | unstable | coarse | corner):
+        advice[i] = _advice(ran_away[i], unstable[i], coarse[i], corner[i], finer[i], steps)
     return Resolution(
         status=np.where(ran_away, "diverged", np.where(unstable | coarse, "coarse", "marched")),
-        advice=np.array(
-            [_advice(*each, steps) for each in zip(ran_away, unstable, coarse, corner, finer, strict=True)]
-        ),
+        advice=np.array(advice),
         step_error=error,
     )
 

@@ -1,4 +1,4 @@
-"""Who solves the points asked for: threads of the processor, or a GPU and the processor what the GPU leaves."""
+"""Who does the points asked for: threads of the processor, or a GPU and the processor what the GPU leaves."""
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -10,21 +10,23 @@ from numpy.typing import NDArray
 from sonolube.checks import Complexes, Floats
 from sonolube.dynamics.backend import Backend, available, unused
 from sonolube.dynamics.balancing import Solutions, solve
-from sonolube.dynamics.contact_lanes import Law
+from sonolube.dynamics.contact_lanes import law_of
 from sonolube.dynamics.contact_port import ContactPort
 from sonolube.dynamics.gap_law import GapLaw
+from sonolube.dynamics.marching import Marched, Points, Schedule, march_points
+from sonolube.dynamics.state_pairs import StatePairs
 from sonolube.errors import InvalidInput
 
 Result = TypeVar("Result")
 
-_CHUNK = 4096  # points that a thread solves together, to bound the memory
+_CHUNK = 16384  # points that a thread solves together at most, to bound the memory
 
 
 class Asked(NamedTuple):
     """Points to solve, as `sonolube.dynamics.balancing.solve` takes them."""
 
     port: ContactPort
-    law: Law
+    gap_law: GapLaw
     omega: Floats
     load: Floats
     voltage: Complexes
@@ -43,14 +45,12 @@ class Shared(NamedTuple):
     done: NDArray[np.bool_]  # (p,): by the GPU
 
 
-def shared(asked: Asked, gap_law: GapLaw, speeds: Floats, *, workers: int, backend: Backend) -> Shared:
+def shared(asked: Asked, speeds: Floats, *, workers: int, backend: Backend) -> Shared:
     """Solve the points on the backend asked for.
 
     Parameters
     ----------
     asked : Asked
-    gap_law : GapLaw
-        What `asked.law` was made of.
     speeds : ndarray, shape (s,)
         Sliding speeds to average friction at where a GPU does it, in m/s, none of them zero.
     workers : int
@@ -61,14 +61,14 @@ def shared(asked: Asked, gap_law: GapLaw, speeds: Floats, *, workers: int, backe
     -------
     Shared
     """
-    if not _on_gpu(asked, gap_law, backend):
+    if not _on_gpu(asked, backend):
         means, done = np.empty((2, asked.omega.size, 0)), np.zeros(asked.omega.size, dtype=bool)
         return Shared(_on_cpu(asked, np.arange(asked.omega.size), workers), means, done)
     from sonolube.dynamics.gpu import solve_on_gpu
 
     found = solve_on_gpu(
         asked.port,
-        asked.law,
+        law_of(asked.gap_law),
         asked.omega,
         asked.load,
         asked.voltage,
@@ -84,13 +84,48 @@ def shared(asked: Asked, gap_law: GapLaw, speeds: Floats, *, workers: int, backe
     return Shared(solutions, found.means, found.done)
 
 
-def _on_gpu(asked: Asked, gap_law: GapLaw, backend: Backend) -> bool:
+def shared_march(
+    pairs: StatePairs,
+    contact_rows: Floats,
+    gap_law: GapLaw,
+    points: Points,
+    start: Floats,
+    schedule: Schedule,
+    *,
+    workers: int,
+    backend: Backend,
+) -> Marched:
+    """March the points on the backend asked for.
+
+    Parameters
+    ----------
+    pairs, contact_rows, gap_law, points, start, schedule
+        As `march_points` takes them.
+    workers : int
+        Threads of the processor.
+    backend : {"cpu", "gpu"}
+
+    Returns
+    -------
+    Marched
+    """
+    if available(backend) == "gpu":
+        from sonolube.dynamics.gpu import march_on_gpu, unmarched
+
+        reason = unmarched(pairs, gap_law, schedule)
+        if not reason:
+            return march_on_gpu(pairs, contact_rows, gap_law, points, start, schedule)
+        unused(reason)
+    return march_points(pairs, contact_rows, gap_law, points, start, schedule, workers)
+
+
+def _on_gpu(asked: Asked, backend: Backend) -> bool:
     """Return whether a GPU is asked for, there, and serves the points; warn where it is not or does not."""
     if available(backend) == "cpu":
         return False
     from sonolube.dynamics.gpu import unserved
 
-    reason = unserved(asked.port, gap_law, harmonics=max(asked.least, asked.voltage.shape[1]))
+    reason = unserved(asked.port, asked.gap_law, harmonics=max(asked.least, asked.voltage.shape[1]))
     return not reason or unused(reason) == "gpu"
 
 
@@ -99,7 +134,7 @@ def _on_cpu(asked: Asked, chosen: NDArray[np.intp], workers: int) -> Solutions:
         points = chosen[own]
         return solve(
             asked.port,
-            asked.law,
+            asked.gap_law,
             asked.omega[points],
             asked.load[points],
             asked.voltage[points],
@@ -117,7 +152,8 @@ def in_threads(part: Callable[[slice], Result], points: int, workers: int) -> li
     """Return what `part` makes of one chunk of the points after another, shared among threads."""
     if workers < 1:
         raise InvalidInput(f"workers must be at least 1, got {workers!r}")
-    chunks = [slice(start, start + _CHUNK) for start in range(0, max(points, 1), _CHUNK)]
+    size = min(_CHUNK, max(-(-points // workers), 1))
+    chunks = [slice(start, start + size) for start in range(0, max(points, 1), size)]
     if workers == 1:
         return [part(chunk) for chunk in chunks]
     with ThreadPoolExecutor(workers) as pool:

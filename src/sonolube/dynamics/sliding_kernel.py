@@ -14,16 +14,15 @@ import numpy as np
 from scipy.special import ellipkm1
 
 from sonolube.checks import Complexes, Floats
-from sonolube.dynamics.contact_lanes import Law, contact_rows, rest
+from sonolube.dynamics.contact_lanes import Law, contact_rows
 from sonolube.dynamics.harmonic_kernel import Integers, finest
-from sonolube.dynamics.lanes import INSIDE, KERNEL, LANES
-from sonolube.dynamics.motion_kernel import contact_force, swing
+from sonolube.dynamics.lanes import INSIDE, KERNEL, LANES, ONCE
 
 _ROWS = 4  # steps of crowding to a decade of the ratio of the slowest sliding to the vibration's peak velocity
 _STEEPEST = 24  # most such steps
+_TOGETHER = 4  # points to add at once, which spares the sums' going to and fro
 # Accelerations of the higher harmonics over that of the first, and up to each how many times as many points it takes.
 _RICHNESS, _FINENESS = np.array([0.1, 1.0, 2.0]), np.array([1, 2, 4, 16])
-_CELLS, _FEWEST_CELLS = 256, 4096  # per harmonic, for motions that turn more than twice
 
 
 class Crowded(NamedTuple):
@@ -35,7 +34,32 @@ class Crowded(NamedTuple):
     count: Integers  # type: ignore[assignment]
 
 
-@lru_cache(maxsize=8)
+class Scratch(NamedTuple):
+    """Rows that a block of motions is averaged in."""
+
+    rows: Floats  # (17, lanes)
+    motion: Floats  # (2, H + 1, lanes)
+    few: Floats  # (12, lanes): velocity squared, weight and weighted force of four points
+    sums: Floats  # (2, s, lanes)
+
+
+def scratch(harmonics: int, speeds: Floats) -> Scratch:
+    """Return room for motions of so many harmonics, and for sums of the speeds' precision.
+
+    Parameters
+    ----------
+    harmonics : int
+    speeds : ndarray of float64 or float32, shape (s,)
+
+    Returns
+    -------
+    Scratch
+    """
+    few, sums = np.empty((3 * _TOGETHER, LANES), speeds.dtype), np.empty((2, speeds.size, LANES), speeds.dtype)
+    return Scratch(np.empty((17, LANES)), np.empty((2, harmonics + 1, LANES)), few, sums)
+
+
+@lru_cache(maxsize=64)
 def crowded_points(extra: int, tolerance: float = 1e-6) -> Crowded:
     """Return the points for each step of the ratio of sliding speed to peak velocity.
 
@@ -52,7 +76,7 @@ def crowded_points(extra: int, tolerance: float = 1e-6) -> Crowded:
     """
     ratios = 10.0 ** (-np.arange(_STEEPEST + 1) / _ROWS)
     digits = -np.log10(tolerance)  # each takes one point per e-fold
-    count = 8 * np.ceil((digits * np.log(4 / ratios) + extra + 4) / 8).astype(np.int64)
+    count = _TOGETHER * np.ceil((digits * np.log(4 / ratios) + extra + 4) / _TOGETHER).astype(np.int64)
     cosine, sine, weight = np.zeros((3, ratios.size, count.max()))
     for row, (ratio, samples) in enumerate(zip(ratios, count, strict=True)):
         complement = ratio**2 / (1 + ratio**2)
@@ -77,20 +101,38 @@ def _jacobi_amplitude(u: Floats, complement: float) -> Floats:
     return np.asarray(phase)
 
 
+def turned_circle(turns: Floats) -> Floats:
+    """Return what moves the points +-i of the circle to the two turns of each motion by (w + alpha)/(1 + alpha w).
+
+    Parameters
+    ----------
+    turns : ndarray, shape (p, 2)
+        Phases of the two turns.
+
+    Returns
+    -------
+    ndarray, shape (3, p)
+        alpha, and the turn of the circle that follows as cosine and sine.
+    """
+    half = 0.5 * (turns[:, 0] - turns[:, 1]) % np.pi
+    return np.array([np.tan(0.25 * np.pi - 0.5 * half), np.cos(turns[:, 0] - half), np.sin(turns[:, 0] - half)])
+
+
 @numba.njit(**KERNEL)
 def sliding_means(
     law: Law,
     omega: Floats,
     load: Floats,
+    resting: Floats,
     mean: Floats,
     harmonics: Complexes,
     count: Integers,
-    turns: Floats,
+    circle: Floats,
     crowding: Integers,
     chosen: Integers,
     speeds: Floats,
     crowded: Crowded,
-    singles: Floats,
+    room: Scratch,
     kinematic: Floats,
     loaded: Floats,
 ) -> None:
@@ -99,59 +141,53 @@ def sliding_means(
     Parameters
     ----------
     law : Law
-    omega, load, mean : ndarray, shape (p,)
-        Angular frequency, in rad/s, dead load, in N, and mean displacement, in m.
+    omega, load, resting, mean : ndarray, shape (p,)
+        Angular frequency, in rad/s, dead load, in N, `resting_place`, and mean displacement, in m.
     harmonics : ndarray of complex, shape (p, room)
     count : ndarray of int, shape (p,)
         Harmonics of each motion.
-    turns : ndarray, shape (p, 2)
-        Phases of the two turns.
+    circle : ndarray, shape (3, p)
+        As by `turned_circle`.
     crowding : ndarray of int, shape (p,)
         Row of `crowded` for each motion.
     chosen : ndarray of int
         Motions to treat, like beside like.
-    speeds : ndarray, shape (s,)
+    speeds : ndarray of float64 or float32, shape (s,)
         Sliding speeds v_r, in m/s, none of them zero.
     crowded : Crowded
-    singles : ndarray of float32, shape (2 s + 3, lanes) or (0, lanes)
-        Scratch for sums in single precision, which holds 1e-5; empty for double precision.
+    room : Scratch
+        Of the precision of the speeds, of which single holds 1e-5.
     kinematic, loaded : ndarray, shape (p, s)
     """
-    most = finest(count, chosen)
-    rows, motion = np.empty((18, LANES)), np.empty((2, most + 1, LANES))
-    plain, weighed = np.empty((speeds.size, LANES)), np.empty((speeds.size, LANES))
-    single = singles.shape[0] > 0
-    brief, sums = singles[:3], singles[3:]
+    rows, motion, few, sums = room.rows, room.motion, room.few, room.sums
     for start in range(0, chosen.size, LANES):
         block = chosen[start : start + LANES]
         h, row = finest(count, block), finest(crowding, block)
         for lane in range(LANES):
             point = block[min(lane, block.size - 1)]
-            half = 0.5 * (turns[point, 0] - turns[point, 1])
-            half -= np.pi * np.floor(half / np.pi)
-            rows[0, lane] = np.tan(0.25 * np.pi - 0.5 * half)
-            rows[1, lane], rows[2, lane] = np.cos(turns[point, 0] - half), np.sin(turns[point, 0] - half)
-            rows[3, lane], rows[4, lane], rows[5, lane] = omega[point], load[point], rest(law, load[point])
+            rows[0, lane], rows[1, lane], rows[2, lane] = circle[0, point], circle[1, point], circle[2, point]
+            rows[3, lane], rows[4, lane], rows[5, lane] = omega[point], load[point], resting[point]
             rows[6, lane] = mean[point]
             for k in range(1, h + 1):
                 value = harmonics[point, k - 1] if k <= count[point] else 0j
                 motion[0, k, lane], motion[1, k, lane] = value.real, value.imag
-        plain[:], weighed[:], singles[:] = 0.0, 0.0, 0.0
+        sums[:] = 0.0
         for j in range(crowded.count[row]):
             cosine, sine, weight = crowded.cosine[row, j], crowded.sine[row, j], crowded.weight[row, j]
             _motion_at(cosine, sine, weight, motion, h, rows)
             _weigh(law, rows)
-            if single:
-                _add_ratios_singly(speeds, rows, brief, sums[: speeds.size], sums[speeds.size :])
-            else:
-                _add_ratios(speeds, rows[7], rows[13], rows[15], plain, weighed)
+            place = 3 * (j % _TOGETHER)
+            for lane in range(LANES):
+                few[place, lane], few[place + 1, lane] = rows[7, lane], rows[13, lane]
+                few[place + 2, lane] = rows[15, lane]
+            if place == 3 * (_TOGETHER - 1):
+                _add_ratios(speeds, few, sums[0], sums[1])
         for lane in range(block.size):
             for s in range(speeds.size):
-                kinematic[block[lane], s] = sums[s, lane] if single else plain[s, lane]
-                loaded[block[lane], s] = sums[speeds.size + s, lane] if single else weighed[s, lane]
+                kinematic[block[lane], s], loaded[block[lane], s] = sums[0, s, lane], sums[1, s, lane]
 
 
-@numba.njit(**INSIDE)
+@numba.njit(**ONCE)
 def _motion_at(cosine: float, sine: float, weight: float, motion: Floats, h: int, rows: Floats) -> None:
     """Write displacement, velocity and weight at a crowded point, mapped so that points crowd at the turns."""
     alpha, re, im, omega, mean = rows[0], rows[1], rows[2], rows[3], rows[6]
@@ -179,107 +215,33 @@ def _motion_at(cosine: float, sine: float, weight: float, motion: Floats, h: int
         v[lane] *= omega[lane]
 
 
-@numba.njit(**INSIDE)
+@numba.njit(**ONCE)
 def _weigh(law: Law, rows: Floats) -> None:
     """Write velocity squared, and the contact force times the point's weight over the dead load."""
     load, resting, x, v, share, square = rows[4], rows[5], rows[11], rows[12], rows[13], rows[7]
-    work, force, slope, drag = rows[14], rows[15], rows[16], rows[17]
-    contact_rows(law, load, resting, x, v, work, force, slope, drag)
+    force, slope, drag = rows[15], rows[16], rows[14]
+    contact_rows(law, load, resting, x, v, force, slope, drag)
     for lane in range(LANES):
         force[lane] *= share[lane] / load[lane]
         square[lane] = v[lane] * v[lane]
 
 
 @numba.njit(**INSIDE)
-def _add_ratios_singly(speeds: Floats, rows: Floats, brief: Floats, plain: Floats, weighed: Floats) -> None:
-    square, share, force = brief[0], brief[1], brief[2]
-    for lane in range(LANES):
-        square[lane], share[lane], force[lane] = rows[7, lane], rows[13, lane], rows[15, lane]
-    for s in range(speeds.size):
-        speed, own_plain, own_weighed = np.float32(speeds[s]), plain[s], weighed[s]
-        for lane in range(LANES):
-            ratio = speed / np.sqrt(square[lane] + speed * speed)
-            own_plain[lane] += share[lane] * ratio
-            own_weighed[lane] += force[lane] * ratio
-
-
-@numba.njit(**INSIDE)
-def _add_ratios(speeds: Floats, square: Floats, share: Floats, force: Floats, plain: Floats, weighed: Floats) -> None:
+def _add_ratios(speeds: Floats, few: Floats, plain: Floats, weighed: Floats) -> None:
+    a, share_a, force_a, b, share_b, force_b = few[0], few[1], few[2], few[3], few[4], few[5]
+    c, share_c, force_c, d, share_d, force_d = few[6], few[7], few[8], few[9], few[10], few[11]
     for s in range(speeds.size):
         speed, own_plain, own_weighed = speeds[s], plain[s], weighed[s]
         for lane in range(LANES):
-            ratio = speed / np.sqrt(square[lane] + speed * speed)
-            own_plain[lane] += share[lane] * ratio
-            own_weighed[lane] += force[lane] * ratio
-
-
-@numba.njit(**KERNEL)
-def sliding_means_by_cells(
-    law: Law,
-    omega: Floats,
-    load: Floats,
-    mean: Floats,
-    harmonics: Complexes,
-    count: Integers,
-    chosen: Integers,
-    speeds: Floats,
-    kinematic: Floats,
-    loaded: Floats,
-) -> None:
-    """Write what `sliding_means` writes, for any number of turns: exact for a linear velocity between samples.
-
-    Parameters
-    ----------
-    law : Law
-    omega, load, mean, harmonics, count, chosen, speeds, kinematic, loaded
-        As in `sliding_means`.
-    """
-    for point in chosen:
-        own = harmonics[point, : count[point]]
-        kinematic[point, :] = 0.0
-        loaded[point, :] = 0.0
-        _by_cells(law, omega[point], load[point], mean[point], own, speeds, kinematic[point], loaded[point])
-
-
-@numba.njit(**INSIDE)
-def _by_cells(
-    law: Law,
-    omega: float,
-    load: float,
-    mean: float,
-    own: Complexes,
-    speeds: Floats,
-    kinematic: Floats,
-    loaded: Floats,
-) -> None:
-    """Integrate over cells in which the velocity is linear, exactly."""
-    cells = max(_CELLS * own.size, _FEWEST_CELLS)
-    last_velocity, last_force = 0.0, 0.0
-    last_rapidity = np.empty(speeds.size)
-    resting = rest(law, load)
-    for j in range(cells + 1):
-        x, rate, _ = swing(own, 2 * np.pi * j / cells)
-        here = omega * rate
-        force = contact_force(law, load, resting, mean + x, here) / load
-        if j == 0:
-            for s in range(speeds.size):
-                last_rapidity[s] = np.arcsinh(here / speeds[s])
-        else:
-            for s in range(speeds.size):
-                v, rise, rapidity = speeds[s], here - last_velocity, np.arcsinh(here / speeds[s])
-                if abs(rise) > 1e-6 * v:
-                    ratio = v * (rapidity - last_rapidity[s]) / rise
-                else:
-                    ratio = v / np.sqrt(v * v + here * here)
-                last_rapidity[s] = rapidity
-                kinematic[s] += ratio / cells
-                loaded[s] += 0.5 * (force + last_force) * ratio / cells
-        last_velocity, last_force = here, force
+            w, x = speed / np.sqrt(a[lane] + speed * speed), speed / np.sqrt(b[lane] + speed * speed)
+            y, z = speed / np.sqrt(c[lane] + speed * speed), speed / np.sqrt(d[lane] + speed * speed)
+            own_plain[lane] += (share_a[lane] * w + share_b[lane] * x) + (share_c[lane] * y + share_d[lane] * z)
+            own_weighed[lane] += (force_a[lane] * w + force_b[lane] * x) + (force_c[lane] * y + force_d[lane] * z)
 
 
 def crowding_of(ratio: Floats) -> Integers:
     """Return the row of `crowded_points` for a ratio of sliding speed to peak velocity."""
-    steps = np.ceil(-_ROWS * np.log10(np.maximum(ratio, 10.0 ** (-_STEEPEST / _ROWS))))
+    steps = np.ceil(-_ROWS * np.log10(np.fmax(ratio, 10.0 ** (-_STEEPEST / _ROWS))))  # also where it is not a number
     return np.asarray(np.maximum(steps, 0).astype(np.int64))
 
 
@@ -326,12 +288,11 @@ def phases_of(turns: Floats, ratio: float, fineness: int) -> tuple[Complexes, Fl
     if np.isnan(turns[0]):
         samples = 2**15
         return np.exp(2j * np.pi * np.arange(samples) / samples), np.full(samples, 1 / samples)
-    half = 0.5 * (turns[0] - turns[1]) % np.pi
-    alpha = np.tan(0.25 * np.pi - 0.5 * half)
+    alpha, along, across = turned_circle(turns[np.newaxis])[:, 0]
     crowded = crowded_points(32, 1e-6**fineness)
     row = int(crowding_of(np.float64(ratio)))  # type: ignore[arg-type]
     inside = slice(0, crowded.count[row])
     w = crowded.cosine[row, inside] + 1j * crowded.sine[row, inside]
     density = (1 - alpha**2) / np.abs(1 + alpha * w) ** 2
-    points = np.exp(1j * (turns[0] - half)) * (w + alpha) / (1 + alpha * w)
+    points = complex(along, across) * (w + alpha) / (1 + alpha * w)
     return points, crowded.weight[row, inside] * density

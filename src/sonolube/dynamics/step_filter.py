@@ -1,7 +1,9 @@
 """One time step of a structure as a linear filter of the contact force, exact for its linear motion and its drive."""
 
+import math
 from dataclasses import dataclass
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import expm
@@ -9,10 +11,12 @@ from scipy.linalg import expm
 from sonolube.checks import Complexes, Floats
 from sonolube.dynamics.state_pairs import StatePairs
 from sonolube.dynamics.waveform import Sine, Waveform, value
+from sonolube.errors import InvalidInput
 
 PAST = 5  # forces the filter remembers
 _FITTED = 2  # harmonics of the drive whose force is integrated exactly
 _NODES = 16  # of the quadrature over a step, beside those that a fast exponent asks for
+_LONGEST_STEP = 1000.0  # over which the fastest exponent turns or decays, in radians: beyond, nodes are too many
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -49,6 +53,72 @@ class StepFilter:
     offset: Floats
 
 
+class ForceShares(NamedTuple):
+    """What each sample of the force weighs at the nodes of a step, times the weights of the quadrature."""
+
+    corrected: Floats  # (nodes, 6): samples at the end of the step and up to five before
+    foreseen: Floats  # (nodes, 5): at its start and up to four before
+    ahead: Floats  # (4, nodes, 5): now and at the next four steps, in each of these
+
+
+def force_shares(nodes: Floats, weights: Floats, steps: int) -> ForceShares:
+    """Return what samples of the force weigh at the nodes of a step.
+
+    Parameters
+    ----------
+    nodes, weights : ndarray, shape (nodes,)
+        Of a quadrature from 0 to 1, the start and the end of the step.
+    steps : int
+        Steps a period.
+
+    Returns
+    -------
+    ForceShares
+    """
+    theta = 2 * np.pi / steps
+
+    def shares(sampled_at: Floats, first: int = 0) -> Floats:
+        return _interpolation(first + nodes, sampled_at, theta) * weights[:, np.newaxis]
+
+    back, ahead = 1.0 - np.arange(PAST + 1, dtype=np.float64), np.arange(PAST, dtype=np.float64)
+    return ForceShares(shares(back), shares(back[1:]), np.stack([shares(ahead, first) for first in range(PAST - 1)]))
+
+
+def past_of_a_start(steps: int) -> Floats:
+    """Return the past, now and up to four steps ago, that continues the forces now and at the next four steps."""
+    ahead = np.arange(PAST, dtype=np.float64)
+    return _interpolation(-ahead, ahead, 2 * np.pi / steps)
+
+
+def quadrature(pairs: StatePairs, *, steps: int, slowest: float) -> tuple[Floats, Floats]:
+    """Return nodes and weights, from 0 to 1, that follow the free motion over a step.
+
+    Parameters
+    ----------
+    pairs : StatePairs
+    steps : int
+        Steps a period.
+    slowest : float
+        Lowest frequency of the drive, in Hz.
+
+    Returns
+    -------
+    nodes, weights : ndarray, shape (nodes,)
+
+    Raises
+    ------
+    InvalidInput
+        If the structure's fastest mode turns too often in a step.
+    """
+    angle = _fastest(pairs) / (steps * slowest)
+    if angle > _LONGEST_STEP:
+        raise InvalidInput(
+            f"steps_per_period = {steps} is too few for a drive as slow as {slowest:.3g} Hz against this structure's"
+            f" fastest mode; take {fewest_steps(pairs, frequency=slowest)} at least, or a higher frequency"
+        )
+    return _gauss(_NODES + int(np.ceil(0.6 * angle)))
+
+
 def step_filter(
     pairs: StatePairs, contact_rows: Floats, *, frequency: Floats, steps: int, waveform: Waveform
 ) -> StepFilter:
@@ -69,6 +139,11 @@ def step_filter(
     -------
     StepFilter
 
+    Raises
+    ------
+    InvalidInput
+        If the structure's fastest mode turns too often in a step.
+
     Notes
     -----
     Between its samples the force is the combination of a constant, the first two harmonics of the drive and, where six
@@ -81,30 +156,28 @@ def step_filter(
     .. [1] M. Hochbruck and A. Ostermann, Acta Numerica 19, 209 (2010). doi:10.1017/S0962492910000048
     """
     h = 1 / (frequency * steps)
-    fastest = float(np.abs(np.linalg.eigvals(pairs.generator)).max(initial=0.0)) * float(h.max())
-    nodes, weights = _gauss(_NODES + int(np.ceil(0.6 * fastest)))
-    theta = 2 * np.pi / steps
+    nodes, weights = quadrature(pairs, steps=steps, slowest=float(frequency.min()))
+    shares = force_shares(nodes, weights, steps)
     moved = _moved(pairs.generator, pairs.contact, np.multiply.outer(h, 1 - nodes))  # exp(A h (1 - s)) c
     moved *= h[:, np.newaxis, np.newaxis, np.newaxis]
 
-    def added(sampled_at: Floats, first: float = 0.0) -> Floats:
-        """Return the state that each sample of the force adds over the step that begins at time `first`."""
-        shares = _interpolation(first + nodes, sampled_at, theta)
-        return np.asarray(np.einsum("fmqa,qj->fjma", moved, shares * weights[:, np.newaxis]))
+    def added(of_samples: Floats) -> Floats:
+        """Return the state that each sample of the force adds over a step."""
+        return np.asarray(np.einsum("fmqa,qj->fjma", moved, of_samples))
 
     propagator = np.stack([_moved(pairs.generator, unit, h[:, np.newaxis])[:, :, 0] for unit in _units(pairs)], axis=-1)
-    corrected = added(1.0 - np.arange(PAST + 1, dtype=np.float64))
+    corrected = added(shares.corrected)
     recent = corrected[:, :PAST].copy()
     for j in range(1, PAST):  # W(q) = (1 - E q) V(q) + q^5 U, q one step back
         recent[:, j] += _turn(propagator, recent[:, j - 1])
     oldest = corrected[:, PAST] + _turn(propagator, recent[:, PAST - 1])
-    foreseen = _seen(contact_rows, added(-np.arange(PAST, dtype=np.float64)))
+    foreseen = _seen(contact_rows, added(shares.foreseen))
     foreseen += _seen(contact_rows, np.stack([_turn(propagator, recent[:, j]) for j in range(PAST)], axis=1))
     foreseen[..., PAST - 1] -= np.einsum("kma,fma->fk", contact_rows, oldest)
     later, reached = [], np.zeros_like(recent)
-    for step in range(PAST - 1):
+    for of_samples in shares.ahead:
         reached = np.stack([_turn(propagator, reached[:, j]) for j in range(PAST)], axis=1)
-        reached += added(np.arange(PAST, dtype=np.float64), float(step))
+        reached += added(of_samples)
         later.append(_seen(contact_rows, reached))
     wave, offset = _drive_tables(pairs, h, steps, waveform, nodes, weights)
     return StepFilter(
@@ -113,10 +186,30 @@ def step_filter(
         recent=recent,
         foreseen=foreseen,
         ahead=np.stack(later, axis=2),
-        backward=_interpolation(-np.arange(PAST, dtype=np.float64), np.arange(PAST, dtype=np.float64), theta),
+        backward=past_of_a_start(steps),
         wave=wave,
         offset=offset,
     )
+
+
+def fewest_steps(pairs: StatePairs, *, frequency: float) -> int:
+    """Return the fewest steps a period, a multiple of 4, that hold few enough turns of the fastest mode.
+
+    Parameters
+    ----------
+    pairs : StatePairs
+    frequency : float
+        Frequency of the drive. [Hz]
+
+    Returns
+    -------
+    int
+    """
+    return 4 * max(math.ceil(_fastest(pairs) / (4 * _LONGEST_STEP * frequency)), 2)
+
+
+def _fastest(pairs: StatePairs) -> float:
+    return float(np.abs(np.linalg.eigvals(pairs.generator)).max(initial=0.0))
 
 
 def _units(pairs: StatePairs) -> list[Floats]:
@@ -176,10 +269,15 @@ def _drive_tables(
     return np.einsum("fmnqa,knq->fknma", moved, weighted), offset
 
 
+def corners_within_steps(waveform: Waveform, steps: int) -> Floats:
+    """Return where a waveform has corners within steps, in steps from the start of the period."""
+    corners = np.empty(0) if isinstance(waveform, Sine) else waveform.starts_at * steps / (2 * np.pi)
+    return np.asarray(corners[np.abs(corners - np.round(corners)) > 1e-9])
+
+
 def _split_at_corners(waveform: Waveform, steps: int, nodes: Floats, weights: Floats) -> tuple[Floats, Floats]:
     """Return quadrature nodes and weights of each step, one row for all where no corner falls within a step."""
-    corners = np.empty(0) if isinstance(waveform, Sine) else waveform.starts_at * steps / (2 * np.pi)
-    inside = corners[np.abs(corners - np.round(corners)) > 1e-9]
+    inside = corners_within_steps(waveform, steps)
     if not inside.size:
         return nodes[np.newaxis], weights[np.newaxis]
     most = int(np.bincount(inside.astype(np.int64)).max())

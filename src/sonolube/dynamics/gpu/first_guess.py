@@ -3,9 +3,10 @@
 import math
 
 from sonolube.checks import Floats
+from sonolube.dynamics.bessel import LARGE_0, LARGE_1, SMALL_0, SMALL_1
 from sonolube.dynamics.gpu.structure_rows import receptance_bound
 from sonolube.dynamics.gpu.threads import on_device
-from sonolube.dynamics.one_harmonic_lanes import LARGE_0, LARGE_1, SMALL_0, SMALL_1, WEAK
+from sonolube.dynamics.one_harmonic import WEAK
 
 _GRID = 32
 _LARGEST = 600.0  # exponent

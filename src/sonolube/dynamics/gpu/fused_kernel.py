@@ -13,7 +13,7 @@ from numba import float64
 from numpy.typing import NDArray
 
 from sonolube.checks import Floats
-from sonolube.dynamics.contact_lanes import LOST
+from sonolube.dynamics.gap_law import LOST
 from sonolube.dynamics.gpu.balance import MATRIX, MOST_HARMONICS, ORDERS, ROOM, balance, verdict, write_linear_part
 from sonolube.dynamics.gpu.first_guess import sine_amplitudes, sine_balance, sine_orders
 from sonolube.dynamics.gpu.growing import FREE, SQUARES, growth_rate
@@ -32,6 +32,7 @@ MEASURES = 10
 
 _MOST_SAMPLES, _MOST_COUPLED, _ATTEMPTS, _ITERATIONS = 2048, 32, 9, 12
 _KICKS = 8  # a radian of the structure's fastest mode
+_MOST_KICKS = 2**22  # a period; where more are needed the processor says so
 _DISTINCT = 1e-4  # relative difference of amplitude that makes two guesses
 _WORK = max(MATRIX, SQUARES)
 
@@ -136,7 +137,7 @@ def kicks_of(pairs: Floats, omega: float, count: int) -> int:
     fastest = 0.0
     for pair in range(pairs.shape[1]):
         fastest = max(fastest, abs(pairs[DETERMINANT, pair]))
-    kicks = _KICKS * math.sqrt(fastest) / omega
+    kicks = min(_KICKS * math.sqrt(fastest) / omega, _MOST_KICKS)
     return max(count, int(math.ceil(kicks)))  # noqa: RUF046 - a GPU rounds to a float
 
 

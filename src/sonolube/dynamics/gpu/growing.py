@@ -6,7 +6,15 @@ The method is that of `sonolube.dynamics.growth_kernel`: free motions and kicks 
 import math
 
 from sonolube.checks import Floats
-from sonolube.dynamics.gpu.structure_rows import DETERMINANT, DISPLACEMENT, GENERATOR, MOST_PAIRS, PUSH, TRACE
+from sonolube.dynamics.gpu.structure_rows import (
+    DETERMINANT,
+    DISPLACEMENT,
+    GENERATOR,
+    MOST_PAIRS,
+    PUSH,
+    TRACE,
+    free_motion,
+)
 from sonolube.dynamics.gpu.threads import on_device
 from sonolube.dynamics.gpu.turning import swing
 
@@ -18,19 +26,13 @@ _LARGEST_EXPONENT = 700.0
 
 @on_device
 def write_free_motion(pairs: Floats, duration: float, free: Floats) -> None:
-    """Write exp(A duration) of every pair: A is half its trace plus a part whose square is a number."""
+    """Write exp(A duration) of every pair."""
     for pair in range(pairs.shape[1]):
         half = 0.5 * pairs[TRACE, pair]
-        square = half * half - pairs[DETERMINANT, pair]
-        angle = math.sqrt(abs(square)) * duration
-        even, odd = math.cos(angle), math.sin(angle)
-        if square > 0:
-            even, odd = math.cosh(angle), math.sinh(angle)
-        odd = odd / angle * duration if angle > 1e-9 else duration
-        fading = math.exp(half * duration)
+        even, odd = free_motion(half, half * half - pairs[DETERMINANT, pair], duration)
         for i in range(4):
             own = even - odd * half if i == 0 or i == 3 else 0.0
-            free[4 * pair + i] = fading * (own + odd * pairs[GENERATOR + i, pair])
+            free[4 * pair + i] = own + odd * pairs[GENERATOR + i, pair]
 
 
 @on_device

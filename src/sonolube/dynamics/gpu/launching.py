@@ -1,14 +1,13 @@
 """Points sent to the GPU in chunks, and answers brought back."""
 
 import warnings
-from threading import Lock
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.checks import Complexes, Floats
-from sonolube.dynamics.balancing import GROWTH, Solutions
+from sonolube.dynamics.balancing import GROWTH, Solutions, too_slow
 from sonolube.dynamics.contact_lanes import EXPONENTIAL, Law
 from sonolube.dynamics.contact_port import ContactPort
 from sonolube.dynamics.gap_law import GapLaw
@@ -16,14 +15,10 @@ from sonolube.dynamics.gpu import fused_kernel as rows
 from sonolube.dynamics.gpu.balance import MOST_HARMONICS
 from sonolube.dynamics.gpu.sliding_means import crowded_levels
 from sonolube.dynamics.gpu.structure_rows import MOST_PAIRS, structure_rows
-from sonolube.dynamics.gpu.threads import cuda
+from sonolube.dynamics.gpu.threads import THREADS, TURN, chunks, cuda
 
-CHUNK = 262_144
-"""Points on the GPU at a time, which bounds the memory. []"""
-_THREADS = 128  # to a block
 # Of the tolerance: a thread resolves its point alone, without the margin that neighbours in a block of lanes lend.
 _SHARE = 0.1
-_TURN = Lock()  # one chunk on the GPU at a time, whatever the threads that ask
 
 
 class Fused(NamedTuple):
@@ -111,21 +106,24 @@ def solve_on_gpu(
     charge, means = np.empty(drive.shape), np.empty((2, asked.size, omega.size))
     whole = np.empty((5, omega.size), dtype=np.int64)
     answers = (measures, harmonics, charge, means, whole)
-    with _TURN, warnings.catch_warnings():
+    with TURN, warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Grid size")  # few points keep a GPU idle, but are asked for
         fixed = [cuda.to_device(values) for values in (asked, *crowded)]
         pairs, numbers = cuda.to_device(structure_rows(port)), cuda.to_device(constants)
-        for start in range(0, omega.size, CHUNK):
-            own = slice(start, min(start + CHUNK, omega.size))
+        for own in chunks(
+            omega.size, sum(len(values.reshape(-1, omega.size)) for values in (settings, drive, *answers))
+        ):
             given = [cuda.to_device(np.ascontiguousarray(values[:, own])) for values in (settings, drive)]
-            found = [cuda.device_array((*values.shape[:-1], own.stop - start), values.dtype) for values in answers]
-            blocks = -(-(own.stop - start) // _THREADS)
-            rows.KERNEL[blocks, _THREADS](pairs, numbers, *choices, *given, *fixed, *found)
+            found = [cuda.device_array((*values.shape[:-1], own.stop - own.start), values.dtype) for values in answers]
+            blocks = -(-(own.stop - own.start) // THREADS)
+            rows.KERNEL[blocks, THREADS](pairs, numbers, *choices, *given, *fixed, *found)
             for values, device in zip(answers, found, strict=True):
                 values[..., own] = device.copy_to_host()
     done = whole[0] == rows.DONE
+    if stability:
+        done &= ~too_slow(port, omega)
     solutions = _solutions(measures, harmonics, charge, whole[1], done, stability)
-    return Fused(solutions, means.swapaxes(1, 2), done, whole[1:])
+    return Fused(solutions, means[:, : speeds.size].swapaxes(1, 2), done, whole[1:])
 
 
 def _solutions(

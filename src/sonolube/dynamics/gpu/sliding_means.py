@@ -54,7 +54,8 @@ def level_of(steepness: float) -> int:
 def row_of(ratio: float) -> int:
     """Return the step of crowding for a ratio of sliding speed to peak velocity."""
     steps = -_STEPS * math.log10(max(ratio, 10.0 ** (-_ROWS / _STEPS)))
-    return max(int(math.ceil(steps)), 0)  # noqa: RUF046 - a GPU rounds to a float
+    # the least ratio's logarithm may round to beyond the last row
+    return min(max(int(math.ceil(steps)), 0), _ROWS)  # noqa: RUF046 - a GPU rounds to a float
 
 
 @on_device

@@ -1,5 +1,7 @@
 """A structure as a thread sees it: pairs of states as rows of one array, and sums over them."""
 
+import math
+
 import numpy as np
 
 from sonolube.checks import Floats
@@ -11,6 +13,8 @@ MOST_PAIRS = 8
 
 GENERATOR, PUSH, DISPLACEMENT, DETERMINANT, TRACE, CONSTANT, SLOPE = 0, 4, 6, 8, 9, 10, 13
 _FORCED, _DRIVEN, _CHARGED = 0, 1, 2  # of contact per force, contact per volt (and charge per force), charge per volt
+
+_SMALL = 1e-2  # angle below which a series is exact
 
 
 def structure_rows(port: ContactPort) -> Floats:
@@ -80,3 +84,18 @@ def receptance_bound(pairs: Floats, omega: float) -> float:
         above = abs(pairs[CONSTANT, pair]) + abs(pairs[SLOPE, pair]) * omega
         bound += above / (abs(pairs[DETERMINANT, pair] - omega * omega) + abs(pairs[TRACE, pair]) * omega)
     return bound
+
+
+@on_device
+def free_motion(half_trace: float, square: float, time: float) -> tuple[float, float]:
+    """Return what states and their image under the rest of A contribute to exp(A t); A is half its trace and a rest."""
+    rate = math.sqrt(abs(square))
+    angle = rate * time
+    fading = math.exp(half_trace * time)
+    series = 1 + square * time * time / 6 * (1 + square * time * time / 20 * (1 + square * time * time / 42))
+    if square <= 0.0:
+        even, odd = fading * math.cos(angle), fading * math.sin(angle)
+    else:
+        slow, fast = math.exp((half_trace + rate) * time), math.exp((half_trace - rate) * time)
+        even, odd = 0.5 * (slow + fast), 0.5 * (slow - fast)
+    return even, (fading * time * series if angle < _SMALL else odd / rate)

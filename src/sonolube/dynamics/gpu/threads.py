@@ -1,6 +1,7 @@
 """Functions that run in threads of a GPU."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from threading import Lock
 from typing import Any, TypeVar, cast
 
 import numba.cuda
@@ -9,6 +10,14 @@ import numpy as np
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 cuda: Any = numba.cuda  # which has no types
+
+THREADS = 128
+"""Threads to a block. []"""
+TURN = Lock()
+"""Held by who has a chunk on the GPU: one at a time, whatever the threads of the processor that ask."""
+MOST_AT_ONCE = 262_144
+"""Points on the GPU at a time, at most. []"""
+_ROOM = 2**28  # numbers of all points on the GPU at a time, which bounds its memory at 2 GB
 
 
 def on_device(function: Function) -> Function:
@@ -23,6 +32,24 @@ def on_device(function: Function) -> Function:
     callable
     """
     return cast(Function, cuda.jit(device=True)(function))
+
+
+def chunks(points: int, numbers: int) -> Iterator[slice]:
+    """Return the points to have on the GPU together, one chunk after another.
+
+    Parameters
+    ----------
+    points : int
+        All of them.
+    numbers : int
+        Numbers that come and go with a point.
+
+    Yields
+    ------
+    slice
+    """
+    size = min(max(_ROOM // numbers // THREADS, 1) * THREADS, MOST_AT_ONCE)
+    return (slice(first, min(first + size, points)) for first in range(0, points, size))
 
 
 def trial() -> bool:

@@ -1,0 +1,79 @@
+"""The modified Bessel functions of order 0 and 1 that an exponential contact makes of a sine, to within 1e-6."""
+
+import numpy as np
+
+from sonolube.checks import Floats
+
+# polynomials, lowest power first (Abramowitz and Stegun 9.8.1 to 9.8.4), of the square up to BEND, then of the inverse
+BEND = 3.75
+SMALL_0 = (1.0, 3.5156229, 3.0899424, 1.2067492, 0.2659732, 0.0360768, 0.0045813)
+SMALL_1 = (0.5, 0.87890594, 0.51498869, 0.15084934, 0.02658733, 0.00301532, 0.00032411)
+LARGE_0 = (
+    0.39894228,
+    0.01328592,
+    0.00225319,
+    -0.00157565,
+    0.00916281,
+    -0.02057706,
+    0.02635537,
+    -0.01647633,
+    0.00392377,
+)
+LARGE_1 = (
+    0.39894228,
+    -0.03988024,
+    -0.00362018,
+    0.00163801,
+    -0.01031555,
+    0.02282967,
+    -0.02895312,
+    0.01787654,
+    -0.00420059,
+)
+
+
+def bessel_ratio(argument: Floats) -> Floats:
+    """Return I_1/I_0.
+
+    Parameters
+    ----------
+    argument : ndarray
+        Not negative.
+
+    Returns
+    -------
+    ndarray
+    """
+    near, far = _both_sides(argument)
+    small = argument * _polynomial(SMALL_1, near) / _polynomial(SMALL_0, near)
+    large = _polynomial(LARGE_1, far) / _polynomial(LARGE_0, far)
+    return np.asarray(np.where(argument < BEND, small, large))
+
+
+def bessel_logarithm(argument: Floats) -> Floats:
+    """Return ln I_0.
+
+    Parameters
+    ----------
+    argument : ndarray
+        Not negative.
+
+    Returns
+    -------
+    ndarray
+    """
+    near, far = _both_sides(argument)
+    large = argument + np.log(_polynomial(LARGE_0, far) / np.sqrt(np.maximum(argument, BEND)))
+    return np.asarray(np.where(argument < BEND, np.log(_polynomial(SMALL_0, near)), large))
+
+
+def _both_sides(argument: Floats) -> tuple[Floats, Floats]:
+    return np.square(np.minimum(argument / BEND, 1.0)), BEND / np.maximum(argument, BEND)
+
+
+def _polynomial(coefficients: tuple[float, ...], argument: Floats) -> Floats:
+    result = np.full_like(argument, coefficients[-1])
+    for coefficient in coefficients[-2::-1]:
+        result *= argument
+        result += coefficient
+    return result
