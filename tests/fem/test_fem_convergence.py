@@ -7,11 +7,13 @@ import pytest
 from pytest import approx, raises
 
 from sonolube.checks import Floats
+from sonolube.errors import InvalidInput
 from sonolube.fem import (
     Geometry,
     Medium,
     Model,
     NotConverged,
+    Slot,
     annulus,
     block,
     box_mesh,
@@ -25,6 +27,7 @@ from sonolube.fem import (
     rectangle,
     ritz_frequencies,
 )
+from sonolube.fem.grading import graded
 
 STEEL = isotropic(youngs_modulus=200e9, poisson_ratio=0.29, density=7900.0)
 LENGTH, WIDTH, THICKNESS = 0.127, 0.06096, 0.0254
@@ -98,6 +101,24 @@ def test_the_error_told_bounds_the_true_one_of_nearly_every_mode_and_is_of_its_s
     assert 1 < np.median(stacked) < 20
 
 
+@pytest.mark.slow
+def test_the_error_told_bounds_that_of_every_mode_where_edges_re_enter() -> None:
+    # Exact to 1e-4: elements of order six, cut once more towards the edges, whose frequencies are bounds from above.
+    body = block(length=0.06, width=0.05, thickness=0.012, slots=(Slot(length=0.04, width=0.034),))
+    base = mesh_of(body, element_size=0.014)
+
+    def frequencies(levels: int, order: int) -> Floats:
+        mesh = of_order(graded(base, levels=levels), order=order)
+        return natural_modes(Model(mesh=mesh, media={body.regions[0]: STEEL}), count=10).elastic_frequency
+
+    exact = frequencies(2, 6)
+    history = [frequencies(1, order) for order in (2, 3, 4, 5)]
+    for known in (history[:3], history):
+        frequency, error = extrapolated(np.array(known), singular=True)
+        assert np.all(np.abs(frequency / exact - 1) <= error)
+        assert error.max() < 0.012
+
+
 def test_a_body_of_regular_elements_reaches_its_tolerance_without_a_mesher() -> None:
     def model_at(size: float) -> Model:
         n = [max(1, round(extent / size)) for extent in (0.03, 0.02, 0.024)]
@@ -108,5 +129,7 @@ def test_a_body_of_regular_elements_reaches_its_tolerance_without_a_mesher() -> 
     actual = np.abs(found.natural_frequency[6:] / of_block(STEEL, 0.03, 0.02, 0.024)[:6] - 1)
     assert np.all(actual <= 1e-4)
     assert found.modes.natural_frequency.shape == found.frequency_error.shape == found.natural_frequency.shape
+    with raises(InvalidInput, match="relative_tolerance must be at least 1e-08, got 1e-12"):
+        converged_modes(model_at, count=6, element_size=0.03, relative_tolerance=1e-12)
     with raises(NotConverged, match="allow more"):
-        converged_modes(model_at, count=6, element_size=0.03, relative_tolerance=1e-9, most_nodes=300)
+        converged_modes(model_at, count=6, element_size=0.03, relative_tolerance=1e-8, most_nodes=300)

@@ -120,7 +120,7 @@ def test_a_tuned_horn_keeps_its_frequency_on_a_finer_mesh_of_another_order() -> 
         return Model(mesh=mesh_of(horn, element_size=element_size), media={horn.regions[0]: STEEL})
 
     found = tuned_mode(model_at, name="axial 1", axis="z", frequency=30e3, length=0.09, element_size=0.02, count=8)
-    finer = model_at(found.length, 0.006)
+    finer = model_at(found.length, 0.004)
     modes = natural_modes(finer, count=8)
     row = mode_names(finer, modes, axis="z").index("axial 1")
     assert finer.mesh.size > 1.2 * of_order(found.mode.model.mesh, order=2).size

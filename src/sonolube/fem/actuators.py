@@ -11,9 +11,12 @@ import numpy as np
 
 from sonolube.checks import require_positive
 from sonolube.errors import InvalidInput
-from sonolube.fem.geometry import Geometry, moved, one_body
+from sonolube.fem.geometry import Geometry, one_body
+from sonolube.fem.kernel import MILLIMETRE
 from sonolube.fem.parts import hexagon, turned
 from sonolube.fem.transducers import Dimension, Transducer, stack, stack_parts, wired
+
+_ELEMENT_WIDTH = 2.5  # of a disc's thickness
 
 TRIBOMETER_ACTUATOR = (
     Dimension(
@@ -104,8 +107,8 @@ def tribometer_actuator(
         back_length=back_length,
         front_length=front_length,
         washer_radius=washer_radius,
+        tip=nut,
     )
-    parts["tip"] = moved(nut, by=(0.0, 0.0, length + front_length))
     made = wired(parts, stack_layers=stack_layers, ceramic=ceramic, metal=metal)
     return replace(made, dimensions=TRIBOMETER_ACTUATOR)
 
@@ -192,8 +195,8 @@ def cutter_head(
         back_length=back_length,
         front_length=front_length,
         washer_radius=washer_radius,
+        tip=head,
     )
-    parts["tip"] = moved(head, by=(0.0, 0.0, length + front_length))
     made = wired(parts, stack_layers=stack_layers, ceramic=ceramic, metal=metal)
     return replace(made, dimensions=CUTTER_HEAD)
 
@@ -260,7 +263,11 @@ def cutter_disc(*, hub_radius: float, hub_length: float, disc_radius: float, thi
     if hub_radius >= disc_radius:
         raise InvalidInput(f"hub_radius must be below disc_radius {disc_radius!r} m, got {hub_radius!r} m")
     top = hub_length + thickness
-    return turned([(0.0, hub_radius), (hub_length, hub_radius), (hub_length, disc_radius), (top, disc_radius)], "head")
+    outline = [(0.0, hub_radius), (hub_length, hub_radius), (hub_length, disc_radius), (top, disc_radius)]
+    head = turned(outline, "head")
+    for part in (*head.shape.solids, *head.shape.faces):  # it bends, which wide elements would resist
+        part.maxh = _ELEMENT_WIDTH * thickness / MILLIMETRE
+    return head
 
 
 TRANSDUCERS: Mapping[str, Callable[..., Transducer]] = {

@@ -14,8 +14,10 @@ from sonolube.fem.orders import of_order
 
 _ORDERS = range(2, 7)  # on one mesh; the next is a finer one
 _REFINEMENT = 0.62  # of the element size from mesh to mesh: some four times the unknowns
+_LEAST_TOLERANCE = 1e-8  # below it rounding, and what the eigenvalue iteration leaves, would be all that changes
 _NEEDED = 3  # orders on a mesh before its error can be told
 _RATIOS = (0.25, 0.6)  # between which errors are taken to fall from order to order, for the estimate of the error
+_SINGULAR = 1 / 3  # least such factor where edges re-enter, whatever the last changes promise
 _UNEVEN = 0.1  # of the change before, of which a change that happens to be small is taken to be
 
 
@@ -82,6 +84,8 @@ def converged_modes(
 
     Raises
     ------
+    InvalidInput
+        If the tolerance is below 1e-8.
     NotConverged
         If the next mesh would have more than `most_nodes` nodes; the message says what was reached.
 
@@ -98,6 +102,11 @@ def converged_modes(
     .. [1] I. Babuška and M. Suri, SIAM Rev. 36, 578 (1994). doi:10.1137/1036141
     """
     require_positive(element_size=element_size, relative_tolerance=relative_tolerance)
+    if not relative_tolerance >= _LEAST_TOLERANCE:
+        raise InvalidInput(
+            f"relative_tolerance must be at least {_LEAST_TOLERANCE:g}, got {relative_tolerance:g}: rounding hides "
+            "less; 1e-6 is finer than any material is known"
+        )
     history: list[Floats] = []
     nodes: list[int] = []
     size, level, reached = element_size, 1, np.inf
@@ -119,7 +128,7 @@ def converged_modes(
                 advance(f"{model.mesh.size} nodes", len(nodes), len(nodes) + 1)
             if step < _NEEDED:
                 continue
-            frequency, error = extrapolated(np.array(history[-step:]))
+            frequency, error = extrapolated(np.array(history[-step:]), singular=mesh is not base.mesh)
             reached = float(error[list(judged(model, modes))].max() if judged else error.max())
             if reached <= relative_tolerance:
                 return ConvergedModes(
@@ -133,13 +142,15 @@ def converged_modes(
         size, level = size * _REFINEMENT, level + 1
 
 
-def extrapolated(history: Floats) -> tuple[Floats, Floats]:
+def extrapolated(history: Floats, *, singular: bool = False) -> tuple[Floats, Floats]:
     """Return frequencies at an order of elements beyond all bounds and their estimated relative errors.
 
     Parameters
     ----------
     history : ndarray, shape (orders, k)
         Natural frequencies in Hz for three successive orders or more.
+    singular : bool
+        Whether the body has edges that re-enter.
 
     Returns
     -------
@@ -148,13 +159,16 @@ def extrapolated(history: Floats) -> tuple[Floats, Floats]:
     Notes
     -----
     The changes still to come are taken to fall as the last two did, by a constant factor; the error is their sum with
-    a factor of a quarter at least, and more where the last change is smaller than a tenth of the one before.
+    a factor of a quarter at least, and more where the last change is smaller than a tenth of the one before. Edges that
+    re-enter come to rule after a few orders: between orders five and six of a collar changes fell by factors of 0.21 to
+    0.31, when those between four and five had promised 0.07 to 0.28. There no factor below a third is taken.
     """
     if len(history) < _NEEDED:
         raise InvalidInput(f"extrapolation needs three orders or more, got {len(history)}")
     before, last = np.abs(np.diff(history[-_NEEDED:], axis=0))
     ratio = np.divide(last, before, out=np.zeros_like(last), where=before > 0)
-    falling, cautious = np.clip(ratio, 0.0, _RATIOS[1]), np.clip(ratio, *_RATIOS)
+    least, cautious_least = (_SINGULAR, _SINGULAR) if singular else (0.0, _RATIOS[0])
+    falling, cautious = np.clip(ratio, least, _RATIOS[1]), np.clip(ratio, cautious_least, _RATIOS[1])
     frequency = history[-1] - (history[-2] - history[-1]) * falling / (1 - falling)
     error = np.maximum(last, _UNEVEN * before) * cautious / (1 - cautious)
     return frequency, np.divide(error, frequency, out=np.zeros_like(error), where=frequency > 0)

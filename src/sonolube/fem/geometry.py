@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from sonolube.errors import InvalidInput
-from sonolube.fem.kernel import MILLIMETRE, cad, silenced
+from sonolube.fem.kernel import MILLIMETRE, cad, captured
 
 _AXES = "xyz"
 _LEAST_FILLED = 1e-9  # of the box around a body
@@ -51,7 +51,7 @@ def read_step(path: Path) -> Geometry:
         raise InvalidInput(f"{path}: no such file")
     occ = cad()
     try:
-        with silenced():
+        with captured():
             shape = occ.OCCGeometry(str(path)).shape
     except Exception as failure:  # the kernel has no narrower class
         raise InvalidInput(f"{path}: not a STEP file that can be read: {failure}") from None

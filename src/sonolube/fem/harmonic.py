@@ -109,7 +109,7 @@ def reduced(model: Model, *, count: int, outputs: Mapping[str, Output]) -> Reduc
         If nothing is driven.
     """
     equations = system(model)
-    inverse = shifted(equations, shift=shift_for(model))
+    inverse = shifted(model, equations, shift=shift_for(model))
     modes = modes_of(model, equations, inverse=inverse, count=count)
     return reduction_of(model, equations, inverse=inverse, modes=modes, outputs=outputs)
 
@@ -138,27 +138,67 @@ def reduction_of(
     InvalidInput
         If nothing is driven.
     """
-    if not model.is_piezoelectric or not model.electrodes.driven:
-        raise InvalidInput("nothing is driven: a piezoelectric region with a driven electrode is needed")
     shapes = modes.shapes.reshape(len(modes.shapes), -1)[:, equations.moving].T
-    observed = observers(model, equations, outputs)
-    vectors = np.column_stack([_drive(equations, lossless=True)[0].real, observed.T])
+    vectors, _ = inputs(model, equations, outputs)
     basis = shapes
     for _ in range(_KRYLOV):
         vectors = inverse(vectors)
         basis = _extended(basis, vectors, equations.mass)
         vectors = equations.mass @ vectors
-    force, capacitance = _drive(equations, lossless=False)
+    return projected(model, equations, basis=basis, outputs=outputs)
+
+
+def inputs(model: Model, equations: System, outputs: Mapping[str, Output]) -> tuple[Floats, float]:
+    """Return forces per volt of the drive and per newton on each output, and the capacitance with all motion held.
+
+    Parameters
+    ----------
+    model : Model
+    equations : System
+    outputs : mapping of str to Output
+
+    Returns
+    -------
+    tuple of ndarray, shape (m, 1 + o), and float
+        Losses left out; the capacitance in F.
+
+    Raises
+    ------
+    InvalidInput
+        If nothing is driven.
+    """
+    if not model.is_piezoelectric or not model.electrodes.driven:
+        raise InvalidInput("nothing is driven: a piezoelectric region with a driven electrode is needed")
+    force, capacitance = _drive(equations, _electric(equations, lossless=True), lossless=True)
+    return np.column_stack([force.real, observers(model, equations, outputs).T]), capacitance.real
+
+
+def projected(model: Model, equations: System, *, basis: Floats, outputs: Mapping[str, Output]) -> ReducedModel:
+    """Return a body in the coordinates of some shapes, losses and all.
+
+    Parameters
+    ----------
+    model : Model
+    equations : System
+    basis : ndarray, shape (m, k)
+        Shapes, orthonormal in the metric of mass.
+    outputs : mapping of str to Output
+
+    Returns
+    -------
+    ReducedModel
+    """
+    inner = _electric(equations, lossless=False)
+    force, capacitance = _drive(equations, inner, lossless=False)
     coupling = equations.coupling.T @ basis
-    softened = _dielectric(equations, lossless=False)
-    electric = coupling.T @ factorised(softened)(coupling.astype(np.complex128)) if equations.potentials else 0.0
+    electric = coupling.T @ inner(coupling.astype(np.complex128)) if inner else 0.0
     elastic = basis.T @ (equations.stiffness @ basis) + 1j * (basis.T @ (equations.stiffness_loss @ basis))
     stiffness = elastic + electric
     return ReducedModel(
         stiffness=np.asarray((stiffness + stiffness.T) / 2, dtype=np.complex128),
         drive=np.asarray(basis.T @ force, dtype=np.complex128),
         clamped_capacitance=capacitance,
-        participation=observed @ basis,
+        participation=observers(model, equations, outputs) @ basis,
         outputs=tuple(outputs),
     )
 
@@ -208,7 +248,7 @@ def direct_response(model: Model, *, frequency: ArrayLike, outputs: Mapping[str,
     observed = observers(model, equations, outputs)
     size = len(equations.moving)
     charges, moves = [], []
-    dielectric, (right, charge) = _dielectric(equations, lossless=False), _driven(equations)
+    dielectric, (right, charge) = _dielectric(equations), _driven(equations)
     for omega in 2 * np.pi * f:
         elastic = equations.stiffness + 1j * equations.stiffness_loss - omega**2 * equations.mass
         blocks = [[elastic, equations.coupling], [equations.coupling.T, -dielectric]]
@@ -271,8 +311,9 @@ def observers(model: Model, equations: System, outputs: Mapping[str, Output]) ->
     return np.asarray(rows.reshape(len(outputs), 3 * model.mesh.size)[:, equations.moving])
 
 
-def _dielectric(equations: System, *, lossless: bool) -> sparse.csc_array:
-    return sparse.csc_array(equations.dielectric - (0.0 if lossless else 1.0j) * equations.dielectric_loss)
+def _dielectric(equations: System) -> sparse.csc_array:
+    """Return the permittivity of the unknown potentials, losses and all."""
+    return sparse.csc_array(equations.dielectric - 1.0j * equations.dielectric_loss)
 
 
 def _driven(equations: System, *, lossless: bool = False) -> tuple[Complexes, Complexes]:
@@ -282,14 +323,21 @@ def _driven(equations: System, *, lossless: bool = False) -> tuple[Complexes, Co
     return np.concatenate([-equations.drive_coupling, charge]).astype(np.complex128), charge
 
 
-def _drive(equations: System, *, lossless: bool) -> tuple[Complexes, complex]:
+def _electric(equations: System, *, lossless: bool) -> Solve | None:
+    """Return what solves for potentials inside, None where there are none."""
+    if not equations.potentials:
+        return None
+    return factorised(equations.dielectric if lossless else _dielectric(equations))
+
+
+def _drive(equations: System, inner: Solve | None, *, lossless: bool) -> tuple[Complexes, complex]:
     """Return force per volt, the potentials inside following it, and the capacitance with all motion held."""
     _, charge = _driven(equations, lossless=lossless)
     whole = equations.drive_capacitance.real if lossless else equations.drive_capacitance
-    if not equations.potentials:
+    if inner is None:
         return -equations.drive_coupling.astype(np.complex128), complex(whole)
-    inner = factorised(_dielectric(equations, lossless=lossless).astype(np.complex128))(charge.astype(np.complex128))
-    return equations.coupling @ inner - equations.drive_coupling, complex(whole - charge @ inner)
+    potential = inner(charge.real if lossless else charge)
+    return np.asarray(equations.coupling @ potential - equations.drive_coupling), complex(whole - charge @ potential)
 
 
 def _extended(basis: Floats, vectors: Floats, mass: sparse.csc_array) -> Floats:

@@ -8,7 +8,7 @@ import numpy as np
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.fem.geometry import Geometry
-from sonolube.fem.kernel import MILLIMETRE, cad
+from sonolube.fem.kernel import MILLIMETRE, cad, captured
 from sonolube.fem.mesh import Mesh
 from sonolube.fem.orders import of_order, unfolded
 from sonolube.fem.simplex import Integers, lattice
@@ -17,6 +17,7 @@ from sonolube.fem.simplex import Integers, lattice
 _TETRAHEDRON = [0, 2, 1, 3, 5, 7, 4, 6, 9, 8]
 _TRIANGLE = [0, 1, 2, 5, 3, 4]
 _ELEMENTS_TO_A_RADIUS = 1.5  # with fewer, elements fold as they are curved
+_MOST_LINES = 2  # of what the mesher prints as it fails, which repeats itself
 
 
 def mesh_of(geometry: Geometry, *, element_size: float, order: int = 2) -> Mesh:
@@ -38,23 +39,31 @@ def mesh_of(geometry: Geometry, *, element_size: float, order: int = 2) -> Mesh:
     ------
     InvalidInput
         If the mesher fails or its mesh does not fill the body: the geometry is open or cuts itself.
+
+    Notes
+    -----
+    The same geometry and size give the same mesh, in whatever order meshes are made.
     """
     require_positive(element_size=element_size)
+    fresh = geometry.shape.Move((0.0, 0.0, 0.0))  # a copy, for the kernel begins from triangles that meshing left
+    printed: list[str] = []
     try:
-        raw = (
-            cad()
-            .OCCGeometry(geometry.shape)
-            .GenerateMesh(
-                maxh=element_size / MILLIMETRE,
-                grading=0.5,
-                curvaturesafety=_ELEMENTS_TO_A_RADIUS,
-                parallel_meshing=False,  # its threads wait on each other ten times as long as they mesh
+        with captured() as printed:
+            raw = (
+                cad()
+                .OCCGeometry(fresh)
+                .GenerateMesh(
+                    maxh=element_size / MILLIMETRE,
+                    grading=0.5,
+                    curvaturesafety=_ELEMENTS_TO_A_RADIUS,
+                    parallel_meshing=False,  # its threads wait on each other ten times as long as they mesh
+                )
             )
-        )
-        straight = raw.Copy()
-        raw.SecondOrder()
+            straight = raw.Copy()
+            raw.SecondOrder()
     except Exception as failure:  # the mesher has no narrower class
-        raise InvalidInput(f"the body could not be meshed; is it open, or does it cut itself? ({failure})") from None
+        said = "; ".join([str(failure), *printed[:_MOST_LINES]])
+        raise InvalidInput(f"the body could not be meshed; is it open, or does it cut itself? ({said})") from None
     cells = raw.Elements3D().NumPy()
     if not len(cells):
         raise InvalidInput("the mesher found no volume: the geometry is open or has no thickness")

@@ -80,7 +80,7 @@ def natural_modes(model: Model, *, count: int) -> NaturalModes:
        doi:10.1137/S0895479888151111
     """
     equations = system(model)
-    return modes_of(model, equations, inverse=shifted(equations, shift=shift_for(model)), count=count)
+    return modes_of(model, equations, inverse=shifted(model, equations, shift=shift_for(model)), count=count)
 
 
 def modes_of(model: Model, equations: System, *, inverse: Solve, count: int) -> NaturalModes:

@@ -11,7 +11,7 @@ from sonolube.fem.simplex import Integers, lattice, quadrature, shape_functions
 
 _FOLDED = 1e-3  # smallest over mean volume per unit of an element that is taken as it is
 _STRAIGHTENED = 0.8  # what is left of the curves of a folded element, step by step
-_STEPS = 40
+_STEPS = 400  # straightening one element can fold the next, but nodes only ever come closer to straight
 
 
 def of_order(mesh: Mesh, *, order: int) -> Mesh:

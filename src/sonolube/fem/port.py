@@ -9,16 +9,16 @@ import numpy as np
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.fem.classification import mode_names
-from sonolube.fem.harmonic import Output, ReducedModel, reduction_of
+from sonolube.fem.harmonic import Output, ReducedModel
+from sonolube.fem.krylov import driven_reduction
 from sonolube.fem.model import Model
-from sonolube.fem.modes import NaturalModes, NotConverged, modes_of, shift_for
+from sonolube.fem.modes import NaturalModes, NotConverged
 from sonolube.fem.orders import of_order
-from sonolube.fem.system import shifted, system
 
 _REFINEMENT = 0.62  # of the element size from mesh to mesh
 _ORDERS = range(2, 6)  # on one mesh; the next is a finer one
-_HEADROOM = 1.5  # of the highest frequency, up to which modes are taken
-_FIRST, _MOST = 12, 200  # modes
+_FAINTER = 0.3  # of the coupling factor asked for, from which a mode on the mesh before may be the same
+_LEAST_TOLD = 0.01  # coupling factor from which a mode counts as driven
 _RIGID = 1e-9  # square of frequency over the largest, below which a motion is rigid
 _UNDRIVEN = 1e-3  # square of the coupling factor below which a mode is not paired
 
@@ -55,7 +55,9 @@ class Port:
         On the finest mesh.
     reduction : ReducedModel
     modes : tuple of ElectricalMode
-        All elastic modes in the range, coupled or not, by frequency.
+        Modes in the range that the drive moves, by frequency; their names count these alone.
+    shapes : ndarray, shape (k, n, 3)
+        Displacements of the nodes in each of them, of a modal mass of 1 kg.
     frequency_error : float
         Relative change of the series frequencies of the coupled modes with the last rise of order, the largest. []
     """
@@ -63,6 +65,7 @@ class Port:
     model: Model
     reduction: ReducedModel
     modes: tuple[ElectricalMode, ...]
+    shapes: Floats
     frequency_error: float
 
 
@@ -114,26 +117,24 @@ def converged_port(
     """
     require_positive(highest_frequency=highest_frequency, element_size=element_size)
     before: Floats | None = None
-    count, error = _FIRST, np.inf
+    error = np.inf
     for model in _finer_and_finer(model_at, element_size):
         if model.mesh.size > most_nodes:
             raise NotConverged(
                 f"coupled modes still move by {error:.2g} of their frequency; the next mesh has {model.mesh.size} "
                 "nodes: allow more of them, or a larger change"
             )
-        reduction, found = _reaching(model, outputs, count, highest_frequency)
-        count = len(found.natural_frequency) - found.rigid
+        reduction, coordinates = driven_reduction(model, outputs=outputs, highest_frequency=highest_frequency)
         if advance:
             advance(f"{model.mesh.size} nodes", 1, 2)
         now = _coupled(reduction, highest_frequency, least_coupling)
         if not now.size:
             raise InvalidInput(f"no mode below {highest_frequency:g} Hz is coupled to the drive; look higher")
-        if before is not None and before.shape == now.shape:
-            error = float(np.abs(before / now - 1).max())
+        if before is not None and before.size:
+            error = float(np.abs(before / now[:, np.newaxis] - 1).min(axis=1).max())
             if error <= relative_tolerance:
-                modes = _electrical_modes(model, reduction, found, axis, highest_frequency)
-                return Port(model=model, reduction=reduction, modes=modes, frequency_error=error)
-        before = now
+                return _port(model, reduction, coordinates, axis, highest_frequency, error)
+        before = _coupled(reduction, highest_frequency, least_coupling * _FAINTER)
     raise AssertionError("models never end")
 
 
@@ -143,19 +144,6 @@ def _finer_and_finer(model_at: Callable[[float], Model], element_size: float) ->
         base = model_at(element_size * _REFINEMENT**refinement)
         for order in _ORDERS:
             yield replace(base, mesh=of_order(base.mesh, order=order))
-
-
-def _reaching(
-    model: Model, outputs: Mapping[str, Output], count: int, highest_frequency: float
-) -> tuple[ReducedModel, NaturalModes]:
-    """Return a reduction whose modes reach well above a frequency, and these modes."""
-    equations = system(model)
-    inverse = shifted(equations, shift=shift_for(model))
-    while True:
-        modes = modes_of(model, equations, inverse=inverse, count=count)
-        if modes.natural_frequency[-1] > _HEADROOM * highest_frequency or count >= _MOST:
-            return reduction_of(model, equations, inverse=inverse, modes=modes, outputs=outputs), modes
-        count = min(2 * count, _MOST)
 
 
 def coupled_resonances(model: ReducedModel) -> tuple[Floats, Floats, Floats]:
@@ -191,13 +179,22 @@ def _coupled(reduction: ReducedModel, highest_frequency: float, least_coupling: 
     return np.asarray(series[(coupling > least_coupling) & (series < highest_frequency)])
 
 
-def _electrical_modes(
-    model: Model, reduction: ReducedModel, found: NaturalModes, axis: str, highest_frequency: float
-) -> tuple[ElectricalMode, ...]:
-    names = mode_names(model, found, axis=axis)
-    rows = zip(names, *coupled_resonances(reduction), strict=False)  # the rest are static coordinates
-    return tuple(
-        ElectricalMode(name=name, series_frequency=float(fs), parallel_frequency=float(fp), coupling_factor=float(k))
-        for name, fs, fp, k in list(rows)[found.rigid :]
-        if fs < highest_frequency
+def _port(
+    model: Model, reduction: ReducedModel, coordinates: Floats, axis: str, highest_frequency: float, error: float
+) -> Port:
+    series, parallel, coupling = coupled_resonances(reduction)
+    told = np.flatnonzero((coupling > _LEAST_TOLD) & (series < highest_frequency))
+    _, mixtures = np.linalg.eigh(reduction.stiffness.real)
+    shapes = np.tensordot(mixtures[:, told].T, coordinates, axes=1)
+    names = mode_names(model, NaturalModes(natural_frequency=series[told], shapes=shapes, rigid=0), axis=axis)
+    modes = zip(names, series[told].tolist(), parallel[told].tolist(), coupling[told].tolist(), strict=True)
+    return Port(
+        model=model,
+        reduction=reduction,
+        modes=tuple(
+            ElectricalMode(name=name, series_frequency=fs, parallel_frequency=fp, coupling_factor=k)
+            for name, fs, fp, k in modes
+        ),
+        shapes=shapes,
+        frequency_error=error,
     )

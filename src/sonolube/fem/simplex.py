@@ -4,7 +4,7 @@ Places in them are barycentric: one coordinate for each corner, which sum to one
 coordinates are multiples of 1/p: corners first, then those on edges, on sides and inside.
 """
 
-from functools import cache
+from functools import cache, reduce
 from itertools import product
 
 import numpy as np
@@ -70,9 +70,9 @@ def shape_functions(order: int, places: Floats) -> tuple[Floats, Floats]:
     corners = np.arange(places.shape[1])
     nodes = lattice(order, corners=len(corners))
     factor, slope = (np.array(table)[nodes, :, corners] for table in (factors, slopes))  # (a, corners, q)
-    others = [np.delete(factor, corner, axis=1).prod(axis=1) for corner in corners]
+    others = [reduce(np.multiply, (factor[:, k] for k in corners if k != corner)) for corner in corners]
     along = slope * np.stack(others, axis=1)
-    return factor.prod(axis=1), along[:, 1:] - along[:, :1]
+    return factor[:, 0] * others[0], along[:, 1:] - along[:, :1]
 
 
 @cache

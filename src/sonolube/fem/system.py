@@ -18,6 +18,7 @@ from scipy.sparse.linalg import splu
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.fem.assembly import POTENTIAL_SCALE, assemble
+from sonolube.fem.elimination import dissected, eliminated
 from sonolube.fem.model import DIRECTIONS, Model
 from sonolube.fem.simplex import Integers
 
@@ -41,6 +42,8 @@ class System:
         Charge per volt of the drive on the nodes without electrode.
     drive_capacitance : complex
         Charge per volt on the driven electrodes, all else at zero.
+    potential_nodes : ndarray of int, shape (p,)
+        Node of each unknown potential, -1 for those of floating electrodes.
     """
 
     moving: Integers
@@ -54,6 +57,7 @@ class System:
     drive_dielectric: Floats
     drive_dielectric_loss: Floats
     drive_capacitance: complex
+    potential_nodes: Integers
 
     @property
     def potentials(self) -> int:
@@ -79,7 +83,7 @@ def system(model: Model) -> System:
     """
     raw = assemble(model)
     moving = _moving(model)
-    potential, drive = _wiring(model)
+    potential, drive, potential_nodes = _wiring(model)
     return System(
         moving=moving,
         mass=_square(raw.mass, moving),
@@ -92,6 +96,7 @@ def system(model: Model) -> System:
         drive_dielectric=potential.T @ (raw.dielectric @ drive),
         drive_dielectric_loss=potential.T @ (raw.dielectric_loss @ drive),
         drive_capacitance=complex(drive @ (raw.dielectric @ drive), -(drive @ (raw.dielectric_loss @ drive))),
+        potential_nodes=potential_nodes,
     )
 
 
@@ -122,33 +127,53 @@ def factorised(matrix: sparse.csc_array) -> Solve:
     return lambda right: np.asarray(factors.solve(right))
 
 
-def shifted(equations: System, *, shift: float) -> Solve:
+def shifted(model: Model, equations: System, *, shift: float) -> Solve:
     """Return what solves (K + C P^-1 C^T - shift M) u = f, the drive short-circuited.
 
     Parameters
     ----------
+    model : Model
     equations : System
+        Its equations.
     shift : float
         Square of the angular frequency, negative to stay off all resonances.
 
     Returns
     -------
     callable
-        From forces to displacements, both of shape (m,) or (m, k).
+        From real forces to displacements, both of shape (m,) or (m, k).
     """
     elastic = sparse.csc_array(equations.stiffness - shift * equations.mass)
+    groups, signs = _groups(model, equations)
     if not equations.potentials:
-        return factorised(elastic)
+        return eliminated(elastic, groups=groups, signs=signs)
     size = len(equations.moving)
     blocks = [[elastic, equations.coupling], [equations.coupling.T, -equations.dielectric]]
-    solve = factorised(sparse.csc_array(sparse.block_array(blocks, format="csc")))
+    coupled = sparse.csc_array(sparse.block_array(blocks, format="csc"))
+    solve = eliminated(coupled, groups=groups, signs=signs)
 
     def condensed(right: NDArray[Any]) -> NDArray[Any]:
-        padded = np.zeros((size + equations.potentials, *right.shape[1:]), dtype=right.dtype)
+        padded = np.zeros((size + equations.potentials, *right.shape[1:]))
         padded[:size] = right
         return solve(padded)[:size]
 
     return condensed
+
+
+def _groups(model: Model, equations: System) -> tuple[list[Integers], list[int]]:
+    """Return the unknowns in the order of elimination, and whether the matrix is positive or negative there."""
+    size, nodes = len(equations.moving), model.mesh.size
+    moves = np.full(3 * nodes, -1)
+    moves[equations.moving] = np.arange(size)
+    potentials = np.full(nodes, -1)
+    free = equations.potential_nodes >= 0
+    potentials[equations.potential_nodes[free]] = size + np.flatnonzero(free)
+    pairs = []
+    for group in dissected(model.mesh):
+        pairs += [(moves.reshape(-1, 3)[group].ravel(), 1), (potentials[group], -1)]
+    pairs.append((size + np.flatnonzero(~free), -1))
+    kept = [(unknowns[unknowns >= 0], sign) for unknowns, sign in pairs if np.any(unknowns >= 0)]
+    return [unknowns for unknowns, _ in kept], [sign for _, sign in kept]
 
 
 def on_nodes(model: Model, equations: System, moves: NDArray[Any]) -> NDArray[Any]:
@@ -174,8 +199,11 @@ def _moving(model: Model) -> Integers:
     return moving
 
 
-def _wiring(model: Model) -> tuple[sparse.csc_array, Floats]:
-    """Return how node potentials follow from the unknown ones, shape (n, p), and from the drive voltage, shape (n,)."""
+def _wiring(model: Model) -> tuple[sparse.csc_array, Floats, Integers]:
+    """Return how node potentials follow from the unknown ones, shape (n, p), and from the drive voltage, shape (n,).
+
+    And the nodes of the unknown ones, shape (p,), -1 for floating electrodes.
+    """
     mesh, electrodes = model.mesh, model.electrodes
     unknown = np.full(mesh.size, -1)
     poled = [region for region in mesh.regions if model.media[region].is_piezoelectric]
@@ -193,4 +221,5 @@ def _wiring(model: Model) -> tuple[sparse.csc_array, Floats]:
     rows = np.concatenate([free, *loose])
     columns = np.concatenate([np.arange(len(free)), *(np.full(len(own), len(free) + k) for k, own in enumerate(loose))])
     shape = (mesh.size, len(free) + len(loose))
-    return sparse.csc_array((np.ones(len(rows)), (rows, columns)), shape=shape), drive
+    known = np.concatenate([free, np.full(len(loose), -1)])
+    return sparse.csc_array((np.ones(len(rows)), (rows, columns)), shape=shape), drive, known

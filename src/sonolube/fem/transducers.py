@@ -183,8 +183,9 @@ def stack_parts(
     back_length: float,
     front_length: float,
     washer_radius: float | None = None,
+    tip: Geometry | None = None,
 ) -> dict[str, Geometry]:
-    """Return the bodies of a stack: rings from z = 0 to its length, a rod in them and masses at its ends where asked.
+    """Return the bodies of a stack: rings from z = 0 to its length, a rod in them, masses at its ends, a tip on them.
 
     Parameters
     ----------
@@ -198,6 +199,8 @@ def stack_parts(
         Lengths of the end masses, zero for none. [m]
     washer_radius : float, optional
         Radius of the end masses; that of the stack where absent. [m]
+    tip : Geometry, optional
+        What stands on the front mass, its foot at z = 0.
 
     Returns
     -------
@@ -230,6 +233,8 @@ def stack_parts(
         if size:
             body = cylinder(radius=outer_radius if washer_radius is None else washer_radius, length=size)
             parts[name] = moved(body, by=(0.0, 0.0, place))
+    if tip is not None:
+        parts["tip"] = moved(tip, by=(0.0, 0.0, length + front_length))
     return parts
 
 
@@ -239,7 +244,7 @@ def wired(parts: Mapping[str, Geometry], *, stack_layers: float, ceramic: str, m
     Parameters
     ----------
     parts : mapping of str to Geometry
-        Those of `stack_parts`, and a "tip" where there is one.
+        Those of `stack_parts`.
     stack_layers : float
         Number of layers. []
     ceramic, metal : str

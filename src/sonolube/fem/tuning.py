@@ -11,20 +11,21 @@ from sonolube.errors import InvalidInput
 from sonolube.fem.assembly import face_weights
 from sonolube.fem.classification import mode_names
 from sonolube.fem.convergence import converged_modes
+from sonolube.fem.grading import graded
 from sonolube.fem.harmonic import Output, observers
 from sonolube.fem.model import DIRECTIONS, Model
 from sonolube.fem.modes import NaturalModes, NotConverged, natural_modes, shift_for
 from sonolube.fem.orders import of_order
-from sonolube.fem.system import shifted, system
+from sonolube.fem.system import Solve, System, shifted, system
 
 Advance = Callable[[str, int, int], None]
 
-_COARSE_ORDER = 3
-_COARSE = 1e-3  # of the frequency: as far as free meshes of one size agree
+_COARSE_ORDER, _BETTER_ORDER = 2, 3
+_COARSE = 3e-3  # of the frequency: as far as free meshes of one size agree at the lower order
 _ON_TARGET = 5e-4
 _STEPS = 12
 _FIRST_STEP, _LARGEST_STEP = 0.05, 0.2  # of the length; the first must stand out from the meshes' scatter
-_APART = 0.03  # of the length, from which lengths tell the slope in spite of the scatter
+_APART = 0.06  # of the length, at which lengths on both sides tell the slope in spite of the scatter
 _CORRECTIONS = 5
 _UNMOVED = 0.05  # square of the face's motion over the greatest, below which a mode is mixed at most
 _FAR = 1e3  # square of the frequency that stands for all modes above, over the last's
@@ -198,25 +199,26 @@ def tuned_mode(
 
     Notes
     -----
-    The secant method, kept in the bracket once there is one, on meshes of one size; then meshes are refined, and the
-    length is corrected for what that changed.
+    The secant method, kept in the bracket once there is one, with elements of order two. Order three tells by how much
+    these are off, and the length is corrected for that and last for what the refined mesh says.
     """
     require_positive(frequency=frequency, length=length, element_size=element_size)
-    tried: dict[float, float] = {}
 
-    def coarse(at: float) -> float:
+    def at_order(at: float, order: int) -> float:
         model = model_at(at, element_size)
-        model = replace(model, mesh=of_order(model.mesh, order=_COARSE_ORDER))
+        model = replace(model, mesh=of_order(graded(model.mesh, levels=1), order=order))
         modes = natural_modes(model, count=count)
         if advance:
             advance(f"{at * 1e3:.2f} mm", 0, 1)
-        tried[at] = float(modes.natural_frequency[_row(mode_names(model, modes, axis=axis), name)])
-        return tried[at]
+        return float(modes.natural_frequency[_row(mode_names(model, modes, axis=axis), name)])
+
+    def coarse(at: float) -> float:
+        return at_order(at, _COARSE_ORDER)
 
     place = _secant(coarse, frequency, length)
-    while len(distant := _distant(tried, place)) < 2:
-        coarse(place * (1 - _APART if distant and distant[0] > place else 1 + _APART))
-    slope = _slope(tried, place)
+    shorter, longer = place * (1 - _APART), place * (1 + _APART)
+    slope = float(np.log(coarse(longer) / coarse(shorter)) / np.log(longer / shorter)) * frequency / place
+    place -= (at_order(place, _BETTER_ORDER) - frequency) / slope
     for _ in range(_CORRECTIONS):
         mode = named_mode(
             lambda size, at=place: model_at(at, size),  # type: ignore[misc]
@@ -234,7 +236,15 @@ def tuned_mode(
     raise NotConverged(f"{name} came within {abs(missed):.3g} Hz of {frequency:g} Hz; allow less error of the meshes")
 
 
-def loaded_frequencies(modes: NaturalModes, model: Model, *, face: str, along: str, tool_mass: float) -> Floats:
+def loaded_frequencies(
+    modes: NaturalModes,
+    model: Model,
+    *,
+    face: str,
+    along: str,
+    tool_mass: float,
+    remaining_compliance: float | None = None,
+) -> Floats:
     """Return natural frequencies in Hz with a rigid mass on a face that moves with its mean in one direction.
 
     Parameters
@@ -248,6 +258,8 @@ def loaded_frequencies(modes: NaturalModes, model: Model, *, face: str, along: s
         Direction in which it counts, "x", "y" or "z".
     tool_mass : float
         Mass. [kg]
+    remaining_compliance : float, optional
+        What `compliance_above` returns, on a coarser mesh perhaps; found where absent. [m/N]
 
     Returns
     -------
@@ -259,15 +271,14 @@ def loaded_frequencies(modes: NaturalModes, model: Model, *, face: str, along: s
     What the modes above those given yield to the mass is one static solution, taken as one more mode far above.
     """
     mass = float(require_non_negative(tool_mass=tool_mass))
-    output = Output(face=face, along=along)
-    weights = face_weights(model.mesh, face)
-    moves = modes.shapes[:, :, DIRECTIONS.index(along)] @ weights / weights.sum()
+    moves = _face_moves(modes, model, face, along)
     squares = (2 * np.pi * modes.natural_frequency) ** 2
-    equations, shift = system(model), shift_for(model)
-    pull = observers(model, equations, {"tool": output})[0]
-    yields = float(pull @ shifted(equations, shift=shift)(pull) - np.sum(moves**2 / (squares - shift)))
+    if remaining_compliance is None:
+        equations = system(model)
+        inverse = shifted(model, equations, shift=shift_for(model))
+        remaining_compliance = compliance_above(modes, model, equations, inverse=inverse, face=face, along=along)
     above = _FAR * squares.max()
-    squares, moves = np.append(squares, above), np.append(moves, np.sqrt(max(yields, 0.0) * above))
+    squares, moves = np.append(squares, above), np.append(moves, np.sqrt(max(remaining_compliance, 0.0) * above))
     yielding = moves**2 > _UNMOVED * np.max(moves[:-1] ** 2)  # a mass lowers these without changing their order
     own = moves[yielding]
     squares[yielding] = eigh(
@@ -276,28 +287,45 @@ def loaded_frequencies(modes: NaturalModes, model: Model, *, face: str, along: s
     return np.asarray(np.sqrt(np.maximum(squares[:-1], 0.0)) / (2 * np.pi))
 
 
+def compliance_above(
+    modes: NaturalModes, model: Model, equations: System, *, inverse: Solve, face: str, along: str
+) -> float:
+    """Return how far a face yields to a force spread over it by all modes above those given.
+
+    Parameters
+    ----------
+    modes : NaturalModes
+    model : Model
+    equations : System
+    inverse : callable
+        What `shifted` returns for the shift of `shift_for`.
+    face : str
+        Where the force acts.
+    along : str
+        Its direction, "x", "y" or "z".
+
+    Returns
+    -------
+    float
+        In m/N.
+    """
+    pull = observers(model, equations, {"face": Output(face=face, along=along)})[0]
+    squares = (2 * np.pi * modes.natural_frequency) ** 2
+    known = np.sum(_face_moves(modes, model, face, along) ** 2 / (squares - shift_for(model)))
+    return float(pull @ inverse(pull) - known)
+
+
+def _face_moves(modes: NaturalModes, model: Model, face: str, along: str) -> Floats:
+    """Return the mean displacement of a face in each mode."""
+    weights = face_weights(model.mesh, face)
+    return np.asarray(modes.shapes[:, :, DIRECTIONS.index(along)] @ weights / weights.sum())
+
+
 def _row(names: tuple[str, ...], mode: str) -> int:
     if mode not in names:
         elastic = [name for name in names if not name.startswith("rigid")]
         raise InvalidInput(f"no mode called {mode!r} among the first {len(elastic)}: {', '.join(elastic)}")
     return names.index(mode)
-
-
-def _distant(tried: dict[float, float], place: float) -> list[float]:
-    """Return the two lengths tried that are nearest to one, but far enough from it and each other for a slope."""
-    distant: list[float] = []
-    for length in sorted(tried, key=lambda length: abs(length - place)):
-        if all(abs(length - other) >= 0.99 * _APART * place for other in (place, *distant)):
-            distant.append(length)
-    return distant[:2]
-
-
-def _slope(tried: dict[float, float], place: float) -> float:
-    """Return how frequency changes with length, of a power law whose exponent changes evenly."""
-    lengths = [place, *_distant(tried, place)]
-    x, y = np.log(lengths) - np.log(place), np.log([tried[length] for length in lengths])
-    exponent = np.polyfit(x, y, 2)[1]
-    return float(exponent * tried[place] / place)
 
 
 def _secant(frequency_at: Callable[[float], float], wanted: float, start: float) -> float:
