@@ -137,6 +137,42 @@ def test_stiff_springs_under_an_ellipse_are_those_of_a_motor(lag: float) -> None
     assert float(springs) == approx(-float(rigid), abs=0.02)
 
 
+def in_line(depth: float, along: float, lag: float, v: float) -> float:
+    """Return the mean friction of a spring marched on a line; lengths in slip lengths, speed over theirs a radian."""
+    n = 20_000
+    theta = 2 * np.pi * np.arange(n + 1) / n
+    limits = np.maximum(depth - 0.9 * np.cos(theta), 0.0)
+    moves = np.diff(v * theta + along * np.cos(theta - lag))
+    force = total = 0.0
+    for _ in range(3):
+        total = 0.0
+        for move, limit in zip(moves.tolist(), limits[1:].tolist(), strict=True):
+            force = min(max(force + move, -limit), limit)
+            total += force
+    return total / float(limits[1:].sum())
+
+
+@mark.parametrize("depth", [1.0, 0.6])
+@mark.parametrize(("along", "lag", "v"), [(3.0, np.pi, 0.3), (3.0, np.pi / 2, 1.0), (1.5, 1.5 * np.pi, 0.02)])
+def test_pushed_back_while_its_limit_falls_a_spring_keeps_its_side(
+    depth: float, along: float, lag: float, v: float
+) -> None:
+    found = [
+        oscillation_ratio(
+            FLAT,
+            approach=depth * DEPTH,
+            normal_amplitude=0.9 * DEPTH,
+            in_plane_amplitude=along * SLIP,
+            in_plane_phase=lag,
+            frequency=FREQUENCY,
+            sliding_speed=v * OMEGA * SLIP,
+            steps=steps,
+        )
+        for steps in (1000, 1024, 2047)
+    ]
+    assert found == approx([in_line(depth, along, lag, v)] * 3, abs=3e-4)
+
+
 MASS, K_Z = 5e-3, 1e6
 
 

@@ -42,6 +42,14 @@ def test_the_round_source_has_the_constants_of_tian_and_kennedy(peclet: float) -
     assert rise.mean_temperature_rise / unit == approx(1.22 / np.sqrt(np.pi * (0.6575 + peclet)), rel=1e-3)
 
 
+@pytest.mark.parametrize("peclet", [0.01, 0.3, 1.0, 5.0, 40.0])
+def test_the_square_source_has_their_constant_too(peclet: float) -> None:
+    # maximum 2/sqrt(pi (1.011 + Pe)), times q b/k, b half a side
+    unit = FLUX * SQUARE.half_length / STEEL.thermal_conductivity
+    rise = flash_rise(STEEL, SQUARE, heat_flux=FLUX, sliding_speed=speed_at(peclet))
+    assert rise.peak_temperature_rise / unit == approx(2 / np.sqrt(np.pi * (1.011 + peclet)), rel=1e-3)
+
+
 @pytest.mark.parametrize("peclet", [0.0, 0.1, 1.0, 10.0, 100.0])
 def test_the_interpolation_stays_near_the_integral_over_a_square(peclet: float) -> None:
     nodes, weights = np.polynomial.legendre.leggauss(16)

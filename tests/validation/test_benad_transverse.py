@@ -1,4 +1,8 @@
-"""J. Benad, K. Nakano, V. L. Popov and M. Popov, Friction 7, 74 (2019): oscillation across the sliding."""
+"""J. Benad, K. Nakano, V. L. Popov and M. Popov, Friction 7, 74 (2019): oscillation across the sliding.
+
+Their abstract: friction is a function of two numbers, a velocity and an amplitude; very large amplitudes give the known
+solutions; of small ones the stiffness of the contact decides.
+"""
 
 from typing import Any
 
@@ -101,3 +105,40 @@ def test_sliding_too_slow_for_the_closed_form_warns() -> None:
         approximate_transverse_ratio(
             FLAT, approach=DEPTH, transverse_amplitude=SLIP, frequency=FREQUENCY, sliding_speed=0.01
         )
+
+
+VELOCITIES = np.array([0.1, 0.4, 0.9])  # over the peak velocity across
+
+
+def exact(contact: SpringContact, stroke: float, *, depth: float = DEPTH, frequency: float = FREQUENCY) -> np.ndarray:
+    amplitude = stroke * contact.slip_per_approach * depth
+    return oscillation_ratio(
+        contact,
+        approach=depth,
+        transverse_amplitude=amplitude,
+        frequency=frequency,
+        sliding_speed=VELOCITIES * 2 * np.pi * frequency * amplitude,
+        steps=4096 if stroke > 10 else 1024,
+    )
+
+
+@pytest.mark.parametrize("profile", ["flat", "parabolic"])
+@pytest.mark.parametrize("stroke", [0.5, 2.0])
+def test_velocity_over_the_peak_and_amplitude_over_the_slip_length_decide(profile: Any, stroke: float) -> None:
+    one, other = (
+        SpringContact(friction_coefficient=mu, mindlin_ratio=ratio, profile=profile)
+        for mu, ratio in ((0.4, 0.8), (0.15, 0.65))
+    )
+    assert exact(other, stroke, depth=4e-6, frequency=31e3) == approx(exact(one, stroke), abs=1e-9)
+
+
+@pytest.mark.parametrize("contact", [FLAT, SPHERE])
+def test_very_large_amplitudes_give_the_known_solution(contact: SpringContact) -> None:
+    rigid = transverse_vibration_ratio(sliding_speed=VELOCITIES, vibration_velocity=1.0)
+    assert exact(contact, 200.0) == approx(rigid, abs=2e-3)
+
+
+@pytest.mark.parametrize("contact", [FLAT, SPHERE])
+def test_small_amplitudes_do_little_because_the_contact_yields(contact: SpringContact) -> None:
+    assert np.all(exact(contact, 0.05) > 0.995)
+    assert transverse_vibration_ratio(sliding_speed=VELOCITIES[0], vibration_velocity=1.0) < 0.25

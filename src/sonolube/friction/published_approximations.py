@@ -54,9 +54,9 @@ def approximate_oscillation_ratio(
 
     Notes
     -----
-    1 - (1 - plateau) [3/4 (1 - v)^2 + 1/4 (1 - v)^4]: published for constant stiffness, where the plateau is 1 - a/u,
-    and there within 0.0144 a/u of the exact ratio, always below it. With the plateau of the parabolic profile, for
-    which it was not published, within 0.023 while the bodies touch.
+    1 - (1 - plateau) [3/4 (1 - v)^2 + 1/4 (1 - v)^4]: known as theirs for constant stiffness, where the plateau is
+    1 - a/u, and verified here, for the text was not at hand: within 0.0144 a/u of the exact ratio, always below it.
+    With the plateau of the parabolic profile, for which it was not published, within 0.023 while the bodies touch.
 
     References
     ----------
@@ -168,8 +168,9 @@ def longitudinal_static_ratio(contact: SpringContact, *, approach: ArrayLike, in
     Notes
     -----
     The limit of `longitudinal_oscillation_ratio` for slow sliding, exactly. With s the amplitude over the slip length
-    mu k_z u/k_x, flat, 1 - s: the force falls by k_x a. Parabolic, (1 - s)^(3/2), which follows spring by spring; of
-    that contact [2]_ tell that force, amplitude, indentation and coefficient make one curve, which this is.
+    mu k_z u/k_x, flat, 1 - s: the force falls by k_x a, the known form of [1]_, whose text was not at
+    hand. Parabolic, (1 - s)^(3/2), which follows spring by spring; of that contact [2]_ tell that force, amplitude,
+    indentation and coefficient make one curve, which this is.
 
     References
     ----------
@@ -265,11 +266,14 @@ def transverse_static_ratio(contact: SpringContact, *, approach: ArrayLike, tran
     Notes
     -----
     The limit of `oscillation_ratio` for slow sliding: at each end of the stroke the force across, k_x a, leaves
-    sqrt((mu F_N)^2 - (k_x a)^2) along the pull. Parabolic, the same spring by spring, to 1e-9.
+    sqrt((mu F_N)^2 - (k_x a)^2) along the pull, a known form whose source was not at hand. Parabolic, the same spring
+    by spring, to 1e-9: partial slip, which [2]_ finds to matter.
 
     References
     ----------
     .. [1] J. Benad, K. Nakano, V. L. Popov and M. Popov, Friction 7, 74 (2019). doi:10.1007/s40544-018-0202-1
+    .. [2] Friction Influenced by Vibrations: A Refined Contact-Mechanics View on Lateral and Rotational Oscillations,
+       Front. Mech. Eng. 6 (2020). doi:10.3389/fmech.2020.566440
     """
     s = _stroke(contact, approach, require_non_negative(transverse_amplitude=transverse_amplitude))
     s = np.minimum(s, 1.0)

@@ -349,8 +349,12 @@ def _slid(p: float, q: float, before: float, after: float, dx: float, dy: float)
         return p / length * after, q / length * after
     along, across = (p * dx + q * dy) / length, (p * dy - q * dx) / length
     whole = hypot(dx, dy)
+    if across == 0.0:  # in line, and it stays so even where it faces the slide
+        kept = copysign(after / whole, along)
+        return kept * dx, kept * dy
     mean = (before + stuck * change + after) / 2
-    half = abs(across) / (whole + along) if whole + along > 0 else 1e300  # tangent of half the angle to the slide
+    # tangent of half the angle to the slide, of both its forms that which does not cancel
+    half = abs(across) / (whole + along) if along > 0 else (whole - along) / abs(across)
     turned = 2 * atan(half * exp(-slide / mean))
     c, s = cos(turned), -copysign(sin(turned), across)
     return after * (dx * c - dy * s) / whole, after * (dy * c + dx * s) / whole

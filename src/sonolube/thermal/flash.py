@@ -151,10 +151,11 @@ def flash_rise(solid: ThermalSolid, source: HeatSource, *, heat_flux: ArrayLike,
 
     Notes
     -----
-    Interpolates between both limits as c/sqrt(Pe_0 + Pe), in which the limits leave nothing to fit; with it the
-    constants of Tian and Kennedy come out: 2, 1.273 for the peak and 1.22, 0.6575 for the mean of the circle, 2.32,
-    1.234 for the peak of a round `HertzianSource`, which is 18 % hotter than even flux. Against integrals over circle
-    and square the peak is within 2.5 %, the mean within 4 %; of Hertz within 1.5 and 5 %.
+    Interpolates between both limits as c/sqrt(Pe_0 + Pe), in which the limits leave nothing to fit; with it the known
+    constants of Tian and Kennedy come out, whose text was not at hand: 2, 1.273 for the peak and 1.22, 0.6575 for the
+    mean of the circle, 2, 1.011 for the peak of the square, 2.32, 1.234 for that of a round `HertzianSource`, which is
+    18 % hotter than even flux. Against integrals over circle and square the peak is within 2.5 %, the mean within 4 %;
+    of Hertz within 1.5 and 5 %.
 
     References
     ----------
