@@ -53,7 +53,29 @@ def test_a_flat_on_a_ball_is_measured_as_the_cap_it_lacks(known: float | None) -
     volume = float(ball_cap_volume(scar_diameter=0.4e-3, tip_radius=RADIUS))
     assert scar.tip_radius == approx(RADIUS, rel=1e-3)
     assert scar.wear_volume == approx(volume, abs=max(4 * scar.wear_volume_uncertainty, 2e-3 * volume))
-    assert scar.scar_diameter == approx(0.4e-3, rel=0.03)
+    assert scar.scar_diameter == approx(0.4e-3, abs=0.5 * PIXEL)
+
+
+@mark.parametrize("diameter", [0.15e-3, 0.4e-3, 0.6e-3])
+@mark.parametrize("noise", [0.0, 5e-9, 50e-9, 200e-9])
+def test_neither_noise_nor_smoothing_moves_the_edge_of_a_flat(diameter: float, noise: float) -> None:
+    assert worn_cap(ball(diameter, noise=noise)).scar_diameter == approx(diameter, abs=0.5 * PIXEL)
+
+
+@mark.parametrize("noise", [0.0, 5e-9, 50e-9])
+@mark.parametrize("wall", ["steep", "bowl", "ramp"])
+def test_nor_that_of_a_scar_with_other_walls(wall: str, noise: float) -> None:
+    diameter, depth = 0.4e-3, 1e-6
+    unworn = ball(1e-9, noise=noise)
+    x, y = np.meshgrid((np.arange(320) - 150) * PIXEL, (np.arange(240) - 130) * PIXEL)
+    inwards = diameter / 2 - np.hypot(x, y)
+    lost = {
+        "steep": inwards > 0,
+        "bowl": np.maximum(1 - 4 * (x**2 + y**2) / diameter**2, 0),
+        "ramp": np.clip(inwards / (10 * PIXEL), 0, 1),
+    }[wall]
+    scar = worn_cap(unworn.with_height(unworn.height - depth * lost))
+    assert scar.scar_diameter == approx(diameter, abs=PIXEL)
 
 
 def test_an_unworn_ball_has_no_scar() -> None:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.ndimage import binary_dilation, label, uniform_filter
+from scipy.ndimage import binary_dilation, label, median_filter, uniform_filter
 from scipy.optimize import least_squares
 
 from sonolube.checks import Floats, require_positive
@@ -21,6 +21,9 @@ _ROUNDS = 20
 _SMOOTHED = 5  # pixels
 _WORN = 6.0  # spreads of the smoothed map
 _LEAST_SCAR = 50  # pixels
+_LEVELS = 16  # at which the scar's area is counted
+_LEVELS_REACH = 3.0  # times the least depth that can be told
+_LEVELS_SHARE = 0.2  # of the depth of the scar, where that reaches further
 _DEVIATION_OVER_MEDIAN = 1.4826  # of Gaussian heights
 _LEAST_DEPTH = 1e-12  # m: no instrument shows less
 
@@ -97,7 +100,7 @@ class WornCap:
     tip_radius : float
         Radius of the ball, as given or fitted to what is unworn. [m]
     scar_diameter : float
-        Diameter of a circle of the scar's area. [m]
+        Diameter of a circle of the scar's area, counted to where the depth ends. [m]
     wear_volume : float
         Volume between the scar and the ball. [m3]
     wear_volume_uncertainty : float
@@ -105,7 +108,7 @@ class WornCap:
     levelled : HeightMap
         Heights above the ball.
     worn : bool array, shape of the heights
-        Pixels of the scar.
+        Pixels that clearly belong to the scar.
     """
 
     tip_radius: float
@@ -136,6 +139,13 @@ def worn_cap(surface: HeightMap, *, tip_radius: float | None = None) -> WornCap:
         If nothing lies clearly below the ball.
     InvalidInput
         If the map bends the other way, or too little of it was measured.
+
+    Notes
+    -----
+    Of a flat on a ball, and of any paraboloid, the area deeper than a level falls in proportion to the level: a line
+    through several levels that can be told from noise gives the area at none. Heights pass a median filter before,
+    which leaves straight edges where they are. The diameter is good to 1.5 pixels, of flats to 0.5, but lies inside
+    an edge so flat that noise hides more than a fifth of the depth.
     """
     if tip_radius is not None:
         require_positive(tip_radius=tip_radius)
@@ -159,7 +169,7 @@ def worn_cap(surface: HeightMap, *, tip_radius: float | None = None) -> WornCap:
     slopes = np.array([column[rimmed].sum() for column in _ball_slopes(surface, ball, len(covariance))]) * pixel
     return WornCap(
         tip_radius=float(ball[3]),
-        scar_diameter=math.sqrt(4 / math.pi * pixel * np.count_nonzero(worn)),
+        scar_diameter=math.sqrt(4 / math.pi * pixel * _area(levelled, worn)),
         wear_volume=float(depth[rimmed].sum()) * pixel,
         wear_volume_uncertainty=math.sqrt(max(0.0, float(slopes @ covariance @ slopes))),
         levelled=levelled,
@@ -242,9 +252,24 @@ def _scar(levelled: HeightMap, worn: Mask) -> Mask:
     """Return the largest patch that lies clearly below the ball."""
     smooth = _smooth(levelled)
     unworn = ~worn if not worn.all() else worn
-    spread = _DEVIATION_OVER_MEDIAN * float(np.median(np.abs(smooth[unworn] - np.median(smooth[unworn]))))
-    patches, count = label(smooth < -max(_WORN * spread, _LEAST_DEPTH))
+    patches, count = label(smooth < -max(_WORN * _spread(smooth[unworn]), _LEAST_DEPTH))
     sizes = np.bincount(patches.ravel())[1:]
     if not count or sizes.max() < _LEAST_SCAR:
         return np.zeros_like(worn)
     return np.asarray(patches == 1 + int(np.argmax(sizes)))
+
+
+def _area(levelled: HeightMap, worn: Mask) -> float:
+    """Return the area of a scar, in pixels, at the level of the ball."""
+    rimmed = _with_rim(worn)
+    depth = median_filter(-np.where(levelled.measured, levelled.height, _smooth(levelled)), _SMOOTHED)
+    deep = max(float(np.quantile(depth[worn], 0.9)), _LEAST_DEPTH)
+    low = max(_WORN * _spread(depth[~rimmed]), _LEAST_DEPTH)
+    high = min(max(_LEVELS_REACH * low, _LEVELS_SHARE * deep), 0.8 * deep)
+    levels = np.linspace(min(low, high / 2), high, _LEVELS)
+    areas = np.count_nonzero(depth[rimmed] > levels[:, np.newaxis], axis=1)
+    return float(np.polyfit(levels / high, areas, 1)[1])
+
+
+def _spread(values: Floats) -> float:
+    return _DEVIATION_OVER_MEDIAN * float(np.median(np.abs(values - np.median(values))))
