@@ -73,6 +73,7 @@ def test_conversion_there_and_back_changes_nothing(value: float) -> None:
         (4.981e-9, "m2", "4980 um2"),
         (0.0203, "m/s", "20.3 mm/s"),
         (2e9, "N/m", "2 GN/m"),
+        (8.92e-8, "m/V", "89.2 nm/V"),
         (0.341, "", "0.341"),
         (0.0, "N", "0 N"),
         (2.566e-11, "m2", "25.7 um2"),

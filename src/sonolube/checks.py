@@ -1,6 +1,8 @@
 """Checks of physical arguments, which name the argument, the value and its unit."""
 
 from collections.abc import Callable, Mapping
+from math import isfinite
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -72,16 +74,20 @@ def require_within(lower: float, upper: float, /, **values: ArrayLike) -> Floats
     )
 
 
-def _require(accepts: Callable[[Floats], NDArray[np.bool_]], demand: str, values: Mapping[str, ArrayLike]) -> Floats:
-    arrays = {name: _floats(name, value) for name, value in values.items()}
-    for name, array in arrays.items():
+def _require(accepts: Callable[[Any], Any], demand: str, values: Mapping[str, Any]) -> Floats:
+    for name, value in values.items():
+        if (
+            isinstance(value, float) and isfinite(value) and accepts(value)
+        ):  # by far the commonest, in a tenth of the time
+            continue
+        array = _floats(name, value)
         _refuse_unless(np.isfinite(array), array, name, "must be finite")
         _refuse_unless(accepts(array), array, name, demand)
-    return next(iter(arrays.values()))
+    return _floats(*next(iter(values.items())))
 
 
 def _refuse_unless(accepted: NDArray[np.bool_], array: Floats, name: str, demand: str) -> None:
-    if not np.all(accepted):
+    if not accepted.all():
         offender = float(array[~accepted].flat[0]) if array.ndim else float(array)
         raise InvalidInput(f"{name} {demand}, got {offender!r} {unit_of(name)}".rstrip())
 

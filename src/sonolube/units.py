@@ -137,7 +137,7 @@ def engineering(value: float, unit: str, *, digits: int = 3) -> str:
     if not unit or value == 0 or not math.isfinite(value):
         return f"{value:.{digits}g} {unit}".rstrip()
     power = {"m2": 2, "m3": 3}.get(unit, 1)
-    if unit == "kg" or (not unit.isalpha() and unit not in ("m2", "m3", "m/s", "N/m")):
+    if unit == "kg" or (not unit.isalpha() and unit not in ("m2", "m3", "m/s", "m/V", "N/m")):
         return f"{value:.{digits}g} {unit}"
     # areas and volumes step by millions and billions: better 0.95 um2 than 953000 nm2
     leeway = 0 if power == 1 else power

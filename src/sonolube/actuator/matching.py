@@ -83,7 +83,7 @@ def parallel_inductor(*, admittance: complex, frequency: float) -> MatchingNetwo
         If the actuator is not capacitive there.
     """
     y, omega = _capacitive(admittance, frequency)
-    return MatchingNetwork(shunt_inductance=1 / (omega * y.imag))
+    return MatchingNetwork(**_shunt(-y.imag, omega))
 
 
 def series_inductor(*, admittance: complex, frequency: float) -> MatchingNetwork:
@@ -107,7 +107,7 @@ def series_inductor(*, admittance: complex, frequency: float) -> MatchingNetwork
         If the actuator is not capacitive there.
     """
     y, omega = _capacitive(admittance, frequency)
-    return MatchingNetwork(series_inductance=-(1 / y).imag / omega)
+    return MatchingNetwork(**_series(-(1 / y).imag, omega))
 
 
 def l_match(*, admittance: complex, frequency: float, source_resistance: float) -> MatchingNetwork:

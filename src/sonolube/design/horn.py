@@ -8,11 +8,14 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.design.horn_shapes import Body
 from sonolube.errors import InvalidInput
-from sonolube.fem import Medium, Model, NamedMode, TunedMode, mesh_of, mode_names, natural_modes, tuned_mode
+from sonolube.fem import Medium, Model, NamedMode, TunedMode, mesh_of, mode_names, tuned_mode
 from sonolube.fem.fields import equivalent_stress, on_nodes_mean, stresses
 from sonolube.fem.model import DIRECTIONS
+from sonolube.fem.modes import modes_of, shift_for
 from sonolube.fem.orders import of_order
-from sonolube.fem.tuning import loaded_frequencies
+from sonolube.fem.simplex import quadrature, shape_functions
+from sonolube.fem.system import shifted, system
+from sonolube.fem.tuning import compliance_above, loaded_frequencies
 from sonolube.materials import Material
 
 _ELEMENTS_ACROSS = 2.5  # of a horn as thick as a cube of its volume would be, in the first mesh
@@ -39,7 +42,9 @@ class HornDesign:
     stress_per_displacement : float
         Greatest equivalent stress per displacement of the working face. [Pa/m]
     stress_change : float
-        Relative change of it from the mesh before: large where corners are sharp, and then it has no limit.
+        Relative change of it from elements of one order less: large where corners are sharp, and then it has no limit.
+    remaining_compliance : float
+        Displacement per force of the working face by modes above those found. [m/N]
     neighbours : tuple of (str, float)
         Name and frequency in Hz of the elastic modes found, the tuned one left out, by distance.
     """
@@ -52,6 +57,7 @@ class HornDesign:
     node_position: float
     stress_per_displacement: float
     stress_change: float
+    remaining_compliance: float
     neighbours: tuple[tuple[str, float], ...] = field(default=())
 
     @property
@@ -113,6 +119,7 @@ def designed_horn(
     )
     found = tuned.mode
     peak = _peak_stress(found.model, found.displacement, body.axis)
+    change, compliance = _of_one_order_less(found, mode, body.axis, peak)
     return HornDesign(
         body=body,
         tuned=tuned,
@@ -124,7 +131,8 @@ def designed_horn(
         face_asymmetry=_asymmetry(found, body.axis),
         node_position=_node(found, body.axis),
         stress_per_displacement=peak,
-        stress_change=_stress_change(found, mode, body.axis, peak),
+        stress_change=change,
+        remaining_compliance=compliance,
         neighbours=_neighbours(found),
     )
 
@@ -164,7 +172,12 @@ def loaded_frequency(design: HornDesign, *, tool_mass: float) -> float:
     """
     found = design.tuned.mode
     loaded = loaded_frequencies(
-        found.modes, found.model, face=design.working_face, along=design.body.axis, tool_mass=tool_mass
+        found.modes,
+        found.model,
+        face=design.working_face,
+        along=design.body.axis,
+        tool_mass=tool_mass,
+        remaining_compliance=design.remaining_compliance,
     )
     own = found.modes.natural_frequency[found.row]
     return float(loaded[found.row] / own * found.frequency)  # with the error of the mesh taken out
@@ -210,12 +223,17 @@ def _peak_stress(model: Model, shape: Floats, axis: str) -> float:
     return float(nodal_stress(model, shape).max() / abs(face_motion(model, shape, f"+{axis}", axis).mean()))
 
 
-def _stress_change(found: NamedMode, name: str, axis: str, peak: float) -> float:
-    """Return by how much the peak stress differs from that of elements of one order less."""
+def _of_one_order_less(found: NamedMode, name: str, axis: str, peak: float) -> tuple[float, float]:
+    """Return by how much the peak stress differs on elements of one order less, and what modes above yield there."""
     model = replace(found.model, mesh=of_order(found.model.mesh, order=found.model.mesh.order - 1))
-    modes = natural_modes(model, count=len(found.names) - found.modes.rigid)
+    equations = system(model)
+    inverse = shifted(model, equations, shift=shift_for(model))
+    modes = modes_of(model, equations, inverse=inverse, count=len(found.names) - found.modes.rigid)
+    compliance = compliance_above(modes, model, equations, inverse=inverse, face=f"+{axis}", along=axis)
     names = mode_names(model, modes, axis=axis)
-    return abs(_peak_stress(model, modes.shapes[names.index(name)], axis) / peak - 1) if name in names else np.inf
+    if name not in names:
+        return np.inf, compliance
+    return abs(_peak_stress(model, modes.shapes[names.index(name)], axis) / peak - 1), compliance
 
 
 def _uniformity(moves: Floats) -> float:
@@ -253,15 +271,18 @@ def section_motion(found: NamedMode, axis: str) -> tuple[Floats, Floats]:
     Returns
     -------
     tuple of two ndarray
-        One value for each slice that holds nodes.
+        Means over the volume of each slice.
     """
-    along = DIRECTIONS.index(axis)
-    place = found.model.mesh.nodes[:, along]
+    mesh, along = found.model.mesh, DIRECTIONS.index(axis)
+    points, weights = quadrature(2 * mesh.order, corners=4)
+    value, slope = shape_functions(mesh.order, points)
+    volume = np.linalg.det(np.einsum("eax,adq->eqdx", mesh.nodes[mesh.elements], slope, optimize=True)) * weights
+    place, moves = (own[mesh.elements, along] @ value for own in (mesh.nodes, found.displacement))
     edges = np.linspace(place.min(), place.max(), _SLICES + 1)
-    which = np.clip(np.digitize(place, edges) - 1, 0, _SLICES - 1)
-    count = np.bincount(which, minlength=_SLICES)
-    means = [np.bincount(which, own, minlength=_SLICES)[count > 0] for own in (place, found.displacement[:, along])]
-    return means[0] / count[count > 0], means[1] / count[count > 0]
+    which = np.clip(np.digitize(place, edges) - 1, 0, _SLICES - 1).ravel()
+    filled = np.bincount(which, volume.ravel(), minlength=_SLICES)
+    means = [np.bincount(which, (own * volume).ravel(), minlength=_SLICES)[filled > 0] for own in (place, moves)]
+    return means[0] / filled[filled > 0], means[1] / filled[filled > 0]
 
 
 def _neighbours(found: NamedMode) -> tuple[tuple[str, float], ...]:

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.stats import qmc
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
@@ -77,6 +76,8 @@ def sobol_points(inputs: int, *, samples: int, seed: int = 0) -> tuple[Floats, N
     if samples < _FEWEST:
         raise InvalidInput(f"samples must be at least {_FEWEST}, got {samples}")
     power = int(np.ceil(np.log2(samples)))
+    from scipy.stats import qmc
+
     points = qmc.Sobol(d=inputs, rng=np.random.default_rng(seed)).random_base2(power)
     return np.clip(points, _INSIDE, 1 - _INSIDE), np.repeat(np.arange(STRETCHES), 2**power // STRETCHES)
 

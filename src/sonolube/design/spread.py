@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.stats import t
+from scipy.special import stdtrit
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
@@ -107,7 +107,7 @@ def spread(outcomes: ArrayLike, *, stretch: NDArray[np.intp]) -> Spread:
     def estimated(statistic: Callable[[Floats], Any]) -> Estimated:
         value = float(statistic(known))
         each = np.array([statistic(part) for part in parts])
-        half = float(t.ppf(0.975, len(parts) - 1) * each.std(ddof=1) / np.sqrt(len(parts)))
+        half = float(stdtrit(len(parts) - 1, 0.975) * each.std(ddof=1) / np.sqrt(len(parts)))
         return Estimated(value=value, lower=value - half, upper=value + half)
 
     return Spread(

@@ -1,6 +1,6 @@
 """Many operating points of one rig at once: vibrations solved together, friction under each, a status to each."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -189,7 +189,7 @@ def operating_points(
 
     status, reason = np.full((2, speeds.size), REFUSED, dtype=object)
     numbers = np.full((7, speeds.size), np.nan)
-    for setting, members in enumerate(_members(which.ravel(), possible.size)):
+    for setting, members in enumerate(grouped(np.arange(speeds.size), which.ravel())):
         if states is not None and possible[setting]:
             found = _outcome(rig, states, int(place[setting]), speeds[members])
             status[members], reason[members], numbers[:, members] = found.status, found.reason, found.numbers
@@ -332,10 +332,23 @@ def steady_states_of(rig: Rig, settings: Settings, rest: Floats, backend: Backen
     )
 
 
-def _members(which: NDArray[np.intp], count: int) -> Iterator[NDArray[np.intp]]:
-    """Yield for each vibration the points that share it."""
-    order = np.argsort(which, kind="stable")
-    yield from np.split(order, np.searchsorted(which[order], np.arange(1, count)))
+def grouped(points: NDArray[np.intp], vibration: NDArray[np.intp]) -> list[NDArray[np.intp]]:
+    """Return the points that share each vibration, in the order of the vibrations.
+
+    Parameters
+    ----------
+    points : ndarray of int, shape (k,)
+    vibration : ndarray of int, shape (n,)
+        That of every point.
+
+    Returns
+    -------
+    list of ndarray of int
+    """
+    if not points.size:
+        return []
+    order = points[np.argsort(vibration[points], kind="stable")]
+    return np.split(order, np.flatnonzero(np.diff(vibration[order])) + 1)
 
 
 def _outcome(rig: Rig, states: SteadyStates, point: int, speeds: Floats) -> _Outcome:

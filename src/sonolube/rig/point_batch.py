@@ -13,7 +13,7 @@ from sonolube.dynamics.velocity_kernel import highest_velocities
 from sonolube.errors import SonolubeError
 from sonolube.friction.stick_slip import EMPIRICAL_MEMORY_LENGTH
 from sonolube.friction.stick_slip_batch import stick_slip_ratios
-from sonolube.rig.ensemble import Settings, broadcast, friction_and_power, friction_of, steady_states_of
+from sonolube.rig.ensemble import Settings, broadcast, friction_and_power, friction_of, grouped, steady_states_of
 from sonolube.rig.excitation import voltage_range
 from sonolube.rig.record import Rig
 from sonolube.rig.response import require_drive, require_structure
@@ -235,7 +235,7 @@ def _friction(rig: Rig, states: SteadyStates, place: NDArray[np.intp], speeds: F
             memory_length=rig.memory_length or EMPIRICAL_MEMORY_LENGTH,
         )
         open_points = open_points[np.isnan(ratio[open_points])]
-    for members in _grouped(open_points, place):
+    for members in grouped(open_points, place):
         try:
             moving_gap = gap_motion(states, int(place[members[0]]))
             ratio[members], texts = friction_of(rig, moving_gap, speeds[members])
@@ -243,11 +243,3 @@ def _friction(rig: Rig, states: SteadyStates, place: NDArray[np.intp], speeds: F
             texts = [str(refusal)] * members.size
         failures |= {int(point): text for point, text in zip(members, texts, strict=True) if text}
     return ratio, failures
-
-
-def _grouped(points: NDArray[np.intp], place: NDArray[np.intp]) -> list[NDArray[np.intp]]:
-    """Return the points that share each vibration."""
-    if not points.size:
-        return []
-    order = points[np.argsort(place[points], kind="stable")]
-    return np.split(order, np.flatnonzero(np.diff(place[order])) + 1)

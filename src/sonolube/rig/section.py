@@ -6,10 +6,9 @@ from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler, ValidationInfo
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
+from sonolube.rig.plausible import require_plausible
 from sonolube.units import kind_of, to_si
 from sonolube.vocabulary import quantities
-
-_BEYOND_ANY_RIG = 1e30  # in SI; keeps products of several quantities within what a float can hold
 
 
 class Section(BaseModel):
@@ -39,15 +38,12 @@ class Section(BaseModel):
 
 def _quantity_in_si(value: object, *, unit: str) -> float:
     if isinstance(value, str):
-        number = to_si(value, unit=unit, name="")
-        if number and not 1 / _BEYOND_ANY_RIG < abs(number) < _BEYOND_ANY_RIG:
-            raise ValueError(f"{value} lies beyond any rig")
-        return number
+        return require_plausible(to_si(value, unit=unit, name=""), unit=unit, text=value)
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise ValueError(f"{value!r} is not {kind_of(unit)}")
     if unit:
         raise ValueError(f"{value!r} has no unit; wanted {kind_of(unit)}")
-    return float(value)
+    return require_plausible(value, unit=unit, text=f"{value}")
 
 
 def _schema_of(name: str) -> dict[str, Any]:

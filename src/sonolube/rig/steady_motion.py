@@ -11,6 +11,7 @@ from sonolube.contact import GapMotion, separation
 from sonolube.dynamics.attained import Attained, attained_motion
 from sonolube.dynamics.periodic import Status, SteadyStates, steady_state
 from sonolube.dynamics.sliding import motion
+from sonolube.errors import OutsideRange
 from sonolube.rig.excitation import ramp_of, voltage_harmonics, waveform_of
 from sonolube.rig.record import Rig
 from sonolube.rig.response import gap_law_of, require_drive, require_structure
@@ -18,6 +19,7 @@ from sonolube.units import engineering
 
 _SAMPLES = 1024
 _STRETCHES = 16  # of a motion whose beat is too fast or too slow to cut by
+_LONGEST_STRETCH = 40_000  # steps between cuts; half as many again is what means over it can still be refined from
 _SAME = 0.01  # relative difference of amplitude within which two vibrations are one
 
 
@@ -93,6 +95,8 @@ def steady_motion(rig: Rig) -> SteadyMotion:
     ------
     InvalidInput
         If the rig has no structure, or neither harmonic balance nor marching finds a motion.
+    OutsideRange
+        If the drive is too slow beside the structure's fastest mode.
 
     Notes
     -----
@@ -102,6 +106,8 @@ def steady_motion(rig: Rig) -> SteadyMotion:
     balanced = _balanced(rig, falling=False)
     if balanced.status == Status.PERIODIC:
         return _of_balance(rig, balanced, balanced.reason(()))
+    if balanced.beyond_judgement(()):
+        raise OutsideRange(balanced.reason(()))
     attained = _marched(rig)
     told = f"{_why_marched(balanced)}; {_from_rest(require_drive(rig))}"
     found = attained.attractor
@@ -110,7 +116,10 @@ def steady_motion(rig: Rig) -> SteadyMotion:
             if _same(states, attained):
                 appears = engineering(float(states.vibration_amplitude), "m")
                 return _of_balance(rig, states, f"{told} that of {appears} appears{states.hopping(())}")
-    return _of_march(rig, attained, balanced, f"{told} the tip ends up otherwise: {found.description}")
+    early = (
+        "" if attained.settled else f"; followed for {engineering(attained.marched_time, 's')}, before all is settled"
+    )
+    return _of_march(rig, attained, balanced, f"{told} the tip ends up otherwise: {found.description}{early}")
 
 
 def gap_motion(states: SteadyStates, point: int | tuple[int, ...]) -> GapMotion:
@@ -256,7 +265,7 @@ def _stretches(
     steps, slow = attained.steps_per_period, float(attained.attractor.beat_frequency)
     whole = attained.periods * steps
     beat = round(steps * frequency / slow) if slow > 0 else whole
-    if not 4 * steps <= beat <= whole // 3:
+    if not 4 * steps <= beat <= min(whole // 3, _LONGEST_STRETCH):
         beat = whole // _STRETCHES
     cuts = [int(np.argmax(x[:beat]))]
     while cuts[-1] + 3 * beat // 2 <= whole:
