@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 _SIZE: Final = (4.5, 3.4)  # inches
 _SPEED: Final = "Sliding speed [mm/s]"
+_LAGS: Final = {0.0: "driven on one end", -pi / 2: "quarter turn of D 3.25"}
 _ASIDE: Final = 1.2  # mm/s between points of one speed, so that none hides another
 
 
@@ -33,8 +34,11 @@ def figures() -> tuple[ReportFigure, ...]:
             chapter=2,
             title="Paths of three points on the waveguide's surface",
             caption="Computed, D 3.22 and 3.25 at the amplitude of section 2.1.2: one inch left of the centre, at the "
-            "centre, one inch right of it; the arrow shows the sense of motion. The normal motion leads by a quarter "
-            "turn, the sign with which the surface moves towards the centre while it is lowest, as the block did.",
+            "centre, one inch right of it. Full: a horn driven on one end, whose normal motion follows the axial one "
+            "at once, so that the lag is zero on one side and half a turn on the other, and paths are lines. Broken: "
+            "normal motion a quarter turn ahead, the lag of D 3.25, which such a horn does not give, with the sign "
+            "with which the surface moves towards the centre while it is lowest, as the block did; the arrow shows the "
+            "sense of motion.",
             draw=_loci,
         ),
         ReportFigure(
@@ -86,11 +90,12 @@ def _loci() -> "Figure":
     inch = said("2.1.3-outer-points").value
     for axes, place, title in zip(panels, (-inch, 0.0, inch), ("point -1", "point 0", "point +1"), strict=True):
         for index, horn in enumerate(("aluminium", "steel")):
-            path = locus(_waveguide(horn), position=place)
-            u, v = 1e6 * path.axial_displacement, 1e6 * path.normal_displacement
-            axes.plot(u, v, linestyle=LINES[index], color=COLOURS[index], label=f"{horn} horn, computed")
-            if index == 0 and place:
-                _arrow(axes, u, v)
+            for line, (phase, lag) in zip(LINES, _LAGS.items(), strict=False):
+                path = locus(_waveguide(horn, phase=phase), position=place)
+                u, v = 1e6 * path.axial_displacement, 1e6 * path.normal_displacement
+                axes.plot(u, v, linestyle=line, color=COLOURS[index], label=f"{horn} horn, {lag}")
+                if index == 0 and phase and place:
+                    _arrow(axes, u, v)
         axes.set(title=f"{title}, x = {1e3 * place:g} mm".replace("-", "−"), xlabel="Axial displacement [µm]")
         axes.title.set_fontsize(9)
     panels[0].set(ylabel="Normal displacement\ninto the bar [µm]", ylim=(-1.1, 1.1), xlim=(-6, 6))
@@ -98,14 +103,14 @@ def _loci() -> "Figure":
     return figure
 
 
-def _waveguide(horn: str) -> HalfWaveguide:
+def _waveguide(horn: str, *, phase: float) -> HalfWaveguide:
     return HalfWaveguide(
         length=said("2.1.2-waveguide-length").value,
         thickness=said("2.1.2-waveguide-thickness").value,
         poisson_ratio=in_table("3.1", f"poisson_ratio_{horn}").value,
         axial_amplitude=said("2.1.2-welder-amplitude").value,
         frequency=said("2.1.2-welder-frequency").value,
-        phase=-pi / 2,
+        phase=phase,
     )
 
 

@@ -20,7 +20,7 @@ from sonolube.contact import GapMotion, decay_length, harmonic_motion, load_bala
 from sonolube.dynamics import ExponentialGap, Structure, chain_structure, pin_on_disc_chain, steady_state, trajectory
 from sonolube.dynamics.sliding import motion as motion_of
 from sonolube.friction import coupled, stick_slip
-from sonolube.reproduce.closure_fit import Errors, errors_between, measured_in
+from sonolube.reproduce.closure_fit import measured_in
 from sonolube.reproduce.experiments import FrictionTest
 from sonolube.reproduce.inputs import in_table, said
 from sonolube.reproduce.row import Row, compare
@@ -74,11 +74,6 @@ def predictions() -> tuple[Prediction, ...]:
         )
         for test in measured_in(TESTS)
     )
-
-
-def errors_on(closure: str, motion: str, *, sets: str = TESTS) -> Errors:
-    """Return how far a closure is off on one kind of motion."""
-    return errors_between((one.test, one.ratios[closure, motion]) for one in predictions() if one.test.set_name in sets)
 
 
 def rows() -> Iterator[Row]:

@@ -78,7 +78,7 @@ class ClosureVariant:
         )
 
 
-@lru_cache(maxsize=4096)
+@lru_cache(maxsize=2**16)
 def _remembered(ratio: Callable[..., float], test: Circumstances, values: tuple[tuple[str, float], ...]) -> float | str:
     try:
         return float(ratio(test, **dict(values)))
