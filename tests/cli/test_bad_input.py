@@ -110,6 +110,7 @@ def test_a_folder_that_cannot_be_made_is_refused_by_its_path(
         (("--bolt", "M10x60mm"), "--bolt and --preload belong together"),
         (("--robust", "nan"), "Invalid value for '--robust'"),
         (("--minimise", "money"), "'money' is not one of"),
+        (("--source-resistance", "-50ohm"), "source_resistance must be positive, got -50.0 ohm"),
     ],
 )
 def test_a_design_that_cannot_be_asked_for_is_refused(
@@ -225,6 +226,32 @@ def test_a_measurement_is_not_begun_with_a_setting_that_makes_no_sense(
 @pytest.mark.parametrize("frequency", ["0Hz", "-1kHz", "22mm", "22000"])
 def test_a_drive_without_a_frequency_moves_nothing(frequency: str, capsys: CaptureFixture[str]) -> None:
     assert "frequency" in refused(capsys, "measure", "vibration", "none.csv", "--frequency", frequency)
+
+
+@pytest.mark.usefixtures("desk")
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("regime", "--film-coefficient", "1e9", "--asperity-pressure", "10MPa"), "--film-coefficient 1e+09 lies"),
+        (("regime", "--film-coefficient", "0.1", "--asperity-pressure", "1e30Pa"), "--asperity-pressure 1e30Pa lies"),
+        (("thermal", "--pin", "m50", "--disc", "m50", "--conductance", "1e30W/K"), "--conductance 1e30W/K lies"),
+        (("friction", "--set", "drive.voltage_peak_to_peak=1e9V"), "drive.voltage_peak_to_peak: 1e9V lies"),
+        (("simulate", "--set", "structure.tip_mass=1e-30kg"), "structure.tip_mass: 1e-30kg lies"),
+    ],
+)
+def test_what_no_rig_has_is_refused_before_any_work(
+    words: tuple[str, ...], said: str, capsys: CaptureFixture[str]
+) -> None:
+    assert f"{said} beyond any rig: wanted " in refused(capsys, words[0], TRIBOMETER, *words[1:])
+
+
+@pytest.mark.usefixtures("desk")
+def test_measured_runs_that_a_map_has_no_place_for_are_refused_before_it_is_made(
+    capsys: CaptureFixture[str], monkeypatch: MonkeyPatch
+) -> None:
+    monkeypatch.setattr("sonolube.design.MAPS", {})
+    words = ("map", POWER_MAP, "--kind", "frequency-voltage", "--measured", "examples/efficiency-runs.csv")
+    assert "measured runs need a column frequency for a frequency-voltage map" in refused(capsys, *words)
 
 
 @pytest.mark.usefixtures("desk")

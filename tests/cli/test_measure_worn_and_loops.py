@@ -40,7 +40,7 @@ def test_a_pin_with_a_flat_has_lost_the_cap_above_it(
     # a segment of a ball of height h: pi h^2 (R - h/3)
     h = radius - math.sqrt(radius**2 - flat**2 / 4)
     assert pin["pin_volume"]["value"] == approx(math.pi * h**2 * (radius - h / 3), rel=0.03)
-    assert pin["scar_diameter"]["value"] == approx(flat, abs=4 * pixel)
+    assert pin["scar_diameter"]["value"] == approx(flat, abs=pixel)
 
 
 def test_a_rubbing_stroke_to_and_fro_costs_its_force_over_its_length(

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _SLICES = 40
-_PLANES = 301  # in which the profile is drawn
+_PLANES = 601  # in which the profile is drawn
 _INSIDE = 1e-6  # of half the length, by which the first and last plane lie inside
 _SHARP = 0.2  # change of the peak stress from mesh to mesh beyond which it is doubted
 _NEAR = 3  # neighbours told

@@ -39,7 +39,7 @@ def compute(
     ] = None,
     tolerance: Annotated[
         float, typer.Option(metavar="RATIO", help="Largest change of a coupled resonance from mesh to mesh.")
-    ] = 0.01,
+    ] = 0.02,
     vtu: Annotated[bool, typer.Option("--vtu", help="Write the coupled modes for ParaView too.")] = False,
     out: Annotated[Path, typer.Option(help="Folder for the figure, the table and the dataset.")] = Path("out"),
     json: Json = False,

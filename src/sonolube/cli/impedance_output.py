@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sonolube.checks import Complexes, Floats
-from sonolube.fem import HarmonicResponse, Transducer, natural_modes, vtu
+from sonolube.fem import HarmonicResponse, Transducer, vtu
 from sonolube.fem.port import ElectricalMode, Port
 from sonolube.figure import COLOURS, LINES, publication_style, write_figure
 from sonolube.files import write_whole
@@ -198,10 +198,9 @@ def _table(spectrum: Spectrum) -> str:
 
 def _modes_grid(spectrum: Spectrum) -> str:
     port = spectrum.port
-    found = natural_modes(port.model, count=len(port.modes))
     fields = {
-        f"{mode.name}, {mode.series_frequency:.0f} Hz": found.shapes[found.rigid + k]
-        for k, mode in enumerate(port.modes)
+        f"{mode.name}, {mode.series_frequency:.0f} Hz": shape
+        for mode, shape in zip(port.modes, port.shapes, strict=True)
         if mode.coupling_factor > _COUPLED
     }
     return vtu(port.model.mesh, fields=fields)

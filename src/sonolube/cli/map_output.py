@@ -38,9 +38,6 @@ def write_map(
     """Write the report of a map, its figures and netCDF, that of the measured runs beside, and return the files."""
     page = map_page(mapped) if "html" in forms else None  # refuses before anything is written
     across, up, panel = PLACES[mapped.attrs["map"]]
-    missing = [] if runs is None else [axis for axis in (across, up) if axis not in runs]
-    if missing:
-        raise InvalidInput(f"measured runs need a column {missing[0]} for a {mapped.attrs['map']} map")
     between = _interpolated(mapped, runs, across, up, panel)
     with publication_style():
         figures = [Finding(name=name, caption=_caption(mapped, runs), figure=map_figure(mapped, measured=runs))]
@@ -64,6 +61,17 @@ def write_map(
     return [*written, write_netcdf(mapped, path=folder / f"{name}.nc")]
 
 
+def require_drawable(runs: "xr.Dataset", *, kind: str) -> None:
+    """Refuse measured runs that a map of this kind has no place for."""
+    across, up, panel = PLACES[kind]
+    for axis in (across, up):
+        if axis not in runs:
+            raise InvalidInput(f"measured runs need a column {axis} for a {kind} map")
+    several = panel is not None and panel in runs and np.unique(runs[panel].values).size > 1
+    if several and runs.sizes["run"] >= _FEWEST:
+        raise InvalidInput(f"measured runs at several values of {panel} make several maps: give one file to each")
+
+
 def _interpolated(
     mapped: "xr.Dataset", runs: "xr.Dataset | None", across: str, up: str, panel: str | None
 ) -> "xr.Dataset | None":
@@ -72,8 +80,6 @@ def _interpolated(
 
     if runs is None or runs.sizes["run"] < _FEWEST:
         return None
-    if panel is not None and panel in runs and np.unique(runs[panel].values).size > 1:
-        raise InvalidInput(f"measured runs at several values of {panel} make several maps: give one file to each")
     x, y = (np.linspace(float(runs[axis].min()), float(runs[axis].max()), 61) for axis in (across, up))
     known = "friction_reduction_uncertainty"
     found = measured_map(

@@ -62,7 +62,7 @@ def map(  # noqa: A001 - the command's name
 
     from sonolube.cli.design_page import asked_of, settings_of
     from sonolube.cli.map_axes import axes_of
-    from sonolube.cli.map_output import map_lines, map_object, write_map
+    from sonolube.cli.map_output import map_lines, map_object, require_drawable, write_map
     from sonolube.cli.progress import progress
     from sonolube.cli.runs_table import read_runs
     from sonolube.design import MAPS
@@ -71,6 +71,8 @@ def map(  # noqa: A001 - the command's name
     known = read_rig(rig, changes=list(changes or ()))
     axes = axes_of(known, kind.value, list(over or ()))
     runs: xr.Dataset | None = None if measured is None else read_runs(measured)
+    if runs is not None:
+        require_drawable(runs, kind=kind.value)
     with told_if_unused(), progress("mapping"):
         result = MAPS[kind.value](known, **axes, backend=backend.value)
         wanted = [form.value for form in forms or (Form.PNG, Form.PDF)]

@@ -48,12 +48,14 @@ def modes(
         named_media,
         named_part,
         points_of,
+        require_axis,
         starting_size,
         transducer_of,
     )
     from sonolube.cli.progress import progress
     from sonolube.fem import TRANSDUCERS, Electrodes, Fixed, Model, converged_modes, mesh_of, mode_names
 
+    require_axis(axis=axis, toward=toward)
     geometry = named_part(part, sizes or [])
     media = named_media(part, sizes or [], material)
     electrodes = transducer_of(part, sizes or []).electrodes if part in TRANSDUCERS else Electrodes()

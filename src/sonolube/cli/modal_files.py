@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.cli.modal_output import mode_figure
+from sonolube.cli.modal_output import MODE_COLOURS, mode_figure
 from sonolube.errors import InvalidInput
 from sonolube.fem import ConvergedModes, at_points, vtu
 from sonolube.fem.model import DIRECTIONS
@@ -64,15 +64,26 @@ def animated(found: ConvergedModes, shape: Floats, *, title: str) -> bytes:
     """Return one period of a mode as an animated GIF."""
     from PIL import Image
 
+    palette = Image.new("P", (1, 1))
+    palette.putpalette(_palette())
     frames = []
     for phase in 2 * np.pi * np.arange(_FRAMES) / _FRAMES:
         figure = mode_figure(found.model.mesh, shape, title=title, share=float(np.cos(phase)))
         with publication_style():
             figure.savefig(picture := io.BytesIO(), format="png", dpi=_RESOLUTION)
-        frames.append(Image.open(picture).convert("RGB").quantize(colors=128))
+        frames.append(Image.open(picture).convert("RGB").quantize(palette=palette, dither=Image.Dither.NONE))
     content = io.BytesIO()
     frames[0].save(content, format="GIF", save_all=True, append_images=frames[1:], duration=_FRAME_DURATION, loop=0)
     return content.getvalue()
+
+
+def _palette() -> list[int]:
+    """Return the colours of all frames: those of the scale, and greys for what is drawn around the part."""
+    from matplotlib import colormaps
+
+    scale = np.round(255 * colormaps[MODE_COLOURS](np.linspace(0, 1, 192))[:, :3])
+    greys = np.repeat(np.round(np.linspace(0, 255, 64))[:, np.newaxis], 3, axis=1)
+    return [int(value) for value in np.concatenate([scale, greys]).ravel()]
 
 
 def _elastic(found: ConvergedModes) -> list[int]:

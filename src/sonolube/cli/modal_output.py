@@ -7,13 +7,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.fem import ConvergedModes, Mesh, flat_triangles
+from sonolube.fem import ConvergedModes, Mesh, carried, flat_triangles, of_order
+from sonolube.fem.mesh import MOST_ORDER
 from sonolube.figure import publication_style, write_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_EXAGGERATION = 0.08  # of the part's extent, for the largest displacement drawn
+MODE_COLOURS = "viridis"
+"""Colours of the displacement in pictures of modes."""
+
+_EXAGGERATION = 0.08  # of the part's length, for the largest displacement drawn
+_MOST_TRIANGLES = 12_000  # in a picture
 
 
 def modes_lines(
@@ -73,16 +78,18 @@ def mode_figure(mesh: Mesh, shape: Floats, *, title: str, share: float = 1.0) ->
     from matplotlib.figure import Figure
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
+    mesh, shape = _smooth(mesh, shape)
     patches = np.concatenate([flat_triangles(mesh, face=name) for name in mesh.faces if "|" not in name])
     size = np.linalg.norm(shape, axis=1)
     extent = np.ptp(mesh.nodes, axis=0)
     millimetres = 1e3 * (mesh.nodes + share * shape * _EXAGGERATION * extent.max() / size.max())
-    colours = ScalarMappable(norm=Normalize(0, 1), cmap="viridis")
+    colours = ScalarMappable(norm=Normalize(0, 1), cmap=MODE_COLOURS)
     with publication_style():
-        figure = Figure(figsize=(5.2, 4.4))
+        figure = Figure(figsize=(5.2, 4.0))
         axes = figure.add_subplot(projection="3d", computed_zorder=False)
-        level = abs(share) * (size / size.max())[patches].mean(axis=1)
-        body = Poly3DCollection(millimetres[patches], facecolors=colours.to_rgba(level), linewidths=0)
+        filled = colours.to_rgba(abs(share) * (size / size.max())[patches].mean(axis=1))
+        # Edges of the colour of their face hide the seams between neighbours.
+        body = Poly3DCollection(millimetres[patches], facecolors=filled, edgecolors=filled, linewidths=0.3)
         body.set_rasterized(True)
         axes.add_collection3d(body)
         middle, half = (
@@ -90,10 +97,19 @@ def mode_figure(mesh: Mesh, shape: Floats, *, title: str, share: float = 1.0) ->
             1e3 * extent * 0.5 + 90 * extent.max(),
         )
         axes.set(**{f"{k}lim": (middle[i] - half[i], middle[i] + half[i]) for i, k in enumerate("xyz")})
-        axes.set_box_aspect(half, zoom=0.74)
-        axes.set_title(title)
+        axes.set_box_aspect(half, zoom=0.96 - 0.28 * half[2] / np.linalg.norm(half))  # tall ones need room for labels
+        figure.suptitle(f"{title}\nlargest displacement drawn as {_EXAGGERATION:.0%} of the part's length", fontsize=9)
         for name, label in (("x", axes.set_xlabel), ("y", axes.set_ylabel), ("z", axes.set_zlabel)):
-            label(f"{name} [mm]", labelpad=8)
+            label(f"{name} [mm]", labelpad=10)
+        axes.tick_params(axis="z", pad=6)
         axes.locator_params(nbins=4)
-        figure.colorbar(colours, ax=axes, shrink=0.6, pad=0.12, label="displacement over its largest")
+        figure.colorbar(colours, ax=axes, shrink=0.7, pad=0.14, label="displacement over its largest")
     return figure
+
+
+def _smooth(mesh: Mesh, shape: Floats) -> tuple[Mesh, Floats]:
+    """Return the mesh with elements of an order that a picture shows as smooth, and the shape on its nodes."""
+    triangles = sum(len(faces) for name, faces in mesh.faces.items() if "|" not in name)
+    order = int(np.clip(np.sqrt(_MOST_TRIANGLES / triangles), 2, MOST_ORDER))
+    finer = of_order(mesh, order=order)
+    return finer, carried(shape, source=mesh, target=finer)

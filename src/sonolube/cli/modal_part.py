@@ -3,12 +3,11 @@
 import inspect
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.design.horn_shapes import Body, horn_body, own_body
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.fem import (
     PARTS,
@@ -22,10 +21,13 @@ from sonolube.fem import (
     poled_part,
     read_step,
 )
-from sonolube.materials import Material
+from sonolube.materials import Material, piezo_ceramic_names
 from sonolube.materials import material as material_of
 from sonolube.units import to_si
 from sonolube.vocabulary import quantities
+
+if TYPE_CHECKING:
+    from sonolube.design.horn_shapes import Body
 
 _BEYOND_ANY_PART = 1e6  # m; the CAD kernel fails on larger ones in words of its own
 _ELEMENTS_ACROSS = 1.6  # of a part as thick as a cube of its volume would be
@@ -77,9 +79,19 @@ def named_media(part: str, sizes: Sequence[str], material: str) -> dict[str, Med
     Returns
     -------
     dict of str to Medium
+
+    Raises
+    ------
+    InvalidInput
+        If the material is a ceramic, which has no modes before it is poled and wired.
     """
     if part in TRANSDUCERS:
         return dict(transducer_of(part, sizes).media)
+    if material_of(material).name in piezo_ceramic_names():
+        raise InvalidInput(
+            f"--material {material}: a piezoelectric ceramic needs its poling and electrodes; take `sonolube impedance "
+            f"compute {part} --ceramic {material}`, whose resonances are its modes, or a metal here"
+        )
     return dict.fromkeys(named_part(part, sizes).regions, medium_of(material_of(material)))
 
 
@@ -107,7 +119,7 @@ def transducer_of(part: str, sizes: Sequence[str], **wired: str) -> Transducer:
 
 def horn_of(
     shape: str, sizes: Sequence[str], *, frequency: float, material: Material, tune: str, axis: str | None
-) -> Body:
+) -> "Body":
     """Return the horn of this shape, or that of a STEP file.
 
     Parameters
@@ -128,6 +140,8 @@ def horn_of(
     -------
     Body
     """
+    from sonolube.design.horn_shapes import horn_body, own_body
+
     if _is_step(shape):
         geometry = _own(shape, sizes)
         return own_body(geometry, axis=axis or longest_axis(mesh_of(geometry, element_size=_COARSE)))
@@ -186,6 +200,13 @@ def starting_size(geometry: Geometry) -> float:
 def longest_axis(mesh: Mesh) -> str:
     """Return the axis along which a mesh is longest, "x", "y" or "z"."""
     return "xyz"[int(np.argmax(np.ptp(mesh.nodes, axis=0)))]
+
+
+def require_axis(**axes: str | None) -> None:
+    """Refuse what is given for an axis and is none; each keyword is an option, absent where None."""
+    for option, axis in axes.items():
+        if axis is not None and axis not in ("x", "y", "z"):
+            raise InvalidInput(f"--{option} must be x, y or z, got {axis!r}")
 
 
 def points_of(path: Path) -> Floats:

@@ -81,6 +81,7 @@ def optimise(
     """
     import json as json_module
 
+    from sonolube.checks import require_positive
     from sonolube.cli.design_page import asked_of, settings_of
     from sonolube.cli.optimise_output import optimum_lines, optimum_object, write_optimum
     from sonolube.cli.optimise_task import bolt_of, limits_of, space_of, wanted_ratio
@@ -116,6 +117,7 @@ def optimise(
     resistance = None
     if source is not None:
         resistance = to_si(source, unit="ohm", name="--source-resistance")
+        require_positive(source_resistance=resistance)
     with progress("optimising") as advance:
         found = optimised(
             task,

@@ -14,10 +14,12 @@ from sonolube.design.optimisation import (
     admittance_of,
     design_rig,
 )
+from sonolube.design.optimisation.space import OWN
 from sonolube.figure import COLOURS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
 AXES = {
@@ -87,7 +89,7 @@ def frequency_figure(found: Optimum) -> "Figure":
         own = land.feasible & (kinds == _kind(point))
         f, least = _envelope(land.frequency[own], land.objectives[found.minimise][own])
         colour = COLOURS[index % len(COLOURS)]
-        axes.semilogy(1e-3 * f, least, _STYLES[index % 4], color=colour, label=_kind(point))
+        axes.semilogy(1e-3 * f, least, _STYLES[index % 4], color=colour, label=_named(point))
         axes.plot(
             1e-3 * point.frequency,
             point.objective(found.minimise),
@@ -97,7 +99,9 @@ def frequency_figure(found: Optimum) -> "Figure":
             markersize=7,
             zorder=3,
             clip_on=False,
+            label=(None if index else "best of each" if len(found.designs) > 1 else "best"),
         )
+    _plain_numbers(axes.yaxis)
     low, high = found.task.space.frequencies
     axes.set(xlabel="Drive frequency [kHz]", ylabel=AXES[found.minimise], xlim=(1e-3 * low, 1e-3 * high))
     axes.legend(ncols=2 if len(found.designs) > 3 else 1)
@@ -150,7 +154,7 @@ def power_factor_figure(found: Optimum, electric: Electrical) -> "Figure":
         edges = [np.min(changed, axis=0), np.max(changed, axis=0)]
         label = f"capacitance off by up to {100 * CAPACITANCE_TOLERANCE:.0f} %" if index == 0 else None
         axes.fill_between(1e-3 * f, *edges, color=colour, alpha=0.13, linewidth=0, label=label)
-    axes.axvline(1e-3 * found.best.frequency, ymax=1 / 1.32, color="0.5", linewidth=0.8)
+    axes.axvline(1e-3 * found.best.frequency, ymax=1 / 1.32, color="0.5", linewidth=0.8, label="the drive")
     axes.set(xlabel="Frequency [kHz]", ylabel="Power factor [–]", ylim=(0, 1.32), xlim=(1e-3 * f[0], 1e-3 * f[-1]))
     axes.set_yticks(np.linspace(0, 1, 6))
     axes.legend(ncols=2, loc="upper center")
@@ -159,6 +163,20 @@ def power_factor_figure(found: Optimum, electric: Electrical) -> "Figure":
 
 def _kind(point: Point) -> str:
     return f"{point.choice.actuator}, {point.choice.waveform}"
+
+
+def _named(point: Point) -> str:
+    """Return how a reader knows the actuator and waveform of a point."""
+    return _kind(point).replace(f"{OWN},", "the rig's actuator,", 1)
+
+
+def _plain_numbers(axis: "Axis") -> None:
+    """Write numbers on a logarithmic axis out, also between the powers of ten."""
+    from matplotlib.ticker import LogFormatter, LogLocator, NullFormatter
+
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.set_major_formatter(LogFormatter(labelOnlyBase=False, minor_thresholds=(np.inf, np.inf)))
+    axis.set_minor_formatter(NullFormatter())
 
 
 def _envelope(f: Floats, values: Floats) -> tuple[Floats, Floats]:

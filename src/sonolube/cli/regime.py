@@ -34,12 +34,13 @@ def regime(
     from sonolube.friction import BoundaryLubricant
     from sonolube.materials import material
     from sonolube.rig import read_rig, regime_map, regime_point, wear_of_materials
-    from sonolube.units import to_si
+    from sonolube.rig.plausible import plausible_si, require_plausible
 
     if (pin is None) != (disc is None):
         raise InvalidInput("--pin and --disc belong together: give both or neither")
     known = read_rig(rig, changes=list(changes or ()))
-    full = to_si(pressure, unit="Pa", name="--asperity-pressure")
+    full = plausible_si(pressure, unit="Pa", name="--asperity-pressure")
+    require_plausible(film, unit="", text=f"--film-coefficient {film:g}")
     lubricant = BoundaryLubricant(film_coefficient=film, full_asperity_pressure=full)
     result = regime_point(known, lubricant=lubricant, smallest_gain=gain)
     wear = wear_of_materials(material(pin), material(disc)) if pin is not None and disc is not None else None

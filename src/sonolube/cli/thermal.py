@@ -33,16 +33,16 @@ def thermal(
     from sonolube.cli.output import show
     from sonolube.cli.thermal_output import write_heat
     from sonolube.rig import heat_point, read_rig, thermal_solid
-    from sonolube.units import to_si
+    from sonolube.rig.plausible import plausible_si
 
     known = read_rig(rig, changes=list(changes or ()))
     result = heat_point(
         known,
         pin=thermal_solid(pin),
         disc=thermal_solid(disc),
-        heat_capacity=to_si(capacity, unit="J/K", name="--heat-capacity"),
-        thermal_conductance=to_si(conductance, unit="W/K", name="--conductance"),
-        duration=to_si(lasting, unit="s", name="--duration"),
-        vibration_heat_rate=to_si(vibration, unit="W", name="--vibration-heat"),
+        heat_capacity=plausible_si(capacity, unit="J/K", name="--heat-capacity"),
+        thermal_conductance=plausible_si(conductance, unit="W/K", name="--conductance"),
+        duration=plausible_si(lasting, unit="s", name="--duration"),
+        vibration_heat_rate=plausible_si(vibration, unit="W", name="--vibration-heat"),
     )
     show(result, rig=known, as_json=json, written=write_heat(known, result, folder=out, name=f"{rig.stem}-thermal"))

@@ -14,6 +14,8 @@ from sonolube.units import engineering
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+_DRAWN = 801  # points of the last periods
+
 
 def start_up_object(rig: Rig, result: StartUp, written: list[Path]) -> dict[str, Any]:
     """Return how the rig settled as it goes into JSON."""
@@ -59,16 +61,19 @@ def write_start_up(rig: Rig, result: StartUp, *, folder: Path, name: str) -> lis
 
 def _figure(rig: Rig, marched: Trajectory) -> "Figure":
     from matplotlib.figure import Figure
+    from scipy.interpolate import CubicHermiteSpline
 
     assert rig.drive is not None
     figure = Figure(figsize=(5.2, 4.6))
     whole, last = figure.subplots(2, 1)
     milliseconds, micrometres = 1e3 * marched.time, 1e6 * marched.contact.displacement
     end = int(np.searchsorted(marched.time, marched.time[-1] - 4 / rig.drive.frequency))
-    for axes, chosen in ((whole, slice(None)), (last, slice(end, None))):
-        axes.plot(milliseconds[chosen], micrometres[chosen], color=COLOURS[0], linewidth=0.6 if axes is whole else 1.6)
-        axes.set(ylabel="Displacement\nof the tip [µm]")
-    last.set_xlabel("Time [ms]")
+    whole.plot(milliseconds, micrometres, color=COLOURS[0], linewidth=0.6)
+    along = CubicHermiteSpline(marched.time[end:], micrometres[end:], 1e6 * marched.contact.velocity[end:])
+    closer = np.linspace(marched.time[end], marched.time[-1], _DRAWN)
+    last.plot(1e3 * closer, along(closer), color=COLOURS[0])
+    for axes in (whole, last):
+        axes.set(xlabel="Time [ms]", ylabel="Displacement\nof the tip [µm]")
     last.set_title("the last four periods", fontsize=8)
     figure.suptitle(rig.title, fontsize=9)
     return figure

@@ -16,7 +16,6 @@ from sonolube.report.measured.sheet import (
     Sheet,
     SheetFigure,
     SheetTable,
-    Value,
     attempted,
     column,
     known,
@@ -305,8 +304,3 @@ def _figures(surface: HeightMap) -> Part:
         ),
     ]
     return Part(figures=tuple(drawn))
-
-
-def value_of(sheet: Sheet, name: str) -> Value | None:
-    """Return a value of a sheet by its name; None where it has none."""
-    return next((value for value in sheet.values if value.name == name), None)
