@@ -34,9 +34,9 @@ SUBHARMONIC = (
     "drive.voltage_offset=0V",
 )
 NOT_FOUND = (
-    "contact.normal_load=61.9955N",
-    "drive.frequency=390.40532Hz",
-    "drive.voltage_peak_to_peak=1162.227V",
+    "contact.normal_load=72.3823N",
+    "drive.frequency=452.8423Hz",
+    "drive.voltage_peak_to_peak=1041.759V",
     "drive.voltage_offset=0V",
 )
 
@@ -87,7 +87,7 @@ def test_where_no_vibration_was_found_the_march_tells_what_there_is() -> None:
     result = simulated(*NOT_FOUND)
     assert (result.status, result.attractor, result.repetition_periods) == ("not_converged", "subharmonic", 3)
     assert "less voltage or more damping may give one; switched on at once," in result.reason
-    assert result.motion.normal_force.mean() == approx(61.9955, rel=2e-3)
+    assert result.motion.normal_force.mean() == approx(72.3823, rel=2e-3)
 
 
 def test_lost_contact_is_told() -> None:
