@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 from pytest import approx, raises
 from scipy.special import ellipk
 
-from sonolube.dynamics.gap_law import ExponentialGap
+from sonolube.dynamics.gap_law import ExponentialGap, GapLaw, HertzGap, LinearGap
 from sonolube.dynamics.motion_measures import measure
-from sonolube.dynamics.periodic import SteadyStates, steady_state
+from sonolube.dynamics.periodic import Status, SteadyStates, steady_state
 from sonolube.dynamics.sliding import motion, sliding_friction
 from sonolube.dynamics.structure import Structure, drive_receptance
 from sonolube.errors import InvalidInput
@@ -98,6 +98,27 @@ def test_shoulders_between_two_turns_are_averaged_as_well(richness: float) -> No
         kinematic, loaded = brute_force(states, int(point))
         assert means.kinematic[point] == approx(kinematic, rel=2e-5)
         assert means.loaded[point] == approx(loaded, rel=2e-5)
+
+
+@pytest.mark.parametrize(
+    "law",
+    [HertzGap(tip_radius=5e-3, combined_modulus=1e11), LinearGap(normal_stiffness=5e6)],
+    ids=["sphere", "spring"],
+)
+def test_a_force_with_a_corner_where_the_contact_lifts_off_is_averaged_too(law: GapLaw) -> None:
+    frequency = np.linspace(18e3, 26e3, 12)
+    swing = np.geomspace(0.5e-6, 8e-6, 12) / np.abs(drive_receptance(TRIBOMETER, frequency=frequency))
+    states = steady_state(
+        TRIBOMETER, law, normal_load=3.0, frequency=frequency, voltage_amplitude=swing, stability=False
+    )
+    found = np.flatnonzero(states.status == Status.PERIODIC)
+    assert found.size > 1
+    assert (states.lost_contact_share[found] > 0.1).any()
+    means = sliding_friction(states, sliding_speed=SPEEDS)
+    for point in found:
+        kinematic, loaded = brute_force(states, int(point))
+        assert means.kinematic[point] == approx(kinematic, rel=2e-5)
+        assert means.loaded[point] == approx(loaded, rel=2e-4)
 
 
 def test_a_still_contact_feels_no_reduction() -> None:

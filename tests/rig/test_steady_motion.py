@@ -9,9 +9,13 @@ import pytest
 from pytest import approx, raises
 
 from sonolube.dynamics import extremes, value
+from sonolube.dynamics.periodic import Status, steady_state
+from sonolube.dynamics.sliding import motion as vibration
+from sonolube.dynamics.structure import contact_receptance, drive_receptance
 from sonolube.errors import InvalidInput
 from sonolube.rig import Simulation, read_rig, rig_from, simulate, start_up
 from sonolube.rig.excitation import voltage_range, waveform_of
+from sonolube.rig.response import gap_law_of, require_structure
 from sonolube.rig.steady_motion import steady_motion
 
 TRIBOMETER = Path(__file__).parents[2] / "examples" / "rigs" / "tribometer.toml"
@@ -88,6 +92,22 @@ def test_where_no_vibration_was_found_the_march_tells_what_there_is() -> None:
     assert (result.status, result.attractor, result.repetition_periods) == ("not_converged", "subharmonic", 3)
     assert "less voltage or more damping may give one; switched on at once," in result.reason
     assert result.motion.normal_force.mean() == approx(72.3823, rel=2e-3)
+
+
+def test_a_vibration_found_under_a_hard_drive_answers_its_own_force() -> None:
+    rig = read_rig(TRIBOMETER)
+    structure, law = require_structure(rig), gap_law_of(rig)
+    load, frequency, voltage = 61.9955, 390.40532, 1162.227 / 2
+    states = steady_state(structure, law, normal_load=load, frequency=frequency, voltage_amplitude=voltage)
+    assert Status(int(states.status)) is Status.UNSTABLE
+    contact = vibration(states, (), samples=2**14)
+    force = 2 * np.fft.rfft(contact.normal_force)[1:27] / 2**14
+    orders = np.arange(1, 27) * frequency
+    answer = contact_receptance(structure, frequency=orders) * force
+    answer[0] += complex(drive_receptance(structure, frequency=frequency)) * voltage
+    found = 2 * np.fft.rfft(contact.displacement)[1:27] / 2**14
+    assert contact.normal_force.mean() == approx(load, rel=1e-6)
+    assert np.abs(found - answer).max() < 1e-6 * np.abs(found[0])
 
 
 def test_lost_contact_is_told() -> None:

@@ -1,4 +1,4 @@
-"""The modified Bessel functions of order 0 and 1 that an exponential contact makes of a sine, to within 1e-6."""
+"""The modified Bessel functions of order 0 and 1 that an exponential contact makes of a sine, to within 2e-6."""
 
 import numpy as np
 

@@ -14,7 +14,7 @@ _LARGEST = 600.0  # exponent
 
 @on_device
 def bessel_ratio(beta: float) -> float:
-    """Return I_1/I_0 to within 1e-6."""
+    """Return I_1/I_0 to within 2e-6."""
     i0, i1 = 0.0, 0.0
     if beta < 3.75:
         t = (beta / 3.75) ** 2
@@ -29,7 +29,7 @@ def bessel_ratio(beta: float) -> float:
 
 @on_device
 def bessel_logarithm(beta: float) -> float:
-    """Return ln I_0 to within 1e-6."""
+    """Return ln I_0 to within 2e-6."""
     i0 = 0.0
     if beta < 3.75:
         for power in range(6, -1, -1):
