@@ -310,8 +310,11 @@ def test_heights_beyond_any_surface_are_refused(desk: Path, capsys: CaptureFixtu
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such signal")
 def test_a_run_that_is_killed_leaves_nothing_half_written(desk: Path) -> None:
-    command = [sys.executable, "-c", "from sonolube.cli import main; main()", "uncertainty", UNCERTAIN]
-    with subprocess.Popen([*command, "--samples", "65536"], cwd=desk) as run:
+    program = "from sonolube.cli import main; print('ready', flush=True); main()"
+    command = [sys.executable, "-c", program, "uncertainty", UNCERTAIN, "--samples", "65536"]
+    with subprocess.Popen(command, cwd=desk, stdout=subprocess.PIPE) as run:
+        assert run.stdout
+        assert run.stdout.readline() == b"ready\n"
         with raises(subprocess.TimeoutExpired):
             run.wait(4)
         run.send_signal(signal.SIGINT)
