@@ -95,7 +95,7 @@ def test_steady_states_with_friction_beside_the_limits_of_the_card(benchmark: Be
     from sonolube.dynamics.gpu import solve_on_gpu
 
     assert RIG.structure is not None
-    port, law, given = contact_port(RIG.structure), law_of(ExponentialGap(decay_length=LENGTH)), drawn(POINTS)
+    port, law, given = contact_port(RIG.structure), law_of(ExponentialGap(decay_length=LENGTH))[1], drawn(POINTS)
     chosen = {"speeds": SPEEDS, "least": 1, "falling": False, "stability": True, "tolerance": 1e-6}
 
     def solved(count: int) -> Any:

@@ -9,12 +9,15 @@ from sonolube.checks import Complexes, Floats
 from sonolube.dynamics.contact_lanes import law_of, resting_place
 from sonolube.dynamics.contact_port import ContactPort, receptance
 from sonolube.dynamics.gap_law import GapLaw, length_of_change
-from sonolube.dynamics.growth_kernel import growth_rates
+from sonolube.dynamics.growth import GROWTH, growth, too_slow
 from sonolube.dynamics.harmonic_kernel import (
     CONVERGED,
     DIVERGED,
+    FREE_MEAN,
+    LOAD,
     NEEDS_HARMONICS,
     NEEDS_SAMPLES,
+    OMEGA,
     TAIL,
     Integers,
     Points,
@@ -29,9 +32,6 @@ MOST_HARMONICS = 64
 _MOST_SAMPLES, _MOST_COUPLED = 2048, 32
 _ITERATIONS = 12
 _RAMP = 24  # steps of voltage on the way up
-_KICKS = 8  # a radian of the structure's fastest mode
-_MOST_KICKS = 2**22  # a period, which take seconds
-GROWTH = 1e-6  # per period, beyond what rounding may feign
 _DISTINCT = 1e-4  # relative difference of amplitude that makes two solutions
 
 
@@ -114,8 +114,8 @@ def _points(
     room = max(int(guess.resolution.harmonics.max()), free.shape[1])
     harmonics = np.zeros((omega.size, room), dtype=np.complex128)
     harmonics[:, 0] = guess.harmonic
-    length, resting = length_of_change(gap_law, load), resting_place(gap_law, load)
-    return Points(omega, load, length, resting, free_mean, free, guess.mean, harmonics, np.zeros_like(free))
+    given = np.array([omega, load, length_of_change(gap_law, load), resting_place(gap_law, load), free_mean])
+    return Points(given, free, guess.mean, harmonics, np.zeros_like(free))
 
 
 def _raise_to(least: int, resolution: Resolution) -> None:
@@ -128,15 +128,18 @@ def _refine(
     port: ContactPort, gap_law: GapLaw, points: Points, resolution: Resolution, tolerance: float
 ) -> tuple[Points, NDArray[np.bool_]]:
     """Balance all points, those that did not succeed again with more harmonics or samples."""
-    law, outcome = law_of(gap_law), np.full(points.omega.size, DIVERGED)
-    pending = np.arange(points.omega.size)
+    (compiled, law), poles = law_of(gap_law), port.poles()
+    outcome = np.full(points.mean.size, DIVERGED)
+    pending = np.arange(points.mean.size)
     for attempt in range(9):
         points = _with_room(points, int(resolution.harmonics[pending].max(initial=0)))
         # like beside like, since a block of lanes works as finely as its most demanding point
         demand = resolution.samples[pending] // 2 * MOST_HARMONICS + resolution.harmonics[pending] - MOST_HARMONICS - 1
         chosen = pending[np.argsort(demand.astype(np.uint16), kind="stable")]  # by counting, that is, at once
         work = workspace(*(int(values[chosen].max()) for values in resolution))
-        balance(port, law, points, resolution, chosen, tolerance, _ITERATIONS + 4 * attempt, outcome, work)
+        finest, most = np.array(resolution), _ITERATIONS + 4 * attempt
+        balance(*compiled, poles, port.static_stiffness, law, points, finest, chosen, tolerance, most, outcome, work)
+        resolution.harmonics[:] = finest[0]
         pending = np.flatnonzero(outcome != CONVERGED)
         pending = pending[_finer(resolution, pending, outcome[pending])]
         if not pending.size:
@@ -175,14 +178,15 @@ def _up_the_ramp(
 ) -> Points:
     """Follow the remaining points from a low voltage in small steps."""
     lost = np.flatnonzero(~solved)
-    whole = Points(*(np.ascontiguousarray(values[lost]) for values in points))  # type: ignore[arg-type]
-    drive = (whole.omega, whole.load, whole.free_mean, whole.free / _RAMP)
+    omega, load, free_mean = points.given[[OMEGA, LOAD, FREE_MEAN]][:, lost]
+    free = points.free[lost]
+    drive = (omega, load, free_mean, free / _RAMP)
     guess = first_guess(port, gap_law, *drive, tolerance=TAIL * tolerance, highest=False)
     part, own = _points(gap_law, *drive, guess), guess.resolution
     good = np.zeros(lost.size, dtype=bool)
     for step in range(1, _RAMP + 1):
         growth = step / max(step - 1, 1)
-        part = part._replace(free=whole.free * (step / _RAMP), harmonics=part.harmonics * growth)
+        part = part._replace(free=free * (step / _RAMP), harmonics=part.harmonics * growth)
         _raise_to(16, own)
         part, good = _refine(port, gap_law, part, own, tolerance)
     points = _with_room(points, part.harmonics.shape[1])
@@ -203,23 +207,23 @@ def _measured(
     solved: NDArray[np.bool_],
     stability: bool,
 ) -> Solutions:
-    count = points.omega.size
+    omega, load, free_mean = points.given[[OMEGA, LOAD, FREE_MEAN]]
     if stability:
-        solved &= ~too_slow(port, points.omega)
+        solved &= ~too_slow(port, omega)
     points.mean[~solved], points.harmonics[~solved] = 0.0, 0.0
-    motion = (points.omega, points.load, points.mean, points.harmonics, resolution.harmonics)
+    motion = (omega, load, points.mean, points.harmonics, resolution.harmonics)
     measures = measure(gap_law, *motion)
-    growing = np.zeros(count, dtype=bool)
+    growing = np.zeros(omega.size, dtype=bool)
     if stability:
         growing = growth(port, gap_law, *motion, resolution.samples) > GROWTH
     orders = voltage.shape[1]
-    charge = (port.clamped_capacitance + _of_orders(port, 2, points.omega, orders)) * voltage
-    charge += _of_orders(port, 1, points.omega, orders) * points.force
+    charge = (port.clamped_capacitance + _of_orders(port, 2, omega, orders)) * voltage
+    charge += _of_orders(port, 1, omega, orders) * points.force
     width = int(resolution.harmonics[solved].max(initial=1))
     found = Solutions(
         points.mean,
         np.ascontiguousarray(points.harmonics[:, :width]),
-        points.load + port.static_stiffness * (points.mean - points.free_mean),
+        load + port.static_stiffness * (points.mean - free_mean),
         charge,
         measures.amplitude,
         measures.turns,
@@ -227,42 +231,12 @@ def _measured(
         measures.force,
         measures.lost,
         growing,
-        np.full(count, np.nan),
+        np.full(omega.size, np.nan),
         resolution.harmonics,
     )
     for values in found[:-3]:
         values[~solved] = np.nan
     return found
-
-
-def too_slow(port: ContactPort, omega: Floats) -> NDArray[np.bool_]:
-    """Return at which angular frequencies, in rad/s, a period holds too many swings of the fastest mode to judge."""
-    return np.asarray(_KICKS * _fastest(port) > _MOST_KICKS * omega)
-
-
-def _fastest(port: ContactPort) -> float:
-    return float(np.sqrt(np.abs(port.determinant).max()))
-
-
-def growth(
-    port: ContactPort,
-    gap_law: GapLaw,
-    omega: Floats,
-    load: Floats,
-    mean: Floats,
-    harmonics: Complexes,
-    count: Integers,
-    samples: Integers,
-) -> Floats:
-    """Return the logarithm of the largest modulus of the multipliers, at least as many kicks a period as samples."""
-    rates = np.empty(omega.size)
-    needed = np.where(too_slow(port, omega), 0.0, np.ceil(_KICKS * _fastest(port) / omega))
-    kicks = np.maximum(samples, needed.astype(np.int64))
-    chosen = np.argsort(kicks * (MOST_HARMONICS + 1) + count)
-    growth_rates(
-        port, law_of(gap_law), omega, load, resting_place(gap_law, load), mean, harmonics, count, kicks, chosen, rates
-    )
-    return rates
 
 
 def _find_rivals(
@@ -277,7 +251,8 @@ def _find_rivals(
     found: Solutions,
 ) -> None:
     """Where one harmonic has two solutions, look for the other one and write its amplitude if it is there to stay."""
-    drive = (points.omega[double], points.load[double], points.free_mean[double], points.free[double])
+    omega, load, free_mean = points.given[[OMEGA, LOAD, FREE_MEAN]][:, double]
+    drive = (omega, load, free_mean, points.free[double])
     guess = first_guess(port, gap_law, *drive, tolerance=TAIL * tolerance, highest=not falling)
     other, solved = _refine(port, gap_law, _points(gap_law, *drive, guess), guess.resolution, tolerance)
     rivals = _measured(port, gap_law, other, voltage[double], guess.resolution, solved, stability)

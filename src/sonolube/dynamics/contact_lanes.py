@@ -14,27 +14,40 @@ from sonolube.errors import InvalidInput
 EXPONENTIAL, HERTZ, LINEAR, TABULATED = ExponentialGap.kind, HertzGap.kind, LinearGap.kind, TabulatedGap.kind
 _NO_CELLS = np.empty((0, 4))
 
+Choice = tuple[int, ...]
+"""A number that a kernel is compiled for: the length of a tuple."""
+
 
 class Law(NamedTuple):
-    """A gap law as the kernels see it: which one, its one parameter, its damping and its table, if it has one."""
+    """A gap law as the kernels see it: its one parameter, its damping and its table, if it has one."""
 
-    kind: int
     parameter: float
     damping: float
     cells: Floats
 
 
-def law_of(gap_law: GapLaw) -> Law:
+class Compiled(NamedTuple):
+    """What kernels are compiled for, so that nobody waits for the compiling of laws that are not used."""
+
+    kind: Choice  # EXPONENTIAL to TABULATED
+    damped: Choice  # whether there is damping
+
+
+def law_of(gap_law: GapLaw) -> tuple[Compiled, Law]:
     """Return the gap law as the kernels see it."""
+    cells = _NO_CELLS
     if isinstance(gap_law, ExponentialGap):
-        return Law(EXPONENTIAL, gap_law.decay_length, gap_law.force_damping, _NO_CELLS)
-    if isinstance(gap_law, HertzGap):
-        return Law(HERTZ, gap_law.coefficient, gap_law.force_damping, _NO_CELLS)
-    if isinstance(gap_law, LinearGap):
-        return Law(LINEAR, gap_law.normal_stiffness, gap_law.force_damping, _NO_CELLS)
-    if isinstance(gap_law, TabulatedGap):
-        return Law(TABULATED, gap_law.cells_per_length, gap_law.force_damping, gap_law.cells)
-    raise InvalidInput(f"gap_law must be one of the laws of sonolube.dynamics.gap_law, got {gap_law!r}")
+        parameter = gap_law.decay_length
+    elif isinstance(gap_law, HertzGap):
+        parameter = gap_law.coefficient
+    elif isinstance(gap_law, LinearGap):
+        parameter = gap_law.normal_stiffness
+    elif isinstance(gap_law, TabulatedGap):
+        parameter, cells = gap_law.cells_per_length, gap_law.cells
+    else:
+        raise InvalidInput(f"gap_law must be one of the laws of sonolube.dynamics.gap_law, got {gap_law!r}")
+    chosen = Compiled((0,) * gap_law.kind, (0,) * (gap_law.force_damping > 0))
+    return chosen, Law(parameter, gap_law.force_damping, cells)
 
 
 def resting_place(gap_law: GapLaw, load: Floats) -> Floats:
@@ -47,55 +60,50 @@ def resting_place(gap_law: GapLaw, load: Floats) -> Floats:
 
 
 @numba.njit(**INSIDE)
-def parallel(law: Law) -> bool:
+def parallel(kind: Choice, damped: Choice) -> bool:
     """Return whether the stiffness goes with the force, which is then as smooth as the motion."""
-    return bool(law.kind == EXPONENTIAL and law.damping == 0.0)
+    return len(kind) == EXPONENTIAL and len(damped) == 0
 
 
 @numba.njit(**INSIDE)
 def contact_rows(
-    law: Law,
-    load: Floats,
-    resting: Floats,
-    x: Floats,
-    v: Floats,
-    force: Floats,
-    slope: Floats,
-    drag: Floats,
+    kind: Choice, damped: Choice, law: Law, load: Floats, resting: Floats, x: Floats, v: Floats, results: Floats
 ) -> None:
     """Write the force, its fall per displacement and its fall per velocity.
 
     Parameters
     ----------
+    kind, damped : tuple
+        As of `Compiled`.
     law : Law
     load, resting : ndarray, shape (lanes,)
         Dead load, in N, and `resting_place`.
     x, v : ndarray, shape (lanes,)
         Displacement, in m, and velocity, in m/s; the latter is not read without damping.
-    force, slope, drag : ndarray, shape (lanes,)
-        Results in N, N/m and N s/m; the last is scratch without damping.
+    results : ndarray, shape (3, lanes)
+        In N, N/m and N s/m; the last is scratch without damping.
     """
-    if law.kind == EXPONENTIAL:
-        rate = 1 / law.parameter
+    force, slope, drag = results[0], results[1], results[2]
+    if len(kind) == EXPONENTIAL:
         for lane in range(LANES):
-            slope[lane] = -x[lane] * rate
+            slope[lane] = -x[lane] / law.parameter
         exponentials(slope, force)
         for lane in range(LANES):
             force[lane] *= load[lane]
-            slope[lane] = force[lane] * rate
-    elif law.kind == HERTZ:
+            slope[lane] = force[lane] / law.parameter
+    elif len(kind) == HERTZ:
         for lane in range(LANES):
             approach = max(resting[lane] - x[lane], 0.0)
             slope[lane] = 1.5 * law.parameter * np.sqrt(approach)
             force[lane] = slope[lane] * approach / 1.5
-    elif law.kind == TABULATED:
+    elif len(kind) == TABULATED:
         _tabulated_rows(law, resting, x, force, slope, drag)
     else:
         for lane in range(LANES):
             touching = load[lane] - law.parameter * x[lane]
             force[lane] = max(touching, 0.0)
             slope[lane] = law.parameter if touching > 0 else 0.0
-    if law.damping > 0:
+    if len(damped) == 1:
         for lane in range(LANES):
             share = 1 - law.damping * v[lane]
             drag[lane] = law.damping * force[lane] if share > 0 else 0.0

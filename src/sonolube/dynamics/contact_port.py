@@ -34,6 +34,10 @@ class ContactPort(NamedTuple):
     displacement_per_volt: float  # of the free contact at rest, in m/V; zero where the structure floats
     clamped_capacitance: float  # in F
 
+    def poles(self) -> Floats:
+        """Return determinant, trace, constant and slope of the contact's own receptance, shape (4, m)."""
+        return np.array([self.determinant, self.trace, self.constant[0], self.slope[0]])
+
 
 @lru_cache(maxsize=16)
 def contact_port(structure: Structure) -> ContactPort:
@@ -114,32 +118,29 @@ def receptance(port: ContactPort, which: int, omega: Floats) -> Complexes:
 
 
 @numba.njit(**INSIDE)
-def receptances(
-    port: ContactPort, constant: Floats, slope: Floats, omega: Floats, order: float, real: Floats, imaginary: Floats
-) -> None:
-    """Write a receptance of each lane at a multiple of its angular frequency.
+def receptances(poles: Floats, omega: Floats, order: float, answer: Floats) -> None:
+    """Write the receptance of the contact at a multiple of each lane's angular frequency.
 
     Parameters
     ----------
-    port : ContactPort
-    constant, slope : ndarray, shape (m,)
-        Rows of `ContactPort.constant` and `ContactPort.slope`.
+    poles : ndarray, shape (4, m)
+        As by `ContactPort.poles`.
     omega : ndarray, shape (lanes,)
         Angular frequency, in rad/s.
     order : float
         The multiple.
-    real, imaginary : ndarray, shape (lanes,)
-        The receptance.
+    answer : ndarray, shape (2, lanes)
+        Real and imaginary part, in m/N.
     """
     for lane in range(LANES):
-        real[lane], imaginary[lane] = 0.0, 0.0
-    for pair in range(port.trace.size):
-        determinant, trace = port.determinant[pair], port.trace[pair] * order
-        still, rising = constant[pair], slope[pair] * order
+        answer[0, lane], answer[1, lane] = 0.0, 0.0
+    for pair in range(poles.shape[1]):
+        determinant, trace = poles[0, pair], poles[1, pair] * order
+        still, rising = poles[2, pair], poles[3, pair] * order
         for lane in range(LANES):
             re = determinant - (order * omega[lane]) ** 2
             im = -trace * omega[lane]
             inverse = 1 / (re * re + im * im)
             rise = rising * omega[lane]
-            real[lane] += (still * re + rise * im) * inverse
-            imaginary[lane] += (rise * re - still * im) * inverse
+            answer[0, lane] += (still * re + rise * im) * inverse
+            answer[1, lane] += (rise * re - still * im) * inverse

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from sonolube.checks import Complexes, Floats, require_positive
 from sonolube.dynamics.balance_equations import PointEquations
-from sonolube.dynamics.balancing import GROWTH, growth
 from sonolube.dynamics.contact_port import contact_port
 from sonolube.dynamics.gap_law import ExponentialGap, GapLaw, TabulatedGap, length_of_change
+from sonolube.dynamics.growth import GROWTH, growth
 from sonolube.dynamics.motion_measures import measure
 from sonolube.dynamics.periodic import Status, steady_state
 from sonolube.dynamics.structure import Structure

@@ -6,205 +6,240 @@ frequencies but hardly invent or hide growth. The period's matrix is then square
 left.
 """
 
+from typing import NamedTuple
+
 import numba
 import numpy as np
 
 from sonolube.checks import Complexes, Floats
-from sonolube.dynamics.contact_lanes import Law, contact_rows
-from sonolube.dynamics.contact_port import ContactPort
+from sonolube.dynamics.contact_lanes import Choice, Law, contact_rows
 from sonolube.dynamics.harmonic_kernel import Integers, finest
 from sonolube.dynamics.lanes import INSIDE, KERNEL, LANES, ONCE, combine
 
-_SQUARINGS = 22  # 2e-7 of growth a period are then told from none
+# Rows of a block: angular frequency, dead load, where the contact rests, mean; motion, force and what a kick adds.
+OMEGA, LOAD, RESTING, MEAN, PLACE, VELOCITY, FORCE, SLOPE, DRAG = range(9)
+# Columns of a pair of states: what a force adds to each state per impulse, what each adds to displacement and velocity.
+PUSH, SEE, MOVE = 0, 2, 4
+SQUARINGS = 22  # 2e-7 of growth a period are then told from none
+
+
+class Period(NamedTuple):
+    """Rows that a block of periods is worked out in, for structures of n states and motions of H harmonics."""
+
+    rows: Floats  # (9, lanes): OMEGA to DRAG
+    free: Floats  # (2 n, lanes): exp(A duration) of every pair
+    motion: Floats  # (2, 2 H + 2, lanes): displacement and velocity over omega, cosines and then sines
+    turn: Floats  # (2 H + 2,): cosines and sines at a kick
+    senses: Floats  # (3, n, lanes): displacement, velocity and impulse of each disturbance
+    matrix: Floats  # (n, n, lanes)
+    square: Floats  # (n, n, lanes)
+
+
+def period_room(states: int, harmonics: int) -> Period:
+    """Return room for structures of so many states and motions of so many harmonics.
+
+    Parameters
+    ----------
+    states, harmonics : int
+
+    Returns
+    -------
+    Period
+    """
+    both = 2 * harmonics + 2
+    return Period(
+        rows=np.empty((9, LANES)),
+        free=np.empty((2 * states, LANES)),
+        motion=np.zeros((2, both, LANES)),
+        turn=np.empty(both),
+        senses=np.empty((3, states, LANES)),
+        matrix=np.empty((states, states, LANES)),
+        square=np.empty((states, states, LANES)),
+    )
 
 
 @numba.njit(**KERNEL)
 def growth_rates(
-    port: ContactPort,
+    kind: Choice,
+    damped: Choice,
     law: Law,
-    omega: Floats,
-    load: Floats,
-    resting: Floats,
-    mean: Floats,
+    pairs: Floats,
+    given: Floats,
+    free: Floats,
     harmonics: Complexes,
     count: Integers,
-    steps: Integers,
+    kicks: Integers,
     chosen: Integers,
-    rates: Floats,
+    room: Period,
+    powers: Floats,
+    norms: Floats,
 ) -> None:
-    """Write the logarithm of the largest modulus of the multipliers of each chosen point.
+    """Write how large the matrix of 2^22 periods is at each chosen point, less that of half as many.
 
     Parameters
     ----------
-    port : ContactPort
+    kind, damped : tuple
+        As of `sonolube.dynamics.contact_lanes.Compiled`.
     law : Law
-    omega, load, resting, mean : ndarray, shape (p,)
-        Angular frequency, in rad/s, dead load, in N, `resting_place`, and mean displacement, in m.
+    pairs : ndarray, shape (m, 6)
+        Columns PUSH, SEE and MOVE of every pair.
+    given : ndarray, shape (4, p)
+        Rows OMEGA to MEAN: angular frequency, in rad/s, dead load, in N, `resting_place`, and mean displacement, in m.
+    free : ndarray, shape (4 m, p)
+        Row by row of each pair, exp(A duration) for the time between two kicks.
     harmonics : ndarray of complex, shape (p, room)
-    count, steps : ndarray of int, shape (p,)
-        Harmonics of each motion, and kicks in a period.
+    count, kicks : ndarray of int, shape (p,)
+        Harmonics of each motion, and kicks in a period, the same for all points of a block of lanes.
     chosen : ndarray of int
         Points to judge, like beside like.
-    rates : ndarray, shape (p,)
-        Written at the chosen points.
+    room : Period
+    powers, norms : ndarray, shape (p,)
+        Written at the chosen points: the sum of the powers of two taken out, each doubled with every squaring, and the
+        square of the norm that was left at last.
     """
-    size, most = 2 * port.trace.size, finest(count, chosen)
-    period, square = np.empty((size, size, LANES)), np.empty((size, size, LANES))
-    free, senses, rows = np.empty((2 * size, LANES)), np.empty((3, size, LANES)), np.empty((8, LANES))
-    motion, turn = np.zeros((2, 2 * most + 2, LANES)), np.empty(2 * most + 2)
     for start in range(0, chosen.size, LANES):
         block = chosen[start : start + LANES]
-        h, kicks = finest(count, block), finest(steps, block)
-        for lane in range(LANES):
-            point = block[min(lane, block.size - 1)]
-            rows[0, lane], rows[1, lane] = omega[point], load[point]
-            rows[2, lane], motion[0, 0, lane] = resting[point], mean[point]
-            motion[:, h + 1, lane] = 0.0
-            for k in range(1, h + 1):
-                value = harmonics[point, k - 1] if k <= count[point] else 0j
-                motion[0, k, lane], motion[0, h + 1 + k, lane] = value.real, value.imag
-                motion[1, k, lane], motion[1, h + 1 + k, lane] = -k * value.imag, k * value.real
-            _free_motion(port, 2 * np.pi / (kicks * omega[point]), lane, free)
-        _one_period(port, law, motion, turn, h, kicks, free, period, senses, rows)
-        _grow(period, square, rows[3], rows[4])
+        h = finest(count, block)
+        _gather(given, free, harmonics, count, block, h, room)
+        _one_period(kind, damped, law, pairs, h, kicks[block[0]], room)
+        _grow(room.matrix, room.square, room.rows)
         for lane in range(block.size):
-            rates[block[lane]] = rows[3, lane]
+            powers[block[lane]], norms[block[lane]] = room.rows[0, lane], room.rows[1, lane]
 
 
 @numba.njit(**INSIDE)
-def _free_motion(port: ContactPort, duration: float, lane: int, free: Floats) -> None:
-    """Write exp(A duration) of every pair: A is half its trace plus a part whose square is a number."""
-    for pair in range(port.trace.size):
-        half = 0.5 * port.trace[pair]
-        square = half * half - port.determinant[pair]
-        angle = np.sqrt(abs(square)) * duration
-        fading = np.exp(half * duration)
-        even, odd = fading * np.cos(angle), fading * np.sin(angle)
-        if square > 0:  # the slower and the faster exponential, neither of which overflows
-            slow, fast = np.exp(half * duration + angle), np.exp(half * duration - angle)
-            even, odd = 0.5 * (slow + fast), 0.5 * (slow - fast)
-        odd = odd / angle * duration if angle > 1e-9 else fading * duration
-        for i in range(2):
-            for j in range(2):
-                own = even - odd * half if i == j else 0.0
-                free[4 * pair + 2 * i + j, lane] = own + odd * port.generator[pair, i, j]
+def _gather(
+    given: Floats, free: Floats, harmonics: Complexes, count: Integers, block: Integers, h: int, room: Period
+) -> None:
+    rows, motion = room.rows, room.motion
+    for lane in range(LANES):
+        point = block[min(lane, block.size - 1)]
+        for row in range(given.shape[0]):
+            rows[row, lane] = given[row, point]
+        for row in range(free.shape[0]):
+            room.free[row, lane] = free[row, point]
+        motion[0, 0, lane], motion[0, h + 1, lane], motion[1, h + 1, lane] = rows[MEAN, lane], 0.0, 0.0
+        for k in range(1, h + 1):
+            value = harmonics[point, k - 1] if k <= count[point] else 0j
+            motion[0, k, lane], motion[0, h + 1 + k, lane] = value.real, value.imag
+            motion[1, k, lane], motion[1, h + 1 + k, lane] = -k * value.imag, k * value.real
 
 
 @numba.njit(**ONCE)
-def _one_period(
-    port: ContactPort,
-    law: Law,
-    motion: Floats,
-    turn: Floats,
-    h: int,
-    kicks: int,
-    free: Floats,
-    period: Floats,
-    senses: Floats,
-    rows: Floats,
-) -> None:
+def _one_period(kind: Choice, damped: Choice, law: Law, pairs: Floats, h: int, kicks: int, room: Period) -> None:
     """Write the matrix of one period of alternating kicks and free motions."""
-    size = period.shape[0]
-    gain = 0.0
-    for pair in range(port.trace.size):
-        gain += port.velocity[pair, 0] * port.push[pair, 0] + port.velocity[pair, 1] * port.push[pair, 1]
-    x, v, force, slope, drag = rows[3], rows[4], rows[5], rows[6], rows[7]
-    period[:] = 0.0
+    rows, matrix, senses = room.rows, room.matrix, room.senses
+    size, gain = matrix.shape[0], 0.0
+    for pair in range(pairs.shape[0]):
+        gain += pairs[pair, MOVE] * pairs[pair, PUSH] + pairs[pair, MOVE + 1] * pairs[pair, PUSH + 1]
     for j in range(size):
-        period[j, j] = 1.0
-        senses[0, j], senses[1, j] = port.displacement[j // 2, j % 2], port.velocity[j // 2, j % 2]
-    for kick in range(kicks):
-        for k in range(h + 1):
-            phase = 2 * np.pi / kicks * kick * k
-            turn[k], turn[h + 1 + k] = np.cos(phase), -np.sin(phase)
-        combine(x, turn, motion[0], 2 * h + 1)
-        if law.damping > 0:
-            combine(v, turn, motion[1], 2 * h + 1)
-            for lane in range(LANES):
-                v[lane] *= rows[0, lane]
-        contact_rows(law, rows[1], rows[2], x, v, force, slope, drag)
         for lane in range(LANES):
-            slope[lane] *= -2 * np.pi / (kicks * rows[0, lane])
-        if law.damping > 0:
-            # velocity w at the contact becomes w exp(-g d t) - (1 - exp(-g d t)) stiffness x/d, g its gain per impulse
-            for lane in range(LANES):
-                duration = 2 * np.pi / (kicks * rows[0, lane])
-                fade = gain * drag[lane] * duration
-                held = (1 - np.exp(-fade)) / fade if fade > 1e-12 else 1.0
-                slope[lane] *= held
-                drag[lane] *= -duration * held
+            for i in range(size):
+                matrix[i, j, lane] = 1.0 if i == j else 0.0
+            senses[0, j, lane], senses[1, j, lane] = pairs[j // 2, SEE + j % 2], pairs[j // 2, MOVE + j % 2]
+    for kick in range(kicks):
+        _motion_at(damped, 2 * np.pi / kicks * kick, h, room.motion, room.turn, rows)
+        contact_rows(kind, damped, law, rows[LOAD], rows[RESTING], rows[PLACE], rows[VELOCITY], rows[FORCE:])
+        _weigh_kick(damped, gain, kicks, rows)
         for j in range(size):
-            impulse, displacement, velocity = senses[2, j], senses[0, j], senses[1, j]
-            for lane in range(LANES):
-                impulse[lane] = slope[lane] * displacement[lane]
-                displacement[lane] = 0.0
-            if law.damping > 0:
-                for lane in range(LANES):
-                    impulse[lane] += drag[lane] * velocity[lane]
-                    velocity[lane] = 0.0
+            _kick(damped, rows, senses[:, j])
             for pair in range(size // 2):
-                _move(port, pair, free, period[2 * pair, j], period[2 * pair + 1, j], impulse, displacement)
-                if law.damping > 0:
-                    for lane in range(LANES):
-                        first, second = period[2 * pair, j, lane], period[2 * pair + 1, j, lane]
-                        velocity[lane] += port.velocity[pair, 0] * first + port.velocity[pair, 1] * second
+                _move(damped, pairs[pair], room.free[4 * pair :], matrix[2 * pair :, j], senses[:, j])
 
 
 @numba.njit(**INSIDE)
-def _move(
-    port: ContactPort, pair: int, free: Floats, first: Floats, second: Floats, impulse: Floats, displacement: Floats
-) -> None:
-    a, b, c, d = free[4 * pair], free[4 * pair + 1], free[4 * pair + 2], free[4 * pair + 3]
-    push_first, push_second = port.push[pair, 0], port.push[pair, 1]
-    see_first, see_second = port.displacement[pair, 0], port.displacement[pair, 1]
-    for lane in range(LANES):
-        one, two = first[lane] + push_first * impulse[lane], second[lane] + push_second * impulse[lane]
-        moved, also = a[lane] * one + b[lane] * two, c[lane] * one + d[lane] * two
-        first[lane], second[lane] = moved, also
-        displacement[lane] += see_first * moved + see_second * also
+def _motion_at(damped: Choice, phase: float, h: int, motion: Floats, turn: Floats, rows: Floats) -> None:
+    """Write displacement and, where it matters, velocity."""
+    for k in range(h + 1):
+        turn[k], turn[h + 1 + k] = np.cos(phase * k), -np.sin(phase * k)
+    combine(rows[PLACE], turn, motion[0], 2 * h + 1)
+    if len(damped) == 1:
+        combine(rows[VELOCITY], turn, motion[1], 2 * h + 1)
+        for lane in range(LANES):
+            rows[VELOCITY, lane] *= rows[OMEGA, lane]
 
 
 @numba.njit(**INSIDE)
-def _grow(matrix: Floats, square: Floats, rate: Floats, size: Floats) -> None:
-    """Square the matrix again and again, kept near a norm of one by powers of two, and write the growth per period."""
+def _weigh_kick(damped: Choice, gain: float, kicks: int, rows: Floats) -> None:
+    """Turn stiffness and damping into impulses of one kick per displacement and per velocity."""
     for lane in range(LANES):
-        rate[lane] = 0.0  # so far: the power of two taken out
-    for squaring in range(_SQUARINGS + 1):
+        rows[SLOPE, lane] *= -2 * np.pi / (kicks * rows[OMEGA, lane])
+    if len(damped) == 1:
+        # velocity w at the contact becomes w exp(-g d t) - (1 - exp(-g d t)) stiffness x/d, g its gain per impulse
+        for lane in range(LANES):
+            duration = 2 * np.pi / (kicks * rows[OMEGA, lane])
+            fade = gain * rows[DRAG, lane] * duration
+            held = (1 - np.exp(-fade)) / fade if fade > 1e-12 else 1.0
+            rows[SLOPE, lane] *= held
+            rows[DRAG, lane] *= -duration * held
+
+
+@numba.njit(**INSIDE)
+def _kick(damped: Choice, rows: Floats, senses: Floats) -> None:
+    """Write a disturbance's impulse, and begin its displacement and velocity anew."""
+    for lane in range(LANES):
+        senses[2, lane] = rows[SLOPE, lane] * senses[0, lane]
+        senses[0, lane] = 0.0
+    if len(damped) == 1:
+        for lane in range(LANES):
+            senses[2, lane] += rows[DRAG, lane] * senses[1, lane]
+            senses[1, lane] = 0.0
+
+
+@numba.njit(**INSIDE)
+def _move(damped: Choice, pair: Floats, free: Floats, states: Floats, senses: Floats) -> None:
+    """Kick a disturbance's pair of states and let it move freely."""
+    for lane in range(LANES):
+        one = states[0, lane] + pair[PUSH] * senses[2, lane]
+        two = states[1, lane] + pair[PUSH + 1] * senses[2, lane]
+        first, second = free[0, lane] * one + free[1, lane] * two, free[2, lane] * one + free[3, lane] * two
+        states[0, lane], states[1, lane] = first, second
+        senses[0, lane] += pair[SEE] * first + pair[SEE + 1] * second
+        if len(damped) == 1:
+            senses[1, lane] += pair[MOVE] * first + pair[MOVE + 1] * second
+
+
+@numba.njit(**ONCE)
+def _grow(matrix: Floats, square: Floats, rows: Floats) -> None:
+    """Square the matrix again and again, kept near a norm of one by powers of two; write those and the last norm."""
+    size, taken, norm = matrix.shape[0], rows[0], rows[1]
+    bits = norm.view(np.int64)
+    for lane in range(LANES):
+        taken[lane] = 0.0
+    for squaring in range(SQUARINGS + 1):
         if squaring > 0:
             _square(matrix, square)
-            matrix, square = square, matrix
         for lane in range(LANES):
-            size[lane] = 0.0
-        for i in range(matrix.shape[0]):
-            for j in range(matrix.shape[0]):
+            norm[lane] = 0.0
+        for i in range(size):
+            for j in range(size):
                 for lane in range(LANES):
-                    size[lane] += matrix[i, j, lane] * matrix[i, j, lane]
-        if squaring == _SQUARINGS:
+                    norm[lane] += matrix[i, j, lane] * matrix[i, j, lane]
+        if squaring == SQUARINGS:
             break
-        bits = size.view(np.int64)
         for lane in range(LANES):
             power = ((bits[lane] >> 52) - 1023) >> 1
-            rate[lane] = 2 * rate[lane] + power
+            taken[lane] = 2 * taken[lane] + power
             bits[lane] = (1023 - power) << 52
-        for i in range(matrix.shape[0]):
-            for j in range(matrix.shape[0]):
+        for i in range(size):
+            for j in range(size):
                 for lane in range(LANES):
-                    matrix[i, j, lane] *= size[lane]
-    # log |M^(2n)| - log |M^n| is n times the rate wanted, whatever the eigenvectors; the latter's norm is within a
-    # factor of two of the power of two taken out
-    for lane in range(LANES):
-        rate[lane] = (rate[lane] * np.log(2.0) + 0.5 * np.log(size[lane])) / 2.0 ** (_SQUARINGS - 1)
+                    matrix[i, j, lane] *= norm[lane]
 
 
 @numba.njit(**INSIDE)
 def _square(matrix: Floats, square: Floats) -> None:
+    """Square the matrix in place."""
     size = matrix.shape[0]
     for i in range(size):
         for j in range(size):
-            target, a, b, c, d = square[i, j], matrix[i, 0], matrix[0, j], matrix[i, 1], matrix[1, j]
             for lane in range(LANES):
-                target[lane] = a[lane] * b[lane] + c[lane] * d[lane]
-            for k in range(2, size, 2):
-                a, b, c, d = matrix[i, k], matrix[k, j], matrix[i, k + 1], matrix[k + 1, j]
+                square[i, j, lane] = 0.0
+            for k in range(0, size, 2):
                 for lane in range(LANES):
-                    target[lane] += a[lane] * b[lane] + c[lane] * d[lane]
+                    one = matrix[i, k, lane] * matrix[k, j, lane]
+                    square[i, j, lane] += one + matrix[i, k + 1, lane] * matrix[k + 1, j, lane]
+    for i in range(size):
+        for j in range(size):
+            for lane in range(LANES):
+                matrix[i, j, lane] = square[i, j, lane]

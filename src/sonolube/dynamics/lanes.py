@@ -12,15 +12,24 @@ from sonolube.checks import Floats
 
 LANES = 128
 # Products and sums do not fuse: which do would depend on what was inlined, so that a kernel compiled just now and the
-# same kernel from the cache would differ in the last bit.
-KERNEL: dict[str, Any] = {"cache": True, "nogil": True, "fastmath": {"nsz"}, "error_model": "numpy"}
+# same kernel from the cache would differ in the last bit. Whoever calls a kernel holds its arrays, so that it need not
+# count references to them, which would be a third of the code to compile; then it can't make any arrays, either.
+KERNEL: dict[str, Any] = {
+    "cache": True,
+    "nogil": True,
+    "fastmath": {"nsz"},
+    "error_model": "numpy",
+    "_nrt": False,
+}
+ALLOCATING: dict[str, Any] = KERNEL | {"_nrt": True}
 INSIDE: dict[str, Any] = {  # for what only kernels call, which spares it everything that Python would need
     "fastmath": KERNEL["fastmath"],
     "error_model": "numpy",
     "no_cpython_wrapper": True,
     "no_cfunc_wrapper": True,
+    "_nrt": False,
 }
-# For large functions called in one place: compiled within it, they take a fifth of the compiling less.
+# For large functions called in one place: what is compiled within its caller is compiled once, and not twice.
 ONCE: dict[str, Any] = INSIDE | {"inline": "always"}
 
 _HALVINGS = 10
@@ -56,13 +65,12 @@ def combine(target: Floats, coefficients: Floats, sources: Floats, last: int) ->
         target[lane] = 0.0
     i = 0
     while i + 3 <= last:
-        a, b, c, d = coefficients[i], coefficients[i + 1], coefficients[i + 2], coefficients[i + 3]
-        p, q, r, s = sources[i], sources[i + 1], sources[i + 2], sources[i + 3]
         for lane in range(LANES):
-            target[lane] += (a * p[lane] + b * q[lane]) + (c * r[lane] + d * s[lane])
+            one = coefficients[i] * sources[i, lane] + coefficients[i + 1] * sources[i + 1, lane]
+            two = coefficients[i + 2] * sources[i + 2, lane] + coefficients[i + 3] * sources[i + 3, lane]
+            target[lane] += one + two
         i += 4
     while i <= last:
-        a, p = coefficients[i], sources[i]
         for lane in range(LANES):
-            target[lane] += a * p[lane]
+            target[lane] += coefficients[i] * sources[i, lane]
         i += 1

@@ -3,18 +3,19 @@
 from typing import NamedTuple
 
 import numpy as np
+from scipy.special import wrightomega
 
 from sonolube.checks import Complexes, Floats
 from sonolube.dynamics.bessel import bessel_logarithm, bessel_ratio
 from sonolube.dynamics.contact_port import ContactPort, receptance
-from sonolube.dynamics.gap_law import LARGEST_EXPONENT, ExponentialGap, GapLaw, TabulatedGap, length_of_change
+from sonolube.dynamics.gap_law import ExponentialGap, GapLaw, TabulatedGap, length_of_change
 from sonolube.dynamics.harmonic_kernel import Integers, Resolution
 from sonolube.dynamics.harmonic_orders import orders_of_a_sine, plain_orders
 
 WEAK = 0.2  # contact stiffness times receptance up to which substitution finds the only solution
 _ABSCISSAE = np.cos(np.pi * (np.arange(64) + 0.5) / 64)  # of the mean over a period of what depends on cos theta
 _FEWER_ABSCISSAE = np.cos(np.pi * (np.arange(24) + 0.5) / 24)  # for a force without corners
-_GRID = 32
+_GRID, _AT_ONCE = 32, 4096  # steps of amplitude, and how many of all points to take at once
 _SMALL, _NOTHING = 1e-3, 1e-30  # of a length; m, which keeps an amplitude of zero from dividing
 _CLOSE = 1e-6
 _LONG = 1e3  # m, in place of an infinite length
@@ -43,10 +44,6 @@ class _Sines(NamedTuple):
 
     def among(self, chosen: Integers) -> "_Sines":
         return self._replace(**{name: getattr(self, name)[chosen] for name in self._fields[2:]})
-
-    def closed(self) -> bool:
-        """Return whether Bessel functions answer at once."""
-        return isinstance(self.gap_law, ExponentialGap) and self.static_stiffness == 0.0
 
 
 def first_guess(
@@ -97,7 +94,7 @@ def first_guess(
 
 def _balanced_amplitudes(sines: _Sines) -> tuple[Floats, Floats]:
     """Return the lowest and the highest amplitude a with abs(a + receptance force(a)) = free amplitude."""
-    if sines.closed():
+    if isinstance(sines.gap_law, ExponentialGap) and sines.static_stiffness == 0.0:
         strength = np.abs(sines.receptance) * sines.load / sines.length
     else:
         tiny = _SMALL * sines.length
@@ -123,7 +120,13 @@ def _strongly_balanced(sines: _Sines) -> tuple[Floats, Floats]:
 
     spread = np.arcsinh(_beyond(sines) / sines.length)
     edges = sines.length * np.sinh(np.multiply.outer(np.arange(_GRID + 1) / _GRID, spread))
-    heights = np.array([-sines.free, *(excess(edge) for edge in edges[1:])])
+    heights = np.empty_like(edges)
+    heights[0] = -sines.free
+    together = max(_AT_ONCE // sines.free.size, 1)
+    for start in range(1, _GRID + 1, together):
+        some = edges[start : start + together]
+        own = sines.among(np.tile(np.arange(sines.free.size), len(some)))
+        heights[start : start + together] = excess(some.reshape(-1), own).reshape(some.shape)
     rising = (heights[:-1] < 0) & (heights[1:] >= 0)
     first, last = rising.argmax(axis=0), _GRID - 1 - rising[::-1].argmax(axis=0)
     answers: list[Floats] = []
@@ -168,16 +171,34 @@ def _root(excess, lower: Floats, short: Floats, upper: Floats, over: Floats, *, 
 
 def _opposing(sines: _Sines, amplitude: Floats) -> Floats:
     """Return the amplitude of the contact force that opposes a sinusoidal motion about the mean that balances."""
-    if sines.closed():
-        return 2 * sines.load * bessel_ratio(amplitude / sines.length)
     return _balanced_mean(sines, amplitude)[1]
 
 
 def _balanced_mean(sines: _Sines, amplitude: Floats) -> tuple[Floats, Floats]:
     """Return the mean that balances a sinusoidal motion, and the amplitude of the contact force opposing it."""
-    if sines.closed():
+    if isinstance(sines.gap_law, ExponentialGap):
         beta = amplitude / sines.length
-        return sines.length * bessel_logarithm(beta), 2 * sines.load * bessel_ratio(beta)
+        mean, force = sines.length * bessel_logarithm(beta), sines.load
+        if sines.static_stiffness > 0.0:
+            mean, force = _held_mean(sines, mean)
+        return mean, 2 * force * bessel_ratio(beta)
+    return _searched_mean(sines, amplitude)
+
+
+def _held_mean(sines: _Sines, floating: Floats) -> tuple[Floats, Floats]:
+    """Return mean and mean force of an exponential contact on a structure that holds it, by where it would float.
+
+    The force F_N exp((floating - mean)/l) is that of a spring beyond the place where the spring bears the load alone,
+    which is Wright's omega function.
+    """
+    spring = sines.static_stiffness * sines.length
+    unloaded = sines.free_mean - sines.load / sines.static_stiffness
+    stretch = wrightomega(np.log(sines.load / spring) + (floating - unloaded) / sines.length)
+    return unloaded + sines.length * stretch, spring * stretch
+
+
+def _searched_mean(sines: _Sines, amplitude: Floats) -> tuple[Floats, Floats]:
+    """Return what `_balanced_mean` does, by Newton's method in a bracket."""
     floating = sines.static_stiffness == 0.0
     lower = np.zeros_like(amplitude) if floating else np.minimum(sines.free_mean, 0.0)
     upper = amplitude.copy() if floating else np.maximum(sines.free_mean, amplitude)
@@ -206,10 +227,6 @@ def _balanced_mean(sines: _Sines, amplitude: Floats) -> tuple[Floats, Floats]:
 
 def _force_moments(sines: _Sines, mean: Floats, amplitude: Floats) -> tuple[Floats, Floats, Floats]:
     """Return the mean force, its harmonic against a motion amplitude * cos theta, and the mean stiffness."""
-    if isinstance(sines.gap_law, ExponentialGap):
-        beta = amplitude / sines.length
-        force = sines.load * np.exp(np.minimum(bessel_logarithm(beta) - mean / sines.length, LARGEST_EXPONENT))
-        return force, 2 * force * bessel_ratio(beta), force / sines.length
     cosines = _FEWER_ABSCISSAE if isinstance(sines.gap_law, TabulatedGap) else _ABSCISSAE
     x, load = mean[:, np.newaxis] + np.multiply.outer(amplitude, cosines), sines.load[:, np.newaxis]
     force, slope = sines.gap_law.force(x, load), sines.gap_law.stiffness(x, load)

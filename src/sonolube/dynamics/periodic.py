@@ -16,9 +16,10 @@ from sonolube.checks import (
     require_positive,
 )
 from sonolube.dynamics.backend import Backend
-from sonolube.dynamics.balancing import Solutions, too_slow
+from sonolube.dynamics.balancing import Solutions
 from sonolube.dynamics.contact_port import contact_port
 from sonolube.dynamics.gap_law import GapLaw
+from sonolube.dynamics.growth import too_slow
 from sonolube.dynamics.sharing import Asked, shared
 from sonolube.dynamics.structure import Structure
 from sonolube.errors import InvalidInput

@@ -68,7 +68,7 @@ def shared(asked: Asked, speeds: Floats, *, workers: int, backend: Backend) -> S
 
     found = solve_on_gpu(
         asked.port,
-        law_of(asked.gap_law),
+        law_of(asked.gap_law)[1],
         asked.omega,
         asked.load,
         asked.voltage,

@@ -244,18 +244,17 @@ def _means(states: SteadyStates, speeds: Floats, workers: int, wanted: NDArray[n
     omega, turns = 2 * np.pi * states.frequency.reshape(-1), states.turns.reshape(-1, 2)
     harmonics, count = states.harmonics.reshape(omega.size, -1), states.harmonic_count.reshape(-1)
     load, mean = states.normal_load.reshape(-1), states.mean_displacement.reshape(-1)
-    motion = (omega, load, resting_place(states.gap_law, load), mean, harmonics, count)
-    law, twice = law_of(states.gap_law), np.isfinite(turns[:, 0])
-    kinematic, loaded = np.zeros((2, omega.size, speeds.size))
+    given = np.array([*turned_circle(turns), omega, load, mean, resting_place(states.gap_law, load)])
+    (compiled, law), twice = law_of(states.gap_law), np.isfinite(turns[:, 0])
+    means = np.zeros((2, omega.size, speeds.size))
     ratio = speeds.min() / (omega * np.abs(harmonics[:, 0]) + 1e-300)
     crowding, fineness = crowding_of(ratio), fineness_of(harmonics)
     steepness = np.nan_to_num(states.vibration_amplitude.reshape(-1) / length_of_change(states.gap_law, load))
-    level = np.searchsorted(_EXTRA[:-1], np.maximum(_STEEP * steepness, _CORNERS.get(law.kind, 0.0)))
+    level = np.searchsorted(_EXTRA[:-1], np.maximum(_STEEP * steepness, _CORNERS.get(states.gap_law.kind, 0.0)))
     group = np.where(twice & wanted, _EXTRA.size * fineness + level, 0)
     demand = crowding * (MOST_HARMONICS + 1) + count
     order = np.argsort(demand.astype(np.uint16), kind="stable")  # by counting, that is, at once
     precise: Floats = speeds.astype(np.float32 if states.relative_tolerance >= _SINGLE else np.float64)
-    circle = turned_circle(turns)
 
     for own in np.flatnonzero(np.bincount(group[group > 0])):
         alike = order[(group == own)[order]]
@@ -264,9 +263,11 @@ def _means(states: SteadyStates, speeds: Floats, workers: int, wanted: NDArray[n
 
         def part(points: slice, alike: Integers = alike, crowded: Crowded = crowded) -> None:
             room = scratch(int(count[alike].max()), precise)
-            sliding_means(law, *motion, circle, crowding, alike[points], precise, crowded, room, kinematic, loaded)
+            sliding_means(
+                *compiled, law, given, harmonics, count, crowding, alike[points], precise, crowded, room, means
+            )
 
         in_threads(part, alike.size, workers)
     if not twice[wanted].all():
-        sliding_means_by_cells(law, *motion, np.flatnonzero(~twice & wanted), speeds, kinematic, loaded)
-    return kinematic, loaded
+        sliding_means_by_cells(*compiled, law, given, harmonics, count, np.flatnonzero(~twice & wanted), speeds, means)
+    return means[0], means[1]

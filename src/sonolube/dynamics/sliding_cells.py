@@ -4,48 +4,49 @@ import numba
 import numpy as np
 
 from sonolube.checks import Complexes, Floats
-from sonolube.dynamics.contact_lanes import EXPONENTIAL, HERTZ, TABULATED, Law
+from sonolube.dynamics.contact_lanes import EXPONENTIAL, HERTZ, TABULATED, Choice, Law
 from sonolube.dynamics.force_table import log_force_at
 from sonolube.dynamics.gap_law import LARGEST_EXPONENT
 from sonolube.dynamics.harmonic_kernel import Integers
-from sonolube.dynamics.lanes import INSIDE, KERNEL
+from sonolube.dynamics.lanes import ALLOCATING, INSIDE
+from sonolube.dynamics.sliding_kernel import LOAD, MEAN, OMEGA, RESTING
 
 _CELLS, _FEWEST_CELLS = 256, 4096  # per harmonic, and at least
 
 
-@numba.njit(**KERNEL)
+@numba.njit(**ALLOCATING)
 def sliding_means_by_cells(
+    kind: Choice,
+    damped: Choice,
     law: Law,
-    omega: Floats,
-    load: Floats,
-    resting: Floats,
-    mean: Floats,
+    given: Floats,
     harmonics: Complexes,
     count: Integers,
     chosen: Integers,
     speeds: Floats,
-    kinematic: Floats,
-    loaded: Floats,
+    means: Floats,
 ) -> None:
     """Write what `sliding_means` writes, for any number of turns: exact for a linear velocity between samples.
 
     Parameters
     ----------
-    law : Law
-    omega, load, mean, harmonics, count, chosen, speeds, kinematic, loaded
+    kind, damped, law, given, harmonics, count, chosen, speeds, means
         As in `sliding_means`.
     """
+    rapidity = np.empty(speeds.size)
     for point in chosen:
         own = harmonics[point, : count[point]]
-        kinematic[point, :] = 0.0
-        loaded[point, :] = 0.0
+        means[:, point] = 0.0
+        omega, load, mean, resting = given[OMEGA, point], given[LOAD, point], given[MEAN, point], given[RESTING, point]
         _by_cells(
-            law, omega[point], load[point], resting[point], mean[point], own, speeds, kinematic[point], loaded[point]
+            kind, damped, law, omega, load, resting, mean, own, speeds, rapidity, means[0, point], means[1, point]
         )
 
 
 @numba.njit(**INSIDE)
 def _by_cells(
+    kind: Choice,
+    damped: Choice,
     law: Law,
     omega: float,
     load: float,
@@ -53,17 +54,17 @@ def _by_cells(
     mean: float,
     own: Complexes,
     speeds: Floats,
+    last_rapidity: Floats,
     kinematic: Floats,
     loaded: Floats,
 ) -> None:
     """Integrate over cells in which the velocity is linear, exactly."""
     cells = max(_CELLS * own.size, _FEWEST_CELLS)
     last_velocity, last_force = 0.0, 0.0
-    last_rapidity = np.empty(speeds.size)
     for j in range(cells + 1):
         x, rate, _ = swing(own, 2 * np.pi * j / cells)
         here = omega * rate
-        force = contact_force(law, load, resting, mean + x, here) / load
+        force = contact_force(kind, damped, law, load, resting, mean + x, here) / load
         if j == 0:
             for s in range(speeds.size):
                 last_rapidity[s] = np.arcsinh(here / speeds[s])
@@ -81,18 +82,20 @@ def _by_cells(
 
 
 @numba.njit(**INSIDE)
-def contact_force(law: Law, load: float, resting: float, x: float, v: float) -> float:
+def contact_force(kind: Choice, damped: Choice, law: Law, load: float, resting: float, x: float, v: float) -> float:
     """Return the contact force, in N, of a contact that rests where `resting_place` says."""
-    if law.kind == EXPONENTIAL:
+    if len(kind) == EXPONENTIAL:
         force = load * np.exp(min(-x / law.parameter, LARGEST_EXPONENT))
-    elif law.kind == HERTZ:
+    elif len(kind) == HERTZ:
         force = law.parameter * max(resting - x, 0.0) ** 1.5
-    elif law.kind == TABULATED:
+    elif len(kind) == TABULATED:
         log_force = log_force_at(law.cells, resting + law.parameter * x)[0]
         force = np.exp(min(max(log_force, -LARGEST_EXPONENT), LARGEST_EXPONENT))
     else:
         force = max(load - law.parameter * x, 0.0)
-    return float(force * max(1 - law.damping * v, 0.0))
+    if len(damped) == 1:
+        force *= max(1 - law.damping * v, 0.0)
+    return float(force)
 
 
 @numba.njit(**INSIDE)

@@ -14,10 +14,14 @@ import numpy as np
 from scipy.special import ellipkm1
 
 from sonolube.checks import Complexes, Floats
-from sonolube.dynamics.contact_lanes import Law, contact_rows
+from sonolube.dynamics.contact_lanes import Choice, Law, contact_rows
 from sonolube.dynamics.harmonic_kernel import Integers, finest
 from sonolube.dynamics.lanes import INSIDE, KERNEL, LANES, ONCE
 
+# Rows of a block of motions: the map of the circle, angular frequency, dead load, mean displacement and where the
+# contact rests; the mapped point and its powers, the motion there, the point's weight, and the contact's force.
+ALPHA, ALONG, ACROSS, OMEGA, LOAD, MEAN, RESTING = range(7)
+Z_RE, Z_IM, P_RE, P_IM, PLACE, VELOCITY, WEIGHT, FORCE = range(7, 15)
 _ROWS = 4  # steps of crowding to a decade of the ratio of the slowest sliding to the vibration's peak velocity
 _STEEPEST = 24  # most such steps
 _TOGETHER = 4  # points to add at once, which spares the sums' going to and fro
@@ -37,9 +41,9 @@ class Crowded(NamedTuple):
 class Scratch(NamedTuple):
     """Rows that a block of motions is averaged in."""
 
-    rows: Floats  # (17, lanes)
+    rows: Floats  # (17, lanes): ALPHA to FORCE, and the contact's stiffness and damping
     motion: Floats  # (2, H + 1, lanes)
-    few: Floats  # (12, lanes): velocity squared, weight and weighted force of four points
+    few: Floats  # (4, 3, lanes): velocity squared, weight and weighted force of four points
     sums: Floats  # (2, s, lanes)
 
 
@@ -55,7 +59,7 @@ def scratch(harmonics: int, speeds: Floats) -> Scratch:
     -------
     Scratch
     """
-    few, sums = np.empty((3 * _TOGETHER, LANES), speeds.dtype), np.empty((2, speeds.size, LANES), speeds.dtype)
+    few, sums = np.empty((_TOGETHER, 3, LANES), speeds.dtype), np.empty((2, speeds.size, LANES), speeds.dtype)
     return Scratch(np.empty((17, LANES)), np.empty((2, harmonics + 1, LANES)), few, sums)
 
 
@@ -120,34 +124,32 @@ def turned_circle(turns: Floats) -> Floats:
 
 @numba.njit(**KERNEL)
 def sliding_means(
+    kind: Choice,
+    damped: Choice,
     law: Law,
-    omega: Floats,
-    load: Floats,
-    resting: Floats,
-    mean: Floats,
+    given: Floats,
     harmonics: Complexes,
     count: Integers,
-    circle: Floats,
     crowding: Integers,
     chosen: Integers,
     speeds: Floats,
     crowded: Crowded,
     room: Scratch,
-    kinematic: Floats,
-    loaded: Floats,
+    means: Floats,
 ) -> None:
     """Write the means of v_r/sqrt(v_r^2 + v^2), plain and weighted by the contact force over the dead load.
 
     Parameters
     ----------
+    kind, damped : tuple
+        As of `sonolube.dynamics.contact_lanes.Compiled`.
     law : Law
-    omega, load, resting, mean : ndarray, shape (p,)
-        Angular frequency, in rad/s, dead load, in N, `resting_place`, and mean displacement, in m.
+    given : ndarray, shape (7, p)
+        Rows ALPHA to RESTING: what `turned_circle` returns, angular frequency, in rad/s, dead load, in N, mean
+        displacement, in m, and `resting_place`.
     harmonics : ndarray of complex, shape (p, room)
     count : ndarray of int, shape (p,)
         Harmonics of each motion.
-    circle : ndarray, shape (3, p)
-        As by `turned_circle`.
     crowding : ndarray of int, shape (p,)
         Row of `crowded` for each motion.
     chosen : ndarray of int
@@ -157,52 +159,72 @@ def sliding_means(
     crowded : Crowded
     room : Scratch
         Of the precision of the speeds, of which single holds 1e-5.
-    kinematic, loaded : ndarray, shape (p, s)
+    means : ndarray, shape (2, p, s)
     """
-    rows, motion, few, sums = room.rows, room.motion, room.few, room.sums
     for start in range(0, chosen.size, LANES):
         block = chosen[start : start + LANES]
-        h, row = finest(count, block), finest(crowding, block)
-        for lane in range(LANES):
-            point = block[min(lane, block.size - 1)]
-            rows[0, lane], rows[1, lane], rows[2, lane] = circle[0, point], circle[1, point], circle[2, point]
-            rows[3, lane], rows[4, lane], rows[5, lane] = omega[point], load[point], resting[point]
-            rows[6, lane] = mean[point]
-            for k in range(1, h + 1):
-                value = harmonics[point, k - 1] if k <= count[point] else 0j
-                motion[0, k, lane], motion[1, k, lane] = value.real, value.imag
-        sums[:] = 0.0
-        for j in range(crowded.count[row]):
-            cosine, sine, weight = crowded.cosine[row, j], crowded.sine[row, j], crowded.weight[row, j]
-            _motion_at(cosine, sine, weight, motion, h, rows)
-            _weigh(law, rows)
-            place = 3 * (j % _TOGETHER)
-            for lane in range(LANES):
-                few[place, lane], few[place + 1, lane] = rows[7, lane], rows[13, lane]
-                few[place + 2, lane] = rows[15, lane]
-            if place == 3 * (_TOGETHER - 1):
-                _add_ratios(speeds, few, sums[0], sums[1])
-        for lane in range(block.size):
-            for s in range(speeds.size):
-                kinematic[block[lane], s], loaded[block[lane], s] = sums[0, s, lane], sums[1, s, lane]
+        _average_block(kind, damped, law, given, harmonics, count, crowding, block, speeds, crowded, room, means)
 
 
 @numba.njit(**ONCE)
+def _average_block(
+    kind: Choice,
+    damped: Choice,
+    law: Law,
+    given: Floats,
+    harmonics: Complexes,
+    count: Integers,
+    crowding: Integers,
+    block: Integers,
+    speeds: Floats,
+    crowded: Crowded,
+    room: Scratch,
+    means: Floats,
+) -> None:
+    rows, motion, few, sums = room.rows, room.motion, room.few, room.sums
+    h, row = finest(count, block), finest(crowding, block)
+    _gather(given, harmonics, count, block, h, rows, motion)
+    sums[:] = 0.0
+    for j in range(crowded.count[row]):
+        _motion_at(crowded.cosine[row, j], crowded.sine[row, j], crowded.weight[row, j], motion, h, rows)
+        contact_rows(kind, damped, law, rows[LOAD], rows[RESTING], rows[PLACE], rows[VELOCITY], rows[FORCE:])
+        _note(rows, few[j % _TOGETHER])
+        if j % _TOGETHER == _TOGETHER - 1:
+            _add_ratios(speeds, few, sums)
+    for lane in range(block.size):
+        for s in range(speeds.size):
+            for which in range(2):
+                means[which, block[lane], s] = sums[which, s, lane]
+
+
+@numba.njit(**INSIDE)
+def _gather(
+    given: Floats, harmonics: Complexes, count: Integers, block: Integers, h: int, rows: Floats, motion: Floats
+) -> None:
+    for lane in range(LANES):
+        point = block[min(lane, block.size - 1)]
+        for row in range(given.shape[0]):
+            rows[row, lane] = given[row, point]
+        for k in range(1, h + 1):
+            value = harmonics[point, k - 1] if k <= count[point] else 0j
+            motion[0, k, lane], motion[1, k, lane] = value.real, value.imag
+
+
+@numba.njit(**INSIDE)
 def _motion_at(cosine: float, sine: float, weight: float, motion: Floats, h: int, rows: Floats) -> None:
     """Write displacement, velocity and weight at a crowded point, mapped so that points crowd at the turns."""
-    alpha, re, im, omega, mean = rows[0], rows[1], rows[2], rows[3], rows[6]
-    z_re, z_im, p_re, p_im, x, v, share = rows[7], rows[8], rows[9], rows[10], rows[11], rows[12], rows[13]
+    z_re, z_im, p_re, p_im, x, v = rows[Z_RE], rows[Z_IM], rows[P_RE], rows[P_IM], rows[PLACE], rows[VELOCITY]
     for lane in range(LANES):
         # z = exp(i ...) (w + alpha)/(1 + alpha w) for w = cosine + i sine
-        below = 1 / (1 + 2 * alpha[lane] * cosine + alpha[lane] * alpha[lane])
-        w_re = (cosine * (1 + alpha[lane] * alpha[lane]) + 2 * alpha[lane]) * below
-        stretch = (1 - alpha[lane] * alpha[lane]) * below
-        z_re[lane] = re[lane] * w_re - im[lane] * sine * stretch
-        z_im[lane] = re[lane] * sine * stretch + im[lane] * w_re
-        share[lane] = weight * stretch
-    for lane in range(LANES):
+        alpha, along, across = rows[ALPHA, lane], rows[ALONG, lane], rows[ACROSS, lane]
+        below = 1 / (1 + 2 * alpha * cosine + alpha * alpha)
+        w_re = (cosine * (1 + alpha * alpha) + 2 * alpha) * below
+        stretch = (1 - alpha * alpha) * below
+        z_re[lane] = along * w_re - across * sine * stretch
+        z_im[lane] = along * sine * stretch + across * w_re
+        rows[WEIGHT, lane] = weight * stretch
         p_re[lane], p_im[lane] = 1.0, 0.0
-        x[lane], v[lane] = mean[lane], 0.0
+        x[lane], v[lane] = rows[MEAN, lane], 0.0
     for k in range(1, h + 1):
         a, b = motion[0, k], motion[1, k]
         for lane in range(LANES):
@@ -212,31 +234,27 @@ def _motion_at(cosine: float, sine: float, weight: float, motion: Floats, h: int
             v[lane] -= k * (a[lane] * q_im + b[lane] * q_re)
             p_re[lane], p_im[lane] = q_re, q_im
     for lane in range(LANES):
-        v[lane] *= omega[lane]
-
-
-@numba.njit(**ONCE)
-def _weigh(law: Law, rows: Floats) -> None:
-    """Write velocity squared, and the contact force times the point's weight over the dead load."""
-    load, resting, x, v, share, square = rows[4], rows[5], rows[11], rows[12], rows[13], rows[7]
-    force, slope, drag = rows[15], rows[16], rows[14]
-    contact_rows(law, load, resting, x, v, force, slope, drag)
-    for lane in range(LANES):
-        force[lane] *= share[lane] / load[lane]
-        square[lane] = v[lane] * v[lane]
+        v[lane] *= rows[OMEGA, lane]
 
 
 @numba.njit(**INSIDE)
-def _add_ratios(speeds: Floats, few: Floats, plain: Floats, weighed: Floats) -> None:
-    a, share_a, force_a, b, share_b, force_b = few[0], few[1], few[2], few[3], few[4], few[5]
-    c, share_c, force_c, d, share_d, force_d = few[6], few[7], few[8], few[9], few[10], few[11]
+def _note(rows: Floats, noted: Floats) -> None:
+    """Note velocity squared, the point's weight, and the contact force times that weight over the dead load."""
+    for lane in range(LANES):
+        noted[0, lane] = rows[VELOCITY, lane] * rows[VELOCITY, lane]
+        noted[1, lane] = rows[WEIGHT, lane]
+        noted[2, lane] = rows[FORCE, lane] * rows[WEIGHT, lane] / rows[LOAD, lane]
+
+
+@numba.njit(**INSIDE)
+def _add_ratios(speeds: Floats, few: Floats, sums: Floats) -> None:
     for s in range(speeds.size):
-        speed, own_plain, own_weighed = speeds[s], plain[s], weighed[s]
+        speed, plain, weighed = speeds[s], sums[0, s], sums[1, s]
         for lane in range(LANES):
-            w, x = speed / np.sqrt(a[lane] + speed * speed), speed / np.sqrt(b[lane] + speed * speed)
-            y, z = speed / np.sqrt(c[lane] + speed * speed), speed / np.sqrt(d[lane] + speed * speed)
-            own_plain[lane] += (share_a[lane] * w + share_b[lane] * x) + (share_c[lane] * y + share_d[lane] * z)
-            own_weighed[lane] += (force_a[lane] * w + force_b[lane] * x) + (force_c[lane] * y + force_d[lane] * z)
+            for point in range(_TOGETHER):
+                ratio = speed / np.sqrt(few[point, 0, lane] + speed * speed)
+                plain[lane] += few[point, 1, lane] * ratio
+                weighed[lane] += few[point, 2, lane] * ratio
 
 
 def crowding_of(ratio: Floats) -> Integers:

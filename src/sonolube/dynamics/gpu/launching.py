@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.checks import Complexes, Floats
-from sonolube.dynamics.balancing import GROWTH, Solutions, too_slow
+from sonolube.dynamics.balancing import Solutions
 from sonolube.dynamics.contact_lanes import EXPONENTIAL, Law
 from sonolube.dynamics.contact_port import ContactPort
 from sonolube.dynamics.gap_law import GapLaw
@@ -16,6 +16,7 @@ from sonolube.dynamics.gpu.balance import MOST_HARMONICS
 from sonolube.dynamics.gpu.sliding_means import crowded_levels
 from sonolube.dynamics.gpu.structure_rows import MOST_PAIRS, structure_rows
 from sonolube.dynamics.gpu.threads import THREADS, TURN, chunks, cuda
+from sonolube.dynamics.growth import GROWTH, too_slow
 
 # Of the tolerance: a thread resolves its point alone, without the margin that neighbours in a block of lanes lend.
 _SHARE = 0.1
