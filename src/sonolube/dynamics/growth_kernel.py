@@ -142,9 +142,9 @@ def _one_period(kind: Choice, damped: Choice, law: Law, pairs: Floats, h: int, k
         contact_rows(kind, damped, law, rows[LOAD], rows[RESTING], rows[PLACE], rows[VELOCITY], rows[FORCE:])
         _weigh_kick(damped, gain, kicks, rows)
         for j in range(size):
-            _kick(damped, rows, senses[:, j])
-            for pair in range(size // 2):
-                _move(damped, pairs[pair], room.free[4 * pair :], matrix[2 * pair :, j], senses[:, j])
+            _kick(damped, rows, senses, j)
+            for pair in range(pairs.shape[0]):
+                _move(damped, pairs, pair, room.free, matrix, senses, j)
 
 
 @numba.njit(**INSIDE)
@@ -175,28 +175,30 @@ def _weigh_kick(damped: Choice, gain: float, kicks: int, rows: Floats) -> None:
 
 
 @numba.njit(**INSIDE)
-def _kick(damped: Choice, rows: Floats, senses: Floats) -> None:
-    """Write a disturbance's impulse, and begin its displacement and velocity anew."""
+def _kick(damped: Choice, rows: Floats, senses: Floats, j: int) -> None:
+    """Write the j-th disturbance's impulse, and begin its displacement and velocity anew."""
     for lane in range(LANES):
-        senses[2, lane] = rows[SLOPE, lane] * senses[0, lane]
-        senses[0, lane] = 0.0
+        senses[2, j, lane] = rows[SLOPE, lane] * senses[0, j, lane]
+        senses[0, j, lane] = 0.0
     if len(damped) == 1:
         for lane in range(LANES):
-            senses[2, lane] += rows[DRAG, lane] * senses[1, lane]
-            senses[1, lane] = 0.0
+            senses[2, j, lane] += rows[DRAG, lane] * senses[1, j, lane]
+            senses[1, j, lane] = 0.0
 
 
 @numba.njit(**INSIDE)
-def _move(damped: Choice, pair: Floats, free: Floats, states: Floats, senses: Floats) -> None:
-    """Kick a disturbance's pair of states and let it move freely."""
+def _move(damped: Choice, pairs: Floats, pair: int, free: Floats, matrix: Floats, senses: Floats, j: int) -> None:
+    """Kick one pair of states of the j-th disturbance and let it move freely."""
+    row, i = 4 * pair, 2 * pair
     for lane in range(LANES):
-        one = states[0, lane] + pair[PUSH] * senses[2, lane]
-        two = states[1, lane] + pair[PUSH + 1] * senses[2, lane]
-        first, second = free[0, lane] * one + free[1, lane] * two, free[2, lane] * one + free[3, lane] * two
-        states[0, lane], states[1, lane] = first, second
-        senses[0, lane] += pair[SEE] * first + pair[SEE + 1] * second
+        one = matrix[i, j, lane] + pairs[pair, PUSH] * senses[2, j, lane]
+        two = matrix[i + 1, j, lane] + pairs[pair, PUSH + 1] * senses[2, j, lane]
+        first = free[row, lane] * one + free[row + 1, lane] * two
+        second = free[row + 2, lane] * one + free[row + 3, lane] * two
+        matrix[i, j, lane], matrix[i + 1, j, lane] = first, second
+        senses[0, j, lane] += pairs[pair, SEE] * first + pairs[pair, SEE + 1] * second
         if len(damped) == 1:
-            senses[1, lane] += pair[MOVE] * first + pair[MOVE + 1] * second
+            senses[1, j, lane] += pairs[pair, MOVE] * first + pairs[pair, MOVE + 1] * second
 
 
 @numba.njit(**ONCE)

@@ -19,14 +19,15 @@ KERNEL: dict[str, Any] = {
     "nogil": True,
     "fastmath": {"nsz"},
     "error_model": "numpy",
+    "no_cfunc_wrapper": True,
     "_nrt": False,
 }
 ALLOCATING: dict[str, Any] = KERNEL | {"_nrt": True}
 INSIDE: dict[str, Any] = {  # for what only kernels call, which spares it everything that Python would need
     "fastmath": KERNEL["fastmath"],
     "error_model": "numpy",
-    "no_cpython_wrapper": True,
     "no_cfunc_wrapper": True,
+    "no_cpython_wrapper": True,
     "_nrt": False,
 }
 # For large functions called in one place: what is compiled within its caller is compiled once, and not twice.
