@@ -1,5 +1,6 @@
 """The command line: which commands there are, and what a user reads when one is refused."""
 
+import os
 import sys
 from collections.abc import Sequence
 
@@ -30,7 +31,9 @@ from sonolube.cli import (
     uncertainty,
 )
 from sonolube.errors import SonolubeError
+from sonolube.threads import still_busy
 
+_INTERRUPTED = 130
 _LONGEST = 1200  # characters of a complaint, which may quote what was given
 
 app = typer.Typer(
@@ -98,7 +101,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except MemoryError as refusal:
         code = _refuse(command, f"does not fit into memory; ask for fewer points: {refusal}")
     except (KeyboardInterrupt, typer.Abort):
-        code = 130
+        code = _INTERRUPTED
+    if code == _INTERRUPTED and still_busy():
+        sys.stdout.flush()
+        os._exit(_INTERRUPTED)
     sys.exit(code if isinstance(code, int) else 0)
 
 

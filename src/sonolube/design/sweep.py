@@ -1,7 +1,7 @@
 """Sweeps: any parameters of a rig over grids, lists or drawn points, in chunks that a second run need not do again."""
 
 from collections.abc import Callable, Iterator
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from contextlib import contextmanager, nullcontext
 from functools import partial
 from pathlib import Path
@@ -16,6 +16,7 @@ from sonolube.design.plan import SETTINGS, SweepPlan
 from sonolube.dynamics.backend import Backend, available, device_name
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.rig import NUMBERS, STATUSES, PointBatch, point_batch
+from sonolube.threads import threads
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -208,7 +209,7 @@ def _first_done(under_way: dict[Future[PointBatch], int]) -> set[Future[PointBat
 @contextmanager
 def _executor(workers: int, scheduler: str | None) -> Iterator[Executor]:
     if scheduler is None:
-        with ThreadPoolExecutor(workers) as pool:
+        with threads(workers) as pool:
             yield pool
         return
     try:

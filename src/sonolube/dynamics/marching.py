@@ -1,7 +1,6 @@
 """Marching of many points side by side: points into lanes, lanes onto threads, results back."""
 
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +13,7 @@ from sonolube.dynamics.state_pairs import StatePairs
 from sonolube.dynamics.step_filter import StepFilter, step_filter
 from sonolube.dynamics.waveform import StartUpRamp, Waveform, jumps
 from sonolube.errors import InvalidInput
+from sonolube.threads import threads
 
 _BLOCK = 32 * LANES  # points whose tables are in memory together
 
@@ -190,7 +190,7 @@ def march_points(
         )
         final[chunk, 0] = numbers[state : state + m * LANES].reshape(m, LANES)[:, :width]
 
-    with ThreadPoolExecutor(workers) as pool:
+    with threads(workers) as pool:
         for block in _blocks(count):
             found, where = np.unique(points.frequency[block], return_inverse=True)
             filters = step_filter(pairs, contact_rows, frequency=found, steps=steps, waveform=schedule.waveform)

@@ -1,7 +1,6 @@
 """Who does the points asked for: threads of the processor, or a GPU and the processor what the GPU leaves."""
 
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -16,6 +15,7 @@ from sonolube.dynamics.gap_law import GapLaw
 from sonolube.dynamics.marching import Marched, Points, Schedule, march_points
 from sonolube.dynamics.state_pairs import StatePairs
 from sonolube.errors import InvalidInput
+from sonolube.threads import threads
 
 Result = TypeVar("Result")
 
@@ -156,7 +156,7 @@ def in_threads(part: Callable[[slice], Result], points: int, workers: int) -> li
     chunks = [slice(start, start + size) for start in range(0, max(points, 1), size)]
     if workers == 1:
         return [part(chunk) for chunk in chunks]
-    with ThreadPoolExecutor(workers) as pool:
+    with threads(workers) as pool:
         return list(pool.map(part, chunks))
 
 
