@@ -33,6 +33,7 @@ class Period(NamedTuple):
     senses: Floats  # (3, n, lanes): displacement, velocity and impulse of each disturbance
     matrix: Floats  # (n, n, lanes)
     square: Floats  # (n, n, lanes)
+    size: Floats  # (2, lanes): powers of two taken out of the matrix, and its norm
 
 
 def period_room(states: int, harmonics: int) -> Period:
@@ -55,6 +56,7 @@ def period_room(states: int, harmonics: int) -> Period:
         senses=np.empty((3, states, LANES)),
         matrix=np.empty((states, states, LANES)),
         square=np.empty((states, states, LANES)),
+        size=np.empty((2, LANES)),
     )
 
 
@@ -74,7 +76,7 @@ def growth_rates(
     powers: Floats,
     norms: Floats,
 ) -> None:
-    """Write how large the matrix of 2^22 periods is at each chosen point, less that of half as many.
+    """Write how large the matrix of 2^22 periods is at each chosen point, in two parts.
 
     Parameters
     ----------
@@ -102,9 +104,9 @@ def growth_rates(
         h = finest(count, block)
         _gather(given, free, harmonics, count, block, h, room)
         _one_period(kind, damped, law, pairs, h, kicks[block[0]], room)
-        _grow(room.matrix, room.square, room.rows)
+        _grow(room.matrix, room.square, room.size)
         for lane in range(block.size):
-            powers[block[lane]], norms[block[lane]] = room.rows[0, lane], room.rows[1, lane]
+            powers[block[lane]], norms[block[lane]] = room.size[0, lane], room.size[1, lane]
 
 
 @numba.njit(**INSIDE)
@@ -202,9 +204,9 @@ def _move(damped: Choice, pairs: Floats, pair: int, free: Floats, matrix: Floats
 
 
 @numba.njit(**ONCE)
-def _grow(matrix: Floats, square: Floats, rows: Floats) -> None:
+def _grow(matrix: Floats, square: Floats, size: Floats) -> None:
     """Square the matrix again and again, kept near a norm of one by powers of two; write those and the last norm."""
-    size, taken, norm = matrix.shape[0], rows[0], rows[1]
+    states, taken, norm = matrix.shape[0], size[0], size[1]
     bits = norm.view(np.int64)
     for lane in range(LANES):
         taken[lane] = 0.0
@@ -213,8 +215,8 @@ def _grow(matrix: Floats, square: Floats, rows: Floats) -> None:
             _square(matrix, square)
         for lane in range(LANES):
             norm[lane] = 0.0
-        for i in range(size):
-            for j in range(size):
+        for i in range(states):
+            for j in range(states):
                 for lane in range(LANES):
                     norm[lane] += matrix[i, j, lane] * matrix[i, j, lane]
         if squaring == SQUARINGS:
@@ -223,8 +225,8 @@ def _grow(matrix: Floats, square: Floats, rows: Floats) -> None:
             power = ((bits[lane] >> 52) - 1023) >> 1
             taken[lane] = 2 * taken[lane] + power
             bits[lane] = (1023 - power) << 52
-        for i in range(size):
-            for j in range(size):
+        for i in range(states):
+            for j in range(states):
                 for lane in range(LANES):
                     matrix[i, j, lane] *= norm[lane]
 

@@ -13,7 +13,7 @@ from sonolube.checks import Floats
 LANES = 128
 # Products and sums do not fuse: which do would depend on what was inlined, so that a kernel compiled just now and the
 # same kernel from the cache would differ in the last bit. Whoever calls a kernel holds its arrays, so that it need not
-# count references to them, which would be a third of the code to compile; then it can't make any arrays, either.
+# count references to them (numba's `_nrt`), a third of the code to compile; then it can't make any arrays, either.
 KERNEL: dict[str, Any] = {
     "cache": True,
     "nogil": True,
