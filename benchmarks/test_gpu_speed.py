@@ -70,8 +70,8 @@ def operations_of_a_march(pairs: int, nodes: int) -> float:
 
 def phases_of(found: Any, omega: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the phases that each point's means took, at least."""
+    from sonolube.dynamics.crowding import crowding_of
     from sonolube.dynamics.gpu.sliding_means import crowded_levels
-    from sonolube.dynamics.sliding_kernel import crowding_of
 
     fastest = omega[found.done] * np.abs(found.solutions.harmonics[found.done, 0])
     return np.asarray(crowded_levels(1e-7).numbers[0][crowding_of(SPEEDS[0] / fastest)], dtype=np.float64)

@@ -28,9 +28,9 @@ from scipy.integrate import solve_ivp
 
 from sonolube.contact import decay_length
 from sonolube.dynamics import ExponentialGap
+from sonolube.dynamics.crowding import crowded_points, crowding_of
 from sonolube.dynamics.periodic import steady_state
 from sonolube.dynamics.sliding import sliding_friction
-from sonolube.dynamics.sliding_kernel import crowded_points, crowding_of
 from sonolube.dynamics.structure import contact_receptance, drive_receptance
 from sonolube.rig import read_rig
 

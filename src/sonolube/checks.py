@@ -12,6 +12,7 @@ from sonolube.vocabulary import unit_of
 
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
+Integers = NDArray[np.int64]
 
 
 def require_finite(**values: ArrayLike) -> Floats:

@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 from pytest import approx, raises
 
 from sonolube.dynamics.backend import _tried_gpu, available, device_name
+from sonolube.dynamics.crowding import crowded_points
 from sonolube.dynamics.gap_law import ExponentialGap, HertzGap
 from sonolube.dynamics.periodic import Status, SteadyStates, steady_state
 from sonolube.dynamics.sliding import SlidingMeans, motion, sliding_friction, steady_friction
-from sonolube.dynamics.sliding_kernel import crowded_points
 from sonolube.dynamics.structure import Structure, drive_receptance
 from sonolube.errors import GpuUnused, InvalidInput
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sonolube.checks import Complexes, Floats
+from sonolube.checks import Complexes, Floats, Integers
 from sonolube.dynamics.contact_lanes import law_of, resting_place
 from sonolube.dynamics.contact_port import ContactPort, receptance
 from sonolube.dynamics.gap_law import GapLaw, length_of_change
@@ -19,7 +19,6 @@ from sonolube.dynamics.harmonic_kernel import (
     NEEDS_SAMPLES,
     OMEGA,
     TAIL,
-    Integers,
     Points,
     Resolution,
     balance,
@@ -33,6 +32,21 @@ _MOST_SAMPLES, _MOST_COUPLED = 2048, 32
 _ITERATIONS = 12
 _RAMP = 24  # steps of voltage on the way up
 _DISTINCT = 1e-4  # relative difference of amplitude that makes two solutions
+
+
+class Vibrations(NamedTuple):
+    """Steady states to find, one row or entry to a point."""
+
+    given: Floats  # (p, 5): columns OMEGA to FREE_MEAN
+    free: Complexes  # (p, K) m, harmonics without contact
+    mean: Floats  # (p,) m
+    harmonics: Complexes  # (p, room) m, the first guess and then the result
+    force: Complexes  # (p, K) N, harmonics of the contact force, written
+
+    def for_kernel(self) -> Points:
+        """Return the same memory as the kernel sees it."""
+        free, harmonics, force = (values.view(np.float64) for values in (self.free, self.harmonics, self.force))
+        return Points(self.given, free, self.mean[:, np.newaxis], harmonics, force)
 
 
 class Solutions(NamedTuple):
@@ -110,12 +124,12 @@ def _of_orders(port: ContactPort, which: int, omega: Floats, orders: int) -> Com
 
 def _points(
     gap_law: GapLaw, omega: Floats, load: Floats, free_mean: Floats, free: Complexes, guess: FirstGuess
-) -> Points:
+) -> Vibrations:
     room = max(int(guess.resolution.harmonics.max()), free.shape[1])
     harmonics = np.zeros((omega.size, room), dtype=np.complex128)
     harmonics[:, 0] = guess.harmonic
-    given = np.array([omega, load, length_of_change(gap_law, load), resting_place(gap_law, load), free_mean])
-    return Points(given, free, guess.mean, harmonics, np.zeros_like(free))
+    given = np.stack([omega, load, length_of_change(gap_law, load), resting_place(gap_law, load), free_mean], axis=1)
+    return Vibrations(given, free, guess.mean, harmonics, np.zeros_like(free))
 
 
 def _raise_to(least: int, resolution: Resolution) -> None:
@@ -125,8 +139,8 @@ def _raise_to(least: int, resolution: Resolution) -> None:
 
 
 def _refine(
-    port: ContactPort, gap_law: GapLaw, points: Points, resolution: Resolution, tolerance: float
-) -> tuple[Points, NDArray[np.bool_]]:
+    port: ContactPort, gap_law: GapLaw, points: Vibrations, resolution: Resolution, tolerance: float
+) -> tuple[Vibrations, NDArray[np.bool_]]:
     """Balance all points, those that did not succeed again with more harmonics or samples."""
     (compiled, law), poles = law_of(gap_law), port.poles()
     outcome = np.full(points.mean.size, DIVERGED)
@@ -138,7 +152,8 @@ def _refine(
         chosen = pending[np.argsort(demand.astype(np.uint16), kind="stable")]  # by counting, that is, at once
         work = workspace(*(int(values[chosen].max()) for values in resolution))
         finest, most = np.array(resolution), _ITERATIONS + 4 * attempt
-        balance(*compiled, poles, port.static_stiffness, law, points, finest, chosen, tolerance, most, outcome, work)
+        given = points.for_kernel()
+        balance(*compiled, poles, port.static_stiffness, law, given, finest, chosen, tolerance, most, outcome, work)
         resolution.harmonics[:] = finest[0]
         pending = np.flatnonzero(outcome != CONVERGED)
         pending = pending[_finer(resolution, pending, outcome[pending])]
@@ -161,7 +176,7 @@ def _finer(resolution: Resolution, pending: Integers, outcome: Integers) -> NDAr
     return possible
 
 
-def _with_room(points: Points, harmonics: int) -> Points:
+def _with_room(points: Vibrations, harmonics: int) -> Vibrations:
     missing = harmonics - points.harmonics.shape[1]
     if missing <= 0:
         return points
@@ -171,14 +186,14 @@ def _with_room(points: Points, harmonics: int) -> Points:
 def _up_the_ramp(
     port: ContactPort,
     gap_law: GapLaw,
-    points: Points,
+    points: Vibrations,
     resolution: Resolution,
     solved: NDArray[np.bool_],
     tolerance: float,
-) -> Points:
+) -> Vibrations:
     """Follow the remaining points from a low voltage in small steps."""
     lost = np.flatnonzero(~solved)
-    omega, load, free_mean = points.given[[OMEGA, LOAD, FREE_MEAN]][:, lost]
+    omega, load, free_mean = points.given[lost][:, [OMEGA, LOAD, FREE_MEAN]].T
     free = points.free[lost]
     drive = (omega, load, free_mean, free / _RAMP)
     guess = first_guess(port, gap_law, *drive, tolerance=TAIL * tolerance, highest=False)
@@ -190,6 +205,7 @@ def _up_the_ramp(
         _raise_to(16, own)
         part, good = _refine(port, gap_law, part, own, tolerance)
     points = _with_room(points, part.harmonics.shape[1])
+    points.harmonics[lost] = 0.0
     points.harmonics[lost, : part.harmonics.shape[1]] = part.harmonics
     points.mean[lost], points.force[lost] = part.mean, part.force
     for values, answers in zip(resolution, own, strict=True):
@@ -201,13 +217,13 @@ def _up_the_ramp(
 def _measured(
     port: ContactPort,
     gap_law: GapLaw,
-    points: Points,
+    points: Vibrations,
     voltage: Complexes,
     resolution: Resolution,
     solved: NDArray[np.bool_],
     stability: bool,
 ) -> Solutions:
-    omega, load, free_mean = points.given[[OMEGA, LOAD, FREE_MEAN]]
+    omega, load, free_mean = points.given[:, [OMEGA, LOAD, FREE_MEAN]].T
     if stability:
         solved &= ~too_slow(port, omega)
     points.mean[~solved], points.harmonics[~solved] = 0.0, 0.0
@@ -242,7 +258,7 @@ def _measured(
 def _find_rivals(
     port: ContactPort,
     gap_law: GapLaw,
-    points: Points,
+    points: Vibrations,
     voltage: Complexes,
     double: Integers,
     falling: bool,
@@ -251,7 +267,7 @@ def _find_rivals(
     found: Solutions,
 ) -> None:
     """Where one harmonic has two solutions, look for the other one and write its amplitude if it is there to stay."""
-    omega, load, free_mean = points.given[[OMEGA, LOAD, FREE_MEAN]][:, double]
+    omega, load, free_mean = points.given[double][:, [OMEGA, LOAD, FREE_MEAN]].T
     drive = (omega, load, free_mean, points.free[double])
     guess = first_guess(port, gap_law, *drive, tolerance=TAIL * tolerance, highest=not falling)
     other, solved = _refine(port, gap_law, _points(gap_law, *drive, guess), guess.resolution, tolerance)

@@ -66,6 +66,16 @@ def parallel(kind: Choice, damped: Choice) -> bool:
 
 
 @numba.njit(**INSIDE)
+def differentiate(damped: Choice, motion: Floats, h: int, velocity: Floats) -> None:
+    """Write the velocity over omega of a motion of h harmonics, rows as of the motion, where damping wants it."""
+    if len(damped) == 1:
+        for k in range(1, h + 1):
+            for lane in range(LANES):
+                velocity[2 * k - 1, lane] = -k * motion[2 * k, lane]
+                velocity[2 * k, lane] = k * motion[2 * k - 1, lane]
+
+
+@numba.njit(**INSIDE)
 def contact_rows(
     kind: Choice, damped: Choice, law: Law, load: Floats, resting: Floats, x: Floats, v: Floats, results: Floats
 ) -> None:

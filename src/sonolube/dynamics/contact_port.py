@@ -138,7 +138,7 @@ def receptances(poles: Floats, omega: Floats, order: float, answer: Floats) -> N
         determinant, trace = poles[0, pair], poles[1, pair] * order
         still, rising = poles[2, pair], poles[3, pair] * order
         for lane in range(LANES):
-            re = determinant - (order * omega[lane]) ** 2
+            re = determinant - order * omega[lane] * order * omega[lane]
             im = -trace * omega[lane]
             inverse = 1 / (re * re + im * im)
             rise = rising * omega[lane]

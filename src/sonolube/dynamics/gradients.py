@@ -8,10 +8,10 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Complexes, Floats, require_positive
 from sonolube.dynamics.balance_equations import Balance, PointEquations
+from sonolube.dynamics.crowding import fineness_of, phases_of
 from sonolube.dynamics.gap_law import ExponentialGap, GapLaw, HertzGap, LinearGap, TabulatedGap
 from sonolube.dynamics.linear import static_contact
 from sonolube.dynamics.periodic import Status, SteadyStates
-from sonolube.dynamics.sliding_kernel import fineness_of, phases_of
 from sonolube.dynamics.structure import Structure
 from sonolube.errors import InvalidInput
 

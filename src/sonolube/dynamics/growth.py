@@ -3,12 +3,11 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from sonolube.checks import Complexes, Floats
+from sonolube.checks import Complexes, Floats, Integers
 from sonolube.dynamics.contact_lanes import law_of, resting_place
 from sonolube.dynamics.contact_port import ContactPort
 from sonolube.dynamics.gap_law import GapLaw
 from sonolube.dynamics.growth_kernel import SQUARINGS, growth_rates, period_room
-from sonolube.dynamics.harmonic_kernel import Integers
 from sonolube.dynamics.lanes import LANES
 
 GROWTH = 1e-6  # per period, beyond what rounding may feign
@@ -38,11 +37,12 @@ def growth(
     chosen = np.lexsort((count, kicks))
     first = np.arange(0, chosen.size, LANES)  # of each block of lanes, which all take as many kicks
     kicks[chosen] = np.repeat(np.maximum.reduceat(kicks[chosen], first), LANES)[: chosen.size]
-    given = np.array([omega, load, resting_place(gap_law, load), mean])
+    given = np.stack([omega, load, resting_place(gap_law, load), mean], axis=1)
     free = _free_motion(port, 2 * np.pi / (kicks * omega))
     room, (powers, norms) = period_room(2 * port.trace.size, int(count.max(initial=0))), np.empty((2, omega.size))
     pairs = _pair_columns(port)
-    growth_rates(*compiled, law, pairs, given, free, harmonics, count, kicks, chosen, room, powers, norms)
+    parts = np.ascontiguousarray(harmonics).view(np.float64)
+    growth_rates(*compiled, law, pairs, given, free, parts, count, kicks, chosen, room, powers, norms)
     # log |M^(2n)| - log |M^n| is n times the rate wanted, whatever the eigenvectors; the latter's norm is within a
     # factor of two of the power of two taken out
     return np.asarray((powers * np.log(2.0) + 0.5 * np.log(norms)) / 2.0 ** (SQUARINGS - 1))
@@ -58,7 +58,7 @@ def _pair_columns(port: ContactPort) -> Floats:
 
 
 def _free_motion(port: ContactPort, duration: Floats) -> Floats:
-    """Return exp(A duration) of every pair, shape (4 m, p), row by row.
+    """Return exp(A duration) of every pair, shape (p, 4 m), row by row.
 
     A is half its trace plus a part whose square is a number.
     """
@@ -73,5 +73,5 @@ def _free_motion(port: ContactPort, duration: Floats) -> Floats:
     odd = np.where(growing, 0.5 * (slow - fast), fading * np.sin(angle))
     odd = np.where(angle > 1e-9, odd / np.maximum(angle, 1e-9), fading) * duration
     own = port.generator - half[:, :, np.newaxis] * np.eye(2)
-    moved = even[:, np.newaxis, np.newaxis] * np.eye(2)[:, :, np.newaxis] + np.einsum("mij,mp->mijp", own, odd)
-    return np.asarray(moved.reshape(4 * port.trace.size, duration.size))
+    moved = even.T[:, :, np.newaxis, np.newaxis] * np.eye(2) + np.einsum("mij,mp->pmij", own, odd)
+    return np.asarray(moved.reshape(duration.size, 4 * port.trace.size))

@@ -11,10 +11,10 @@ from typing import NamedTuple
 import numba
 import numpy as np
 
-from sonolube.checks import Complexes, Floats
-from sonolube.dynamics.contact_lanes import Choice, Law, contact_rows
-from sonolube.dynamics.harmonic_kernel import Integers, finest
-from sonolube.dynamics.lanes import INSIDE, KERNEL, LANES, ONCE, combine
+from sonolube.checks import Floats, Integers
+from sonolube.dynamics.contact_lanes import Choice, Law, contact_rows, differentiate
+from sonolube.dynamics.harmonic_kernel import finest
+from sonolube.dynamics.lanes import INSIDE, KERNEL, LANES, ONCE, add_products, combine, gather
 
 # Rows of a block: angular frequency, dead load, where the contact rests, mean; motion, force and what a kick adds.
 OMEGA, LOAD, RESTING, MEAN, PLACE, VELOCITY, FORCE, SLOPE, DRAG = range(9)
@@ -28,8 +28,8 @@ class Period(NamedTuple):
 
     rows: Floats  # (9, lanes): OMEGA to DRAG
     free: Floats  # (2 n, lanes): exp(A duration) of every pair
-    motion: Floats  # (2, 2 H + 2, lanes): displacement and velocity over omega, cosines and then sines
-    turn: Floats  # (2 H + 2,): cosines and sines at a kick
+    motion: Floats  # (2, 2 H + 1, lanes): displacement and velocity over omega, the mean and then each harmonic's parts
+    turn: Floats  # (2, H + 1): cosines, and minus sines, at a kick
     senses: Floats  # (3, n, lanes): displacement, velocity and impulse of each disturbance
     matrix: Floats  # (n, n, lanes)
     square: Floats  # (n, n, lanes)
@@ -47,12 +47,11 @@ def period_room(states: int, harmonics: int) -> Period:
     -------
     Period
     """
-    both = 2 * harmonics + 2
     return Period(
         rows=np.empty((9, LANES)),
         free=np.empty((2 * states, LANES)),
-        motion=np.zeros((2, both, LANES)),
-        turn=np.empty(both),
+        motion=np.zeros((2, 2 * harmonics + 1, LANES)),
+        turn=np.empty((2, harmonics + 1)),
         senses=np.empty((3, states, LANES)),
         matrix=np.empty((states, states, LANES)),
         square=np.empty((states, states, LANES)),
@@ -68,7 +67,7 @@ def growth_rates(
     pairs: Floats,
     given: Floats,
     free: Floats,
-    harmonics: Complexes,
+    harmonics: Floats,
     count: Integers,
     kicks: Integers,
     chosen: Integers,
@@ -85,11 +84,12 @@ def growth_rates(
     law : Law
     pairs : ndarray, shape (m, 6)
         Columns PUSH, SEE and MOVE of every pair.
-    given : ndarray, shape (4, p)
-        Rows OMEGA to MEAN: angular frequency, in rad/s, dead load, in N, `resting_place`, and mean displacement, in m.
-    free : ndarray, shape (4 m, p)
+    given : ndarray, shape (p, 4)
+        Columns OMEGA to MEAN: angular frequency, in rad/s, dead load, in N, `resting_place`, mean displacement, in m.
+    free : ndarray, shape (p, 4 m)
         Row by row of each pair, exp(A duration) for the time between two kicks.
-    harmonics : ndarray of complex, shape (p, room)
+    harmonics : ndarray, shape (p, 2 room)
+        Real and imaginary parts in turns, zero beyond `count`.
     count, kicks : ndarray of int, shape (p,)
         Harmonics of each motion, and kicks in a period, the same for all points of a block of lanes.
     chosen : ndarray of int
@@ -102,29 +102,16 @@ def growth_rates(
     for start in range(0, chosen.size, LANES):
         block = chosen[start : start + LANES]
         h = finest(count, block)
-        _gather(given, free, harmonics, count, block, h, room)
+        gather(given, block, room.rows)
+        gather(free, block, room.free)
+        gather(harmonics, block, room.motion[0, 1 : 2 * h + 1])
+        for lane in range(LANES):
+            room.motion[0, 0, lane] = room.rows[MEAN, lane]
+        differentiate(damped, room.motion[0], h, room.motion[1])
         _one_period(kind, damped, law, pairs, h, kicks[block[0]], room)
         _grow(room.matrix, room.square, room.size)
         for lane in range(block.size):
             powers[block[lane]], norms[block[lane]] = room.size[0, lane], room.size[1, lane]
-
-
-@numba.njit(**INSIDE)
-def _gather(
-    given: Floats, free: Floats, harmonics: Complexes, count: Integers, block: Integers, h: int, room: Period
-) -> None:
-    rows, motion = room.rows, room.motion
-    for lane in range(LANES):
-        point = block[min(lane, block.size - 1)]
-        for row in range(given.shape[0]):
-            rows[row, lane] = given[row, point]
-        for row in range(free.shape[0]):
-            room.free[row, lane] = free[row, point]
-        motion[0, 0, lane], motion[0, h + 1, lane], motion[1, h + 1, lane] = rows[MEAN, lane], 0.0, 0.0
-        for k in range(1, h + 1):
-            value = harmonics[point, k - 1] if k <= count[point] else 0j
-            motion[0, k, lane], motion[0, h + 1 + k, lane] = value.real, value.imag
-            motion[1, k, lane], motion[1, h + 1 + k, lane] = -k * value.imag, k * value.real
 
 
 @numba.njit(**ONCE)
@@ -151,14 +138,18 @@ def _one_period(kind: Choice, damped: Choice, law: Law, pairs: Floats, h: int, k
 
 @numba.njit(**INSIDE)
 def _motion_at(damped: Choice, phase: float, h: int, motion: Floats, turn: Floats, rows: Floats) -> None:
-    """Write displacement and, where it matters, velocity."""
+    """Write displacement and, where it matters, velocity; force and slope are scratch till then."""
     for k in range(h + 1):
-        turn[k], turn[h + 1 + k] = np.cos(phase * k), -np.sin(phase * k)
-    combine(rows[PLACE], turn, motion[0], 2 * h + 1)
+        turn[0, k], turn[1, k] = np.cos(phase * k), -np.sin(phase * k)
+    for part in range(2):
+        combine(rows[FORCE + part], turn[part], motion[0], part, h)
+    for lane in range(LANES):
+        rows[PLACE, lane] = rows[FORCE, lane] + rows[SLOPE, lane]
     if len(damped) == 1:
-        combine(rows[VELOCITY], turn, motion[1], 2 * h + 1)
+        for part in range(2):
+            combine(rows[FORCE + part], turn[part], motion[1], part, h)
         for lane in range(LANES):
-            rows[VELOCITY, lane] *= rows[OMEGA, lane]
+            rows[VELOCITY, lane] = rows[OMEGA, lane] * (rows[FORCE, lane] + rows[SLOPE, lane])
 
 
 @numba.njit(**INSIDE)
@@ -216,9 +207,8 @@ def _grow(matrix: Floats, square: Floats, size: Floats) -> None:
         for lane in range(LANES):
             norm[lane] = 0.0
         for i in range(states):
-            for j in range(states):
-                for lane in range(LANES):
-                    norm[lane] += matrix[i, j, lane] * matrix[i, j, lane]
+            for j in range(0, states, 2):
+                add_products(matrix[i, j], matrix[i, j], matrix[i, j + 1], matrix[i, j + 1], norm)
         if squaring == SQUARINGS:
             break
         for lane in range(LANES):
@@ -240,9 +230,7 @@ def _square(matrix: Floats, square: Floats) -> None:
             for lane in range(LANES):
                 square[i, j, lane] = 0.0
             for k in range(0, size, 2):
-                for lane in range(LANES):
-                    one = matrix[i, k, lane] * matrix[k, j, lane]
-                    square[i, j, lane] += one + matrix[i, k + 1, lane] * matrix[k + 1, j, lane]
+                add_products(matrix[i, k], matrix[k, j], matrix[i, k + 1], matrix[k + 1, j], square[i, j])
     for i in range(size):
         for j in range(size):
             for lane in range(LANES):

@@ -11,15 +11,12 @@ from typing import NamedTuple
 
 import numba
 import numpy as np
-from numpy.typing import NDArray
 
-from sonolube.checks import Complexes, Floats
-from sonolube.dynamics.contact_lanes import Choice, Law, contact_rows, parallel
+from sonolube.checks import Floats, Integers
+from sonolube.dynamics.contact_lanes import Choice, Law, contact_rows, differentiate, parallel
 from sonolube.dynamics.contact_port import receptances
-from sonolube.dynamics.lanes import INSIDE, KERNEL, LANES, ONCE, combine
+from sonolube.dynamics.lanes import INSIDE, KERNEL, LANES, ONCE, add_size, blend, combine, gather, subtract_product
 from sonolube.dynamics.newton_kernel import newton_step
-
-Integers = NDArray[np.int64]
 
 # Rows of what a block of points brings along: angular frequency, dead load, the length over which the contact changes,
 # where it rests, the mean displacement without contact; then sizes of the last step and of the motion.
@@ -31,13 +28,13 @@ _LARGEST_STEP = 2.0  # in lengths over which the contact changes
 
 
 class Points(NamedTuple):
-    """Steady states to find, one column or entry to a point; harmonics hold the first guess and then the result."""
+    """Steady states to find, one row to a point; of harmonics, real and imaginary parts in turns."""
 
-    given: Floats  # (5, p): rows OMEGA to FREE_MEAN
-    free: Complexes  # (p, K) m, harmonics without contact
-    mean: Floats  # (p,) m
-    harmonics: Complexes  # (p, room) m
-    force: Complexes  # (p, K) N, harmonics of the contact force, written
+    given: Floats  # (p, 5): columns OMEGA to FREE_MEAN
+    free: Floats  # (p, 2 K) m, harmonics without contact
+    mean: Floats  # (p, 1) m
+    harmonics: Floats  # (p, 2 room) m, the first guess and then the result
+    force: Floats  # (p, 2 K) N, harmonics of the contact force, written
 
 
 class Resolution(NamedTuple):
@@ -49,19 +46,20 @@ class Resolution(NamedTuple):
 
 
 class Workspace(NamedTuple):
-    """Rows that a block of points is solved in."""
+    """Rows that a block of points is solved in.
+
+    A motion of H harmonics has 2 H + 1 rows: its mean, and from row 2 k - 1 on real and imaginary part of harmonic k;
+    so have spectra, and sums and differences at instants.
+    """
 
     lanes: Floats  # (7, lanes): rows OMEGA to SCALE
     answers: Floats  # (H + 1, 2, lanes): receptances of the contact
-    linear: Floats  # (2, H + 1, lanes): motion without contact
-    unknown: Floats  # (2, H + 1, lanes): motion
-    step: Floats  # (2, H + 1, lanes)
-    velocity: Floats  # (2, H + 1, lanes): over omega
+    motions: Floats  # (4, 2 H + 1, lanes): the motion, the step to take, the motion without contact, velocity/omega
     waves: Floats  # (2, instants, instants): cosines and sines of j k 2 pi / count
     tabulated: Integers  # (1,): the count of samples whose waves these are
-    sums: Floats  # (3, 2, instants, lanes): weighted sums and differences of force, stiffness and damping
-    spectra: Floats  # (3, 2, 2 H + 1, lanes): of force, stiffness and damping
-    matrix: Floats  # (rows + 2, rows + 1, lanes): Newton's, and two rows to spare
+    sums: Floats  # (3, 2 instants - 1, lanes): weighted sums and differences of force, stiffness and damping
+    spectra: Floats  # (3, 4 H + 1, lanes): of force, stiffness and damping
+    matrix: Floats  # (rows + 2, rows, lanes): Newton's, and two rows to spare
     scratch: Floats  # (12, lanes)
 
 
@@ -77,19 +75,16 @@ def workspace(harmonics: int, coupled: int, samples: int) -> Workspace:
     -------
     Workspace
     """
-    most, rows, instants = harmonics + 1, 2 * coupled + 1, samples // 2 + 1
+    rows, instants = 2 * coupled + 1, samples // 2 + 1
     return Workspace(
         lanes=np.empty((7, LANES)),
-        answers=np.empty((most, 2, LANES)),
-        linear=np.empty((2, most, LANES)),
-        unknown=np.empty((2, most, LANES)),
-        step=np.empty((2, most, LANES)),
-        velocity=np.empty((2, most, LANES)),
+        answers=np.empty((harmonics + 1, 2, LANES)),
+        motions=np.zeros((4, 2 * harmonics + 1, LANES)),
         waves=np.empty((2, instants, instants)),
         tabulated=np.zeros(1, dtype=np.int64),
-        sums=np.empty((3, 2, instants, LANES)),
-        spectra=np.empty((3, 2, 2 * most - 1, LANES)),
-        matrix=np.empty((rows + 2, rows + 1, LANES)),
+        sums=np.empty((3, 2 * instants - 1, LANES)),
+        spectra=np.empty((3, 4 * harmonics + 1, LANES)),
+        matrix=np.empty((rows + 2, rows, LANES)),
         scratch=np.empty((12, LANES)),
     )
 
@@ -156,10 +151,14 @@ def _balance_block(
     outcome: Integers,
     work: Workspace,
 ) -> None:
-    lanes, answers, unknown, step = work.lanes, work.answers, work.unknown, work.step
-    waves, sums, spectra, matrix, scratch = work.waves, work.sums, work.spectra, work.matrix, work.scratch
+    lanes, answers, motions, waves = work.lanes, work.answers, work.motions, work.waves
+    sums, spectra, scratch = work.sums, work.spectra, work.scratch
+    unknown, step, linear, velocity = motions[0], motions[1], motions[2], motions[3]
     h, n, count = finest(resolution[0], block), finest(resolution[1], block), finest(resolution[2], block)
-    _gather(points, block, h, unknown, work.linear, lanes)
+    gather(points.given, block, lanes)
+    gather(points.mean, block, unknown[:1])
+    gather(points.harmonics, block, unknown[1 : 2 * h + 1])
+    gather(points.free, block, linear[1 : 2 * h + 1])
     for k in range(1, h + 1):
         receptances(poles, lanes[OMEGA], float(k), answers[k])
     if count != work.tabulated[0]:
@@ -167,24 +166,22 @@ def _balance_block(
         work.tabulated[0] = count
     quantities = 3 if len(damped) == 1 else (1 if parallel(kind, damped) else 2)
     for _ in range(iterations):
-        _differentiate(damped, unknown, h, work.velocity)
+        differentiate(damped, unknown, h, velocity)
         for j in range(count // 2 + 1):
             weight = (0.5 if j == 0 or j == count // 2 else 1.0) / count
-            _sample_pair(
-                kind, damped, law, lanes, unknown, work.velocity, waves, h, j, weight, quantities, scratch, sums
-            )
-        _transform(waves, sums, count // 2, quantities, h + n + 1, spectra)
+            _sample_pair(kind, damped, law, lanes, unknown, velocity, waves, h, j, weight, quantities, scratch, sums)
+        _transform(waves, sums, count // 2, quantities, 2 * (h + n) + 1, spectra)
         if quantities == 1:
-            _follow_force(law.parameter, h + n + 1, spectra)
-        _residual(static_stiffness, unknown, answers, work.linear, spectra, lanes, h, step)
-        newton_step(damped, static_stiffness, answers, spectra, lanes[OMEGA], h, n, matrix, step)
-        if _advance(unknown, step, h, lanes, scratch[0]) <= _EXACTLY * tolerance:
+            _follow_force(law.parameter, 2 * (h + n) + 1, spectra)
+        _residual(static_stiffness, unknown, answers, linear, spectra[0], lanes, h, step)
+        newton_step(damped, static_stiffness, answers, spectra, lanes[OMEGA], h, n, work.matrix, step)
+        if _advance(unknown, step, 2 * h + 1, lanes, scratch[0], _EXACTLY * tolerance):
             break
     # The samples mistake harmonic count - h for harmonic h. Those of an exponential force fall ever faster, which
     # bounds it by the highest one that they resolve: a_(count - h) <= a_k^((count - h)/k), a_0 = 1.
     aliased = tolerance ** ((0.5 * count - 1) / (count - h)) if quantities == 1 else tolerance
-    _judge(poles, block, h, count, waves, sums, spectra[0, 0, 0], lanes, tolerance, aliased, scratch, outcome)
-    _scatter(points, resolution[0], block, h, unknown, spectra, outcome)
+    _judge(poles, block, h, count, waves, sums[0], spectra[0, 0], lanes, tolerance, aliased, scratch, outcome)
+    _scatter(points, resolution[0], block, h, unknown, spectra[0], outcome)
 
 
 @numba.njit(**INSIDE)
@@ -197,35 +194,11 @@ def finest(values: Integers, chosen: Integers) -> int:
 
 
 @numba.njit(**INSIDE)
-def _gather(points: Points, block: Integers, h: int, unknown: Floats, linear: Floats, lanes: Floats) -> None:
-    given, mean, harmonics, free = points.given, points.mean, points.harmonics, points.free
-    for lane in range(LANES):
-        point = block[min(lane, block.size - 1)]
-        for row in range(given.shape[0]):
-            lanes[row, lane] = given[row, point]
-        unknown[0, 0, lane], unknown[1, 0, lane] = mean[point], 0.0
-        for k in range(1, h + 1):
-            guess = harmonics[point, k - 1]
-            unknown[0, k, lane], unknown[1, k, lane] = guess.real, guess.imag
-            alone = free[point, k - 1] if k <= free.shape[1] else 0j
-            linear[0, k, lane], linear[1, k, lane] = alone.real, alone.imag
-
-
-@numba.njit(**INSIDE)
 def _tabulate(count: int, waves: Floats) -> None:
     for j in range(count // 2 + 1):
         for k in range(count // 2 + 1):
             phase = 2 * np.pi / count * (j * k % count)
             waves[0, j, k], waves[1, j, k] = np.cos(phase), np.sin(phase)
-
-
-@numba.njit(**INSIDE)
-def _differentiate(damped: Choice, unknown: Floats, h: int, velocity: Floats) -> None:
-    if len(damped) == 1:
-        for k in range(h + 1):
-            for lane in range(LANES):
-                velocity[0, k, lane] = -k * unknown[1, k, lane]
-                velocity[1, k, lane] = k * unknown[0, k, lane]
 
 
 @numba.njit(**INSIDE)
@@ -246,40 +219,40 @@ def _sample_pair(
 ) -> None:
     """Write weighted sums and differences of force, stiffness and damping at the j-th instant and its mirror image."""
     for part in range(2):
-        combine(scratch[part], waves[part, j], unknown[part], h)
+        combine(scratch[part], waves[part, j], unknown, part, h)
         if len(damped) == 1:
-            combine(scratch[2 + part], waves[part, j], velocity[part], h)
+            combine(scratch[2 + part], waves[part, j], velocity, part, h)
     x, v = scratch[4], scratch[5]
     for side in range(2):
         sign = 2.0 * side - 1.0
-        for lane in range(LANES):
-            x[lane] = scratch[0, lane] + sign * scratch[1, lane]
+        blend(scratch[0], 1.0, scratch[1], sign, x)
         if len(damped) == 1:
+            blend(scratch[2], 1.0, scratch[3], sign, v)
             for lane in range(LANES):
-                v[lane] = lanes[OMEGA, lane] * (scratch[2, lane] + sign * scratch[3, lane])
+                v[lane] *= lanes[OMEGA, lane]
         contact_rows(kind, damped, law, lanes[LOAD], lanes[RESTING], x, v, scratch[6 + 3 * side : 9 + 3 * side])
     for quantity in range(quantities):
-        for lane in range(LANES):
-            sums[quantity, 0, j, lane] = weight * (scratch[9 + quantity, lane] + scratch[6 + quantity, lane])
-            sums[quantity, 1, j, lane] = weight * (scratch[9 + quantity, lane] - scratch[6 + quantity, lane])
+        here, mirrored = scratch[9 + quantity], scratch[6 + quantity]
+        if j > 0:
+            blend(here, weight, mirrored, -weight, sums[quantity, 2 * j])
+        blend(here, weight, mirrored, weight, sums[quantity, max(2 * j - 1, 0)])
 
 
 @numba.njit(**INSIDE)
-def _transform(waves: Floats, sums: Floats, half: int, quantities: int, end: int, spectra: Floats) -> None:
-    """Write (1/2 pi) int f exp(-i m theta) of force, stiffness and damping for the orders m before `end`."""
+def _transform(waves: Floats, sums: Floats, half: int, quantities: int, rows: int, spectra: Floats) -> None:
+    """Write (1/2 pi) int f exp(-i m theta) of force, stiffness and damping, so many rows."""
     for quantity in range(quantities):
-        for part in range(2):
-            for m in range(end):
-                combine(spectra[quantity, part, m], waves[part, m], sums[quantity, part], half)
+        for row in range(rows):
+            part = (row + 1) % 2 if row > 0 else 0
+            combine(spectra[quantity, row], waves[part, (row + 1) // 2], sums[quantity], part, half)
 
 
 @numba.njit(**INSIDE)
-def _follow_force(length: float, end: int, spectra: Floats) -> None:
+def _follow_force(length: float, rows: int, spectra: Floats) -> None:
     """Write the stiffness that goes with the force."""
-    for part in range(2):
-        for m in range(end):
-            for lane in range(LANES):
-                spectra[1, part, m, lane] = spectra[0, part, m, lane] / length
+    for row in range(rows):
+        for lane in range(LANES):
+            spectra[1, row, lane] = spectra[0, row, lane] / length
 
 
 @numba.njit(**INSIDE)
@@ -288,46 +261,44 @@ def _residual(
     unknown: Floats,
     answers: Floats,
     linear: Floats,
-    spectra: Floats,
+    force: Floats,
     lanes: Floats,
     h: int,
     step: Floats,
 ) -> None:
-    """Write minus the residual of every equation."""
-    force = spectra[0]
+    """Write the residual of every equation."""
     for lane in range(LANES):
-        step[0, 0, lane] = force[0, 0, lane] - lanes[LOAD, lane]
-        step[0, 0, lane] -= static_stiffness * (unknown[0, 0, lane] - lanes[FREE_MEAN, lane])
+        pull = static_stiffness * (unknown[0, lane] - lanes[FREE_MEAN, lane])
+        step[0, lane] = pull + lanes[LOAD, lane] - force[0, lane]
     for k in range(1, h + 1):
+        r = 2 * k
         for lane in range(LANES):
-            real, imaginary, re, im = answers[k, 0, lane], answers[k, 1, lane], force[0, k, lane], force[1, k, lane]
-            step[0, k, lane] = linear[0, k, lane] - unknown[0, k, lane] + 2 * (real * re - imaginary * im)
-            step[1, k, lane] = linear[1, k, lane] - unknown[1, k, lane] + 2 * (real * im + imaginary * re)
+            real, imaginary, re, im = answers[k, 0, lane], answers[k, 1, lane], force[r - 1, lane], force[r, lane]
+            step[r - 1, lane] = unknown[r - 1, lane] - linear[r - 1, lane] - 2 * (real * re - imaginary * im)
+            step[r, lane] = unknown[r, lane] - linear[r, lane] - 2 * (real * im + imaginary * re)
 
 
 @numba.njit(**INSIDE)
-def _advance(unknown: Floats, step: Floats, h: int, lanes: Floats, share: Floats) -> float:
-    """Take the step, shortened where it exceeds what the contact's reach allows; return its largest relative size."""
+def _advance(unknown: Floats, step: Floats, rows: int, lanes: Floats, share: Floats, allowed: float) -> bool:
+    """Take the step back, shortened where it exceeds the contact's reach; return whether all were as small as allowed.
+
+    The size of a step is relative to the motion's, both sums over the rows, the latter without the mean.
+    """
     size, scale = lanes[SIZE], lanes[SCALE]
     for lane in range(LANES):
-        size[lane], scale[lane] = abs(step[0, 0, lane]), 1e-3 * lanes[LENGTH, lane]
-    for k in range(1, h + 1):
-        for lane in range(LANES):
-            size[lane] += abs(step[0, k, lane]) + abs(step[1, k, lane])
+        size[lane], scale[lane] = 0.0, 1e-3 * lanes[LENGTH, lane]
+    for row in range(rows):
+        add_size(step[row], size)
     for lane in range(LANES):
         share[lane] = min(1.0, _LARGEST_STEP * lanes[LENGTH, lane] / size[lane])
-        unknown[0, 0, lane] += share[lane] * step[0, 0, lane]
-    for k in range(1, h + 1):
-        for lane in range(LANES):
-            unknown[0, k, lane] += share[lane] * step[0, k, lane]
-            unknown[1, k, lane] += share[lane] * step[1, k, lane]
-            scale[lane] += abs(unknown[0, k, lane]) + abs(unknown[1, k, lane])
-    largest = 0.0
+    for row in range(rows):
+        subtract_product(share, step[row], unknown[row])
+        if row > 0:
+            add_size(unknown[row], scale)
+    small = 0
     for lane in range(LANES):
-        relative = size[lane] / scale[lane]
-        if not relative <= largest:  # also when it is not a number
-            largest = relative if relative < np.inf else np.inf
-    return largest
+        small += size[lane] <= allowed * scale[lane]  # which what is not a number is not
+    return small == LANES
 
 
 @numba.njit(**INSIDE)
@@ -337,7 +308,7 @@ def _judge(
     h: int,
     count: int,
     waves: Floats,
-    sums: Floats,
+    force: Floats,
     mean_force: Floats,
     lanes: Floats,
     tolerance: float,
@@ -346,33 +317,34 @@ def _judge(
     outcome: Integers,
 ) -> None:
     """Say which points converged, and which of them were resolved finely enough."""
-    real, imaginary, tail, answer = scratch[0], scratch[1], scratch[2], scratch[3:5]
+    real, imaginary, square, tail, answer = scratch[0], scratch[1], scratch[2], scratch[3], scratch[4:6]
     for lane in range(LANES):
         tail[lane] = 0.0
     for order in range(h + 1, 2 * h + 2):
         m = order if order <= 2 * h else count // 2 - 1  # the last one is the highest that the samples resolve
         for part in range(2):
-            combine(scratch[part], waves[part, m], sums[0, part], count // 2)
+            combine(scratch[part], waves[part, m], force, part, count // 2)
+        for lane in range(LANES):
+            square[lane] = real[lane] * real[lane] + imaginary[lane] * imaginary[lane]
         if order <= 2 * h:
             receptances(poles, lanes[OMEGA], float(m), answer)
             for lane in range(LANES):
-                receptance = answer[0, lane] ** 2 + answer[1, lane] ** 2
-                tail[lane] = max(tail[lane], 4 * receptance * (real[lane] ** 2 + imaginary[lane] ** 2))
+                motion = 4 * square[lane] * (answer[0, lane] * answer[0, lane] + answer[1, lane] * answer[1, lane])
+                tail[lane] = max(tail[lane], motion)
     for lane in range(block.size):
-        highest = real[lane] ** 2 + imaginary[lane] ** 2
-        verdict = CONVERGED
-        if not lanes[SIZE, lane] <= _EXACTLY * tolerance * lanes[SCALE, lane]:
+        verdict, allowed = CONVERGED, tolerance * lanes[SCALE, lane]
+        if not lanes[SIZE, lane] <= _EXACTLY * allowed:
             verdict = DIVERGED
-        elif highest > (aliased * max(mean_force[lane], 1e-3 * lanes[LOAD, lane])) ** 2:
+        elif np.sqrt(square[lane]) > aliased * max(mean_force[lane], 1e-3 * lanes[LOAD, lane]):
             verdict = NEEDS_SAMPLES
-        elif tail[lane] > (TAIL * tolerance * lanes[SCALE, lane]) ** 2:
+        elif np.sqrt(tail[lane]) > TAIL * allowed:
             verdict = NEEDS_HARMONICS
         outcome[block[lane]] = verdict
 
 
 @numba.njit(**INSIDE)
 def _scatter(
-    points: Points, used: Integers, block: Integers, h: int, unknown: Floats, spectra: Floats, outcome: Integers
+    points: Points, used: Integers, block: Integers, h: int, unknown: Floats, spectrum: Floats, outcome: Integers
 ) -> None:
     mean, harmonics, force = points.mean, points.harmonics, points.force
     for lane in range(block.size):
@@ -380,8 +352,8 @@ def _scatter(
         if outcome[point] == DIVERGED:
             continue
         used[point] = h
-        mean[point] = unknown[0, 0, lane]
-        for k in range(1, h + 1):
-            harmonics[point, k - 1] = complex(unknown[0, k, lane], unknown[1, k, lane])
-        for k in range(1, min(force.shape[1], h) + 1):
-            force[point, k - 1] = complex(2 * spectra[0, 0, k, lane], 2 * spectra[0, 1, k, lane])
+        mean[point, 0] = unknown[0, lane]
+        for part in range(2 * h):
+            harmonics[point, part] = unknown[part + 1, lane]
+            if part < force.shape[1]:
+                force[point, part] = 2 * spectrum[part + 1, lane]

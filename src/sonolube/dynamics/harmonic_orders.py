@@ -4,9 +4,9 @@ from functools import lru_cache
 
 import numpy as np
 
-from sonolube.checks import Floats
+from sonolube.checks import Floats, Integers
 from sonolube.dynamics.contact_port import ContactPort
-from sonolube.dynamics.harmonic_kernel import Integers, Resolution
+from sonolube.dynamics.harmonic_kernel import Resolution
 
 _MOST = 64
 _PART = 0.02  # ratio of neighbouring frequencies, less one, at which receptances are bounded

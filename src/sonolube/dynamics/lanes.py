@@ -8,7 +8,7 @@ from typing import Any
 
 import numba
 
-from sonolube.checks import Floats
+from sonolube.checks import Floats, Integers
 
 LANES = 128
 # Products and sums do not fuse: which do would depend on what was inlined, so that a kernel compiled just now and the
@@ -34,7 +34,20 @@ INSIDE: dict[str, Any] = {  # for what only kernels call, which spares it everyt
 ONCE: dict[str, Any] = INSIDE | {"inline": "always"}
 
 _HALVINGS = 10
+_SHARE = 2.0**-_HALVINGS
 _LARGEST = 700.0
+
+
+@numba.njit(**INSIDE)
+def gather(table: Floats, block: Integers, rows: Floats) -> None:
+    """Write each column of a table at a block's points as a row, zeros beyond the table's width.
+
+    Lanes beyond the block repeat its last point.
+    """
+    for lane in range(LANES):
+        point = block[min(lane, block.size - 1)]
+        for row in range(rows.shape[0]):
+            rows[row, lane] = table[point, row] if row < table.shape[1] else 0.0
 
 
 @numba.njit(**INSIDE)
@@ -44,7 +57,7 @@ def exponentials(argument: Floats, result: Floats) -> None:
     The argument is halved ten times, and the series squared as often.
     """
     for lane in range(LANES):
-        r = min(max(argument[lane], -_LARGEST), _LARGEST) / 2**_HALVINGS
+        r = min(max(argument[lane], -_LARGEST), _LARGEST) * _SHARE
         series = 1 / 40320 + r / 362880
         series = 1 / 5040 + r * series
         series = 1 / 720 + r * series
@@ -60,18 +73,48 @@ def exponentials(argument: Floats, result: Floats) -> None:
 
 
 @numba.njit(**INSIDE)
-def combine(target: Floats, coefficients: Floats, sources: Floats, last: int) -> None:
-    """Write the sum of coefficients[i] * sources[i] for i up to and including `last`, four at a time."""
+def combine(target: Floats, coefficients: Floats, sources: Floats, part: int, last: int) -> None:
+    """Write the sum for k up to and including `last` of coefficients[k] * sources[2 k - 1 + part], four at a time.
+
+    For k = 0 the source is row 0: a motion's or a spectrum's mean, before the two parts of its harmonics in turns.
+    """
     for lane in range(LANES):
         target[lane] = 0.0
-    i = 0
-    while i + 3 <= last:
+    single = 1 + last % 4
+    for k in range(single):
         for lane in range(LANES):
-            one = coefficients[i] * sources[i, lane] + coefficients[i + 1] * sources[i + 1, lane]
-            two = coefficients[i + 2] * sources[i + 2, lane] + coefficients[i + 3] * sources[i + 3, lane]
+            target[lane] += coefficients[k] * sources[2 * k - 1 + part if k > 0 else 0, lane]
+    for k in range(single, last + 1, 4):
+        row = 2 * k - 1 + part
+        for lane in range(LANES):
+            one = coefficients[k] * sources[row, lane] + coefficients[k + 1] * sources[row + 2, lane]
+            two = coefficients[k + 2] * sources[row + 4, lane] + coefficients[k + 3] * sources[row + 6, lane]
             target[lane] += one + two
-        i += 4
-    while i <= last:
-        for lane in range(LANES):
-            target[lane] += coefficients[i] * sources[i, lane]
-        i += 1
+
+
+@numba.njit(**INSIDE)
+def blend(one: Floats, share: float, other: Floats, rest: float, target: Floats) -> None:
+    """Write share * one + rest * other."""
+    for lane in range(LANES):
+        target[lane] = share * one[lane] + rest * other[lane]
+
+
+@numba.njit(**INSIDE)
+def add_size(source: Floats, target: Floats) -> None:
+    """Add the absolute values of one row to another."""
+    for lane in range(LANES):
+        target[lane] += abs(source[lane])
+
+
+@numba.njit(**INSIDE)
+def add_products(one: Floats, other: Floats, third: Floats, fourth: Floats, target: Floats) -> None:
+    """Add one * other + third * fourth to another row."""
+    for lane in range(LANES):
+        target[lane] += one[lane] * other[lane] + third[lane] * fourth[lane]
+
+
+@numba.njit(**INSIDE)
+def subtract_product(one: Floats, other: Floats, target: Floats) -> None:
+    """Subtract the product of two rows from another."""
+    for lane in range(LANES):
+        target[lane] -= one[lane] * other[lane]

@@ -6,9 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sonolube.checks import Complexes, Floats
+from sonolube.checks import Complexes, Floats, Integers
 from sonolube.dynamics.gap_law import LOST, GapLaw
-from sonolube.dynamics.harmonic_kernel import Integers
 
 _PLAIN = 0.7  # share of the higher harmonics' accelerations up to which a motion surely turns only twice
 _CLEAR = 0.99  # level over amplitude at which to begin looking for its passage at most

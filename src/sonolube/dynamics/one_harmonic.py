@@ -5,11 +5,11 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import wrightomega
 
-from sonolube.checks import Complexes, Floats
+from sonolube.checks import Complexes, Floats, Integers
 from sonolube.dynamics.bessel import bessel_logarithm, bessel_ratio
 from sonolube.dynamics.contact_port import ContactPort, receptance
 from sonolube.dynamics.gap_law import ExponentialGap, GapLaw, TabulatedGap, length_of_change
-from sonolube.dynamics.harmonic_kernel import Integers, Resolution
+from sonolube.dynamics.harmonic_kernel import Resolution
 from sonolube.dynamics.harmonic_orders import orders_of_a_sine, plain_orders
 
 WEAK = 0.2  # contact stiffness times receptance up to which substitution finds the only solution

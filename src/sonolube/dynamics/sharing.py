@@ -11,6 +11,7 @@ from sonolube.dynamics.backend import Backend, available, unused
 from sonolube.dynamics.balancing import Solutions, solve
 from sonolube.dynamics.contact_lanes import law_of
 from sonolube.dynamics.contact_port import ContactPort
+from sonolube.dynamics.first_call import compiling_alongside
 from sonolube.dynamics.gap_law import GapLaw
 from sonolube.dynamics.marching import Marched, Points, Schedule, march_points
 from sonolube.dynamics.state_pairs import StatePairs
@@ -145,7 +146,9 @@ def _on_cpu(asked: Asked, chosen: NDArray[np.intp], workers: int) -> Solutions:
             tolerance=asked.tolerance,
         )
 
-    return _gather(in_threads(part, chosen.size, workers))
+    compiled, _ = law_of(asked.gap_law)
+    with compiling_alongside(compiled, stability=asked.stability, tolerance=asked.tolerance):
+        return _gather(in_threads(part, chosen.size, workers))
 
 
 def in_threads(part: Callable[[slice], Result], points: int, workers: int) -> list[Result]:

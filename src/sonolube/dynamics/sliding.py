@@ -5,28 +5,19 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sonolube.checks import Floats, require_non_negative
+from sonolube.checks import Floats, Integers, require_non_negative
 from sonolube.dynamics.backend import Backend
 from sonolube.dynamics.balancing import MOST_HARMONICS
 from sonolube.dynamics.contact_lanes import HERTZ, LINEAR, law_of, resting_place
+from sonolube.dynamics.crowding import Crowded, crowded_points, crowding_of, fineness_of, turned_circle
 from sonolube.dynamics.gap_law import GapLaw, length_of_change
-from sonolube.dynamics.harmonic_kernel import Integers
 from sonolube.dynamics.periodic import Status, SteadyStates, drive_harmonics, solved
 from sonolube.dynamics.sharing import in_threads
 from sonolube.dynamics.sliding_cells import sliding_means_by_cells
-from sonolube.dynamics.sliding_kernel import (
-    Crowded,
-    crowded_points,
-    crowding_of,
-    fineness_of,
-    scratch,
-    sliding_means,
-    turned_circle,
-)
+from sonolube.dynamics.sliding_kernel import precision, scratch, sliding_means
 from sonolube.dynamics.structure import Structure
 from sonolube.errors import InvalidInput
 
-_SINGLE = 1e-5  # tolerance from which single precision suffices
 # Points more for a steep force: for each decay length of amplitude, at least for laws with corners, and the choices.
 _STEEP, _CORNERS = 2.0, {HERTZ: 1024.0, LINEAR: 1024.0}
 _EXTRA = np.array([0, 4, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 1024])
@@ -242,9 +233,10 @@ def _friction(states: SteadyStates, speeds: Floats, workers: int, wanted: NDArra
 
 def _means(states: SteadyStates, speeds: Floats, workers: int, wanted: NDArray[np.bool_]) -> tuple[Floats, Floats]:
     omega, turns = 2 * np.pi * states.frequency.reshape(-1), states.turns.reshape(-1, 2)
-    harmonics, count = states.harmonics.reshape(omega.size, -1), states.harmonic_count.reshape(-1)
+    harmonics = np.ascontiguousarray(states.harmonics).reshape(omega.size, -1)
+    parts, count = harmonics.view(np.float64), states.harmonic_count.reshape(-1)
     load, mean = states.normal_load.reshape(-1), states.mean_displacement.reshape(-1)
-    given = np.array([*turned_circle(turns), omega, load, mean, resting_place(states.gap_law, load)])
+    given = np.stack([*turned_circle(turns), omega, load, mean, resting_place(states.gap_law, load)], axis=1)
     (compiled, law), twice = law_of(states.gap_law), np.isfinite(turns[:, 0])
     means = np.zeros((2, omega.size, speeds.size))
     ratio = speeds.min() / (omega * np.abs(harmonics[:, 0]) + 1e-300)
@@ -254,7 +246,7 @@ def _means(states: SteadyStates, speeds: Floats, workers: int, wanted: NDArray[n
     group = np.where(twice & wanted, _EXTRA.size * fineness + level, 0)
     demand = crowding * (MOST_HARMONICS + 1) + count
     order = np.argsort(demand.astype(np.uint16), kind="stable")  # by counting, that is, at once
-    precise: Floats = speeds.astype(np.float32 if states.relative_tolerance >= _SINGLE else np.float64)
+    precise: Floats = speeds.astype(precision(states.relative_tolerance))
 
     for own in np.flatnonzero(np.bincount(group[group > 0])):
         alike = order[(group == own)[order]]
@@ -263,9 +255,7 @@ def _means(states: SteadyStates, speeds: Floats, workers: int, wanted: NDArray[n
 
         def part(points: slice, alike: Integers = alike, crowded: Crowded = crowded) -> None:
             room = scratch(int(count[alike].max()), precise)
-            sliding_means(
-                *compiled, law, given, harmonics, count, crowding, alike[points], precise, crowded, room, means
-            )
+            sliding_means(*compiled, law, given, parts, count, crowding, alike[points], precise, crowded, room, means)
 
         in_threads(part, alike.size, workers)
     if not twice[wanted].all():

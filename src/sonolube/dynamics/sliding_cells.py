@@ -3,11 +3,10 @@
 import numba
 import numpy as np
 
-from sonolube.checks import Complexes, Floats
+from sonolube.checks import Complexes, Floats, Integers
 from sonolube.dynamics.contact_lanes import EXPONENTIAL, HERTZ, TABULATED, Choice, Law
 from sonolube.dynamics.force_table import log_force_at
 from sonolube.dynamics.gap_law import LARGEST_EXPONENT
-from sonolube.dynamics.harmonic_kernel import Integers
 from sonolube.dynamics.lanes import ALLOCATING, INSIDE
 from sonolube.dynamics.sliding_kernel import LOAD, MEAN, OMEGA, RESTING
 
@@ -30,14 +29,15 @@ def sliding_means_by_cells(
 
     Parameters
     ----------
-    kind, damped, law, given, harmonics, count, chosen, speeds, means
+    kind, damped, law, given, count, chosen, speeds, means
         As in `sliding_means`.
+    harmonics : ndarray of complex, shape (p, room)
     """
     rapidity = np.empty(speeds.size)
     for point in chosen:
         own = harmonics[point, : count[point]]
         means[:, point] = 0.0
-        omega, load, mean, resting = given[OMEGA, point], given[LOAD, point], given[MEAN, point], given[RESTING, point]
+        omega, load, mean, resting = given[point, OMEGA], given[point, LOAD], given[point, MEAN], given[point, RESTING]
         _by_cells(
             kind, damped, law, omega, load, resting, mean, own, speeds, rapidity, means[0, point], means[1, point]
         )

@@ -9,11 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 
-from sonolube.checks import Floats
+from sonolube.checks import Floats, Integers
 from sonolube.errors import InvalidInput
 from sonolube.fem.mesh import Mesh
 from sonolube.fem.model import Model
-from sonolube.fem.simplex import Integers, lattice, quadrature, shape_functions
+from sonolube.fem.simplex import lattice, quadrature, shape_functions
 
 POTENTIAL_SCALE = 1e10
 """Volts to the unit of potential, so that elastic and dielectric stiffnesses are of one size."""

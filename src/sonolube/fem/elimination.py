@@ -13,10 +13,9 @@ from scipy import sparse
 from scipy.linalg.blas import dsyrk, dtrsm
 from scipy.linalg.lapack import dpotrf
 
-from sonolube.checks import Floats
+from sonolube.checks import Floats, Integers
 from sonolube.errors import InvalidInput
 from sonolube.fem.mesh import Mesh
-from sonolube.fem.simplex import Integers
 
 _LEAF = 5  # elements that are not halved any more
 _LEAST_HALF = 0.2  # share of the elements in the smaller half

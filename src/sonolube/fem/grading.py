@@ -9,10 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sonolube.checks import Floats
+from sonolube.checks import Floats, Integers
 from sonolube.fem.mesh import Mesh
 from sonolube.fem.orders import numbered, of_order
-from sonolube.fem.simplex import EDGES, Integers, lattice, shape_functions
+from sonolube.fem.simplex import EDGES, lattice, shape_functions
 
 _RE_ENTRANT = np.radians(200.0)  # angle inside the body from which an edge counts; curved sides are not quite smooth
 _INSIDE = np.radians(350.0)  # from which it is inside

@@ -6,9 +6,9 @@ from math import comb
 
 import numpy as np
 
-from sonolube.checks import Floats, require_finite, require_positive
+from sonolube.checks import Floats, Integers, require_finite, require_positive
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.fem.simplex import EDGES, Integers, lattice
+from sonolube.fem.simplex import EDGES, lattice
 
 MOST_ORDER = 8
 """The highest order of an element; beyond it shape functions on even nodes lose digits."""

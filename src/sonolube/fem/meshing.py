@@ -5,13 +5,13 @@ from typing import Any
 
 import numpy as np
 
-from sonolube.checks import Floats, require_positive
+from sonolube.checks import Floats, Integers, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.fem.geometry import Geometry
 from sonolube.fem.kernel import MILLIMETRE, cad, captured
 from sonolube.fem.mesh import Mesh
 from sonolube.fem.orders import of_order, unfolded
-from sonolube.fem.simplex import Integers, lattice
+from sonolube.fem.simplex import lattice
 
 # From the mesher's order of nodes to ours: it turns the other way round, and has its edges in another order.
 _TETRAHEDRON = [0, 2, 1, 3, 5, 7, 4, 6, 9, 8]

@@ -4,10 +4,10 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from sonolube.checks import Floats
+from sonolube.checks import Floats, Integers
 from sonolube.errors import InvalidInput
 from sonolube.fem.mesh import MOST_ORDER, Mesh
-from sonolube.fem.simplex import Integers, lattice, quadrature, shape_functions
+from sonolube.fem.simplex import lattice, quadrature, shape_functions
 
 _FOLDED = 1e-3  # smallest over mean volume per unit of an element that is taken as it is
 _STRAIGHTENED = 0.8  # what is left of the curves of a folded element, step by step

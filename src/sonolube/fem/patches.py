@@ -6,11 +6,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sonolube.checks import Floats
+from sonolube.checks import Floats, Integers
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.fem.mesh import Mesh
 from sonolube.fem.model import DIRECTIONS
-from sonolube.fem.simplex import Integers
 
 
 def reshaped(mesh: Mesh, to: Callable[[Floats], Floats]) -> Mesh:

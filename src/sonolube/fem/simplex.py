@@ -8,12 +8,9 @@ from functools import cache, reduce
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import roots_jacobi
 
-from sonolube.checks import Floats
-
-Integers = NDArray[np.int64]
+from sonolube.checks import Floats, Integers
 
 EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
 """Corners between which the edges of a tetrahedron run, in the order of their nodes; of a triangle the first three."""

@@ -15,12 +15,11 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from sonolube.checks import Floats
+from sonolube.checks import Floats, Integers
 from sonolube.errors import InvalidInput
 from sonolube.fem.assembly import POTENTIAL_SCALE, assemble
 from sonolube.fem.elimination import dissected, eliminated
 from sonolube.fem.model import DIRECTIONS, Model
-from sonolube.fem.simplex import Integers
 
 Solve = Callable[[NDArray[Any]], NDArray[Any]]
 

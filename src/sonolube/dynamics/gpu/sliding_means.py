@@ -1,6 +1,6 @@
 """Means of the friction of a contact that slides while it vibrates, by a thread.
 
-Phases crowd at the two turns of the motion, as in `sonolube.dynamics.sliding_kernel`.
+Phases crowd at the two turns of the motion, as in `sonolube.dynamics.crowding`.
 """
 
 import math
@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.checks import Floats
+from sonolube.dynamics.crowding import crowded_points
 from sonolube.dynamics.gpu.threads import on_device
 from sonolube.dynamics.gpu.turning import swing
-from sonolube.dynamics.sliding_kernel import crowded_points
 
 SPEEDS = 8
 """Sliding speeds that share one motion through the phases. []"""
