@@ -146,7 +146,7 @@ def coupled(
             return _with_spring(k, limit, *slides, float(dahl_exponent))
         rigid = _with_spring(k, limit, *slides, float(dahl_exponent))
         forces, settled = with_mass(
-            k, limit, *slides, float(dahl_exponent), *propagators(holder, step), rigid / holder.holder_stiffness
+            k, limit, *slides, step, float(dahl_exponent), *propagators(holder, step), rigid / holder.holder_stiffness
         )
         return forces
 
@@ -208,6 +208,7 @@ def with_mass(
     limit: Floats,
     slides: Floats,
     steady: Floats,
+    step: float,
     exponent: float,
     free: Floats,
     by_first: Floats,
@@ -223,7 +224,8 @@ def with_mass(
         for _ in range(_NEWTON):
             end, slope, mean = _period(state, k, limit, slides, steady[i], exponent, free, by_first, by_last)
             miss = end - state
-            scale = np.abs(end) + np.array([limit.max(), 1e-12, steady[i] * 1e-3])
+            # a stiff holder's velocity may be mere rounding beside the sliding speed, which is what it adds to
+            scale = np.abs(end) + np.array([limit.max(), 1e-12, 1e-3 * steady[i] / step])
             if np.all(np.abs(miss) <= 1e-10 * scale):
                 means[i], found = mean, True
                 break

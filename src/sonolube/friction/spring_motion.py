@@ -196,6 +196,7 @@ def guided_oscillation_ratio(
         limit,
         np.zeros(_STEPS),
         v_r.ravel() * step,
+        step,
         0.0,
         *propagators(holder, step),
         np.full(v_r.size, pulled),
