@@ -37,8 +37,8 @@ bench: $(VENV)/bench ## measure speed, each benchmark beside its rival
 	$(RUN) $(BIN)/python -m pytest benchmarks --benchmark-only --benchmark-columns=min,median,iqr,rounds
 
 fuzz: $(VENV)/test ## read 100,000 damaged surface and impedance files of each format
-	$(RUN) $(BIN)/python tests/measurement/test_surface_file_fuzz.py 100000
-	$(RUN) $(BIN)/python tests/measurement/test_impedance_file_fuzz.py 100000
+	$(RUN) $(BIN)/python tests/measurement/surface_files/test_fuzzed_files.py 100000
+	$(RUN) $(BIN)/python tests/measurement/impedance/test_fuzzed_files.py 100000
 
 lock: $(VENV)/uv ## pin and hash every dependency for Python 3.11 to 3.13
 	$(BIN)/uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-annotate \

@@ -21,10 +21,10 @@ from pytest_benchmark.fixture import BenchmarkFixture
 from sonolube.contact import decay_length
 from sonolube.dynamics import ExponentialGap, StartUpRamp, drive_receptance, march
 from sonolube.dynamics.backend import device_name
-from sonolube.dynamics.contact_lanes import law_of
-from sonolube.dynamics.contact_port import contact_port
-from sonolube.dynamics.state_pairs import state_pairs
-from sonolube.dynamics.step_filter import quadrature
+from sonolube.dynamics.first_order_modes import state_pairs
+from sonolube.dynamics.harmonic_balance.contact_kernel import law_of
+from sonolube.dynamics.harmonic_balance.receptance import contact_port
+from sonolube.dynamics.time_marching.integrator import quadrature
 from sonolube.rig import read_rig
 
 RIG = read_rig(Path(__file__).parent.parent / "examples" / "rigs" / "tribometer.toml")
@@ -70,8 +70,8 @@ def operations_of_a_march(pairs: int, nodes: int) -> float:
 
 def phases_of(found: Any, omega: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the phases that each point's means took, at least."""
-    from sonolube.dynamics.crowding import crowding_of
-    from sonolube.dynamics.gpu.sliding_means import crowded_levels
+    from sonolube.dynamics.friction_average.elliptic_quadrature import crowding_of
+    from sonolube.dynamics.gpu.friction_average import crowded_levels
 
     fastest = omega[found.done] * np.abs(found.solutions.harmonics[found.done, 0])
     return np.asarray(crowded_levels(1e-7).numbers[0][crowding_of(SPEEDS[0] / fastest)], dtype=np.float64)

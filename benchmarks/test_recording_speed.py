@@ -18,7 +18,7 @@ GIGABYTE = 1_000_000_000
 REDUCE = """
 import sys
 from pathlib import Path
-from sonolube.measurement.windows import streamed_window_statistics
+from sonolube.measurement.friction.windows import streamed_window_statistics
 reduced = streamed_window_statistics(Path(sys.argv[1]))
 assert all(windows.time.size > 200 for windows in reduced.values())
 """

@@ -28,9 +28,9 @@ from scipy.integrate import solve_ivp
 
 from sonolube.contact import decay_length
 from sonolube.dynamics import ExponentialGap
-from sonolube.dynamics.crowding import crowded_points, crowding_of
-from sonolube.dynamics.periodic import steady_state
-from sonolube.dynamics.sliding import sliding_friction
+from sonolube.dynamics.friction_average.elliptic_quadrature import crowded_points, crowding_of
+from sonolube.dynamics.steady_friction import sliding_friction
+from sonolube.dynamics.steady_state import steady_state
 from sonolube.dynamics.structure import contact_receptance, drive_receptance
 from sonolube.rig import read_rig
 
@@ -319,8 +319,8 @@ FIRST_CALL = """
 import time
 import numpy as np
 began = time.perf_counter()
-from sonolube.dynamics.sliding import sliding_friction
-from sonolube.dynamics.periodic import steady_state
+from sonolube.dynamics.steady_friction import sliding_friction
+from sonolube.dynamics.steady_state import steady_state
 from sonolube.dynamics.gap_law import ExponentialGap
 from sonolube.dynamics.structure import Structure
 imported, worked = time.perf_counter(), time.process_time()

@@ -5,10 +5,10 @@ Run: python examples/collar_resonance.py (needs sonolube[fem])
 
 from dataclasses import replace
 
+from sonolube.dong2015.collar_designs import COLLAR_ORIGINS, FINAL_COLLAR
+from sonolube.dong2015.collar_model import collar_response_model
+from sonolube.dong2015.collar_tuning import main_resonance
 from sonolube.fem import harmonic_response
-from sonolube.fem.collar_designs import COLLAR_ORIGINS, FINAL_COLLAR
-from sonolube.fem.collar_model import collar_response_model
-from sonolube.fem.collar_tuning import main_resonance
 
 for case, changes in (
     ("top closed", {}),

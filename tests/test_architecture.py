@@ -13,12 +13,10 @@ PHYSICS = (
     "contact",
     "friction",
     "wear",
-    "wear_regimes",
     "thermal",
     "actuator",
     "dynamics",
     "metrics",
-    "vibration",
 )
 
 

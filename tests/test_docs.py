@@ -21,7 +21,7 @@ ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
 PAGES = sorted(DOCS.rglob("*.md"))
 COMMANDS = {str(command.callback.__name__): command.callback for command in app.registered_commands if command.callback}
-PHYSICS = ("surfaces", "contact", "friction", "wear", "wear_regimes", "thermal", "actuator", "metrics", "vibration")
+PHYSICS = ("surfaces", "contact", "friction", "wear", "thermal", "actuator", "metrics")
 
 
 def text_of(*pages: Path) -> str:

@@ -1,8 +1,9 @@
 """Figures as journals print them: units on every axis, legible, safe for colour-blind eyes and for grey print."""
 
 import io
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -36,6 +37,31 @@ _STYLE = {
     "svg.fonttype": "none",
     "svg.hashsalt": "sonolube",
 }
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ReportFigure:
+    """A figure of the report.
+
+    Parameters
+    ----------
+    name : str
+        Its file's name, without ending.
+    chapter : int
+        Chapter of the source it belongs to.
+    title : str
+        What it shows.
+    caption : str
+        What to see in it, and where every point comes from.
+    draw : callable
+        Draws it.
+    """
+
+    name: str
+    chapter: int
+    title: str
+    caption: str
+    draw: "Callable[[], Figure]"
 
 
 @contextmanager

@@ -15,7 +15,7 @@ pytest.importorskip("netgen.occ", reason="netgen-mesher is not installed")
 
 from sonolube.cli import main
 from sonolube.fem import cylinder, stepped_horn
-from sonolube.measurement.impedance_files import read_impedance
+from sonolube.measurement.impedance.reader import read_impedance
 from sonolube.measurement.vibration import modal_assurance
 
 Command = Callable[..., CompletedProcess[str]]

@@ -10,7 +10,7 @@ from sonolube.dynamics.attractor import Attractors, beat, describe, settling_tim
 from sonolube.dynamics.gap_law import ExponentialGap, LinearGap
 from sonolube.dynamics.linear import modes, poles
 from sonolube.dynamics.structure import Structure, with_contact_spring
-from sonolube.dynamics.trajectories import State, Trajectories
+from sonolube.dynamics.time_marching.records import State, Trajectories
 from sonolube.dynamics.transient import march, trajectory
 from sonolube.dynamics.waveform import StartUpRamp
 from sonolube.errors import InvalidInput

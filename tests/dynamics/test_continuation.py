@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 
 from sonolube.dynamics.continuation import ResponseCurve, crossings, reached_by_ramp, response_curve
 from sonolube.dynamics.gap_law import HertzGap, LinearGap
-from sonolube.dynamics.periodic import Status, steady_state
+from sonolube.dynamics.steady_state import Status, steady_state
 from sonolube.dynamics.structure import Structure, drive_receptance, with_contact_spring
 from sonolube.errors import InvalidInput
 

@@ -6,8 +6,8 @@ from pytest import approx
 from scipy.special import ive
 
 from sonolube.dynamics import ExponentialGap, GapLaw, HertzGap, LinearGap, TabulatedGap
-from sonolube.dynamics.bessel import bessel_logarithm, bessel_ratio
 from sonolube.dynamics.gap_law import length_of_change
+from sonolube.dynamics.harmonic_balance.bessel import bessel_logarithm, bessel_ratio
 
 SEPARATION = np.linspace(2e-6, 40e-6, 200)
 FORCE = 50 * np.exp(-SEPARATION / 2.3e-6 - (SEPARATION / 30e-6) ** 2)

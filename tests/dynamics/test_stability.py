@@ -10,8 +10,8 @@ from scipy.integrate import solve_ivp
 
 from sonolube.dynamics.gap_law import ExponentialGap, GapLaw, HertzGap, LinearGap
 from sonolube.dynamics.linear import poles
-from sonolube.dynamics.periodic import Status, SteadyStates, steady_state
 from sonolube.dynamics.stability import floquet_multipliers
+from sonolube.dynamics.steady_state import Status, SteadyStates, steady_state
 from sonolube.dynamics.structure import Structure, drive_receptance, with_contact_spring
 from sonolube.errors import InvalidInput
 

@@ -10,10 +10,10 @@ from scipy.integrate import solve_ivp
 from sonolube.contact import ContactPair, GaussianHeights, RoughContact, normal_force, normal_stiffness, separation
 from sonolube.dynamics import ExponentialGap, Structure, TabulatedGap, march, steady_state, with_contact_spring
 from sonolube.dynamics.continuation import response_curve
-from sonolube.dynamics.gradients import gradients
-from sonolube.dynamics.periodic import Status, SteadyStates
-from sonolube.dynamics.sliding import motion, sliding_friction
+from sonolube.dynamics.sensitivities import gradients
 from sonolube.dynamics.stability import floquet_multipliers
+from sonolube.dynamics.steady_friction import motion, sliding_friction
+from sonolube.dynamics.steady_state import Status, SteadyStates
 from sonolube.dynamics.structure import drive_receptance
 from sonolube.errors import InvalidInput
 from sonolube.surfaces import Roughness

@@ -13,7 +13,7 @@ from scipy.optimize import fsolve
 
 from sonolube.dynamics.gap_law import ExponentialGap, GapLaw, HertzGap, LinearGap
 from sonolube.dynamics.structure import Structure, drive_receptance, dynamic_stiffness
-from sonolube.dynamics.trajectories import State, displacement_harmonics
+from sonolube.dynamics.time_marching.records import State, displacement_harmonics
 from sonolube.dynamics.transient import march, trajectory
 from sonolube.dynamics.waveform import WAVEFORMS, PiecewiseLinear, StartUpRamp, harmonics, sampled_waveform
 from sonolube.errors import InvalidInput

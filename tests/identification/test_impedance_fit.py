@@ -12,8 +12,8 @@ from sonolube.dynamics.structure import Structure, electrical_admittance
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.identification.impedance import fit_circuit
 from sonolube.identification.stack import fit_stack
-from sonolube.measurement.impedance_files import read_impedance
-from sonolube.measurement.impedance_spectrum import ImpedanceSpectrum
+from sonolube.measurement.impedance.reader import read_impedance
+from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 
 RB5100 = Path(__file__).parents[3] / "shared" / "data" / "impedance" / "RB5100.txt"
 

@@ -5,7 +5,8 @@ from hypothesis import strategies as st
 from pytest import approx
 
 from sonolube.published import PrintedNumber, parse_printed
-from sonolube.reproduce.row import Published, Verdict, compare, over_rounding, undetermined
+from sonolube.published.values import Published, over_rounding
+from sonolube.reproduce.row import Verdict, compare, undetermined
 
 
 def published(text: str, *, doubt: str = "", right: tuple[PrintedNumber, ...] = ()) -> Published:

@@ -11,11 +11,13 @@ from pytest import approx
 from scipy.optimize import minimize
 from scipy.special import i0
 
-from sonolube.figure import publication_style
+from sonolube.figure import ReportFigure, publication_style
 from sonolube.friction import stick_slip_ratio
-from sonolube.reproduce import closure_comparison, closure_figures
-from sonolube.reproduce.closure_comparison import ALL_FITTED, FITTED_ON, fits, judged
-from sonolube.reproduce.closure_fit import (
+from sonolube.reproduce.closures import comparison
+from sonolube.reproduce.closures import figures as closure_figures
+from sonolube.validation.closure_comparison import ALL_FITTED, FITTED_ON, REPORTED, fits, judged
+from sonolube.validation.closures import VARIANTS
+from sonolube.validation.fit import (
     Fit,
     criteria,
     errors_left_out,
@@ -26,10 +28,8 @@ from sonolube.reproduce.closure_fit import (
     measured_in,
     profile_interval,
 )
-from sonolube.reproduce.closure_parameters import RIGS
-from sonolube.reproduce.closure_variants import VARIANTS
-from sonolube.reproduce.experiments import SETS, friction_tests, measured_ratios
-from sonolube.reproduce.result import ReportFigure
+from sonolube.validation.friction_tests import SETS, friction_tests, measured_ratios
+from sonolube.validation.parameters import RIGS
 
 NAMED = {variant.name: variant for variant in VARIANTS}
 
@@ -239,9 +239,9 @@ def test_no_fit_leaves_its_bounds() -> None:
 
 
 def test_each_reported_closure_has_a_row_for_every_reduction_it_reaches() -> None:
-    rows = {row.id: row for row in closure_comparison.rows()}
+    rows = {row.id: row for row in comparison.rows()}
     reductions = [test for test in friction_tests() if test.published]
-    assert len(rows) == len(closure_comparison.REPORTED) * len(reductions) - 2  # the welder closes the gap as published
+    assert len(rows) == len(REPORTED) * len(reductions) - 2  # the welder closes the gap as published
     row = rows["closure-stick-slip-A-1"]
     assert (row.source, row.unit, row.published) == ("Table 2.5", "%", 62.22)
     assert row.note.startswith("Stick-slip, memory length fitted; fitted on sets A, C, D, E, F, G: memory_length 1.6")

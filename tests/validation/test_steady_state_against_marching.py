@@ -21,11 +21,11 @@ from sonolube.dynamics import (
     march,
     steady_state,
 )
-from sonolube.dynamics.attained import attained_motion
 from sonolube.dynamics.linear import poles
+from sonolube.dynamics.long_time_response import attained_motion
 from sonolube.dynamics.structure import with_contact_spring
 from sonolube.rig import read_rig
-from sonolube.rig.response import require_structure
+from sonolube.rig.linear_response import require_structure
 
 TRIBOMETER = read_rig(Path(__file__).parents[2] / "examples" / "rigs" / "tribometer.toml")
 STRUCTURE = require_structure(TRIBOMETER)

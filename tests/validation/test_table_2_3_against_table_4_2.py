@@ -10,14 +10,15 @@ import pytest
 from pytest import approx
 
 from sonolube.contact import GapMotion
-from sonolube.figure import publication_style
+from sonolube.figure import ReportFigure, publication_style
 from sonolube.friction import coupled, stick_slip
-from sonolube.reproduce import closure_dispute, closure_dynamics, closure_error_figures
-from sonolube.reproduce.closure_dispute import Mechanism, mechanisms, speeds_of_no_reduction
-from sonolube.reproduce.closure_dynamics import CLOSURES, MOTIONS, identified_structure, predictions, slow_arm_motion
-from sonolube.reproduce.closure_fit import measured_in
-from sonolube.reproduce.result import ReportFigure
+from sonolube.reproduce.closures import dynamics as closure_dynamics
+from sonolube.reproduce.closures import error_figures as closure_error_figures
+from sonolube.reproduce.closures import tables_in_conflict as closure_dispute
+from sonolube.reproduce.closures.dynamics import CLOSURES, MOTIONS, identified_structure, predictions, slow_arm_motion
+from sonolube.reproduce.closures.tables_in_conflict import Mechanism, mechanisms, speeds_of_no_reduction
 from sonolube.rig import read_rig
+from sonolube.validation.fit import measured_in
 
 FOUND: dict[str, Mechanism] = {one.fit.variant.name: one for one in mechanisms()}
 DRAWN = {figure.name: figure for figure in closure_error_figures.figures()}

@@ -28,10 +28,10 @@ def compare(
     from sonolube.cli.comparison_output import comparison_lines, comparison_object, write_comparison
     from sonolube.cli.progress import progress
     from sonolube.errors import InvalidInput
-    from sonolube.reproduce.compared_models import compared_models
-    from sonolube.reproduce.compared_rig import vibrated_rig
-    from sonolube.reproduce.model_comparison import compare_models, predict_rig
     from sonolube.rig import read_rig
+    from sonolube.validation.compare import compare_models, predict_rig
+    from sonolube.validation.models import compared_models
+    from sonolube.validation.rig import vibrated_rig
 
     if rig is None and changes:
         raise InvalidInput("--set changes a rig: name one, such as examples/rigs/tribometer.toml")

@@ -7,7 +7,9 @@ from typing import Any
 
 from sonolube.figure import publication_style, write_figure
 from sonolube.files import write_whole
-from sonolube.reproduce.model_comparison import (
+from sonolube.rig import Rig, write_netcdf
+from sonolube.units import engineering
+from sonolube.validation.compare import (
     DATA_SETS,
     ONLY_PREDICTED,
     ComparedFit,
@@ -15,10 +17,8 @@ from sonolube.reproduce.model_comparison import (
     Prediction,
     RigPrediction,
 )
-from sonolube.reproduce.model_comparison_figures import comparison_figures, rig_figure
-from sonolube.reproduce.model_comparison_table import comparison_csv, comparison_dataset, parameter_said
-from sonolube.rig import Rig, write_netcdf
-from sonolube.units import engineering
+from sonolube.validation.figures import comparison_figures, rig_figure
+from sonolube.validation.table import comparison_csv, comparison_dataset, parameter_said
 
 Predictions = tuple[RigPrediction, ...] | None
 

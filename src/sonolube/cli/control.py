@@ -134,8 +134,8 @@ def _supposed(quality: float, coupling: float) -> str:
 def _line(rig: "Rig", efficiency: str | None) -> "EfficiencyLine":
     """Return the efficiency given, at every speed, or the line of D 4.2."""
     from sonolube.metrics import EfficiencyLine
-    from sonolube.reproduce.power_map import efficiency_line
     from sonolube.units import to_si
+    from sonolube.validation.power_map import efficiency_line
 
     if efficiency is None:
         return efficiency_line()

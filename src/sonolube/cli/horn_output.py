@@ -17,7 +17,7 @@ from sonolube.design.horn import (
     section_motion,
 )
 from sonolube.fem import flat_triangles
-from sonolube.fem.model import DIRECTIONS
+from sonolube.fem.solver.model import DIRECTIONS
 from sonolube.figure import COLOURS, publication_style, write_figure
 from sonolube.materials import Material
 from sonolube.units import engineering

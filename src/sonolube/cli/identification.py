@@ -23,8 +23,8 @@ def identify_rig(
     from sonolube.cli.progress import progress
     from sonolube.files import write_whole
     from sonolube.identification import rig_tables
-    from sonolube.reproduce.tribometer_facts import tribometer_identification, tribometer_stack
     from sonolube.rig import read_rig, with_tables
+    from sonolube.validation.tribometer import tribometer_identification, tribometer_stack
 
     if base is not None:
         read_rig(base)

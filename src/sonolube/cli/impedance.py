@@ -64,8 +64,8 @@ def compute(
     from sonolube.cli.progress import progress
     from sonolube.errors import InvalidInput
     from sonolube.fem import Fixed, Mesh, Model, harmonic_response, mesh_of
-    from sonolube.fem.port import converged_port
-    from sonolube.measurement.impedance_files import read_impedance
+    from sonolube.fem.electromechanical_model import converged_port
+    from sonolube.measurement.impedance.reader import read_impedance
     from sonolube.units import to_si
 
     low, high = to_si(lowest, unit="Hz", name="--from"), to_si(highest, unit="Hz", name="--to")

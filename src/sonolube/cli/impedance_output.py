@@ -10,10 +10,10 @@ import numpy as np
 
 from sonolube.checks import Complexes, Floats
 from sonolube.fem import HarmonicResponse, Transducer, vtu
-from sonolube.fem.port import ElectricalMode, Port
+from sonolube.fem.electromechanical_model import ElectricalMode, Port
 from sonolube.figure import COLOURS, LINES, publication_style, write_figure
 from sonolube.files import write_whole
-from sonolube.measurement.impedance_spectrum import ImpedanceSpectrum
+from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 from sonolube.rig import dataset, write_netcdf
 from sonolube.units import engineering
 

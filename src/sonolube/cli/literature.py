@@ -9,7 +9,7 @@ from sonolube.cli.operate import Changes, Json
 
 if TYPE_CHECKING:
     from sonolube.published import PreviousStudy, Statement
-    from sonolube.reproduce.study_map import MapPoint
+    from sonolube.validation.study_map import MapPoint
 
 
 def literature(
@@ -28,7 +28,7 @@ def literature(
 
     from sonolube.figure import publication_style, write_figure
     from sonolube.published import previous_studies
-    from sonolube.reproduce.study_map import study_map
+    from sonolube.validation.study_map import study_map
 
     mine = _point(rig, list(changes or ())) if rig else None
     with publication_style():
@@ -43,8 +43,8 @@ def literature(
 
 def _point(rig: Path, changes: list[str]) -> "MapPoint":
     from sonolube.errors import InvalidInput
-    from sonolube.reproduce.study_map import MapPoint
     from sonolube.rig import friction_point, read_rig
+    from sonolube.validation.study_map import MapPoint
 
     known = read_rig(rig, changes=changes)
     speed = known.sliding_speed

@@ -6,7 +6,7 @@ from sonolube.checks import Floats
 from sonolube.cli.sweep_range import values_of
 from sonolube.errors import InvalidInput
 from sonolube.rig import Rig
-from sonolube.rig.response import require_drive, require_structure
+from sonolube.rig.linear_response import require_drive, require_structure
 
 _KEYS = {
     "sliding.sliding_speed": "sliding_speed",

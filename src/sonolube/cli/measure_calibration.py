@@ -33,7 +33,7 @@ def calibration(
     from functools import partial
 
     from sonolube.errors import InvalidInput
-    from sonolube.measurement.mapping import read_mapping
+    from sonolube.measurement.recordings.mapping import read_mapping
     from sonolube.report.measured.calibration import (
         CalibrationSettings,
         calibrated_hysteresis,

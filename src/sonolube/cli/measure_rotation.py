@@ -27,7 +27,7 @@ def rotation(
     """
     from functools import partial
 
-    from sonolube.measurement.mapping import read_mapping
+    from sonolube.measurement.recordings.mapping import read_mapping
     from sonolube.report.measured.rotation import RotationSettings, rotation_sheet
 
     settings = RotationSettings(

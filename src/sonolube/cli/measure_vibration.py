@@ -30,7 +30,7 @@ def vibration(
     """
     from functools import partial
 
-    from sonolube.measurement.mapping import read_mapping
+    from sonolube.measurement.recordings.mapping import read_mapping
     from sonolube.report.measured.vibration import VibrationSettings, proportion_sheet, vibration_sheet
 
     settings = VibrationSettings(

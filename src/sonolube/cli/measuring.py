@@ -100,7 +100,7 @@ def answer(
         measurement_object,
         write_measurement_report,
     )
-    from sonolube.report.test_sheet import read_test_sheet
+    from sonolube.report.pin_on_disc_sheet import read_test_sheet
 
     report = MeasurementReport(
         title=title,

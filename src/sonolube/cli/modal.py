@@ -44,6 +44,7 @@ def modes(
     from sonolube.cli.modal_files import write_animations, write_shapes, write_vtu
     from sonolube.cli.modal_output import modes_lines, modes_object, write_modes
     from sonolube.cli.modal_part import (
+        ALL_TRANSDUCERS,
         longest_axis,
         named_media,
         named_part,
@@ -53,12 +54,12 @@ def modes(
         transducer_of,
     )
     from sonolube.cli.progress import progress
-    from sonolube.fem import TRANSDUCERS, Electrodes, Fixed, Model, converged_modes, mesh_of, mode_names
+    from sonolube.fem import Electrodes, Fixed, Model, converged_modes, mesh_of, mode_names
 
     require_axis(axis=axis, toward=toward)
     geometry = named_part(part, sizes or [])
     media = named_media(part, sizes or [], material)
-    electrodes = transducer_of(part, sizes or []).electrodes if part in TRANSDUCERS else Electrodes()
+    electrodes = transducer_of(part, sizes or []).electrodes if part in ALL_TRANSDUCERS else Electrodes()
     fixed = tuple(Fixed(face=face) for face in clamp or ())
     scanned = None if points is None else points_of(points)
 
@@ -84,7 +85,7 @@ def modes(
             written += write_vtu(found, names, folder=out, part=stem)
         if animate:
             written += write_animations(found, names, folder=out, part=stem, advance=advance)
-    made_of = "its own materials" if part in TRANSDUCERS else material
+    made_of = "its own materials" if part in ALL_TRANSDUCERS else material
     if json:
         typer.echo(json_module.dumps(modes_object(part, made_of, found, names, written), indent=2))
     else:

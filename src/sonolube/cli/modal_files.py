@@ -10,7 +10,7 @@ from sonolube.checks import Floats
 from sonolube.cli.modal_output import MODE_COLOURS, mode_figure
 from sonolube.errors import InvalidInput
 from sonolube.fem import ConvergedModes, at_points, vtu
-from sonolube.fem.model import DIRECTIONS
+from sonolube.fem.solver.model import DIRECTIONS
 from sonolube.figure import publication_style
 from sonolube.files import write_whole
 

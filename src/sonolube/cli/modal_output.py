@@ -8,7 +8,7 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.fem import ConvergedModes, Mesh, carried, flat_triangles, of_order
-from sonolube.fem.mesh import MOST_ORDER
+from sonolube.fem.solver.mesh import MOST_ORDER
 from sonolube.figure import publication_style, write_figure
 
 if TYPE_CHECKING:

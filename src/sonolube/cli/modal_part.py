@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sonolube.checks import Floats
+from sonolube.dong2015.actuators import DONG_2015_TRANSDUCERS
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.fem import (
     PARTS,
@@ -29,6 +30,9 @@ from sonolube.vocabulary import quantities
 if TYPE_CHECKING:
     from sonolube.design.horn_shapes import Body
 
+ALL_TRANSDUCERS = {**TRANSDUCERS, **DONG_2015_TRANSDUCERS}
+"""General transducers and those of the dissertation, by name."""
+
 _BEYOND_ANY_PART = 1e6  # m; the CAD kernel fails on larger ones in words of its own
 _ELEMENTS_ACROSS = 1.6  # of a part as thick as a cube of its volume would be
 _COARSE = 0.02  # m, coarse enough to show the axes of most parts
@@ -40,7 +44,7 @@ def named_part(part: str, sizes: Sequence[str]) -> Geometry:
     Parameters
     ----------
     part : str
-        A name of `PARTS` or `TRANSDUCERS`, or a path that ends in .step or .stp.
+        A name of `PARTS` or `ALL_TRANSDUCERS`, or a path that ends in .step or .stp.
     sizes : sequence of str
         Such as "length=127mm".
 
@@ -57,10 +61,10 @@ def named_part(part: str, sizes: Sequence[str]) -> Geometry:
     """
     if _is_step(part):
         return _own(part, sizes)
-    if part in TRANSDUCERS:
+    if part in ALL_TRANSDUCERS:
         return transducer_of(part, sizes).geometry
     if part not in PARTS:
-        raise UnknownName.among((*PARTS, *TRANSDUCERS), kind="part", name=part)
+        raise UnknownName.among((*PARTS, *ALL_TRANSDUCERS), kind="part", name=part)
     return PARTS[part](**sizes_of(part, PARTS[part], sizes))
 
 
@@ -85,7 +89,7 @@ def named_media(part: str, sizes: Sequence[str], material: str) -> dict[str, Med
     InvalidInput
         If the material is a ceramic, which has no modes before it is poled and wired.
     """
-    if part in TRANSDUCERS:
+    if part in ALL_TRANSDUCERS:
         return dict(transducer_of(part, sizes).media)
     if material_of(material).name in piezo_ceramic_names():
         raise InvalidInput(
@@ -101,7 +105,7 @@ def transducer_of(part: str, sizes: Sequence[str], **wired: str) -> Transducer:
     Parameters
     ----------
     part : str
-        A name of `TRANSDUCERS` or `PARTS`, or a path that ends in .step or .stp.
+        A name of `ALL_TRANSDUCERS` or `PARTS`, or a path that ends in .step or .stp.
     sizes : sequence of str
         Such as "length=12mm".
     **wired : str
@@ -111,9 +115,9 @@ def transducer_of(part: str, sizes: Sequence[str], **wired: str) -> Transducer:
     -------
     Transducer
     """
-    if part not in TRANSDUCERS:
+    if part not in ALL_TRANSDUCERS:
         return poled_part(named_part(part, sizes), **wired)
-    function = TRANSDUCERS[part]
+    function = ALL_TRANSDUCERS[part]
     return function(**sizes_of(part, function, sizes))
 
 

@@ -11,7 +11,7 @@ from sonolube.design.optimisation import OWN, DesignSpace, Horn, Limits
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.materials import material
 from sonolube.rig import Rig, structure_entries
-from sonolube.rig.response import require_drive
+from sonolube.rig.linear_response import require_drive
 from sonolube.units import rise_to_si, to_si
 
 _WAVEFORMS = ("sine", "square", "triangle", "sawtooth")

@@ -34,7 +34,7 @@ def regime(
     from sonolube.friction import BoundaryLubricant
     from sonolube.materials import material
     from sonolube.rig import read_rig, regime_map, regime_point, wear_of_materials
-    from sonolube.rig.plausible import plausible_si, require_plausible
+    from sonolube.rig.file.plausible import plausible_si, require_plausible
 
     if (pin is None) != (disc is None):
         raise InvalidInput("--pin and --disc belong together: give both or neither")

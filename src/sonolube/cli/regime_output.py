@@ -10,7 +10,7 @@ from sonolube.figure import publication_style, write_figure
 from sonolube.friction import Method
 from sonolube.rig import RegimeMap, RegimePoint, Rig
 from sonolube.units import engineering
-from sonolube.wear_regimes import WearAssessment
+from sonolube.wear.mechanism import WearAssessment
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -20,7 +20,7 @@ from sonolube.rig import (
     voltage_study,
     waveform_study,
 )
-from sonolube.rig.response import gap_law_of, require_drive, require_structure
+from sonolube.rig.linear_response import gap_law_of, require_drive, require_structure
 from sonolube.units import to_si
 
 if TYPE_CHECKING:

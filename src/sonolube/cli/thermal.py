@@ -33,7 +33,7 @@ def thermal(
     from sonolube.cli.output import show
     from sonolube.cli.thermal_output import write_heat
     from sonolube.rig import heat_point, read_rig, thermal_solid
-    from sonolube.rig.plausible import plausible_si
+    from sonolube.rig.file.plausible import plausible_si
 
     known = read_rig(rig, changes=list(changes or ()))
     result = heat_point(

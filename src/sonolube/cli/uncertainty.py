@@ -112,13 +112,13 @@ def _identified(path: Path, seed: int, advance: Callable[[int, int], None]) -> "
     from sonolube.cli.uncertainty_output import Identified
     from sonolube.errors import InvalidInput
     from sonolube.identification import observer, posterior
-    from sonolube.reproduce.tribometer_facts import (
+    from sonolube.rig import read_rig
+    from sonolube.validation.tribometer import (
         BOUNDS,
         tribometer_identification,
         tribometer_stack,
         tribometer_test,
     )
-    from sonolube.rig import read_rig
 
     stack = read_rig(path).stack
     if stack is None or not all(

@@ -12,8 +12,8 @@ from sonolube.design.maps import (
 )
 from sonolube.design.measured_map import MeasuredMap, measured_map
 from sonolube.design.plan import SETTINGS, SweepPlan, grid_plan, latin_hypercube_plan, list_plan
+from sonolube.design.sample_statistics import QUANTILES, Estimated, Spread, spread
 from sonolube.design.sobol import SobolIndices, saltelli_points, sobol_indices, sobol_points
-from sonolube.design.spread import QUANTILES, Estimated, Spread, spread
 from sonolube.design.sweep import CHUNK_POINTS, points_of, sweep
 from sonolube.design.sweep_figures import sweep_figure, swept_names
 from sonolube.design.uncertainty import outcomes_of, propagate

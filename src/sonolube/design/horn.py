@@ -9,12 +9,12 @@ from sonolube.checks import Floats
 from sonolube.design.horn_shapes import Body
 from sonolube.errors import InvalidInput
 from sonolube.fem import Medium, Model, NamedMode, TunedMode, mesh_of, mode_names, tuned_mode
-from sonolube.fem.fields import equivalent_stress, on_nodes_mean, stresses
-from sonolube.fem.model import DIRECTIONS
-from sonolube.fem.modes import modes_of, shift_for
-from sonolube.fem.orders import of_order
-from sonolube.fem.simplex import quadrature, shape_functions
-from sonolube.fem.system import shifted, system
+from sonolube.fem.solver.fields import equivalent_stress, on_nodes_mean, stresses
+from sonolube.fem.solver.model import DIRECTIONS
+from sonolube.fem.solver.modes import modes_of, shift_for
+from sonolube.fem.solver.orders import of_order
+from sonolube.fem.solver.simplex import quadrature, shape_functions
+from sonolube.fem.solver.system import shifted, system
 from sonolube.fem.tuning import compliance_above, loaded_frequencies
 from sonolube.materials import Material
 

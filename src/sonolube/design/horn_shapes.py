@@ -9,7 +9,7 @@ from sonolube.actuator import ThinHorn, thin_conical_horn, thin_exponential_horn
 from sonolube.checks import require_positive
 from sonolube.errors import UnknownName
 from sonolube.fem import PARTS, Geometry, trimmed
-from sonolube.fem.trimming import extent_along
+from sonolube.fem.parts.trimming import extent_along
 
 _WIDE = 0.08  # radius over wavelength where none is given: a quarter of it is too thick for plane sections
 _POISSON_HORN = {"width": 60.96e-3, "thickness": 25.4e-3}  # D 2.1.3

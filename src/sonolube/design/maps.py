@@ -11,7 +11,7 @@ from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.dynamics.backend import Backend, available, device_name
 from sonolube.errors import InvalidInput
 from sonolube.rig import NUMBERS, STATUSES, Rig, gridded, point_batch
-from sonolube.rig.response import require_drive
+from sonolube.rig.linear_response import require_drive
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sonolube.design.chunk_dataset import InFile, InMemory
 from sonolube.design.chunk_store import ChunkStore
-from sonolube.design.gathering import InFile, InMemory
 from sonolube.design.plan import SETTINGS, SweepPlan
 from sonolube.dynamics.backend import Backend, available, device_name
 from sonolube.errors import InvalidInput, SonolubeError

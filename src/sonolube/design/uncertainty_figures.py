@@ -6,8 +6,8 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.design.figure_axes import even_ratios_as_logarithms, scaled_label
+from sonolube.design.sample_statistics import Spread, spread
 from sonolube.design.sobol import SobolIndices
-from sonolube.design.spread import Spread, spread
 from sonolube.errors import InvalidInput
 from sonolube.figure import COLOURS
 from sonolube.vocabulary import quantity

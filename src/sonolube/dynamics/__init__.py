@@ -20,8 +20,8 @@ from sonolube.dynamics.linear import (
     resonance_frequencies,
     static_contact,
 )
-from sonolube.dynamics.periodic import Status, SteadyStates, steady_state
-from sonolube.dynamics.sliding import SlidingMeans, sliding_friction, steady_friction
+from sonolube.dynamics.steady_friction import SlidingMeans, sliding_friction, steady_friction
+from sonolube.dynamics.steady_state import Status, SteadyStates, steady_state
 from sonolube.dynamics.structure import (
     Structure,
     contact_receptance,

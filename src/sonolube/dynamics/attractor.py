@@ -13,7 +13,7 @@ from sonolube.checks import Floats, require_finite, require_non_negative, requir
 from sonolube.dynamics.backend import Backend
 from sonolube.dynamics.gap_law import LOST, GapLaw
 from sonolube.dynamics.structure import Structure
-from sonolube.dynamics.trajectories import ContactMotion, Envelope, State, Trajectories
+from sonolube.dynamics.time_marching.records import ContactMotion, Envelope, State, Trajectories
 from sonolube.dynamics.transient import AT_ONCE, march
 from sonolube.dynamics.waveform import Waveform
 from sonolube.errors import GpuUnused, InvalidInput

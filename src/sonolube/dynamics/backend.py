@@ -83,7 +83,7 @@ def _tried_gpu() -> tuple[str, str]:
     simulated = bool(getattr(numba.config, "ENABLE_CUDASIM", 0))
     if cuda.implementation == "Built-in" and not simulated:  # which does not compile the kernels any more
         return "", f"numba-cuda is missing: {_INSTALL}"
-    from sonolube.dynamics.gpu.threads import trial
+    from sonolube.dynamics.gpu.device import trial
 
     if not trial():
         return "", "the GPU does not count to one"

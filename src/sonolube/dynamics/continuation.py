@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.checks import Complexes, Floats, require_positive
-from sonolube.dynamics.balance_equations import PointEquations
-from sonolube.dynamics.contact_port import contact_port
 from sonolube.dynamics.gap_law import ExponentialGap, GapLaw, TabulatedGap, length_of_change
-from sonolube.dynamics.growth import GROWTH, growth
-from sonolube.dynamics.motion_measures import measure
-from sonolube.dynamics.periodic import Status, steady_state
+from sonolube.dynamics.harmonic_balance.extrema import measure
+from sonolube.dynamics.harmonic_balance.floquet_exponent import GROWTH, growth
+from sonolube.dynamics.harmonic_balance.receptance import contact_port
+from sonolube.dynamics.harmonic_balance.residual import PointEquations
+from sonolube.dynamics.steady_state import Status, steady_state
 from sonolube.dynamics.structure import Structure
 from sonolube.errors import InvalidInput
 

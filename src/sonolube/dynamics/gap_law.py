@@ -7,7 +7,7 @@ from typing import ClassVar, Protocol
 import numpy as np
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
-from sonolube.dynamics.force_table import log_forces, positions_of, table_cells
+from sonolube.dynamics.kernels.force_table import log_forces, positions_of, table_cells
 from sonolube.errors import InvalidInput
 
 LOST = 0.01
@@ -172,7 +172,7 @@ class TabulatedGap:
     force_damping : float
         Damping tau in proportion to the force, F_n (1 - tau x'). [s/m]
     cells : ndarray, shape (n + 1, 4)
-        Written at construction: see `sonolube.dynamics.force_table`.
+        Written at construction: see `sonolube.dynamics.kernels.force_table`.
 
     Raises
     ------

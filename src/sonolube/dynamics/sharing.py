@@ -8,13 +8,13 @@ from numpy.typing import NDArray
 
 from sonolube.checks import Complexes, Floats
 from sonolube.dynamics.backend import Backend, available, unused
-from sonolube.dynamics.balancing import Solutions, solve
-from sonolube.dynamics.contact_lanes import law_of
-from sonolube.dynamics.contact_port import ContactPort
-from sonolube.dynamics.first_call import compiling_alongside
+from sonolube.dynamics.first_order_modes import StatePairs
 from sonolube.dynamics.gap_law import GapLaw
-from sonolube.dynamics.marching import Marched, Points, Schedule, march_points
-from sonolube.dynamics.state_pairs import StatePairs
+from sonolube.dynamics.harmonic_balance.contact_kernel import law_of
+from sonolube.dynamics.harmonic_balance.receptance import ContactPort
+from sonolube.dynamics.harmonic_balance.solver import Solutions, solve
+from sonolube.dynamics.time_marching.batch import Marched, Points, Schedule, march_points
+from sonolube.dynamics.warm_up import compiling_alongside
 from sonolube.errors import InvalidInput
 from sonolube.threads import threads
 
@@ -24,7 +24,7 @@ _CHUNK = 16384  # points that a thread solves together at most, to bound the mem
 
 
 class Asked(NamedTuple):
-    """Points to solve, as `sonolube.dynamics.balancing.solve` takes them."""
+    """Points to solve, as `sonolube.dynamics.harmonic_balance.solver.solve` takes them."""
 
     port: ContactPort
     gap_law: GapLaw

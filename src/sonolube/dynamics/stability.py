@@ -4,9 +4,9 @@ import numpy as np
 from scipy.linalg import block_diag, expm
 
 from sonolube.checks import Complexes, Floats
-from sonolube.dynamics.contact_port import ContactPort, contact_port
-from sonolube.dynamics.periodic import Status, SteadyStates
-from sonolube.dynamics.sliding import motion
+from sonolube.dynamics.harmonic_balance.receptance import ContactPort, contact_port
+from sonolube.dynamics.steady_friction import motion
+from sonolube.dynamics.steady_state import Status, SteadyStates
 from sonolube.errors import InvalidInput
 
 

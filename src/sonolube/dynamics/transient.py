@@ -5,13 +5,13 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
 from sonolube.dynamics.backend import Backend
+from sonolube.dynamics.first_order_modes import StatePairs, state_pairs
 from sonolube.dynamics.gap_law import GapLaw
-from sonolube.dynamics.marching import Marched, Points, Schedule, march_points
-from sonolube.dynamics.resolution import force_in_motion, resolution
 from sonolube.dynamics.sharing import shared_march
-from sonolube.dynamics.state_pairs import StatePairs, state_pairs
 from sonolube.dynamics.structure import Structure
-from sonolube.dynamics.trajectories import ContactMotion, Envelope, State, Trajectories, Trajectory
+from sonolube.dynamics.time_marching.batch import Marched, Points, Schedule, march_points
+from sonolube.dynamics.time_marching.records import ContactMotion, Envelope, State, Trajectories, Trajectory
+from sonolube.dynamics.time_marching.step_control import force_in_motion, resolution
 from sonolube.dynamics.waveform import Sine, StartUpRamp, Waveform, drive_voltage, ramp_factor
 from sonolube.errors import InvalidInput
 

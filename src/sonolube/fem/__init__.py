@@ -1,36 +1,8 @@
 """Finite elements: bodies, their meshes, natural modes, and piezoelectric response."""
 
-from sonolube.fem.actuators import (
-    CUTTER_HEAD,
-    TRANSDUCERS,
-    TRIBOMETER_ACTUATOR,
-    acorn_nut,
-    cutter_disc,
-    cutter_head,
-    tribometer_actuator,
-)
 from sonolube.fem.classification import Motion, mode_names, participation
-from sonolube.fem.convergence import ConvergedModes, converged_modes, extrapolated
-from sonolube.fem.fields import at_points, equivalent_stress, stresses
-from sonolube.fem.forced import forced_motion
-from sonolube.fem.geometry import Geometry, assembled, moved, read_step
-from sonolube.fem.harmonic import (
-    HarmonicResponse,
-    Output,
-    ReducedModel,
-    direct_response,
-    harmonic_response,
-    reduced,
-    resonances_of,
-)
-from sonolube.fem.kernel import MissingPart
-from sonolube.fem.medium import Medium, isotropic, medium_of, poled
-from sonolube.fem.mesh import Mesh, box_mesh, flat_triangles
-from sonolube.fem.meshing import mesh_of
-from sonolube.fem.model import Electrodes, FaceSpring, Fixed, Model
-from sonolube.fem.modes import NaturalModes, NotConverged, natural_modes, rigid_motions
-from sonolube.fem.orders import carried, of_order
-from sonolube.fem.parts import (
+from sonolube.fem.electromechanical_model import ElectricalMode, Port, converged_port, coupled_resonances
+from sonolube.fem.parts.basic import (
     PARTS,
     Slot,
     block,
@@ -42,22 +14,39 @@ from sonolube.fem.parts import (
     ring,
     stepped_horn,
 )
-from sonolube.fem.patches import edge_nodes, reshaped, with_patch
-from sonolube.fem.port import ElectricalMode, Port, converged_port, coupled_resonances
-from sonolube.fem.reduction import contact_structure, under_free_body
+from sonolube.fem.parts.stack import layered, stack_ceramic
+from sonolube.fem.parts.transducers import TRANSDUCERS, Dimension, Transducer, poled_part, stack
+from sonolube.fem.parts.trimming import trimmed
 from sonolube.fem.ritz import Section, annulus, rectangle, ritz_frequencies
-from sonolube.fem.stack import layered, stack_ceramic
+from sonolube.fem.solver.cad import MissingPart
+from sonolube.fem.solver.convergence import ConvergedModes, converged_modes, extrapolated
+from sonolube.fem.solver.fields import at_points, equivalent_stress, stresses
+from sonolube.fem.solver.forced import forced_motion
+from sonolube.fem.solver.geometry import Geometry, assembled, moved, read_step
+from sonolube.fem.solver.harmonic import (
+    HarmonicResponse,
+    Output,
+    ReducedModel,
+    direct_response,
+    harmonic_response,
+    reduced,
+    resonances_of,
+)
+from sonolube.fem.solver.medium import Medium, isotropic, medium_of, poled
+from sonolube.fem.solver.mesh import Mesh, box_mesh, flat_triangles
+from sonolube.fem.solver.meshing import mesh_of
+from sonolube.fem.solver.model import Electrodes, FaceSpring, Fixed, Model
+from sonolube.fem.solver.modes import NaturalModes, NotConverged, natural_modes, rigid_motions
+from sonolube.fem.solver.orders import carried, of_order
+from sonolube.fem.solver.patches import edge_nodes, reshaped, with_patch
+from sonolube.fem.solver.reduction import contact_structure, under_free_body
 from sonolube.fem.surface_loci import LocusEllipse, locus_ellipse
-from sonolube.fem.transducers import Dimension, Transducer, poled_part, stack
-from sonolube.fem.trimming import trimmed
 from sonolube.fem.tuning import NamedMode, TunedMode, loaded_frequencies, named_mode, tuned_mode
 from sonolube.fem.vtu import vtu
 
 __all__ = [
-    "CUTTER_HEAD",
     "PARTS",
     "TRANSDUCERS",
-    "TRIBOMETER_ACTUATOR",
     "ConvergedModes",
     "Dimension",
     "ElectricalMode",
@@ -82,7 +71,6 @@ __all__ = [
     "Slot",
     "Transducer",
     "TunedMode",
-    "acorn_nut",
     "annulus",
     "assembled",
     "at_points",
@@ -95,8 +83,6 @@ __all__ = [
     "converged_modes",
     "converged_port",
     "coupled_resonances",
-    "cutter_disc",
-    "cutter_head",
     "cylinder",
     "direct_response",
     "edge_nodes",
@@ -133,7 +119,6 @@ __all__ = [
     "stack_ceramic",
     "stepped_horn",
     "stresses",
-    "tribometer_actuator",
     "trimmed",
     "tuned_mode",
     "under_free_body",

@@ -9,10 +9,10 @@ from scipy import sparse
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.fem.assembly import mass_matrix
-from sonolube.fem.mesh import Mesh
-from sonolube.fem.model import DIRECTIONS, Model
-from sonolube.fem.modes import NaturalModes
+from sonolube.fem.solver.assembly import mass_matrix
+from sonolube.fem.solver.mesh import Mesh
+from sonolube.fem.solver.model import DIRECTIONS, Model
+from sonolube.fem.solver.modes import NaturalModes
 
 _DEGREE = 8  # of the polynomials along the axis, enough for modes of some three wavelengths
 _DOMINANT = 0.5

@@ -8,15 +8,15 @@ from scipy.linalg import eigh
 
 from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.fem.assembly import face_weights
 from sonolube.fem.classification import mode_names
-from sonolube.fem.convergence import converged_modes
-from sonolube.fem.grading import graded
-from sonolube.fem.harmonic import Output, observers
-from sonolube.fem.model import DIRECTIONS, Model
-from sonolube.fem.modes import NaturalModes, NotConverged, natural_modes, shift_for
-from sonolube.fem.orders import of_order
-from sonolube.fem.system import Solve, System, shifted, system
+from sonolube.fem.solver.assembly import face_weights
+from sonolube.fem.solver.convergence import converged_modes
+from sonolube.fem.solver.grading import graded
+from sonolube.fem.solver.harmonic import Output, observers
+from sonolube.fem.solver.model import DIRECTIONS, Model
+from sonolube.fem.solver.modes import NaturalModes, NotConverged, natural_modes, shift_for
+from sonolube.fem.solver.orders import of_order
+from sonolube.fem.solver.system import Solve, System, shifted, system
 
 Advance = Callable[[str, int, int], None]
 

@@ -8,8 +8,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.fem.mesh import Mesh
-from sonolube.fem.orders import carried, of_order
+from sonolube.fem.solver.mesh import Mesh
+from sonolube.fem.solver.orders import carried, of_order
 
 _QUADRATIC_TETRA = 24  # VTK's number; its nodes come in the order of ours
 _TYPES = {"f": "Float64", "i": "Int64", "u": "UInt8"}

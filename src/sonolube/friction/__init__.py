@@ -1,9 +1,6 @@
 """Friction: its laws, and what vibration makes of them."""
 
-from sonolube.friction.bristle import Holder, coupled
-from sonolube.friction.closures import FRICTION_CLOSURES, as_published, kinematic, load_balanced, separating_half_period
 from sonolube.friction.coulomb import CoulombFriction, coulomb_friction, friction_coefficient
-from sonolube.friction.cube import as_published_ratio, separating_half_period_ratio, steady_deformation
 from sonolube.friction.dahl import DahlFriction, dahl_friction, dahl_friction_history
 from sonolube.friction.driven import DrivenSlide, driven_slide
 from sonolube.friction.elliptical import contact_share, elliptical_traction_ratio
@@ -29,6 +26,17 @@ from sonolube.friction.lubrication import (
     stribeck_coefficient,
 )
 from sonolube.friction.lugre import LuGreFriction, LuGreHistory, lugre_friction_history, lugre_steady_friction
+from sonolube.friction.models.asperity_stick_slip import mindlin_memory_length, stick_slip, stick_slip_ratio
+from sonolube.friction.models.asperity_stick_slip_batch import SINE_TOLERANCE, stick_slip_ratios
+from sonolube.friction.models.bristle_with_holder import Holder, coupled
+from sonolube.friction.models.closures import (
+    FRICTION_CLOSURES,
+    as_published,
+    kinematic,
+    load_balanced,
+    separating_half_period,
+)
+from sonolube.friction.models.dong_2015_sine import as_published_ratio, separating_half_period_ratio, steady_deformation
 from sonolube.friction.published_approximations import (
     approximate_guided_ratio,
     approximate_longitudinal_ratio,
@@ -46,8 +54,6 @@ from sonolube.friction.spring_coupled import (
     static_plateau,
 )
 from sonolube.friction.spring_motion import guided_critical_speed, guided_oscillation_ratio, oscillation_ratio
-from sonolube.friction.stick_slip import mindlin_memory_length, stick_slip, stick_slip_ratio
-from sonolube.friction.stick_slip_batch import SINE_TOLERANCE, stick_slip_ratios
 from sonolube.friction.vibrated_dahl import dahl_under_vibration
 from sonolube.friction.vibrated_lugre import lugre_under_vibration
 

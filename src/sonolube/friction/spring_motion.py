@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
 from sonolube.errors import InvalidInput, ModelRangeWarning, OutsideRange
-from sonolube.friction.bristle import Holder, propagators, with_mass
+from sonolube.friction.models.bristle_with_holder import Holder, propagators, with_mass
 from sonolube.friction.spring_coupled import SpringContact, critical_speed, normal_oscillation_ratio
 
 _PERIODS, _STEPS = 2000, 4096

@@ -3,10 +3,10 @@
 from sonolube.identification.compatibility import Compatibility, compatibility
 from sonolube.identification.fact import Fact, Observe, Relation, misses
 from sonolube.identification.identify import identify
+from sonolube.identification.pin_on_disc import PinOnDiscTest, observer
 from sonolube.identification.posterior import Posterior, posterior
 from sonolube.identification.record import Direction, Estimate, Identification, Reading
 from sonolube.identification.rig_tables import rig_tables
-from sonolube.identification.tribometer import PinOnDiscTest, observer
 
 __all__ = [
     "Compatibility",

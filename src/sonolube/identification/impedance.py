@@ -11,8 +11,8 @@ from sonolube.actuator import Branch, ButterworthVanDyke, Resonances, circuit_ad
 from sonolube.checks import Complexes, Floats, require_non_negative, require_within
 from sonolube.errors import InvalidInput
 from sonolube.identification.spectral_residual import LOG_COMPLEX, residual_named
-from sonolube.measurement.impedance_spectrum import ImpedanceSpectrum
-from sonolube.measurement.logarithmic_fit import (
+from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
+from sonolube.measurement.statistics.logarithmic_fit import (
     Interval,
     LogarithmicFit,
     correlation_factor,

@@ -11,8 +11,8 @@ from sonolube.checks import Complexes, Floats, require_within
 from sonolube.dynamics.structure import Structure, electrical_admittance
 from sonolube.errors import InvalidInput
 from sonolube.identification.spectral_residual import LOG_COMPLEX, residual_named
-from sonolube.measurement.impedance_spectrum import ImpedanceSpectrum
-from sonolube.measurement.logarithmic_fit import Interval, correlation_factor, fit_logarithms, intervals
+from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
+from sonolube.measurement.statistics.logarithmic_fit import Interval, correlation_factor, fit_logarithms, intervals
 
 _STIFFNESS_FACTORS = np.geomspace(1 / 30, 30, 121)
 _DAMPING_FACTORS = (0.1, 1.0, 10.0)

@@ -7,8 +7,8 @@ from sonolube.report.measurement import (
     measurement_object,
     write_measurement_report,
 )
+from sonolube.report.pin_on_disc_sheet import TestSheet, read_test_sheet, test_sheet_table
 from sonolube.report.reproduction import summary, validation_object, write_report
-from sonolube.report.test_sheet import TestSheet, read_test_sheet, test_sheet_table
 
 __all__ = [
     "Finding",

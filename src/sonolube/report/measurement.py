@@ -10,7 +10,7 @@ from sonolube import __version__
 from sonolube.figure import publication_style, rendered
 from sonolube.files import write_whole
 from sonolube.report.measured.sheet import Sheet, SheetFigure, SheetTable, Value
-from sonolube.report.test_sheet import TestSheet, test_sheet_table
+from sonolube.report.pin_on_disc_sheet import TestSheet, test_sheet_table
 
 Advance = Callable[[str, int, int], None]
 

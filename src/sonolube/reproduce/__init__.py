@@ -1,19 +1,18 @@
 """The dissertation reproduced: each published number beside the number computed for it, one module a chapter."""
 
 from sonolube.errors import UnknownName
-from sonolube.reproduce import (
-    chapter2,
-    chapter3,
-    chapter4,
-    closure_comparison,
-    closure_dispute,
-    closure_dynamics,
-    closure_error_figures,
-    closure_figures,
-    model_comparison_figures,
-)
-from sonolube.reproduce.result import ReportFigure, Reproduction
+from sonolube.figure import ReportFigure
+from sonolube.reproduce.chapter2 import rows as chapter2
+from sonolube.reproduce.chapter3 import rows as chapter3
+from sonolube.reproduce.chapter4 import rows as chapter4
+from sonolube.reproduce.closures import comparison as closure_comparison
+from sonolube.reproduce.closures import dynamics as closure_dynamics
+from sonolube.reproduce.closures import error_figures as closure_error_figures
+from sonolube.reproduce.closures import figures as closure_figures
+from sonolube.reproduce.closures import tables_in_conflict as closure_dispute
+from sonolube.reproduce.result import Reproduction
 from sonolube.reproduce.row import Row, Verdict
+from sonolube.validation import figures as model_comparison_figures
 
 __all__ = ["ReportFigure", "Reproduction", "Row", "Verdict", "reproduction"]
 

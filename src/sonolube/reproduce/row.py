@@ -1,17 +1,12 @@
 """One published number beside the number computed for it, and the verdict on the two."""
 
-from collections.abc import Callable
-from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import StrEnum
-from itertools import product
 
-from sonolube.errors import InvalidInput
-from sonolube.published import PrintedNumber, parse_printed, statement, table
+from sonolube.published import PrintedNumber
+from sonolube.published.values import Computed, Published
 from sonolube.units import convert
 from sonolube.vocabulary import unit_of
-
-_PROTOCOL_CHAPTER = 2  # appendix A is the protocol of that chapter's tests
 
 
 class Verdict(StrEnum):
@@ -69,122 +64,6 @@ class Row:
         if self.computed is None or self.published == 0:
             return None
         return self.computed / self.published - 1
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Published:
-    """One published number in its place.
-
-    Parameters
-    ----------
-    id, source, quantity, unit : str
-        As in `Row`.
-    chapter : int
-        As in `Row`.
-    number : PrintedNumber
-        The number and its range, in SI.
-    doubt : str
-        Why the printed number cannot be right; empty where nothing speaks against it.
-    right : tuple of PrintedNumber
-        What it should have been, where the doubt puts that in numbers.
-    """
-
-    id: str
-    chapter: int
-    source: str
-    quantity: str
-    unit: str
-    number: PrintedNumber
-    doubt: str
-    right: tuple[PrintedNumber, ...]
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Computed:
-    """A computed number, with the range that the rounding of its printed inputs leaves open; in SI."""
-
-    value: float
-    low: float
-    high: float
-
-
-def cell(table_id: str, column: str, row: int) -> Published:
-    """Return one cell of a published table; `row` counts from 0.
-
-    Raises
-    ------
-    UnknownName
-        If there is no such table.
-    """
-    source = table(table_id)
-    printed = source.columns[column]
-    number = printed.cells[row]
-    assert number is not None, f"table {table_id}, {column}, row {row} is empty"
-    doubts = [doubt for doubt in source.doubts if (doubt.column, doubt.row) == (column, row)]
-    return Published(
-        id=f"table-{table_id}-{column}-{row + 1}".replace("_", "-"),
-        chapter=int(table_id[0]),
-        source=f"Table {table_id}",
-        quantity=printed.quantity,
-        unit=printed.unit,
-        number=number,
-        doubt=" ".join(f"{doubt.reason} [{doubt.erratum}]" for doubt in doubts),
-        right=tuple(
-            number
-            for doubt in doubts
-            for number in _alternatives(doubt.right, printed.quantity, printed.unit, printed.scale)
-        ),
-    )
-
-
-def stated(statement_id: str) -> Published:
-    """Return one number of the running text.
-
-    Raises
-    ------
-    UnknownName
-        If there is no such statement.
-    """
-    source = statement(statement_id)
-    in_appendix = source.section.startswith("A")
-    return Published(
-        id=statement_id,
-        chapter=_PROTOCOL_CHAPTER if in_appendix else int(source.section[0]),
-        source=f"Appendix {source.section}" if in_appendix else f"Section {source.section}",
-        quantity=source.quantity,
-        unit=source.unit,
-        number=replace(source.number, low=0.0, high=source.number.value) if source.relation == "<" else source.number,
-        doubt=f"{source.doubt} [{source.erratum}]" if source.doubt else "",
-        right=_alternatives(source.right, source.quantity, source.unit, 1.0),
-    )
-
-
-def _alternatives(text: str, quantity: str, unit: str, scale: float) -> tuple[PrintedNumber, ...]:
-    """Return the numbers of a correction such as "40-240 or 60-240"; none of one in words."""
-    numbers = []
-    for alternative in text.split(" or "):
-        with suppress(InvalidInput):
-            numbers.append(parse_printed(alternative.replace(" to ", "-"), unit, scale, quantity=quantity))
-    return tuple(numbers)
-
-
-def over_rounding(function: Callable[..., float], *inputs: PrintedNumber) -> Computed:
-    """Evaluate `function` at printed inputs and at every corner of their rounding.
-
-    Parameters
-    ----------
-    function : callable
-        Of as many numbers in SI as there are inputs; monotone in each over half a digit.
-    *inputs : PrintedNumber
-        What it is evaluated at.
-
-    Returns
-    -------
-    Computed
-    """
-    corners = product(*[(number.value - number.half_digit, number.value + number.half_digit) for number in inputs])
-    values = [float(function(*corner)) for corner in corners]
-    return Computed(value=float(function(*[number.value for number in inputs])), low=min(values), high=max(values))
 
 
 def compare(published: Published, computed: Computed | float, note: str) -> Row:

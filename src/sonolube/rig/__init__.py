@@ -1,12 +1,15 @@
 """Rigs: an experiment or a device as one record, read from a file, and what it does at its operating point."""
 
-from sonolube.rig.closure import friction_ratios
+from sonolube.rig.contact_temperature import HeatPoint, heat_point, thermal_solid
 from sonolube.rig.dataset import dataset, gridded, write_netcdf
 from sonolube.rig.distribution import Distribution, LogNormal, Normal, Uniform
-from sonolube.rig.edit import with_tables
-from sonolube.rig.ensemble import OperatingPoints, operating_points, steady_states
-from sonolube.rig.heat import HeatPoint, heat_point, thermal_solid
+from sonolube.rig.file.edit import with_tables
+from sonolube.rig.file.json_schema import rig_schema
+from sonolube.rig.file.reader import read_rig, rig_content, rig_from, structure_by_stack, structure_entries
+from sonolube.rig.friction_and_wear import friction_ratios
 from sonolube.rig.least_power import least_power_study
+from sonolube.rig.linear_response import Response, frequency_grid, linear_response, touching_structure
+from sonolube.rig.lubrication import RegimeMap, RegimePoint, regime_map, regime_point, wear_of_materials
 from sonolube.rig.operating_point import (
     ContactPoint,
     FrictionPoint,
@@ -15,16 +18,13 @@ from sonolube.rig.operating_point import (
     friction_point,
     wear_point,
 )
+from sonolube.rig.operating_point_batch import NUMBERS, STATUSES, PointBatch, point_batch
+from sonolube.rig.operating_points import OperatingPoints, operating_points, steady_states
 from sonolube.rig.parametric_study import frequency_study, load_study, speed_study, voltage_study, waveform_study
-from sonolube.rig.point_batch import NUMBERS, STATUSES, PointBatch, point_batch
-from sonolube.rig.read import read_rig, rig_content, rig_from, structure_by_stack, structure_entries
 from sonolube.rig.record import Rig
-from sonolube.rig.regime import RegimeMap, RegimePoint, regime_map, regime_point, wear_of_materials
-from sonolube.rig.response import Response, frequency_grid, linear_response, touching_structure
-from sonolube.rig.schema import rig_schema
 from sonolube.rig.simulation import Simulation, simulate
 from sonolube.rig.start_up import StartUp, start_up
-from sonolube.rig.steady_motion import gap_motion
+from sonolube.rig.steady_vibration import gap_motion
 from sonolube.rig.study_figures import STUDY_FIGURES
 
 __all__ = [

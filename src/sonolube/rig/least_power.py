@@ -7,9 +7,9 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_positive, require_within
 from sonolube.rig.dataset import gridded
-from sonolube.rig.ensemble import Advance, OperatingPoints, operating_points
+from sonolube.rig.linear_response import require_drive
+from sonolube.rig.operating_points import Advance, OperatingPoints, operating_points
 from sonolube.rig.record import Rig
-from sonolube.rig.response import require_drive
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -10,11 +10,11 @@ from sonolube.contact import (
     tangential_stiffness,
 )
 from sonolube.friction import separating_half_period_ratio
-from sonolube.rig.closure import friction_ratio, sine_under_load
 from sonolube.rig.excitation import amplifier_power
+from sonolube.rig.friction_and_wear import friction_ratio, sine_under_load
+from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.record import Rig
-from sonolube.rig.response import rest_separation
-from sonolube.wear import cube_wear_rate, vibrating_cube_wear_rate
+from sonolube.wear.cube import cube_wear_rate, vibrating_cube_wear_rate
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

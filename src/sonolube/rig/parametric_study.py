@@ -9,12 +9,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.dynamics import WAVEFORMS, Status, modes
-from sonolube.dynamics.sliding import motion
+from sonolube.dynamics.steady_friction import motion
 from sonolube.errors import InvalidInput
 from sonolube.rig.dataset import gridded
-from sonolube.rig.ensemble import Advance, OperatingPoints, operating_points, steady_states
+from sonolube.rig.linear_response import require_drive, require_structure, touching_structure
+from sonolube.rig.operating_points import Advance, OperatingPoints, operating_points, steady_states
 from sonolube.rig.record import Rig
-from sonolube.rig.response import require_drive, require_structure, touching_structure
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -9,12 +9,12 @@ import numpy as np
 from sonolube.actuator import stack_doubts
 from sonolube.actuator.drive import Drive
 from sonolube.contact import GapMotion, contact_doubts
-from sonolube.rig.closure import friction_ratio, wear_closure, wear_rate_ratio
 from sonolube.rig.excitation import amplifier_power, voltage_harmonics, voltage_range
+from sonolube.rig.friction_and_wear import friction_ratio, wear_closure, wear_rate_ratio
+from sonolube.rig.linear_response import require_drive, require_structure, rest_separation
 from sonolube.rig.record import Rig
-from sonolube.rig.response import require_drive, require_structure, rest_separation
-from sonolube.rig.steady_motion import SteadyMotion, steady_motion
-from sonolube.wear import cube_wear_rate
+from sonolube.rig.steady_vibration import SteadyMotion, steady_motion
+from sonolube.wear.cube import cube_wear_rate
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 
 from sonolube.checks import require_positive
 from sonolube.dynamics.attractor import beat, settling_time
-from sonolube.dynamics.trajectories import Trajectory
+from sonolube.dynamics.time_marching.records import Trajectory
 from sonolube.dynamics.transient import march, trajectory
 from sonolube.errors import InvalidInput
 from sonolube.rig.excitation import ramp_of, waveform_of
+from sonolube.rig.linear_response import gap_law_of, require_drive, require_structure, rest_separation
 from sonolube.rig.record import Rig
-from sonolube.rig.response import gap_law_of, require_drive, require_structure, rest_separation
 
 _WINDOWS = 400
 _LONGEST = 200_000  # periods whose every step still fits a figure's memory

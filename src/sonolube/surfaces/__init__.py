@@ -18,15 +18,16 @@ from sonolube.surfaces.asperities import (
     spectral_moments,
     summits,
 )
-from sonolube.surfaces.ball_on_disc import WornCap, ball_cap_volume, disc_groove_volume, worn_cap
 from sonolube.surfaces.correlation import Autocorrelation, DecayLengths, autocorrelation, decay_lengths
 from sonolube.surfaces.features import FeatureParameters, feature_parameters
 from sonolube.surfaces.filtering import band_pass, high_pass, low_pass, profile_low_pass
 from sonolube.surfaces.generated import HeightSpectrum, SelfAffineSpectrum, SingleScaleSpectrum, gaussian_surface
-from sonolube.surfaces.generated_groove import GeneratedGroove, GrooveShape, ScannedField, generated_groove
-from sonolube.surfaces.groove import Groove, measure_groove
-from sonolube.surfaces.groove_finding import FoundGroove, find_groove
-from sonolube.surfaces.groove_track import GrooveTrack
+from sonolube.surfaces.grooves.ball_on_disc import WornCap, ball_cap_volume, disc_groove_volume, worn_cap
+from sonolube.surfaces.grooves.detection import FoundGroove, find_groove
+from sonolube.surfaces.grooves.generated import GeneratedGroove, GrooveShape, ScannedField, generated_groove
+from sonolube.surfaces.grooves.groove import Groove, measure_groove
+from sonolube.surfaces.grooves.track import GrooveTrack
+from sonolube.surfaces.grooves.track_marks import TrackMarks, track_marks
 from sonolube.surfaces.height_map import HeightMap
 from sonolube.surfaces.levelling import form, level
 from sonolube.surfaces.material_ratio import (
@@ -53,7 +54,6 @@ from sonolube.surfaces.spectrum import (
     profiles,
     radial_spectrum,
 )
-from sonolube.surfaces.track_marks import TrackMarks, track_marks
 from sonolube.surfaces.waviness import waviness_lengths
 
 __all__ = [

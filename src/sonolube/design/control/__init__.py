@@ -1,15 +1,8 @@
 """Friction as a commanded quantity: controllers tuned for a rig, run against it, and exported."""
 
 from sonolube.design.control.amplifier import Amplifier, largest_swing, limiting
-from sonolube.design.control.belt import (
-    DraggedMass,
-    DraggedMotion,
-    dragged_mass,
-    dragged_motion,
-    kinetic_friction,
-    steady_sliding_damping,
-)
 from sonolube.design.control.closed_loop import ControlRun, Disturbance, Drift, FrictionLoop, closed_loop
+from sonolube.design.control.control_design import FEED_FORWARD, ControlSettings, ControlStudy, control_study
 from sonolube.design.control.controller import (
     ControllerState,
     FrictionController,
@@ -26,9 +19,16 @@ from sonolube.design.control.friction_map import (
     modelled_map,
     voltage_for,
 )
+from sonolube.design.control.mass_on_belt import (
+    DraggedMass,
+    DraggedMotion,
+    dragged_mass,
+    dragged_motion,
+    kinetic_friction,
+    steady_sliding_damping,
+)
 from sonolube.design.control.process import Margins, PIGains, Process, loop_margins, loop_response, simc_gains
 from sonolube.design.control.step_response import ControlEnergy, StepResponse, control_energy, step_response
-from sonolube.design.control.study import FEED_FORWARD, ControlSettings, ControlStudy, control_study
 from sonolube.design.control.tracking import FrequencyTracker, designed_tracker, next_frequency
 from sonolube.design.control.vibration import (
     VibrationMode,

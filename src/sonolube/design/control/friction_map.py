@@ -9,9 +9,9 @@ from sonolube.checks import Floats, require_non_negative
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.metrics import EfficiencyLine, friction_at_power, power_for_friction
 from sonolube.rig import Rig, friction_ratios, operating_points
-from sonolube.rig.closure import sine_under_load
 from sonolube.rig.excitation import amplifier_power
-from sonolube.rig.response import require_drive
+from sonolube.rig.friction_and_wear import sine_under_load
+from sonolube.rig.linear_response import require_drive
 
 _FLAT = 1e-6  # share of the intrinsic friction by which neighbouring points must differ
 

@@ -9,7 +9,7 @@ from sonolube.design.control.closed_loop import ControlRun
 from sonolube.errors import InvalidInput
 from sonolube.rig import Rig
 from sonolube.rig.excitation import amplifier_power
-from sonolube.rig.response import require_drive
+from sonolube.rig.linear_response import require_drive
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -1,7 +1,6 @@
 """Optimisation: which actuator, frequency, waveform and masses give a friction for the least power, heat or voltage."""
 
 from sonolube.design.optimisation.assessment import CONSTRAINTS, Assessment, assess
-from sonolube.design.optimisation.descent import Point, descended, point_at, tangent
 from sonolube.design.optimisation.electrical import (
     CAPACITANCE_TOLERANCE,
     Electrical,
@@ -10,12 +9,13 @@ from sonolube.design.optimisation.electrical import (
     design_rig,
     electrical,
 )
-from sonolube.design.optimisation.landscape import Landscape, Task, choices_of, looked_over, of_choice, worst_of
+from sonolube.design.optimisation.local_search import Point, descended, point_at, tangent
+from sonolube.design.optimisation.optimum import Optimum, optimise
 from sonolube.design.optimisation.pareto import bounds_between, epsilon_front, non_dominated
 from sonolube.design.optimisation.requirements import OBJECTIVES, Horn, Limits
 from sonolube.design.optimisation.rig_text import design_text
+from sonolube.design.optimisation.screening import Landscape, Task, choices_of, looked_over, of_choice, worst_of
 from sonolube.design.optimisation.space import OWN, Choice, DesignSpace, rig_of, stack_of, structure_of
-from sonolube.design.optimisation.study import Optimum, optimise
 from sonolube.design.optimisation.target import HIGHEST_SWING, exact_swing, highest_swing, swings_for_ratio
 from sonolube.design.optimisation.tolerance import NOMINAL, Deviation, Tolerance, deviations, over_deviations
 

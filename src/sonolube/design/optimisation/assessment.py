@@ -12,9 +12,9 @@ from sonolube.contact import separation
 from sonolube.design.optimisation.requirements import Limits
 from sonolube.dynamics import Status, SteadyStates
 from sonolube.rig import Rig
-from sonolube.rig.ensemble import Settings, steady_states_of
 from sonolube.rig.excitation import amplifier_power, voltage_range
-from sonolube.rig.response import require_drive
+from sonolube.rig.linear_response import require_drive
+from sonolube.rig.operating_points import Settings, steady_states_of
 
 CONSTRAINTS = (
     "sound",

@@ -16,13 +16,13 @@ from sonolube.actuator import (
     voltage_gain,
 )
 from sonolube.checks import Complexes, Floats
-from sonolube.design.optimisation.descent import Point, driven
-from sonolube.design.optimisation.landscape import Task
+from sonolube.design.optimisation.local_search import Point, driven
+from sonolube.design.optimisation.screening import Task
 from sonolube.design.optimisation.space import rig_of
 from sonolube.dynamics import electrical_admittance
 from sonolube.errors import InvalidInput
 from sonolube.rig import Rig, steady_states, touching_structure
-from sonolube.rig.response import require_drive
+from sonolube.rig.linear_response import require_drive
 
 CAPACITANCE_TOLERANCE = 0.2
 """Relative tolerance of the capacitance that data sheets state."""

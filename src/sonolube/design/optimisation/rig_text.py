@@ -5,12 +5,12 @@ from collections.abc import Mapping
 from typing import Any
 
 from sonolube.actuator import PiezoStack
-from sonolube.design.optimisation.descent import Point
 from sonolube.design.optimisation.electrical import design_rig
-from sonolube.design.optimisation.landscape import Task
+from sonolube.design.optimisation.local_search import Point
+from sonolube.design.optimisation.screening import Task
 from sonolube.design.optimisation.space import OWN
 from sonolube.rig import with_tables
-from sonolube.rig.response import require_drive
+from sonolube.rig.linear_response import require_drive
 from sonolube.vocabulary import quantities
 
 _STACK = (

@@ -11,7 +11,7 @@ from sonolube.design.optimisation.tolerance import NOMINAL, Deviation
 from sonolube.dynamics import Structure, chain_structure, pin_on_disc_chain
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.rig import Rig
-from sonolube.rig.response import require_drive, require_structure
+from sonolube.rig.linear_response import require_drive, require_structure
 
 OWN = "own"
 """Name of the actuator that the rig has."""

@@ -10,7 +10,7 @@ from sonolube.design.optimisation.assessment import offset_share
 from sonolube.design.optimisation.requirements import Limits
 from sonolube.rig import Rig, point_batch
 from sonolube.rig.excitation import voltage_range
-from sonolube.rig.response import require_drive
+from sonolube.rig.linear_response import require_drive
 
 HIGHEST_SWING = 200.0
 """Swing beyond which no voltage is tried where neither stack nor amplifier has a limit. [V]"""

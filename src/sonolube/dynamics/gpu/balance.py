@@ -1,15 +1,15 @@
 """Newton's method on the mean and the harmonics of one exponential contact, by a thread.
 
-Unknowns and equations are those of `sonolube.dynamics.harmonic_kernel`, one point to a thread: every array is the
-thread's own, and rows hold real and imaginary parts.
+Unknowns and equations are those of `sonolube.dynamics.harmonic_balance.harmonic_kernel`, one point to a thread:
+every array is the thread's own, and rows hold real and imaginary parts.
 """
 
 import math
 
 from sonolube.checks import Floats
+from sonolube.dynamics.gpu.device import on_device
 from sonolube.dynamics.gpu.structure_rows import driven, forced
-from sonolube.dynamics.gpu.threads import on_device
-from sonolube.dynamics.harmonic_kernel import CONVERGED, DIVERGED, NEEDS_HARMONICS, NEEDS_SAMPLES, TAIL
+from sonolube.dynamics.harmonic_balance.harmonic_kernel import CONVERGED, DIVERGED, NEEDS_HARMONICS, NEEDS_SAMPLES, TAIL
 
 MOST_HARMONICS = 12
 """Most harmonics of the contact that a thread holds; points that need more are the processor's. []"""
@@ -233,7 +233,7 @@ def verdict(
     if not size <= _EXACTLY * tolerance * scale:
         return DIVERGED
     highest = math.sqrt(spectrum[0, top] ** 2 + spectrum[1, top] ** 2)
-    # the samples mistake harmonic count - h for harmonic h; see `sonolube.dynamics.harmonic_kernel`
+    # the samples mistake harmonic count - h for harmonic h; see `sonolube.dynamics.harmonic_balance.harmonic_kernel`
     aliased = tolerance ** ((0.5 * count - 1) / (count - h))
     if highest > aliased * max(spectrum[0, 0], 1e-3 * load):
         return NEEDS_SAMPLES

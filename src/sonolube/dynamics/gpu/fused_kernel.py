@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 from sonolube.checks import Floats
 from sonolube.dynamics.gap_law import LOST
 from sonolube.dynamics.gpu.balance import MATRIX, MOST_HARMONICS, ORDERS, ROOM, balance, verdict, write_linear_part
-from sonolube.dynamics.gpu.first_guess import sine_amplitudes, sine_balance, sine_orders
-from sonolube.dynamics.gpu.growing import FREE, SQUARES, growth_rate
-from sonolube.dynamics.gpu.sliding_means import SPEEDS, write_means
+from sonolube.dynamics.gpu.device import cuda, on_device
+from sonolube.dynamics.gpu.extrema import lost_share, turn, two_turns
+from sonolube.dynamics.gpu.floquet_exponent import FREE, SQUARES, growth_rate
+from sonolube.dynamics.gpu.friction_average import SPEEDS, write_means
+from sonolube.dynamics.gpu.initial_guess import sine_amplitudes, sine_balance, sine_orders
 from sonolube.dynamics.gpu.structure_rows import DETERMINANT, charged, driven
-from sonolube.dynamics.gpu.threads import cuda, on_device
-from sonolube.dynamics.gpu.turning import lost_share, turn, two_turns
-from sonolube.dynamics.harmonic_kernel import CONVERGED, DIVERGED, NEEDS_HARMONICS, NEEDS_SAMPLES, TAIL
+from sonolube.dynamics.harmonic_balance.harmonic_kernel import CONVERGED, DIVERGED, NEEDS_HARMONICS, NEEDS_SAMPLES, TAIL
 
 DONE, UNRESOLVED, AMBIGUOUS, TURNING = 0, 1, 2, 3
 """What became of a point: finished, or left since it was not resolved, has two guesses, or may turn more than twice."""

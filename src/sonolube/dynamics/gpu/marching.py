@@ -5,15 +5,15 @@ import warnings
 import numpy as np
 
 from sonolube.checks import Floats
+from sonolube.dynamics.first_order_modes import StatePairs
 from sonolube.dynamics.gap_law import ExponentialGap, GapLaw, HertzGap, LinearGap, TabulatedGap
+from sonolube.dynamics.gpu.device import THREADS, TURN, chunks, cuda
 from sonolube.dynamics.gpu.marching_kernel import marching_kernel
 from sonolube.dynamics.gpu.step_matrices import steps_of
 from sonolube.dynamics.gpu.structure_rows import MOST_PAIRS
-from sonolube.dynamics.gpu.threads import THREADS, TURN, chunks, cuda
-from sonolube.dynamics.marching import Marched, Points, Schedule, elastic_extremes, law_constants
-from sonolube.dynamics.marching_kernel import STATISTICS
-from sonolube.dynamics.state_pairs import StatePairs
-from sonolube.dynamics.step_filter import corners_within_steps
+from sonolube.dynamics.time_marching.batch import Marched, Points, Schedule, elastic_extremes, law_constants
+from sonolube.dynamics.time_marching.integrator import corners_within_steps
+from sonolube.dynamics.time_marching.marching_kernel import STATISTICS
 
 
 def unmarched(pairs: StatePairs, gap_law: GapLaw, schedule: Schedule) -> str:

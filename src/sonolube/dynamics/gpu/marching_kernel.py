@@ -11,6 +11,19 @@ from typing import Any
 from numba import float64
 
 from sonolube.checks import Floats
+from sonolube.dynamics.gpu.device import cuda
+from sonolube.dynamics.gpu.integrator import (
+    FREQUENCY,
+    LOAD,
+    OFFSET,
+    SWING,
+    contact_force,
+    move,
+    ramp_parabola,
+    seen,
+    start_anew,
+    write_recent,
+)
 from sonolube.dynamics.gpu.step_matrices import (
     AT_CONTACT,
     COSINE,
@@ -26,20 +39,7 @@ from sonolube.dynamics.gpu.step_matrices import (
     X,
     write_step,
 )
-from sonolube.dynamics.gpu.stepping import (
-    FREQUENCY,
-    LOAD,
-    OFFSET,
-    SWING,
-    contact_force,
-    move,
-    ramp_parabola,
-    seen,
-    start_anew,
-    write_recent,
-)
-from sonolube.dynamics.gpu.threads import cuda
-from sonolube.dynamics.step_filter import PAST
+from sonolube.dynamics.time_marching.integrator import PAST
 
 _AT_CONTACT = (2, AT_CONTACT)
 _SUMS = (SHARES, 2)
@@ -110,7 +110,7 @@ def marching_points(n: int, kind: int, damped: bool) -> Any:
         start : ndarray, shape (2 n, p)
             States.
         statistics : ndarray, shape (windows, 8, p)
-            Written, as the other arrays are: see `sonolube.dynamics.marching.Marched`.
+            Written, as the other arrays are: see `sonolube.dynamics.time_marching.batch.Marched`.
         recorded : ndarray, shape (steps to record, 2 n + 1, p)
         strobed : ndarray, shape (periods to record, 2 n, p)
         final : ndarray, shape (2 n, p)

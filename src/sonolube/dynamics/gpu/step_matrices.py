@@ -1,7 +1,8 @@
 """One time step of a structure, made by the thread that marches with it.
 
-The matrices are those of `sonolube.dynamics.step_filter`. What a frequency does not change, the shares of samples of
-force and voltage at the nodes of a step, comes from the processor; the free motion between nodes is the thread's.
+The matrices are those of `sonolube.dynamics.time_marching.integrator`. What a frequency does not change, the shares of
+samples of force and voltage at the nodes of a step, comes from the processor; the free motion between nodes is the
+thread's.
 """
 
 from typing import NamedTuple
@@ -9,11 +10,11 @@ from typing import NamedTuple
 import numpy as np
 
 from sonolube.checks import Floats
+from sonolube.dynamics.first_order_modes import StatePairs
+from sonolube.dynamics.gpu.device import on_device
 from sonolube.dynamics.gpu.structure_rows import free_motion
-from sonolube.dynamics.gpu.threads import on_device
-from sonolube.dynamics.marching import Schedule
-from sonolube.dynamics.state_pairs import StatePairs
-from sonolube.dynamics.step_filter import PAST, force_shares, past_of_a_start, quadrature
+from sonolube.dynamics.time_marching.batch import Schedule
+from sonolube.dynamics.time_marching.integrator import PAST, force_shares, past_of_a_start, quadrature
 from sonolube.dynamics.waveform import Sine, Waveform, value
 
 MIDDLE, SQUARE, LEANING, CONTACT, DRIVE, X, V = 0, 1, 2, 6, 10, 14, 16

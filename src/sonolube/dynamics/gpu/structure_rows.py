@@ -5,8 +5,8 @@ import math
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.dynamics.contact_port import ContactPort
-from sonolube.dynamics.gpu.threads import on_device
+from sonolube.dynamics.gpu.device import on_device
+from sonolube.dynamics.harmonic_balance.receptance import ContactPort
 
 MOST_PAIRS = 8
 """Most pairs of states of a structure that the kernel holds. []"""

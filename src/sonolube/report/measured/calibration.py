@@ -8,7 +8,7 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.measurement.analysis import channel
-from sonolube.measurement.calibration import (
+from sonolube.measurement.gauge.calibration import (
     BranchCalibration,
     HysteresisCalibration,
     fit_branches,
@@ -16,8 +16,8 @@ from sonolube.measurement.calibration import (
     force_with_hysteresis,
     model_energy,
 )
-from sonolube.measurement.mapping import RecordingMapping
-from sonolube.measurement.recording import read_recording
+from sonolube.measurement.recordings.mapping import RecordingMapping
+from sonolube.measurement.recordings.reader import read_recording
 from sonolube.report.measured import calibration_figures as figures
 from sonolube.report.measured.friction import recording_source
 from sonolube.report.measured.sheet import (

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from sonolube.checks import Floats
 from sonolube.figure import COLOURS
-from sonolube.measurement.calibration import ForceEstimate, HysteresisCalibration, force_with_hysteresis
+from sonolube.measurement.gauge.calibration import ForceEstimate, HysteresisCalibration, force_with_hysteresis
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

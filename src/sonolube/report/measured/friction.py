@@ -21,13 +21,13 @@ from sonolube.measurement.analysis import (
     analyse_wobble,
     channel,
 )
-from sonolube.measurement.correlation import correlated_mean
-from sonolube.measurement.friction import MotorFriction
-from sonolube.measurement.mapping import RecordingMapping
-from sonolube.measurement.recording import format_of, read_recording
-from sonolube.measurement.steady_state import SteadyState, steady_state
-from sonolube.measurement.tdms import FORMAT as TDMS
-from sonolube.measurement.windows import DEFAULT_WINDOW, WindowStatistics, streamed_window_statistics
+from sonolube.measurement.friction.forces import MotorFriction
+from sonolube.measurement.friction.steady_state import SteadyState, steady_state
+from sonolube.measurement.friction.windows import DEFAULT_WINDOW, WindowStatistics, streamed_window_statistics
+from sonolube.measurement.recordings.mapping import RecordingMapping
+from sonolube.measurement.recordings.reader import format_of, read_recording
+from sonolube.measurement.recordings.tdms import FORMAT as TDMS
+from sonolube.measurement.statistics.correlation import correlated_mean
 from sonolube.report.measured import friction_figures as figures
 from sonolube.report.measured.sheet import (
     Part,

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from sonolube.measurement.surface_files import read_surface_file
-from sonolube.measurement.wear_ring import WearReduction, WearRing, ring_of_grooves, wear_reduction_of_rings
+from sonolube.measurement.friction.wear_track import WearReduction, WearRing, ring_of_grooves, wear_reduction_of_rings
+from sonolube.measurement.surface_files.reader import read_surface_file
 from sonolube.report.measured import groove_figures as figures
 from sonolube.report.measured.sheet import (
     Column,
@@ -24,7 +24,7 @@ from sonolube.report.measured.sheet import (
 from sonolube.report.measured.surface import SurfaceSettings, surface_source
 from sonolube.report.measured.surface_figures import abbott
 from sonolube.surfaces import disc_groove_volume, material_ratio_curve, measure_groove, track_marks, worn_cap
-from sonolube.surfaces.groove import Groove
+from sonolube.surfaces.grooves.groove import Groove
 
 _STRAIGHT = 100  # lengths of track, beyond which a diameter is the scan's whim
 

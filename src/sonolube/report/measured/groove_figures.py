@@ -8,11 +8,11 @@ from numpy.typing import NDArray
 
 from sonolube.checks import Floats
 from sonolube.figure import COLOURS, MARKERS
-from sonolube.measurement.wear_ring import WearRing
+from sonolube.measurement.friction.wear_track import WearRing
 from sonolube.report.measured.surface_figures import length_scale, show_map
 from sonolube.surfaces import HeightMap
-from sonolube.surfaces.groove import Groove
-from sonolube.surfaces.track_marks import TrackMarks
+from sonolube.surfaces.grooves.groove import Groove
+from sonolube.surfaces.grooves.track_marks import TrackMarks
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

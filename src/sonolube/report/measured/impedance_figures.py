@@ -8,7 +8,7 @@ from sonolube.actuator import ButterworthVanDyke, circuit_admittance
 from sonolube.checks import Complexes
 from sonolube.dynamics.structure import Structure, electrical_admittance
 from sonolube.figure import COLOURS
-from sonolube.measurement.impedance_spectrum import ImpedanceSpectrum
+from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from sonolube.measurement.analysis import analyse_rotation, channel
-from sonolube.measurement.mapping import RecordingMapping
-from sonolube.measurement.recording import read_recording
+from sonolube.measurement.recordings.mapping import RecordingMapping
+from sonolube.measurement.recordings.reader import read_recording
 from sonolube.report.measured import rotation_figures as figures
 from sonolube.report.measured.friction import recording_source
 from sonolube.report.measured.sheet import Part, Sheet, SheetFigure, Value, known, sheet_of

@@ -6,7 +6,7 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.figure import COLOURS, MARKERS
-from sonolube.measurement.rotation import Rotation
+from sonolube.measurement.friction.rotation import Rotation
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

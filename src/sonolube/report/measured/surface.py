@@ -8,7 +8,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.surface_files import SurfaceFile, read_surface_file
+from sonolube.measurement.surface_files.reader import SurfaceFile, read_surface_file
 from sonolube.report.measured import surface_figures as figures
 from sonolube.report.measured.sheet import (
     Column,

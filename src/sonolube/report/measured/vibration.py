@@ -12,9 +12,9 @@ import numpy as np
 from sonolube.checks import Complexes, Floats, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.measurement.analysis import channel
-from sonolube.measurement.assembly import in_si
-from sonolube.measurement.mapping import RecordingMapping
-from sonolube.measurement.recording import read_recording
+from sonolube.measurement.recordings.dataset import in_si
+from sonolube.measurement.recordings.mapping import RecordingMapping
+from sonolube.measurement.recordings.reader import read_recording
 from sonolube.measurement.vibration import (
     OperatingShape,
     amplitude_per_volt,

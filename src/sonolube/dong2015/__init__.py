@@ -1,0 +1,1 @@
+"""Hardware of the dissertation by finite elements: collar element, cutter head and tribometer actuator."""

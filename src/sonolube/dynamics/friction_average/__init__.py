@@ -1,0 +1,1 @@
+"""Period averages of the kinematic friction factor, by quadrature in compiled kernels."""

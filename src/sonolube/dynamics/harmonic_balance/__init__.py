@@ -1,0 +1,1 @@
+"""Harmonic balance: steady states of a structure with one nonlinear contact, by Newton's method over harmonics."""

@@ -1,0 +1,1 @@
+"""Compiled building blocks shared by the solvers: SIMD rows, tabulated force laws, peak velocities."""

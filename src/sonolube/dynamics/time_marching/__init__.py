@@ -1,0 +1,1 @@
+"""Time marching: trajectories of a structure with one nonlinear contact, by an exponential integrator."""

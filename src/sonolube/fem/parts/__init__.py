@@ -1,0 +1,1 @@
+"""Geometries of parts and transducers."""

@@ -1,0 +1,1 @@
+"""Meshes, assembly, eigenvalue and harmonic solvers for elastic and piezoelectric bodies."""

@@ -1,0 +1,200 @@
+"""Meshes of tetrahedra of order two or higher, whose edges may be curved."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from math import comb
+
+import numpy as np
+
+from sonolube.checks import Floats, Integers, require_finite, require_positive
+from sonolube.errors import InvalidInput, UnknownName
+from sonolube.fem.solver.simplex import EDGES, lattice
+
+MOST_ORDER = 8
+"""The highest order of an element; beyond it shape functions on even nodes lose digits."""
+
+_ORDERS = {comb(order + 3, 3): order for order in range(2, MOST_ORDER + 1)}  # by the number of an element's nodes
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Mesh:
+    """Tetrahedra of one order, ten-node or higher, in named regions, between named faces.
+
+    Parameters
+    ----------
+    nodes : ndarray, shape (n, 3)
+        Coordinates in m.
+    elements : ndarray of int, shape (m, a)
+        Nodes of each tetrahedron: four corners, the fourth on the side to which the first three turn right-handed, then
+        the nodes on the edges 01, 12, 02, 03, 13 and 23, on the sides and inside. There are 10 of them in an element of
+        order two, 20 of order three, 35, 56 and 84 up to order six.
+    region_of_element : ndarray of int, shape (m,)
+        Index into `regions`.
+    regions : tuple of str
+        Names of the bodies.
+    faces : mapping of str to ndarray of int, shape (k, b)
+        Triangles of each named face: three corners, then the nodes on the edges 01, 12 and 02, then those inside. Faces
+        between two bodies are called "one|other".
+    curves : callable, optional
+        From an order to where the nodes of each tetrahedron stand on the body itself, shape (m, a, 3) in m.
+
+    Raises
+    ------
+    InvalidInput
+        If there is no element, a node is not finite or an element is turned inside out or has no volume.
+    """
+
+    nodes: Floats
+    elements: Integers
+    region_of_element: Integers
+    regions: tuple[str, ...]
+    faces: Mapping[str, Integers]
+    curves: Callable[[int], Floats] | None = None
+
+    def __post_init__(self) -> None:
+        require_finite(nodes=self.nodes)
+        if self.elements.ndim != 2 or self.elements.shape[1] not in _ORDERS or not len(self.elements):
+            raise InvalidInput(
+                f"elements must have shape (m, a) with m > 0 and a one of {', '.join(map(str, _ORDERS))}, "
+                f"got {self.elements.shape}"
+            )
+        if self.elements.min() < 0 or self.elements.max() >= len(self.nodes):
+            raise InvalidInput("elements name nodes that do not exist")
+        corner = self.nodes[self.elements[:, :4]]
+        volume = np.linalg.det(corner[:, 1:] - corner[:, :1]) / 6
+        if not np.all(volume > 1e-13 * np.abs(volume).max()):
+            raise InvalidInput(
+                f"{int(np.sum(~(volume > 0)))} elements are flat or turned inside out; mesh the body anew"
+            )
+
+    @property
+    def size(self) -> int:
+        """Number of nodes, n."""
+        return len(self.nodes)
+
+    @property
+    def order(self) -> int:
+        """Degree of the polynomials in an element."""
+        return _ORDERS[self.elements.shape[1]]
+
+    def face_nodes(self, name: str) -> Integers:
+        """Return the nodes on the face of this name, in increasing order.
+
+        Raises
+        ------
+        UnknownName
+            If no face has this name.
+        """
+        try:
+            return np.unique(self.faces[name])
+        except KeyError:
+            raise UnknownName.among(self.faces, kind="face", name=name) from None
+
+    def region_nodes(self, name: str) -> Integers:
+        """Return the nodes of the region of this name, in increasing order.
+
+        Raises
+        ------
+        UnknownName
+            If no region has this name.
+        """
+        if name not in self.regions:
+            raise UnknownName.among(self.regions, kind="region", name=name)
+        return np.unique(self.elements[self.region_of_element == self.regions.index(name)])
+
+
+def flat_triangles(mesh: Mesh, *, face: str) -> Integers:
+    """Return small flat triangles between all nodes of a face, such as a picture or a file of facets takes.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    face : str
+        Name of the face.
+
+    Returns
+    -------
+    ndarray of int, shape (t, 3)
+        The square of the order as many as the face has elements.
+
+    Raises
+    ------
+    UnknownName
+        If no face has this name.
+    """
+    mesh.face_nodes(face)
+    return mesh.faces[face][:, _flat(mesh.order)].reshape(-1, 3)
+
+
+def box_mesh(*, length: float, width: float, thickness: float, divisions: tuple[int, int, int]) -> Mesh:
+    """Return a regular mesh of a block centred on the origin, six tetrahedra a cell, without a CAD kernel.
+
+    Parameters
+    ----------
+    length, width, thickness : float
+        Extent along x, y and z. [m]
+    divisions : tuple of three int
+        Cells along x, y and z.
+
+    Returns
+    -------
+    Mesh
+        One region, "block"; faces "-x", "+x", "-y", "+y", "-z" and "+z".
+    """
+    require_positive(length=length, width=width, thickness=thickness)
+    if min(divisions) < 1:
+        raise InvalidInput(f"divisions must be at least 1, got {divisions}")
+    points = np.array([2 * count + 1 for count in divisions])
+    axes = [np.linspace(-size / 2, size / 2, n) for size, n in zip((length, width, thickness), points, strict=True)]
+    nodes = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+    cells = 2 * np.stack(np.meshgrid(*map(np.arange, divisions), indexing="ij"), axis=-1).reshape(-1, 1, 3)
+    corners = (cells[:, np.newaxis] + 2 * _KUHN[np.newaxis]).reshape(-1, 4, 3)
+    between = np.stack([(corners[:, a] + corners[:, b]) // 2 for a, b in EDGES], axis=1)
+    elements = np.ravel_multi_index(
+        tuple(np.moveaxis(np.concatenate([corners, between], axis=1), -1, 0)), tuple(points)
+    )
+    faces = {
+        f"{sign}{'xyz'[axis]}": _sides(elements, nodes[:, axis], side * size / 2)
+        for axis, size in enumerate((length, width, thickness))
+        for sign, side in (("-", -1), ("+", 1))
+    }
+    return Mesh(
+        nodes=nodes,
+        elements=elements,
+        region_of_element=np.zeros(len(elements), dtype=np.int64),
+        regions=("block",),
+        faces=faces,
+    )
+
+
+def _flat(order: int) -> Integers:
+    """Return the triangles between neighbouring nodes of a triangle, turning as it does."""
+    number = {tuple(place): k for k, place in enumerate(lattice(order, corners=3).tolist())}
+    triangles = []
+    for _, i, j in lattice(order, corners=3).tolist():
+        upright, turned = ((i, j), (i + 1, j), (i, j + 1)), ((i + 1, j), (i + 1, j + 1), (i, j + 1))
+        for triangle, reach in ((upright, 1), (turned, 2)):
+            if i + j + reach <= order:
+                triangles.append([number[order - a - b, a, b] for a, b in triangle])
+    return np.array(triangles)
+
+
+def _kuhn() -> Integers:
+    """Return corners of six tetrahedra that fill the unit cube, shape (6, 4, 3), all right-handed."""
+    unit = np.eye(3, dtype=np.int64)
+    tetrahedra = []
+    for first, second, third in ((0, 1, 2), (1, 2, 0), (2, 0, 1), (0, 2, 1), (2, 1, 0), (1, 0, 2)):
+        path = np.cumsum([np.zeros(3, dtype=np.int64), unit[first], unit[second], unit[third]], axis=0)
+        turned = np.linalg.det(path[1:] - path[0]) < 0
+        tetrahedra.append(path[[0, 2, 1, 3]] if turned else path)
+    return np.array(tetrahedra)
+
+
+_KUHN = _kuhn()
+_SIDES = np.array([[0, 1, 2, 4, 5, 6], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [0, 2, 3, 6, 9, 7]])
+
+
+def _sides(elements: Integers, coordinate: Floats, level: float) -> Integers:
+    """Return the sides of elements all of whose nodes lie at `level` of a coordinate."""
+    sides = elements[:, _SIDES].reshape(-1, 6)
+    return np.asarray(sides[np.all(np.isclose(coordinate[sides], level, atol=1e-12), axis=1)])

@@ -1,0 +1,200 @@
+"""A voltage raised in steps: friction at each, and what it takes away from the friction without voltage."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.ndimage import maximum_filter1d, minimum_filter1d
+
+from sonolube.checks import Floats, require_non_negative, require_positive
+from sonolube.errors import InvalidInput
+from sonolube.measurement.friction.forces import measured_reduction
+from sonolube.measurement.friction.time_base import even_interval, require_signal
+from sonolube.measurement.statistics.correlation import correlated_mean
+
+_PIECES = 10  # into which the shortest step is cut to find where it begins
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class StaircaseStep:
+    """Friction while the voltage stays.
+
+    Parameters
+    ----------
+    voltage_peak_to_peak : float
+        Median over the step. [V]
+    start_time : float
+        When the step begins. [s]
+    end_time : float
+        When it ends. [s]
+    friction_force : float
+        Mean, the settling left out. [N]
+    friction_force_deviation : float
+        Standard deviation of the samples. [N]
+    friction_force_uncertainty : float
+        Standard error of the mean. [N]
+    friction_reduction : float or None
+        Against the steps without voltage; None for these themselves. []
+    friction_reduction_uncertainty : float or None
+        Its standard uncertainty. []
+    """
+
+    voltage_peak_to_peak: float
+    start_time: float
+    end_time: float
+    friction_force: float
+    friction_force_deviation: float
+    friction_force_uncertainty: float
+    friction_reduction: float | None
+    friction_reduction_uncertainty: float | None
+
+
+def voltage_envelope(*, time: ArrayLike, stack_voltage: ArrayLike, window_duration: float = 0.05) -> Floats:
+    """Return the peak-to-peak value of an alternating voltage around each sample. [V]
+
+    Parameters
+    ----------
+    time : array_like, shape (samples,)
+        Evenly spaced. [s]
+    stack_voltage : array_like, shape (samples,)
+        Voltage as it alternates; NaN is passed over. [V]
+    window_duration : float
+        Duration over which highest and lowest are taken. [s]
+
+    Returns
+    -------
+    ndarray, shape of `time`
+
+    Raises
+    ------
+    InvalidInput
+        If the time has gaps, or the window holds fewer than eight samples.
+
+    Notes
+    -----
+    A voltage may alternate faster than it is sampled, as long as the drive's frequency is further than 1/window from
+    every multiple of half the sampling rate: at such a multiple every sample meets the same phases, and the envelope
+    is too low or vanishes.
+    """
+    require_positive(window_duration=window_duration)
+    t, u = require_signal(time=time, stack_voltage=stack_voltage)
+    samples = round(window_duration / even_interval(time=t))
+    if samples < 8:
+        raise InvalidInput(f"window_duration of {window_duration:.3g} s holds {samples} samples; at least 8 are needed")
+    highest = maximum_filter1d(np.where(np.isnan(u), -np.inf, u), samples, mode="nearest")
+    lowest = minimum_filter1d(np.where(np.isnan(u), np.inf, u), samples, mode="nearest")
+    return np.asarray(np.where(np.isfinite(highest), highest - lowest, np.nan))
+
+
+def staircase(
+    *,
+    time: ArrayLike,
+    friction_force: ArrayLike,
+    voltage_peak_to_peak: ArrayLike,
+    shortest_step: float = 1.0,
+    settling_time: float = 0.5,
+    tolerance: float = 0.05,
+) -> tuple[StaircaseStep, ...]:
+    """Return the friction at each step of a voltage.
+
+    Parameters
+    ----------
+    time : array_like, shape (samples,)
+        Increasing. [s]
+    friction_force : array_like, shape (samples,)
+        NaN is passed over. [N]
+    voltage_peak_to_peak : array_like, shape (samples,)
+        As set, or from `voltage_envelope`. [V]
+    shortest_step : float
+        Seconds below which a level is a transition, not a step.
+    settling_time : float
+        Left out at the start of each step, and a tenth of it at the end. [s]
+    tolerance : float
+        Change of voltage that begins another step, as a share of the voltage's range.
+
+    Returns
+    -------
+    tuple of StaircaseStep
+        In order of time.
+
+    Raises
+    ------
+    InvalidInput
+        If no step is long enough, none is without voltage, or the friction without it is not positive.
+
+    References
+    ----------
+    .. [1] D 4.1.2, figure 4.3 and Table 4.2.
+    """
+    require_positive(shortest_step=shortest_step, tolerance=tolerance)
+    require_non_negative(settling_time=settling_time)
+    t, f, u = require_signal(time=time, friction_force=friction_force, voltage_peak_to_peak=voltage_peak_to_peak)
+    threshold = tolerance * float(np.nanmax(u) - np.nanmin(u))
+    stretches = [
+        (first, last)
+        for first, last in _levels(t, u, threshold, shortest_step)
+        if t[last - 1] - t[first] > max(shortest_step, 2 * settling_time)
+    ]
+    if not stretches:
+        raise InvalidInput(f"voltage_peak_to_peak stays nowhere for {max(shortest_step, 2 * settling_time):.3g} s")
+    cores = [_core(t, first, last, settling_time) for first, last in stretches]
+    levels = [float(np.nanmedian(u[core])) for core in cores]
+    without = [level <= threshold for level in levels]
+    if not any(without):
+        raise InvalidInput(f"voltage_peak_to_peak has no step without voltage; the lowest is {min(levels):.3g} V")
+    intrinsic = np.concatenate([f[core] for core, off in zip(cores, without, strict=True) if off])
+    return tuple(
+        _step(t, f, level, stretch, core, None if off else intrinsic)
+        for level, stretch, core, off in zip(levels, stretches, cores, without, strict=True)
+    )
+
+
+def _levels(t: Floats, u: Floats, threshold: float, shortest: float) -> list[tuple[int, int]]:
+    """Stretches of samples on one level, those cut by a short disturbance joined."""
+    piece = max(1, round(shortest / _PIECES / float(np.median(np.diff(t)))))
+    starts = np.arange(0, t.size, piece)
+    level = np.array(
+        [np.nanmedian(u[i : i + piece]) if np.isfinite(u[i : i + piece]).any() else np.nan for i in starts]
+    )
+    known = np.isfinite(level)
+    starts, level = starts[known], level[known]
+    edges = np.concatenate([[0], np.flatnonzero(np.abs(np.diff(level)) > threshold) + 1, [level.size]])
+    ends = np.append(starts[1:], t.size)
+    runs: list[tuple[int, int, float]] = []
+    for first, last in pairwise(edges):
+        if last - first < 2:
+            continue
+        value = float(np.median(level[first:last]))
+        if runs and abs(runs[-1][2] - value) <= threshold:
+            runs[-1] = (runs[-1][0], int(ends[last - 1]), runs[-1][2])
+        else:
+            runs.append((int(starts[first]), int(ends[last - 1]), value))
+    return [(first, last) for first, last, _ in runs]
+
+
+def _core(t: Floats, first: int, last: int, settling: float) -> slice:
+    lower = int(np.searchsorted(t, t[first] + settling))
+    upper = int(np.searchsorted(t, t[last - 1] - settling / 10, side="right"))
+    return slice(lower, upper)
+
+
+def _step(
+    t: Floats, f: Floats, level: float, stretch: tuple[int, int], core: slice, intrinsic: Floats | None
+) -> StaircaseStep:
+    mean = correlated_mean(f[core])
+    reduction = (
+        None
+        if intrinsic is None
+        else measured_reduction(intrinsic_friction_force=intrinsic, reduced_friction_force=f[core])
+    )
+    return StaircaseStep(
+        voltage_peak_to_peak=level,
+        start_time=float(t[stretch[0]]),
+        end_time=float(t[stretch[1] - 1]),
+        friction_force=mean.mean,
+        friction_force_deviation=mean.deviation,
+        friction_force_uncertainty=mean.uncertainty,
+        friction_reduction=reduction.friction_reduction if reduction else None,
+        friction_reduction_uncertainty=reduction.friction_reduction_uncertainty if reduction else None,
+    )

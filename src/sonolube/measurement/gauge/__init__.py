@@ -1,0 +1,1 @@
+"""Force gauges: calibration with hysteresis."""

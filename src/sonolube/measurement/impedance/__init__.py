@@ -1,0 +1,1 @@
+"""Impedance spectra: readers of analyser files."""

@@ -1,0 +1,1 @@
+"""Recordings over time: readers of data-acquisition files."""

@@ -1,0 +1,236 @@
+"""LabVIEW's text recordings (LVM): a header of keys, then segments, each with a header of its own and columns."""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sonolube.checks import Floats
+from sonolube.errors import InvalidInput
+from sonolube.measurement.recordings.delimited import decoded
+from sonolube.measurement.recordings.mapping import RecordingMapping
+from sonolube.measurement.recordings.numbers import numbers
+from sonolube.measurement.recordings.table import Column, Table
+
+FORMAT = "LabVIEW measurement text"
+MAGIC = "LabVIEW Measurement"
+_END = "***End_of_Header***"
+_SPECIAL = "***Start_Special***"
+_SPECIAL_END = "***End_Special***"
+_X_LABEL = "X_Value"
+_INSTANT = re.compile(r"(\d{4})/(\d{1,2})/(\d{1,2}) (\d{1,2}):(\d{1,2}):(\d{1,2})(?:[.,](\d{1,30}))?", re.ASCII)
+_MISSING = frozenset({"NaN", "-NaN", "nan"})
+
+Line = tuple[int, str]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Header:
+    """The keys of a header, each with its cells."""
+
+    keys: dict[str, list[str]]
+    line: int
+
+    def text(self, key: str, default: str) -> str:
+        return next((cell for cell in self.keys.get(key, []) if cell), default)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Style:
+    separator: str
+    decimal_sign: str
+
+
+def read_labview_text(path: Path, *, mapping: RecordingMapping | None = None) -> Table:
+    """Return the channels of an LVM file; segments with the same channels are joined in order.
+
+    Parameters
+    ----------
+    path : Path
+        Of the file.
+    mapping : RecordingMapping or None
+        Only its `text.encoding` is used here.
+
+    Returns
+    -------
+    Table
+        Times are those written, later segments shifted by how much later their headers say they began. Where every
+        channel has its own times they must agree.
+
+    Raises
+    ------
+    InvalidInput
+        Naming the file and the line, if the first line is not LVM's, a header has no end, counts contradict the
+        columns, a cell is no number, segments have different channels, or channels different times.
+    """
+    text = decoded(path, encoding=mapping.text.encoding if mapping else "utf-8-sig")
+    lines = _lines(text)
+    first = next(lines, (1, ""))
+    if not first[1].startswith(MAGIC):
+        raise InvalidInput(f"{path}: line 1: an LVM file begins with {MAGIC!r}, got {first[1][:40]!r}")
+    header = _header(lines, path, first[0], "\t", may_end=False)
+    if header is None:
+        raise InvalidInput(f"{path}: line {first[0]}: the header has no {_END}")
+    separator = "," if header.text("Separator", "Tab").strip().lower() == "comma" else "\t"
+    if separator == ",":  # the header too is written with it
+        lines = _lines(text)
+        header = _header(lines, path, next(lines)[0], separator, may_end=False) or header
+    style = _Style(separator=separator, decimal_sign=_decimal_sign(header, path))
+    segments = list(_segments(lines, header, style, path))
+    if not segments:
+        raise InvalidInput(f"{path}: line {header.line}: no segment follows the header")
+    return _joined(segments, path, begun=f"{header.text('Date', '')} {header.text('Time', '')}".strip())
+
+
+def _lines(text: str) -> Iterator[Line]:
+    special = False
+    for at, line in enumerate(text.splitlines(), start=1):
+        if line.startswith(_SPECIAL):
+            special = True
+        if not special:
+            yield at, line
+        if line.startswith(_SPECIAL_END):
+            special = False
+
+
+def _decimal_sign(header: _Header, path: Path) -> str:
+    sign = header.text("Decimal_Separator", ".")
+    if sign not in (".", ","):
+        raise InvalidInput(f"{path}: line {header.line}: Decimal_Separator is {sign[:20]!r}")
+    return sign
+
+
+def _header(lines: Iterator[Line], path: Path, at: int, separator: str, *, may_end: bool) -> _Header | None:
+    keys: dict[str, list[str]] = {}
+    for at, line in lines:
+        if line.startswith(_END):
+            return _Header(keys=keys, line=at)
+        key, *cells = line.split(separator)
+        if key.strip():
+            keys[key.strip()] = [cell.strip() for cell in cells]
+    if keys or not may_end:
+        raise InvalidInput(f"{path}: line {at}: a header has no {_END}")
+    return None
+
+
+def _segments(lines: Iterator[Line], header: _Header, style: _Style, path: Path) -> Iterator[Table]:
+    at = header.line
+    while (segment := _header(lines, path, at, style.separator, may_end=True)) is not None:
+        count = _count(segment, path)
+        at, labels = _labels(lines, segment, path, style)
+        rows, ended_by_gap = [], False
+        for at, line in lines:
+            if not line.strip():
+                ended_by_gap = True
+                break
+            rows.append((at, [cell.strip() for cell in line.split(style.separator)]))
+        yield _segment(rows, labels, segment, count, style, path)
+        if not ended_by_gap:
+            return
+
+
+def _labels(lines: Iterator[Line], segment: _Header, path: Path, style: _Style) -> tuple[int, list[str]]:
+    for at, line in lines:
+        if line.strip():
+            return at, [cell.strip() for cell in line.split(style.separator)]
+    raise InvalidInput(f"{path}: line {segment.line}: no column names follow the header")
+
+
+def _count(segment: _Header, path: Path) -> int:
+    text = segment.text("Channels", "")
+    if not (text.isascii() and text.isdigit() and 0 < len(text) < 7 and int(text) > 0):
+        raise InvalidInput(f"{path}: line {segment.line}: Channels is {text[:40]!r}, not a count")
+    return int(text)
+
+
+def _segment(
+    rows: list[tuple[int, list[str]]], labels: list[str], segment: _Header, count: int, style: _Style, path: Path
+) -> Table:
+    named = [(index, label) for index, label in enumerate(labels) if label and label != "Comment"]
+    values_at = [(index, label) for index, label in named if label != _X_LABEL]
+    if len(values_at) != count:
+        at = segment.line + 1
+        raise InvalidInput(f"{path}: line {at}: names {len(values_at)} channels where the header has {count}")
+    lines = np.array([line for line, _ in rows], dtype=np.int64)
+    table = {index: _cells(rows, index, label, style, path) for index, label in named}
+    time = _time(table, named, segment, len(rows), style, path, lines)
+    units = segment.keys.get("Y_Unit_Label", [])
+    columns = [Column(label=_X_LABEL, values=time, unit="s")]
+    for channel, (index, label) in enumerate(values_at):
+        unit = units[channel] if channel < len(units) and units[channel] else None
+        columns.append(Column(label=label, values=table[index], unit=unit))
+    begun = f"{segment.text('Date', '')} {segment.text('Time', '')}".strip()
+    return Table(columns=tuple(columns), format=FORMAT, lines=lines, begun=begun)
+
+
+def _cells(rows: list[tuple[int, list[str]]], index: int, label: str, style: _Style, path: Path) -> Floats:
+    cells = [row[index] if index < len(row) else "" for _, row in rows]
+    values, wrong = numbers(cells, decimal_sign=style.decimal_sign, missing=_MISSING)
+    if wrong is not None:
+        line = rows[wrong][0]
+        raise InvalidInput(f"{path}: line {line}: {label!r} is {cells[wrong][:40]!r}, which is not a number")
+    return values
+
+
+def _time(
+    table: dict[int, Floats], named: list[tuple[int, str]], segment: _Header, rows: int, style: _Style, path: Path,
+    lines: NDArray[np.int64],
+) -> Floats:  # fmt: skip
+    written = [table[index] for index, label in named if label == _X_LABEL and np.isfinite(table[index]).any()]
+    if not written:
+        starts, steps = (_header_numbers(segment, key, style, path) for key in ("X0", "Delta_X"))
+        if len(set(starts)) > 1 or len(set(steps)) != 1:
+            raise InvalidInput(f"{path}: line {segment.line}: X0 and Delta_X must give all channels one time")
+        return (starts[0] if starts else 0.0) + steps[0] * np.arange(rows, dtype=np.float64)
+    for other in written[1:]:
+        differs = ~((other == written[0]) | np.isnan(other))
+        if differs.any():
+            line = lines[int(np.argmax(differs))]
+            raise InvalidInput(f"{path}: line {line}: channels have different times; export them separately")
+    return np.asarray(written[0])
+
+
+def _header_numbers(segment: _Header, key: str, style: _Style, path: Path) -> list[float]:
+    cells = [cell for cell in segment.keys.get(key, []) if cell]
+    values, wrong = numbers(cells, decimal_sign=style.decimal_sign, missing=frozenset())
+    if wrong is not None or not np.isfinite(values).all():
+        raise InvalidInput(f"{path}: line {segment.line}: {key} is {cells[wrong or 0][:40]!r}, which is not a number")
+    return [float(value) for value in values]
+
+
+def _instant(text: str) -> datetime | None:
+    match = _INSTANT.match(text)
+    if match is None:
+        return None
+    try:
+        year, month, day, hour, minute, second = (int(part) for part in match.groups()[:6])
+        return datetime(year, month, day, hour, minute, second) + timedelta(seconds=float(f"0.{match[7] or 0}"))
+    except (ValueError, OverflowError):
+        return None
+
+
+def _joined(segments: list[Table], path: Path, *, begun: str) -> Table:
+    first = segments[0]
+    labels = [column.label for column in first.columns]
+    for segment in segments[1:]:
+        if [column.label for column in segment.columns] != labels:
+            line = "" if segment.lines is None or not segment.lines.size else f"line {segment.lines[0]}: "
+            raise InvalidInput(f"{path}: {line}this segment has other channels than the first")
+    begins = [_instant(segment.begun) for segment in segments]
+    later = [0.0 if at is None or begins[0] is None else (at - begins[0]).total_seconds() for at in begins]
+    columns = tuple(
+        Column(
+            label=column.label,
+            values=np.concatenate(
+                [s.columns[index].values + (0.0 if index else late) for s, late in zip(segments, later, strict=True)]
+            ),
+            unit=column.unit,
+        )
+        for index, column in enumerate(first.columns)
+    )
+    lines = np.concatenate([segment.lines for segment in segments if segment.lines is not None])
+    return Table(columns=columns, format=FORMAT, lines=lines, begun=begun)

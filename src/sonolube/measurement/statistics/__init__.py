@@ -1,0 +1,1 @@
+"""Statistics of measured series: confidence intervals, correlation and fits of logarithms."""

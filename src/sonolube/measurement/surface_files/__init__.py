@@ -1,0 +1,1 @@
+"""Surface topography files: readers of profilometer formats."""

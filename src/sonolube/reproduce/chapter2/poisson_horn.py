@@ -1,0 +1,295 @@
+"""The horn of section 2.1 by finite elements: two sets of assumptions, its first axial mode, its motion when driven.
+
+D gives the block's three sizes, and says of the tapers and rounded edges only that there are some. `PRINTED` is the
+block with D's moduli and data-sheet densities; `ASSUMED` the one set of assumptions that gives both frequencies that
+D prints. A quarter of the horn is meshed: y = 0 and z = 0 are planes of symmetry.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import Final, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.interpolate import CubicSpline
+
+from sonolube.checks import Complexes, Floats
+from sonolube.fem import (
+    Fixed,
+    Mesh,
+    Model,
+    Output,
+    box_mesh,
+    edge_nodes,
+    forced_motion,
+    isotropic,
+    natural_modes,
+    reshaped,
+)
+from sonolube.materials import material
+from sonolube.validation.inputs import in_table, said
+
+Horn = Literal["aluminium", "steel"]
+HORNS: Final[tuple[Horn, ...]] = ("aluminium", "steel")
+
+_ALLOYS: Final = {"aluminium": "aluminium_2024", "steel": "stainless_steel_316"}
+_SYMMETRY: Final = (Fixed(face="-y", along="y"), Fixed(face="+z", along="z"))
+_TAPER_CELLS: Final = 2  # of the cells along either taper
+_DIVISIONS: Final = (10, 2, 2)
+_SEARCHED: Final = 5  # elastic modes of this symmetry, of which the first axial one is among the lowest three
+ELASTIC_LOSS: Final = 1e-3
+"""Loss tangent of the horns, assumed: a quality factor of 1000. []"""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class HornSolid:
+    """What one horn is made of.
+
+    Parameters
+    ----------
+    youngs_modulus : float
+        Young's modulus. [Pa]
+    poisson_ratio : float
+        Poisson's ratio. []
+    density : float
+        Mass density. [kg/m3]
+    """
+
+    youngs_modulus: float
+    poisson_ratio: float
+    density: float
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class HornShape:
+    """Sizes of a horn.
+
+    Parameters
+    ----------
+    length, width, thickness : float
+        Extent along, across, and across the sliding face. [m]
+    taper_length : float
+        Length of either end over which the thickness falls, on both sides alike, in m.
+    end_thickness_ratio : float
+        Thickness of the ends over that of the middle.
+    wedge : float
+        Excess of the right end's width over the left one's, over the width in the middle.
+    """
+
+    length: float
+    width: float
+    thickness: float
+    taper_length: float = 0.0254
+    end_thickness_ratio: float = 1.0
+    wedge: float = 0.0
+
+
+def printed_shape() -> HornShape:
+    """Return the plain block of D 2.1.2."""
+    return HornShape(
+        length=said("2.1.2-waveguide-length").value,
+        width=said("2.1.2-waveguide-width").value,
+        thickness=said("2.1.2-waveguide-thickness").value,
+    )
+
+
+def assumed_shape() -> HornShape:
+    """Return the block whose last inch at either end tapers from 1 in to 3/4 in."""
+    return replace(printed_shape(), end_thickness_ratio=0.75)
+
+
+def printed_solid(horn: Horn) -> HornSolid:
+    """Return a horn's constants from Table 3.1, its density from its alloy's data sheet."""
+    return HornSolid(
+        youngs_modulus=in_table("3.1", f"youngs_modulus_{horn}").value,
+        poisson_ratio=in_table("3.1", f"poisson_ratio_{horn}").value,
+        density=material(_ALLOYS[horn]).value("density"),
+    )
+
+
+ASSUMED_SOLIDS: Final[Mapping[Horn, HornSolid]] = {
+    "aluminium": HornSolid(youngs_modulus=70e9, poisson_ratio=0.33, density=2700.0),
+    "steel": HornSolid(youngs_modulus=205e9, poisson_ratio=0.28, density=7850.0),
+}
+"""Handbook constants of plain aluminium and of a low-alloy steel, which general finite-element programs come with."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class AxialMode:
+    """The first axial mode of a horn.
+
+    Parameters
+    ----------
+    natural_frequency : float
+        Its frequency. [Hz]
+    position : ndarray, shape (k,)
+        Places along the middle line of the sliding face, from the centre. [m]
+    axial, normal : ndarray, shape (k,)
+        Displacements there along the horn and out of its face, those at the right end's middle being one along it.
+    """
+
+    natural_frequency: float
+    position: Floats
+    axial: Floats
+    normal: Floats
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class FaceMotion:
+    """Motion of the middle line of the sliding face under a force on the right end.
+
+    Parameters
+    ----------
+    frequency : float
+        Frequency of the force. [Hz]
+    position : ndarray, shape (k,)
+        Places along the line, from the centre. [m]
+    axial, normal : ndarray of complex, shape (k,)
+        Amplitudes along the horn and out of its face in m, the mean one of the driven end being real and as asked.
+    """
+
+    frequency: float
+    position: Floats
+    axial: Complexes
+    normal: Complexes
+
+    def at(self, places: ArrayLike) -> tuple[Complexes, Complexes]:
+        """Return the amplitudes along the horn and out of its face at places in m."""
+        return CubicSpline(self.position, self.axial)(places), CubicSpline(self.position, self.normal)(places)
+
+
+def horn_model(
+    shape: HornShape,
+    solid: HornSolid,
+    *,
+    elastic_loss: float = 0.0,
+    divisions: tuple[int, int, int] = _DIVISIONS,
+) -> Model:
+    """Return a quarter of a horn.
+
+    Parameters
+    ----------
+    shape : HornShape
+    solid : HornSolid
+    elastic_loss : float
+        Loss tangent of the stiffness. []
+    divisions : tuple of three int
+        Cells along, across and through the quarter.
+
+    Returns
+    -------
+    Model
+        Its sliding face is "-z", the middle line of that its edge with "-y".
+    """
+    medium = isotropic(
+        youngs_modulus=solid.youngs_modulus,
+        poisson_ratio=solid.poisson_ratio,
+        density=solid.density,
+        elastic_loss=elastic_loss,
+    )
+    return Model(mesh=_quarter(shape, divisions), media={"block": medium}, fixed=_SYMMETRY)
+
+
+@cache
+def axial_mode(shape: HornShape, solid: HornSolid, *, divisions: tuple[int, int, int] = _DIVISIONS) -> AxialMode:
+    """Return the first axial mode: of the lowest modes that keep both planes, the one that moves most along the horn.
+
+    Parameters
+    ----------
+    shape : HornShape
+    solid : HornSolid
+    divisions : tuple of three int
+        Cells along, across and through the quarter.
+
+    Returns
+    -------
+    AxialMode
+    """
+    return axial_mode_of(horn_model(shape, solid, divisions=divisions))
+
+
+def axial_mode_of(model: Model) -> AxialMode:
+    """Return the first axial mode of a quarter of a horn."""
+    modes = natural_modes(model, count=_SEARCHED)
+    x = model.mesh.nodes[:, 0]
+    stretch = np.sign(x - x.mean())
+    elastic = modes.shapes[modes.rigid :]
+    shares = np.abs((elastic[:, :, 0] * stretch).mean(axis=1)) / np.sqrt((elastic**2).sum(axis=2).mean(axis=1))
+    best = int(np.argmax(shares))
+    line = edge_nodes(model.mesh, "-z", "-y", along="x")
+    shape = elastic[best] / elastic[best][line[-1], 0]
+    return AxialMode(
+        natural_frequency=float(modes.elastic_frequency[best]),
+        position=x[line],
+        axial=shape[line, 0],
+        normal=-shape[line, 2],
+    )
+
+
+@cache
+def face_motion(
+    shape: HornShape,
+    solid: HornSolid,
+    *,
+    frequency: float,
+    axial_amplitude: float,
+    elastic_loss: float = ELASTIC_LOSS,
+) -> FaceMotion:
+    """Return the motion of the sliding face under a force along the horn on its right end.
+
+    Parameters
+    ----------
+    shape : HornShape
+    solid : HornSolid
+    frequency : float
+        Frequency of the force. [Hz]
+    axial_amplitude : float
+        Mean axial amplitude of the driven end, which sets the force. [m]
+    elastic_loss : float
+        Loss tangent of the stiffness. []
+
+    Returns
+    -------
+    FaceMotion
+    """
+    model = horn_model(shape, solid, elastic_loss=elastic_loss)
+    moves = forced_motion(model, load=Output(face="+x", along="x"), frequency=frequency)
+    end = moves[model.mesh.face_nodes("+x"), 0].mean()
+    line = edge_nodes(model.mesh, "-z", "-y", along="x")
+    scaled = moves[line] * axial_amplitude / end
+    return FaceMotion(frequency=frequency, position=model.mesh.nodes[line, 0], axial=scaled[:, 0], normal=-scaled[:, 2])
+
+
+def node_position(*, position: Floats, axial: Floats) -> float:
+    """Return where a motion along the horn vanishes, of several places the one nearest to the centre. [m]
+
+    Parameters
+    ----------
+    position : ndarray, shape (k,)
+        Places along the horn, from the centre. [m]
+    axial : ndarray, shape (k,)
+        Displacements there along the horn.
+
+    Returns
+    -------
+    float
+    """
+    return float(min(CubicSpline(position, axial).roots(extrapolate=False), key=abs))
+
+
+def _quarter(shape: HornShape, divisions: tuple[int, int, int]) -> Mesh:
+    half, step = shape.length / 2, shape.length / divisions[0]
+    flat = half - shape.taper_length
+    columns = [-half, -half + _TAPER_CELLS * step, half - _TAPER_CELLS * step, half]
+    corners = [-half, -flat, flat, half]
+    ends = shape.end_thickness_ratio
+
+    def tapered(nodes: Floats) -> Floats:
+        x = np.interp(nodes[:, 0], columns, corners)
+        y = (nodes[:, 1] + shape.width / 4) * (1 + shape.wedge * x / shape.length)
+        z = (nodes[:, 2] - shape.thickness / 4) * np.interp(x, corners, [ends, 1.0, 1.0, ends])
+        return np.column_stack([x, y, z])
+
+    block = box_mesh(length=shape.length, width=shape.width / 2, thickness=shape.thickness / 2, divisions=divisions)
+    return reshaped(block, tapered)

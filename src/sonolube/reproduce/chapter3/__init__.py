@@ -1,0 +1,1 @@
+"""Chapter 3 of the dissertation, models: published against computed numbers, and figures."""

@@ -1,0 +1,1 @@
+"""Friction models against the dissertation's friction tables: rows and figures."""

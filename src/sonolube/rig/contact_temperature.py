@@ -1,0 +1,185 @@
+"""How warm the contact of a rig runs, with and without its vibration."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sonolube.checks import Floats, require_non_negative, require_positive
+from sonolube.errors import InvalidInput
+from sonolube.materials import material
+from sonolube.rig.friction_and_wear import friction_ratio, sine_under_load
+from sonolube.rig.linear_response import rest_separation
+from sonolube.rig.record import Rig
+from sonolube.thermal import (
+    ContactHistory,
+    EllipticSource,
+    HeatedContact,
+    ThermalNetwork,
+    ThermalSolid,
+    contact_rise,
+    frictional_heat_rate,
+    peclet_number,
+    two_factor_history,
+)
+
+_STEPS = 200
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class HeatPoint:
+    """Heat and temperature of a rig's contact under its vibration.
+
+    Parameters
+    ----------
+    frictional_heat_rate : float
+        Heat of friction. [W]
+    vibration_heat_rate : float
+        Heat of the vibration in the contact. [W]
+    heat_partition : float
+        Share of both that flows into the pin. []
+    peclet_number : float
+        Peclet number of the contact on the disc. []
+    peak_temperature_rise : float
+        Highest rise of the contact over the bulk of the pin. [K]
+    mean_temperature_rise : float
+        Mean rise of the contact over the bulk of the pin. [K]
+    temperature_rise : float
+        Mean rise of the contact over its surroundings at the end of the test. [K]
+    temperature_rise_ratio : float
+        That rise over the one of the same test without vibration. []
+    friction_ratio : float
+        Friction with vibration over friction without. []
+    closure : str
+        Name of the closure that gave it.
+    doubts : tuple of str
+        What speaks against trusting the numbers, each in one line.
+    with_vibration, without_vibration : ContactHistory
+        Both tests in time.
+    """
+
+    frictional_heat_rate: float
+    vibration_heat_rate: float
+    heat_partition: float
+    peclet_number: float
+    peak_temperature_rise: float
+    mean_temperature_rise: float
+    temperature_rise: float
+    temperature_rise_ratio: float
+    friction_ratio: float
+    closure: str
+    doubts: tuple[str, ...]
+    with_vibration: ContactHistory
+    without_vibration: ContactHistory
+
+
+def thermal_solid(name: str) -> ThermalSolid:
+    """Return a material of the catalogue as heat sees it.
+
+    Raises
+    ------
+    MissingProperty
+        If no source for one of its thermal properties is known.
+    UnknownName
+        If there is no such material.
+    """
+    found = material(name)
+    return ThermalSolid(
+        thermal_conductivity=found.value("thermal_conductivity"),
+        density=found.value("density"),
+        specific_heat_capacity=found.value("specific_heat_capacity"),
+    )
+
+
+def heat_point(
+    rig: Rig,
+    *,
+    pin: ThermalSolid,
+    disc: ThermalSolid,
+    heat_capacity: float,
+    thermal_conductance: float,
+    duration: float,
+    vibration_heat_rate: float = 0.0,
+) -> HeatPoint:
+    """Return the temperature of the rig's contact, taken for round, over a test from the cold.
+
+    Parameters
+    ----------
+    rig : Rig
+    pin : ThermalSolid
+        The body that carries the contact with it.
+    disc : ThermalSolid
+        The body that the contact passes over.
+    heat_capacity : float
+        Heat that warms the pin by a kelvin. [J/K]
+    thermal_conductance : float
+        Heat that leaves the pin per kelvin, into its holder and the air. [W/K]
+    duration : float
+        Length of the test. [s]
+    vibration_heat_rate : float
+        Heat of the vibration in the contact. [W]
+
+    Returns
+    -------
+    HeatPoint
+
+    Raises
+    ------
+    InvalidInput
+        If the rig does not slide, has no frequency, or a value is not positive.
+    OutsideRange
+        If the load leaves no separation.
+    """
+    if rig.sliding_speed <= 0:
+        raise InvalidInput("sliding.sliding_speed must be positive for heat of friction")
+    rest_separation(rig)
+    require_positive(heat_capacity=heat_capacity, thermal_conductance=thermal_conductance, duration=duration)
+    require_non_negative(vibration_heat_rate=vibration_heat_rate)
+    radius = float(np.sqrt(rig.contact.nominal_area / np.pi))
+    source = EllipticSource(half_length=radius, half_width=radius)
+    network = ThermalNetwork(heat_capacity=(heat_capacity,), links=(), losses=(thermal_conductance,))
+    contact = HeatedContact(pin=pin, disc=disc, source=source, network=network)
+    intrinsic, ratio = rig.friction_coefficient * rig.normal_load, friction_ratio(rig, sine_under_load(rig))
+    times = np.linspace(0.0, duration, _STEPS + 1)
+    without = _history(rig, contact, times, intrinsic, 0.0)
+    vibrated = _history(rig, contact, times, ratio * intrinsic, vibration_heat_rate)
+    of_friction = float(frictional_heat_rate(friction_force=ratio * intrinsic, sliding_speed=rig.sliding_speed))
+    heat = of_friction + vibration_heat_rate
+    shared = contact_rise(pin, disc, source, heat_rate=heat, sliding_speed=rig.sliding_speed)
+    return HeatPoint(
+        frictional_heat_rate=of_friction,
+        vibration_heat_rate=vibration_heat_rate,
+        heat_partition=float(shared.heat_partition),
+        peclet_number=float(peclet_number(disc, source, sliding_speed=rig.sliding_speed)),
+        peak_temperature_rise=float(shared.peak_temperature_rise),
+        mean_temperature_rise=float(shared.mean_temperature_rise),
+        temperature_rise=float(vibrated.temperature_rise[-1]),
+        temperature_rise_ratio=float(vibrated.temperature_rise[-1] / without.temperature_rise[-1]),
+        friction_ratio=ratio,
+        closure=rig.closure,
+        doubts=_doubts(network, vibration_heat_rate),
+        with_vibration=vibrated,
+        without_vibration=without,
+    )
+
+
+def _history(
+    rig: Rig, contact: HeatedContact, times: Floats, friction_force: float, vibration_heat_rate: float
+) -> ContactHistory:
+    return two_factor_history(
+        contact,
+        time=times,
+        friction_force=friction_force,
+        sliding_speed=rig.sliding_speed,
+        vibration_heat_rate=vibration_heat_rate,
+    )
+
+
+def _doubts(network: ThermalNetwork, vibration_heat_rate: float) -> tuple[str, ...]:
+    (capacity,), (conductance,) = network.heat_capacity, network.losses
+    known = (
+        "heat enters over the nominal area; asperities run hotter for microseconds",
+        f"bulk of a pin of {capacity:g} J/K that loses {conductance:g} W/K, which no rig file holds",
+    )
+    if vibration_heat_rate > 0:
+        return known
+    return (*known, "no heat of vibration was given: what the actuator loses into the contact comes on top")

@@ -1,0 +1,1 @@
+"""Rig files: sections and keys, reading, JSON schema and stated uncertainty."""

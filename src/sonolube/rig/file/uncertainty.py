@@ -1,0 +1,142 @@
+"""The table `uncertainty` of a rig file: from words such as "normal 0.5 um" to distributions about the rig's values."""
+
+import math
+import re
+from collections.abc import Iterator, Mapping
+from functools import cache
+from types import MappingProxyType
+from typing import Any, get_args
+
+from pydantic import BaseModel
+
+from sonolube.errors import InvalidInput, SonolubeError, suggestion
+from sonolube.rig.distribution import Distribution, Law, LogNormal, Normal, Uniform
+from sonolube.rig.file.sections import RigFile
+from sonolube.units import engineering, to_si
+from sonolube.vocabulary import quantities, unit_of
+
+EXAMPLES = (
+    "normal 0.5 um",
+    "normal 3 %",
+    "uniform 10 %",
+    "uniform 1 um to 2 um",
+    "lognormal 20 %",
+    "lognormal factor 2",
+)
+"""How distributions are written in a rig file."""
+
+_ENTRY = re.compile(r"(normal|lognormal|uniform)\s+(\S.*)")
+_ENDS = re.compile(r"(.+?)\s+to\s+(.+)")
+_NUMBER = r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)"
+_SHARE = re.compile(_NUMBER + r"\s*%")
+_FACTOR = re.compile(r"factor\s+" + _NUMBER)
+_EITHER_SIGN = ("voltage_offset", "lowest_voltage", "highest_voltage", "in_plane_phase", "position")
+_POSSIBLE = {"poisson_ratio": (0.0, 0.5), "coupling_factor": (0.0, 1.0)} | dict.fromkeys(
+    _EITHER_SIGN, (-math.inf, math.inf)
+)
+
+
+def distributions_of(file: RigFile) -> Mapping[str, Distribution]:
+    """Return the distributions of a rig file's uncertain entries, by dotted key.
+
+    Parameters
+    ----------
+    file : RigFile
+
+    Returns
+    -------
+    mapping of str to Distribution
+        Cut off where the quantity can have no value: below zero for most.
+
+    Raises
+    ------
+    InvalidInput
+        If a key is none of a number, a text cannot be read, or more than half of a distribution is impossible.
+    """
+    found = {}
+    for key, text in file.uncertainty.items():
+        try:
+            found[key] = _distribution(key, text, _value(file, key))
+        except SonolubeError as refusal:
+            raise InvalidInput(f"uncertainty.{key}: {refusal}") from None
+    return MappingProxyType(found)
+
+
+@cache
+def number_keys() -> tuple[str, ...]:
+    """Return the dotted keys of all single numbers of a rig file."""
+    return tuple(_number_keys(RigFile, ""))
+
+
+def _number_keys(section: type[BaseModel], place: str) -> Iterator[str]:
+    for name, field in section.model_fields.items():
+        kinds = (field.annotation, *get_args(field.annotation))
+        table = next((kind for kind in kinds if isinstance(kind, type) and issubclass(kind, BaseModel)), None)
+        if table is not None:
+            yield from _number_keys(table, f"{place}{name}.")
+        elif float in kinds and name in quantities():
+            yield f"{place}{name}"
+
+
+def _value(file: RigFile, key: str) -> float | None:
+    if key not in number_keys():
+        last = [known for known in number_keys() if known.rpartition(".")[2] == key.rpartition(".")[2]]
+        close = f"did you mean {last[0]}?" if last else suggestion(key, number_keys())
+        raise InvalidInput(f"no number of a rig file; {close}".removesuffix("; "))
+    place: Any = file
+    for part in key.split("."):
+        place = None if place is None else getattr(place, part)
+    return None if place is None else float(place)
+
+
+def _distribution(key: str, text: str, value: float | None) -> Distribution:
+    name = key.rpartition(".")[2]
+    match = _ENTRY.fullmatch(text.strip())
+    if match is None:
+        raise InvalidInput(f"{text!r} is no distribution; write it like {', '.join(EXAMPLES[:4])} or {EXAMPLES[-1]}")
+    kind, rest = match[1], match[2].strip()
+    ends = _ENDS.fullmatch(rest)
+    if kind == "uniform" and ends is not None:
+        low, high = (to_si(end, unit=unit_of(name), name=kind) for end in ends.groups())
+        law: Law = Uniform(low=low, high=high)
+    elif value is None:
+        raise InvalidInput(f"the file has no value that {text!r} could be about; give one, or write {EXAMPLES[3]!r}")
+    elif kind == "lognormal":
+        law = LogNormal(median=value, factor=_factor(rest))
+    else:
+        width = _width(kind, rest, name, value)
+        law = (
+            Normal(middle=value, deviation=width)
+            if kind == "normal"
+            else Uniform(low=value - width, high=value + width)
+        )
+    lowest, highest = _POSSIBLE.get(name, (0.0, math.inf))
+    return Distribution(law=law, lowest=lowest, highest=highest, text=_told(law, unit_of(name)))
+
+
+def _factor(rest: str) -> float:
+    share, factor = _SHARE.fullmatch(rest), _FACTOR.fullmatch(rest)
+    if share is not None:
+        return 1 + float(share[1]) / 100
+    if factor is not None:
+        return float(factor[1])
+    raise InvalidInput(f"lognormal {rest}: write {EXAMPLES[4]!r} or {EXAMPLES[5]!r}")
+
+
+def _width(kind: str, rest: str, name: str, value: float) -> float:
+    share = _SHARE.fullmatch(rest)
+    width = to_si(rest, unit=unit_of(name), name=kind) if share is None else abs(value) * float(share[1]) / 100
+    if not width > 0:
+        raise InvalidInput(f"{kind} {rest} is no width" + " about the file's zero" * (value == 0))
+    return width
+
+
+def _told(law: Law, unit: str) -> str:
+    match law:
+        case Normal():
+            return f"normal, {engineering(law.middle, unit)} +- {engineering(law.deviation, unit)}"
+        case LogNormal():
+            return f"lognormal, {engineering(law.median, unit)} within a factor of {law.factor:.3g}"
+        case Uniform():
+            return f"uniform, {engineering(law.low, unit)} to {engineering(law.high, unit)}"
+    raise AssertionError(law)

@@ -1,0 +1,177 @@
+"""How best to lubricate the contact of a rig: with vibration, a lubricant, or both."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sonolube.checks import Floats, require_positive
+from sonolube.errors import MissingProperty, UnknownName
+from sonolube.friction import (
+    BoundaryLubricant,
+    MethodCoefficients,
+    asperity_load_share,
+    best_method,
+    method_coefficients,
+)
+from sonolube.materials import Material
+from sonolube.rig.friction_and_wear import friction_ratios, sine_under_load
+from sonolube.rig.linear_response import rest_separation
+from sonolube.rig.record import Rig
+from sonolube.wear.mechanism import CrystalStructure, WearAssessment, WearingBody, assess_wear
+
+_SPAN = 10.0  # how far the map reaches to either side of the rig's point, as a factor
+_RESOLUTION = 121
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RegimePoint:
+    """Friction of a rig's contact in four ways of lubrication, and the best of them.
+
+    Parameters
+    ----------
+    sliding_speed : float
+        Macroscopic relative speed. [m/s]
+    nominal_pressure : float
+        Load over nominal area. [Pa]
+    friction_coefficient : float
+        Coefficient of dry friction. []
+    asperity_load_share : float
+        Share of the load that asperities carry through the lubricant. []
+    coefficients : MethodCoefficients
+        Coefficients of the four ways.
+    best : str
+        The way to choose.
+    closure : str
+        Name of the closure that gave friction under vibration.
+    doubts : tuple of str
+        What speaks against trusting the numbers, each in one line.
+    """
+
+    sliding_speed: float
+    nominal_pressure: float
+    friction_coefficient: float
+    asperity_load_share: float
+    coefficients: MethodCoefficients
+    best: str
+    closure: str
+    doubts: tuple[str, ...]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RegimeMap:
+    """The best way of lubrication about the point of a rig.
+
+    Parameters
+    ----------
+    sliding_speed : ndarray, shape (n,)
+        Speeds. [m/s]
+    nominal_pressure : ndarray, shape (m,)
+        Pressures. [Pa]
+    best : ndarray of str, shape (m, n)
+        The way to choose.
+    """
+
+    sliding_speed: Floats
+    nominal_pressure: Floats
+    best: NDArray[np.str_]
+
+
+def regime_point(rig: Rig, *, lubricant: BoundaryLubricant, smallest_gain: float = 0.0) -> RegimePoint:
+    """Return how a rig's contact is best lubricated at its load and speed.
+
+    Parameters
+    ----------
+    rig : Rig
+    lubricant : BoundaryLubricant
+    smallest_gain : float
+        Share by which vibration must lower the friction of the lubricated contact to be worth its power.
+
+    Returns
+    -------
+    RegimePoint
+
+    Raises
+    ------
+    InvalidInput
+        If the rig does not slide or has no frequency, or the gain does not lie between 0 and 1.
+    """
+    rest_separation(rig)
+    pressure = rig.normal_load / rig.contact.nominal_area
+    found = _coefficients(rig, lubricant, sliding_speed=rig.sliding_speed, nominal_pressure=pressure)
+    return RegimePoint(
+        sliding_speed=rig.sliding_speed,
+        nominal_pressure=pressure,
+        friction_coefficient=rig.friction_coefficient,
+        asperity_load_share=float(asperity_load_share(lubricant, nominal_pressure=pressure)),
+        coefficients=found,
+        best=str(best_method(found, smallest_gain=smallest_gain)),
+        closure=rig.closure,
+        doubts=("load sharing in proportion to the pressure: the simplest law that D Fig. 4.28 allows",),
+    )
+
+
+def regime_map(rig: Rig, *, lubricant: BoundaryLubricant, smallest_gain: float = 0.0) -> RegimeMap:
+    """Return the best way of lubrication a decade to either side of a rig's speed and pressure.
+
+    Parameters
+    ----------
+    rig : Rig
+    lubricant : BoundaryLubricant
+    smallest_gain : float
+        Share by which vibration must lower the friction of the lubricated contact to be worth its power.
+
+    Returns
+    -------
+    RegimeMap
+
+    Raises
+    ------
+    InvalidInput
+        If the rig does not slide or has no frequency, or the gain does not lie between 0 and 1.
+
+    Notes
+    -----
+    What vibration leaves of friction is taken at the rig's own load throughout.
+    """
+    require_positive(sliding_speed=rig.sliding_speed)
+    factors = np.geomspace(1 / _SPAN, _SPAN, _RESOLUTION)
+    speeds, pressures = rig.sliding_speed * factors, rig.normal_load / rig.contact.nominal_area * factors
+    found = _coefficients(rig, lubricant, sliding_speed=speeds, nominal_pressure=pressures[:, np.newaxis])
+    return RegimeMap(
+        sliding_speed=speeds, nominal_pressure=pressures, best=best_method(found, smallest_gain=smallest_gain)
+    )
+
+
+def wear_of_materials(first: Material, second: Material) -> WearAssessment:
+    """Return what the rule of wear says of two materials of the catalogue.
+
+    Raises
+    ------
+    MissingProperty
+        If no source for a hardness or a crystal structure is known.
+    UnknownName
+        If the rule does not know a crystal structure.
+    """
+    return assess_wear(_wearing(first), _wearing(second))
+
+
+def _wearing(body: Material) -> WearingBody:
+    if body.crystal_structure is None:
+        raise MissingProperty(f"{body.name} has no crystal_structure: no source is known, and the rule needs it")
+    name = body.crystal_structure.text.replace("close packed", "close-packed")
+    if name not in list(CrystalStructure):
+        raise UnknownName.among(list(CrystalStructure), kind="crystal structure", name=name)
+    return WearingBody(name=body.title, hardness=body.value("hardness"), structure=CrystalStructure(name))
+
+
+def _coefficients(
+    rig: Rig, lubricant: BoundaryLubricant, *, sliding_speed: ArrayLike, nominal_pressure: ArrayLike
+) -> MethodCoefficients:
+    require_positive(sliding_speed=sliding_speed)
+    return method_coefficients(
+        lubricant,
+        friction_coefficient=rig.friction_coefficient,
+        friction_ratio=friction_ratios(rig, sine_under_load(rig), sliding_speed=sliding_speed),
+        nominal_pressure=nominal_pressure,
+    )

@@ -1,0 +1,252 @@
+"""Very many operating points of one rig at once: numbers as columns, and codes for what became of each point."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sonolube.checks import Floats
+from sonolube.contact import ExponentialHeights, decay_length, separation
+from sonolube.dynamics.backend import Backend
+from sonolube.dynamics.kernels.peak_velocity import highest_velocities
+from sonolube.dynamics.steady_state import Status, SteadyStates
+from sonolube.errors import SonolubeError
+from sonolube.friction.models.asperity_stick_slip import EMPIRICAL_MEMORY_LENGTH
+from sonolube.friction.models.asperity_stick_slip_batch import stick_slip_ratios
+from sonolube.rig.excitation import voltage_range
+from sonolube.rig.linear_response import require_drive, require_structure
+from sonolube.rig.operating_points import (
+    Settings,
+    broadcast,
+    friction_and_power,
+    friction_of,
+    grouped,
+    steady_states_of,
+)
+from sonolube.rig.record import Rig
+from sonolube.rig.steady_vibration import gap_motion
+
+STATUSES = (*(status.name.lower() for status in Status), "refused")
+"""What becomes of a point, by code."""
+
+NUMBERS = (
+    "friction_ratio",
+    "friction_reduction",
+    "friction_coefficient",
+    "friction_force",
+    "vibration_amplitude",
+    "vibration_velocity",
+    "mean_displacement",
+    "lost_contact_share",
+    "actuator_power",
+    "dissipated_power",
+)
+"""What is known of a point, as columns of a batch."""
+
+_REFUSED = len(STATUSES) - 1
+_REASONS = {
+    "periodic": "the vibration repeats with the drive",
+    "unstable": "the vibration repeats with the drive, but the smallest disturbance grows; simulate the point to see"
+    " what it does instead",
+    "several": "another vibration is as possible as this one; simulate the point to see which appears",
+    "not_converged": "no vibration at the drive's own period was found; start from a lower voltage or add damping",
+}
+_NO_SEPARATION = "normal_load leaves no separation between the surfaces: lower the load"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class PointBatch:
+    """Operating points as columns, one row to a point.
+
+    Parameters
+    ----------
+    numbers : dict of str to ndarray, shape (n,)
+        Columns by the names of `NUMBERS`, in SI; of a point that was refused or did not converge, NaN.
+    status : ndarray of int, shape (n,)
+        Places in `STATUSES`.
+    reason : ndarray of int, shape (n,)
+        Places in `reasons`.
+    reasons : tuple of str
+        What the status of a point means, and what to try.
+    """
+
+    numbers: dict[str, Floats]
+    status: NDArray[np.int8]
+    reason: NDArray[np.int16]
+    reasons: tuple[str, ...]
+
+
+def point_batch(
+    rig: Rig,
+    *,
+    voltage_peak_to_peak: ArrayLike | None = None,
+    voltage_offset: ArrayLike | None = None,
+    frequency: ArrayLike | None = None,
+    normal_load: ArrayLike | None = None,
+    sliding_speed: ArrayLike | None = None,
+    backend: Backend = "cpu",
+) -> PointBatch:
+    """Return what a rig does at very many operating points; what is not given is the rig's own.
+
+    Parameters
+    ----------
+    rig : Rig
+        With a stack, a structure and a drive voltage.
+    voltage_peak_to_peak : array_like, optional
+        Swing of the drive. [V]
+    voltage_offset : array_like, optional
+        Its mean. [V]
+    frequency : array_like, optional
+        Frequency of the drive. [Hz]
+    normal_load : array_like, optional
+        Force pressing the bodies together; the structure stays as it is. [N]
+    sliding_speed : array_like, optional
+        Macroscopic relative speed. [m/s]
+    backend : {"cpu", "gpu"}
+        Whether an NVIDIA GPU finds the vibrations that it can.
+
+    Returns
+    -------
+    PointBatch
+        Its rows are the broadcast settings, the last axis fastest.
+
+    Raises
+    ------
+    InvalidInput
+        If the rig has no structure, a setting has no meaning or shapes do not match.
+
+    Warns
+    -----
+    GpuUnused
+        If a GPU was asked for and there is none, or it does not serve the rig's contact or structure.
+
+    Notes
+    -----
+    The points of `operating_points`, their reasons in general words. By the closure stick_slip on exponential heights
+    the friction of the whole batch is found at once, to 1e-4; any other closure follows each vibration.
+    """
+    require_structure(rig)
+    assert rig.stack is not None
+    columns, speeds = broadcast(rig, (voltage_peak_to_peak, voltage_offset, frequency, normal_load, sliding_speed))
+    columns, speeds = columns.reshape(4, -1), speeds.ravel()
+    first, which = _distinct(columns)
+    settings = Settings.of_columns(columns[:, first])
+    rest = separation(rig.contact, normal_load=settings.normal_load)
+    refusal, reasons = _refusals(rig, settings, rest)
+    status, reason = np.full(first.size, _REFUSED, dtype=np.int8), refusal
+    numbers = np.full((5, first.size), np.nan)
+    ratio = np.full(speeds.size, np.nan)
+    possible = np.flatnonzero(refusal == 0)
+    failures: dict[int, str] = {}
+    if possible.size:
+        states = steady_states_of(rig, Settings.of_columns(columns[:, first[possible]]), rest[possible], backend)
+        status[possible] = states.status
+        reason[possible] = states.status
+        numbers[:, possible] = _measures(states)
+        place = np.full(first.size, -1)
+        place[possible] = np.where(states.status == Status.NOT_CONVERGED, -1, np.arange(possible.size))
+        ratio, failures = _friction(rig, states, place[which], speeds)
+    reasons = (*_REASONS.values(), *reasons)
+    point_status, point_reason = status[which], _shifted(reason, refusal)[which]
+    for point, text in failures.items():
+        if text not in reasons:
+            reasons = (*reasons, text)
+        point_status[point], point_reason[point] = _REFUSED, reasons.index(text)
+    amplitude, velocity, rise, lost, dissipated = numbers[:, which]
+    found = friction_and_power(rig, columns, friction_ratio=ratio) | {
+        "vibration_amplitude": amplitude,
+        "vibration_velocity": velocity,
+        "mean_displacement": rise,
+        "lost_contact_share": lost,
+        "dissipated_power": dissipated,
+    }
+    return PointBatch(
+        numbers={name: found[name] for name in NUMBERS},
+        status=point_status,
+        reason=point_reason,
+        reasons=reasons,
+    )
+
+
+def _distinct(columns: Floats) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return where each distinct column stands first, and which of these every column is."""
+    mixed = np.zeros(columns.shape[1], dtype=np.uint64)
+    for row in columns:
+        bits = np.ascontiguousarray(row).view(np.uint64)
+        mixed = (mixed ^ (bits ^ (bits >> np.uint64(29)))) * np.uint64(0x9E3779B97F4A7C15)
+        mixed ^= mixed >> np.uint64(32)
+    _, first, which = np.unique(mixed, return_index=True, return_inverse=True)
+    if not np.array_equal(columns[:, first[which]], columns):  # two that mix to the same number
+        _, first, which = np.unique(columns, axis=1, return_index=True, return_inverse=True)
+    return first, which.ravel()
+
+
+def _refusals(rig: Rig, settings: Settings, rest: Floats) -> tuple[NDArray[np.int16], tuple[str, ...]]:
+    """Return for each drive and load which of the reasons that follow rules it out, from 1; 0 where none does."""
+    assert rig.stack is not None
+    low, high = rig.stack.lowest_voltage, rig.stack.highest_voltage
+    lowest, highest = voltage_range(
+        require_drive(rig), voltage_peak_to_peak=settings.voltage_peak_to_peak, voltage_offset=settings.voltage_offset
+    )
+    refusal, texts = np.zeros(rest.size, dtype=np.int16), []
+    for beyond, text in (
+        (lowest < (-np.inf if low is None else low), f"the drive goes below the {low} V that the stack bears"),
+        (highest > (np.inf if high is None else high), f"the drive goes above the {high} V that the stack bears"),
+        (rest <= 0, _NO_SEPARATION),
+    ):
+        texts.append(text)
+        refusal[beyond] = len(texts)
+    return refusal, tuple(texts)
+
+
+def _shifted(reason: NDArray[np.int16], refusal: NDArray[np.int16]) -> NDArray[np.int16]:
+    """Return places among all reasons, those of refusals behind those of statuses."""
+    return np.where(refusal > 0, refusal + len(_REASONS) - 1, reason).astype(np.int16)
+
+
+def _measures(states: SteadyStates) -> Floats:
+    velocity = np.empty(states.frequency.size)
+    highest_velocities(2 * np.pi * states.frequency, states.harmonics, velocity)
+    velocity[states.status == Status.NOT_CONVERGED] = np.nan
+    return np.stack(
+        (
+            states.vibration_amplitude,
+            velocity,
+            states.mean_displacement,
+            states.lost_contact_share,
+            states.dissipated_power,
+        )
+    )
+
+
+def _friction(rig: Rig, states: SteadyStates, place: NDArray[np.intp], speeds: Floats) -> tuple[Floats, dict[int, str]]:
+    """Return the friction ratio at each point, and why a point has none though it vibrates."""
+    ratio = np.full(speeds.size, np.nan)
+    failures: dict[int, str] = {}
+    open_points = np.flatnonzero(place >= 0)
+    if (
+        rig.closure == "stick_slip"
+        and not rig.in_plane_fraction
+        and isinstance(rig.contact.heights, ExponentialHeights)
+    ):
+        moving = open_points[speeds[open_points] > 0]
+        known = states.status != Status.NOT_CONVERGED
+        own = np.cumsum(known) - 1
+        ratio[moving] = stick_slip_ratios(
+            decay_length=decay_length(rig.contact),
+            mean_displacement=states.mean_displacement[known],
+            harmonics=states.harmonics[known],
+            frequency=states.frequency[known],
+            sliding_speed=speeds[moving],
+            vibration=own[place[moving]],
+            memory_length=rig.memory_length or EMPIRICAL_MEMORY_LENGTH,
+        )
+        open_points = open_points[np.isnan(ratio[open_points])]
+    for members in grouped(open_points, place):
+        try:
+            moving_gap = gap_motion(states, int(place[members[0]]))
+            ratio[members], texts = friction_of(rig, moving_gap, speeds[members])
+        except SonolubeError as refusal:
+            texts = [str(refusal)] * members.size
+        failures |= {int(point): text for point, text in zip(members, texts, strict=True) if text}
+    return ratio, failures

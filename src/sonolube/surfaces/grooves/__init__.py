@@ -1,0 +1,1 @@
+"""Wear grooves in height maps: detection, sections, volume with its uncertainty, and generated grooves."""

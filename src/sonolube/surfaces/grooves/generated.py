@@ -1,0 +1,227 @@
+"""Worn surfaces made to measure: a groove of known volume in a tilted, wavy, rough field with missing pixels."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from sonolube.checks import Floats, require_finite, require_non_negative, require_positive, require_within
+from sonolube.errors import InvalidInput
+from sonolube.surfaces.generated import SingleScaleSpectrum, gaussian_surface
+from sonolube.surfaces.grooves.field_positions import from_middle
+from sonolube.surfaces.grooves.track import GrooveTrack
+from sonolube.surfaces.height_map import HeightMap
+
+_PIXELS_TO_CORRELATION = 2.0  # the roughness is as fine as the pixels show
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class GrooveShape:
+    """A groove with the cross-section that a ball leaves, the segment of a circle, between two ridges.
+
+    Parameters
+    ----------
+    groove_width : float
+        Distance of its edges on the unworn surface. [m]
+    groove_depth : float
+        Greatest depth below the unworn surface, at most half the width. [m]
+    pile_up_height : float
+        Height of the ridge beyond each edge. [m]
+    pile_up_width : float
+        Width of each ridge, whose section is a parabola. [m]
+    indentation_spacing : float or None
+        Spacing along the track at which the groove is deeper and shallower in turn; None for an even one. [m]
+    indentation_share : float
+        Share of the depth by which it is so. []
+
+    Raises
+    ------
+    InvalidInput
+        If a length is out of range.
+    """
+
+    groove_width: float
+    groove_depth: float
+    pile_up_height: float = 0.0
+    pile_up_width: float = 0.0
+    indentation_spacing: float | None = None
+    indentation_share: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_positive(groove_width=self.groove_width, groove_depth=self.groove_depth)
+        require_within(0.0, self.groove_width / 2, groove_depth=self.groove_depth)
+        require_non_negative(pile_up_height=self.pile_up_height, pile_up_width=self.pile_up_width)
+        require_within(0.0, 1.0, indentation_share=self.indentation_share)
+        if self.indentation_spacing is not None:
+            require_positive(indentation_spacing=self.indentation_spacing)
+
+    @property
+    def cross_section_area(self) -> float:
+        """Area of the section below the unworn surface, the mean along the track. [m2]"""
+        radius = self._radius
+        half_angle = math.asin(min(1.0, self.groove_width / (2 * radius)))
+        return radius**2 * half_angle - self.groove_width / 2 * (radius - self.groove_depth)
+
+    @property
+    def _radius(self) -> float:
+        return (self.groove_width**2 / 4 + self.groove_depth**2) / (2 * self.groove_depth)
+
+    def depth_at(self, across: Floats, along: Floats) -> Floats:
+        """Return the depth at positions across and along the track, in m."""
+        half, radius = self.groove_width / 2, self._radius
+        inside = np.sqrt(radius**2 - np.minimum(np.abs(across), half) ** 2) - (radius - self.groove_depth)
+        if self.indentation_spacing is not None:
+            inside = inside * (1 + self.indentation_share * np.cos(2 * math.pi * along / self.indentation_spacing))
+        return np.asarray(inside)
+
+    def ridge_at(self, across: Floats) -> Floats:
+        """Return the height of the ridges at positions across the track, in m."""
+        if not self.pile_up_width:
+            return np.zeros_like(across)
+        from_crest = (np.abs(across) - self.groove_width / 2) / self.pile_up_width * 2 - 1
+        return self.pile_up_height * np.maximum(0.0, 1 - from_crest**2)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ScannedField:
+    """The field of a scan and everything in it that is not the groove.
+
+    Parameters
+    ----------
+    field_shape : tuple of int
+        Rows and columns.
+    spacing_x : float
+        Distance of neighbouring columns. [m]
+    spacing_y : float
+        Distance of neighbouring rows. [m]
+    tilt : float
+        Rise of the plane from its lowest to its highest corner. [m]
+    waviness_amplitude : float
+        Amplitude of the waviness, a plane wave of random direction and phase. [m]
+    waviness_length : float
+        Wavelength of the waviness. [m]
+    rms_height : float
+        Standard deviation of the roughness. [m]
+    missing_share : float
+        Share of pixels without a height, scattered at random. []
+
+    Raises
+    ------
+    InvalidInput
+        If a value is out of range.
+    """
+
+    field_shape: tuple[int, int] = (480, 640)
+    spacing_x: float = 3.75e-6
+    spacing_y: float = 3.75e-6
+    tilt: float = 5e-6
+    waviness_amplitude: float = 1e-6
+    waviness_length: float = 1e-3
+    rms_height: float = 0.6e-6
+    missing_share: float = 0.05
+
+    def __post_init__(self) -> None:
+        require_positive(spacing_x=self.spacing_x, spacing_y=self.spacing_y, waviness_length=self.waviness_length)
+        require_non_negative(tilt=self.tilt, waviness_amplitude=self.waviness_amplitude, rms_height=self.rms_height)
+        require_within(0.0, 0.99, missing_share=self.missing_share)
+        if len(self.field_shape) != 2 or min(self.field_shape) < 1:
+            raise InvalidInput(f"field_shape must be rows and columns, got {self.field_shape!r}")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class GeneratedGroove:
+    """A worn scan of which everything is known.
+
+    Parameters
+    ----------
+    scan : HeightMap
+        What an instrument would have measured.
+    unworn : HeightMap
+        The tilted, wavy plane it was before, without roughness.
+    wear_volume : float
+        Volume of the groove below the unworn surface within the field. [m3]
+    pile_up_volume : float
+        Volume of the ridges within the field. [m3]
+    """
+
+    scan: HeightMap
+    unworn: HeightMap
+    wear_volume: float
+    pile_up_volume: float
+
+
+def generated_groove(
+    shape: GrooveShape, *, track: GrooveTrack, seed: int, field: ScannedField | None = None
+) -> GeneratedGroove:
+    """Return a scan with a groove of known volume.
+
+    Parameters
+    ----------
+    shape : GrooveShape
+        Its section.
+    track : GrooveTrack
+        Where it runs.
+    seed : int
+        The same seed gives the same scan.
+    field : ScannedField, optional
+        The field around it: 2.4 mm by 1.8 mm with a tilt of 5 um, a wave of 1 um every millimetre, a roughness of
+        0.6 um and 5 % missing pixels where it is not given.
+
+    Returns
+    -------
+    GeneratedGroove
+
+    Notes
+    -----
+    Depth and ridges are taken off and put on the rough surface, so that groove and surroundings are equally rough.
+    Volumes are sums over the pixels, missing ones too.
+    """
+    field = field or ScannedField()
+    rng = np.random.default_rng(seed)
+    unworn = HeightMap(
+        height=_plane(field, rng) + _wave(field, rng), spacing_x=field.spacing_x, spacing_y=field.spacing_y
+    )
+    across, along = track.across_and_along(unworn)
+    depth, ridge = shape.depth_at(across, along), shape.ridge_at(across)
+    height = unworn.height - depth + ridge
+    if field.rms_height:
+        height += _roughness(field, seed)
+    height[rng.random(height.shape) < field.missing_share] = np.nan
+    pixel = field.spacing_x * field.spacing_y
+    return GeneratedGroove(
+        scan=unworn.with_height(height),
+        unworn=unworn,
+        wear_volume=float(depth.sum()) * pixel,
+        pile_up_volume=float(ridge.sum()) * pixel,
+    )
+
+
+def _positions(field: ScannedField) -> tuple[Floats, Floats]:
+    flat = HeightMap(height=np.zeros(field.field_shape), spacing_x=field.spacing_x, spacing_y=field.spacing_y)
+    return from_middle(flat)
+
+
+def _plane(field: ScannedField, rng: np.random.Generator) -> Floats:
+    x, y = _positions(field)
+    angle = rng.uniform(0, 2 * math.pi)
+    plane = x * math.cos(angle) + y * math.sin(angle)
+    return np.asarray(plane * (field.tilt / max(float(np.ptp(plane)), np.finfo(float).tiny)))
+
+
+def _wave(field: ScannedField, rng: np.random.Generator) -> Floats:
+    x, y = _positions(field)
+    angle, phase = rng.uniform(0, 2 * math.pi, 2)
+    turn = 2 * math.pi / field.waviness_length
+    return np.asarray(field.waviness_amplitude * np.sin(turn * (x * math.cos(angle) + y * math.sin(angle)) + phase))
+
+
+def _roughness(field: ScannedField, seed: int) -> Floats:
+    length = _PIXELS_TO_CORRELATION * max(field.spacing_x, field.spacing_y)
+    return gaussian_surface(
+        rms_height=require_finite(rms_height=field.rms_height).item(),
+        spectrum=SingleScaleSpectrum(correlation_length=length),
+        shape=field.field_shape,
+        spacing_x=field.spacing_x,
+        spacing_y=field.spacing_y,
+        seed=seed,
+    ).height

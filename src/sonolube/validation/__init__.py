@@ -1,0 +1,1 @@
+"""Published friction tests as records, and every friction model fitted and cross-validated against them."""

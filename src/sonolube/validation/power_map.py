@@ -1,0 +1,189 @@
+"""The rig of the power maps (D 4.1) as its printed numbers describe it: actuator, example test, efficiency line."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sonolube.actuator import driver_power
+from sonolube.checks import Floats
+from sonolube.friction import separating_half_period_ratio
+from sonolube.metrics import (
+    EfficiencyLine,
+    efficiency_at,
+    efficiency_coefficient,
+    friction_at_power,
+    power_for_friction,
+)
+from sonolube.published import PrintedNumber, table
+from sonolube.validation.contacts import steel_on_steel_contact
+from sonolube.validation.inputs import said
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ExamplePoint:
+    """One voltage of the example test.
+
+    Parameters
+    ----------
+    row : int
+        Row of Table 4.2, counted from 0.
+    voltage_peak_to_peak : float
+        Drive voltage, peak to peak. [V]
+    actuator_power : float
+        Power of the actuator at that voltage. [W]
+    friction : PrintedNumber
+        Friction, with its scatter.
+    """
+
+    row: int
+    voltage_peak_to_peak: float
+    actuator_power: float
+    friction: PrintedNumber
+
+
+def printed(table_id: str, column: str) -> dict[int, PrintedNumber]:
+    """Return the cells of a published column that hold a number, by row."""
+    cells = enumerate(table(table_id).columns[column].cells)
+    return {row: number for row, number in cells if number is not None}
+
+
+def actuator_power(*, voltage_peak_to_peak: ArrayLike) -> Floats:
+    """Return what the amplifier draws for the actuator of Table 4.1, driven from zero to its highest voltage. [W]
+
+    Parameters
+    ----------
+    voltage_peak_to_peak : array_like, any shape
+        Drive voltage, peak to peak. [V]
+
+    Returns
+    -------
+    ndarray, shape of `voltage_peak_to_peak`
+    """
+    return driver_power(
+        capacitance=printed("4.1", "capacitance")[0].value,
+        voltage_maximum=voltage_peak_to_peak,
+        voltage_peak_to_peak=voltage_peak_to_peak,
+        frequency=printed("4.1", "frequency")[0].value,
+    )
+
+
+def vibration_amplitude(*, voltage_peak_to_peak: ArrayLike) -> Floats:
+    """Return the amplitude in proportion to the voltage, through the highest of both in Table 4.1. [m]
+
+    Parameters
+    ----------
+    voltage_peak_to_peak : array_like, any shape
+        Drive voltage, peak to peak. [V]
+
+    Returns
+    -------
+    ndarray, shape of `voltage_peak_to_peak`
+    """
+    columns = table("4.1").columns
+    amplitude, voltage = (np.nanmax(columns[name].values) for name in ("vibration_amplitude", "voltage_peak_to_peak"))
+    return np.asarray(voltage_peak_to_peak, dtype=np.float64) * (amplitude / voltage)
+
+
+def example_test() -> dict[str, float]:
+    """Return friction without vibration, speed, area and load of the example test, as the metrics take them; in SI."""
+    return {
+        "intrinsic_friction_force": printed("4.2", "friction_force")[0].value,
+        "sliding_speed": said("4.1.2-sliding-speed").value,
+        "nominal_area": said("4.1.1-nominal-area").value,
+        "normal_load": said("4.1.2-normal-load").value,
+    }
+
+
+def example_points() -> tuple[ExamplePoint, ...]:
+    """Return the voltages of Table 4.2 at which the actuator vibrates."""
+    frictions = printed("4.2", "friction_force")
+    return tuple(
+        ExamplePoint(
+            row=row,
+            voltage_peak_to_peak=voltage.value,
+            actuator_power=float(actuator_power(voltage_peak_to_peak=voltage.value)),
+            friction=frictions[row],
+        )
+        for row, voltage in printed("4.2", "voltage_peak_to_peak").items()
+        if voltage.value > 0
+    )
+
+
+def cube_friction(*, voltage_peak_to_peak: ArrayLike) -> Floats:
+    """Return the friction of the example test by the cube over the separating half period, D 3.15. [N]
+
+    Parameters
+    ----------
+    voltage_peak_to_peak : array_like, any shape
+        Drive voltage, peak to peak. [V]
+
+    Returns
+    -------
+    ndarray, shape of `voltage_peak_to_peak`
+    """
+    test = example_test()
+    ratio = separating_half_period_ratio(
+        steel_on_steel_contact(nominal_area=test["nominal_area"]),
+        normal_load=test["normal_load"],
+        vibration_amplitude=vibration_amplitude(voltage_peak_to_peak=voltage_peak_to_peak),
+    )
+    return test["intrinsic_friction_force"] * ratio
+
+
+def point_efficiency(point: ExamplePoint, *, friction: float) -> float:
+    """Return the efficiency coefficient of the example test at a voltage and a friction, D 4.1. [m2/N]"""
+    return float(
+        efficiency_coefficient(reduced_friction_force=friction, actuator_power=point.actuator_power, **example_test())
+    )
+
+
+def efficiency_line() -> EfficiencyLine:
+    """Return the line that D fitted to its efficiency coefficients, D 4.2."""
+    return EfficiencyLine(
+        slope=said("4.1.2-efficiency-slope").value, intercept=said("4.1.2-efficiency-intercept").value
+    )
+
+
+def sufficient_power(test: dict[str, float]) -> float:
+    """Return the power that takes all friction of a test away on the efficiency line, D 4.3. [W]"""
+    return float(power_for_friction(efficiency_line(), reduced_friction_force=0.0, **test))
+
+
+def line_friction(test: dict[str, float], *, actuator_power: ArrayLike) -> Floats:
+    """Return the friction a power leaves on the efficiency line, D 4.4: none at the sufficient power and beyond. [N]
+
+    Parameters
+    ----------
+    test : dict
+        As `example_test` returns it.
+    actuator_power : array_like, any shape
+        Power of the actuator. [W]
+
+    Returns
+    -------
+    ndarray, shape of `actuator_power`
+    """
+    power = np.minimum(actuator_power, sufficient_power(test))
+    return friction_at_power(efficiency_line(), actuator_power=power, **test)
+
+
+def line_efficiency(*, sliding_speed: ArrayLike) -> Floats:
+    """Return the efficiency coefficient on D's line. [m2/N]
+
+    Parameters
+    ----------
+    sliding_speed : array_like, any shape
+        Macroscopic relative speed. [m/s]
+
+    Returns
+    -------
+    ndarray, shape of `sliding_speed`
+    """
+    return efficiency_at(efficiency_line(), sliding_speed=sliding_speed)
+
+
+def line_end() -> float:
+    """Return the sliding speed at which D's line has fallen to zero. [m/s]"""
+    line = efficiency_line()
+    return -line.intercept / line.slope

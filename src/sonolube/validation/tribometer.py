@@ -1,0 +1,240 @@
+"""What the dissertation says of the tribometer's unprinted masses, springs and dampers, ranked, and the rig they make.
+
+Rank 1 is what was measured or how the rig is built, rank 2 a number that the dissertation computed, rank 3 what
+is only said in words or concluded here.
+"""
+
+import math
+
+from sonolube.actuator.stack import PiezoStack
+from sonolube.contact import decay_length
+from sonolube.identification import Fact, Identification, PinOnDiscTest, identify, observer
+from sonolube.published import PrintedNumber
+from sonolube.published.values import Computed, over_rounding
+from sonolube.validation.contacts import wear_contact
+from sonolube.validation.inputs import in_table, said
+
+BOUNDS = {
+    "tip_mass": (0.01, 10.0),
+    "reaction_mass": (0.01, 10.0),
+    "arm_mass": (0.05, 5.0),
+    "arm_stiffness": (1e3, 1e7),
+    "arm_damping": (1.0, 1e3),
+    "tip_damping": (0.1, 1e4),
+}
+IDENTIFIED = {
+    "tip_mass": 0.1093,
+    "reaction_mass": 2.41,
+    "arm_mass": 0.602,
+    "arm_stiffness": 4.56e5,
+    "arm_damping": 90.0,
+    "tip_damping": 702.0,
+}
+"""What `tribometer_identification` finds, rounded, in SI."""
+
+_GRAVITY = 9.80665  # m/s2
+_HALF_POWER = 0.5**0.5
+_ARM_HEAVIEST = 1.0  # kg
+_TOP_VOLTAGE = 14  # row of Table 4.1
+
+
+def tribometer_identification(*, seed: int = 0) -> Identification:
+    """Return what the published facts say of m1, m2, m3, k2, c1 and c2.
+
+    Parameters
+    ----------
+    seed : int
+        Seed of the searches.
+
+    Returns
+    -------
+    Identification
+    """
+    return identify(observer(tribometer_test()), facts=tribometer_facts(), bounds=BOUNDS, seed=seed)
+
+
+def tribometer_test() -> PinOnDiscTest:
+    """Return the tribometer's stack as printed, and how it was driven and loaded."""
+    contact, load = wear_contact(), in_table("3.2", "normal_load").value
+    return PinOnDiscTest(
+        stack=tribometer_stack(),
+        frequency=said("4.1.1-frequency").value,
+        voltage_peak_to_peak=in_table("4.1", "voltage_peak_to_peak", _TOP_VOLTAGE).value,
+        normal_load=load,
+        decay_length=float(decay_length(contact)),
+        settling_time=said("3.3.4-settling-time").value,
+        added_mass=(_load_of_most_arm_vibration() - load) / _GRAVITY,
+    )
+
+
+def tribometer_stack() -> PiezoStack:
+    """Return the stack of Table 3.5, its coupling factor left to be derived."""
+    layers, constant, stiffness, capacitance, mass, damping = (
+        in_table("3.5", name).value
+        for name in (
+            "stack_layers",
+            "charge_constant_33",
+            "stack_stiffness",
+            "capacitance",
+            "stack_mass",
+            "stack_damping",
+        )
+    )
+    return PiezoStack(
+        free_capacitance=capacitance,
+        free_stroke_per_volt=layers * constant,
+        stack_stiffness=stiffness,
+        stack_mass=mass,
+        stack_damping=damping,
+    )
+
+
+def tribometer_facts() -> tuple[Fact, ...]:
+    """Return the facts, the more trusted first."""
+    return (*_measured(), *_simulated(), *_concluded())
+
+
+def _measured() -> tuple[Fact, ...]:
+    per_volt = over_rounding(
+        lambda amplitude, voltage: amplitude / voltage,
+        in_table("4.1", "vibration_amplitude", _TOP_VOLTAGE),
+        in_table("4.1", "voltage_peak_to_peak", _TOP_VOLTAGE),
+    )
+    return (
+        _printed(
+            "electrical_resonance",
+            said("4.1.1-frequency"),
+            rank=1,
+            unit="Hz",
+            meaning="Resonance of the actuator, to the digits printed",
+            source="D 2.3.1, 4.1.1, A.3.1.3",
+        ),
+        _printed(
+            "tip_amplitude_per_volt",
+            per_volt,
+            rank=1,
+            unit="m/V",
+            meaning="Amplitude per volt peak to peak: 2.31 um at 25.9 V",
+            source="D Table 4.1; 2.5 um at 28.0 V of D 2.3.1 and A.3.1 is the same",
+        ),
+        Fact(
+            name="resonance_share",
+            value=1.0,
+            tolerance=1 - _HALF_POWER,
+            rank=1,
+            relation=">=",
+            meaning="The drive is at resonance, at least within the half-power width",
+            source="D 3.3.5, 4.1.1",
+        ),
+        Fact(
+            name="mass_ratio",
+            value=10.0,
+            tolerance=5.0,
+            rank=1,
+            relation=">=",
+            meaning="The reaction mass is much larger than the tip",
+            source="D 3.3.1; 10 and 5 are what 'much' is taken for",
+        ),
+    )
+
+
+def _simulated() -> tuple[Fact, ...]:
+    quality = over_rounding(
+        lambda stiffness, frequency, damping: stiffness / (2 * math.pi * frequency * damping),
+        in_table("3.5", "stack_stiffness"),
+        said("4.1.1-frequency"),
+        in_table("3.5", "stack_damping"),
+    )
+    power = in_table("4.1", "actuator_power", _TOP_VOLTAGE)
+    settling = said("3.3.4-settling-time").value
+    return (
+        _printed(
+            "resonance_quality",
+            quality,
+            rank=2,
+            meaning="k_p/(2 pi f c_p): the printed damping is all there is",
+            source="D Table 3.5, fitted to an impedance curve",
+        ),
+        Fact(
+            name="dissipated_power",
+            value=power.value,
+            tolerance=power.half_digit,
+            rank=2,
+            relation="<=",
+            unit="W",
+            meaning="The actuator consumes no more than the power stated at 25.9 V",
+            source="D Table 4.1, from the capacitance alone",
+        ),
+        Fact(
+            name="tip_settling",
+            value=settling,
+            tolerance=settling / 2,
+            rank=2,
+            unit="s",
+            meaning="Time to the steady state, read as that of the stack's vibration",
+            source="D 3.3.4",
+        ),
+        Fact(
+            name="arm_settling",
+            value=settling,
+            tolerance=settling / 2,
+            rank=2,
+            unit="s",
+            meaning="Time to the steady state, read as that of the arm's vibration",
+            source="D 3.3.4",
+        ),
+        Fact(
+            name="arm_frequency",
+            value=said("3.3.4-residual-frequency").value,
+            tolerance=20.0,
+            rank=2,
+            unit="Hz",
+            meaning="Frequency of the fluctuation beside the ultrasonic vibration",
+            source="D 3.3.4",
+        ),
+    )
+
+
+def _concluded() -> tuple[Fact, ...]:
+    hung = said("A.3.1.1-weight").value / _GRAVITY
+    return (
+        Fact(
+            name="fluctuation_left",
+            value=0.5,
+            tolerance=0.25,
+            rank=3,
+            relation=">=",
+            meaning="The fluctuation stays with the steady vibration: its share left after 0.05 s",
+            source="D 3.3.4; one half is what 'stays' is taken for",
+        ),
+        Fact(
+            name="heavier_arm_frequency",
+            value=said("4.1.2-arm-frequency").value,
+            tolerance=20.0,
+            rank=3,
+            unit="Hz",
+            meaning="Frequency of the arm with the weights for 6 to 7 N, where it vibrates most",
+            source="D 4.1.2",
+        ),
+        Fact(
+            name="arm_mass",
+            value=(hung + _ARM_HEAVIEST) / 2,
+            tolerance=(_ARM_HEAVIEST - hung) / 2,
+            rank=3,
+            unit="kg",
+            meaning="From the hung weight of 2 N alone to a whole kilogram with the arm",
+            source="D A.3.1.1; the kilogram is assumed",
+        ),
+    )
+
+
+def _printed(
+    name: str, number: PrintedNumber | Computed, *, rank: int, unit: str = "", meaning: str, source: str
+) -> Fact:
+    """Return a fact as close as the printed digits tell."""
+    within = (number.high - number.low) / 2
+    return Fact(name=name, value=number.value, tolerance=within, rank=rank, unit=unit, meaning=meaning, source=source)
+
+
+def _load_of_most_arm_vibration() -> float:
+    return (said("4.1.2-peak-load-1").value + said("4.1.2-peak-load-2").value) / 2

@@ -1,0 +1,135 @@
+"""What a drive ends in, against linear theory, harmonic balance and an integrator that knows nothing of either."""
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pytest import approx
+from scipy.integrate import solve_ivp
+
+from sonolube.dynamics.gap_law import ExponentialGap
+from sonolube.dynamics.long_time_response import Attained, attained_motion, settling_periods
+from sonolube.dynamics.steady_state import Status, SteadyStates, steady_state
+from sonolube.dynamics.structure import Structure, drive_receptance, with_contact_spring
+from sonolube.dynamics.waveform import StartUpRamp
+
+DECAY = 2e-6
+ROUGH = ExponentialGap(decay_length=DECAY)
+
+
+def chain(first: float, second: float) -> NDArray[np.float64]:
+    return np.array([[first, -first, 0], [-first, first + second, -second], [0, -second, second]])
+
+
+STROKE = 62 * 140e-12
+TRIBOMETER = Structure(  # tip, reaction mass with its stack, arm; a damper from the tip to the ground
+    mass_matrix=np.diag([0.1093, 2.48, 0.602]),
+    damping_matrix=chain(30.0, 90.0) + np.diag([702.0, 0.0, 0.0]),
+    stiffness_matrix=chain(2e9, 4.56e5),
+    drive_vector=STROKE * 2e9 * np.array([-1.0, 1.0, 0.0]),
+    contact_vector=np.array([1.0, 0.0, 0.0]),
+    clamped_capacitance=210e-9,
+)
+BEATING: dict[str, Any] = {"normal_load": 61.209, "frequency": 22436.58}
+BEATING_VOLTS = 32.9322
+DOUBLE: dict[str, Any] = {"normal_load": 95.5875, "frequency": 446.00634}
+DOUBLE_VOLTS = 285.297
+SLOWLY = StartUpRamp(duration=0.2, shape="cosine")
+
+
+@cache
+def attained(which: str) -> Attained:
+    drive, volts = {"beating": (BEATING, BEATING_VOLTS), "double": (DOUBLE, DOUBLE_VOLTS)}[which]
+    return attained_motion(TRIBOMETER, ROUGH, **drive, voltage_peak_to_peak=2 * volts, ramp=SLOWLY)
+
+
+def balanced(which: str, *, falling: bool = False) -> SteadyStates:
+    drive, volts = {"beating": (BEATING, BEATING_VOLTS), "double": (DOUBLE, DOUBLE_VOLTS)}[which]
+    return steady_state(TRIBOMETER, ROUGH, **drive, voltage_amplitude=volts, falling=falling)
+
+
+def integrated(
+    load: float, frequency: float, volts: float, *, start: NDArray[np.float64], until: float
+) -> NDArray[np.float64]:
+    """The contact's displacement seen eight times a period, by DOP853 from a state, the drive at once."""
+    s, omega = TRIBOMETER, 2 * np.pi * frequency
+    inverse = np.linalg.inv(s.mass_matrix)
+
+    def rate(time: float, state: NDArray[np.float64]) -> NDArray[np.float64]:
+        x, v = np.split(state, 2)
+        pull = s.drive_vector * volts * np.sin(omega * time) - s.damping_matrix @ v - s.stiffness_matrix @ x
+        closing = min(float(-(s.contact_vector @ x)) / DECAY, 60.0)  # trial steps go far astray
+        pull = pull + s.contact_vector * load * np.expm1(closing)
+        return np.concatenate([v, inverse @ pull])
+
+    instants = np.arange(0, round(until * frequency) * 8) / (8 * frequency)
+    scale = np.concatenate([np.full(3, 1e-12), np.full(3, 1e-12 * omega)])
+    found = solve_ivp(rate, (0, instants[-1]), start, t_eval=instants, method="DOP853", rtol=1e-8, atol=scale)
+    return np.asarray(found.y[0])
+
+
+def test_a_small_drive_ends_in_the_vibration_of_linear_theory() -> None:
+    volts = 1e-9 / abs(drive_receptance(TRIBOMETER, frequency=20e3))
+    found = attained_motion(TRIBOMETER, ROUGH, normal_load=3.0, frequency=20e3, voltage_peak_to_peak=2 * float(volts))
+    touching = with_contact_spring(TRIBOMETER, normal_stiffness=3.0 / DECAY)
+    expected = float(volts * abs(drive_receptance(touching, frequency=20e3)))
+    assert found.attractor.order == 1
+    assert found.amplitudes == approx(expected, rel=1e-3)
+
+
+def test_transients_are_given_twelve_decay_times_of_the_slowest_motion() -> None:
+    # one mass of 2 kg on its contact of 3 N over 2 um, damped by 40 N s/m: decays as exp(-10 t)
+    one = Structure(
+        mass_matrix=np.eye(1) * 2,
+        damping_matrix=np.eye(1) * 40,
+        stiffness_matrix=np.zeros((1, 1)),
+        drive_vector=np.ones(1),
+        contact_vector=np.ones(1),
+        clamped_capacitance=1e-9,
+    )
+    assert settling_periods(one, ROUGH, normal_load=3.0, frequency=1e3) == approx(1200, abs=1)
+
+
+def test_power_is_that_which_harmonic_balance_draws_from_the_drive() -> None:
+    states = steady_state(TRIBOMETER, ROUGH, normal_load=3.0, frequency=22e3, voltage_amplitude=14.0)
+    found = attained_motion(TRIBOMETER, ROUGH, normal_load=3.0, frequency=22e3, voltage_peak_to_peak=28.0)
+    assert found.dissipated_power == approx(float(states.dissipated_power), rel=1e-3)
+    assert found.amplitudes == approx(float(states.vibration_amplitude), rel=1e-3)
+
+
+def test_an_unstable_vibration_gives_way_to_a_beat_however_slowly_the_voltage_comes_up() -> None:
+    assert balanced("beating").status == Status.UNSTABLE
+    found, at_once = (
+        attained("beating"),
+        attained_motion(TRIBOMETER, ROUGH, **BEATING, voltage_peak_to_peak=2 * BEATING_VOLTS),
+    )
+    assert found.attractor.kind == at_once.attractor.kind == "beating"
+    assert found.attractor.beat_frequency == approx(float(at_once.attractor.beat_frequency), rel=0.01)
+    assert found.attractor.beat_amplitude == approx(float(at_once.attractor.beat_amplitude), rel=0.02)
+    assert np.ptp(found.amplitudes) > 0.05 * found.amplitudes.mean()
+
+
+def test_another_integrator_sees_the_same_beat() -> None:
+    found = attained("beating").attractor
+    start = np.concatenate([found.state.coordinates, found.state.rates]) * 0.98
+    seen = integrated(61.209, 22436.58, BEATING_VOLTS, start=start, until=0.05)
+    once_a_period = seen.reshape(-1, 8)[-512:, 0]
+    assert np.ptp(once_a_period) / 2 == approx(float(found.beat_amplitude), rel=0.05)
+    spectrum = np.abs(np.fft.rfft((once_a_period - once_a_period.mean()) * np.hanning(512), 8192))
+    assert np.argmax(spectrum) / 8192 * 22436.58 == approx(float(found.beat_frequency), rel=0.02)
+
+
+def test_of_two_vibrations_a_slow_rise_reaches_the_smaller_and_both_last() -> None:
+    small, large = balanced("double"), balanced("double", falling=True)
+    assert small.status == large.status == Status.SEVERAL
+    assert float(small.rival_amplitude) == approx(float(large.vibration_amplitude), rel=1e-6)
+    assert attained("double").attractor.order == 1
+    assert attained("double").amplitudes == approx(float(small.vibration_amplitude), rel=1e-3)
+
+
+def test_another_integrator_started_where_the_march_ended_stays_there() -> None:
+    found = attained("double").attractor
+    start = np.concatenate([found.state.coordinates, found.state.rates])
+    seen = np.asarray(integrated(95.5875, 446.00634, DOUBLE_VOLTS, start=start, until=0.1)).reshape(-1, 8)
+    assert seen[-1] == approx(seen[0], abs=2e-3 * float(attained("double").amplitudes[0]))

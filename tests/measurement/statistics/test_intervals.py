@@ -1,0 +1,113 @@
+"""Few tests, honestly: scipy for Welch, enumeration for permutations, the definition for Fieller, ISO 5725 by hand."""
+
+from itertools import permutations
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from pytest import approx, raises
+from scipy import stats
+
+from sonolube.errors import InvalidInput
+from sonolube.measurement.statistics.intervals import compare, mean_estimate, ratio_interval, repeatability
+
+tests = st.lists(st.floats(-100, 100).map(lambda x: round(x, 3)), min_size=2, max_size=4)
+
+
+def test_a_mean_of_three_tests_has_students_interval() -> None:
+    estimate = mean_estimate([1.0, 1.2, 0.8])
+    assert (estimate.mean, estimate.deviation) == approx((1.0, 0.2))
+    # t of 2 degrees of freedom at 97.5 % is 4.30265
+    assert (estimate.lower, estimate.upper) == approx((1 - 4.30265 * 0.2 / 3**0.5, 1 + 4.30265 * 0.2 / 3**0.5))
+
+
+@given(tests, tests)
+@settings(max_examples=150, deadline=None)
+def test_welch_is_that_of_scipy(first: list[float], second: list[float]) -> None:
+    assume(np.ptp(first) > 0.01 and np.ptp(second) > 0.01)
+    found, known = compare(first, second), stats.ttest_ind(second, first, equal_var=False)
+    assert found.t_statistic == approx(known.statistic, rel=1e-9, abs=1e-12)
+    assert found.welch_p == approx(known.pvalue, rel=1e-9)
+    interval = known.confidence_interval(0.95)
+    assert (found.lower, found.upper) == approx((interval.low, interval.high), rel=1e-8, abs=1e-9)
+
+
+@given(tests, tests)
+@settings(max_examples=40, deadline=None)
+def test_the_permutation_test_counts_every_order(first: list[float], second: list[float]) -> None:
+    assume(len(first) + len(second) <= 7)
+    observed = abs(np.mean(second) - np.mean(first))
+    n = len(first)
+    extreme = [abs(np.mean(p[n:]) - np.mean(p[:n])) >= observed - 1e-7 for p in permutations(first + second)]
+    assert compare(first, second).permutation_p == approx(np.mean(extreme))
+
+
+@pytest.mark.parametrize(("n", "smallest"), [(2, 1 / 3), (3, 1 / 10), (4, 1 / 35)])
+def test_few_tests_cannot_be_more_significant_than_their_number(n: int, smallest: float) -> None:
+    found = compare(np.arange(n), 1000 + np.arange(n))
+    assert found.smallest_permutation_p == approx(smallest)
+    assert found.permutation_p == approx(smallest)
+
+
+def test_two_against_three_tests_reach_a_tenth() -> None:
+    assert compare([0, 1], [100, 101, 103]).permutation_p == approx(0.1)
+    assert compare([0, 1], [100, 101, 103]).smallest_permutation_p == approx(0.1)
+
+
+def test_tests_without_scatter_differ_surely_or_not_at_all() -> None:
+    assert compare([1, 1], [2, 2]).welch_p == 0
+    assert compare([1, 1], [1, 1]).welch_p == 1
+
+
+def test_repeatability_of_a_balanced_trial_worked_by_hand() -> None:
+    # means 10.5, 12.5, 11.5; within: six squares of 0.25 over 3 = 0.5; between: (2 * 2 / 2 - 0.5) / 2 = 0.75
+    found = repeatability([[10, 11], [12, 13], [11, 12]])
+    assert found.within**2 == approx(0.5)
+    assert found.between**2 == approx(0.75)
+    assert found.reproducibility**2 == approx(1.25)
+    assert found.repeatability_limit == approx(2.8 * 0.5**0.5)
+
+
+def test_repeatability_of_unequal_groups_recovers_the_components() -> None:
+    rng = np.random.default_rng(3)
+    groups = [rng.normal(rng.normal(5, 0.7), 0.2, rng.integers(2, 6)) for _ in range(4000)]
+    found = repeatability(groups)
+    assert found.within == approx(0.2, rel=0.03)
+    assert found.between == approx(0.7, rel=0.04)
+
+
+def test_groups_that_agree_too_well_have_no_scatter_between_them() -> None:
+    assert repeatability([[1, 3], [1, 3], [3, 1]]).between == 0
+
+
+def test_fiellers_interval_ends_where_its_definition_says() -> None:
+    x, y = np.array([0.35, 0.41, 0.38]), np.array([1.02, 0.95, 1.08, 1.0])
+    found = ratio_interval(x, y)
+    v_x, v_y = x.var(ddof=1) / 3, y.var(ddof=1) / 4
+    freedom = (v_x + found.ratio**2 * v_y) ** 2 / (v_x**2 / 2 + (found.ratio**2 * v_y) ** 2 / 3)
+    for end in (found.lower, found.upper):
+        t = abs(x.mean() - end * y.mean()) / np.sqrt(v_x + end**2 * v_y)
+        assert t == approx(stats.t.ppf(0.975, freedom))
+
+
+def test_fiellers_interval_holds_the_ratio_as_often_as_it_says() -> None:
+    rng = np.random.default_rng(5)
+    hits = [
+        (found := ratio_interval(rng.normal(0.4, 0.05, 4), rng.normal(1.0, 0.08, 4))).lower <= 0.4 <= found.upper
+        for _ in range(2000)
+    ]
+    assert np.mean(hits) == approx(0.95, abs=0.02)
+
+
+def test_a_ratio_to_what_may_be_nothing_has_no_interval() -> None:
+    found = ratio_interval([1.0, 1.1], [0.1, -0.05])
+    assert not found.bounded
+    assert "may be zero" in found.reason
+
+
+def test_a_single_test_has_no_interval() -> None:
+    with raises(InvalidInput, match="tests must be at least two tests, got 1"):
+        mean_estimate([1.0])
+    with raises(InvalidInput, match="needs two groups and one with two tests"):
+        repeatability([[1.0], [2.0]])

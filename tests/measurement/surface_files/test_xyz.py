@@ -1,0 +1,84 @@
+"""Points as text find their way back onto the grid they were measured on."""
+
+import io
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+from pytest import approx, mark, raises
+
+from sonolube.checks import Floats
+from sonolube.errors import InvalidInput
+from sonolube.measurement.surface_files.record import SurfaceReading
+from sonolube.measurement.surface_files.xyz import read_xyz
+
+
+def read(text: str) -> SurfaceReading:
+    return read_xyz(io.BytesIO(text.encode()), name="plate.xyz")
+
+
+@settings(deadline=None)
+@given(
+    height=arrays(np.float64, (3, 4), elements=st.floats(-1e3, 1e3)),
+    order=st.permutations(range(12)),
+    missing=st.integers(0, 11),
+    origin=st.floats(-1e4, 1e4),
+)
+def test_points_in_any_order_come_back_as_the_map_they_were(
+    height: Floats, order: list[int], missing: int, origin: float
+) -> None:
+    y, x = np.divmod(np.arange(12), 4)
+    points = [(origin + 0.1967 * x[i], -origin + 0.55 * y[i], height.flat[i]) for i in order if i != missing]
+    found = read("\n".join(f"{a:.9f} {b:.9f} {z:.17g}" for a, b, z in points))
+    expected = height.copy()
+    expected.flat[missing] = np.nan
+    np.testing.assert_array_equal(found.height, expected)
+    assert found.spacing_x == approx(0.1967, rel=1e-6)
+    assert found.spacing_y == approx(0.55, rel=1e-6)
+
+
+def test_positions_that_text_has_rounded_still_share_one_spacing() -> None:
+    x = 0.196733 * np.arange(1000)
+    found = read("\n".join(f"{a:.2f};{b};1" for b in (0, 1) for a in x))
+    assert found.height.shape == (2, 1000)
+    assert found.spacing_x == approx(0.196733, rel=1e-4)
+
+
+@mark.parametrize("separator", [" ", "\t", ",", ";", ", ", "  "])
+def test_every_usual_separator_is_understood(separator: str) -> None:
+    text = "\n".join(separator.join(point) for point in (("0", "0", "1"), ("1", "0", "2"), ("0", "1", "3")))
+    np.testing.assert_array_equal(read(text).height, [[1, 2], [3, np.nan]])
+
+
+def test_headers_comments_and_missing_heights_are_passed_over() -> None:
+    text = "X [um]\tY [um]\tZ [um]\n# by hand\n0 0 1\n\n1 0 No Data\n0 1 Bad\n1 1 nan\n2 0 5e-1\n2 1 4\n"
+    np.testing.assert_array_equal(read(text).height, [[1, np.nan, 0.5], [np.nan, np.nan, 4]])
+
+
+@mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "byte 0: the file is empty"),
+        ("hello\n", "byte 6: no point x y z found"),
+        ("0 0 1\n1 0 2\n0 1\n", r"byte 12: a point has three numbers, x y z: '0 1\\n'"),
+        ("0 0 1\n1 0 inf\n", "byte 6: a point has finite coordinates"),
+        ("0 0 1\n1 0 1,5\n", "byte 6: a point has three numbers"),
+        ("0 0 nan\n1 0 nan\n1 1 nan\n0 1 nan", "none of the 4 points has a height"),
+        ("0 0 1\n1 0 1\n", "points of one y make no surface"),
+        ("0 0 1\n1 0 1\n1 1 1\n1 0 2\n", "more than one point at x = 1, y = 0"),
+        ("0 0 1\n1 0 1\n2.4 1 1\n7.7 1 1\n", "lies off the grid of spacing"),
+        ("\n".join(f"{i} {i} 1" for i in range(100)), "100 points fill too little of a 100 x 100 grid"),
+        ("0" * 5000, "byte 0: a point has three numbers"),
+        ("word\n" * 100, "byte 320: a point has three numbers"),
+    ],
+)
+def test_what_is_no_grid_of_points_is_refused(text: str, said: str) -> None:
+    with raises(InvalidInput, match=said) as refused:
+        read(text)
+    assert str(refused.value).startswith("plate.xyz: ")
+
+
+def test_a_step_between_extremes_is_refused_and_not_allocated() -> None:
+    with raises(InvalidInput):
+        read("0 0 1\n1e-300 0 1\n1e300 1 1\n-1e300 2 1\n")

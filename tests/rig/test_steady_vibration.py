@@ -1,0 +1,172 @@
+"""What a rig does where harmonic balance alone cannot say: marched as its drive is switched on, and reported."""
+
+import tomllib
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pytest import approx, raises
+
+from sonolube.dynamics import extremes, value
+from sonolube.dynamics.steady_friction import motion as vibration
+from sonolube.dynamics.steady_state import Status, steady_state
+from sonolube.dynamics.structure import contact_receptance, drive_receptance
+from sonolube.errors import InvalidInput
+from sonolube.rig import Simulation, read_rig, rig_from, simulate, start_up
+from sonolube.rig.excitation import voltage_range, waveform_of
+from sonolube.rig.linear_response import gap_law_of, require_structure
+from sonolube.rig.steady_vibration import steady_motion
+
+TRIBOMETER = Path(__file__).parents[2] / "examples" / "rigs" / "tribometer.toml"
+BEATING = (
+    "contact.normal_load=61.209N",
+    "drive.frequency=22436.58Hz",
+    "drive.voltage_peak_to_peak=65.8644V",
+    "drive.voltage_offset=0V",
+)
+DOUBLE = (
+    "contact.normal_load=95.5875N",
+    "drive.frequency=446.00634Hz",
+    "drive.voltage_peak_to_peak=570.5942V",
+    "drive.voltage_offset=0V",
+)
+SUBHARMONIC = (
+    "contact.normal_load=27.7657N",
+    "drive.frequency=733.7986Hz",
+    "drive.voltage_peak_to_peak=178.279V",
+    "drive.voltage_offset=0V",
+)
+NOT_FOUND = (
+    "contact.normal_load=72.3823N",
+    "drive.frequency=452.8423Hz",
+    "drive.voltage_peak_to_peak=1041.759V",
+    "drive.voltage_offset=0V",
+)
+
+
+@cache
+def simulated(*changes: str) -> Simulation:
+    return simulate(read_rig(TRIBOMETER, changes=changes))
+
+
+def test_what_grows_from_an_unstable_vibration_is_told_with_its_range_and_its_beat() -> None:
+    result = simulated(*BEATING)
+    assert (result.status, result.attractor, result.repetition_periods) == ("unstable", "beating", 0)
+    assert result.lowest_amplitude is not None
+    assert result.highest_amplitude is not None
+    assert 1.03 * result.lowest_amplitude < result.vibration_amplitude < 0.97 * result.highest_amplitude
+    assert result.beat_frequency == approx(519, rel=0.01)  # as DOP853 has it
+    assert "ends up otherwise: beats at" in result.reason
+    assert "stretches" in result.reason
+
+
+@pytest.mark.parametrize("closure", ["as_published", "load_balanced", "kinematic", "stick_slip", "coupled"])
+def test_every_closure_takes_a_motion_that_does_not_repeat(closure: str) -> None:
+    assert 0 < simulated(*BEATING, f"friction.closure={closure}").friction_ratio < 5
+
+
+def test_a_load_beside_which_the_tip_beats_is_still_carried_on_the_mean() -> None:
+    motions = steady_motion(read_rig(TRIBOMETER, changes=BEATING)).motions
+    carried = np.average([m.normal_force.mean() for m in motions], weights=[1 / m.frequency for m in motions])
+    assert carried == approx(61.209, rel=0.01)
+
+
+def test_of_two_vibrations_the_one_that_the_ramp_reaches_is_taken_and_the_other_told() -> None:
+    result = simulated(*DOUBLE, "drive.ramp_duration=200ms", "drive.ramp_shape=cosine")
+    assert result.status == "several"
+    assert result.vibration_amplitude == approx(1.740e-6, rel=1e-3)
+    assert result.rival_amplitude == approx(11.82e-6, rel=1e-3)
+    assert "cosine ramp of 200 ms, that of 1.74 um appears" in result.reason
+
+
+def test_a_motion_of_two_periods_is_one_repetition_of_half_the_frequency() -> None:
+    result = simulated(*SUBHARMONIC)
+    assert (result.status, result.attractor, result.repetition_periods) == ("unstable", "subharmonic", 2)
+    assert result.motion.frequency == approx(733.7986 / 2)
+    assert result.motion.normal_force.mean() == approx(27.7657, rel=1e-3)
+
+
+def test_where_no_vibration_was_found_the_march_tells_what_there_is() -> None:
+    result = simulated(*NOT_FOUND)
+    assert (result.status, result.attractor, result.repetition_periods) == ("not_converged", "subharmonic", 3)
+    assert "less voltage or more damping may give one; switched on at once," in result.reason
+    assert result.motion.normal_force.mean() == approx(72.3823, rel=2e-3)
+
+
+def test_a_vibration_found_under_a_hard_drive_answers_its_own_force() -> None:
+    rig = read_rig(TRIBOMETER)
+    structure, law = require_structure(rig), gap_law_of(rig)
+    load, frequency, voltage = 61.9955, 390.40532, 1162.227 / 2
+    states = steady_state(structure, law, normal_load=load, frequency=frequency, voltage_amplitude=voltage)
+    assert Status(int(states.status)) is Status.UNSTABLE
+    contact = vibration(states, (), samples=2**14)
+    force = 2 * np.fft.rfft(contact.normal_force)[1:27] / 2**14
+    orders = np.arange(1, 27) * frequency
+    answer = contact_receptance(structure, frequency=orders) * force
+    answer[0] += complex(drive_receptance(structure, frequency=frequency)) * voltage
+    found = 2 * np.fft.rfft(contact.displacement)[1:27] / 2**14
+    assert contact.normal_force.mean() == approx(load, rel=1e-6)
+    assert np.abs(found - answer).max() < 1e-6 * np.abs(found[0])
+
+
+def test_lost_contact_is_told() -> None:
+    result = simulated("drive.voltage_peak_to_peak=200V", "drive.voltage_offset=0V")
+    assert result.lost_contact_share == approx(np.mean(result.motion.normal_force < 0.03), abs=2e-3)
+    assert f"it hops, without contact for {result.lost_contact_share:.2%} of the time" in result.reason
+
+
+def test_a_slow_start_excites_the_arm_less() -> None:
+    abrupt, slow = (
+        start_up(read_rig(TRIBOMETER, changes=change), duration=0.1).trajectory.contact.displacement
+        for change in ([], ["drive.ramp_duration=50ms", "drive.ramp_shape=cosine"])
+    )
+    last = slow[-1600:].max()
+    assert slow.max() < 1.01 * last
+    assert abrupt.max() > 1.1 * last
+
+
+def sampled(samples: list[float], *, offset: str = "14 V") -> dict[str, object]:
+    content = tomllib.loads(TRIBOMETER.read_text(encoding="utf-8"))
+    content["drive"] |= {"waveform": "sampled", "waveform_samples": samples, "voltage_offset": offset}
+    return content
+
+
+def test_samples_of_a_triangle_are_the_triangle() -> None:
+    named, given = read_rig(TRIBOMETER, changes=["drive.waveform=triangle"]), rig_from(sampled([0, 3, 0, -3]))
+    assert simulate(given).vibration_amplitude == approx(simulate(named).vibration_amplitude, rel=1e-9)
+    assert given.drive is not None
+    assert value(waveform_of(given.drive), phase=np.pi / 2) == approx(0.5)
+
+
+def test_the_voltage_of_a_lopsided_waveform_reaches_as_far_as_its_samples_do() -> None:
+    drive = rig_from(sampled([1, 0, 0, 0], offset="10 V")).drive
+    assert drive is not None
+    assert extremes(waveform_of(drive)) == approx((-0.25, 0.75))
+    assert voltage_range(drive) == approx((10 - 7, 10 + 21))
+
+
+@pytest.mark.parametrize(
+    ("samples", "complaint"),
+    [
+        ([0.0, float("nan"), 1.0], r"drive.waveform_samples.1: Input should be a finite number"),
+        ([1.0], r"drive: samples must be at least two"),
+        ([1.0, 1.0], r"drive: samples must not all be equal"),
+    ],
+)
+def test_samples_that_make_no_waveform_are_refused(samples: list[float], complaint: str) -> None:
+    with raises(InvalidInput, match=complaint):
+        rig_from(sampled(samples))
+
+
+@pytest.mark.parametrize(
+    ("change", "complaint"),
+    [
+        ("drive.ramp_duration=-1ms", r"drive: ramp_duration must not be negative, got -0.001 s"),
+        ("drive.ramp_shape=steep", r"drive.ramp_shape: Input should be 'linear' or 'cosine'"),
+        ("drive.waveform=sampled", r"drive: waveform \"sampled\" and waveform_samples belong together"),
+    ],
+)
+def test_a_drive_that_makes_no_sense_is_refused(change: str, complaint: str) -> None:
+    with raises(InvalidInput, match=complaint):
+        read_rig(TRIBOMETER, changes=[change])
