@@ -5,12 +5,12 @@ import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
 from sonolube.contact import ContactPair, GapMotion, RoughContact, harmonic_motion, load_balanced_motion
-from sonolube.friction import FRICTION_CLOSURES, stick_slip_ratio
+from sonolube.friction import FRICTION_MODELS, stick_slip_ratio
 from sonolube.surfaces import Roughness
 
 CONTACT = RoughContact(
     roughness=Roughness(rms_height=6e-6, summit_radius=1.5e-6, summit_density=4.7e10),
-    pair=ContactPair(combined_modulus=59.6e9, poisson_ratio=0.33, yield_strength=410e6, mindlin_ratio=0.8),
+    pair=ContactPair(effective_modulus=59.6e9, poisson_ratio=0.33, yield_strength=410e6, mindlin_ratio=0.8),
     nominal_area=2.25e-6,
 )
 SPEEDS = np.geomspace(1e-3, 1.0, 16)
@@ -40,18 +40,18 @@ def stepped(gap: np.ndarray, *, elements: int = 500, periods: int = 2) -> np.nda
     return np.asarray(np.trapezoid(number * friction, touch) / np.trapezoid(number * limits, touch))
 
 
-@pytest.mark.parametrize("name", FRICTION_CLOSURES)
+@pytest.mark.parametrize("name", FRICTION_MODELS)
 def test_a_closure_at_sixteen_speeds(benchmark: BenchmarkFixture, name: str) -> None:
     extra = {"friction_coefficient": 0.3} if name == "coupled" else {}
     one = motion()
-    FRICTION_CLOSURES[name](CONTACT, one, sliding_speed=SPEEDS, **extra)  # compiled outside the measurement
-    benchmark(lambda: FRICTION_CLOSURES[name](CONTACT, one, sliding_speed=SPEEDS, **extra))
+    FRICTION_MODELS[name](CONTACT, one, sliding_speed=SPEEDS, **extra)  # compiled outside the measurement
+    benchmark(lambda: FRICTION_MODELS[name](CONTACT, one, sliding_speed=SPEEDS, **extra))
 
 
 def test_stick_slip_beside_elements_stepped_one_by_one(benchmark: BenchmarkFixture) -> None:
     gap = motion().displacement / 2e-6
     result = benchmark(lambda: stepped(gap))
-    exact = FRICTION_CLOSURES["stick_slip"](CONTACT, motion(), sliding_speed=SPEEDS)
+    exact = FRICTION_MODELS["stick_slip"](CONTACT, motion(), sliding_speed=SPEEDS)
     assert np.max(np.abs(result - exact)) < 0.02
 
 

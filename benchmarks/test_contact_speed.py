@@ -26,7 +26,7 @@ from sonolube.surfaces import Roughness
 
 CONTACT = RoughContact(
     roughness=Roughness(rms_height=0.1e-6, summit_radius=100e-6, summit_density=4.76e9),
-    pair=ContactPair(combined_modulus=59.57e9, poisson_ratio=0.33, yield_strength=410e6, mindlin_ratio=0.8),
+    pair=ContactPair(effective_modulus=59.57e9, poisson_ratio=0.33, yield_strength=410e6, mindlin_ratio=0.8),
     nominal_area=1e-4,
 )
 LOADS = np.random.default_rng(1).uniform(1.0, 240.0, 1_000_000)

@@ -16,7 +16,7 @@ from sonolube.actuator import (
     free_admittance,
     free_stroke,
     require_allowed_voltage,
-    stack_doubts,
+    stack_caveats,
     stack_force,
 )
 from sonolube.dynamics.chain import LumpedChain, chain_structure
@@ -70,7 +70,7 @@ def test_an_inconsistent_coupling_factor_is_warned_of_by_name() -> None:
         stack = replace(STACK, coupling_factor=0.431)
     assert (
         "coupling_factor is stated as 0.431"
-        in stack_doubts(stack, voltage_offset=0, voltage_peak_to_peak=0, elongation=0, frequency=1e3)[0]
+        in stack_caveats(stack, voltage_offset=0, voltage_peak_to_peak=0, elongation=0, frequency=1e3)[0]
     )
     assert len(caught) == 1
 
@@ -171,9 +171,9 @@ def test_a_voltage_beyond_the_limits_is_refused(volts: float, message: str) -> N
 
 def test_offset_and_swing_together_reach_the_limits() -> None:
     with raises(InvalidInput, match=r"the drive goes up to 160 V"):
-        stack_doubts(STACK, voltage_offset=80, voltage_peak_to_peak=160, elongation=0, frequency=22e3)
+        stack_caveats(STACK, voltage_offset=80, voltage_peak_to_peak=160, elongation=0, frequency=22e3)
     with raises(InvalidInput, match=r"the drive goes down to -50 V"):
-        stack_doubts(STACK, voltage_offset=0, voltage_peak_to_peak=100, elongation=0, frequency=22e3)
+        stack_caveats(STACK, voltage_offset=0, voltage_peak_to_peak=100, elongation=0, frequency=22e3)
 
 
 def test_an_unlimited_stack_bears_any_voltage() -> None:
@@ -183,8 +183,8 @@ def test_an_unlimited_stack_bears_any_voltage() -> None:
 
 def test_resonance_pulls_harder_than_the_preload_holds() -> None:
     # an elongation of 2 um in quadrature to 10 V: sqrt(4000^2 + 173.6^2) N and 30 N s/m at 0.276 m/s
-    kind = stack_doubts(STACK, voltage_offset=0, voltage_peak_to_peak=20, elongation=-0.9e-6j, frequency=22e3)
-    harsh = stack_doubts(STACK, voltage_offset=0, voltage_peak_to_peak=20, elongation=-2e-6j, frequency=22e3)
+    kind = stack_caveats(STACK, voltage_offset=0, voltage_peak_to_peak=20, elongation=-0.9e-6j, frequency=22e3)
+    harsh = stack_caveats(STACK, voltage_offset=0, voltage_peak_to_peak=20, elongation=-2e-6j, frequency=22e3)
     assert kind == ()
     assert harsh == (
         "tension in the stack: the vibration pulls with up to 4e+03 N on a preload of 2000 N;"
@@ -193,10 +193,10 @@ def test_resonance_pulls_harder_than_the_preload_holds() -> None:
 
 
 def test_without_a_stated_preload_the_pull_is_told() -> None:
-    doubts = stack_doubts(
+    caveats = stack_caveats(
         replace(STACK, preload=None), voltage_offset=0, voltage_peak_to_peak=20, elongation=-2e-6j, frequency=22e3
     )
-    assert doubts == ("the vibration pulls on the stack with up to 4e+03 N and no preload is stated",)
+    assert caveats == ("the vibration pulls on the stack with up to 4e+03 N and no preload is stated",)
 
 
 @pytest.mark.parametrize(

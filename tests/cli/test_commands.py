@@ -134,10 +134,10 @@ def test_every_material_is_listed_with_its_sources() -> None:
     assert all(entry["source"] for entry in listed["m50"]["properties"].values())
 
 
-def test_a_published_table_is_shown_as_printed_with_its_doubts() -> None:
+def test_a_published_table_is_shown_as_printed_with_its_corrections() -> None:
     shown = answer("published", "2.5")
     assert "2.237" in json.dumps(shown)
-    assert any(doubt["erratum"] == "E27" for doubt in shown["doubts"])
+    assert any(correction["erratum"] == "E27" for correction in shown["corrections"])
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])

@@ -55,8 +55,8 @@ def test_a_refusal_is_one_line_with_the_cause(
     assert not any(tmp_path.iterdir())
 
 
-def test_a_resonance_that_runs_away_is_a_doubt(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_resonance_that_runs_away_is_a_caveat(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     arguments = ("--friction", "1.5N", "--warming", "150K", "--warming-time", "10ms", "--duration", "0.1s", "--json")
     assert run(str(RIGS / "collar.toml"), *arguments, "--out", str(tmp_path)) == 0
-    (doubt,) = json.loads(capsys.readouterr().out)["doubts"]
-    assert "lost the resonance" in doubt
+    (caveat,) = json.loads(capsys.readouterr().out)["caveats"]
+    assert "lost the resonance" in caveat

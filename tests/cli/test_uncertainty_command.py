@@ -35,7 +35,10 @@ def test_it_tells_spread_and_ranking_and_writes_them(tmp_path: Path, capsys: Cap
     assert told["mean"]["lower"] < told["mean"]["value"] < told["mean"]["upper"]
     assert told["mean"]["value"] == approx(0.36, abs=0.02)
     assert not told["converged"]
-    assert told["uncertain"]["contact.normal_load"] == {"distribution": "normal, 3 N +- 60 mN", "cut_share": 0.0}
+    assert told["uncertain"]["contact.normal_load"] == {
+        "distribution": "normal, 3 N +- 60 mN",
+        "truncated_fraction": 0.0,
+    }
     assert {row["key"] for row in told["sobol"]} == set(told["uncertain"])
     assert told["sobol"][0]["first"]["value"] == max(row["first"]["value"] for row in told["sobol"])
     assert all(row["deviation_if_known"] <= 1.001 * told["sobol"][-1]["deviation_if_known"] for row in told["sobol"])

@@ -17,7 +17,7 @@ from sonolube.contact import (
 )
 from sonolube.errors import InvalidInput, OutsideRange
 
-STEEL = ContactPair(combined_modulus=110e9, poisson_ratio=0.3, yield_strength=400e6, mindlin_ratio=0.8)
+STEEL = ContactPair(effective_modulus=110e9, poisson_ratio=0.3, yield_strength=400e6, mindlin_ratio=0.8)
 RADIUS = 10e-6
 LAWS = list(ASPERITY_LAWS.values())
 YIELDING = [law for law in LAWS if law.name != "elastic"]
@@ -25,7 +25,7 @@ YIELDING = [law for law in LAWS if law.name != "elastic"]
 
 def pair(*, poisson_ratio: float, yield_strength: float = 400e6) -> ContactPair:
     return ContactPair(
-        combined_modulus=110e9, poisson_ratio=poisson_ratio, yield_strength=yield_strength, mindlin_ratio=0.8
+        effective_modulus=110e9, poisson_ratio=poisson_ratio, yield_strength=yield_strength, mindlin_ratio=0.8
     )
 
 

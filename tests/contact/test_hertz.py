@@ -25,7 +25,7 @@ from sonolube.contact.pair import ContactPair, ElasticBody, contact_pair
 from sonolube.errors import InvalidInput
 from sonolube.materials import material
 
-ACORN_NUT = SphereOnFlat(tip_radius=5e-3, combined_modulus=59.57e9)
+ACORN_NUT = SphereOnFlat(tip_radius=5e-3, effective_modulus=59.57e9)
 LOADS = st.floats(1e-3, 1e3)
 
 
@@ -60,7 +60,7 @@ def test_point_loads_summed_over_the_circle_push_the_flat_into_the_shape_of_the_
     load = 3.0
     a = float(contact_radius(ACORN_NUT, normal_load=load))
     p0 = float(peak_pressure(ACORN_NUT, normal_load=load))
-    modulus = ACORN_NUT.combined_modulus
+    modulus = ACORN_NUT.effective_modulus
     in_the_middle = 2 / modulus * quad(lambda r: p0 * np.sqrt(1 - (r / a) ** 2), 0, a)[0]
     assert approach(ACORN_NUT, normal_load=load) == approx(in_the_middle, rel=1e-7)
 
@@ -141,7 +141,7 @@ def test_stiffness_is_the_slope_of_load_over_approach(load: float) -> None:
 
 @given(load=LOADS, factor=st.floats(0.1, 10))
 def test_a_larger_tip_has_less_pressure_by_two_thirds_power(load: float, factor: float) -> None:
-    larger = SphereOnFlat(tip_radius=factor * ACORN_NUT.tip_radius, combined_modulus=ACORN_NUT.combined_modulus)
+    larger = SphereOnFlat(tip_radius=factor * ACORN_NUT.tip_radius, effective_modulus=ACORN_NUT.effective_modulus)
     ratio = peak_pressure(larger, normal_load=load) / peak_pressure(ACORN_NUT, normal_load=load)
     assert ratio == approx(factor ** (-2 / 3))
 
@@ -150,7 +150,7 @@ def test_a_larger_tip_has_less_pressure_by_two_thirds_power(load: float, factor:
 def test_the_tip_radius_comes_back_from_its_pressure(load: float) -> None:
     pressure = mean_pressure(ACORN_NUT, normal_load=load)
     radius = tip_radius_for_pressure(
-        mean_pressure=pressure, normal_load=load, combined_modulus=ACORN_NUT.combined_modulus
+        mean_pressure=pressure, normal_load=load, effective_modulus=ACORN_NUT.effective_modulus
     )
     assert radius == approx(ACORN_NUT.tip_radius)
 
@@ -160,11 +160,11 @@ def test_three_hundred_megapascal_at_three_newton_ask_for_a_tip_of_a_centimetre(
     # M50 on M50, E* = 214/(2 (1 - 0.29^2)) = 116.8 GPa: 4 x 116.8e3 x 1.796e-4/9 = 9.32 mm.
     # Alumina on M50, 1/E* = (1 - 0.22^2)/370 + (1 - 0.29^2)/214, E* = 145.9 GPa: 11.65 mm.
     for pin, radius in (("m50", 9.32e-3), ("alumina", 11.65e-3)):
-        modulus = pair_of(pin, "m50").combined_modulus
-        assert tip_radius_for_pressure(mean_pressure=300e6, normal_load=3.0, combined_modulus=modulus) == approx(
+        modulus = pair_of(pin, "m50").effective_modulus
+        assert tip_radius_for_pressure(mean_pressure=300e6, normal_load=3.0, effective_modulus=modulus) == approx(
             radius, rel=1e-3
         )
-        tip = SphereOnFlat(tip_radius=radius, combined_modulus=modulus)
+        tip = SphereOnFlat(tip_radius=radius, effective_modulus=modulus)
         assert np.pi * contact_radius(tip, normal_load=3.0) ** 2 == approx(0.01e-6, rel=1e-3)
         assert peak_pressure(tip, normal_load=3.0) == approx(450e6, rel=1e-3)
 
@@ -192,7 +192,7 @@ def test_results_take_the_shape_of_the_arguments() -> None:
 
 def test_meaningless_arguments_are_refused_by_name() -> None:
     with raises(InvalidInput, match=r"tip_radius must be positive, got 0\.0 m"):
-        SphereOnFlat(tip_radius=0.0, combined_modulus=1e9)
+        SphereOnFlat(tip_radius=0.0, effective_modulus=1e9)
     with raises(InvalidInput, match=r"normal_load must not be negative, got -3\.0 N"):
         contact_radius(ACORN_NUT, normal_load=-3.0)
     with raises(InvalidInput, match=r"depth must not be negative"):

@@ -11,7 +11,7 @@ from scipy.integrate import quad
 from sonolube.contact.persson import (
     PerssonContact,
     persson_area,
-    persson_area_share,
+    persson_area_fraction,
     persson_load,
     persson_separation,
     persson_stiffness,
@@ -36,7 +36,7 @@ def spectrum(points: int = 4000) -> RadialSpectrum:
 
 
 SPECTRUM = spectrum()
-CONTACT = PerssonContact(spectrum=SPECTRUM, combined_modulus=E_STAR, nominal_area=AREA)
+CONTACT = PerssonContact(spectrum=SPECTRUM, effective_modulus=E_STAR, nominal_area=AREA)
 loads = st.floats(1e-3, 1e3)
 
 
@@ -79,7 +79,7 @@ def test_the_slope_is_that_of_the_closed_moments() -> None:
 
 
 def test_the_area_starts_as_the_root_of_8_over_pi_and_ends_full() -> None:
-    low = persson_area_share(nominal_pressure=1e5, combined_modulus=E_STAR, rms_slope=0.1)
+    low = persson_area_fraction(nominal_pressure=1e5, effective_modulus=E_STAR, rms_slope=0.1)
     assert low == approx(math.sqrt(8 / math.pi) * 1e5 / (E_STAR * 0.1), rel=1e-9)
     assert persson_area(CONTACT, normal_load=1e9) == approx(AREA)
 
@@ -88,7 +88,9 @@ def test_the_gap_is_the_double_integral_of_yang_and_persson() -> None:
     for share in (1e-3, 0.03, 0.3):
         pressure = share * E_STAR * CONTACT.rms_slope
         for gamma in (0.45, 1.0):
-            contact = PerssonContact(spectrum=SPECTRUM, combined_modulus=E_STAR, nominal_area=AREA, energy_share=gamma)
+            contact = PerssonContact(
+                spectrum=SPECTRUM, effective_modulus=E_STAR, nominal_area=AREA, energy_fraction=gamma
+            )
             computed = persson_separation(contact, normal_load=pressure * AREA)
             assert computed == approx(gap_by_the_double_integral(pressure, gamma), rel=3e-3)
 
@@ -127,7 +129,7 @@ def test_a_rougher_spectrum_in_disorder_is_refused() -> None:
     with raises(InvalidInput, match="rising order"):
         PerssonContact(
             spectrum=RadialSpectrum(wavenumber=np.array([2.0, 1.0]), areal_spectral_density=np.ones(2)),
-            combined_modulus=E_STAR,
+            effective_modulus=E_STAR,
             nominal_area=AREA,
         )
 

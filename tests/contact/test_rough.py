@@ -27,7 +27,7 @@ from sonolube.contact import (
     critical_interference,
     decay_length,
     elastic_area,
-    elastic_load_share,
+    elastic_load_fraction,
     height_density,
     normal_force,
     normal_stiffness,
@@ -39,7 +39,7 @@ from sonolube.contact import (
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.surfaces import Roughness
 
-STEEL = ContactPair(combined_modulus=110e9, poisson_ratio=0.3, yield_strength=2e9, mindlin_ratio=0.8)
+STEEL = ContactPair(effective_modulus=110e9, poisson_ratio=0.3, yield_strength=2e9, mindlin_ratio=0.8)
 FINE = Roughness(rms_height=0.2e-6, summit_radius=20e-6, summit_density=1.25e10)
 CONTACT = RoughContact(roughness=FINE, pair=STEEL, nominal_area=1e-4)
 Floats = NDArray[np.float64]
@@ -128,7 +128,7 @@ def test_sums_over_exponential_heights_are_the_closed_forms(yield_strength: floa
     whole = An * c * math.pi * beta / lam**2 * fall
 
     assert normal_force(contact, separation=d) == approx(elastic_force + plastic_force, rel=1e-11, abs=0)
-    assert elastic_load_share(contact, separation=d) == approx(
+    assert elastic_load_fraction(contact, separation=d) == approx(
         elastic_force / (elastic_force + plastic_force), rel=1e-11
     )
     assert elastic_area(contact, separation=d) == approx(whole * elastic_part, rel=1e-11, abs=0)
@@ -145,7 +145,7 @@ def test_bodies_that_never_yield_make_the_contact_of_greenwood_and_williamson(as
         1e-4 * 17 * math.pi * beta / 9 * math.exp(-6), rel=1e-9, abs=0
     )
     assert contact_count(contact, separation=d) == approx(FINE.summit_density * 1e-4 * 17 / 3 * math.exp(-6))
-    assert elastic_load_share(contact, separation=d) == 1
+    assert elastic_load_fraction(contact, separation=d) == 1
     assert plastic_area(contact, separation=d) == 0
 
 
@@ -205,7 +205,7 @@ def test_separations_fall_as_loads_rise(contact: RoughContact) -> None:
 
 def test_results_have_the_shape_of_what_was_asked(contact: RoughContact) -> None:
     d = separation(contact, normal_load=np.full((2, 3), 10.0))
-    for quantity in (normal_force, real_contact_area, elastic_load_share, contact_count, normal_stiffness):
+    for quantity in (normal_force, real_contact_area, elastic_load_fraction, contact_count, normal_stiffness):
         assert quantity(contact, separation=d).shape == (2, 3)
         assert np.ndim(quantity(contact, separation=1e-7)) == 0
 

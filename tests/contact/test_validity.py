@@ -12,7 +12,7 @@ from sonolube.contact import (
     ExponentialHeights,
     GaussianHeights,
     RoughContact,
-    contact_doubts,
+    contact_caveats,
     exponential_window,
     normal_force,
     separation,
@@ -20,7 +20,7 @@ from sonolube.contact import (
 from sonolube.errors import InvalidInput
 from sonolube.surfaces import Roughness
 
-PAIR = ContactPair(combined_modulus=59.57e9, poisson_ratio=0.33, yield_strength=410e6, mindlin_ratio=0.8)
+PAIR = ContactPair(effective_modulus=59.57e9, poisson_ratio=0.33, yield_strength=410e6, mindlin_ratio=0.8)
 USUAL = RoughContact(
     roughness=Roughness(rms_height=0.5e-6, summit_radius=20e-6, summit_density=5e9), pair=PAIR, nominal_area=1e-4
 )
@@ -78,39 +78,39 @@ def test_a_window_of_no_width_is_refused() -> None:
 
 
 def test_nothing_speaks_against_a_usual_surface_under_a_usual_load() -> None:
-    assert contact_doubts(USUAL, separation=separation(USUAL, normal_load=[5.0, 40.0])) == ()
+    assert contact_caveats(USUAL, separation=separation(USUAL, normal_load=[5.0, 40.0])) == ()
 
 
-def test_the_published_surface_is_doubted_for_its_roughness_parameter_alone() -> None:
-    (doubt,) = contact_doubts(PUBLISHED, separation=separation(PUBLISHED, normal_load=40.0))
-    assert doubt.startswith("roughness parameter 0.479 lies outside the usual 0.02 to 0.1")
+def test_the_published_surface_raises_a_caveat_for_its_roughness_parameter_alone() -> None:
+    (caveat,) = contact_caveats(PUBLISHED, separation=separation(PUBLISHED, normal_load=40.0))
+    assert caveat.startswith("roughness parameter 0.479 lies outside the usual 0.02 to 0.1")
 
 
 def test_mean_planes_that_meet_are_seen() -> None:
     # the published model at 200 V peak to peak moves by more than it stands apart
     d = separation(PUBLISHED, normal_load=40.0).item() - 18.2e-6
-    doubts = contact_doubts(PUBLISHED, separation=[d, 20e-6])
-    assert any("is not positive: the mean planes have met" in doubt for doubt in doubts)
-    assert any("real area is" in doubt for doubt in doubts)
+    caveats = contact_caveats(PUBLISHED, separation=[d, 20e-6])
+    assert any("is not positive: the mean planes have met" in caveat for caveat in caveats)
+    assert any("real area is" in caveat for caveat in caveats)
 
 
 def test_separations_outside_the_window_advise_gaussian_heights() -> None:
-    doubts = contact_doubts(USUAL, separation=[1e-6, 3e-6])
-    (doubt,) = (doubt for doubt in doubts if "height" in doubt)
-    assert doubt.startswith("separation over rms height is 2.00 to 6.00;")
-    assert doubt.endswith("take gaussian heights")
+    caveats = contact_caveats(USUAL, separation=[1e-6, 3e-6])
+    (caveat,) = (caveat for caveat in caveats if "height" in caveat)
+    assert caveat.startswith("separation over rms height is 2.00 to 6.00;")
+    assert caveat.endswith("take gaussian heights")
     gaussian = replace(USUAL, heights=GaussianHeights())
-    assert not any("gaussian" in doubt for doubt in contact_doubts(gaussian, separation=[1e-6, 3e-6]))
+    assert not any("gaussian" in caveat for caveat in contact_caveats(gaussian, separation=[1e-6, 3e-6]))
 
 
-def test_a_surface_without_a_window_is_doubted_at_every_separation() -> None:
-    doubts = contact_doubts(with_roughness_parameter(0.03), separation=1e-6)
-    assert any("nowhere within a factor of 2" in doubt for doubt in doubts)
+def test_a_surface_without_a_window_raises_a_caveat_at_every_separation() -> None:
+    caveats = contact_caveats(with_roughness_parameter(0.03), separation=1e-6)
+    assert any("nowhere within a factor of 2" in caveat for caveat in caveats)
 
 
 def test_too_few_summits_for_a_mean_are_seen() -> None:
-    (doubt,) = contact_doubts(replace(USUAL, nominal_area=1e-9), separation=1e-6)
-    assert doubt.startswith("only 0.07 asperities touch on the nominal 0.001 mm2")
+    (caveat,) = contact_caveats(replace(USUAL, nominal_area=1e-9), separation=1e-6)
+    assert caveat.startswith("only 0.07 asperities touch on the nominal 0.001 mm2")
 
 
 def test_a_steeper_exponential_law_is_judged_by_its_own_window() -> None:

@@ -47,7 +47,7 @@ def test_a_small_drive_ends_in_one_period_which_disturbances_leave_with_the_slow
     slowest = poles(with_contact_spring(s, normal_stiffness=REST_STIFFNESS)).real.max()
     assert found.kind == "periodic"
     assert found.order == 1
-    assert found.lost_contact_share == 0
+    assert found.contact_loss_fraction == 0
     assert float(found.exponent) == approx(slowest / 300.0, abs=0.005)
     assert "a disturbance dies out by exp(-0.0" in str(found.description)
 
@@ -97,7 +97,7 @@ def test_a_motion_between_contacts_loses_them_for_the_time_that_fine_steps_find(
     )
     assert found.kind == "periodic"
     share = np.mean(fine.contact.normal_force[1:] < 0.01 * LOAD)
-    assert float(found.lost_contact_share) == approx(share, abs=4e-3)
+    assert float(found.contact_loss_fraction) == approx(share, abs=4e-3)
     assert share > 0.3
 
 

@@ -14,7 +14,7 @@ from sonolube.dynamics.steady_state import Status, steady_state
 from sonolube.dynamics.structure import Structure, drive_receptance, with_contact_spring
 from sonolube.errors import InvalidInput
 
-BALL = HertzGap(tip_radius=5e-3, combined_modulus=60e9)
+BALL = HertzGap(tip_radius=5e-3, effective_modulus=60e9)
 BLOCKS = Structure(
     mass_matrix=np.diag([0.25, 0.25]),
     damping_matrix=np.diag([100.0, 0.0]),
@@ -100,7 +100,7 @@ def test_a_voltage_ramp_ends_where_it_came_from(falling_frequency: ResponseCurve
         states = steady_state(
             BLOCKS, BALL, normal_load=20.0, frequency=between, voltage_amplitude=50.0, falling=backward
         )
-        assert states.status == Status.SEVERAL
+        assert states.status == Status.MULTISTABLE
         assert states.vibration_amplitude == approx(point.vibration_amplitude[0], rel=1e-4)
     beyond = float(curve.voltage_amplitude[curve.folds].max()) * 1.1
     jumped = reached_by_ramp(curve, at=beyond)

@@ -13,7 +13,7 @@ SEPARATION = np.linspace(2e-6, 40e-6, 200)
 FORCE = 50 * np.exp(-SEPARATION / 2.3e-6 - (SEPARATION / 30e-6) ** 2)
 LAWS: dict[str, GapLaw] = {
     "exponential": ExponentialGap(decay_length=2e-6),
-    "sphere": HertzGap(tip_radius=5e-3, combined_modulus=1e11),
+    "sphere": HertzGap(tip_radius=5e-3, effective_modulus=1e11),
     "spring": LinearGap(normal_stiffness=5e6),
     "table": TabulatedGap(
         separation=SEPARATION,

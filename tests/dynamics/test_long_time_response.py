@@ -122,8 +122,8 @@ def test_another_integrator_sees_the_same_beat() -> None:
 
 def test_of_two_vibrations_a_slow_rise_reaches_the_smaller_and_both_last() -> None:
     small, large = balanced("double"), balanced("double", falling=True)
-    assert small.status == large.status == Status.SEVERAL
-    assert float(small.rival_amplitude) == approx(float(large.vibration_amplitude), rel=1e-6)
+    assert small.status == large.status == Status.MULTISTABLE
+    assert float(small.coexisting_amplitude) == approx(float(large.vibration_amplitude), rel=1e-6)
     assert attained("double").attractor.order == 1
     assert attained("double").amplitudes == approx(float(small.vibration_amplitude), rel=1e-3)
 

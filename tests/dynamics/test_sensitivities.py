@@ -34,7 +34,7 @@ DRIVE = {
 }
 LAWS: dict[str, GapLaw] = {
     "rough": ExponentialGap(decay_length=2e-6, force_damping=0.1),
-    "ball": HertzGap(tip_radius=2e-3, combined_modulus=60e9),
+    "ball": HertzGap(tip_radius=2e-3, effective_modulus=60e9),
     "spring": LinearGap(normal_stiffness=4e6),
 }
 CHANGES = {
@@ -128,7 +128,7 @@ def test_gradients_by_load_and_drive_are_central_differences(
         ("rough", "decay_length"),
         ("rough", "force_damping"),
         ("ball", "tip_radius"),
-        ("ball", "combined_modulus"),
+        ("ball", "effective_modulus"),
         ("spring", "normal_stiffness"),
     ],
 )

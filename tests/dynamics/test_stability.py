@@ -69,7 +69,7 @@ def integrated(states: SteadyStates) -> NDArray[np.complex128]:
         (ROUGH, 80.0, 23.9e3, 8e-6),
         (ROUGH, 60.0, 6e3, 10e-6),
         (ExponentialGap(decay_length=2e-6, force_damping=0.2), 40.0, 15e3, 5e-6),
-        (HertzGap(tip_radius=5e-3, combined_modulus=60e9), 20.0, 24e3, 0.2e-6),
+        (HertzGap(tip_radius=5e-3, effective_modulus=60e9), 20.0, 24e3, 0.2e-6),
     ],
 )
 def test_multipliers_are_those_of_the_integrated_disturbance(

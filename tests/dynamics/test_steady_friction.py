@@ -102,7 +102,7 @@ def test_shoulders_between_two_turns_are_averaged_as_well(richness: float) -> No
 
 @pytest.mark.parametrize(
     "law",
-    [HertzGap(tip_radius=5e-3, combined_modulus=1e11), LinearGap(normal_stiffness=5e6)],
+    [HertzGap(tip_radius=5e-3, effective_modulus=1e11), LinearGap(normal_stiffness=5e6)],
     ids=["sphere", "spring"],
 )
 def test_a_force_with_a_corner_where_the_contact_lifts_off_is_averaged_too(law: GapLaw) -> None:
@@ -113,7 +113,7 @@ def test_a_force_with_a_corner_where_the_contact_lifts_off_is_averaged_too(law: 
     )
     found = np.flatnonzero(states.status == Status.PERIODIC)
     assert found.size > 1
-    assert (states.lost_contact_share[found] > 0.1).any()
+    assert (states.contact_loss_fraction[found] > 0.1).any()
     means = sliding_friction(states, sliding_speed=SPEEDS)
     for point in found:
         kinematic, loaded = brute_force(states, int(point))

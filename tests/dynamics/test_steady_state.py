@@ -27,7 +27,7 @@ TRIBOMETER = Structure(
 )
 HELD = replace(TRIBOMETER, stiffness_matrix=TRIBOMETER.stiffness_matrix + np.diag([0.0, 0.0, 3e7]))
 ROUGH = ExponentialGap(decay_length=2e-6)
-BALL = HertzGap(tip_radius=5e-3, combined_modulus=60e9)
+BALL = HertzGap(tip_radius=5e-3, effective_modulus=60e9)
 SPRING = LinearGap(normal_stiffness=5e6)
 
 
@@ -132,7 +132,7 @@ def test_amplitude_and_extremes_are_those_of_the_motion() -> None:
     assert states.vibration_amplitude == approx(np.ptp(contact.displacement) / 2, rel=1e-6)
     assert states.highest_normal_force == approx(contact.normal_force.max(), rel=1e-6)
     assert states.lowest_normal_force == approx(contact.normal_force.min(), rel=1e-6)
-    assert states.lost_contact_share == approx(np.mean(contact.normal_force < 0.8), abs=1e-4)
+    assert states.contact_loss_fraction == approx(np.mean(contact.normal_force < 0.8), abs=1e-4)
     assert states.mean_normal_force == approx(contact.normal_force.mean(), rel=1e-9)
 
 
@@ -259,9 +259,9 @@ def test_where_two_vibrations_are_possible_the_way_there_decides() -> None:
         steady_state(floating, BALL, normal_load=20.0, frequency=690.0, voltage_amplitude=50.0, falling=falling)
         for falling in (False, True)
     )
-    assert up.status == down.status == Status.SEVERAL
+    assert up.status == down.status == Status.MULTISTABLE
     assert up.vibration_amplitude < down.vibration_amplitude
-    assert up.rival_amplitude == approx(down.vibration_amplitude, rel=1e-6)
+    assert up.coexisting_amplitude == approx(down.vibration_amplitude, rel=1e-6)
     assert "depends on how the voltage got there" in up.reason(())
     for states in (up, down):
         start, end = march_one_period(states)

@@ -40,7 +40,7 @@ HELD = Structure(
 )
 CONTACT = RoughContact(
     roughness=Roughness(rms_height=1e-6, summit_radius=20e-6, summit_density=2e9),
-    pair=ContactPair(combined_modulus=60e9, poisson_ratio=0.3, yield_strength=0.35e9, mindlin_ratio=0.8),
+    pair=ContactPair(effective_modulus=60e9, poisson_ratio=0.3, yield_strength=0.35e9, mindlin_ratio=0.8),
     nominal_area=1e-4,
     heights=GaussianHeights(),
 )
@@ -82,7 +82,7 @@ def test_the_table_of_an_exponential_gives_the_steady_states_of_the_exponential(
     for name in ("vibration_amplitude", "mean_normal_force", "highest_normal_force", "dissipated_power"):
         assert getattr(table, name) == approx(getattr(closed, name), rel=1e-7), name
     assert table.mean_displacement == approx(closed.mean_displacement, rel=1e-7, abs=1e-7 * DECAY_LENGTH)
-    assert table.lost_contact_share == approx(closed.lost_contact_share, abs=1e-7)
+    assert table.contact_loss_fraction == approx(closed.contact_loss_fraction, abs=1e-7)
 
 
 def test_the_table_of_an_exponential_gives_its_stability_and_friction() -> None:

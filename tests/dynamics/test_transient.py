@@ -218,7 +218,7 @@ def test_the_start_up_over_200_periods_is_that_of_another_integrator() -> None:
 
 
 @pytest.mark.parametrize(
-    "law", [ROUGH, HertzGap(tip_radius=5e-3, combined_modulus=1e11), LinearGap(normal_stiffness=1e7)]
+    "law", [ROUGH, HertzGap(tip_radius=5e-3, effective_modulus=1e11), LinearGap(normal_stiffness=1e7)]
 )
 def test_plain_runge_kutta_with_many_steps_finds_the_same_bouncing(law: GapLaw) -> None:
     s, swing, periods, steps = tribometer(), 200.0, 10, 1000

@@ -13,7 +13,7 @@ from sonolube.friction import (
     Method,
     Regime,
     StribeckCurve,
-    asperity_load_share,
+    asperity_load_fraction,
     best_method,
     hersey_number,
     lubrication_regime,
@@ -101,4 +101,4 @@ def test_a_lubricant_that_rubs_more_than_the_dry_contact_is_left_away() -> None:
 
 
 def test_asperities_carry_no_more_than_the_load() -> None:
-    assert asperity_load_share(LUBRICANT, nominal_pressure=[50e6, 900e6]) == approx([0.25, 1.0])
+    assert asperity_load_fraction(LUBRICANT, nominal_pressure=[50e6, 900e6]) == approx([0.25, 1.0])

@@ -14,7 +14,7 @@ from sonolube.surfaces import Roughness
 # D Table 3.2
 CONTACT = RoughContact(
     roughness=Roughness(rms_height=6e-6, summit_radius=1.5e-6, summit_density=4.7e10),
-    pair=ContactPair(combined_modulus=59.6e9, poisson_ratio=0.33, yield_strength=410e6, mindlin_ratio=0.8),
+    pair=ContactPair(effective_modulus=59.6e9, poisson_ratio=0.33, yield_strength=410e6, mindlin_ratio=0.8),
     nominal_area=2.25e-6,
 )
 LOAD, MU, FREQUENCY = 3.0, 0.3, 22e3

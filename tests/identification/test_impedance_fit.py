@@ -91,16 +91,16 @@ def test_a_weak_mode_in_the_noise_is_not_found_and_a_second_not_invented() -> No
     assert len(found.circuit.branches) == 1
     asked = fit_circuit(spectrum(ONE), branches=3)
     assert len(asked.circuit.branches) < 3
-    assert "3 branches were asked for" in asked.doubts[0]
+    assert "3 branches were asked for" in asked.caveats[0]
 
 
-def test_losses_of_the_dielectric_are_doubted_and_widen_the_intervals() -> None:
+def test_losses_of_the_dielectric_raise_a_caveat_and_widen_the_intervals() -> None:
     f = np.linspace(16e3, 32e3, 401)
     lossy = circuit_admittance(ONE, frequency=f) + 2 * np.pi * f * 2e-9 * 0.05
     found = fit_circuit(ImpedanceSpectrum(frequency=f, impedance=1 / lossy))
     assert len(found.circuit.branches) == 1
     assert found.residual_correlation > 3
-    assert "the circuit leaves something out" in found.doubts[0]
+    assert "the circuit leaves something out" in found.caveats[0]
 
 
 @mark.parametrize(("wrong", "message"), [
@@ -141,14 +141,14 @@ def test_the_logarithmic_fit_of_the_same_transducer_has_a_higher_quality_factor(
     found = fit_circuit(rb5100)
     assert found.residual == "log-complex"
     assert found.resonances.mechanical_quality_factor == approx([91.6], abs=0.5)
-    assert any("leaves something out" in doubt for doubt in found.doubts)
+    assert any("leaves something out" in caveat for caveat in found.caveats)
 
 
 def test_the_curve_that_the_analyser_itself_computed_is_one_branch_to_its_last_digit(rb5100: ImpedanceSpectrum) -> None:
     found = fit_circuit(read_impedance(RB5100, sweep="memory"))
     assert len(found.circuit.branches) == 1
     assert found.residual_rms < 1e-6
-    assert found.doubts == ()
+    assert found.caveats == ()
 
 
 STACK = PiezoStack(
@@ -205,4 +205,4 @@ def test_a_sweep_far_below_the_resonance_says_that_it_hardly_knows() -> None:
         frequency=f, impedance=np.exp(scatter) / electrical_admittance(in_tribometer(STACK), frequency=f)
     )
     found = fit_stack(low, STACK, in_structure=in_tribometer)
-    assert any("hardly known" in doubt for doubt in found.doubts)
+    assert any("hardly known" in caveat for caveat in found.caveats)

@@ -59,9 +59,9 @@ def test_intervals_of_time_constants_hold_as_often_as_they_claim() -> None:
     assert 81 <= held < 100  # 90 expected
 
 
-def test_a_constant_longer_than_the_record_is_doubted() -> None:
+def test_a_constant_longer_than_the_record_raises_a_caveat() -> None:
     found = temperature_response(time=TIME, temperature=500 * (1 - np.exp(-TIME / 300)) + noise(3, 0.3), exponentials=1)
-    assert "longer than the record" in found.doubts[0]
+    assert "longer than the record" in found.caveats[0]
 
 
 def test_vibration_is_compared_stage_by_stage_on_the_other_clock() -> None:

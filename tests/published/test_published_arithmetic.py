@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from sonolube.errors import InvalidInput
-from sonolube.published import Column, Doubt, parse_printed, statement, table, table_ids
+from sonolube.published import Column, Correction, parse_printed, statement, table, table_ids
 
 Floats = NDArray[np.float64]
 
@@ -39,9 +39,9 @@ class Span:
 
 @dataclass(frozen=True)
 class Reader:
-    """Reads columns with the doubted cells put right, save the one doubt that is left as printed."""
+    """Reads columns with the corrected cells put right, save the one correction that is left as printed."""
 
-    as_printed: tuple[str, Doubt] | None = None
+    as_printed: tuple[str, Correction] | None = None
 
     def __call__(self, number: str, name: str) -> Cells:
         source = table(number)
@@ -49,10 +49,10 @@ class Reader:
 
     def text(self, number: str, name: str) -> list[str]:
         texts = list(table(number).columns[name].printed)
-        for doubt in table(number).doubts:
-            if doubt.column == name and is_settled(doubt) and (number, doubt) != self.as_printed:
-                assert doubt.row is not None
-                texts[doubt.row] = doubt.right
+        for correction in table(number).corrections:
+            if correction.column == name and is_settled(correction) and (number, correction) != self.as_printed:
+                assert correction.row is not None
+                texts[correction.row] = correction.right
         return texts
 
 
@@ -71,12 +71,12 @@ def cells_of(column: Column, texts: tuple[str, ...]) -> Cells:
     return Cells(each("value"), each("low"), each("high"), each("half_digit"), texts)
 
 
-def is_settled(doubt: Doubt) -> bool:
+def is_settled(correction: Correction) -> bool:
     try:
-        parse_printed(doubt.right)
+        parse_printed(correction.right)
     except InvalidInput:
         return False
-    return doubt.row is not None
+    return correction.row is not None
 
 
 def over(function: Callable[..., Floats], *inputs: Cells) -> Span:
@@ -193,7 +193,7 @@ def friction_summary(read: Reader) -> Span:
     )
 
 
-def combined_modulus(read: Reader) -> Span:
+def effective_modulus(read: Reader) -> Span:
     names = ("youngs_modulus_aluminium", "poisson_ratio_aluminium", "youngs_modulus_steel", "poisson_ratio_steel")
     return over(
         lambda e1, nu1, e2, nu2: 1 / ((1 - nu1**2) / e1 + (1 - nu2**2) / e2), *[read("3.1", name) for name in names]
@@ -267,7 +267,7 @@ DERIVED: dict[tuple[str, str], Relation] = {
     **distance_and_turns("2.13"),
     ("2.14", "wear_reduction"): wear_summary,
     ("2.14", "friction_reduction"): friction_summary,
-    ("3.2", "combined_modulus"): combined_modulus,
+    ("3.2", "effective_modulus"): effective_modulus,
     ("3.3", "error"): model_error("3.3"),
     ("3.4", "error"): model_error("3.4"),
     ("3.5", "coupling_factor"): coupling_factor,
@@ -282,7 +282,7 @@ DERIVED: dict[tuple[str, str], Relation] = {
         np.hypot, read("4.5", "sliding_speed"), read("4.5", "mean_vibration_velocity")
     ),
 }
-del DERIVED["2.2", "revolutions"]  # the diameter is in doubt, not the turns
+del DERIVED["2.2", "revolutions"]  # the diameter is in correction, not the turns
 
 SAME = [
     ("2.6 revolutions", (0, 1, 2), "2.7 revolutions", (0, 1, 2)),
@@ -333,8 +333,8 @@ def differing(read: Reader) -> list[tuple[str, str]]:
     ]
 
 
-DOUBTS = [(number, doubt) for number in table_ids() for doubt in table(number).doubts]
-SETTLED = [(number, doubt) for number, doubt in DOUBTS if is_settled(doubt)]
+CORRECTIONS = [(number, correction) for number in table_ids() for correction in table(number).corrections]
+SETTLED = [(number, correction) for number, correction in CORRECTIONS if is_settled(correction)]
 
 
 def test_every_derived_column_is_derived_again() -> None:
@@ -343,25 +343,25 @@ def test_every_derived_column_is_derived_again() -> None:
 
 
 @pytest.mark.parametrize("place", DERIVED, ids=str)
-def test_derived_cells_follow_from_the_others_once_doubts_are_put_right(place: tuple[str, str]) -> None:
+def test_derived_cells_follow_from_the_others_once_corrections_are_made(place: tuple[str, str]) -> None:
     assert agreement(place, RIGHT).all()
 
 
-def test_what_is_printed_twice_is_the_same_once_doubts_are_put_right() -> None:
+def test_what_is_printed_twice_is_the_same_once_corrections_are_made() -> None:
     assert differing(RIGHT) == []
 
 
-@pytest.mark.parametrize(("number", "doubt"), SETTLED, ids=lambda value: getattr(value, "column", value))
-def test_a_doubted_cell_contradicts_the_other_cells_as_printed(number: str, doubt: Doubt) -> None:
-    read = Reader(as_printed=(number, doubt))
+@pytest.mark.parametrize(("number", "correction"), SETTLED, ids=lambda value: getattr(value, "column", value))
+def test_a_corrected_cell_contradicts_the_other_cells_as_printed(number: str, correction: Correction) -> None:
+    read = Reader(as_printed=(number, correction))
     broken = [place for place in DERIVED if not agreement(place, read).all()]
     assert broken or differing(read)
 
 
-@pytest.mark.parametrize(("number", "doubt"), DOUBTS, ids=lambda value: getattr(value, "column", value))
-def test_a_doubt_quotes_the_cell_it_doubts(number: str, doubt: Doubt) -> None:
-    column = table(number).columns[doubt.column]
-    if doubt.row is not None:
-        assert column.printed[doubt.row] == doubt.printed
+@pytest.mark.parametrize(("number", "correction"), CORRECTIONS, ids=lambda value: getattr(value, "column", value))
+def test_a_correction_quotes_the_cell_it_corrects(number: str, correction: Correction) -> None:
+    column = table(number).columns[correction.column]
+    if correction.row is not None:
+        assert column.printed[correction.row] == correction.printed
     else:
-        assert not is_settled(doubt)
+        assert not is_settled(correction)

@@ -167,11 +167,11 @@ def test_the_errata_are_numbered_without_a_gap() -> None:
     assert all(entry.where and entry.printed and entry.right and entry.evidence for entry in errata())
 
 
-def test_every_doubt_belongs_to_an_erratum() -> None:
-    for doubt in (doubt for number in table_ids() for doubt in table(number).doubts):
-        assert erratum(doubt.erratum)
+def test_every_correction_belongs_to_an_erratum() -> None:
+    for correction in (correction for number in table_ids() for correction in table(number).corrections):
+        assert erratum(correction.erratum)
     for entry in statements():
-        assert bool(entry.erratum) == bool(entry.doubt) == bool(entry.right)
+        assert bool(entry.erratum) == bool(entry.reason) == bool(entry.right)
         assert not entry.erratum or erratum(entry.erratum)
 
 

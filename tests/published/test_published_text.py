@@ -18,7 +18,7 @@ Span = tuple[float, float]
 
 
 def rightly(source: str | Place) -> PrintedNumber:
-    """Return a statement by name or a cell by place, put right where it is in doubt."""
+    """Return a statement by name or a cell by place, put right where it is in correction."""
     if isinstance(source, str):
         entry = statement(source)
         return put_right(entry.number, entry.right, entry.unit, entry.quantity)
@@ -26,7 +26,11 @@ def rightly(source: str | Place) -> PrintedNumber:
     column = table(number).columns[name]
     cell = column.cells[row]
     assert cell is not None
-    right = [doubt.right for doubt in table(number).doubts if (doubt.column, doubt.row) == (name, row)]
+    right = [
+        correction.right
+        for correction in table(number).corrections
+        if (correction.column, correction.row) == (name, row)
+    ]
     return put_right(cell, "".join(right), column.unit, column.quantity)
 
 
@@ -137,13 +141,13 @@ def agrees(number: PrintedNumber, span: Span) -> bool:
 
 
 @pytest.mark.parametrize("name", STATED)
-def test_a_stated_number_follows_from_others_or_is_in_doubt(name: str) -> None:
+def test_a_stated_number_follows_from_others_or_is_corrected(name: str) -> None:
     entry, span = statement(name), STATED[name]()
-    assert agrees(entry.number, span) == (not entry.doubt)
+    assert agrees(entry.number, span) == (not entry.reason)
     assert agrees(rightly(name), span)
 
 
-def test_every_doubted_statement_that_is_put_right_is_derived_again() -> None:
+def test_every_corrected_statement_is_derived_again() -> None:
     settled = {
         entry.id
         for entry in statements()

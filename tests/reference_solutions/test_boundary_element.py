@@ -29,9 +29,9 @@ def sphere_map(radius: float, *, points: int = 96, width: float = 1e-3) -> Heigh
 
 @pytest.mark.usefixtures("_library")
 def test_a_sphere_is_pressed_as_by_hertz() -> None:
-    sphere = SphereOnFlat(tip_radius=10e-3, combined_modulus=E_STAR)
+    sphere = SphereOnFlat(tip_radius=10e-3, effective_modulus=E_STAR)
     load = 300.0
-    pressed = press(sphere_map(10e-3), normal_load=load, combined_modulus=E_STAR, periodic=False)
+    pressed = press(sphere_map(10e-3), normal_load=load, effective_modulus=E_STAR, periodic=False)
     assert pressed.reason == ("",)
     # the zero of heights is the pole, so the flat comes below it by the approach
     assert -pressed.separation[0] == approx(float(approach(sphere, normal_load=load)), rel=2e-3)
@@ -48,7 +48,7 @@ def test_a_wave_is_pressed_as_by_westergaard() -> None:
     full = math.pi * E_STAR * amplitude / length
     share = np.array([0.2, 0.5, 0.8])
     area = wave.height.size * wave.spacing_x * wave.spacing_y
-    pressed = press(wave, normal_load=share * full * area, combined_modulus=E_STAR)
+    pressed = press(wave, normal_load=share * full * area, effective_modulus=E_STAR)
     assert pressed.real_contact_area / area == approx(2 / np.pi * np.arcsin(np.sqrt(share)), abs=0.012)
     # mean gap, from the same solution: h (1 - p/p* + p/p* ln(p/p*))
     assert pressed.separation == approx(amplitude * (1 - share + share * np.log(share)), rel=5e-3)
@@ -70,7 +70,7 @@ def rough() -> HeightMap:
 def test_each_law_holds_where_the_documentation_says(rough: HeightMap) -> None:
     # the numbers of docs/theory/referees.md have 16 times as many hills; one eighth more tolerance for these few
     x = np.geomspace(0.003, 0.3, 7)
-    comparison = compare_laws(rough, combined_modulus=E_STAR, reduced_pressure=x)
+    comparison = compare_laws(rough, effective_modulus=E_STAR, reduced_pressure=x)
     area = comparison.laws["boundary_element"].real_contact_area / comparison.nominal_area
     # published prefactors of boundary elements lie between 2 and 2.5
     assert np.all((area[:3] / x[:3] > 1.9) & (area[:3] / x[:3] < 2.7))
@@ -89,7 +89,7 @@ def test_each_law_holds_where_the_documentation_says(rough: HeightMap) -> None:
 
 @pytest.mark.usefixtures("_library")
 def test_the_modulus_only_scales_the_load(rough: HeightMap) -> None:
-    soft, hard = (press(rough, normal_load=factor * 0.05, combined_modulus=factor * 1e9) for factor in (1.0, 100.0))
+    soft, hard = (press(rough, normal_load=factor * 0.05, effective_modulus=factor * 1e9) for factor in (1.0, 100.0))
     assert soft.separation == approx(hard.separation, rel=1e-3)
     assert soft.real_contact_area == approx(hard.real_contact_area, rel=1e-3)
 
@@ -106,7 +106,7 @@ def test_missing_pixels_are_refused(rough: HeightMap) -> None:
     height = rough.height.copy()
     height[3, 4] = np.nan
     with raises(InvalidInput, match="crop the map or fill them"):
-        press(rough.with_height(height), normal_load=1.0, combined_modulus=E_STAR)
+        press(rough.with_height(height), normal_load=1.0, effective_modulus=E_STAR)
 
 
 def test_without_the_library_the_remedy_is_named(rough: HeightMap, monkeypatch: MonkeyPatch) -> None:
@@ -119,4 +119,4 @@ def test_without_the_library_the_remedy_is_named(rough: HeightMap, monkeypatch: 
 
     monkeypatch.setattr(builtins, "__import__", without)
     with raises(InvalidInput, match=r'pip install "sonolube\[boundary-element\]"'):
-        press(rough, normal_load=1.0, combined_modulus=E_STAR)
+        press(rough, normal_load=1.0, effective_modulus=E_STAR)

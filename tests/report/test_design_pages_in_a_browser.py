@@ -49,7 +49,7 @@ def page(address: str) -> Iterator[Page]:
 
 
 def test_it_says_what_was_asked_found_assumed_and_computed_with_what(page: Page) -> None:
-    for part in ("asked", "found", "figures", "doubts"):
+    for part in ("asked", "found", "figures", "caveats"):
         assert page.locator(f"#{part}").is_visible()
     assert page.locator("table.pairs").first.locator("th", has_text="--").count() > 0
     assert "sonolube" in page.locator("footer").inner_text()

@@ -1,4 +1,4 @@
-"""Measured files as sheets, pages and JSON: the numbers arrive with their units and doubts, and nothing is lost."""
+"""Measured files as sheets, pages and JSON: the numbers arrive with their units and caveats, and nothing is lost."""
 
 import json
 import re

@@ -9,7 +9,7 @@ from sonolube.published.values import Published, over_rounding
 from sonolube.reproduce.row import Verdict, compare, undetermined
 
 
-def published(text: str, *, doubt: str = "", right: tuple[PrintedNumber, ...] = ()) -> Published:
+def published(text: str, *, reason: str = "", right: tuple[PrintedNumber, ...] = ()) -> Published:
     return Published(
         id="example",
         chapter=2,
@@ -17,7 +17,7 @@ def published(text: str, *, doubt: str = "", right: tuple[PrintedNumber, ...] = 
         quantity="sliding_speed",
         unit="mm/s",
         number=parse_printed(text, "mm/s", quantity="sliding_speed"),
-        doubt=doubt,
+        reason=reason,
         right=right,
     )
 
@@ -46,8 +46,10 @@ def test_the_rounding_of_inputs_widens_the_range_by_what_it_does_to_the_result()
 def test_a_misprint_needs_evidence_and_the_right_number() -> None:
     right = (parse_printed("20.9", "mm/s", quantity="sliding_speed"),)
     assert compare(published("20.3"), 20.9e-3, "").verdict is Verdict.MODEL_DISAGREES
-    assert compare(published("20.3", doubt="75.2 m in 1 h.", right=right), 20.9e-3, "").verdict is Verdict.MISPRINT
-    assert compare(published("20.3", doubt="75.2 m in 1 h.", right=right), 23e-3, "").verdict is Verdict.MODEL_DISAGREES
+    assert compare(published("20.3", reason="75.2 m in 1 h.", right=right), 20.9e-3, "").verdict is Verdict.MISPRINT
+    assert (
+        compare(published("20.3", reason="75.2 m in 1 h.", right=right), 23e-3, "").verdict is Verdict.MODEL_DISAGREES
+    )
 
 
 def test_what_cannot_be_computed_names_the_missing_input_and_has_no_error() -> None:

@@ -45,7 +45,7 @@ def test_heat_of_vibration_comes_on_top() -> None:
     rig = read_rig(RIG)
     without, with_heat = (heat_of(rig, vibration_heat_rate=q) for q in (0.0, 0.02))
     assert with_heat.temperature_rise / without.temperature_rise == approx(1 + 0.02 / without.frictional_heat_rate)
-    assert len(without.doubts) == len(with_heat.doubts) + 1
+    assert len(without.caveats) == len(with_heat.caveats) + 1
 
 
 def test_a_rig_at_rest_has_no_heat_of_friction() -> None:

@@ -28,19 +28,19 @@ def test_a_normal_distribution_cut_off_is_scipys() -> None:
     law = Distribution(law=Normal(middle=1.0, deviation=0.8), lowest=0.0, highest=2.5)
     judge = stats.truncnorm(-1 / 0.8, 1.5 / 0.8, loc=1.0, scale=0.8)
     assert law.quantile(SHARES) == approx(judge.ppf(SHARES))
-    assert law.cut_share == approx(stats.norm.cdf(-1 / 0.8) + stats.norm.sf(1.5 / 0.8))
+    assert law.truncated_fraction == approx(stats.norm.cdf(-1 / 0.8) + stats.norm.sf(1.5 / 0.8))
 
 
 def test_a_lognormal_distribution_is_scipys() -> None:
     law = Distribution(law=LogNormal(median=3.0, factor=1.7), lowest=0.0)
     assert law.quantile(SHARES) == approx(stats.lognorm(np.log(1.7), scale=3.0).ppf(SHARES))
-    assert law.cut_share == 0
+    assert law.truncated_fraction == 0
 
 
 def test_a_uniform_distribution_cut_off_is_the_uniform_one_of_what_is_left() -> None:
     law = Distribution(law=Uniform(low=-1.0, high=3.0), lowest=0.0)
     assert law.quantile(SHARES) == approx(stats.uniform(0, 3).ppf(SHARES))
-    assert law.cut_share == approx(0.25)
+    assert law.truncated_fraction == approx(0.25)
 
 
 @given(st.floats(0.01, 10), st.floats(0.01, 10), st.floats(0, 1), st.floats(0, 1))
@@ -75,8 +75,8 @@ def test_a_change_of_the_rig_moves_the_distribution_about_it(tmp_path: Path) -> 
 
 
 def test_what_can_be_of_either_sign_is_not_cut_off() -> None:
-    assert known('"drive.voltage_offset" = "normal 20 V"').cut_share == 0
-    assert known('"contact.normal_load" = "normal 2 N"').cut_share == approx(stats.norm.cdf(-1.5))
+    assert known('"drive.voltage_offset" = "normal 20 V"').truncated_fraction == 0
+    assert known('"contact.normal_load" = "normal 2 N"').truncated_fraction == approx(stats.norm.cdf(-1.5))
     assert known('"contact.pair.poisson_ratio" = "normal 0.1"').highest == 0.5
 
 

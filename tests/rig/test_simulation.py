@@ -82,7 +82,7 @@ def test_every_closure_finds_less_friction_at_20_mm_per_second() -> None:
 
 
 def test_tension_in_a_stack_without_stated_preload_is_told() -> None:
-    assert any("no preload is stated" in doubt for doubt in DRIVEN.doubts)
+    assert any("no preload is stated" in caveat for caveat in DRIVEN.caveats)
 
 
 def test_a_voltage_beyond_the_stack_is_refused() -> None:

@@ -74,9 +74,9 @@ def test_a_load_beside_which_the_tip_beats_is_still_carried_on_the_mean() -> Non
 
 def test_of_two_vibrations_the_one_that_the_ramp_reaches_is_taken_and_the_other_told() -> None:
     result = simulated(*DOUBLE, "drive.ramp_duration=200ms", "drive.ramp_shape=cosine")
-    assert result.status == "several"
+    assert result.status == "multistable"
     assert result.vibration_amplitude == approx(1.740e-6, rel=1e-3)
-    assert result.rival_amplitude == approx(11.82e-6, rel=1e-3)
+    assert result.coexisting_amplitude == approx(11.82e-6, rel=1e-3)
     assert "cosine ramp of 200 ms, that of 1.74 um appears" in result.reason
 
 
@@ -112,8 +112,8 @@ def test_a_vibration_found_under_a_hard_drive_answers_its_own_force() -> None:
 
 def test_lost_contact_is_told() -> None:
     result = simulated("drive.voltage_peak_to_peak=200V", "drive.voltage_offset=0V")
-    assert result.lost_contact_share == approx(np.mean(result.motion.normal_force < 0.03), abs=2e-3)
-    assert f"it hops, without contact for {result.lost_contact_share:.2%} of the time" in result.reason
+    assert result.contact_loss_fraction == approx(np.mean(result.motion.normal_force < 0.03), abs=2e-3)
+    assert f"it hops, without contact for {result.contact_loss_fraction:.2%} of the time" in result.reason
 
 
 def test_a_slow_start_excites_the_arm_less() -> None:

@@ -10,7 +10,7 @@ PATCH = HeightMap(height=np.array([[0.0, 1e-6, np.nan], [2e-6, 3e-6, 4e-6]]), sp
 
 
 def test_missing_pixels_stay_missing() -> None:
-    assert PATCH.missing_share == approx(1 / 6)
+    assert PATCH.missing_fraction == approx(1 / 6)
     assert not PATCH.measured[0, 2]
 
 

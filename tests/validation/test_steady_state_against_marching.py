@@ -113,7 +113,7 @@ def test_every_point_has_a_status_and_every_solution_its_numbers(points: int) ->
     assert np.isin(states.status, [status.value for status in Status]).all()
     found = states.status != Status.NOT_CONVERGED
     assert np.isfinite(states.vibration_amplitude[found]).all()
-    assert np.isfinite(states.rival_amplitude[states.status == Status.SEVERAL]).all()
+    assert np.isfinite(states.coexisting_amplitude[states.status == Status.MULTISTABLE]).all()
 
 
 @pytest.mark.parametrize("points", SIZES)

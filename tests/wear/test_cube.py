@@ -22,7 +22,7 @@ from sonolube.wear.cube import (
 STEEL_ON_BRASS = ArchardWear(wear_coefficient=1e-4, hardness=1e9)
 ACORN_NUT_ON_DISC = RoughContact(  # D Table 3.2
     roughness=Roughness(rms_height=6e-6, summit_radius=1.5e-6, summit_density=4.7e10),
-    pair=ContactPair(combined_modulus=59.6e9, poisson_ratio=0.33, yield_strength=410e6, mindlin_ratio=0.8),
+    pair=ContactPair(effective_modulus=59.6e9, poisson_ratio=0.33, yield_strength=410e6, mindlin_ratio=0.8),
     nominal_area=2.25e-6,
 )
 HUNDREDTHS_OF_CUBIC_MILLIMETRES_PER_METRE = 1e-11  # in m2

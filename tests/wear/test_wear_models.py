@@ -5,11 +5,11 @@ from scipy.special import i0, i1
 
 from sonolube.contact import ContactPair, GapMotion, RoughContact, harmonic_motion, separation
 from sonolube.surfaces import Roughness
-from sonolube.wear.cube import WEAR_CLOSURES, cube_wear_rate, vibrating_cube_wear_rate
+from sonolube.wear.cube import WEAR_MODELS, cube_wear_rate, vibrating_cube_wear_rate
 
 ACORN_NUT_ON_DISC = RoughContact(  # D Table 3.2
     roughness=Roughness(rms_height=6e-6, summit_radius=1.5e-6, summit_density=4.7e10),
-    pair=ContactPair(combined_modulus=59.6e9, poisson_ratio=0.33, yield_strength=410e6, mindlin_ratio=0.8),
+    pair=ContactPair(effective_modulus=59.6e9, poisson_ratio=0.33, yield_strength=410e6, mindlin_ratio=0.8),
     nominal_area=2.25e-6,
 )
 DECAY_LENGTH = 6e-6 / 3  # Rq/lambda
@@ -20,7 +20,7 @@ def sine(amplitude: float) -> GapMotion:
 
 
 def ratio(name: str, amplitude: float) -> float:
-    return float(WEAR_CLOSURES[name](ACORN_NUT_ON_DISC, sine(amplitude)))
+    return float(WEAR_MODELS[name](ACORN_NUT_ON_DISC, sine(amplitude)))
 
 
 def test_over_the_whole_period_vibration_would_raise_the_wear() -> None:
@@ -45,6 +45,6 @@ def test_with_the_load_balanced_the_height_alone_lowers_the_wear(amplitude: floa
     assert ratio("load_balanced", amplitude) == approx(expected, rel=2e-5)
 
 
-@pytest.mark.parametrize("name", WEAR_CLOSURES)
+@pytest.mark.parametrize("name", WEAR_MODELS)
 def test_without_vibration_wear_stays(name: str) -> None:
     assert ratio(name, 0.0) == approx(1, rel=1e-12)

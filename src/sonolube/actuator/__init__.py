@@ -33,7 +33,7 @@ from sonolube.actuator.stack import (
     free_admittance,
     free_stroke,
     require_allowed_voltage,
-    stack_doubts,
+    stack_caveats,
     stack_force,
 )
 from sonolube.actuator.waveguide import (
@@ -96,7 +96,7 @@ __all__ = [
     "require_allowed_voltage",
     "resonances",
     "series_inductor",
-    "stack_doubts",
+    "stack_caveats",
     "stack_force",
     "thin_conical_horn",
     "thin_exponential_horn",

@@ -105,8 +105,8 @@ class PiezoStack:
             )
         if self.coupling_factor is not None:
             require_within(0.0, 1.0, coupling_factor=self.coupling_factor)
-            if doubt := _doubt_of_coupling(self):
-                warnings.warn(doubt, InconsistentCoupling, stacklevel=4)
+            if caveat := _coupling_caveat(self):
+                warnings.warn(caveat, InconsistentCoupling, stacklevel=4)
 
     @property
     def charge_per_elongation(self) -> float:
@@ -280,7 +280,7 @@ def require_allowed_voltage(stack: PiezoStack, *, stack_voltage: ArrayLike) -> F
     return volts
 
 
-def stack_doubts(
+def stack_caveats(
     stack: PiezoStack,
     *,
     voltage_offset: ArrayLike,
@@ -323,11 +323,11 @@ def stack_doubts(
     for volts in (centre - swing, centre + swing):
         require_allowed_voltage(stack, stack_voltage=volts)
     force = stack_force(stack, voltage_amplitude=swing, elongation=elongation, frequency=frequency)
-    doubts = (_doubt_of_tension(stack, float(np.max(np.abs(force), initial=0.0))), _doubt_of_coupling(stack))
-    return tuple(doubt for doubt in doubts if doubt)
+    caveats = (_tension_caveat(stack, float(np.max(np.abs(force), initial=0.0))), _coupling_caveat(stack))
+    return tuple(caveat for caveat in caveats if caveat)
 
 
-def _doubt_of_tension(stack: PiezoStack, pull: float) -> str:
+def _tension_caveat(stack: PiezoStack, pull: float) -> str:
     if stack.preload is None:
         return f"the vibration pulls on the stack with up to {pull:.3g} N and no preload is stated" if pull > 0 else ""
     if pull <= stack.preload:
@@ -338,7 +338,7 @@ def _doubt_of_tension(stack: PiezoStack, pull: float) -> str:
     )
 
 
-def _doubt_of_coupling(stack: PiezoStack) -> str:
+def _coupling_caveat(stack: PiezoStack) -> str:
     stated, derived = stack.coupling_factor, stack.derived_coupling_factor
     if stated is None or abs(stated - derived) <= MOST_COUPLING_ERROR * derived:
         return ""

@@ -25,7 +25,7 @@ def published(
     table: Annotated[str | None, typer.Argument(help="One table, such as 2.5; the list where absent.")] = None,
     json: Json = False,
 ) -> None:
-    """Published data of the dissertation, with the doubts about it.
+    """Published data of the dissertation, with the caveats about it.
 
     Example: sonolube published 2.5
     """

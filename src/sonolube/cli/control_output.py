@@ -117,14 +117,14 @@ def control_object(
         answer["stick_slip"] = {
             name: {
                 "stick_slip_amplitude": {"value": motion.stick_slip_amplitude, "unit": "N"},
-                "stick_share": motion.stick_share,
+                "stick_fraction": motion.stick_fraction,
                 "damping": {"value": damping, "unit": "N s/m"},
             }
             for name, motion, damping in zip(
                 ("without", "with"), (belt.still, belt.vibrating), belt.damping, strict=True
             )
         }
-    answer["doubts"] = list(_doubts(study))
+    answer["caveats"] = list(_caveats(study))
     return answer | {"assumptions": _assumed(rig, belt, supposed), "files": [str(path) for path in written]}
 
 
@@ -141,7 +141,7 @@ def control_lines(
         f"{rig.title}, {engineering(rig.normal_load, 'N')}, {engineering(rig.sliding_speed, 'm/s')}, "
         f"closure {rig.closure}",
         *[f"  {name:<20} {value}" for name, value in _facts(settings, study, belt)],
-        *closing_lines(written, assumptions=_assumed(rig, belt, supposed), doubts=_doubts(study)),
+        *closing_lines(written, assumptions=_assumed(rig, belt, supposed), caveats=_caveats(study)),
     ]
 
 
@@ -195,7 +195,7 @@ def write_control(
             facts=_facts(settings, study, belt),
             tables=[_lookup(study)],
             figures=figures,
-            notes=notes_of(_doubts(study), _assumed(rig, belt, supposed)),
+            notes=notes_of(_caveats(study), _assumed(rig, belt, supposed)),
             folder=folder,
             name="control",
         )
@@ -220,7 +220,7 @@ def _lookup(study: ControlStudy) -> FindingTable:
     )
 
 
-def _doubts(study: ControlStudy) -> tuple[str, ...]:
+def _caveats(study: ControlStudy) -> tuple[str, ...]:
     return (*_thin_margin(study), *_lost_resonance(study))
 
 
@@ -295,7 +295,7 @@ def _facts(settings: ControlSettings, study: ControlStudy, belt: Suppression | N
             (
                 f"stick-slip {name}",
                 f"{engineering(motion.stick_slip_amplitude, 'N')}, sticks "
-                f"{100 * motion.stick_share:.0f} % of the time, damping of sliding {damping:.3g} N s/m",
+                f"{100 * motion.stick_fraction:.0f} % of the time, damping of sliding {damping:.3g} N s/m",
             )
             for name, motion, damping in zip(
                 ("without", "with"), (belt.still, belt.vibrating), belt.damping, strict=True

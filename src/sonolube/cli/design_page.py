@@ -1,4 +1,4 @@
-"""What the reports of all design commands hold: what was asked, what became of the points, what is in doubt."""
+"""What the reports of all design commands hold: what was asked, what became of the points, caveats."""
 
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
@@ -78,10 +78,10 @@ def status_tables(counts: Mapping[str, int], failures: Iterable[tuple[str, int]]
     return tables
 
 
-def notes_of(doubts: Iterable[str], assumptions: Mapping[str, str]) -> list[str]:
-    """Return doubts and assumptions as lines of a page."""
+def notes_of(caveats: Iterable[str], assumptions: Mapping[str, str]) -> list[str]:
+    """Return caveats and assumptions as lines of a page."""
     return [
-        *(f"Doubt: {doubt}." for doubt in doubts),
+        *(f"Caveat: {caveat}." for caveat in caveats),
         *(f"Assumed {key}: {reason}." for key, reason in assumptions.items()),
     ]
 

@@ -168,7 +168,7 @@ def calibration_object(found: Calibration, written: list[Path]) -> dict[str, Any
         "rig": found.rig.title,
         "runs": fit.runs,
         **{name: {"value": value, "unit": quantity(name).unit} for name, value in values.items()},
-        "doubts": _doubts(found),
+        "caveats": _caveats(found),
         "assumptions": dict(found.rig.assumptions),
         "files": [str(path) for path in written],
     }
@@ -179,7 +179,7 @@ def calibration_lines(found: Calibration, written: list[Path]) -> list[str]:
     return [
         f"{found.rig.title}, {found.fit.runs} runs",
         *[f"  {name:<18} {value}" for name, value in _facts(found)],
-        *closing_lines(written, assumptions=found.rig.assumptions, doubts=_doubts(found)),
+        *closing_lines(written, assumptions=found.rig.assumptions, caveats=_caveats(found)),
     ]
 
 
@@ -193,7 +193,7 @@ def write_calibration(found: Calibration, *, asked: list[tuple[str, str]], folde
         asked=asked,
         facts=_facts(found),
         figures=[Finding(name=name, caption=_caption(found), figure=figure)],
-        notes=notes_of(_doubts(found), found.rig.assumptions),
+        notes=notes_of(_caveats(found), found.rig.assumptions),
         folder=folder,
         name="efficiency",
     )
@@ -270,7 +270,7 @@ def _facts(found: Calibration) -> list[tuple[str, str]]:
     return [*facts, ("power", told)]
 
 
-def _doubts(found: Calibration) -> list[str]:
+def _caveats(found: Calibration) -> list[str]:
     if not found.saturated:
         return []
     return [

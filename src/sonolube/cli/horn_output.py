@@ -59,7 +59,7 @@ def horn_object(design: HornDesign, material: Material, tool: float, written: Se
             for name, at in design.neighbours
         ],
         "nodes": design.tuned.mode.model.mesh.size,
-        "doubts": _doubts(design),
+        "caveats": _caveats(design),
         "files": [str(path) for path in written],
     }
 
@@ -90,7 +90,7 @@ def horn_lines(design: HornDesign, material: Material, tool: float, written: Seq
     return [
         f"{design.body.name} of {material.name}" + (f": {sizes}" if sizes else ""),
         *[f"  {name:<{width}}  {text}" for name, text in rows.items()],
-        *[f"  doubt: {doubt}" for doubt in _doubts(design)],
+        *[f"  caveat: {caveat}" for caveat in _caveats(design)],
         *[f"  {path}" for path in written],
     ]
 
@@ -154,7 +154,7 @@ def _values(design: HornDesign, tool_mass: float) -> dict[str, float]:
     }
 
 
-def _doubts(design: HornDesign) -> list[str]:
+def _caveats(design: HornDesign) -> list[str]:
     if design.stress_change <= _SHARP:
         return []
     return [

@@ -56,12 +56,12 @@ def published_object(table_id: str | None) -> dict[str, Any]:
             }
             for name, column in shown.columns.items()
         },
-        "doubts": [asdict(doubt) for doubt in shown.doubts],
+        "corrections": [asdict(correction) for correction in shown.corrections],
     }
 
 
 def published_lines(table_id: str | None) -> list[str]:
-    """Return one table as printed with its doubts, or the list of all, as lines."""
+    """Return one table as printed with its corrections, or the list of all, as lines."""
     if table_id is None:
         return [f"{each:<5} {table(each).title}" for each in table_ids()]
     shown = table(table_id)
@@ -69,10 +69,10 @@ def published_lines(table_id: str | None) -> list[str]:
         f"Table {shown.id}: {shown.title}",
         *_grid(shown),
         *[
-            f"  doubt{f' ({doubt.erratum})' if doubt.erratum else ''}: {doubt.column}"
-            f"{f', row {doubt.row + 1}' if doubt.row is not None else ''}: {doubt.printed}, "
-            f"right: {doubt.right}; {doubt.reason}"
-            for doubt in shown.doubts
+            f"  correction{f' ({correction.erratum})' if correction.erratum else ''}: {correction.column}"
+            f"{f', row {correction.row + 1}' if correction.row is not None else ''}: {correction.printed}, "
+            f"right: {correction.right}; {correction.reason}"
+            for correction in shown.corrections
         ],
     ]
 

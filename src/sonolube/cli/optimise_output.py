@@ -69,7 +69,7 @@ def optimum_object(found: Optimum, electric: Electrical, written: list[Path]) ->
         },
         "networks": [_network_object(matched) for matched in electric.matched],
         "refused": found.landscape.refused,
-        "doubts": _doubts(found),
+        "caveats": _caveats(found),
         "assumptions": _assumed(found),
         "files": [str(path) for path in written],
     }
@@ -84,7 +84,7 @@ def optimum_lines(found: Optimum, electric: Electrical, written: list[Path]) -> 
         *[f"  {name:<20} {value}" for name, value in _facts(found, electric)],
         *_table_lines(_table(found.front or found.designs)),
         *[f"  not used: {why}" for why in found.landscape.refused.values()],
-        *closing_lines(written, assumptions=_assumed(found), doubts=_doubts(found)),
+        *closing_lines(written, assumptions=_assumed(found), caveats=_caveats(found)),
     ]
 
 
@@ -123,7 +123,7 @@ def write_optimum(
         tables=[_table(found.front or found.designs), *_beyond(found)],
         figures=figures,
         notes=[f"Not used: {why}." for why in found.landscape.refused.values()]
-        + notes_of(_doubts(found), _assumed(found)),
+        + notes_of(_caveats(found), _assumed(found)),
         folder=folder,
         name="optimise",
     )
@@ -253,22 +253,22 @@ def _elements(network: MatchingNetwork) -> str:
     return ", ".join(told)
 
 
-def _doubts(found: Optimum) -> list[str]:
-    best, doubts = found.best, []
+def _caveats(found: Optimum) -> list[str]:
+    best, caveats = found.best, []
     values = {"frequency": best.frequency, **best.choice.entries}
     for name, (low, high) in found.task.space.bounds.items():
         for end, side in ((low, "lowest"), (high, "highest")):
             if abs(np.log(values[name] / end)) < _NEAR_END:
-                doubts.append(f"{name} lies at the {side} value allowed: a better design may lie beyond")
+                caveats.append(f"{name} lies at the {side} value allowed: a better design may lie beyond")
     if best.objective("heat") > best.objective("power"):
-        doubts.append(
+        caveats.append(
             "more heat stays in the actuator than D 1.9 counts as the amplifier's power: near a resonance the motion"
             " takes real power, which that formula leaves out"
         )
     stack = best.assessment.usage["tension"][0]
     if stack == 0:
-        doubts.append("no preload is stated, so that tension in the stack is not judged: give --bolt and --preload")
-    return doubts
+        caveats.append("no preload is stated, so that tension in the stack is not judged: give --bolt and --preload")
+    return caveats
 
 
 def _assumed(found: Optimum) -> dict[str, str]:

@@ -20,27 +20,27 @@ def show(result: Any, *, rig: Rig, as_json: bool, written: Sequence[Path] = ()) 
     told = {name: value for name, value in values.items() if isinstance(value, str)}
     if as_json:
         files = {"files": [str(path) for path in written]} if written else {}
-        typer.echo(json.dumps(_object(quantified, told, rig, values["doubts"]) | files, indent=2, allow_nan=False))
+        typer.echo(json.dumps(_object(quantified, told, rig, values["caveats"]) | files, indent=2, allow_nan=False))
     else:
-        closing = closing_lines(written, assumptions=rig.assumptions, doubts=values["doubts"])
+        closing = closing_lines(written, assumptions=rig.assumptions, caveats=values["caveats"])
         typer.echo("\n".join([*_lines(quantified, told, rig), *closing]))
 
 
-def closing_lines(written: Sequence[Path], *, assumptions: Mapping[str, str], doubts: Sequence[str] = ()) -> list[str]:
+def closing_lines(written: Sequence[Path], *, assumptions: Mapping[str, str], caveats: Sequence[str] = ()) -> list[str]:
     """Return what every answer ends with: what is doubtful, what was assumed, and the files written."""
     return [
-        *[f"  doubt: {doubt}" for doubt in doubts],
+        *[f"  caveat: {caveat}" for caveat in caveats],
         *[f"  assumed {key}: {reason}" for key, reason in assumptions.items()],
         *[f"  {path}" for path in written],
     ]
 
 
-def _object(quantified: dict[str, float], told: dict[str, str], rig: Rig, doubts: tuple[str, ...]) -> dict[str, Any]:
+def _object(quantified: dict[str, float], told: dict[str, str], rig: Rig, caveats: tuple[str, ...]) -> dict[str, Any]:
     return {
         "rig": rig.title,
         **told,
         **{name: {"value": value, "unit": quantities()[name].unit} for name, value in quantified.items()},
-        "doubts": list(doubts),
+        "caveats": list(caveats),
         "assumptions": dict(rig.assumptions),
     }
 

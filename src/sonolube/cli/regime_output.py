@@ -27,12 +27,12 @@ def regime_object(rig: Rig, result: RegimePoint, wear: WearAssessment | None, wr
         "closure": result.closure,
         "sliding_speed": {"value": result.sliding_speed, "unit": "m/s"},
         "nominal_pressure": {"value": result.nominal_pressure, "unit": "Pa"},
-        "asperity_load_share": {"value": result.asperity_load_share, "unit": ""},
+        "asperity_load_fraction": {"value": result.asperity_load_fraction, "unit": ""},
         "friction_coefficient": {
             name: {"value": float(value), "unit": ""} for name, value in result.coefficients._asdict().items()
         },
         **assessed,
-        "doubts": list(result.doubts),
+        "caveats": list(result.caveats),
         "assumptions": dict(rig.assumptions),
         "files": [str(path) for path in written],
     }
@@ -45,10 +45,10 @@ def regime_lines(rig: Rig, result: RegimePoint, wear: WearAssessment | None, wri
         f"{rig.title}, {engineering(result.nominal_pressure, 'Pa')}, {engineering(result.sliding_speed, 'm/s')}",
         "  coefficient of friction",
         *[f"    {name:<10}  {float(value):.3g}{_marked(name, result)}" for name, value in coefficients.items()],
-        f"  on asperities  {100 * result.asperity_load_share:.3g} % of the load through the lubricant",
+        f"  on asperities  {100 * result.asperity_load_fraction:.3g} % of the load through the lubricant",
         f"  closure        {result.closure}",
         *([] if wear is None else _wear_lines(wear)),
-        *closing_lines(written, assumptions=rig.assumptions, doubts=result.doubts),
+        *closing_lines(written, assumptions=rig.assumptions, caveats=result.caveats),
     ]
 
 

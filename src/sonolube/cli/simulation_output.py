@@ -30,7 +30,7 @@ def write_simulation(rig: Rig, result: Simulation, *, folder: Path, name: str) -
         "normal_load_N": motion.normal_load,
         "separation_at_rest_m": _rest(rig),
         "mean_displacement_m": result.mean_displacement,
-        "lost_contact_share": result.lost_contact_share,
+        "contact_loss_fraction": result.contact_loss_fraction,
     }
     with publication_style():
         figures = write_figure(_figure(rig, result, 1e6 * time), folder=folder, name=name)

@@ -59,7 +59,7 @@ def write_study(study: "xr.Dataset", of: str, *, folder: Path, name: str) -> lis
 def _voltage_lines(study: "xr.Dataset") -> Iterator[str]:
     for best in _best_points(study):
         yield f"least friction       ratio {_told(best, 'friction_ratio')} at {_told(best, 'voltage_peak_to_peak')}"
-    lost = study["voltage_peak_to_peak"].values[study["lost_contact_share"].values > 0]
+    lost = study["voltage_peak_to_peak"].values[study["contact_loss_fraction"].values > 0]
     begin = f"from {engineering(float(lost.min()), 'V')}" if lost.size else "nowhere"
     most = engineering(float(study["actuator_power"].max()), "W")
     yield f"contact is lost      {begin}"

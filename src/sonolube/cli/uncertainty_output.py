@@ -85,7 +85,7 @@ def write_uncertainty(
             *status_tables(told["statuses"], _failures(result)),
         ],
         figures=figures,
-        notes=notes_of(_doubts(told), rig.assumptions),
+        notes=notes_of(_caveats(told), rig.assumptions),
         folder=folder,
         name="uncertainty",
     )
@@ -104,7 +104,7 @@ def uncertainty_object(rig: Rig, result: "xr.Dataset", drawn: Identified | None,
         "without_result": [{"reason": reason, "points": count} for reason, count in _failures(result)],
         "contact_lost": _contact_lost(result),
         "uncertain": {
-            key: {"distribution": law.text, "cut_share": law.cut_share}
+            key: {"distribution": law.text, "truncated_fraction": law.truncated_fraction}
             for key, law in rig.uncertainty.items()
             if key in result.attrs["uncertain"] and key not in joint
         },
@@ -189,9 +189,9 @@ def _failures(result: "xr.Dataset") -> list[tuple[str, int]]:
 
 def _contact_lost(result: "xr.Dataset") -> float | None:
     """Return the share of the points with a vibration that leave the contact for part of the time."""
-    if "lost_contact_share" not in result:
+    if "contact_loss_fraction" not in result:
         return None
-    lost = result["lost_contact_share"].values
+    lost = result["contact_loss_fraction"].values
     known = np.isfinite(lost)
     return float(np.mean(lost[known] > 0)) if known.any() else None
 
@@ -251,13 +251,13 @@ def _sobol_table(told: dict[str, Any], unit: str) -> list[FindingTable]:
     return [FindingTable(title="Which to measure better", heads=heads, rows=rows)] if rows else []
 
 
-def _doubts(told: dict[str, Any]) -> list[str]:
-    doubts = []
+def _caveats(told: dict[str, Any]) -> list[str]:
+    caveats = []
     if not told.get("converged", True):
-        doubts.append(_verdict(told))
+        caveats.append(_verdict(told))
     if "identified" in told and not told["identified"]["settled"]:
-        doubts.append(_agreement(told["identified"]))
-    return doubts
+        caveats.append(_agreement(told["identified"]))
+    return caveats
 
 
 def _spread_rows(told: dict[str, Any]) -> dict[str, dict[str, float]]:
@@ -321,7 +321,11 @@ def _status_lines(told: dict[str, Any]) -> list[str]:
 
 
 def _cut(law: dict[str, Any]) -> str:
-    return f"; {law['cut_share']:.1%} of it is impossible and cut off" if law["cut_share"] > _NOTABLE else ""
+    return (
+        f"; {law['truncated_fraction']:.1%} of it is impossible and cut off"
+        if law["truncated_fraction"] > _NOTABLE
+        else ""
+    )
 
 
 def _identified_rows(told: dict[str, Any]) -> list[tuple[str, str]]:

@@ -27,7 +27,7 @@ from sonolube.contact.rough import (
     contact_count,
     decay_length,
     elastic_area,
-    elastic_load_share,
+    elastic_load_fraction,
     normal_force,
     normal_stiffness,
     plastic_area,
@@ -36,7 +36,7 @@ from sonolube.contact.rough import (
     separation,
     separation_range,
 )
-from sonolube.contact.validity import contact_doubts, exponential_window
+from sonolube.contact.validity import contact_caveats, exponential_window
 
 __all__ = [
     "ASPERITY_LAWS",
@@ -57,13 +57,13 @@ __all__ = [
     "asperity_area",
     "asperity_force",
     "axial_stiffness",
+    "contact_caveats",
     "contact_count",
-    "contact_doubts",
     "contact_pair",
     "critical_interference",
     "decay_length",
     "elastic_area",
-    "elastic_load_share",
+    "elastic_load_fraction",
     "exponential_window",
     "harmonic_motion",
     "height_density",

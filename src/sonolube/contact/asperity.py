@@ -99,7 +99,7 @@ def critical_interference(law: AsperityLaw, pair: ContactPair, *, summit_radius:
     .. [1] D 3.1
     """
     require_positive(summit_radius=summit_radius)
-    strain = math.pi * law.yield_pressure(pair) / (2 * pair.combined_modulus)
+    strain = math.pi * law.yield_pressure(pair) / (2 * pair.effective_modulus)
     return strain * strain * summit_radius
 
 
@@ -126,7 +126,7 @@ def asperity_force(law: AsperityLaw, pair: ContactPair, *, summit_radius: float,
     """
     w = require_non_negative(interference=interference)
     ratio = w / critical_interference(law, pair, summit_radius=summit_radius)
-    hertz = 4 / 3 * pair.combined_modulus * math.sqrt(summit_radius) * w**1.5
+    hertz = 4 / 3 * pair.effective_modulus * math.sqrt(summit_radius) * w**1.5
     return hertz * law.force_ratio(pair, ratio)
 
 
@@ -320,7 +320,7 @@ class JacksonGreen:
     def force_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
         """Return the force over that of an elastic asperity. []"""
         C = self._pressure_coefficient(pair)
-        yield_strain = pair.yield_strength / pair.combined_modulus
+        yield_strain = pair.yield_strength / pair.effective_modulus
 
         def yielded(r: Floats) -> Floats:
             # contact radius over summit radius, and hardness over Y0
@@ -340,7 +340,7 @@ class JacksonGreen:
         )
 
     def _area_growth(self, pair: ContactPair, r: Floats) -> Floats:
-        yield_strain = pair.yield_strength / pair.combined_modulus
+        yield_strain = pair.yield_strength / pair.effective_modulus
         if yield_strain > 0.05:
             raise OutsideRange(
                 f"the law of Jackson and Green holds for yield strengths up to 0.05 E*, got {yield_strain:.3g} E*: "

@@ -99,8 +99,8 @@ class AsperitySums:
     force: SumCurve
     area: SumCurve
     count: SumCurve
-    elastic_load_share: SumCurve
-    elastic_area_share: SumCurve
+    elastic_load_fraction: SumCurve
+    elastic_area_fraction: SumCurve
 
 
 def asperity_sums(
@@ -146,15 +146,15 @@ def asperity_sums(
         h = heights.spread * np.arange(TABLE_RANGE[0], TABLE_RANGE[1] + TABLE_STEP / 2, TABLE_STEP)
         curves = [SplineCurve(h, column) for column in _log_sums(heights, h, w, per_height).T]
         lowest, highest = float(h[0]), float(h[-1])
-    total_force, total_area, count, load_share, area_share = curves
+    total_force, total_area, count, load_fraction, area_fraction = curves
     return AsperitySums(
         lowest=lowest,
         highest=highest,
         force=total_force,
         area=total_area,
         count=count,
-        elastic_load_share=load_share,
-        elastic_area_share=area_share,
+        elastic_load_fraction=load_fraction,
+        elastic_area_fraction=area_fraction,
     )
 
 

@@ -37,7 +37,7 @@ def tangential_stiffness(contact: RoughContact, *, separation: ArrayLike) -> Flo
     .. [1] D 3.9
     """
     d = require_positive(separation=separation)
-    return contact.pair.combined_modulus * np.square(real_contact_area(contact, separation=d)) / d**3  # D 3.9
+    return contact.pair.effective_modulus * np.square(real_contact_area(contact, separation=d)) / d**3  # D 3.9
 
 
 def axial_stiffness(contact: RoughContact, *, separation: ArrayLike) -> Floats:
@@ -65,7 +65,7 @@ def axial_stiffness(contact: RoughContact, *, separation: ArrayLike) -> Floats:
     .. [1] D 3.43, which prints E* d/A_r, no stiffness.
     """
     d = require_positive(separation=separation)
-    return contact.pair.combined_modulus * real_contact_area(contact, separation=d) / d
+    return contact.pair.effective_modulus * real_contact_area(contact, separation=d) / d
 
 
 def mindlin_stiffness(contact: RoughContact, *, separation: ArrayLike) -> Floats:

@@ -18,7 +18,7 @@ class SphereOnFlat:
     ----------
     tip_radius : float
         Radius of the sphere. [m]
-    combined_modulus : float
+    effective_modulus : float
         1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2, as `ContactPair` has it. [Pa]
 
     Notes
@@ -31,10 +31,10 @@ class SphereOnFlat:
     """
 
     tip_radius: float
-    combined_modulus: float
+    effective_modulus: float
 
     def __post_init__(self) -> None:
-        require_positive(tip_radius=self.tip_radius, combined_modulus=self.combined_modulus)
+        require_positive(tip_radius=self.tip_radius, effective_modulus=self.effective_modulus)
 
 
 def contact_radius(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Floats:
@@ -56,7 +56,7 @@ def contact_radius(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Floats:
         If a load is negative or not finite.
     """
     load = require_non_negative(normal_load=normal_load)
-    return np.cbrt(3 * load * sphere.tip_radius / (4 * sphere.combined_modulus))  # Johnson 4.22
+    return np.cbrt(3 * load * sphere.tip_radius / (4 * sphere.effective_modulus))  # Johnson 4.22
 
 
 def approach(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Floats:
@@ -104,7 +104,7 @@ def peak_pressure(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Floats:
     more than any elastic sphere gives on its own contact circle, so the nominal area there is larger than that circle.
     """
     load = require_non_negative(normal_load=normal_load)
-    R, E = sphere.tip_radius, sphere.combined_modulus
+    R, E = sphere.tip_radius, sphere.effective_modulus
     return np.cbrt(6 * load * E**2 / (np.pi**3 * R**2))  # Johnson 4.24
 
 
@@ -147,7 +147,7 @@ def hertz_stiffness(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Floats:
     InvalidInput
         If a load is negative or not finite.
     """
-    return 2 * sphere.combined_modulus * contact_radius(sphere, normal_load=normal_load)
+    return 2 * sphere.effective_modulus * contact_radius(sphere, normal_load=normal_load)
 
 
 def axial_stresses(
@@ -267,11 +267,13 @@ def load_at_first_yield(sphere: SphereOnFlat, *, yield_strength: ArrayLike, pois
     Y = require_positive(yield_strength=yield_strength)
     largest, _ = largest_axial_shear(poisson_ratio=poisson_ratio)
     p0: Floats = Y / (2 * largest)
-    R, E = sphere.tip_radius, sphere.combined_modulus
+    R, E = sphere.tip_radius, sphere.effective_modulus
     return np.pi**3 * R**2 * p0**3 / (6 * E**2)  # Johnson 6.9
 
 
-def tip_radius_for_pressure(*, mean_pressure: ArrayLike, normal_load: ArrayLike, combined_modulus: ArrayLike) -> Floats:
+def tip_radius_for_pressure(
+    *, mean_pressure: ArrayLike, normal_load: ArrayLike, effective_modulus: ArrayLike
+) -> Floats:
     """Return the tip radius that gives this mean pressure under this load. [m]
 
     Parameters
@@ -280,7 +282,7 @@ def tip_radius_for_pressure(*, mean_pressure: ArrayLike, normal_load: ArrayLike,
         Load over the area of the contact circle, the pressure called nominal. [Pa]
     normal_load : array_like, broadcastable to `mean_pressure`
         Force pressing the bodies together. [N]
-    combined_modulus : array_like, broadcastable to `mean_pressure`
+    effective_modulus : array_like, broadcastable to `mean_pressure`
         Combined modulus of both bodies. [Pa]
 
     Returns
@@ -300,7 +302,7 @@ def tip_radius_for_pressure(*, mean_pressure: ArrayLike, normal_load: ArrayLike,
     load = require_positive(normal_load=normal_load)
     area = load / require_positive(mean_pressure=mean_pressure)
     a: Floats = np.sqrt(area / np.pi)
-    return 4 * require_positive(combined_modulus=combined_modulus) * a**3 / (3 * load)  # Johnson 4.22
+    return 4 * require_positive(effective_modulus=effective_modulus) * a**3 / (3 * load)  # Johnson 4.22
 
 
 def nominal_area_from_groove(*, groove_width: ArrayLike) -> Floats:

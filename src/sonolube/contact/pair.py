@@ -37,7 +37,7 @@ class ContactPair:
 
     Parameters
     ----------
-    combined_modulus : float
+    effective_modulus : float
         1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2. [Pa]
     poisson_ratio : float
         Poisson's ratio of the softer body. []
@@ -51,13 +51,13 @@ class ContactPair:
     .. [1] K. L. Johnson, Contact Mechanics (1985), sections 4.2 and 7.2. doi:10.1017/CBO9781139171731
     """
 
-    combined_modulus: float
+    effective_modulus: float
     poisson_ratio: float
     yield_strength: float
     mindlin_ratio: float
 
     def __post_init__(self) -> None:
-        require_positive(combined_modulus=self.combined_modulus, mindlin_ratio=self.mindlin_ratio)
+        require_positive(effective_modulus=self.effective_modulus, mindlin_ratio=self.mindlin_ratio)
         require_within(0.0, 0.5, poisson_ratio=self.poisson_ratio)
         if not self.yield_strength > 0:
             raise InvalidInput(f"yield_strength must be positive, got {self.yield_strength!r} Pa")
@@ -99,7 +99,7 @@ def contact_pair(*, softer: ElasticBody, harder: ElasticBody, yield_strength: fl
     combined = 1 / sum((1 - body.poisson_ratio**2) / body.youngs_modulus for body in (softer, harder))
     combined_shear = 1 / sum((2 - body.poisson_ratio) / body.shear_modulus for body in (softer, harder))
     return ContactPair(
-        combined_modulus=combined,
+        effective_modulus=combined,
         poisson_ratio=softer.poisson_ratio,
         yield_strength=yield_strength,
         mindlin_ratio=4 * combined_shear / combined,

@@ -29,11 +29,11 @@ class PerssonContact:
     ----------
     spectrum : RadialSpectrum
         Of the heights of both surfaces together; their densities add up.
-    combined_modulus : float
+    effective_modulus : float
         Combined modulus of both bodies. [Pa]
     nominal_area : float
         Area over which the bodies face each other. [m2]
-    energy_share : float
+    energy_fraction : float
         Elastic energy of the part in contact over that of full contact there, above 0 and up to 1. []
 
     Raises
@@ -54,16 +54,18 @@ class PerssonContact:
     """
 
     spectrum: RadialSpectrum
-    combined_modulus: float
+    effective_modulus: float
     nominal_area: float
-    energy_share: float = ENERGY_SHARE
+    energy_fraction: float = ENERGY_SHARE
     _bands: tuple[Floats, Floats] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         require_positive(
-            combined_modulus=self.combined_modulus, nominal_area=self.nominal_area, energy_share=self.energy_share
+            effective_modulus=self.effective_modulus,
+            nominal_area=self.nominal_area,
+            energy_fraction=self.energy_fraction,
         )
-        require_within(0.0, 1.0, energy_share=self.energy_share)
+        require_within(0.0, 1.0, energy_fraction=self.energy_fraction)
         k, density = self.spectrum.wavenumber, self.spectrum.areal_spectral_density
         if k.size < 2 or not (k[0] > 0 and np.all(np.diff(k) > 0)):
             raise InvalidInput(f"a spectrum needs two or more wavenumbers above 0 in rising order, got {k.size}")
@@ -78,14 +80,14 @@ class PerssonContact:
         return math.sqrt(2 / inverse_width[-1] ** 2)
 
 
-def persson_area_share(*, nominal_pressure: ArrayLike, combined_modulus: ArrayLike, rms_slope: ArrayLike) -> Floats:
+def persson_area_fraction(*, nominal_pressure: ArrayLike, effective_modulus: ArrayLike, rms_slope: ArrayLike) -> Floats:
     """Return the real area over the nominal one. []
 
     Parameters
     ----------
     nominal_pressure : array_like, any shape
         Load over the nominal area. [Pa]
-    combined_modulus : array_like, broadcastable to `nominal_pressure`
+    effective_modulus : array_like, broadcastable to `nominal_pressure`
         Combined modulus of both bodies. [Pa]
     rms_slope : array_like, broadcastable to `nominal_pressure`
         Root mean square of the gradient: sqrt(2 m2) for an isotropic surface. []
@@ -105,7 +107,7 @@ def persson_area_share(*, nominal_pressure: ArrayLike, combined_modulus: ArrayLi
     .. [1] B. N. J. Persson, J. Chem. Phys. 115, 3840 (2001). doi:10.1063/1.1388626
     """
     p = require_positive(nominal_pressure=nominal_pressure)
-    E = require_positive(combined_modulus=combined_modulus)
+    E = require_positive(effective_modulus=effective_modulus)
     return np.asarray(erf(math.sqrt(2) * p / (E * require_positive(rms_slope=rms_slope))))
 
 
@@ -128,8 +130,8 @@ def persson_area(contact: PerssonContact, *, normal_load: ArrayLike) -> Floats:
         If a load is not positive and finite.
     """
     p = require_positive(normal_load=normal_load) / contact.nominal_area
-    share = persson_area_share(
-        nominal_pressure=p, combined_modulus=contact.combined_modulus, rms_slope=contact.rms_slope
+    share = persson_area_fraction(
+        nominal_pressure=p, effective_modulus=contact.effective_modulus, rms_slope=contact.rms_slope
     )
     return contact.nominal_area * share
 
@@ -163,8 +165,8 @@ def persson_separation(contact: PerssonContact, *, normal_load: ArrayLike) -> Fl
     """
     load = require_positive(normal_load=normal_load)
     lengths, inverse_width = contact._bands
-    s = np.multiply.outer(load / contact.nominal_area / contact.combined_modulus, inverse_width)
-    gamma = contact.energy_share
+    s = np.multiply.outer(load / contact.nominal_area / contact.effective_modulus, inverse_width)
+    gamma = contact.energy_fraction
     # integral over the pressure from p to infinity, of (gamma + 3 (1 - gamma) erf^2) exp(-s^2)/s
     return np.asarray((gamma * exp1(s**2) / 2 + 3 * (1 - gamma) * _crowded()(np.minimum(s, _ROOTS[-1]))) @ lengths)
 
@@ -192,8 +194,8 @@ def persson_stiffness(contact: PerssonContact, *, normal_load: ArrayLike) -> Flo
     """
     load = require_positive(normal_load=normal_load)
     lengths, inverse_width = contact._bands
-    s = np.multiply.outer(load / contact.nominal_area / contact.combined_modulus, inverse_width)
-    gamma = contact.energy_share
+    s = np.multiply.outer(load / contact.nominal_area / contact.effective_modulus, inverse_width)
+    gamma = contact.energy_fraction
     decay = ((gamma + 3 * (1 - gamma) * erf(s) ** 2) * np.exp(-(s**2))) @ lengths  # -du/d ln p
     if not np.all(decay > 0):
         raise OutsideRange(f"normal_load {load.max():.4g} N closes the gap altogether: lower it")
@@ -221,7 +223,7 @@ def persson_load(contact: PerssonContact, *, separation: ArrayLike) -> Floats:
         If a gap is so wide that its load underflows, or so narrow that contact is full.
     """
     gaps = require_positive(separation=separation)
-    unit = contact.nominal_area * contact.combined_modulus * contact.rms_slope
+    unit = contact.nominal_area * contact.effective_modulus * contact.rms_slope
     low, high = math.log(unit) - 300.0, math.log(4 * unit)
 
     def surplus(log_load: float, gap: float) -> float:

@@ -38,7 +38,7 @@ class RoughContact:
     Notes
     -----
     Asperities are spheres of one radius that do not feel each other: real area far below the nominal one. Separations
-    run from the mean of the summit heights. `contact_doubts` says what speaks against a contact.
+    run from the mean of the summit heights. `contact_caveats` says what speaks against a contact.
 
     References
     ----------
@@ -78,7 +78,7 @@ def separation(contact: RoughContact, *, normal_load: ArrayLike) -> Floats:
 
     Notes
     -----
-    Not positive where the load is so high that the mean planes meet: see `contact_doubts`.
+    Not positive where the load is so high that the mean planes meet: see `contact_caveats`.
 
     References
     ----------
@@ -188,7 +188,7 @@ def elastic_area(contact: RoughContact, *, separation: ArrayLike) -> Floats:
     .. [1] D 3.7, with exp(-lambda w_c/Rq) where exp(+lambda w_c/Rq) is printed.
     """
     sums, h = _sums_and_separation(contact, separation)
-    return sums.area.value(h) * sums.elastic_area_share.value(h)
+    return sums.area.value(h) * sums.elastic_area_fraction.value(h)
 
 
 def plastic_area(contact: RoughContact, *, separation: ArrayLike) -> Floats:
@@ -216,10 +216,10 @@ def plastic_area(contact: RoughContact, *, separation: ArrayLike) -> Floats:
     .. [1] D 3.8
     """
     sums, h = _sums_and_separation(contact, separation)
-    return sums.area.value(h) * np.maximum(1 - sums.elastic_area_share.value(h), 0.0)
+    return sums.area.value(h) * np.maximum(1 - sums.elastic_area_fraction.value(h), 0.0)
 
 
-def elastic_load_share(contact: RoughContact, *, separation: ArrayLike) -> Floats:
+def elastic_load_fraction(contact: RoughContact, *, separation: ArrayLike) -> Floats:
     """Return the share of the normal force on asperities that have not begun to yield. []
 
     Parameters
@@ -244,7 +244,7 @@ def elastic_load_share(contact: RoughContact, *, separation: ArrayLike) -> Float
     .. [1] D 3.4 over 3.3
     """
     sums, h = _sums_and_separation(contact, separation)
-    return np.minimum(sums.elastic_load_share.value(h), 1.0)
+    return np.minimum(sums.elastic_load_fraction.value(h), 1.0)
 
 
 def contact_count(contact: RoughContact, *, separation: ArrayLike) -> Floats:

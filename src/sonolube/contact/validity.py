@@ -74,7 +74,7 @@ def exponential_window(contact: RoughContact, *, factor: float = 2.0) -> tuple[f
     return lowest, highest
 
 
-def contact_doubts(contact: RoughContact, *, separation: ArrayLike) -> tuple[str, ...]:
+def contact_caveats(contact: RoughContact, *, separation: ArrayLike) -> tuple[str, ...]:
     """Return what speaks against the contact at these separations, one line each, with advice.
 
     Parameters
@@ -97,17 +97,17 @@ def contact_doubts(contact: RoughContact, *, separation: ArrayLike) -> tuple[str
     """
     d = require_finite(separation=separation)
     lowest, highest = float(d.min()), float(d.max())
-    doubts = (
-        _doubt_of_roughness(contact),
-        _doubt_of_separation(lowest),
-        _doubt_of_exponential(contact, lowest, highest),
-        _doubt_of_area(contact, lowest),
-        _doubt_of_count(contact, highest),
+    caveats = (
+        _roughness_caveat(contact),
+        _separation_caveat(lowest),
+        _exponential_caveat(contact, lowest, highest),
+        _area_caveat(contact, lowest),
+        _count_caveat(contact, highest),
     )
-    return tuple(doubt for doubt in doubts if doubt)
+    return tuple(caveat for caveat in caveats if caveat)
 
 
-def _doubt_of_roughness(contact: RoughContact) -> str:
+def _roughness_caveat(contact: RoughContact) -> str:
     beta = contact.roughness.roughness_parameter
     low, high = USUAL_ROUGHNESS_PARAMETERS
     if low <= beta <= high:
@@ -118,7 +118,7 @@ def _doubt_of_roughness(contact: RoughContact) -> str:
     )
 
 
-def _doubt_of_separation(lowest: float) -> str:
+def _separation_caveat(lowest: float) -> str:
     if lowest > 0:
         return ""
     return (
@@ -127,7 +127,7 @@ def _doubt_of_separation(lowest: float) -> str:
     )
 
 
-def _doubt_of_exponential(contact: RoughContact, lowest: float, highest: float) -> str:
+def _exponential_caveat(contact: RoughContact, lowest: float, highest: float) -> str:
     if not isinstance(contact.heights, ExponentialHeights):
         return ""
     window = exponential_window(contact)
@@ -146,7 +146,7 @@ def _doubt_of_exponential(contact: RoughContact, lowest: float, highest: float) 
     )
 
 
-def _doubt_of_area(contact: RoughContact, lowest: float) -> str:
+def _area_caveat(contact: RoughContact, lowest: float) -> str:
     share = float(real_contact_area(contact, separation=lowest)) / contact.nominal_area
     if share <= MOST_REAL_AREA:
         return ""
@@ -156,7 +156,7 @@ def _doubt_of_area(contact: RoughContact, lowest: float) -> str:
     )
 
 
-def _doubt_of_count(contact: RoughContact, highest: float) -> str:
+def _count_caveat(contact: RoughContact, highest: float) -> str:
     count = float(contact_count(contact, separation=highest))
     if count >= FEWEST_SUMMITS:
         return ""

@@ -43,7 +43,7 @@ class Attractors:
     exponent : ndarray, shape (...)
         Growth exponent of a disturbance per period of the drive, negative where it dies out, to within 0.005; not a
         number where diverged.
-    lost_contact_share : ndarray, shape (...)
+    contact_loss_fraction : ndarray, shape (...)
         Share of the time in which the contact force is below 0.01 F_N. []
     beat_frequency : ndarray, shape (...)
         Frequency of the slow motion of the contact seen once a period, zero where there is none. [Hz]
@@ -58,7 +58,7 @@ class Attractors:
     kind: NDArray[np.str_]
     order: NDArray[np.intp]
     exponent: Floats
-    lost_contact_share: Floats
+    contact_loss_fraction: Floats
     beat_frequency: Floats
     beat_amplitude: Floats
     description: NDArray[np.str_]
@@ -200,12 +200,12 @@ def describe(
         ["diverged", "periodic", "subharmonic", "chaotic", "settling"],
         "beating",
     )
-    open_share = _lost_contact_share(gap_law, watched.last_periods, load, f * steps_per_period)
+    open_share = _contact_loss_fraction(gap_law, watched.last_periods, load, f * steps_per_period)
     found = Attractors(
         kind=kind,
         order=np.where(diverged, 0, repeats.order),
         exponent=np.where(diverged, np.nan, exponent),
-        lost_contact_share=np.where(diverged, np.nan, open_share),
+        contact_loss_fraction=np.where(diverged, np.nan, open_share),
         beat_frequency=slow.beat_frequency,
         beat_amplitude=slow.beat_amplitude,
         description=np.empty(kind.shape, dtype=np.str_),
@@ -341,7 +341,7 @@ def _exponent(
     return np.asarray(np.mean(growth[rounds // 2 :], axis=0) / _ROUND)
 
 
-def _lost_contact_share(gap_law: GapLaw, motion: ContactMotion, load: Floats, rate: Floats) -> Floats:
+def _contact_loss_fraction(gap_law: GapLaw, motion: ContactMotion, load: Floats, rate: Floats) -> Floats:
     """Look between the steps as well, along the cubics through displacements and velocities at their ends."""
     s = (np.arange(_FINER) / _FINER)[:, np.newaxis]
     x, v = (
@@ -361,7 +361,7 @@ def _descriptions(found: Attractors, advice: NDArray[np.str_]) -> NDArray[np.str
         found.kind,
         found.order,
         found.exponent,
-        found.lost_contact_share,
+        found.contact_loss_fraction,
         found.beat_frequency,
         found.beat_amplitude,
         advice,

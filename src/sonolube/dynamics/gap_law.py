@@ -84,7 +84,7 @@ class HertzGap:
     ----------
     tip_radius : float
         Radius of the sphere. [m]
-    combined_modulus : float
+    effective_modulus : float
         Combined modulus of both bodies. [Pa]
     force_damping : float
         Damping tau in proportion to the force, F_n (1 - tau x'). [s/m]
@@ -93,17 +93,17 @@ class HertzGap:
     kind: ClassVar[int] = 1
 
     tip_radius: float
-    combined_modulus: float
+    effective_modulus: float
     force_damping: float = 0.0
 
     def __post_init__(self) -> None:
-        require_positive(tip_radius=self.tip_radius, combined_modulus=self.combined_modulus)
+        require_positive(tip_radius=self.tip_radius, effective_modulus=self.effective_modulus)
         require_non_negative(force_damping=self.force_damping)
 
     @property
     def coefficient(self) -> float:
         """Force over approach to the power 3/2, in N/m^1.5."""
-        return 4 / 3 * self.combined_modulus * math.sqrt(self.tip_radius)
+        return 4 / 3 * self.effective_modulus * math.sqrt(self.tip_radius)
 
     def force(self, displacement: Floats, normal_load: Floats | float) -> Floats:
         """Return the elastic contact force. [N]"""

@@ -173,7 +173,7 @@ def _by_law(gap_law: GapLaw, balance: Balance) -> dict[str, Floats]:
         return found | {
             "normal_load": share * stiffness * 2 / 3 * rest / load,
             "tip_radius": by_coefficient * 0.5 * coefficient / gap_law.tip_radius,
-            "combined_modulus": by_coefficient * coefficient / gap_law.combined_modulus,
+            "effective_modulus": by_coefficient * coefficient / gap_law.effective_modulus,
         }
     if isinstance(gap_law, TabulatedGap):
         at_rest = gap_law.stiffness(np.zeros(()), load)
@@ -210,7 +210,7 @@ def _by_static_structure(structure: Structure, balance: Balance, change: Structu
     """Return the derivative of the static equation, S_0 (mean - free mean) = mean force - load."""
     own, mean = balance.equations, float(balance.unknowns[0])
     per_force = np.linalg.solve(structure.stiffness_matrix, structure.contact_vector)
-    rest = per_force * own.static_stiffness * (mean - own.free_mean) + np.linalg.solve(
+    rest = per_force * own.static_stiffness * (mean - own.static_displacement) + np.linalg.solve(
         structure.stiffness_matrix, structure.drive_vector * own.voltage_offset
     )
     moved = -float(per_force @ stiffness @ rest)
@@ -218,7 +218,7 @@ def _by_static_structure(structure: Structure, balance: Balance, change: Structu
         moved += float(per_force @ change.drive_vector) * own.voltage_offset
     if change.contact_vector is not None:
         moved += float(change.contact_vector @ rest)
-        moved += float(per_force @ change.contact_vector) * own.static_stiffness * (mean - own.free_mean)
+        moved += float(per_force @ change.contact_vector) * own.static_stiffness * (mean - own.static_displacement)
     return -own.static_stiffness * moved
 
 

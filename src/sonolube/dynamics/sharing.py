@@ -31,7 +31,7 @@ class Asked(NamedTuple):
     omega: Floats
     load: Floats
     voltage: Complexes
-    free_mean: Floats
+    static_displacement: Floats
     least: int
     falling: bool
     stability: bool
@@ -73,7 +73,7 @@ def shared(asked: Asked, speeds: Floats, *, workers: int, backend: Backend) -> S
         asked.omega,
         asked.load,
         asked.voltage,
-        asked.free_mean,
+        asked.static_displacement,
         speeds=speeds,
         least=asked.least,
         falling=asked.falling,
@@ -139,7 +139,7 @@ def _on_cpu(asked: Asked, chosen: NDArray[np.intp], workers: int) -> Solutions:
             asked.omega[points],
             asked.load[points],
             asked.voltage[points],
-            asked.free_mean[points],
+            asked.static_displacement[points],
             least=asked.least,
             falling=asked.falling,
             stability=asked.stability,

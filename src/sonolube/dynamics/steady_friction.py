@@ -17,7 +17,7 @@ from sonolube.dynamics.friction_average.elliptic_quadrature import (
 from sonolube.dynamics.friction_average.kernel import precision, scratch, sliding_means
 from sonolube.dynamics.friction_average.tabulated import sliding_means_by_cells
 from sonolube.dynamics.gap_law import GapLaw, length_of_change
-from sonolube.dynamics.harmonic_balance.contact_kernel import HERTZ, LINEAR, law_of, resting_place
+from sonolube.dynamics.harmonic_balance.contact_kernel import HERTZ, LINEAR, equilibrium_displacement, law_of
 from sonolube.dynamics.harmonic_balance.solver import MOST_HARMONICS
 from sonolube.dynamics.sharing import in_threads
 from sonolube.dynamics.steady_state import Status, SteadyStates, drive_harmonics, solved
@@ -242,7 +242,7 @@ def _means(states: SteadyStates, speeds: Floats, workers: int, wanted: NDArray[n
     harmonics = np.ascontiguousarray(states.harmonics).reshape(omega.size, -1)
     parts, count = harmonics.view(np.float64), states.harmonic_count.reshape(-1)
     load, mean = states.normal_load.reshape(-1), states.mean_displacement.reshape(-1)
-    given = np.stack([*turned_circle(turns), omega, load, mean, resting_place(states.gap_law, load)], axis=1)
+    given = np.stack([*turned_circle(turns), omega, load, mean, equilibrium_displacement(states.gap_law, load)], axis=1)
     (compiled, law), twice = law_of(states.gap_law), np.isfinite(turns[:, 0])
     means = np.zeros((2, omega.size, speeds.size))
     ratio = speeds.min() / (omega * np.abs(harmonics[:, 0]) + 1e-300)

@@ -30,7 +30,7 @@ class Status(IntEnum):
 
     PERIODIC = 0
     UNSTABLE = 1
-    SEVERAL = 2
+    MULTISTABLE = 2
     NOT_CONVERGED = 3
 
 
@@ -67,7 +67,7 @@ class SteadyStates:
         Highest contact force. [N]
     lowest_normal_force : ndarray, shape (...)
         Lowest contact force. [N]
-    lost_contact_share : ndarray, shape (...)
+    contact_loss_fraction : ndarray, shape (...)
         Share of the period in which the contact force is below 0.01 F_N. []
     current_harmonics : ndarray of complex, shape (..., K)
         Harmonics of the current into the stack, in A.
@@ -79,7 +79,7 @@ class SteadyStates:
         Phases of the highest and the lowest displacement; NaN for a motion that turns more than twice in a period.
     harmonic_count : ndarray of int, shape (...)
         Harmonics of the contact that the point needed.
-    rival_amplitude : ndarray, shape (...)
+    coexisting_amplitude : ndarray, shape (...)
         Amplitude of another steady state under the same drive; NaN where none was found. [m]
     relative_tolerance : float
         Largest relative error of amplitude and force.
@@ -98,13 +98,13 @@ class SteadyStates:
     mean_normal_force: Floats
     highest_normal_force: Floats
     lowest_normal_force: Floats
-    lost_contact_share: Floats
+    contact_loss_fraction: Floats
     current_harmonics: Complexes
     dissipated_power: Floats
     gap_closed: NDArray[np.bool_]
     turns: Floats
     harmonic_count: NDArray[np.int64]
-    rival_amplitude: Floats
+    coexisting_amplitude: Floats
     relative_tolerance: float
 
     def reason(self, point: int | tuple[int, ...]) -> str:
@@ -125,13 +125,15 @@ class SteadyStates:
                 "unstable: the vibration repeats with the drive, but the smallest disturbance grows;"
                 " march the point in time to see what it does instead"
             )
-        if status is Status.SEVERAL:
-            other, this = (float(values[point]) * 1e6 for values in (self.rival_amplitude, self.vibration_amplitude))
+        if status is Status.MULTISTABLE:
+            other, this = (
+                float(values[point]) * 1e6 for values in (self.coexisting_amplitude, self.vibration_amplitude)
+            )
             return (
-                f"several: another vibration of {other:.4g} um is as possible as this one of {this:.4g} um;"
+                f"multistable: another vibration of {other:.4g} um is as possible as this one of {this:.4g} um;"
                 " which one appears depends on how the voltage got there" + self.hopping(point)
             )
-        if status is Status.NOT_CONVERGED and self.beyond_judgement(point):
+        if status is Status.NOT_CONVERGED and self.stability_undetermined(point):
             return (
                 f"not_converged: {float(self.frequency[point]):.3g} Hz is too slow beside the structure's fastest mode"
                 " for its stability to be judged; raise the frequency, or lump light masses together"
@@ -143,7 +145,7 @@ class SteadyStates:
             )
         return "periodic: the vibration repeats with the drive" + self.hopping(point)
 
-    def beyond_judgement(self, point: int | tuple[int, ...]) -> bool:
+    def stability_undetermined(self, point: int | tuple[int, ...]) -> bool:
         """Return whether one point's drive is too slow beside the fastest mode for its stability to be judged."""
         return bool(too_slow(contact_port(self.structure), 2 * np.pi * self.frequency[point]))
 
@@ -159,7 +161,7 @@ class SteadyStates:
         -------
         str
         """
-        share = float(self.lost_contact_share[point])
+        share = float(self.contact_loss_fraction[point])
         return f"; it hops, without contact for {share:.2%} of the time" if share > 0 else ""
 
 
@@ -320,9 +322,18 @@ def solved(
 
     voltage = np.ascontiguousarray(np.broadcast_to(drive, (*shape, drive.shape[-1]))).reshape(-1, drive.shape[-1])
     omega, loads = 2 * np.pi * flat(f), flat(load)
-    free_mean = port.displacement_per_volt * flat(offset)
+    static_displacement = port.displacement_per_volt * flat(offset)
     points = Asked(
-        port, gap_law, omega, loads, voltage, free_mean, least_harmonics, falling, stability, relative_tolerance
+        port,
+        gap_law,
+        omega,
+        loads,
+        voltage,
+        static_displacement,
+        least_harmonics,
+        falling,
+        stability,
+        relative_tolerance,
     )
     answered = shared(points, np.empty(0) if speeds is None else speeds, workers=workers, backend=backend)
     found = answered.solutions
@@ -342,13 +353,13 @@ def solved(
         mean_normal_force=found.mean_force.reshape(shape),
         highest_normal_force=found.force[:, 0].reshape(shape),
         lowest_normal_force=found.force[:, 1].reshape(shape),
-        lost_contact_share=found.lost.reshape(shape),
+        contact_loss_fraction=found.lost.reshape(shape),
         current_harmonics=current.reshape(*shape, -1),
         dissipated_power=(0.5 * np.sum((voltage * current.conj()).real, axis=1)).reshape(shape),
         gap_closed=closed.reshape(shape),
         turns=found.turns.reshape(*shape, 2),
         harmonic_count=found.count.reshape(shape),
-        rival_amplitude=found.rival_amplitude.reshape(shape),
+        coexisting_amplitude=found.coexisting_amplitude.reshape(shape),
         relative_tolerance=relative_tolerance,
     )
     return Solved(states, answered.means, answered.done)
@@ -356,15 +367,13 @@ def solved(
 
 def _batch(*shapes: tuple[int, ...]) -> tuple[int, ...]:
     """Return the shape of the points that arguments of some shapes make together."""
-    told = ", ".join(map(str, shapes))
+    given = f"load, frequency, voltage, offset and gap{{}} shapes{{}} {', '.join(map(str, shapes))}"
     try:
         shape = np.broadcast_shapes(*shapes)
     except ValueError:
-        raise InvalidInput(f"load, frequency, voltage, offset and gap must have matching shapes, got {told}") from None
+        raise InvalidInput(given.format(" must have matching", ", got")) from None
     if 0 in shape:
-        raise InvalidInput(
-            f"there are no points to compute: load, frequency, voltage, offset and gap have shapes {told}"
-        )
+        raise InvalidInput(f"there are no points to compute: {given.format(' have', '')}")
     return shape
 
 
@@ -385,7 +394,7 @@ def drive_harmonics(amplitude: ArrayLike | None, harmonics: ArrayLike | None) ->
 
 def _status(found: Solutions) -> NDArray[np.int8]:
     status = np.full(found.mean.shape, Status.PERIODIC, dtype=np.int8)
-    status[np.isfinite(found.rival_amplitude)] = Status.SEVERAL
+    status[np.isfinite(found.coexisting_amplitude)] = Status.MULTISTABLE
     status[found.growing] = Status.UNSTABLE
     status[np.isnan(found.mean)] = Status.NOT_CONVERGED
     return status

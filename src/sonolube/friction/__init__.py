@@ -3,7 +3,7 @@
 from sonolube.friction.coulomb import CoulombFriction, coulomb_friction, friction_coefficient
 from sonolube.friction.dahl import DahlFriction, dahl_friction, dahl_friction_history
 from sonolube.friction.driven import DrivenSlide, driven_slide
-from sonolube.friction.elliptical import contact_share, elliptical_traction_ratio
+from sonolube.friction.elliptical import contact_fraction, elliptical_traction_ratio
 from sonolube.friction.forming import (
     ZINC_STRESS_RATIO,
     acoustic_intensity,
@@ -18,7 +18,7 @@ from sonolube.friction.lubrication import (
     MethodCoefficients,
     Regime,
     StribeckCurve,
-    asperity_load_share,
+    asperity_load_fraction,
     best_method,
     hersey_number,
     lubrication_regime,
@@ -30,7 +30,7 @@ from sonolube.friction.models.asperity_stick_slip import mindlin_memory_length, 
 from sonolube.friction.models.asperity_stick_slip_batch import SINE_TOLERANCE, stick_slip_ratios
 from sonolube.friction.models.bristle_with_holder import Holder, coupled
 from sonolube.friction.models.closures import (
-    FRICTION_CLOSURES,
+    FRICTION_MODELS,
     as_published,
     kinematic,
     load_balanced,
@@ -58,7 +58,7 @@ from sonolube.friction.vibrated_dahl import dahl_under_vibration
 from sonolube.friction.vibrated_lugre import lugre_under_vibration
 
 __all__ = [
-    "FRICTION_CLOSURES",
+    "FRICTION_MODELS",
     "SINE_TOLERANCE",
     "ZINC_STRESS_RATIO",
     "BoundaryLubricant",
@@ -80,10 +80,10 @@ __all__ = [
     "approximate_transverse_ratio",
     "as_published",
     "as_published_ratio",
-    "asperity_load_share",
+    "asperity_load_fraction",
     "balanced_approach",
     "best_method",
-    "contact_share",
+    "contact_fraction",
     "coulomb_friction",
     "coupled",
     "critical_speed",

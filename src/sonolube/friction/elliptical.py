@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
 
 
-def contact_share(*, normal_load: ArrayLike, normal_stiffness: ArrayLike, normal_amplitude: ArrayLike) -> Floats:
+def contact_fraction(*, normal_load: ArrayLike, normal_stiffness: ArrayLike, normal_amplitude: ArrayLike) -> Floats:
     """Return the share of the period in which a vibrating surface touches a slider that keeps its height. []
 
     Parameters

@@ -202,7 +202,7 @@ class MethodCoefficients(NamedTuple):
     combined: Floats
 
 
-def asperity_load_share(lubricant: BoundaryLubricant, *, nominal_pressure: ArrayLike) -> Floats:
+def asperity_load_fraction(lubricant: BoundaryLubricant, *, nominal_pressure: ArrayLike) -> Floats:
     """Return the share of the load that asperities carry through a lubricant. []
 
     Parameters
@@ -258,7 +258,7 @@ def method_coefficients(
     """
     mu = require_positive(friction_coefficient=friction_coefficient)
     ratio = require_non_negative(friction_ratio=friction_ratio)
-    share = asperity_load_share(lubricant, nominal_pressure=nominal_pressure)
+    share = asperity_load_fraction(lubricant, nominal_pressure=nominal_pressure)
     film = (1 - share) * lubricant.film_coefficient
     dry, ultrasonic, alone, both = np.broadcast_arrays(mu, ratio * mu, share * mu + film, share * ratio * mu + film)
     return MethodCoefficients(dry, ultrasonic, alone, both)

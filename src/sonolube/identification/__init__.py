@@ -1,4 +1,4 @@
-"""Identification: the parameters of a model from what is known of the system outside, doubts and gaps told."""
+"""Identification: the parameters of a model from what is known of the system outside, caveats and gaps told."""
 
 from sonolube.identification.compatibility import Compatibility, compatibility
 from sonolube.identification.fact import Fact, Observe, Relation, misses

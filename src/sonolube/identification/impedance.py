@@ -54,7 +54,7 @@ class CircuitFit:
         Samples over independent samples among the residuals, for which the intervals are widened.
     confidence_level : float
         Of the intervals. []
-    doubts : tuple of str
+    caveats : tuple of str
         What speaks against the fit, one line each.
     """
 
@@ -66,7 +66,7 @@ class CircuitFit:
     information_criteria: tuple[float, ...]
     residual_correlation: float
     confidence_level: float
-    doubts: tuple[str, ...]
+    caveats: tuple[str, ...]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -289,19 +289,19 @@ def _record(
         information_criteria=tuple(each.information_criterion for each in fits),
         residual_correlation=correlation,
         confidence_level=confidence_level,
-        doubts=_doubts(fit, len(circuit.branches), wanted, correlation),
+        caveats=_caveats(fit, len(circuit.branches), wanted, correlation),
     )
 
 
-def _doubts(fit: LogarithmicFit, branches: int, wanted: int | None, correlation: float) -> tuple[str, ...]:
-    doubts = []
+def _caveats(fit: LogarithmicFit, branches: int, wanted: int | None, correlation: float) -> tuple[str, ...]:
+    caveats = []
     if wanted is not None and branches < wanted:
-        doubts.append(f"{wanted} branches were asked for; only {branches} stand up: sweep wider or with more points")
+        caveats.append(f"{wanted} branches were asked for; only {branches} stand up: sweep wider or with more points")
     if not fit.converged:
-        doubts.append("the search did not end by itself; take fewer branches")
+        caveats.append("the search did not end by itself; take fewer branches")
     if correlation > _CORRELATED:
-        doubts.append(
+        caveats.append(
             f"residuals resemble their neighbours over {correlation:.0f} points: the circuit leaves something out,"
             " such as losses of the dielectric or weaker modes"
         )
-    return tuple(doubts)
+    return tuple(caveats)

@@ -41,7 +41,7 @@ class StackFit:
         Samples over independent samples among the residuals, for which the intervals are widened.
     confidence_level : float
         Of the intervals. []
-    doubts : tuple of str
+    caveats : tuple of str
         What speaks against the fit, one line each.
     """
 
@@ -52,7 +52,7 @@ class StackFit:
     residual_rms: float
     residual_correlation: float
     confidence_level: float
-    doubts: tuple[str, ...]
+    caveats: tuple[str, ...]
 
 
 def fit_stack(
@@ -127,7 +127,7 @@ def fit_stack(
         residual_rms=float(np.sqrt(fit.sum_of_squares / spectrum.frequency.size)),
         residual_correlation=correlation,
         confidence_level=confidence_level,
-        doubts=_doubts(fit.converged, correlation, known["stack_stiffness"]),
+        caveats=_caveats(fit.converged, correlation, known["stack_stiffness"]),
     )
 
 
@@ -199,14 +199,14 @@ def _quantities(stack: PiezoStack) -> dict[str, float]:
     }
 
 
-def _doubts(converged: bool, correlation: float, stiffness: Interval) -> tuple[str, ...]:
-    doubts = []
+def _caveats(converged: bool, correlation: float, stiffness: Interval) -> tuple[str, ...]:
+    caveats = []
     if not converged:
-        doubts.append("the search did not end by itself; does the sweep hold a resonance of the stack?")
+        caveats.append("the search did not end by itself; does the sweep hold a resonance of the stack?")
     if not stiffness.upper < 4 * stiffness.lower:
-        doubts.append("the stiffness is hardly known; sweep over a resonance in which the stack takes part")
+        caveats.append("the stiffness is hardly known; sweep over a resonance in which the stack takes part")
     if correlation > _CORRELATED:
-        doubts.append(
+        caveats.append(
             f"residuals resemble their neighbours over {correlation:.0f} points: the structure leaves something out"
         )
-    return tuple(doubts)
+    return tuple(caveats)

@@ -51,7 +51,7 @@ class TemperatureResponse:
         Standard deviation of the samples about the curve. [K]
     confidence_level : float
         Of the intervals. []
-    doubts : tuple of str
+    caveats : tuple of str
         What speaks against the curve, one line each.
     """
 
@@ -61,7 +61,7 @@ class TemperatureResponse:
     temperature_changes: tuple[Interval, ...]
     temperature_deviation: float
     confidence_level: float
-    doubts: tuple[str, ...]
+    caveats: tuple[str, ...]
 
 
 def temperature_rise(
@@ -299,11 +299,11 @@ def _response(t: Floats, value: Floats, logarithms: Floats, confidence_level: fl
         temperature_changes=tuple(linear(-place) for place in places[1:]),
         temperature_deviation=float(np.sqrt(variance)),
         confidence_level=confidence_level,
-        doubts=_doubts(float(taus[-1]), float(t[-1])),
+        caveats=_caveats(float(taus[-1]), float(t[-1])),
     )
 
 
-def _doubts(longest: float, duration: float) -> tuple[str, ...]:
+def _caveats(longest: float, duration: float) -> tuple[str, ...]:
     if longest <= duration:
         return ()
     return (

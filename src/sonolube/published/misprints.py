@@ -34,7 +34,7 @@ class Erratum:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Doubt:
+class Correction:
     """What speaks against one cell or one heading of a table.
 
     Parameters
@@ -42,7 +42,7 @@ class Doubt:
     column : str
         Column of the table.
     printed : str
-        The digits or the heading in doubt.
+        The digits or the heading at issue.
     right : str
         What they should be: digits where arithmetic settles it, else words.
     reason : str

@@ -40,7 +40,7 @@ class Statement:
         The erratum it belongs to; empty where nothing speaks against the number.
     right : str
         What it should be; empty where nothing speaks against it.
-    doubt : str
+    reason : str
         What speaks against it; empty where nothing does.
     """
 
@@ -55,7 +55,7 @@ class Statement:
     direction: str = ""
     erratum: str = ""
     right: str = ""
-    doubt: str = ""
+    reason: str = ""
 
 
 def statements(chapter: int | None = None) -> tuple[Statement, ...]:

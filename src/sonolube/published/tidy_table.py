@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.published.misprints import Doubt
+from sonolube.published.misprints import Correction
 from sonolube.published.number import PrintedNumber, parse_printed
 from sonolube.vocabulary import unit_of
 
@@ -84,7 +84,7 @@ class Table:
         The section it belongs to.
     columns : mapping of str to Column
         By name, all of one length.
-    doubts : tuple of Doubt
+    corrections : tuple of Correction
         What speaks against single cells or headings.
     layout : str
         How the rows were laid out, and what arithmetic settled where the conversion from pages had shifted cells.
@@ -94,7 +94,7 @@ class Table:
     title: str
     section: str
     columns: Mapping[str, Column]
-    doubts: tuple[Doubt, ...]
+    corrections: tuple[Correction, ...]
     layout: str
 
     def to_dataset(self) -> "xr.Dataset":
@@ -146,7 +146,7 @@ def _read(number: str) -> Table:
         title=entry["title"],
         section=entry["section"],
         columns=MappingProxyType({column.name: column for column in columns}),
-        doubts=tuple(Doubt(**doubt) for doubt in entry.get("doubts", ())),
+        corrections=tuple(Correction(**correction) for correction in entry.get("corrections", ())),
         layout=entry.get("layout", ""),
     )
 

@@ -25,10 +25,10 @@ class Published:
         As in `Row`.
     number : PrintedNumber
         The number and its range, in SI.
-    doubt : str
+    reason : str
         Why the printed number cannot be right; empty where nothing speaks against it.
     right : tuple of PrintedNumber
-        What it should have been, where the doubt puts that in numbers.
+        What it should have been, where the correction is a number.
     """
 
     id: str
@@ -37,7 +37,7 @@ class Published:
     quantity: str
     unit: str
     number: PrintedNumber
-    doubt: str
+    reason: str
     right: tuple[PrintedNumber, ...]
 
 
@@ -62,7 +62,7 @@ def cell(table_id: str, column: str, row: int) -> Published:
     printed = source.columns[column]
     number = printed.cells[row]
     assert number is not None, f"table {table_id}, {column}, row {row} is empty"
-    doubts = [doubt for doubt in source.doubts if (doubt.column, doubt.row) == (column, row)]
+    corrections = [each for each in source.corrections if (each.column, each.row) == (column, row)]
     return Published(
         id=f"table-{table_id}-{column}-{row + 1}".replace("_", "-"),
         chapter=int(table_id[0]),
@@ -70,11 +70,11 @@ def cell(table_id: str, column: str, row: int) -> Published:
         quantity=printed.quantity,
         unit=printed.unit,
         number=number,
-        doubt=" ".join(f"{doubt.reason} [{doubt.erratum}]" for doubt in doubts),
+        reason=" ".join(f"{each.reason} [{each.erratum}]" for each in corrections),
         right=tuple(
             number
-            for doubt in doubts
-            for number in _alternatives(doubt.right, printed.quantity, printed.unit, printed.scale)
+            for each in corrections
+            for number in _alternatives(each.right, printed.quantity, printed.unit, printed.scale)
         ),
     )
 
@@ -96,7 +96,7 @@ def stated(statement_id: str) -> Published:
         quantity=source.quantity,
         unit=source.unit,
         number=replace(source.number, low=0.0, high=source.number.value) if source.relation == "<" else source.number,
-        doubt=f"{source.doubt} [{source.erratum}]" if source.doubt else "",
+        reason=f"{source.reason} [{source.erratum}]" if source.reason else "",
         right=_alternatives(source.right, source.quantity, source.unit, 1.0),
     )
 

@@ -40,7 +40,7 @@ class PressedSurface:
 
 
 def press(
-    surface: HeightMap, *, normal_load: ArrayLike, combined_modulus: float, periodic: bool = True
+    surface: HeightMap, *, normal_load: ArrayLike, effective_modulus: float, periodic: bool = True
 ) -> PressedSurface:
     """Press an elastic surface against a rigid flat, without friction or adhesion.
 
@@ -50,7 +50,7 @@ def press(
         Without missing pixels; if periodic, its opposite edges fit each other: see `mirrored`.
     normal_load : array_like, shape (n,)
         Force pressing the bodies together, over the whole map. [N]
-    combined_modulus : float
+    effective_modulus : float
         Combined modulus of both bodies. [Pa]
     periodic : bool
         Whether the map repeats for ever, or stands alone on a half-space.
@@ -76,13 +76,13 @@ def press(
        doi:10.1016/j.triboint.2017.04.023
     """
     loads = np.atleast_1d(require_positive(normal_load=normal_load))
-    require_positive(combined_modulus=combined_modulus)
+    require_positive(effective_modulus=effective_modulus)
     if not surface.measured.all():
         raise InvalidInput(
-            f"boundary elements need every height, but {100 * surface.missing_share:.2g} % of the pixels are missing: "
-            "crop the map or fill them"
+            f"boundary elements need every height, but {100 * surface.missing_fraction:.2g} % of the pixels are "
+            "missing: crop the map or fill them"
         )
-    system = _system(surface, combined_modulus, periodic)
+    system = _system(surface, effective_modulus, periodic)
     # a load is met, and the surfaces kept apart, to this share of the heights
     tolerance = 1e-5 * float(np.ptp(surface.height)) or math.inf
     solved = [_solve(system, surface, float(load), tolerance, periodic) for load in loads]

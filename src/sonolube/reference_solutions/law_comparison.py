@@ -64,7 +64,7 @@ class LawComparison:
         Root mean square of the gradient. []
     nominal_area : float
         Area of the map. [m2]
-    combined_modulus : float
+    effective_modulus : float
         Combined modulus of both bodies. [Pa]
     normal_load : ndarray, shape (n,)
         Force pressing the bodies together. [N]
@@ -75,18 +75,18 @@ class LawComparison:
     rms_height: float
     rms_slope: float
     nominal_area: float
-    combined_modulus: float
+    effective_modulus: float
     normal_load: Floats
     laws: Mapping[str, LawCurve]
 
     @property
     def reduced_pressure(self) -> Floats:
         """Nominal pressure over modulus and slope, p/(E* h'), an array of shape (n,)."""
-        return self.normal_load / (self.nominal_area * self.combined_modulus * self.rms_slope)
+        return self.normal_load / (self.nominal_area * self.effective_modulus * self.rms_slope)
 
 
 def compare_laws(
-    surface: HeightMap, *, combined_modulus: float, reduced_pressure: ArrayLike | None = None
+    surface: HeightMap, *, effective_modulus: float, reduced_pressure: ArrayLike | None = None
 ) -> LawComparison:
     """Press a surface against a rigid flat by every law, all elastic, with no number fitted.
 
@@ -94,7 +94,7 @@ def compare_laws(
     ----------
     surface : HeightMap
         Periodic, without missing pixels: see `mirrored`.
-    combined_modulus : float
+    effective_modulus : float
         Combined modulus of both bodies. [Pa]
     reduced_pressure : array_like, shape (n,), optional
         Nominal pressures p/(E* h') in rising order, three or more; 13 from 0.001 to 0.3 where absent. []
@@ -121,19 +121,20 @@ def compare_laws(
         raise InvalidInput(f"reduced_pressure needs three or more values in rising order, got {x.size}")
     slope = math.sqrt(2 * spectral_moments(surface).slope_variance)
     area = surface.height.size * surface.spacing_x * surface.spacing_y
-    load = x * require_positive(combined_modulus=combined_modulus) * slope * area
+    load = x * require_positive(effective_modulus=effective_modulus) * slope * area
     return LawComparison(
         rms_height=float(np.std(surface.height)),
         rms_slope=slope,
         nominal_area=area,
-        combined_modulus=combined_modulus,
+        effective_modulus=effective_modulus,
         normal_load=load,
         laws={
             **{
-                name: _statistical(surface, heights, load, area, combined_modulus) for name, heights in _HEIGHTS.items()
+                name: _statistical(surface, heights, load, area, effective_modulus)
+                for name, heights in _HEIGHTS.items()
             },
-            "persson": _persson(surface, load, area, combined_modulus),
-            REFEREE: _boundary_element(surface, load, combined_modulus),
+            "persson": _persson(surface, load, area, effective_modulus),
+            REFEREE: _boundary_element(surface, load, effective_modulus),
         },
     )
 
@@ -192,7 +193,7 @@ def _statistical(
     contact = RoughContact(
         roughness=roughness(surface),
         # neither Poisson's ratio nor the tangential stiffness enters where nothing yields
-        pair=ContactPair(combined_modulus=modulus, poisson_ratio=0.3, yield_strength=math.inf, mindlin_ratio=1.0),
+        pair=ContactPair(effective_modulus=modulus, poisson_ratio=0.3, yield_strength=math.inf, mindlin_ratio=1.0),
         nominal_area=area,
         heights=heights,
         asperity=ASPERITY_LAWS["elastic"],
@@ -207,7 +208,7 @@ def _statistical(
 
 def _persson(surface: HeightMap, load: Floats, area: float, modulus: float) -> LawCurve:
     spectrum = radial_spectrum(areal_spectrum(surface, window="none"))
-    contact = PerssonContact(spectrum=spectrum, combined_modulus=modulus, nominal_area=area)
+    contact = PerssonContact(spectrum=spectrum, effective_modulus=modulus, nominal_area=area)
     return LawCurve(
         separation=persson_separation(contact, normal_load=load),
         real_contact_area=persson_area(contact, normal_load=load),
@@ -216,7 +217,7 @@ def _persson(surface: HeightMap, load: Floats, area: float, modulus: float) -> L
 
 
 def _boundary_element(surface: HeightMap, load: Floats, modulus: float) -> LawCurve:
-    pressed = press(surface, normal_load=load, combined_modulus=modulus)
+    pressed = press(surface, normal_load=load, effective_modulus=modulus)
     unsolved = next((reason for reason in pressed.reason if reason), "")
     if unsolved:
         raise InvalidInput(f"boundary elements did not converge: {unsolved}; take fewer or lower pressures")

@@ -1,4 +1,4 @@
-"""A self-contained page of findings: what was asked, the numbers found, the figures, what is in doubt."""
+"""A self-contained page of findings: what was asked, the numbers found, the figures, caveats."""
 
 import base64
 import platform
@@ -75,7 +75,7 @@ def write_findings(
         What was found, and its value with its unit.
     figures : sequence of Finding
     notes : sequence of str
-        Assumptions and doubts, a line each.
+        Assumptions and caveats, a line each.
     folder : Path
         Where to; made where it is missing.
     name : str

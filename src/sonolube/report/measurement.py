@@ -123,7 +123,7 @@ def _sheet_object(sheet: Sheet) -> dict[str, Any]:
         "source": dict(sheet.source),
         "values": {value.name: _value_object(value) for value in sheet.values},
         "tables": {table.name: _table_object(table) for table in sheet.tables},
-        "doubts": list(sheet.doubts),
+        "caveats": list(sheet.caveats),
         "not_found": list(sheet.not_found),
     }
 
@@ -156,7 +156,7 @@ def _sheet_lines(sheet: Sheet) -> list[str]:
     lines = [sheet.title, *(f"  {value.label:<{width}}  {value.text}" for value in sheet.values)]
     for table in sheet.tables:
         lines += ["", f"  {table.title}", *_table_lines(table)]
-    lines += [f"  doubt: {doubt}" for doubt in sheet.doubts]
+    lines += [f"  caveat: {caveat}" for caveat in sheet.caveats]
     return [*lines, *(f"  not found: {reason}" for reason in sheet.not_found)]
 
 

@@ -80,16 +80,16 @@ def compare(published: Published, computed: Computed | float, note: str) -> Row:
     Returns
     -------
     Row
-        `reproduced` inside the range that print and rounding leave; else `misprint` where a doubt with its evidence is
-        on record and the computed number is what it says is right; else `model_disagrees`.
+        `reproduced` inside the range that print and rounding leave; else `misprint` where a correction with its
+        evidence is on record and the computed number is what it says is right; else `model_disagrees`.
     """
     if not isinstance(computed, Computed):
         computed = Computed(value=computed, low=computed, high=computed)
     low, high = _range(published.number, computed)
     if _agree(published.number, computed):
         verdict = Verdict.REPRODUCED
-    elif published.doubt and (not published.right or any(_agree(right, computed) for right in published.right)):
-        verdict, note = Verdict.MISPRINT, f"{note.rstrip('.')}. {published.doubt}"
+    elif published.reason and (not published.right or any(_agree(right, computed) for right in published.right)):
+        verdict, note = Verdict.MISPRINT, f"{note.rstrip('.')}. {published.reason}"
     else:
         verdict = Verdict.MODEL_DISAGREES
     return _row(published, low, high, computed.value, verdict, note)

@@ -51,7 +51,7 @@ class HeatPoint:
         Friction with vibration over friction without. []
     closure : str
         Name of the closure that gave it.
-    doubts : tuple of str
+    caveats : tuple of str
         What speaks against trusting the numbers, each in one line.
     with_vibration, without_vibration : ContactHistory
         Both tests in time.
@@ -67,7 +67,7 @@ class HeatPoint:
     temperature_rise_ratio: float
     friction_ratio: float
     closure: str
-    doubts: tuple[str, ...]
+    caveats: tuple[str, ...]
     with_vibration: ContactHistory
     without_vibration: ContactHistory
 
@@ -156,7 +156,7 @@ def heat_point(
         temperature_rise_ratio=float(vibrated.temperature_rise[-1] / without.temperature_rise[-1]),
         friction_ratio=ratio,
         closure=rig.closure,
-        doubts=_doubts(network, vibration_heat_rate),
+        caveats=_caveats(network, vibration_heat_rate),
         with_vibration=vibrated,
         without_vibration=without,
     )
@@ -174,7 +174,7 @@ def _history(
     )
 
 
-def _doubts(network: ThermalNetwork, vibration_heat_rate: float) -> tuple[str, ...]:
+def _caveats(network: ThermalNetwork, vibration_heat_rate: float) -> tuple[str, ...]:
     (capacity,), (conductance,) = network.heat_capacity, network.losses
     known = (
         "heat enters over the nominal area; asperities run hotter for microseconds",

@@ -131,11 +131,13 @@ class Distribution:
     text: str = ""
 
     def __post_init__(self) -> None:
-        if self.cut_share > _MOST_CUT:
-            raise InvalidInput(f"{self.cut_share:.0%} lies outside {self.lowest:g} to {self.highest:g}, the possible")
+        if self.truncated_fraction > _MOST_CUT:
+            raise InvalidInput(
+                f"{self.truncated_fraction:.0%} lies outside {self.lowest:g} to {self.highest:g}, the possible"
+            )
 
     @property
-    def cut_share(self) -> float:
+    def truncated_fraction(self) -> float:
         """Share of the law that lies beyond the ends."""
         low, high = self.law.below((self.lowest, self.highest))
         return float(low + 1 - high)

@@ -8,10 +8,10 @@ from numpy.typing import ArrayLike
 from sonolube.checks import Floats
 from sonolube.contact import GapMotion, harmonic_motion, load_balanced_motion
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.friction import FRICTION_CLOSURES, Holder, coupled, stick_slip
+from sonolube.friction import FRICTION_MODELS, Holder, coupled, stick_slip
 from sonolube.friction.models.asperity_stick_slip import EMPIRICAL_MEMORY_LENGTH
 from sonolube.rig.record import Rig
-from sonolube.wear.cube import WEAR_CLOSURES
+from sonolube.wear.cube import WEAR_MODELS
 
 _ABOUT_REST = ("as_published", "separating_half_period")
 _WEAR_BY_DEFAULT = "separating_half_period"  # the mean by which D computed its wear tables
@@ -52,9 +52,9 @@ def friction_ratios(rig: Rig, motion: GapMotion, *, sliding_speed: ArrayLike) ->
     UnknownName
         If there is no such closure.
     """
-    if rig.closure not in FRICTION_CLOSURES:
-        raise UnknownName.among(FRICTION_CLOSURES, kind="closure", name=rig.closure)
-    closure = FRICTION_CLOSURES[rig.closure]
+    if rig.closure not in FRICTION_MODELS:
+        raise UnknownName.among(FRICTION_MODELS, kind="closure", name=rig.closure)
+    closure = FRICTION_MODELS[rig.closure]
     in_plane = {"in_plane_fraction": rig.in_plane_fraction or 0.0, "phase": rig.in_plane_phase or 0.0}
     if closure is stick_slip:
         closure = partial(closure, memory_length=rig.memory_length or EMPIRICAL_MEMORY_LENGTH, **in_plane)
@@ -84,7 +84,7 @@ def sine_under_load(rig: Rig) -> GapMotion:
 
 def wear_closure(rig: Rig) -> str:
     """Return the name of the closure for wear: that of friction, or where wear has none of it that of D's tables."""
-    return rig.closure if rig.closure in WEAR_CLOSURES else _WEAR_BY_DEFAULT
+    return rig.closure if rig.closure in WEAR_MODELS else _WEAR_BY_DEFAULT
 
 
 def wear_rate_ratio(rig: Rig, motion: GapMotion) -> float:
@@ -94,4 +94,4 @@ def wear_rate_ratio(rig: Rig, motion: GapMotion) -> float:
     -----
     Wear closures average the worn area over the gap and know no memory, holder or in-plane motion.
     """
-    return float(WEAR_CLOSURES[wear_closure(rig)](rig.contact, motion))
+    return float(WEAR_MODELS[wear_closure(rig)](rig.contact, motion))

@@ -10,7 +10,7 @@ from sonolube.errors import MissingProperty, UnknownName
 from sonolube.friction import (
     BoundaryLubricant,
     MethodCoefficients,
-    asperity_load_share,
+    asperity_load_fraction,
     best_method,
     method_coefficients,
 )
@@ -36,7 +36,7 @@ class RegimePoint:
         Load over nominal area. [Pa]
     friction_coefficient : float
         Coefficient of dry friction. []
-    asperity_load_share : float
+    asperity_load_fraction : float
         Share of the load that asperities carry through the lubricant. []
     coefficients : MethodCoefficients
         Coefficients of the four ways.
@@ -44,18 +44,18 @@ class RegimePoint:
         The way to choose.
     closure : str
         Name of the closure that gave friction under vibration.
-    doubts : tuple of str
+    caveats : tuple of str
         What speaks against trusting the numbers, each in one line.
     """
 
     sliding_speed: float
     nominal_pressure: float
     friction_coefficient: float
-    asperity_load_share: float
+    asperity_load_fraction: float
     coefficients: MethodCoefficients
     best: str
     closure: str
-    doubts: tuple[str, ...]
+    caveats: tuple[str, ...]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -103,11 +103,11 @@ def regime_point(rig: Rig, *, lubricant: BoundaryLubricant, smallest_gain: float
         sliding_speed=rig.sliding_speed,
         nominal_pressure=pressure,
         friction_coefficient=rig.friction_coefficient,
-        asperity_load_share=float(asperity_load_share(lubricant, nominal_pressure=pressure)),
+        asperity_load_fraction=float(asperity_load_fraction(lubricant, nominal_pressure=pressure)),
         coefficients=found,
         best=str(best_method(found, smallest_gain=smallest_gain)),
         closure=rig.closure,
-        doubts=("load sharing in proportion to the pressure: the simplest law that D Fig. 4.28 allows",),
+        caveats=("load sharing in proportion to the pressure: the simplest law that D Fig. 4.28 allows",),
     )
 
 

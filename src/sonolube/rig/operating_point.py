@@ -3,8 +3,8 @@
 from dataclasses import dataclass, replace
 
 from sonolube.contact import (
+    contact_caveats,
     contact_count,
-    contact_doubts,
     normal_stiffness,
     real_contact_area,
     tangential_stiffness,
@@ -37,7 +37,7 @@ class ContactPoint:
         Bending stiffness of the cube, D 3.9. [N/m]
     mindlin_ratio : float
         Tangential over normal stiffness by Mindlin's theory, beside that of the cube. []
-    doubts : tuple of str
+    caveats : tuple of str
         What speaks against trusting the numbers, each in one line.
     """
 
@@ -48,7 +48,7 @@ class ContactPoint:
     normal_stiffness: float
     tangential_stiffness: float
     mindlin_ratio: float
-    doubts: tuple[str, ...]
+    caveats: tuple[str, ...]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -73,7 +73,7 @@ class FrictionPoint:
         Vibration normal to the contact, zero to peak. [m]
     actuator_power : float or None
         Power a linear amplifier supplies, D 1.9, where drive and capacitance are known. [W]
-    doubts : tuple of str
+    caveats : tuple of str
         What speaks against trusting the numbers, each in one line.
     """
 
@@ -85,7 +85,7 @@ class FrictionPoint:
     closure: str
     vibration_amplitude: float
     actuator_power: float | None
-    doubts: tuple[str, ...]
+    caveats: tuple[str, ...]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -104,7 +104,7 @@ class WearPoint:
         One minus that ratio. []
     vibration_amplitude : float
         Vibration normal to the contact, zero to peak. [m]
-    doubts : tuple of str
+    caveats : tuple of str
         What speaks against trusting the numbers, each in one line.
     """
 
@@ -113,7 +113,7 @@ class WearPoint:
     wear_rate_ratio: float
     wear_reduction: float
     vibration_amplitude: float
-    doubts: tuple[str, ...]
+    caveats: tuple[str, ...]
 
 
 def contact_point(rig: Rig) -> ContactPoint:
@@ -133,7 +133,7 @@ def contact_point(rig: Rig) -> ContactPoint:
         normal_stiffness=float(normal_stiffness(rig.contact, separation=gap)),
         tangential_stiffness=float(tangential_stiffness(rig.contact, separation=gap)),
         mindlin_ratio=rig.contact.pair.mindlin_ratio,
-        doubts=contact_doubts(rig.contact, separation=gap),
+        caveats=contact_caveats(rig.contact, separation=gap),
     )
 
 
@@ -175,7 +175,7 @@ def friction_point(rig: Rig, *, closure: str | None = None) -> FrictionPoint:
         closure=closure,
         vibration_amplitude=rig.vibration_amplitude,
         actuator_power=_actuator_power(rig),
-        doubts=_doubts(rig, gap),
+        caveats=_caveats(rig, gap),
     )
 
 
@@ -206,16 +206,16 @@ def wear_point(rig: Rig) -> WearPoint:
         wear_rate_ratio=vibrating / still,
         wear_reduction=1 - vibrating / still,
         vibration_amplitude=rig.vibration_amplitude,
-        doubts=_doubts(rig, gap),
+        caveats=_caveats(rig, gap),
     )
 
 
-def _doubts(rig: Rig, gap: float) -> tuple[str, ...]:
-    doubts = contact_doubts(rig.contact, separation=gap)
+def _caveats(rig: Rig, gap: float) -> tuple[str, ...]:
+    caveats = contact_caveats(rig.contact, separation=gap)
     if rig.vibration_amplitude < gap:
-        return doubts
+        return caveats
     return (
-        *doubts,
+        *caveats,
         f"vibration amplitude {rig.vibration_amplitude:.3g} m reaches the separation at rest, {gap:.3g} m: the "
         "surfaces must ride higher under vibration than this model lets them; take a smaller amplitude",
     )

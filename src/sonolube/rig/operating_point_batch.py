@@ -37,7 +37,7 @@ NUMBERS = (
     "vibration_amplitude",
     "vibration_velocity",
     "mean_displacement",
-    "lost_contact_share",
+    "contact_loss_fraction",
     "actuator_power",
     "dissipated_power",
 )
@@ -48,7 +48,7 @@ _REASONS = {
     "periodic": "the vibration repeats with the drive",
     "unstable": "the vibration repeats with the drive, but the smallest disturbance grows; simulate the point to see"
     " what it does instead",
-    "several": "another vibration is as possible as this one; simulate the point to see which appears",
+    "multistable": "another vibration is as possible as this one; simulate the point to see which appears",
     "not_converged": "no vibration at the drive's own period was found; start from a lower voltage or add damping",
 }
 _NO_SEPARATION = "normal_load leaves no separation between the surfaces: lower the load"
@@ -157,7 +157,7 @@ def point_batch(
         "vibration_amplitude": amplitude,
         "vibration_velocity": velocity,
         "mean_displacement": rise,
-        "lost_contact_share": lost,
+        "contact_loss_fraction": lost,
         "dissipated_power": dissipated,
     }
     return PointBatch(
@@ -213,7 +213,7 @@ def _measures(states: SteadyStates) -> Floats:
             states.vibration_amplitude,
             velocity,
             states.mean_displacement,
-            states.lost_contact_share,
+            states.contact_loss_fraction,
             states.dissipated_power,
         )
     )

@@ -46,7 +46,7 @@ class OperatingPoints:
     sliding_speed : ndarray
         Macroscopic relative speed. [m/s]
     status : ndarray of str
-        "periodic", "unstable", "several" or "not_converged", as the steady state was found, or "refused".
+        "periodic", "unstable", "multistable" or "not_converged", as the steady state was found, or "refused".
     reason : ndarray of str
         What the status means, and what to try.
     vibration_amplitude : ndarray
@@ -55,7 +55,7 @@ class OperatingPoints:
         Highest speed of the tip along the surface normal. [m/s]
     mean_displacement : ndarray
         Rise of the tip from rest under the load. [m]
-    lost_contact_share : ndarray
+    contact_loss_fraction : ndarray
         Share of the period in which the contact carries less than a hundredth of the load. []
     friction_ratio : ndarray
         Friction with vibration over friction without, by the rig's closure. []
@@ -83,7 +83,7 @@ class OperatingPoints:
     vibration_amplitude: Floats
     vibration_velocity: Floats
     mean_displacement: Floats
-    lost_contact_share: Floats
+    contact_loss_fraction: Floats
     friction_ratio: Floats
     friction_reduction: Floats
     friction_coefficient: Floats
@@ -207,7 +207,7 @@ def operating_points(
         vibration_amplitude=amplitude,
         vibration_velocity=velocity,
         mean_displacement=rise,
-        lost_contact_share=lost,
+        contact_loss_fraction=lost,
         **friction_and_power(rig, columns, friction_ratio=ratio),
         dissipated_power=dissipated,
         gap_closed=closed == 1,
@@ -361,7 +361,7 @@ def _outcome(rig: Rig, states: SteadyStates, point: int, speeds: Floats) -> _Out
         states.vibration_amplitude[point],
         np.abs(moving.velocity).max(),
         states.mean_displacement[point],
-        states.lost_contact_share[point],
+        states.contact_loss_fraction[point],
         states.dissipated_power[point],
         states.gap_closed[point],
     )

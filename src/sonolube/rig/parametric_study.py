@@ -31,7 +31,7 @@ _POINT = (
     "vibration_amplitude",
     "vibration_velocity",
     "mean_displacement",
-    "lost_contact_share",
+    "contact_loss_fraction",
     "actuator_power",
     "dissipated_power",
 )

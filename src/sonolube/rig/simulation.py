@@ -6,9 +6,9 @@ from functools import partial
 
 import numpy as np
 
-from sonolube.actuator import stack_doubts
+from sonolube.actuator import stack_caveats
 from sonolube.actuator.drive import Drive
-from sonolube.contact import GapMotion, contact_doubts
+from sonolube.contact import GapMotion, contact_caveats
 from sonolube.rig.excitation import amplifier_power, voltage_harmonics, voltage_range
 from sonolube.rig.friction_and_wear import friction_ratio, wear_closure, wear_rate_ratio
 from sonolube.rig.linear_response import require_drive, require_structure, rest_separation
@@ -24,7 +24,7 @@ class Simulation:
     Parameters
     ----------
     status : str
-        "periodic", "unstable", "several" or "not_converged", as harmonic balance found it.
+        "periodic", "unstable", "multistable" or "not_converged", as harmonic balance found it.
     reason : str
         What the status means, what the tip does, and what to try.
     attractor : str
@@ -35,7 +35,7 @@ class Simulation:
         Vibration of the tip, zero to peak; the mean over periods of the drive where these differ. [m]
     lowest_amplitude, highest_amplitude : float or None
         The least and the largest of any period, where these differ. [m]
-    rival_amplitude : float or None
+    coexisting_amplitude : float or None
         Vibration of the tip in another steady motion under the same drive, where one was found. [m]
     beat_frequency : float or None
         Frequency of a slow motion of the tip beside the vibration. [Hz]
@@ -43,7 +43,7 @@ class Simulation:
         Its amplitude. [m]
     mean_displacement : float
         Rise of the tip from rest under the load. [m]
-    lost_contact_share : float
+    contact_loss_fraction : float
         Share of the time in which the contact carries less than a hundredth of the load. []
     friction_force : float
         Mean friction force with vibration. [N]
@@ -65,7 +65,7 @@ class Simulation:
         Power a linear amplifier supplies, D 1.9. [W]
     dissipated_power : float
         Mean electrical power that stays in stack, dampers and contact. [W]
-    doubts : tuple of str
+    caveats : tuple of str
         What speaks against trusting the numbers, each in one line.
     motion : GapMotion
         One repetition of the tip's motion, or a stretch of one that does not repeat.
@@ -78,11 +78,11 @@ class Simulation:
     vibration_amplitude: float
     lowest_amplitude: float | None
     highest_amplitude: float | None
-    rival_amplitude: float | None
+    coexisting_amplitude: float | None
     beat_frequency: float | None
     beat_amplitude: float | None
     mean_displacement: float
-    lost_contact_share: float
+    contact_loss_fraction: float
     friction_force: float
     friction_coefficient: float
     intrinsic_friction_force: float
@@ -93,7 +93,7 @@ class Simulation:
     wear_closure: str
     actuator_power: float
     dissipated_power: float
-    doubts: tuple[str, ...]
+    caveats: tuple[str, ...]
     motion: GapMotion
 
 
@@ -136,11 +136,11 @@ def simulate(rig: Rig) -> Simulation:
         vibration_amplitude=moving.vibration_amplitude,
         lowest_amplitude=moving.lowest_amplitude if moving.repetition_periods != 1 else None,
         highest_amplitude=moving.highest_amplitude if moving.repetition_periods != 1 else None,
-        rival_amplitude=moving.rival_amplitude,
+        coexisting_amplitude=moving.coexisting_amplitude,
         beat_frequency=moving.beat_frequency,
         beat_amplitude=moving.beat_amplitude,
         mean_displacement=moving.mean_displacement,
-        lost_contact_share=moving.lost_contact_share,
+        contact_loss_fraction=moving.contact_loss_fraction,
         friction_force=ratio * intrinsic,
         friction_coefficient=ratio * rig.friction_coefficient,
         intrinsic_friction_force=intrinsic,
@@ -151,7 +151,7 @@ def simulate(rig: Rig) -> Simulation:
         wear_closure=wear_closure(rig),
         actuator_power=float(amplifier_power(drive, capacitance=rig.stack.free_capacitance)),
         dissipated_power=moving.dissipated_power,
-        doubts=(*contact_doubts(rig.contact, separation=gap), *_doubts(rig, moving, drive)),
+        caveats=(*contact_caveats(rig.contact, separation=gap), *_caveats(rig, moving, drive)),
         motion=moving.motions[0],
     )
 
@@ -161,11 +161,11 @@ def _mean(of: Callable[[GapMotion], float], motions: tuple[GapMotion, ...]) -> f
     return float(np.average([of(motion) for motion in motions], weights=[1 / motion.frequency for motion in motions]))
 
 
-def _doubts(rig: Rig, moving: SteadyMotion, drive: Drive) -> tuple[str, ...]:
+def _caveats(rig: Rig, moving: SteadyMotion, drive: Drive) -> tuple[str, ...]:
     assert rig.stack is not None
     assert drive.voltage_peak_to_peak is not None
     voltage = complex(voltage_harmonics(drive)[0])
-    doubts = stack_doubts(
+    caveats = stack_caveats(
         rig.stack,
         voltage_offset=float(sum(voltage_range(drive))) / 2,
         voltage_peak_to_peak=drive.voltage_peak_to_peak,
@@ -173,8 +173,8 @@ def _doubts(rig: Rig, moving: SteadyMotion, drive: Drive) -> tuple[str, ...]:
         frequency=drive.frequency,
     )
     if moving.gap_closed:
-        doubts = (
-            *doubts,
+        caveats = (
+            *caveats,
             "the mean planes meet within the period: asperities no longer stand alone; lower the voltage",
         )
-    return doubts
+    return caveats

@@ -30,7 +30,7 @@ class SteadyMotion:
     Parameters
     ----------
     status : str
-        "periodic", "unstable", "several" or "not_converged", as harmonic balance found it.
+        "periodic", "unstable", "multistable" or "not_converged", as harmonic balance found it.
     reason : str
         What the status means, and what the tip does.
     attractor : str
@@ -45,13 +45,13 @@ class SteadyMotion:
         The least and the largest of any period. [m]
     mean_displacement : float
         Rise of the tip from rest under the load. [m]
-    lost_contact_share : float
+    contact_loss_fraction : float
         Share of the time in which the contact carries less than a hundredth of the load. []
     beat_frequency : float or None
         Frequency of a slow motion beside the vibration. [Hz]
     beat_amplitude : float or None
         Its amplitude. [m]
-    rival_amplitude : float or None
+    coexisting_amplitude : float or None
         Amplitude of another vibration under the same drive, where one was found. [m]
     dissipated_power : float
         Mean electrical power that stays in stack, dampers and contact. [W]
@@ -70,10 +70,10 @@ class SteadyMotion:
     lowest_amplitude: float
     highest_amplitude: float
     mean_displacement: float
-    lost_contact_share: float
+    contact_loss_fraction: float
     beat_frequency: float | None
     beat_amplitude: float | None
-    rival_amplitude: float | None
+    coexisting_amplitude: float | None
     dissipated_power: float
     elongation: complex
     gap_closed: bool
@@ -106,12 +106,12 @@ def steady_motion(rig: Rig) -> SteadyMotion:
     balanced = _balanced(rig, falling=False)
     if balanced.status == Status.PERIODIC:
         return _of_balance(rig, balanced, balanced.reason(()))
-    if balanced.beyond_judgement(()):
+    if balanced.stability_undetermined(()):
         raise OutsideRange(balanced.reason(()))
     attained = _marched(rig)
     told = f"{_why_marched(balanced)}; {_from_rest(require_drive(rig))}"
     found = attained.attractor
-    if balanced.status == Status.SEVERAL and found.order == 1:
+    if balanced.status == Status.MULTISTABLE and found.order == 1:
         for states in (balanced, _balanced(rig, falling=True)):
             if _same(states, attained):
                 appears = engineering(float(states.vibration_amplitude), "m")
@@ -179,11 +179,11 @@ def _marched(rig: Rig) -> Attained:
 
 
 def _why_marched(states: SteadyStates) -> str:
-    this, other = (engineering(float(each), "m") for each in (states.vibration_amplitude, states.rival_amplitude))
+    this, other = (engineering(float(each), "m") for each in (states.vibration_amplitude, states.coexisting_amplitude))
     if states.status == Status.UNSTABLE:
         return f"unstable: of the vibration of {this} that repeats with the drive the smallest disturbance grows"
-    if states.status == Status.SEVERAL:
-        return f"several: vibrations of {this} and of {other} are both possible"
+    if states.status == Status.MULTISTABLE:
+        return f"multistable: vibrations of {this} and of {other} are both possible"
     return "not_converged: no vibration at the drive's own period was found; less voltage or more damping may give one"
 
 
@@ -200,7 +200,7 @@ def _same(states: SteadyStates, attained: Attained) -> bool:
 
 def _of_balance(rig: Rig, states: SteadyStates, reason: str) -> SteadyMotion:
     assert rig.stack is not None
-    drive, amplitude, rival = require_drive(rig), float(states.vibration_amplitude), float(states.rival_amplitude)
+    drive, amplitude, rival = require_drive(rig), float(states.vibration_amplitude), float(states.coexisting_amplitude)
     # the stack's elongation in complex amplitude, from the charge on it: q = C_S V + b.x
     charge = complex(states.current_harmonics[0]) / (2j * np.pi * drive.frequency)
     moved = charge - states.structure.clamped_capacitance * complex(states.voltage_harmonics[0])
@@ -214,10 +214,10 @@ def _of_balance(rig: Rig, states: SteadyStates, reason: str) -> SteadyMotion:
         lowest_amplitude=amplitude,
         highest_amplitude=amplitude,
         mean_displacement=float(states.mean_displacement),
-        lost_contact_share=float(states.lost_contact_share),
+        contact_loss_fraction=float(states.contact_loss_fraction),
         beat_frequency=None,
         beat_amplitude=None,
-        rival_amplitude=rival if np.isfinite(rival) else None,
+        coexisting_amplitude=rival if np.isfinite(rival) else None,
         dissipated_power=float(states.dissipated_power),
         elongation=moved / rig.stack.charge_per_elongation,
         gap_closed=bool(states.gap_closed),
@@ -248,10 +248,10 @@ def _of_march(rig: Rig, attained: Attained, balanced: SteadyStates, reason: str)
         lowest_amplitude=float(attained.amplitudes.min()),
         highest_amplitude=float(attained.amplitudes.max()),
         mean_displacement=float(x[:-1].mean()),
-        lost_contact_share=float(found.lost_contact_share),
+        contact_loss_fraction=float(found.contact_loss_fraction),
         beat_frequency=slow if slow > 0 and repeats != 1 else None,
         beat_amplitude=float(found.beat_amplitude) if slow > 0 and repeats != 1 else None,
-        rival_amplitude=unstable if np.isfinite(unstable) and balanced.status == Status.SEVERAL else None,
+        coexisting_amplitude=unstable if np.isfinite(unstable) and balanced.status == Status.MULTISTABLE else None,
         dissipated_power=attained.dissipated_power,
         elongation=complex(2 * np.mean(elongation * turning)),
         gap_closed=bool(x.min() <= -float(separation(rig.contact, normal_load=rig.normal_load))),

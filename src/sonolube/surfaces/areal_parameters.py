@@ -159,7 +159,8 @@ def hybrid_parameters(surface: HeightMap) -> HybridParameters:
     cells, squares, excess = slope_sums(z, surface.spacing_x, surface.spacing_y)
     if cells == 0:
         raise InvalidInput(
-            f"a slope needs four neighbouring measured pixels; with {surface.missing_share:.0%} missing there are none"
+            f"a slope needs four neighbouring measured pixels; with {surface.missing_fraction:.0%} missing there "
+            "are none"
         )
     return HybridParameters(rms_slope=math.sqrt(squares / cells), developed_area_ratio=excess / cells)
 

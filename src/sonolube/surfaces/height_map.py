@@ -54,7 +54,7 @@ class HeightMap:
         return np.isfinite(self.height)
 
     @property
-    def missing_share(self) -> float:
+    def missing_fraction(self) -> float:
         """Share of pixels that were not measured."""
         return 1 - float(np.mean(self.measured))
 

@@ -125,7 +125,7 @@ def fast_rise(solid: ThermalSolid, source: HeatSource, *, heat_flux: ArrayLike, 
     require_positive(sliding_speed=sliding_speed)
     pe = peclet_number(solid, source, sliding_speed=sliding_speed)
     peak = _scale(solid, source, heat_flux) * source.fast_peak / np.sqrt(pe)
-    return FlashRise(peak, source.fast_mean_share * peak)
+    return FlashRise(peak, source.fast_mean_fraction * peak)
 
 
 def flash_rise(solid: ThermalSolid, source: HeatSource, *, heat_flux: ArrayLike, sliding_speed: ArrayLike) -> FlashRise:
@@ -165,7 +165,7 @@ def flash_rise(solid: ThermalSolid, source: HeatSource, *, heat_flux: ArrayLike,
     scale = _scale(solid, source, heat_flux)
     pe = peclet_number(solid, source, sliding_speed=sliding_speed)
     peak = scale / np.sqrt(source.still_peak**-2 + pe / source.fast_peak**2)
-    mean = scale / np.sqrt(source.still_mean**-2 + pe / (source.fast_mean_share * source.fast_peak) ** 2)
+    mean = scale / np.sqrt(source.still_mean**-2 + pe / (source.fast_mean_fraction * source.fast_peak) ** 2)
     return FlashRise(peak, mean)
 
 

@@ -43,7 +43,7 @@ class HeatSource(Protocol):
         """Highest rise, source fast, times the root of the Peclet number. []"""
 
     @property
-    def fast_mean_share(self) -> float:
+    def fast_mean_fraction(self) -> float:
         """Mean rise over the highest where the source is fast. []"""
 
 
@@ -96,7 +96,7 @@ class EllipticSource:
         return _FAST_PEAK_OF_EVEN
 
     @property
-    def fast_mean_share(self) -> float:
+    def fast_mean_fraction(self) -> float:
         """Mean rise over the highest where the source is fast. []"""
         return _FAST_MEAN_OF_ELLIPSE
 
@@ -155,7 +155,7 @@ class HertzianSource:
         return _FAST_PEAK_OF_HERTZ
 
     @property
-    def fast_mean_share(self) -> float:
+    def fast_mean_fraction(self) -> float:
         """Mean rise over the highest where the source is fast. []"""
         return _FAST_MEAN_OF_HERTZ
 
@@ -211,6 +211,6 @@ class RectangularSource:
         return _FAST_PEAK_OF_EVEN
 
     @property
-    def fast_mean_share(self) -> float:
+    def fast_mean_fraction(self) -> float:
         """Mean rise over the highest where the source is fast. []"""
         return _FAST_MEAN_OF_RECTANGLE

@@ -120,8 +120,8 @@ def _load_balanced(test: FrictionTest, nominal_area_factor: float = 1.0) -> floa
     return float(load_balanced(*_sine(test, nominal_area_factor), sliding_speed=test.sliding_speed))
 
 
-def _kinematic(test: FrictionTest, amplitude_share: float = 1.0) -> float:
-    return float(kinematic(*_sine(test), sliding_speed=test.sliding_speed, amplitude_share=amplitude_share))
+def _kinematic(test: FrictionTest, amplitude_fraction: float = 1.0) -> float:
+    return float(kinematic(*_sine(test), sliding_speed=test.sliding_speed, amplitude_fraction=amplitude_fraction))
 
 
 def _stick_slip(test: FrictionTest, memory_length: float) -> float:

@@ -51,7 +51,7 @@ def wear_contact() -> RoughContact:
     return RoughContact(
         roughness=_roughness("3.2"),
         pair=ContactPair(
-            combined_modulus=_value("3.2", "combined_modulus"),
+            effective_modulus=_value("3.2", "effective_modulus"),
             poisson_ratio=poisson_ratio,
             yield_strength=_value("3.2", "yield_strength"),
             mindlin_ratio=like_bodies_mindlin_ratio(poisson_ratio=poisson_ratio),

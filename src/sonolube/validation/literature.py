@@ -283,8 +283,8 @@ def _range_warnings_as_refusals() -> Iterator[None]:
         warnings.simplefilter("error", ModelRangeWarning)
         try:
             yield
-        except ModelRangeWarning as doubt:
-            raise OutsideRange(str(doubt)) from None
+        except ModelRangeWarning as caveat:
+            raise OutsideRange(str(caveat)) from None
 
 
 def _peak_velocity(test: FrictionTest) -> float:

@@ -83,7 +83,7 @@ COEFFICIENT: Final = Parameter(
     reason="Forces scatter by up to 10 % (Table 2.3) and the load is set to as much; two standard deviations.",
 )
 SHARE: Final = Parameter(
-    name="amplitude_share",
+    name="amplitude_fraction",
     unit="",
     rest=1.0,
     start=(0.3,),

@@ -233,7 +233,7 @@ def load_balanced_wear(contact: RoughContact, motion: GapMotion) -> Floats:
     return as_published_wear(contact, load_balanced_motion(contact, motion))
 
 
-WEAR_CLOSURES: Mapping[str, Callable[[RoughContact, GapMotion], Floats]] = MappingProxyType(
+WEAR_MODELS: Mapping[str, Callable[[RoughContact, GapMotion], Floats]] = MappingProxyType(
     {
         "as_published": as_published_wear,
         "separating_half_period": separating_half_period_wear,

@@ -79,7 +79,7 @@ def test_vibration_ends_the_limit_cycle(volts: float, steady: bool) -> None:
     motion = dragged_motion(dragged, duration=1.0)
     assert (steady_sliding_damping(dragged) > 0) == steady
     assert (motion.stick_slip_amplitude < 1e-6) == steady
-    assert (motion.stick_share == 0) == steady
+    assert (motion.stick_fraction == 0) == steady
 
 
 def test_static_friction_below_that_of_sliding_is_refused() -> None:

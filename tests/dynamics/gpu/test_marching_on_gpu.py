@@ -111,7 +111,7 @@ def cases(count: int) -> dict[str, float]:
     """Return how far the kernel's answers lie from the processor's."""
     body = structure()
     given, moves = points(body, count), {"initial_state": moving(body, count)}
-    hertz = HertzGap(tip_radius=2e-3, combined_modulus=1e9)
+    hertz = HertzGap(tip_radius=2e-3, effective_modulus=1e9)
     damped = ExponentialGap(decay_length=2e-6, force_damping=0.5)
     same = given | {"frequency": 22e3}
     return {

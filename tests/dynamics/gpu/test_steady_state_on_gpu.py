@@ -70,7 +70,7 @@ def compare(body: Structure, given: dict[str, Any]) -> dict[str, float]:
     ours, theirs = (np.stack([each.kinematic, each.loaded])[:, known, 1:] for each in (means, friction))
     apart = {name: np.max(np.abs(getattr(there, name) / getattr(here, name) - 1)[known]) for name in NUMBERS}
     apart |= {
-        "lost_contact_share": np.max(np.abs(there.lost_contact_share - here.lost_contact_share)[known]),
+        "contact_loss_fraction": np.max(np.abs(there.contact_loss_fraction - here.contact_loss_fraction)[known]),
         "friction": np.max(np.abs(ours / theirs - 1)),
         "at rest": np.max(np.abs(means.kinematic[known, 0])),
         "done": done.mean(),
@@ -111,7 +111,7 @@ def check(found: dict[str, dict[str, float]]) -> None:
         # amplitudes hold 1e-6, and the force at its highest that times the steepness; each side's friction holds 1e-5
         assert all(case[name] < 1e-6 for name in NUMBERS[:3])
         assert all(case[name] < 1e-5 for name in NUMBERS[3:])
-        assert case["lost_contact_share"] < 1e-6
+        assert case["contact_loss_fraction"] < 1e-6
         assert case["friction"] < 2e-5
         assert case["at rest"] == 0.0
         assert case["statuses apart"] == 0
@@ -271,7 +271,7 @@ def unserved() -> list[str]:
     damped = ExponentialGap(decay_length=2e-6, force_damping=0.1)
     with warnings.catch_warnings(record=True) as raised:
         warnings.simplefilter("always", GpuUnused)
-        for law, least in ((HertzGap(tip_radius=2e-3, combined_modulus=70e9), 1), (damped, 1), (ROUGH, 20)):
+        for law, least in ((HertzGap(tip_radius=2e-3, effective_modulus=70e9), 1), (damped, 1), (ROUGH, 20)):
             steady_state(structure(), law, backend="gpu", least_harmonics=least, stability=False, **given)
     return [str(each.message) for each in raised if issubclass(each.category, GpuUnused)]
 

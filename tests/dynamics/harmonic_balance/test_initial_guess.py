@@ -24,14 +24,14 @@ def test_mean_and_amplitude_of_a_held_contact_balance(held: float) -> None:
         clamped_capacitance=2e-7,
     )
     port = contact_port(structure)
-    omega, free_mean = np.full(4, 2 * np.pi * 15e3), np.array([0.0, 3e-7, -4e-7, 0.0])
+    omega, static_displacement = np.full(4, 2 * np.pi * 15e3), np.array([0.0, 3e-7, -4e-7, 0.0])
     free = np.array([[0.1e-6], [1e-6], [4e-6], [12e-6]], dtype=complex)
     guess = first_guess(
-        port, ExponentialGap(decay_length=LENGTH), omega, load, free_mean, free, tolerance=1e-6, highest=False
+        port, ExponentialGap(decay_length=LENGTH), omega, load, static_displacement, free, tolerance=1e-6, highest=False
     )
     amplitude, mean = np.abs(guess.harmonic), guess.mean
     beta = amplitude / LENGTH
-    force = load + port.static_stiffness * (mean - free_mean)
+    force = load + port.static_stiffness * (mean - static_displacement)
     assert force == pytest.approx(load * np.exp(beta - mean / LENGTH) * ive(0, beta), rel=1e-4)
     opposing = 2 * force * ive(1, beta) / ive(0, beta)
     swing = np.abs(amplitude + receptance(port, 0, omega) * opposing)

@@ -13,7 +13,7 @@ from sonolube.surfaces import Roughness
 MINDLIN_RATIO, MU, LOAD, FREQUENCY, DECAY_LENGTH, AMPLITUDE = 0.8, 0.3, 3.0, 22e3, 2e-6, 2.5e-6
 CONTACT = RoughContact(  # D Table 3.2
     roughness=Roughness(rms_height=6e-6, summit_radius=1.5e-6, summit_density=4.7e10),
-    pair=ContactPair(combined_modulus=59.6e9, poisson_ratio=0.33, yield_strength=410e6, mindlin_ratio=MINDLIN_RATIO),
+    pair=ContactPair(effective_modulus=59.6e9, poisson_ratio=0.33, yield_strength=410e6, mindlin_ratio=MINDLIN_RATIO),
     nominal_area=2.25e-6,
 )
 OMEGA = 2 * np.pi * FREQUENCY

@@ -17,7 +17,7 @@ from sonolube.contact import (
 )
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.friction import (
-    FRICTION_CLOSURES,
+    FRICTION_MODELS,
     as_published,
     kinematic,
     load_balanced,
@@ -28,7 +28,7 @@ from sonolube.surfaces import Roughness
 
 CONTACT = RoughContact(  # D Table 3.2
     roughness=Roughness(rms_height=6e-6, summit_radius=1.5e-6, summit_density=4.7e10),
-    pair=ContactPair(combined_modulus=59.6e9, poisson_ratio=0.33, yield_strength=410e6, mindlin_ratio=0.8),
+    pair=ContactPair(effective_modulus=59.6e9, poisson_ratio=0.33, yield_strength=410e6, mindlin_ratio=0.8),
     nominal_area=2.25e-6,
 )
 LOAD, FREQUENCY, DECAY_LENGTH = 3.0, 22e3, 2e-6
@@ -45,7 +45,7 @@ def sine(amplitude: float, *, samples: int = 256) -> GapMotion:
 
 def named(name: str, motion: GapMotion, speeds: np.ndarray) -> np.ndarray:
     extra = {"friction_coefficient": 0.3} if name == "coupled" else {}
-    return FRICTION_CLOSURES[name](CONTACT, motion, sliding_speed=speeds, **extra)
+    return FRICTION_MODELS[name](CONTACT, motion, sliding_speed=speeds, **extra)
 
 
 def test_as_printed_vibration_raises_friction() -> None:
@@ -59,7 +59,7 @@ def test_balancing_the_load_lowers_it() -> None:
 def test_the_direction_alone_at_a_third_of_the_amplitude_comes_near_the_measured_ratios() -> None:
     known = [0.364, 0.556, 0.782]
     assert kinematic(CONTACT, sine(0.78e-6), sliding_speed=SPEEDS) == approx(known, abs=5e-4)
-    assert kinematic(CONTACT, sine(2.5e-6), sliding_speed=SPEEDS, amplitude_share=0.312) == approx(known, abs=5e-4)
+    assert kinematic(CONTACT, sine(2.5e-6), sliding_speed=SPEEDS, amplitude_fraction=0.312) == approx(known, abs=5e-4)
 
 
 @pytest.mark.parametrize("amplitude", [0.1e-6, 2.5e-6, 14e-6])
@@ -118,12 +118,12 @@ def test_gaussian_heights_are_balanced_too() -> None:
     assert np.mean(normal_force(contact, separation=gaps)) == approx(LOAD, rel=1e-10)
 
 
-@pytest.mark.parametrize("name", FRICTION_CLOSURES)
+@pytest.mark.parametrize("name", FRICTION_MODELS)
 def test_without_vibration_every_closure_leaves_friction_alone(name: str) -> None:
     assert named(name, sine(0.0), SPEEDS) == approx([1, 1, 1], rel=1e-9)
 
 
-@pytest.mark.parametrize("name", FRICTION_CLOSURES)
+@pytest.mark.parametrize("name", FRICTION_MODELS)
 def test_speeds_come_back_in_their_shape_and_each_by_itself(name: str) -> None:
     motion, speeds = load_balanced_motion(CONTACT, sine(2.5e-6)), SPEEDS[:, np.newaxis] * [1.0, 2.0]
     together = named(name, motion, speeds)
@@ -131,7 +131,7 @@ def test_speeds_come_back_in_their_shape_and_each_by_itself(name: str) -> None:
     assert named(name, motion, speeds[1, 1]) == approx(together[1, 1], rel=1e-4)
 
 
-@pytest.mark.parametrize("name", FRICTION_CLOSURES)
+@pytest.mark.parametrize("name", FRICTION_MODELS)
 def test_where_a_period_begins_does_not_matter(name: str) -> None:
     motion = load_balanced_motion(CONTACT, sine(2.5e-6))
     later = GapMotion(

@@ -293,7 +293,7 @@ def test_unknown_stretches_add_no_work_and_are_told() -> None:
     t = seconds(10)
     force = np.where((t > 2) & (t < 4), np.nan, 1.0)
     work = frictional_work(time=t, friction_force=force, relative_velocity=np.full(t.size, 0.1))
-    assert work.measured_share == approx(0.8, abs=0.001)
+    assert work.measured_fraction == approx(0.8, abs=0.001)
     assert work.friction_force == approx(1.0)
 
 

@@ -66,7 +66,7 @@ def test_the_interval_is_students_by_hand(groove: Groove) -> None:
 def test_one_scan_is_no_ring(groove: Groove) -> None:
     with raises(InvalidInput, match="a ring needs two scans with a whole groove, got 1"):
         ring(groove, [3e-8])
-    cut = replace(groove, complete=False, doubt="cut")
+    cut = replace(groove, complete=False, caveat="cut")
     with raises(InvalidInput, match=r"got 1 \(scan 2: cut\)"):
         ring_of_grooves([groove, cut], groove_diameter=DIAMETER, sliding_distance=DISTANCE)
 

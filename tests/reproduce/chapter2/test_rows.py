@@ -136,9 +136,9 @@ def test_every_id_is_unique_and_every_row_says_how_it_was_computed() -> None:
 @pytest.mark.parametrize(
     "row", [row for row in ROWS.values() if row.verdict is Verdict.MISPRINT], ids=lambda row: row.id
 )
-def test_a_misprint_is_backed_by_a_doubt_and_computes_to_what_is_right(row: Row) -> None:
+def test_a_misprint_is_backed_by_a_correction_and_computes_to_what_is_right(row: Row) -> None:
     published = _published(row.id)
-    assert published.doubt
+    assert published.reason
     assert row.computed is not None
     widening = (row.published_high - row.published_low) / 2
     right = [_printed(number.low, number.high, published) for number in published.right]

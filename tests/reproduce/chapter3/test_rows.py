@@ -20,7 +20,7 @@ ROWS = {row.id: row for row in rows()}
         "3.1.4-separation-difference-steel",
         *[f"table-3.3-model-{row}" for row in (1, 2, 3)],
         *[f"table-3.4-model-{row}" for row in (1, 2, 3, 4, 5, 6)],
-        "table-3.2-combined-modulus-1",
+        "table-3.2-effective-modulus-1",
     ],
 )
 def test_the_printed_result_is_reproduced(name: str) -> None:

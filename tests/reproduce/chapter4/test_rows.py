@@ -80,7 +80,7 @@ def test_every_superimposed_speed_lies_within_two_percent() -> None:
     assert all(abs(row.relative_error or 0) < 0.02 for row in cells)
 
 
-def test_a_misprinted_number_is_computed_as_its_doubt_would_have_it() -> None:
+def test_a_misprinted_number_is_computed_as_its_correction_would_have_it() -> None:
     for row in ROWS.values():
         if row.verdict is Verdict.MISPRINT and (right := recorded_right(row)) is not None:
             assert computed(row.id) == approx(right, rel=5e-3)
@@ -90,8 +90,12 @@ def recorded_right(row: Row) -> float | None:
     if row.source.startswith("Table"):
         beginning, _, number = row.id.rpartition("-")
         column = beginning.removeprefix(f"table-{row.source[6:]}-").replace("-", "_")
-        doubts = table(row.source[6:]).doubts
-        texts = [doubt.right for doubt in doubts if (doubt.column, doubt.row) == (column, int(number) - 1)]
+        corrections = table(row.source[6:]).corrections
+        texts = [
+            correction.right
+            for correction in corrections
+            if (correction.column, correction.row) == (column, int(number) - 1)
+        ]
     else:
         texts = [] if row.id.endswith(("-from", "-to")) else [statement(row.id.partition("-by-")[0]).right]
     return float(texts[0]) if texts and texts[0].replace(".", "").isdigit() else None

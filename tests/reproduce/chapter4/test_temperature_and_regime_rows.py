@@ -11,7 +11,7 @@ from sonolube.reproduce.chapter4.temperature_tests import (
     TemperatureTest,
     history,
     speeds,
-    vibration_heat_share,
+    vibration_heat_fraction,
     vibration_heat_window,
 )
 from sonolube.reproduce.chapter4.thermal import thermal_rows
@@ -47,7 +47,7 @@ def test_the_share_lies_in_the_window_of_the_statements() -> None:
     low, high = vibration_heat_window()
     # 10 % of 0.1 x 3 N x 220 mm/s is 6.6 mW; 3.394 and 0.840 W by D 1.9
     assert (low, high) == approx((6.6e-3 / 3.3936, 6.6e-3 / 0.84023), rel=1e-3)
-    assert low < vibration_heat_share() < high
+    assert low < vibration_heat_fraction() < high
 
 
 def test_the_share_found_at_220_mm_s_warms_the_slowest_test_at_every_voltage() -> None:

@@ -29,7 +29,7 @@ def test_a_ring_of_the_section_is_the_groove_of_the_standard() -> None:
 
 
 def test_depth_is_missing_from_the_scan_and_nothing_else() -> None:
-    field = ScannedField(rms_height=0.0, missing_share=0.0)
+    field = ScannedField(rms_height=0.0, missing_fraction=0.0)
     made = generated_groove(SHAPE, track=STRAIGHT, seed=4, field=field)
     pixel = field.spacing_x * field.spacing_y
     gone = float(np.sum(made.unworn.height - made.scan.height)) * pixel
@@ -40,7 +40,7 @@ def test_the_field_has_the_tilt_the_waviness_the_roughness_and_the_holes_asked_f
     bare = GrooveShape(groove_width=1e-4, groove_depth=1e-15)
     tilted = generated_groove(bare, track=STRAIGHT, seed=1, field=ScannedField(waviness_amplitude=0.0, rms_height=0.0))
     assert np.ptp(tilted.unworn.height) == approx(5e-6)
-    assert tilted.scan.missing_share == approx(0.05, abs=0.005)
+    assert tilted.scan.missing_fraction == approx(0.05, abs=0.005)
     wavy = generated_groove(bare, track=STRAIGHT, seed=1, field=ScannedField(tilt=0.0, rms_height=0.0))
     assert np.ptp(wavy.unworn.height) == approx(2e-6, rel=1e-3)
     rough = generated_groove(bare, track=STRAIGHT, seed=1, field=ScannedField(tilt=0.0, waviness_amplitude=0.0))
@@ -48,7 +48,7 @@ def test_the_field_has_the_tilt_the_waviness_the_roughness_and_the_holes_asked_f
 
 
 def test_indentations_leave_the_mean_depth_over_whole_spacings() -> None:
-    shape = GrooveShape(groove_width=0.8e-3, groove_depth=60e-6, indentation_spacing=0.3e-3, indentation_share=0.2)
+    shape = GrooveShape(groove_width=0.8e-3, groove_depth=60e-6, indentation_spacing=0.3e-3, indentation_fraction=0.2)
     dented, even = (generated_groove(which, track=STRAIGHT, seed=0).wear_volume for which in (shape, SHAPE))
     assert dented == approx(even, rel=1e-6)
 

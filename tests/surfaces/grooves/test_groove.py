@@ -54,7 +54,7 @@ def test_a_groove_made_by_hand_is_measured_to_a_thousandth() -> None:
     assert groove.groove_depth == approx(50e-6, abs=0.5e-6)
     assert groove.track_length == approx(2.4e-3, rel=0.02)
     assert groove.complete
-    assert groove.doubt == ""
+    assert groove.caveat == ""
 
 
 @mark.parametrize("kind", ["straight", "curved", "off-centre"])
@@ -112,7 +112,7 @@ def test_material_that_sticks_in_the_groove_counts_as_piled_up() -> None:
 
 
 def test_indentations_are_no_waviness() -> None:
-    known = made(indentation_spacing=0.4e-3, indentation_share=0.1)
+    known = made(indentation_spacing=0.4e-3, indentation_fraction=0.1)
     assert measure_groove(known.scan).wear_volume == approx(known.wear_volume, rel=3e-3)
 
 
@@ -121,7 +121,7 @@ def test_a_groove_cut_by_the_field_is_measured_as_far_as_it_is_seen_and_says_so(
     known = made(groove_width=1.2e-3, groove_depth=60e-6, track=track)
     groove = measure_groove(known.scan)
     assert not groove.complete
-    assert "an edge of the groove lies outside the field" in groove.doubt
+    assert "an edge of the groove lies outside the field" in groove.caveat
     assert groove.wear_volume == approx(known.wear_volume, rel=5e-3)
 
 
@@ -131,13 +131,13 @@ def test_a_groove_across_a_corner_is_found() -> None:
     assert measure_groove(known.scan).wear_volume == approx(known.wear_volume, rel=5e-3)
 
 
-def test_half_a_scan_stands_for_the_rest_with_a_doubt() -> None:
+def test_half_a_scan_stands_for_the_rest_with_a_caveat() -> None:
     known = made()
     height = known.scan.height.copy()
     height[:, :125] = np.nan
     groove = measure_groove(known.scan.with_height(height))
     assert groove.wear_volume == approx(known.wear_volume, rel=5e-3)
-    assert "of the groove was not measured" in groove.doubt
+    assert "of the groove was not measured" in groove.caveat
 
 
 def test_debris_beside_the_groove_does_not_matter() -> None:
@@ -213,7 +213,7 @@ def test_a_flat_surface_has_no_groove() -> None:
 
 
 def test_sections_run_square_to_the_straightened_track() -> None:
-    known = made(field=ScannedField(rms_height=0.0, waviness_amplitude=0.0, missing_share=0.0))
+    known = made(field=ScannedField(rms_height=0.0, waviness_amplitude=0.0, missing_fraction=0.0))
     groove = measure_groove(known.scan)
     sections = groove.sections
     middle = sections.height[:, np.abs(sections.across) < 5e-6]
@@ -224,5 +224,5 @@ def test_sections_run_square_to_the_straightened_track() -> None:
 
 
 def test_an_exact_groove_is_measured_exactly() -> None:
-    known = made(field=ScannedField(tilt=0.0, rms_height=0.0, waviness_amplitude=0.0, missing_share=0.0))
+    known = made(field=ScannedField(tilt=0.0, rms_height=0.0, waviness_amplitude=0.0, missing_fraction=0.0))
     assert measure_groove(known.scan).wear_volume == approx(known.wear_volume, rel=1e-4)

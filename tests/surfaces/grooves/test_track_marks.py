@@ -12,7 +12,7 @@ TRACK = GrooveTrack(track_direction=0.3, track_curvature=1 / 29e-3, track_offset
 @mark.parametrize("speed", [20.3e-3, 40.6e-3, 87e-3])
 def test_the_spacing_of_indentations_is_speed_times_period(speed: float) -> None:
     spacing = float(indentation_spacing(sliding_speed=speed, period=0.01))  # D 2.4: 0.203, 0.406, 0.87 mm
-    shape = GrooveShape(groove_width=0.7e-3, groove_depth=60e-6, indentation_spacing=spacing, indentation_share=0.05)
+    shape = GrooveShape(groove_width=0.7e-3, groove_depth=60e-6, indentation_spacing=spacing, indentation_fraction=0.05)
     found = track_marks(measure_groove(generated_groove(shape, track=TRACK, seed=2, field=FIELD).scan))
     assert found.dot_spacing == approx(spacing, rel=0.01)
     assert found.dot_spacing_uncertainty is not None
@@ -29,7 +29,7 @@ def test_dots_of_the_vibration_show_where_pixels_are_fine_enough() -> None:
         rms_height=0.02e-6,
     )
     shape = GrooveShape(
-        groove_width=50e-6, groove_depth=2e-6, indentation_spacing=3.95e-6, indentation_share=0.05
+        groove_width=50e-6, groove_depth=2e-6, indentation_spacing=3.95e-6, indentation_fraction=0.05
     )  # 87 mm/s at 22 kHz
     track = GrooveTrack(track_direction=0.3, track_curvature=0.0, track_offset=0.0)
     found = track_marks(measure_groove(generated_groove(shape, track=track, seed=0, field=field).scan))

@@ -169,7 +169,7 @@ class _Plant:
     past: deque[float] = field(default_factory=deque)
 
     def friction(self, factor: float) -> float:
-        plant, share = self.loop.plant, self.loop.mode.meant_share
+        plant, share = self.loop.plant, self.loop.mode.meant_fraction
         volts = abs(self.envelope) / share
         return factor * float(np.interp(volts, plant.voltage_peak_to_peak, plant.friction_force))
 

@@ -42,17 +42,17 @@ class FrictionController:
     feed_forward: bool = True
 
     @property
-    def integral_share(self) -> float:
+    def integral_fraction(self) -> float:
         """Share of the error that the integral takes up in an interval."""
         return self.gains.proportional_gain * self.process.sample_interval / self.gains.integral_time
 
     @property
-    def windup_share(self) -> float:
+    def windup_fraction(self) -> float:
         """Share of what a limit cut off that the integral gives up in an interval."""
         return min(self.process.sample_interval / self.gains.integral_time, 1.0)
 
     @property
-    def lag_share(self) -> float:
+    def lag_fraction(self) -> float:
         """Share of the way to the command that the expected friction goes in an interval."""
         return 1 - self.process.decay
 
@@ -136,9 +136,9 @@ def next_voltage(controller: FrictionController, state: ControllerState, referen
     wanted = _interpolated(unreduced - command, controller.saved_force, controller.voltage_peak_to_peak)
     voltage = min(wanted, controller.voltage_maximum)
     given = unreduced - _interpolated(voltage, controller.voltage_peak_to_peak, controller.saved_force)
-    state.integral += controller.integral_share * error + controller.windup_share * (given - command)
+    state.integral += controller.integral_fraction * error + controller.windup_fraction * (given - command)
     newest = state.expected[-1]
-    state.expected.append(newest + controller.lag_share * (reference - newest))
+    state.expected.append(newest + controller.lag_fraction * (reference - newest))
     del state.expected[0]
     return voltage
 

@@ -27,9 +27,9 @@ def controller_source(controller: FrictionController, tracker: FrequencyTracker 
         "INTERVAL": (controller.process.sample_interval, "s"),
         "INTRINSIC_FRICTION": (controller.intrinsic_friction_force, "N"),
         "PROPORTIONAL_GAIN": (controller.gains.proportional_gain, "N/N"),
-        "INTEGRAL_SHARE": (controller.integral_share, "N/N per interval"),
-        "WINDUP_SHARE": (controller.windup_share, "N/N per interval"),
-        "LAG_SHARE": (controller.lag_share, "per interval"),
+        "INTEGRAL_SHARE": (controller.integral_fraction, "N/N per interval"),
+        "WINDUP_SHARE": (controller.windup_fraction, "N/N per interval"),
+        "LAG_SHARE": (controller.lag_fraction, "per interval"),
         "HIGHEST_VOLTAGE": (controller.voltage_maximum, "V peak to peak"),
     }
     defines = [f"#define SONOLUBE_{name} ({_number(value)}) /* {unit} */" for name, (value, unit) in values.items()]

@@ -108,7 +108,7 @@ class DraggedMotion:
         return float(np.ptp(self.friction_force[-self.time.size // 4 :]))
 
     @property
-    def stick_share(self) -> float:
+    def stick_fraction(self) -> float:
         """Share of the last quarter in which the mass rests on the belt."""
         return float(np.mean(self.sticking[-self.time.size // 4 :]))
 

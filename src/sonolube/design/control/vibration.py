@@ -75,7 +75,7 @@ class VibrationMode:
         return self.decay_rate + 2j * pi * (frequency - self.natural_frequency * (1 + shift))
 
     @property
-    def meant_share(self) -> float:
+    def meant_fraction(self) -> float:
         """Envelope over voltage at the frequency at which the drive is meant to run."""
         return abs(self.decay_rate / self.rate(self.frequency))
 

@@ -75,7 +75,7 @@ def sliding_means(
     law : Law
     given : ndarray, shape (p, 7)
         Columns ALPHA to RESTING: what `turned_circle` returns, angular frequency, in rad/s, dead load, in N, mean
-        displacement, in m, and `resting_place`.
+        displacement, in m, and `equilibrium_displacement`.
     harmonics : ndarray, shape (p, 2 room)
         Real and imaginary parts in turns, zero beyond `count`.
     count : ndarray of int, shape (p,)

@@ -83,7 +83,7 @@ def _by_cells(
 
 @numba.njit(**INSIDE)
 def contact_force(kind: Choice, damped: Choice, law: Law, load: float, resting: float, x: float, v: float) -> float:
-    """Return the contact force, in N, of a contact that rests where `resting_place` says."""
+    """Return the contact force, in N, of a contact that rests where `equilibrium_displacement` says."""
     if len(kind) == EXPONENTIAL:
         force = load * np.exp(min(-x / law.parameter, LARGEST_EXPONENT))
     elif len(kind) == HERTZ:

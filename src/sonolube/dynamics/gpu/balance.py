@@ -73,7 +73,7 @@ def write_spectrum(
 def write_residual(
     load: float,
     static_stiffness: float,
-    free_mean: float,
+    static_displacement: float,
     unknown: Floats,
     answer: Floats,
     linear: Floats,
@@ -82,7 +82,7 @@ def write_residual(
     step: Floats,
 ) -> None:
     """Write minus the residual of every equation."""
-    step[0, 0] = spectrum[0, 0] - load - static_stiffness * (unknown[0, 0] - free_mean)
+    step[0, 0] = spectrum[0, 0] - load - static_stiffness * (unknown[0, 0] - static_displacement)
     step[1, 0] = 0.0
     for k in range(1, h + 1):
         g_re, g_im, re, im = answer[0, k], answer[1, k], spectrum[0, k], spectrum[1, k]
@@ -188,7 +188,7 @@ def balance(
     load: float,
     length: float,
     static_stiffness: float,
-    free_mean: float,
+    static_displacement: float,
     answer: Floats,
     linear: Floats,
     h: int,
@@ -206,7 +206,7 @@ def balance(
     for iteration in range(iterations):
         final = final or iteration == iterations - 1
         write_spectrum(load, length, unknown, h, count, 2 * h if final else h + n, spectrum)
-        write_residual(load, static_stiffness, free_mean, unknown, answer, linear, spectrum, h, step)
+        write_residual(load, static_stiffness, static_displacement, unknown, answer, linear, spectrum, h, step)
         write_step(static_stiffness, length, answer, spectrum, h, n, matrix, step)
         size, scale = advance(unknown, step, h, length)
         taken += 1

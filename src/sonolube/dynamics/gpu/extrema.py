@@ -105,7 +105,7 @@ def crossing(unknown: Floats, h: int, level: float, upper: float, lower: float) 
 
 
 @on_device
-def lost_share(unknown: Floats, h: int, beyond: float, upper: float, high: float, lower: float, low: float) -> float:
+def loss_fraction(unknown: Floats, h: int, beyond: float, upper: float, high: float, lower: float, low: float) -> float:
     """Return the share of the period beyond a displacement, given the turns."""
     if low >= beyond:
         return 1.0

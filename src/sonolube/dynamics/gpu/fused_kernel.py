@@ -16,7 +16,7 @@ from sonolube.checks import Floats
 from sonolube.dynamics.gap_law import LOST
 from sonolube.dynamics.gpu.balance import MATRIX, MOST_HARMONICS, ORDERS, ROOM, balance, verdict, write_linear_part
 from sonolube.dynamics.gpu.device import cuda, on_device
-from sonolube.dynamics.gpu.extrema import lost_share, turn, two_turns
+from sonolube.dynamics.gpu.extrema import loss_fraction, turn, two_turns
 from sonolube.dynamics.gpu.floquet_exponent import FREE, SQUARES, growth_rate
 from sonolube.dynamics.gpu.friction_average import SPEEDS, write_means
 from sonolube.dynamics.gpu.initial_guess import sine_amplitudes, sine_balance, sine_orders
@@ -69,14 +69,14 @@ def place_guess(
     length: float,
     load: float,
     static_stiffness: float,
-    free_mean: float,
+    static_displacement: float,
     amplitude: float,
     answer: Floats,
     linear: Floats,
     unknown: Floats,
 ) -> None:
     """Write mean and first harmonic of the motion with one harmonic and this amplitude."""
-    mean, force = sine_balance(length, load, static_stiffness, free_mean, amplitude)
+    mean, force = sine_balance(length, load, static_stiffness, static_displacement, amplitude)
     for k in range(ROOM):
         unknown[0, k], unknown[1, k] = 0.0, 0.0
     unknown[0, 0] = mean
@@ -128,7 +128,7 @@ def write_measures(
     measures[HIGHEST_FORCE, point] = load * math.exp(min(-low / length, 700.0))
     measures[LOWEST_FORCE, point] = load * math.exp(min(-high / length, 700.0))
     beyond = -length * math.log(LOST)
-    measures[SHARE_LOST, point] = lost_share(unknown, h, beyond, upper, high, lower, low)
+    measures[SHARE_LOST, point] = loss_fraction(unknown, h, beyond, upper, high, lower, low)
 
 
 @on_device
@@ -200,12 +200,14 @@ def steady_points(
     spectrum, work = cuda.local.array((2, ORDERS), float64), cuda.local.array(_WORK, float64)
     free_motion, sums = cuda.local.array(FREE, float64), cuda.local.array((2, SPEEDS), float64)
     static_stiffness, capacitance, length, tolerance = constants[0], constants[1], constants[2], constants[3]
-    omega, load, free_mean = settings[0, point], settings[1, point], settings[2, point]
+    omega, load, static_displacement = settings[0, point], settings[1, point], settings[2, point]
     drives = voltage.shape[0] // 2
 
     write_linear_part(pairs, voltage, point, omega, 0, 1, answer, linear)
     free = math.sqrt(linear[0, 1] ** 2 + linear[1, 1] ** 2)
-    lowest, highest = sine_amplitudes(length, load, static_stiffness, free_mean, answer[0, 1], answer[1, 1], free)
+    lowest, highest = sine_amplitudes(
+        length, load, static_stiffness, static_displacement, answer[0, 1], answer[1, 1], free
+    )
     whole[0, point] = AMBIGUOUS
     if highest > lowest * (1 + _DISTINCT):
         return
@@ -218,13 +220,13 @@ def steady_points(
         write_linear_part(pairs, voltage, point, omega, known, h, answer, linear)
         known = max(known, h)
         if outcome == DIVERGED:
-            place_guess(length, load, static_stiffness, free_mean, amplitude, answer, linear, unknown)
+            place_guess(length, load, static_stiffness, static_displacement, amplitude, answer, linear, unknown)
         iterations = _ITERATIONS + 4 * attempt
         size, scale, taken = balance(
             load,
             length,
             static_stiffness,
-            free_mean,
+            static_displacement,
             answer,
             linear,
             h,
@@ -252,7 +254,7 @@ def steady_points(
         return
     whole[0, point] = DONE
     measures[MEAN, point] = unknown[0, 0]
-    measures[MEAN_FORCE, point] = load + static_stiffness * (unknown[0, 0] - free_mean)
+    measures[MEAN_FORCE, point] = load + static_stiffness * (unknown[0, 0] - static_displacement)
     write_motion(pairs, capacitance, omega, voltage, unknown, spectrum, h, point, harmonics, charge)
     write_measures(load, length, unknown, h, upper, lower, point, measures)
     if stability:

@@ -42,18 +42,18 @@ def bessel_logarithm(beta: float) -> float:
 
 @on_device
 def sine_balance(
-    length: float, load: float, static_stiffness: float, free_mean: float, amplitude: float
+    length: float, load: float, static_stiffness: float, static_displacement: float, amplitude: float
 ) -> tuple[float, float]:
     """Return the mean that balances a sinusoidal motion, and the amplitude of the contact force opposing it."""
     beta = amplitude / length
     rise, opposing = bessel_logarithm(beta), 2 * bessel_ratio(beta)
     if static_stiffness == 0.0:
         return length * rise, load * opposing
-    lower, upper = min(free_mean, 0.0), max(free_mean, amplitude)
+    lower, upper = min(static_displacement, 0.0), max(static_displacement, amplitude)
     mean, small = lower, 1e-6 * (amplitude + 1e-3 * length)
     force = load * math.exp(min(rise - mean / length, _LARGEST))
     for _ in range(60):
-        excess = static_stiffness * (mean - free_mean) - (force - load)
+        excess = static_stiffness * (mean - static_displacement) - (force - load)
         if excess < 0:
             lower = mean
         else:
@@ -73,42 +73,48 @@ def required(
     length: float,
     load: float,
     static_stiffness: float,
-    free_mean: float,
+    static_displacement: float,
     g_re: float,
     g_im: float,
     amplitude: float,
 ) -> tuple[float, float]:
     """Return the free amplitude that an amplitude needs, |a + G force(a)|, and the force."""
-    force = sine_balance(length, load, static_stiffness, free_mean, amplitude)[1]
+    force = sine_balance(length, load, static_stiffness, static_displacement, amplitude)[1]
     re, im = amplitude + g_re * force, g_im * force
     return math.sqrt(re * re + im * im), force
 
 
 @on_device
 def sine_amplitudes(
-    length: float, load: float, static_stiffness: float, free_mean: float, g_re: float, g_im: float, free: float
+    length: float,
+    load: float,
+    static_stiffness: float,
+    static_displacement: float,
+    g_re: float,
+    g_im: float,
+    free: float,
 ) -> tuple[float, float]:
     """Return the lowest and highest amplitude that balances with one harmonic."""
     if free == 0.0:
         return free, free
     size = math.sqrt(g_re * g_re + g_im * g_im)
     small = 1e-3 * length
-    at_rest = sine_balance(length, load, static_stiffness, free_mean, small)[1] / small
-    force = sine_balance(length, load, static_stiffness, free_mean, free)[1]
+    at_rest = sine_balance(length, load, static_stiffness, static_displacement, small)[1] / small
+    force = sine_balance(length, load, static_stiffness, static_displacement, free)[1]
     if size * max(at_rest, force / free) < WEAK:
         amplitude = free
         for _ in range(3):
             re, im = 1 + g_re * force / amplitude, g_im * force / amplitude
             amplitude = free / math.sqrt(re * re + im * im)
-            force = sine_balance(length, load, static_stiffness, free_mean, amplitude)[1]
+            force = sine_balance(length, load, static_stiffness, static_displacement, amplitude)[1]
         return amplitude, amplitude
     largest = 1.1 * free + small
     for _ in range(60):
-        needed, force = required(length, load, static_stiffness, free_mean, g_re, g_im, largest)
+        needed, force = required(length, load, static_stiffness, static_displacement, g_re, g_im, largest)
         if needed > free and largest > size * force:
             break
         largest *= 1.5
-    return scanned_amplitudes(length, load, static_stiffness, free_mean, g_re, g_im, free, largest)
+    return scanned_amplitudes(length, load, static_stiffness, static_displacement, g_re, g_im, free, largest)
 
 
 @on_device
@@ -116,7 +122,7 @@ def scanned_amplitudes(
     length: float,
     load: float,
     static_stiffness: float,
-    free_mean: float,
+    static_displacement: float,
     g_re: float,
     g_im: float,
     free: float,
@@ -128,10 +134,10 @@ def scanned_amplitudes(
     spread = math.asinh(largest / length)
     for i in range(1, _GRID + 1):
         upper = length * math.sinh(spread * i / _GRID)
-        excess = required(length, load, static_stiffness, free_mean, g_re, g_im, upper)[0] - free
+        excess = required(length, load, static_stiffness, static_displacement, g_re, g_im, upper)[0] - free
         if short < 0 and excess >= 0:
             highest = sine_root(
-                length, load, static_stiffness, free_mean, g_re, g_im, free, lower, short, upper, excess
+                length, load, static_stiffness, static_displacement, g_re, g_im, free, lower, short, upper, excess
             )
             if not found:
                 lowest, found = highest, True
@@ -144,7 +150,7 @@ def sine_root(
     length: float,
     load: float,
     static_stiffness: float,
-    free_mean: float,
+    static_displacement: float,
     g_re: float,
     g_im: float,
     free: float,
@@ -157,7 +163,7 @@ def sine_root(
     middle, above = upper, False
     for _ in range(12):
         middle = (lower * excess - upper * short) / (excess - short)
-        value = required(length, load, static_stiffness, free_mean, g_re, g_im, middle)[0] - free
+        value = required(length, load, static_stiffness, static_displacement, g_re, g_im, middle)[0] - free
         if value > 0:
             upper, excess = middle, value
             short *= 0.5 if above else 1.0

@@ -62,7 +62,7 @@ def solve_on_gpu(
     omega: Floats,
     load: Floats,
     voltage: Complexes,
-    free_mean: Floats,
+    static_displacement: Floats,
     *,
     speeds: Floats,
     least: int,
@@ -76,7 +76,7 @@ def solve_on_gpu(
     ----------
     port : ContactPort
     law : Law
-    omega, load, free_mean : ndarray, shape (p,)
+    omega, load, static_displacement : ndarray, shape (p,)
         Angular frequency, in rad/s, dead load, in N, and mean displacement without contact, in m.
     voltage : ndarray of complex, shape (p, K)
         Harmonics of the drive, in V.
@@ -101,7 +101,7 @@ def solve_on_gpu(
     choices = (least, falling, stability, speeds.size > 0)
     crowded = crowded_levels(max(_SHARE * tolerance, 1e-7))
     asked = speeds if speeds.size else np.ones(1)
-    settings = np.stack([omega, load, free_mean])
+    settings = np.stack([omega, load, static_displacement])
     drive = np.ascontiguousarray(voltage).view(np.float64).reshape(omega.size, -1).T
     measures, harmonics = np.empty((rows.MEASURES, omega.size)), np.empty((2 * MOST_HARMONICS, omega.size))
     charge, means = np.empty(drive.shape), np.empty((2, asked.size, omega.size))

@@ -50,7 +50,7 @@ def law_of(gap_law: GapLaw) -> tuple[Compiled, Law]:
     return chosen, Law(parameter, gap_law.force_damping, cells)
 
 
-def resting_place(gap_law: GapLaw, load: Floats) -> Floats:
+def equilibrium_displacement(gap_law: GapLaw, load: Floats) -> Floats:
     """Return where the contact rests under a dead load: a sphere's approach, in m, or cells from a table's start."""
     if isinstance(gap_law, HertzGap):
         return np.asarray((load / gap_law.coefficient) ** (2 / 3))
@@ -87,7 +87,7 @@ def contact_rows(
         As of `Compiled`.
     law : Law
     load, resting : ndarray, shape (lanes,)
-        Dead load, in N, and `resting_place`.
+        Dead load, in N, and `equilibrium_displacement`.
     x, v : ndarray, shape (lanes,)
         Displacement, in m, and velocity, in m/s; the latter is not read without damping.
     results : ndarray, shape (3, lanes)

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from sonolube.checks import Complexes, Floats, Integers
 from sonolube.dynamics.gap_law import GapLaw
-from sonolube.dynamics.harmonic_balance.contact_kernel import law_of, resting_place
+from sonolube.dynamics.harmonic_balance.contact_kernel import equilibrium_displacement, law_of
 from sonolube.dynamics.harmonic_balance.floquet_kernel import SQUARINGS, growth_rates, period_room
 from sonolube.dynamics.harmonic_balance.receptance import ContactPort
 from sonolube.dynamics.kernels.simd import LANES
@@ -37,7 +37,7 @@ def growth(
     chosen = np.lexsort((count, kicks))
     first = np.arange(0, chosen.size, LANES)  # of each block of lanes, which all take as many kicks
     kicks[chosen] = np.repeat(np.maximum.reduceat(kicks[chosen], first), LANES)[: chosen.size]
-    given = np.stack([omega, load, resting_place(gap_law, load), mean], axis=1)
+    given = np.stack([omega, load, equilibrium_displacement(gap_law, load), mean], axis=1)
     free = _free_motion(port, 2 * np.pi / (kicks * omega))
     room, (powers, norms) = period_room(2 * port.trace.size, int(count.max(initial=0))), np.empty((2, omega.size))
     pairs = _pair_columns(port)

@@ -85,7 +85,8 @@ def growth_rates(
     pairs : ndarray, shape (m, 6)
         Columns PUSH, SEE and MOVE of every pair.
     given : ndarray, shape (p, 4)
-        Columns OMEGA to MEAN: angular frequency, in rad/s, dead load, in N, `resting_place`, mean displacement, in m.
+        Columns OMEGA to MEAN: angular frequency, in rad/s, dead load, in N, `equilibrium_displacement`, mean
+        displacement, in m.
     free : ndarray, shape (p, 4 m)
         Row by row of each pair, exp(A duration) for the time between two kicks.
     harmonics : ndarray, shape (p, 2 room)

@@ -37,7 +37,7 @@ class _Sines(NamedTuple):
     gap_law: GapLaw
     static_stiffness: float
     load: Floats  # (p,)
-    free_mean: Floats
+    static_displacement: Floats
     length: Floats  # over which the contact changes
     receptance: Complexes
     free: Floats  # amplitude without contact
@@ -51,7 +51,7 @@ def first_guess(
     gap_law: GapLaw,
     omega: Floats,
     load: Floats,
-    free_mean: Floats,
+    static_displacement: Floats,
     free: Complexes,
     *,
     tolerance: float,
@@ -63,7 +63,7 @@ def first_guess(
     ----------
     port : ContactPort
     gap_law : GapLaw
-    omega, load, free_mean : ndarray, shape (p,)
+    omega, load, static_displacement : ndarray, shape (p,)
         Angular frequency, in rad/s, dead load, in N, and mean displacement without contact, in m.
     free : ndarray of complex, shape (p, K)
         Harmonics of the displacement without contact, in m.
@@ -78,7 +78,7 @@ def first_guess(
     """
     length, own = np.minimum(length_of_change(gap_law, load), _LONG), free[:, 0]
     answer = receptance(port, 0, omega)
-    sines = _Sines(gap_law, port.static_stiffness, load, free_mean, length, answer, np.abs(own))
+    sines = _Sines(gap_law, port.static_stiffness, load, static_displacement, length, answer, np.abs(own))
     lower, upper = _balanced_amplitudes(sines)
     mean, force = _balanced_mean(sines, upper if highest else lower)
     amplitude = upper if highest else lower
@@ -192,7 +192,7 @@ def _held_mean(sines: _Sines, floating: Floats) -> tuple[Floats, Floats]:
     which is Wright's omega function.
     """
     spring = sines.static_stiffness * sines.length
-    unloaded = sines.free_mean - sines.load / sines.static_stiffness
+    unloaded = sines.static_displacement - sines.load / sines.static_stiffness
     stretch = wrightomega(np.log(sines.load / spring) + (floating - unloaded) / sines.length)
     return unloaded + sines.length * stretch, spring * stretch
 
@@ -200,14 +200,14 @@ def _held_mean(sines: _Sines, floating: Floats) -> tuple[Floats, Floats]:
 def _searched_mean(sines: _Sines, amplitude: Floats) -> tuple[Floats, Floats]:
     """Return what `_balanced_mean` does, by Newton's method in a bracket."""
     floating = sines.static_stiffness == 0.0
-    lower = np.zeros_like(amplitude) if floating else np.minimum(sines.free_mean, 0.0)
-    upper = amplitude.copy() if floating else np.maximum(sines.free_mean, amplitude)
+    lower = np.zeros_like(amplitude) if floating else np.minimum(sines.static_displacement, 0.0)
+    upper = amplitude.copy() if floating else np.maximum(sines.static_displacement, amplitude)
     mean, opposing = lower.copy(), np.zeros_like(amplitude)
     left, own = np.arange(mean.size), sines
     for _ in range(60):
         with np.errstate(over="ignore"):
             force, opposing[left], slope = _force_moments(own, mean[left], amplitude[left])
-        excess = own.static_stiffness * (mean[left] - own.free_mean) - (force - own.load)
+        excess = own.static_stiffness * (mean[left] - own.static_displacement) - (force - own.load)
         short = excess < 0
         lower[left[short]], upper[left[~short]] = mean[left[short]], mean[left[~short]]
         with np.errstate(divide="ignore", invalid="ignore"):

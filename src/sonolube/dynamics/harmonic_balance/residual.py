@@ -49,7 +49,7 @@ class PointEquations:
         return static_contact(self.structure).static_stiffness
 
     @cached_property
-    def free_mean(self) -> float:
+    def static_displacement(self) -> float:
         """Mean displacement of the contact without contact force, in m."""
         return (static_contact(self.structure).displacement_per_volt or 0.0) * self.voltage_offset
 
@@ -171,7 +171,7 @@ class Balance:
     def residual(self) -> Floats:
         """What is left of each equation."""
         own, (mean, harmonics) = self.equations, self.equations.unstack(self.unknowns)
-        static = own.static_stiffness * (mean - own.free_mean) - (float(self.force.mean()) - own.normal_load)
+        static = own.static_stiffness * (mean - own.static_displacement) - (float(self.force.mean()) - own.normal_load)
         return own.stack(static, harmonics - self.coordinates @ own.structure.contact_vector)
 
     @cached_property

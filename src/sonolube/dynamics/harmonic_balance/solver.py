@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from sonolube.checks import Complexes, Floats, Integers
 from sonolube.dynamics.gap_law import GapLaw, length_of_change
-from sonolube.dynamics.harmonic_balance.contact_kernel import law_of, resting_place
+from sonolube.dynamics.harmonic_balance.contact_kernel import equilibrium_displacement, law_of
 from sonolube.dynamics.harmonic_balance.extrema import measure
 from sonolube.dynamics.harmonic_balance.floquet_exponent import GROWTH, growth, too_slow
 from sonolube.dynamics.harmonic_balance.harmonic_kernel import (
@@ -62,7 +62,7 @@ class Solutions(NamedTuple):
     force: Floats
     lost: Floats
     growing: NDArray[np.bool_]
-    rival_amplitude: Floats
+    coexisting_amplitude: Floats
     count: Integers  # type: ignore[assignment]
 
 
@@ -72,7 +72,7 @@ def solve(
     omega: Floats,
     load: Floats,
     voltage: Complexes,
-    free_mean: Floats,
+    static_displacement: Floats,
     *,
     least: int,
     falling: bool,
@@ -85,7 +85,7 @@ def solve(
     ----------
     port : ContactPort
     gap_law : GapLaw
-    omega, load, free_mean : ndarray, shape (p,)
+    omega, load, static_displacement : ndarray, shape (p,)
         Angular frequency, in rad/s, dead load, in N, and mean displacement without contact, in m.
     voltage : ndarray of complex, shape (p, K)
         Harmonics of the drive, in V.
@@ -103,7 +103,7 @@ def solve(
     Solutions
     """
     free = _of_orders(port, 1, omega, voltage.shape[1]) * voltage
-    drive = (omega, load, free_mean, free)
+    drive = (omega, load, static_displacement, free)
     guess = first_guess(port, gap_law, *drive, tolerance=TAIL * tolerance, highest=falling)
     resolution = guess.resolution
     if least > 1:
@@ -123,12 +123,15 @@ def _of_orders(port: ContactPort, which: int, omega: Floats, orders: int) -> Com
 
 
 def _points(
-    gap_law: GapLaw, omega: Floats, load: Floats, free_mean: Floats, free: Complexes, guess: FirstGuess
+    gap_law: GapLaw, omega: Floats, load: Floats, static_displacement: Floats, free: Complexes, guess: FirstGuess
 ) -> Vibrations:
     room = max(int(guess.resolution.harmonics.max()), free.shape[1])
     harmonics = np.zeros((omega.size, room), dtype=np.complex128)
     harmonics[:, 0] = guess.harmonic
-    given = np.stack([omega, load, length_of_change(gap_law, load), resting_place(gap_law, load), free_mean], axis=1)
+    given = np.stack(
+        [omega, load, length_of_change(gap_law, load), equilibrium_displacement(gap_law, load), static_displacement],
+        axis=1,
+    )
     return Vibrations(given, free, guess.mean, harmonics, np.zeros_like(free))
 
 
@@ -193,9 +196,9 @@ def _up_the_ramp(
 ) -> Vibrations:
     """Follow the remaining points from a low voltage in small steps."""
     lost = np.flatnonzero(~solved)
-    omega, load, free_mean = points.given[lost][:, [OMEGA, LOAD, FREE_MEAN]].T
+    omega, load, static_displacement = points.given[lost][:, [OMEGA, LOAD, FREE_MEAN]].T
     free = points.free[lost]
-    drive = (omega, load, free_mean, free / _RAMP)
+    drive = (omega, load, static_displacement, free / _RAMP)
     guess = first_guess(port, gap_law, *drive, tolerance=TAIL * tolerance, highest=False)
     part, own = _points(gap_law, *drive, guess), guess.resolution
     good = np.zeros(lost.size, dtype=bool)
@@ -223,7 +226,7 @@ def _measured(
     solved: NDArray[np.bool_],
     stability: bool,
 ) -> Solutions:
-    omega, load, free_mean = points.given[:, [OMEGA, LOAD, FREE_MEAN]].T
+    omega, load, static_displacement = points.given[:, [OMEGA, LOAD, FREE_MEAN]].T
     if stability:
         solved &= ~too_slow(port, omega)
     points.mean[~solved], points.harmonics[~solved] = 0.0, 0.0
@@ -239,7 +242,7 @@ def _measured(
     found = Solutions(
         points.mean,
         np.ascontiguousarray(points.harmonics[:, :width]),
-        load + port.static_stiffness * (points.mean - free_mean),
+        load + port.static_stiffness * (points.mean - static_displacement),
         charge,
         measures.amplitude,
         measures.turns,
@@ -267,11 +270,11 @@ def _find_rivals(
     found: Solutions,
 ) -> None:
     """Where one harmonic has two solutions, look for the other one and write its amplitude if it is there to stay."""
-    omega, load, free_mean = points.given[double][:, [OMEGA, LOAD, FREE_MEAN]].T
-    drive = (omega, load, free_mean, points.free[double])
+    omega, load, static_displacement = points.given[double][:, [OMEGA, LOAD, FREE_MEAN]].T
+    drive = (omega, load, static_displacement, points.free[double])
     guess = first_guess(port, gap_law, *drive, tolerance=TAIL * tolerance, highest=not falling)
     other, solved = _refine(port, gap_law, _points(gap_law, *drive, guess), guess.resolution, tolerance)
     rivals = _measured(port, gap_law, other, voltage[double], guess.resolution, solved, stability)
     own = found.amplitude[double]
     real = solved & ~rivals.growing & (np.abs(rivals.amplitude - own) > _DISTINCT * own)
-    found.rival_amplitude[double[real]] = rivals.amplitude[real]
+    found.coexisting_amplitude[double[real]] = rivals.amplitude[real]

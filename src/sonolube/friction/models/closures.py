@@ -50,7 +50,10 @@ def as_published(contact: RoughContact, motion: GapMotion, *, sliding_speed: Arr
     d = open_separation(contact, motion)
     at_rest = tangential_stiffness(contact, separation=d)
     return _directed_mean(
-        lambda x: tangential_stiffness(contact, separation=d + x) / at_rest, motion, sliding_speed, amplitude_share=1.0
+        lambda x: tangential_stiffness(contact, separation=d + x) / at_rest,
+        motion,
+        sliding_speed,
+        amplitude_fraction=1.0,
     )
 
 
@@ -126,7 +129,7 @@ def load_balanced(contact: RoughContact, motion: GapMotion, *, sliding_speed: Ar
 
 
 def kinematic(
-    contact: RoughContact, motion: GapMotion, *, sliding_speed: ArrayLike, amplitude_share: ArrayLike = 1.0
+    contact: RoughContact, motion: GapMotion, *, sliding_speed: ArrayLike, amplitude_fraction: ArrayLike = 1.0
 ) -> Floats:
     """Return friction with vibration over friction without: the direction of the motion alone. []
 
@@ -137,7 +140,7 @@ def kinematic(
     motion : GapMotion
     sliding_speed : array_like, any shape
         Mean speed of the sliding. [m/s]
-    amplitude_share : float
+    amplitude_fraction : float
         Share of the motion that acts; of any other value than 1 only a fit can tell. []
 
     Returns
@@ -157,11 +160,11 @@ def kinematic(
     ----------
     .. [1] D 3.46, with the resultant where v_1 is printed.
     """
-    share = float(require_positive(amplitude_share=amplitude_share))
-    return _directed_mean(np.ones_like, motion, sliding_speed, amplitude_share=share)
+    share = float(require_positive(amplitude_fraction=amplitude_fraction))
+    return _directed_mean(np.ones_like, motion, sliding_speed, amplitude_fraction=share)
 
 
-FRICTION_CLOSURES: Mapping[str, Callable[..., Floats]] = MappingProxyType(
+FRICTION_MODELS: Mapping[str, Callable[..., Floats]] = MappingProxyType(
     {
         "as_published": as_published,
         "separating_half_period": separating_half_period,
@@ -175,11 +178,13 @@ FRICTION_CLOSURES: Mapping[str, Callable[..., Floats]] = MappingProxyType(
 
 
 def _directed_mean(
-    weight: Callable[[Floats], Floats], motion: GapMotion, sliding_speed: ArrayLike, *, amplitude_share: float
+    weight: Callable[[Floats], Floats], motion: GapMotion, sliding_speed: ArrayLike, *, amplitude_fraction: float
 ) -> Floats:
     v_r = require_positive(sliding_speed=sliding_speed)
     return converged_mean(
-        lambda sampled: _weighted_cosine(weight(sampled.displacement), amplitude_share * sampled.velocity, v_r.ravel()),
+        lambda sampled: _weighted_cosine(
+            weight(sampled.displacement), amplitude_fraction * sampled.velocity, v_r.ravel()
+        ),
         motion,
     ).reshape(v_r.shape)
 

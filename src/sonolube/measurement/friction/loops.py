@@ -28,7 +28,7 @@ class FrictionWork:
         Slid in all, whatever the direction, where both are known. [m]
     friction_force : float
         Work over distance. [N]
-    measured_share : float
+    measured_fraction : float
         Share of the time in which both are known; the work of the rest is missing.
     """
 
@@ -37,7 +37,7 @@ class FrictionWork:
     frictional_work: Floats
     sliding_distance: float
     friction_force: float
-    measured_share: float
+    measured_fraction: float
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -56,7 +56,7 @@ class FrictionLoops:
         There and back. [m]
     friction_force : ndarray, shape (cycles,)
         Work over distance. [N]
-    measured_share : ndarray, shape (cycles,)
+    measured_fraction : ndarray, shape (cycles,)
         Share of the cycle in which force and velocity are known.
     """
 
@@ -65,7 +65,7 @@ class FrictionLoops:
     frictional_work: Floats
     sliding_distance: Floats
     friction_force: Floats
-    measured_share: Floats
+    measured_fraction: Floats
 
 
 def frictional_work(*, time: ArrayLike, friction_force: ArrayLike, relative_velocity: ArrayLike) -> FrictionWork:
@@ -103,7 +103,7 @@ def frictional_work(*, time: ArrayLike, friction_force: ArrayLike, relative_velo
         frictional_work=work,
         sliding_distance=float(distance[-1]),
         friction_force=float(work[-1] / distance[-1]),
-        measured_share=float(known[-1] / (t[-1] - t[0])),
+        measured_fraction=float(known[-1] / (t[-1] - t[0])),
     )
 
 
@@ -151,7 +151,7 @@ def friction_loops(*, time: ArrayLike, friction_force: ArrayLike, relative_veloc
         frictional_work=area,
         sliding_distance=slid,
         friction_force=np.divide(area, slid, out=np.full(area.size, np.nan), where=slid > 0),
-        measured_share=np.diff(known[at]) / np.diff(turns),
+        measured_fraction=np.diff(known[at]) / np.diff(turns),
     )
 
 

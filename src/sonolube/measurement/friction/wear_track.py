@@ -148,7 +148,7 @@ def ring_of_grooves(grooves: Sequence[Groove | str], *, groove_diameter: float, 
     require_positive(groove_diameter=groove_diameter, sliding_distance=sliding_distance)
     whole = [groove for groove in grooves if isinstance(groove, Groove) and groove.complete]
     left_out = tuple(
-        f"scan {place}: {groove if isinstance(groove, str) else groove.doubt}"
+        f"scan {place}: {groove if isinstance(groove, str) else groove.caveat}"
         for place, groove in enumerate(grooves, start=1)
         if isinstance(groove, str) or not groove.complete
     )

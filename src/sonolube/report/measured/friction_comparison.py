@@ -58,7 +58,7 @@ def _reduction(on: Sequence[float], off: Sequence[float]) -> Part:
     ratio = ratio_interval(on, off)
     interval = (1 - ratio.upper, 1 - ratio.lower) if ratio.bounded else None
     value = known("friction_reduction", 1 - ratio.ratio, interval=interval)
-    return Part(values=(value,), doubts=(ratio.reason,) if ratio.reason else ())
+    return Part(values=(value,), caveats=(ratio.reason,) if ratio.reason else ())
 
 
 def _significance(on: Sequence[float], off: Sequence[float]) -> Part:
@@ -72,10 +72,10 @@ def _significance(on: Sequence[float], off: Sequence[float]) -> Part:
             unit="",
         ),
     )
-    doubts: tuple[str, ...] = ()
+    caveats: tuple[str, ...] = ()
     if found.smallest_permutation_p > 1 - found.confidence_level:
-        doubts = (
+        caveats = (
             f"{len(on)} and {len(off)} tests cannot tell a difference at {found.confidence_level:.0%} without assuming"
             f" normal scatter: the chance is {found.smallest_permutation_p:.2g} at the least",
         )
-    return Part(values=values, doubts=doubts)
+    return Part(values=values, caveats=caveats)

@@ -85,9 +85,9 @@ def groove_sheet(path: Path, *, settings: SurfaceSettings) -> tuple[Sheet, Groov
     ]
     if groove.track.groove_diameter < _STRAIGHT * groove.track_length:
         values.append(known("groove_diameter", groove.track.groove_diameter, label="Diameter of the track's arc"))
-    doubts = (groove.doubt,) if groove.doubt else ()
+    caveats = (groove.caveat,) if groove.caveat else ()
     parts = [
-        Part(values=tuple(values), figures=_figures(groove), doubts=doubts),
+        Part(values=tuple(values), figures=_figures(groove), caveats=caveats),
         attempted(partial(_marks, groove), what="marks along the track"),
     ]
     return sheet_of(parts, title=f"{path.parent.name}/{path.name}", source=surface_source(file)), groove
@@ -158,7 +158,7 @@ def ring_sheet(
         caption="Area of the mean section of each scan; the line is the mean, the band its 95 % interval.",
         draw=partial(figures.ring, ring),
     )
-    part = Part(values=tuple(values), tables=(table,), figures=(drawn,), doubts=ring.left_out)
+    part = Part(values=tuple(values), tables=(table,), figures=(drawn,), caveats=ring.left_out)
     return sheet_of([part], title=title, source={}), ring
 
 
@@ -175,12 +175,14 @@ def wear_reduction_sheet(without: Sequence[WearRing], with_vibration: Sequence[W
     Sheet
     """
     found: WearReduction = wear_reduction_of_rings(without, with_vibration)
-    doubts: tuple[str, ...] = ()
+    caveats: tuple[str, ...] = ()
     if not found.between_specimens:
-        doubts = ("the interval knows the scatter round each ring only, not that between specimens: wear more of them",)
+        caveats = (
+            "the interval knows the scatter round each ring only, not that between specimens: wear more of them",
+        )
     value = known("wear_reduction", found.wear_reduction, interval=found.interval)
     title = f"{len(with_vibration)} ring with vibration against {len(without)} without"
-    return sheet_of([Part(values=(value,), doubts=doubts)], title=title, source={})
+    return sheet_of([Part(values=(value,), caveats=caveats)], title=title, source={})
 
 
 def cap_sheet(path: Path, *, settings: SurfaceSettings, tip_radius: float | None) -> Sheet:

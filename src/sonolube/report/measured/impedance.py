@@ -105,7 +105,7 @@ def _circuit(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings) -> Part:
         draw=partial(figures.admittance_circle, spectrum, fit.circuit),
     )
     values = (*_values(fit.intervals), _rms(fit.residual_rms, fit.residual))
-    return Part(values=values, figures=(drawn, circle), doubts=fit.doubts)
+    return Part(values=values, figures=(drawn, circle), caveats=fit.caveats)
 
 
 def _stack(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings, sought: StackInStructure) -> Part:
@@ -128,7 +128,7 @@ def _stack(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings, sought: Sta
         caption=f"Measured, and that of the structure with the stack found by the {fit.residual} residual.",
         draw=partial(figures.stack, spectrum, sought.in_structure(fit.stack)),
     )
-    return Part(values=values, figures=(drawn,), doubts=fit.doubts)
+    return Part(values=values, figures=(drawn,), caveats=fit.caveats)
 
 
 def _values(intervals: Mapping[str, Interval]) -> tuple[Value, ...]:

@@ -93,11 +93,11 @@ def rotation_sheet(path: Path, *, settings: RotationSettings) -> Sheet:
             ),
         ),
     )
-    doubts: tuple[str, ...] = ()
+    caveats: tuple[str, ...] = ()
     if repaired > turning.time.size / 10:
-        doubts = (f"{repaired} of {turning.time.size} pulses were missing; lower the prominence or move the probe",)
+        caveats = (f"{repaired} of {turning.time.size} pulses were missing; lower the prominence or move the probe",)
     return sheet_of(
-        [Part(values=tuple(values), figures=drawn, doubts=doubts)],
+        [Part(values=tuple(values), figures=drawn, caveats=caveats)],
         title=path.name,
         source=recording_source(recording),
     )

@@ -117,7 +117,7 @@ class Sheet:
         What comes in rows.
     figures : tuple of SheetFigure
         What is drawn.
-    doubts : tuple of str
+    caveats : tuple of str
         What speaks against the numbers, one line each.
     not_found : tuple of str
         What was looked for and not found, with the reason.
@@ -128,7 +128,7 @@ class Sheet:
     values: tuple[Value, ...] = ()
     tables: tuple[SheetTable, ...] = ()
     figures: tuple[SheetFigure, ...] = ()
-    doubts: tuple[str, ...] = ()
+    caveats: tuple[str, ...] = ()
     not_found: tuple[str, ...] = ()
 
 
@@ -139,7 +139,7 @@ class Part:
     values: tuple[Value, ...] = ()
     tables: tuple[SheetTable, ...] = ()
     figures: tuple[SheetFigure, ...] = ()
-    doubts: tuple[str, ...] = ()
+    caveats: tuple[str, ...] = ()
     not_found: tuple[str, ...] = ()
 
 
@@ -151,7 +151,7 @@ def sheet_of(parts: Sequence[Part], *, title: str, source: Mapping[str, str]) ->
         values=tuple(value for part in parts for value in part.values),
         tables=tuple(table for part in parts for table in part.tables),
         figures=tuple(figure for part in parts for figure in part.figures),
-        doubts=tuple(doubt for part in parts for doubt in part.doubts),
+        caveats=tuple(caveat for part in parts for caveat in part.caveats),
         not_found=tuple(reason for part in parts for reason in part.not_found),
     )
 

@@ -180,7 +180,7 @@ def surface_source(file: SurfaceFile) -> dict[str, str]:
         "measured": f"{file.measured_at:%Y-%m-%d %H:%M}" if file.measured_at else "",
         "pixels": f"{columns} x {rows}, {engineering(step_x, 'm', digits=4)} x {engineering(step_y, 'm', digits=4)}",
         "field": f"{engineering(columns * step_x, 'm', digits=4)} x {engineering(rows * step_y, 'm', digits=4)}",
-        "not measured": f"{file.height_map.missing_share:.2%}",
+        "not measured": f"{file.height_map.missing_fraction:.2%}",
         "sha256": file.sha256,
     }
 
@@ -202,7 +202,7 @@ def _part(record: object) -> Part:
     small = not getattr(record, "decays_everywhere", True)
     return Part(
         values=tuple(known(name, getattr(record, name), label=f"{_SYMBOLS[name]}, {_LABELS[name]}") for name in names),
-        doubts=("Str is an upper bound: the map is too small for its texture",) if small else (),
+        caveats=("Str is an upper bound: the map is too small for its texture",) if small else (),
     )
 
 

@@ -235,13 +235,13 @@ def _proportion(pairs: Sequence[tuple[float, float]]) -> Part:
             name="curvature_p", label="Chance of such a curvature by scatter alone", value=found.curvature_p, unit=""
         ),
     )
-    doubts: tuple[str, ...] = ()
+    caveats: tuple[str, ...] = ()
     if not found.proportional:
-        doubts = (f"amplitude is not in proportion to voltage: the slope changes by {found.curvature:+.0%}",)
+        caveats = (f"amplitude is not in proportion to voltage: the slope changes by {found.curvature:+.0%}",)
     drawn = SheetFigure(
         name="proportion",
         title="Amplitude over voltage",
         caption="Each recording, and the line through the origin with its 95 % interval.",
         draw=partial(figures.proportion, volts, amplitudes, found),
     )
-    return Part(values=values, figures=(drawn,), doubts=doubts)
+    return Part(values=values, figures=(drawn,), caveats=caveats)

@@ -62,11 +62,11 @@ def _stress_range(row: int) -> tuple[Computed, Computed]:
 
 def _stress_at_the_centre() -> Iterator[Row]:
     load = in_table("2.8", "normal_load", _OF_ROUND).value
-    modulus = poisson_contact(bodies="steel_steel").pair.combined_modulus
+    modulus = poisson_contact(bodies="steel_steel").pair.effective_modulus
     radius = tip_radius_for_pressure(
-        mean_pressure=in_table("2.8", "nominal_pressure", _OF_ROUND).value, normal_load=load, combined_modulus=modulus
+        mean_pressure=in_table("2.8", "nominal_pressure", _OF_ROUND).value, normal_load=load, effective_modulus=modulus
     )
-    sphere = SphereOnFlat(tip_radius=float(radius), combined_modulus=modulus)
+    sphere = SphereOnFlat(tip_radius=float(radius), effective_modulus=modulus)
     yield compare(
         stated("2.4.2-round-stress-centre"),
         float(peak_pressure(sphere, normal_load=load) / mean_pressure(sphere, normal_load=load)),

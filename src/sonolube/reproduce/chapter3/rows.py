@@ -82,7 +82,7 @@ def _contact_rows() -> Iterator[Row]:
     ratios = [table("3.1").columns[f"poisson_ratio_{body}"].cells[0] for body in ("aluminium", "steel")]
     inputs = [number for number in (*moduli, *ratios) if number is not None]
     yield compare(
-        cell("3.2", "combined_modulus", 0),
+        cell("3.2", "effective_modulus", 0),
         over_rounding(lambda e1, e2, n1, n2: 1 / ((1 - n1**2) / e1 + (1 - n2**2) / e2), *inputs),
         "1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 with Table 3.1.",
     )

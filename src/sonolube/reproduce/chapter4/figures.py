@@ -182,8 +182,8 @@ def _superimposed_speeds() -> "Figure":
         chosen = slides == slide
         axes.plot(voltages[chosen], 1e3 * speeds[chosen], marker, color=colour)
         axes.plot([], [], linestyle=line, marker=marker, color=colour, label=f"{1e3 * slide:g} mm/s")
-    for doubt in table("4.5").doubts:
-        at = voltages[doubt.row], 1e3 * speeds[doubt.row]
+    for correction in table("4.5").corrections:
+        at = voltages[correction.row], 1e3 * speeds[correction.row]
         axes.plot(*at, "o", ms=12, mfc="none", color="black", ls="none", label="misprinted cell")
     axes.set(
         xlabel="Drive voltage, peak to peak [V]",

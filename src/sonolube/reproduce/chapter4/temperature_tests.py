@@ -105,7 +105,7 @@ def vibration_heat_window() -> tuple[float, float]:
     return lost / float(power[3]), lost / float(power[1])
 
 
-def vibration_heat_share() -> float:
+def vibration_heat_fraction() -> float:
     """Return the geometric mean of that window: what the model takes, since D tells no more. []"""
     low, high = vibration_heat_window()
     return float(np.sqrt(low * high))
@@ -113,7 +113,7 @@ def vibration_heat_share() -> float:
 
 def vibration_heat() -> Floats:
     """Return the heat of vibration at the five voltages, in W."""
-    return vibration_heat_share() * actuator_power(voltage_peak_to_peak=voltages())
+    return vibration_heat_fraction() * actuator_power(voltage_peak_to_peak=voltages())
 
 
 def slow_friction_kept() -> Floats:

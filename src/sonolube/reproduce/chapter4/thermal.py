@@ -21,7 +21,7 @@ from sonolube.reproduce.chapter4.temperature_tests import (
     slow_friction_kept,
     speeds,
     vibration_heat,
-    vibration_heat_share,
+    vibration_heat_fraction,
     vibration_heat_window,
     voltages,
 )
@@ -86,9 +86,9 @@ def _example_by_vibration_heat() -> Iterator[Row]:
     low, high = vibration_heat_window()
     note = (
         f"Heat of friction and a share of the actuator's power (D 1.9) in the contact. The share is not printed: these "
-        f"four statements leave {1e2 * low:.2f} to {1e2 * high:.2f} %, and {1e2 * vibration_heat_share():.2f} %, their "
-        f"geometric mean, is taken, so that the rows show that there is one, not which. {_KEPT_NOTE}; a fall by more "
-        f"than {100 * (1 - FRICTION_KEPT) * high / low:.0f} % at 20.7 V would leave none. A stack "
+        f"four statements leave {1e2 * low:.2f} to {1e2 * high:.2f} %, and {1e2 * vibration_heat_fraction():.2f} %, "
+        f"their geometric mean, is taken, so that the rows show that there is one, not which. {_KEPT_NOTE}; a fall by "
+        f"more than {100 * (1 - FRICTION_KEPT) * high / low:.0f} % at 20.7 V would leave none. A stack "
         f"of {_CERAMIC} would lose {100 * np.pi / 4 * _loss_tangent():.1f} % of that power in its ceramic"
     )
     yield from _example(FRICTION_KEPT + vibration_heat() / example_heat(), "by-vibration-heat", note)

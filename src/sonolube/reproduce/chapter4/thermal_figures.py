@@ -15,7 +15,7 @@ from sonolube.reproduce.chapter4.temperature_tests import (
     history,
     loads,
     speeds,
-    vibration_heat_share,
+    vibration_heat_fraction,
     vibration_heat_window,
     voltages,
 )
@@ -36,9 +36,8 @@ def thermal_figures() -> tuple[ReportFigure, ...]:
             title="Computed temperature of the contact in time",
             caption=f"Tests of Table 4.4: sliding from 2 s, five voltages from 12 s on, rest from 32 s. {ASSUMED}; "
             f"friction {100 * (1 - FRICTION_KEPT):.0f} % lower under vibration at every speed, which is printed for "
-            f"220 mm/s only; {100 * vibration_heat_share():.2f} % of the actuator's power in the contact. D measured "
-            "up "
-            "to 53 degC.",
+            f"220 mm/s only; {100 * vibration_heat_fraction():.2f} % of the actuator's power in the contact. D "
+            "measured up to 53 degC.",
             draw=_in_time,
         ),
         ReportFigure(
@@ -101,10 +100,10 @@ def _two_factors() -> "Figure":
     )
     axes.plot(
         swing,
-        FRICTION_KEPT + vibration_heat_share() * supplied,
+        FRICTION_KEPT + vibration_heat_fraction() * supplied,
         LINES[0],
         color=COLOURS[0],
-        label=f"friction + {100 * vibration_heat_share():.2f} % of the power",
+        label=f"friction + {100 * vibration_heat_fraction():.2f} % of the power",
     )
     for sense, marker, places, height in (
         ("below one", "v", voltages()[:2], 0.985),

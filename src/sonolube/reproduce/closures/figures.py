@@ -106,7 +106,7 @@ def _curves(speeds: "Floats") -> Iterator[tuple[str, "Floats"]]:
     yield "kinematic", kinematic(contact, balanced, sliding_speed=speeds)
     yield (
         f"kinematic, {share:.2f} of the\namplitude (fitted)",
-        kinematic(contact, balanced, sliding_speed=speeds, amplitude_share=share),
+        kinematic(contact, balanced, sliding_speed=speeds, amplitude_fraction=share),
     )
     yield (
         f"stick-slip, $D_c$ = {1e6 * no_fit:.2f} µm\n(Mindlin, µ = {mu:.2f})",

@@ -29,7 +29,7 @@ class BodySection(Section):
 class PairSection(Section):
     """Both bodies together, where only their combined properties are known."""
 
-    combined_modulus: float
+    effective_modulus: float
     poisson_ratio: float
     yield_strength: float
 

@@ -31,7 +31,7 @@ class GrooveShape:
         Width of each ridge, whose section is a parabola. [m]
     indentation_spacing : float or None
         Spacing along the track at which the groove is deeper and shallower in turn; None for an even one. [m]
-    indentation_share : float
+    indentation_fraction : float
         Share of the depth by which it is so. []
 
     Raises
@@ -45,13 +45,13 @@ class GrooveShape:
     pile_up_height: float = 0.0
     pile_up_width: float = 0.0
     indentation_spacing: float | None = None
-    indentation_share: float = 0.0
+    indentation_fraction: float = 0.0
 
     def __post_init__(self) -> None:
         require_positive(groove_width=self.groove_width, groove_depth=self.groove_depth)
         require_within(0.0, self.groove_width / 2, groove_depth=self.groove_depth)
         require_non_negative(pile_up_height=self.pile_up_height, pile_up_width=self.pile_up_width)
-        require_within(0.0, 1.0, indentation_share=self.indentation_share)
+        require_within(0.0, 1.0, indentation_fraction=self.indentation_fraction)
         if self.indentation_spacing is not None:
             require_positive(indentation_spacing=self.indentation_spacing)
 
@@ -71,7 +71,7 @@ class GrooveShape:
         half, radius = self.groove_width / 2, self._radius
         inside = np.sqrt(radius**2 - np.minimum(np.abs(across), half) ** 2) - (radius - self.groove_depth)
         if self.indentation_spacing is not None:
-            inside = inside * (1 + self.indentation_share * np.cos(2 * math.pi * along / self.indentation_spacing))
+            inside = inside * (1 + self.indentation_fraction * np.cos(2 * math.pi * along / self.indentation_spacing))
         return np.asarray(inside)
 
     def ridge_at(self, across: Floats) -> Floats:
@@ -102,7 +102,7 @@ class ScannedField:
         Wavelength of the waviness. [m]
     rms_height : float
         Standard deviation of the roughness. [m]
-    missing_share : float
+    missing_fraction : float
         Share of pixels without a height, scattered at random. []
 
     Raises
@@ -118,12 +118,12 @@ class ScannedField:
     waviness_amplitude: float = 1e-6
     waviness_length: float = 1e-3
     rms_height: float = 0.6e-6
-    missing_share: float = 0.05
+    missing_fraction: float = 0.05
 
     def __post_init__(self) -> None:
         require_positive(spacing_x=self.spacing_x, spacing_y=self.spacing_y, waviness_length=self.waviness_length)
         require_non_negative(tilt=self.tilt, waviness_amplitude=self.waviness_amplitude, rms_height=self.rms_height)
-        require_within(0.0, 0.99, missing_share=self.missing_share)
+        require_within(0.0, 0.99, missing_fraction=self.missing_fraction)
         if len(self.field_shape) != 2 or min(self.field_shape) < 1:
             raise InvalidInput(f"field_shape must be rows and columns, got {self.field_shape!r}")
 
@@ -186,7 +186,7 @@ def generated_groove(
     height = unworn.height - depth + ridge
     if field.rms_height:
         height += _roughness(field, seed)
-    height[rng.random(height.shape) < field.missing_share] = np.nan
+    height[rng.random(height.shape) < field.missing_fraction] = np.nan
     pixel = field.spacing_x * field.spacing_y
     return GeneratedGroove(
         scan=unworn.with_height(height),

@@ -30,7 +30,7 @@ _SPIKE = 8.0  # standard deviations: debris and dust, which count for no referen
 _SMOOTHED = 5  # pixels: over which a projection must stand above the unworn surface
 _PROJECTION = 5.0  # standard deviations of the smoothed unworn surface
 _RESTED = 2.0  # pixels that an edge still moves
-_BEYOND_WAVINESS = 10.0  # depth over the spread of the waviness: no doubt above
+_BEYOND_WAVINESS = 10.0  # depth over the spread of the waviness: beyond dispute above
 _UNCERTAIN, _HOLED = 0.1, 0.3
 _INNER = 10  # parts of the width, of which the outermost may hold a ridge and no projection
 _BESIDE = 0.5  # of the width, shown beside it in sections
@@ -70,7 +70,7 @@ class Groove:
         Volume of ridges and projections above the unworn surface within the field. [m3]
     complete : bool
         Whether both edges lie in the field, so that the section is the whole one.
-    doubt : str
+    caveat : str
         What is doubtful about it; empty where nothing is.
     """
 
@@ -89,7 +89,7 @@ class Groove:
     wear_volume_uncertainty: float
     pile_up_volume: float
     complete: bool
-    doubt: str
+    caveat: str
 
     @property
     def net_volume(self) -> float:
@@ -183,7 +183,7 @@ def _measured(
         wear_volume_uncertainty=uncertainty,
         pile_up_volume=float(height[piled_up].sum()) * pixel,
         complete=edges.left_seen and edges.right_seen,
-        doubt=_doubt(edges, uncertainty / wear_volume, np.count_nonzero(missing) / np.count_nonzero(inside)),
+        caveat=_caveat(edges, uncertainty / wear_volume, np.count_nonzero(missing) / np.count_nonzero(inside)),
     )
 
 
@@ -223,14 +223,14 @@ def _refuse_waviness(reference: UnwornReference, *, depth: float) -> None:
         )
 
 
-def _doubt(edges: Extent, relative_uncertainty: float, missing_share: float) -> str:
-    doubts = []
+def _caveat(edges: Extent, relative_uncertainty: float, missing_fraction: float) -> str:
+    caveats = []
     if not (edges.left_seen and edges.right_seen):
-        doubts.append("an edge of the groove lies outside the field: width, area and volume are of what is seen")
+        caveats.append("an edge of the groove lies outside the field: width, area and volume are of what is seen")
     if relative_uncertainty > _UNCERTAIN:
-        doubts.append(
+        caveats.append(
             f"the volume is uncertain by {relative_uncertainty:.0%}: the unworn surface is wavy, or little of it seen"
         )
-    if missing_share > _HOLED:
-        doubts.append(f"{missing_share:.0%} of the groove was not measured and is taken to be as deep as the rest")
-    return "; ".join(doubts)
+    if missing_fraction > _HOLED:
+        caveats.append(f"{missing_fraction:.0%} of the groove was not measured and is taken to be as deep as the rest")
+    return "; ".join(caveats)
