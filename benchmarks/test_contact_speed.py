@@ -28,6 +28,7 @@ CONTACT = RoughContact(
     roughness=Roughness(rms_height=0.1e-6, summit_radius=100e-6, summit_density=4.76e9),
     pair=ContactPair(effective_modulus=59.57e9, poisson_ratio=0.33, yield_strength=410e6, mindlin_ratio=0.8),
     nominal_area=1e-4,
+    asperity=ASPERITY_LAWS["dong_2015"],
 )
 LOADS = np.random.default_rng(1).uniform(1.0, 240.0, 1_000_000)
 SAMPLE = LOADS[:5]

@@ -23,7 +23,7 @@ roughness = Roughness(rms_height=0.6e-6, summit_radius=10e-6, summit_density=8e9
 lines = [f"{'asperities':<14}{'heights':<14}{'separation':<14}real area under 10 N on 1 cm2"]
 for law in ASPERITY_LAWS.values():
     for heights in HEIGHT_DISTRIBUTIONS.values():
-        contact = RoughContact(roughness=roughness, pair=pair, nominal_area=1e-4, heights=heights(), asperity=law)
+        contact = RoughContact(roughness=roughness, pair=pair, nominal_area=1e-4, heights=heights, asperity=law)
         gap = float(separation(contact, normal_load=10.0))
         area = float(real_contact_area(contact, separation=gap))
         lines.append(f"{law.name:<14}{heights.name:<14}{engineering(gap, 'm'):<14}{engineering(area, 'm2')}")

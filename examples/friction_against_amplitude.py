@@ -11,14 +11,14 @@ import numpy as np
 
 from sonolube.contact import separation
 from sonolube.figure import publication_style, write_figure
-from sonolube.friction import separating_half_period_ratio
+from sonolube.friction import dong_2015_half_period_ratio
 from sonolube.rig import read_rig
 from sonolube.vocabulary import quantity
 
 rig = read_rig(Path(__file__).parent / "rigs" / "tribometer.toml")
 gap = separation(rig.contact, normal_load=rig.normal_load)
 amplitudes = np.linspace(0, 0.5 * gap, 200)
-ratios = separating_half_period_ratio(rig.contact, normal_load=rig.normal_load, vibration_amplitude=amplitudes)
+ratios = dong_2015_half_period_ratio(rig.contact, normal_load=rig.normal_load, vibration_amplitude=amplitudes)
 
 with publication_style():
     figure, axes = plt.subplots(figsize=(4.5, 3))

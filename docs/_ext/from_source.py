@@ -24,6 +24,7 @@ from sonolube.cli import main
 from sonolube.materials import Material, SourcedValue, material, material_names
 from sonolube.published import errata
 from sonolube.rig import read_rig, rig_schema
+from sonolube.rig.file.json_schema import tables_of
 from sonolube.units import engineering, kind_of
 from sonolube.vocabulary import quantities
 
@@ -144,24 +145,22 @@ def setup(app: Sphinx) -> dict[str, bool]:
 def _tables(name: str, table: Mapping[str, Any], schema: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[str, Any]]]:
     yield name, table
     for key, entry in table.get("properties", {}).items():
-        inner = _inner_table(entry, schema)
-        if inner:
+        for inner in _inner_tables(entry, schema):
             yield from _tables(f"{name}.{key}".lstrip("."), inner, schema)
 
 
-def _inner_table(entry: Mapping[str, Any], schema: Mapping[str, Any]) -> Mapping[str, Any] | None:
-    references = [option["$ref"] for option in entry.get("anyOf", [entry]) if "$ref" in option]
-    inner: Mapping[str, Any] | None = schema["$defs"][references[0].rpartition("/")[2]] if references else None
-    return inner
+def _inner_tables(entry: Mapping[str, Any], schema: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    return [schema["$defs"][name] for name in tables_of(entry)]
 
 
 def _rig_table(name: str, table: Mapping[str, Any], schema: Mapping[str, Any]) -> str:
-    heading = f"### `[{name}]`" if name else "### At the top"
+    kind = table.get("properties", {}).get("kind", {}).get("const")
+    heading = f"### `[{name}]`{f', `kind = {chr(34)}{kind}{chr(34)}`' if kind else ''}" if name else "### At the top"
     required = table.get("required", ())
     rows = [
         [f"`{key}`", *_key(key, entry), _need(key, entry, required)]
         for key, entry in table.get("properties", {}).items()
-        if not _inner_table(entry, schema)
+        if not _inner_tables(entry, schema)
     ]
     description = table.get("description", "")
     grid = _grid(["Key", "Meaning", "Unit", "Write", ""], rows) if rows else ""
@@ -169,9 +168,15 @@ def _rig_table(name: str, table: Mapping[str, Any], schema: Mapping[str, Any]) -
 
 
 def _key(key: str, entry: Mapping[str, Any]) -> tuple[str, str, str]:
-    if key in quantities():
-        known = quantities()[key]
-        return _plain(known.meaning), known.unit or "none", _plain(kind_of(known.unit))
+    if "x-si-unit" in entry:
+        unit = entry["x-si-unit"]
+        return _plain(entry["title"]), unit or "none", _plain(kind_of(unit))
+    if entry.get("description") or entry.get("const"):
+        return (
+            _plain(entry.get("description") or key.capitalize()),
+            "",
+            f"`{entry.get('const', '')}`".strip("`") or "see the text",
+        )
     if "enum" in entry:
         return key.replace("_", " ").capitalize(), "", "one of " + ", ".join(f"`{name}`" for name in entry["enum"])
     if any(option.get("type") == "array" for option in entry.get("anyOf", [entry])):

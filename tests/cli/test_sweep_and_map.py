@@ -69,7 +69,7 @@ def test_drawn_points_are_as_many_as_asked_for(tmp_path: Path, capsys: CaptureFi
         (("--over", VOLTS), "must look like drive.frequency=20kHz:24kHz:50"),
         (("--over", f"{VOLTS}=1V", "--over", f"{VOLTS}=2V"), "was given twice"),
         (("--over", "drive.voltag=1,2"), "drive.voltag: unknown key"),
-        (("--over", "friction.closure=a:b:3"), "list its values"),
+        (("--over", "friction.model=a:b:3"), "list its values"),
         (("--over", f"{VOLTS}=2V:28V", "--sample", "lhs"), "needs --points"),
         (("--over", f"{VOLTS}=2V:28V:3", "--points", "3"), "--points has no meaning for --sample grid"),
     ],
@@ -105,7 +105,7 @@ def test_a_map_draws_measured_runs_and_maps_them_where_they_are_enough(
 def test_the_report_of_a_sweep_tells_what_was_asked_and_which_points_failed(
     tmp_path: Path, capsys: CaptureFixture[str]
 ) -> None:
-    over = ("--over", "contact.roughness.rms_height=6um,-6um", "--over", "friction.closure=stick_slip,kinematic")
+    over = ("--over", "contact.roughness.rms_height=6um,-6um", "--over", "friction.model=asperity_stick_slip,kinematic")
     code, _, _ = answer(capsys, "sweep", TRIBOMETER, *over, "--set", f"{VOLTS}=20V", "--out", str(tmp_path))
     page = (tmp_path / "sweep.html").read_text(encoding="utf-8")
     assert code == 0

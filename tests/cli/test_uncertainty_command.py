@@ -73,7 +73,7 @@ def test_a_band_is_told_where_it_is_widest(tmp_path: Path, capsys: CaptureFixtur
         ((UNCERTAIN, "--of", "friction"), "unknown outcome 'friction'; did you mean friction_ratio?"),
         ((UNCERTAIN, "--samples", "8"), "greater than or equal to 32"),
         ((UNCERTAIN, "--sobol", "--over", "sliding.sliding_speed=1mm/s"), "leave out --over and --identified"),
-        ((UNCERTAIN, "--over", "friction.closure=kinematic,stick_slip", *FEW), "needs numbers to run over"),
+        ((UNCERTAIN, "--over", "friction.model=kinematic,asperity_stick_slip", *FEW), "needs numbers to run over"),
         ((str(RIGS / "collar.toml"), "--identified"), "needs the tribometer's stack"),
     ],
 )

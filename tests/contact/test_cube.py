@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from pytest import approx, mark, raises
 
 from sonolube.contact import (
+    ASPERITY_LAWS,
     ContactPair,
     RoughContact,
     axial_stiffness,
@@ -25,6 +26,7 @@ PUBLISHED = RoughContact(
     roughness=Roughness(rms_height=6e-6, summit_radius=1.5e-6, summit_density=4.7e10),
     pair=ContactPair(effective_modulus=59.6e9, poisson_ratio=0.33, yield_strength=410e6, mindlin_ratio=0.8),
     nominal_area=2.25e-6,
+    asperity=ASPERITY_LAWS["dong_2015"],
 )
 
 

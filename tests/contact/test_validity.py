@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from pytest import approx, mark, raises
 
 from sonolube.contact import (
+    ASPERITY_LAWS,
     ContactPair,
     ExponentialHeights,
     GaussianHeights,
@@ -22,10 +23,16 @@ from sonolube.surfaces import Roughness
 
 PAIR = ContactPair(effective_modulus=59.57e9, poisson_ratio=0.33, yield_strength=410e6, mindlin_ratio=0.8)
 USUAL = RoughContact(
-    roughness=Roughness(rms_height=0.5e-6, summit_radius=20e-6, summit_density=5e9), pair=PAIR, nominal_area=1e-4
+    roughness=Roughness(rms_height=0.5e-6, summit_radius=20e-6, summit_density=5e9),
+    pair=PAIR,
+    nominal_area=1e-4,
+    asperity=ASPERITY_LAWS["dong_2015"],
 )
 PUBLISHED = RoughContact(
-    roughness=Roughness(rms_height=6e-6, summit_radius=1.7e-6, summit_density=47e9), pair=PAIR, nominal_area=1e-4
+    roughness=Roughness(rms_height=6e-6, summit_radius=1.7e-6, summit_density=47e9),
+    pair=PAIR,
+    nominal_area=1e-4,
+    asperity=ASPERITY_LAWS["dong_2015"],
 )
 
 

@@ -49,13 +49,13 @@ def test_a_grid_is_its_single_points() -> None:
         assert rows["friction_ratio"].values == approx(known.friction_ratio, abs=1e-4)
 
 
-def test_a_closure_other_than_stick_slip_is_swept_too() -> None:
-    plan = grid_plan(RIG_FILE, over={"friction.closure": ["stick_slip", "kinematic"], SPEEDS: [0.02, 0.2]})
+def test_a_friction_model_without_a_batched_form_is_swept_too() -> None:
+    plan = grid_plan(RIG_FILE, over={"friction.model": ["asperity_stick_slip", "kinematic"], SPEEDS: [0.02, 0.2]})
     found = sweep(plan)["friction_ratio"]
-    for name in ("stick_slip", "kinematic"):
-        rig = read_rig(RIG_FILE, changes=[f"friction.closure={name}"])
+    for name in ("asperity_stick_slip", "kinematic"):
+        rig = read_rig(RIG_FILE, changes=[f"friction.model={name}"])
         known = operating_points(rig, sliding_speed=[0.02, 0.2]).friction_ratio
-        assert found.sel(closure=name).values == approx(known, abs=1e-4)
+        assert found.sel(model=name).values == approx(known, abs=1e-4)
 
 
 def test_a_point_that_cannot_be_had_keeps_its_reason_and_spoils_no_other() -> None:
@@ -164,7 +164,7 @@ def test_another_sweep_in_the_folder_is_refused(tmp_path: Path) -> None:
         ({"drive.voltage": [1.0]}, "drive.voltage: unknown key"),
         ({VOLTS: [-3.0]}, r"voltage_peak_to_peak must not be negative, got -3\.0 V"),
         ({"contact.roughness.rms_height": [-1.0]}, "rms_height must be positive"),
-        ({"friction.closure": ["sticky"]}, "friction.closure"),
+        ({"friction.model": ["sticky"]}, "friction.model"),
         ({VOLTS: []}, "at least one"),
         ({}, "needs a key"),
     ],

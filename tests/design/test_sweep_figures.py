@@ -9,7 +9,7 @@ from pytest import approx
 from sonolube.design import grid_plan, latin_hypercube_plan, sweep, sweep_figure, swept_names
 
 TRIBOMETER = Path(__file__).parents[2] / "examples" / "rigs" / "tribometer.toml"
-VOLTS, SPEED, CLOSURE = "drive.voltage_peak_to_peak", "sliding.sliding_speed", "friction.closure"
+VOLTS, SPEED, MODEL = "drive.voltage_peak_to_peak", "sliding.sliding_speed", "friction.model"
 
 
 def test_one_key_makes_a_curve_of_friction_amplitude_and_powers() -> None:
@@ -26,12 +26,12 @@ def test_one_key_makes_a_curve_of_friction_amplitude_and_powers() -> None:
 
 
 def test_words_make_a_curve_each() -> None:
-    over = {SPEED: np.geomspace(0.005, 0.2, 5), CLOSURE: np.array(["stick_slip", "kinematic"])}
+    over = {SPEED: np.geomspace(0.005, 0.2, 5), MODEL: np.array(["asperity_stick_slip", "kinematic"])}
     drawn = sweep_figure(sweep(grid_plan(TRIBOMETER, over=over)))
     (axes,) = drawn.axes
     assert axes.get_xscale() == "log"
     assert axes.get_xlabel() == "Sliding speed [mm/s]"
-    assert {text.get_text() for text in drawn.legends[0].get_texts()} == {"stick slip", "kinematic"}
+    assert {text.get_text() for text in drawn.legends[0].get_texts()} == {"asperity stick slip", "kinematic"}
 
 
 def test_two_keys_of_many_values_make_a_map() -> None:

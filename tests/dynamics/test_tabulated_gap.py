@@ -7,7 +7,15 @@ from numpy.typing import NDArray
 from pytest import approx, fixture, mark, raises
 from scipy.integrate import solve_ivp
 
-from sonolube.contact import ContactPair, GaussianHeights, RoughContact, normal_force, normal_stiffness, separation
+from sonolube.contact import (
+    ASPERITY_LAWS,
+    ContactPair,
+    GaussianHeights,
+    RoughContact,
+    normal_force,
+    normal_stiffness,
+    separation,
+)
 from sonolube.dynamics import ExponentialGap, Structure, TabulatedGap, march, steady_state, with_contact_spring
 from sonolube.dynamics.continuation import response_curve
 from sonolube.dynamics.sensitivities import gradients
@@ -43,6 +51,7 @@ CONTACT = RoughContact(
     pair=ContactPair(effective_modulus=60e9, poisson_ratio=0.3, yield_strength=0.35e9, mindlin_ratio=0.8),
     nominal_area=1e-4,
     heights=GaussianHeights(),
+    asperity=ASPERITY_LAWS["dong_2015"],
 )
 
 

@@ -6,7 +6,7 @@ from pytest import approx, raises
 from scipy.integrate import quad, solve_ivp
 from scipy.special import i0
 
-from sonolube.contact import ContactPair, RoughContact, normal_force, separation, tangential_stiffness
+from sonolube.contact import ASPERITY_LAWS, ContactPair, RoughContact, normal_force, separation, tangential_stiffness
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.friction import dahl_under_vibration
 from sonolube.surfaces import Roughness
@@ -16,6 +16,7 @@ CONTACT = RoughContact(
     roughness=Roughness(rms_height=6e-6, summit_radius=1.5e-6, summit_density=4.7e10),
     pair=ContactPair(effective_modulus=59.6e9, poisson_ratio=0.33, yield_strength=410e6, mindlin_ratio=0.8),
     nominal_area=2.25e-6,
+    asperity=ASPERITY_LAWS["dong_2015"],
 )
 LOAD, MU, FREQUENCY = 3.0, 0.3, 22e3
 OMEGA = 2 * np.pi * FREQUENCY

@@ -85,7 +85,7 @@ def test_what_can_be_of_either_sign_is_not_cut_off() -> None:
     [
         ('"contact.normal_lod" = "normal 3 %"', "did you mean contact.normal_load?"),
         ('"rms_height" = "normal 3 %"', "did you mean contact.roughness.rms_height?"),
-        ('"friction.closure" = "normal 3 %"', "no number of a rig file"),
+        ('"friction.model" = "normal 3 %"', "no number of a rig file"),
         ('contact.normal_load = "normal 3 %"', 'put the whole key in quotes, such as "contact.normal_load"'),
         ('"contact.normal_load" = "gauss 3 %"', "is no distribution; write it like normal 0.5 um"),
         ('"contact.normal_load" = "normal 3 mm"', "is a length; wanted a force"),

@@ -10,14 +10,15 @@ from scipy.special import ellipk
 
 from sonolube.dynamics import drive_receptance
 from sonolube.errors import InvalidInput
+from sonolube.friction import FRICTION_MODELS
 from sonolube.rig import Rig, operating_points, read_rig, simulate, touching_structure
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"
 TRIBOMETER = read_rig(RIGS / "tribometer.toml")
 
 
-def with_closure(name: str) -> Rig:
-    return replace(TRIBOMETER, closure=name)
+def with_model(name: str) -> Rig:
+    return replace(TRIBOMETER, friction_model=FRICTION_MODELS[name]())
 
 
 def test_small_vibrations_are_those_of_linear_theory_at_every_frequency() -> None:
@@ -32,19 +33,19 @@ def test_the_amplitude_is_proportional_to_small_voltages() -> None:
     assert amplitude / volts == approx(np.full(3, amplitude[0] / volts[0]), rel=1e-6)
 
 
-def test_the_kinematic_closure_is_the_elliptic_integral_of_a_sine() -> None:
+def test_the_kinematic_model_is_the_elliptic_integral_of_a_sine() -> None:
     # mean of v_r/sqrt(v_r^2 + (w a cos)^2) is 2/pi K(m)/sqrt(1 + q^2), q = w a/v_r, m = q^2/(1 + q^2); of 2 V the
     # vibration is a sine to 1e-4
     speeds = np.array([1e-3, 5e-3, 20e-3, 100e-3])
-    points = operating_points(with_closure("kinematic"), voltage_peak_to_peak=2.0, sliding_speed=speeds)
+    points = operating_points(with_model("kinematic"), voltage_peak_to_peak=2.0, sliding_speed=speeds)
     q = 2 * np.pi * 22e3 * points.vibration_amplitude / speeds
     expected = 2 / np.pi * ellipk(q**2 / (1 + q**2)) / np.sqrt(1 + q**2)
     assert points.friction_ratio == approx(expected, rel=1e-3)
 
 
-@pytest.mark.parametrize("closure", ["kinematic", "stick_slip"])
-def test_fast_sliding_feels_no_vibration(closure: str) -> None:
-    assert operating_points(with_closure(closure), sliding_speed=100.0).friction_ratio == approx(1, abs=1e-4)
+@pytest.mark.parametrize("model", ["kinematic", "asperity_stick_slip"])
+def test_fast_sliding_feels_no_vibration(model: str) -> None:
+    assert operating_points(with_model(model), sliding_speed=100.0).friction_ratio == approx(1, abs=1e-4)
 
 
 def test_the_peak_velocity_is_that_of_the_sine() -> None:
@@ -65,9 +66,9 @@ def test_what_stays_in_the_rig_is_what_its_dampers_take() -> None:
     assert taken < point.dissipated_power < 1.1 * taken
 
 
-@pytest.mark.parametrize("closure", ["stick_slip", "kinematic", "coupled"])
-def test_a_batch_is_its_single_points(closure: str) -> None:
-    rig = with_closure(closure)
+@pytest.mark.parametrize("model", ["asperity_stick_slip", "kinematic", "bristle_with_holder"])
+def test_a_batch_is_its_single_points(model: str) -> None:
+    rig = with_model(model)
     volts, speeds = np.array([[10.0], [60.0]]), np.array([5e-3, 87e-3])
     batch = operating_points(rig, voltage_peak_to_peak=volts, sliding_speed=speeds)
     assert rig.drive is not None

@@ -13,9 +13,11 @@ from sonolube.dynamics.steady_friction import motion as vibration
 from sonolube.dynamics.steady_state import Status, steady_state
 from sonolube.dynamics.structure import contact_receptance, drive_receptance
 from sonolube.errors import InvalidInput
+from sonolube.friction import FRICTION_MODELS
 from sonolube.rig import Simulation, read_rig, rig_from, simulate, start_up
+from sonolube.rig.driven_rig import driven_rig
 from sonolube.rig.excitation import voltage_range, waveform_of
-from sonolube.rig.linear_response import gap_law_of, require_structure
+from sonolube.rig.linear_response import gap_law_of
 from sonolube.rig.steady_vibration import steady_motion
 
 TRIBOMETER = Path(__file__).parents[2] / "examples" / "rigs" / "tribometer.toml"
@@ -61,9 +63,9 @@ def test_what_grows_from_an_unstable_vibration_is_told_with_its_range_and_its_be
     assert "stretches" in result.reason
 
 
-@pytest.mark.parametrize("closure", ["as_published", "load_balanced", "kinematic", "stick_slip", "coupled"])
-def test_every_closure_takes_a_motion_that_does_not_repeat(closure: str) -> None:
-    assert 0 < simulated(*BEATING, f"friction.closure={closure}").friction_ratio < 5
+@pytest.mark.parametrize("model", FRICTION_MODELS)
+def test_every_friction_model_takes_a_motion_that_does_not_repeat(model: str) -> None:
+    assert 0 < simulated(*BEATING, f"friction.model={model}").friction_ratio < 5
 
 
 def test_a_load_beside_which_the_tip_beats_is_still_carried_on_the_mean() -> None:
@@ -96,7 +98,7 @@ def test_where_no_vibration_was_found_the_march_tells_what_there_is() -> None:
 
 def test_a_vibration_found_under_a_hard_drive_answers_its_own_force() -> None:
     rig = read_rig(TRIBOMETER)
-    structure, law = require_structure(rig), gap_law_of(rig)
+    structure, law = driven_rig(rig).structure, gap_law_of(rig)
     load, frequency, voltage = 61.9955, 390.40532, 1162.227 / 2
     states = steady_state(structure, law, normal_load=load, frequency=frequency, voltage_amplitude=voltage)
     assert Status(int(states.status)) is Status.UNSTABLE

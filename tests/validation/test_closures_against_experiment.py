@@ -12,7 +12,7 @@ from scipy.optimize import minimize
 from scipy.special import i0
 
 from sonolube.figure import ReportFigure, publication_style
-from sonolube.friction import stick_slip_ratio
+from sonolube.friction import sine_stick_slip_ratio
 from sonolube.reproduce.closures import comparison
 from sonolube.reproduce.closures import figures as closure_figures
 from sonolube.validation.closure_comparison import ALL_FITTED, FITTED_ON, REPORTED, fits, judged
@@ -136,7 +136,7 @@ def test_even_free_lengths_do_not_give_table_4_2() -> None:
 
     def off(logarithms: np.ndarray) -> float:
         decay_length, memory_length = np.exp(logarithms) * 1e-6
-        predicted = stick_slip_ratio(
+        predicted = sine_stick_slip_ratio(
             decay_length=decay_length,
             memory_length=memory_length,
             vibration_amplitude=[test.vibration_amplitude for test in tests],
@@ -198,7 +198,7 @@ def test_the_memory_length_is_known_to_a_third() -> None:
     tests = measured_in(FITTED_ON)
 
     def squares(memory_length: float) -> float:
-        predicted = stick_slip_ratio(
+        predicted = sine_stick_slip_ratio(
             decay_length=2e-6,
             vibration_amplitude=[test.vibration_amplitude for test in tests],
             frequency=[test.frequency for test in tests],

@@ -12,7 +12,7 @@ from pytest import approx, raises
 from scipy.special import i0
 
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.friction import stick_slip_ratio
+from sonolube.friction import sine_stick_slip_ratio
 from sonolube.rig import read_rig
 from sonolube.validation.closure_comparison import ALL_FITTED
 from sonolube.validation.compare import ComparedFit, compare_models, predict_rig
@@ -58,7 +58,7 @@ def published() -> tuple[ComparedFit, ...]:
 
 
 def test_friction_made_by_stick_slip_is_traced_to_it_and_to_its_memory() -> None:
-    ratios = stick_slip_ratio(
+    ratios = sine_stick_slip_ratio(
         decay_length=2e-6,
         vibration_amplitude=column("vibration_amplitude"),
         frequency=column("frequency"),
@@ -91,7 +91,7 @@ def test_an_unseen_set_is_predicted_by_the_best_fit_to_the_others(published: tup
     others = [test for test in measured_in(ALL_FITTED) if test.set_name != "B"]
 
     def predicted(tests: list[FrictionTest], memory_length: float) -> np.ndarray:
-        return stick_slip_ratio(
+        return sine_stick_slip_ratio(
             decay_length=2e-6,
             vibration_amplitude=[test.vibration_amplitude for test in tests],
             frequency=[test.frequency for test in tests],

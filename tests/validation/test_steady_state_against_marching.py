@@ -25,10 +25,10 @@ from sonolube.dynamics.linear import poles
 from sonolube.dynamics.long_time_response import attained_motion
 from sonolube.dynamics.structure import with_contact_spring
 from sonolube.rig import read_rig
-from sonolube.rig.linear_response import require_structure
+from sonolube.rig.driven_rig import driven_rig
 
 TRIBOMETER = read_rig(Path(__file__).parents[2] / "examples" / "rigs" / "tribometer.toml")
-STRUCTURE = require_structure(TRIBOMETER)
+STRUCTURE = driven_rig(TRIBOMETER).structure
 LAW = ExponentialGap(decay_length=float(decay_length(TRIBOMETER.contact)))
 SLOWLY = StartUpRamp(duration=0.05, shape="cosine")
 AGREES = 1e-3

@@ -11,11 +11,11 @@ from pytest import approx
 
 from sonolube.contact import GapMotion
 from sonolube.figure import ReportFigure, publication_style
-from sonolube.friction import coupled, stick_slip
+from sonolube.friction import AsperityStickSlip, BristleWithHolder
 from sonolube.reproduce.closures import dynamics as closure_dynamics
 from sonolube.reproduce.closures import error_figures as closure_error_figures
 from sonolube.reproduce.closures import tables_in_conflict as closure_dispute
-from sonolube.reproduce.closures.dynamics import CLOSURES, MOTIONS, identified_structure, predictions, slow_arm_motion
+from sonolube.reproduce.closures.dynamics import MODELS, MOTIONS, identified_structure, predictions, slow_arm_motion
 from sonolube.reproduce.closures.tables_in_conflict import Mechanism, mechanisms, speeds_of_no_reduction
 from sonolube.rig import read_rig
 from sonolube.validation.fit import measured_in
@@ -88,7 +88,7 @@ def test_the_structure_is_that_of_the_example_rig() -> None:
 
 def test_motions_of_the_dynamics_change_no_ratio_by_a_thousandth() -> None:
     for one in predictions():
-        for closure in CLOSURES:
+        for closure in MODELS:
             sine = one.ratios[closure, "sine"]
             assert [one.ratios[closure, name] for name in MOTIONS] == approx([sine] * len(MOTIONS), abs=1e-3)
 
@@ -106,8 +106,11 @@ def test_a_slow_swing_of_the_arm_leaves_the_ratio_as_it_was(swing: float) -> Non
     )
     swung = slow_arm_motion(test, still, swing=swing, cycles=220)
     assert float(np.mean(swung.normal_force)) == approx(3.0, rel=1e-9)
-    for law in (stick_slip, lambda *args, **kw: coupled(*args, friction_coefficient=0.4, **kw)):
-        one, other = (law(test.contact, moving, sliding_speed=test.sliding_speed) for moving in (balanced, swung))
+    for model in (AsperityStickSlip(), BristleWithHolder()):
+        one, other = (
+            model.ratio(test.contact, moving, sliding_speed=test.sliding_speed, friction_coefficient=0.4)
+            for moving in (balanced, swung)
+        )
         assert float(other) == approx(float(one), abs=1e-3)
 
 

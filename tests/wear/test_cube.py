@@ -6,7 +6,7 @@ from pytest import approx, raises
 from scipy.integrate import quad
 from scipy.special import i0, i1, modstruve
 
-from sonolube.contact import ContactPair, RoughContact, real_contact_area, separation
+from sonolube.contact import ASPERITY_LAWS, ContactPair, RoughContact, real_contact_area, separation
 from sonolube.errors import InvalidInput
 from sonolube.surfaces import Roughness
 from sonolube.wear.cube import (
@@ -24,6 +24,7 @@ ACORN_NUT_ON_DISC = RoughContact(  # D Table 3.2
     roughness=Roughness(rms_height=6e-6, summit_radius=1.5e-6, summit_density=4.7e10),
     pair=ContactPair(effective_modulus=59.6e9, poisson_ratio=0.33, yield_strength=410e6, mindlin_ratio=0.8),
     nominal_area=2.25e-6,
+    asperity=ASPERITY_LAWS["dong_2015"],
 )
 HUNDREDTHS_OF_CUBIC_MILLIMETRES_PER_METRE = 1e-11  # in m2
 DECAY_LENGTH = 6e-6 / 3  # Rq/lambda

@@ -52,3 +52,8 @@ class Drive:
             raise InvalidInput('waveform "sampled" and waveform_samples belong together: give both or neither')
         if self.waveform_samples is not None:
             object.__setattr__(self, "waveform_samples", tuple(self.waveform_samples))
+
+    @property
+    def offset_ratio(self) -> float:
+        """Mean voltage over peak-to-peak voltage, which stays when the voltage is varied; 0 without a voltage. []"""
+        return self.voltage_offset / self.voltage_peak_to_peak if self.voltage_peak_to_peak else 0.0

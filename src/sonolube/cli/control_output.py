@@ -108,7 +108,7 @@ def control_object(
     }
     answer: dict[str, Any] = {
         "rig": rig.title,
-        "closure": rig.closure,
+        "friction_model": rig.friction_model.name,
         "feed_forward": settings.feed_forward,
         "limit": study.limit,
         **{name: {"value": value, "unit": quantity(name).unit} for name, value in named.items()},
@@ -139,7 +139,7 @@ def control_lines(
     """Return the controller and its run as lines."""
     return [
         f"{rig.title}, {engineering(rig.normal_load, 'N')}, {engineering(rig.sliding_speed, 'm/s')}, "
-        f"closure {rig.closure}",
+        f"friction model {rig.friction_model.name}",
         *[f"  {name:<20} {value}" for name, value in _facts(settings, study, belt)],
         *closing_lines(written, assumptions=_assumed(rig, belt, supposed), caveats=_caveats(study)),
     ]

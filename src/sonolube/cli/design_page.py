@@ -45,11 +45,11 @@ def asked_of(context: typer.Context, *, title: str, source: str = "") -> list[tu
 
 
 def settings_of(rig: Rig) -> list[tuple[str, str]]:
-    """Return at what load and speed a rig runs, with which friction and closure."""
+    """Return at what load and speed a rig runs, with which friction model."""
     return [
         ("load and speed", f"{engineering(rig.normal_load, 'N')}, {engineering(rig.sliding_speed, 'm/s')}"),
         ("without vibration", f"coefficient of friction {rig.friction_coefficient:.3g}"),
-        ("closure", rig.closure),
+        ("friction model", rig.friction_model.name),
     ]
 
 

@@ -6,7 +6,7 @@ from sonolube.checks import Floats
 from sonolube.cli.sweep_range import values_of
 from sonolube.errors import InvalidInput
 from sonolube.rig import Rig
-from sonolube.rig.linear_response import require_drive, require_structure
+from sonolube.rig.driven_rig import DrivenRig, driven_rig
 
 _KEYS = {
     "sliding.sliding_speed": "sliding_speed",
@@ -29,8 +29,7 @@ def axes_of(rig: Rig, kind: str, over: list[str]) -> dict[str, Floats]:
     InvalidInput
         If the rig cannot be mapped, a key is no axis of that map, or across or up there is but one value.
     """
-    require_structure(rig)
-    axes = _usual(rig, kind)
+    axes = _usual(driven_rig(rig), kind)
     for key, values in values_of(over).items():
         name = _KEYS.get(key)
         if name not in axes:
@@ -42,16 +41,14 @@ def axes_of(rig: Rig, kind: str, over: list[str]) -> dict[str, Floats]:
     return axes
 
 
-def _usual(rig: Rig, kind: str) -> dict[str, Floats]:
-    drive = require_drive(rig)
-    assert drive.voltage_peak_to_peak is not None
-    volts = drive.voltage_peak_to_peak or 1.0
+def _usual(rig: DrivenRig, kind: str) -> dict[str, Floats]:
+    volts = rig.voltage_peak_to_peak or 1.0
     many = kind != "velocity-stress"
     loads = rig.normal_load * (np.linspace(0.6, 1.8, 7) if many else np.linspace(0.6, 1.8, 25))
     usual = {
         "sliding_speed": np.linspace(10e-3, 0.2, 77),
         "normal_load": loads,
         "voltage_peak_to_peak": volts * (np.linspace(0.02, 1, 50) if many else np.linspace(0.2, 1, 5)),
-        "frequency": drive.frequency * np.linspace(0.8, 1.2, 161),
+        "frequency": rig.drive.frequency * np.linspace(0.8, 1.2, 161),
     }
     return {name: usual[name] for name in _TAKEN[kind]}

@@ -109,7 +109,7 @@ def map_object(rig: Rig, mapped: "xr.Dataset", written: list[Path]) -> dict[str,
     return {
         "rig": rig.title,
         "map": mapped.attrs["map"],
-        "closure": rig.closure,
+        "friction_model": rig.friction_model.name,
         "points": int(mapped["status"].size),
         "without_result": int(np.isnan(mapped["friction_reduction"].values).sum()),
         "most_reduction": {name: {"value": value, "unit": quantity(name).unit} for name, value in best.items()},
@@ -121,7 +121,7 @@ def map_object(rig: Rig, mapped: "xr.Dataset", written: list[Path]) -> dict[str,
 def map_lines(rig: Rig, mapped: "xr.Dataset", written: list[Path]) -> list[str]:
     """Return what a map shows as lines."""
     return [
-        f"{rig.title}, {mapped['status'].size} points, closure {rig.closure}",
+        f"{rig.title}, {mapped['status'].size} points, friction model {rig.friction_model.name}",
         *[f"  {name:<20} {value}" for name, value in _facts(mapped)],
         *[f"  without result       {points}: {reason}" for reason, points in _failures(mapped)],
         *closing_lines(written, assumptions=rig.assumptions),

@@ -31,8 +31,8 @@ def contact(rig: RigPath, load: Load = None, changes: Changes = None, json: Json
 def friction(
     rig: RigPath,
     load: Load = None,
-    closure: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Closure, such as stick_slip, instead of the cube's half period.")
+    model: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Friction model instead of the rig's, such as kinematic.")
     ] = None,
     changes: Changes = None,
     json: Json = False,
@@ -45,7 +45,7 @@ def friction(
 
     from sonolube.rig import friction_point
 
-    _operate(partial(friction_point, closure=closure), rig, load, changes, json)
+    _operate(partial(friction_point, model=model), rig, load, changes, json)
 
 
 def wear(rig: RigPath, load: Load = None, changes: Changes = None, json: Json = False) -> None:

@@ -56,7 +56,7 @@ def optimum_object(found: Optimum, electric: Electrical, written: list[Path]) ->
     space = found.task.space
     return {
         "rig": space.rig.title,
-        "closure": space.rig.closure,
+        "friction_model": space.rig.friction_model.name,
         "minimise": found.minimise,
         "friction_ratio": {"value": found.task.friction_ratio, "unit": ""},
         "designs": [_design_object(point) for point in found.designs],
@@ -80,7 +80,7 @@ def optimum_lines(found: Optimum, electric: Electrical, written: list[Path]) -> 
     rig = found.task.space.rig
     return [
         f"{rig.title}, {engineering(rig.normal_load, 'N')}, {engineering(rig.sliding_speed, 'm/s')},"
-        f" closure {rig.closure}",
+        f" friction model {rig.friction_model.name}",
         *[f"  {name:<20} {value}" for name, value in _facts(found, electric)],
         *_table_lines(_table(found.front or found.designs)),
         *[f"  not used: {why}" for why in found.landscape.refused.values()],
@@ -336,7 +336,7 @@ def _dataset(found: Optimum) -> "xr.Dataset":
         attrs={
             "title": f"Designs for a friction ratio of {found.task.friction_ratio:.4g}, {found.task.space.rig.title}",
             "source": f"sonolube {__version__}",
-            "closure": found.task.space.rig.closure,
+            "friction_model": found.task.space.rig.friction_model.name,
         },
     )
 

@@ -11,7 +11,7 @@ from sonolube.design.optimisation import OWN, DesignSpace, Horn, Limits
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.materials import material
 from sonolube.rig import Rig, structure_entries
-from sonolube.rig.linear_response import require_drive
+from sonolube.rig.driven_rig import driven_rig
 from sonolube.units import rise_to_si, to_si
 
 _WAVEFORMS = ("sine", "square", "triangle", "sawtooth")
@@ -93,7 +93,8 @@ def space_of(
     bolt: PreloadBolt | None,
 ) -> DesignSpace:
     """Return what may be chosen."""
-    drive = require_drive(rig)
+    rig = driven_rig(rig)
+    drive = rig.drive
     known: dict[str, CatalogueActuator] = {name: catalogue_actuator(name) for name in catalogue_names()}
     if catalogue is not None:
         known |= read_catalogue(catalogue)

@@ -24,7 +24,7 @@ def regime_object(rig: Rig, result: RegimePoint, wear: WearAssessment | None, wr
     return {
         "rig": rig.title,
         "best": result.best,
-        "closure": result.closure,
+        "friction_model": result.friction_model,
         "sliding_speed": {"value": result.sliding_speed, "unit": "m/s"},
         "nominal_pressure": {"value": result.nominal_pressure, "unit": "Pa"},
         "asperity_load_fraction": {"value": result.asperity_load_fraction, "unit": ""},
@@ -46,7 +46,7 @@ def regime_lines(rig: Rig, result: RegimePoint, wear: WearAssessment | None, wri
         "  coefficient of friction",
         *[f"    {name:<10}  {float(value):.3g}{_marked(name, result)}" for name, value in coefficients.items()],
         f"  on asperities  {100 * result.asperity_load_fraction:.3g} % of the load through the lubricant",
-        f"  closure        {result.closure}",
+        f"  friction model {result.friction_model}",
         *([] if wear is None else _wear_lines(wear)),
         *closing_lines(written, assumptions=rig.assumptions, caveats=result.caveats),
     ]

@@ -24,7 +24,7 @@ def study_object(rig: Rig, of: str, study: "xr.Dataset", written: list[Path]) ->
     return {
         "rig": rig.title,
         "study": of,
-        "closure": rig.closure,
+        "friction_model": rig.friction_model.name,
         "least_friction": [
             {name: _valued(best, name) for name in (*_coordinates(best), *_TOLD)} for best in _best_points(study)
         ],
@@ -38,7 +38,7 @@ def study_object(rig: Rig, of: str, study: "xr.Dataset", written: list[Path]) ->
 def study_lines(rig: Rig, of: str, study: "xr.Dataset", written: list[Path]) -> list[str]:
     """Return what a study shows as lines."""
     return [
-        f"{rig.title}, {engineering(rig.normal_load, 'N')}, {study['status'].size} points, closure {rig.closure}",
+        f"{rig.title}, {engineering(rig.normal_load, 'N')}, {study['status'].size} points, {rig.friction_model.name}",
         *[f"  {line}" for line in _LINES[of](study)],
         *[f"  without result: {count} of {study['status'].size}: {reason}" for reason, count in _failures(study)],
         *closing_lines(written, assumptions=rig.assumptions),

@@ -20,7 +20,8 @@ from sonolube.rig import (
     voltage_study,
     waveform_study,
 )
-from sonolube.rig.linear_response import gap_law_of, require_drive, require_structure
+from sonolube.rig.driven_rig import driven_rig
+from sonolube.rig.linear_response import gap_law_of
 from sonolube.units import to_si
 
 if TYPE_CHECKING:
@@ -83,9 +84,7 @@ def study_of(
     InvalidInput
         If the rig cannot be studied, the range is none, or an option has no meaning for the study.
     """
-    require_structure(rig)
-    require_drive(rig)
-    gap_law_of(rig)
+    gap_law_of(driven_rig(rig))
     if of not in ("speed", "frequency") and voltages:
         raise InvalidInput(f"--voltage has no meaning for --of {of}; it is for speed and frequency")
     if of == "waveform":

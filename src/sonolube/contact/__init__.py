@@ -4,10 +4,10 @@ from sonolube.contact.asperity import (
     ASPERITY_LAWS,
     AsperityLaw,
     ChangEtsionBogy,
+    Dong2015Asperity,
     ElasticAsperity,
     JacksonGreen,
     KogutEtsion,
-    PublishedChangEtsionBogy,
     asperity_area,
     asperity_force,
     critical_interference,
@@ -20,7 +20,7 @@ from sonolube.contact.height_distribution import (
     HeightDistribution,
     height_density,
 )
-from sonolube.contact.motion import GapMotion, harmonic_motion, load_balanced_motion
+from sonolube.contact.motion import GapMotion, HarmonicMotions, harmonic_motion, load_balanced_motion
 from sonolube.contact.pair import ContactPair, ElasticBody, contact_pair, like_bodies_mindlin_ratio
 from sonolube.contact.rough import (
     RoughContact,
@@ -44,15 +44,16 @@ __all__ = [
     "AsperityLaw",
     "ChangEtsionBogy",
     "ContactPair",
+    "Dong2015Asperity",
     "ElasticAsperity",
     "ElasticBody",
     "ExponentialHeights",
     "GapMotion",
     "GaussianHeights",
+    "HarmonicMotions",
     "HeightDistribution",
     "JacksonGreen",
     "KogutEtsion",
-    "PublishedChangEtsionBogy",
     "RoughContact",
     "asperity_area",
     "asperity_force",

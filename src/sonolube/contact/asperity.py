@@ -5,9 +5,8 @@ which yielding begins, the force is that of Hertz times `force_ratio`, and the a
 """
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import ClassVar, Protocol
 
 import numpy as np
@@ -16,6 +15,7 @@ from numpy.typing import ArrayLike
 from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.contact.pair import ContactPair
 from sonolube.errors import OutsideRange
+from sonolube.variants import VariantTable
 
 Stage = float | Callable[[Floats], Floats]
 
@@ -182,7 +182,7 @@ class ElasticAsperity:
 
 
 @dataclass(frozen=True, slots=True)
-class PublishedChangEtsionBogy:
+class Dong2015Asperity:
     """The law of Chang, Etsion and Bogy as the dissertation prints it: the factor 1 - nu^2 counted twice.
 
     Notes
@@ -195,7 +195,7 @@ class PublishedChangEtsionBogy:
     .. [1] D 3.1, 3.4, 3.5, 3.7, 3.8
     """
 
-    name: ClassVar[str] = "as_published"
+    name: ClassVar[str] = "dong_2015"
     joints: ClassVar[tuple[float, ...]] = (1.0,)
 
     def yield_pressure(self, pair: ContactPair) -> float:
@@ -225,7 +225,7 @@ class ChangEtsionBogy:
     .. [1] W. R. Chang, I. Etsion and D. B. Bogy, J. Tribol. 109, 257 (1987). doi:10.1115/1.3261348
     """
 
-    name: ClassVar[str] = "corrected"
+    name: ClassVar[str] = "chang_etsion_bogy"
     joints: ClassVar[tuple[float, ...]] = (1.0,)
 
     def yield_pressure(self, pair: ContactPair) -> float:
@@ -354,16 +354,15 @@ class JacksonGreen:
         return 1.295 * math.exp(0.736 * pair.poisson_ratio)
 
 
-ASPERITY_LAWS: Mapping[str, AsperityLaw] = MappingProxyType(
+ASPERITY_LAWS: VariantTable[AsperityLaw] = VariantTable(
+    "asperity law",
     {
-        law.name: law
-        for law in (
-            ElasticAsperity(),
-            PublishedChangEtsionBogy(),
-            ChangEtsionBogy(),
-            KogutEtsion(),
-            JacksonGreen(),
-        )
-    }
+        "elastic": "sonolube.contact.asperity:ElasticAsperity",
+        "dong_2015": "sonolube.contact.asperity:Dong2015Asperity",
+        "chang_etsion_bogy": "sonolube.contact.asperity:ChangEtsionBogy",
+        "kogut_etsion": "sonolube.contact.asperity:KogutEtsion",
+        "jackson_green": "sonolube.contact.asperity:JacksonGreen",
+    },
+    made=lambda law: law(),
 )
-"""The asperity laws by name."""
+"""The asperity laws by name; a new law takes its file and one line here."""

@@ -1,9 +1,7 @@
 """How the heights of asperity summits are distributed about their mean."""
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import ClassVar, Protocol
 
 import numpy as np
@@ -11,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_positive, require_within
 from sonolube.errors import OutsideRange
+from sonolube.variants import VariantTable
 
 LEAST_ROUGHNESS_PARAMETER = math.sqrt(3.717e-4)
 """Roughness parameter below which no Gaussian surface has real summits. []"""
@@ -153,7 +152,12 @@ def height_density(heights: HeightDistribution, *, normalized_height: ArrayLike)
     return np.exp(heights.log_density(require_finite(normalized_height=normalized_height)))
 
 
-HEIGHT_DISTRIBUTIONS: Mapping[str, type[ExponentialHeights] | type[GaussianHeights]] = MappingProxyType(
-    {law.name: law for law in (ExponentialHeights, GaussianHeights)}
+HEIGHT_DISTRIBUTIONS: VariantTable[HeightDistribution] = VariantTable(
+    "height distribution",
+    {
+        "exponential": "sonolube.contact.height_distribution:ExponentialHeights",
+        "gaussian": "sonolube.contact.height_distribution:GaussianHeights",
+    },
+    made=lambda law: law(),
 )
-"""The height laws by name."""
+"""The height laws by name, with their default parameters; a new law takes its file and one line here."""

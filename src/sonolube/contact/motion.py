@@ -6,7 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
+from sonolube.checks import (
+    Complexes,
+    Floats,
+    require_finite,
+    require_finite_complex,
+    require_non_negative,
+    require_positive,
+)
 from sonolube.contact.rough import RoughContact, normal_force, normal_stiffness, separation
 from sonolube.errors import InvalidInput, OutsideRange
 
@@ -70,6 +77,46 @@ class GapMotion:
             frequency=self.frequency,
             normal_load=self.normal_load,
         )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class HarmonicMotions:
+    r"""Steady motions of the gap by their harmonics, one row to a motion.
+
+    Parameters
+    ----------
+    mean_displacement : ndarray, shape (m,)
+        Mean displacement from rest under the load. [m]
+    harmonics : ndarray of complex, shape (m, K)
+        Complex amplitudes X_k of the displacement, in m.
+    frequency : ndarray, shape (m,)
+        Fundamental frequency. [Hz]
+
+    Raises
+    ------
+    InvalidInput
+        If the shapes do not match, a frequency is not positive or a value not finite.
+
+    Notes
+    -----
+    .. math:: x(t) = \bar x + \mathrm{Re} \sum_{k=1}^{K} X_k e^{2 \pi i k f t}
+    """
+
+    mean_displacement: Floats
+    harmonics: Complexes
+    frequency: Floats
+
+    def __post_init__(self) -> None:
+        mean = np.atleast_1d(require_finite(mean_displacement=self.mean_displacement))
+        swing = np.atleast_2d(require_finite_complex(harmonics=self.harmonics))
+        f = np.atleast_1d(require_positive(frequency=self.frequency))
+        if not mean.size == f.size == swing.shape[0] or mean.ndim != 1 or swing.ndim != 2:
+            raise InvalidInput(
+                "mean_displacement, frequency and harmonics must have one row to a motion, got shapes"
+                f" {mean.shape}, {f.shape} and {swing.shape}"
+            )
+        for name, value in (("mean_displacement", mean), ("harmonics", swing), ("frequency", f)):
+            object.__setattr__(self, name, value)
 
 
 def harmonic_motion(

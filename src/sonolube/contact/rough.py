@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_positive
-from sonolube.contact.asperity import ASPERITY_LAWS, AsperityLaw, critical_interference
+from sonolube.contact.asperity import AsperityLaw, ChangEtsionBogy, critical_interference
 from sonolube.contact.asperity_sums import AsperitySums, asperity_sums
 from sonolube.contact.height_distribution import ExponentialHeights, HeightDistribution
 from sonolube.contact.pair import ContactPair
@@ -29,6 +29,7 @@ class RoughContact:
         Area over which the bodies face each other. [m2]
     heights : HeightDistribution
     asperity : AsperityLaw
+        That of Chang, Etsion and Bogy where absent.
 
     Raises
     ------
@@ -50,7 +51,7 @@ class RoughContact:
     pair: ContactPair
     nominal_area: float
     heights: HeightDistribution = field(default_factory=ExponentialHeights)
-    asperity: AsperityLaw = ASPERITY_LAWS["as_published"]
+    asperity: AsperityLaw = field(default_factory=ChangEtsionBogy)
 
     def __post_init__(self) -> None:
         require_positive(nominal_area=self.nominal_area)

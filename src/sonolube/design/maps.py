@@ -11,7 +11,7 @@ from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.dynamics.backend import Backend, available, device_name
 from sonolube.errors import InvalidInput
 from sonolube.rig import NUMBERS, STATUSES, Rig, gridded, point_batch
-from sonolube.rig.linear_response import require_drive
+from sonolube.rig.driven_rig import require_drive
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -208,7 +208,7 @@ def _mapped(rig: Rig, kind: str, backend: Backend, **axes: ArrayLike) -> "xr.Dat
             raise InvalidInput(f"{name} must be one row of values that rise")
     shape = tuple(array.size for array in values.values())
     mesh = dict(zip(values, np.meshgrid(*values.values(), indexing="ij"), strict=True))
-    share = _offset_share(rig)
+    share = require_drive(rig).offset_ratio
     points = point_batch(rig, **mesh, voltage_offset=share * mesh["voltage_peak_to_peak"], backend=backend)
     columns: dict[str, NDArray[Any]] = {name: points.numbers[name].reshape(shape) for name in NUMBERS}
     columns["status"] = np.array(STATUSES)[points.status].reshape(shape)
@@ -226,11 +226,6 @@ def _mapped(rig: Rig, kind: str, backend: Backend, **axes: ArrayLike) -> "xr.Dat
         actuator_power=("voltage_peak_to_peak", at_each_voltage, labels),
         nominal_pressure=("normal_load", values["normal_load"] / rig.contact.nominal_area, pressure),
     )
-
-
-def _offset_share(rig: Rig) -> float:
-    drive = require_drive(rig)
-    return drive.voltage_offset / drive.voltage_peak_to_peak if drive.voltage_peak_to_peak else 0.0
 
 
 MAPS: Mapping[str, Callable[..., "xr.Dataset"]] = MappingProxyType(

@@ -15,7 +15,7 @@ from sonolube import __version__
 from sonolube.checks import require_finite, require_non_negative, require_positive
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.rig import NUMBERS, Rig, read_rig, rig_content, rig_from
-from sonolube.vocabulary import quantities
+from sonolube.rig.file.uncertainty import number_keys
 
 SETTINGS = {
     "contact.normal_load": require_positive,
@@ -87,7 +87,7 @@ class SweepPlan:
             place = content
             for table in tables:
                 place = place.setdefault(table, {})
-            place[name] = _as_in_a_file(name, value)
+            place[name] = _as_in_a_file(key, value)
         return rig_from(content)
 
     @property
@@ -229,8 +229,9 @@ def _check_values(plan: SweepPlan, key: str, array: NDArray[Any]) -> None:
     raise InvalidInput(str(refusal))
 
 
-def _as_in_a_file(name: str, value: Any) -> Any:
+def _as_in_a_file(key: str, value: Any) -> Any:
+    """Return a value in SI as a rig file holds it: text, or a number with its unit."""
     if isinstance(value, str):
         return str(value)
-    unit = quantities()[name].unit if name in quantities() else ""
+    unit = number_keys()[key].unit if key in number_keys() else ""
     return f"{float(value)!r} {unit}" if unit else float(value)

@@ -1,6 +1,6 @@
 """A linear structure with one electrical port and one contact: what dynamics knows of a rig, a horn or its modes."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -33,6 +33,8 @@ class Structure:
         Displacement of the contact per coordinate, which is also force per contact force.
     clamped_capacitance : float
         Capacitance of the stack with all coordinates held. [F]
+    load_vector : ndarray, shape (n,), optional
+        Displacement of the weights of the dead load per coordinate, where it is known where they hang.
 
     Raises
     ------
@@ -46,6 +48,7 @@ class Structure:
     drive_vector: Floats
     contact_vector: Floats
     clamped_capacitance: float
+    load_vector: Floats | None = None
 
     def __post_init__(self) -> None:
         require_non_negative(clamped_capacitance=self.clamped_capacitance)
@@ -59,7 +62,7 @@ class Structure:
             if lowest < -1e-9 * scale or (name == "mass_matrix" and lowest <= 0):
                 demand = "positive definite" if name == "mass_matrix" else "positive semidefinite"
                 raise InvalidInput(f"{name} must be {demand}, got an eigenvalue of {lowest:.4g}")
-        for name in ("drive_vector", "contact_vector"):
+        for name in ("drive_vector", "contact_vector", *(("load_vector",) if self.load_vector is not None else ())):
             vector = require_finite(**{name: getattr(self, name)})
             if vector.shape != (n,):
                 raise InvalidInput(f"{name} must have shape ({n},), got {vector.shape}")
@@ -178,13 +181,10 @@ def with_contact_spring(structure: Structure, *, normal_stiffness: float, contac
         require_non_negative(contact_damping=contact_damping),
     )
     share = np.multiply.outer(structure.contact_vector, structure.contact_vector)
-    return Structure(
-        mass_matrix=structure.mass_matrix,
+    return replace(
+        structure,
         damping_matrix=structure.damping_matrix + c * share,
         stiffness_matrix=structure.stiffness_matrix + k * share,
-        drive_vector=structure.drive_vector,
-        contact_vector=structure.contact_vector,
-        clamped_capacitance=structure.clamped_capacitance,
     )
 
 

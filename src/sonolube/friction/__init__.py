@@ -1,7 +1,13 @@
-"""Friction: its laws, and what vibration makes of them."""
+"""Friction laws, and friction under vibration by prescribed motions, spring-coupled contacts and friction models."""
 
+from sonolube.friction.bristle import RIGID, Holder
 from sonolube.friction.coulomb import CoulombFriction, coulomb_friction, friction_coefficient
 from sonolube.friction.dahl import DahlFriction, dahl_friction, dahl_friction_history
+from sonolube.friction.dong_2015_sine import (
+    dong_2015_deformation_ratio,
+    dong_2015_half_period_ratio,
+    steady_deformation,
+)
 from sonolube.friction.driven import DrivenSlide, driven_slide
 from sonolube.friction.elliptical import contact_fraction, elliptical_traction_ratio
 from sonolube.friction.forming import (
@@ -26,17 +32,17 @@ from sonolube.friction.lubrication import (
     stribeck_coefficient,
 )
 from sonolube.friction.lugre import LuGreFriction, LuGreHistory, lugre_friction_history, lugre_steady_friction
-from sonolube.friction.models.asperity_stick_slip import mindlin_memory_length, stick_slip, stick_slip_ratio
-from sonolube.friction.models.asperity_stick_slip_batch import SINE_TOLERANCE, stick_slip_ratios
-from sonolube.friction.models.bristle_with_holder import Holder, coupled
-from sonolube.friction.models.closures import (
-    FRICTION_MODELS,
-    as_published,
-    kinematic,
-    load_balanced,
-    separating_half_period,
+from sonolube.friction.models import FRICTION_MODELS, FrictionModel, MeanGap, ModelParameter, parameter
+from sonolube.friction.models.asperity_stick_slip import AsperityStickSlip
+from sonolube.friction.models.asperity_stick_slip_batch import SINE_TOLERANCE, batched_stick_slip_ratio
+from sonolube.friction.models.asperity_stick_slip_sine import (
+    EMPIRICAL_MEMORY_LENGTH,
+    mindlin_memory_length,
+    sine_stick_slip_ratio,
 )
-from sonolube.friction.models.dong_2015_sine import as_published_ratio, separating_half_period_ratio, steady_deformation
+from sonolube.friction.models.bristle_with_holder import BristleWithHolder
+from sonolube.friction.models.dong_2015 import Dong2015FullPeriod, Dong2015HalfPeriod, Dong2015LoadBalanced
+from sonolube.friction.models.kinematic import Kinematic
 from sonolube.friction.published_approximations import (
     approximate_guided_ratio,
     approximate_longitudinal_ratio,
@@ -58,18 +64,29 @@ from sonolube.friction.vibrated_dahl import dahl_under_vibration
 from sonolube.friction.vibrated_lugre import lugre_under_vibration
 
 __all__ = [
+    "EMPIRICAL_MEMORY_LENGTH",
     "FRICTION_MODELS",
+    "RIGID",
     "SINE_TOLERANCE",
     "ZINC_STRESS_RATIO",
+    "AsperityStickSlip",
     "BoundaryLubricant",
+    "BristleWithHolder",
     "CoulombFriction",
     "DahlFriction",
+    "Dong2015FullPeriod",
+    "Dong2015HalfPeriod",
+    "Dong2015LoadBalanced",
     "DrivenSlide",
+    "FrictionModel",
     "Holder",
+    "Kinematic",
     "LuGreFriction",
     "LuGreHistory",
+    "MeanGap",
     "Method",
     "MethodCoefficients",
+    "ModelParameter",
     "Regime",
     "SpringContact",
     "StribeckCurve",
@@ -78,18 +95,18 @@ __all__ = [
     "approximate_longitudinal_ratio",
     "approximate_oscillation_ratio",
     "approximate_transverse_ratio",
-    "as_published",
-    "as_published_ratio",
     "asperity_load_fraction",
     "balanced_approach",
+    "batched_stick_slip_ratio",
     "best_method",
     "contact_fraction",
     "coulomb_friction",
-    "coupled",
     "critical_speed",
     "dahl_friction",
     "dahl_friction_history",
     "dahl_under_vibration",
+    "dong_2015_deformation_ratio",
+    "dong_2015_half_period_ratio",
     "driven_slide",
     "elliptical_traction_ratio",
     "friction_coefficient",
@@ -97,8 +114,6 @@ __all__ = [
     "guided_oscillation_ratio",
     "hersey_number",
     "intensity_for_stress_ratio",
-    "kinematic",
-    "load_balanced",
     "longitudinal_oscillation_ratio",
     "longitudinal_static_ratio",
     "lubrication_regime",
@@ -111,14 +126,11 @@ __all__ = [
     "oblique_vibration_ratio",
     "oscillation_ratio",
     "parallel_vibration_ratio",
-    "separating_half_period",
-    "separating_half_period_ratio",
+    "parameter",
+    "sine_stick_slip_ratio",
     "softened_stress_ratio",
     "static_plateau",
     "steady_deformation",
-    "stick_slip",
-    "stick_slip_ratio",
-    "stick_slip_ratios",
     "stribeck_coefficient",
     "superposed_mean_stress",
     "transverse_static_ratio",

@@ -8,9 +8,9 @@ import numpy as np
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive, require_within
 from sonolube.errors import InvalidInput
+from sonolube.friction.bristle import Holder
 from sonolube.friction.dahl import DahlFriction
 from sonolube.friction.lugre import LuGreFriction
-from sonolube.friction.models.bristle_with_holder import Holder
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
 from sonolube.errors import InvalidInput, ModelRangeWarning
+from sonolube.friction.bristle import Holder
 from sonolube.friction.in_plane import transverse_vibration_ratio
-from sonolube.friction.models.bristle_with_holder import Holder
 from sonolube.friction.spring_coupled import SpringContact, static_plateau
 from sonolube.friction.spring_motion import guided_critical_speed
 

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
 from sonolube.errors import InvalidInput, ModelRangeWarning, OutsideRange
-from sonolube.friction.models.bristle_with_holder import Holder, propagators, with_mass
+from sonolube.friction.bristle import Holder, bristle_on_mass, holder_propagators
 from sonolube.friction.spring_coupled import SpringContact, critical_speed, normal_oscillation_ratio
 
 _PERIODS, _STEPS = 2000, 4096
@@ -191,14 +191,14 @@ def guided_oscillation_ratio(
         return normal_oscillation_ratio(contact, approach=u, normal_amplitude=a, frequency=f, sliding_speed=slower)
     step = 1 / (f * _STEPS)
     pulled = np.mean(limit) / holder.holder_stiffness
-    forces, settled = with_mass(
+    forces, settled = bristle_on_mass(
         k_x,
         limit,
         np.zeros(_STEPS),
         v_r.ravel() * step,
         step,
         0.0,
-        *propagators(holder, step),
+        *holder_propagators(holder, step),
         np.full(v_r.size, pulled),
     )
     if not settled:

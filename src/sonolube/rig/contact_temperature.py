@@ -7,7 +7,7 @@ import numpy as np
 from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.materials import material
-from sonolube.rig.friction_and_wear import friction_ratio, sine_under_load
+from sonolube.rig.friction_and_wear import friction_ratio, prescribed_sine
 from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.record import Rig
 from sonolube.thermal import (
@@ -49,8 +49,8 @@ class HeatPoint:
         That rise over the one of the same test without vibration. []
     friction_ratio : float
         Friction with vibration over friction without. []
-    closure : str
-        Name of the closure that gave it.
+    friction_model : str
+        Name of the friction model.
     caveats : tuple of str
         What speaks against trusting the numbers, each in one line.
     with_vibration, without_vibration : ContactHistory
@@ -66,7 +66,7 @@ class HeatPoint:
     temperature_rise: float
     temperature_rise_ratio: float
     friction_ratio: float
-    closure: str
+    friction_model: str
     caveats: tuple[str, ...]
     with_vibration: ContactHistory
     without_vibration: ContactHistory
@@ -138,7 +138,7 @@ def heat_point(
     source = EllipticSource(half_length=radius, half_width=radius)
     network = ThermalNetwork(heat_capacity=(heat_capacity,), links=(), losses=(thermal_conductance,))
     contact = HeatedContact(pin=pin, disc=disc, source=source, network=network)
-    intrinsic, ratio = rig.friction_coefficient * rig.normal_load, friction_ratio(rig, sine_under_load(rig))
+    intrinsic, ratio = rig.friction_coefficient * rig.normal_load, friction_ratio(rig, prescribed_sine(rig))
     times = np.linspace(0.0, duration, _STEPS + 1)
     without = _history(rig, contact, times, intrinsic, 0.0)
     vibrated = _history(rig, contact, times, ratio * intrinsic, vibration_heat_rate)
@@ -155,7 +155,7 @@ def heat_point(
         temperature_rise=float(vibrated.temperature_rise[-1]),
         temperature_rise_ratio=float(vibrated.temperature_rise[-1] / without.temperature_rise[-1]),
         friction_ratio=ratio,
-        closure=rig.closure,
+        friction_model=rig.friction_model.name,
         caveats=_caveats(network, vibration_heat_rate),
         with_vibration=vibrated,
         without_vibration=without,

@@ -1,43 +1,47 @@
-"""What a rig's closure makes of a motion, with what its file says of memory, holder and in-plane motion."""
-
-from functools import partial
+"""Friction and wear ratios of a rig under a motion of its gap, by the rig's own models."""
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats
 from sonolube.contact import GapMotion, harmonic_motion, load_balanced_motion
-from sonolube.errors import InvalidInput, UnknownName
-from sonolube.friction import FRICTION_MODELS, Holder, coupled, stick_slip
-from sonolube.friction.models.asperity_stick_slip import EMPIRICAL_MEMORY_LENGTH
+from sonolube.errors import InvalidInput
+from sonolube.friction.models import MeanGap
 from sonolube.rig.record import Rig
-from sonolube.wear.cube import WEAR_MODELS
+from sonolube.wear.cube import DEFAULT_WEAR_MODEL, WEAR_MODELS
 
-_ABOUT_REST = ("as_published", "separating_half_period")
-_WEAR_BY_DEFAULT = "separating_half_period"  # the mean by which D computed its wear tables
+_ANY_FREQUENCY = 1.0  # Hz; of models that are not rate-dependent
 
 
 def friction_ratio(rig: Rig, motion: GapMotion) -> float:
-    """Return friction with vibration over friction without, by the rig's closure at its sliding speed. []
-
-    Raises
-    ------
-    InvalidInput
-        If the closure does not hold for the motion.
-    UnknownName
-        If there is no such closure.
-    """
-    return float(friction_ratios(rig, motion, sliding_speed=rig.sliding_speed))
-
-
-def friction_ratios(rig: Rig, motion: GapMotion, *, sliding_speed: ArrayLike) -> Floats:
-    """Return friction with vibration over friction without, by the rig's closure. []
+    """Return friction with vibration over friction without, by the rig's friction model at its sliding speed. []
 
     Parameters
     ----------
     rig : Rig
     motion : GapMotion
-        The vibration of its contact.
+        Motion of the gap of its contact.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    InvalidInput
+        If the model does not hold for the motion.
+    """
+    return float(friction_ratios(rig, motion, sliding_speed=rig.sliding_speed))
+
+
+def friction_ratios(rig: Rig, motion: GapMotion, *, sliding_speed: ArrayLike) -> Floats:
+    """Return friction with vibration over friction without, by the rig's friction model at some sliding speeds. []
+
+    Parameters
+    ----------
+    rig : Rig
+    motion : GapMotion
+        Motion of the gap of its contact.
     sliding_speed : array_like, any shape
         Macroscopic relative speed. [m/s]
 
@@ -48,50 +52,64 @@ def friction_ratios(rig: Rig, motion: GapMotion, *, sliding_speed: ArrayLike) ->
     Raises
     ------
     InvalidInput
-        If a speed is not positive, or the closure does not hold for the motion.
-    UnknownName
-        If there is no such closure.
+        If a speed is not positive, or the model does not hold for the motion.
     """
-    if rig.closure not in FRICTION_MODELS:
-        raise UnknownName.among(FRICTION_MODELS, kind="closure", name=rig.closure)
-    closure = FRICTION_MODELS[rig.closure]
-    in_plane = {"in_plane_fraction": rig.in_plane_fraction or 0.0, "phase": rig.in_plane_phase or 0.0}
-    if closure is stick_slip:
-        closure = partial(closure, memory_length=rig.memory_length or EMPIRICAL_MEMORY_LENGTH, **in_plane)
-    elif closure is coupled:
-        holder = Holder() if rig.holder_stiffness is None else Holder(holder_stiffness=rig.holder_stiffness)
-        closure = partial(closure, friction_coefficient=rig.friction_coefficient, holder=holder, **in_plane)
-    return np.asarray(closure(rig.contact, motion, sliding_speed=sliding_speed))
+    model = rig.friction_model
+    ratio = model.ratio(rig.contact, motion, sliding_speed=sliding_speed, friction_coefficient=rig.friction_coefficient)
+    return np.asarray(ratio)
 
 
-def sine_under_load(rig: Rig) -> GapMotion:
-    """Return the rig's vibration as a sine, about the gap that its closure is meant for.
+def prescribed_sine(rig: Rig) -> GapMotion:
+    """Return the rig's stated vibration as a sine of the gap, about the mean that its friction model is meant for.
 
-    Notes
-    -----
-    Closures as published take the gap at rest for the mean; for the others the mean rises until it carries the load.
+    Parameters
+    ----------
+    rig : Rig
+
+    Returns
+    -------
+    GapMotion
+
+    Raises
+    ------
+    InvalidInput
+        If the model depends on the rate of the motion and the rig has no frequency.
+    OutsideRange
+        If the amplitude leaves the range of the height law.
     """
-    if rig.drive is None:
-        raise InvalidInput(f"{rig.title}: drive.frequency is missing; closure {rig.closure} needs it")
+    model = rig.friction_model
+    if rig.drive is None and model.rate_dependent:
+        raise InvalidInput(f"{rig.title}: drive.frequency is missing; friction model {model.name} needs it")
     motion = harmonic_motion(
         rig.contact,
         normal_load=rig.normal_load,
         vibration_amplitude=rig.vibration_amplitude,
-        frequency=rig.drive.frequency,
+        frequency=_ANY_FREQUENCY if rig.drive is None else rig.drive.frequency,
     )
-    return motion if rig.closure in _ABOUT_REST else load_balanced_motion(rig.contact, motion)
+    return motion if model.mean_gap is MeanGap.AT_REST else load_balanced_motion(rig.contact, motion)
 
 
-def wear_closure(rig: Rig) -> str:
-    """Return the name of the closure for wear: that of friction, or where wear has none of it that of D's tables."""
-    return rig.closure if rig.closure in WEAR_MODELS else _WEAR_BY_DEFAULT
+def wear_model_of(rig: Rig) -> str:
+    """Return the name of the wear model: that of the friction model's name where there is one, else the default."""
+    name = rig.friction_model.name
+    return name if name in WEAR_MODELS else DEFAULT_WEAR_MODEL
 
 
 def wear_rate_ratio(rig: Rig, motion: GapMotion) -> float:
-    """Return wear with vibration over wear without, by the closure that matches friction's. []
+    """Return wear with vibration over wear without, by the wear model that goes with the rig's friction model. []
+
+    Parameters
+    ----------
+    rig : Rig
+    motion : GapMotion
+        Motion of the gap of its contact.
+
+    Returns
+    -------
+    float
 
     Notes
     -----
-    Wear closures average the worn area over the gap and know no memory, holder or in-plane motion.
+    Wear models average the worn area over the gap; memory, holder and in-plane motion do not enter.
     """
-    return float(WEAR_MODELS[wear_closure(rig)](rig.contact, motion))
+    return float(WEAR_MODELS[wear_model_of(rig)](rig.contact, motion))

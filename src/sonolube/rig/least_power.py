@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_positive, require_within
 from sonolube.rig.dataset import gridded
-from sonolube.rig.linear_response import require_drive
+from sonolube.rig.driven_rig import DrivenRig, driven_rig
 from sonolube.rig.operating_points import Advance, OperatingPoints, operating_points
 from sonolube.rig.record import Rig
 
@@ -58,12 +58,14 @@ def least_power_study(
     Notes
     -----
     By regula falsi (the Illinois variant) on the logarithm of the voltage, to a relative error of 1e-4. Takes friction
-    to fall as the voltage rises; of a closure that lets it rise again, any voltage may be found that gives the ratio.
+    to fall as the voltage rises; of a friction model by which it rises again, any
+    voltage that gives the ratio may be found.
 
     References
     ----------
     .. [1] D 3.3.5, figure 3.17 (b).
     """
+    rig = driven_rig(rig)
     f = np.atleast_1d(require_positive(frequency=frequency))
     wanted = float(require_within(0.0, 1.0, friction_ratio=friction_ratio))
     highest = float(require_positive(voltage_maximum=voltage_maximum))
@@ -90,11 +92,11 @@ def least_power_study(
         {"status": status.astype(np.str_), "reason": reason.astype(np.str_)} | numbers,
         axes={"frequency": f},
         title=f"Voltage and power for a friction ratio of {wanted:g}, {rig.title}",
-        about={"rig": rig.title, "closure": rig.closure},
+        about={"rig": rig.title, "friction_model": rig.friction_model.name},
     )
 
 
-def _search(rig: Rig, f: Floats, wanted: float, at_top: Floats, top: float, advance: Advance | None) -> Floats:
+def _search(rig: DrivenRig, f: Floats, wanted: float, at_top: Floats, top: float, advance: Advance | None) -> Floats:
     """Return the logarithm of the voltage that gives the ratio at each frequency."""
     low, high = np.full(f.shape, top + np.log(_LOWEST)), np.full(f.shape, top)
     above, below = np.full(f.shape, 1.0) - wanted, at_top - wanted
@@ -117,8 +119,6 @@ def _search(rig: Rig, f: Floats, wanted: float, at_top: Floats, top: float, adva
     return high
 
 
-def _points(rig: Rig, f: Floats, volts: Floats) -> OperatingPoints:
-    drive = require_drive(rig)
-    assert drive.voltage_peak_to_peak is not None
-    share = drive.voltage_offset / drive.voltage_peak_to_peak if drive.voltage_peak_to_peak else 0.0
-    return operating_points(rig, frequency=f, voltage_peak_to_peak=volts, voltage_offset=share * volts)
+def _points(rig: DrivenRig, f: Floats, volts: Floats) -> OperatingPoints:
+    offset = rig.drive.offset_ratio * volts
+    return operating_points(rig, frequency=f, voltage_peak_to_peak=volts, voltage_offset=offset)

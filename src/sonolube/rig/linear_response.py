@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sonolube.actuator.drive import Drive
 from sonolube.checks import Floats, require_positive
 from sonolube.contact import (
     ExponentialHeights,
@@ -25,7 +24,8 @@ from sonolube.dynamics import (
     modes,
     with_contact_spring,
 )
-from sonolube.errors import InvalidInput, OutsideRange
+from sonolube.errors import OutsideRange
+from sonolube.rig.driven_rig import driven_rig
 from sonolube.rig.record import Rig
 
 _POINTS = 2101  # of the table of a contact's force: 50 to the deviation of the summits' heights
@@ -115,33 +115,7 @@ def touching_structure(rig: Rig) -> Structure:
         If its load leaves no separation.
     """
     stiffness = float(normal_stiffness(rig.contact, separation=rest_separation(rig)))
-    return with_contact_spring(require_structure(rig), normal_stiffness=stiffness)
-
-
-def require_structure(rig: Rig) -> Structure:
-    """Return the structure of a rig.
-
-    Raises
-    ------
-    InvalidInput
-        If it has none.
-    """
-    if rig.structure is None:
-        raise InvalidInput(f"{rig.title}: the tables stack and structure are missing; give them to compute its motion")
-    return rig.structure
-
-
-def require_drive(rig: Rig) -> Drive:
-    """Return the drive of a rig.
-
-    Raises
-    ------
-    InvalidInput
-        If its voltage is not known.
-    """
-    if rig.drive is None or rig.drive.voltage_peak_to_peak is None:
-        raise InvalidInput(f"{rig.title}: drive.voltage_peak_to_peak is missing; give it to compute a motion")
-    return rig.drive
+    return with_contact_spring(driven_rig(rig).structure, normal_stiffness=stiffness)
 
 
 def gap_law_of(rig: Rig) -> GapLaw:

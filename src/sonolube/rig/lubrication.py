@@ -15,7 +15,7 @@ from sonolube.friction import (
     method_coefficients,
 )
 from sonolube.materials import Material
-from sonolube.rig.friction_and_wear import friction_ratios, sine_under_load
+from sonolube.rig.friction_and_wear import friction_ratios, prescribed_sine
 from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.record import Rig
 from sonolube.wear.mechanism import CrystalStructure, WearAssessment, WearingBody, assess_wear
@@ -42,8 +42,8 @@ class RegimePoint:
         Coefficients of the four ways.
     best : str
         The way to choose.
-    closure : str
-        Name of the closure that gave friction under vibration.
+    friction_model : str
+        Name of the friction model.
     caveats : tuple of str
         What speaks against trusting the numbers, each in one line.
     """
@@ -54,7 +54,7 @@ class RegimePoint:
     asperity_load_fraction: float
     coefficients: MethodCoefficients
     best: str
-    closure: str
+    friction_model: str
     caveats: tuple[str, ...]
 
 
@@ -106,7 +106,7 @@ def regime_point(rig: Rig, *, lubricant: BoundaryLubricant, smallest_gain: float
         asperity_load_fraction=float(asperity_load_fraction(lubricant, nominal_pressure=pressure)),
         coefficients=found,
         best=str(best_method(found, smallest_gain=smallest_gain)),
-        closure=rig.closure,
+        friction_model=rig.friction_model.name,
         caveats=("load sharing in proportion to the pressure: the simplest law that D Fig. 4.28 allows",),
     )
 
@@ -172,6 +172,6 @@ def _coefficients(
     return method_coefficients(
         lubricant,
         friction_coefficient=rig.friction_coefficient,
-        friction_ratio=friction_ratios(rig, sine_under_load(rig), sliding_speed=sliding_speed),
+        friction_ratio=friction_ratios(rig, prescribed_sine(rig), sliding_speed=sliding_speed),
         nominal_pressure=nominal_pressure,
     )

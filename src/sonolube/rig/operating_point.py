@@ -1,20 +1,21 @@
-"""What a rig does at its operating point: contact, friction and wear, each as one record of results."""
+"""Contact, friction and wear of a rig at its operating point, the stated vibration taken for a sine."""
 
 from dataclasses import dataclass, replace
 
 from sonolube.contact import (
     contact_caveats,
     contact_count,
+    harmonic_motion,
     normal_stiffness,
     real_contact_area,
     tangential_stiffness,
 )
-from sonolube.friction import separating_half_period_ratio
+from sonolube.friction.models import FRICTION_MODELS, FrictionModel
 from sonolube.rig.excitation import amplifier_power
-from sonolube.rig.friction_and_wear import friction_ratio, sine_under_load
+from sonolube.rig.friction_and_wear import friction_ratio, prescribed_sine
 from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.record import Rig
-from sonolube.wear.cube import cube_wear_rate, vibrating_cube_wear_rate
+from sonolube.wear.cube import DEFAULT_WEAR_MODEL, WEAR_MODELS, cube_wear_rate, vibrating_cube_wear_rate
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -67,8 +68,10 @@ class FrictionPoint:
         Friction with vibration over friction without. []
     friction_reduction : float
         One minus that ratio. []
-    closure : str
-        Name of the closure that gave it.
+    friction_model : str
+        Name of the friction model.
+    citation : str
+        Source of the friction model.
     vibration_amplitude : float
         Vibration normal to the contact, zero to peak. [m]
     actuator_power : float or None
@@ -82,7 +85,8 @@ class FrictionPoint:
     intrinsic_friction_force: float
     friction_ratio: float
     friction_reduction: float
-    closure: str
+    friction_model: str
+    citation: str
     vibration_amplitude: float
     actuator_power: float | None
     caveats: tuple[str, ...]
@@ -102,6 +106,8 @@ class WearPoint:
         The one over the other. []
     wear_reduction : float
         One minus that ratio. []
+    wear_model : str
+        Name of the wear model.
     vibration_amplitude : float
         Vibration normal to the contact, zero to peak. [m]
     caveats : tuple of str
@@ -112,6 +118,7 @@ class WearPoint:
     intrinsic_wear_rate: float
     wear_rate_ratio: float
     wear_reduction: float
+    wear_model: str
     vibration_amplitude: float
     caveats: tuple[str, ...]
 
@@ -137,14 +144,14 @@ def contact_point(rig: Rig) -> ContactPoint:
     )
 
 
-def friction_point(rig: Rig, *, closure: str | None = None) -> FrictionPoint:
-    """Return the friction of the rig under its vibration, taken for a sine.
+def friction_point(rig: Rig, *, model: str | None = None) -> FrictionPoint:
+    """Return the friction of the rig under its stated vibration, taken for a sine.
 
     Parameters
     ----------
     rig : Rig
-    closure : str, optional
-        Name of the closure; where absent the cube over the separating half period (D 3.15), whatever the rig's own.
+    model : str, optional
+        Name of a friction model instead of the rig's own; it takes over those of the rig's parameters that it has.
 
     Returns
     -------
@@ -153,18 +160,15 @@ def friction_point(rig: Rig, *, closure: str | None = None) -> FrictionPoint:
     Raises
     ------
     InvalidInput
-        If the rig says of memory, holder or in-plane motion what the closure does not take, or no frequency.
+        If the rig has no frequency, or no sliding speed, and the model needs it.
     OutsideRange
         If the surfaces would be pressed through each other, so that no separation is left.
     UnknownName
-        If there is no such closure.
+        If there is no such model.
     """
     gap = rest_separation(rig)
-    if closure is None:
-        closure, ratio = "separating_half_period", _by_the_cube(rig)
-    else:
-        chosen = replace(rig, closure=closure)
-        ratio = friction_ratio(chosen, sine_under_load(chosen))
+    chosen = rig if model is None else replace(rig, friction_model=_model_of(rig, model))
+    ratio = friction_ratio(chosen, prescribed_sine(chosen))
     intrinsic = rig.friction_coefficient * rig.normal_load
     return FrictionPoint(
         friction_force=ratio * intrinsic,
@@ -172,42 +176,66 @@ def friction_point(rig: Rig, *, closure: str | None = None) -> FrictionPoint:
         intrinsic_friction_force=intrinsic,
         friction_ratio=ratio,
         friction_reduction=1 - ratio,
-        closure=closure,
+        friction_model=chosen.friction_model.name,
+        citation=chosen.friction_model.citation,
         vibration_amplitude=rig.vibration_amplitude,
         actuator_power=_actuator_power(rig),
         caveats=_caveats(rig, gap),
     )
 
 
-def _by_the_cube(rig: Rig) -> float:
-    return float(
-        separating_half_period_ratio(
-            rig.contact, normal_load=rig.normal_load, vibration_amplitude=rig.vibration_amplitude
-        )
-    )
+def _model_of(rig: Rig, name: str) -> FrictionModel:
+    """Return the friction model of a name, with those parameters of the rig's model that it has too."""
+    model = FRICTION_MODELS.named(name)
+    shared = {each.name for each in model.parameters()} & {each.name for each in rig.friction_model.parameters()}
+    return model(**{key: getattr(rig.friction_model, key) for key in shared})
 
 
-def wear_point(rig: Rig) -> WearPoint:
-    """Return the wear of the rig with and without vibration, by the cube (D 3.26 to 3.29 as they were evaluated).
+def wear_point(rig: Rig, *, model: str = DEFAULT_WEAR_MODEL) -> WearPoint:
+    """Return the wear of the rig with and without its stated vibration, taken for a sine about the gap at rest.
+
+    Parameters
+    ----------
+    rig : Rig
+    model : str
+        Name of the wear model.
+
+    Returns
+    -------
+    WearPoint
 
     Raises
     ------
     OutsideRange
         If the surfaces would be pressed through each other, so that no separation is left.
+    UnknownName
+        If there is no such model.
+
+    References
+    ----------
+    .. [1] D 3.26 to 3.29 as they were evaluated, for the default model.
     """
     gap = rest_separation(rig)
     still = float(cube_wear_rate(rig.contact, normal_load=rig.normal_load))
-    vibrating = float(
-        vibrating_cube_wear_rate(rig.contact, normal_load=rig.normal_load, vibration_amplitude=rig.vibration_amplitude)
-    )
+    vibrating = still * _wear_ratio(rig, still, model)
     return WearPoint(
         wear_rate=vibrating,
         intrinsic_wear_rate=still,
         wear_rate_ratio=vibrating / still,
         wear_reduction=1 - vibrating / still,
+        wear_model=model,
         vibration_amplitude=rig.vibration_amplitude,
         caveats=_caveats(rig, gap),
     )
+
+
+def _wear_ratio(rig: Rig, still: float, model: str) -> float:
+    load, amplitude = rig.normal_load, rig.vibration_amplitude
+    if model == DEFAULT_WEAR_MODEL:  # by quadrature of the sine itself
+        return float(vibrating_cube_wear_rate(rig.contact, normal_load=load, vibration_amplitude=amplitude)) / still
+    frequency = 1.0 if rig.drive is None else rig.drive.frequency  # without effect on wear models
+    sine = harmonic_motion(rig.contact, normal_load=load, vibration_amplitude=amplitude, frequency=frequency)
+    return float(WEAR_MODELS.named(model)(rig.contact, sine))
 
 
 def _caveats(rig: Rig, gap: float) -> tuple[str, ...]:

@@ -6,15 +6,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats
-from sonolube.contact import ExponentialHeights, decay_length, separation
+from sonolube.contact import HarmonicMotions, separation
 from sonolube.dynamics.backend import Backend
 from sonolube.dynamics.kernels.peak_velocity import highest_velocities
 from sonolube.dynamics.steady_state import Status, SteadyStates
 from sonolube.errors import SonolubeError
-from sonolube.friction.models.asperity_stick_slip import EMPIRICAL_MEMORY_LENGTH
-from sonolube.friction.models.asperity_stick_slip_batch import stick_slip_ratios
+from sonolube.rig.driven_rig import DrivenRig, driven_rig
 from sonolube.rig.excitation import voltage_range
-from sonolube.rig.linear_response import require_drive, require_structure
 from sonolube.rig.operating_points import (
     Settings,
     broadcast,
@@ -122,11 +120,11 @@ def point_batch(
 
     Notes
     -----
-    The points of `operating_points`, their reasons in general words. By the closure stick_slip on exponential heights
-    the friction of the whole batch is found at once, to 1e-4; any other closure follows each vibration.
+    The points of `operating_points`, their reasons in general words. A friction model with a batched form gives the
+    friction of the whole batch at once, asperity stick-slip on exponential heights to 1e-4; any other is evaluated for
+    each vibration.
     """
-    require_structure(rig)
-    assert rig.stack is not None
+    rig = driven_rig(rig)
     columns, speeds = broadcast(rig, (voltage_peak_to_peak, voltage_offset, frequency, normal_load, sliding_speed))
     columns, speeds = columns.reshape(4, -1), speeds.ravel()
     first, which = _distinct(columns)
@@ -181,12 +179,11 @@ def _distinct(columns: Floats) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     return first, which.ravel()
 
 
-def _refusals(rig: Rig, settings: Settings, rest: Floats) -> tuple[NDArray[np.int16], tuple[str, ...]]:
+def _refusals(rig: DrivenRig, settings: Settings, rest: Floats) -> tuple[NDArray[np.int16], tuple[str, ...]]:
     """Return for each drive and load which of the reasons that follow rules it out, from 1; 0 where none does."""
-    assert rig.stack is not None
     low, high = rig.stack.lowest_voltage, rig.stack.highest_voltage
     lowest, highest = voltage_range(
-        require_drive(rig), voltage_peak_to_peak=settings.voltage_peak_to_peak, voltage_offset=settings.voltage_offset
+        rig.drive, voltage_peak_to_peak=settings.voltage_peak_to_peak, voltage_offset=settings.voltage_offset
     )
     refusal, texts = np.zeros(rest.size, dtype=np.int16), []
     for beyond, text in (
@@ -224,22 +221,21 @@ def _friction(rig: Rig, states: SteadyStates, place: NDArray[np.intp], speeds: F
     ratio = np.full(speeds.size, np.nan)
     failures: dict[int, str] = {}
     open_points = np.flatnonzero(place >= 0)
-    if (
-        rig.closure == "stick_slip"
-        and not rig.in_plane_fraction
-        and isinstance(rig.contact.heights, ExponentialHeights)
-    ):
-        moving = open_points[speeds[open_points] > 0]
-        known = states.status != Status.NOT_CONVERGED
-        own = np.cumsum(known) - 1
-        ratio[moving] = stick_slip_ratios(
-            decay_length=decay_length(rig.contact),
+    moving = open_points[speeds[open_points] > 0]
+    known = states.status != Status.NOT_CONVERGED
+    if moving.size:
+        motions = HarmonicMotions(
             mean_displacement=states.mean_displacement[known],
             harmonics=states.harmonics[known],
             frequency=states.frequency[known],
+        )
+        row = np.cumsum(known) - 1
+        ratio[moving] = rig.friction_model.batched_ratio(
+            rig.contact,
+            motions,
             sliding_speed=speeds[moving],
-            vibration=own[place[moving]],
-            memory_length=rig.memory_length or EMPIRICAL_MEMORY_LENGTH,
+            motion=row[place[moving]],
+            friction_coefficient=rig.friction_coefficient,
         )
         open_points = open_points[np.isnan(ratio[open_points])]
     for members in grouped(open_points, place):

@@ -12,14 +12,15 @@ from sonolube.contact import GapMotion, separation
 from sonolube.dynamics.backend import Backend
 from sonolube.dynamics.steady_state import Status, SteadyStates, steady_state
 from sonolube.errors import InvalidInput, SonolubeError
+from sonolube.rig.driven_rig import DrivenRig, driven_rig
 from sonolube.rig.excitation import amplifier_power, voltage_harmonics, voltage_range
 from sonolube.rig.friction_and_wear import friction_ratios
-from sonolube.rig.linear_response import gap_law_of, require_drive, require_structure
+from sonolube.rig.linear_response import gap_law_of
 from sonolube.rig.record import Rig
 from sonolube.rig.steady_vibration import gap_motion
 
 REFUSED = "refused"
-"""Status of an operating point that a limit of the stack, the contact or the closure rules out."""
+"""Status of an operating point that a limit of the stack, the contact or the friction model rules out."""
 
 SETTINGS = ("voltage_peak_to_peak", "voltage_offset", "frequency", "normal_load")
 """What is set of a point beside its sliding speed, in the order of the rows that hold it."""
@@ -58,7 +59,7 @@ class OperatingPoints:
     contact_loss_fraction : ndarray
         Share of the period in which the contact carries less than a hundredth of the load. []
     friction_ratio : ndarray
-        Friction with vibration over friction without, by the rig's closure. []
+        Friction with vibration over friction without, by the rig's friction model. []
     friction_reduction : ndarray
         One minus that ratio. []
     friction_coefficient : ndarray
@@ -173,8 +174,7 @@ def operating_points(
     -----
     Steady vibrations are found in one batch, each drive and load once, whatever the number of sliding speeds.
     """
-    require_structure(rig)
-    assert rig.stack is not None
+    rig = driven_rig(rig)
     columns, speeds = broadcast(rig, (voltage_peak_to_peak, voltage_offset, frequency, normal_load, sliding_speed))
     shape = speeds.shape
     distinct, which = np.unique(columns.reshape(4, -1), axis=1, return_inverse=True)
@@ -214,7 +214,7 @@ def operating_points(
     )
 
 
-def friction_and_power(rig: Rig, columns: Floats, *, friction_ratio: Floats) -> dict[str, Floats]:
+def friction_and_power(rig: DrivenRig, columns: Floats, *, friction_ratio: Floats) -> dict[str, Floats]:
     """Return by name what follows from the friction ratio and the settings of points.
 
     Parameters
@@ -229,7 +229,6 @@ def friction_and_power(rig: Rig, columns: Floats, *, friction_ratio: Floats) -> 
     -------
     dict of str to ndarray
     """
-    assert rig.stack is not None
     u, offset, f, load = columns
     return {
         "friction_ratio": friction_ratio,
@@ -237,7 +236,7 @@ def friction_and_power(rig: Rig, columns: Floats, *, friction_ratio: Floats) -> 
         "friction_coefficient": friction_ratio * rig.friction_coefficient,
         "friction_force": friction_ratio * rig.friction_coefficient * load,
         "actuator_power": amplifier_power(
-            require_drive(rig),
+            rig.drive,
             capacitance=rig.stack.free_capacitance,
             voltage_peak_to_peak=u,
             voltage_offset=offset,
@@ -269,23 +268,22 @@ def steady_states(
     InvalidInput
         If the rig has no structure or a setting has no meaning.
     """
+    rig = driven_rig(rig)
     columns, _ = broadcast(rig, (voltage_peak_to_peak, voltage_offset, None, None, None))
     settings = Settings.of_columns(columns.reshape(4, -1))
     return steady_states_of(rig, settings, separation(rig.contact, normal_load=settings.normal_load))
 
 
-def broadcast(rig: Rig, given: Sequence[ArrayLike | None]) -> tuple[Floats, Floats]:
+def broadcast(rig: DrivenRig, given: Sequence[ArrayLike | None]) -> tuple[Floats, Floats]:
     """Return drives and loads as the rows of Settings, and speeds, all of one shape; refuse what has no meaning.
 
     What is given are swing, mean and frequency of the drive, load and sliding speed; for nothing, the rig's own.
     """
     voltage, offset, f, load, speed = given
-    drive = require_drive(rig)
-    assert drive.voltage_peak_to_peak is not None
     settings = (
-        require_non_negative(voltage_peak_to_peak=drive.voltage_peak_to_peak if voltage is None else voltage),
-        require_finite(voltage_offset=drive.voltage_offset if offset is None else offset),
-        require_positive(frequency=drive.frequency if f is None else f),
+        require_non_negative(voltage_peak_to_peak=rig.voltage_peak_to_peak if voltage is None else voltage),
+        require_finite(voltage_offset=rig.drive.voltage_offset if offset is None else offset),
+        require_positive(frequency=rig.drive.frequency if f is None else f),
         require_positive(normal_load=rig.normal_load if load is None else load),
         require_non_negative(sliding_speed=rig.sliding_speed if speed is None else speed),
     )
@@ -299,12 +297,11 @@ def broadcast(rig: Rig, given: Sequence[ArrayLike | None]) -> tuple[Floats, Floa
     return np.stack(every[:-1]), every[-1].copy()
 
 
-def _refusals(rig: Rig, settings: Settings, rest: Floats) -> list[str]:
-    """Return why a drive or load cannot be had, empty where it can."""
-    assert rig.stack is not None
+def _refusals(rig: DrivenRig, settings: Settings, rest: Floats) -> list[str]:
+    """Return the reason against each drive and load that the stack or the contact rules out, else empty text."""
     refusals = []
     extremes = voltage_range(
-        require_drive(rig), voltage_peak_to_peak=settings.voltage_peak_to_peak, voltage_offset=settings.voltage_offset
+        rig.drive, voltage_peak_to_peak=settings.voltage_peak_to_peak, voltage_offset=settings.voltage_offset
     )
     for voltages, load, gap in zip(np.transpose(extremes), settings.normal_load, rest, strict=True):
         refusal = ""
@@ -318,14 +315,14 @@ def _refusals(rig: Rig, settings: Settings, rest: Floats) -> list[str]:
     return refusals
 
 
-def steady_states_of(rig: Rig, settings: Settings, rest: Floats, backend: Backend = "cpu") -> SteadyStates:
+def steady_states_of(rig: DrivenRig, settings: Settings, rest: Floats, backend: Backend = "cpu") -> SteadyStates:
     """Return the steady vibrations of a rig under drives and loads, of which the separations at rest are known."""
     return steady_state(
-        require_structure(rig),
+        rig.structure,
         gap_law_of(rig),
         normal_load=settings.normal_load,
         frequency=settings.frequency,
-        voltage_harmonics=voltage_harmonics(require_drive(rig), voltage_peak_to_peak=settings.voltage_peak_to_peak),
+        voltage_harmonics=voltage_harmonics(rig.drive, voltage_peak_to_peak=settings.voltage_peak_to_peak),
         voltage_offset=settings.voltage_offset,
         separation=rest,
         backend=backend,

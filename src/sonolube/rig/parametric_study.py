@@ -1,6 +1,6 @@
 """How voltage, sliding speed, drive frequency, waveform and load act on the friction of a rig, as labelled datasets."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +12,8 @@ from sonolube.dynamics import WAVEFORMS, Status, modes
 from sonolube.dynamics.steady_friction import motion
 from sonolube.errors import InvalidInput
 from sonolube.rig.dataset import gridded
-from sonolube.rig.linear_response import require_drive, require_structure, touching_structure
+from sonolube.rig.driven_rig import DrivenRig, driven_rig
+from sonolube.rig.linear_response import touching_structure
 from sonolube.rig.operating_points import Advance, OperatingPoints, operating_points, steady_states
 from sonolube.rig.record import Rig
 
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
 
 _GRAVITY = 9.80665  # m/s2
 _PHASES = 128
-_ARM = -1  # place of the loading arm among the coordinates of a chain
 _POINT = (
     "status",
     "reason",
@@ -195,11 +195,11 @@ def waveform_study(rig: Rig, *, advance: Advance | None = None) -> "xr.Dataset":
     ----------
     .. [1] D 3.3.5, figure 3.18.
     """
-    drive = require_drive(rig)
-    assert drive.voltage_peak_to_peak is not None
+    rig = driven_rig(rig)
+    drive = rig.drive
     shaped = [replace(rig, drive=replace(drive, waveform=name)) for name in WAVEFORMS]
     points = _one_by_one(shaped, operating_points, advance)
-    swing, offset = np.array([drive.voltage_peak_to_peak]), np.array([drive.voltage_offset])
+    swing, offset = np.array([rig.voltage_peak_to_peak]), np.array([drive.voltage_offset])
     periods = [_periods(one, swing, offset) for one in shaped]
     displacement, normal_force = (np.concatenate(rows) for rows in zip(*periods, strict=True))
     return gridded(
@@ -216,8 +216,7 @@ def load_study(rig: Rig, *, normal_load: ArrayLike, advance: Advance | None = No
     Parameters
     ----------
     rig : Rig
-        With a stack, a structure whose last coordinate is the loading arm, and a drive voltage, its heights
-        exponential.
+        With a stack, a structure that says where the dead load hangs, and a drive voltage, its heights exponential.
     normal_load : array_like, shape (n,)
         Forces pressing the bodies together. [N]
     advance : callable, optional
@@ -231,7 +230,7 @@ def load_study(rig: Rig, *, normal_load: ArrayLike, advance: Advance | None = No
     Raises
     ------
     InvalidInput
-        If the rig has no structure, a load is not positive, or leaves no mass on the arm.
+        If the rig has no structure or none that says where the load hangs, or a load is not positive or leaves no mass.
 
     Notes
     -----
@@ -242,6 +241,7 @@ def load_study(rig: Rig, *, normal_load: ArrayLike, advance: Advance | None = No
     .. [1] D 4.1.2, figures 4.7 and 4.8.
     """
     loads = np.atleast_1d(require_positive(normal_load=normal_load))
+    rig = driven_rig(rig)
     loaded = [_weighted(rig, float(load)) for load in loads]
     points = _one_by_one(loaded, operating_points, advance)
     return gridded(
@@ -257,7 +257,7 @@ def _values(points: OperatingPoints) -> dict[str, NDArray[Any]]:
 
 
 def _one_by_one(
-    rigs: list[Rig], study: Callable[[Rig], OperatingPoints], advance: Advance | None
+    rigs: Sequence[Rig], study: Callable[[Rig], OperatingPoints], advance: Advance | None
 ) -> dict[str, NDArray[Any]]:
     every = []
     for done, rig in enumerate(rigs, start=1):
@@ -268,17 +268,14 @@ def _one_by_one(
 
 
 def _volts(rig: Rig, voltage: ArrayLike | None) -> Floats:
-    own = require_drive(rig).voltage_peak_to_peak
-    assert own is not None
+    own = driven_rig(rig).voltage_peak_to_peak
     return np.atleast_1d(require_positive(voltage_peak_to_peak=own if voltage is None else voltage))
 
 
 def _offset(rig: Rig, volts: Floats) -> Floats:
     """Return the offset that stands to each voltage as the rig's own to its own."""
-    drive = require_drive(rig)
-    if not drive.voltage_peak_to_peak:
-        return np.full(volts.shape, drive.voltage_offset)
-    return volts * drive.voltage_offset / drive.voltage_peak_to_peak
+    drive = driven_rig(rig).drive
+    return volts * drive.offset_ratio if drive.voltage_peak_to_peak else np.full(volts.shape, drive.voltage_offset)
 
 
 def _periods(rig: Rig, volts: Floats, offset: Floats) -> tuple[Floats, Floats]:
@@ -291,16 +288,20 @@ def _periods(rig: Rig, volts: Floats, offset: Floats) -> tuple[Floats, Floats]:
     return displacement, normal_force
 
 
-def _weighted(rig: Rig, load: float) -> Rig:
-    structure = require_structure(rig)
-    mass = structure.mass_matrix.copy()
-    mass[_ARM, _ARM] += (load - rig.normal_load) / _GRAVITY
-    if mass[_ARM, _ARM] <= 0:
+def _weighted(rig: DrivenRig, load: float) -> DrivenRig:
+    """Return the rig with another dead load, whose weights add to the masses where it hangs."""
+    structure = rig.structure
+    if structure.load_vector is None:
+        raise InvalidInput(f"{rig.title}: structure.loaded is missing; name the mass that the weights hang on")
+    added = (load - rig.normal_load) / _GRAVITY * np.multiply.outer(structure.load_vector, structure.load_vector)
+    try:
+        weighted = replace(structure, mass_matrix=structure.mass_matrix + added)
+    except InvalidInput:
         raise InvalidInput(
             f"normal_load {load:g} N leaves no mass on the loading arm: it is {rig.normal_load - load:.3g} N less than"
             " the rig's own"
-        )
-    return replace(rig, normal_load=load, structure=replace(structure, mass_matrix=mass))
+        ) from None
+    return replace(rig, normal_load=load, structure=weighted)
 
 
 def _slowest(rig: Rig) -> float:
@@ -309,4 +310,4 @@ def _slowest(rig: Rig) -> float:
 
 
 def _about(rig: Rig) -> Mapping[str, str]:
-    return {"rig": rig.title, "closure": rig.closure}
+    return {"rig": rig.title, "friction_model": rig.friction_model.name}

@@ -7,11 +7,11 @@ from functools import partial
 import numpy as np
 
 from sonolube.actuator import stack_caveats
-from sonolube.actuator.drive import Drive
 from sonolube.contact import GapMotion, contact_caveats
+from sonolube.rig.driven_rig import DrivenRig, driven_rig
 from sonolube.rig.excitation import amplifier_power, voltage_harmonics, voltage_range
-from sonolube.rig.friction_and_wear import friction_ratio, wear_closure, wear_rate_ratio
-from sonolube.rig.linear_response import require_drive, require_structure, rest_separation
+from sonolube.rig.friction_and_wear import friction_ratio, wear_model_of, wear_rate_ratio
+from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.record import Rig
 from sonolube.rig.steady_vibration import SteadyMotion, steady_motion
 from sonolube.wear.cube import cube_wear_rate
@@ -55,10 +55,12 @@ class Simulation:
         Friction with vibration over friction without. []
     friction_reduction : float
         One minus that ratio. []
-    closure : str
-        Name of the closure that gave friction.
-    wear_closure : str
-        Name of the closure that gave wear: that of friction where wear has one of its name.
+    friction_model : str
+        Name of the friction model.
+    citation : str
+        Source of the friction model.
+    wear_model : str
+        Name of the wear model: that of the friction model's name where there is one.
     wear_rate : float
         Volume of the softer body per sliding distance with vibration, by the cube over the separating half period. [m2]
     actuator_power : float
@@ -88,9 +90,10 @@ class Simulation:
     intrinsic_friction_force: float
     friction_ratio: float
     friction_reduction: float
-    closure: str
+    friction_model: str
+    citation: str
     wear_rate: float
-    wear_closure: str
+    wear_model: str
     actuator_power: float
     dissipated_power: float
     caveats: tuple[str, ...]
@@ -120,9 +123,7 @@ def simulate(rig: Rig) -> Simulation:
     A vibration that repeats with the drive is found by harmonic balance; where that is unstable, not the only one or
     not found, the rig is marched from rest, as `steady_motion` says.
     """
-    require_structure(rig)
-    drive = require_drive(rig)
-    assert rig.stack is not None
+    rig = driven_rig(rig)
     gap = rest_separation(rig)
     moving = steady_motion(rig)
     ratio = _mean(partial(friction_ratio, rig), moving.motions)
@@ -146,12 +147,13 @@ def simulate(rig: Rig) -> Simulation:
         intrinsic_friction_force=intrinsic,
         friction_ratio=ratio,
         friction_reduction=1 - ratio,
-        closure=rig.closure,
+        friction_model=rig.friction_model.name,
+        citation=rig.friction_model.citation,
         wear_rate=wear_ratio * float(cube_wear_rate(rig.contact, normal_load=rig.normal_load)),
-        wear_closure=wear_closure(rig),
-        actuator_power=float(amplifier_power(drive, capacitance=rig.stack.free_capacitance)),
+        wear_model=wear_model_of(rig),
+        actuator_power=float(amplifier_power(rig.drive, capacitance=rig.stack.free_capacitance)),
         dissipated_power=moving.dissipated_power,
-        caveats=(*contact_caveats(rig.contact, separation=gap), *_caveats(rig, moving, drive)),
+        caveats=(*contact_caveats(rig.contact, separation=gap), *_caveats(rig, moving)),
         motion=moving.motions[0],
     )
 
@@ -161,16 +163,14 @@ def _mean(of: Callable[[GapMotion], float], motions: tuple[GapMotion, ...]) -> f
     return float(np.average([of(motion) for motion in motions], weights=[1 / motion.frequency for motion in motions]))
 
 
-def _caveats(rig: Rig, moving: SteadyMotion, drive: Drive) -> tuple[str, ...]:
-    assert rig.stack is not None
-    assert drive.voltage_peak_to_peak is not None
-    voltage = complex(voltage_harmonics(drive)[0])
+def _caveats(rig: DrivenRig, moving: SteadyMotion) -> tuple[str, ...]:
+    voltage = complex(voltage_harmonics(rig.drive)[0])
     caveats = stack_caveats(
         rig.stack,
-        voltage_offset=float(sum(voltage_range(drive))) / 2,
-        voltage_peak_to_peak=drive.voltage_peak_to_peak,
+        voltage_offset=float(sum(voltage_range(rig.drive))) / 2,
+        voltage_peak_to_peak=rig.voltage_peak_to_peak,
         elongation=moving.elongation * abs(voltage) / voltage if voltage else 0.0,
-        frequency=drive.frequency,
+        frequency=rig.drive.frequency,
     )
     if moving.gap_closed:
         caveats = (

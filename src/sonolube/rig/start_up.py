@@ -8,8 +8,9 @@ from sonolube.dynamics.attractor import beat, settling_time
 from sonolube.dynamics.time_marching.records import Trajectory
 from sonolube.dynamics.transient import march, trajectory
 from sonolube.errors import InvalidInput
+from sonolube.rig.driven_rig import driven_rig
 from sonolube.rig.excitation import ramp_of, waveform_of
-from sonolube.rig.linear_response import gap_law_of, require_drive, require_structure, rest_separation
+from sonolube.rig.linear_response import gap_law_of, rest_separation
 from sonolube.rig.record import Rig
 
 _WINDOWS = 400
@@ -70,12 +71,12 @@ def start_up(rig: Rig, *, duration: float) -> StartUp:
     -----
     D figure 3.13 in kind.
     """
-    structure, drive = require_structure(rig), require_drive(rig)
+    rig = driven_rig(rig)
+    structure, drive = rig.structure, rig.drive
     rest_separation(rig)
     periods = math.ceil(float(require_positive(duration=duration)) * drive.frequency)
     if not 8 <= periods <= _LONGEST:
         raise InvalidInput(f"duration must be from 8 to {_LONGEST} periods of the drive, got {periods}")
-    assert drive.voltage_peak_to_peak is not None
     waveform, ramp, law = waveform_of(drive), ramp_of(drive), gap_law_of(rig)
     window = max(1, periods // _WINDOWS)
     marched = march(
@@ -83,7 +84,7 @@ def start_up(rig: Rig, *, duration: float) -> StartUp:
         law,
         normal_load=rig.normal_load,
         frequency=drive.frequency,
-        voltage_peak_to_peak=drive.voltage_peak_to_peak,
+        voltage_peak_to_peak=rig.voltage_peak_to_peak,
         voltage_offset=drive.voltage_offset,
         waveform=waveform,
         ramp=ramp,
@@ -95,7 +96,7 @@ def start_up(rig: Rig, *, duration: float) -> StartUp:
         law,
         normal_load=rig.normal_load,
         frequency=drive.frequency,
-        voltage_peak_to_peak=drive.voltage_peak_to_peak,
+        voltage_peak_to_peak=rig.voltage_peak_to_peak,
         voltage_offset=drive.voltage_offset,
         waveform=waveform,
         ramp=ramp,

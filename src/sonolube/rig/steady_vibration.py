@@ -12,8 +12,9 @@ from sonolube.dynamics.long_time_response import Attained, attained_motion
 from sonolube.dynamics.steady_friction import motion
 from sonolube.dynamics.steady_state import Status, SteadyStates, steady_state
 from sonolube.errors import OutsideRange
+from sonolube.rig.driven_rig import DrivenRig, driven_rig
 from sonolube.rig.excitation import ramp_of, voltage_harmonics, waveform_of
-from sonolube.rig.linear_response import gap_law_of, require_drive, require_structure
+from sonolube.rig.linear_response import gap_law_of
 from sonolube.rig.record import Rig
 from sonolube.units import engineering
 
@@ -103,13 +104,14 @@ def steady_motion(rig: Rig) -> SteadyMotion:
     Where the balanced vibration is stable and alone it is what appears. Anything else is marched from rest, the voltage
     coming up as the rig's drive says, until transients have died out.
     """
+    rig = driven_rig(rig)
     balanced = _balanced(rig, falling=False)
     if balanced.status == Status.PERIODIC:
         return _of_balance(rig, balanced, balanced.reason(()))
     if balanced.stability_undetermined(()):
         raise OutsideRange(balanced.reason(()))
     attained = _marched(rig)
-    told = f"{_why_marched(balanced)}; {_from_rest(require_drive(rig))}"
+    told = f"{_why_marched(balanced)}; {_from_rest(rig.drive)}"
     found = attained.attractor
     if balanced.status == Status.MULTISTABLE and found.order == 1:
         for states in (balanced, _balanced(rig, falling=True)):
@@ -123,7 +125,7 @@ def steady_motion(rig: Rig) -> SteadyMotion:
 
 
 def gap_motion(states: SteadyStates, point: int | tuple[int, ...]) -> GapMotion:
-    """Return one steady vibration as the closures of friction and wear take it.
+    """Return one steady vibration as a sampled motion of the gap.
 
     Parameters
     ----------
@@ -149,10 +151,10 @@ def gap_motion(states: SteadyStates, point: int | tuple[int, ...]) -> GapMotion:
     )
 
 
-def _balanced(rig: Rig, *, falling: bool) -> SteadyStates:
-    structure, drive = require_structure(rig), require_drive(rig)
+def _balanced(rig: DrivenRig, *, falling: bool) -> SteadyStates:
+    drive = rig.drive
     return steady_state(
-        structure,
+        rig.structure,
         gap_law_of(rig),
         normal_load=rig.normal_load,
         frequency=drive.frequency,
@@ -163,15 +165,14 @@ def _balanced(rig: Rig, *, falling: bool) -> SteadyStates:
     )
 
 
-def _marched(rig: Rig) -> Attained:
-    drive = require_drive(rig)
-    assert drive.voltage_peak_to_peak is not None
+def _marched(rig: DrivenRig) -> Attained:
+    drive = rig.drive
     return attained_motion(
-        require_structure(rig),
+        rig.structure,
         gap_law_of(rig),
         normal_load=rig.normal_load,
         frequency=drive.frequency,
-        voltage_peak_to_peak=drive.voltage_peak_to_peak,
+        voltage_peak_to_peak=rig.voltage_peak_to_peak,
         voltage_offset=drive.voltage_offset,
         waveform=waveform_of(drive),
         ramp=ramp_of(drive),
@@ -198,9 +199,8 @@ def _same(states: SteadyStates, attained: Attained) -> bool:
     return bool(abs(attained.amplitudes[0] - own) <= _SAME * own)
 
 
-def _of_balance(rig: Rig, states: SteadyStates, reason: str) -> SteadyMotion:
-    assert rig.stack is not None
-    drive, amplitude, rival = require_drive(rig), float(states.vibration_amplitude), float(states.coexisting_amplitude)
+def _of_balance(rig: DrivenRig, states: SteadyStates, reason: str) -> SteadyMotion:
+    drive, amplitude, rival = rig.drive, float(states.vibration_amplitude), float(states.coexisting_amplitude)
     # the stack's elongation in complex amplitude, from the charge on it: q = C_S V + b.x
     charge = complex(states.current_harmonics[0]) / (2j * np.pi * drive.frequency)
     moved = charge - states.structure.clamped_capacitance * complex(states.voltage_harmonics[0])
@@ -224,12 +224,11 @@ def _of_balance(rig: Rig, states: SteadyStates, reason: str) -> SteadyMotion:
     )
 
 
-def _of_march(rig: Rig, attained: Attained, balanced: SteadyStates, reason: str) -> SteadyMotion:
-    assert rig.stack is not None
-    found, drive, record = attained.attractor, require_drive(rig), attained.record
+def _of_march(rig: DrivenRig, attained: Attained, balanced: SteadyStates, reason: str) -> SteadyMotion:
+    found, drive, record = attained.attractor, rig.drive, attained.record
     slow, repeats = float(found.beat_frequency), int(found.order)
     x, force = record.contact.displacement, record.contact.normal_force
-    elongation = record.states.coordinates[:-1] @ require_structure(rig).drive_vector / rig.stack.charge_per_elongation
+    elongation = record.states.coordinates[:-1] @ rig.structure.drive_vector / rig.stack.charge_per_elongation
     turning = np.exp(-2j * np.pi * drive.frequency * record.time[:-1])
     if repeats:
         motions: tuple[GapMotion, ...] = (_stretch(rig, x[:-1], force[:-1], drive.frequency / repeats),)

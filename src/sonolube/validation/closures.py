@@ -1,7 +1,7 @@
 """The closures as they are set against experiment: what each leaves free, and its predictions."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from functools import cache, lru_cache
 from typing import Final
 
@@ -15,15 +15,15 @@ from sonolube.contact import (
 )
 from sonolube.errors import OutsideRange
 from sonolube.friction import (
+    AsperityStickSlip,
+    BristleWithHolder,
+    Dong2015FullPeriod,
+    Dong2015HalfPeriod,
+    Dong2015LoadBalanced,
     Holder,
-    as_published,
-    coupled,
-    kinematic,
-    load_balanced,
+    Kinematic,
     mindlin_memory_length,
-    separating_half_period,
-    stick_slip,
-    stick_slip_ratio,
+    sine_stick_slip_ratio,
 )
 from sonolube.validation.friction_tests import Circumstances, FrictionTest
 from sonolube.validation.parameters import (
@@ -109,25 +109,25 @@ def _balanced(contact: RoughContact, motion: GapMotion) -> GapMotion:
 
 
 def _as_published(test: FrictionTest, nominal_area_factor: float = 1.0) -> float:
-    return float(as_published(*_sine(test, nominal_area_factor), sliding_speed=test.sliding_speed))
+    return float(Dong2015FullPeriod().ratio(*_sine(test, nominal_area_factor), sliding_speed=test.sliding_speed))
 
 
 def _separating(test: FrictionTest, nominal_area_factor: float = 1.0) -> float:
-    return float(separating_half_period(*_sine(test, nominal_area_factor), sliding_speed=test.sliding_speed))
+    return float(Dong2015HalfPeriod().ratio(*_sine(test, nominal_area_factor), sliding_speed=test.sliding_speed))
 
 
 def _load_balanced(test: FrictionTest, nominal_area_factor: float = 1.0) -> float:
-    return float(load_balanced(*_sine(test, nominal_area_factor), sliding_speed=test.sliding_speed))
+    return float(Dong2015LoadBalanced().ratio(*_sine(test, nominal_area_factor), sliding_speed=test.sliding_speed))
 
 
 def _kinematic(test: FrictionTest, amplitude_fraction: float = 1.0) -> float:
-    return float(kinematic(*_sine(test), sliding_speed=test.sliding_speed, amplitude_fraction=amplitude_fraction))
+    return float(Kinematic(amplitude_fraction=amplitude_fraction).ratio(*_sine(test), sliding_speed=test.sliding_speed))
 
 
 def _stick_slip(test: FrictionTest, memory_length: float) -> float:
     at_rest = separation(test.contact, normal_load=test.normal_load)
     return float(
-        stick_slip_ratio(
+        sine_stick_slip_ratio(
             decay_length=decay_length(test.contact, separation=at_rest),
             vibration_amplitude=test.vibration_amplitude,
             frequency=test.frequency,
@@ -156,13 +156,8 @@ def stick_slip_in_plane(
         return _stick_slip(test, memory_length)
     contact, motion = _sine(test)
     return float(
-        stick_slip(
-            contact,
-            _balanced(contact, motion),
-            sliding_speed=test.sliding_speed,
-            memory_length=memory_length,
-            in_plane_fraction=in_plane_fraction,
-            phase=phase,
+        AsperityStickSlip(memory_length=memory_length, in_plane_fraction=in_plane_fraction, in_plane_phase=phase).ratio(
+            contact, _balanced(contact, motion), sliding_speed=test.sliding_speed
         )
     )
 
@@ -182,14 +177,15 @@ def _coupled(
 ) -> float:
     contact, motion = _sine(test)
     return float(
-        coupled(
+        BristleWithHolder(
+            **asdict(Holder(holder_stiffness=1 / holder_compliance) if holder_compliance > 0 else Holder()),
+            in_plane_fraction=in_plane_fraction,
+            in_plane_phase=phase,
+        ).ratio(
             contact,
             _balanced(contact, motion),
             sliding_speed=test.sliding_speed,
             friction_coefficient=test.friction_coefficient,
-            holder=Holder(holder_stiffness=1 / holder_compliance) if holder_compliance > 0 else Holder(),
-            in_plane_fraction=in_plane_fraction,
-            phase=phase,
         )
     )
 

@@ -13,7 +13,7 @@ from sonolube.contact import (
     contact_pair,
     like_bodies_mindlin_ratio,
 )
-from sonolube.friction import separating_half_period_ratio
+from sonolube.friction import dong_2015_half_period_ratio
 from sonolube.published import statement, table
 from sonolube.surfaces import Roughness
 
@@ -40,6 +40,7 @@ def poisson_contact(*, bodies: Bodies) -> RoughContact:
     )
     return RoughContact(
         roughness=_roughness("3.1"),
+        asperity=ASPERITY_LAWS["dong_2015"],
         pair=contact_pair(softer=softer, harder=steel, yield_strength=strength),
         nominal_area=_value("3.1", "nominal_area"),
     )
@@ -50,6 +51,7 @@ def wear_contact() -> RoughContact:
     poisson_ratio = _value("3.1", "poisson_ratio_aluminium")
     return RoughContact(
         roughness=_roughness("3.2"),
+        asperity=ASPERITY_LAWS["dong_2015"],
         pair=ContactPair(
             effective_modulus=_value("3.2", "effective_modulus"),
             poisson_ratio=poisson_ratio,
@@ -102,7 +104,7 @@ def poisson_friction_ratio(
         axial_amplitude=axial_amplitude,
         frequency=statement("3.1.4-frequency").number.value,
     )
-    return separating_half_period_ratio(
+    return dong_2015_half_period_ratio(
         poisson_contact(bodies=bodies), normal_load=normal_load, vibration_amplitude=normal_amplitude(waveguide)
     )
 

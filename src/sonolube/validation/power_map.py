@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from sonolube.actuator import driver_power
 from sonolube.checks import Floats
-from sonolube.friction import separating_half_period_ratio
+from sonolube.friction import dong_2015_half_period_ratio
 from sonolube.metrics import (
     EfficiencyLine,
     efficiency_at,
@@ -123,7 +123,7 @@ def cube_friction(*, voltage_peak_to_peak: ArrayLike) -> Floats:
     ndarray, shape of `voltage_peak_to_peak`
     """
     test = example_test()
-    ratio = separating_half_period_ratio(
+    ratio = dong_2015_half_period_ratio(
         steel_on_steel_contact(nominal_area=test["nominal_area"]),
         normal_load=test["normal_load"],
         vibration_amplitude=vibration_amplitude(voltage_peak_to_peak=voltage_peak_to_peak),

@@ -1,4 +1,6 @@
-"""A rig's operating point as the compared models see it."""
+"""Operating point of a rig as an input of the compared models."""
+
+from math import inf, isfinite
 
 from sonolube.errors import InvalidInput
 from sonolube.rig import Rig
@@ -16,7 +18,8 @@ def vibrated_rig(rig: Rig) -> VibratedRig:
     for name, value in (("vibration_amplitude", rig.vibration_amplitude), ("sliding_speed", rig.sliding_speed)):
         if value == 0:
             raise InvalidInput(f"{rig.title}: {name} is 0; models of friction under vibration need it positive")
-    fraction = rig.in_plane_fraction
+    model = rig.friction_model
+    fraction, stiffness = getattr(model, "in_plane_fraction", 0.0), getattr(model, "holder_stiffness", inf)
     return VibratedRig(
         label=rig.title,
         contact=rig.contact,
@@ -25,6 +28,6 @@ def vibrated_rig(rig: Rig) -> VibratedRig:
         sliding_speed=rig.sliding_speed,
         vibration_amplitude=rig.vibration_amplitude,
         frequency=None if rig.drive is None else rig.drive.frequency,
-        in_plane_amplitude=None if fraction is None else fraction * rig.vibration_amplitude,
-        holder_stiffness=rig.holder_stiffness,
+        in_plane_amplitude=fraction * rig.vibration_amplitude if fraction else None,
+        holder_stiffness=stiffness if isfinite(stiffness) else None,
     )

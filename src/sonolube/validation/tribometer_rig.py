@@ -4,7 +4,8 @@ from dataclasses import replace
 
 from sonolube.actuator.drive import Drive
 from sonolube.dynamics import chain_structure, pin_on_disc_chain
-from sonolube.rig import Rig
+from sonolube.friction import FRICTION_MODELS
+from sonolube.rig.driven_rig import DrivenRig
 from sonolube.validation.contacts import steel_on_steel_contact, wear_contact
 from sonolube.validation.inputs import exact, in_table, said
 from sonolube.validation.tribometer import tribometer_stack
@@ -23,21 +24,21 @@ IDENTIFIED_NOTE = "Masses, springs and dampers of D 3.3.1 are not printed; they 
 """What rests on them says so."""
 
 
-def tribometer_rig(*, closure: str = "stick_slip") -> Rig:
+def tribometer_rig(*, friction_model: str = "asperity_stick_slip") -> DrivenRig:
     """Return the tribometer of section 2.3 as the multi-scale model of section 3.3 takes it, driven as in the tests.
 
     Parameters
     ----------
-    closure : str
-        Name of the closure from motion to friction.
+    friction_model : str
+        Name of the friction model.
 
     Returns
     -------
-    Rig
+    DrivenRig
     """
     stack, load = tribometer_stack(), exact(in_table("2.2", "normal_load")).value
     voltage = 2 * said("A.3.1.3-voltage-amplitude").value * said("A.3.1.5-gain").value
-    return Rig(
+    return DrivenRig(
         title="Modified pin-on-disc tribometer",
         source="D Tables 2.2, 2.3, 3.2 and 3.5, appendix A",
         contact=wear_contact(),
@@ -49,20 +50,19 @@ def tribometer_rig(*, closure: str = "stick_slip") -> Rig:
         capacitance=stack.free_capacitance,
         stack=stack,
         structure=chain_structure(pin_on_disc_chain(stack, **IDENTIFIED)),
-        closure=closure,
+        friction_model=FRICTION_MODELS[friction_model](),
         assumptions={"structure": IDENTIFIED_NOTE},
     )
 
 
-def plate_rig() -> Rig:
+def plate_rig() -> DrivenRig:
     """Return the tribometer with the uncoated steel plates of section 4.1, as its example test runs it.
 
     Returns
     -------
-    Rig
+    DrivenRig
     """
     rig, highest = tribometer_rig(), in_table("4.1", "voltage_peak_to_peak", 14).value
-    assert rig.drive is not None
     return replace(
         rig,
         title="Tribometer with uncoated steel plates",

@@ -1,8 +1,7 @@
-"""Wear: how much of the softer body leaves with the sliding."""
+"""Wear rates by Archard's law and by the cube model of Dong (2015), with and without normal vibration."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
-from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,6 +10,7 @@ from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.contact.half_period_mean import separating_half_period_mean, separating_mean
 from sonolube.contact.motion import GapMotion, converged_mean, load_balanced_motion
 from sonolube.contact.rough import RoughContact, real_contact_area, separation
+from sonolube.variants import VariantTable
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -142,8 +142,8 @@ def vibrating_cube_wear_rate(
     )
 
 
-def as_published_wear(contact: RoughContact, motion: GapMotion) -> Floats:
-    """Return wear with vibration over wear without: the cube averaged over the whole period. []
+def full_period_wear_ratio(contact: RoughContact, motion: GapMotion) -> Floats:
+    """Return the ratio of wear with and without vibration by the cube model averaged over the full period. []
 
     Parameters
     ----------
@@ -173,8 +173,8 @@ def as_published_wear(contact: RoughContact, motion: GapMotion) -> Floats:
     )
 
 
-def separating_half_period_wear(contact: RoughContact, motion: GapMotion) -> Floats:
-    """Return wear with vibration over wear without: the cube averaged while the gap is wider than at rest. []
+def half_period_wear_ratio(contact: RoughContact, motion: GapMotion) -> Floats:
+    """Return the ratio of wear with and without vibration by the cube model over the separating half period. []
 
     Parameters
     ----------
@@ -207,8 +207,8 @@ def separating_half_period_wear(contact: RoughContact, motion: GapMotion) -> Flo
     )
 
 
-def load_balanced_wear(contact: RoughContact, motion: GapMotion) -> Floats:
-    """Return wear with vibration over wear without: as published, about the gap that balances the load. []
+def load_balanced_wear_ratio(contact: RoughContact, motion: GapMotion) -> Floats:
+    """Return the ratio of wear with and without vibration by the cube model about the load-balanced mean gap. []
 
     Parameters
     ----------
@@ -230,17 +230,21 @@ def load_balanced_wear(contact: RoughContact, motion: GapMotion) -> Floats:
     With the area in proportion to the force, its mean stays that at rest, and the ratio differs from 1 only by how
     much lower the cube is while it carries: 1 + [l ln I0(a/l) - a I1(a/l)/I0(a/l)]/d.
     """
-    return as_published_wear(contact, load_balanced_motion(contact, motion))
+    return full_period_wear_ratio(contact, load_balanced_motion(contact, motion))
 
 
-WEAR_MODELS: Mapping[str, Callable[[RoughContact, GapMotion], Floats]] = MappingProxyType(
+WEAR_MODELS: VariantTable[Callable[[RoughContact, GapMotion], Floats]] = VariantTable(
+    "wear model",
     {
-        "as_published": as_published_wear,
-        "separating_half_period": separating_half_period_wear,
-        "load_balanced": load_balanced_wear,
-    }
+        "dong_2015_full_period": "sonolube.wear.cube:full_period_wear_ratio",
+        "dong_2015_half_period": "sonolube.wear.cube:half_period_wear_ratio",
+        "dong_2015_load_balanced": "sonolube.wear.cube:load_balanced_wear_ratio",
+    },
 )
-"""What a known motion of the gap makes of wear, by name."""
+"""Models of the wear ratio under a given motion of the gap, by name; a new model takes its file and one line here."""
+
+DEFAULT_WEAR_MODEL = "dong_2015_half_period"
+"""Model by which the wear tables of the dissertation were computed."""
 
 
 def specific_wear_rate(*, wear_rate: ArrayLike, normal_load: ArrayLike) -> Floats:

@@ -190,7 +190,7 @@ def test_a_drive_where_the_phase_falls_cannot_be_tracked() -> None:
 
 def test_the_map_of_a_rig_without_structure_goes_through_its_own_operating_point() -> None:
     known = modelled_map(COLLAR, voltage_maximum=56.0, points=3)
-    own = friction_point(COLLAR, closure="stick_slip").friction_force
+    own = friction_point(COLLAR).friction_force
     assert known.voltage_peak_to_peak[1] == 28.0
     assert known.friction_force[1] == approx(own)
     assert known.highest_force == approx(0.26 * 6.7)

@@ -6,6 +6,7 @@ from pytest import approx, raises
 from scipy.special import i0, i0e
 
 from sonolube.contact import (
+    ASPERITY_LAWS,
     ContactPair,
     GapMotion,
     RoughContact,
@@ -15,13 +16,14 @@ from sonolube.contact import (
     separation,
 )
 from sonolube.errors import InvalidInput
-from sonolube.friction import mindlin_memory_length, stick_slip, stick_slip_ratio
+from sonolube.friction import AsperityStickSlip, mindlin_memory_length, sine_stick_slip_ratio
 from sonolube.surfaces import Roughness
 
 CONTACT = RoughContact(  # D Table 3.2
     roughness=Roughness(rms_height=6e-6, summit_radius=1.5e-6, summit_density=4.7e10),
     pair=ContactPair(effective_modulus=59.6e9, poisson_ratio=0.33, yield_strength=410e6, mindlin_ratio=0.8),
     nominal_area=2.25e-6,
+    asperity=ASPERITY_LAWS["dong_2015"],
 )
 DECAY_LENGTH, MEMORY_LENGTH, FREQUENCY, LOAD = 2e-6, 1.5e-6, 22e3, 3.0
 OMEGA = 2 * np.pi * FREQUENCY
@@ -30,7 +32,7 @@ OMEGA = 2 * np.pi * FREQUENCY
 def ratio(beta: float, v: float) -> float:
     amplitude = beta * DECAY_LENGTH
     return float(
-        stick_slip_ratio(
+        sine_stick_slip_ratio(
             decay_length=DECAY_LENGTH,
             vibration_amplitude=amplitude,
             frequency=FREQUENCY,
@@ -91,7 +93,7 @@ def test_friction_grows_with_speed_from_the_plateau_to_one(beta: float, v: float
 
 
 def test_without_vibration_the_ratio_is_one() -> None:
-    assert stick_slip_ratio(
+    assert sine_stick_slip_ratio(
         decay_length=2e-6, vibration_amplitude=[0.0, 0.0], frequency=22e3, sliding_speed=[1e-6, 1.0]
     ) == approx([1, 1])
 
@@ -102,10 +104,10 @@ def test_a_sampled_sine_gives_the_closed_form(amplitude: float) -> None:
     motion = load_balanced_motion(
         CONTACT, harmonic_motion(CONTACT, normal_load=LOAD, vibration_amplitude=amplitude, frequency=FREQUENCY)
     )
-    closed = stick_slip_ratio(
+    closed = sine_stick_slip_ratio(
         decay_length=DECAY_LENGTH, vibration_amplitude=amplitude, frequency=FREQUENCY, sliding_speed=speeds
     )
-    assert stick_slip(CONTACT, motion, sliding_speed=speeds) == approx(closed, abs=1e-4)
+    assert AsperityStickSlip().ratio(CONTACT, motion, sliding_speed=speeds) == approx(closed, abs=1e-4)
 
 
 def two_harmonics(samples: int = 256) -> GapMotion:
@@ -126,15 +128,15 @@ def test_any_motion_gives_what_elements_stepped_one_by_one_give(fraction: float,
     gap = mean + 2e-6 * np.cos(theta) + 0.8e-6 * np.sin(2 * theta + 0.4)
     in_plane = fraction * (2e-6 * np.cos(theta - lag) + 0.8e-6 * np.sin(2 * (theta - lag) + 0.4))
     slides = speed / FREQUENCY / steps + in_plane - np.roll(in_plane, 1)
-    computed = stick_slip(
-        CONTACT, motion, sliding_speed=speed, in_plane_fraction=fraction, phase=lag, memory_length=MEMORY_LENGTH
+    computed = AsperityStickSlip(in_plane_fraction=fraction, in_plane_phase=lag, memory_length=MEMORY_LENGTH).ratio(
+        CONTACT, motion, sliding_speed=speed
     )
     assert computed == approx(stepped(gap / DECAY_LENGTH, slides / MEMORY_LENGTH), abs=2e-3)
 
 
 def test_fast_sliding_about_an_unmoved_mean_feels_the_mean_normal_force() -> None:
     motion = harmonic_motion(CONTACT, normal_load=LOAD, vibration_amplitude=2.5e-6, frequency=FREQUENCY)
-    assert stick_slip(CONTACT, motion, sliding_speed=10.0) == approx(i0(1.25), rel=1e-5)
+    assert AsperityStickSlip().ratio(CONTACT, motion, sliding_speed=10.0) == approx(i0(1.25), rel=1e-5)
 
 
 def test_mindlins_memory_length_is_hand_computed() -> None:
@@ -144,7 +146,7 @@ def test_mindlins_memory_length_is_hand_computed() -> None:
 
 def test_a_memory_length_of_zero_is_refused_by_name() -> None:
     with raises(InvalidInput, match=r"memory_length must be positive, got 0\.0 m"):
-        stick_slip(CONTACT, two_harmonics(), sliding_speed=0.1, memory_length=0.0)
+        AsperityStickSlip(memory_length=0.0).ratio(CONTACT, two_harmonics(), sliding_speed=0.1)
 
 
 @given(beta=st.floats(1e-3, 40), short=st.floats(0, 1e-9))

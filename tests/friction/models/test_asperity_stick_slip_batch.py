@@ -1,5 +1,7 @@
 """Stick-slip of very many vibrations at once: what single sines, single motions and bounds say of it."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -7,15 +9,25 @@ from hypothesis import strategies as st
 from pytest import approx, raises
 from scipy.special import i0e
 
-from sonolube.contact import ContactPair, GapMotion, RoughContact, load_balanced_motion, normal_force, separation
+from sonolube.contact import (
+    ASPERITY_LAWS,
+    ContactPair,
+    GapMotion,
+    HarmonicMotions,
+    RoughContact,
+    load_balanced_motion,
+    normal_force,
+    separation,
+)
 from sonolube.errors import InvalidInput
-from sonolube.friction import SINE_TOLERANCE, stick_slip, stick_slip_ratio, stick_slip_ratios
+from sonolube.friction import SINE_TOLERANCE, AsperityStickSlip, batched_stick_slip_ratio, sine_stick_slip_ratio
 from sonolube.surfaces import Roughness
 
 CONTACT = RoughContact(  # D Table 3.2
     roughness=Roughness(rms_height=6e-6, summit_radius=1.5e-6, summit_density=4.7e10),
     pair=ContactPair(effective_modulus=59.6e9, poisson_ratio=0.33, yield_strength=410e6, mindlin_ratio=0.8),
     nominal_area=2.25e-6,
+    asperity=ASPERITY_LAWS["dong_2015"],
 )
 DECAY_LENGTH, MEMORY_LENGTH, FREQUENCY, LOAD = 2e-6, 1.5e-6, 22e3, 3.0
 OMEGA = 2 * np.pi * FREQUENCY
@@ -27,14 +39,17 @@ def balanced_mean(harmonics: np.ndarray) -> float:
     return float(DECAY_LENGTH * np.log(np.mean(np.exp(-(turning @ harmonics).real / DECAY_LENGTH))))
 
 
+def motions(means: list[float], harmonics: list[Any]) -> HarmonicMotions:
+    frequency = np.full(len(means), FREQUENCY)
+    return HarmonicMotions(mean_displacement=np.array(means), harmonics=np.array(harmonics), frequency=frequency)
+
+
 def ratios(harmonics: np.ndarray, speeds: np.ndarray) -> np.ndarray:
-    return stick_slip_ratios(
+    return batched_stick_slip_ratio(
+        motions([balanced_mean(harmonics)], [harmonics]),
         decay_length=DECAY_LENGTH,
-        mean_displacement=[balanced_mean(harmonics)],
-        harmonics=[harmonics],
-        frequency=[FREQUENCY],
         sliding_speed=speeds,
-        vibration=np.zeros(speeds.size, dtype=int),
+        motion=np.zeros(speeds.size, dtype=int),
         memory_length=MEMORY_LENGTH,
     )
 
@@ -45,16 +60,14 @@ def test_a_sine_has_the_ratio_of_sines(log_beta: float, log_v: float) -> None:
     amplitude = np.exp(log_beta) * DECAY_LENGTH
     speed = np.exp(log_v) * OMEGA * amplitude * MEMORY_LENGTH / DECAY_LENGTH
     beta = np.exp(log_beta)
-    found = stick_slip_ratios(
+    found = batched_stick_slip_ratio(
+        motions([DECAY_LENGTH * (np.log(i0e(beta)) + beta)], [[amplitude + 0j]]),
         decay_length=DECAY_LENGTH,
-        mean_displacement=[DECAY_LENGTH * (np.log(i0e(beta)) + beta)],
-        harmonics=[[amplitude + 0j]],
-        frequency=[FREQUENCY],
         sliding_speed=[speed],
-        vibration=[0],
+        motion=[0],
         memory_length=MEMORY_LENGTH,
     )
-    known = stick_slip_ratio(
+    known = sine_stick_slip_ratio(
         decay_length=DECAY_LENGTH,
         vibration_amplitude=amplitude,
         frequency=FREQUENCY,
@@ -82,7 +95,7 @@ def test_a_motion_with_harmonics_has_the_ratio_of_elements_followed_in_time(harm
         CONTACT, GapMotion(displacement=x, normal_force=force, frequency=FREQUENCY, normal_load=LOAD)
     )
     speeds = np.array([5e-3, 40e-3, 0.2, 0.5])
-    followed = stick_slip(CONTACT, motion, sliding_speed=speeds, memory_length=MEMORY_LENGTH)
+    followed = AsperityStickSlip(memory_length=MEMORY_LENGTH).ratio(CONTACT, motion, sliding_speed=speeds)
     assert ratios(own, speeds) == approx(followed, abs=3e-5 + SINE_TOLERANCE * (abs(own[1]) < 1e-9))
 
 
@@ -93,7 +106,7 @@ def test_harmonics_change_friction_by_no_more_than_they_change_the_gap(share: fl
     own = np.array([amplitude, share * amplitude * np.exp(1j * lag)])
     beta = amplitude / DECAY_LENGTH
     sine = float(
-        stick_slip_ratio(
+        sine_stick_slip_ratio(
             decay_length=DECAY_LENGTH,
             vibration_amplitude=amplitude,
             frequency=FREQUENCY,
@@ -111,10 +124,12 @@ def test_a_motion_that_closes_twice_in_a_period_is_left_to_others() -> None:
 
 
 def test_what_does_not_fit_together_is_refused_by_name() -> None:
-    given_well = {"decay_length": 2e-6, "mean_displacement": [0.0], "harmonics": [[1e-6]], "frequency": [22e3]}
-    with raises(InvalidInput, match="vibration must lie between 0 and 0, got 1 to 1"):
-        stick_slip_ratios(**given_well, sliding_speed=[0.1], vibration=[1])  # type: ignore[arg-type]
+    one = motions([0.0], [[1e-6]])
+    with raises(InvalidInput, match="motion must lie between 0 and 0, got 1 to 1"):
+        batched_stick_slip_ratio(one, decay_length=2e-6, sliding_speed=[0.1], motion=[1])
     with raises(InvalidInput, match="sliding_speed must be positive"):
-        stick_slip_ratios(**given_well, sliding_speed=[0.0], vibration=[0])  # type: ignore[arg-type]
-    with raises(InvalidInput, match="must agree in vibrations"):
-        stick_slip_ratios(**(given_well | {"frequency": [1.0, 2.0]}), sliding_speed=[1.0], vibration=[0])  # type: ignore[arg-type]
+        batched_stick_slip_ratio(one, decay_length=2e-6, sliding_speed=[0.0], motion=[0])
+    with raises(InvalidInput, match="sliding_speed and motion must have one shape"):
+        batched_stick_slip_ratio(one, decay_length=2e-6, sliding_speed=[0.1, 0.2], motion=[0])
+    with raises(InvalidInput, match="must have one row to a motion"):
+        HarmonicMotions(mean_displacement=np.zeros(1), harmonics=np.ones((1, 1), dtype=complex), frequency=np.ones(2))

@@ -1,3 +1,4 @@
+from dataclasses import asdict
 from typing import Literal
 
 import numpy as np
@@ -5,9 +6,9 @@ import pytest
 from pytest import approx, raises
 from scipy.special import i0
 
-from sonolube.contact import ContactPair, GapMotion, RoughContact, harmonic_motion, load_balanced_motion
+from sonolube.contact import ASPERITY_LAWS, ContactPair, GapMotion, RoughContact, harmonic_motion, load_balanced_motion
 from sonolube.errors import InvalidInput
-from sonolube.friction import Holder, coupled
+from sonolube.friction import BristleWithHolder, Holder
 from sonolube.surfaces import Roughness
 
 MINDLIN_RATIO, MU, LOAD, FREQUENCY, DECAY_LENGTH, AMPLITUDE = 0.8, 0.3, 3.0, 22e3, 2e-6, 2.5e-6
@@ -15,6 +16,7 @@ CONTACT = RoughContact(  # D Table 3.2
     roughness=Roughness(rms_height=6e-6, summit_radius=1.5e-6, summit_density=4.7e10),
     pair=ContactPair(effective_modulus=59.6e9, poisson_ratio=0.33, yield_strength=410e6, mindlin_ratio=MINDLIN_RATIO),
     nominal_area=2.25e-6,
+    asperity=ASPERITY_LAWS["dong_2015"],
 )
 OMEGA = 2 * np.pi * FREQUENCY
 HOLDER = Holder(holder_stiffness=2e6, holder_mass=1e-4, holder_damping=3.0)
@@ -76,14 +78,14 @@ def stepped(
 def test_from_the_critical_speed_on_the_ratio_is_exactly_one() -> None:
     for amplitude in (0.1e-6, AMPLITUDE, 14e-6):
         speeds = critical_speed(amplitude) * np.array([1.001, 2.0, 100.0])
-        assert coupled(CONTACT, balanced(amplitude), sliding_speed=speeds, friction_coefficient=MU) == approx(
-            [1, 1, 1], rel=1e-6
-        )
+        assert BristleWithHolder().ratio(
+            CONTACT, balanced(amplitude), sliding_speed=speeds, friction_coefficient=MU
+        ) == approx([1, 1, 1], rel=1e-6)
 
 
 def test_just_below_the_critical_speed_it_is_not() -> None:
     speed = 0.9 * critical_speed()
-    assert coupled(CONTACT, balanced(), sliding_speed=speed, friction_coefficient=MU) < 0.999
+    assert BristleWithHolder().ratio(CONTACT, balanced(), sliding_speed=speed, friction_coefficient=MU) < 0.999
 
 
 @pytest.mark.parametrize("exponent", [0, 1])
@@ -92,13 +94,8 @@ def test_slow_sliding_reaches_the_static_plateau(exponent: Literal[0, 1], holder
     # friction cannot exceed what the widest gap allows, and slow sliding does not win it back before the next
     for amplitude in (0.1e-6, AMPLITUDE):
         beta = amplitude / DECAY_LENGTH
-        slow = coupled(
-            CONTACT,
-            balanced(amplitude),
-            sliding_speed=1e-7,
-            friction_coefficient=MU,
-            holder=holder,
-            dahl_exponent=exponent,
+        slow = BristleWithHolder(**asdict(holder), dahl_exponent=exponent).ratio(
+            CONTACT, balanced(amplitude), sliding_speed=1e-7, friction_coefficient=MU
         )
         assert slow == approx(np.exp(-beta) / i0(beta), rel=1e-3)
 
@@ -106,7 +103,7 @@ def test_slow_sliding_reaches_the_static_plateau(exponent: Literal[0, 1], holder
 def test_a_yielding_holder_lowers_friction_and_a_stiff_one_does_not_matter() -> None:
     speeds = critical_speed() * np.array([0.1, 0.5, 1.0])
     rigid, stiff, soft = (
-        coupled(CONTACT, balanced(), sliding_speed=speeds, friction_coefficient=MU, holder=holder)
+        BristleWithHolder(**asdict(holder)).ratio(CONTACT, balanced(), sliding_speed=speeds, friction_coefficient=MU)
         for holder in (Holder(), Holder(holder_stiffness=1e12), Holder(holder_stiffness=1e6))
     )
     assert stiff == approx(rigid, rel=1e-5)
@@ -117,15 +114,9 @@ def test_a_yielding_holder_lowers_friction_and_a_stiff_one_does_not_matter() -> 
 @pytest.mark.parametrize("in_plane", [(0.0, 0.0), (0.3, 0.7)])
 def test_the_bristle_gives_what_small_steps_give(exponent: Literal[0, 1], in_plane: tuple[float, float]) -> None:
     speed = 0.3 * critical_speed()
-    computed = coupled(
-        CONTACT,
-        balanced(),
-        sliding_speed=speed,
-        friction_coefficient=MU,
-        in_plane_fraction=in_plane[0],
-        phase=in_plane[1],
-        dahl_exponent=exponent,
-    )
+    computed = BristleWithHolder(
+        in_plane_fraction=in_plane[0], in_plane_phase=in_plane[1], dahl_exponent=exponent
+    ).ratio(CONTACT, balanced(), sliding_speed=speed, friction_coefficient=MU)
     small = stepped(speed=speed, in_plane=in_plane, exponent=exponent)["force"] / (MU * LOAD)
     assert computed == approx(small, abs=5e-4)
 
@@ -133,7 +124,9 @@ def test_the_bristle_gives_what_small_steps_give(exponent: Literal[0, 1], in_pla
 def test_a_heavy_holder_gives_what_small_steps_give_and_keeps_the_energy() -> None:
     speed = 0.3 * critical_speed()
     small = stepped(speed=speed, holder=HOLDER, periods=40, steps=4000)
-    computed = coupled(CONTACT, balanced(), sliding_speed=speed, friction_coefficient=MU, holder=HOLDER)
+    computed = BristleWithHolder(**asdict(HOLDER)).ratio(
+        CONTACT, balanced(), sliding_speed=speed, friction_coefficient=MU
+    )
     assert computed == approx(small["force"] / (MU * LOAD), abs=2e-3)
     # what the drive puts in, v_r F, leaves through bristle and holder's damping
     assert float(computed) * MU * LOAD * speed == approx(small["bristle"] + small["holder"], rel=5e-3)
@@ -143,23 +136,18 @@ def test_a_heavy_holder_gives_what_small_steps_give_and_keeps_the_energy() -> No
 def test_a_holder_of_great_mass_is_rigid() -> None:
     speeds = critical_speed() * np.array([0.1, 0.5])
     heavy = Holder(holder_stiffness=1e6, holder_mass=10.0, holder_damping=100.0)
-    assert coupled(CONTACT, balanced(), sliding_speed=speeds, friction_coefficient=MU, holder=heavy) == approx(
-        coupled(CONTACT, balanced(), sliding_speed=speeds, friction_coefficient=MU), rel=1e-3
-    )
+    assert BristleWithHolder(**asdict(heavy)).ratio(
+        CONTACT, balanced(), sliding_speed=speeds, friction_coefficient=MU
+    ) == approx(BristleWithHolder().ratio(CONTACT, balanced(), sliding_speed=speeds, friction_coefficient=MU), rel=1e-3)
 
 
 def test_in_plane_motion_faster_than_the_sliding_can_drive_the_slider() -> None:
     # friction reverses when the pin moves forward while it presses: beyond 100 % reduction, as D found
-    pushed = coupled(
-        CONTACT,
-        balanced(),
-        sliding_speed=0.02,
-        friction_coefficient=MU,
-        in_plane_fraction=0.8,
-        phase=np.pi / 2,
+    pushed = BristleWithHolder(in_plane_fraction=0.8, in_plane_phase=np.pi / 2).ratio(
+        CONTACT, balanced(), sliding_speed=0.02, friction_coefficient=MU
     )
-    held = coupled(
-        CONTACT, balanced(), sliding_speed=0.02, friction_coefficient=MU, in_plane_fraction=0.8, phase=-np.pi / 2
+    held = BristleWithHolder(in_plane_fraction=0.8, in_plane_phase=-np.pi / 2).ratio(
+        CONTACT, balanced(), sliding_speed=0.02, friction_coefficient=MU
     )
     assert min(pushed, held) < 0 < max(pushed, held)
 

@@ -8,6 +8,7 @@ from pytest import approx, raises
 from scipy.integrate import quad
 
 from sonolube.contact import (
+    ASPERITY_LAWS,
     ContactPair,
     ElasticBody,
     GaussianHeights,
@@ -17,7 +18,7 @@ from sonolube.contact import (
     tangential_stiffness,
 )
 from sonolube.errors import InvalidInput, ModelRangeWarning
-from sonolube.friction import as_published_ratio, separating_half_period_ratio, steady_deformation
+from sonolube.friction import dong_2015_deformation_ratio, dong_2015_half_period_ratio, steady_deformation
 from sonolube.surfaces import Roughness
 
 ALUMINIUM = ElasticBody(youngs_modulus=73e9, poisson_ratio=0.33)
@@ -26,7 +27,7 @@ ROUGHNESS = Roughness(rms_height=6e-6, summit_radius=1.7e-6, summit_density=47e9
 
 
 def welder(pair: ContactPair) -> RoughContact:
-    return RoughContact(roughness=ROUGHNESS, pair=pair, nominal_area=1e-4)
+    return RoughContact(roughness=ROUGHNESS, pair=pair, nominal_area=1e-4, asperity=ASPERITY_LAWS["dong_2015"])
 
 
 ALUMINIUM_ON_STEEL = welder(contact_pair(softer=ALUMINIUM, harder=STEEL, yield_strength=410e6))
@@ -48,7 +49,7 @@ def ratio_by_hand(d: float, a: float) -> float:
 @pytest.mark.parametrize("share", [0.0, 0.01, 0.3, 0.999])
 def test_the_ratio_is_the_mean_of_the_stiffness_over_the_separating_half(load: float, share: float) -> None:
     d = float(separation(ALUMINIUM_ON_STEEL, normal_load=load))
-    ratio = separating_half_period_ratio(ALUMINIUM_ON_STEEL, normal_load=load, vibration_amplitude=share * d)
+    ratio = dong_2015_half_period_ratio(ALUMINIUM_ON_STEEL, normal_load=load, vibration_amplitude=share * d)
     assert ratio == approx(ratio_by_hand(d, share * d), rel=1e-10)
 
 
@@ -59,6 +60,7 @@ def test_gaussian_heights_are_averaged_as_well() -> None:
         pair=ALUMINIUM_ON_STEEL.pair,
         nominal_area=1e-4,
         heights=GaussianHeights.from_roughness_parameter(roughness_parameter=roughness.roughness_parameter),
+        asperity=ASPERITY_LAWS["dong_2015"],
     )
     d = float(separation(contact, normal_load=1.0))
 
@@ -66,7 +68,7 @@ def test_gaussian_heights_are_averaged_as_well() -> None:
         return float(tangential_stiffness(contact, separation=d + 0.5e-6 * np.sin(theta)))
 
     by_hand = quad(stiffness, 0, np.pi / 2, epsrel=1e-9)[0] / (np.pi / 2) / stiffness(0.0)
-    assert separating_half_period_ratio(contact, normal_load=1.0, vibration_amplitude=0.5e-6) == approx(
+    assert dong_2015_half_period_ratio(contact, normal_load=1.0, vibration_amplitude=0.5e-6) == approx(
         by_hand, rel=1e-6
     )
 
@@ -85,14 +87,14 @@ def test_the_poisson_rig_loses_about_half_its_friction(
 ) -> None:
     # D 3.1.4 measured 30 to 50 and 50 to 56 %
     b = 25.4e-3 * axial_amplitude * np.pi * poisson_ratio / (2 * 127e-3)
-    reduction = 1 - separating_half_period_ratio(contact, normal_load=LOADS, vibration_amplitude=b)
+    reduction = 1 - dong_2015_half_period_ratio(contact, normal_load=LOADS, vibration_amplitude=b)
     assert np.all((reduction > lowest) & (reduction < highest))
 
 
 @settings(max_examples=50)
 @given(load=st.floats(1, 300), amplitude=st.floats(0, 5e-6), more=st.floats(1e-9, 5e-6))
 def test_stronger_vibration_leaves_less_friction(load: float, amplitude: float, more: float) -> None:
-    weak, strong = separating_half_period_ratio(
+    weak, strong = dong_2015_half_period_ratio(
         ALUMINIUM_ON_STEEL, normal_load=load, vibration_amplitude=[amplitude, amplitude + more]
     )
     assert 0 < strong < weak <= 1 + 1e-14
@@ -100,17 +102,17 @@ def test_stronger_vibration_leaves_less_friction(load: float, amplitude: float, 
 
 def test_loads_and_amplitudes_broadcast_over_more_points_than_a_block() -> None:
     amplitudes = np.linspace(0, 3e-6, 1001)
-    ratios = separating_half_period_ratio(
+    ratios = dong_2015_half_period_ratio(
         ALUMINIUM_ON_STEEL, normal_load=LOADS[:, np.newaxis], vibration_amplitude=amplitudes
     )
     assert ratios.shape == (11, 1001)
-    one = separating_half_period_ratio(ALUMINIUM_ON_STEEL, normal_load=LOADS[7], vibration_amplitude=amplitudes[700])
+    one = dong_2015_half_period_ratio(ALUMINIUM_ON_STEEL, normal_load=LOADS[7], vibration_amplitude=amplitudes[700])
     assert ratios[7, 700] == approx(float(one), rel=1e-14)
 
 
 def test_ever_larger_amplitudes_leave_ever_less_friction_even_beyond_the_separation() -> None:
     amplitudes = np.linspace(0, 60e-6, 100)  # the separation is 18.1 um
-    ratios = separating_half_period_ratio(ALUMINIUM_ON_STEEL, normal_load=40.0, vibration_amplitude=amplitudes)
+    ratios = dong_2015_half_period_ratio(ALUMINIUM_ON_STEEL, normal_load=40.0, vibration_amplitude=amplitudes)
     assert ratios[0] == approx(1.0)
     assert np.all(np.diff(ratios) < 0)
     assert ratios[-1] > 0
@@ -118,7 +120,7 @@ def test_ever_larger_amplitudes_leave_ever_less_friction_even_beyond_the_separat
 
 def test_a_negative_amplitude_is_refused_by_name() -> None:
     with raises(InvalidInput, match=r"vibration_amplitude must not be negative, got -1e-06 m"):
-        separating_half_period_ratio(ALUMINIUM_ON_STEEL, normal_load=40.0, vibration_amplitude=-1e-6)
+        dong_2015_half_period_ratio(ALUMINIUM_ON_STEEL, normal_load=40.0, vibration_amplitude=-1e-6)
 
 
 def half_period_mean(value: NDArray[np.float64]) -> float:
@@ -132,7 +134,7 @@ def test_the_printed_form_is_the_mean_of_stiffness_times_deformation(phase: floa
     d = float(separation(ALUMINIUM_ON_STEEL, normal_load=load))
     k = tangential_stiffness(ALUMINIUM_ON_STEEL, separation=d + b * np.sin(theta))
     by_hand = half_period_mean(k / k[0] * (delta + u * np.sin(theta + phase)) / delta)
-    ratio = as_published_ratio(
+    ratio = dong_2015_deformation_ratio(
         ALUMINIUM_ON_STEEL,
         normal_load=load,
         normal_amplitude=b,
@@ -144,10 +146,10 @@ def test_the_printed_form_is_the_mean_of_stiffness_times_deformation(phase: floa
 
 
 def test_without_in_plane_motion_the_printed_form_is_the_plain_one() -> None:
-    printed = as_published_ratio(
+    printed = dong_2015_deformation_ratio(
         ALUMINIUM_ON_STEEL, normal_load=LOADS, normal_amplitude=1e-6, in_plane_amplitude=0.0, deformation=5e-10
     )
-    plain = separating_half_period_ratio(ALUMINIUM_ON_STEEL, normal_load=LOADS, vibration_amplitude=1e-6)
+    plain = dong_2015_half_period_ratio(ALUMINIUM_ON_STEEL, normal_load=LOADS, vibration_amplitude=1e-6)
     assert printed == approx(plain, rel=1e-13)
 
 
@@ -162,7 +164,7 @@ def test_in_plane_motion_beyond_the_deformation_is_warned_of() -> None:
     with pytest.warns(
         ModelRangeWarning, match=r"in_plane_amplitude of up to 4\.2e-07 m is added to a deformation of 5e-10"
     ):
-        as_published_ratio(
+        dong_2015_deformation_ratio(
             ALUMINIUM_ON_STEEL,
             normal_load=40.0,
             normal_amplitude=0.88e-6,

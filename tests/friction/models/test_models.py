@@ -5,6 +5,7 @@ from scipy.integrate import quad
 from scipy.special import i0
 
 from sonolube.contact import (
+    ASPERITY_LAWS,
     ContactPair,
     GapMotion,
     GaussianHeights,
@@ -18,11 +19,11 @@ from sonolube.contact import (
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.friction import (
     FRICTION_MODELS,
-    as_published,
-    kinematic,
-    load_balanced,
-    separating_half_period,
-    separating_half_period_ratio,
+    Dong2015FullPeriod,
+    Dong2015HalfPeriod,
+    Dong2015LoadBalanced,
+    Kinematic,
+    dong_2015_half_period_ratio,
 )
 from sonolube.surfaces import Roughness
 
@@ -30,6 +31,7 @@ CONTACT = RoughContact(  # D Table 3.2
     roughness=Roughness(rms_height=6e-6, summit_radius=1.5e-6, summit_density=4.7e10),
     pair=ContactPair(effective_modulus=59.6e9, poisson_ratio=0.33, yield_strength=410e6, mindlin_ratio=0.8),
     nominal_area=2.25e-6,
+    asperity=ASPERITY_LAWS["dong_2015"],
 )
 LOAD, FREQUENCY, DECAY_LENGTH = 3.0, 22e3, 2e-6
 OMEGA = 2 * np.pi * FREQUENCY
@@ -44,22 +46,27 @@ def sine(amplitude: float, *, samples: int = 256) -> GapMotion:
 
 
 def named(name: str, motion: GapMotion, speeds: np.ndarray) -> np.ndarray:
-    extra = {"friction_coefficient": 0.3} if name == "coupled" else {}
-    return FRICTION_MODELS[name](CONTACT, motion, sliding_speed=speeds, **extra)
+    return FRICTION_MODELS[name]().ratio(CONTACT, motion, sliding_speed=speeds, friction_coefficient=0.3)
 
 
 def test_as_printed_vibration_raises_friction() -> None:
-    assert as_published(CONTACT, sine(2.5e-6), sliding_speed=SPEEDS) == approx([1.22, 1.91, 2.89], abs=6e-3)
+    assert Dong2015FullPeriod().ratio(CONTACT, sine(2.5e-6), sliding_speed=SPEEDS) == approx(
+        [1.22, 1.91, 2.89], abs=6e-3
+    )
 
 
 def test_balancing_the_load_lowers_it() -> None:
-    assert load_balanced(CONTACT, sine(2.5e-6), sliding_speed=SPEEDS) == approx([0.507, 0.794, 1.204], abs=5e-4)
+    assert Dong2015LoadBalanced().ratio(CONTACT, sine(2.5e-6), sliding_speed=SPEEDS) == approx(
+        [0.507, 0.794, 1.204], abs=5e-4
+    )
 
 
 def test_the_direction_alone_at_a_third_of_the_amplitude_comes_near_the_measured_ratios() -> None:
     known = [0.364, 0.556, 0.782]
-    assert kinematic(CONTACT, sine(0.78e-6), sliding_speed=SPEEDS) == approx(known, abs=5e-4)
-    assert kinematic(CONTACT, sine(2.5e-6), sliding_speed=SPEEDS, amplitude_fraction=0.312) == approx(known, abs=5e-4)
+    assert Kinematic().ratio(CONTACT, sine(0.78e-6), sliding_speed=SPEEDS) == approx(known, abs=5e-4)
+    assert Kinematic(amplitude_fraction=0.312).ratio(CONTACT, sine(2.5e-6), sliding_speed=SPEEDS) == approx(
+        known, abs=5e-4
+    )
 
 
 @pytest.mark.parametrize("amplitude", [0.1e-6, 2.5e-6, 14e-6])
@@ -75,7 +82,7 @@ def test_the_means_are_those_of_adaptive_quadrature(amplitude: float, samples: i
         gap = AT_REST + amplitude * np.cos(theta)
         return cosine(theta, v) * float(tangential_stiffness(CONTACT, separation=gap) / at_rest)
 
-    for closure, integrand in ((kinematic, cosine), (as_published, weighted)):
+    for model, integrand in ((Kinematic(), cosine), (Dong2015FullPeriod(), weighted)):
         crowded = [v / (OMEGA * amplitude) for v in speeds]
         means = [
             quad(
@@ -90,13 +97,13 @@ def test_the_means_are_those_of_adaptive_quadrature(amplitude: float, samples: i
             / np.pi
             for v, c in zip(speeds, crowded, strict=True)
         ]
-        assert closure(CONTACT, motion, sliding_speed=speeds) == approx(np.array(means), rel=1e-4, abs=1e-6)
+        assert model.ratio(CONTACT, motion, sliding_speed=speeds) == approx(np.array(means), rel=1e-4, abs=1e-6)
 
 
 def test_the_separating_half_is_that_of_the_cube_at_every_speed() -> None:
     for amplitude in (0.1e-6, 2.5e-6, 14e-6):
-        expected = separating_half_period_ratio(CONTACT, normal_load=LOAD, vibration_amplitude=amplitude)
-        assert separating_half_period(CONTACT, sine(amplitude), sliding_speed=SPEEDS) == approx(
+        expected = dong_2015_half_period_ratio(CONTACT, normal_load=LOAD, vibration_amplitude=amplitude)
+        assert Dong2015HalfPeriod().ratio(CONTACT, sine(amplitude), sliding_speed=SPEEDS) == approx(
             np.full(3, expected), abs=2e-5
         )
 
@@ -110,7 +117,11 @@ def test_the_balanced_mean_of_a_sine_rises_by_the_logarithm_of_bessels_function(
 
 def test_gaussian_heights_are_balanced_too() -> None:
     contact = RoughContact(
-        roughness=CONTACT.roughness, pair=CONTACT.pair, nominal_area=2.25e-6, heights=GaussianHeights()
+        roughness=CONTACT.roughness,
+        pair=CONTACT.pair,
+        nominal_area=2.25e-6,
+        heights=GaussianHeights(),
+        asperity=ASPERITY_LAWS["dong_2015"],
     )
     motion = harmonic_motion(contact, normal_load=LOAD, vibration_amplitude=2.5e-6, frequency=FREQUENCY)
     balanced = load_balanced_motion(contact, motion)
@@ -154,12 +165,12 @@ def test_more_phases_of_a_motion_lie_on_the_same_sine() -> None:
 
 def test_a_motion_that_closes_the_gap_is_refused() -> None:
     with raises(OutsideRange, match=r"the motion closes the gap: from a separation of 1\.55e-05 m at rest"):
-        as_published(CONTACT, sine(17e-6), sliding_speed=0.1)
+        Dong2015FullPeriod().ratio(CONTACT, sine(17e-6), sliding_speed=0.1)
 
 
 def test_a_speed_of_zero_is_refused_by_name() -> None:
     with raises(InvalidInput, match=r"sliding_speed must be positive, got 0\.0 m/s"):
-        kinematic(CONTACT, sine(1e-6), sliding_speed=0.0)
+        Kinematic().ratio(CONTACT, sine(1e-6), sliding_speed=0.0)
 
 
 def test_forces_of_another_length_than_the_displacements_are_refused() -> None:

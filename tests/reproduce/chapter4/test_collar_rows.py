@@ -8,7 +8,7 @@ pytest.importorskip("netgen.occ", reason="netgen-mesher is not installed")
 
 from sonolube.errors import SonolubeError
 from sonolube.fem.solver.cad import MissingPart
-from sonolube.friction.models.asperity_stick_slip import stick_slip_ratio
+from sonolube.friction import sine_stick_slip_ratio
 from sonolube.reproduce import Verdict
 from sonolube.reproduce.chapter4 import collar_rows as chapter4_collar
 from sonolube.reproduce.chapter4.collar import pull
@@ -19,7 +19,7 @@ from sonolube.reproduce.chapter4.collar_rows import collar_rows
 def test_friction_along_the_rod_is_that_of_the_closed_form_at_each_amplitude() -> None:
     rod = pull()
     for k in (0, rod.place.size // 2):
-        closed_form = stick_slip_ratio(
+        closed_form = sine_stick_slip_ratio(
             decay_length=2e-6,  # Rq of 6 um over 3, Table 3.2
             vibration_amplitude=rod.vibration_amplitude[k],
             frequency=24.97e3,

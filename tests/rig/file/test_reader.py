@@ -12,6 +12,7 @@ from pytest import approx
 
 from sonolube.errors import InvalidInput
 from sonolube.rig import Rig, contact_point, friction_point, read_rig, rig_from, rig_schema, wear_point
+from sonolube.rig.file.json_schema import tables_of
 
 RIGS = Path(__file__).parents[3] / "examples" / "rigs"
 NAMES = (
@@ -157,9 +158,7 @@ def test_the_schema_knows_every_key_of_every_example() -> None:
         for key, value in content.items():
             assert key in entry["properties"], key
             if isinstance(value, dict) and key != "assumptions":
-                options = entry["properties"][key].get("anyOf", [entry["properties"][key]])
-                reference = next(option["$ref"] for option in options if "$ref" in option)
-                check(value, schema["$defs"][reference.rpartition("/")[2]])
+                check(value, schema["$defs"][next(tables_of(entry["properties"][key]))])
 
     for name in NAMES:
         check(tomllib.loads((RIGS / f"{name}.toml").read_text(encoding="utf-8")), schema)

@@ -9,9 +9,9 @@ from sonolube.checks import Floats, require_non_negative
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.metrics import EfficiencyLine, friction_at_power, power_for_friction
 from sonolube.rig import Rig, friction_ratios, operating_points
+from sonolube.rig.driven_rig import require_drive
 from sonolube.rig.excitation import amplifier_power
-from sonolube.rig.friction_and_wear import sine_under_load
-from sonolube.rig.linear_response import require_drive
+from sonolube.rig.friction_and_wear import prescribed_sine
 
 _FLAT = 1e-6  # share of the intrinsic friction by which neighbouring points must differ
 
@@ -172,7 +172,7 @@ def efficiency_map(rig: Rig, line: EfficiencyLine, *, voltage_maximum: float, po
         drive,
         capacitance=rig.capacitance,
         voltage_peak_to_peak=volts,
-        voltage_offset=_offset_share(rig) * volts,
+        voltage_offset=drive.offset_ratio * volts,
     )
     enough = float(power_for_friction(line, reduced_friction_force=0.0, **setting))
     # power goes with the square of the voltage
@@ -194,14 +194,8 @@ def _voltages(highest: float, points: int) -> Floats:
     return np.linspace(0, float(require_non_negative(voltage_maximum=highest)), points)
 
 
-def _offset_share(rig: Rig) -> float:
-    drive = require_drive(rig)
-    assert drive.voltage_peak_to_peak is not None
-    return drive.voltage_offset / drive.voltage_peak_to_peak if drive.voltage_peak_to_peak else 0.0
-
-
 def _computed_ratios(rig: Rig, volts: Floats) -> Floats:
-    found = operating_points(rig, voltage_peak_to_peak=volts, voltage_offset=_offset_share(rig) * volts)
+    found = operating_points(rig, voltage_peak_to_peak=volts, voltage_offset=require_drive(rig).offset_ratio * volts)
     return found.friction_ratio
 
 
@@ -215,7 +209,7 @@ def _sine_ratios(rig: Rig, volts: Floats) -> Floats:
     for i in range(1, volts.size):
         vibrating = replace(rig, vibration_amplitude=per_volt * volts[i])
         try:
-            motion = sine_under_load(vibrating)
+            motion = prescribed_sine(vibrating)
             ratios[i] = friction_ratios(vibrating, motion, sliding_speed=rig.sliding_speed)
         except OutsideRange:
             ratios[i] = np.nan

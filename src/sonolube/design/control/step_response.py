@@ -8,8 +8,8 @@ from sonolube.checks import Floats, require_non_negative, require_within
 from sonolube.design.control.closed_loop import ControlRun
 from sonolube.errors import InvalidInput
 from sonolube.rig import Rig
+from sonolube.rig.driven_rig import require_drive
 from sonolube.rig.excitation import amplifier_power
-from sonolube.rig.linear_response import require_drive
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -110,12 +110,11 @@ def control_energy(rig: Rig, run: ControlRun) -> ControlEnergy:
     interval = float(run.time[1] - run.time[0]) if run.time.size > 1 else 0.0
     supplied = None
     if rig.capacitance is not None:
-        share = drive.voltage_offset / drive.voltage_peak_to_peak if drive.voltage_peak_to_peak else 0.0
         power = amplifier_power(
             drive,
             capacitance=rig.capacitance,
             voltage_peak_to_peak=run.voltage_peak_to_peak,
-            voltage_offset=share * run.voltage_peak_to_peak,
+            voltage_offset=drive.offset_ratio * run.voltage_peak_to_peak,
             frequency=run.frequency,
         )
         supplied = float(power.sum() * interval)

@@ -10,7 +10,7 @@ from sonolube.checks import require_non_negative, require_positive, require_with
 from sonolube.dynamics import electrical_admittance, modes
 from sonolube.errors import InvalidInput
 from sonolube.rig import Rig, touching_structure
-from sonolube.rig.linear_response import require_drive
+from sonolube.rig.driven_rig import require_drive
 
 _ALONE = 0.2  # share of the driven mode's conductance by which all else may shift it
 

@@ -11,10 +11,10 @@ from sonolube.checks import Complexes, Floats
 from sonolube.contact import separation
 from sonolube.design.optimisation.requirements import Limits
 from sonolube.dynamics import Status, SteadyStates
-from sonolube.rig import Rig
+from sonolube.rig.driven_rig import DrivenRig, driven_rig
 from sonolube.rig.excitation import amplifier_power, voltage_range
-from sonolube.rig.linear_response import require_drive
 from sonolube.rig.operating_points import Settings, steady_states_of
+from sonolube.rig.record import Rig
 
 CONSTRAINTS = (
     "sound",
@@ -61,21 +61,20 @@ class Assessment:
         return np.asarray(np.max(np.stack(list(self.usage.values())), axis=0))
 
 
-def offset_share(rig: Rig) -> float:
-    """Return the offset of a rig's drive over its swing, which it keeps when the swing changes."""
-    drive = require_drive(rig)
-    assert drive.voltage_peak_to_peak is not None
-    return drive.voltage_offset / drive.voltage_peak_to_peak if drive.voltage_peak_to_peak else 0.0
-
-
 def assess(
-    rig: Rig, limits: Limits, *, frequency: ArrayLike, voltage_peak_to_peak: ArrayLike, bolt: PreloadBolt | None = None
+    rig: Rig,
+    limits: Limits,
+    *,
+    frequency: ArrayLike,
+    voltage_peak_to_peak: ArrayLike,
+    bolt: PreloadBolt | None = None,
 ) -> Assessment:
     """Return what drives ask of a rig.
 
     Parameters
     ----------
     rig : Rig
+        With a stack, a structure and a drive voltage.
     limits : Limits
     frequency : array_like, shape (n,)
         Frequency of each drive. [Hz]
@@ -94,13 +93,13 @@ def assess(
     Heat is the electrical power that stays in stack, dampers and contact, and the dielectric loss
     pi/4 f C tan(delta) U_pp^2 of a sine.
     """
+    rig = driven_rig(rig)
     f, volts = np.broadcast_arrays(np.asarray(frequency, dtype=float), np.asarray(voltage_peak_to_peak, dtype=float))
-    offset = offset_share(rig) * volts
+    offset = rig.drive.offset_ratio * volts
     load = np.full(f.shape, rig.normal_load)
     settings = Settings(voltage_peak_to_peak=volts, voltage_offset=offset, frequency=f, normal_load=load)
     states = steady_states_of(rig, settings, separation(rig.contact, normal_load=load))
-    stack, drive = rig.stack, require_drive(rig)
-    assert stack is not None
+    stack, drive = rig.stack, rig.drive
     power = amplifier_power(
         drive, capacitance=stack.free_capacitance, voltage_peak_to_peak=volts, voltage_offset=offset, frequency=f
     )
@@ -129,7 +128,7 @@ def assess(
     )
 
 
-def _numbers(rig: Rig, stack: PiezoStack, states: SteadyStates, bolt: PreloadBolt | None) -> dict[str, Floats]:
+def _numbers(rig: DrivenRig, stack: PiezoStack, states: SteadyStates, bolt: PreloadBolt | None) -> dict[str, Floats]:
     """Return what the stack does over a period: current, slope of the voltage, elongation, pull."""
     orders = np.arange(1, states.voltage_harmonics.shape[-1] + 1)
     s = 2j * np.pi * states.frequency[:, np.newaxis] * orders
@@ -157,7 +156,12 @@ def _highest(harmonics: Complexes) -> Floats:
 
 
 def _usage(
-    rig: Rig, stack: PiezoStack, limits: Limits, numbers: dict[str, Floats], f: Floats, ends: tuple[Floats, Floats]
+    rig: DrivenRig,
+    stack: PiezoStack,
+    limits: Limits,
+    numbers: dict[str, Floats],
+    f: Floats,
+    ends: tuple[Floats, Floats],
 ) -> dict[str, Floats]:
     lowest, highest = ends
     voltage = np.maximum(np.abs(lowest), np.abs(highest))

@@ -21,8 +21,8 @@ from sonolube.design.optimisation.screening import Task
 from sonolube.design.optimisation.space import rig_of
 from sonolube.dynamics import electrical_admittance
 from sonolube.errors import InvalidInput
-from sonolube.rig import Rig, steady_states, touching_structure
-from sonolube.rig.linear_response import require_drive
+from sonolube.rig import steady_states, touching_structure
+from sonolube.rig.driven_rig import DrivenRig
 
 CAPACITANCE_TOLERANCE = 0.2
 """Relative tolerance of the capacitance that data sheets state."""
@@ -68,7 +68,7 @@ class Electrical:
     matched: tuple[Matched, ...]
 
 
-def design_rig(task: Task, point: Point) -> Rig:
+def design_rig(task: Task, point: Point) -> DrivenRig:
     """Return the rig that a design is, driven as it says.
 
     Parameters
@@ -78,18 +78,18 @@ def design_rig(task: Task, point: Point) -> Rig:
 
     Returns
     -------
-    Rig
+    DrivenRig
     """
     amplitude = float(point.assessment.numbers["vibration_amplitude"][0])
     return replace(driven(rig_of(task.space, point.choice), point), vibration_amplitude=amplitude)
 
 
-def admittance_of(rig: Rig, *, frequency: Floats, capacitance_change: float = 0.0) -> Complexes:
+def admittance_of(rig: DrivenRig, *, frequency: Floats, capacitance_change: float = 0.0) -> Complexes:
     """Return current per voltage of a rig's stack under small voltages, the contact a spring. [S]
 
     Parameters
     ----------
-    rig : Rig
+    rig : DrivenRig
     frequency : ndarray
         Frequency of the voltage. [Hz]
     capacitance_change : float
@@ -99,7 +99,6 @@ def admittance_of(rig: Rig, *, frequency: Floats, capacitance_change: float = 0.
     -------
     ndarray of complex, shape of `frequency`
     """
-    assert rig.stack is not None
     own = electrical_admittance(touching_structure(rig), frequency=frequency)
     return own + 2j * np.pi * frequency * capacitance_change * rig.stack.free_capacitance
 
@@ -132,7 +131,7 @@ def electrical(task: Task, point: Point, *, source_resistance: float | None = No
         admittance=y,
         voltage_amplitude=np.where(there, volts, 0),
         frequency=point.frequency,
-        voltage_offset=require_drive(rig).voltage_offset,
+        voltage_offset=rig.drive.voltage_offset,
     )
     at = complex(admittance_of(rig, frequency=np.array([point.frequency]))[0])
     networks: list[tuple[str, MatchingNetwork]] = []
@@ -147,7 +146,7 @@ def electrical(task: Task, point: Point, *, source_resistance: float | None = No
     return Electrical(need=need, matched=tuple(_matched(rig, point.frequency, *named) for named in networks))
 
 
-def _matched(rig: Rig, frequency: float, name: str, network: MatchingNetwork) -> Matched:
+def _matched(rig: DrivenRig, frequency: float, name: str, network: MatchingNetwork) -> Matched:
     f = np.array([frequency])
     off = [
         float(

@@ -6,15 +6,15 @@ import numpy as np
 from scipy.optimize import minimize
 
 from sonolube.checks import Floats
-from sonolube.design.optimisation.assessment import Assessment, assess, offset_share
+from sonolube.design.optimisation.assessment import Assessment, assess
 from sonolube.design.optimisation.screening import Task
 from sonolube.design.optimisation.space import Choice, rig_of, stack_of, structure_of
 from sonolube.design.optimisation.target import exact_swing, highest_swing
 from sonolube.dynamics import Status
 from sonolube.dynamics.sensitivities import StructureChange, gradients
-from sonolube.rig import Rig, steady_states
-from sonolube.rig.friction_and_wear import friction_ratio, sine_under_load
-from sonolube.rig.linear_response import require_drive
+from sonolube.rig import steady_states
+from sonolube.rig.driven_rig import DrivenRig
+from sonolube.rig.friction_and_wear import friction_ratio, prescribed_sine
 
 _STEP = 1e-4  # relative, of differences along the surface
 _ROUNDS = 25
@@ -93,7 +93,7 @@ def tangent(task: Task, point: Point) -> dict[str, float]:
     -----
     d ln U/d ln x = -(R_a da/dx + R_f df/dx) x/(R_a da/d ln U): the derivatives of the amplitude a are those of the
     steady vibration, by the implicit function theorem; of the friction ratio R by a and by f, those of the rig's
-    closure under a sine. That the vibration is no pure sine bends the direction, not the designs.
+    friction model under a sine. That the vibration is no pure sine bends the direction, not the designs.
     """
     rig = driven(rig_of(task.space, point.choice), point)
     states = steady_states(rig)
@@ -102,9 +102,9 @@ def tangent(task: Task, point: Point) -> dict[str, float]:
     changes = {name: _change(task, point.choice, name) for name in task.space.ranges}
     every = gradients(states, structure_changes=changes).vibration_amplitude
     found = {name: float(values[0]) for name, values in every.items()}
-    drive = require_drive(rig)
+    drive = rig.drive
     amplitude = float(states.vibration_amplitude[0])
-    by_amplitude, by_frequency = _closure_slopes(rig, amplitude)
+    by_amplitude, by_frequency = _friction_slopes(rig, amplitude)
     by_swing = found["voltage_scale"] + drive.voltage_offset * found["voltage_offset"]
     if by_amplitude * by_swing == 0:
         return dict.fromkeys(task.space.bounds, 0.0)
@@ -230,25 +230,25 @@ class _Search:
         return float(np.log(list(self.task.space.bounds.values())[column][1]))
 
 
-def driven(rig: Rig, point: Point) -> Rig:
+def driven(rig: DrivenRig, point: Point) -> DrivenRig:
     """Return a rig under the drive of a point, its offset in the rig's own proportion."""
     swing = point.voltage_peak_to_peak
     drive = replace(
-        require_drive(rig),
+        rig.drive,
         frequency=point.frequency,
         voltage_peak_to_peak=swing,
-        voltage_offset=offset_share(rig) * swing,
+        voltage_offset=rig.drive.offset_ratio * swing,
     )
     return replace(rig, drive=drive)
 
 
-def _closure_slopes(rig: Rig, amplitude: float) -> tuple[float, float]:
+def _friction_slopes(rig: DrivenRig, amplitude: float) -> tuple[float, float]:
     """Return the derivatives of the friction ratio under a sine by its amplitude and its frequency."""
-    drive = require_drive(rig)
+    drive = rig.drive
 
     def ratio(a: float, f: float) -> float:
         at = replace(rig, vibration_amplitude=a, drive=replace(drive, frequency=f))
-        return friction_ratio(at, sine_under_load(at))
+        return friction_ratio(at, prescribed_sine(at))
 
     h = 1e-3
     a, f = amplitude, drive.frequency

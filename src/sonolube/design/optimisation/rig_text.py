@@ -10,7 +10,6 @@ from sonolube.design.optimisation.local_search import Point
 from sonolube.design.optimisation.screening import Task
 from sonolube.design.optimisation.space import OWN
 from sonolube.rig import with_tables
-from sonolube.rig.linear_response import require_drive
 from sonolube.vocabulary import quantities
 
 _STACK = (
@@ -42,8 +41,7 @@ def design_text(text: str, content: Mapping[str, Any], task: Task, point: Point)
     str
     """
     rig = design_rig(task, point)
-    drive = require_drive(rig)
-    assert rig.stack is not None
+    drive = rig.drive
     changed: dict[str, dict[str, Any]] = {
         name: {key: value for key, value in content[name].items() if not isinstance(value, dict)}
         for name in ("contact", "friction", "sliding")
@@ -60,8 +58,7 @@ def design_text(text: str, content: Mapping[str, Any], task: Task, point: Point)
     if "actuator" in content:
         changed["actuator"] = dict(content["actuator"]) | {"capacitance": rig.stack.free_capacitance}
         if "amplitude_per_volt" in content["actuator"]:
-            assert drive.voltage_peak_to_peak is not None
-            changed["actuator"]["amplitude_per_volt"] = rig.vibration_amplitude / drive.voltage_peak_to_peak
+            changed["actuator"]["amplitude_per_volt"] = rig.vibration_amplitude / rig.voltage_peak_to_peak
             assumed["actuator.amplitude_per_volt"] = "computed at the drive chosen"
     if "vibration" in content:
         changed["vibration"] = {"vibration_amplitude": rig.vibration_amplitude}

@@ -13,7 +13,8 @@ from sonolube.design.optimisation.space import Choice, DesignSpace, Range, rig_o
 from sonolube.design.optimisation.target import swings_for_ratio
 from sonolube.design.optimisation.tolerance import Tolerance, deviations, over_deviations
 from sonolube.errors import SonolubeError
-from sonolube.rig import Rig, frequency_grid
+from sonolube.rig import frequency_grid
+from sonolube.rig.driven_rig import DrivenRig
 
 Advance = Callable[[int, int], None]
 
@@ -179,13 +180,13 @@ def of_choice(task: Task, choice: Choice, *, frequency: Floats | None = None) ->
     return f, worst_of(task, rigs, frequency=f, voltage_peak_to_peak=np.where(np.isinf(volts), np.nan, volts))
 
 
-def worst_of(task: Task, rigs: list[Rig], *, frequency: Floats, voltage_peak_to_peak: Floats) -> Assessment:
+def worst_of(task: Task, rigs: list[DrivenRig], *, frequency: Floats, voltage_peak_to_peak: Floats) -> Assessment:
     """Return what drives ask of a rig and its deviations, at worst or at the quantile.
 
     Parameters
     ----------
     task : Task
-    rigs : list of Rig
+    rigs : list of DrivenRig
         The one drawn first.
     frequency : ndarray, shape (n,)
         Frequency of each drive. [Hz]
@@ -233,7 +234,7 @@ def worst_of(task: Task, rigs: list[Rig], *, frequency: Floats, voltage_peak_to_
     )
 
 
-def _grid(rig: Rig, task: Task) -> Floats:
+def _grid(rig: DrivenRig, task: Task) -> Floats:
     low, high = task.space.frequencies
     return frequency_grid(rig, lowest=low, highest=high, points=_FREQUENCIES, crowded=_CROWDED)
 

@@ -10,8 +10,7 @@ from sonolube.checks import require_positive
 from sonolube.design.optimisation.tolerance import NOMINAL, Deviation
 from sonolube.dynamics import Structure, chain_structure, pin_on_disc_chain
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.rig import Rig
-from sonolube.rig.linear_response import require_drive, require_structure
+from sonolube.rig.driven_rig import DrivenRig
 
 OWN = "own"
 """Name of the actuator that the rig has."""
@@ -25,7 +24,7 @@ class DesignSpace:
 
     Parameters
     ----------
-    rig : Rig
+    rig : DrivenRig
         With a stack, a structure and a drive voltage.
     entries : mapping of str to float
         Its table `structure`, in SI.
@@ -52,7 +51,7 @@ class DesignSpace:
         If an actuator is in no catalogue.
     """
 
-    rig: Rig
+    rig: DrivenRig
     entries: Mapping[str, float]
     frequencies: Range
     ranges: Mapping[str, Range] = field(default_factory=lambda: MappingProxyType({}))
@@ -63,8 +62,6 @@ class DesignSpace:
     bolt: PreloadBolt | None = None
 
     def __post_init__(self) -> None:
-        require_structure(self.rig)
-        require_drive(self.rig)
         require_positive(mechanical_quality_factor=self.mechanical_quality_factor)
         for name, (low, high) in {"frequency": self.frequencies, **self.ranges}.items():
             if name not in ("frequency", *self.entries):
@@ -122,7 +119,6 @@ def stack_of(space: DesignSpace, actuator: str) -> PiezoStack:
         If its source says too little.
     """
     if actuator == OWN:
-        assert space.rig.stack is not None
         stack = space.rig.stack
     else:
         stack = catalogue_stack(
@@ -151,7 +147,7 @@ def structure_of(
     return built, chain_structure(pin_on_disc_chain(built, **{**values, **masses, **damping}))
 
 
-def rig_of(space: DesignSpace, choice: Choice, deviation: Deviation = NOMINAL) -> Rig:
+def rig_of(space: DesignSpace, choice: Choice, deviation: Deviation = NOMINAL) -> DrivenRig:
     """Return the rig that a choice makes, its drive's frequency and swing as they were.
 
     Parameters
@@ -163,10 +159,10 @@ def rig_of(space: DesignSpace, choice: Choice, deviation: Deviation = NOMINAL) -
 
     Returns
     -------
-    Rig
+    DrivenRig
     """
     stack, structure = structure_of(space, stack_of(space, choice.actuator), choice.entries, deviation)
-    drive = replace(require_drive(space.rig), waveform=choice.waveform, waveform_samples=None)
-    if choice.waveform == "sampled":
-        drive = require_drive(space.rig)
+    drive = space.rig.drive
+    if choice.waveform != "sampled":
+        drive = replace(drive, waveform=choice.waveform, waveform_samples=None)
     return replace(space.rig, stack=stack, structure=structure, drive=drive, capacitance=stack.free_capacitance)

@@ -6,11 +6,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats
-from sonolube.design.optimisation.assessment import offset_share
 from sonolube.design.optimisation.requirements import Limits
-from sonolube.rig import Rig, point_batch
+from sonolube.rig import point_batch
+from sonolube.rig.driven_rig import DrivenRig, driven_rig
 from sonolube.rig.excitation import voltage_range
-from sonolube.rig.linear_response import require_drive
+from sonolube.rig.record import Rig
 
 HIGHEST_SWING = 200.0
 """Swing beyond which no voltage is tried where neither stack nor amplifier has a limit. [V]"""
@@ -23,9 +23,10 @@ _CLOSE = 1e-7  # relative error of the voltage
 
 def highest_swing(rig: Rig, limits: Limits) -> float:
     """Return the largest swing that stack and amplifier bear, offset included, in V."""
-    share, drive, stack = offset_share(rig), require_drive(rig), rig.stack
-    assert stack is not None
-    low, high = (float(end) for end in voltage_range(drive, voltage_peak_to_peak=1.0, voltage_offset=share))
+    rig = driven_rig(rig)
+    drive, stack = rig.drive, rig.stack
+    ends = voltage_range(drive, voltage_peak_to_peak=1.0, voltage_offset=drive.offset_ratio)
+    low, high = (float(end) for end in ends)
     found = [HIGHEST_SWING] if stack.highest_voltage is None and limits.voltage_maximum is None else []
     if stack.highest_voltage is not None and high > 0:
         found.append(stack.highest_voltage / high)
@@ -42,6 +43,7 @@ def swings_for_ratio(rig: Rig, limits: Limits, *, frequency: ArrayLike, friction
     Parameters
     ----------
     rig : Rig
+        With a stack, a structure and a drive voltage.
     limits : Limits
         Those of the amplifier bound the swing.
     frequency : array_like, shape (n,)
@@ -58,6 +60,7 @@ def swings_for_ratio(rig: Rig, limits: Limits, *, frequency: ArrayLike, friction
     -----
     Friction over 24 swings in even ratios, then false position between two over the logarithm of the swing, twice.
     """
+    rig = driven_rig(rig)
     f = np.atleast_1d(np.asarray(frequency, dtype=float))
     top = highest_swing(rig, limits)
     if top <= 0:
@@ -92,6 +95,7 @@ def exact_swing(rig: Rig, *, frequency: float, friction_ratio: float, near: floa
     Parameters
     ----------
     rig : Rig
+        With a stack, a structure and a drive voltage.
     frequency : float
         Frequency of the drive. [Hz]
     friction_ratio : float
@@ -106,6 +110,7 @@ def exact_swing(rig: Rig, *, frequency: float, friction_ratio: float, near: floa
     float
         NaN where it is out of reach.
     """
+    rig = driven_rig(rig)
 
     def miss(log_swing: float) -> float:
         return float(_ratios(rig, np.array([frequency]), np.array([np.exp(log_swing)]))[0]) - friction_ratio
@@ -146,7 +151,7 @@ def _crossing(miss: Callable[[float], float], low: float, high: float, above: fl
     return high
 
 
-def _ratios(rig: Rig, frequency: Floats, swing: Floats) -> Floats:
+def _ratios(rig: DrivenRig, frequency: Floats, swing: Floats) -> Floats:
     f, volts = np.broadcast_arrays(frequency, swing)
-    found = point_batch(rig, frequency=f, voltage_peak_to_peak=volts, voltage_offset=offset_share(rig) * volts)
+    found = point_batch(rig, frequency=f, voltage_peak_to_peak=volts, voltage_offset=rig.drive.offset_ratio * volts)
     return np.asarray(found.numbers["friction_ratio"].reshape(f.shape))

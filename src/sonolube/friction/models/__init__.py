@@ -1,1 +1,19 @@
 """Friction models: the mean friction ratio under a given motion of the gap, one model a file."""
+
+from sonolube.friction.models.model import FrictionModel, MeanGap, ModelParameter, parameter
+from sonolube.variants import VariantTable
+
+__all__ = ["FRICTION_MODELS", "FrictionModel", "MeanGap", "ModelParameter", "parameter"]
+
+FRICTION_MODELS: VariantTable[type[FrictionModel]] = VariantTable(
+    "friction model",
+    {
+        "asperity_stick_slip": "sonolube.friction.models.asperity_stick_slip:AsperityStickSlip",
+        "bristle_with_holder": "sonolube.friction.models.bristle_with_holder:BristleWithHolder",
+        "kinematic": "sonolube.friction.models.kinematic:Kinematic",
+        "dong_2015_full_period": "sonolube.friction.models.dong_2015:Dong2015FullPeriod",
+        "dong_2015_half_period": "sonolube.friction.models.dong_2015:Dong2015HalfPeriod",
+        "dong_2015_load_balanced": "sonolube.friction.models.dong_2015:Dong2015LoadBalanced",
+    },
+)
+"""The friction models by name; a new model takes its file and one line here."""

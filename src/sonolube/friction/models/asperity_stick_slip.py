@@ -1,196 +1,161 @@
-"""Stick-slip of many asperities: each grips anew at every touch, and forgets within a short slide."""
+"""Mean friction ratio of a normally vibrated contact by stick-slip of its asperities."""
 
-from math import acos, asin, cos, exp, pi, sin, sqrt
+from dataclasses import dataclass
+from math import cos, exp, pi, sin
+from typing import ClassVar, final
 
 import numba
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import i0e
 
-from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
-from sonolube.contact.motion import GapMotion, converged_mean, shifted
+from sonolube.checks import Floats, Integers, require_positive
+from sonolube.contact.height_distribution import ExponentialHeights
+from sonolube.contact.motion import GapMotion, HarmonicMotions, converged_mean, shifted
 from sonolube.contact.rough import RoughContact, decay_length, separation
-from sonolube.friction.spring_element import half_grip
+from sonolube.friction.models.asperity_stick_slip_batch import batched_stick_slip_ratio
+from sonolube.friction.models.asperity_stick_slip_sine import EMPIRICAL_MEMORY_LENGTH
+from sonolube.friction.models.model import FrictionModel, parameter
 
-EMPIRICAL_MEMORY_LENGTH = 1.5e-6
-"""Sliding distance over which an asperity forgets. [m]
-
-Empirical: fitted, with a decay length of 2 um, to D Table 2.3 and sections 2.4 and 2.5, of whose friction ratios it
-misses 0.09 rms and 0.15 at worst. Not valid for rigs like that of D Table 4.2."""
-
-_PHASES = np.polynomial.legendre.leggauss(32)
 _HEIGHTS = np.polynomial.legendre.leggauss(64)
 _NEGLIGIBLE = 40.0  # exponents beyond which elements carry nothing
 
 
-def mindlin_memory_length(contact: RoughContact, *, friction_coefficient: ArrayLike, normal_load: ArrayLike) -> Floats:
-    """Return the sliding distance in which an asperity pressed by one decay length reaches its friction. [m]
+@final
+@dataclass(frozen=True, kw_only=True, slots=True)
+class AsperityStickSlip(FrictionModel):
+    r"""Stick-slip of independent asperities, each of which sticks anew at every touch.
 
     Parameters
     ----------
-    contact : RoughContact
-    friction_coefficient : array_like
-        Coefficient of steady sliding. []
-    normal_load : array_like, broadcast against `friction_coefficient`
-        Force pressing the bodies together. [N]
-
-    Returns
-    -------
-    ndarray, shape of the broadcast arguments
+    memory_length : float
+        Sliding distance D_c in which an asperity pressed by one decay length reaches its friction limit; of the
+        default, which is empirical, see `EMPIRICAL_MEMORY_LENGTH`, and with nothing fitted `mindlin_memory_length`. [m]
+    in_plane_fraction : float
+        Amplitude along the sliding direction over that along the normal. []
+    in_plane_phase : float
+        Lag of the in-plane motion behind the normal one. [rad]
 
     Raises
     ------
     InvalidInput
-        If a coefficient or load is not positive.
+        If the length is not positive, the fraction negative, or a value not finite.
 
     Notes
     -----
-    D_c = mu C l, C the normal over the tangential stiffness of sticking asperities, (2 - nu)/(2 (1 - nu)) for like
-    bodies: nothing is fitted.
+    The exponential contact law is a population of linear elements that touch at different gaps y. Each carries a
+    tangential spring that the sliding stretches, slips at its own limit, and is reset on separation. With the gap x(t)
+    and the stretch s(t), both in decay lengths l, the force of one element in units of its normal stiffness times l is
+
+    .. math::
+
+        \dot\tau = \frac{l}{D_c} \dot s \ \text{ while } |\tau| < y - x, \qquad |\tau| \le \max(y - x, 0),
+
+    and the friction ratio the mean over a period of all elements, weighted with the density exp(-y):
+
+    .. math:: \frac{F_1}{F_0} = \frac{\int e^{-y} \langle\tau\rangle \, dy}{\langle e^{-x} \rangle}
+              \frac{\langle F_n \rangle}{F_N}.
+
+    The motion is taken as it is: one about an unmoved mean presses harder than the load, and so rubs harder. For other
+    than exponential heights the decay length at rest is taken for the friction ratio at the mean normal force, and the
+    actual mean normal force for the rest. `sine_stick_slip_ratio` is the same for a sine of balanced load in closed
+    form.
+
+    See Also
+    --------
+    sonolube.friction.models.bristle_with_holder.BristleWithHolder : One bristle that keeps its force through a period.
+    sonolube.friction.models.kinematic.Kinematic : Direction of the relative velocity alone.
 
     References
     ----------
-    .. [1] R. D. Mindlin, J. Appl. Mech. 16, 259 (1949).
+    .. [1] R. D. Mindlin, J. Appl. Mech. 16, 259 (1949), for the tangential stiffness of an asperity.
     """
-    mu = require_positive(friction_coefficient=friction_coefficient)
-    d = separation(contact, normal_load=normal_load)
-    return mu * decay_length(contact, separation=d) / contact.pair.mindlin_ratio
 
-
-def stick_slip_ratio(
-    *,
-    decay_length: ArrayLike,
-    vibration_amplitude: ArrayLike,
-    frequency: ArrayLike,
-    sliding_speed: ArrayLike,
-    memory_length: ArrayLike = EMPIRICAL_MEMORY_LENGTH,
-) -> Floats:
-    """Return friction under a sine of balanced load over friction without. []
-
-    Parameters
-    ----------
-    decay_length : array_like
-        Length over which the normal force falls by a factor of e. [m]
-    vibration_amplitude : array_like, broadcast against `decay_length`
-        Amplitude of the vibration along the surface normal. [m]
-    frequency : array_like, broadcast against them
-        Frequency of the vibration. [Hz]
-    sliding_speed : array_like, broadcast against them
-        Mean speed of the sliding. [m/s]
-    memory_length : array_like, broadcast against them
-        Sliding distance D_c in which an asperity pressed by one decay length reaches its friction. [m]
-
-    Returns
-    -------
-    ndarray, shape of the broadcast arguments
-        From exp(-beta)/I0(beta), beta = a/l, of slow sliding to exactly 1 from v_r = omega a D_c/l on.
-
-    Raises
-    ------
-    InvalidInput
-        If a length, frequency or speed is not positive, an amplitude negative, or a value not finite.
-
-    Notes
-    -----
-    Asperities are linear springs that touch at different gaps, so many at each gap that the normal force falls as
-    exp(-x/l); each carries a tangential spring that the sliding stretches, slips at its own limit mu n(t), and starts
-    anew at every touch. The mean gap rises so that the mean normal force stays the load.
-
-    An element slips until the gap closes faster than its spring stretches, and grips from its touch, or from that
-    phase, until its limit has fallen to its force. With h half the phase it grips and m the middle of that phase, this
-    asks for sin m = v h/sin h, v = v_r l/(omega a D_c); the force it then lacks is 2 abs(cos m) (sin h - h cos h) in a
-    period, and the sum over all elements one integral over h, here to 1e-12.
-    """
-    length, a, f, v_r, D_c = np.broadcast_arrays(
-        require_positive(decay_length=decay_length),
-        require_non_negative(vibration_amplitude=vibration_amplitude),
-        require_positive(frequency=frequency),
-        require_positive(sliding_speed=sliding_speed),
-        require_positive(memory_length=memory_length),
+    name: ClassVar[str] = "asperity_stick_slip"
+    citation: ClassVar[str] = (
+        "load-balanced exponential stick-slip; D_c = 1.5 um fitted to D Table 2.3 and sections 2.4 and 2.5"
     )
-    beta = a / length
-    reach = v_r * length / D_c  # v times omega a, which may be 0
-    v = np.minimum(reach / np.maximum(2 * pi * f * a, reach), 1.0)
-    return _harmonic_ratio(beta.ravel(), v.ravel(), i0e(beta).ravel(), *_PHASES).reshape(beta.shape)
 
+    memory_length: float = parameter(EMPIRICAL_MEMORY_LENGTH, positive=True)
+    in_plane_fraction: float = parameter(0.0, lowest=0.0)
+    in_plane_phase: float = parameter(0.0)
 
-def stick_slip(
-    contact: RoughContact,
-    motion: GapMotion,
-    *,
-    sliding_speed: ArrayLike,
-    memory_length: ArrayLike = EMPIRICAL_MEMORY_LENGTH,
-    in_plane_fraction: ArrayLike = 0.0,
-    phase: ArrayLike = 0.0,
-) -> Floats:
-    """Return friction under any periodic motion over friction without, each asperity gripping anew at every touch. []
+    def ratio(
+        self,
+        contact: RoughContact,
+        motion: GapMotion,
+        *,
+        sliding_speed: ArrayLike,
+        friction_coefficient: ArrayLike | None = None,
+    ) -> Floats:
+        """Return mean friction under a motion of the gap over friction without vibration. []
 
-    Parameters
-    ----------
-    contact : RoughContact
-    motion : GapMotion
-    sliding_speed : array_like, any shape
-        Mean speed of the sliding. [m/s]
-    memory_length : float
-        Sliding distance D_c in which an asperity pressed by one decay length reaches its friction; of the default,
-        which is empirical, see `EMPIRICAL_MEMORY_LENGTH`, and with nothing fitted `mindlin_memory_length`. [m]
-    in_plane_fraction : float
-        Motion along the sliding direction over that along the normal. []
-    phase : float
-        Lag of the in-plane motion behind the normal one. [rad]
+        Parameters
+        ----------
+        contact : RoughContact
+        motion : GapMotion
+        sliding_speed : array_like, any shape
+            Mean sliding speed. [m/s]
+        friction_coefficient : float, optional
+            Without effect in this model. []
 
-    Returns
-    -------
-    ndarray, shape of `sliding_speed`
+        Returns
+        -------
+        ndarray, shape of `sliding_speed`
 
-    Raises
-    ------
-    InvalidInput
-        If a speed or length is not positive, the fraction negative, or a value not finite.
+        Raises
+        ------
+        InvalidInput
+            If a speed is not positive.
+        """
+        v_r = require_positive(sliding_speed=sliding_speed)
+        length = float(decay_length(contact, separation=separation(contact, normal_load=motion.normal_load)))
 
-    Notes
-    -----
-    The population of `stick_slip_ratio`, followed along the sampled motion. It takes the motion as it is: a motion
-    about an unmoved mean presses harder than the load, and so rubs harder. Of other than exponential heights the decay
-    length at rest is taken for the share that the vibration leaves, and the actual normal force for the rest.
-    """
-    v_r = require_positive(sliding_speed=sliding_speed)
-    D_c = float(require_positive(memory_length=memory_length))
-    fraction = float(require_non_negative(in_plane_fraction=in_plane_fraction))
-    lag = float(require_finite(phase=phase))
-    length = float(decay_length(contact, separation=separation(contact, normal_load=motion.normal_load)))
+        def mean_over_limit(sampled: GapMotion) -> Floats:
+            widest_first = np.roll(sampled.displacement, -int(np.argmax(sampled.displacement)))
+            in_plane = self.in_plane_fraction * shifted(widest_first, phase=self.in_plane_phase)
+            stretch = length / self.memory_length * (np.roll(in_plane, -1) - in_plane)
+            steady = length / self.memory_length * v_r.ravel() / (motion.frequency * widest_first.size)
+            return _sampled_ratio(widest_first / length, stretch / length, steady / length, *_HEIGHTS)
 
-    def share(sampled: GapMotion) -> Floats:
-        widest_first = np.roll(sampled.displacement, -int(np.argmax(sampled.displacement)))
-        in_plane = fraction * shifted(widest_first, phase=lag)
-        stretch = length / D_c * (np.roll(in_plane, -1) - in_plane)
-        steady = length / D_c * v_r.ravel() / (motion.frequency * widest_first.size)
-        return _sampled_ratio(widest_first / length, stretch / length, steady / length, *_HEIGHTS)
+        mean_force_ratio = float(np.mean(motion.normal_force)) / motion.normal_load
+        return mean_force_ratio * converged_mean(mean_over_limit, motion).reshape(v_r.shape)
 
-    mean_pressure = float(np.mean(motion.normal_force)) / motion.normal_load
-    return mean_pressure * converged_mean(share, motion).reshape(v_r.shape)
+    def batched_ratio(
+        self,
+        contact: RoughContact,
+        motions: HarmonicMotions,
+        *,
+        sliding_speed: Floats,
+        motion: Integers,
+        friction_coefficient: float,
+    ) -> Floats:
+        """Return the friction ratio of many pairs of motion and speed at once; NaN where `ratio` must be used. []
 
+        Parameters
+        ----------
+        contact : RoughContact
+        motions : HarmonicMotions
+        sliding_speed : ndarray, shape (n,)
+            Mean sliding speed of each point, positive. [m/s]
+        motion : ndarray of int, shape (n,)
+            Row of `motions` at each point.
+        friction_coefficient : float, optional
+            Without effect in this model. []
 
-@numba.njit(cache=True)
-def _harmonic_ratio(beta: Floats, v: Floats, i0e_beta: Floats, nodes: Floats, weights: Floats) -> Floats:
-    ratio = np.ones(beta.size)
-    for i in range(beta.size):
-        b, speed = beta[i], v[i]
-        if speed >= 1.0 - 1e-12 or b == 0.0:  # what still grips there lacks less than 1e-23
-            continue
-        # elements that touch at phase theta_0 = m - h: from pi - arcsin v, where none grips, to arcsin v, where all do
-        last = sqrt(1 - speed * speed)
-        longest = half_grip(speed, max(asin(speed), acos(min(1.0, _NEGLIGIBLE / b - last))))
-        lacking = 0.0
-        for j in range(nodes.size):
-            left = (1 - nodes[j]) / 2
-            h = longest * (1 - left * left)  # crowding where slow sliding makes the integrand steep
-            s = sin(h)
-            rise, c = s - h * cos(h), sqrt(1 - (speed * h / s) ** 2)
-            density = exp(-b * (1 - c * cos(h) + speed * h)) * h * (c * s - (speed * rise) ** 2 / (c * s**3))
-            lacking += weights[j] * left * longest * density
-        ratio[i] = 1 - b * lacking / (pi * i0e_beta[i])
-    return ratio
+        Returns
+        -------
+        ndarray, shape (n,)
+            NaN without exponential heights or with in-plane motion, and where `batched_stick_slip_ratio` gives NaN.
+        """
+        if self.in_plane_fraction or not isinstance(contact.heights, ExponentialHeights):
+            return np.full(sliding_speed.shape, np.nan)
+        return batched_stick_slip_ratio(
+            motions,
+            decay_length=decay_length(contact),
+            sliding_speed=sliding_speed,
+            motion=motion,
+            memory_length=self.memory_length,
+        )
 
 
 @numba.njit(cache=True)

@@ -1,4 +1,4 @@
-"""Stick-slip of many asperities under very many vibrations at once: tabulated for sines, by valleys for the others."""
+"""Friction ratios of many motions at once by asperity stick-slip: tabulated for sines, exact quadrature otherwise."""
 
 from functools import cache
 from math import atan2, cos, exp, log, pi, sin, sqrt
@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import i0e
 
-from sonolube.checks import Complexes, Floats, require_finite, require_finite_complex, require_positive
+from sonolube.checks import Complexes, Floats, require_positive
+from sonolube.contact.motion import HarmonicMotions
 from sonolube.errors import InvalidInput
-from sonolube.friction.models.asperity_stick_slip import EMPIRICAL_MEMORY_LENGTH, stick_slip_ratio
+from sonolube.friction.models.asperity_stick_slip_sine import EMPIRICAL_MEMORY_LENGTH, sine_stick_slip_ratio
 
 SINE_TOLERANCE = 8e-5
 """Largest error of a friction ratio for which a vibration may pass for a sine. []"""
@@ -35,45 +36,39 @@ class _Table(NamedTuple):
     speed_step: float
 
 
-def stick_slip_ratios(
+def batched_stick_slip_ratio(
+    motions: HarmonicMotions,
     *,
     decay_length: ArrayLike,
-    mean_displacement: ArrayLike,
-    harmonics: ArrayLike,
-    frequency: ArrayLike,
     sliding_speed: ArrayLike,
-    vibration: ArrayLike,
+    motion: ArrayLike,
     memory_length: ArrayLike = EMPIRICAL_MEMORY_LENGTH,
 ) -> Floats:
-    """Return friction under vibrations of balanced load over friction without, for very many speeds. []
+    """Return friction ratios by asperity stick-slip under motions of balanced load, for very many sliding speeds. []
 
     Parameters
     ----------
+    motions : HarmonicMotions
+        Motions of the gap, each about the mean that balances the load.
     decay_length : float
         Length over which the normal force falls by a factor of e. [m]
-    mean_displacement : array_like, shape (m,)
-        Mean rise of each vibration from rest under the load. [m]
-    harmonics : array_like of complex, shape (m, K)
-        Harmonics X_k of each displacement, x = mean + Re sum X_k exp(2 pi i k f t), in m.
-    frequency : array_like, shape (m,)
-        Frequency of each vibration. [Hz]
     sliding_speed : array_like, shape (n,)
-        Mean speed of the sliding. [m/s]
-    vibration : array_like of int, shape (n,)
-        Which vibration each speed meets.
+        Mean sliding speed. [m/s]
+    motion : array_like of int, shape (n,)
+        Row of `motions` at each speed.
     memory_length : float
-        Sliding distance D_c in which an asperity pressed by one decay length reaches its friction. [m]
+        Sliding distance D_c in which an asperity pressed by one decay length reaches its friction limit. [m]
 
     Returns
     -------
     ndarray, shape (n,)
-        NaN for vibrations that this does not take: of more than 40 decay lengths, or of harmonics so strong that the
-        gap may close more than once in a period; `stick_slip` takes these.
+        NaN for motions outside the range of this method: of more than 40 decay lengths, or of harmonics so strong that
+        the gap may close more than once in a period; `AsperityStickSlip.ratio` computes these.
 
     Raises
     ------
     InvalidInput
-        If a length, frequency or speed is not positive, a value not finite, or the shapes do not match.
+        If a length or speed is not positive, a value not finite, or the shapes do not match.
 
     Notes
     -----
@@ -87,24 +82,17 @@ def stick_slip_ratios(
     friction lacking is the integral of exp(-x) (width of the valley) (-dg) over its closing side, all in decay
     lengths; 32 nodes give it to 1e-6.
     """
-    length, memory = (
-        float(require_positive(decay_length=decay_length)),
-        float(require_positive(memory_length=memory_length)),
-    )
-    mean = np.atleast_1d(require_finite(mean_displacement=mean_displacement)) / length
-    swing = np.atleast_2d(require_finite_complex(harmonics=harmonics)) / length
-    f, v_r = (
-        np.atleast_1d(require_positive(frequency=frequency)),
+    length = float(require_positive(decay_length=decay_length))
+    memory = float(require_positive(memory_length=memory_length))
+    mean, swing, f = motions.mean_displacement / length, motions.harmonics / length, motions.frequency
+    v_r, which = (
         np.atleast_1d(require_positive(sliding_speed=sliding_speed)),
+        np.atleast_1d(np.asarray(motion, np.int64)),
     )
-    which = np.atleast_1d(np.asarray(vibration, dtype=np.int64))
-    if not mean.size == f.size == swing.shape[0] or which.shape != v_r.shape or mean.ndim != 1 or swing.ndim != 2:
-        raise InvalidInput(
-            f"mean_displacement, frequency and harmonics must agree in vibrations, got {mean.shape}, {f.shape} and"
-            f" {swing.shape}; sliding_speed and vibration in points, got {v_r.shape} and {which.shape}"
-        )
+    if which.shape != v_r.shape:
+        raise InvalidInput(f"sliding_speed and motion must have one shape, got {v_r.shape} and {which.shape}")
     if which.size and not 0 <= which.min() <= which.max() < mean.size:
-        raise InvalidInput(f"vibration must lie between 0 and {mean.size - 1}, got {which.min()} to {which.max()}")
+        raise InvalidInput(f"motion must lie between 0 and {mean.size - 1}, got {which.min()} to {which.max()}")
     beta = np.abs(swing[:, 0])
     higher = np.abs(swing[:, 1:]).sum(axis=1)
     cubes = np.arange(2, swing.shape[1] + 1) ** 3
@@ -118,7 +106,7 @@ def stick_slip_ratios(
     beyond = np.flatnonzero(np.isinf(ratio))
     if beyond.size:  # sines outside the table
         own = which[beyond]
-        ratio[beyond] = pressing[own] * stick_slip_ratio(
+        ratio[beyond] = pressing[own] * sine_stick_slip_ratio(
             decay_length=1.0,
             vibration_amplitude=beta[own],
             frequency=f[own],
@@ -131,7 +119,7 @@ def stick_slip_ratios(
 @cache
 def _table() -> _Table:
     beta, speed = np.linspace(*_BETA, _ROWS), np.linspace(*_SPEED, _COLUMNS)
-    ratio = stick_slip_ratio(
+    ratio = sine_stick_slip_ratio(
         decay_length=1.0,
         vibration_amplitude=np.exp(beta)[:, np.newaxis],
         frequency=1 / (2 * np.pi),

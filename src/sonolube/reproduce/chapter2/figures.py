@@ -8,7 +8,7 @@ import numpy as np
 from sonolube.actuator import HalfWaveguide, locus
 from sonolube.checks import Floats
 from sonolube.figure import COLOURS, LINES, MARKERS, ReportFigure
-from sonolube.friction import separating_half_period_ratio
+from sonolube.friction import dong_2015_half_period_ratio
 from sonolube.published import PrintedNumber, table
 from sonolube.reproduce.chapter2.tribometer import drops_of, wear_reductions
 from sonolube.validation.contacts import wear_contact
@@ -127,7 +127,7 @@ def _arrow(axes: "Axes", u: Floats, v: Floats) -> None:
 def _friction_against_speed() -> "Figure":
     figure, axes = _against_speed("friction_force", ylabel="Steady friction force [N]")
     load, amplitude = in_table("3.2", "normal_load").value, said("2.3.1-amplitude").value
-    ratio = float(separating_half_period_ratio(wear_contact(), normal_load=load, vibration_amplitude=amplitude))
+    ratio = float(dong_2015_half_period_ratio(wear_contact(), normal_load=load, vibration_amplitude=amplitude))
     axes.errorbar(
         1e3 * _speeds(),
         ratio * table("2.3").columns["friction_force"].values[::2],

@@ -13,8 +13,8 @@ from scipy.optimize import brentq
 
 from sonolube.actuator import driver_power
 from sonolube.contact import decay_length, separation
-from sonolube.friction import stick_slip_ratio
-from sonolube.friction.models.asperity_stick_slip import EMPIRICAL_MEMORY_LENGTH
+from sonolube.friction import sine_stick_slip_ratio
+from sonolube.friction.models.asperity_stick_slip_sine import EMPIRICAL_MEMORY_LENGTH
 from sonolube.metrics import peak_vibration_velocity
 from sonolube.published.values import stated
 from sonolube.reproduce.row import Row, compare, undetermined
@@ -41,7 +41,7 @@ def _slow_test() -> FrictionTest:
 
 def _ratio(test: FrictionTest, gain: float = 1.0) -> float:
     return float(
-        stick_slip_ratio(
+        sine_stick_slip_ratio(
             decay_length=_decay_length(test),
             vibration_amplitude=gain * test.vibration_amplitude,
             frequency=test.frequency,

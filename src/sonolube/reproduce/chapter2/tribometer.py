@@ -6,7 +6,7 @@ from math import pi
 from operator import add, sub, truediv
 from typing import Final
 
-from sonolube.friction import separating_half_period_ratio
+from sonolube.friction import dong_2015_half_period_ratio
 from sonolube.metrics import dot_spacing, indentation_spacing, linear_speed, sliding_distance
 from sonolube.published import PrintedNumber
 from sonolube.published.values import Computed, cell, over_rounding, stated
@@ -108,7 +108,7 @@ def _protocol() -> Iterator[Row]:
 
 def _cube_friction() -> Iterator[Row]:
     load, amplitude = in_table("2.2", "normal_load").value, in_table("2.2", "vibration_amplitude").value
-    ratio = float(separating_half_period_ratio(wear_contact(), normal_load=load, vibration_amplitude=amplitude))
+    ratio = float(dong_2015_half_period_ratio(wear_contact(), normal_load=load, vibration_amplitude=amplitude))
     for row in (1, 3, 5):
         yield compare(
             cell("2.3", "friction_force", row),

@@ -14,7 +14,7 @@ from sonolube.contact import (
     separation,
 )
 from sonolube.figure import COLOURS, LINES, MARKERS, ReportFigure
-from sonolube.friction import separating_half_period_ratio
+from sonolube.friction import dong_2015_half_period_ratio
 from sonolube.published import statement, table
 from sonolube.validation.contacts import Bodies, elastic, poisson_contact, poisson_friction_ratio, wear_contact
 
@@ -165,9 +165,9 @@ def _height_laws() -> "Figure":
     Rq = exponential.roughness.rms_height  # noqa: N806
     gaps = np.linspace(0.2, 5, 200) * Rq
     for index, (label, contact) in enumerate((("exponential", exponential), ("Gaussian", gaussian))):
-        for law, line in (("elastic", "--"), ("as_published", "-")):
+        for law, line in (("elastic", "--"), ("dong_2015", "-")):
             force = normal_force(replace(contact, asperity=ASPERITY_LAWS[law]), separation=gaps)
-            name = "elastic-plastic" if law == "as_published" else law
+            name = "elastic-plastic" if law == "dong_2015" else law
             axes.plot(gaps / Rq, force, line, color=COLOURS[index], label=f"{label} heights, {name}")
     window = exponential_window(exponential)
     if window is not None:
@@ -216,7 +216,7 @@ def _ratio_against_amplitude() -> "Figure":
     figure, axes = _axes()
     contact, load = wear_contact(), float(table("3.2").columns["normal_load"].values[0])
     amplitudes = np.linspace(0, 5e-6, 201)
-    ratios = separating_half_period_ratio(contact, normal_load=load, vibration_amplitude=amplitudes)
+    ratios = dong_2015_half_period_ratio(contact, normal_load=load, vibration_amplitude=amplitudes)
     axes.plot(1e6 * amplitudes, ratios, color=COLOURS[0], label="cube over the separating half period, 3 N")
     columns = table("2.3").columns
     off, on = (

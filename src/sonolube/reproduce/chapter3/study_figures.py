@@ -49,7 +49,7 @@ def study_figures() -> tuple[ReportFigure, ...]:
             chapter=3,
             title="Drive voltage",
             caption="The mean rises with the vibration until the mean force is the load again, so that the contact "
-            "parts above rather than presses below. Stick-slip closure, 22 kHz, 20.3 mm/s. Text of D 3.3.5: "
+            "parts above rather than presses below. Asperity stick-slip, 22 kHz, 20.3 mm/s. Text of D 3.3.5: "
             "hopping above 3.8 µm, and friction falls significantly up to 20 V.",
             draw=_over_voltage,
         ),
@@ -58,7 +58,7 @@ def study_figures() -> tuple[ReportFigure, ...]:
             chapter=3,
             title="Sliding speed",
             caption="Faster sliding leaves less reduction at every voltage. Against the velocity ratio the curves do "
-            "not fall on one another, as those of a kinematic closure would: contact memory is a second length.",
+            "not fall on one another, as those of a kinematic friction model would: contact memory is a second length.",
             draw=lambda: speed_figure(over_speed()),
         ),
         ReportFigure(
@@ -66,7 +66,7 @@ def study_figures() -> tuple[ReportFigure, ...]:
             chapter=3,
             title="Drive frequency",
             caption="Around the resonance friction falls in a “v”; over the amplifier's power the tips of the “v”s "
-            "form the envelope that the text describes. Stick-slip closure, 20.3 mm/s.",
+            "form the envelope that the text describes. Asperity stick-slip, 20.3 mm/s.",
             draw=lambda: frequency_figure(over_frequency()),
         ),
         ReportFigure(

@@ -36,10 +36,12 @@ STEPS_PER_PERIOD = 16
 
 
 @cache
-def over_voltage(closure: str = "stick_slip") -> "xr.Dataset":
+def over_voltage(friction_model: str = "asperity_stick_slip") -> "xr.Dataset":
     """Return the tribometer over the voltages of figure 3.15."""
     volts = said("3.3.5-voltage")
-    return voltage_study(tribometer_rig(closure=closure), voltage_peak_to_peak=np.linspace(volts.low, volts.high, 101))
+    return voltage_study(
+        tribometer_rig(friction_model=friction_model), voltage_peak_to_peak=np.linspace(volts.low, volts.high, 101)
+    )
 
 
 @cache
@@ -70,10 +72,9 @@ def power_over_frequency() -> "xr.Dataset":
 
 
 @cache
-def over_waveform(closure: str = "stick_slip") -> "xr.Dataset":
+def over_waveform(friction_model: str = "asperity_stick_slip") -> "xr.Dataset":
     """Return the tribometer under the waveforms of figure 3.18, from 0 to 200 V."""
-    rig, volts = tribometer_rig(closure=closure), said("3.3.5-waveform-voltage").value
-    assert rig.drive is not None
+    rig, volts = tribometer_rig(friction_model=friction_model), said("3.3.5-waveform-voltage").value
     drive = replace(
         rig.drive,
         voltage_peak_to_peak=volts,

@@ -15,7 +15,7 @@ from sonolube.dong2015.collar_tuning import main_resonance
 from sonolube.dynamics import ExponentialGap, steady_state
 from sonolube.fem.solver.harmonic import ReducedModel
 from sonolube.fem.solver.reduction import contact_structure, under_free_body
-from sonolube.friction.models.asperity_stick_slip import stick_slip
+from sonolube.friction import AsperityStickSlip
 from sonolube.materials import material
 from sonolube.published import statement
 from sonolube.rig.steady_vibration import gap_motion
@@ -91,7 +91,7 @@ def pull() -> Pull:
         voltage_amplitude=statement("4.5.4-voltage").number.value / 2,
     )
     speed = np.linspace(0.01, 0.25, 49)
-    ratios = [stick_slip(contact, gap_motion(states, k), sliding_speed=speed) for k in range(_PLACES)]
+    ratios = [AsperityStickSlip().ratio(contact, gap_motion(states, k), sliding_speed=speed) for k in range(_PLACES)]
     return Pull(
         place=place,
         normal_load=load,

@@ -16,7 +16,7 @@ from sonolube.friction import (
     MethodCoefficients,
     best_method,
     method_coefficients,
-    stick_slip_ratio,
+    sine_stick_slip_ratio,
 )
 from sonolube.published.values import stated
 from sonolube.reproduce.row import Row, compare, undetermined
@@ -88,7 +88,7 @@ def vibrated_ratio(*, sliding_speed: ArrayLike) -> Floats:
     -------
     ndarray, shape of `sliding_speed`
     """
-    return stick_slip_ratio(
+    return sine_stick_slip_ratio(
         decay_length=_DECAY_LENGTH,
         vibration_amplitude=printed("4.3", "vibration_amplitude")[0].value,
         frequency=printed("4.3", "frequency")[0].value,

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.friction import stick_slip_ratio
+from sonolube.friction import sine_stick_slip_ratio
 from sonolube.materials import material
 from sonolube.thermal import (
     ContactHistory,
@@ -118,7 +118,7 @@ def vibration_heat() -> Floats:
 
 def slow_friction_kept() -> Floats:
     """Return what the vibration leaves of friction at the lowest speed and the five voltages, by stick-slip."""
-    return stick_slip_ratio(
+    return sine_stick_slip_ratio(
         decay_length=_DECAY_LENGTH,
         vibration_amplitude=[amplitude.value for amplitude in printed("4.4", "vibration_amplitude").values()],
         frequency=printed("4.4", "frequency")[0].value,

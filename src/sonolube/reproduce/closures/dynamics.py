@@ -19,7 +19,7 @@ from sonolube.checks import Floats
 from sonolube.contact import GapMotion, decay_length, harmonic_motion, load_balanced_motion
 from sonolube.dynamics import ExponentialGap, Structure, chain_structure, pin_on_disc_chain, steady_state, trajectory
 from sonolube.dynamics.steady_friction import motion as motion_of
-from sonolube.friction import coupled, stick_slip
+from sonolube.friction import FRICTION_MODELS
 from sonolube.reproduce.row import Row, compare
 from sonolube.validation.fit import measured_in
 from sonolube.validation.friction_tests import FrictionTest
@@ -37,8 +37,8 @@ MOTIONS: Final = {
 TESTS: Final = "AB"
 """Sets whose voltages are known: Tables 2.3 and 4.2."""
 
-CLOSURES: Final = ("stick_slip", "coupled")
-"""Closures compared, nothing fitted: stick_slip with its default memory length, coupled with a rigid holder."""
+MODELS: Final = ("asperity_stick_slip", "bristle_with_holder")
+"""Friction models compared with their default parameters, the holder rigid."""
 
 _SAMPLES: Final = 256  # of one period of the drive
 _SLOW_SAMPLES: Final = 64  # of one period of the drive, where an arm period of them is followed
@@ -47,13 +47,13 @@ _STEPS: Final = 64
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Prediction:
-    """What the closures make of the motions in one test.
+    """Friction ratios of one test by every model under every motion.
 
     Parameters
     ----------
     test : FrictionTest
     ratios : mapping of (str, str) to float
-        Friction ratio by closure and motion.
+        Friction ratio by model and motion.
     """
 
     test: FrictionTest
@@ -62,15 +62,11 @@ class Prediction:
 
 @cache
 def predictions() -> tuple[Prediction, ...]:
-    """Return every closure on every motion, for each test of both tables."""
+    """Return the ratio of every friction model under every motion, for each test of both tables."""
     return tuple(
         Prediction(
             test=test,
-            ratios={
-                (closure, name): _ratio(closure, test, moving)
-                for closure in CLOSURES
-                for name, moving in _motions(test)
-            },
+            ratios={(model, name): _ratio(model, test, moving) for model in MODELS for name, moving in _motions(test)},
         )
         for test in measured_in(TESTS)
     )
@@ -80,13 +76,14 @@ def rows() -> Iterator[Row]:
     """Yield one row for each reduction of both tables, by stick-slip on the motion that the dynamics gives."""
     for prediction in predictions():
         test = prediction.test
-        ratios = {name: prediction.ratios["stick_slip", name] for name in MOTIONS}
+        ratios = {name: prediction.ratios["asperity_stick_slip", name] for name in MOTIONS}
         assert test.published is not None
         by_motion = "; ".join(f"{MOTIONS[name]} {ratio:.4f}" for name, ratio in ratios.items())
         yield compare(
             replace(test.published, id=f"closure-stick-slip-on-dynamics-{test.label}"),
             1 - ratios["harmonic-balance"],
-            f"Closure stick_slip as it comes. Ratio measured {test.friction_ratio:.3f}; on {by_motion}.",
+            "Friction model asperity_stick_slip with its default parameters. "
+            f"Ratio measured {test.friction_ratio:.3f}; on {by_motion}.",
         )
 
 
@@ -134,11 +131,9 @@ def _motions(test: FrictionTest) -> Iterator[tuple[str, GapMotion]]:
     yield "marched", _marched_motion(test)
 
 
-def _ratio(closure: str, test: FrictionTest, moving: GapMotion) -> float:
-    if closure == "stick_slip":
-        return float(stick_slip(test.contact, moving, sliding_speed=test.sliding_speed))
-    mu = test.friction_coefficient
-    return float(coupled(test.contact, moving, sliding_speed=test.sliding_speed, friction_coefficient=mu))
+def _ratio(model: str, test: FrictionTest, moving: GapMotion) -> float:
+    speed, mu = test.sliding_speed, test.friction_coefficient
+    return float(FRICTION_MODELS[model]().ratio(test.contact, moving, sliding_speed=speed, friction_coefficient=mu))
 
 
 def _steady_motion(test: FrictionTest) -> GapMotion:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from sonolube.figure import COLOURS, LINES, MARKERS, ReportFigure
-from sonolube.reproduce.closures.dynamics import CLOSURES, MOTIONS, predictions
+from sonolube.reproduce.closures.dynamics import MODELS, MOTIONS, predictions
 from sonolube.reproduce.closures.tables_in_conflict import mechanisms
 from sonolube.validation.closure_comparison import ALL_FITTED, DEFAULT, FITTED_ON, Judgement, judged
 from sonolube.validation.closures import VARIANTS
@@ -187,7 +187,7 @@ def _on_dynamics() -> "Figure":
         capsize=3,
         label="measured",
     )
-    for index, closure in enumerate(CLOSURES):
+    for index, closure in enumerate(MODELS):
         label = closure.replace("_", "-")
         ratios.plot(
             places,

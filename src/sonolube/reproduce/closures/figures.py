@@ -8,13 +8,13 @@ import numpy as np
 from sonolube.contact import harmonic_motion, load_balanced_motion
 from sonolube.figure import COLOURS, LINES, MARKERS, ReportFigure
 from sonolube.friction import (
-    as_published,
-    coupled,
-    kinematic,
-    load_balanced,
+    AsperityStickSlip,
+    BristleWithHolder,
+    Dong2015FullPeriod,
+    Dong2015HalfPeriod,
+    Dong2015LoadBalanced,
+    Kinematic,
     mindlin_memory_length,
-    separating_half_period,
-    stick_slip,
 )
 from sonolube.validation.closure_comparison import FITTED_ON, fits
 from sonolube.validation.fit import Fit, errors_of, measured_in
@@ -100,25 +100,34 @@ def _curves(speeds: "Floats") -> Iterator[tuple[str, "Floats"]]:
     by_name = {fit.variant.name: fit for fit in fits()}
     share, memory = by_name["kinematic-fitted"].values[0], by_name["stick-slip"].values[0]
     no_fit = float(mindlin_memory_length(contact, friction_coefficient=mu, normal_load=test.normal_load))
-    yield "as published", as_published(contact, about_rest, sliding_speed=speeds)
-    yield "separating half period", separating_half_period(contact, about_rest, sliding_speed=speeds)
-    yield "load balanced", load_balanced(contact, about_rest, sliding_speed=speeds)
-    yield "kinematic", kinematic(contact, balanced, sliding_speed=speeds)
+    yield (
+        "as published",
+        Dong2015FullPeriod().ratio(contact, about_rest, sliding_speed=speeds),
+    )
+    yield (
+        "separating half period",
+        Dong2015HalfPeriod().ratio(contact, about_rest, sliding_speed=speeds),
+    )
+    yield (
+        "load balanced",
+        Dong2015LoadBalanced().ratio(contact, about_rest, sliding_speed=speeds),
+    )
+    yield "kinematic", Kinematic().ratio(contact, balanced, sliding_speed=speeds)
     yield (
         f"kinematic, {share:.2f} of the\namplitude (fitted)",
-        kinematic(contact, balanced, sliding_speed=speeds, amplitude_fraction=share),
+        Kinematic(amplitude_fraction=share).ratio(contact, balanced, sliding_speed=speeds),
     )
     yield (
         f"stick-slip, $D_c$ = {1e6 * no_fit:.2f} µm\n(Mindlin, µ = {mu:.2f})",
-        stick_slip(contact, balanced, sliding_speed=speeds, memory_length=no_fit),
+        AsperityStickSlip(memory_length=no_fit).ratio(contact, balanced, sliding_speed=speeds),
     )
     yield (
         f"stick-slip, $D_c$ = {1e6 * memory:.2f} µm\n(fitted)",
-        stick_slip(contact, balanced, sliding_speed=speeds, memory_length=memory),
+        AsperityStickSlip(memory_length=memory).ratio(contact, balanced, sliding_speed=speeds),
     )
     yield (
         "coupled, one bristle",
-        coupled(contact, balanced, sliding_speed=speeds, friction_coefficient=mu),
+        BristleWithHolder().ratio(contact, balanced, sliding_speed=speeds, friction_coefficient=mu),
     )
 
 

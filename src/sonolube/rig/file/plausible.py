@@ -31,6 +31,8 @@ LIMITS: Mapping[str, tuple[float, float]] = MappingProxyType(
 )
 """Least and largest magnitude of what is not zero, by SI unit."""
 
+_ANY_UNIT = (1e-30, 1e30)
+
 
 def plausible_si(text: str, *, unit: str, name: str) -> float:
     """Return the number in SI that a command's option stands for, where a rig can have it.
@@ -77,7 +79,7 @@ def require_plausible(value: float, *, unit: str, text: str) -> float:
     InvalidInput
         If the magnitude lies outside `LIMITS`.
     """
-    least, largest = LIMITS[unit]
+    least, largest = LIMITS.get(unit, _ANY_UNIT)
     if value and (abs(value) < least or abs(value) > largest):  # what is no number is for others as well
         bounds = " to ".join(engineering(bound, unit) for bound in (least, largest))
         raise InvalidInput(f"{text} lies beyond any rig: wanted {bounds}")

@@ -1,7 +1,7 @@
 """Reading a rig from its file: from text to the records that the models take."""
 
 import tomllib
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from types import MappingProxyType
@@ -21,11 +21,17 @@ from sonolube.contact import (
     contact_pair,
     like_bodies_mindlin_ratio,
 )
-from sonolube.dynamics import Structure, chain_structure, pin_on_disc_chain
+from sonolube.dynamics import Structure
 from sonolube.errors import InvalidInput, MissingProperty, SonolubeError, suggestion
+from sonolube.friction.models import FRICTION_MODELS, FrictionModel
 from sonolube.materials import material
+from sonolube.rig.driven_rig import driven_rig
 from sonolube.rig.excitation import waveform_of
+from sonolube.rig.file.json_schema import tables_of
+from sonolube.rig.file.modes_file import read_modes
+from sonolube.rig.file.renamed import refuse_former_names
 from sonolube.rig.file.sections import BodySection, ContactSection, RigFile
+from sonolube.rig.file.structures import STRUCTURES, ModesSection, PinOnDiscSection
 from sonolube.rig.file.uncertainty import distributions_of
 from sonolube.rig.record import Rig
 from sonolube.surfaces import Roughness
@@ -70,6 +76,7 @@ def rig_content(path: str | Path, *, changes: Sequence[str] = ()) -> dict[str, A
     Returns
     -------
     dict
+        A file of modes that the table `structure` names is read in its place.
 
     Raises
     ------
@@ -81,22 +88,24 @@ def rig_content(path: str | Path, *, changes: Sequence[str] = ()) -> dict[str, A
         content = _parsed(path)
         for change in changes:
             _apply(change, content)
-        return content
+        return _with_modes(content, path.parent)
 
 
 def structure_entries(content: Mapping[str, Any]) -> dict[str, float]:
-    """Return the table `structure` of a rig's file, in SI.
+    """Return masses, stiffness and damping of the pin-on-disc chain of a rig's file, in SI.
 
     Raises
     ------
     InvalidInput
-        If the content is no rig's, or has no such table.
+        If the content is no rig's, or its structure is no such chain.
     """
     rig_from(content)
     section = RigFile.model_validate(content).structure
     if section is None:
         raise InvalidInput("structure: missing; give the tables stack and structure to compute a motion")
-    return section.model_dump()
+    if not isinstance(section, PinOnDiscSection):
+        raise InvalidInput(f'structure.kind: "{section.kind}" has no entries to vary; only "pin_on_disc" has')
+    return section.entries()
 
 
 def rig_from(content: Mapping[str, Any]) -> Rig:
@@ -107,6 +116,7 @@ def rig_from(content: Mapping[str, Any]) -> Rig:
     InvalidInput
         In one line that names the key and the value.
     """
+    refuse_former_names(content)
     try:
         file = RigFile.model_validate(content)
     except ValidationError as refusal:
@@ -136,11 +146,12 @@ def structure_by_stack(path: str | Path) -> tuple[PiezoStack, Callable[[PiezoSta
     """
     path = Path(path)
     stack = read_rig(path).stack
-    section = RigFile.model_validate(_parsed(path)).structure
+    section = RigFile.model_validate(rig_content(path)).structure
     if stack is None or section is None:
         raise InvalidInput(f"{path}: the tables stack and structure are missing")
-    entries = section.model_dump()
-    return stack, lambda other: chain_structure(pin_on_disc_chain(other, **entries))
+    if isinstance(section, ModesSection):
+        raise InvalidInput(f"{path}: the stack is part of the modes of its structure, and cannot be another")
+    return stack, section.structure
 
 
 def _parsed(path: Path) -> dict[str, Any]:
@@ -160,6 +171,19 @@ def _parsed(path: Path) -> dict[str, Any]:
         raise InvalidInput("not valid TOML: nested too deeply") from None
 
 
+def _with_modes(content: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """Return the content with the file of modes, where its structure names one, replaced by the modes."""
+    structure = content.get("structure")
+    if isinstance(structure, dict) and structure.get("kind") == "modes" and isinstance(structure.get("file"), str):
+        rest = {key: value for key, value in structure.items() if key != "file"}
+        with _prefixed("structure.file"):
+            modes = read_modes(folder / structure["file"])
+        if clash := next((name for name in modes if name in rest), None):
+            raise InvalidInput(f"structure: give either the file of the modes or their lists, got file and {clash}")
+        return content | {"structure": rest | modes}
+    return content
+
+
 def _apply(change: str, content: dict[str, Any]) -> None:
     path, equals, text = change.partition("=")
     *tables, key = path.strip().split(".")
@@ -177,29 +201,40 @@ def _first_complaint(refusal: ValidationError) -> str:
     complaints = refusal.errors(include_url=False, include_context=False)
     # a misspelt key explains the one that is missing
     first = min(complaints, key=lambda complaint: complaint["type"] != "extra_forbidden")
-    key = ".".join(str(part) for part in first["loc"])
+    key = _dotted(first["loc"])
     rest = f" (and {len(complaints) - 1} more)" if len(complaints) > 1 else ""
-    return f"{key}: {_reason(first['type'], key, first['msg'])}{rest}".removeprefix(": ")
+    return f"{key}: {_reason(first['type'], first['loc'], first['msg'])}{rest}".removeprefix(": ")
 
 
-def _reason(kind: str, key: str, message: str) -> str:
+def _dotted(place: Iterable[str | int]) -> str:
+    """Return the dotted key of a place in the file, without the kind that chose among tables."""
+    parts = [str(part) for part in place]
+    if parts[:1] == ["structure"] and len(parts) > 1 and parts[1] in STRUCTURES:
+        del parts[1]
+    return ".".join(parts)
+
+
+def _reason(kind: str, place: Sequence[str | int], message: str) -> str:
     if kind == "extra_forbidden":
-        close = suggestion(key.rpartition(".")[2], _known_keys(key.rpartition(".")[0]))
+        *tables, key = map(str, place)
+        close = suggestion(key, _known_keys(tables))
         return f"unknown key; {close}".removesuffix("; ")
     if kind == "missing":
         return "missing"
     return message.removeprefix("Value error, ").strip()
 
 
-def _known_keys(table: str) -> list[str]:
+def _known_keys(tables: Sequence[str]) -> list[str]:
+    """Return the keys of a table; the kind of a structure follows its table's name."""
     schema = RigFile.model_json_schema()
-    place = schema
-    for name in filter(None, table.split(".")):
-        entry = place.get("properties", {}).get(name, {})
-        options = entry.get("anyOf", [entry])
-        reference = next((option["$ref"] for option in options if "$ref" in option), "")
-        place = schema["$defs"].get(reference.rpartition("/")[2], {})
-    return list(place.get("properties", {}))
+    places = [schema]
+    for name in tables:
+        if name in STRUCTURES:
+            places = [place for place in places if place["properties"]["kind"]["const"] == name]
+            continue
+        entries = [place.get("properties", {}).get(name, {}) for place in places]
+        places = [schema["$defs"][known] for entry in entries for known in tables_of(entry)]
+    return [key for place in places for key in place.get("properties", {})]
 
 
 def _require_known_assumptions(file: RigFile, content: Mapping[str, Any]) -> None:
@@ -218,12 +253,13 @@ def _rig(file: RigFile) -> Rig:
             drive = Drive(**file.drive.model_dump())
             waveform_of(drive)
     stack, structure = _stack_and_structure(file)
-    return Rig(
+    rig = Rig(
         title=file.title,
         source=file.source,
         contact=_contact(file.contact),
         normal_load=file.contact.normal_load,
-        **file.friction.model_dump(),
+        friction_coefficient=file.friction.friction_coefficient,
+        friction_model=_friction_model(file),
         sliding_speed=file.sliding.sliding_speed,
         vibration_amplitude=_vibration_amplitude(file, drive),
         drive=drive,
@@ -233,6 +269,12 @@ def _rig(file: RigFile) -> Rig:
         assumptions=MappingProxyType(dict(file.assumptions)),
         uncertainty=distributions_of(file),
     )
+    return rig if structure is None else driven_rig(rig)
+
+
+def _friction_model(file: RigFile) -> FrictionModel:
+    with _prefixed("friction"):
+        return FRICTION_MODELS[file.friction.model](**file.friction.model_parameters())
 
 
 def _stack_and_structure(file: RigFile) -> tuple[PiezoStack | None, Structure | None]:
@@ -241,7 +283,7 @@ def _stack_and_structure(file: RigFile) -> tuple[PiezoStack | None, Structure | 
     with _prefixed("stack"):
         stack = PiezoStack(**file.stack.model_dump())
     with _prefixed("structure"):
-        return stack, chain_structure(pin_on_disc_chain(stack, **file.structure.model_dump()))
+        return stack, file.structure.structure(stack)
 
 
 def _contact(section: ContactSection) -> RoughContact:
@@ -253,7 +295,7 @@ def _contact(section: ContactSection) -> RoughContact:
             roughness=roughness,
             pair=pair,
             nominal_area=section.nominal_area,
-            heights=HEIGHT_DISTRIBUTIONS[section.height_distribution](),
+            heights=HEIGHT_DISTRIBUTIONS[section.height_distribution],
             asperity=ASPERITY_LAWS[section.asperity_law],
         )
 

@@ -1,14 +1,39 @@
 """Sections of a rig file: every physical key is a word of the vocabulary and carries its unit in the text."""
 
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, get_args
 
-from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler, ValidationInfo, field_validator
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
+    ValidationInfo,
+    field_validator,
+)
 from pydantic.json_schema import JsonSchemaValue
-from pydantic_core import CoreSchema
+from pydantic_core import CoreSchema, core_schema
 
 from sonolube.rig.file.plausible import require_plausible
 from sonolube.units import kind_of, to_si
-from sonolube.vocabulary import quantities
+from sonolube.variants import VariantTable
+from sonolube.vocabulary import Quantity, quantities
+
+
+@dataclass(frozen=True)
+class NameIn:
+    """Text that must be a name of a table of variants; to annotate a field with.
+
+    Parameters
+    ----------
+    table : VariantTable
+    """
+
+    table: VariantTable[Any]
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        """Accept the names of the table only."""
+        return core_schema.literal_schema(list(self.table))
 
 
 class Section(BaseModel):
@@ -19,24 +44,62 @@ class Section(BaseModel):
     @field_validator("*", mode="before")
     @classmethod
     def _read_quantity(cls, value: object, info: ValidationInfo) -> object:
-        known = quantities().get(info.field_name or "")
+        known = cls.quantity_of(info.field_name or "")
         if known is None or value is None:
             return value
-        return _quantity_in_si(value, unit=known.unit)
+        return quantity_in_si(value, unit=known.unit)
+
+    @classmethod
+    def quantity_of(cls, name: str) -> Quantity | None:
+        """Return the quantity that a key holds: the one its field is annotated with, else the vocabulary's.
+
+        Parameters
+        ----------
+        name : str
+            Key of the table.
+
+        Returns
+        -------
+        Quantity or None
+            None for text, tables and lists.
+        """
+        field = cls.model_fields.get(name)
+        if field is None or float not in (field.annotation, *get_args(field.annotation)):
+            return None
+        return next((each for each in field.metadata if isinstance(each, Quantity)), quantities().get(name))
 
     @classmethod
     def __get_pydantic_json_schema__(cls, core_schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
         """Describe physical keys by meaning, unit and an example."""
         schema = handler(core_schema)
         properties: dict[str, Any] = handler.resolve_ref_schema(schema).get("properties", {})
-        for name in properties.keys() & quantities().keys():
-            properties[name] = _schema_of(name) | {
-                key: value for key, value in properties[name].items() if key == "default" and value is None
-            }
+        for name, entry in properties.items():
+            if known := cls.quantity_of(name):
+                properties[name] = _schema_of(known) | {
+                    key: value for key, value in entry.items() if key == "default" and value is None
+                }
         return schema
 
 
-def _quantity_in_si(value: object, *, unit: str) -> float:
+def quantity_in_si(value: object, *, unit: str) -> float:
+    """Return a quantity written as text with its unit, or a pure number, in SI.
+
+    Parameters
+    ----------
+    value : object
+        What the file holds.
+    unit : str
+        SI unit that it is converted to; empty for pure numbers.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    ValueError
+        If it is no such quantity, or far beyond what a rig can have.
+    """
     if isinstance(value, str):
         return require_plausible(to_si(value, unit=unit, name=""), unit=unit, text=value)
     if isinstance(value, bool) or not isinstance(value, int | float):
@@ -46,8 +109,7 @@ def _quantity_in_si(value: object, *, unit: str) -> float:
     return require_plausible(value, unit=unit, text=f"{value}")
 
 
-def _schema_of(name: str) -> dict[str, Any]:
-    known = quantities()[name]
+def _schema_of(known: Quantity) -> dict[str, Any]:
     return {
         "type": "string" if known.unit else ["number", "string"],
         "title": known.meaning,

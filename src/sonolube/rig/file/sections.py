@@ -1,10 +1,15 @@
-"""Rig files: what a rig looks like as TOML, and the schema of it."""
+"""Sections of a rig file: tables and keys, with the checks between keys."""
 
-from typing import Annotated, Literal, Self
+from dataclasses import replace
+from typing import TYPE_CHECKING, Annotated, Literal, Self
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import Field, create_model, field_validator, model_validator
 
-from sonolube.rig.file.section import Section
+from sonolube.contact import ASPERITY_LAWS, HEIGHT_DISTRIBUTIONS
+from sonolube.friction.models import FRICTION_MODELS
+from sonolube.rig.file.section import NameIn, Section
+from sonolube.rig.file.structures import StructureSection
+from sonolube.vocabulary import Quantity
 
 Text = Annotated[str, Field(min_length=1)]
 
@@ -43,8 +48,8 @@ class ContactSection(Section):
     softer: BodySection | None = None
     harder: BodySection | None = None
     pair: PairSection | None = None
-    height_distribution: Literal["exponential", "gaussian"] = "exponential"
-    asperity_law: Literal["elastic", "as_published", "corrected", "kogut_etsion", "jackson_green"] = "as_published"
+    height_distribution: Annotated[str, NameIn(HEIGHT_DISTRIBUTIONS)] = "exponential"
+    asperity_law: Annotated[str, NameIn(ASPERITY_LAWS)] = "chang_etsion_bogy"
 
     @model_validator(mode="after")
     def _one_description_of_the_bodies(self) -> Self:
@@ -55,17 +60,62 @@ class ContactSection(Section):
         return self
 
 
-class FrictionSection(Section):
-    """Friction without vibration, and the closure that says what vibration makes of it."""
+class FrictionKeys(Section):
+    """Friction without vibration, and the model of friction under vibration with its parameters."""
 
     friction_coefficient: float
-    closure: Literal[
-        "as_published", "separating_half_period", "load_balanced", "kinematic", "stick_slip", "coupled"
-    ] = "stick_slip"
-    memory_length: float | None = None
-    in_plane_fraction: float | None = None
-    in_plane_phase: float | None = None
-    holder_stiffness: float | None = None
+    model: Annotated[
+        str,
+        NameIn(FRICTION_MODELS),
+        Field(
+            description="Model of friction under vibration",
+            json_schema_extra={"x-sources": {name: model.citation for name, model in FRICTION_MODELS.items()}},
+        ),
+    ] = "asperity_stick_slip"
+
+    @model_validator(mode="after")
+    def _parameters_of_the_model(self) -> Self:
+        own = {each.name for each in FRICTION_MODELS[self.model].parameters()}
+        for key, models in _MODELS_BY_PARAMETER.items():
+            if getattr(self, key) is not None and key not in own:
+                others = " and ".join(models) + (" does" if len(models) == 1 else " do")
+                raise ValueError(f"friction.{key}: model {self.model} does not take it; {others}")
+        if getattr(self, "in_plane_phase", None) is not None and not getattr(self, "in_plane_fraction", None):
+            raise ValueError("friction.in_plane_phase: needs friction.in_plane_fraction, the size of that motion")
+        return self
+
+    def model_parameters(self) -> dict[str, float]:
+        """Return the parameters of the model that the file gives, in SI."""
+        given = {key: getattr(self, key) for key in _MODELS_BY_PARAMETER}
+        return {key: value for key, value in given.items() if value is not None}
+
+
+def _parameters() -> tuple[dict[str, Quantity], dict[str, list[str]]]:
+    """Return the quantity of every parameter of a friction model, and the models that take it, by key."""
+    keys: dict[str, Quantity] = {}
+    models: dict[str, list[str]] = {}
+    for name, model in FRICTION_MODELS.items():
+        for each in model.parameters():
+            keys.setdefault(each.name, Quantity(name=each.name, symbol="", unit=each.unit, meaning=each.meaning))
+            models.setdefault(each.name, []).append(name)
+    taken = {key: f"{known.meaning} ({', '.join(models[key])})" for key, known in keys.items()}
+    return {key: replace(known, meaning=taken[key]) for key, known in keys.items()}, models
+
+
+_QUANTITY_BY_PARAMETER, _MODELS_BY_PARAMETER = _parameters()
+
+if TYPE_CHECKING:
+
+    class FrictionSection(FrictionKeys):
+        """The table `friction`: its keys, and one for every parameter of every friction model."""
+
+else:
+    FrictionSection = create_model(
+        "FrictionSection",
+        __base__=FrictionKeys,
+        __doc__=FrictionKeys.__doc__,
+        **{key: (Annotated[float | None, known], None) for key, known in _QUANTITY_BY_PARAMETER.items()},
+    )
 
 
 class SlidingSection(Section):
@@ -105,17 +155,6 @@ class StackSection(Section):
     highest_voltage: float | None = None
     preload: float | None = None
     coupling_factor: float | None = None
-
-
-class StructureSection(Section):
-    """The masses, springs and dampers that the stack drives: tip, reaction mass and arm."""
-
-    tip_mass: float
-    reaction_mass: float
-    arm_mass: float
-    arm_stiffness: float
-    arm_damping: float
-    tip_damping: float = 0.0
 
 
 class WaveguideSection(Section):

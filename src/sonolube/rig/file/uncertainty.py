@@ -5,15 +5,14 @@ import re
 from collections.abc import Iterator, Mapping
 from functools import cache
 from types import MappingProxyType
-from typing import Any, get_args
-
-from pydantic import BaseModel
+from typing import Any, get_args, get_origin
 
 from sonolube.errors import InvalidInput, SonolubeError, suggestion
 from sonolube.rig.distribution import Distribution, Law, LogNormal, Normal, Uniform
+from sonolube.rig.file.section import Section
 from sonolube.rig.file.sections import RigFile
 from sonolube.units import engineering, to_si
-from sonolube.vocabulary import quantities, unit_of
+from sonolube.vocabulary import Quantity
 
 EXAMPLES = (
     "normal 0.5 um",
@@ -56,62 +55,73 @@ def distributions_of(file: RigFile) -> Mapping[str, Distribution]:
     found = {}
     for key, text in file.uncertainty.items():
         try:
-            found[key] = _distribution(key, text, _value(file, key))
+            found[key] = _distribution(_quantity(key), text, _value(file, key))
         except SonolubeError as refusal:
             raise InvalidInput(f"uncertainty.{key}: {refusal}") from None
     return MappingProxyType(found)
 
 
 @cache
-def number_keys() -> tuple[str, ...]:
-    """Return the dotted keys of all single numbers of a rig file."""
-    return tuple(_number_keys(RigFile, ""))
+def number_keys() -> Mapping[str, Quantity]:
+    """Return the quantity of every single number of a rig file, by dotted key."""
+    return MappingProxyType(dict(_number_keys(RigFile, "")))
 
 
-def _number_keys(section: type[BaseModel], place: str) -> Iterator[str]:
+def _number_keys(section: type[Section], place: str) -> Iterator[tuple[str, Quantity]]:
     for name, field in section.model_fields.items():
-        kinds = (field.annotation, *get_args(field.annotation))
-        table = next((kind for kind in kinds if isinstance(kind, type) and issubclass(kind, BaseModel)), None)
-        if table is not None:
+        for table in _sections(field.annotation):
             yield from _number_keys(table, f"{place}{name}.")
-        elif float in kinds and name in quantities():
-            yield f"{place}{name}"
+        if known := section.quantity_of(name):
+            yield f"{place}{name}", known
 
 
-def _value(file: RigFile, key: str) -> float | None:
+def _sections(annotation: Any) -> Iterator[type[Section]]:
+    """Yield the tables that a key may hold, those of a list left out."""
+    if isinstance(annotation, type) and issubclass(annotation, Section):
+        yield annotation
+    elif get_origin(annotation) is not list:
+        for part in get_args(annotation):
+            yield from _sections(part)
+
+
+def _quantity(key: str) -> Quantity:
     if key not in number_keys():
         last = [known for known in number_keys() if known.rpartition(".")[2] == key.rpartition(".")[2]]
         close = f"did you mean {last[0]}?" if last else suggestion(key, number_keys())
         raise InvalidInput(f"no number of a rig file; {close}".removesuffix("; "))
+    return number_keys()[key]
+
+
+def _value(file: RigFile, key: str) -> float | None:
     place: Any = file
     for part in key.split("."):
-        place = None if place is None else getattr(place, part)
+        place = getattr(place, part, None)
     return None if place is None else float(place)
 
 
-def _distribution(key: str, text: str, value: float | None) -> Distribution:
-    name = key.rpartition(".")[2]
+def _distribution(known: Quantity, text: str, value: float | None) -> Distribution:
+    name, unit = known.name, known.unit
     match = _ENTRY.fullmatch(text.strip())
     if match is None:
         raise InvalidInput(f"{text!r} is no distribution; write it like {', '.join(EXAMPLES[:4])} or {EXAMPLES[-1]}")
     kind, rest = match[1], match[2].strip()
     ends = _ENDS.fullmatch(rest)
     if kind == "uniform" and ends is not None:
-        low, high = (to_si(end, unit=unit_of(name), name=kind) for end in ends.groups())
+        low, high = (to_si(end, unit=unit, name=kind) for end in ends.groups())
         law: Law = Uniform(low=low, high=high)
     elif value is None:
         raise InvalidInput(f"the file has no value that {text!r} could be about; give one, or write {EXAMPLES[3]!r}")
     elif kind == "lognormal":
         law = LogNormal(median=value, factor=_factor(rest))
     else:
-        width = _width(kind, rest, name, value)
+        width = _width(kind, rest, unit, value)
         law = (
             Normal(middle=value, deviation=width)
             if kind == "normal"
             else Uniform(low=value - width, high=value + width)
         )
     lowest, highest = _POSSIBLE.get(name, (0.0, math.inf))
-    return Distribution(law=law, lowest=lowest, highest=highest, text=_told(law, unit_of(name)))
+    return Distribution(law=law, lowest=lowest, highest=highest, text=_text(law, unit))
 
 
 def _factor(rest: str) -> float:
@@ -123,15 +133,15 @@ def _factor(rest: str) -> float:
     raise InvalidInput(f"lognormal {rest}: write {EXAMPLES[4]!r} or {EXAMPLES[5]!r}")
 
 
-def _width(kind: str, rest: str, name: str, value: float) -> float:
+def _width(kind: str, rest: str, unit: str, value: float) -> float:
     share = _SHARE.fullmatch(rest)
-    width = to_si(rest, unit=unit_of(name), name=kind) if share is None else abs(value) * float(share[1]) / 100
+    width = to_si(rest, unit=unit, name=kind) if share is None else abs(value) * float(share[1]) / 100
     if not width > 0:
         raise InvalidInput(f"{kind} {rest} is no width" + " about the file's zero" * (value == 0))
     return width
 
 
-def _told(law: Law, unit: str) -> str:
+def _text(law: Law, unit: str) -> str:
     match law:
         case Normal():
             return f"normal, {engineering(law.middle, unit)} +- {engineering(law.deviation, unit)}"

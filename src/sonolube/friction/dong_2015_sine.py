@@ -12,7 +12,7 @@ from sonolube.contact.rough import RoughContact, separation
 from sonolube.errors import ModelRangeWarning, OutsideRange
 
 
-def separating_half_period_ratio(
+def dong_2015_half_period_ratio(
     contact: RoughContact, *, normal_load: ArrayLike, vibration_amplitude: ArrayLike
 ) -> Floats:
     """Return friction with normal vibration over friction without. []
@@ -88,7 +88,7 @@ def steady_deformation(contact: RoughContact, *, normal_load: ArrayLike, frictio
     return require_finite(friction_force=friction_force) / tangential_stiffness(contact, separation=d)  # D 3.11
 
 
-def as_published_ratio(
+def dong_2015_deformation_ratio(
     contact: RoughContact,
     *,
     normal_load: ArrayLike,

@@ -1,0 +1,205 @@
+"""Mean friction ratio by the cube model of Dong (2015): over a full period, the separating half, and load-balanced."""
+
+from dataclasses import dataclass
+from typing import ClassVar, final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sonolube.checks import Floats, require_positive
+from sonolube.contact.cube import tangential_stiffness
+from sonolube.contact.half_period_mean import separating_mean
+from sonolube.contact.motion import GapMotion, converged_mean, load_balanced_motion, open_separation
+from sonolube.contact.rough import RoughContact, separation
+from sonolube.friction.models.kinematic import directed_mean
+from sonolube.friction.models.model import FrictionModel, MeanGap
+
+
+@final
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Dong2015FullPeriod(FrictionModel):
+    r"""Stiffness of the cube times the kinematic factor, averaged over the full period, as the dissertation prints it.
+
+    Notes
+    -----
+    .. math:: \frac{F_1}{F_0} = \left\langle \frac{k_t(d + x)}{k_t(d)} \frac{v_r}{\sqrt{v_r^2 + v_1^2}} \right\rangle
+
+    The deformation stays that of rest, and of the friction counts the component along the sliding. The stiffness of
+    the cube goes with the square of the area, so that about an unmoved mean vibration raises friction.
+
+    See Also
+    --------
+    Dong2015HalfPeriod : The cube over the separating half period, by which the printed tables were computed.
+    Dong2015LoadBalanced : The same mean about the gap that balances the load.
+
+    References
+    ----------
+    .. [1] D 3.46 to 3.48, with the resultant where 3.46 prints v_1, which passes through zero twice a period.
+    """
+
+    name: ClassVar[str] = "dong_2015_full_period"
+    citation: ClassVar[str] = "D 3.46 to 3.48, about the mean at rest as printed"
+    mean_gap: ClassVar[MeanGap] = MeanGap.AT_REST
+
+    def ratio(
+        self,
+        contact: RoughContact,
+        motion: GapMotion,
+        *,
+        sliding_speed: ArrayLike,
+        friction_coefficient: ArrayLike | None = None,
+    ) -> Floats:
+        """Return mean friction under a motion of the gap over friction without vibration. []
+
+        Parameters
+        ----------
+        contact : RoughContact
+        motion : GapMotion
+        sliding_speed : array_like, any shape
+            Mean sliding speed. [m/s]
+        friction_coefficient : float, optional
+            Without effect in this model. []
+
+        Returns
+        -------
+        ndarray, shape of `sliding_speed`
+
+        Raises
+        ------
+        InvalidInput
+            If a speed is not positive.
+        OutsideRange
+            If the motion closes the gap or leaves the height law's range.
+        """
+        return _full_period(contact, motion, sliding_speed)
+
+
+@final
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Dong2015HalfPeriod(FrictionModel):
+    r"""Stiffness of the cube averaged over the half period in which the gap is wider than at rest.
+
+    Notes
+    -----
+    .. math:: \frac{F_1}{F_0} = \frac{2}{T} \int_{x > 0} \frac{k_t(d + x)}{k_t(d)} \, dt
+
+    Through the rest of the period the surfaces are taken to stick. Neither speed nor frequency enters.
+    `sonolube.friction.dong_2015_sine.half_period_ratio` gives the same for a sine about an unmoved mean.
+
+    See Also
+    --------
+    Dong2015FullPeriod : The mean over the full period with the kinematic factor.
+
+    References
+    ----------
+    .. [1] D 3.15 with u = 0.
+    """
+
+    name: ClassVar[str] = "dong_2015_half_period"
+    citation: ClassVar[str] = "D 3.15 with u = 0"
+    mean_gap: ClassVar[MeanGap] = MeanGap.AT_REST
+    rate_dependent: ClassVar[bool] = False
+
+    def ratio(
+        self,
+        contact: RoughContact,
+        motion: GapMotion,
+        *,
+        sliding_speed: ArrayLike,
+        friction_coefficient: ArrayLike | None = None,
+    ) -> Floats:
+        """Return mean friction under a motion of the gap over friction without vibration. []
+
+        Parameters
+        ----------
+        contact : RoughContact
+        motion : GapMotion
+        sliding_speed : array_like, any shape
+            Mean sliding speed, which has no effect in this model. [m/s]
+        friction_coefficient : float, optional
+            Without effect in this model. []
+
+        Returns
+        -------
+        ndarray, shape of `sliding_speed`
+
+        Raises
+        ------
+        InvalidInput
+            If a speed is not positive.
+        OutsideRange
+            If the motion leaves the height law's range.
+        """
+        v_r = require_positive(sliding_speed=sliding_speed)
+        d = separation(contact, normal_load=motion.normal_load)
+        at_rest = tangential_stiffness(contact, separation=d)
+        ratio = converged_mean(
+            lambda sampled: separating_mean(
+                lambda x: tangential_stiffness(contact, separation=d + x) / at_rest, displacement=sampled.displacement
+            ),
+            motion,
+        )
+        return np.broadcast_to(ratio, v_r.shape).copy()
+
+
+@final
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Dong2015LoadBalanced(FrictionModel):
+    """Stiffness of the cube times the kinematic factor, about the mean gap at which the mean force equals the load.
+
+    Notes
+    -----
+    The mean of `Dong2015FullPeriod` under `sonolube.contact.load_balanced_motion`; the mean of the motion itself has no
+    effect. The mean of the cube's stiffness, which goes with the square of the area, still lies above that at rest.
+
+    See Also
+    --------
+    Dong2015FullPeriod : The same about the mean at rest.
+
+    References
+    ----------
+    .. [1] D 3.46 to 3.48.
+    """
+
+    name: ClassVar[str] = "dong_2015_load_balanced"
+    citation: ClassVar[str] = "D 3.46 to 3.48, about the mean gap that balances the load"
+
+    def ratio(
+        self,
+        contact: RoughContact,
+        motion: GapMotion,
+        *,
+        sliding_speed: ArrayLike,
+        friction_coefficient: ArrayLike | None = None,
+    ) -> Floats:
+        """Return mean friction under a motion of the gap over friction without vibration. []
+
+        Parameters
+        ----------
+        contact : RoughContact
+        motion : GapMotion
+        sliding_speed : array_like, any shape
+            Mean sliding speed. [m/s]
+        friction_coefficient : float, optional
+            Without effect in this model. []
+
+        Returns
+        -------
+        ndarray, shape of `sliding_speed`
+
+        Raises
+        ------
+        InvalidInput
+            If a speed is not positive.
+        OutsideRange
+            If the motion closes the gap or leaves the height law's range.
+        """
+        return _full_period(contact, load_balanced_motion(contact, motion), sliding_speed)
+
+
+def _full_period(contact: RoughContact, motion: GapMotion, sliding_speed: ArrayLike) -> Floats:
+    d = open_separation(contact, motion)
+    at_rest = tangential_stiffness(contact, separation=d)
+    return directed_mean(
+        lambda x: tangential_stiffness(contact, separation=d + x) / at_rest, motion, sliding_speed=sliding_speed
+    )

@@ -1,0 +1,96 @@
+"""Driven rig: a rig whose stack, structure and drive voltage are known, so that its motion can be computed."""
+
+from dataclasses import dataclass, fields
+from typing import final
+
+from sonolube.actuator import PiezoStack
+from sonolube.actuator.drive import Drive
+from sonolube.dynamics import Structure
+from sonolube.errors import InvalidInput
+from sonolube.rig.record import Rig
+
+
+@final
+@dataclass(frozen=True, kw_only=True, slots=True)
+class DrivenRig(Rig):
+    """A rig with everything that a computed motion needs.
+
+    Parameters
+    ----------
+    stack : PiezoStack
+        Piezoelectric stack.
+    structure : Structure
+        Masses, springs and dampers, or modes, with the stack in them.
+    drive : Drive
+        Drive of the stack, with its voltage.
+
+    Raises
+    ------
+    InvalidInput
+        If one of them, or the voltage of the drive, is missing.
+
+    Notes
+    -----
+    `read_rig` returns one for a file with the tables `stack` and `structure`; `driven_rig` turns a `Rig` into one.
+    """
+
+    stack: PiezoStack
+    structure: Structure
+    drive: Drive
+
+    def __post_init__(self) -> None:
+        Rig.__post_init__(self)
+        if self.stack is None or self.structure is None:
+            raise InvalidInput(
+                f"{self.title}: the tables stack and structure are missing; give them to compute its motion"
+            )
+        require_drive(self)
+
+    @property
+    def voltage_peak_to_peak(self) -> float:
+        """Difference of the highest and the lowest drive voltage. [V]"""
+        assert self.drive.voltage_peak_to_peak is not None  # checked at construction
+        return self.drive.voltage_peak_to_peak
+
+
+def require_drive(rig: Rig) -> Drive:
+    """Return the drive of a rig whose drive voltage is known.
+
+    Parameters
+    ----------
+    rig : Rig
+
+    Returns
+    -------
+    Drive
+
+    Raises
+    ------
+    InvalidInput
+        If the rig has no drive voltage.
+    """
+    if rig.drive is None or rig.drive.voltage_peak_to_peak is None:
+        raise InvalidInput(f"{rig.title}: drive.voltage_peak_to_peak is missing; give it to compute a motion")
+    return rig.drive
+
+
+def driven_rig(rig: Rig) -> DrivenRig:
+    """Return a rig as one whose motion can be computed.
+
+    Parameters
+    ----------
+    rig : Rig
+
+    Returns
+    -------
+    DrivenRig
+        The rig itself where it is one already.
+
+    Raises
+    ------
+    InvalidInput
+        If its stack, structure or drive voltage is missing.
+    """
+    if isinstance(rig, DrivenRig):
+        return rig
+    return DrivenRig(**{field.name: getattr(rig, field.name) for field in fields(rig)})

@@ -1,0 +1,160 @@
+"""Structures of a rig file: the pin-on-disc chain, any chain of masses, springs and dampers, and modes."""
+
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import Discriminator, Field, Tag, field_validator, model_validator
+
+from sonolube.actuator import PiezoStack
+from sonolube.dynamics import (
+    Damper,
+    LumpedChain,
+    Spring,
+    Structure,
+    chain_structure,
+    modal_structure,
+    pin_on_disc_chain,
+)
+from sonolube.rig.file.section import Section, quantity_in_si
+
+Name = Annotated[str, Field(min_length=1)]
+Ends = Annotated[list[Name], Field(min_length=2, max_length=2)]
+
+
+class PinOnDiscSection(Section):
+    """Three masses in a line: tip, reaction mass and loading arm, the stack between the first two."""
+
+    kind: Literal["pin_on_disc"] = "pin_on_disc"
+    tip_mass: float
+    reaction_mass: float
+    arm_mass: float
+    arm_stiffness: float
+    arm_damping: float
+    tip_damping: float = 0.0
+
+    def structure(self, stack: PiezoStack) -> Structure:
+        """Return the structure with a stack in it."""
+        return chain_structure(pin_on_disc_chain(stack, **self.entries()))
+
+    def entries(self) -> dict[str, float]:
+        """Return masses, stiffness and damping by key, in SI."""
+        return self.model_dump(exclude={"kind"})
+
+
+class SpringSection(Section):
+    """A spring between two masses, or between a mass and the ground."""
+
+    between: Ends
+    spring_stiffness: float
+
+
+class DamperSection(Section):
+    """A viscous damper between two masses, or between a mass and the ground."""
+
+    between: Ends
+    viscous_damping: float
+
+
+class ChainSection(Section):
+    """Any chain of masses, springs and dampers along the normal of the contact, with the stack between two of them."""
+
+    kind: Literal["chain"]
+    masses: Annotated[dict[Name, float], Field(min_length=1, description="Mass of each body by name, such as 0.1 kg")]
+    springs: list[SpringSection] = Field(default_factory=list)
+    dampers: list[DamperSection] = Field(default_factory=list)
+    stack_between: Ends
+    contact: Name
+    loaded: Name | None = Field(default=None, description="Mass that the weights of the dead load hang on")
+
+    @field_validator("masses", mode="before")
+    @classmethod
+    def _masses_in_kilograms(cls, table: object) -> object:
+        if not isinstance(table, dict):
+            return table
+        return {name: quantity_in_si(value, unit="kg") for name, value in table.items()}
+
+    def structure(self, stack: PiezoStack) -> Structure:
+        """Return the structure with a stack in it."""
+        (near, behind) = self.stack_between
+        return chain_structure(
+            LumpedChain(
+                masses=self.masses,
+                springs=tuple(
+                    Spring(between=_ends(each.between), spring_stiffness=each.spring_stiffness) for each in self.springs
+                ),
+                dampers=tuple(
+                    Damper(between=_ends(each.between), viscous_damping=each.viscous_damping) for each in self.dampers
+                ),
+                stack=stack,
+                stack_between=(near, behind),
+                contact=self.contact,
+                loaded=self.loaded,
+            )
+        )
+
+
+class ModesSection(Section):
+    """Modes of a structure, such as those that finite elements give, in a file beside the rig's or as lists."""
+
+    kind: Literal["modes"]
+    file: Name | None = Field(
+        default=None,
+        description="CSV file with a column for each of the lists, relative to the rig's folder",
+    )
+    natural_frequency: list[float] | None = Field(default=None, description="Of each mode, in Hz; 0 for rigid ones")
+    damping_ratio: list[float] | None = Field(default=None, description="Damping over critical damping of each mode")
+    drive_participation: list[float] | None = Field(
+        default=None, description="Modal force per volt of each mode, in N/V, for a modal mass of 1 kg"
+    )
+    contact_participation: list[float] | None = Field(
+        default=None, description="Displacement of the contact in each shape, for a modal mass of 1 kg"
+    )
+    clamped_capacitance: float
+
+    @model_validator(mode="after")
+    def _file_or_lists(self) -> Self:
+        given = [name for name in MODE_LISTS if getattr(self, name) is not None]
+        if self.file is not None and given:
+            raise ValueError(f"give either the file of the modes or their lists, got file and {given[0]}")
+        if self.file is None and len(given) < len(MODE_LISTS):
+            missing = next(name for name in MODE_LISTS if name not in given)
+            raise ValueError(f"give the file of the modes, or all of their lists; {missing} is missing")
+        return self
+
+    def structure(self, stack: PiezoStack) -> Structure:
+        """Return the structure; the stack is part of its modes."""
+        return modal_structure(
+            frequencies=self.natural_frequency or (),
+            damping_ratios=self.damping_ratio or (),
+            drive_participation=self.drive_participation or (),
+            contact_participation=self.contact_participation or (),
+            clamped_capacitance=self.clamped_capacitance,
+        )
+
+
+MODE_LISTS = ("natural_frequency", "damping_ratio", "drive_participation", "contact_participation")
+"""Lists of a table of modes, each also a column of a file of modes."""
+
+
+def _ends(names: list[str]) -> tuple[str, str]:
+    first, second = names
+    return first, second
+
+
+def _kind(table: Any) -> str:
+    return str(table.get("kind", "pin_on_disc") if isinstance(table, dict) else getattr(table, "kind", "pin_on_disc"))
+
+
+STRUCTURES = ("pin_on_disc", "chain", "modes")
+"""Kinds of structures."""
+
+StructureSection = Annotated[
+    Annotated[PinOnDiscSection, Tag("pin_on_disc")]
+    | Annotated[ChainSection, Tag("chain")]
+    | Annotated[ModesSection, Tag("modes")],
+    Discriminator(
+        _kind,
+        custom_error_type="unknown_kind",
+        custom_error_message=f"kind must be one of {', '.join(STRUCTURES)}",
+    ),
+]
+"""The table `structure`; its key `kind` says which, the pin-on-disc chain where absent."""
