@@ -9,12 +9,12 @@ from sonolube.errors import InvalidInput, MissingProperty
 from sonolube.friction import BoundaryLubricant
 from sonolube.materials import material
 from sonolube.rig import (
-    HeatPoint,
     Rig,
-    heat_point,
+    TemperaturePoint,
+    lubrication_map,
+    lubrication_point,
     read_rig,
-    regime_map,
-    regime_point,
+    temperature_point,
     thermal_solid,
     wear_of_materials,
 )
@@ -23,8 +23,8 @@ RIG = Path(__file__).parents[2] / "examples" / "rigs" / "tribometer.toml"
 LUBRICANT = BoundaryLubricant(film_coefficient=0.25, full_asperity_pressure=10e6)
 
 
-def heat_of(rig: Rig, *, vibration_heat_rate: float = 0.0) -> HeatPoint:
-    return heat_point(
+def heat_of(rig: Rig, *, vibration_heat_rate: float = 0.0) -> TemperaturePoint:
+    return temperature_point(
         rig,
         pin=thermal_solid("stainless_steel_316"),
         disc=thermal_solid("aluminium_2024"),
@@ -55,10 +55,10 @@ def test_a_rig_at_rest_has_no_heat_of_friction() -> None:
 
 def test_the_map_holds_the_best_of_the_point_in_its_middle() -> None:
     rig = read_rig(RIG)
-    about = regime_map(rig, lubricant=LUBRICANT)
+    about = lubrication_map(rig, lubricant=LUBRICANT)
     middle = about.best.shape[0] // 2, about.best.shape[1] // 2
     assert about.sliding_speed[middle[1]] == approx(rig.sliding_speed)
-    assert about.best[middle] == regime_point(rig, lubricant=LUBRICANT).best == "ultrasonic"
+    assert about.best[middle] == lubrication_point(rig, lubricant=LUBRICANT).best == "ultrasonic"
 
 
 def test_a_material_without_a_structure_is_refused_by_name() -> None:

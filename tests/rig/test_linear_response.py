@@ -8,7 +8,7 @@ import xarray as xr
 from pytest import approx
 
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.rig import dataset, frequency_grid, linear_response, read_rig, touching_structure, write_netcdf
+from sonolube.rig import dataset, frequency_grid, frequency_response, read_rig, structure_in_contact, write_netcdf
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"
 TRIBOMETER = read_rig(RIGS / "tribometer.toml")
@@ -16,27 +16,27 @@ TRIBOMETER = read_rig(RIGS / "tribometer.toml")
 
 def test_the_tip_moves_as_far_per_volt_as_table_4_1_prints() -> None:
     # 2.31 um at 25.9 V peak to peak
-    response = linear_response(TRIBOMETER, frequency=22e3)
+    response = frequency_response(TRIBOMETER, frequency=22e3)
     assert response.amplitude_per_volt[0] == approx(2.31e-6 / 25.9, rel=0.01)
 
 
 def test_far_below_resonance_the_stack_shares_its_stroke_by_the_masses() -> None:
     # at 5 kHz inertia rules: of the free stroke the tip takes the share of the masses behind it, and 1/(1 - (f/f_r)^2)
-    response = linear_response(TRIBOMETER, frequency=5e3)
+    response = frequency_response(TRIBOMETER, frequency=5e3)
     tip, behind = 0.1093, 2.41 + 0.07
     expected = 8.68e-9 / 2 * behind / (tip + behind) / (1 - (5 / 22) ** 2)
     assert response.amplitude_per_volt[0] == approx(expected, rel=0.01)
 
 
 def test_the_impedance_is_that_of_the_free_stack_far_below_and_of_the_held_one_far_above() -> None:
-    low, high = (linear_response(TRIBOMETER, frequency=f) for f in (1e3, 500e3))
+    low, high = (frequency_response(TRIBOMETER, frequency=f) for f in (1e3, 500e3))
     assert 1 / (2 * np.pi * 1e3 * low.impedance[0]) == approx(360e-9, rel=0.01)
     assert 1 / (2 * np.pi * 500e3 * high.impedance[0]) == approx(360e-9 - 8.68e-9**2 * 2e9, rel=0.01)
 
 
 def test_the_resonance_lies_below_the_antiresonance_as_the_coupling_demands() -> None:
     f = np.linspace(15e3, 35e3, 20001)
-    impedance = linear_response(TRIBOMETER, frequency=f).impedance
+    impedance = frequency_response(TRIBOMETER, frequency=f).impedance
     series, parallel = f[np.argmin(impedance)], f[np.argmax(impedance)]
     # of a free stack k^2 = 1 - (f_s/f_p)^2
     assert 1 - (series / parallel) ** 2 == approx(8.68e-9**2 * 2e9 / 360e-9, rel=0.02)
@@ -51,11 +51,11 @@ def test_the_grid_meets_every_resonance_within_its_width() -> None:
 
 def test_a_rig_without_structure_says_what_is_missing() -> None:
     with pytest.raises(InvalidInput, match="the tables stack and structure are missing"):
-        touching_structure(read_rig(RIGS / "cutter_head.toml"))
+        structure_in_contact(read_rig(RIGS / "cutter_head.toml"))
 
 
 def test_a_dataset_keeps_units_and_comes_back_from_its_file(tmp_path: Path) -> None:
-    response = linear_response(TRIBOMETER, frequency=[20e3, 22e3])
+    response = frequency_response(TRIBOMETER, frequency=[20e3, 22e3])
     values = {"frequency": response.frequency, "impedance": response.impedance}
     path = write_netcdf(dataset(values, along="frequency", title="two points"), path=tmp_path / "two.nc")
     with xr.open_dataset(path, engine="h5netcdf") as read:

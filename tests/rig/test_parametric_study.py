@@ -109,7 +109,7 @@ def test_the_voltage_found_gives_the_friction_asked_for() -> None:
 def test_what_no_voltage_reaches_has_a_reason_and_no_numbers() -> None:
     study = STUDIES["power"]
     assert study["status"].values[0] == "out_of_reach"
-    assert "200 V do not bring friction down" in str(study["reason"].values[0])
+    assert "200 V does not reduce friction" in str(study["reason"].values[0])
     assert np.isnan(study["actuator_power"].values[0])
 
 

@@ -24,14 +24,14 @@ def response(
 
     from sonolube.cli.response_output import response_lines, response_object, write_response
     from sonolube.errors import InvalidInput
-    from sonolube.rig import frequency_grid, linear_response, read_rig
+    from sonolube.rig import frequency_grid, frequency_response, read_rig
     from sonolube.units import to_si
 
     low, high = (to_si(text, unit="Hz", name=name) for text, name in ((lowest, "--from"), (highest, "--to")))
     if not 0 < low < high:
         raise InvalidInput(f"--from {lowest} must lie above 0 Hz and below --to {highest}")
     known = read_rig(rig, changes=list(changes or ()))
-    result = linear_response(known, frequency=frequency_grid(known, lowest=low, highest=high))
+    result = frequency_response(known, frequency=frequency_grid(known, lowest=low, highest=high))
     written = write_response(known, result, folder=out, name=f"{rig.stem}-response")
     if json:
         typer.echo(json_module.dumps(response_object(known, result, written), indent=2))

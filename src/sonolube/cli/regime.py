@@ -33,7 +33,7 @@ def regime(
     from sonolube.errors import InvalidInput
     from sonolube.friction import BoundaryLubricant
     from sonolube.materials import material
-    from sonolube.rig import read_rig, regime_map, regime_point, wear_of_materials
+    from sonolube.rig import lubrication_map, lubrication_point, read_rig, wear_of_materials
     from sonolube.rig.file.plausible import plausible_si, require_plausible
 
     if (pin is None) != (disc is None):
@@ -42,9 +42,9 @@ def regime(
     full = plausible_si(pressure, unit="Pa", name="--asperity-pressure")
     require_plausible(film, unit="", text=f"--film-coefficient {film:g}")
     lubricant = BoundaryLubricant(film_coefficient=film, full_asperity_pressure=full)
-    result = regime_point(known, lubricant=lubricant, smallest_gain=gain)
+    result = lubrication_point(known, lubricant=lubricant, smallest_gain=gain)
     wear = wear_of_materials(material(pin), material(disc)) if pin is not None and disc is not None else None
-    about = regime_map(known, lubricant=lubricant, smallest_gain=gain)
+    about = lubrication_map(known, lubricant=lubricant, smallest_gain=gain)
     written = write_regimes(known, result, about, folder=out, name=f"{rig.stem}-regime")
     if json:
         typer.echo(json_module.dumps(regime_object(known, result, wear, written), indent=2, allow_nan=False))

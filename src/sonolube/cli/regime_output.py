@@ -8,7 +8,7 @@ import numpy as np
 from sonolube.cli.output import closing_lines
 from sonolube.figure import publication_style, write_figure
 from sonolube.friction import Method
-from sonolube.rig import RegimeMap, RegimePoint, Rig
+from sonolube.rig import LubricationMap, LubricationPoint, Rig
 from sonolube.units import engineering
 from sonolube.wear.mechanism import WearAssessment
 
@@ -18,7 +18,9 @@ if TYPE_CHECKING:
 _SHADES = {"dry": "0.75", "ultrasonic": "#9ecae1", "lubricant": "#fdd0a2", "combined": "#c7e9c0"}
 
 
-def regime_object(rig: Rig, result: RegimePoint, wear: WearAssessment | None, written: list[Path]) -> dict[str, Any]:
+def regime_object(
+    rig: Rig, result: LubricationPoint, wear: WearAssessment | None, written: list[Path]
+) -> dict[str, Any]:
     """Return the ways of lubrication as they go into JSON."""
     assessed = {} if wear is None else {"wear": _wear_object(wear)}
     return {
@@ -38,7 +40,7 @@ def regime_object(rig: Rig, result: RegimePoint, wear: WearAssessment | None, wr
     }
 
 
-def regime_lines(rig: Rig, result: RegimePoint, wear: WearAssessment | None, written: list[Path]) -> list[str]:
+def regime_lines(rig: Rig, result: LubricationPoint, wear: WearAssessment | None, written: list[Path]) -> list[str]:
     """Return the ways of lubrication as lines, the best of them marked."""
     coefficients = result.coefficients._asdict()
     return [
@@ -52,13 +54,13 @@ def regime_lines(rig: Rig, result: RegimePoint, wear: WearAssessment | None, wri
     ]
 
 
-def write_regimes(rig: Rig, result: RegimePoint, about: RegimeMap, *, folder: Path, name: str) -> list[Path]:
+def write_regimes(rig: Rig, result: LubricationPoint, about: LubricationMap, *, folder: Path, name: str) -> list[Path]:
     """Write the map as a figure and return the files."""
     with publication_style():
         return write_figure(_figure(rig, result, about), folder=folder, name=name)
 
 
-def _marked(name: str, result: RegimePoint) -> str:
+def _marked(name: str, result: LubricationPoint) -> str:
     return "  best" if name == result.best else ""
 
 
@@ -79,7 +81,7 @@ def _wear_object(wear: WearAssessment) -> dict[str, Any]:
     }
 
 
-def _figure(rig: Rig, result: RegimePoint, about: RegimeMap) -> "Figure":
+def _figure(rig: Rig, result: LubricationPoint, about: LubricationMap) -> "Figure":
     from matplotlib.colors import ListedColormap
     from matplotlib.figure import Figure
     from matplotlib.patches import Patch

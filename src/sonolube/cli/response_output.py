@@ -8,14 +8,14 @@ import numpy as np
 from sonolube.cli.output import closing_lines
 from sonolube.dynamics import modes
 from sonolube.figure import COLOURS, publication_style, write_figure
-from sonolube.rig import Response, Rig, dataset, touching_structure, write_netcdf
+from sonolube.rig import FrequencyResponse, Rig, dataset, structure_in_contact, write_netcdf
 from sonolube.units import engineering
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def response_object(rig: Rig, result: Response, written: list[Path]) -> dict[str, Any]:
+def response_object(rig: Rig, result: FrequencyResponse, written: list[Path]) -> dict[str, Any]:
     """Return the resonances and the largest response as they go into JSON."""
     best = int(np.argmax(result.amplitude_per_volt))
     return {
@@ -28,7 +28,7 @@ def response_object(rig: Rig, result: Response, written: list[Path]) -> dict[str
     }
 
 
-def response_lines(rig: Rig, result: Response, written: list[Path]) -> list[str]:
+def response_lines(rig: Rig, result: FrequencyResponse, written: list[Path]) -> list[str]:
     """Return the resonances and the largest response as lines."""
     best = int(np.argmax(result.amplitude_per_volt))
     resonances = ", ".join(engineering(f, "Hz", digits=4) for f in _resonances(rig)) or "none"
@@ -41,7 +41,7 @@ def response_lines(rig: Rig, result: Response, written: list[Path]) -> list[str]
     ]
 
 
-def write_response(rig: Rig, result: Response, *, folder: Path, name: str) -> list[Path]:
+def write_response(rig: Rig, result: FrequencyResponse, *, folder: Path, name: str) -> list[Path]:
     """Write the response as a figure and as netCDF, and return the files."""
     values = {
         "frequency": result.frequency,
@@ -56,11 +56,11 @@ def write_response(rig: Rig, result: Response, *, folder: Path, name: str) -> li
 
 
 def _resonances(rig: Rig) -> list[float]:
-    natural = modes(touching_structure(rig))
+    natural = modes(structure_in_contact(rig))
     return [float(f) for f in natural.natural_frequency[~natural.rigid]]
 
 
-def _figure(rig: Rig, result: Response) -> "Figure":
+def _figure(rig: Rig, result: FrequencyResponse) -> "Figure":
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(5.2, 5.4))

@@ -120,7 +120,7 @@ def _values(rig: Rig, of: str, lowest: str | None, highest: str | None, points: 
         )
     count = points or usual.points
     if of in ("frequency", "power"):
-        return frequency_grid(rig, lowest=low, highest=high, points=count, crowded=_CROWDED)
+        return frequency_grid(rig, lowest=low, highest=high, points=count, resonance_points=_CROWDED)
     return usual.spacing(low, high, count)
 
 

@@ -32,11 +32,11 @@ def thermal(
     """
     from sonolube.cli.output import show
     from sonolube.cli.thermal_output import write_heat
-    from sonolube.rig import heat_point, read_rig, thermal_solid
+    from sonolube.rig import read_rig, temperature_point, thermal_solid
     from sonolube.rig.file.plausible import plausible_si
 
     known = read_rig(rig, changes=list(changes or ()))
-    result = heat_point(
+    result = temperature_point(
         known,
         pin=thermal_solid(pin),
         disc=thermal_solid(disc),

@@ -4,19 +4,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from sonolube.figure import COLOURS, LINES, publication_style, write_figure
-from sonolube.rig import HeatPoint, Rig
+from sonolube.rig import Rig, TemperaturePoint
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def write_heat(rig: Rig, result: HeatPoint, *, folder: Path, name: str) -> list[Path]:
+def write_heat(rig: Rig, result: TemperaturePoint, *, folder: Path, name: str) -> list[Path]:
     """Write the temperature in time as a figure and return the files."""
     with publication_style():
         return write_figure(_figure(rig, result), folder=folder, name=name)
 
 
-def _figure(rig: Rig, result: HeatPoint) -> "Figure":
+def _figure(rig: Rig, result: TemperaturePoint) -> "Figure":
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(5.2, 3.6))

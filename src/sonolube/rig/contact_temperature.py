@@ -1,4 +1,4 @@
-"""How warm the contact of a rig runs, with and without its vibration."""
+"""Temperature of the contact of a rig over time, with and without vibration."""
 
 from dataclasses import dataclass
 
@@ -26,7 +26,7 @@ _STEPS = 200
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class HeatPoint:
+class TemperaturePoint:
     """Heat and temperature of a rig's contact under its vibration.
 
     Parameters
@@ -73,7 +73,7 @@ class HeatPoint:
 
 
 def thermal_solid(name: str) -> ThermalSolid:
-    """Return a material of the catalogue as heat sees it.
+    """Return the thermal properties of a material of the catalogue.
 
     Raises
     ------
@@ -90,7 +90,7 @@ def thermal_solid(name: str) -> ThermalSolid:
     )
 
 
-def heat_point(
+def temperature_point(
     rig: Rig,
     *,
     pin: ThermalSolid,
@@ -99,16 +99,16 @@ def heat_point(
     thermal_conductance: float,
     duration: float,
     vibration_heat_rate: float = 0.0,
-) -> HeatPoint:
-    """Return the temperature of the rig's contact, taken for round, over a test from the cold.
+) -> TemperaturePoint:
+    """Return the temperature of the rig's contact, taken as circular, over a test from ambient temperature.
 
     Parameters
     ----------
     rig : Rig
     pin : ThermalSolid
-        The body that carries the contact with it.
+        Body that the contact is fixed to.
     disc : ThermalSolid
-        The body that the contact passes over.
+        Body that the contact moves over.
     heat_capacity : float
         Heat that warms the pin by a kelvin. [J/K]
     thermal_conductance : float
@@ -145,7 +145,7 @@ def heat_point(
     of_friction = float(frictional_heat_rate(friction_force=ratio * intrinsic, sliding_speed=rig.sliding_speed))
     heat = of_friction + vibration_heat_rate
     shared = contact_rise(pin, disc, source, heat_rate=heat, sliding_speed=rig.sliding_speed)
-    return HeatPoint(
+    return TemperaturePoint(
         frictional_heat_rate=of_friction,
         vibration_heat_rate=vibration_heat_rate,
         heat_partition=float(shared.heat_partition),
@@ -177,9 +177,9 @@ def _history(
 def _caveats(network: ThermalNetwork, vibration_heat_rate: float) -> tuple[str, ...]:
     (capacity,), (conductance,) = network.heat_capacity, network.losses
     known = (
-        "heat enters over the nominal area; asperities run hotter for microseconds",
-        f"bulk of a pin of {capacity:g} J/K that loses {conductance:g} W/K, which no rig file holds",
+        "heat enters over the nominal area; flash temperatures of asperities are higher, for microseconds",
+        f"bulk of a pin of {capacity:g} J/K that loses {conductance:g} W/K, which the rig file does not hold",
     )
     if vibration_heat_rate > 0:
         return known
-    return (*known, "no heat of vibration was given: what the actuator loses into the contact comes on top")
+    return (*known, "no heat of vibration was given: heat that the actuator dissipates in the contact adds to it")

@@ -1,4 +1,4 @@
-"""Distributions of uncertain parameters, cut off where a parameter can have no value."""
+"""Truncated probability distributions of uncertain parameters: normal, lognormal and uniform."""
 
 import math
 from dataclasses import dataclass
@@ -15,18 +15,18 @@ _MOST_CUT = 0.5
 
 
 class Law(Protocol):
-    """A continuous distribution of one number."""
+    """Continuous probability distribution of one number."""
 
     def below(self, value: ArrayLike) -> Floats:
-        """Return the probability of less than a value."""
+        """Return the cumulative probability at a value. []"""
 
     def quantile(self, share: ArrayLike) -> Floats:
-        """Return the value below which a share lies."""
+        """Return the quantile of a probability."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Normal:
-    """The normal distribution.
+    """Normal distribution.
 
     Parameters
     ----------
@@ -43,17 +43,17 @@ class Normal:
         require_positive(deviation=self.deviation)
 
     def below(self, value: ArrayLike) -> Floats:
-        """Return the probability of less than a value."""
+        """Return the cumulative probability at a value. []"""
         return np.asarray(ndtr((np.asarray(value) - self.middle) / self.deviation))
 
     def quantile(self, share: ArrayLike) -> Floats:
-        """Return the value below which a share lies."""
+        """Return the quantile of a probability."""
         return np.asarray(self.middle + self.deviation * ndtri(share))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class LogNormal:
-    """The distribution of a positive number whose logarithm is normal.
+    """Lognormal distribution: the logarithm is normal.
 
     Parameters
     ----------
@@ -72,18 +72,18 @@ class LogNormal:
             raise InvalidInput(f"factor must be above 1, got {self.factor:g}")
 
     def below(self, value: ArrayLike) -> Floats:
-        """Return the probability of less than a value."""
+        """Return the cumulative probability at a value. []"""
         with np.errstate(divide="ignore"):
             return np.asarray(ndtr(np.log(np.maximum(value, 0) / self.median) / math.log(self.factor)))
 
     def quantile(self, share: ArrayLike) -> Floats:
-        """Return the value below which a share lies."""
+        """Return the quantile of a probability."""
         return np.asarray(self.median * np.exp(math.log(self.factor) * ndtri(share)))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Uniform:
-    """Every value between two ends as likely as any other.
+    """Uniform distribution between two ends.
 
     Parameters
     ----------
@@ -99,17 +99,17 @@ class Uniform:
             raise InvalidInput(f"the lower end, {self.low:g}, must lie below the upper one, {self.high:g}, both finite")
 
     def below(self, value: ArrayLike) -> Floats:
-        """Return the probability of less than a value."""
+        """Return the cumulative probability at a value. []"""
         return np.clip((np.asarray(value) - self.low) / (self.high - self.low), 0.0, 1.0)
 
     def quantile(self, share: ArrayLike) -> Floats:
-        """Return the value below which a share lies."""
+        """Return the quantile of a probability."""
         return self.low + (self.high - self.low) * np.asarray(share, dtype=np.float64)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Distribution:
-    """How an uncertain parameter is spread: a law, cut off at what the parameter can be.
+    """Distribution of an uncertain parameter: a law truncated to the possible range of the parameter.
 
     Parameters
     ----------
@@ -138,12 +138,12 @@ class Distribution:
 
     @property
     def truncated_fraction(self) -> float:
-        """Share of the law that lies beyond the ends."""
+        """Probability of the law beyond the ends of the range. []"""
         low, high = self.law.below((self.lowest, self.highest))
         return float(low + 1 - high)
 
     def quantile(self, share: ArrayLike) -> Floats:
-        """Return the value below which a share lies.
+        """Return the quantile of a probability.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""A rig's drive as dynamics takes it: waveform, harmonics, ramp, extremes and power."""
+"""Drive voltage of a rig: waveform, start-up ramp, harmonics, extremes and amplifier power."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -8,7 +8,7 @@ from sonolube.actuator.drive_power import driver_power
 from sonolube.checks import Complexes, Floats, require_non_negative
 from sonolube.dynamics import WAVEFORMS, Sine, StartUpRamp, Waveform, extremes, harmonics, sampled_waveform
 
-_VOLTAGE_HARMONICS = 64  # of a square wave the tip feels the 65th by less than 1e-5 of the first
+_VOLTAGE_HARMONICS = 64  # the 65th of a square wave moves the tip by less than 1e-5 of the first
 
 
 def waveform_of(drive: Drive) -> Waveform:
@@ -22,8 +22,8 @@ def waveform_of(drive: Drive) -> Waveform:
     return WAVEFORMS[drive.waveform] if drive.waveform_samples is None else sampled_waveform(drive.waveform_samples)
 
 
-def ramp_of(drive: Drive) -> StartUpRamp:
-    """Return how the drive is switched on.
+def start_up_ramp(drive: Drive) -> StartUpRamp:
+    """Return the start-up ramp of the drive.
 
     Raises
     ------
@@ -40,7 +40,7 @@ def voltage_harmonics(drive: Drive, *, voltage_peak_to_peak: ArrayLike | None = 
     ----------
     drive : Drive
     voltage_peak_to_peak : array_like, optional
-        Swings instead of the drive's own. [V]
+        Peak-to-peak voltages instead of the drive's own. [V]
 
     Returns
     -------
@@ -60,9 +60,9 @@ def voltage_range(
     ----------
     drive : Drive
     voltage_peak_to_peak : array_like, optional
-        Swings instead of the drive's own. [V]
+        Peak-to-peak voltages instead of the drive's own. [V]
     voltage_offset : array_like, optional
-        Means instead of the drive's own. [V]
+        Mean voltages instead of the drive's own. [V]
 
     Returns
     -------
@@ -89,9 +89,9 @@ def amplifier_power(
     capacitance : float
         Capacitance of the actuator. [F]
     voltage_peak_to_peak : array_like, optional
-        Swings instead of the drive's own. [V]
+        Peak-to-peak voltages instead of the drive's own. [V]
     voltage_offset : array_like, optional
-        Means instead of the drive's own. [V]
+        Mean voltages instead of the drive's own. [V]
     frequency : array_like, optional
         Frequencies instead of the drive's own. [Hz]
 

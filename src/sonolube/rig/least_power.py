@@ -1,4 +1,4 @@
-"""The voltage and the power that a friction ratio takes at each drive frequency."""
+"""Voltage and power for a given friction ratio over drive frequency, by regula falsi."""
 
 from typing import TYPE_CHECKING
 
@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_positive, require_within
-from sonolube.rig.dataset import gridded
+from sonolube.rig.datasets import gridded
 from sonolube.rig.driven_rig import DrivenRig, driven_rig
-from sonolube.rig.operating_points import Advance, OperatingPoints, operating_points
+from sonolube.rig.operating_point_grid import Advance, OperatingPoints, operating_points
 from sonolube.rig.record import Rig
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ def least_power_study(
     voltage_maximum: float = 200.0,
     advance: Advance | None = None,
 ) -> "xr.Dataset":
-    """Return the voltage that brings friction down to a ratio at each drive frequency, and the power it takes.
+    """Return the drive voltage and power at which friction falls to a ratio, at each drive frequency.
 
     Parameters
     ----------
@@ -39,16 +39,16 @@ def least_power_study(
     frequency : array_like, shape (n,)
         Frequencies of the drive. [Hz]
     friction_ratio : float
-        Friction with vibration over friction without, to be had. []
+        Friction with vibration over friction without, to be reached. []
     voltage_maximum : float
-        Highest swing of the drive to try, peak to peak; the offset goes with it in the rig's own proportion. [V]
+        Highest peak-to-peak voltage to try; the offset keeps the rig's ratio to it. [V]
     advance : callable, optional
-        Told how many rounds of the search are done, and of how many at most.
+        Called with the number of iterations done, and their maximum.
 
     Returns
     -------
     xarray.Dataset
-        Over `frequency`; where the ratio is out of reach there are no numbers but a status and a reason.
+        Over `frequency`; where the ratio is out of reach the numbers are NaN, beside a status and a reason.
 
     Raises
     ------
@@ -87,7 +87,7 @@ def least_power_study(
     }
     status, reason = found.status.astype(object), found.reason.astype(object)
     status[missed] = OUT_OF_REACH
-    reason[missed] = f"out_of_reach: {highest:g} V do not bring friction down so far; drive nearer to a resonance"
+    reason[missed] = f"out_of_reach: {highest:g} V does not reduce friction that far; drive nearer to a resonance"
     return gridded(
         {"status": status.astype(np.str_), "reason": reason.astype(np.str_)} | numbers,
         axes={"frequency": f},
@@ -97,7 +97,7 @@ def least_power_study(
 
 
 def _search(rig: DrivenRig, f: Floats, wanted: float, at_top: Floats, top: float, advance: Advance | None) -> Floats:
-    """Return the logarithm of the voltage that gives the ratio at each frequency."""
+    """Return the logarithm of the voltage that gives the friction ratio at each frequency, by the Illinois method."""
     low, high = np.full(f.shape, top + np.log(_LOWEST)), np.full(f.shape, top)
     above, below = np.full(f.shape, 1.0) - wanted, at_top - wanted
     last = np.zeros(f.shape)
@@ -112,7 +112,7 @@ def _search(rig: DrivenRig, f: Floats, wanted: float, at_top: Floats, top: float
         miss = _points(rig, f[going], np.exp(guess)).friction_ratio - wanted
         left = miss > 0
         low[going], high[going] = np.where(left, guess, low[going]), np.where(left, high[going], guess)
-        # an end that stays twice running counts half
+        # Illinois: the value at an end that stays twice is halved
         above[going] = np.where(left, miss, np.where(last[going] == -1, a / 2, a))
         below[going] = np.where(left, np.where(last[going] == 1, b / 2, b), miss)
         last[going] = np.where(left, 1, -1)

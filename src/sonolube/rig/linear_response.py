@@ -1,4 +1,4 @@
-"""The linear response of a rig: how its tip moves and what its stack draws per volt, over frequency."""
+"""Linear frequency response of a rig in contact: amplitude per volt and electrical impedance."""
 
 from dataclasses import dataclass
 
@@ -28,12 +28,12 @@ from sonolube.errors import OutsideRange
 from sonolube.rig.driven_rig import driven_rig
 from sonolube.rig.record import Rig
 
-_POINTS = 2101  # of the table of a contact's force: 50 to the deviation of the summits' heights
+_POINTS = 2101  # of the table of a contact's force: 50 for each standard deviation of summit heights
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Response:
-    """Small motions of a rig at rest under its load, the contact a spring of its stiffness there.
+class FrequencyResponse:
+    """Frequency response of a rig under its load, the contact linearised to its stiffness at rest.
 
     Parameters
     ----------
@@ -53,15 +53,15 @@ class Response:
     phase: Floats
 
 
-def linear_response(rig: Rig, *, frequency: ArrayLike) -> Response:
-    """Return how the rig responds to small voltages.
+def frequency_response(rig: Rig, *, frequency: ArrayLike) -> FrequencyResponse:
+    """Return the frequency response of a rig to small voltages, with the contact linearised at rest.
 
     Parameters
     ----------
     rig : Rig
         With a stack and a structure.
     frequency : array_like, shape (n,)
-        Frequencies asked for. [Hz]
+        Frequencies of the drive. [Hz]
 
     Returns
     -------
@@ -77,9 +77,9 @@ def linear_response(rig: Rig, *, frequency: ArrayLike) -> Response:
     D figure 3.12 in kind. Contact forces that are not small against the load need `simulate`.
     """
     f = np.atleast_1d(require_positive(frequency=frequency))
-    touching = touching_structure(rig)
+    touching = structure_in_contact(rig)
     impedance = 1 / electrical_admittance(touching, frequency=f)
-    return Response(
+    return FrequencyResponse(
         frequency=f,
         amplitude_per_volt=np.abs(drive_receptance(touching, frequency=f)) / 2,
         impedance=np.abs(impedance),
@@ -104,8 +104,8 @@ def rest_separation(rig: Rig) -> float:
     return gap
 
 
-def touching_structure(rig: Rig) -> Structure:
-    """Return the rig's structure with the contact as a spring of its stiffness at rest.
+def structure_in_contact(rig: Rig) -> Structure:
+    """Return the structure of a rig with the contact as a spring of its stiffness at rest.
 
     Raises
     ------
@@ -119,7 +119,7 @@ def touching_structure(rig: Rig) -> Structure:
 
 
 def gap_law_of(rig: Rig) -> GapLaw:
-    """Return the contact of a rig as dynamics takes it: in closed form for exponential heights, by a table otherwise.
+    """Return the gap law of a rig's contact: exponential for exponential heights, tabulated otherwise.
 
     Notes
     -----
@@ -135,8 +135,10 @@ def gap_law_of(rig: Rig) -> GapLaw:
     )
 
 
-def frequency_grid(rig: Rig, *, lowest: float, highest: float, points: int = 2000, crowded: int = 201) -> Floats:
-    """Return frequencies that draw a response whole: evenly spread on a logarithmic axis, and crowded at resonances.
+def frequency_grid(
+    rig: Rig, *, lowest: float, highest: float, points: int = 2000, resonance_points: int = 201
+) -> Floats:
+    """Return frequencies spaced evenly on a logarithmic axis, and more densely at the resonances.
 
     Parameters
     ----------
@@ -145,19 +147,19 @@ def frequency_grid(rig: Rig, *, lowest: float, highest: float, points: int = 200
     lowest, highest : float
         Ends of the range, in Hz.
     points : int
-        How many are spread evenly.
-    crowded : int
-        How many crowd at each resonance.
+        Number spaced evenly.
+    resonance_points : int
+        Number at each resonance.
 
     Returns
     -------
     ndarray
         In Hz, rising.
     """
-    spread = np.geomspace(lowest, highest, points)
-    natural = modes(touching_structure(rig))
-    offsets = np.sinh(np.linspace(-6, 6, crowded)) / np.sinh(6)
+    even = np.geomspace(lowest, highest, points)
+    natural = modes(structure_in_contact(rig))
+    offsets = np.sinh(np.linspace(-6, 6, resonance_points)) / np.sinh(6)
     widths = np.maximum(20 * natural.damping_ratio, 1e-4)
     near = (natural.natural_frequency[:, np.newaxis] * (1 + widths[:, np.newaxis] * offsets)).ravel()
     inside = near[(near > lowest) & (near < highest)]
-    return np.unique(np.concatenate([spread, inside]))
+    return np.unique(np.concatenate([even, inside]))

@@ -1,4 +1,4 @@
-"""How best to lubricate the contact of a rig: with vibration, a lubricant, or both."""
+"""Friction of a rig's contact dry, vibrated, lubricated and both, and the method with the least friction."""
 
 from dataclasses import dataclass
 
@@ -25,8 +25,8 @@ _RESOLUTION = 121
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class RegimePoint:
-    """Friction of a rig's contact in four ways of lubrication, and the best of them.
+class LubricationPoint:
+    """Friction coefficients of a rig's contact by four methods of lubrication, and the best method.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ class RegimePoint:
     coefficients : MethodCoefficients
         Coefficients of the four ways.
     best : str
-        The way to choose.
+        Method with the least friction.
     friction_model : str
         Name of the friction model.
     caveats : tuple of str
@@ -59,8 +59,8 @@ class RegimePoint:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class RegimeMap:
-    """The best way of lubrication about the point of a rig.
+class LubricationMap:
+    """Best method of lubrication over sliding speed and pressure about the operating point of a rig.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ class RegimeMap:
     nominal_pressure : ndarray, shape (m,)
         Pressures. [Pa]
     best : ndarray of str, shape (m, n)
-        The way to choose.
+        Method with the least friction.
     """
 
     sliding_speed: Floats
@@ -77,15 +77,15 @@ class RegimeMap:
     best: NDArray[np.str_]
 
 
-def regime_point(rig: Rig, *, lubricant: BoundaryLubricant, smallest_gain: float = 0.0) -> RegimePoint:
-    """Return how a rig's contact is best lubricated at its load and speed.
+def lubrication_point(rig: Rig, *, lubricant: BoundaryLubricant, smallest_gain: float = 0.0) -> LubricationPoint:
+    """Return the friction of a rig's contact by each method of lubrication at its load and speed, and the best method.
 
     Parameters
     ----------
     rig : Rig
     lubricant : BoundaryLubricant
     smallest_gain : float
-        Share by which vibration must lower the friction of the lubricated contact to be worth its power.
+        Fraction by which vibration must lower the friction of the lubricated contact to be worth its power.
 
     Returns
     -------
@@ -99,7 +99,7 @@ def regime_point(rig: Rig, *, lubricant: BoundaryLubricant, smallest_gain: float
     rest_separation(rig)
     pressure = rig.normal_load / rig.contact.nominal_area
     found = _coefficients(rig, lubricant, sliding_speed=rig.sliding_speed, nominal_pressure=pressure)
-    return RegimePoint(
+    return LubricationPoint(
         sliding_speed=rig.sliding_speed,
         nominal_pressure=pressure,
         friction_coefficient=rig.friction_coefficient,
@@ -111,15 +111,15 @@ def regime_point(rig: Rig, *, lubricant: BoundaryLubricant, smallest_gain: float
     )
 
 
-def regime_map(rig: Rig, *, lubricant: BoundaryLubricant, smallest_gain: float = 0.0) -> RegimeMap:
-    """Return the best way of lubrication a decade to either side of a rig's speed and pressure.
+def lubrication_map(rig: Rig, *, lubricant: BoundaryLubricant, smallest_gain: float = 0.0) -> LubricationMap:
+    """Return the best method of lubrication over a decade to either side of a rig's speed and pressure.
 
     Parameters
     ----------
     rig : Rig
     lubricant : BoundaryLubricant
     smallest_gain : float
-        Share by which vibration must lower the friction of the lubricated contact to be worth its power.
+        Fraction by which vibration must lower the friction of the lubricated contact to be worth its power.
 
     Returns
     -------
@@ -138,13 +138,13 @@ def regime_map(rig: Rig, *, lubricant: BoundaryLubricant, smallest_gain: float =
     factors = np.geomspace(1 / _SPAN, _SPAN, _RESOLUTION)
     speeds, pressures = rig.sliding_speed * factors, rig.normal_load / rig.contact.nominal_area * factors
     found = _coefficients(rig, lubricant, sliding_speed=speeds, nominal_pressure=pressures[:, np.newaxis])
-    return RegimeMap(
+    return LubricationMap(
         sliding_speed=speeds, nominal_pressure=pressures, best=best_method(found, smallest_gain=smallest_gain)
     )
 
 
 def wear_of_materials(first: Material, second: Material) -> WearAssessment:
-    """Return what the rule of wear says of two materials of the catalogue.
+    """Return the wear mechanism and the effect of vibration for two materials of the catalogue, by rule.
 
     Raises
     ------

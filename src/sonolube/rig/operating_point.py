@@ -20,7 +20,7 @@ from sonolube.wear.cube import DEFAULT_WEAR_MODEL, WEAR_MODELS, cube_wear_rate, 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ContactPoint:
-    """The contact of a rig at rest.
+    """Contact of a rig at rest.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ class ContactPoint:
     mindlin_ratio : float
         Tangential over normal stiffness by Mindlin's theory, beside that of the cube. []
     caveats : tuple of str
-        What speaks against trusting the numbers, each in one line.
+        Reasons for caution about the numbers, one line each.
     """
 
     normal_load: float
@@ -77,7 +77,7 @@ class FrictionPoint:
     actuator_power : float or None
         Power a linear amplifier supplies, D 1.9, where drive and capacitance are known. [W]
     caveats : tuple of str
-        What speaks against trusting the numbers, each in one line.
+        Reasons for caution about the numbers, one line each.
     """
 
     friction_force: float
@@ -111,7 +111,7 @@ class WearPoint:
     vibration_amplitude : float
         Vibration normal to the contact, zero to peak. [m]
     caveats : tuple of str
-        What speaks against trusting the numbers, each in one line.
+        Reasons for caution about the numbers, one line each.
     """
 
     wear_rate: float

@@ -1,4 +1,4 @@
-"""Very many operating points of one rig at once: numbers as columns, and codes for what became of each point."""
+"""Operating points of one rig in very large batches: numbers as columns, statuses and reasons as codes."""
 
 from dataclasses import dataclass
 
@@ -13,19 +13,19 @@ from sonolube.dynamics.steady_state import Status, SteadyStates
 from sonolube.errors import SonolubeError
 from sonolube.rig.driven_rig import DrivenRig, driven_rig
 from sonolube.rig.excitation import voltage_range
-from sonolube.rig.operating_points import (
-    Settings,
-    broadcast,
+from sonolube.rig.operating_point_grid import (
+    OperatingConditions,
+    broadcast_conditions,
     friction_and_power,
-    friction_of,
-    grouped,
+    friction_at_speeds,
+    points_by_vibration,
     steady_states_of,
 )
 from sonolube.rig.record import Rig
-from sonolube.rig.steady_vibration import gap_motion
+from sonolube.rig.vibration import gap_motion
 
 STATUSES = (*(status.name.lower() for status in Status), "refused")
-"""What becomes of a point, by code."""
+"""Statuses of an operating point, by code."""
 
 NUMBERS = (
     "friction_ratio",
@@ -39,14 +39,14 @@ NUMBERS = (
     "actuator_power",
     "dissipated_power",
 )
-"""What is known of a point, as columns of a batch."""
+"""Numbers of an operating point, the columns of a batch."""
 
 _REFUSED = len(STATUSES) - 1
 _REASONS = {
     "periodic": "the vibration repeats with the drive",
-    "unstable": "the vibration repeats with the drive, but the smallest disturbance grows; simulate the point to see"
-    " what it does instead",
-    "multistable": "another vibration is as possible as this one; simulate the point to see which appears",
+    "unstable": "the vibration repeats with the drive, but small disturbances grow; simulate the point for the"
+    " motion that appears instead",
+    "multistable": "another vibration is stable too; simulate the point for the one that appears",
     "not_converged": "no vibration at the drive's own period was found; start from a lower voltage or add damping",
 }
 _NO_SEPARATION = "normal_load leaves no separation between the surfaces: lower the load"
@@ -59,13 +59,13 @@ class PointBatch:
     Parameters
     ----------
     numbers : dict of str to ndarray, shape (n,)
-        Columns by the names of `NUMBERS`, in SI; of a point that was refused or did not converge, NaN.
+        Columns by the names of `NUMBERS`, in SI; NaN for a point that was refused or did not converge.
     status : ndarray of int, shape (n,)
-        Places in `STATUSES`.
+        Indices into `STATUSES`.
     reason : ndarray of int, shape (n,)
-        Places in `reasons`.
+        Indices into `reasons`.
     reasons : tuple of str
-        What the status of a point means, and what to try.
+        Meaning of a status, and advice.
     """
 
     numbers: dict[str, Floats]
@@ -84,16 +84,16 @@ def point_batch(
     sliding_speed: ArrayLike | None = None,
     backend: Backend = "cpu",
 ) -> PointBatch:
-    """Return what a rig does at very many operating points; what is not given is the rig's own.
+    """Return operating points of a rig in a very large batch; settings that are absent are the rig's own.
 
     Parameters
     ----------
     rig : Rig
         With a stack, a structure and a drive voltage.
     voltage_peak_to_peak : array_like, optional
-        Swing of the drive. [V]
+        Peak-to-peak voltage of the drive. [V]
     voltage_offset : array_like, optional
-        Its mean. [V]
+        Mean voltage of the drive. [V]
     frequency : array_like, optional
         Frequency of the drive. [Hz]
     normal_load : array_like, optional
@@ -101,7 +101,7 @@ def point_batch(
     sliding_speed : array_like, optional
         Macroscopic relative speed. [m/s]
     backend : {"cpu", "gpu"}
-        Whether an NVIDIA GPU finds the vibrations that it can.
+        Whether an NVIDIA GPU solves the vibrations that it supports.
 
     Returns
     -------
@@ -116,19 +116,21 @@ def point_batch(
     Warns
     -----
     GpuUnused
-        If a GPU was asked for and there is none, or it does not serve the rig's contact or structure.
+        If a GPU was requested and there is none, or it does not support the contact or structure of the rig.
 
     Notes
     -----
-    The points of `operating_points`, their reasons in general words. A friction model with a batched form gives the
+    The points of `operating_points`, with general reasons. A friction model with a batched form gives the
     friction of the whole batch at once, asperity stick-slip on exponential heights to 1e-4; any other is evaluated for
     each vibration.
     """
     rig = driven_rig(rig)
-    columns, speeds = broadcast(rig, (voltage_peak_to_peak, voltage_offset, frequency, normal_load, sliding_speed))
+    columns, speeds = broadcast_conditions(
+        rig, (voltage_peak_to_peak, voltage_offset, frequency, normal_load, sliding_speed)
+    )
     columns, speeds = columns.reshape(4, -1), speeds.ravel()
     first, which = _distinct(columns)
-    settings = Settings.of_columns(columns[:, first])
+    settings = OperatingConditions.of_columns(columns[:, first])
     rest = separation(rig.contact, normal_load=settings.normal_load)
     refusal, reasons = _refusals(rig, settings, rest)
     status, reason = np.full(first.size, _REFUSED, dtype=np.int8), refusal
@@ -137,7 +139,9 @@ def point_batch(
     possible = np.flatnonzero(refusal == 0)
     failures: dict[int, str] = {}
     if possible.size:
-        states = steady_states_of(rig, Settings.of_columns(columns[:, first[possible]]), rest[possible], backend)
+        states = steady_states_of(
+            rig, OperatingConditions.of_columns(columns[:, first[possible]]), rest[possible], backend
+        )
         status[possible] = states.status
         reason[possible] = states.status
         numbers[:, possible] = _measures(states)
@@ -167,28 +171,31 @@ def point_batch(
 
 
 def _distinct(columns: Floats) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Return where each distinct column stands first, and which of these every column is."""
+    """Return the index of the first of each set of equal columns, and the set of every column."""
     mixed = np.zeros(columns.shape[1], dtype=np.uint64)
     for row in columns:
         bits = np.ascontiguousarray(row).view(np.uint64)
         mixed = (mixed ^ (bits ^ (bits >> np.uint64(29)))) * np.uint64(0x9E3779B97F4A7C15)
         mixed ^= mixed >> np.uint64(32)
     _, first, which = np.unique(mixed, return_index=True, return_inverse=True)
-    if not np.array_equal(columns[:, first[which]], columns):  # two that mix to the same number
+    if not np.array_equal(columns[:, first[which]], columns):  # a hash collision
         _, first, which = np.unique(columns, axis=1, return_index=True, return_inverse=True)
     return first, which.ravel()
 
 
-def _refusals(rig: DrivenRig, settings: Settings, rest: Floats) -> tuple[NDArray[np.int16], tuple[str, ...]]:
-    """Return for each drive and load which of the reasons that follow rules it out, from 1; 0 where none does."""
+def _refusals(rig: DrivenRig, settings: OperatingConditions, rest: Floats) -> tuple[NDArray[np.int16], tuple[str, ...]]:
+    """Return the number of the reason against each drive and load, from 1, 0 without one; and the reasons."""
     low, high = rig.stack.lowest_voltage, rig.stack.highest_voltage
     lowest, highest = voltage_range(
         rig.drive, voltage_peak_to_peak=settings.voltage_peak_to_peak, voltage_offset=settings.voltage_offset
     )
     refusal, texts = np.zeros(rest.size, dtype=np.int16), []
     for beyond, text in (
-        (lowest < (-np.inf if low is None else low), f"the drive goes below the {low} V that the stack bears"),
-        (highest > (np.inf if high is None else high), f"the drive goes above the {high} V that the stack bears"),
+        (lowest < (-np.inf if low is None else low), f"the drive goes below the lowest voltage of the stack, {low} V"),
+        (
+            highest > (np.inf if high is None else high),
+            f"the drive goes above the highest voltage of the stack, {high} V",
+        ),
         (rest <= 0, _NO_SEPARATION),
     ):
         texts.append(text)
@@ -197,7 +204,7 @@ def _refusals(rig: DrivenRig, settings: Settings, rest: Floats) -> tuple[NDArray
 
 
 def _shifted(reason: NDArray[np.int16], refusal: NDArray[np.int16]) -> NDArray[np.int16]:
-    """Return places among all reasons, those of refusals behind those of statuses."""
+    """Return indices into all reasons, in which refusals follow statuses."""
     return np.where(refusal > 0, refusal + len(_REASONS) - 1, reason).astype(np.int16)
 
 
@@ -217,7 +224,7 @@ def _measures(states: SteadyStates) -> Floats:
 
 
 def _friction(rig: Rig, states: SteadyStates, place: NDArray[np.intp], speeds: Floats) -> tuple[Floats, dict[int, str]]:
-    """Return the friction ratio at each point, and why a point has none though it vibrates."""
+    """Return the friction ratio at each point, and the reason of points that vibrate but have none."""
     ratio = np.full(speeds.size, np.nan)
     failures: dict[int, str] = {}
     open_points = np.flatnonzero(place >= 0)
@@ -238,10 +245,10 @@ def _friction(rig: Rig, states: SteadyStates, place: NDArray[np.intp], speeds: F
             friction_coefficient=rig.friction_coefficient,
         )
         open_points = open_points[np.isnan(ratio[open_points])]
-    for members in grouped(open_points, place):
+    for members in points_by_vibration(open_points, place):
         try:
             moving_gap = gap_motion(states, int(place[members[0]]))
-            ratio[members], texts = friction_of(rig, moving_gap, speeds[members])
+            ratio[members], texts = friction_at_speeds(rig, moving_gap, speeds[members])
         except SonolubeError as refusal:
             texts = [str(refusal)] * members.size
         failures |= {int(point): text for point, text in zip(members, texts, strict=True) if text}

@@ -1,4 +1,4 @@
-"""How voltage, sliding speed, drive frequency, waveform and load act on the friction of a rig, as labelled datasets."""
+"""Parametric studies of a rig over voltage, sliding speed, frequency, waveform and load, as labelled datasets."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -11,10 +11,10 @@ from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.dynamics import WAVEFORMS, Status, modes
 from sonolube.dynamics.steady_friction import motion
 from sonolube.errors import InvalidInput
-from sonolube.rig.dataset import gridded
+from sonolube.rig.datasets import gridded
 from sonolube.rig.driven_rig import DrivenRig, driven_rig
-from sonolube.rig.linear_response import touching_structure
-from sonolube.rig.operating_points import Advance, OperatingPoints, operating_points, steady_states
+from sonolube.rig.linear_response import structure_in_contact
+from sonolube.rig.operating_point_grid import Advance, OperatingPoints, operating_points, steady_states
 from sonolube.rig.record import Rig
 
 if TYPE_CHECKING:
@@ -38,16 +38,16 @@ _POINT = (
 
 
 def voltage_study(rig: Rig, *, voltage_peak_to_peak: ArrayLike, advance: Advance | None = None) -> "xr.Dataset":
-    """Return the rig over drive voltages: its points, and one period of its contact at each.
+    """Return operating points over drive voltage, with one period of the contact at each.
 
     Parameters
     ----------
     rig : Rig
         With a stack, a structure and a drive voltage.
     voltage_peak_to_peak : array_like, shape (n,)
-        Swings of the drive; its offset goes with them in the rig's own proportion. [V]
+        Peak-to-peak voltages; the offset keeps the rig's ratio to them. [V]
     advance : callable, optional
-        Told how many points are done, and of how many.
+        Called with the number of points done, and of all.
 
     Returns
     -------
@@ -79,7 +79,7 @@ def voltage_study(rig: Rig, *, voltage_peak_to_peak: ArrayLike, advance: Advance
 def speed_study(
     rig: Rig, *, sliding_speed: ArrayLike, voltage_peak_to_peak: ArrayLike | None = None, advance: Advance | None = None
 ) -> "xr.Dataset":
-    """Return the rig over sliding speeds, at some drive voltages.
+    """Return operating points over sliding speed at some drive voltages.
 
     Parameters
     ----------
@@ -88,9 +88,9 @@ def speed_study(
     sliding_speed : array_like, shape (n,)
         Macroscopic relative speeds. [m/s]
     voltage_peak_to_peak : array_like, shape (m,), optional
-        Swings of the drive, the rig's own where absent; its offset goes with them in proportion. [V]
+        Peak-to-peak voltages, the rig's own where absent; the offset keeps its ratio to them. [V]
     advance : callable, optional
-        Told how many vibrations are done, and of how many.
+        Called with the number of vibrations done, and of all.
 
     Returns
     -------
@@ -136,9 +136,9 @@ def frequency_study(
     frequency : array_like, shape (n,)
         Frequencies of the drive, such as `frequency_grid` gives. [Hz]
     voltage_peak_to_peak : array_like, shape (m,), optional
-        Swings of the drive, the rig's own where absent; its offset goes with them in proportion. [V]
+        Peak-to-peak voltages, the rig's own where absent; the offset keeps its ratio to them. [V]
     advance : callable, optional
-        Told how many points are done, and of how many.
+        Called with the number of points done, and of all.
 
     Returns
     -------
@@ -211,7 +211,7 @@ def waveform_study(rig: Rig, *, advance: Advance | None = None) -> "xr.Dataset":
 
 
 def load_study(rig: Rig, *, normal_load: ArrayLike, advance: Advance | None = None) -> "xr.Dataset":
-    """Return the rig over normal loads, which are weights that hang on the loading arm.
+    """Return operating points over normal load, applied by weights that add to the mass they hang on.
 
     Parameters
     ----------
@@ -220,7 +220,7 @@ def load_study(rig: Rig, *, normal_load: ArrayLike, advance: Advance | None = No
     normal_load : array_like, shape (n,)
         Forces pressing the bodies together. [N]
     advance : callable, optional
-        Told how many loads are done, and of how many.
+        Called with the number of loads done, and of all.
 
     Returns
     -------
@@ -234,7 +234,7 @@ def load_study(rig: Rig, *, normal_load: ArrayLike, advance: Advance | None = No
 
     Notes
     -----
-    A load that differs from the rig's own adds to the mass of the arm, or takes from it, what weighs the difference.
+    A load that differs from the rig's own adds the mass of the difference in weight where the weights hang.
 
     References
     ----------
@@ -273,13 +273,13 @@ def _volts(rig: Rig, voltage: ArrayLike | None) -> Floats:
 
 
 def _offset(rig: Rig, volts: Floats) -> Floats:
-    """Return the offset that stands to each voltage as the rig's own to its own."""
+    """Return the voltage offset at each peak-to-peak voltage, in the rig's ratio."""
     drive = driven_rig(rig).drive
     return volts * drive.offset_ratio if drive.voltage_peak_to_peak else np.full(volts.shape, drive.voltage_offset)
 
 
 def _periods(rig: Rig, volts: Floats, offset: Floats) -> tuple[Floats, Floats]:
-    """Return displacement and normal force of the contact over a period at each voltage, NaN where none was found."""
+    """Return displacement and normal force of the contact over a period at each voltage; NaN where not converged."""
     states = steady_states(rig, voltage_peak_to_peak=volts, voltage_offset=offset)
     displacement, normal_force = np.full((2, volts.size, _PHASES), np.nan)
     for point in np.flatnonzero(states.status != Status.NOT_CONVERGED):
@@ -305,7 +305,7 @@ def _weighted(rig: DrivenRig, load: float) -> DrivenRig:
 
 
 def _slowest(rig: Rig) -> float:
-    natural = modes(touching_structure(rig))
+    natural = modes(structure_in_contact(rig))
     return float(natural.natural_frequency[~natural.rigid].min())
 
 

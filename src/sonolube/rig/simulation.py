@@ -1,4 +1,4 @@
-"""The multi-scale model of a rig: drive, structure and contact in one steady vibration, and what it does to sliding."""
+"""Multi-scale simulation of a rig: steady vibration of structure and contact, and friction and wear under it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -13,36 +13,36 @@ from sonolube.rig.excitation import amplifier_power, voltage_harmonics, voltage_
 from sonolube.rig.friction_and_wear import friction_ratio, wear_model_of, wear_rate_ratio
 from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.record import Rig
-from sonolube.rig.steady_vibration import SteadyMotion, steady_motion
+from sonolube.rig.vibration import SteadyVibration, steady_vibration
 from sonolube.wear.cube import cube_wear_rate
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Simulation:
-    """What a rig does under its drive.
+    """Steady vibration of a rig under its drive, with friction, wear and power.
 
     Parameters
     ----------
     status : str
         "periodic", "unstable", "multistable" or "not_converged", as harmonic balance found it.
     reason : str
-        What the status means, what the tip does, and what to try.
+        Meaning of the status, description of the motion, and advice.
     attractor : str
-        What the tip's motion is: "periodic", "subharmonic", "beating", "chaotic" or "settling".
+        Kind of the motion of the tip: "periodic", "subharmonic", "beating", "chaotic" or "settling".
     repetition_periods : int
         Periods of the drive after which the motion repeats, zero where it does not. []
     vibration_amplitude : float
         Vibration of the tip, zero to peak; the mean over periods of the drive where these differ. [m]
     lowest_amplitude, highest_amplitude : float or None
-        The least and the largest of any period, where these differ. [m]
+        Lowest and highest amplitude of any period, where they differ. [m]
     coexisting_amplitude : float or None
-        Vibration of the tip in another steady motion under the same drive, where one was found. [m]
+        Amplitude of another steady motion under the same drive, where one was found. [m]
     beat_frequency : float or None
         Frequency of a slow motion of the tip beside the vibration. [Hz]
     beat_amplitude : float or None
         Its amplitude. [m]
     mean_displacement : float
-        Rise of the tip from rest under the load. [m]
+        Mean displacement of the tip from rest under the load. [m]
     contact_loss_fraction : float
         Share of the time in which the contact carries less than a hundredth of the load. []
     friction_force : float
@@ -70,7 +70,7 @@ class Simulation:
     caveats : tuple of str
         What speaks against trusting the numbers, each in one line.
     motion : GapMotion
-        One repetition of the tip's motion, or a stretch of one that does not repeat.
+        One repetition of the motion of the tip, or a segment of one that does not repeat.
     """
 
     status: str
@@ -101,7 +101,7 @@ class Simulation:
 
 
 def simulate(rig: Rig) -> Simulation:
-    """Return the steady motion of a rig under its drive, and friction and wear under it.
+    """Return the steady vibration of a rig under its drive, and friction and wear under it.
 
     Parameters
     ----------
@@ -120,12 +120,12 @@ def simulate(rig: Rig) -> Simulation:
 
     Notes
     -----
-    A vibration that repeats with the drive is found by harmonic balance; where that is unstable, not the only one or
-    not found, the rig is marched from rest, as `steady_motion` says.
+    A vibration of the period of the drive is computed by harmonic balance; where that is unstable, not the only one or
+    not found, the rig is marched in time from rest (see `steady_vibration`).
     """
     rig = driven_rig(rig)
     gap = rest_separation(rig)
-    moving = steady_motion(rig)
+    moving = steady_vibration(rig)
     ratio = _mean(partial(friction_ratio, rig), moving.motions)
     wear_ratio = _mean(partial(wear_rate_ratio, rig), moving.motions)
     intrinsic = rig.friction_coefficient * rig.normal_load
@@ -159,11 +159,11 @@ def simulate(rig: Rig) -> Simulation:
 
 
 def _mean(of: Callable[[GapMotion], float], motions: tuple[GapMotion, ...]) -> float:
-    """Return the mean over time, which stretches of a motion share unequally."""
+    """Return the mean over time of a quantity of several motions of unequal duration."""
     return float(np.average([of(motion) for motion in motions], weights=[1 / motion.frequency for motion in motions]))
 
 
-def _caveats(rig: DrivenRig, moving: SteadyMotion) -> tuple[str, ...]:
+def _caveats(rig: DrivenRig, moving: SteadyVibration) -> tuple[str, ...]:
     voltage = complex(voltage_harmonics(rig.drive)[0])
     caveats = stack_caveats(
         rig.stack,
@@ -175,6 +175,7 @@ def _caveats(rig: DrivenRig, moving: SteadyMotion) -> tuple[str, ...]:
     if moving.gap_closed:
         caveats = (
             *caveats,
-            "the mean planes meet within the period: asperities no longer stand alone; lower the voltage",
+            "the mean planes touch within the period, where asperities interact and the contact law fails;"
+            " lower the voltage",
         )
     return caveats

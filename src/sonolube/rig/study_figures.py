@@ -1,4 +1,4 @@
-"""Figures of parametric studies."""
+"""Figures of parametric studies over voltage, speed, frequency, waveform and load."""
 
 from collections.abc import Callable, Mapping
 from types import MappingProxyType

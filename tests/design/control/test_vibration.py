@@ -31,7 +31,7 @@ from sonolube.design.control import (
 from sonolube.dynamics import LinearGap, electrical_admittance, march
 from sonolube.errors import InvalidInput
 from sonolube.metrics import EfficiencyLine, efficiency_coefficient
-from sonolube.rig import friction_point, read_rig, touching_structure
+from sonolube.rig import friction_point, read_rig, structure_in_contact
 from sonolube.rig.excitation import amplifier_power
 
 RIGS = Path(__file__).parents[3] / "examples" / "rigs"
@@ -46,7 +46,7 @@ MAP = FrictionMap(voltage_peak_to_peak=np.array([0.0, 50.0]), friction_force=np.
 def test_near_the_drive_one_mode_has_the_admittance_of_the_structure() -> None:
     width = DRIVEN.decay_rate / (2 * np.pi)
     f = DRIVEN.natural_frequency + width * np.linspace(-2, 2, 9)
-    whole = electrical_admittance(touching_structure(TRIBOMETER), frequency=f)
+    whole = electrical_admittance(structure_in_contact(TRIBOMETER), frequency=f)
     alone = np.array([mode_admittance(DRIVEN, frequency=float(each)) for each in f])
     assert np.abs(alone - whole) == approx(0, abs=0.03 * np.abs(whole).max())
 

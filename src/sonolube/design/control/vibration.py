@@ -9,7 +9,7 @@ import numpy as np
 from sonolube.checks import require_non_negative, require_positive, require_within
 from sonolube.dynamics import electrical_admittance, modes
 from sonolube.errors import InvalidInput
-from sonolube.rig import Rig, touching_structure
+from sonolube.rig import Rig, structure_in_contact
 from sonolube.rig.driven_rig import require_drive
 
 _ALONE = 0.2  # share of the driven mode's conductance by which all else may shift it
@@ -97,7 +97,7 @@ def driven_mode(rig: Rig) -> VibrationMode:
     InvalidInput
         If the rig has no structure, or other modes weigh too much at that resonance for one to stand for all.
     """
-    drive, touching = require_drive(rig), touching_structure(rig)
+    drive, touching = require_drive(rig), structure_in_contact(rig)
     natural = modes(touching)
     charge = touching.drive_vector @ natural.shapes
     sprung = np.flatnonzero(~natural.rigid)

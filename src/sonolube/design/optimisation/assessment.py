@@ -13,7 +13,7 @@ from sonolube.design.optimisation.requirements import Limits
 from sonolube.dynamics import Status, SteadyStates
 from sonolube.rig.driven_rig import DrivenRig, driven_rig
 from sonolube.rig.excitation import amplifier_power, voltage_range
-from sonolube.rig.operating_points import Settings, steady_states_of
+from sonolube.rig.operating_point_grid import OperatingConditions, steady_states_of
 from sonolube.rig.record import Rig
 
 CONSTRAINTS = (
@@ -97,7 +97,7 @@ def assess(
     f, volts = np.broadcast_arrays(np.asarray(frequency, dtype=float), np.asarray(voltage_peak_to_peak, dtype=float))
     offset = rig.drive.offset_ratio * volts
     load = np.full(f.shape, rig.normal_load)
-    settings = Settings(voltage_peak_to_peak=volts, voltage_offset=offset, frequency=f, normal_load=load)
+    settings = OperatingConditions(voltage_peak_to_peak=volts, voltage_offset=offset, frequency=f, normal_load=load)
     states = steady_states_of(rig, settings, separation(rig.contact, normal_load=load))
     stack, drive = rig.stack, rig.drive
     power = amplifier_power(

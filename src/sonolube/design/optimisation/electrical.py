@@ -21,7 +21,7 @@ from sonolube.design.optimisation.screening import Task
 from sonolube.design.optimisation.space import rig_of
 from sonolube.dynamics import electrical_admittance
 from sonolube.errors import InvalidInput
-from sonolube.rig import steady_states, touching_structure
+from sonolube.rig import steady_states, structure_in_contact
 from sonolube.rig.driven_rig import DrivenRig
 
 CAPACITANCE_TOLERANCE = 0.2
@@ -99,7 +99,7 @@ def admittance_of(rig: DrivenRig, *, frequency: Floats, capacitance_change: floa
     -------
     ndarray of complex, shape of `frequency`
     """
-    own = electrical_admittance(touching_structure(rig), frequency=frequency)
+    own = electrical_admittance(structure_in_contact(rig), frequency=frequency)
     return own + 2j * np.pi * frequency * capacitance_change * rig.stack.free_capacitance
 
 

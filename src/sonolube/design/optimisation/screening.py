@@ -236,7 +236,7 @@ def worst_of(task: Task, rigs: list[DrivenRig], *, frequency: Floats, voltage_pe
 
 def _grid(rig: DrivenRig, task: Task) -> Floats:
     low, high = task.space.frequencies
-    return frequency_grid(rig, lowest=low, highest=high, points=_FREQUENCIES, crowded=_CROWDED)
+    return frequency_grid(rig, lowest=low, highest=high, points=_FREQUENCIES, resonance_points=_CROWDED)
 
 
 def _joined(parts: list[Floats]) -> Floats:

@@ -17,7 +17,7 @@ from sonolube.rig import (
     operating_points,
     speed_study,
     start_up,
-    touching_structure,
+    structure_in_contact,
     voltage_study,
     waveform_study,
 )
@@ -141,7 +141,7 @@ class Resonance:
 @cache
 def resonance() -> Resonance:
     """Return the tribometer's resonance."""
-    natural = modes(touching_structure(tribometer_rig()))
+    natural = modes(structure_in_contact(tribometer_rig()))
     return Resonance(
         natural_frequency=float(natural.natural_frequency[-1]), damping_ratio=float(natural.damping_ratio[-1])
     )
@@ -149,4 +149,4 @@ def resonance() -> Resonance:
 
 def _frequencies(*, points: int) -> Floats:
     ends = said("3.3.5-frequency")
-    return frequency_grid(tribometer_rig(), lowest=ends.low, highest=ends.high, points=points, crowded=31)
+    return frequency_grid(tribometer_rig(), lowest=ends.low, highest=ends.high, points=points, resonance_points=31)

@@ -18,7 +18,7 @@ from sonolube.fem.solver.reduction import contact_structure, under_free_body
 from sonolube.friction import AsperityStickSlip
 from sonolube.materials import material
 from sonolube.published import statement
-from sonolube.rig.steady_vibration import gap_motion
+from sonolube.rig.vibration import gap_motion
 from sonolube.validation.contacts import steel_on_steel_contact
 
 ROD_LENGTH = 0.3  # m, not printed: that of examples/rigs/collar.toml

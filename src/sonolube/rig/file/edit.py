@@ -1,4 +1,4 @@
-"""Replacing tables of a rig file by others, its own words and comments kept."""
+"""Replacement of tables in the text of a rig file, which keeps its comments."""
 
 import re
 import tomllib

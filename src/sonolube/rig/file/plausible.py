@@ -1,4 +1,4 @@
-"""How small and how large the quantities of a rig can be, by unit: far beyond either end lies a slip of the pen."""
+"""Plausible magnitudes of the quantities of a rig, by SI unit, to refuse slips of the pen."""
 
 from collections.abc import Mapping
 from types import MappingProxyType

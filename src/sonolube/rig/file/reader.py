@@ -1,4 +1,4 @@
-"""Reading a rig from its file: from text to the records that the models take."""
+"""Reader of rig files: from TOML text to a `Rig`."""
 
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence

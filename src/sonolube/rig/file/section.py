@@ -1,4 +1,4 @@
-"""Sections of a rig file: every physical key is a word of the vocabulary and carries its unit in the text."""
+"""Base of the sections of a rig file: quantities are read from text with a unit, unknown keys are refused."""
 
 from dataclasses import dataclass
 from typing import Any, get_args

@@ -1,4 +1,4 @@
-"""The table `uncertainty` of a rig file: from words such as "normal 0.5 um" to distributions about the rig's values."""
+"""Table `uncertainty` of a rig file: distributions such as "normal 0.5 um" about the values of the rig."""
 
 import math
 import re

@@ -1,4 +1,4 @@
-"""How a rig starts up from rest: marched in time until its vibration stands."""
+"""Start-up transient of a rig from rest, by time marching."""
 
 import math
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from sonolube.dynamics.time_marching.records import Trajectory
 from sonolube.dynamics.transient import march, trajectory
 from sonolube.errors import InvalidInput
 from sonolube.rig.driven_rig import driven_rig
-from sonolube.rig.excitation import ramp_of, waveform_of
+from sonolube.rig.excitation import start_up_ramp, waveform_of
 from sonolube.rig.linear_response import gap_law_of, rest_separation
 from sonolube.rig.record import Rig
 
@@ -19,14 +19,14 @@ _LONGEST = 200_000  # periods whose every step still fits a figure's memory
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class StartUp:
-    """The first moments of a rig under its drive.
+    """Start-up transient of a rig: settling time, final amplitude and every time step.
 
     Parameters
     ----------
     status : str
         "marched", "coarse" or "diverged".
     reason : str
-        What to do about a status other than "marched".
+        Advice for a status other than "marched".
     settling_time : float
         Time after which the amplitude stays within 2 % of its last value. [s]
     vibration_amplitude : float
@@ -36,7 +36,7 @@ class StartUp:
     beat_frequency : float
         Frequency of the slow oscillation beside the ultrasonic one. [Hz]
     trajectory : Trajectory
-        Every step.
+        Every time step.
     """
 
     status: str
@@ -49,14 +49,14 @@ class StartUp:
 
 
 def start_up(rig: Rig, *, duration: float) -> StartUp:
-    """Return how a rig starts up from rest when its drive is switched on, at once or by the drive's ramp.
+    """Return the start-up transient of a rig from rest, with the drive switched on at once or by its ramp.
 
     Parameters
     ----------
     rig : Rig
         With a stack, a structure and a drive voltage.
     duration : float
-        How long to follow it. [s]
+        Duration to compute. [s]
 
     Returns
     -------
@@ -77,7 +77,7 @@ def start_up(rig: Rig, *, duration: float) -> StartUp:
     periods = math.ceil(float(require_positive(duration=duration)) * drive.frequency)
     if not 8 <= periods <= _LONGEST:
         raise InvalidInput(f"duration must be from 8 to {_LONGEST} periods of the drive, got {periods}")
-    waveform, ramp, law = waveform_of(drive), ramp_of(drive), gap_law_of(rig)
+    waveform, ramp, law = waveform_of(drive), start_up_ramp(drive), gap_law_of(rig)
     window = max(1, periods // _WINDOWS)
     marched = march(
         structure,

@@ -11,7 +11,7 @@ from scipy.special import ellipk
 from sonolube.dynamics import drive_receptance
 from sonolube.errors import InvalidInput
 from sonolube.friction import FRICTION_MODELS
-from sonolube.rig import Rig, operating_points, read_rig, simulate, touching_structure
+from sonolube.rig import Rig, operating_points, read_rig, simulate, structure_in_contact
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"
 TRIBOMETER = read_rig(RIGS / "tribometer.toml")
@@ -24,7 +24,7 @@ def with_model(name: str) -> Rig:
 def test_small_vibrations_are_those_of_linear_theory_at_every_frequency() -> None:
     frequency = np.geomspace(2e3, 90e3, 25)
     amplitude = operating_points(TRIBOMETER, voltage_peak_to_peak=0.01, frequency=frequency).vibration_amplitude
-    assert amplitude == approx(np.abs(drive_receptance(touching_structure(TRIBOMETER), frequency=frequency)) * 0.005)
+    assert amplitude == approx(np.abs(drive_receptance(structure_in_contact(TRIBOMETER), frequency=frequency)) * 0.005)
 
 
 def test_the_amplitude_is_proportional_to_small_voltages() -> None:

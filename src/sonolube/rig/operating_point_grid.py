@@ -1,4 +1,4 @@
-"""Many operating points of one rig at once: vibrations solved together, friction under each, a status to each."""
+"""Operating points of one rig over arrays of settings: vibrations solved in one batch, friction and status each."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -17,29 +17,29 @@ from sonolube.rig.excitation import amplifier_power, voltage_harmonics, voltage_
 from sonolube.rig.friction_and_wear import friction_ratios
 from sonolube.rig.linear_response import gap_law_of
 from sonolube.rig.record import Rig
-from sonolube.rig.steady_vibration import gap_motion
+from sonolube.rig.vibration import gap_motion
 
 REFUSED = "refused"
 """Status of an operating point that a limit of the stack, the contact or the friction model rules out."""
 
-SETTINGS = ("voltage_peak_to_peak", "voltage_offset", "frequency", "normal_load")
-"""What is set of a point beside its sliding speed, in the order of the rows that hold it."""
+CONDITIONS = ("voltage_peak_to_peak", "voltage_offset", "frequency", "normal_load")
+"""Settings of a point apart from its sliding speed, in the order of the rows that hold them."""
 
 Advance = Callable[[int, int], None]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class OperatingPoints:
-    """What a rig does at many operating points; every array has the shape of the broadcast settings.
+    """Operating points of a rig; every array has the shape of the broadcast settings.
 
-    A point that was refused or did not converge has NaN for its numbers, and `reason` says why.
+    The numbers of a point that was refused or did not converge are NaN, and `reason` holds the cause.
 
     Parameters
     ----------
     voltage_peak_to_peak : ndarray
-        Swing of the drive. [V]
+        Peak-to-peak voltage of the drive. [V]
     voltage_offset : ndarray
-        Its mean. [V]
+        Mean voltage of the drive. [V]
     frequency : ndarray
         Frequency of the drive. [Hz]
     normal_load : ndarray
@@ -47,9 +47,9 @@ class OperatingPoints:
     sliding_speed : ndarray
         Macroscopic relative speed. [m/s]
     status : ndarray of str
-        "periodic", "unstable", "multistable" or "not_converged", as the steady state was found, or "refused".
+        "periodic", "unstable", "multistable" or "not_converged" by harmonic balance, or "refused".
     reason : ndarray of str
-        What the status means, and what to try.
+        Meaning of the status, and advice.
     vibration_amplitude : ndarray
         Vibration of the tip, zero to peak. [m]
     vibration_velocity : ndarray
@@ -71,7 +71,7 @@ class OperatingPoints:
     dissipated_power : ndarray
         Mean electrical power that stays in stack, dampers and contact. [W]
     gap_closed : ndarray of bool
-        Whether the mean planes meet within the period, where the contact model no longer holds.
+        Whether the mean planes touch within the period, where the contact model no longer holds.
     """
 
     voltage_peak_to_peak: Floats
@@ -95,13 +95,13 @@ class OperatingPoints:
 
     @property
     def failed(self) -> NDArray[np.bool_]:
-        """Which points have no friction."""
+        """Points without a friction ratio."""
         return np.isnan(self.friction_ratio)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Settings:
-    """Drives and loads of a batch, each array of one axis."""
+class OperatingConditions:
+    """Drives and loads of a batch, arrays of one axis."""
 
     voltage_peak_to_peak: Floats
     voltage_offset: Floats
@@ -109,14 +109,14 @@ class Settings:
     normal_load: Floats
 
     @classmethod
-    def of_columns(cls, columns: Floats) -> "Settings":
+    def of_columns(cls, columns: Floats) -> "OperatingConditions":
         """Return settings from their rows, in the order of the fields."""
-        return cls(**dict(zip(SETTINGS, columns, strict=True)))
+        return cls(**dict(zip(CONDITIONS, columns, strict=True)))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class _Outcome:
-    """What becomes of the points that share one vibration."""
+    """Statuses, reasons and numbers of the points that share one vibration."""
 
     status: list[str]
     reason: list[str]
@@ -134,16 +134,16 @@ def operating_points(
     advance: Advance | None = None,
     backend: Backend = "cpu",
 ) -> OperatingPoints:
-    """Return what a rig does at many operating points; what is not given is the rig's own.
+    """Return operating points of a rig over arrays of settings; settings that are absent are the rig's own.
 
     Parameters
     ----------
     rig : Rig
         With a stack, a structure and a drive voltage.
     voltage_peak_to_peak : array_like, optional
-        Swing of the drive. [V]
+        Peak-to-peak voltage of the drive. [V]
     voltage_offset : array_like, optional
-        Its mean. [V]
+        Mean voltage of the drive. [V]
     frequency : array_like, optional
         Frequency of the drive. [Hz]
     normal_load : array_like, optional
@@ -151,9 +151,9 @@ def operating_points(
     sliding_speed : array_like, optional
         Macroscopic relative speed. [m/s]
     advance : callable, optional
-        Told how many vibrations are done, and of how many.
+        Called with the number of vibrations done, and of all.
     backend : {"cpu", "gpu"}
-        Whether an NVIDIA GPU finds the vibrations that it can.
+        Whether an NVIDIA GPU solves the vibrations that it supports.
 
     Returns
     -------
@@ -163,33 +163,35 @@ def operating_points(
     ------
     InvalidInput
         If the rig has no structure, a setting has no meaning or shapes do not match.
-        A point that cannot be had is no reason: it gets its status.
+        Not for a point that is impossible, which has its status.
 
     Warns
     -----
     GpuUnused
-        If a GPU was asked for and there is none, or it does not serve the rig's contact or structure.
+        If a GPU was requested and there is none, or it does not support the contact or structure of the rig.
 
     Notes
     -----
     Steady vibrations are found in one batch, each drive and load once, whatever the number of sliding speeds.
     """
     rig = driven_rig(rig)
-    columns, speeds = broadcast(rig, (voltage_peak_to_peak, voltage_offset, frequency, normal_load, sliding_speed))
+    columns, speeds = broadcast_conditions(
+        rig, (voltage_peak_to_peak, voltage_offset, frequency, normal_load, sliding_speed)
+    )
     shape = speeds.shape
     distinct, which = np.unique(columns.reshape(4, -1), axis=1, return_inverse=True)
-    settings, speeds = Settings.of_columns(distinct), speeds.ravel()
+    settings, speeds = OperatingConditions.of_columns(distinct), speeds.ravel()
     rest = separation(rig.contact, normal_load=settings.normal_load)
     refusals = _refusals(rig, settings, rest)
     possible = np.array([not text for text in refusals], dtype=bool)
     states = None
     if possible.any():
-        states = steady_states_of(rig, Settings.of_columns(distinct[:, possible]), rest[possible], backend)
+        states = steady_states_of(rig, OperatingConditions.of_columns(distinct[:, possible]), rest[possible], backend)
     place = np.cumsum(possible) - 1
 
     status, reason = np.full((2, speeds.size), REFUSED, dtype=object)
     numbers = np.full((7, speeds.size), np.nan)
-    for setting, members in enumerate(grouped(np.arange(speeds.size), which.ravel())):
+    for setting, members in enumerate(points_by_vibration(np.arange(speeds.size), which.ravel())):
         if states is not None and possible[setting]:
             found = _outcome(rig, states, int(place[setting]), speeds[members])
             status[members], reason[members], numbers[:, members] = found.status, found.reason, found.numbers
@@ -200,7 +202,7 @@ def operating_points(
     columns = columns.reshape(4, *shape)
     amplitude, velocity, rise, lost, dissipated, closed, ratio = numbers.reshape(7, *shape)
     return OperatingPoints(
-        **dict(zip(SETTINGS, columns, strict=True)),
+        **dict(zip(CONDITIONS, columns, strict=True)),
         sliding_speed=speeds.reshape(shape),
         status=status.astype(np.str_).reshape(shape),
         reason=reason.astype(np.str_).reshape(shape),
@@ -215,13 +217,13 @@ def operating_points(
 
 
 def friction_and_power(rig: DrivenRig, columns: Floats, *, friction_ratio: Floats) -> dict[str, Floats]:
-    """Return by name what follows from the friction ratio and the settings of points.
+    """Return friction force, coefficient, reduction and amplifier power from friction ratio and settings, by name.
 
     Parameters
     ----------
     rig : Rig
     columns : ndarray
-        Settings as `broadcast` returns them.
+        Settings as `broadcast_conditions` returns them.
     friction_ratio : ndarray
         At each point. []
 
@@ -257,7 +259,7 @@ def steady_states(
     voltage_peak_to_peak : array_like, optional
         Swing of the drive, of one axis. [V]
     voltage_offset : array_like, optional
-        Its mean. [V]
+        Mean voltage of the drive. [V]
 
     Returns
     -------
@@ -269,15 +271,15 @@ def steady_states(
         If the rig has no structure or a setting has no meaning.
     """
     rig = driven_rig(rig)
-    columns, _ = broadcast(rig, (voltage_peak_to_peak, voltage_offset, None, None, None))
-    settings = Settings.of_columns(columns.reshape(4, -1))
+    columns, _ = broadcast_conditions(rig, (voltage_peak_to_peak, voltage_offset, None, None, None))
+    settings = OperatingConditions.of_columns(columns.reshape(4, -1))
     return steady_states_of(rig, settings, separation(rig.contact, normal_load=settings.normal_load))
 
 
-def broadcast(rig: DrivenRig, given: Sequence[ArrayLike | None]) -> tuple[Floats, Floats]:
-    """Return drives and loads as the rows of Settings, and speeds, all of one shape; refuse what has no meaning.
+def broadcast_conditions(rig: DrivenRig, given: Sequence[ArrayLike | None]) -> tuple[Floats, Floats]:
+    """Return the settings of points as rows of `OperatingConditions` and sliding speeds, checked and broadcast.
 
-    What is given are swing, mean and frequency of the drive, load and sliding speed; for nothing, the rig's own.
+    Given are peak-to-peak voltage, offset and frequency of the drive, load and sliding speed; None is the rig's own.
     """
     voltage, offset, f, load, speed = given
     settings = (
@@ -297,7 +299,7 @@ def broadcast(rig: DrivenRig, given: Sequence[ArrayLike | None]) -> tuple[Floats
     return np.stack(every[:-1]), every[-1].copy()
 
 
-def _refusals(rig: DrivenRig, settings: Settings, rest: Floats) -> list[str]:
+def _refusals(rig: DrivenRig, settings: OperatingConditions, rest: Floats) -> list[str]:
     """Return the reason against each drive and load that the stack or the contact rules out, else empty text."""
     refusals = []
     extremes = voltage_range(
@@ -315,8 +317,10 @@ def _refusals(rig: DrivenRig, settings: Settings, rest: Floats) -> list[str]:
     return refusals
 
 
-def steady_states_of(rig: DrivenRig, settings: Settings, rest: Floats, backend: Backend = "cpu") -> SteadyStates:
-    """Return the steady vibrations of a rig under drives and loads, of which the separations at rest are known."""
+def steady_states_of(
+    rig: DrivenRig, settings: OperatingConditions, rest: Floats, backend: Backend = "cpu"
+) -> SteadyStates:
+    """Return the steady vibrations of a rig under drives and loads, given the separations at rest."""
     return steady_state(
         rig.structure,
         gap_law_of(rig),
@@ -329,14 +333,14 @@ def steady_states_of(rig: DrivenRig, settings: Settings, rest: Floats, backend: 
     )
 
 
-def grouped(points: NDArray[np.intp], vibration: NDArray[np.intp]) -> list[NDArray[np.intp]]:
-    """Return the points that share each vibration, in the order of the vibrations.
+def points_by_vibration(points: NDArray[np.intp], vibration: NDArray[np.intp]) -> list[NDArray[np.intp]]:
+    """Return the indices of the points of each vibration, in the order of the vibrations.
 
     Parameters
     ----------
     points : ndarray of int, shape (k,)
     vibration : ndarray of int, shape (n,)
-        That of every point.
+        Vibration of every point.
 
     Returns
     -------
@@ -362,7 +366,7 @@ def _outcome(rig: Rig, states: SteadyStates, point: int, speeds: Floats) -> _Out
         states.dissipated_power[point],
         states.gap_closed[point],
     )
-    numbers[-1], refusals = friction_of(rig, moving, speeds)
+    numbers[-1], refusals = friction_at_speeds(rig, moving, speeds)
     return _Outcome(
         status=[REFUSED if refusal else status for refusal in refusals],
         reason=[refusal or reason for refusal in refusals],
@@ -370,12 +374,12 @@ def _outcome(rig: Rig, states: SteadyStates, point: int, speeds: Floats) -> _Out
     )
 
 
-def friction_of(rig: Rig, moving: GapMotion, speeds: Floats) -> tuple[Floats, list[str]]:
-    """Return the friction ratio at each speed, and why a speed has none."""
+def friction_at_speeds(rig: Rig, moving: GapMotion, speeds: Floats) -> tuple[Floats, list[str]]:
+    """Return the friction ratio at each sliding speed, and the reason where there is none."""
     try:
         return friction_ratios(rig, moving, sliding_speed=speeds), [""] * speeds.size
     except SonolubeError as refusal:
         if speeds.size == 1:
             return np.full(1, np.nan), [str(refusal)]
-    ratios, refusals = zip(*(friction_of(rig, moving, speed) for speed in speeds[:, np.newaxis]), strict=True)
+    ratios, refusals = zip(*(friction_at_speeds(rig, moving, speed) for speed in speeds[:, np.newaxis]), strict=True)
     return np.concatenate(ratios), [text for texts in refusals for text in texts]

@@ -1,4 +1,4 @@
-"""Results as labelled datasets, and as netCDF files."""
+"""Results as labelled xarray datasets and netCDF files."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 
 _NOTHING: Mapping[str, str] = MappingProxyType({})
 _TEXTS = {
-    "status": "What is known of the point",
-    "reason": "What its status means, and what to try",
+    "status": "Status of the point",
+    "reason": "Meaning of the status, and advice",
     "waveform": "Shape of the drive voltage",
 }
 
 
 def dataset(values: Mapping[str, Floats], *, along: str, title: str) -> "xr.Dataset":
-    """Return arrays of one length as a dataset, each with the unit and the meaning of the vocabulary.
+    """Return arrays of one length as a dataset, each with units and long names of the vocabulary.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ def dataset(values: Mapping[str, Floats], *, along: str, title: str) -> "xr.Data
     along : str
         Name of that coordinate.
     title : str
-        What the dataset holds.
+        Title of the dataset.
 
     Returns
     -------
@@ -55,7 +55,7 @@ def gridded(
     title: str,
     about: Mapping[str, str] = _NOTHING,
 ) -> "xr.Dataset":
-    """Return arrays over a grid as a dataset, each with the unit and the meaning of the vocabulary.
+    """Return arrays over a grid as a dataset, each with units and long names of the vocabulary.
 
     Parameters
     ----------
@@ -65,9 +65,9 @@ def gridded(
     axes : mapping of str to ndarray
         Coordinates of the grid, in the order of its axes.
     title : str
-        What the dataset holds.
+        Title of the dataset.
     about : mapping of str to str
-        What else is to be known of it.
+        Further attributes.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""The steady motion of a rig's tip: balanced where a period of the drive repeats, marched in time where not."""
+"""Steady vibration of the tip of a rig: by harmonic balance where periodic and stable, else by time marching."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -13,39 +13,39 @@ from sonolube.dynamics.steady_friction import motion
 from sonolube.dynamics.steady_state import Status, SteadyStates, steady_state
 from sonolube.errors import OutsideRange
 from sonolube.rig.driven_rig import DrivenRig, driven_rig
-from sonolube.rig.excitation import ramp_of, voltage_harmonics, waveform_of
+from sonolube.rig.excitation import start_up_ramp, voltage_harmonics, waveform_of
 from sonolube.rig.linear_response import gap_law_of
 from sonolube.rig.record import Rig
 from sonolube.units import engineering
 
 _SAMPLES = 1024
-_STRETCHES = 16  # of a motion whose beat is too fast or too slow to cut by
-_LONGEST_STRETCH = 40_000  # steps between cuts; half as many again is what means over it can still be refined from
-_SAME = 0.01  # relative difference of amplitude within which two vibrations are one
+_SEGMENTS = 16  # of a motion whose beat is too fast or too slow to cut at
+_LONGEST_SEGMENT = 40_000  # steps between cuts, from which period averages can still be refined
+_SAME = 0.01  # relative difference of amplitude below which two vibrations count as the same
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class SteadyMotion:
-    """What the tip does when transients are gone.
+class SteadyVibration:
+    """Steady vibration of the tip after transients have decayed.
 
     Parameters
     ----------
     status : str
         "periodic", "unstable", "multistable" or "not_converged", as harmonic balance found it.
     reason : str
-        What the status means, and what the tip does.
+        Meaning of the status, and description of the motion.
     attractor : str
         "periodic", "subharmonic", "beating", "chaotic" or "settling".
     repetition_periods : int
         Periods of the drive after which the motion repeats, zero where it does not. []
     motions : tuple of GapMotion
-        One repetition; of a motion that does not repeat, stretches from one widest gap to another, each closed.
+        One repetition; for a motion that does not repeat, segments from one widest gap to another, each made periodic.
     vibration_amplitude : float
         Half of the displacement from peak to peak, the mean over periods where these differ. [m]
     lowest_amplitude, highest_amplitude : float
-        The least and the largest of any period. [m]
+        Lowest and highest amplitude of any period. [m]
     mean_displacement : float
-        Rise of the tip from rest under the load. [m]
+        Mean displacement of the tip from rest under the load. [m]
     contact_loss_fraction : float
         Share of the time in which the contact carries less than a hundredth of the load. []
     beat_frequency : float or None
@@ -53,13 +53,13 @@ class SteadyMotion:
     beat_amplitude : float or None
         Its amplitude. [m]
     coexisting_amplitude : float or None
-        Amplitude of another vibration under the same drive, where one was found. [m]
+        Amplitude of another steady vibration under the same drive, where one was found. [m]
     dissipated_power : float
         Mean electrical power that stays in stack, dampers and contact. [W]
     elongation : complex
         First harmonic of the stack's elongation. [m]
     gap_closed : bool
-        Whether the mean planes meet.
+        Whether the mean planes touch.
     """
 
     status: str
@@ -80,8 +80,8 @@ class SteadyMotion:
     gap_closed: bool
 
 
-def steady_motion(rig: Rig) -> SteadyMotion:
-    """Return what a rig's tip does under its drive when transients are gone.
+def steady_vibration(rig: Rig) -> SteadyVibration:
+    """Return the steady vibration of the tip of a rig under its drive after transients have decayed.
 
     Parameters
     ----------
@@ -101,8 +101,8 @@ def steady_motion(rig: Rig) -> SteadyMotion:
 
     Notes
     -----
-    Where the balanced vibration is stable and alone it is what appears. Anything else is marched from rest, the voltage
-    coming up as the rig's drive says, until transients have died out.
+    A periodic vibration that is stable and the only one found is the answer. Otherwise the rig is marched in time from
+    rest, with the start-up ramp of its drive, until transients have decayed.
     """
     rig = driven_rig(rig)
     balanced = _balanced(rig, falling=False)
@@ -111,17 +111,17 @@ def steady_motion(rig: Rig) -> SteadyMotion:
     if balanced.stability_undetermined(()):
         raise OutsideRange(balanced.reason(()))
     attained = _marched(rig)
-    told = f"{_why_marched(balanced)}; {_from_rest(rig.drive)}"
+    route = f"{_why_marched(balanced)}; {_from_rest(rig.drive)}"
     found = attained.attractor
     if balanced.status == Status.MULTISTABLE and found.order == 1:
         for states in (balanced, _balanced(rig, falling=True)):
             if _same(states, attained):
                 appears = engineering(float(states.vibration_amplitude), "m")
-                return _of_balance(rig, states, f"{told} that of {appears} appears{states.hopping(())}")
+                return _of_balance(rig, states, f"{route} that of {appears} appears{states.hopping(())}")
     early = (
-        "" if attained.settled else f"; followed for {engineering(attained.marched_time, 's')}, before all is settled"
+        "" if attained.settled else f"; followed for {engineering(attained.marched_time, 's')}, before it has settled"
     )
-    return _of_march(rig, attained, balanced, f"{told} the tip ends up otherwise: {found.description}{early}")
+    return _of_march(rig, attained, balanced, f"{route} another motion appears: {found.description}{early}")
 
 
 def gap_motion(states: SteadyStates, point: int | tuple[int, ...]) -> GapMotion:
@@ -175,17 +175,19 @@ def _marched(rig: DrivenRig) -> Attained:
         voltage_peak_to_peak=rig.voltage_peak_to_peak,
         voltage_offset=drive.voltage_offset,
         waveform=waveform_of(drive),
-        ramp=ramp_of(drive),
+        ramp=start_up_ramp(drive),
     )
 
 
 def _why_marched(states: SteadyStates) -> str:
     this, other = (engineering(float(each), "m") for each in (states.vibration_amplitude, states.coexisting_amplitude))
     if states.status == Status.UNSTABLE:
-        return f"unstable: of the vibration of {this} that repeats with the drive the smallest disturbance grows"
+        return f"unstable: small disturbances of the vibration of {this} at the period of the drive grow"
     if states.status == Status.MULTISTABLE:
-        return f"multistable: vibrations of {this} and of {other} are both possible"
-    return "not_converged: no vibration at the drive's own period was found; less voltage or more damping may give one"
+        return f"multistable: vibrations of {this} and of {other} are both stable"
+    return (
+        "not_converged: no vibration at the drive's own period was found; a lower voltage or more damping may give one"
+    )
 
 
 def _from_rest(drive: Drive) -> str:
@@ -199,12 +201,12 @@ def _same(states: SteadyStates, attained: Attained) -> bool:
     return bool(abs(attained.amplitudes[0] - own) <= _SAME * own)
 
 
-def _of_balance(rig: DrivenRig, states: SteadyStates, reason: str) -> SteadyMotion:
+def _of_balance(rig: DrivenRig, states: SteadyStates, reason: str) -> SteadyVibration:
     drive, amplitude, rival = rig.drive, float(states.vibration_amplitude), float(states.coexisting_amplitude)
     # the stack's elongation in complex amplitude, from the charge on it: q = C_S V + b.x
     charge = complex(states.current_harmonics[0]) / (2j * np.pi * drive.frequency)
     moved = charge - states.structure.clamped_capacitance * complex(states.voltage_harmonics[0])
-    return SteadyMotion(
+    return SteadyVibration(
         status=Status(int(states.status)).name.lower(),
         reason=reason,
         attractor="periodic",
@@ -224,20 +226,20 @@ def _of_balance(rig: DrivenRig, states: SteadyStates, reason: str) -> SteadyMoti
     )
 
 
-def _of_march(rig: DrivenRig, attained: Attained, balanced: SteadyStates, reason: str) -> SteadyMotion:
+def _of_march(rig: DrivenRig, attained: Attained, balanced: SteadyStates, reason: str) -> SteadyVibration:
     found, drive, record = attained.attractor, rig.drive, attained.record
     slow, repeats = float(found.beat_frequency), int(found.order)
     x, force = record.contact.displacement, record.contact.normal_force
     elongation = record.states.coordinates[:-1] @ rig.structure.drive_vector / rig.stack.charge_per_elongation
     turning = np.exp(-2j * np.pi * drive.frequency * record.time[:-1])
     if repeats:
-        motions: tuple[GapMotion, ...] = (_stretch(rig, x[:-1], force[:-1], drive.frequency / repeats),)
+        motions: tuple[GapMotion, ...] = (_segment(rig, x[:-1], force[:-1], drive.frequency / repeats),)
     else:
-        motions = tuple(_stretches(rig, x, force, attained, drive.frequency))
-        told = sum(drive.frequency / each.frequency for each in motions)
-        reason += f"; friction and wear are means over {told:.0f} periods of the drive in {len(motions)} stretches"
+        motions = tuple(_segments(rig, x, force, attained, drive.frequency))
+        periods = sum(drive.frequency / each.frequency for each in motions)
+        reason += f"; friction and wear are means over {periods:.0f} periods of the drive in {len(motions)} segments"
     unstable = float(balanced.vibration_amplitude)
-    return SteadyMotion(
+    return SteadyVibration(
         status=Status(int(balanced.status)).name.lower(),
         reason=reason,
         attractor=str(found.kind),
@@ -257,15 +259,15 @@ def _of_march(rig: DrivenRig, attained: Attained, balanced: SteadyStates, reason
     )
 
 
-def _stretches(
+def _segments(
     rig: Rig, x: NDArray[np.float64], force: NDArray[np.float64], attained: Attained, frequency: float
 ) -> list[GapMotion]:
-    """Cut a motion that does not repeat into beats, where the gap is widest and velocities close; tilt gaps shut."""
+    """Return segments of a motion that does not repeat, cut at the widest gaps and made periodic by a linear term."""
     steps, slow = attained.steps_per_period, float(attained.attractor.beat_frequency)
     whole = attained.periods * steps
     beat = round(steps * frequency / slow) if slow > 0 else whole
-    if not 4 * steps <= beat <= min(whole // 3, _LONGEST_STRETCH):
-        beat = whole // _STRETCHES
+    if not 4 * steps <= beat <= min(whole // 3, _LONGEST_SEGMENT):
+        beat = whole // _SEGMENTS
     cuts = [int(np.argmax(x[:beat]))]
     while cuts[-1] + 3 * beat // 2 <= whole:
         ahead = cuts[-1] + beat // 2
@@ -273,9 +275,9 @@ def _stretches(
     found = []
     for first, last in pairwise(cuts):
         tilt = (x[last] - x[first]) * (np.arange(last - first) / (last - first) - 0.5)
-        found.append(_stretch(rig, x[first:last] - tilt, force[first:last], frequency * steps / (last - first)))
+        found.append(_segment(rig, x[first:last] - tilt, force[first:last], frequency * steps / (last - first)))
     return found
 
 
-def _stretch(rig: Rig, x: NDArray[np.float64], force: NDArray[np.float64], frequency: float) -> GapMotion:
+def _segment(rig: Rig, x: NDArray[np.float64], force: NDArray[np.float64], frequency: float) -> GapMotion:
     return GapMotion(displacement=x, normal_force=force, frequency=frequency, normal_load=rig.normal_load)
