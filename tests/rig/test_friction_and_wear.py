@@ -60,7 +60,7 @@ def test_in_plane_motion_changes_the_friction_of_either_model_that_takes_it() ->
         still = tribometer(f"friction.model={model}")
         moved = tribometer(f"friction.model={model}", "friction.in_plane_fraction=0.3", "friction.in_plane_phase=90deg")
         assert getattr(moved.friction_model, "in_plane_phase") == approx(np.pi / 2)  # noqa: B009
-        assert abs(simulate(moved).friction_ratio - simulate(still).friction_ratio) > 0.02
+        assert abs(simulate(moved).friction.friction_ratio - simulate(still).friction.friction_ratio) > 0.02
 
 
 @pytest.mark.parametrize(
@@ -91,10 +91,10 @@ def test_a_parameter_that_the_model_does_not_have_is_refused_by_name(changes: li
 
 def test_wear_follows_the_friction_model_where_it_has_one_of_its_name() -> None:
     balanced = simulate(tribometer("friction.model=dong_2015_load_balanced"))
-    assert balanced.wear_model == "dong_2015_load_balanced"
+    assert balanced.wear.wear_model == "dong_2015_load_balanced"
     # with the area in proportion to the force only the cube's height matters: 1 + [l ln I0 - a I1/I0]/d
-    assert 0.9 < balanced.wear_rate / float(cube_wear_rate(tribometer().contact, normal_load=3.0)) < 1
-    assert simulate(tribometer()).wear_model == "dong_2015_half_period"
+    assert 0.9 < balanced.wear.wear_rate / float(cube_wear_rate(tribometer().contact, normal_load=3.0)) < 1
+    assert simulate(tribometer()).wear.wear_model == "dong_2015_half_period"
 
 
 def test_friction_is_by_the_rigs_own_model_unless_another_is_named() -> None:

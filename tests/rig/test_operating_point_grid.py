@@ -79,9 +79,10 @@ def test_a_batch_is_its_single_points(model: str) -> None:
             sliding_speed=float(speeds[column]),
         )
         alone = simulate(one)
-        for name in ("friction_ratio", "friction_force", "vibration_amplitude", "dissipated_power", "actuator_power"):
-            assert getattr(batch, name)[row, column] == approx(getattr(alone, name), rel=1e-5), name
-        assert batch.status[row, column] == alone.status
+        for name in ("friction_ratio", "friction_force", "vibration_amplitude", "actuator_power"):
+            assert getattr(batch, name)[row, column] == approx(getattr(alone.friction, name), rel=1e-5), name
+        assert batch.dissipated_power[row, column] == approx(alone.vibration.dissipated_power, rel=1e-5)
+        assert batch.status[row, column] == alone.vibration.status
 
 
 def test_loads_and_frequencies_keep_their_order() -> None:
@@ -110,7 +111,7 @@ def test_standstill_among_speeds_says_why_it_has_no_friction() -> None:
     points = operating_points(TRIBOMETER, sliding_speed=[0.0, 20.3e-3])
     assert points.status.tolist() == ["refused", "periodic"]
     assert "sliding_speed must be positive" in points.reason[0]
-    assert points.friction_ratio[1] == approx(simulate(TRIBOMETER).friction_ratio)
+    assert points.friction_ratio[1] == approx(simulate(TRIBOMETER).friction.friction_ratio)
 
 
 def test_progress_counts_each_vibration_once() -> None:

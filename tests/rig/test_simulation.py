@@ -26,56 +26,62 @@ GAUSSIAN = read_rig(RIGS / "tribometer.toml", changes=("contact.height_distribut
 
 
 def test_28_volts_give_the_amplitude_measured() -> None:
-    assert DRIVEN.status == "periodic"
-    assert DRIVEN.vibration_amplitude == approx(2.5e-6, rel=0.01)
+    assert DRIVEN.vibration.status == "periodic"
+    assert DRIVEN.vibration.vibration_amplitude == approx(2.5e-6, rel=0.01)
 
 
 @pytest.mark.parametrize("volts", [5.1, 10.3, 15.5, 20.7, 25.9])
 def test_the_amplitude_is_proportional_to_the_voltage_as_table_4_1_prints(volts: float) -> None:
-    amplitude = tribometer(f"drive.voltage_peak_to_peak={volts}V").vibration_amplitude
+    amplitude = tribometer(f"drive.voltage_peak_to_peak={volts}V").vibration.vibration_amplitude
     assert amplitude == approx(2.31e-6 / 25.9 * volts, rel=0.01)
 
 
 def test_the_tip_rises_until_the_mean_force_is_the_load_again() -> None:
     decay = 6e-6 / 3
-    assert DRIVEN.mean_displacement == approx(decay * np.log(i0(DRIVEN.vibration_amplitude / decay)), rel=1e-3)
+    assert DRIVEN.vibration.mean_displacement == approx(
+        decay * np.log(i0(DRIVEN.vibration.vibration_amplitude / decay)), rel=1e-3
+    )
 
 
 def test_without_voltage_nothing_moves_and_friction_is_what_it_was() -> None:
-    assert STILL.vibration_amplitude == approx(0.0, abs=1e-15)
-    assert STILL.friction_ratio == approx(1.0, abs=1e-6)
-    assert STILL.dissipated_power == approx(0.0, abs=1e-12)
-    assert STILL.wear_rate * 1e9 == approx(2.566e-2, abs=0.5e-5)  # mm3/m, D Table 3.4
+    assert STILL.vibration.vibration_amplitude == approx(0.0, abs=1e-15)
+    assert STILL.friction.friction_ratio == approx(1.0, abs=1e-6)
+    assert STILL.vibration.dissipated_power == approx(0.0, abs=1e-12)
+    assert STILL.wear.wear_rate * 1e9 == approx(2.566e-2, abs=0.5e-5)  # mm3/m, D Table 3.4
 
 
 def test_waveforms_move_the_tip_by_their_fundamentals_alone() -> None:
     # of a square, triangle and sawtooth of equal swing: 4/pi, 8/pi^2 and 2/pi of the sine's
     amplitudes = {
-        name: tribometer(f"drive.waveform={name}").vibration_amplitude for name in ("square", "triangle", "sawtooth")
+        name: tribometer(f"drive.waveform={name}").vibration.vibration_amplitude
+        for name in ("square", "triangle", "sawtooth")
     }
-    ratios = [amplitudes[name] / DRIVEN.vibration_amplitude for name in ("square", "triangle", "sawtooth")]
+    ratios = [amplitudes[name] / DRIVEN.vibration.vibration_amplitude for name in ("square", "triangle", "sawtooth")]
     assert ratios == approx([4 / np.pi, 8 / np.pi**2, 2 / np.pi], rel=0.01)
 
 
 def test_waveforms_rank_as_section_3_3_5_says() -> None:
     ranked = [
-        tribometer(f"drive.waveform={name}").friction_ratio for name in ("square", "sine", "triangle", "sawtooth")
+        tribometer(f"drive.waveform={name}").friction.friction_ratio
+        for name in ("square", "sine", "triangle", "sawtooth")
     ]
     assert ranked == sorted(ranked)
 
 
 def test_friction_at_20_mm_per_second_lies_within_the_scatter_of_table_2_3() -> None:
-    assert DRIVEN.friction_force == approx(0.379, abs=0.041)
+    assert DRIVEN.friction.friction_force == approx(0.379, abs=0.041)
 
 
 def test_faster_sliding_leaves_more_friction() -> None:
-    ratios = [tribometer(f"sliding.sliding_speed={speed}mm/s").friction_ratio for speed in (20.3, 40.6, 87, 500)]
+    ratios = [
+        tribometer(f"sliding.sliding_speed={speed}mm/s").friction.friction_ratio for speed in (20.3, 40.6, 87, 500)
+    ]
     assert np.all(np.diff(ratios) > 0)
     assert ratios[-1] == approx(1.0, abs=0.01)
 
 
 def test_every_friction_model_finds_less_friction_at_20_mm_per_second() -> None:
-    ratios = {name: tribometer(f"friction.model={name}").friction_ratio for name in FRICTION_MODELS}
+    ratios = {name: tribometer(f"friction.model={name}").friction.friction_ratio for name in FRICTION_MODELS}
     assert all(0 < ratio < 1 for ratio in ratios.values()), ratios
 
 
@@ -91,19 +97,19 @@ def test_a_voltage_beyond_the_stack_is_refused() -> None:
 def test_gaussian_heights_lift_the_tip_until_the_mean_force_is_the_load_again() -> None:
     result, contact = simulate(GAUSSIAN), GAUSSIAN.contact
     resting = separation(contact, normal_load=GAUSSIAN.normal_load)
-    sine = result.vibration_amplitude * np.cos(2 * np.pi * (np.arange(256) + 0.5) / 256)
+    sine = result.vibration.vibration_amplitude * np.cos(2 * np.pi * (np.arange(256) + 0.5) / 256)
     risen = brentq(
         lambda rise: float(np.mean(normal_force(contact, separation=resting + rise + sine))) - GAUSSIAN.normal_load,
         0.0,
-        result.vibration_amplitude,
+        result.vibration.vibration_amplitude,
     )
-    assert result.mean_displacement == approx(risen, rel=1e-3)
+    assert result.vibration.mean_displacement == approx(risen, rel=1e-3)
 
 
 def test_gaussian_heights_start_up_to_their_steady_vibration() -> None:
     result, started = simulate(GAUSSIAN), start_up(GAUSSIAN, duration=0.1)
-    assert started.vibration_amplitude == approx(result.vibration_amplitude, rel=1e-3)
-    assert started.mean_displacement == approx(result.mean_displacement, rel=0.01)
+    assert started.vibration_amplitude == approx(result.vibration.vibration_amplitude, rel=1e-3)
+    assert started.mean_displacement == approx(result.vibration.mean_displacement, rel=0.01)
 
 
 def test_a_rig_without_structure_says_what_is_missing() -> None:

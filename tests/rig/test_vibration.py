@@ -53,8 +53,12 @@ def simulated(*changes: str) -> Simulation:
 
 
 def test_what_grows_from_an_unstable_vibration_is_told_with_its_range_and_its_beat() -> None:
-    result = simulated(*BEATING)
-    assert (result.status, result.attractor, result.repetition_periods) == ("unstable", "beating", 0)
+    result = simulated(*BEATING).vibration
+    assert (result.status, result.attractor, result.repetition_periods) == (
+        "unstable",
+        "beating",
+        0,
+    )
     assert result.lowest_amplitude is not None
     assert result.highest_amplitude is not None
     assert 1.03 * result.lowest_amplitude < result.vibration_amplitude < 0.97 * result.highest_amplitude
@@ -65,7 +69,7 @@ def test_what_grows_from_an_unstable_vibration_is_told_with_its_range_and_its_be
 
 @pytest.mark.parametrize("model", FRICTION_MODELS)
 def test_every_friction_model_takes_a_motion_that_does_not_repeat(model: str) -> None:
-    assert 0 < simulated(*BEATING, f"friction.model={model}").friction_ratio < 5
+    assert 0 < simulated(*BEATING, f"friction.model={model}").friction.friction_ratio < 5
 
 
 def test_a_load_beside_which_the_tip_beats_is_still_carried_on_the_mean() -> None:
@@ -75,7 +79,7 @@ def test_a_load_beside_which_the_tip_beats_is_still_carried_on_the_mean() -> Non
 
 
 def test_of_two_vibrations_the_one_that_the_ramp_reaches_is_taken_and_the_other_told() -> None:
-    result = simulated(*DOUBLE, "drive.ramp_duration=200ms", "drive.ramp_shape=cosine")
+    result = simulated(*DOUBLE, "drive.ramp_duration=200ms", "drive.ramp_shape=cosine").vibration
     assert result.status == "multistable"
     assert result.vibration_amplitude == approx(1.740e-6, rel=1e-3)
     assert result.coexisting_amplitude == approx(11.82e-6, rel=1e-3)
@@ -83,17 +87,25 @@ def test_of_two_vibrations_the_one_that_the_ramp_reaches_is_taken_and_the_other_
 
 
 def test_a_motion_of_two_periods_is_one_repetition_of_half_the_frequency() -> None:
-    result = simulated(*SUBHARMONIC)
-    assert (result.status, result.attractor, result.repetition_periods) == ("unstable", "subharmonic", 2)
-    assert result.motion.frequency == approx(733.7986 / 2)
-    assert result.motion.normal_force.mean() == approx(27.7657, rel=1e-3)
+    result = simulated(*SUBHARMONIC).vibration
+    assert (result.status, result.attractor, result.repetition_periods) == (
+        "unstable",
+        "subharmonic",
+        2,
+    )
+    assert result.motions[0].frequency == approx(733.7986 / 2)
+    assert result.motions[0].normal_force.mean() == approx(27.7657, rel=1e-3)
 
 
 def test_where_no_vibration_was_found_the_march_tells_what_there_is() -> None:
-    result = simulated(*NOT_FOUND)
-    assert (result.status, result.attractor, result.repetition_periods) == ("not_converged", "subharmonic", 3)
+    result = simulated(*NOT_FOUND).vibration
+    assert (result.status, result.attractor, result.repetition_periods) == (
+        "not_converged",
+        "subharmonic",
+        3,
+    )
     assert "a lower voltage or more damping may give one; switched on at once," in result.reason
-    assert result.motion.normal_force.mean() == approx(72.3823, rel=2e-3)
+    assert result.motions[0].normal_force.mean() == approx(72.3823, rel=2e-3)
 
 
 def test_a_vibration_found_under_a_hard_drive_answers_its_own_force() -> None:
@@ -113,8 +125,8 @@ def test_a_vibration_found_under_a_hard_drive_answers_its_own_force() -> None:
 
 
 def test_lost_contact_is_told() -> None:
-    result = simulated("drive.voltage_peak_to_peak=200V", "drive.voltage_offset=0V")
-    assert result.contact_loss_fraction == approx(np.mean(result.motion.normal_force < 0.03), abs=2e-3)
+    result = simulated("drive.voltage_peak_to_peak=200V", "drive.voltage_offset=0V").vibration
+    assert result.contact_loss_fraction == approx(np.mean(result.motions[0].normal_force < 0.03), abs=2e-3)
     assert f"it hops, without contact for {result.contact_loss_fraction:.2%} of the time" in result.reason
 
 
@@ -136,7 +148,9 @@ def sampled(samples: list[float], *, offset: str = "14 V") -> dict[str, object]:
 
 def test_samples_of_a_triangle_are_the_triangle() -> None:
     named, given = read_rig(TRIBOMETER, changes=["drive.waveform=triangle"]), rig_from(sampled([0, 3, 0, -3]))
-    assert simulate(given).vibration_amplitude == approx(simulate(named).vibration_amplitude, rel=1e-9)
+    assert simulate(given).vibration.vibration_amplitude == approx(
+        simulate(named).vibration.vibration_amplitude, rel=1e-9
+    )
     assert given.drive is not None
     assert value(waveform_of(given.drive), phase=np.pi / 2) == approx(0.5)
 

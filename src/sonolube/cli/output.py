@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import fields
+from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
@@ -15,8 +15,10 @@ from sonolube.vocabulary import quantities
 
 def show(result: Any, *, rig: Rig, as_json: bool, written: Sequence[Path] = ()) -> None:
     """Print a record of results of one rig, with what was assumed, what is doubtful and the files written."""
-    values = {field.name: getattr(result, field.name) for field in fields(result)}
-    quantified = {name: value for name, value in values.items() if name in quantities() and value is not None}
+    values = _flat(result)
+    quantified = {
+        name: value for name, value in values.items() if name in quantities() and isinstance(value, int | float)
+    }
     told = {name: value for name, value in values.items() if isinstance(value, str)}
     if as_json:
         files = {"files": [str(path) for path in written]} if written else {}
@@ -24,6 +26,16 @@ def show(result: Any, *, rig: Rig, as_json: bool, written: Sequence[Path] = ()) 
     else:
         closing = closing_lines(written, assumptions=rig.assumptions, caveats=values["caveats"])
         typer.echo("\n".join([*_lines(quantified, told, rig), *closing]))
+
+
+def _flat(result: Any) -> dict[str, Any]:
+    """Return the fields of a record by name, and those of records within it that it has none of the name of."""
+    own = {field.name: getattr(result, field.name) for field in fields(result)}
+    values: dict[str, Any] = {}
+    for value in own.values():
+        values |= _flat(value) if is_dataclass(value) else {}
+    values |= {name: value for name, value in own.items() if not is_dataclass(value)}
+    return values
 
 
 def closing_lines(written: Sequence[Path], *, assumptions: Mapping[str, str], caveats: Sequence[str] = ()) -> list[str]:

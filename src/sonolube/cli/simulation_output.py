@@ -18,19 +18,19 @@ _LOST = 0.01  # force over load below which contact counts as lost
 
 def write_simulation(rig: Rig, result: Simulation, *, folder: Path, name: str) -> list[Path]:
     """Write one repetition of the motion as a figure and as netCDF, and return the files."""
-    motion = result.motion
+    motion = result.vibration.motions[0]
     time = np.arange(motion.displacement.size) / (motion.displacement.size * motion.frequency)
     values = {"time": time, "displacement": motion.displacement, "normal_force": motion.normal_force}
     labelled = dataset(values, along="time", title=f"Steady motion of {rig.title}")
     labelled.attrs |= {
-        "status": result.status,
-        "reason": result.reason,
-        "attractor": result.attractor,
-        "repetition_periods": result.repetition_periods,
+        "status": result.vibration.status,
+        "reason": result.vibration.reason,
+        "attractor": result.vibration.attractor,
+        "repetition_periods": result.vibration.repetition_periods,
         "normal_load_N": motion.normal_load,
         "separation_at_rest_m": _rest(rig),
-        "mean_displacement_m": result.mean_displacement,
-        "contact_loss_fraction": result.contact_loss_fraction,
+        "mean_displacement_m": result.vibration.mean_displacement,
+        "contact_loss_fraction": result.vibration.contact_loss_fraction,
     }
     with publication_style():
         figures = write_figure(_figure(rig, result, 1e6 * time), folder=folder, name=name)
@@ -44,11 +44,11 @@ def _rest(rig: Rig) -> float:
 def _figure(rig: Rig, result: Simulation, microseconds: Floats) -> "Figure":
     from matplotlib.figure import Figure
 
-    motion, rest = result.motion, _rest(rig)
+    motion, rest = result.vibration.motions[0], _rest(rig)
     figure = Figure(figsize=(5.2, 4.6))
     gap, force = figure.subplots(2, 1, sharex=True)
     gap.plot(microseconds, 1e6 * motion.displacement, color=COLOURS[0])
-    rise = 1e6 * result.mean_displacement
+    rise = 1e6 * result.vibration.mean_displacement
     gap.axhline(rise, color=COLOURS[1], linestyle="--", linewidth=1.0, label=f"mean gap, {1e6 * rest + rise:.2f} µm")
     gap.axhline(0.0, color="0.3", linestyle=":", linewidth=1.0, label=f"gap at rest, {1e6 * rest:.2f} µm")
     gap.set(ylabel="Displacement of the tip\nfrom rest [µm]")
@@ -76,8 +76,8 @@ def _figure(rig: Rig, result: Simulation, microseconds: Floats) -> "Figure":
 
 
 def _what(result: Simulation) -> str:
-    if result.repetition_periods == 1:
+    if result.vibration.repetition_periods == 1:
         return "one period of the drive"
-    if result.repetition_periods:
-        return f"{result.repetition_periods} periods of the drive, after which the motion repeats"
-    return f"a stretch of a motion that does not repeat: {result.attractor}"
+    if result.vibration.repetition_periods:
+        return f"{result.vibration.repetition_periods} periods of the drive, after which the motion repeats"
+    return f"a stretch of a motion that does not repeat: {result.vibration.attractor}"

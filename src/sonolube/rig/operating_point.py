@@ -168,7 +168,36 @@ def friction_point(rig: Rig, *, model: str | None = None) -> FrictionPoint:
     """
     gap = rest_separation(rig)
     chosen = rig if model is None else replace(rig, friction_model=_model_of(rig, model))
-    ratio = friction_ratio(chosen, prescribed_sine(chosen))
+    return friction_under(
+        chosen,
+        ratio=friction_ratio(chosen, prescribed_sine(chosen)),
+        vibration_amplitude=rig.vibration_amplitude,
+        actuator_power=_actuator_power(rig),
+        caveats=_caveats(rig, gap),
+    )
+
+
+def friction_under(
+    rig: Rig, *, ratio: float, vibration_amplitude: float, actuator_power: float | None, caveats: tuple[str, ...]
+) -> FrictionPoint:
+    """Return the friction of a rig at a friction ratio.
+
+    Parameters
+    ----------
+    rig : Rig
+    ratio : float
+        Friction with vibration over friction without. []
+    vibration_amplitude : float
+        Vibration normal to the contact, zero to peak. [m]
+    actuator_power : float or None
+        Power drawn by the actuator, where it is known. [W]
+    caveats : tuple of str
+        Reasons for caution about the numbers.
+
+    Returns
+    -------
+    FrictionPoint
+    """
     intrinsic = rig.friction_coefficient * rig.normal_load
     return FrictionPoint(
         friction_force=ratio * intrinsic,
@@ -176,11 +205,11 @@ def friction_point(rig: Rig, *, model: str | None = None) -> FrictionPoint:
         intrinsic_friction_force=intrinsic,
         friction_ratio=ratio,
         friction_reduction=1 - ratio,
-        friction_model=chosen.friction_model.name,
-        citation=chosen.friction_model.citation,
-        vibration_amplitude=rig.vibration_amplitude,
-        actuator_power=_actuator_power(rig),
-        caveats=_caveats(rig, gap),
+        friction_model=rig.friction_model.name,
+        citation=rig.friction_model.citation,
+        vibration_amplitude=vibration_amplitude,
+        actuator_power=actuator_power,
+        caveats=caveats,
     )
 
 
@@ -216,23 +245,50 @@ def wear_point(rig: Rig, *, model: str = DEFAULT_WEAR_MODEL) -> WearPoint:
     .. [1] D 3.26 to 3.29 as they were evaluated, for the default model.
     """
     gap = rest_separation(rig)
-    still = float(cube_wear_rate(rig.contact, normal_load=rig.normal_load))
-    vibrating = still * _wear_ratio(rig, still, model)
-    return WearPoint(
-        wear_rate=vibrating,
-        intrinsic_wear_rate=still,
-        wear_rate_ratio=vibrating / still,
-        wear_reduction=1 - vibrating / still,
-        wear_model=model,
-        vibration_amplitude=rig.vibration_amplitude,
-        caveats=_caveats(rig, gap),
+    ratio = _wear_ratio(rig, model)
+    return wear_under(
+        rig, ratio=ratio, model=model, vibration_amplitude=rig.vibration_amplitude, caveats=_caveats(rig, gap)
     )
 
 
-def _wear_ratio(rig: Rig, still: float, model: str) -> float:
+def wear_under(
+    rig: Rig, *, ratio: float, model: str, vibration_amplitude: float, caveats: tuple[str, ...]
+) -> WearPoint:
+    """Return the wear of a rig at a wear ratio.
+
+    Parameters
+    ----------
+    rig : Rig
+    ratio : float
+        Wear rate with vibration over that without. []
+    model : str
+        Name of the wear model.
+    vibration_amplitude : float
+        Vibration normal to the contact, zero to peak. [m]
+    caveats : tuple of str
+        Reasons for caution about the numbers.
+
+    Returns
+    -------
+    WearPoint
+    """
+    still = float(cube_wear_rate(rig.contact, normal_load=rig.normal_load))
+    return WearPoint(
+        wear_rate=ratio * still,
+        intrinsic_wear_rate=still,
+        wear_rate_ratio=ratio,
+        wear_reduction=1 - ratio,
+        wear_model=model,
+        vibration_amplitude=vibration_amplitude,
+        caveats=caveats,
+    )
+
+
+def _wear_ratio(rig: Rig, model: str) -> float:
     load, amplitude = rig.normal_load, rig.vibration_amplitude
     if model == DEFAULT_WEAR_MODEL:  # by quadrature of the sine itself
-        return float(vibrating_cube_wear_rate(rig.contact, normal_load=load, vibration_amplitude=amplitude)) / still
+        still = cube_wear_rate(rig.contact, normal_load=load)
+        return float(vibrating_cube_wear_rate(rig.contact, normal_load=load, vibration_amplitude=amplitude) / still)
     frequency = 1.0 if rig.drive is None else rig.drive.frequency  # without effect on wear models
     sine = harmonic_motion(rig.contact, normal_load=load, vibration_amplitude=amplitude, frequency=frequency)
     return float(WEAR_MODELS.named(model)(rig.contact, sine))

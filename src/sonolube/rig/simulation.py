@@ -12,9 +12,9 @@ from sonolube.rig.driven_rig import DrivenRig, driven_rig
 from sonolube.rig.excitation import amplifier_power, voltage_harmonics, voltage_range
 from sonolube.rig.friction_and_wear import friction_ratio, wear_model_of, wear_rate_ratio
 from sonolube.rig.linear_response import rest_separation
+from sonolube.rig.operating_point import FrictionPoint, WearPoint, friction_under, wear_under
 from sonolube.rig.record import Rig
 from sonolube.rig.vibration import SteadyVibration, steady_vibration
-from sonolube.wear.cube import cube_wear_rate
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -23,81 +23,20 @@ class Simulation:
 
     Parameters
     ----------
-    status : str
-        "periodic", "unstable", "multistable" or "not_converged", as harmonic balance found it.
-    reason : str
-        Meaning of the status, description of the motion, and advice.
-    attractor : str
-        Kind of the motion of the tip: "periodic", "subharmonic", "beating", "chaotic" or "settling".
-    repetition_periods : int
-        Periods of the drive after which the motion repeats, zero where it does not. []
-    vibration_amplitude : float
-        Vibration of the tip, zero to peak; the mean over periods of the drive where these differ. [m]
-    lowest_amplitude, highest_amplitude : float or None
-        Lowest and highest amplitude of any period, where they differ. [m]
-    coexisting_amplitude : float or None
-        Amplitude of another steady motion under the same drive, where one was found. [m]
-    beat_frequency : float or None
-        Frequency of a slow motion of the tip beside the vibration. [Hz]
-    beat_amplitude : float or None
-        Its amplitude. [m]
-    mean_displacement : float
-        Mean displacement of the tip from rest under the load. [m]
-    contact_loss_fraction : float
-        Share of the time in which the contact carries less than a hundredth of the load. []
-    friction_force : float
-        Mean friction force with vibration. [N]
-    friction_coefficient : float
-        That force over the normal load. []
-    intrinsic_friction_force : float
-        Friction force without vibration. [N]
-    friction_ratio : float
-        Friction with vibration over friction without. []
-    friction_reduction : float
-        One minus that ratio. []
-    friction_model : str
-        Name of the friction model.
-    citation : str
-        Source of the friction model.
-    wear_model : str
-        Name of the wear model: that of the friction model's name where there is one.
-    wear_rate : float
-        Volume of the softer body per sliding distance with vibration, by the cube over the separating half period. [m2]
-    actuator_power : float
-        Power a linear amplifier supplies, D 1.9. [W]
-    dissipated_power : float
-        Mean electrical power that stays in stack, dampers and contact. [W]
+    vibration : SteadyVibration
+        Steady vibration of the tip: status, kind, amplitudes and sampled motion.
+    friction : FrictionPoint
+        Friction under it, and the power that a linear amplifier supplies, D 1.9.
+    wear : WearPoint
+        Wear under it, by the wear model of the friction model's name where there is one.
     caveats : tuple of str
-        What speaks against trusting the numbers, each in one line.
-    motion : GapMotion
-        One repetition of the motion of the tip, or a segment of one that does not repeat.
+        Reasons for caution about the numbers, one line each.
     """
 
-    status: str
-    reason: str
-    attractor: str
-    repetition_periods: int
-    vibration_amplitude: float
-    lowest_amplitude: float | None
-    highest_amplitude: float | None
-    coexisting_amplitude: float | None
-    beat_frequency: float | None
-    beat_amplitude: float | None
-    mean_displacement: float
-    contact_loss_fraction: float
-    friction_force: float
-    friction_coefficient: float
-    intrinsic_friction_force: float
-    friction_ratio: float
-    friction_reduction: float
-    friction_model: str
-    citation: str
-    wear_rate: float
-    wear_model: str
-    actuator_power: float
-    dissipated_power: float
+    vibration: SteadyVibration
+    friction: FrictionPoint
+    wear: WearPoint
     caveats: tuple[str, ...]
-    motion: GapMotion
 
 
 def simulate(rig: Rig) -> Simulation:
@@ -125,36 +64,25 @@ def simulate(rig: Rig) -> Simulation:
     """
     rig = driven_rig(rig)
     gap = rest_separation(rig)
-    moving = steady_vibration(rig)
-    ratio = _mean(partial(friction_ratio, rig), moving.motions)
-    wear_ratio = _mean(partial(wear_rate_ratio, rig), moving.motions)
-    intrinsic = rig.friction_coefficient * rig.normal_load
+    vibration = steady_vibration(rig)
+    caveats = (*contact_caveats(rig.contact, separation=gap), *_caveats(rig, vibration))
     return Simulation(
-        status=moving.status,
-        reason=moving.reason,
-        attractor=moving.attractor,
-        repetition_periods=moving.repetition_periods,
-        vibration_amplitude=moving.vibration_amplitude,
-        lowest_amplitude=moving.lowest_amplitude if moving.repetition_periods != 1 else None,
-        highest_amplitude=moving.highest_amplitude if moving.repetition_periods != 1 else None,
-        coexisting_amplitude=moving.coexisting_amplitude,
-        beat_frequency=moving.beat_frequency,
-        beat_amplitude=moving.beat_amplitude,
-        mean_displacement=moving.mean_displacement,
-        contact_loss_fraction=moving.contact_loss_fraction,
-        friction_force=ratio * intrinsic,
-        friction_coefficient=ratio * rig.friction_coefficient,
-        intrinsic_friction_force=intrinsic,
-        friction_ratio=ratio,
-        friction_reduction=1 - ratio,
-        friction_model=rig.friction_model.name,
-        citation=rig.friction_model.citation,
-        wear_rate=wear_ratio * float(cube_wear_rate(rig.contact, normal_load=rig.normal_load)),
-        wear_model=wear_model_of(rig),
-        actuator_power=float(amplifier_power(rig.drive, capacitance=rig.stack.free_capacitance)),
-        dissipated_power=moving.dissipated_power,
-        caveats=(*contact_caveats(rig.contact, separation=gap), *_caveats(rig, moving)),
-        motion=moving.motions[0],
+        vibration=vibration,
+        friction=friction_under(
+            rig,
+            ratio=_mean(partial(friction_ratio, rig), vibration.motions),
+            vibration_amplitude=vibration.vibration_amplitude,
+            actuator_power=float(amplifier_power(rig.drive, capacitance=rig.stack.free_capacitance)),
+            caveats=caveats,
+        ),
+        wear=wear_under(
+            rig,
+            ratio=_mean(partial(wear_rate_ratio, rig), vibration.motions),
+            model=wear_model_of(rig),
+            vibration_amplitude=vibration.vibration_amplitude,
+            caveats=caveats,
+        ),
+        caveats=caveats,
     )
 
 
@@ -163,16 +91,16 @@ def _mean(of: Callable[[GapMotion], float], motions: tuple[GapMotion, ...]) -> f
     return float(np.average([of(motion) for motion in motions], weights=[1 / motion.frequency for motion in motions]))
 
 
-def _caveats(rig: DrivenRig, moving: SteadyVibration) -> tuple[str, ...]:
+def _caveats(rig: DrivenRig, vibration: SteadyVibration) -> tuple[str, ...]:
     voltage = complex(voltage_harmonics(rig.drive)[0])
     caveats = stack_caveats(
         rig.stack,
         voltage_offset=float(sum(voltage_range(rig.drive))) / 2,
         voltage_peak_to_peak=rig.voltage_peak_to_peak,
-        elongation=moving.elongation * abs(voltage) / voltage if voltage else 0.0,
+        elongation=vibration.elongation * abs(voltage) / voltage if voltage else 0.0,
         frequency=rig.drive.frequency,
     )
-    if moving.gap_closed:
+    if vibration.gap_closed:
         caveats = (
             *caveats,
             "the mean planes touch within the period, where asperities interact and the contact law fails;"

@@ -42,8 +42,8 @@ class SteadyVibration:
         One repetition; for a motion that does not repeat, segments from one widest gap to another, each made periodic.
     vibration_amplitude : float
         Half of the displacement from peak to peak, the mean over periods where these differ. [m]
-    lowest_amplitude, highest_amplitude : float
-        Lowest and highest amplitude of any period. [m]
+    lowest_amplitude, highest_amplitude : float or None
+        Lowest and highest amplitude of any period, where periods differ. [m]
     mean_displacement : float
         Mean displacement of the tip from rest under the load. [m]
     contact_loss_fraction : float
@@ -68,8 +68,8 @@ class SteadyVibration:
     repetition_periods: int
     motions: tuple[GapMotion, ...]
     vibration_amplitude: float
-    lowest_amplitude: float
-    highest_amplitude: float
+    lowest_amplitude: float | None
+    highest_amplitude: float | None
     mean_displacement: float
     contact_loss_fraction: float
     beat_frequency: float | None
@@ -213,8 +213,8 @@ def _of_balance(rig: DrivenRig, states: SteadyStates, reason: str) -> SteadyVibr
         repetition_periods=1,
         motions=(gap_motion(states, ()),),
         vibration_amplitude=amplitude,
-        lowest_amplitude=amplitude,
-        highest_amplitude=amplitude,
+        lowest_amplitude=None,
+        highest_amplitude=None,
         mean_displacement=float(states.mean_displacement),
         contact_loss_fraction=float(states.contact_loss_fraction),
         beat_frequency=None,
@@ -246,8 +246,8 @@ def _of_march(rig: DrivenRig, attained: Attained, balanced: SteadyStates, reason
         repetition_periods=repeats,
         motions=motions,
         vibration_amplitude=float(attained.amplitudes.mean()),
-        lowest_amplitude=float(attained.amplitudes.min()),
-        highest_amplitude=float(attained.amplitudes.max()),
+        lowest_amplitude=float(attained.amplitudes.min()) if repeats != 1 else None,
+        highest_amplitude=float(attained.amplitudes.max()) if repeats != 1 else None,
         mean_displacement=float(x[:-1].mean()),
         contact_loss_fraction=float(found.contact_loss_fraction),
         beat_frequency=slow if slow > 0 and repeats != 1 else None,

@@ -48,7 +48,7 @@ def test_an_integer_beyond_any_float_is_refused_too(tmp_path: Path) -> None:
 def test_a_simulation_answers_or_refuses_whatever_the_size(key: str, number: str) -> None:
     unit = quantities()[key.rpartition(".")[2]].unit
     with suppress(SonolubeError):
-        assert 0 <= simulate(read_rig(TRIBOMETER, changes=[f"{key}={number} {unit}"])).friction_ratio < 10
+        assert 0 <= simulate(read_rig(TRIBOMETER, changes=[f"{key}={number} {unit}"])).friction.friction_ratio < 10
 
 
 def test_a_drive_slower_by_far_than_the_fastest_mode_is_refused_at_once() -> None:

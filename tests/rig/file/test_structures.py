@@ -49,7 +49,7 @@ def test_a_chain_of_the_same_masses_springs_and_dampers_is_the_pin_on_disc_chain
     own, chain = driven_rig(read_rig(TRIBOMETER)), with_structure(CHAIN)
     for name in ("mass_matrix", "damping_matrix", "stiffness_matrix", "drive_vector", "contact_vector"):
         assert getattr(chain.structure, name) == approx(getattr(own.structure, name), rel=1e-14)
-    assert simulate(chain).friction_force == approx(simulate(own).friction_force, rel=1e-9)
+    assert simulate(chain).friction.friction_force == approx(simulate(own).friction.friction_force, rel=1e-9)
     heavier = [load_study(rig, normal_load=[2.0, 4.0])["friction_ratio"].values for rig in (own, chain)]
     assert heavier[0] == approx(heavier[1], rel=1e-9)
 
