@@ -126,7 +126,7 @@ def test_one_test_of_each_kind_gives_a_reduction_that_nobody_can_vouch_for(tmp_p
 
 
 def test_friction_by_the_motor_balances_its_torque(tmp_path: Path) -> None:
-    from sonolube.measurement.friction.forces import MotorFriction
+    from sonolube.measurement.friction.motor_current import MotorFriction
 
     path = tmp_path / "motor.csv"
     lines = [f"{0.1 * i:.1f},{1.5 + 0.001 * (-1) ** i}" for i in range(100)]

@@ -16,7 +16,7 @@ from sonolube.thermal import (
     moving_rectangle_rise,
     stationary_rise,
 )
-from sonolube.thermal.band_integral import integrals_between
+from sonolube.thermal.jaeger_integral import integrals_between
 
 STEEL = ThermalSolid(thermal_conductivity=16.2, density=8000.0, specific_heat_capacity=500.0)
 HALF = 1e-4

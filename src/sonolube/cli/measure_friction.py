@@ -46,7 +46,7 @@ def friction(
     from functools import partial
 
     from sonolube.errors import InvalidInput
-    from sonolube.measurement.friction.forces import MotorFriction
+    from sonolube.measurement.friction.motor_current import MotorFriction
     from sonolube.measurement.recordings.mapping import read_mapping
     from sonolube.report.measured.friction import FrictionSettings, friction_sheet
     from sonolube.report.measured.friction_comparison import comparison_sheet

@@ -11,7 +11,7 @@ from sonolube.cli.measuring import Files, Report, Test, answer, each_file, quant
 from sonolube.cli.operate import Json
 
 if TYPE_CHECKING:
-    from sonolube.measurement.friction.wear_track import WearRing
+    from sonolube.measurement.wear_track import WearRing
     from sonolube.report.measured.groove import RingSettings
     from sonolube.report.measured.sheet import Sheet
     from sonolube.report.measured.surface import SurfaceSettings

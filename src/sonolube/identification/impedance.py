@@ -12,7 +12,7 @@ from sonolube.checks import Complexes, Floats, require_non_negative, require_wit
 from sonolube.errors import InvalidInput
 from sonolube.identification.spectral_residual import LOG_COMPLEX, residual_named
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
-from sonolube.measurement.statistics.logarithmic_fit import (
+from sonolube.measurement.statistics.log_parameter_fit import (
     Interval,
     LogarithmicFit,
     correlation_factor,

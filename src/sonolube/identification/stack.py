@@ -12,7 +12,7 @@ from sonolube.dynamics.structure import Structure, electrical_admittance
 from sonolube.errors import InvalidInput
 from sonolube.identification.spectral_residual import LOG_COMPLEX, residual_named
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
-from sonolube.measurement.statistics.logarithmic_fit import Interval, correlation_factor, fit_logarithms, intervals
+from sonolube.measurement.statistics.log_parameter_fit import Interval, correlation_factor, fit_logarithms, intervals
 
 _STIFFNESS_FACTORS = np.geomspace(1 / 30, 30, 121)
 _DAMPING_FACTORS = (0.1, 1.0, 10.0)

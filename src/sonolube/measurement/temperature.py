@@ -10,9 +10,9 @@ from scipy.optimize import least_squares
 
 from sonolube.checks import Floats, require_finite, require_positive, require_within
 from sonolube.errors import InvalidInput
-from sonolube.measurement.friction.time_base import require_signal
-from sonolube.measurement.statistics.correlation import correlated_mean, inefficiency
-from sonolube.measurement.statistics.logarithmic_fit import Interval
+from sonolube.measurement.time_series import require_signal
+from sonolube.measurement.statistics.autocorrelation import correlated_mean, inefficiency
+from sonolube.measurement.statistics.log_parameter_fit import Interval
 
 _STARTS = 7  # time constants tried, over the duration
 

@@ -23,7 +23,7 @@ from sonolube.thermal.jaeger import moving_band_rise, moving_rectangle_rise
 from sonolube.thermal.network import ThermalNetwork, network_rise
 from sonolube.thermal.solid import ThermalSolid
 from sonolube.thermal.source import EllipticSource, HeatSource, HertzianSource, RectangularSource
-from sonolube.thermal.two_factors import (
+from sonolube.thermal.contact_history import (
     ContactHistory,
     HeatedContact,
     frictional_heat_rate,

@@ -6,7 +6,7 @@ from scipy.integrate import quad_vec
 from scipy.special import erf
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
-from sonolube.thermal.band_integral import integrals_between
+from sonolube.thermal.jaeger_integral import integrals_between
 from sonolube.thermal.solid import ThermalSolid
 from sonolube.thermal.source import RectangularSource
 

@@ -12,7 +12,7 @@ from pytest import approx, raises
 from scipy.signal import lfilter
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.analysis import (
+from sonolube.measurement.friction_analysis import (
     analyse_cycles,
     analyse_motor_current,
     analyse_rotation,
@@ -22,19 +22,19 @@ from sonolube.measurement.analysis import (
     analyse_windows,
     analyse_wobble,
 )
-from sonolube.measurement.friction.forces import (
+from sonolube.measurement.friction.motor_current import (
     MotorFriction,
     friction_from_motor_current,
     measured_reduction,
     motor_friction_uncertainty,
 )
 from sonolube.measurement.friction.loops import friction_loops, frictional_work
-from sonolube.measurement.friction.steady_state import steady_state
+from sonolube.measurement.friction.running_in import steady_state
 from sonolube.measurement.friction.stick_slip import stick_slip
 from sonolube.measurement.friction.voltage_steps import staircase, voltage_envelope
 from sonolube.measurement.friction.windows import streamed_window_statistics, window_statistics
 from sonolube.measurement.friction.wobble import remove_wobble
-from sonolube.measurement.statistics.correlation import correlated_mean, correlation_time, inefficiency
+from sonolube.measurement.statistics.autocorrelation import correlated_mean, correlation_time, inefficiency
 
 RNG = np.random.default_rng(7)
 RATE = 400.0  # Hz, D 2.3.2

@@ -6,7 +6,7 @@ import numpy as np
 from pytest import approx, mark, raises, skip
 
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.measurement.impedance.columns import heading
+from sonolube.measurement.impedance.column_headings import heading
 from sonolube.measurement.impedance.reader import read_impedance
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 

@@ -12,7 +12,7 @@ from pytest import approx, importorskip, mark, raises, skip
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.measurement.surface_files.reader import read_surface_file
-from sonolube.measurement.surface_files.record import SurfaceReading
+from sonolube.measurement.surface_files.surface_reading import SurfaceReading
 from sonolube.measurement.surface_files.wyko import read_wyko
 
 MEASURED = Path(__file__).parents[4] / "shared" / "data" / "surfaces" / "opd-1.opd"

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.friction.time_base import require_signal
+from sonolube.measurement.time_series import require_signal
 
 _HYSTERESIS = 0.1  # of the highest velocity, which a reversal must exceed to count
 

@@ -9,8 +9,8 @@ from scipy.signal import find_peaks
 
 from sonolube.checks import Floats, require_finite, require_positive, require_within
 from sonolube.errors import InvalidInput
-from sonolube.measurement.friction.time_base import require_signal
-from sonolube.measurement.statistics.correlation import correlated_mean
+from sonolube.measurement.time_series import require_signal
+from sonolube.measurement.statistics.autocorrelation import correlated_mean
 from sonolube.metrics import linear_speed
 
 _FIT = 0.25  # by which an interval may miss a multiple of its neighbours and still mean lost pulses

@@ -9,7 +9,7 @@ from scipy.signal.windows import hann
 
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.measurement.friction.time_base import even_interval, require_signal
+from sonolube.measurement.time_series import even_interval, require_signal
 
 _FEWEST = 3  # events
 _AGREEMENT = 0.2

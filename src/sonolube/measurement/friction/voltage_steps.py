@@ -9,9 +9,9 @@ from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
 from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.measurement.friction.forces import measured_reduction
-from sonolube.measurement.friction.time_base import even_interval, require_signal
-from sonolube.measurement.statistics.correlation import correlated_mean
+from sonolube.measurement.friction.motor_current import measured_reduction
+from sonolube.measurement.time_series import even_interval, require_signal
+from sonolube.measurement.statistics.autocorrelation import correlated_mean
 
 _PIECES = 10  # into which the shortest step is cut to find where it begins
 

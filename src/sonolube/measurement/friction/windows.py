@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.measurement.friction.time_base import require_signal
+from sonolube.measurement.time_series import require_signal
 from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.measurement.recordings.reader import blocks
 

@@ -8,9 +8,9 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.impedance.columns import impedance_of
+from sonolube.measurement.impedance.column_headings import impedance_of
 from sonolube.measurement.impedance.spectrum import Points
-from sonolube.measurement.recordings.numbers import number
+from sonolube.measurement.numeric_text import number
 
 HP_4294A = "HP 4294A"
 MAGIC = "4294A"

@@ -7,9 +7,9 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.impedance.columns import PAIRS, Heading, heading, impedance_of
+from sonolube.measurement.impedance.column_headings import PAIRS, Heading, heading, impedance_of
 from sonolube.measurement.impedance.spectrum import Points
-from sonolube.measurement.recordings.numbers import number
+from sonolube.measurement.numeric_text import number
 
 KEYSIGHT_E4990A = "Keysight E4990A"
 MFIA = "Zurich Instruments MFIA"

@@ -8,7 +8,7 @@ import numpy as np
 from sonolube.checks import Complexes, Floats
 from sonolube.errors import InvalidInput
 from sonolube.measurement.impedance.spectrum import Points
-from sonolube.measurement.recordings.numbers import number
+from sonolube.measurement.numeric_text import number
 
 TOUCHSTONE = "touchstone"
 

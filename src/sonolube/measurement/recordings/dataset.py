@@ -11,7 +11,7 @@ from sonolube import __version__
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, suggestion
 from sonolube.measurement.recordings.mapping import ChannelSource, RecordingMapping
-from sonolube.measurement.recordings.table import Column, Table
+from sonolube.measurement.recordings.raw_table import Column, Table
 from sonolube.units import convert
 from sonolube.vocabulary import quantities, unit_of
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from sonolube.errors import InvalidInput, suggestion
 from sonolube.measurement.recordings.mapping import RecordingMapping, TextLayout
-from sonolube.measurement.recordings.numbers import number, numbers
-from sonolube.measurement.recordings.table import Column, Table, one_line
+from sonolube.measurement.numeric_text import number, numbers
+from sonolube.measurement.recordings.raw_table import Column, Table, one_line
 
 FORMAT = "delimited text"
 _SEPARATORS = "\t;,|"

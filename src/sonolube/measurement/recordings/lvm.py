@@ -13,8 +13,8 @@ from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.delimited import decoded
 from sonolube.measurement.recordings.mapping import RecordingMapping
-from sonolube.measurement.recordings.numbers import numbers
-from sonolube.measurement.recordings.table import Column, Table
+from sonolube.measurement.numeric_text import numbers
+from sonolube.measurement.recordings.raw_table import Column, Table
 
 FORMAT = "LabVIEW measurement text"
 MAGIC = "LabVIEW Measurement"

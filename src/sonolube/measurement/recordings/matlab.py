@@ -8,7 +8,7 @@ import numpy as np
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.mapping import RecordingMapping
-from sonolube.measurement.recordings.table import Column, Table, refusing
+from sonolube.measurement.recordings.raw_table import Column, Table, refusing
 
 FORMAT = "MATLAB"
 _RATES = ("sample_rate", "sampling_rate", "fs", "Fs")

@@ -17,7 +17,7 @@ from sonolube.measurement.recordings import lvm as labview_text
 from sonolube.measurement.recordings import uff as universal_file
 from sonolube.measurement.recordings.dataset import assemble, refuse_unsorted
 from sonolube.measurement.recordings.mapping import RecordingMapping, read_mapping
-from sonolube.measurement.recordings.table import Table
+from sonolube.measurement.recordings.raw_table import Table
 
 if TYPE_CHECKING:
     import xarray as xr

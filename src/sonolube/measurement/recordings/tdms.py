@@ -11,7 +11,7 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.mapping import RecordingMapping
-from sonolube.measurement.recordings.table import Column, Table, one_line, refusing
+from sonolube.measurement.recordings.raw_table import Column, Table, one_line, refusing
 
 FORMAT = "TDMS"
 _LEAD_IN = 28

@@ -7,7 +7,7 @@ import numpy as np
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.mapping import RecordingMapping
-from sonolube.measurement.recordings.table import Column, Table, refusing
+from sonolube.measurement.recordings.raw_table import Column, Table, refusing
 
 FORMAT = "universal file"
 _TIME_RESPONSE = 1

@@ -10,7 +10,7 @@ from typing import BinaryIO
 import numpy as np
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.surface_files.record import SurfaceReading
+from sonolube.measurement.surface_files.surface_reading import SurfaceReading
 from sonolube.measurement.surface_files.surface_topography import read_with_surface_topography
 from sonolube.measurement.surface_files.wyko import WYKO_MAGIC, read_wyko
 from sonolube.measurement.surface_files.xyz import is_point, read_xyz

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.surface_files.record import SurfaceReading
+from sonolube.measurement.surface_files.surface_reading import SurfaceReading
 
 _TITLES = ("Title", "DataSetName", "object_name")
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.surface_files.record import SurfaceReading
+from sonolube.measurement.surface_files.surface_reading import SurfaceReading
 
 WYKO_MAGIC = b"Directory"
 """What stands at byte 2 of every Wyko OPD file."""

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.surface_files.record import SurfaceReading
+from sonolube.measurement.surface_files.surface_reading import SurfaceReading
 
 _LONGEST_LINE = 1024
 _MOST_HEADER_LINES = 64

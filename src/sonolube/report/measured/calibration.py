@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.measurement.analysis import channel
+from sonolube.measurement.friction_analysis import channel
 from sonolube.measurement.gauge.calibration import (
     BranchCalibration,
     HysteresisCalibration,

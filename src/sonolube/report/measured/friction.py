@@ -11,7 +11,7 @@ import numpy as np
 
 from sonolube.checks import require_positive
 from sonolube.errors import InvalidInput
-from sonolube.measurement.analysis import (
+from sonolube.measurement.friction_analysis import (
     analyse_cycles,
     analyse_motor_current,
     analyse_running_in,
@@ -21,13 +21,13 @@ from sonolube.measurement.analysis import (
     analyse_wobble,
     channel,
 )
-from sonolube.measurement.friction.forces import MotorFriction
-from sonolube.measurement.friction.steady_state import SteadyState, steady_state
+from sonolube.measurement.friction.motor_current import MotorFriction
+from sonolube.measurement.friction.running_in import SteadyState, steady_state
 from sonolube.measurement.friction.windows import DEFAULT_WINDOW, WindowStatistics, streamed_window_statistics
 from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.measurement.recordings.reader import format_of, read_recording
 from sonolube.measurement.recordings.tdms import FORMAT as TDMS
-from sonolube.measurement.statistics.correlation import correlated_mean
+from sonolube.measurement.statistics.autocorrelation import correlated_mean
 from sonolube.report.measured import friction_figures as figures
 from sonolube.report.measured.sheet import (
     Part,

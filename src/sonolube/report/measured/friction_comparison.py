@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from functools import partial
 
-from sonolube.measurement.statistics.intervals import compare, ratio_interval
+from sonolube.measurement.statistics.repeated_tests import compare, ratio_interval
 from sonolube.report.measured import friction_figures as figures
 from sonolube.report.measured.sheet import Part, Sheet, SheetFigure, Value, attempted, known, sheet_of
 

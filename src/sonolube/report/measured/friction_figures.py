@@ -7,8 +7,8 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.figure import COLOURS, MARKERS
-from sonolube.measurement.analysis import MotorFrictionTrace
-from sonolube.measurement.friction.steady_state import SteadyState
+from sonolube.measurement.friction_analysis import MotorFrictionTrace
+from sonolube.measurement.friction.running_in import SteadyState
 from sonolube.measurement.friction.voltage_steps import StaircaseStep
 from sonolube.measurement.friction.windows import WindowStatistics
 from sonolube.vocabulary import quantities

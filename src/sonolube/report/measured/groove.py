@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from sonolube.measurement.friction.wear_track import WearReduction, WearRing, ring_of_grooves, wear_reduction_of_rings
+from sonolube.measurement.wear_track import WearReduction, WearRing, ring_of_grooves, wear_reduction_of_rings
 from sonolube.measurement.surface_files.reader import read_surface_file
 from sonolube.report.measured import groove_figures as figures
 from sonolube.report.measured.sheet import (

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from sonolube.checks import Floats
 from sonolube.figure import COLOURS, MARKERS
-from sonolube.measurement.friction.wear_track import WearRing
+from sonolube.measurement.wear_track import WearRing
 from sonolube.report.measured.surface_figures import length_scale, show_map
 from sonolube.surfaces import HeightMap
 from sonolube.surfaces.grooves.groove import Groove

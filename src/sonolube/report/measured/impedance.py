@@ -12,7 +12,7 @@ from sonolube.identification.spectral_residual import LOG_COMPLEX
 from sonolube.identification.stack import fit_stack
 from sonolube.measurement.impedance.reader import read_impedance
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
-from sonolube.measurement.statistics.logarithmic_fit import Interval
+from sonolube.measurement.statistics.log_parameter_fit import Interval
 from sonolube.report.measured import impedance_figures as figures
 from sonolube.report.measured.sheet import Part, Sheet, SheetFigure, Value, known, sheet_of
 from sonolube.units import engineering

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from sonolube.measurement.analysis import analyse_rotation, channel
+from sonolube.measurement.friction_analysis import analyse_rotation, channel
 from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.measurement.recordings.reader import read_recording
 from sonolube.report.measured import rotation_figures as figures

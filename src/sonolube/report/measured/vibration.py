@@ -11,7 +11,7 @@ import numpy as np
 
 from sonolube.checks import Complexes, Floats, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.measurement.analysis import channel
+from sonolube.measurement.friction_analysis import channel
 from sonolube.measurement.recordings.dataset import in_si
 from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.measurement.recordings.reader import read_recording

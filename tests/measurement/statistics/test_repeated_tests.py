@@ -10,7 +10,7 @@ from pytest import approx, raises
 from scipy import stats
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.statistics.intervals import compare, mean_estimate, ratio_interval, repeatability
+from sonolube.measurement.statistics.repeated_tests import compare, mean_estimate, ratio_interval, repeatability
 
 tests = st.lists(st.floats(-100, 100).map(lambda x: round(x, 3)), min_size=2, max_size=4)
 

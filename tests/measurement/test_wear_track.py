@@ -7,7 +7,7 @@ import numpy as np
 from pytest import approx, fixture, raises
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.friction.wear_track import WearRing, measure_ring, ring_of_grooves, wear_reduction_of_rings
+from sonolube.measurement.wear_track import WearRing, measure_ring, ring_of_grooves, wear_reduction_of_rings
 from sonolube.surfaces import (
     Groove,
     GrooveShape,

@@ -7,7 +7,7 @@ import numpy as np
 from scipy import stats
 
 from sonolube.checks import Floats
-from sonolube.measurement.statistics.correlation import inefficiency
+from sonolube.measurement.statistics.autocorrelation import inefficiency
 
 _ROUNDING = 1e-10  # residuals below which nothing fits better
 _EVALUATIONS = 60  # for each parameter

@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, suggestion
-from sonolube.measurement.friction.forces import MotorFriction, friction_from_motor_current, motor_friction_uncertainty
+from sonolube.measurement.friction.motor_current import MotorFriction, friction_from_motor_current, motor_friction_uncertainty
 from sonolube.measurement.friction.loops import FrictionLoops, FrictionWork, friction_loops, frictional_work
 from sonolube.measurement.friction.rotation import Rotation, pulse_times, revolutions_at, rotation
-from sonolube.measurement.friction.steady_state import SteadyState, steady_state
+from sonolube.measurement.friction.running_in import SteadyState, steady_state
 from sonolube.measurement.friction.stick_slip import StickSlipEstimate, stick_slip
 from sonolube.measurement.friction.voltage_steps import StaircaseStep, staircase, voltage_envelope
 from sonolube.measurement.friction.windows import DEFAULT_WINDOW, WindowStatistics, window_statistics

@@ -7,8 +7,8 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.measurement.friction.time_base import require_signal
-from sonolube.measurement.statistics.correlation import correlated_mean, inefficiency
+from sonolube.measurement.time_series import require_signal
+from sonolube.measurement.statistics.autocorrelation import correlated_mean, inefficiency
 
 _SETTLED_SHARE = 1 / 3  # of the test, at its end, which tells level and scatter
 _HOLD = 5  # windows that must stay within the band

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
-from sonolube.measurement.statistics.correlation import correlated_mean
+from sonolube.measurement.statistics.autocorrelation import correlated_mean
 from sonolube.metrics import friction_from_current, friction_reduction
 
 

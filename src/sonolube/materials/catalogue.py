@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import Any
 
 from sonolube.errors import MissingProperty, UnknownName
-from sonolube.materials.table import read_table
+from sonolube.materials.property_file import read_table
 from sonolube.vocabulary import quantity
 
 

@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 from sonolube.checks import require_finite
 from sonolube.errors import InvalidInput, MissingProperty, UnknownName
-from sonolube.materials import record
-from sonolube.materials.record import Material
-from sonolube.materials.table import read_table
+from sonolube.materials import catalogue as record
+from sonolube.materials.catalogue import Material
+from sonolube.materials.property_file import read_table
 
 Floats = NDArray[np.float64]
 
