@@ -6,7 +6,12 @@ from hypothesis import strategies as st
 from pytest import approx, mark, raises
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.vibration import amplitude_per_volt, complex_amplitudes, modal_assurance, operating_shape
+from sonolube.measurement.vibration import (
+    amplitude_per_volt,
+    complex_amplitudes,
+    modal_assurance_criterion,
+    operating_deflection_shape,
+)
 
 VOLTS = np.array([5.1, 10.3, 15.5, 20.7, 25.9])
 
@@ -56,12 +61,12 @@ def test_amplitudes_and_phases_come_back_from_signals(frequency: float) -> None:
 
 def test_a_standing_wave_is_one_shape_and_a_running_one_is_not() -> None:
     points = np.linspace(0, 1, 41)
-    standing = operating_shape(3e-6 * np.exp(0.7j) * np.cos(2 * np.pi * points))
-    assert standing.standing_share == approx(1.0)
+    standing = operating_deflection_shape(3e-6 * np.exp(0.7j) * np.cos(2 * np.pi * points))
+    assert standing.standing_wave_fraction == approx(1.0)
     assert standing.greatest_amplitude == approx(3e-6)
     assert np.abs(standing.shape) == approx(np.abs(np.cos(2 * np.pi * points)))
-    running = operating_shape(np.exp(2j * np.pi * points[:-1]))
-    assert running.standing_share == approx(0.5)
+    running = operating_deflection_shape(np.exp(2j * np.pi * points[:-1]))
+    assert running.standing_wave_fraction == approx(0.5)
 
 
 shapes = st.lists(st.complex_numbers(max_magnitude=10, min_magnitude=0.1), min_size=4, max_size=4)
@@ -72,28 +77,28 @@ def test_assurance_is_one_in_proportion_symmetric_and_never_more_than_one(
     shape: list[complex], other: list[complex], factor: complex
 ) -> None:
     a, b = np.array(shape), np.array(other)
-    assert modal_assurance(a, factor * a)[0, 0] == approx(1.0)
-    between = modal_assurance(a, b)[0, 0]
+    assert modal_assurance_criterion(a, factor * a)[0, 0] == approx(1.0)
+    between = modal_assurance_criterion(a, b)[0, 0]
     assert between <= 1 + 1e-12
-    assert modal_assurance(factor * b, a)[0, 0] == approx(between)
+    assert modal_assurance_criterion(factor * b, a)[0, 0] == approx(between)
 
 
 def test_modes_of_a_uniform_chain_are_told_apart() -> None:
     # equal masses and springs between fixed ends: sines, orthogonal because the mass matrix is the unit one
     points = np.arange(1, 8)
     modes = np.sin(np.pi * np.multiply.outer(points, np.arange(1, 4)) / 8)
-    assert modal_assurance(modes, modes) == approx(np.eye(3), abs=1e-12)
+    assert modal_assurance_criterion(modes, modes) == approx(np.eye(3), abs=1e-12)
     mixed = modes[:, 0] + modes[:, 1]
-    assert modal_assurance(mixed, modes)[0] == approx([0.5, 0.5, 0.0], abs=1e-12)
+    assert modal_assurance_criterion(mixed, modes)[0] == approx([0.5, 0.5, 0.0], abs=1e-12)
 
 
 def test_what_is_no_shape_is_refused() -> None:
     with raises(InvalidInput, match="same points, got 2 and 3"):
-        modal_assurance([1.0, 2.0], [1.0, 2.0, 3.0])
+        modal_assurance_criterion([1.0, 2.0], [1.0, 2.0, 3.0])
     with raises(InvalidInput, match="none of them zero"):
-        modal_assurance([0.0, 0.0], [1.0, 2.0])
+        modal_assurance_criterion([0.0, 0.0], [1.0, 2.0])
     with raises(InvalidInput, match="not all zero"):
-        operating_shape([0.0, 0.0])
+        operating_deflection_shape([0.0, 0.0])
     with raises(InvalidInput, match="sample faster"):
         complex_amplitudes(time=np.arange(100) / 25e3, signals=np.ones((1, 100)), frequency=25e3)
     with raises(InvalidInput, match=r"covers 0\.25 periods"):

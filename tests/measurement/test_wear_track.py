@@ -7,7 +7,12 @@ import numpy as np
 from pytest import approx, fixture, raises
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.wear_track import WearRing, measure_ring, ring_of_grooves, wear_reduction_of_rings
+from sonolube.measurement.wear_track import (
+    WearTrack,
+    measure_wear_track,
+    wear_reduction_between_tracks,
+    wear_track_from_grooves,
+)
 from sonolube.surfaces import (
     Groove,
     GrooveShape,
@@ -34,24 +39,24 @@ def groove() -> Groove:
     return measure_groove(scan(0))
 
 
-def ring(groove: Groove, areas: list[float]) -> WearRing:
+def ring(groove: Groove, areas: list[float]) -> WearTrack:
     grooves = [replace(groove, cross_section_area=area) for area in areas]
-    return ring_of_grooves(grooves, groove_diameter=DIAMETER, sliding_distance=DISTANCE)
+    return wear_track_from_grooves(grooves, groove_diameter=DIAMETER, sliding_distance=DISTANCE)
 
 
 def test_scans_around_a_ring_give_its_volume() -> None:
-    found = measure_ring((scan(seed) for seed in range(4)), groove_diameter=DIAMETER, sliding_distance=DISTANCE)
+    found = measure_wear_track((scan(seed) for seed in range(4)), groove_diameter=DIAMETER, sliding_distance=DISTANCE)
     volume = math.pi * DIAMETER * SHAPE.cross_section_area
     assert found.wear_volume == approx(volume, rel=1e-3)
     assert found.wear_rate == approx(volume / DISTANCE, rel=1e-3)  # 2.2e-11 m2, as D Table 2.5
-    assert found.left_out == ()
+    assert found.excluded_scans == ()
 
 
 def test_a_scan_without_groove_is_left_out_with_its_reason() -> None:
     scans = [scan(0), scan(1, depth=1e-15), scan(2)]
-    found = measure_ring(scans, groove_diameter=DIAMETER, sliding_distance=DISTANCE)
-    assert found.section_area.size == 2
-    assert found.left_out[0].startswith("scan 2: no groove found")
+    found = measure_wear_track(scans, groove_diameter=DIAMETER, sliding_distance=DISTANCE)
+    assert found.cross_section_area.size == 2
+    assert found.excluded_scans[0].startswith("scan 2: no groove found")
 
 
 def test_the_interval_is_students_by_hand(groove: Groove) -> None:
@@ -68,12 +73,12 @@ def test_one_scan_is_no_ring(groove: Groove) -> None:
         ring(groove, [3e-8])
     cut = replace(groove, complete=False, caveat="cut")
     with raises(InvalidInput, match=r"got 1 \(scan 2: cut\)"):
-        ring_of_grooves([groove, cut], groove_diameter=DIAMETER, sliding_distance=DISTANCE)
+        wear_track_from_grooves([groove, cut], groove_diameter=DIAMETER, sliding_distance=DISTANCE)
 
 
 def test_the_reduction_is_that_of_the_mean_rates(groove: Groove) -> None:
     without, with_vibration = ring(groove, [4e-8, 4.1e-8, 3.9e-8]), ring(groove, [2e-8, 2.1e-8, 1.9e-8])
-    found = wear_reduction_of_rings([without], [with_vibration])
+    found = wear_reduction_between_tracks([without], [with_vibration])
     assert found.wear_reduction == approx(0.5)
     assert found.wear_reduction_uncertainty == approx(0.5 * math.hypot(0.1 / 4, 0.1 / 2) / math.sqrt(3), rel=1e-6)
     assert not found.between_specimens
@@ -87,7 +92,7 @@ def test_the_interval_of_the_reduction_covers_the_truth_as_often_as_it_says(groo
         off, on = (
             [ring(groove, list(mean * rng.normal(1, 0.05, 2) + 0 * mean)) for _ in range(3)] for mean in (4e-8, 2e-8)
         )
-        found = wear_reduction_of_rings(off, on)
+        found = wear_reduction_between_tracks(off, on)
         assert found.between_specimens
         covered += found.interval[0] <= 0.5 <= found.interval[1]
     assert 0.92 <= covered / 400 <= 0.99
@@ -95,4 +100,4 @@ def test_the_interval_of_the_reduction_covers_the_truth_as_often_as_it_says(groo
 
 def test_nothing_to_compare_is_refused(groove: Groove) -> None:
     with raises(InvalidInput, match="a ring worn without vibration and one worn with it"):
-        wear_reduction_of_rings([], [ring(groove, [1e-8, 2e-8])])
+        wear_reduction_between_tracks([], [ring(groove, [1e-8, 2e-8])])

@@ -9,13 +9,13 @@ from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.metrics import (
     EfficiencyFit,
     EfficiencyLine,
-    efficiency_band,
     efficiency_coefficient,
+    efficiency_confidence_band,
+    efficiency_prediction_band,
     fit_efficiency,
     friction_at_power,
     power_estimate,
-    prediction_band,
-    require_covered,
+    require_fitted_speed,
 )
 
 SPEEDS = np.array([0.04, 0.065, 0.08, 0.1, 0.12, 0.15, 0.18])
@@ -48,10 +48,10 @@ def test_line_and_bands_are_those_of_the_normal_equations() -> None:
     assert errors == approx(np.sqrt(np.diag(covariance)))
     at = np.array([1.0, 0.11])
     reach = student.ppf(0.975, SPEEDS.size - 2) * np.sqrt(at @ covariance @ at)
-    low, high = efficiency_band(fit, sliding_speed=0.11)
+    low, high = efficiency_confidence_band(fit, sliding_speed=0.11)
     assert [low, high] == approx([at @ coefficients - reach, at @ coefficients + reach])
     wide = student.ppf(0.975, SPEEDS.size - 2) * np.sqrt(variance + at @ covariance @ at)
-    low, high = prediction_band(fit, sliding_speed=0.11)
+    low, high = efficiency_prediction_band(fit, sliding_speed=0.11)
     assert [low, high] == approx([at @ coefficients - wide, at @ coefficients + wide])
 
 
@@ -62,7 +62,7 @@ def test_bands_hold_the_true_line_and_the_next_run_as_often_as_they_say() -> Non
         eta = 1e-9 - 3e-9 * SPEEDS + 0.05e-9 * rng.standard_normal(SPEEDS.size)
         fit = fit_efficiency(sliding_speed=SPEEDS, efficiency_coefficient=eta)
         truth, run = 1e-9 - 3e-9 * 0.1, 1e-9 - 3e-9 * 0.1 + 0.05e-9 * rng.standard_normal()
-        for place, (band, value) in enumerate(((efficiency_band, truth), (prediction_band, run))):
+        for place, (band, value) in enumerate(((efficiency_confidence_band, truth), (efficiency_prediction_band, run))):
             low, high = band(fit, sliding_speed=0.1, confidence_level=0.9)
             held[place] += low <= value <= high
     assert held / 2000 == approx([0.9, 0.9], abs=0.02)
@@ -73,7 +73,7 @@ def test_the_estimated_power_leaves_the_friction_wanted_and_its_ends_belong_to_t
     wanted = {"intrinsic_friction_force": 0.89, "sliding_speed": 0.0655, **RIG}
     found = power_estimate(fit, reduced_friction_force=0.4, **wanted)
     assert friction_at_power(fit.line, actuator_power=found.actuator_power, **wanted) == approx(0.4)
-    low, high = prediction_band(fit, sliding_speed=0.0655)
+    low, high = efficiency_prediction_band(fit, sliding_speed=0.0655)
     for power, efficiency in ((found.lowest_power, high), (found.highest_power, low)):
         assert power is not None
         back = efficiency_coefficient(reduced_friction_force=0.4, actuator_power=power, **wanted)
@@ -91,7 +91,7 @@ def test_runs_that_scatter_to_nought_leave_the_power_without_an_upper_end() -> N
 @pytest.mark.parametrize("speed", [0.02, 0.3])
 def test_a_speed_that_no_run_covers_is_refused_with_the_range(speed: float) -> None:
     with raises(OutsideRange, match=r"must lie within the runs, 0\.04 to 0\.18 m/s"):
-        require_covered(measured(), sliding_speed=speed)
+        require_fitted_speed(measured(), sliding_speed=speed)
     with raises(OutsideRange, match="measure there"):
         power_estimate(
             measured(), intrinsic_friction_force=0.89, reduced_friction_force=0.4, sliding_speed=speed, **RIG

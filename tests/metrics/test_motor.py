@@ -8,9 +8,9 @@ from pytest import approx, raises
 from sonolube.errors import InvalidInput
 from sonolube.metrics import (
     DCMotor,
-    current_under_friction,
     friction_from_current,
-    motor_from_two_states,
+    motor_current_under_friction,
+    motor_from_two_operating_points,
     motor_speed,
 )
 
@@ -32,7 +32,7 @@ def test_what_comes_in_either_heats_the_windings_or_turns_the_disc(current: floa
 
 def test_two_states_of_a_motor_tell_it() -> None:
     currents = np.array([1.4, 0.9])
-    found = motor_from_two_states(
+    found = motor_from_two_operating_points(
         motor_voltage=8.0, motor_current=currents, rotation_speed=motor_speed(MOTOR, motor_current=currents)
     )
     assert (found.torque_constant, found.resistance) == approx((0.6, 4.0))
@@ -48,7 +48,7 @@ def test_an_ampere_at_six_tenths_of_a_newton_metre_carries_twenty_newtons_at_thr
 
 @given(force=st.floats(-3, 20), idle=st.floats(0.5, 1))
 def test_current_and_friction_are_each_others_inverse(force: float, idle: float) -> None:
-    current = current_under_friction(MOTOR, friction_force=force, idle_current=idle, groove_diameter=0.06)
+    current = motor_current_under_friction(MOTOR, friction_force=force, idle_current=idle, groove_diameter=0.06)
     back = friction_from_current(
         torque_constant=MOTOR.torque_constant, motor_current=current, idle_current=idle, groove_diameter=0.06
     )
@@ -57,7 +57,7 @@ def test_current_and_friction_are_each_others_inverse(force: float, idle: float)
 
 def test_impossible_motors_are_refused_by_name() -> None:
     with raises(InvalidInput, match="motor_current must fall where the speed rises"):
-        motor_from_two_states(motor_voltage=8.0, motor_current=[1.0, 1.2], rotation_speed=[0.8, 0.9])
+        motor_from_two_operating_points(motor_voltage=8.0, motor_current=[1.0, 1.2], rotation_speed=[0.8, 0.9])
     with raises(InvalidInput, match=r"stalled motor, 2 A"):
         motor_speed(MOTOR, motor_current=2.1)
     with raises(InvalidInput, match=r"torque_constant must be positive, got 0\.0"):

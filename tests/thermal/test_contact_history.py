@@ -10,9 +10,9 @@ from sonolube.thermal import (
     ThermalNetwork,
     ThermalSolid,
     contact_rise,
+    contact_temperature_history,
     frictional_heat_rate,
     superimposed_heat_rate,
-    two_factor_history,
 )
 
 STEEL = ThermalSolid(thermal_conductivity=16.2, density=8000.0, specific_heat_capacity=500.0)
@@ -29,7 +29,7 @@ TIME = np.linspace(0.0, 40.0, 2001)
 def test_the_work_of_friction_is_the_heat_of_the_disc_that_stored_and_that_lost() -> None:
     middle = (TIME[1:] + TIME[:-1]) / 2
     friction = np.where(middle < 20, 0.3, 0.0)
-    record = two_factor_history(CONTACT, time=TIME, friction_force=friction, sliding_speed=0.2)
+    record = contact_temperature_history(CONTACT, time=TIME, friction_force=friction, sliding_speed=0.2)
     step = TIME[1]
     into_disc = np.sum((1 - record.heat_partition) * record.heat_rate) * step
     lost = 0.05 * np.sum((record.bulk_rise[1:] + record.bulk_rise[:-1]) / 2) * step
@@ -38,14 +38,14 @@ def test_the_work_of_friction_is_the_heat_of_the_disc_that_stored_and_that_lost(
 
 
 def test_the_contact_is_warmer_than_the_pin_by_the_flash() -> None:
-    record = two_factor_history(CONTACT, time=TIME, friction_force=0.3, sliding_speed=0.2)
+    record = contact_temperature_history(CONTACT, time=TIME, friction_force=0.3, sliding_speed=0.2)
     flash = contact_rise(STEEL, COATING, CONTACT.source, heat_rate=0.06, sliding_speed=0.2).mean_temperature_rise
     assert record.temperature_rise[1:] - record.bulk_rise[1:] == approx(np.full(2000, flash))
 
 
 def test_less_friction_cools_and_heat_of_vibration_warms_each_in_proportion() -> None:
     def end(friction: float, vibration: float) -> float:
-        record = two_factor_history(
+        record = contact_temperature_history(
             CONTACT, time=TIME, friction_force=friction, sliding_speed=0.2, vibration_heat_rate=vibration
         )
         return float(record.temperature_rise[-1])
@@ -65,4 +65,4 @@ def test_the_published_picture_is_friction_times_the_resultant_of_table_4_5() ->
 
 def test_steps_that_do_not_fit_the_times_are_refused() -> None:
     with raises(InvalidInput, match="one step to an interval of time"):
-        two_factor_history(CONTACT, time=[0.0, 1.0, 2.0], friction_force=[0.1, 0.1, 0.1], sliding_speed=0.1)
+        contact_temperature_history(CONTACT, time=[0.0, 1.0, 2.0], friction_force=[0.1, 0.1, 0.1], sliding_speed=0.1)

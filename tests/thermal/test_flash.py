@@ -14,11 +14,11 @@ from sonolube.thermal import (
     ThermalSolid,
     blok_partition,
     contact_rise,
-    fast_rise,
     flash_rise,
+    high_peclet_rise,
+    low_peclet_rise,
     moving_rectangle_rise,
     peclet_number,
-    stationary_rise,
 )
 
 STEEL = ThermalSolid(thermal_conductivity=16.2, density=8000.0, specific_heat_capacity=500.0)
@@ -60,7 +60,7 @@ def test_the_interpolation_stays_near_the_integral_over_a_square(peclet: float) 
         heat_flux=FLUX,
         sliding_speed=speed_at(peclet),
         distance_ahead=places,
-        distance_aside=places[:, np.newaxis],
+        transverse_distance=places[:, np.newaxis],
     )
     mean = weights @ inside @ weights / 4
     axis = moving_rectangle_rise(
@@ -78,7 +78,7 @@ def test_a_resting_rectangle_is_as_hot_as_the_sum_over_its_points(aspect: float)
     centre = 4 * dblquad(lambda y, x: 1 / np.hypot(x, y), 0, 1, 0, aspect)[0] / (2 * np.pi)
     pairs = dblquad(lambda y, x: (2 - x) * (2 * aspect - y) / np.hypot(x, y), 0, 2, 0, 2 * aspect)[0]
     mean = 4 * pairs / (2 * np.pi) / (4 * aspect)
-    rise = stationary_rise(STEEL, source, heat_flux=FLUX)
+    rise = low_peclet_rise(STEEL, source, heat_flux=FLUX)
     unit = FLUX * 1e-4 / STEEL.thermal_conductivity
     assert rise.peak_temperature_rise / unit == approx(centre, rel=1e-6)
     assert rise.mean_temperature_rise / unit == approx(mean, rel=1e-6)
@@ -89,13 +89,13 @@ def test_a_resting_ellipse_is_as_hot_in_its_centre_as_the_sum_over_its_points(as
     angles = (np.arange(20_000) + 0.5) * 2 * np.pi / 20_000
     radius = aspect / np.hypot(aspect * np.cos(angles), np.sin(angles))  # of the rim, half length one
     source = EllipticSource(half_length=1e-4, half_width=aspect * 1e-4)
-    rise = stationary_rise(STEEL, source, heat_flux=FLUX)
+    rise = low_peclet_rise(STEEL, source, heat_flux=FLUX)
     unit = FLUX * 1e-4 / STEEL.thermal_conductivity
     assert rise.peak_temperature_rise / unit == approx(radius.mean(), rel=1e-6)
 
 
 def test_a_resting_disc_has_the_mean_of_carslaw_and_jaeger() -> None:
-    rise = stationary_rise(STEEL, DOT, heat_flux=FLUX)
+    rise = low_peclet_rise(STEEL, DOT, heat_flux=FLUX)
     unit = FLUX * DOT.half_length / STEEL.thermal_conductivity
     assert (rise.peak_temperature_rise, rise.mean_temperature_rise) == approx((unit, 8 / (3 * np.pi) * unit))
 
@@ -106,7 +106,7 @@ def test_a_fast_source_heats_each_point_like_a_half_space_for_as_long_as_it_pass
     chord = 2 * np.sqrt(1 - y**2)
     passage = chord * DOT.half_length / 5.0
     ends = 2 * FLUX / STEEL.thermal_conductivity * np.sqrt(STEEL.thermal_diffusivity * passage / np.pi)
-    rise = fast_rise(STEEL, DOT, heat_flux=FLUX, sliding_speed=5.0)
+    rise = high_peclet_rise(STEEL, DOT, heat_flux=FLUX, sliding_speed=5.0)
     assert rise.peak_temperature_rise == approx(ends.max(), rel=1e-5)
     assert rise.mean_temperature_rise == approx(np.average(2 / 3 * ends, weights=chord), rel=1e-5)
 
@@ -114,7 +114,7 @@ def test_a_fast_source_heats_each_point_like_a_half_space_for_as_long_as_it_pass
 @given(speed=speeds, heat=st.floats(1e-3, 10.0))
 def test_both_bodies_take_all_heat_and_have_one_mean_temperature(speed: float, heat: float) -> None:
     shared = contact_rise(STEEL, BRASS, DOT, heat_rate=heat, sliding_speed=speed)
-    pin = stationary_rise(STEEL, DOT, heat_flux=shared.heat_partition * heat / DOT.area)
+    pin = low_peclet_rise(STEEL, DOT, heat_flux=shared.heat_partition * heat / DOT.area)
     disc = flash_rise(BRASS, DOT, heat_flux=(1 - shared.heat_partition) * heat / DOT.area, sliding_speed=speed)
     assert 0 < shared.heat_partition < 1
     assert pin.mean_temperature_rise == approx(disc.mean_temperature_rise)

@@ -12,11 +12,11 @@ from sonolube.thermal import (
     RectangularSource,
     ThermalSolid,
     half_space_rise,
+    low_peclet_rise,
     moving_band_rise,
     moving_rectangle_rise,
-    stationary_rise,
 )
-from sonolube.thermal.jaeger_integral import integrals_between
+from sonolube.thermal.jaeger_integral import moving_band_integrals
 
 STEEL = ThermalSolid(thermal_conductivity=16.2, density=8000.0, specific_heat_capacity=500.0)
 HALF = 1e-4
@@ -42,7 +42,7 @@ def test_the_band_is_jaegers_integral(speed: float, place: float) -> None:
 @pytest.mark.parametrize("u", [-300.0, -2.5, -2.0, -1.999, -0.1, -1e-6, 0.0, 1e-6, 0.1, 1.999, 2.0, 2.5, 8.0])
 def test_the_compiled_integral_has_thirteen_digits_of_a_slow_one(u: float) -> None:
     slow = mpmath.quad(lambda t: mpmath.exp(-t) * mpmath.besselk(0, abs(t)), [0, u / 16, u / 4, u])
-    fast = integrals_between(np.zeros(1), np.array([u]))[0]
+    fast = moving_band_integrals(np.zeros(1), np.array([u]))[0]
     assert fast == approx(float(slow), rel=1e-10, abs=1e-13)
 
 
@@ -75,7 +75,9 @@ def test_a_moving_square_is_the_sum_of_moving_points(speed: float) -> None:
 
     total = dblquad(point, -HALF, HALF, -HALF, HALF)[0] * FLUX / (2 * np.pi * STEEL.thermal_conductivity)
     square = RectangularSource(half_length=HALF, half_width=HALF)
-    rise = moving_rectangle_rise(STEEL, square, heat_flux=FLUX, sliding_speed=speed, distance_ahead=x, distance_aside=y)
+    rise = moving_rectangle_rise(
+        STEEL, square, heat_flux=FLUX, sliding_speed=speed, distance_ahead=x, transverse_distance=y
+    )
     assert rise == approx(total, rel=1e-6)
 
 
@@ -88,13 +90,13 @@ def test_a_square_that_has_just_begun_to_heat_is_a_half_space() -> None:
 def test_a_square_left_alone_comes_to_the_steady_state() -> None:
     square = RectangularSource(half_length=HALF, half_width=HALF)
     late = moving_rectangle_rise(STEEL, square, heat_flux=FLUX, sliding_speed=0.0, duration=1e3)
-    assert late == approx(stationary_rise(STEEL, square, heat_flux=FLUX).peak_temperature_rise, rel=1e-2)
+    assert late == approx(low_peclet_rise(STEEL, square, heat_flux=FLUX).peak_temperature_rise, rel=1e-2)
 
 
 def test_a_disc_and_a_square_of_one_area_are_about_as_hot() -> None:
     side = HALF * np.sqrt(np.pi) / 2
     disc, square = (
-        stationary_rise(STEEL, source, heat_flux=FLUX).mean_temperature_rise
+        low_peclet_rise(STEEL, source, heat_flux=FLUX).mean_temperature_rise
         for source in (
             EllipticSource(half_length=HALF, half_width=HALF),
             RectangularSource(half_length=side, half_width=side),

@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import Any
 
 from sonolube.errors import MissingProperty, UnknownName
-from sonolube.materials.property_file import read_table
+from sonolube.materials.property_file import read_property_file
 from sonolube.vocabulary import quantity
 
 
@@ -131,13 +131,13 @@ _FILES = ("engineering.toml", "piezo.toml")
 
 @cache
 def _materials() -> Mapping[str, Material]:
-    tables = [read_table(file_name) for file_name in _FILES]
+    tables = [read_property_file(file_name) for file_name in _FILES]
     return {name: _material(name, entry, table.sources) for table in tables for name, entry in table.entries.items()}
 
 
 @cache
 def _names_by_alias() -> Mapping[str, str]:
-    entries = {name: entry for file_name in _FILES for name, entry in read_table(file_name).entries.items()}
+    entries = {name: entry for file_name in _FILES for name, entry in read_property_file(file_name).entries.items()}
     return {alias: name for name, entry in entries.items() for alias in entry.get("aliases", ())}
 
 

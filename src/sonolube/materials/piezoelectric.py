@@ -17,7 +17,7 @@ from sonolube.checks import require_finite
 from sonolube.errors import InvalidInput, MissingProperty, UnknownName
 from sonolube.materials import catalogue as record
 from sonolube.materials.catalogue import Material
-from sonolube.materials.property_file import read_table
+from sonolube.materials.property_file import read_property_file
 
 Floats = NDArray[np.float64]
 
@@ -212,7 +212,7 @@ def piezo_ceramic(name: str) -> PiezoCeramic:
     MissingProperty
         If no complete set of its constants is known; its scalars are still at `material`.
     """
-    table = read_table("piezo.toml")
+    table = read_property_file("piezo.toml")
     try:
         scalars = record.material(name)
         entry = table.entries[scalars.name]
@@ -229,7 +229,9 @@ def piezo_ceramic(name: str) -> PiezoCeramic:
 
 def piezo_ceramic_names() -> tuple[str, ...]:
     """Return the names of the ceramics with a complete set of constants, in order of the alphabet."""
-    return tuple(sorted(name for name, entry in read_table("piezo.toml").entries.items() if "constants" in entry))
+    return tuple(
+        sorted(name for name, entry in read_property_file("piezo.toml").entries.items() if "constants" in entry)
+    )
 
 
 def coupling_factors(ceramic: PiezoCeramic) -> dict[str, float]:

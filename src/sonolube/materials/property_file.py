@@ -9,7 +9,7 @@ from typing import Any
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Table:
+class PropertyFile:
     """One data file.
 
     Parameters
@@ -25,8 +25,8 @@ class Table:
 
 
 @cache
-def read_table(file_name: str) -> Table:
+def read_property_file(file_name: str) -> PropertyFile:
     """Return the content of a data file of this package."""
     content = tomllib.loads(files("sonolube.materials").joinpath(file_name).read_text(encoding="utf-8"))
     sources = content.pop("sources")
-    return Table(sources=sources, entries=content)
+    return PropertyFile(sources=sources, entries=content)

@@ -5,14 +5,18 @@ from typing import TYPE_CHECKING
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, suggestion
-from sonolube.measurement.friction.motor_current import MotorFriction, friction_from_motor_current, motor_friction_uncertainty
-from sonolube.measurement.friction.loops import FrictionLoops, FrictionWork, friction_loops, frictional_work
-from sonolube.measurement.friction.rotation import Rotation, pulse_times, revolutions_at, rotation
-from sonolube.measurement.friction.running_in import SteadyState, steady_state
-from sonolube.measurement.friction.stick_slip import StickSlipEstimate, stick_slip
-from sonolube.measurement.friction.voltage_steps import StaircaseStep, staircase, voltage_envelope
-from sonolube.measurement.friction.windows import DEFAULT_WINDOW, WindowStatistics, window_statistics
-from sonolube.measurement.friction.wobble import Wobble, remove_wobble
+from sonolube.measurement.friction.loops import FrictionLoops, FrictionWork, friction_loops, friction_work
+from sonolube.measurement.friction.motor_current import (
+    MotorCalibration,
+    friction_from_motor_current,
+    motor_friction_uncertainty,
+)
+from sonolube.measurement.friction.rotation import DiscRotation, disc_rotation, hall_pulse_times, revolutions_at
+from sonolube.measurement.friction.running_in import SteadyStateOnset, steady_state_onset
+from sonolube.measurement.friction.stick_slip import StickSlipEstimate, estimate_stick_slip
+from sonolube.measurement.friction.voltage_steps import VoltageStep, friction_at_voltage_steps, voltage_envelope
+from sonolube.measurement.friction.windows import DEFAULT_WINDOW_DURATION, WindowStatistics, window_statistics
+from sonolube.measurement.friction.wobble import WobbleCorrection, remove_wobble
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -33,8 +37,8 @@ class RunningIn:
     """
 
     windows: WindowStatistics
-    friction: SteadyState
-    fluctuation: SteadyState
+    friction: SteadyStateOnset
+    fluctuation: SteadyStateOnset
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -72,7 +76,7 @@ class MotorFrictionTrace:
     friction_force_uncertainty: Floats
 
 
-def channel(recording: "xr.Dataset", name: str) -> Floats:
+def channel_values(recording: "xr.Dataset", name: str) -> Floats:
     """Return the values of a channel, or of the recording's time.
 
     Raises
@@ -91,7 +95,7 @@ def channel(recording: "xr.Dataset", name: str) -> Floats:
 
 
 def analyse_windows(
-    recording: "xr.Dataset", *, of: str = "friction_force", window_duration: float = DEFAULT_WINDOW
+    recording: "xr.Dataset", *, of: str = "friction_force", window_duration: float = DEFAULT_WINDOW_DURATION
 ) -> WindowStatistics:
     """Return mean and fluctuation of a channel in consecutive windows.
 
@@ -107,10 +111,10 @@ def analyse_windows(
     -------
     WindowStatistics
     """
-    values = channel(recording, of)
+    values = channel_values(recording, of)
     return window_statistics(
         values,
-        time=channel(recording, "time"),
+        time=channel_values(recording, "time"),
         window_duration=window_duration,
         channel=of,
         unit=str(recording[of].attrs.get("units", "")),
@@ -118,7 +122,7 @@ def analyse_windows(
 
 
 def analyse_running_in(
-    recording: "xr.Dataset", *, sliding_speed: float, window_duration: float = DEFAULT_WINDOW
+    recording: "xr.Dataset", *, sliding_speed: float, window_duration: float = DEFAULT_WINDOW_DURATION
 ) -> RunningIn:
     """Return where friction and its fluctuation become steady.
 
@@ -142,14 +146,16 @@ def analyse_running_in(
     windows = analyse_windows(recording, window_duration=window_duration)
     return RunningIn(
         windows=windows,
-        friction=steady_state(time=windows.time, friction_force=windows.mean, sliding_speed=sliding_speed),
-        fluctuation=steady_state(time=windows.time, friction_force=windows.fluctuation, sliding_speed=sliding_speed),
+        friction=steady_state_onset(time=windows.time, friction_force=windows.mean, sliding_speed=sliding_speed),
+        fluctuation=steady_state_onset(
+            time=windows.time, friction_force=windows.fluctuation, sliding_speed=sliding_speed
+        ),
     )
 
 
-def analyse_staircase(
+def analyse_voltage_steps(
     recording: "xr.Dataset", *, shortest_step: float = 1.0, settling_time: float = 0.5
-) -> tuple[StaircaseStep, ...]:
+) -> tuple[VoltageStep, ...]:
     """Return the friction at each step of the voltage.
 
     Parameters
@@ -163,20 +169,20 @@ def analyse_staircase(
 
     Returns
     -------
-    tuple of StaircaseStep
+    tuple of VoltageStep
 
     References
     ----------
     .. [1] D 4.1.2, figure 4.3, Table 4.2.
     """
-    time = channel(recording, "time")
+    time = channel_values(recording, "time")
     if "voltage_peak_to_peak" in recording:
-        level = channel(recording, "voltage_peak_to_peak")
+        level = channel_values(recording, "voltage_peak_to_peak")
     else:
-        level = voltage_envelope(time=time, stack_voltage=channel(recording, "stack_voltage"))
-    return staircase(
+        level = voltage_envelope(time=time, stack_voltage=channel_values(recording, "stack_voltage"))
+    return friction_at_voltage_steps(
         time=time,
-        friction_force=channel(recording, "friction_force"),
+        friction_force=channel_values(recording, "friction_force"),
         voltage_peak_to_peak=level,
         shortest_step=shortest_step,
         settling_time=settling_time,
@@ -199,13 +205,13 @@ def analyse_cycles(recording: "xr.Dataset") -> FrictionCycles:
     ----------
     .. [1] D 4.5.4, figure 4.57.
     """
-    time, force = channel(recording, "time"), channel(recording, "friction_force")
-    velocity = channel(recording, "relative_velocity")
+    time, force = channel_values(recording, "time"), channel_values(recording, "friction_force")
+    velocity = channel_values(recording, "relative_velocity")
     try:
         loops = friction_loops(time=time, friction_force=force, relative_velocity=velocity)
     except InvalidInput:  # one stroke, such as a rod pulled through a ring
         loops = None
-    work = frictional_work(time=time, friction_force=force, relative_velocity=velocity)
+    work = friction_work(time=time, friction_force=force, relative_velocity=velocity)
     return FrictionCycles(work=work, loops=loops)
 
 
@@ -227,14 +233,16 @@ def analyse_stick_slip(recording: "xr.Dataset", *, least_fall: float | None = No
     ----------
     .. [1] D 2.3.2 to 2.3.4.
     """
-    return stick_slip(
-        time=channel(recording, "time"), friction_force=channel(recording, "friction_force"), least_fall=least_fall
+    return estimate_stick_slip(
+        time=channel_values(recording, "time"),
+        friction_force=channel_values(recording, "friction_force"),
+        least_fall=least_fall,
     )
 
 
 def analyse_rotation(
     recording: "xr.Dataset", *, groove_diameter: float, magnets: int = 1, prominence: float = 0.25
-) -> Rotation:
+) -> DiscRotation:
     """Return the turning of the disc.
 
     Parameters
@@ -256,17 +264,21 @@ def analyse_rotation(
     ----------
     .. [1] D 4.1.1.
     """
-    pulses = pulse_times(
-        time=channel(recording, "time"),
-        magnetic_flux_density=channel(recording, "magnetic_flux_density"),
+    pulses = hall_pulse_times(
+        time=channel_values(recording, "time"),
+        magnetic_flux_density=channel_values(recording, "magnetic_flux_density"),
         prominence=prominence,
     )
-    return rotation(time=pulses, groove_diameter=groove_diameter, magnets=magnets)
+    return disc_rotation(time=pulses, groove_diameter=groove_diameter, magnets=magnets)
 
 
 def analyse_wobble(
-    recording: "xr.Dataset", *, turning: Rotation | None = None, rotation_speed: float | None = None, harmonics: int = 3
-) -> Wobble:
+    recording: "xr.Dataset",
+    *,
+    turning: DiscRotation | None = None,
+    rotation_speed: float | None = None,
+    harmonics: int = 3,
+) -> WobbleCorrection:
     """Return the friction without what the turning disc's wobble adds.
 
     Parameters
@@ -293,15 +305,17 @@ def analyse_wobble(
     ----------
     .. [1] D 2.3.3 and 4.1.2 on the wobble of the disc.
     """
-    time = channel(recording, "time")
+    time = channel_values(recording, "time")
     if (turning is None) == (rotation_speed is None):
         raise InvalidInput("give either turning, from the pulses, or a constant rotation_speed")
     turns = revolutions_at(turning, time=time) if turning is not None else (rotation_speed or 0.0) * (time - time[0])
-    return remove_wobble(revolutions=turns, friction_force=channel(recording, "friction_force"), harmonics=harmonics)
+    return remove_wobble(
+        revolutions=turns, friction_force=channel_values(recording, "friction_force"), harmonics=harmonics
+    )
 
 
 def analyse_motor_current(
-    recording: "xr.Dataset", *, motor: MotorFriction, window_duration: float = DEFAULT_WINDOW
+    recording: "xr.Dataset", *, motor: MotorCalibration, window_duration: float = DEFAULT_WINDOW_DURATION
 ) -> MotorFrictionTrace:
     """Return the friction that the motor's current tells, in windows.
 
@@ -309,7 +323,7 @@ def analyse_motor_current(
     ----------
     recording : xarray.Dataset
         With `motor_current`.
-    motor : MotorFriction
+    motor : MotorCalibration
     window_duration : float
         Duration of each window. [s]
 

@@ -7,7 +7,7 @@ import numpy as np
 from sonolube.checks import Floats
 
 
-def number(cell: str, *, decimal_sign: str) -> float | None:
+def parse_number(cell: str, *, decimal_sign: str) -> float | None:
     """Return the number a cell holds, or None where it holds none.
 
     Parameters
@@ -35,7 +35,7 @@ def number(cell: str, *, decimal_sign: str) -> float | None:
     return value if text.isascii() else None
 
 
-def numbers(cells: list[str], *, decimal_sign: str, missing: frozenset[str]) -> tuple[Floats, int | None]:
+def parse_numbers(cells: list[str], *, decimal_sign: str, missing: frozenset[str]) -> tuple[Floats, int | None]:
     """Return the numbers of a column, and the first row that holds neither a number nor a text for none.
 
     Parameters
@@ -55,7 +55,7 @@ def numbers(cells: list[str], *, decimal_sign: str, missing: frozenset[str]) -> 
     """
     values = np.empty(len(cells))
     for row, cell in enumerate(cells):
-        value = number(cell, decimal_sign=decimal_sign)
+        value = parse_number(cell, decimal_sign=decimal_sign)
         if value is None:
             stripped = cell.strip()
             if stripped and stripped not in missing:

@@ -10,9 +10,9 @@ from scipy.optimize import least_squares
 
 from sonolube.checks import Floats, require_finite, require_positive, require_within
 from sonolube.errors import InvalidInput
-from sonolube.measurement.time_series import require_signal
-from sonolube.measurement.statistics.autocorrelation import correlated_mean, inefficiency
-from sonolube.measurement.statistics.log_parameter_fit import Interval
+from sonolube.measurement.statistics.autocorrelation import correlated_mean, statistical_inefficiency
+from sonolube.measurement.statistics.log_parameter_fit import ConfidenceInterval
+from sonolube.measurement.time_series import require_time_series
 
 _STARTS = 7  # time constants tried, over the duration
 
@@ -55,16 +55,16 @@ class TemperatureResponse:
         What speaks against the curve, one line each.
     """
 
-    final_temperature: Interval
-    temperature_change: Interval
-    time_constants: tuple[Interval, ...]
-    temperature_changes: tuple[Interval, ...]
+    final_temperature: ConfidenceInterval
+    temperature_change: ConfidenceInterval
+    time_constants: tuple[ConfidenceInterval, ...]
+    temperature_changes: tuple[ConfidenceInterval, ...]
     temperature_deviation: float
     confidence_level: float
     caveats: tuple[str, ...]
 
 
-def temperature_rise(
+def temperature_rise_between(
     *, time: ArrayLike, temperature: ArrayLike, before: tuple[float, float], after: tuple[float, float]
 ) -> TemperatureRise:
     """Return by how much a temperature rose.
@@ -87,14 +87,14 @@ def temperature_rise(
     InvalidInput
         If a span holds fewer than two values.
     """
-    t, value = require_signal(time=time, temperature=temperature)
+    t, value = require_time_series(time=time, temperature=temperature)
     first, last = (_span_mean(t, value, span, name) for span, name in ((before, "before"), (after, "after")))
     return TemperatureRise(
         temperature_rise=last[0] - first[0], temperature_rise_uncertainty=float(np.hypot(first[1], last[1]))
     )
 
 
-def temperature_response(
+def fit_temperature_response(
     *, time: ArrayLike, temperature: ArrayLike, exponentials: int | None = None, confidence_level: float = 0.95
 ) -> TemperatureResponse:
     """Return the time constants with which a temperature settles after a step at the first sample.
@@ -127,7 +127,7 @@ def temperature_response(
     require_within(0.5, 0.9999, confidence_level=confidence_level)
     if exponentials not in (None, 1, 2):
         raise InvalidInput(f"exponentials must be 1 or 2, got {exponentials}")
-    t, value = require_signal(time=time, temperature=temperature)
+    t, value = require_time_series(time=time, temperature=temperature)
     known = np.isfinite(value)
     t, value = t[known] - t[0], value[known]
     if t.size < 8 or np.ptp(value) == 0:
@@ -137,7 +137,7 @@ def temperature_response(
     return _response(t, value, logarithms, confidence_level)
 
 
-def temperature_differences(
+def temperature_rise_by_stage(
     *,
     time: ArrayLike,
     temperature: ArrayLike,
@@ -179,8 +179,8 @@ def temperature_differences(
     ----------
     .. [1] D 4.3.4, figure 4.34.
     """
-    t, value = require_signal(time=time, temperature=temperature)
-    t_0, reference = require_signal(time=reference_time, reference_temperature=reference_temperature)
+    t, value = require_time_series(time=time, temperature=temperature)
+    t_0, reference = require_time_series(time=reference_time, reference_temperature=reference_temperature)
     ends = require_finite(stages=stages)
     if ends.ndim != 1 or ends.size < 2 or np.any(np.diff(ends) <= 0):
         raise InvalidInput("stages must be at least two times that rise")
@@ -216,7 +216,7 @@ def heating_rate(*, time: ArrayLike, temperature: ArrayLike, start_time: float, 
     InvalidInput
         If the span holds fewer than two values.
     """
-    t, value = require_signal(time=time, temperature=temperature)
+    t, value = require_time_series(time=time, temperature=temperature)
     require_positive(duration=end_time - start_time)
     inside = (t >= start_time) & (t <= end_time) & np.isfinite(value)
     if np.count_nonzero(inside) < 2:
@@ -274,17 +274,17 @@ def _response(t: Floats, value: Floats, logarithms: Floats, confidence_level: fl
     misses = value - columns @ amplitudes
     ratios = t[:, np.newaxis] / np.exp(logarithms)
     jacobian = np.concatenate([columns, amplitudes[1:] * ratios * columns[:, 1:]], axis=1)
-    alike = inefficiency(misses) if np.ptp(misses) > 0 else 1.0
+    alike = statistical_inefficiency(misses) if np.ptp(misses) > 0 else 1.0
     variance = float(np.sum(misses**2)) / max(1, t.size - jacobian.shape[1])
     size = np.linalg.norm(jacobian, axis=0)
     inverse = np.linalg.pinv(jacobian / size)
     covariance = alike * variance * (inverse @ inverse.T) / np.multiply.outer(size, size)
     reach = float(stats.t.ppf((1 + confidence_level) / 2, max(1.0, t.size / alike - jacobian.shape[1])))
 
-    def linear(direction: Floats) -> Interval:
+    def linear(direction: Floats) -> ConfidenceInterval:
         middle = float(direction @ amplitudes)
         half = reach * float(np.sqrt(direction @ covariance[: count + 1, : count + 1] @ direction))
-        return Interval(value=middle, lower=middle - half, upper=middle + half)
+        return ConfidenceInterval(value=middle, lower=middle - half, upper=middle + half)
 
     places = np.eye(count + 1)
     factors = np.exp(np.minimum(reach * np.sqrt(np.diag(covariance)[count + 1 :]), 300.0))
@@ -293,7 +293,7 @@ def _response(t: Floats, value: Floats, logarithms: Floats, confidence_level: fl
         final_temperature=linear(places[0]),
         temperature_change=linear(-places[1:].sum(axis=0)),
         time_constants=tuple(
-            Interval(value=float(tau), lower=float(tau / factor), upper=float(tau * factor))
+            ConfidenceInterval(value=float(tau), lower=float(tau / factor), upper=float(tau * factor))
             for tau, factor in zip(taus, factors, strict=True)
         ),
         temperature_changes=tuple(linear(-place) for place in places[1:]),

@@ -9,7 +9,7 @@ from sonolube.errors import InvalidInput
 _EVENNESS = 0.05  # share of the interval by which even samples may be early or late
 
 
-def require_signal(*, time: ArrayLike, **signals: ArrayLike) -> tuple[Floats, ...]:
+def require_time_series(*, time: ArrayLike, **signals: ArrayLike) -> tuple[Floats, ...]:
     """Return the time and signals over it as arrays; NaN in a signal is no value and stays.
 
     Parameters
@@ -50,7 +50,7 @@ def _signal(name: str, values: ArrayLike, samples: int) -> Floats:
     return signal
 
 
-def even_interval(*, time: Floats) -> float:
+def uniform_sample_interval(*, time: Floats) -> float:
     """Return the time between samples; refuse a time with gaps. [s]
 
     Parameters

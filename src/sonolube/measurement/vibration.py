@@ -27,7 +27,7 @@ class AmplitudePerVolt:
     curvature : float
         By how much the slope at the highest voltage exceeds that at zero, as a share of the mean slope, by a parabola
         through the origin.
-    curvature_p : float
+    curvature_p_value : float
         Chance of as much curvature or more by scatter alone; small speaks against proportion.
     proportional : bool
         Whether that chance exceeds one less the confidence level.
@@ -40,13 +40,13 @@ class AmplitudePerVolt:
     upper: float
     amplitude_deviation: float
     curvature: float
-    curvature_p: float
+    curvature_p_value: float
     proportional: bool
     confidence_level: float
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class OperatingShape:
+class OperatingDeflectionShape:
     """How the points of a surface move together at one frequency.
 
     Parameters
@@ -57,14 +57,14 @@ class OperatingShape:
         Amplitude at the point that moves most, in the unit of the signals.
     phase : ndarray, shape (points,)
         Of each point, from the motion of the whole. [rad]
-    standing_share : float
+    standing_wave_fraction : float
         Share of the mean square that moves in step or opposed: 1 for a standing, half for a running wave.
     """
 
     shape: Floats
     greatest_amplitude: float
     phase: Floats
-    standing_share: float
+    standing_wave_fraction: float
 
 
 def amplitude_per_volt(
@@ -124,7 +124,7 @@ def amplitude_per_volt(
         upper=(line + half) / top,
         amplitude_deviation=deviation,
         curvature=float(2 * parabola[1] / line) if line else 0.0,
-        curvature_p=chance,
+        curvature_p_value=chance,
         proportional=chance > 1 - confidence_level,
         confidence_level=confidence_level,
     )
@@ -165,7 +165,7 @@ def complex_amplitudes(*, time: ArrayLike, signals: ArrayLike, frequency: float)
     return np.asarray((found[1] + 1j * found[2]) * np.exp(-1j * omega * t[0]))
 
 
-def operating_shape(amplitudes: ArrayLike) -> OperatingShape:
+def operating_deflection_shape(amplitudes: ArrayLike) -> OperatingDeflectionShape:
     """Return the shape in which points move, from their complex amplitudes.
 
     Parameters
@@ -175,7 +175,7 @@ def operating_shape(amplitudes: ArrayLike) -> OperatingShape:
 
     Returns
     -------
-    OperatingShape
+    OperatingDeflectionShape
 
     Raises
     ------
@@ -194,15 +194,15 @@ def operating_shape(amplitudes: ArrayLike) -> OperatingShape:
     turned = unit * np.exp(-0.5j * np.angle(np.sum(unit**2)))
     top = int(np.argmax(np.abs(turned)))
     turned = turned * (-1.0 if turned[top].real < 0 else 1.0)
-    return OperatingShape(
+    return OperatingDeflectionShape(
         shape=np.asarray(turned.real / np.abs(turned.real).max()),
         greatest_amplitude=greatest,
         phase=np.angle(turned),
-        standing_share=float(np.sum(turned.real**2) / np.sum(np.abs(turned) ** 2)),
+        standing_wave_fraction=float(np.sum(turned.real**2) / np.sum(np.abs(turned) ** 2)),
     )
 
 
-def modal_assurance(first: ArrayLike, second: ArrayLike) -> Floats:
+def modal_assurance_criterion(first: ArrayLike, second: ArrayLike) -> Floats:
     """Return the modal assurance criterion of each shape of one set with each of another.
 
     Parameters

@@ -15,7 +15,7 @@ from sonolube.surfaces.height_map import HeightMap
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class WearRing:
+class WearTrack:
     """The worn volume of a ring.
 
     Parameters
@@ -38,9 +38,9 @@ class WearRing:
         Diameter of the ring. [m]
     sliding_distance : float
         Distance slid on it. [m]
-    section_area : ndarray, shape (scans,)
+    cross_section_area : ndarray, shape (scans,)
         Area of the mean section in each scan, in m2.
-    left_out : tuple of str
+    excluded_scans : tuple of str
         Scans that do not count, by their place, and why.
     """
 
@@ -53,8 +53,8 @@ class WearRing:
     wear_rate_interval: tuple[float, float]
     groove_diameter: float
     sliding_distance: float
-    section_area: Floats
-    left_out: tuple[str, ...]
+    cross_section_area: Floats
+    excluded_scans: tuple[str, ...]
 
     @property
     def net_volume(self) -> float:
@@ -84,7 +84,7 @@ class WearReduction:
     between_specimens: bool
 
 
-def measure_ring(scans: Iterable[HeightMap], *, groove_diameter: float, sliding_distance: float) -> WearRing:
+def measure_wear_track(scans: Iterable[HeightMap], *, groove_diameter: float, sliding_distance: float) -> WearTrack:
     """Measure the groove in scans around a ring.
 
     Parameters
@@ -98,7 +98,7 @@ def measure_ring(scans: Iterable[HeightMap], *, groove_diameter: float, sliding_
 
     Returns
     -------
-    WearRing
+    WearTrack
 
     Raises
     ------
@@ -111,10 +111,12 @@ def measure_ring(scans: Iterable[HeightMap], *, groove_diameter: float, sliding_
             grooves.append(measure_groove(scan))
         except SonolubeError as refusal:
             grooves.append(str(refusal))
-    return ring_of_grooves(grooves, groove_diameter=groove_diameter, sliding_distance=sliding_distance)
+    return wear_track_from_grooves(grooves, groove_diameter=groove_diameter, sliding_distance=sliding_distance)
 
 
-def ring_of_grooves(grooves: Sequence[Groove | str], *, groove_diameter: float, sliding_distance: float) -> WearRing:
+def wear_track_from_grooves(
+    grooves: Sequence[Groove | str], *, groove_diameter: float, sliding_distance: float
+) -> WearTrack:
     """Return the wear of a ring from the grooves of its scans.
 
     Parameters
@@ -128,7 +130,7 @@ def ring_of_grooves(grooves: Sequence[Groove | str], *, groove_diameter: float, 
 
     Returns
     -------
-    WearRing
+    WearTrack
 
     Raises
     ------
@@ -147,19 +149,19 @@ def ring_of_grooves(grooves: Sequence[Groove | str], *, groove_diameter: float, 
     """
     require_positive(groove_diameter=groove_diameter, sliding_distance=sliding_distance)
     whole = [groove for groove in grooves if isinstance(groove, Groove) and groove.complete]
-    left_out = tuple(
+    excluded_scans = tuple(
         f"scan {place}: {groove if isinstance(groove, str) else groove.caveat}"
         for place, groove in enumerate(grooves, start=1)
         if isinstance(groove, str) or not groove.complete
     )
     if len(whole) < 2:
-        reasons = "; ".join(left_out) or "there are no more"
+        reasons = "; ".join(excluded_scans) or "there are no more"
         raise InvalidInput(f"a ring needs two scans with a whole groove, got {len(whole)} ({reasons})")
     around = math.pi * groove_diameter
     area = np.array([groove.cross_section_area for groove in whole])
     piled_up = float(np.mean([groove.pile_up_volume / groove.track_length for groove in whole])) * around
     volume = mean_estimate(around * area)
-    return WearRing(
+    return WearTrack(
         wear_volume=volume.mean,
         wear_volume_uncertainty=volume.uncertainty,
         wear_volume_interval=(volume.lower, volume.upper),
@@ -169,19 +171,19 @@ def ring_of_grooves(grooves: Sequence[Groove | str], *, groove_diameter: float, 
         wear_rate_interval=(volume.lower / sliding_distance, volume.upper / sliding_distance),
         groove_diameter=groove_diameter,
         sliding_distance=sliding_distance,
-        section_area=area,
-        left_out=left_out,
+        cross_section_area=area,
+        excluded_scans=excluded_scans,
     )
 
 
-def wear_reduction_of_rings(without: Sequence[WearRing], with_vibration: Sequence[WearRing]) -> WearReduction:
+def wear_reduction_between_tracks(without: Sequence[WearTrack], with_vibration: Sequence[WearTrack]) -> WearReduction:
     """Return the wear reduction between specimens run without and with vibration.
 
     Parameters
     ----------
-    without : sequence of WearRing
+    without : sequence of WearTrack
         One a specimen.
-    with_vibration : sequence of WearRing
+    with_vibration : sequence of WearTrack
         One a specimen.
 
     Returns
@@ -217,10 +219,10 @@ def wear_reduction_of_rings(without: Sequence[WearRing], with_vibration: Sequenc
     )
 
 
-def _tests(rings: Sequence[WearRing], between: bool) -> Floats:
+def _tests(rings: Sequence[WearTrack], between: bool) -> Floats:
     """Return the wear rate of each specimen, or of each scan, in m2."""
     if between:
         return np.array([ring.wear_rate for ring in rings])
     return np.concatenate(
-        [math.pi * ring.groove_diameter / ring.sliding_distance * ring.section_area for ring in rings]
+        [math.pi * ring.groove_diameter / ring.sliding_distance * ring.cross_section_area for ring in rings]
     )

@@ -10,7 +10,7 @@ from sonolube.checks import Floats, require_finite, require_non_negative, requir
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.metrics.efficiency import EfficiencyLine, efficiency_at, power_for_friction
 
-FEWEST_RUNS = 3
+MINIMUM_RUNS = 3
 """Runs from which a line and its scatter can be told."""
 
 
@@ -27,7 +27,7 @@ class EfficiencyFit:
         Speeds of the slowest and the fastest run. [m/s]
     mean_speed : float
         Mean speed of the runs. [m/s]
-    speed_spread : float
+    speed_sum_of_squares : float
         Sum of the squares of the speeds about their mean, in m2/s2.
     efficiency_deviation : float
         Standard deviation of the runs about the line. [m2/N]
@@ -42,7 +42,7 @@ class EfficiencyFit:
     lowest_speed: float
     highest_speed: float
     mean_speed: float
-    speed_spread: float
+    speed_sum_of_squares: float
     efficiency_deviation: float
     slope_uncertainty: float
     intercept_uncertainty: float
@@ -99,8 +99,8 @@ def fit_efficiency(*, sliding_speed: ArrayLike, efficiency_coefficient: ArrayLik
     eta = np.atleast_1d(require_finite(efficiency_coefficient=efficiency_coefficient))
     if v.ndim != 1 or v.shape != eta.shape:
         raise InvalidInput(f"sliding_speed and efficiency_coefficient must be rows of runs, got {v.shape}, {eta.shape}")
-    if v.size < FEWEST_RUNS:
-        raise InvalidInput(f"an efficiency line needs at least {FEWEST_RUNS} runs, got {v.size}")
+    if v.size < MINIMUM_RUNS:
+        raise InvalidInput(f"an efficiency line needs at least {MINIMUM_RUNS} runs, got {v.size}")
     middle = float(v.mean())
     spread = float(np.sum((v - middle) ** 2))
     if spread <= 1e-12 * v.size * middle**2:
@@ -114,14 +114,14 @@ def fit_efficiency(*, sliding_speed: ArrayLike, efficiency_coefficient: ArrayLik
         lowest_speed=float(v.min()),
         highest_speed=float(v.max()),
         mean_speed=middle,
-        speed_spread=spread,
+        speed_sum_of_squares=spread,
         efficiency_deviation=deviation,
         slope_uncertainty=deviation / np.sqrt(spread),
         intercept_uncertainty=deviation * float(np.sqrt(1 / v.size + middle**2 / spread)),
     )
 
 
-def efficiency_band(
+def efficiency_confidence_band(
     fit: EfficiencyFit, *, sliding_speed: ArrayLike, confidence_level: float = 0.95
 ) -> tuple[Floats, Floats]:
     """Return between what the line itself lies at a speed. [m2/N]
@@ -145,11 +145,11 @@ def efficiency_band(
     OutsideRange
         If a speed is none that the runs cover.
     """
-    v = require_covered(fit, sliding_speed=sliding_speed)
+    v = require_fitted_speed(fit, sliding_speed=sliding_speed)
     return _band(fit, v, confidence_level, _line_error(fit, v))
 
 
-def prediction_band(
+def efficiency_prediction_band(
     fit: EfficiencyFit, *, sliding_speed: ArrayLike, confidence_level: float = 0.95
 ) -> tuple[Floats, Floats]:
     """Return between what the efficiency of one more run lies at a speed. [m2/N]
@@ -173,7 +173,7 @@ def prediction_band(
     OutsideRange
         If a speed is none that the runs cover.
     """
-    v = require_covered(fit, sliding_speed=sliding_speed)
+    v = require_fitted_speed(fit, sliding_speed=sliding_speed)
     return _band(fit, v, confidence_level, np.sqrt(fit.efficiency_deviation**2 + _line_error(fit, v) ** 2))
 
 
@@ -221,7 +221,9 @@ def power_estimate(
     .. [1] D 4.3.
     """
     v = float(require_positive(sliding_speed=sliding_speed))
-    low, high = (float(end) for end in prediction_band(fit, sliding_speed=v, confidence_level=confidence_level))
+    low, high = (
+        float(end) for end in efficiency_prediction_band(fit, sliding_speed=v, confidence_level=confidence_level)
+    )
     power = float(
         power_for_friction(
             fit.line,
@@ -240,7 +242,7 @@ def power_estimate(
     )
 
 
-def require_covered(fit: EfficiencyFit, *, sliding_speed: ArrayLike) -> Floats:
+def require_fitted_speed(fit: EfficiencyFit, *, sliding_speed: ArrayLike) -> Floats:
     """Return speeds as an array; refuse any slower or faster than all runs of the fit. [m/s]
 
     Parameters
@@ -270,7 +272,7 @@ def require_covered(fit: EfficiencyFit, *, sliding_speed: ArrayLike) -> Floats:
 
 def _line_error(fit: EfficiencyFit, v: Floats) -> Floats:
     """Return the standard error of the line at speeds."""
-    return fit.efficiency_deviation * np.sqrt(1 / fit.runs + (v - fit.mean_speed) ** 2 / fit.speed_spread)
+    return fit.efficiency_deviation * np.sqrt(1 / fit.runs + (v - fit.mean_speed) ** 2 / fit.speed_sum_of_squares)
 
 
 def _band(fit: EfficiencyFit, v: Floats, confidence_level: float, error: Floats) -> tuple[Floats, Floats]:

@@ -42,7 +42,9 @@ class DCMotor:
         )
 
 
-def motor_from_two_states(*, motor_voltage: ArrayLike, motor_current: ArrayLike, rotation_speed: ArrayLike) -> DCMotor:
+def motor_from_two_operating_points(
+    *, motor_voltage: ArrayLike, motor_current: ArrayLike, rotation_speed: ArrayLike
+) -> DCMotor:
     """Return the motor that draws these currents at these speeds.
 
     Parameters
@@ -137,7 +139,7 @@ def friction_from_current(
     return 2 * torque / require_positive(groove_diameter=groove_diameter)
 
 
-def current_under_friction(
+def motor_current_under_friction(
     motor: DCMotor, *, friction_force: ArrayLike, idle_current: ArrayLike, groove_diameter: ArrayLike
 ) -> Floats:
     """Return the current that a friction adds to the idle one. [A]

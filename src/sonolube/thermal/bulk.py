@@ -61,7 +61,7 @@ class HeatedPin:
         return self.cross_section * self.length * self.solid.density * self.solid.specific_heat_capacity
 
     @property
-    def cooling_parameter(self) -> float:
+    def fin_parameter(self) -> float:
         """Square root of the heat lost to the air over that conducted, times the length. []"""
         h, k = self.convection_coefficient, self.solid.thermal_conductivity
         return float(np.sqrt(2 * h / (k * self.pin_radius)) * self.length)
@@ -203,7 +203,7 @@ def pin_rise(pin: HeatedPin, *, heat_rate: ArrayLike, depth: ArrayLike = 0.0) ->
         If a heat is negative, a depth lies outside the pin, or a value is not finite.
     """
     x = require_within(0.0, pin.length, depth=depth) / pin.length
-    m = max(pin.cooling_parameter, 1e-8)  # below, the air counts for nothing and the profile is straight
+    m = max(pin.fin_parameter, 1e-8)  # below, the air counts for nothing and the profile is straight
     falls = -np.expm1(-2 * m * (1 - x)) * np.exp(-m * x) / (1 + np.exp(-2 * m))  # sinh m(1-x) over cosh m
     gradient = require_non_negative(heat_rate=heat_rate) / (pin.solid.thermal_conductivity * pin.cross_section)
     return np.asarray(gradient * pin.length / m * falls)

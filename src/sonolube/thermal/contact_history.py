@@ -37,7 +37,7 @@ class HeatedContact:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class ContactHistory:
+class ContactTemperatureHistory:
     """Temperature of a contact in time.
 
     Parameters
@@ -82,7 +82,7 @@ def frictional_heat_rate(*, friction_force: ArrayLike, sliding_speed: ArrayLike)
 
     Notes
     -----
-    What the drive of the sliding supplies. What the actuator supplies comes on top: `two_factor_history` takes it as
+    What the drive of the sliding supplies. What the actuator supplies comes on top: `contact_temperature_history` takes it as
     `vibration_heat_rate`.
     """
     return require_non_negative(friction_force=friction_force) * require_non_negative(sliding_speed=sliding_speed)
@@ -125,14 +125,14 @@ def superimposed_heat_rate(
     return require_non_negative(friction_force=friction_force) * speed
 
 
-def two_factor_history(
+def contact_temperature_history(
     contact: HeatedContact,
     *,
     time: ArrayLike,
     friction_force: ArrayLike,
     sliding_speed: ArrayLike,
     vibration_heat_rate: ArrayLike = 0.0,
-) -> ContactHistory:
+) -> ContactTemperatureHistory:
     """Return the temperature of a contact in time, as heat of friction and of vibration come and go by steps.
 
     Parameters
@@ -149,7 +149,7 @@ def two_factor_history(
 
     Returns
     -------
-    ContactHistory
+    ContactTemperatureHistory
 
     Raises
     ------
@@ -175,7 +175,7 @@ def two_factor_history(
     into_bodies = np.zeros((heat.size, len(contact.network.heat_capacity)))
     into_bodies[:, 0] = shared.heat_partition * heat
     bulk = network_rise(contact.network, time=moments, heat_rate=into_bodies)[:, 0]
-    return ContactHistory(
+    return ContactTemperatureHistory(
         time=moments,
         temperature_rise=bulk + np.concatenate([[0.0], shared.mean_temperature_rise]),
         bulk_rise=bulk,

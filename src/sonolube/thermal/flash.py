@@ -25,7 +25,7 @@ class FlashRise(NamedTuple):
     mean_temperature_rise: Floats
 
 
-class ContactHeat(NamedTuple):
+class ContactRise(NamedTuple):
     """How two bodies share the heat of their contact.
 
     Parameters
@@ -66,7 +66,7 @@ def peclet_number(solid: ThermalSolid, source: HeatSource, *, sliding_speed: Arr
     return v * source.half_length / (2 * solid.thermal_diffusivity)
 
 
-def stationary_rise(solid: ThermalSolid, source: HeatSource, *, heat_flux: ArrayLike) -> FlashRise:
+def low_peclet_rise(solid: ThermalSolid, source: HeatSource, *, heat_flux: ArrayLike) -> FlashRise:
     """Return the steady rise under a source at rest.
 
     Parameters
@@ -90,10 +90,12 @@ def stationary_rise(solid: ThermalSolid, source: HeatSource, *, heat_flux: Array
     .. [1] J. C. Jaeger, J. Proc. R. Soc. N.S.W. 76, 203 (1942).
     """
     scale = _scale(solid, source, heat_flux)
-    return FlashRise(scale * source.still_peak, scale * source.still_mean)
+    return FlashRise(scale * source.peak_low_peclet, scale * source.mean_low_peclet)
 
 
-def fast_rise(solid: ThermalSolid, source: HeatSource, *, heat_flux: ArrayLike, sliding_speed: ArrayLike) -> FlashRise:
+def high_peclet_rise(
+    solid: ThermalSolid, source: HeatSource, *, heat_flux: ArrayLike, sliding_speed: ArrayLike
+) -> FlashRise:
     """Return the rise under a source so fast that heat flows only downwards.
 
     Parameters
@@ -124,8 +126,8 @@ def fast_rise(solid: ThermalSolid, source: HeatSource, *, heat_flux: ArrayLike, 
     """
     require_positive(sliding_speed=sliding_speed)
     pe = peclet_number(solid, source, sliding_speed=sliding_speed)
-    peak = _scale(solid, source, heat_flux) * source.fast_peak / np.sqrt(pe)
-    return FlashRise(peak, source.fast_mean_fraction * peak)
+    peak = _scale(solid, source, heat_flux) * source.peak_high_peclet / np.sqrt(pe)
+    return FlashRise(peak, source.mean_to_peak_high_peclet * peak)
 
 
 def flash_rise(solid: ThermalSolid, source: HeatSource, *, heat_flux: ArrayLike, sliding_speed: ArrayLike) -> FlashRise:
@@ -164,8 +166,10 @@ def flash_rise(solid: ThermalSolid, source: HeatSource, *, heat_flux: ArrayLike,
     """
     scale = _scale(solid, source, heat_flux)
     pe = peclet_number(solid, source, sliding_speed=sliding_speed)
-    peak = scale / np.sqrt(source.still_peak**-2 + pe / source.fast_peak**2)
-    mean = scale / np.sqrt(source.still_mean**-2 + pe / (source.fast_mean_fraction * source.fast_peak) ** 2)
+    peak = scale / np.sqrt(source.peak_low_peclet**-2 + pe / source.peak_high_peclet**2)
+    mean = scale / np.sqrt(
+        source.mean_low_peclet**-2 + pe / (source.mean_to_peak_high_peclet * source.peak_high_peclet) ** 2
+    )
     return FlashRise(peak, mean)
 
 
@@ -176,7 +180,7 @@ def contact_rise(
     *,
     heat_rate: ArrayLike,
     sliding_speed: ArrayLike,
-) -> ContactHeat:
+) -> ContactRise:
     """Return how heat parts between two bodies so that their mean temperatures in the contact agree.
 
     Parameters
@@ -194,7 +198,7 @@ def contact_rise(
 
     Returns
     -------
-    ContactHeat
+    ContactRise
 
     Raises
     ------
@@ -212,11 +216,11 @@ def contact_rise(
     .. [2] J. C. Jaeger, J. Proc. R. Soc. N.S.W. 76, 203 (1942).
     """
     q = require_non_negative(heat_rate=heat_rate) / source.area
-    below = stationary_rise(still, source, heat_flux=1.0)
+    below = low_peclet_rise(still, source, heat_flux=1.0)
     above = flash_rise(moving, source, heat_flux=1.0, sliding_speed=sliding_speed)
     share = _into_the_first(below.mean_temperature_rise, above.mean_temperature_rise)
     peak = np.maximum(share * below.peak_temperature_rise, (1 - share) * above.peak_temperature_rise)
-    return ContactHeat(share + 0 * q, q * peak, q * share * below.mean_temperature_rise)
+    return ContactRise(share + 0 * q, q * peak, q * share * below.mean_temperature_rise)
 
 
 def blok_partition(
@@ -248,7 +252,7 @@ def blok_partition(
     ----------
     .. [1] H. Blok, Proc. Gen. Disc. Lubrication, Inst. Mech. Eng. 2, 222 (1937).
     """
-    below = stationary_rise(still, source, heat_flux=1.0).peak_temperature_rise
+    below = low_peclet_rise(still, source, heat_flux=1.0).peak_temperature_rise
     above = flash_rise(moving, source, heat_flux=1.0, sliding_speed=sliding_speed).peak_temperature_rise
     return _into_the_first(below, above)
 

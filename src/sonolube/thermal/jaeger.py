@@ -6,7 +6,7 @@ from scipy.integrate import quad_vec
 from scipy.special import erf
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
-from sonolube.thermal.jaeger_integral import integrals_between
+from sonolube.thermal.jaeger_integral import moving_band_integrals
 from sonolube.thermal.solid import ThermalSolid
 from sonolube.thermal.source import RectangularSource
 
@@ -60,7 +60,7 @@ def moving_band_rise(
     x = require_finite(distance_ahead=distance_ahead)
     per_length = v / (2 * solid.thermal_diffusivity)
     behind, ahead = np.broadcast_arrays(per_length * (x - b), per_length * (x + b))
-    source = integrals_between(behind.ravel(), ahead.ravel()).reshape(behind.shape)
+    source = moving_band_integrals(behind.ravel(), ahead.ravel()).reshape(behind.shape)
     return q / (np.pi * solid.thermal_conductivity * per_length) * source
 
 
@@ -71,7 +71,7 @@ def moving_rectangle_rise(
     heat_flux: float,
     sliding_speed: float,
     distance_ahead: ArrayLike = 0.0,
-    distance_aside: ArrayLike = 0.0,
+    transverse_distance: ArrayLike = 0.0,
     duration: float | None = None,
 ) -> Floats:
     """Return the rise of the surface at and about a rectangle of heat, at rest or moving. [K]
@@ -86,7 +86,7 @@ def moving_rectangle_rise(
         Speed of the source over the solid, zero at rest. [m/s]
     distance_ahead : array_like
         Distance ahead of the middle of the source, negative behind it. [m]
-    distance_aside : array_like, broadcast against `distance_ahead`
+    transverse_distance : array_like, broadcast against `distance_ahead`
         Distance from the middle of the source across the sliding. [m]
     duration : float, optional
         Time since the heat set in; steady where it is absent. [s]
@@ -111,7 +111,7 @@ def moving_rectangle_rise(
     q = float(require_non_negative(heat_flux=heat_flux))
     v = float(require_non_negative(sliding_speed=sliding_speed))
     x, y = np.broadcast_arrays(
-        require_finite(distance_ahead=distance_ahead), require_finite(distance_aside=distance_aside)
+        require_finite(distance_ahead=distance_ahead), require_finite(transverse_distance=transverse_distance)
     )
     b = source.half_length
     reach = np.inf if duration is None else float(np.sqrt(solid.thermal_diffusivity * _duration(duration))) / b

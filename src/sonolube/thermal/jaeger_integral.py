@@ -36,7 +36,7 @@ _AHEAD = _in_powers(lambda s: s * np.sqrt(s) * (k1e(s) - k0e(s)))
 
 
 @numba.njit(cache=True)
-def integrals_between(first: Floats, last: Floats) -> Floats:
+def moving_band_integrals(first: Floats, last: Floats) -> Floats:
     """Return the integrals of exp(-t) K0(abs t) from each `first` to its `last`."""
     between = np.empty(first.size)
     for i in range(first.size):

@@ -31,19 +31,19 @@ class HeatSource(Protocol):
         """Area of the patch. [m2]"""
 
     @property
-    def still_peak(self) -> float:
+    def peak_low_peclet(self) -> float:
         """Rise at the centre, source at rest. []"""
 
     @property
-    def still_mean(self) -> float:
+    def mean_low_peclet(self) -> float:
         """Mean rise, source at rest. []"""
 
     @property
-    def fast_peak(self) -> float:
+    def peak_high_peclet(self) -> float:
         """Highest rise, source fast, times the root of the Peclet number. []"""
 
     @property
-    def fast_mean_fraction(self) -> float:
+    def mean_to_peak_high_peclet(self) -> float:
         """Mean rise over the highest where the source is fast. []"""
 
 
@@ -80,23 +80,23 @@ class EllipticSource:
         return float(np.pi * self.half_length * self.half_width)
 
     @property
-    def still_peak(self) -> float:
+    def peak_low_peclet(self) -> float:
         """Rise at the centre, source at rest. []"""
         short, long = sorted((self.half_length, self.half_width))
         return float(2 / np.pi * ellipk(1 - (short / long) ** 2) * short / self.half_length)
 
     @property
-    def still_mean(self) -> float:
+    def mean_low_peclet(self) -> float:
         """Mean rise, source at rest. []"""
-        return float(_STILL_MEAN_OF_ELLIPSE * self.still_peak)
+        return float(_STILL_MEAN_OF_ELLIPSE * self.peak_low_peclet)
 
     @property
-    def fast_peak(self) -> float:
+    def peak_high_peclet(self) -> float:
         """Highest rise, source fast, times the root of the Peclet number. []"""
         return _FAST_PEAK_OF_EVEN
 
     @property
-    def fast_mean_fraction(self) -> float:
+    def mean_to_peak_high_peclet(self) -> float:
         """Mean rise over the highest where the source is fast. []"""
         return _FAST_MEAN_OF_ELLIPSE
 
@@ -139,23 +139,23 @@ class HertzianSource:
         return float(np.pi * self.half_length * self.half_width)
 
     @property
-    def still_peak(self) -> float:
+    def peak_low_peclet(self) -> float:
         """Rise at the centre, source at rest. []"""
         short, long = sorted((self.half_length, self.half_width))
         return float(3 / 4 * ellipk(1 - (short / long) ** 2) * short / self.half_length)
 
     @property
-    def still_mean(self) -> float:
+    def mean_low_peclet(self) -> float:
         """Mean rise, source at rest. []"""
-        return _STILL_MEAN_OF_HERTZ * self.still_peak
+        return _STILL_MEAN_OF_HERTZ * self.peak_low_peclet
 
     @property
-    def fast_peak(self) -> float:
+    def peak_high_peclet(self) -> float:
         """Highest rise, source fast, times the root of the Peclet number. []"""
         return _FAST_PEAK_OF_HERTZ
 
     @property
-    def fast_mean_fraction(self) -> float:
+    def mean_to_peak_high_peclet(self) -> float:
         """Mean rise over the highest where the source is fast. []"""
         return _FAST_MEAN_OF_HERTZ
 
@@ -193,24 +193,24 @@ class RectangularSource:
         return 4 * self.half_length * self.half_width
 
     @property
-    def still_peak(self) -> float:
+    def peak_low_peclet(self) -> float:
         """Rise at the centre, source at rest. []"""
         r = self.half_width / self.half_length
         return float(2 / np.pi * (r * np.arcsinh(1 / r) + np.arcsinh(r)))
 
     @property
-    def still_mean(self) -> float:
+    def mean_low_peclet(self) -> float:
         """Mean rise, source at rest. []"""
         r = self.half_width / self.half_length
         corner = (1 + r**3 - np.hypot(1, r) ** 3) / (3 * r)
         return float(2 / np.pi * (r * np.arcsinh(1 / r) + np.arcsinh(r) + corner))
 
     @property
-    def fast_peak(self) -> float:
+    def peak_high_peclet(self) -> float:
         """Highest rise, source fast, times the root of the Peclet number. []"""
         return _FAST_PEAK_OF_EVEN
 
     @property
-    def fast_mean_fraction(self) -> float:
+    def mean_to_peak_high_peclet(self) -> float:
         """Mean rise over the highest where the source is fast. []"""
         return _FAST_MEAN_OF_RECTANGLE

@@ -7,7 +7,7 @@ from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.errors import InvalidInput
 
 
-def half_wave_energy(
+def half_wave_bar_energy(
     *,
     density: ArrayLike,
     cross_section: ArrayLike,
@@ -45,7 +45,7 @@ def half_wave_energy(
     return mass * velocity**2 / 4
 
 
-def loss_heat_rate(*, stored_energy: ArrayLike, frequency: ArrayLike, quality_factor: ArrayLike) -> Floats:
+def vibration_loss_heat_rate(*, stored_energy: ArrayLike, frequency: ArrayLike, quality_factor: ArrayLike) -> Floats:
     """Return the heat that a vibration turns into, omega E/Q. [W]
 
     Parameters
@@ -70,7 +70,7 @@ def loss_heat_rate(*, stored_energy: ArrayLike, frequency: ArrayLike, quality_fa
     return 2 * np.pi * require_positive(frequency=frequency) * energy / require_positive(quality_factor=quality_factor)
 
 
-def warming_heat_rate(*, heat_capacity: ArrayLike, temperature_rise: ArrayLike, duration: ArrayLike) -> Floats:
+def adiabatic_heat_rate(*, heat_capacity: ArrayLike, temperature_rise: ArrayLike, duration: ArrayLike) -> Floats:
     """Return the heat that warms a body by so much in so long while it loses none: a loss inferred from a record. [W]
 
     Parameters
@@ -96,8 +96,8 @@ def warming_heat_rate(*, heat_capacity: ArrayLike, temperature_rise: ArrayLike, 
     return capacity * rise / require_positive(duration=duration)
 
 
-def inferred_conductance(
-    *, temperature_rise: ArrayLike, sheltered_rise: ArrayLike, convection_coefficient: ArrayLike
+def interface_conductance(
+    *, temperature_rise: ArrayLike, rise_behind_interface: ArrayLike, convection_coefficient: ArrayLike
 ) -> Floats:
     """Return what an interface conducts if a sensor behind it warms less than one without. [W/(m2 K)]
 
@@ -105,7 +105,7 @@ def inferred_conductance(
     ----------
     temperature_rise : array_like
         Rise of the source, which a sensor without the interface shows. [K]
-    sheltered_rise : array_like, broadcast against `temperature_rise`
+    rise_behind_interface : array_like, broadcast against `temperature_rise`
         Rise shown behind the interface. [K]
     convection_coefficient : array_like, broadcast against them
         Heat that the sensor loses onwards, per area of the interface. [W/(m2 K)]
@@ -124,9 +124,9 @@ def inferred_conductance(
     In a steady state the same heat crosses interface and sensor: h_c (T - T') = h T'.
     """
     rise = require_positive(temperature_rise=temperature_rise)
-    behind = require_positive(sheltered_rise=sheltered_rise)
+    behind = require_positive(rise_behind_interface=rise_behind_interface)
     if np.any(behind >= rise):
-        raise InvalidInput("sheltered_rise must be smaller than temperature_rise")
+        raise InvalidInput("rise_behind_interface must be smaller than temperature_rise")
     return require_positive(convection_coefficient=convection_coefficient) * behind / (rise - behind)
 
 

@@ -12,29 +12,29 @@ from pytest import approx, raises
 from scipy.signal import lfilter
 
 from sonolube.errors import InvalidInput
+from sonolube.measurement.friction.loops import friction_loops, friction_work
+from sonolube.measurement.friction.motor_current import (
+    MotorCalibration,
+    estimate_friction_reduction,
+    friction_from_motor_current,
+    motor_friction_uncertainty,
+)
+from sonolube.measurement.friction.running_in import steady_state_onset
+from sonolube.measurement.friction.stick_slip import estimate_stick_slip
+from sonolube.measurement.friction.voltage_steps import friction_at_voltage_steps, voltage_envelope
+from sonolube.measurement.friction.windows import streamed_window_statistics, window_statistics
+from sonolube.measurement.friction.wobble import remove_wobble
 from sonolube.measurement.friction_analysis import (
     analyse_cycles,
     analyse_motor_current,
     analyse_rotation,
     analyse_running_in,
-    analyse_staircase,
     analyse_stick_slip,
+    analyse_voltage_steps,
     analyse_windows,
     analyse_wobble,
 )
-from sonolube.measurement.friction.motor_current import (
-    MotorFriction,
-    friction_from_motor_current,
-    measured_reduction,
-    motor_friction_uncertainty,
-)
-from sonolube.measurement.friction.loops import friction_loops, frictional_work
-from sonolube.measurement.friction.running_in import steady_state
-from sonolube.measurement.friction.stick_slip import stick_slip
-from sonolube.measurement.friction.voltage_steps import staircase, voltage_envelope
-from sonolube.measurement.friction.windows import streamed_window_statistics, window_statistics
-from sonolube.measurement.friction.wobble import remove_wobble
-from sonolube.measurement.statistics.autocorrelation import correlated_mean, correlation_time, inefficiency
+from sonolube.measurement.statistics.autocorrelation import correlated_mean, correlation_time, statistical_inefficiency
 
 RNG = np.random.default_rng(7)
 RATE = 400.0  # Hz, D 2.3.2
@@ -140,7 +140,7 @@ def test_the_standard_error_is_the_scatter_of_repeated_means(phi: float) -> None
 
 def test_the_correlation_of_an_autoregressive_process_is_its_closed_form() -> None:
     x = autoregressive(0.8, (400_000,))
-    assert inefficiency(x) == approx(1.8 / 0.2, rel=0.05)
+    assert statistical_inefficiency(x) == approx(1.8 / 0.2, rel=0.05)
     assert correlation_time(x, sample_interval=0.01) == approx(0.045, rel=0.05)
 
 
@@ -153,7 +153,8 @@ def test_the_uncertainty_of_a_reduction_is_that_of_monte_carlo() -> None:
     off = 1.0 + 0.2 * autoregressive(0.7, (600, 2000))
     on = 0.4 + 0.1 * autoregressive(0.7, (600, 2000))
     estimates = [
-        measured_reduction(intrinsic_friction_force=a, reduced_friction_force=b) for a, b in zip(off, on, strict=True)
+        estimate_friction_reduction(intrinsic_friction_force=a, reduced_friction_force=b)
+        for a, b in zip(off, on, strict=True)
     ]
     scatter = np.std([estimate.friction_reduction for estimate in estimates], ddof=1)
     assert np.mean([e.friction_reduction_uncertainty for e in estimates]) == approx(scatter, rel=0.1)
@@ -162,7 +163,7 @@ def test_the_uncertainty_of_a_reduction_is_that_of_monte_carlo() -> None:
 
 def test_a_reduction_from_no_friction_is_refused() -> None:
     with raises(InvalidInput, match=r"intrinsic_friction_force must be positive, got 0\.0 N"):
-        measured_reduction(intrinsic_friction_force=np.zeros(10), reduced_friction_force=np.ones(10))
+        estimate_friction_reduction(intrinsic_friction_force=np.zeros(10), reduced_friction_force=np.ones(10))
 
 
 # -- running in
@@ -171,7 +172,7 @@ def test_a_reduction_from_no_friction_is_refused() -> None:
 def test_running_in_ends_where_the_exponential_enters_the_band() -> None:
     t = np.arange(1, 2000, 2.0)  # windows of 2 s
     force = 1.024 * (1 - np.exp(-(t - 1) * 0.0203 / 1.5))  # over distance, characteristic 1.5 m
-    found = steady_state(time=t, friction_force=force, sliding_speed=0.0203)
+    found = steady_state_onset(time=t, friction_force=force, sliding_speed=0.0203)
     assert found.steady
     assert found.sliding_distance == approx(1.5 * np.log(100), abs=2 * 0.0203)  # within 1 % from there, one window
     assert found.friction_force == approx(1.024, rel=0.002)
@@ -180,7 +181,7 @@ def test_running_in_ends_where_the_exponential_enters_the_band() -> None:
 def test_running_in_with_scatter_ends_within_three_scatters() -> None:
     t = np.arange(1, 4000, 2.0)
     force = 1.0 - 0.7 * np.exp(-t / 100) + RNG.normal(0, 0.02, t.size)
-    found = steady_state(time=t, friction_force=force, sliding_speed=1.0)
+    found = steady_state_onset(time=t, friction_force=force, sliding_speed=1.0)
     assert found.steady
     expected = 100 * np.log(0.7 / 0.06)  # 246 s: the mean enters the band of 0.06 N
     assert 0.6 * expected < found.sliding_distance < 1.2 * expected
@@ -189,7 +190,7 @@ def test_running_in_with_scatter_ends_within_three_scatters() -> None:
 
 def test_a_test_that_still_drifts_is_not_called_steady() -> None:
     t = np.arange(1, 400, 2.0)
-    found = steady_state(time=t, friction_force=0.5 + 0.002 * t, sliding_speed=0.02)
+    found = steady_state_onset(time=t, friction_force=0.5 + 0.002 * t, sliding_speed=0.02)
     assert not found.steady
     assert "still rises" in found.reason
 
@@ -220,7 +221,7 @@ def published_staircase(rate: float = RATE) -> tuple[np.ndarray, np.ndarray, np.
 def test_the_staircase_of_table_4_2_is_read_back_from_its_recording() -> None:
     t, force, volts = published_staircase()
     force = force + 0.03 * np.sin(2 * np.pi * t / 1.34)
-    steps = analyse_staircase(recording(t, friction_force=force, voltage_peak_to_peak=volts))
+    steps = analyse_voltage_steps(recording(t, friction_force=force, voltage_peak_to_peak=volts))
     assert [step.voltage_peak_to_peak for step in steps] == approx(list(VOLTS))
     assert [step.start_time for step in steps] == approx(list(STARTS), abs=0.11)
     assert [step.friction_force for step in steps] == approx(list(FORCES), abs=0.006)
@@ -233,7 +234,7 @@ def test_the_staircase_of_table_4_2_is_read_back_from_its_recording() -> None:
 def test_the_steps_are_found_in_the_alternating_voltage() -> None:
     t, force, volts = published_staircase()
     alternating = volts / 2 * np.sin(2 * np.pi * 22_087 * t)  # aliased, as at 400 Hz it must be
-    steps = analyse_staircase(recording(t, friction_force=force, stack_voltage=alternating))
+    steps = analyse_voltage_steps(recording(t, friction_force=force, stack_voltage=alternating))
     assert [step.voltage_peak_to_peak for step in steps] == approx(list(VOLTS), rel=0.03)
     assert [step.friction_force for step in steps] == approx(list(FORCES))
 
@@ -241,14 +242,14 @@ def test_the_steps_are_found_in_the_alternating_voltage() -> None:
 def test_a_glitch_of_the_voltage_begins_no_step() -> None:
     t, force, volts = published_staircase()
     volts[2000:2010] = 25.9
-    steps = staircase(time=t, friction_force=force, voltage_peak_to_peak=volts)
+    steps = friction_at_voltage_steps(time=t, friction_force=force, voltage_peak_to_peak=volts)
     assert len(steps) == 6
 
 
 def test_a_staircase_that_is_never_off_is_refused() -> None:
     t, force, volts = published_staircase()
     with raises(InvalidInput, match="no step without voltage; the lowest is 5"):
-        staircase(time=t, friction_force=force, voltage_peak_to_peak=volts + 5)
+        friction_at_voltage_steps(time=t, friction_force=force, voltage_peak_to_peak=volts + 5)
 
 
 def test_the_envelope_of_a_sine_is_its_peak_to_peak() -> None:
@@ -292,7 +293,7 @@ def test_the_work_of_a_steady_pull_is_force_times_distance() -> None:
 def test_unknown_stretches_add_no_work_and_are_told() -> None:
     t = seconds(10)
     force = np.where((t > 2) & (t < 4), np.nan, 1.0)
-    work = frictional_work(time=t, friction_force=force, relative_velocity=np.full(t.size, 0.1))
+    work = friction_work(time=t, friction_force=force, relative_velocity=np.full(t.size, 0.1))
     assert work.measured_fraction == approx(0.8, abs=0.001)
     assert work.friction_force == approx(1.0)
 
@@ -304,8 +305,8 @@ def test_unknown_stretches_add_no_work_and_are_told() -> None:
 def test_a_sawtooth_slips_at_its_rate_by_its_height(rate: float) -> None:
     t = seconds(10, 20_000)
     force = 1.0 + 0.25 * ((t * rate + 0.1) % 1.0)
-    found = stick_slip(time=t, friction_force=force)
-    assert found.found
+    found = estimate_stick_slip(time=t, friction_force=force)
+    assert found.detected
     assert found.stick_slip_frequency == approx(rate, rel=1e-3)
     assert found.spectral_frequency == approx(rate, rel=1e-3)
     assert found.stick_slip_amplitude == approx(0.25, rel=0.01)
@@ -314,23 +315,23 @@ def test_a_sawtooth_slips_at_its_rate_by_its_height(rate: float) -> None:
 def test_the_hundred_hertz_of_figure_2_17_are_seen_at_its_sampling_rate() -> None:
     t = seconds(2)
     found = analyse_stick_slip(recording(t, friction_force=1 + 0.28 * np.sin(2 * np.pi * 99 * t)))
-    assert found.found
+    assert found.detected
     assert found.stick_slip_frequency == approx(99, rel=0.01)
 
 
 def test_noise_is_no_stick_slip() -> None:
     t = seconds(10)
-    assert not stick_slip(time=t, friction_force=np.ones(t.size)).found
+    assert not estimate_stick_slip(time=t, friction_force=np.ones(t.size)).detected
     slow = np.cos(2 * np.pi * 0.5 * t) + RNG.normal(0, 0.5, t.size)
-    found = stick_slip(time=t, friction_force=slow)
-    assert not found.found
+    found = estimate_stick_slip(time=t, friction_force=slow)
+    assert not found.detected
     assert "spectrum is highest" in found.reason
 
 
 def test_stick_slip_in_a_recording_with_a_gap_is_refused_at_the_gap() -> None:
     t = np.delete(seconds(10), slice(1000, 1003))
     with raises(InvalidInput, match=r"after 2\.4975 s samples were dropped"):
-        stick_slip(time=t, friction_force=np.sin(t))
+        estimate_stick_slip(time=t, friction_force=np.sin(t))
 
 
 # -- wobble
@@ -386,7 +387,7 @@ def test_a_harmonic_beyond_the_sampling_is_refused() -> None:
 # -- motor
 
 
-MOTOR = MotorFriction(
+MOTOR = MotorCalibration(
     torque_constant=0.4,
     idle_current=0.55,
     groove_diameter=60e-3,
@@ -430,7 +431,7 @@ def test_a_missing_channel_is_named() -> None:
 )
 def test_signals_without_sense_are_refused(force: np.ndarray, match: str) -> None:
     with raises(InvalidInput, match=match):
-        frictional_work(time=np.arange(10.0), friction_force=force, relative_velocity=np.ones(10))
+        friction_work(time=np.arange(10.0), friction_force=force, relative_velocity=np.ones(10))
 
 
 def test_unsorted_time_is_refused() -> None:

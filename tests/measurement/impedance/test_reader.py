@@ -6,7 +6,7 @@ import numpy as np
 from pytest import approx, mark, raises, skip
 
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.measurement.impedance.column_headings import heading
+from sonolube.measurement.impedance.column_headings import parse_heading
 from sonolube.measurement.impedance.reader import read_impedance
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 
@@ -78,7 +78,7 @@ def test_an_hp_4294a_file_as_it_came_from_the_instrument_is_read_whole() -> None
     [("|Z|(Ohm)", 1.0), ("|Z| [kOhm]", 1e3), ("abs(z)", 1.0), ("Z (mΩ)", 1e-3), ('"zmod / Mohm"', 1e6)],
 )
 def test_a_heading_says_quantity_and_unit(text: str, unit: float) -> None:
-    found = heading(text)
+    found = parse_heading(text)
     assert found is not None
     assert found.symbol == "|Z|"
     assert found.scale == approx(unit)
@@ -86,7 +86,7 @@ def test_a_heading_says_quantity_and_unit(text: str, unit: float) -> None:
 
 @mark.parametrize("text", ["phase", "theta-z", "|Z| (V)", "frequency (rad)", "Z (bananas)", "depth (m)", ""])
 def test_a_heading_that_leaves_the_unit_open_or_wrong_is_none(text: str) -> None:
-    assert heading(text) is None
+    assert parse_heading(text) is None
 
 
 WRONG = {

@@ -14,7 +14,7 @@ from pytest import approx, raises
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.mapping import ChannelSource, RecordingMapping, read_mapping
-from sonolube.measurement.recordings.reader import blocks, read_recording, write_recording
+from sonolube.measurement.recordings.reader import read_recording, recording_blocks, write_recording
 
 CORPUS = Path(__file__).parent / "corpus"
 ROOT = Path(__file__).parents[3]
@@ -149,7 +149,7 @@ def test_channels_of_different_rates_are_refused_until_a_mapping_chooses(tmp_pat
 @pytest.mark.parametrize("size", [1, 3, 4, 5, 8, 100])
 def test_blocks_put_together_are_the_whole(size: int) -> None:
     path = CORPUS / "two-segments.tdms"
-    parts = list(blocks(path, block_samples=size))
+    parts = list(recording_blocks(path, block_samples=size))
     whole = read_recording(path)
     assert [part.sizes["time"] for part in parts[:-1]] == [size] * (len(parts) - 1)
     for name in ("time", "friction_force", "drive"):

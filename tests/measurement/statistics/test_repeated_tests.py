@@ -10,7 +10,7 @@ from pytest import approx, raises
 from scipy import stats
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.statistics.repeated_tests import compare, mean_estimate, ratio_interval, repeatability
+from sonolube.measurement.statistics.repeated_tests import compare_means, mean_estimate, ratio_interval, repeatability
 
 tests = st.lists(st.floats(-100, 100).map(lambda x: round(x, 3)), min_size=2, max_size=4)
 
@@ -26,7 +26,7 @@ def test_a_mean_of_three_tests_has_students_interval() -> None:
 @settings(max_examples=150, deadline=None)
 def test_welch_is_that_of_scipy(first: list[float], second: list[float]) -> None:
     assume(np.ptp(first) > 0.01 and np.ptp(second) > 0.01)
-    found, known = compare(first, second), stats.ttest_ind(second, first, equal_var=False)
+    found, known = compare_means(first, second), stats.ttest_ind(second, first, equal_var=False)
     assert found.t_statistic == approx(known.statistic, rel=1e-9, abs=1e-12)
     assert found.welch_p == approx(known.pvalue, rel=1e-9)
     interval = known.confidence_interval(0.95)
@@ -40,24 +40,24 @@ def test_the_permutation_test_counts_every_order(first: list[float], second: lis
     observed = abs(np.mean(second) - np.mean(first))
     n = len(first)
     extreme = [abs(np.mean(p[n:]) - np.mean(p[:n])) >= observed - 1e-7 for p in permutations(first + second)]
-    assert compare(first, second).permutation_p == approx(np.mean(extreme))
+    assert compare_means(first, second).permutation_p == approx(np.mean(extreme))
 
 
 @pytest.mark.parametrize(("n", "smallest"), [(2, 1 / 3), (3, 1 / 10), (4, 1 / 35)])
 def test_few_tests_cannot_be_more_significant_than_their_number(n: int, smallest: float) -> None:
-    found = compare(np.arange(n), 1000 + np.arange(n))
+    found = compare_means(np.arange(n), 1000 + np.arange(n))
     assert found.smallest_permutation_p == approx(smallest)
     assert found.permutation_p == approx(smallest)
 
 
 def test_two_against_three_tests_reach_a_tenth() -> None:
-    assert compare([0, 1], [100, 101, 103]).permutation_p == approx(0.1)
-    assert compare([0, 1], [100, 101, 103]).smallest_permutation_p == approx(0.1)
+    assert compare_means([0, 1], [100, 101, 103]).permutation_p == approx(0.1)
+    assert compare_means([0, 1], [100, 101, 103]).smallest_permutation_p == approx(0.1)
 
 
 def test_tests_without_scatter_differ_surely_or_not_at_all() -> None:
-    assert compare([1, 1], [2, 2]).welch_p == 0
-    assert compare([1, 1], [1, 1]).welch_p == 1
+    assert compare_means([1, 1], [2, 2]).welch_p == 0
+    assert compare_means([1, 1], [1, 1]).welch_p == 1
 
 
 def test_repeatability_of_a_balanced_trial_worked_by_hand() -> None:

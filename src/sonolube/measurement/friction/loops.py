@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.time_series import require_signal
+from sonolube.measurement.time_series import require_time_series
 
 _HYSTERESIS = 0.1  # of the highest velocity, which a reversal must exceed to count
 
@@ -68,7 +68,7 @@ class FrictionLoops:
     measured_fraction: Floats
 
 
-def frictional_work(*, time: ArrayLike, friction_force: ArrayLike, relative_velocity: ArrayLike) -> FrictionWork:
+def friction_work(*, time: ArrayLike, friction_force: ArrayLike, relative_velocity: ArrayLike) -> FrictionWork:
     """Return the work that friction takes along a recording.
 
     Parameters
@@ -93,7 +93,7 @@ def frictional_work(*, time: ArrayLike, friction_force: ArrayLike, relative_velo
     ----------
     .. [1] D 4.5.4, figure 4.57 (f).
     """
-    t, f, v = require_signal(time=time, friction_force=friction_force, relative_velocity=relative_velocity)
+    t, f, v = require_time_series(time=time, friction_force=friction_force, relative_velocity=relative_velocity)
     work, distance, known = _sums(t, f, v)
     if distance[-1] <= 0:
         raise InvalidInput("relative_velocity is zero wherever the friction is known")
@@ -133,7 +133,7 @@ def friction_loops(*, time: ArrayLike, friction_force: ArrayLike, relative_veloc
     Integrated by trapezia between samples, with the instants of reversal put between them. A reversal counts where
     the velocity passes from below -10 % to above 10 % of its highest.
     """
-    t, f, v = require_signal(time=time, friction_force=friction_force, relative_velocity=relative_velocity)
+    t, f, v = require_time_series(time=time, friction_force=friction_force, relative_velocity=relative_velocity)
     turns = _turns_positive(t, v)
     if turns.size < 2:
         raise InvalidInput(f"relative_velocity turns positive {turns.size} times; a cycle needs two")

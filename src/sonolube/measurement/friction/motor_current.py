@@ -11,7 +11,7 @@ from sonolube.metrics import friction_from_current, friction_reduction
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class ReductionEstimate:
+class FrictionReductionEstimate:
     """How much friction a vibration takes away, and how well that is known.
 
     Parameters
@@ -38,7 +38,9 @@ class ReductionEstimate:
     reduced_friction_force_uncertainty: float
 
 
-def measured_reduction(*, intrinsic_friction_force: ArrayLike, reduced_friction_force: ArrayLike) -> ReductionEstimate:
+def estimate_friction_reduction(
+    *, intrinsic_friction_force: ArrayLike, reduced_friction_force: ArrayLike
+) -> FrictionReductionEstimate:
     """Return the friction reduction between two stretches of a recording.
 
     Parameters
@@ -68,7 +70,7 @@ def measured_reduction(*, intrinsic_friction_force: ArrayLike, reduced_friction_
     """
     off, on = correlated_mean(intrinsic_friction_force), correlated_mean(reduced_friction_force)
     reduction = friction_reduction(intrinsic_friction_force=off.mean, reduced_friction_force=on.mean)
-    return ReductionEstimate(
+    return FrictionReductionEstimate(
         friction_reduction=float(reduction),
         friction_reduction_uncertainty=float(
             np.hypot(on.uncertainty / off.mean, on.mean * off.uncertainty / off.mean**2)
@@ -81,7 +83,7 @@ def measured_reduction(*, intrinsic_friction_force: ArrayLike, reduced_friction_
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class MotorFriction:
+class MotorCalibration:
     """What is known of a motor that drives a disc against friction.
 
     Parameters
@@ -118,12 +120,12 @@ class MotorFriction:
         )
 
 
-def friction_from_motor_current(motor: MotorFriction, *, motor_current: ArrayLike) -> Floats:
+def friction_from_motor_current(motor: MotorCalibration, *, motor_current: ArrayLike) -> Floats:
     """Return the friction force that a motor's current tells at steady speed. [N]
 
     Parameters
     ----------
-    motor : MotorFriction
+    motor : MotorCalibration
     motor_current : array_like, any shape
         Current of the motor. [A]
 
@@ -155,13 +157,13 @@ def friction_from_motor_current(motor: MotorFriction, *, motor_current: ArrayLik
 
 
 def motor_friction_uncertainty(
-    motor: MotorFriction, *, motor_current: ArrayLike, motor_current_uncertainty: ArrayLike = 0.0
+    motor: MotorCalibration, *, motor_current: ArrayLike, motor_current_uncertainty: ArrayLike = 0.0
 ) -> Floats:
     """Return the standard uncertainty of the friction force that a motor's current tells. [N]
 
     Parameters
     ----------
-    motor : MotorFriction
+    motor : MotorCalibration
     motor_current : array_like, any shape
         Current of the motor. [A]
     motor_current_uncertainty : array_like, broadcast against `motor_current`

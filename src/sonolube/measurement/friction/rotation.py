@@ -9,8 +9,8 @@ from scipy.signal import find_peaks
 
 from sonolube.checks import Floats, require_finite, require_positive, require_within
 from sonolube.errors import InvalidInput
-from sonolube.measurement.time_series import require_signal
 from sonolube.measurement.statistics.autocorrelation import correlated_mean
+from sonolube.measurement.time_series import require_time_series
 from sonolube.metrics import linear_speed
 
 _FIT = 0.25  # by which an interval may miss a multiple of its neighbours and still mean lost pulses
@@ -18,7 +18,7 @@ _MOST_LOST = 5  # pulses in a row
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Rotation:
+class DiscRotation:
     """The turning of a disc, turn by turn.
 
     Parameters
@@ -27,7 +27,7 @@ class Rotation:
         When each pulse peaks. [s]
     revolutions : ndarray, shape (pulses,)
         Turns since the first pulse. []
-    repaired : ndarray of bool, shape (pulses,)
+    interpolated : ndarray of bool, shape (pulses,)
         Which pulses were missing and put where the others say.
     rotation_speed : ndarray, shape (turns,)
         Turns per time, from each pulse to the next of the same magnet. [1/s]
@@ -41,14 +41,14 @@ class Rotation:
 
     time: Floats
     revolutions: Floats
-    repaired: NDArray[np.bool_]
+    interpolated: NDArray[np.bool_]
     rotation_speed: Floats
     sliding_speed: Floats
     mean_rotation_speed: float
     rotation_speed_uncertainty: float
 
 
-def pulse_times(*, time: ArrayLike, magnetic_flux_density: ArrayLike, prominence: float = 0.25) -> Floats:
+def hall_pulse_times(*, time: ArrayLike, magnetic_flux_density: ArrayLike, prominence: float = 0.25) -> Floats:
     """Return when the pulses of a Hall probe peak. [s]
 
     Parameters
@@ -71,7 +71,7 @@ def pulse_times(*, time: ArrayLike, magnetic_flux_density: ArrayLike, prominence
         If the reading does not vary, or no pulse stands out.
     """
     require_within(0.01, 1.0, prominence=prominence)
-    t, b = require_signal(time=time, magnetic_flux_density=magnetic_flux_density)
+    t, b = require_time_series(time=time, magnetic_flux_density=magnetic_flux_density)
     known = np.isfinite(b)
     t, b = t[known], b[known] - np.median(b[known])
     b = b if b.max() >= -b.min() else -b  # the field of a magnet turned round peaks downwards
@@ -91,13 +91,13 @@ def _refined(t: Floats, b: Floats, peaks: NDArray[np.int64]) -> Floats:
     return np.asarray(t[peaks] + shift)
 
 
-def rotation(*, time: ArrayLike, groove_diameter: float, magnets: int = 1) -> Rotation:
+def disc_rotation(*, time: ArrayLike, groove_diameter: float, magnets: int = 1) -> DiscRotation:
     """Return the turning of a disc from the times of its pulses.
 
     Parameters
     ----------
     time : array_like, shape (pulses,)
-        When the pulses peak, as `pulse_times` gives them. [s]
+        When the pulses peak, as `hall_pulse_times` gives them. [s]
     groove_diameter : float
         Diameter of the circle under the pin. [m]
     magnets : int
@@ -132,13 +132,13 @@ def rotation(*, time: ArrayLike, groove_diameter: float, magnets: int = 1) -> Ro
     if np.any(np.diff(t) <= 0):
         raise InvalidInput("time of the pulses must increase")
     shares, steps = (np.ones(1), _single_steps(t)) if magnets == 1 else _pattern(t, magnets)
-    times, repaired = _repaired(t, steps, shares)
+    times, interpolated = _repaired(t, steps, shares)
     position = np.concatenate([[0.0], np.cumsum(np.resize(shares, times.size - 1))])
     speed = 1 / (times[magnets:] - times[:-magnets])
-    return Rotation(
+    return DiscRotation(
         time=times,
         revolutions=position,
-        repaired=repaired,
+        interpolated=interpolated,
         rotation_speed=speed,
         sliding_speed=linear_speed(rotation_speed=speed, groove_diameter=groove_diameter),
         mean_rotation_speed=float(position[-1] / (times[-1] - times[0])),
@@ -195,7 +195,7 @@ def _repaired(t: Floats, steps: NDArray[np.int64], shares: Floats) -> tuple[Floa
     return np.asarray(np.interp(position, position[index], t)), ~np.isin(every, index)
 
 
-def revolutions_at(turning: Rotation, *, time: ArrayLike) -> Floats:
+def revolutions_at(turning: DiscRotation, *, time: ArrayLike) -> Floats:
     """Return the turns made since the first pulse, between pulses by a monotone cubic. []
 
     Parameters

@@ -7,8 +7,8 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.measurement.time_series import require_signal
-from sonolube.measurement.statistics.autocorrelation import correlated_mean, inefficiency
+from sonolube.measurement.statistics.autocorrelation import correlated_mean, statistical_inefficiency
+from sonolube.measurement.time_series import require_time_series
 
 _SETTLED_SHARE = 1 / 3  # of the test, at its end, which tells level and scatter
 _HOLD = 5  # windows that must stay within the band
@@ -17,7 +17,7 @@ _ROBUST = 1.4826  # deviation of a normal variable over its median absolute devi
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class SteadyState:
+class SteadyStateOnset:
     """Steady friction, and how far the pin slid until it was reached.
 
     Parameters
@@ -47,9 +47,9 @@ class SteadyState:
     friction_force_uncertainty: float
 
 
-def steady_state(
+def steady_state_onset(
     *, time: ArrayLike, friction_force: ArrayLike, sliding_speed: float, band: float = 3.0, least_band: float = 0.01
-) -> SteadyState:
+) -> SteadyStateOnset:
     """Return where friction becomes steady.
 
     Parameters
@@ -84,7 +84,7 @@ def steady_state(
     the distance off the curve by eye.
     """
     require_positive(sliding_speed=sliding_speed, least_band=least_band, band=band)
-    t, f = require_signal(time=time, friction_force=friction_force)
+    t, f = require_time_series(time=time, friction_force=friction_force)
     known = np.isfinite(f)
     t, f = t[known], f[known]
     if t.size < _FEWEST:
@@ -102,7 +102,7 @@ def steady_state(
         reason = reason or f"no {_HOLD} windows in a row stay within {half_width:.3g} N of {level:.3g} N"
     estimate = correlated_mean(f[first:])
     start = float(t[first] - t[0])
-    return SteadyState(
+    return SteadyStateOnset(
         steady=not reason,
         reason=reason,
         start_time=start,
@@ -122,7 +122,7 @@ def _line(t: Floats, f: Floats) -> tuple[float, Floats]:
 
 def _drift(rise: float, residual: Floats, tolerated: float) -> str:
     # the rise of a line over n even points has the variance 12 s^2/n, times what correlation adds
-    variance = 12 * float(residual @ residual) / residual.size**2 * inefficiency(residual)
+    variance = 12 * float(residual @ residual) / residual.size**2 * statistical_inefficiency(residual)
     if abs(rise) > tolerated and abs(rise) > 3 * variance**0.5:
         return (
             f"the last third of the test still {'rises' if rise > 0 else 'falls'} by {abs(rise):.3g} N; run it longer"

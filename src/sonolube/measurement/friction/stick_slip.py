@@ -9,7 +9,7 @@ from scipy.signal.windows import hann
 
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.measurement.time_series import even_interval, require_signal
+from sonolube.measurement.time_series import require_time_series, uniform_sample_interval
 
 _FEWEST = 3  # events
 _AGREEMENT = 0.2
@@ -22,7 +22,7 @@ class StickSlipEstimate:
 
     Parameters
     ----------
-    found : bool
+    detected : bool
         Whether events recur and the spectrum agrees with them.
     reason : str
         Why not; empty when found.
@@ -38,7 +38,7 @@ class StickSlipEstimate:
         Slips seen.
     """
 
-    found: bool
+    detected: bool
     reason: str
     stick_slip_frequency: float
     spectral_frequency: float
@@ -47,7 +47,9 @@ class StickSlipEstimate:
     events: int
 
 
-def stick_slip(*, time: ArrayLike, friction_force: ArrayLike, least_fall: float | None = None) -> StickSlipEstimate:
+def estimate_stick_slip(
+    *, time: ArrayLike, friction_force: ArrayLike, least_fall: float | None = None
+) -> StickSlipEstimate:
     """Return frequency and amplitude of stick-slip.
 
     Parameters
@@ -79,12 +81,12 @@ def stick_slip(*, time: ArrayLike, friction_force: ArrayLike, least_fall: float 
     ----------
     .. [1] D 2.3.2 to 2.3.4, figure 2.17.
     """
-    t, f = require_signal(time=time, friction_force=friction_force)
+    t, f = require_time_series(time=time, friction_force=friction_force)
     missing = int(np.isnan(f).sum())
     if missing or t.size < 16:
         what = f"misses {missing} values" if missing else f"has {t.size} samples"
         raise InvalidInput(f"friction_force {what}; stick-slip needs a stretch of at least 16 without a gap")
-    interval = even_interval(time=t)
+    interval = uniform_sample_interval(time=t)
     if least_fall is not None:
         require_positive(least_fall=least_fall)
     low, high = np.percentile(f, [5, 95])
@@ -99,7 +101,7 @@ def stick_slip(*, time: ArrayLike, friction_force: ArrayLike, least_fall: float 
     rate = float((peaks.size - 1) / (t[peaks[-1]] - t[peaks[0]]))
     agrees = abs(rate - spectral) <= _AGREEMENT * rate
     return StickSlipEstimate(
-        found=bool(agrees),
+        detected=bool(agrees),
         reason="" if agrees else f"events recur at {rate:.3g} Hz, but the spectrum is highest at {spectral:.3g} Hz",
         stick_slip_frequency=rate,
         spectral_frequency=spectral,
@@ -111,7 +113,7 @@ def stick_slip(*, time: ArrayLike, friction_force: ArrayLike, least_fall: float 
 
 def _nothing(reason: str, spectral: float) -> StickSlipEstimate:
     return StickSlipEstimate(
-        found=False,
+        detected=False,
         reason=reason,
         stick_slip_frequency=spectral,
         spectral_frequency=spectral,

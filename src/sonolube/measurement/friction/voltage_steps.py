@@ -9,15 +9,15 @@ from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
 from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.measurement.friction.motor_current import measured_reduction
-from sonolube.measurement.time_series import even_interval, require_signal
+from sonolube.measurement.friction.motor_current import estimate_friction_reduction
 from sonolube.measurement.statistics.autocorrelation import correlated_mean
+from sonolube.measurement.time_series import require_time_series, uniform_sample_interval
 
 _PIECES = 10  # into which the shortest step is cut to find where it begins
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class StaircaseStep:
+class VoltageStep:
     """Friction while the voltage stays.
 
     Parameters
@@ -78,8 +78,8 @@ def voltage_envelope(*, time: ArrayLike, stack_voltage: ArrayLike, window_durati
     is too low or vanishes.
     """
     require_positive(window_duration=window_duration)
-    t, u = require_signal(time=time, stack_voltage=stack_voltage)
-    samples = round(window_duration / even_interval(time=t))
+    t, u = require_time_series(time=time, stack_voltage=stack_voltage)
+    samples = round(window_duration / uniform_sample_interval(time=t))
     if samples < 8:
         raise InvalidInput(f"window_duration of {window_duration:.3g} s holds {samples} samples; at least 8 are needed")
     highest = maximum_filter1d(np.where(np.isnan(u), -np.inf, u), samples, mode="nearest")
@@ -87,7 +87,7 @@ def voltage_envelope(*, time: ArrayLike, stack_voltage: ArrayLike, window_durati
     return np.asarray(np.where(np.isfinite(highest), highest - lowest, np.nan))
 
 
-def staircase(
+def friction_at_voltage_steps(
     *,
     time: ArrayLike,
     friction_force: ArrayLike,
@@ -95,7 +95,7 @@ def staircase(
     shortest_step: float = 1.0,
     settling_time: float = 0.5,
     tolerance: float = 0.05,
-) -> tuple[StaircaseStep, ...]:
+) -> tuple[VoltageStep, ...]:
     """Return the friction at each step of a voltage.
 
     Parameters
@@ -115,7 +115,7 @@ def staircase(
 
     Returns
     -------
-    tuple of StaircaseStep
+    tuple of VoltageStep
         In order of time.
 
     Raises
@@ -129,7 +129,7 @@ def staircase(
     """
     require_positive(shortest_step=shortest_step, tolerance=tolerance)
     require_non_negative(settling_time=settling_time)
-    t, f, u = require_signal(time=time, friction_force=friction_force, voltage_peak_to_peak=voltage_peak_to_peak)
+    t, f, u = require_time_series(time=time, friction_force=friction_force, voltage_peak_to_peak=voltage_peak_to_peak)
     threshold = tolerance * float(np.nanmax(u) - np.nanmin(u))
     stretches = [
         (first, last)
@@ -181,14 +181,14 @@ def _core(t: Floats, first: int, last: int, settling: float) -> slice:
 
 def _step(
     t: Floats, f: Floats, level: float, stretch: tuple[int, int], core: slice, intrinsic: Floats | None
-) -> StaircaseStep:
+) -> VoltageStep:
     mean = correlated_mean(f[core])
     reduction = (
         None
         if intrinsic is None
-        else measured_reduction(intrinsic_friction_force=intrinsic, reduced_friction_force=f[core])
+        else estimate_friction_reduction(intrinsic_friction_force=intrinsic, reduced_friction_force=f[core])
     )
-    return StaircaseStep(
+    return VoltageStep(
         voltage_peak_to_peak=level,
         start_time=float(t[stretch[0]]),
         end_time=float(t[stretch[1] - 1]),

@@ -9,11 +9,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.measurement.time_series import require_signal
 from sonolube.measurement.recordings.mapping import RecordingMapping
-from sonolube.measurement.recordings.reader import blocks
+from sonolube.measurement.recordings.reader import recording_blocks
+from sonolube.measurement.time_series import require_time_series
 
-DEFAULT_WINDOW = 2.0  # s, D 2.3.2
+DEFAULT_WINDOW_DURATION = 2.0  # s, D 2.3.2
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -51,7 +51,12 @@ class WindowStatistics:
 
 
 def window_statistics(
-    signal: ArrayLike, *, time: ArrayLike, window_duration: float = DEFAULT_WINDOW, channel: str = "", unit: str = ""
+    signal: ArrayLike,
+    *,
+    time: ArrayLike,
+    window_duration: float = DEFAULT_WINDOW_DURATION,
+    channel: str = "",
+    unit: str = "",
 ) -> WindowStatistics:
     """Return mean and fluctuation in consecutive boxcar windows, the last of which may be cut short.
 
@@ -82,7 +87,7 @@ def window_statistics(
     .. [1] D 2.3.2 and 2.3.3: windows of 2 s at 400 Hz; their RMS is that of the variation, not of the force.
     """
     require_positive(window_duration=window_duration)
-    t, x = require_signal(time=time, **{channel or "signal": signal})
+    t, x = require_time_series(time=time, **{channel or "signal": signal})
     return _record([_moments(t, {channel: x}, t[0], window_duration)], channel, unit, t[0], window_duration)
 
 
@@ -91,7 +96,7 @@ def streamed_window_statistics(
     *,
     channels: Sequence[str] | None = None,
     mapping: RecordingMapping | Path | None = None,
-    window_duration: float = DEFAULT_WINDOW,
+    window_duration: float = DEFAULT_WINDOW_DURATION,
     block_samples: int = 1 << 18,
 ) -> Mapping[str, WindowStatistics]:
     """Return the window statistics of a file's channels without ever holding the file in memory.
@@ -117,7 +122,7 @@ def streamed_window_statistics(
     Raises
     ------
     InvalidInput
-        As `blocks`, or if a channel is not there.
+        As `recording_blocks`, or if a channel is not there.
     """
     require_positive(window_duration=window_duration)
     parts: list[_Moments] = []
@@ -142,7 +147,7 @@ def _whole_windows(
     path: Path, channels: Sequence[str] | None, mapping: RecordingMapping | Path | None, window: float, size: int
 ) -> Iterator[tuple[Floats, Signals, dict[str, str]]]:
     held_time, held, origin, units = np.empty(0), dict[str, Floats](), None, dict[str, str]()
-    for block in blocks(path, mapping=mapping, block_samples=size):
+    for block in recording_blocks(path, mapping=mapping, block_samples=size):
         names = list(channels) if channels is not None else [str(name) for name in block]
         for name in names:
             if name not in block:

@@ -10,7 +10,7 @@ from sonolube.errors import InvalidInput
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Wobble:
+class WobbleCorrection:
     """A friction force without the part that repeats every turn.
 
     Parameters
@@ -33,7 +33,7 @@ class Wobble:
 
 def remove_wobble(
     *, revolutions: ArrayLike, friction_force: ArrayLike, harmonics: int = 3, trend_degree: int = 1
-) -> Wobble:
+) -> WobbleCorrection:
     """Return the friction force without its harmonics of the rotation.
 
     Parameters
@@ -88,7 +88,7 @@ def remove_wobble(
     of_waves = solution[trend_degree + 1 :]
     cosine, sine = of_waves[:harmonics], of_waves[harmonics:]
     left = f[known] - design[known] @ solution
-    return Wobble(
+    return WobbleCorrection(
         friction_force=f - waves @ of_waves,
         wobble_amplitude=np.hypot(cosine, sine),
         phase=np.arctan2(sine, cosine),

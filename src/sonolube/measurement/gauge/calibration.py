@@ -9,7 +9,7 @@ from scipy.optimize import nnls
 
 from sonolube.checks import Floats, require_finite, require_non_negative
 from sonolube.errors import InvalidInput, OutsideRange
-from sonolube.measurement.gauge.preisach import RelayPlane, cell_spans, preisach_output, shares_up
+from sonolube.measurement.gauge.preisach import PreisachPlane, mean_relay_widths, preisach_output, relay_fractions
 
 _TURN = 0.02  # share of the range by which the displacement must come back for a turn
 _MOST_ROWS = 20_000  # of a calibration, beyond which neighbouring samples are passed over
@@ -39,12 +39,12 @@ class BranchCalibration:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class HysteresisCalibration:
+class PreisachCalibration:
     """Force over the history of displacement, after Preisach.
 
     Parameters
     ----------
-    plane : RelayPlane
+    plane : PreisachPlane
         Relays of the displacement, in metres.
     reversible : ndarray, shape (levels,)
         Force that the displacement of each level adds, in newtons; none is negative.
@@ -56,7 +56,7 @@ class HysteresisCalibration:
         Standard deviation of the calibration about the model, in newtons.
     """
 
-    plane: RelayPlane
+    plane: PreisachPlane
     reversible: Floats
     weights: Floats
     resting_force: float
@@ -103,7 +103,7 @@ def fit_branches(*, displacement: ArrayLike, applied_force: ArrayLike, degree: i
     Notes
     -----
     Takes all unloading for one curve, wherever it began; where the curves fan out, as in D figure 2.32, the deviation
-    tells by how much, and `fit_hysteresis` follows them.
+    tells by how much, and `fit_preisach` follows them.
     """
     x, force = _calibration_signals(displacement, applied_force)
     if not 1 <= degree <= 7:
@@ -126,7 +126,7 @@ def fit_branches(*, displacement: ArrayLike, applied_force: ArrayLike, degree: i
     )
 
 
-def force_on_branches(
+def force_from_branches(
     calibration: BranchCalibration, *, displacement: ArrayLike, displacement_uncertainty: float = 0.0
 ) -> ForceEstimate:
     """Return the force from a displacement and its direction.
@@ -161,7 +161,7 @@ def force_on_branches(
     )
 
 
-def fit_hysteresis(*, displacement: ArrayLike, applied_force: ArrayLike, levels: int = 16) -> HysteresisCalibration:
+def fit_preisach(*, displacement: ArrayLike, applied_force: ArrayLike, levels: int = 16) -> PreisachCalibration:
     """Return the calibration by Preisach's model, from loops that turn at different displacements.
 
     Parameters
@@ -176,7 +176,7 @@ def fit_hysteresis(*, displacement: ArrayLike, applied_force: ArrayLike, levels:
 
     Returns
     -------
-    HysteresisCalibration
+    PreisachCalibration
 
     Raises
     ------
@@ -199,16 +199,16 @@ def fit_hysteresis(*, displacement: ArrayLike, applied_force: ArrayLike, levels:
     x, force = _calibration_signals(displacement, applied_force)
     if x.size < 2 * levels:
         raise InvalidInput(f"{x.size} samples are too few for {levels} levels; give {2 * levels} or take fewer levels")
-    plane = RelayPlane(lowest=float(x.min()), highest=float(x.max()), levels=levels)
+    plane = PreisachPlane(lowest=float(x.min()), highest=float(x.max()), levels=levels)
     stride = -(-x.size // _MOST_ROWS)
-    ramps, shares, target = _ramps(plane, x[::stride]), shares_up(plane, x)[::stride], force[::stride]
+    ramps, shares, target = _ramps(plane, x[::stride]), relay_fractions(plane, x)[::stride], force[::stride]
     # the resting force may have either sign: it is taken as the difference of two that are not negative
     rest = np.ones((target.size, 1))
     scale = max(float(np.abs(target).max()), np.finfo(float).tiny)
     columns = np.concatenate([ramps, -shares, rest, -rest], axis=1)
     solution = scale * nnls(columns, target / scale, maxiter=100 * columns.shape[1])[0]
     freedom = max(1, target.size - int(np.count_nonzero(solution)))
-    return HysteresisCalibration(
+    return PreisachCalibration(
         plane=plane,
         reversible=solution[:levels],
         weights=solution[levels:-2],
@@ -217,14 +217,14 @@ def fit_hysteresis(*, displacement: ArrayLike, applied_force: ArrayLike, levels:
     )
 
 
-def force_with_hysteresis(
-    calibration: HysteresisCalibration, *, displacement: ArrayLike, displacement_uncertainty: float = 0.0
+def force_from_preisach(
+    calibration: PreisachCalibration, *, displacement: ArrayLike, displacement_uncertainty: float = 0.0
 ) -> ForceEstimate:
     """Return the force from the history of a displacement.
 
     Parameters
     ----------
-    calibration : HysteresisCalibration
+    calibration : PreisachCalibration
     displacement : array_like, shape (samples,)
         Reading of the sensor, in the order of time, from the unloaded state on. [m]
     displacement_uncertainty : float
@@ -280,21 +280,21 @@ def dissipated_energy(*, displacement: ArrayLike, applied_force: ArrayLike) -> f
     return float(np.sum((np.roll(x, -1) - x) * (np.roll(force, -1) + force)) / 2)
 
 
-def model_energy(calibration: HysteresisCalibration) -> float:
+def major_loop_dissipation(calibration: PreisachCalibration) -> float:
     """Return the energy dissipated over the greatest loop calibrated, in joules: each relay's span times its force.
 
     Parameters
     ----------
-    calibration : HysteresisCalibration
+    calibration : PreisachCalibration
 
     Returns
     -------
     float
     """
-    return float(np.sum(cell_spans(calibration.plane) * calibration.weights))
+    return float(np.sum(mean_relay_widths(calibration.plane) * calibration.weights))
 
 
-def _ramps(plane: RelayPlane, x: Floats) -> Floats:
+def _ramps(plane: PreisachPlane, x: Floats) -> Floats:
     """Return which share of each level lies below the displacement, shape (samples, levels)."""
     place = (x - plane.lowest) / (plane.highest - plane.lowest) * plane.levels
     return np.asarray(np.clip(place[:, np.newaxis] - np.arange(plane.levels), 0.0, 1.0))

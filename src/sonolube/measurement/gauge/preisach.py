@@ -11,7 +11,7 @@ from sonolube.errors import InvalidInput
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class RelayPlane:
+class PreisachPlane:
     """Relays that go up at one input and down at a lower one, in square cells of equal density.
 
     Parameters
@@ -45,12 +45,12 @@ class RelayPlane:
         return self.levels * (self.levels + 1) // 2
 
 
-def shares_up(plane: RelayPlane, values: Floats) -> Floats:
+def relay_fractions(plane: PreisachPlane, values: Floats) -> Floats:
     """Return which share of each cell's relays is up along a history of the input.
 
     Parameters
     ----------
-    plane : RelayPlane
+    plane : PreisachPlane
     values : ndarray, shape (samples,)
         History of the input, all relays down before it.
 
@@ -72,12 +72,12 @@ def shares_up(plane: RelayPlane, values: Floats) -> Floats:
     return shares
 
 
-def preisach_output(plane: RelayPlane, weights: Floats, values: Floats) -> Floats:
+def preisach_output(plane: PreisachPlane, weights: Floats, values: Floats) -> Floats:
     """Return the sum of the weights of all relays that are up, along a history of the input.
 
     Parameters
     ----------
-    plane : RelayPlane
+    plane : PreisachPlane
     weights : ndarray, shape (cells,)
         Of all relays of each cell together.
     values : ndarray, shape (samples,)
@@ -90,12 +90,12 @@ def preisach_output(plane: RelayPlane, weights: Floats, values: Floats) -> Float
     return np.asarray(_output(_in_cells(plane, values), plane.levels, np.ascontiguousarray(weights)))
 
 
-def cell_spans(plane: RelayPlane) -> Floats:
+def mean_relay_widths(plane: PreisachPlane) -> Floats:
     """Return how far apart going up and going down lie in each cell, on average, in units of the input.
 
     Parameters
     ----------
-    plane : RelayPlane
+    plane : PreisachPlane
 
     Returns
     -------
@@ -106,7 +106,7 @@ def cell_spans(plane: RelayPlane) -> Floats:
     return np.asarray((plane.highest - plane.lowest) / plane.levels * apart)
 
 
-def _in_cells(plane: RelayPlane, values: Floats) -> Floats:
+def _in_cells(plane: PreisachPlane, values: Floats) -> Floats:
     return np.ascontiguousarray((values - plane.lowest) / (plane.highest - plane.lowest) * plane.levels)
 
 

@@ -51,17 +51,17 @@ _Z: Mapping[tuple[str, str], Callable[[Floats, Floats, Floats], Floats | Complex
         ("Cp", "Rp"): lambda w, c, r: 1 / (1 / r + 1j * w * c),
     }
 )
-PAIRS = tuple(_Z)
+IMPEDANCE_PARTS = tuple(_Z)
 
 
-class Heading(NamedTuple):
+class ColumnHeading(NamedTuple):
     """What a heading says: the symbol of the quantity, and what one of its units is in SI."""
 
     symbol: str
     scale: float
 
 
-def heading(text: str) -> Heading | None:
+def parse_heading(text: str) -> ColumnHeading | None:
     """Return what the heading of a column says, or None where it is none of an impedance table.
 
     Parameters
@@ -77,12 +77,12 @@ def heading(text: str) -> Heading | None:
     for split in (_BRACKETED, _DIVIDED):
         if (found := split.fullmatch(label)) and (symbol := _SYMBOL.get(found[1].lower())):
             scale = _scale(found[2].strip(), _DIMENSION.get(symbol, "ohm"))
-            return Heading(symbol, scale) if scale is not None else None
+            return ColumnHeading(symbol, scale) if scale is not None else None
     symbol = _SYMBOL.get(label.lower(), "")
-    return Heading(symbol, 1.0) if symbol and not symbol.startswith("theta") else None
+    return ColumnHeading(symbol, 1.0) if symbol and not symbol.startswith("theta") else None
 
 
-def impedance_of(columns: Mapping[str, Floats], pair: tuple[str, str]) -> Complexes:
+def impedance_from_parts(columns: Mapping[str, Floats], pair: tuple[str, str]) -> Complexes:
     """Return impedance from two of its parts, complex, in ohm.
 
     Parameters
@@ -90,7 +90,7 @@ def impedance_of(columns: Mapping[str, Floats], pair: tuple[str, str]) -> Comple
     columns : mapping of str to ndarray
         Frequency "f" and the parts, in SI.
     pair : tuple of two str
-        One of `PAIRS`.
+        One of `IMPEDANCE_PARTS`.
 
     Returns
     -------

@@ -8,9 +8,9 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.impedance.column_headings import impedance_of
-from sonolube.measurement.impedance.spectrum import Points
-from sonolube.measurement.numeric_text import number
+from sonolube.measurement.impedance.column_headings import impedance_from_parts
+from sonolube.measurement.impedance.spectrum import ImpedanceSweep
+from sonolube.measurement.numeric_text import parse_number
 
 HP_4294A = "HP 4294A"
 MAGIC = "4294A"
@@ -33,7 +33,7 @@ class _Trace(NamedTuple):
     rows: Floats
 
 
-def read_hp4294a(path: Path, lines: list[str]) -> dict[str, Points]:
+def read_hp4294a(path: Path, lines: list[str]) -> dict[str, ImpedanceSweep]:
     """Return the sweeps of a 4294A: "data", and "memory" where the file has its traces.
 
     Parameters
@@ -78,8 +78,10 @@ def read_hp4294a(path: Path, lines: list[str]) -> dict[str, Points]:
             with np.errstate(all="ignore"):
                 columns = {"f": first.rows[:, 0], one: first.rows[:, column], two: scale * second.rows[:, column]}
             if sweep == "data" or np.any(columns[one] != 0):
-                sweeps[sweep] = Points(
-                    frequency=columns["f"], impedance=impedance_of(columns, (one, two)), lines=np.array(first.lines)
+                sweeps[sweep] = ImpedanceSweep(
+                    frequency=columns["f"],
+                    impedance=impedance_from_parts(columns, (one, two)),
+                    lines=np.array(first.lines),
                 )
     return sweeps
 
@@ -102,7 +104,7 @@ def _header_and_traces(path: Path, lines: list[str]) -> tuple[dict[str, tuple[st
 
 
 def _row(path: Path, at: int, text: str) -> list[float]:
-    values = [number(cell, decimal_sign=".") for cell in text.split("\t")]
+    values = [parse_number(cell, decimal_sign=".") for cell in text.split("\t")]
     known = [value for value in values if value is not None and np.isfinite(value)]
     if len(known) != len(values) or len(known) not in (3, 5):
         raise InvalidInput(f"{path}: line {at}: must hold 3 or 5 numbers between tabs, got {text[:40]!r}")

@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.measurement.impedance.hp4294a import HP_4294A, MAGIC, read_hp4294a
-from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum, Points, rising
+from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum, ImpedanceSweep, sorted_by_frequency
 from sonolube.measurement.impedance.tables import (
     COLUMNS,
     KEYSIGHT_E4990A,
@@ -20,7 +20,7 @@ from sonolube.measurement.impedance.touchstone import TOUCHSTONE, read_touchston
 
 _LARGEST = 1 << 28  # bytes; no sweep comes near
 
-IMPEDANCE_READERS: Mapping[str, Callable[[Path, list[str]], dict[str, Points]]] = MappingProxyType(
+IMPEDANCE_READERS: Mapping[str, Callable[[Path, list[str]], dict[str, ImpedanceSweep]]] = MappingProxyType(
     {
         HP_4294A: read_hp4294a,
         KEYSIGHT_E4990A: read_keysight_e4990a,
@@ -58,7 +58,7 @@ def read_impedance(path: Path, *, sweep: str | None = None) -> ImpedanceSpectrum
     file_format = impedance_format_of(path, lines)
     sweeps = IMPEDANCE_READERS[file_format](path, lines)
     chosen = _chosen(path, sweeps, sweep)
-    points = rising(sweeps[chosen], path=path)
+    points = sorted_by_frequency(sweeps[chosen], path=path)
     return ImpedanceSpectrum(
         frequency=points.frequency,
         impedance=points.impedance,
@@ -111,7 +111,7 @@ def _content(path: Path) -> tuple[bytes, list[str]]:
     return content, text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 
-def _chosen(path: Path, sweeps: Mapping[str, Points], sweep: str | None) -> str:
+def _chosen(path: Path, sweeps: Mapping[str, ImpedanceSweep], sweep: str | None) -> str:
     if sweep is not None:
         if sweep not in sweeps:
             raise UnknownName(f"{path}: has no sweep {sweep!r}; it has {', '.join(map(repr, sweeps))}")

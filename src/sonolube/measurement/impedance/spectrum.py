@@ -63,7 +63,7 @@ class ImpedanceSpectrum:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Points:
+class ImpedanceSweep:
     """The points of a sweep as a file gives them, not yet checked.
 
     Parameters
@@ -81,7 +81,7 @@ class Points:
     lines: NDArray[np.int64]
 
 
-def rising(points: Points, *, path: Path) -> Points:
+def sorted_by_frequency(points: ImpedanceSweep, *, path: Path) -> ImpedanceSweep:
     """Return the points of a sweep in order of frequency.
 
     Parameters
@@ -108,7 +108,7 @@ def rising(points: Points, *, path: Path) -> Points:
     _refuse(np.concatenate([[False], np.diff(f) <= 0]), "the frequency turns or stands still", lines, path)
     usable = np.isfinite(z) & (np.abs(z) > np.finfo(float).tiny) & (np.abs(z) < 1 / np.finfo(float).tiny)
     _refuse(~usable, "the impedance is zero or without bound", lines, path)
-    return Points(frequency=f, impedance=z, lines=lines)
+    return ImpedanceSweep(frequency=f, impedance=z, lines=lines)
 
 
 def _refuse(wrong: NDArray[np.bool_], reason: str, lines: NDArray[np.int64], path: Path) -> None:

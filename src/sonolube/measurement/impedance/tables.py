@@ -7,9 +7,14 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.impedance.column_headings import PAIRS, Heading, heading, impedance_of
-from sonolube.measurement.impedance.spectrum import Points
-from sonolube.measurement.numeric_text import number
+from sonolube.measurement.impedance.column_headings import (
+    IMPEDANCE_PARTS,
+    ColumnHeading,
+    impedance_from_parts,
+    parse_heading,
+)
+from sonolube.measurement.impedance.spectrum import ImpedanceSweep
+from sonolube.measurement.numeric_text import parse_number
 
 KEYSIGHT_E4990A = "Keysight E4990A"
 MFIA = "Zurich Instruments MFIA"
@@ -22,7 +27,7 @@ _MFIA_PAIRS = (("realz", "imagz"), ("absz", "phasez"))
 Row = tuple[int, list[str]]  # the line on which it stands, and its cells
 
 
-def read_keysight_e4990a(path: Path, lines: list[str]) -> dict[str, Points]:
+def read_keysight_e4990a(path: Path, lines: list[str]) -> dict[str, ImpedanceSweep]:
     """Return the sweeps of a trace file of a Keysight E4990A: "data", and "memory" where it was saved.
 
     Parameters
@@ -59,13 +64,13 @@ def read_keysight_e4990a(path: Path, lines: list[str]) -> dict[str, Points]:
     return sweeps
 
 
-def _e4990a_heading(text: str, kind: str, suffix: str) -> Heading | None:
+def _e4990a_heading(text: str, kind: str, suffix: str) -> ColumnHeading | None:
     if not text:  # the frequency's heading has no suffix
-        return heading(kind)
-    return heading(text) if kind.lower().startswith(suffix) else None
+        return parse_heading(kind)
+    return parse_heading(text) if kind.lower().startswith(suffix) else None
 
 
-def read_mfia(path: Path, lines: list[str]) -> dict[str, Points]:
+def read_mfia(path: Path, lines: list[str]) -> dict[str, ImpedanceSweep]:
     """Return the sweeps that LabOne wrote for an MFIA or MFLI, by their chunk numbers.
 
     Parameters
@@ -103,7 +108,7 @@ def read_mfia(path: Path, lines: list[str]) -> dict[str, Points]:
     return {chunk: _chunk_points(path, chunk, fields) for chunk, fields in chunks.items()}
 
 
-def _chunk_points(path: Path, chunk: str, fields: dict[str, tuple[int, Floats]]) -> Points:
+def _chunk_points(path: Path, chunk: str, fields: dict[str, tuple[int, Floats]]) -> ImpedanceSweep:
     first = min(at for at, _ in fields.values())
     axis = next((name for name in ("frequency", "grid") if name in fields), None)
     pair = next((pair for pair in _MFIA_PAIRS if all(name in fields for name in pair)), None)
@@ -121,12 +126,12 @@ def _chunk_points(path: Path, chunk: str, fields: dict[str, tuple[int, Floats]])
         raise InvalidInput(f"{path}: line {at}: chunk {chunk[:20]!r} holds no finished point")
     parts = ("R", "X") if pair[0] == "realz" else ("|Z|", "theta_Z")
     columns = {"f": f[measured], parts[0]: one[measured], parts[1]: two[measured]}
-    return Points(
-        frequency=columns["f"], impedance=impedance_of(columns, parts), lines=np.full(int(measured.sum()), at)
+    return ImpedanceSweep(
+        frequency=columns["f"], impedance=impedance_from_parts(columns, parts), lines=np.full(int(measured.sum()), at)
     )
 
 
-def read_columns(path: Path, lines: list[str]) -> dict[str, Points]:
+def read_columns(path: Path, lines: list[str]) -> dict[str, ImpedanceSweep]:
     """Return the one sweep of a table whose first row names its columns.
 
     Parameters
@@ -152,14 +157,14 @@ def read_columns(path: Path, lines: list[str]) -> dict[str, Points]:
     rows = [(at, line.split(separator)) for at, line in told]
     at, labels = rows[0]
     decimal_sign = "," if separator != "," and any("," in cell for _, row in rows[1:9] for cell in row) else "."
-    return {"": _points(path, at, [heading(label) for label in labels], rows[1:], decimal_sign=decimal_sign)}
+    return {"": _points(path, at, [parse_heading(label) for label in labels], rows[1:], decimal_sign=decimal_sign)}
 
 
 def _points(
-    path: Path, heading_line: int, headings: list[Heading | None], rows: list[Row], *, decimal_sign: str
-) -> Points:
+    path: Path, heading_line: int, headings: list[ColumnHeading | None], rows: list[Row], *, decimal_sign: str
+) -> ImpedanceSweep:
     place = {part.symbol: at for at, part in reversed(list(enumerate(headings))) if part}
-    pair = next((pair for pair in PAIRS if all(part in place for part in pair)), None)
+    pair = next((pair for pair in IMPEDANCE_PARTS if all(part in place for part in pair)), None)
     if "f" not in place or pair is None:
         raise InvalidInput(
             f"{path}: line {heading_line}: names no columns of frequency and impedance, such as"
@@ -173,8 +178,10 @@ def _points(
         scale = next(part.scale for part in headings if part and part.symbol == symbol)
         with np.errstate(all="ignore"):
             columns[symbol] = scale * values
-    return Points(
-        frequency=columns["f"], impedance=impedance_of(columns, pair), lines=np.array([line for line, _ in rows])
+    return ImpedanceSweep(
+        frequency=columns["f"],
+        impedance=impedance_from_parts(columns, pair),
+        lines=np.array([line for line, _ in rows]),
     )
 
 
@@ -182,7 +189,7 @@ def _cell(path: Path, row: Row, at: int, decimal_sign: str) -> float:
     line, cells = row
     if at >= len(cells):
         raise InvalidInput(f"{path}: line {line}: has {len(cells)} cells where column {at + 1} is wanted")
-    value = number(cells[at], decimal_sign=decimal_sign)
+    value = parse_number(cells[at], decimal_sign=decimal_sign)
     if value is None or not np.isfinite(value):
         raise InvalidInput(f"{path}: line {line}: {cells[at].strip()[:40]!r} is not a finite number")
     return value
@@ -191,7 +198,7 @@ def _cell(path: Path, row: Row, at: int, decimal_sign: str) -> float:
 def _values(path: Path, line: int, cells: Iterable[str]) -> Floats:
     values = []
     for cell in cells:
-        value = number(cell, decimal_sign=".") if cell else float("nan")
+        value = parse_number(cell, decimal_sign=".") if cell else float("nan")
         if value is None or np.isinf(value):
             raise InvalidInput(f"{path}: line {line}: {cell[:40]!r} is not a number")
         values.append(value)

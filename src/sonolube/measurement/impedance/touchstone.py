@@ -7,8 +7,8 @@ import numpy as np
 
 from sonolube.checks import Complexes, Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.impedance.spectrum import Points
-from sonolube.measurement.numeric_text import number
+from sonolube.measurement.impedance.spectrum import ImpedanceSweep
+from sonolube.measurement.numeric_text import parse_number
 
 TOUCHSTONE = "touchstone"
 
@@ -27,7 +27,7 @@ class _Options:
     normalized: bool = True  # impedances and admittances count in the reference resistance: version 1 only
 
 
-def read_touchstone(path: Path, lines: list[str]) -> dict[str, Points]:
+def read_touchstone(path: Path, lines: list[str]) -> dict[str, ImpedanceSweep]:
     """Return the one sweep of a touchstone file of one port.
 
     Parameters
@@ -80,7 +80,7 @@ def read_touchstone(path: Path, lines: list[str]) -> dict[str, Points]:
     )
     values = np.array(rows)
     with np.errstate(all="ignore"):
-        points = Points(
+        points = ImpedanceSweep(
             frequency=known.frequency * values[:, 0],
             impedance=_impedance(_complex(values[:, 1], values[:, 2], known.numbers), known),
             lines=np.array(at_row),
@@ -119,14 +119,14 @@ def _keyword(path: Path, at: int, keyword: str, value: str, reference: float | N
 
 
 def _resistance(path: Path, at: int, text: str) -> float:
-    value = number(text, decimal_sign=".")
+    value = parse_number(text, decimal_sign=".")
     if value is None or not (np.isfinite(value) and value > 0):
         raise InvalidInput(f"{path}: line {at}: the reference resistance must be positive, got {text[:20]!r}")
     return value
 
 
 def _row(path: Path, at: int, text: str) -> list[float]:
-    values = [number(cell, decimal_sign=".") for cell in text.split()]
+    values = [parse_number(cell, decimal_sign=".") for cell in text.split()]
     known = [value for value in values if value is not None and np.isfinite(value)]
     if len(values) != 3 or len(known) != 3:
         raise InvalidInput(f"{path}: line {at}: a point of one port is three numbers, got {text[:40]!r}")

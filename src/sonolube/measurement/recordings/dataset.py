@@ -11,7 +11,7 @@ from sonolube import __version__
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, suggestion
 from sonolube.measurement.recordings.mapping import ChannelSource, RecordingMapping
-from sonolube.measurement.recordings.raw_table import Column, Table
+from sonolube.measurement.recordings.raw_table import RawColumn, RawTable
 from sonolube.units import convert
 from sonolube.vocabulary import quantities, unit_of
 
@@ -42,8 +42,8 @@ _SPELLINGS = {
 }
 
 
-def assemble(
-    table: Table, *, path: Path, mapping: RecordingMapping | None, digest: str, partial: bool = False
+def recording_dataset(
+    table: RawTable, *, path: Path, mapping: RecordingMapping | None, digest: str, partial: bool = False
 ) -> "xr.Dataset":
     """Return the recording that the columns of a file make.
 
@@ -77,7 +77,7 @@ def assemble(
     axis = _axis(table, path, mapping, sources, along)
     if axis.size == 0:
         raise InvalidInput(f"{path}: holds no samples")
-    refuse_unsorted(axis, along=along, path=path, place=table.place)
+    require_increasing_axis(axis, along=along, path=path, place=table.place)
     variables = {name: (along, *_channel(name, table, path, source, partial)) for name, source in sources.items()}
     if not variables:
         raise InvalidInput(f"{path}: holds no channel beside its {along}")
@@ -89,7 +89,7 @@ def assemble(
     )
 
 
-def _along(table: Table, mapping: RecordingMapping | None) -> str:
+def _along(table: RawTable, mapping: RecordingMapping | None) -> str:
     if mapping is not None:
         return mapping.along
     names = {_name_and_unit(column)[0] for column in table.columns}
@@ -97,7 +97,7 @@ def _along(table: Table, mapping: RecordingMapping | None) -> str:
     return "revolutions" if "revolutions" in names and not timed else "time"
 
 
-def _sources(table: Table, path: Path, mapping: RecordingMapping | None) -> dict[str, ChannelSource]:
+def _sources(table: RawTable, path: Path, mapping: RecordingMapping | None) -> dict[str, ChannelSource]:
     if mapping is not None and mapping.channels:
         return dict(mapping.channels)
     sources: dict[str, ChannelSource] = {}
@@ -111,14 +111,14 @@ def _sources(table: Table, path: Path, mapping: RecordingMapping | None) -> dict
     return sources
 
 
-def _name_and_unit(column: Column) -> tuple[str, str | None]:
+def _name_and_unit(column: RawColumn) -> tuple[str, str | None]:
     match = _LABEL_AND_UNIT.match(column.label)
     label, unit = (match[1], match[2] if match[2] is not None else match[3]) if match else (column.label, None)
     name = re.sub(r"\W+", "_", label.strip().lower()).strip("_") or "channel"
     return name, column.unit if column.unit is not None else unit
 
 
-def _column(table: Table, path: Path, label: str) -> Column:
+def _column(table: RawTable, path: Path, label: str) -> RawColumn:
     for column in table.columns:
         if column.label == label:
             return column
@@ -128,7 +128,7 @@ def _column(table: Table, path: Path, label: str) -> Column:
 
 
 def _channel(
-    name: str, table: Table, path: Path, source: ChannelSource, partial: bool
+    name: str, table: RawTable, path: Path, source: ChannelSource, partial: bool
 ) -> tuple[Floats, dict[str, str | float]]:
     column = _column(table, path, source.column)
     values = column.values
@@ -144,7 +144,7 @@ def _channel(
     calibrated = values if (source.gain, source.offset) == (1.0, 0.0) else values * source.gain + source.offset
     unit = known.unit if known else (written or "")
     if known and written is not None:
-        calibrated = in_si(calibrated, written_unit=written, unit=unit, name=f"{path}: {column.label!r}")
+        calibrated = convert_to_si(calibrated, written_unit=written, unit=unit, name=f"{path}: {column.label!r}")
     return calibrated, {
         "units": unit or "1",
         "long_name": known.meaning if known else column.label,
@@ -155,7 +155,7 @@ def _channel(
     }
 
 
-def in_si(values: Floats, *, written_unit: str, unit: str, name: str) -> Floats:
+def convert_to_si(values: Floats, *, written_unit: str, unit: str, name: str) -> Floats:
     """Return values in SI that were written in another unit of the kind.
 
     Parameters
@@ -191,7 +191,7 @@ def in_si(values: Floats, *, written_unit: str, unit: str, name: str) -> Floats:
 
 
 def _axis(
-    table: Table,
+    table: RawTable,
     path: Path,
     mapping: RecordingMapping | None,
     sources: dict[str, ChannelSource],
@@ -217,7 +217,7 @@ def _axis(
     return start + interval * (table.first_row + np.arange(rows, dtype=np.float64))
 
 
-def _rows(table: Table, path: Path, sources: dict[str, ChannelSource]) -> int:
+def _rows(table: RawTable, path: Path, sources: dict[str, ChannelSource]) -> int:
     lengths = {source.column: _column(table, path, source.column).values.size for source in sources.values()}
     if len(set(lengths.values())) > 1:
         text = ", ".join(f"{label} {size}" for label, size in lengths.items())
@@ -225,7 +225,7 @@ def _rows(table: Table, path: Path, sources: dict[str, ChannelSource]) -> int:
     return next(iter(lengths.values()), 0)
 
 
-def _axis_column(column: Column, table: Table, path: Path, along: str, source: ChannelSource) -> Floats:
+def _axis_column(column: RawColumn, table: RawTable, path: Path, along: str, source: ChannelSource) -> Floats:
     values = column.values * source.gain + source.offset
     lost = ~np.isfinite(values)
     if lost.any():
@@ -233,10 +233,10 @@ def _axis_column(column: Column, table: Table, path: Path, along: str, source: C
     written = source.unit if source.unit is not None else column.unit
     if written is None:
         return values
-    return in_si(values, written_unit=written, unit=unit_of(along), name=f"{path}: {column.label!r}")
+    return convert_to_si(values, written_unit=written, unit=unit_of(along), name=f"{path}: {column.label!r}")
 
 
-def refuse_unsorted(axis: Floats, *, along: str, path: Path, place: Callable[[int], str]) -> None:
+def require_increasing_axis(axis: Floats, *, along: str, path: Path, place: Callable[[int], str]) -> None:
     """Refuse an axis that does not increase.
 
     Parameters
@@ -263,7 +263,7 @@ def refuse_unsorted(axis: Floats, *, along: str, path: Path, place: Callable[[in
 
 
 def _attributes(
-    table: Table, path: Path, mapping: RecordingMapping | None, digest: str, time: Floats | None
+    table: RawTable, path: Path, mapping: RecordingMapping | None, digest: str, time: Floats | None
 ) -> dict[str, str | int | float]:
     attributes: dict[str, str | int | float] = {
         "title": mapping.title if mapping and mapping.title else path.stem,

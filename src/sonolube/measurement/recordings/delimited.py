@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from sonolube.errors import InvalidInput, suggestion
+from sonolube.measurement.numeric_text import parse_number, parse_numbers
 from sonolube.measurement.recordings.mapping import RecordingMapping, TextLayout
-from sonolube.measurement.numeric_text import number, numbers
-from sonolube.measurement.recordings.raw_table import Column, Table, one_line
+from sonolube.measurement.recordings.raw_table import RawColumn, RawTable, one_line
 
 FORMAT = "delimited text"
 _SEPARATORS = "\t;,|"
@@ -19,7 +19,7 @@ _LONGEST_CELL = 1 << 20
 Row = tuple[int, list[str]]  # the line on which it begins, and its cells
 
 
-def read_delimited(path: Path, *, mapping: RecordingMapping | None = None) -> Table:
+def read_delimited(path: Path, *, mapping: RecordingMapping | None = None) -> RawTable:
     """Return the columns of numbers of a text export.
 
     Parameters
@@ -57,7 +57,7 @@ def read_delimited(path: Path, *, mapping: RecordingMapping | None = None) -> Ta
         )
     decimal_sign = layout.decimal_sign or _decimal_sign(body, separator)
     columns = _columns(body, labels, _wanted(labels, mapping), decimal_sign, frozenset(layout.missing), path)
-    return Table(columns=columns, format=FORMAT, lines=np.array([line for line, _ in body]))
+    return RawTable(columns=columns, format=FORMAT, lines=np.array([line for line, _ in body]))
 
 
 def decoded(path: Path, *, encoding: str) -> str:
@@ -139,18 +139,18 @@ def _decimal_sign(body: list[Row], separator: str) -> str:
 
 def _columns(
     body: list[Row], labels: list[str], wanted: list[str] | None, decimal_sign: str, missing: frozenset[str], path: Path
-) -> tuple[Column, ...]:
+) -> tuple[RawColumn, ...]:
     columns = []
     for label in wanted if wanted is not None else labels:
         index = _index(labels, label, path)
         cells = [row[index] for _, row in body]
         if wanted is None and (not label or _is_text(cells, decimal_sign, missing)):
             continue
-        values, wrong = numbers(cells, decimal_sign=decimal_sign, missing=missing)
+        values, wrong = parse_numbers(cells, decimal_sign=decimal_sign, missing=missing)
         if wrong is not None:
             line = body[wrong][0]
             raise InvalidInput(f"{path}: line {line}: {label!r} is {cells[wrong][:40]!r}, which is not a number")
-        columns.append(Column(label=label, values=values))
+        columns.append(RawColumn(label=label, values=values))
     if not columns:
         raise InvalidInput(f"{path}: line {body[0][0]}: no column holds numbers")
     return tuple(columns)
@@ -160,5 +160,5 @@ def _is_text(cells: list[str], decimal_sign: str, missing: frozenset[str]) -> bo
     for cell in cells:
         text = cell.strip()
         if text and text not in missing:
-            return number(text, decimal_sign=decimal_sign) is None
+            return parse_number(text, decimal_sign=decimal_sign) is None
     return True

@@ -8,7 +8,7 @@ import numpy as np
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.mapping import RecordingMapping
-from sonolube.measurement.recordings.raw_table import Column, Table, refusing
+from sonolube.measurement.recordings.raw_table import RawColumn, RawTable, refuse_library_errors
 
 FORMAT_HDF5 = "HDF5"
 FORMAT_NETCDF3 = "netCDF 3"
@@ -17,7 +17,7 @@ NETCDF3_MAGIC = b"CDF"
 _ORIGIN = ("title", "file_name", "file_format", "sha256", "begun")
 
 
-def read_hierarchical(path: Path, *, mapping: RecordingMapping | None = None) -> Table:
+def read_hierarchical(path: Path, *, mapping: RecordingMapping | None = None) -> RawTable:
     """Return the vectors of an HDF5 or netCDF file; those inside groups as `group/vector`.
 
     Parameters
@@ -41,11 +41,11 @@ def read_hierarchical(path: Path, *, mapping: RecordingMapping | None = None) ->
     with path.open("rb") as stream:
         old = stream.read(3) == NETCDF3_MAGIC
     name = FORMAT_NETCDF3 if old else FORMAT_HDF5
-    with refusing(path, format_name=name):
+    with refuse_library_errors(path, format_name=name):
         columns, attributes = _netcdf3(path) if old else _hdf5(path)
     if not columns:
         raise InvalidInput(f"{path}: holds no vector of numbers")
-    return Table(columns=tuple(columns), format=name, begun=attributes.pop("begun", ""), origin=attributes)
+    return RawTable(columns=tuple(columns), format=name, begun=attributes.pop("begun", ""), origin=attributes)
 
 
 def _origin(attributes: Mapping[str, Any]) -> dict[str, str]:
@@ -58,10 +58,10 @@ def _origin(attributes: Mapping[str, Any]) -> dict[str, str]:
     return origin
 
 
-def _hdf5(path: Path) -> tuple[list[Column], dict[str, str]]:
+def _hdf5(path: Path) -> tuple[list[RawColumn], dict[str, str]]:
     import h5py
 
-    columns: list[Column] = []
+    columns: list[RawColumn] = []
 
     with h5py.File(path, "r") as file:
         rate = file.attrs.get("sample_rate")
@@ -74,7 +74,7 @@ def _hdf5(path: Path) -> tuple[list[Column], dict[str, str]]:
         return columns, _origin(file.attrs)
 
 
-def _netcdf3(path: Path) -> tuple[list[Column], dict[str, str]]:
+def _netcdf3(path: Path) -> tuple[list[RawColumn], dict[str, str]]:
     from scipy.io import netcdf_file
 
     with netcdf_file(path, "r", mmap=False) as file:
@@ -87,7 +87,7 @@ def _netcdf3(path: Path) -> tuple[list[Column], dict[str, str]]:
         return columns, _origin(file._attributes)
 
 
-def _column(name: str, values: Any, attributes: dict[str, Any], rate: Any) -> Column:
+def _column(name: str, values: Any, attributes: dict[str, Any], rate: Any) -> RawColumn:
     unit = attributes.get("units", attributes.get("unit"))
     rate = attributes.get("sample_rate", rate)
     rate = float(np.ravel(rate)[0]) if rate is not None else 0.0
@@ -95,7 +95,7 @@ def _column(name: str, values: Any, attributes: dict[str, Any], rate: Any) -> Co
     numbers = values.astype(np.float64)
     if fill is not None and np.ravel(fill).size == 1:
         numbers = np.where(values == np.ravel(fill)[0], np.nan, numbers)
-    return Column(
+    return RawColumn(
         label=name,
         values=numbers,
         unit=unit.decode() if isinstance(unit, bytes) else (str(unit) if unit is not None else None),

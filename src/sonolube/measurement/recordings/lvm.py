@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
+from sonolube.measurement.numeric_text import parse_numbers
 from sonolube.measurement.recordings.delimited import decoded
 from sonolube.measurement.recordings.mapping import RecordingMapping
-from sonolube.measurement.numeric_text import numbers
-from sonolube.measurement.recordings.raw_table import Column, Table
+from sonolube.measurement.recordings.raw_table import RawColumn, RawTable
 
 FORMAT = "LabVIEW measurement text"
 MAGIC = "LabVIEW Measurement"
@@ -45,7 +45,7 @@ class _Style:
     decimal_sign: str
 
 
-def read_labview_text(path: Path, *, mapping: RecordingMapping | None = None) -> Table:
+def read_labview_text(path: Path, *, mapping: RecordingMapping | None = None) -> RawTable:
     """Return the channels of an LVM file; segments with the same channels are joined in order.
 
     Parameters
@@ -117,7 +117,7 @@ def _header(lines: Iterator[Line], path: Path, at: int, separator: str, *, may_e
     return None
 
 
-def _segments(lines: Iterator[Line], header: _Header, style: _Style, path: Path) -> Iterator[Table]:
+def _segments(lines: Iterator[Line], header: _Header, style: _Style, path: Path) -> Iterator[RawTable]:
     at = header.line
     while (segment := _header(lines, path, at, style.separator, may_end=True)) is not None:
         count = _count(segment, path)
@@ -149,7 +149,7 @@ def _count(segment: _Header, path: Path) -> int:
 
 def _segment(
     rows: list[tuple[int, list[str]]], labels: list[str], segment: _Header, count: int, style: _Style, path: Path
-) -> Table:
+) -> RawTable:
     named = [(index, label) for index, label in enumerate(labels) if label and label != "Comment"]
     values_at = [(index, label) for index, label in named if label != _X_LABEL]
     if len(values_at) != count:
@@ -159,17 +159,17 @@ def _segment(
     table = {index: _cells(rows, index, label, style, path) for index, label in named}
     time = _time(table, named, segment, len(rows), style, path, lines)
     units = segment.keys.get("Y_Unit_Label", [])
-    columns = [Column(label=_X_LABEL, values=time, unit="s")]
+    columns = [RawColumn(label=_X_LABEL, values=time, unit="s")]
     for channel, (index, label) in enumerate(values_at):
         unit = units[channel] if channel < len(units) and units[channel] else None
-        columns.append(Column(label=label, values=table[index], unit=unit))
+        columns.append(RawColumn(label=label, values=table[index], unit=unit))
     begun = f"{segment.text('Date', '')} {segment.text('Time', '')}".strip()
-    return Table(columns=tuple(columns), format=FORMAT, lines=lines, begun=begun)
+    return RawTable(columns=tuple(columns), format=FORMAT, lines=lines, begun=begun)
 
 
 def _cells(rows: list[tuple[int, list[str]]], index: int, label: str, style: _Style, path: Path) -> Floats:
     cells = [row[index] if index < len(row) else "" for _, row in rows]
-    values, wrong = numbers(cells, decimal_sign=style.decimal_sign, missing=_MISSING)
+    values, wrong = parse_numbers(cells, decimal_sign=style.decimal_sign, missing=_MISSING)
     if wrong is not None:
         line = rows[wrong][0]
         raise InvalidInput(f"{path}: line {line}: {label!r} is {cells[wrong][:40]!r}, which is not a number")
@@ -196,7 +196,7 @@ def _time(
 
 def _header_numbers(segment: _Header, key: str, style: _Style, path: Path) -> list[float]:
     cells = [cell for cell in segment.keys.get(key, []) if cell]
-    values, wrong = numbers(cells, decimal_sign=style.decimal_sign, missing=frozenset())
+    values, wrong = parse_numbers(cells, decimal_sign=style.decimal_sign, missing=frozenset())
     if wrong is not None or not np.isfinite(values).all():
         raise InvalidInput(f"{path}: line {segment.line}: {key} is {cells[wrong or 0][:40]!r}, which is not a number")
     return [float(value) for value in values]
@@ -213,7 +213,7 @@ def _instant(text: str) -> datetime | None:
         return None
 
 
-def _joined(segments: list[Table], path: Path, *, begun: str) -> Table:
+def _joined(segments: list[RawTable], path: Path, *, begun: str) -> RawTable:
     first = segments[0]
     labels = [column.label for column in first.columns]
     for segment in segments[1:]:
@@ -223,7 +223,7 @@ def _joined(segments: list[Table], path: Path, *, begun: str) -> Table:
     begins = [_instant(segment.begun) for segment in segments]
     later = [0.0 if at is None or begins[0] is None else (at - begins[0]).total_seconds() for at in begins]
     columns = tuple(
-        Column(
+        RawColumn(
             label=column.label,
             values=np.concatenate(
                 [s.columns[index].values + (0.0 if index else late) for s, late in zip(segments, later, strict=True)]
@@ -233,4 +233,4 @@ def _joined(segments: list[Table], path: Path, *, begun: str) -> Table:
         for index, column in enumerate(first.columns)
     )
     lines = np.concatenate([segment.lines for segment in segments if segment.lines is not None])
-    return Table(columns=columns, format=FORMAT, lines=lines, begun=begun)
+    return RawTable(columns=columns, format=FORMAT, lines=lines, begun=begun)

@@ -12,7 +12,7 @@ from sonolube.errors import InvalidInput, UnknownName, suggestion
 from sonolube.units import to_si
 from sonolube.vocabulary import quantity
 
-AXES = ("time", "revolutions")
+AXIS_QUANTITIES = ("time", "revolutions")
 _KEYS = {"title", "axis", "text", "channels", "rows"}
 _AXIS_KEYS = {"quantity", "column", "unit", "gain", "offset", "sample_rate"}
 _TEXT_KEYS = {"separator", "decimal_sign", "lines_to_skip", "missing", "encoding"}
@@ -129,8 +129,8 @@ class RecordingMapping:
     def __post_init__(self) -> None:
         for name in self.channels:
             quantity(name)
-        if self.along not in AXES:
-            raise InvalidInput(f"axis.quantity must be one of {', '.join(AXES)}, got {self.along!r}")
+        if self.along not in AXIS_QUANTITIES:
+            raise InvalidInput(f"axis.quantity must be one of {', '.join(AXIS_QUANTITIES)}, got {self.along!r}")
         if self.sample_rate is not None:
             require_positive(sample_rate=self.sample_rate)
             if self.axis is not None:

@@ -8,13 +8,13 @@ import numpy as np
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.mapping import RecordingMapping
-from sonolube.measurement.recordings.raw_table import Column, Table, refusing
+from sonolube.measurement.recordings.raw_table import RawColumn, RawTable, refuse_library_errors
 
 FORMAT = "MATLAB"
 _RATES = ("sample_rate", "sampling_rate", "fs", "Fs")
 
 
-def read_matlab(path: Path, *, mapping: RecordingMapping | None = None) -> Table:
+def read_matlab(path: Path, *, mapping: RecordingMapping | None = None) -> RawTable:
     """Return the vectors of a MATLAB file, those inside structures as `structure.field`.
 
     Parameters
@@ -34,20 +34,20 @@ def read_matlab(path: Path, *, mapping: RecordingMapping | None = None) -> Table
     InvalidInput
         Naming the file, if it is no MATLAB file or holds no vector of numbers.
     """
-    with refusing(path, format_name=FORMAT):
+    with refuse_library_errors(path, format_name=FORMAT):
         with path.open("rb") as stream:
             new = b"MATLAB 7.3" in stream.read(128)
         arrays = dict(_version_73(path) if new else _version_5(path))
     rates = [float(arrays[name].flat[0]) for name in _RATES if name in arrays and arrays[name].size == 1]
     interval = 1 / rates[0] if rates and rates[0] > 0 else None
     columns = tuple(
-        Column(label=name, values=array.ravel().astype(np.float64), interval=interval, start=0.0)
+        RawColumn(label=name, values=array.ravel().astype(np.float64), interval=interval, start=0.0)
         for name, array in arrays.items()
         if array.size > 1 and max(array.shape) == array.size
     )
     if not columns:
         raise InvalidInput(f"{path}: holds no vector of numbers")
-    return Table(columns=columns, format=FORMAT)
+    return RawTable(columns=columns, format=FORMAT)
 
 
 def _version_5(path: Path) -> Mapping[str, Any]:

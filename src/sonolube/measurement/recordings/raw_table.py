@@ -14,7 +14,7 @@ from sonolube.errors import InvalidInput, SonolubeError
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Column:
+class RawColumn:
     """One column of a file.
 
     Parameters
@@ -42,7 +42,7 @@ class Column:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Table:
+class RawTable:
     """The columns of a file.
 
     Parameters
@@ -63,7 +63,7 @@ class Table:
         Of a recording written by `write_recording`: the title, name, format and SHA-256 of the file it came from.
     """
 
-    columns: tuple[Column, ...]
+    columns: tuple[RawColumn, ...]
     format: str
     lines: NDArray[np.int64] | None = None
     begun: str = ""
@@ -82,7 +82,7 @@ def one_line(label: str) -> str:
 
 
 @contextmanager
-def refusing(path: Path, *, format_name: str, offset: Callable[[], int] | None = None) -> Iterator[None]:
+def refuse_library_errors(path: Path, *, format_name: str, offset: Callable[[], int] | None = None) -> Iterator[None]:
     """Turn whatever a reader of a foreign library raises on a broken file into one clear line.
 
     Raises

@@ -15,9 +15,9 @@ from sonolube.measurement.recordings import delimited, matlab, tdms
 from sonolube.measurement.recordings import hdf5 as hierarchical
 from sonolube.measurement.recordings import lvm as labview_text
 from sonolube.measurement.recordings import uff as universal_file
-from sonolube.measurement.recordings.dataset import assemble, refuse_unsorted
+from sonolube.measurement.recordings.dataset import recording_dataset, require_increasing_axis
 from sonolube.measurement.recordings.mapping import RecordingMapping, read_mapping
-from sonolube.measurement.recordings.raw_table import Table
+from sonolube.measurement.recordings.raw_table import RawTable
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -26,14 +26,14 @@ if TYPE_CHECKING:
 class Reader(Protocol):
     """What reads one format."""
 
-    def __call__(self, path: Path, *, mapping: RecordingMapping | None = None) -> Table:
+    def __call__(self, path: Path, *, mapping: RecordingMapping | None = None) -> RawTable:
         """Return the columns of a file."""
         ...
 
 
 READERS: Mapping[str, Reader] = MappingProxyType(
     {
-        tdms.FORMAT: tdms.read_tdms,
+        tdms.TDMS_FORMAT: tdms.read_tdms,
         labview_text.FORMAT: labview_text.read_labview_text,
         matlab.FORMAT: matlab.read_matlab,
         hierarchical.FORMAT_HDF5: hierarchical.read_hierarchical,
@@ -68,11 +68,11 @@ def read_recording(path: Path, *, mapping: RecordingMapping | Path | None = None
         Naming the file, the line or byte, and the reason, if the file cannot be read or its time is no time.
     """
     known = _known(mapping)
-    table = READERS[format_of(path)](path, mapping=known)
-    return assemble(table, path=path, mapping=known, digest=_digest(path))
+    table = READERS[recording_format_name(path)](path, mapping=known)
+    return recording_dataset(table, path=path, mapping=known, digest=_digest(path))
 
 
-def blocks(
+def recording_blocks(
     path: Path, *, mapping: RecordingMapping | Path | None = None, block_samples: int = 1 << 18
 ) -> Iterator["xr.Dataset"]:
     """Yield a recording in blocks, one after the other.
@@ -104,7 +104,7 @@ def blocks(
     if block_samples < 1:
         raise InvalidInput(f"block_samples must be positive, got {block_samples}")
     known = _known(mapping)
-    if format_of(path) != tdms.FORMAT:
+    if recording_format_name(path) != tdms.TDMS_FORMAT:
         whole = read_recording(path, mapping=known)
         along = next(iter(whole.sizes))
         for first in range(0, whole.sizes[along], block_samples):
@@ -112,10 +112,12 @@ def blocks(
         return
     digest, last = _digest(path), -math.inf
     for table in tdms.tdms_tables(path, mapping=known, block_samples=block_samples):
-        block = assemble(table, path=path, mapping=known, digest=digest, partial=True)
+        block = recording_dataset(table, path=path, mapping=known, digest=digest, partial=True)
         along = str(next(iter(block.sizes)))
         axis = block[along].to_numpy()
-        refuse_unsorted(np.array([last, axis[0]]), along=along, path=path, place=f"sample {table.first_row}".format)
+        require_increasing_axis(
+            np.array([last, axis[0]]), along=along, path=path, place=f"sample {table.first_row}".format
+        )
         last = axis[-1]
         yield block
 
@@ -143,7 +145,7 @@ def write_recording(recording: "xr.Dataset", *, path: Path) -> Path:
     return write_whole(path, bytes(recording.to_netcdf(engine="h5netcdf")))
 
 
-def format_of(path: Path) -> str:
+def recording_format_name(path: Path) -> str:
     """Return the name of the format of a file, by its content and then its suffix.
 
     Parameters
@@ -179,7 +181,7 @@ def format_of(path: Path) -> str:
 
 def _format_by_content(head: bytes) -> str | None:
     if head.startswith(b"TDSm"):
-        return tdms.FORMAT
+        return tdms.TDMS_FORMAT
     if head.startswith(b"MATLAB "):
         return matlab.FORMAT
     if head.startswith(hierarchical.HDF5_MAGIC):

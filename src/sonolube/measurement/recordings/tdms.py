@@ -11,16 +11,16 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.mapping import RecordingMapping
-from sonolube.measurement.recordings.raw_table import Column, Table, one_line, refusing
+from sonolube.measurement.recordings.raw_table import RawColumn, RawTable, one_line, refuse_library_errors
 
-FORMAT = "TDMS"
+TDMS_FORMAT = "TDMS"
 _LEAD_IN = 28
 _SHORT = 1 << 16  # bytes that may be asked for in vain
 _UNFINISHED = 0xFFFFFFFFFFFFFFFF
 _BIG_ENDIAN = 1 << 6
 
 
-def read_tdms(path: Path, *, mapping: RecordingMapping | None = None) -> Table:
+def read_tdms(path: Path, *, mapping: RecordingMapping | None = None) -> RawTable:
     """Return the channels of a TDMS file.
 
     Parameters
@@ -43,7 +43,7 @@ def read_tdms(path: Path, *, mapping: RecordingMapping | None = None) -> Table:
     return tables[0]
 
 
-def tdms_tables(path: Path, *, mapping: RecordingMapping | None, block_samples: int | None) -> Iterator[Table]:
+def tdms_tables(path: Path, *, mapping: RecordingMapping | None, block_samples: int | None) -> Iterator[RawTable]:
     """Yield the channels of a TDMS file in blocks of rows; the last may be shorter.
 
     Parameters
@@ -69,17 +69,17 @@ def tdms_tables(path: Path, *, mapping: RecordingMapping | None, block_samples: 
     with path.open("rb") as stream:
         unfinished = _check_lead_ins(stream, path)
         stream.seek(0)
-        with refusing(path, format_name=FORMAT, offset=stream.tell):
+        with refuse_library_errors(path, format_name=TDMS_FORMAT, offset=stream.tell):
             file = TdmsFile.open(_Bounded(stream))
         channels = _wanted_channels(file, path, mapping)
         columns = {label: _column(label, channel) for label, channel in channels.items()}
         _refuse_unequal(channels, path, unfinished)
-        with refusing(path, format_name=FORMAT, offset=stream.tell):
+        with refuse_library_errors(path, format_name=TDMS_FORMAT, offset=stream.tell):
             rows = 0
             for values in _blocks(file, channels, block_samples):
                 filled = tuple(replace(column, values=values[label]) for label, column in columns.items())
-                yield Table(
-                    columns=filled, format=FORMAT, begun=_begun(channels), first_row=rows, incomplete=unfinished
+                yield RawTable(
+                    columns=filled, format=TDMS_FORMAT, begun=_begun(channels), first_row=rows, incomplete=unfinished
                 )
                 rows += filled[0].values.size
 
@@ -147,11 +147,11 @@ def _is_numeric(channel: Any) -> bool:
     return kind in "fiub"
 
 
-def _column(label: str, channel: Any) -> Column:
+def _column(label: str, channel: Any) -> RawColumn:
     properties = channel.properties
     unit = properties.get("unit_string") or properties.get("NI_UnitDescription")
     interval, start = properties.get("wf_increment"), properties.get("wf_start_offset", 0.0)
-    return Column(
+    return RawColumn(
         label=label,
         values=np.empty(0),
         unit=str(unit) if unit else None,

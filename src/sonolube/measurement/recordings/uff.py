@@ -7,13 +7,13 @@ import numpy as np
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.mapping import RecordingMapping
-from sonolube.measurement.recordings.raw_table import Column, Table, refusing
+from sonolube.measurement.recordings.raw_table import RawColumn, RawTable, refuse_library_errors
 
 FORMAT = "universal file"
 _TIME_RESPONSE = 1
 
 
-def read_universal_file(path: Path, *, mapping: RecordingMapping | None = None) -> Table:
+def read_universal_file(path: Path, *, mapping: RecordingMapping | None = None) -> RawTable:
     """Return the time responses of a universal file.
 
     Parameters
@@ -35,7 +35,7 @@ def read_universal_file(path: Path, *, mapping: RecordingMapping | None = None) 
     """
     import pyuff
 
-    with refusing(path, format_name=FORMAT):
+    with refuse_library_errors(path, format_name=FORMAT):
         file = pyuff.UFF(str(path))
         types = np.atleast_1d(file.get_set_types())
         sets = [file.read_sets(int(index)) for index in np.flatnonzero(types == 58)]
@@ -52,17 +52,17 @@ def read_universal_file(path: Path, *, mapping: RecordingMapping | None = None) 
     if uneven and len(responses) > 1:
         raise InvalidInput(f"{path}: responses of uneven spacing must each have a file of their own")
     if uneven:
-        columns.insert(0, Column(label="time", values=np.asarray(uneven[0]["x"], dtype=np.float64), unit="s"))
-    return Table(columns=tuple(columns), format=FORMAT)
+        columns.insert(0, RawColumn(label="time", values=np.asarray(uneven[0]["x"], dtype=np.float64), unit="s"))
+    return RawTable(columns=tuple(columns), format=FORMAT)
 
 
-def _column(data: dict[str, Any], every: list[dict[str, Any]]) -> Column:
+def _column(data: dict[str, Any], every: list[dict[str, Any]]) -> RawColumn:
     label = _text(data, "ordinate_axis_lab")
     if not label or sum(_text(other, "ordinate_axis_lab") == label for other in every) > 1:
         label = f"{label or 'response'} node {data['rsp_node']} direction {data['rsp_dir']}"
     unit = _text(data, "ordinate_axis_units_lab")
     even = data["abscissa_spacing"] == 1
-    return Column(
+    return RawColumn(
         label=label,
         values=np.asarray(data["data"], dtype=np.float64),
         unit=unit or None,

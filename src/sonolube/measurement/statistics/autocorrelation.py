@@ -68,7 +68,7 @@ def correlated_mean(values: ArrayLike) -> CorrelatedMean:
     if x.size < 2:
         raise InvalidInput(f"a mean with its uncertainty needs at least two samples, got {x.size}")
     mean, deviation = float(np.mean(x)), float(np.std(x, ddof=1))
-    effective = x.size / inefficiency(x)
+    effective = x.size / statistical_inefficiency(x)
     return CorrelatedMean(
         mean=mean,
         deviation=deviation,
@@ -78,7 +78,7 @@ def correlated_mean(values: ArrayLike) -> CorrelatedMean:
     )
 
 
-def inefficiency(values: Floats) -> float:
+def statistical_inefficiency(values: Floats) -> float:
     """Return how many samples are worth one independent one, 1 + 2 sum of the autocorrelation; at least 1.
 
     Parameters
@@ -121,4 +121,4 @@ def correlation_time(values: Floats, *, sample_interval: float) -> float:
         If the interval is not positive.
     """
     require_positive(sample_interval=sample_interval)
-    return inefficiency(values) / 2 * sample_interval
+    return statistical_inefficiency(values) / 2 * sample_interval

@@ -1,4 +1,4 @@
-"""Least squares over the logarithms of positive parameters, with confidence intervals of all that follows from them."""
+"""Least squares over the logarithms of positive parameters, with confidence confidence_intervals of all that follows from them."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -7,7 +7,7 @@ import numpy as np
 from scipy import stats
 
 from sonolube.checks import Floats
-from sonolube.measurement.statistics.autocorrelation import inefficiency
+from sonolube.measurement.statistics.autocorrelation import statistical_inefficiency
 
 _ROUNDING = 1e-10  # residuals below which nothing fits better
 _EVALUATIONS = 60  # for each parameter
@@ -17,7 +17,7 @@ Quantities = Callable[[Floats], Mapping[str, float]]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Interval:
+class ConfidenceInterval:
     """A number with its confidence interval.
 
     Parameters
@@ -34,7 +34,7 @@ class Interval:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class LogarithmicFit:
+class LogParameterFit:
     """Where a sum of squares is least.
 
     Parameters
@@ -67,7 +67,7 @@ class LogarithmicFit:
         return n * float(np.log(mean_square)) + self.logarithms.size * float(np.log(n))
 
 
-def fit_logarithms(residuals: Callable[[Floats], Floats], start: Floats) -> LogarithmicFit:
+def fit_log_parameters(residuals: Callable[[Floats], Floats], start: Floats) -> LogParameterFit:
     """Return where the sum of squares of residuals is least, sought from one place.
 
     Parameters
@@ -79,7 +79,7 @@ def fit_logarithms(residuals: Callable[[Floats], Floats], start: Floats) -> Loga
 
     Returns
     -------
-    LogarithmicFit
+    LogParameterFit
     """
     import lmfit
 
@@ -96,7 +96,7 @@ def fit_logarithms(residuals: Callable[[Floats], Floats], start: Floats) -> Loga
         cost, parameters, method="leastsq", ftol=1e-12, xtol=1e-12, max_nfev=_EVALUATIONS * (start.size + 1)
     )
     covariance = getattr(found, "covar", None)
-    return LogarithmicFit(
+    return LogParameterFit(
         logarithms=np.array(list(found.params.valuesdict().values())),
         covariance=np.full((start.size,) * 2, np.inf) if covariance is None else np.asarray(covariance),
         residuals=np.asarray(found.residual, dtype=np.float64),
@@ -104,12 +104,12 @@ def fit_logarithms(residuals: Callable[[Floats], Floats], start: Floats) -> Loga
     )
 
 
-def correlation_factor(fit: LogarithmicFit, *, rows: int) -> float:
+def residual_inefficiency(fit: LogParameterFit, *, rows: int) -> float:
     """Return by how much neighbouring residuals resemble each other: samples over independent samples, at least 1.
 
     Parameters
     ----------
-    fit : LogarithmicFit
+    fit : LogParameterFit
     rows : int
         Residuals come in so many rows of equal length, one after the other.
 
@@ -118,17 +118,17 @@ def correlation_factor(fit: LogarithmicFit, *, rows: int) -> float:
     float
     """
     parts = fit.residuals.reshape(rows, -1)
-    return max(inefficiency(row) if np.ptp(row) > _ROUNDING else 1.0 for row in parts)
+    return max(statistical_inefficiency(row) if np.ptp(row) > _ROUNDING else 1.0 for row in parts)
 
 
-def intervals(
-    fit: LogarithmicFit, quantities: Quantities, *, correlation: float, confidence_level: float
-) -> dict[str, Interval]:
+def confidence_intervals(
+    fit: LogParameterFit, quantities: Quantities, *, correlation: float, confidence_level: float
+) -> dict[str, ConfidenceInterval]:
     """Return confidence intervals of positive quantities that follow from the parameters.
 
     Parameters
     ----------
-    fit : LogarithmicFit
+    fit : LogParameterFit
     quantities : callable
         Takes logarithms of the parameters, returns the quantities by name.
     correlation : float
@@ -161,7 +161,7 @@ def intervals(
     with np.errstate(over="ignore"):
         factors = np.exp(t * np.sqrt(np.maximum(variance, 0.0) * correlation))
     return {
-        name: Interval(value=value, lower=float(value / factor), upper=float(value * factor))
+        name: ConfidenceInterval(value=value, lower=float(value / factor), upper=float(value * factor))
         for (name, value), factor in zip(values.items(), factors, strict=True)
     }
 

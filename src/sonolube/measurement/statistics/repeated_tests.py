@@ -43,7 +43,7 @@ class MeanEstimate:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Difference:
+class MeanDifference:
     """Whether tests under two conditions differ, in the unit of the tests.
 
     Parameters
@@ -169,7 +169,7 @@ def mean_estimate(tests: ArrayLike, *, confidence_level: float = 0.95) -> MeanEs
     )
 
 
-def compare(first: ArrayLike, second: ArrayLike, *, confidence_level: float = 0.95) -> Difference:
+def compare_means(first: ArrayLike, second: ArrayLike, *, confidence_level: float = 0.95) -> MeanDifference:
     """Return whether tests under two conditions differ: Welch's t and an exact permutation test.
 
     Parameters
@@ -199,7 +199,7 @@ def compare(first: ArrayLike, second: ArrayLike, *, confidence_level: float = 0.
     t = difference / error if error > 0 else float(np.copysign(np.inf, difference)) if difference else 0.0
     half = error * float(stats.t.ppf((1 + confidence_level) / 2, freedom))
     permutation, smallest = _permutation(a, b)
-    return Difference(
+    return MeanDifference(
         difference=difference,
         lower=difference - half,
         upper=difference + half,
