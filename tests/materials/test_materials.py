@@ -1,4 +1,4 @@
-"""Records of materials: sourced, in the vocabulary's units, and honest where nothing is known."""
+"""Materials: sourced properties in vocabulary units, refusals by name, and the symmetry and energy of ceramics."""
 
 import math
 import subprocess
@@ -77,7 +77,7 @@ def test_aluminium_on_stainless_steel_has_the_dissertations_combined_modulus() -
     assert pair.yield_strength == 410e6
 
 
-def test_the_two_hardnesses_the_dissertation_gives_each_metal_are_told() -> None:
+def test_the_conflicting_hardnesses_of_the_dissertation_are_noted() -> None:
     assert "45-50" in material("aluminium_2024").property("hardness").note
     assert "700-950" in material("stainless_steel_316").property("hardness").note
 
@@ -98,7 +98,7 @@ def test_metals_are_stiffer_than_they_are_hard_and_harder_than_they_are_strong()
         assert value("youngs_modulus") > value("hardness") > value("ultimate_strength") > value("yield_strength")
 
 
-def test_titanium_alone_of_the_metals_is_hexagonal() -> None:
+def test_only_titanium_is_hexagonal() -> None:
     structures = {name: material(name).crystal_structure for name in material_names()}
     hexagonal = [name for name, structure in structures.items() if structure and "hexagonal" in structure.text]
     assert hexagonal == ["titanium_6al4v"]
@@ -110,7 +110,7 @@ def test_a_property_without_a_source_is_missing_by_name() -> None:
         material("powder_coating").value("youngs_modulus")
 
 
-def test_a_misspelt_property_is_answered_with_the_nearest_word() -> None:
+def test_a_misspelt_property_is_refused_with_the_closest_name() -> None:
     with raises(UnknownName, match=r"unknown quantity 'youngs_modulos'; did you mean youngs_modulus\?"):
         material("m50").value("youngs_modulos")
 
@@ -121,7 +121,7 @@ def test_an_alias_names_the_same_record() -> None:
     assert material("al2024") is material("aluminium_2024")
 
 
-def test_an_unknown_material_is_answered_with_the_nearest_name() -> None:
+def test_an_unknown_material_is_refused_with_the_closest_name() -> None:
     with raises(UnknownName, match=r"unknown material 'stainles_steel_316'; did you mean stainless_steel_316\?"):
         material("stainles_steel_316")
     with raises(UnknownName, match=r"unknown piezoelectric ceramic 'pzt4x'; did you mean pzt4\?"):
@@ -133,7 +133,7 @@ def test_a_metal_is_no_piezoelectric_ceramic() -> None:
         piezo_ceramic("m50")
 
 
-def test_a_ceramic_without_a_complete_set_says_what_is_missing_and_keeps_its_scalars() -> None:
+def test_a_ceramic_without_a_complete_set_names_the_missing_constants_and_keeps_its_scalars() -> None:
     with raises(MissingProperty, match="pic151 has no complete set of constants: its maker prints no s12, s13, s44"):
         piezo_ceramic("pic151")
     assert material("pic151").value("charge_constant_33") == 500e-12
@@ -152,7 +152,7 @@ def test_importing_materials_loads_neither_scipy_nor_pint() -> None:
 
 
 @every_ceramic
-def test_a_ceramic_looks_the_same_turned_about_its_poling(name: str) -> None:
+def test_the_constants_are_invariant_under_rotation_about_the_poling_axis(name: str) -> None:
     # Class 6mm: every rotation about axis 3 leaves the tensors unchanged.
     ceramic = piezo_ceramic(name)
     turn = strain_rotation_about_3(0.7)
@@ -163,7 +163,7 @@ def test_a_ceramic_looks_the_same_turned_about_its_poling(name: str) -> None:
 
 
 @every_ceramic
-def test_the_two_forms_of_the_constants_say_the_same(name: str) -> None:
+def test_the_strain_charge_and_stress_charge_forms_are_equivalent(name: str) -> None:
     # IEEE Std 176: c s = 1, e = d c, eps^T - eps^S = d e^T.
     ceramic = piezo_ceramic(name)
     c, s = ceramic.stiffness_short_circuit, ceramic.compliance_short_circuit
@@ -182,14 +182,14 @@ def test_any_strain_and_field_store_positive_energy(name: str) -> None:
 
 
 @every_ceramic
-def test_a_ceramic_grows_along_a_field_along_its_poling_and_shrinks_across(name: str) -> None:
+def test_a_field_along_the_poling_extends_along_it_and_contracts_across(name: str) -> None:
     strain = piezo_ceramic(name).charge_constants.T @ np.array([0.0, 0.0, 1e6])
     assert strain[2] > 0 > strain[0]
     assert strain[0] == approx(strain[1])
 
 
 @every_ceramic
-def test_stiffening_by_an_open_circuit_gives_the_thickness_coupling(name: str) -> None:
+def test_open_circuit_stiffening_gives_the_thickness_coupling_factor(name: str) -> None:
     # k_t^2 = 1 - c33^E/c33^D with c^D = c^E + e^T (eps^S)^-1 e.
     ceramic = piezo_ceramic(name)
     e = ceramic.stress_constants

@@ -28,14 +28,14 @@ def measured() -> EfficiencyFit:
     return fit_efficiency(sliding_speed=SPEEDS, efficiency_coefficient=0.672e-9 - 2.93e-9 * SPEEDS + SCATTER)
 
 
-def test_runs_on_a_line_give_the_line_back_without_scatter() -> None:
+def test_runs_on_a_line_are_fitted_by_that_line_without_scatter() -> None:
     fit = fit_efficiency(sliding_speed=SPEEDS, efficiency_coefficient=0.672e-9 - 2.93e-9 * SPEEDS)
     assert fit.line.slope == approx(-2.93e-9)
     assert fit.line.intercept == approx(0.672e-9)
     assert fit.efficiency_deviation == approx(0, abs=1e-22)
 
 
-def test_line_and_bands_are_those_of_the_normal_equations() -> None:
+def test_line_and_bands_agree_with_the_normal_equations() -> None:
     eta = 0.672e-9 - 2.93e-9 * SPEEDS + SCATTER
     design = np.stack([np.ones_like(SPEEDS), SPEEDS], axis=1)
     inverse = np.linalg.inv(design.T @ design)
@@ -55,7 +55,7 @@ def test_line_and_bands_are_those_of_the_normal_equations() -> None:
     assert [low, high] == approx([at @ coefficients - wide, at @ coefficients + wide])
 
 
-def test_bands_hold_the_true_line_and_the_next_run_as_often_as_they_say() -> None:
+def test_the_confidence_and_prediction_bands_have_their_nominal_coverage() -> None:
     rng = np.random.default_rng(5)
     held = np.zeros(2)
     for _ in range(2000):
@@ -68,7 +68,7 @@ def test_bands_hold_the_true_line_and_the_next_run_as_often_as_they_say() -> Non
     assert held / 2000 == approx([0.9, 0.9], abs=0.02)
 
 
-def test_the_estimated_power_leaves_the_friction_wanted_and_its_ends_belong_to_the_band() -> None:
+def test_the_estimated_power_gives_the_target_friction_and_its_interval_follows_from_the_band() -> None:
     fit = measured()
     wanted = {"intrinsic_friction_force": 0.89, "sliding_speed": 0.0655, **RIG}
     found = power_estimate(fit, reduced_friction_force=0.4, **wanted)
@@ -80,7 +80,7 @@ def test_the_estimated_power_leaves_the_friction_wanted_and_its_ends_belong_to_t
         assert back == approx(float(efficiency))
 
 
-def test_runs_that_scatter_to_nought_leave_the_power_without_an_upper_end() -> None:
+def test_a_band_that_reaches_zero_efficiency_leaves_the_power_without_an_upper_limit() -> None:
     noisy = 0.672e-9 - 2.93e-9 * SPEEDS + 20 * SCATTER
     fit = fit_efficiency(sliding_speed=SPEEDS, efficiency_coefficient=noisy)
     found = power_estimate(fit, intrinsic_friction_force=0.89, reduced_friction_force=0.4, sliding_speed=0.1, **RIG)
@@ -89,7 +89,7 @@ def test_runs_that_scatter_to_nought_leave_the_power_without_an_upper_end() -> N
 
 
 @pytest.mark.parametrize("speed", [0.02, 0.3])
-def test_a_speed_that_no_run_covers_is_refused_with_the_range(speed: float) -> None:
+def test_a_speed_outside_the_runs_is_refused_with_their_range(speed: float) -> None:
     with raises(OutsideRange, match=r"must lie within the runs, 0\.04 to 0\.18 m/s"):
         require_fitted_speed(measured(), sliding_speed=speed)
     with raises(OutsideRange, match="measure there"):
@@ -101,6 +101,6 @@ def test_a_speed_that_no_run_covers_is_refused_with_the_range(speed: float) -> N
 @pytest.mark.parametrize(
     ("speeds", "said"), [([0.1, 0.2], "at least 3 runs"), ([0.1, 0.1, 0.1], "at least two speeds")]
 )
-def test_runs_that_make_no_line_are_refused(speeds: list[float], said: str) -> None:
+def test_too_few_runs_or_a_single_speed_are_refused(speeds: list[float], said: str) -> None:
     with raises(InvalidInput, match=said):
         fit_efficiency(sliding_speed=speeds, efficiency_coefficient=np.full(len(speeds), 1e-9))

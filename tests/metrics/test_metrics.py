@@ -28,14 +28,14 @@ LINE = EfficiencyLine(slope=-2.93e-9, intercept=0.672e-9)  # D 4.2
 PIN = {"nominal_area": 0.126e-6, "normal_load": 5.0, "sliding_speed": 65.5e-3}  # D Table 4.2
 
 
-def test_reductions_are_shares_of_what_there_was() -> None:
+def test_reductions_are_relative_to_the_intrinsic_value() -> None:
     # D 2.5.5: from 0.769 N by 80.1 % to 0.153 N
     assert friction_reduction(intrinsic_friction_force=0.769, reduced_friction_force=0.153) == approx(0.801, abs=5e-4)
     # D Table 3.4: model wear rates, a reduction of 47 %
     assert wear_reduction(intrinsic_wear_rate=2.566e-11, reduced_wear_rate=1.355e-11) == approx(0.472, abs=5e-4)
 
 
-def test_a_motor_effect_reduces_by_more_than_all() -> None:
+def test_a_driving_vibration_reduces_friction_by_more_than_one_hundred_percent() -> None:
     assert friction_reduction(intrinsic_friction_force=1.0, reduced_friction_force=-0.1) == approx(1.1)
 
 
@@ -44,7 +44,7 @@ def test_wear_rate_is_volume_over_distance() -> None:
     assert wear_rate(wear_volume=0.013e-9, sliding_distance=2.2814) == approx(0.0057e-9, abs=5e-14)
 
 
-def test_the_strongest_drive_of_the_tribometer_vibrates_at_a_third_of_a_metre_per_second() -> None:
+def test_the_peak_vibration_velocity_of_the_tribometer_is_319_millimetres_per_second() -> None:
     # D Tables 4.1 and 4.5: 2.31 um at 22 kHz, 319 mm/s
     assert peak_vibration_velocity(frequency=22e3, vibration_amplitude=2.31e-6) == approx(319 * MM_PER_S, abs=5e-4)
 
@@ -71,7 +71,7 @@ def test_the_average_vibration_velocity_of_the_table_is_the_peak_over_pi() -> No
     assert superimposed_speed(sliding_speed=0.0, vibration_velocity=peaks) == approx(printed, abs=0.6 * MM_PER_S)
 
 
-def test_marks_lie_as_far_apart_as_the_disc_moves_between_them() -> None:
+def test_mark_spacings_are_sliding_speed_over_frequency() -> None:
     # D 2.3.4: 87 mm/s at 22 kHz, and 20.3, 40.6, 87 mm/s with stick-slip of 10 ms
     assert dot_spacing(sliding_speed=87e-3, frequency=22e3) == approx(3.95e-6, abs=5e-9)
     assert indentation_spacing(sliding_speed=[20.3e-3, 40.6e-3, 87e-3], period=10e-3) == approx(
@@ -107,7 +107,7 @@ def test_the_measured_efficiency_lies_near_its_line() -> None:
     area=st.floats(1e-8, 1e-4),
     load=st.floats(0.1, 1e3),
 )
-def test_friction_and_power_lead_back_to_each_other(reduced: float, speed: float, area: float, load: float) -> None:
+def test_friction_at_power_inverts_power_for_friction(reduced: float, speed: float, area: float, load: float) -> None:
     rig = {"intrinsic_friction_force": 0.89, "sliding_speed": speed, "nominal_area": area, "normal_load": load}
     power = power_for_friction(LINE, reduced_friction_force=reduced, **rig)
     assert friction_at_power(LINE, actuator_power=power, **rig) == approx(reduced, abs=1e-12)
@@ -122,12 +122,12 @@ def test_the_efficiency_of_the_power_for_a_friction_is_that_of_the_line(reduced:
     )
 
 
-def test_no_power_leaves_friction_as_it_is() -> None:
+def test_zero_power_leaves_the_intrinsic_friction() -> None:
     assert friction_at_power(LINE, intrinsic_friction_force=0.89, actuator_power=0.0, **PIN) == 0.89
 
 
 @pytest.mark.parametrize("speed", [0.2294, 0.5])
-def test_speeds_where_the_line_saves_nothing_are_refused(speed: float) -> None:
+def test_speeds_beyond_the_zero_of_the_efficiency_line_are_refused(speed: float) -> None:
     rig = PIN | {"intrinsic_friction_force": 0.89, "sliding_speed": speed}
     message = r"sliding_speed must stay below 0\.2294 m/s, where this efficiency line reaches zero, got 0\."
     with raises(OutsideRange, match=message):
@@ -138,7 +138,7 @@ def test_speeds_where_the_line_saves_nothing_are_refused(speed: float) -> None:
         friction_at_power(LINE, actuator_power=0.5, **rig)
 
 
-def test_power_beyond_the_last_friction_is_refused_with_the_power_that_suffices() -> None:
+def test_more_power_than_removes_all_friction_is_refused_with_the_sufficient_power() -> None:
     sufficient = power_for_friction(LINE, intrinsic_friction_force=0.89, reduced_friction_force=0.0, **PIN)
     assert friction_at_power(LINE, intrinsic_friction_force=0.89, actuator_power=sufficient, **PIN) == approx(
         0, abs=1e-12
@@ -147,13 +147,13 @@ def test_power_beyond_the_last_friction_is_refused_with_the_power_that_suffices(
         friction_at_power(LINE, intrinsic_friction_force=0.89, actuator_power=[1.0, 5.31], **PIN)
 
 
-def test_more_friction_than_there_is_cannot_be_bought() -> None:
+def test_a_target_friction_above_the_intrinsic_one_is_refused() -> None:
     with raises(
         InvalidInput, match=r"reduced_friction_force must not exceed intrinsic_friction_force, 0\.89 N, got 0\.9 N"
     ):
         power_for_friction(LINE, intrinsic_friction_force=0.89, reduced_friction_force=[0.5, 0.9], **PIN)
 
 
-def test_a_line_without_efficiency_is_refused_by_name() -> None:
+def test_an_efficiency_line_without_a_positive_intercept_is_refused() -> None:
     with raises(InvalidInput, match=r"intercept must be positive, got -1\.0 m2/N"):
         EfficiencyLine(slope=0.0, intercept=-1.0)

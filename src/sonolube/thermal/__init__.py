@@ -1,4 +1,4 @@
-"""Heat of friction and vibration: flash temperature, partition, bulk rise, transients."""
+"""Heat of friction and vibration: flash temperature, heat partition, bulk temperature and thermal networks."""
 
 from sonolube.thermal.bulk import (
     HeatedDisc,

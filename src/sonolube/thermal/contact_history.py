@@ -1,4 +1,4 @@
-"""The two factors of a contact's temperature under vibration: less heat of friction, more heat of vibration."""
+"""Temperature history of a rubbing contact: flash and bulk rise under frictional heat and heat of vibration."""
 
 from dataclasses import dataclass
 
@@ -16,18 +16,18 @@ from sonolube.thermal.source import HeatSource
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class HeatedContact:
-    """A pin and a moving body that rub, and what carries the pin's heat away.
+    """A pin in contact with a moving body, and the thermal network through which the pin loses its heat.
 
     Parameters
     ----------
     pin : ThermalSolid
-        The body that carries the contact with it.
+        The body to which the contact is fixed.
     disc : ThermalSolid
-        The body that the contact passes over.
+        The body over which the contact moves.
     source : HeatSource
         The contact.
     network : ThermalNetwork
-        The pin, its first body, and what it is joined to.
+        The pin, as its first body, and the bodies joined to it.
     """
 
     pin: ThermalSolid
@@ -38,7 +38,7 @@ class HeatedContact:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ContactTemperatureHistory:
-    """Temperature of a contact in time.
+    """Temperature of a contact over time, with its heat and heat partition.
 
     Parameters
     ----------
@@ -47,11 +47,11 @@ class ContactTemperatureHistory:
     temperature_rise : ndarray, shape (n,)
         Mean rise of the contact just before each time: bulk and flash. [K]
     bulk_rise : ndarray, shape (n,)
-        What of it is the pin's bulk, in K.
+        Rise of the pin's bulk alone, in K.
     heat_rate : ndarray, shape (n - 1,)
-        Heat of the contact from each time to the next. [W]
+        Heat generated in the contact from each time to the next. [W]
     heat_partition : ndarray, shape (n - 1,)
-        Share of that heat that flows into the pin. []
+        Fraction of that heat that flows into the pin. []
     """
 
     time: Floats
@@ -62,14 +62,14 @@ class ContactTemperatureHistory:
 
 
 def frictional_heat_rate(*, friction_force: ArrayLike, sliding_speed: ArrayLike) -> Floats:
-    """Return the work that friction turns into heat. [W]
+    r"""Return the frictional heat per time, the work of friction at the mean sliding speed. [W]
 
     Parameters
     ----------
     friction_force : array_like
         Mean friction force. [N]
     sliding_speed : array_like, broadcast against `friction_force`
-        Mean speed of the sliding. [m/s]
+        Mean sliding speed. [m/s]
 
     Returns
     -------
@@ -80,10 +80,16 @@ def frictional_heat_rate(*, friction_force: ArrayLike, sliding_speed: ArrayLike)
     InvalidInput
         If a value is negative or not finite.
 
+    See Also
+    --------
+    superimposed_heat_rate : the published variant with the superimposed speed.
+
     Notes
     -----
-    What the drive of the sliding supplies. What the actuator supplies comes on top: `contact_temperature_history` takes it as
-    `vibration_heat_rate`.
+    .. math:: Q_f = F_t v_r ,
+
+    the power supplied by the drive of the sliding. The power that the actuator supplies comes on top:
+    `contact_temperature_history` takes it as `vibration_heat_rate`.
     """
     return require_non_negative(friction_force=friction_force) * require_non_negative(sliding_speed=sliding_speed)
 
@@ -91,14 +97,14 @@ def frictional_heat_rate(*, friction_force: ArrayLike, sliding_speed: ArrayLike)
 def superimposed_heat_rate(
     *, friction_force: ArrayLike, sliding_speed: ArrayLike, vibration_velocity: ArrayLike
 ) -> Floats:
-    """Return the heat of friction at the superimposed speed, the picture of D 4.3. [W]
+    r"""Return the frictional heat per time at the superimposed speed, as published in D 4.3.4. [W]
 
     Parameters
     ----------
     friction_force : array_like
         Mean friction force with vibration. [N]
     sliding_speed : array_like, broadcast against `friction_force`
-        Mean speed of the sliding. [m/s]
+        Mean sliding speed. [m/s]
     vibration_velocity : array_like, broadcast against them
         Peak velocity of the vibration. [m/s]
 
@@ -111,11 +117,18 @@ def superimposed_heat_rate(
     InvalidInput
         If a value is negative or not finite.
 
+    See Also
+    --------
+    frictional_heat_rate
+
     Notes
     -----
-    As published: friction falls, the speed of D Table 4.5 rises, and the heat is their product. A vibration along the
-    surface normal does no work against friction, so that the second factor has no basis in energy; nor can it win over
-    the first where the text says it does (see the reproduction of D 4.3.4).
+    .. math:: Q = F_t\, v_s , \qquad v_s = \sqrt{v_r^2 + (v_1/\pi)^2}
+
+    As published: vibration lowers the friction force and raises the superimposed speed of D Table 4.5, and the heat is
+    their product. A vibration along the surface normal does no work against friction, so the second factor has no basis
+    in an energy balance; nor does it outweigh the first where the text states that it does (see the reproduction of
+    D 4.3.4).
 
     References
     ----------
@@ -133,19 +146,19 @@ def contact_temperature_history(
     sliding_speed: ArrayLike,
     vibration_heat_rate: ArrayLike = 0.0,
 ) -> ContactTemperatureHistory:
-    """Return the temperature of a contact in time, as heat of friction and of vibration come and go by steps.
+    r"""Return the temperature history of a contact under stepwise constant frictional heat and heat of vibration.
 
     Parameters
     ----------
     contact : HeatedContact
     time : array_like, shape (n,)
-        Rising times; the first is the start, all of it cold. [s]
+        Increasing times; at the first, the start, no temperature has risen. [s]
     friction_force : array_like, shape (n - 1,)
         Mean friction force from each time to the next. [N]
     sliding_speed : array_like, broadcast against `friction_force`
-        Mean speed of the sliding. [m/s]
+        Mean sliding speed. [m/s]
     vibration_heat_rate : array_like, broadcast against them
-        Heat of the vibration in the contact. [W]
+        Heat of the vibration generated in the contact. [W]
 
     Returns
     -------
@@ -154,31 +167,39 @@ def contact_temperature_history(
     Raises
     ------
     InvalidInput
-        If times do not rise, the steps do not fit them, a value is negative, or not finite.
+        If times do not increase, the steps do not fit them, a value is negative, or not finite.
 
     Notes
     -----
-    The flash follows the heat at once: it settles within the square of the contact's radius over the diffusivity,
-    milliseconds for a tenth of a millimetre of steel. The moving body keeps no heat from turn to turn.
+    With vibration two factors act on the temperature: the frictional heat falls with the friction force, and the
+    vibration adds heat of its own (D 4.3.4). Their sum
+
+    .. math:: Q = F_t v_r + Q_v
+
+    is divided by `contact_rise`. The fraction into the pin warms the network; the flash rise follows the heat without
+    delay, since it settles within the square of the contact radius over the diffusivity, which is milliseconds for a
+    tenth of a millimetre of steel. The moving body cools fully from turn to turn.
 
     References
     ----------
     .. [1] D 4.3.4.
     """
-    moments = np.asarray(time, dtype=np.float64)
+    times = np.asarray(time, dtype=np.float64)
     friction = frictional_heat_rate(friction_force=friction_force, sliding_speed=sliding_speed)
     heat = friction + require_non_negative(vibration_heat_rate=vibration_heat_rate)
-    if heat.ndim and heat.shape != (moments.size - 1,):
-        raise InvalidInput(f"friction_force must hold one step to an interval of time, {moments.size - 1}")
-    heat = np.broadcast_to(heat, (moments.size - 1,))
-    shared = contact_rise(contact.pin, contact.disc, contact.source, heat_rate=heat, sliding_speed=sliding_speed)
+    if heat.ndim and heat.shape != (times.size - 1,):
+        raise InvalidInput(
+            f"friction_force must hold one value for each interval of time, {times.size - 1}, got shape {heat.shape}"
+        )
+    heat = np.broadcast_to(heat, (times.size - 1,))
+    flash = contact_rise(contact.pin, contact.disc, contact.source, heat_rate=heat, sliding_speed=sliding_speed)
     into_bodies = np.zeros((heat.size, len(contact.network.heat_capacity)))
-    into_bodies[:, 0] = shared.heat_partition * heat
-    bulk = network_rise(contact.network, time=moments, heat_rate=into_bodies)[:, 0]
+    into_bodies[:, 0] = flash.heat_partition * heat
+    bulk = network_rise(contact.network, time=times, heat_rate=into_bodies)[:, 0]
     return ContactTemperatureHistory(
-        time=moments,
-        temperature_rise=bulk + np.concatenate([[0.0], shared.mean_temperature_rise]),
+        time=times,
+        temperature_rise=bulk + np.concatenate([[0.0], flash.mean_temperature_rise]),
         bulk_rise=bulk,
         heat_rate=heat,
-        heat_partition=shared.heat_partition,
+        heat_partition=flash.heat_partition,
     )
