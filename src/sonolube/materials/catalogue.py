@@ -1,4 +1,4 @@
-"""What is known of a material: one record of scalar properties, and for each of them where it was read."""
+"""Catalogue of materials: scalar properties of each, every one with its source."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,20 +13,20 @@ from sonolube.vocabulary import quantity
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SourcedValue:
-    """A number and where it was read.
+    """A numerical property with its unit and source.
 
     Parameters
     ----------
     value : float
-        The number, in `unit`.
+        Value, in `unit`.
     unit : str
-        Its SI unit; empty for pure numbers.
+        Its SI unit; empty for dimensionless numbers.
     source : str
         Table, data sheet, handbook or paper.
     condition : str
-        Temper, temperature or kind of test it holds under; empty where the source says nothing.
+        Temper, temperature or kind of test for which it holds; empty where the source does not state any.
     note : str
-        What else to know of it, such as a source that disagrees.
+        Further remarks, such as a source that disagrees.
     """
 
     value: float
@@ -38,7 +38,7 @@ class SourcedValue:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SourcedText:
-    """A statement in words and where it was read.
+    """A property in words with its source.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ class SourcedText:
     source : str
         Table, data sheet, handbook or paper.
     note : str
-        What else to know of it.
+        Further remarks.
     """
 
     text: str
@@ -57,16 +57,16 @@ class SourcedText:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Material:
-    """One material.
+    """A material with its scalar properties.
 
     Parameters
     ----------
     name : str
-        Its name in rig files and results, such as "m50".
+        Its identifier in rig files and results, such as "m50".
     title : str
         Its name in prose.
     properties : mapping of str to SourcedValue
-        Its scalar properties, by their names in the vocabulary.
+        Its scalar properties, by their vocabulary names.
     crystal_structure : SourcedText or None
         Its crystal structure, where a source states it.
     """
@@ -79,28 +79,46 @@ class Material:
     def property(self, property_name: str) -> SourcedValue:
         """Return a property with its unit and source.
 
+        Parameters
+        ----------
+        property_name : str
+            Its name in the vocabulary, such as "youngs_modulus".
+
+        Returns
+        -------
+        SourcedValue
+
         Raises
         ------
         MissingProperty
-            If no source for it is known.
+            If the catalogue has no source for it.
         UnknownName
             If the vocabulary has no such property.
         """
         try:
             return self.properties[property_name]
         except KeyError:
-            known_word = quantity(property_name).name
+            quantity_name = quantity(property_name).name
             raise MissingProperty(
-                f"{self.name} has no {known_word}: no source is known; give it in the rig file"
+                f"{self.name} has no {quantity_name}: no source is known; give it in the rig file"
             ) from None
 
     def value(self, property_name: str) -> float:
-        """Return the number of a property, in SI.
+        """Return the numerical value of a property, in SI.
+
+        Parameters
+        ----------
+        property_name : str
+            Its name in the vocabulary, such as "youngs_modulus".
+
+        Returns
+        -------
+        float
 
         Raises
         ------
         MissingProperty
-            If no source for it is known.
+            If the catalogue has no source for it.
         UnknownName
             If the vocabulary has no such property.
         """
@@ -108,12 +126,21 @@ class Material:
 
 
 def material(name: str) -> Material:
-    """Return the material of this name or alias, such as "stainless_steel_316" or "ss316".
+    """Return a material of the catalogue by its name or alias.
+
+    Parameters
+    ----------
+    name : str
+        Such as "stainless_steel_316" or its alias "ss316".
+
+    Returns
+    -------
+    Material
 
     Raises
     ------
     UnknownName
-        If there is none.
+        If the catalogue has no such material, with the closest name.
     """
     try:
         return _materials()[_names_by_alias().get(name, name)]
@@ -122,7 +149,7 @@ def material(name: str) -> Material:
 
 
 def material_names() -> tuple[str, ...]:
-    """Return the names of all materials, piezoelectric ceramics among them, in order of the alphabet."""
+    """Return the names of all materials, including piezoelectric ceramics, in alphabetical order."""
     return tuple(sorted(_materials()))
 
 
@@ -131,17 +158,20 @@ _FILES = ("engineering.toml", "piezo.toml")
 
 @cache
 def _materials() -> Mapping[str, Material]:
+    """Return all materials of the property files by name."""
     tables = [read_property_file(file_name) for file_name in _FILES]
     return {name: _material(name, entry, table.sources) for table in tables for name, entry in table.entries.items()}
 
 
 @cache
 def _names_by_alias() -> Mapping[str, str]:
+    """Return the name of the material that each alias stands for."""
     entries = {name: entry for file_name in _FILES for name, entry in read_property_file(file_name).entries.items()}
     return {alias: name for name, entry in entries.items() for alias in entry.get("aliases", ())}
 
 
 def _material(name: str, entry: Mapping[str, Any], sources: Mapping[str, str]) -> Material:
+    """Return the material of one entry of a property file."""
     structure = entry.get("crystal_structure")
     return Material(
         name=name,
@@ -154,4 +184,5 @@ def _material(name: str, entry: Mapping[str, Any], sources: Mapping[str, str]) -
 
 
 def _cited(entry: Mapping[str, Any], sources: Mapping[str, str]) -> dict[str, Any]:
+    """Return an entry with the key of its source replaced by the citation."""
     return {**entry, "source": sources[entry["source"]]}

@@ -1,8 +1,15 @@
-"""Piezoelectric ceramics as finite elements and stack models see them: the complete linear constants.
+r"""Complete linear constants of piezoelectric ceramics, in the strain-charge and stress-charge forms of IEEE Std 176.
 
-The ceramic is poled along axis 3. Stresses and strains are ordered 11, 22, 33, 23, 13, 12, the last three strains being
-twice the tensor's. Poled ceramics are of class 6mm: five elastic, three piezoelectric and two dielectric constants say
-all, and the matrices are built from these.
+The ceramic is poled along axis 3. In Voigt notation, stresses T and strains S are ordered 11, 22, 33, 23, 13, 12, the
+last three being engineering shear strains. With the electric field E and the charge density D,
+
+.. math::
+
+    S = s^E T + d^{\mathsf T} E , \quad D = d\,T + \varepsilon^T E \qquad &\text{(strain-charge)} \\
+    T = c^E S - e^{\mathsf T} E , \quad D = e\,S + \varepsilon^S E \qquad &\text{(stress-charge)}
+
+Poled ceramics have the symmetry of class 6mm: five elastic, three piezoelectric and two dielectric constants determine
+the matrices.
 """
 
 from collections.abc import Mapping
@@ -11,15 +18,12 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from sonolube.checks import require_finite
+from sonolube.checks import Floats, require_finite
 from sonolube.errors import InvalidInput, MissingProperty, UnknownName
-from sonolube.materials import catalogue as record
 from sonolube.materials.catalogue import Material
+from sonolube.materials.catalogue import material as catalogue_material
 from sonolube.materials.property_file import read_property_file
-
-Floats = NDArray[np.float64]
 
 VACUUM_PERMITTIVITY = 8.8541878128e-12
 """Permittivity of the vacuum, CODATA 2018. [F/m]"""
@@ -32,7 +36,7 @@ class PiezoCeramic:
     Parameters
     ----------
     material : Material
-        Its scalar properties: density, quality factor, losses.
+        Its scalar properties: density, quality factor, loss tangent.
     stiffness_short_circuit : ndarray, shape (6, 6)
         Elastic stiffness at constant field, c^E. [Pa]
     compliance_short_circuit : ndarray, shape (6, 6)
@@ -46,14 +50,14 @@ class PiezoCeramic:
     permittivity_free : ndarray, shape (3,)
         Principal permittivities at constant stress, eps^T. [F/m]
     source : str
-        Where the constants were read; empty for a ceramic of one's own.
+        Source of the constants; empty for a user-defined ceramic.
     note : str
-        What else to know of the set.
+        Further remarks on the set.
 
     Notes
     -----
-    Made by `piezo_ceramic`, `piezo_ceramic_from_strain_charge` or `piezo_ceramic_from_stress_charge`, so that both
-    forms agree. The arrays are read-only.
+    Constructed by `piezo_ceramic`, `piezo_ceramic_from_strain_charge` or `piezo_ceramic_from_stress_charge`, which make
+    both forms consistent. The arrays are read-only.
     """
 
     material: Material
@@ -69,8 +73,9 @@ class PiezoCeramic:
     def __post_init__(self) -> None:
         if not (np.all(self.permittivity_clamped > 0) and np.all(np.linalg.eigvalsh(self.stiffness_short_circuit) > 0)):
             raise InvalidInput(
-                f"the constants of {self.material.name} store no positive energy: stiffness and clamped permittivity "
-                "must be positive definite; check signs, and whether d or e, free or clamped permittivity was given"
+                f"the constants of {self.material.name} do not give a positive stored energy: stiffness and clamped "
+                "permittivity must be positive definite; check signs, and whether d or e, free or clamped permittivity "
+                "was given"
             )
         for array in (
             self.stiffness_short_circuit,
@@ -92,7 +97,7 @@ def piezo_ceramic_from_strain_charge(
     source: str = "",
     note: str = "",
 ) -> PiezoCeramic:
-    """Return the ceramic with these constants of the strain-charge form.
+    r"""Return a piezoelectric ceramic from its constants in strain-charge form.
 
     Parameters
     ----------
@@ -105,7 +110,7 @@ def piezo_ceramic_from_strain_charge(
     relative_permittivity : mapping of str to float
         Relative permittivities at constant stress by index, "11" and "33". []
     source, note : str
-        Where the constants were read, and what else to know of them.
+        Source of the constants, and further remarks on them.
 
     Returns
     -------
@@ -114,7 +119,15 @@ def piezo_ceramic_from_strain_charge(
     Raises
     ------
     InvalidInput
-        If a constant is missing, or the set stores no positive energy.
+        If a constant is missing, or the stored energy is not positive definite.
+
+    See Also
+    --------
+    piezo_ceramic_from_stress_charge
+
+    Notes
+    -----
+    .. math:: c^E = (s^E)^{-1} , \quad e = d\,c^E , \quad \varepsilon^S = \varepsilon^T - d\,e^{\mathsf T}
 
     References
     ----------
@@ -148,7 +161,7 @@ def piezo_ceramic_from_stress_charge(
     source: str = "",
     note: str = "",
 ) -> PiezoCeramic:
-    """Return the ceramic with these constants of the stress-charge form.
+    r"""Return a piezoelectric ceramic from its constants in stress-charge form.
 
     Parameters
     ----------
@@ -161,7 +174,7 @@ def piezo_ceramic_from_stress_charge(
     relative_permittivity : mapping of str to float
         Relative permittivities at constant strain by index, "11" and "33". []
     source, note : str
-        Where the constants were read, and what else to know of them.
+        Source of the constants, and further remarks on them.
 
     Returns
     -------
@@ -170,7 +183,15 @@ def piezo_ceramic_from_stress_charge(
     Raises
     ------
     InvalidInput
-        If a constant is missing, or the set stores no positive energy.
+        If a constant is missing, or the stored energy is not positive definite.
+
+    See Also
+    --------
+    piezo_ceramic_from_strain_charge
+
+    Notes
+    -----
+    .. math:: s^E = (c^E)^{-1} , \quad d = e\,s^E , \quad \varepsilon^T = \varepsilon^S + d\,e^{\mathsf T}
 
     References
     ----------
@@ -195,7 +216,7 @@ def piezo_ceramic_from_stress_charge(
     )
 
 
-_MADE_FROM = {
+_CONSTRUCTORS = {
     "strain-charge": piezo_ceramic_from_strain_charge,
     "stress-charge": piezo_ceramic_from_stress_charge,
 }
@@ -203,18 +224,27 @@ _MADE_FROM = {
 
 @cache
 def piezo_ceramic(name: str) -> PiezoCeramic:
-    """Return the ceramic of this name or alias, such as "pzt4", with a published complete set of constants.
+    """Return a piezoelectric ceramic of the catalogue with its published complete set of constants.
+
+    Parameters
+    ----------
+    name : str
+        Its name or alias, such as "pzt4".
+
+    Returns
+    -------
+    PiezoCeramic
 
     Raises
     ------
     UnknownName
         If no piezoelectric ceramic has this name.
     MissingProperty
-        If no complete set of its constants is known; its scalars are still at `material`.
+        If no complete set of its constants is published; its scalar properties are still available from `material`.
     """
     table = read_property_file("piezo.toml")
     try:
-        scalars = record.material(name)
+        scalars = catalogue_material(name)
         entry = table.entries[scalars.name]
     except LookupError:
         raise UnknownName.among(table.entries, kind="piezoelectric ceramic", name=name) from None
@@ -224,18 +254,18 @@ def piezo_ceramic(name: str) -> PiezoCeramic:
             f"take one of {', '.join(piezo_ceramic_names())}, or give the ten constants"
         )
     constants: dict[str, Any] = {**entry["constants"], "source": table.sources[entry["constants"]["source"]]}
-    return _MADE_FROM[constants.pop("form")](material=scalars, **constants)
+    return _CONSTRUCTORS[constants.pop("form")](material=scalars, **constants)
 
 
 def piezo_ceramic_names() -> tuple[str, ...]:
-    """Return the names of the ceramics with a complete set of constants, in order of the alphabet."""
+    """Return the names of the ceramics with a complete set of constants, in alphabetical order."""
     return tuple(
         sorted(name for name, entry in read_property_file("piezo.toml").entries.items() if "constants" in entry)
     )
 
 
 def coupling_factors(ceramic: PiezoCeramic) -> dict[str, float]:
-    """Return the coupling factors that the constants imply, as magnitudes, by the names makers' values stand under.
+    r"""Return the electromechanical coupling factors of a ceramic from its constants, as magnitudes.
 
     Parameters
     ----------
@@ -244,7 +274,18 @@ def coupling_factors(ceramic: PiezoCeramic) -> dict[str, float]:
     Returns
     -------
     dict of str to float
-        Those of bars across and along the poling, of a shear plate, of a thin plate and of a thin disc.
+        By the vocabulary names under which the catalogue holds manufacturers' values: transverse, longitudinal, shear,
+        thickness and planar.
+
+    Notes
+    -----
+    .. math::
+
+        k_{31}^2 &= \frac{d_{31}^2}{s_{11}^E \varepsilon_{33}^T} , \quad
+        k_{33}^2 = \frac{d_{33}^2}{s_{33}^E \varepsilon_{33}^T} , \quad
+        k_{15}^2 = \frac{d_{15}^2}{s_{44}^E \varepsilon_{11}^T} \\
+        k_t^2 &= \frac{e_{33}^2}{c_{33}^E \varepsilon_{33}^S + e_{33}^2} , \quad
+        k_p^2 = \frac{2 d_{31}^2}{(s_{11}^E + s_{12}^E)\, \varepsilon_{33}^T}
 
     References
     ----------
@@ -263,13 +304,15 @@ def coupling_factors(ceramic: PiezoCeramic) -> dict[str, float]:
     return {name: float(np.sqrt(square)) for name, square in squares.items()}
 
 
-def _constants(kind: str, given: Mapping[str, float], *indices: str) -> list[float]:
-    if set(given) != set(indices):
-        raise InvalidInput(f"{kind} constants must be those of index {', '.join(indices)}, got {', '.join(given)}")
-    return [float(require_finite(**{f"{kind} constant {index}": given[index]})) for index in indices]
+def _constants(kind: str, constants: Mapping[str, float], *indices: str) -> list[float]:
+    """Return the constants in the order of their indices; refuse missing and surplus ones."""
+    if set(constants) != set(indices):
+        raise InvalidInput(f"{kind} constants must be those of index {', '.join(indices)}, got {', '.join(constants)}")
+    return [float(require_finite(**{f"{kind} constant {index}": constants[index]})) for index in indices]
 
 
 def _elastic_matrix(m11: float, m12: float, m13: float, m33: float, m44: float, m66: float) -> Floats:
+    """Return the elastic matrix of class 6mm from its independent constants."""
     return np.array(
         [
             [m11, m12, m13, 0.0, 0.0, 0.0],
@@ -283,6 +326,7 @@ def _elastic_matrix(m11: float, m12: float, m13: float, m33: float, m44: float, 
 
 
 def _inverse(elastic: Floats) -> Floats:
+    """Return the inverse of an elastic matrix; refuse a singular one."""
     try:
         return np.linalg.inv(elastic).astype(np.float64)
     except np.linalg.LinAlgError:
@@ -290,6 +334,7 @@ def _inverse(elastic: Floats) -> Floats:
 
 
 def _piezoelectric_matrix(piezoelectric: Mapping[str, float]) -> Floats:
+    """Return the piezoelectric matrix of class 6mm, shape (3, 6), from its independent constants."""
     p31, p33, p15 = _constants("piezoelectric", piezoelectric, "31", "33", "15")
     return np.array(
         [
@@ -301,5 +346,6 @@ def _piezoelectric_matrix(piezoelectric: Mapping[str, float]) -> Floats:
 
 
 def _permittivities(relative_permittivity: Mapping[str, float]) -> Floats:
+    """Return the principal permittivities from the relative ones, in F/m."""
     eps11, eps33 = _constants("relative_permittivity", relative_permittivity, "11", "33")
     return VACUUM_PERMITTIVITY * np.array([eps11, eps11, eps33])

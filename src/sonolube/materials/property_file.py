@@ -1,4 +1,4 @@
-"""The data files of this package: entries by name, and the citations that their sources stand for."""
+"""Property files of this package (TOML): material entries by name, and the citations of their sources."""
 
 import tomllib
 from collections.abc import Mapping
@@ -10,14 +10,14 @@ from typing import Any
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PropertyFile:
-    """One data file.
+    """Content of one property file.
 
     Parameters
     ----------
     sources : mapping of str to str
-        Citations by the short keys that entries use.
+        Citations by the short keys that the entries use.
     entries : mapping of str to mapping
-        What the file says of each material.
+        Content of the file for each material, by its name.
     """
 
     sources: Mapping[str, str]
@@ -26,7 +26,7 @@ class PropertyFile:
 
 @cache
 def read_property_file(file_name: str) -> PropertyFile:
-    """Return the content of a data file of this package."""
+    """Return the content of a property file of this package."""
     content = tomllib.loads(files("sonolube.materials").joinpath(file_name).read_text(encoding="utf-8"))
     sources = content.pop("sources")
     return PropertyFile(sources=sources, entries=content)
