@@ -1,4 +1,4 @@
-"""The efficiency line of measured runs: the closed form of regression, the spread of repeated fits, what is refused."""
+"""Efficiency line of measured runs: normal equations, coverage of its bands, and refusals."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""A DC motor at constant voltage as a gauge of friction."""
+"""A DC motor at constant voltage: power balance, identification, and friction from its current."""
 
 import numpy as np
 from hypothesis import given
@@ -58,7 +58,7 @@ def test_motor_current_and_friction_are_inverse_functions(force: float, idle: fl
 def test_impossible_motors_are_refused_by_name() -> None:
     with raises(InvalidInput, match="motor_current must fall where the speed rises"):
         motor_from_two_operating_points(motor_voltage=8.0, motor_current=[1.0, 1.2], rotation_speed=[0.8, 0.9])
-    with raises(InvalidInput, match=r"stalled motor, 2 A"):
+    with raises(InvalidInput, match=r"stall current, 2 A"):
         motor_speed(MOTOR, motor_current=2.1)
     with raises(InvalidInput, match=r"torque_constant must be positive, got 0\.0"):
         DCMotor(motor_voltage=8.0, torque_constant=0.0, resistance=1.0)

@@ -1,4 +1,4 @@
-"""Measures by which experiments on ultrasonic lubrication are compared."""
+"""Measures of experiments on ultrasonic lubrication: reductions, kinematics, efficiency and motor friction."""
 
 from sonolube.metrics.efficiency import (
     EfficiencyLine,
