@@ -1,4 +1,4 @@
-"""Numbers written as text, with either decimal sign."""
+"""Parsing of numbers in text with either decimal sign."""
 
 import math
 
@@ -8,14 +8,14 @@ from sonolube.checks import Floats
 
 
 def parse_number(cell: str, *, decimal_sign: str) -> float | None:
-    """Return the number a cell holds, or None where it holds none.
+    """Return the number in a cell of text, or None where it holds none.
 
     Parameters
     ----------
     cell : str
         As written.
     decimal_sign : str
-        "." or ","; the other one is refused, so that thousands are never taken for decimals.
+        "." or ","; the other one is refused, so that a separator of thousands is never read as a decimal sign.
 
     Returns
     -------
@@ -26,7 +26,7 @@ def parse_number(cell: str, *, decimal_sign: str) -> float | None:
         if "." in text:
             return None
         text = text.replace(",", ".")
-    if "_" in text:  # Python reads 1_000; no instrument writes it
+    if "_" in text:  # float() accepts 1_000, which no instrument writes
         return None
     try:
         value = float(text)
@@ -36,7 +36,7 @@ def parse_number(cell: str, *, decimal_sign: str) -> float | None:
 
 
 def parse_numbers(cells: list[str], *, decimal_sign: str, missing: frozenset[str]) -> tuple[Floats, int | None]:
-    """Return the numbers of a column, and the first row that holds neither a number nor a text for none.
+    """Return the numbers of a column of text, and the first row that holds neither a number nor a missing-value text.
 
     Parameters
     ----------
@@ -45,13 +45,13 @@ def parse_numbers(cells: list[str], *, decimal_sign: str, missing: frozenset[str
     decimal_sign : str
         "." or ",".
     missing : frozenset of str
-        Texts that stand for no value.
+        Texts that stand for a missing value, beside empty cells.
 
     Returns
     -------
     values : ndarray, shape (rows,)
-        NaN for no value.
-    wrong : int or None
+        NaN for missing values; only the rows before `invalid_row` where there is one.
+    invalid_row : int or None
     """
     values = np.empty(len(cells))
     for row, cell in enumerate(cells):

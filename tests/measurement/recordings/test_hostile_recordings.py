@@ -136,7 +136,7 @@ def test_an_unknown_magic_is_refused_with_its_first_bytes(tmp_path: Path) -> Non
 
 
 def test_time_that_runs_backwards_is_refused_with_its_line(tmp_path: Path) -> None:
-    refuse(tmp_path, "back.csv", CSV("0,1\n1,1\n0.5,1\n"), r"line 4: time runs backwards at 0\.5 s")
+    refuse(tmp_path, "back.csv", CSV("0,1\n1,1\n0.5,1\n"), r"line 4: time decreases to 0\.5 s")
 
 
 def test_time_that_repeats_is_refused_with_its_line(tmp_path: Path) -> None:

@@ -73,9 +73,9 @@ def test_the_whole_export_is_no_recording_because_its_cycles_start_again() -> No
     mapping = RecordingMapping(
         channels={"friction_coefficient": ChannelSource(column="CoF.mean", unit="")},
         axis=ChannelSource(column="CycleID"),
-        along="revolutions",
+        axis_quantity="revolutions",
     )
-    with raises(InvalidInput, match=r"line 92: revolutions runs backwards at 2"):  # 30 rows of three lines, one header
+    with raises(InvalidInput, match=r"line 92: revolutions decreases to 2"):  # 30 rows of three lines, one header
         read_recording(COF, mapping=mapping)
 
 

@@ -1,4 +1,4 @@
-"""What every reader of recordings hands over: columns as the file gives them, not yet named or in SI."""
+"""Columns of a recording as a file reader returns them: labels and units of the file, before names and SI units."""
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -20,15 +20,15 @@ class RawColumn:
     Parameters
     ----------
     label : str
-        What the file calls it; line breaks and runs of blanks become one blank.
+        Its label in the file; line breaks and runs of blanks are replaced by one blank.
     values : ndarray, shape (rows,)
-        As written, in the written unit; NaN where the file has nothing.
+        As written, in the unit of the file; NaN for missing values.
     unit : str or None
-        As written; None where the file does not say.
+        As written; None where the file does not state it.
     start : float or None
-        Time of the first value in seconds, where the file gives it beside the values.
+        Time of the first value in seconds, where the file states it beside the values.
     interval : float or None
-        Seconds between values, where the file gives it beside the values.
+        Time between values in seconds, where the file states it beside the values.
     """
 
     label: str
@@ -47,24 +47,24 @@ class RawTable:
 
     Parameters
     ----------
-    columns : tuple of Column
+    columns : tuple of RawColumn
         All of one length.
-    format : str
+    format_name : str
         Name of the file's format.
     lines : ndarray of int, shape (rows,), or None
-        The line of the file on which each row stands; None for binary files.
+        Line number of each row in the file; None for binary files.
     begun : str
-        When the recording began, as the file says it; empty where it does not.
+        Start of the recording as the file states it; empty where it does not.
     first_row : int
-        Rows of the file that went before, when it is read in blocks.
+        Number of rows of the file before this block, where it is read in blocks.
     incomplete : bool
-        Whether the file ends before the data it announces.
+        Whether the file ends before the data that it announces.
     origin : mapping of str to str
-        Of a recording written by `write_recording`: the title, name, format and SHA-256 of the file it came from.
+        Of a recording written by `write_recording`: title, name, format and SHA-256 of the original file.
     """
 
     columns: tuple[RawColumn, ...]
-    format: str
+    format_name: str
     lines: NDArray[np.int64] | None = None
     begun: str = ""
     first_row: int = 0
@@ -72,29 +72,38 @@ class RawTable:
     origin: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
 
     def place(self, row: int) -> str:
-        """Where in the file a row stands, for messages."""
+        """Return the sample or line number of a row in the file, for messages."""
         return f"sample {self.first_row + row}" if self.lines is None else f"line {self.lines[row]}"
 
 
 def one_line(label: str) -> str:
-    """Return a label without line breaks, as messages and mappings write it."""
+    """Return a label with line breaks and runs of blanks replaced by one blank."""
     return " ".join(label.split())
 
 
 @contextmanager
 def refuse_library_errors(path: Path, *, format_name: str, offset: Callable[[], int] | None = None) -> Iterator[None]:
-    """Turn whatever a reader of a foreign library raises on a broken file into one clear line.
+    """Context in which any exception of a foreign reader becomes a refusal that names the file.
+
+    Parameters
+    ----------
+    path : Path
+        Of the file.
+    format_name : str
+        Name of the format, for the message.
+    offset : callable or None
+        Returns the byte at which reading stopped, where it is known.
 
     Raises
     ------
     InvalidInput
-        Naming the file, the byte at which reading stopped where it is known, and the reason.
+        With the file, the byte where known, and the reason.
     """
     try:
         yield
     except SonolubeError:
         raise
-    except Exception as failure:  # parsers of broken files fail in every way there is
+    except Exception as failure:  # libraries raise exceptions of any type on damaged files
         place = f"byte {offset()}: " if offset is not None else ""
         reason = f"{type(failure).__name__}: {failure}".splitlines()[0]
         raise InvalidInput(f"{path}: {place}cannot be read as {format_name} ({reason[:200]})") from None
