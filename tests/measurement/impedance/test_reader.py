@@ -91,11 +91,11 @@ def test_a_heading_that_leaves_the_unit_open_or_wrong_is_none(text: str) -> None
 
 WRONG = {
     "empty.csv": ("", r"empty\.csv: is empty"),
-    "cells.csv": ("f,R,X\n1,2,3\n2,3\n", r"line 3: has 2 cells where column 3 is wanted"),
+    "cells.csv": ("f,R,X\n1,2,3\n2,3\n", r"line 3: has 2 cells where column 3 is required"),
     "word.csv": ("f,R,X\n1,2,3\n2,three,4\n", r"line 3: 'three' is not a finite number"),
     "nan.csv": ("f,R,X\n1,nan,3\n", r"line 2: 'nan' is not a finite number"),
-    "zero.csv": ("f,R,X\n1,1,1\n2,0,0\n", r"line 3: the impedance is zero or without bound"),
-    "unsorted.csv": ("f,R,X\n1,1,1\n3,1,1\n2,1,1\n4,1,1\n", r"line 4: the frequency turns or stands still"),
+    "zero.csv": ("f,R,X\n1,1,1\n2,0,0\n", r"line 3: the impedance is zero or not finite"),
+    "unsorted.csv": ("f,R,X\n1,1,1\n3,1,1\n2,1,1\n4,1,1\n", r"line 4: the frequency is not monotonic"),
     "negative.csv": ("f,R,X\n-1,1,1\n", r"line 2: the frequency must be positive"),
     "phase.csv": ("f,|Z|,phase\n1,1,1\n", r"line 1: names no columns of frequency and impedance"),
     "cut.csv": ("!Keysight Technologies,E4990A\nFrequency(Hz), R(Ohm)-data, X(Ohm)-data\n1,2,3\n", "ends without END"),
@@ -104,7 +104,7 @@ WRONG = {
     "options.s1p": ("# HZ H RI R 50\n", r"line 1: unknown option 'H'"),
     "reference.s1p": ("# HZ S RI R -50\n", r"line 1: the reference resistance must be positive, got '-50'"),
     "keyword.s1p": ("[Version] 1.0\n", r"line 1: version '1\.0' is not known"),
-    "open.s1p": ("# HZ S RI R 50\n1000 1 0\n", r"line 2: the impedance is zero or without bound"),
+    "open.s1p": ("# HZ S RI R 50\n1000 1 0\n", r"line 2: the impedance is zero or not finite"),
     "short.mfia": ("chunk;timestamp;size;fieldname\n0;1\n", r"line 2: has 2 cells"),
     "lacking.mfia": ("chunk;timestamp;size;fieldname\n0;1;1;frequency;5\n", r"line 2: chunk '0' lacks"),
     "uneven.mfia": (
@@ -139,14 +139,14 @@ def test_a_4294a_file_cut_short_or_of_another_sweep_is_refused(tmp_path: Path) -
     whole = (CORPUS / "magnitude-phase.4294a").read_text()
     path = tmp_path / "half.txt"
     path.write_text(whole[: whole.index('"TRACE: B"')])
-    with raises(InvalidInput, match="holds 1 traces where A and B are wanted"):
+    with raises(InvalidInput, match="holds 1 traces where A and B are required"):
         read_impedance(path)
 
 
 def test_a_spectrum_must_be_one() -> None:
-    with raises(InvalidInput, match="frequency must rise, got 1 Hz"):
+    with raises(InvalidInput, match="frequency must increase, got 1 Hz"):
         ImpedanceSpectrum(frequency=np.array([1.0, 1.0]), impedance=np.array([1.0, 1j]))
     with raises(InvalidInput, match="impedance must not be zero, as it is at 2 Hz"):
         ImpedanceSpectrum(frequency=np.array([1.0, 2.0]), impedance=np.array([1.0, 0j]))
-    with raises(InvalidInput, match="rows of one length"):
+    with raises(InvalidInput, match="one-dimensional and equal in length"):
         ImpedanceSpectrum(frequency=np.array([1.0, 2.0]), impedance=np.array([1.0 + 0j]))

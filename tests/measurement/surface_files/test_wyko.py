@@ -13,7 +13,8 @@ from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.measurement.surface_files.reader import read_surface_file
 from sonolube.measurement.surface_files.surface_reading import SurfaceReading
-from sonolube.measurement.surface_files.wyko import read_wyko
+from sonolube.measurement.surface_files.surface_topography import SurfaceTopographyFormats
+from sonolube.measurement.surface_files.wyko import WykoOpd
 
 MEASURED = Path(__file__).parents[4] / "shared" / "data" / "surfaces" / "opd-1.opd"
 Blocks = list[tuple[str, int, bytes]]
@@ -54,7 +55,7 @@ PLAIN: Blocks = [*SCALES, ("RAW_DATA", 3, floats(PICTURE))]
 
 
 def read(content: bytes) -> SurfaceReading:
-    return read_wyko(io.BytesIO(content), name="plate.opd")
+    return WykoOpd().read(io.BytesIO(content), Path("plate.opd"))
 
 
 @mark.parametrize("name", ["RAW_DATA", "RAW DATA", "Raw", "OPD", "SAMPLE_DATA"])
@@ -170,9 +171,7 @@ def test_a_measured_file_is_read_as_surface_topography_reads_it() -> None:
 
 def compare_with_surface_topography(path: Path) -> None:
     importorskip("SurfaceTopography", exc_type=ImportError)
-    from sonolube.measurement.surface_files.surface_topography import read_with_surface_topography
-
-    own, other = read_surface_file(path).height_map, read_with_surface_topography(path)
+    own, other = read_surface_file(path).height_map, SurfaceTopographyFormats().read(io.BytesIO(), path)
     np.testing.assert_array_equal(np.isnan(own.height), np.isnan(other.height))
     np.testing.assert_allclose(own.height, other.height, rtol=1e-14)
     assert own.spacing_x == approx(other.spacing_x, rel=1e-14)

@@ -1,6 +1,7 @@
 """Points as text find their way back onto the grid they were measured on."""
 
 import io
+from pathlib import Path
 
 import numpy as np
 from hypothesis import given, settings
@@ -11,11 +12,11 @@ from pytest import approx, mark, raises
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.measurement.surface_files.surface_reading import SurfaceReading
-from sonolube.measurement.surface_files.xyz import read_xyz
+from sonolube.measurement.surface_files.xyz import XyzText
 
 
 def read(text: str) -> SurfaceReading:
-    return read_xyz(io.BytesIO(text.encode()), name="plate.xyz")
+    return XyzText().read(io.BytesIO(text.encode()), Path("plate.xyz"))
 
 
 @settings(deadline=None)

@@ -1,4 +1,4 @@
-"""What the columns of an impedance table mean: quantity, part and unit out of a heading."""
+"""Headings of impedance tables: quantity and unit of each column, and the impedance that pairs of columns define."""
 
 import math
 import re
@@ -10,7 +10,7 @@ import numpy as np
 
 from sonolube.checks import Complexes, Floats
 
-_NAMES = {
+_LABELS = {
     "f": ("frequency", "freq", "freq.", "f"),
     "|Z|": ("|z|", "z", "abs(z)", "absz", "mag(z)", "zmod", "impedance"),
     "theta_Z": ("theta-z", "theta", "phase", "phasez", "phase(z)", "arg(z)", "zphz", "θ"),
@@ -28,7 +28,7 @@ _NAMES = {
     "Rp": ("rp",),
     "Cp": ("cp",),
 }
-_SYMBOL = {name: symbol for symbol, names in _NAMES.items() for name in names}
+_SYMBOL = {label: symbol for symbol, labels in _LABELS.items() for label in labels}
 _DIMENSION = MappingProxyType(
     {"f": "Hz", "|Y|": "S", "G": "S", "B": "S", "Ls": "H", "Lp": "H", "Cs": "F", "Cp": "F"}
     | dict.fromkeys(("theta_Z", "theta_Y"), "rad")
@@ -38,7 +38,7 @@ _PREFIX = {"": 1.0, "p": 1e-12, "n": 1e-9, "u": 1e-6, "µ": 1e-6, "μ": 1e-6, "m
 _BRACKETED = re.compile(r"(.*\S)\s*[(\[]([^()\[\]]*)[)\]]")
 _DIVIDED = re.compile(r"(.*\S)\s*/\s*(\S+)")
 
-_Z: Mapping[tuple[str, str], Callable[[Floats, Floats, Floats], Floats | Complexes]] = MappingProxyType(
+_IMPEDANCE: Mapping[tuple[str, str], Callable[[Floats, Floats, Floats], Floats | Complexes]] = MappingProxyType(
     {
         ("R", "X"): lambda w, r, x: r + 1j * x,
         ("R", "-X"): lambda w, r, x: r - 1j * x,
@@ -51,39 +51,49 @@ _Z: Mapping[tuple[str, str], Callable[[Floats, Floats, Floats], Floats | Complex
         ("Cp", "Rp"): lambda w, c, r: 1 / (1 / r + 1j * w * c),
     }
 )
-IMPEDANCE_PARTS = tuple(_Z)
+IMPEDANCE_PARTS = tuple(_IMPEDANCE)
+"""Pairs of column symbols that define an impedance, in order of preference."""
 
 
 class ColumnHeading(NamedTuple):
-    """What a heading says: the symbol of the quantity, and what one of its units is in SI."""
+    """Quantity and unit of a column.
+
+    Parameters
+    ----------
+    symbol : str
+        Symbol of the quantity, such as "f", "|Z|" or "theta_Z".
+    scale : float
+        Value of the column's unit in SI.
+    """
 
     symbol: str
     scale: float
 
 
 def parse_heading(text: str) -> ColumnHeading | None:
-    """Return what the heading of a column says, or None where it is none of an impedance table.
+    """Return the quantity and unit in the heading of a column, or None where it is none of an impedance table.
 
     Parameters
     ----------
     text : str
-        Such as ``|Z|(Ohm)``, "Freq [kHz]", "Re(Z)/ohm" or "phase (deg)". A phase must say its unit; else it is SI.
+        Such as ``|Z|(Ohm)``, "Freq [kHz]", "Re(Z)/ohm" or "phase (deg)". A phase must state its unit; other quantities
+        without one are in SI.
 
     Returns
     -------
-    Heading or None
+    ColumnHeading or None
     """
     label = text.strip().strip('"').strip()
     for split in (_BRACKETED, _DIVIDED):
         if (found := split.fullmatch(label)) and (symbol := _SYMBOL.get(found[1].lower())):
-            scale = _scale(found[2].strip(), _DIMENSION.get(symbol, "ohm"))
+            scale = _unit_scale(found[2].strip(), _DIMENSION.get(symbol, "ohm"))
             return ColumnHeading(symbol, scale) if scale is not None else None
     symbol = _SYMBOL.get(label.lower(), "")
     return ColumnHeading(symbol, 1.0) if symbol and not symbol.startswith("theta") else None
 
 
 def impedance_from_parts(columns: Mapping[str, Floats], pair: tuple[str, str]) -> Complexes:
-    """Return impedance from two of its parts, complex, in ohm.
+    r"""Return the complex impedance from two real parts of impedance, admittance or an equivalent circuit, in ohm.
 
     Parameters
     ----------
@@ -95,15 +105,22 @@ def impedance_from_parts(columns: Mapping[str, Floats], pair: tuple[str, str]) -
     Returns
     -------
     ndarray
-        Not finite where the parts say so.
+        Not finite where the parts define no finite impedance.
+
+    Notes
+    -----
+    With :math:`\omega = 2\pi f`: :math:`R + jX`, :math:`|Z| e^{j\theta}`, :math:`1/(G + jB)`, the series circuits
+    :math:`R_s + j\omega L_s` and :math:`R_s + 1/(j\omega C_s)`, and the parallel circuits
+    :math:`(1/R_p + 1/(j\omega L_p))^{-1}` and :math:`(1/R_p + j\omega C_p)^{-1}`.
     """
     first, second = pair
     with np.errstate(all="ignore"):
         omega = 2 * np.pi * columns["f"]
-        return np.asarray(_Z[pair](omega, columns[first], columns[second]), dtype=np.complex128)
+        return np.asarray(_IMPEDANCE[pair](omega, columns[first], columns[second]), dtype=np.complex128)
 
 
-def _scale(unit: str, dimension: str) -> float | None:
+def _unit_scale(unit: str, dimension: str) -> float | None:
+    """Return the value of a unit in SI, None where it is unknown or of another dimension."""
     if unit.lower() in ("deg", "°", "degrees"):
         return math.pi / 180 if dimension == "rad" else None
     found = _UNIT.fullmatch(unit)

@@ -1,4 +1,4 @@
-"""What a surface file says of itself, before anything is added to it."""
+"""Content of a surface file as its reader returns it, before unit and spacing are completed."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -8,22 +8,24 @@ from sonolube.checks import Floats
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class SurfaceReading:
-    """The content of a surface file as its reader found it.
+    """Heights, spacings and provenance as a surface file states them.
 
     Parameters
     ----------
     height : ndarray, shape (rows, columns)
-        Height, NaN where it was not measured; in the file's own length where it does not say its unit. [m]
+        Height, NaN where it was not measured; in the length unit of the file where it does not state that unit. [m]
     format_name : str
         The file's format, such as "Wyko OPD".
     spacing_x, spacing_y : float or None
-        Distance of neighbouring columns and rows, in the length of the heights; None where the file says none. [m]
+        Distance of neighbouring columns and rows, in the unit of the heights; None where the file states none. [m]
     states_unit : bool
-        Whether the file says in which unit its lengths are.
+        Whether the file states the unit of its lengths.
+    metres_by_default : bool
+        Whether lengths without a stated unit are metres where the user gives no unit.
     title, instrument : str
-        As the file gives them; empty where it does not.
+        As the file states them; empty where it does not.
     measured_at : datetime or None
-        When it was measured, by the instrument's clock.
+        Time of the measurement, by the instrument's clock.
     """
 
     height: Floats
@@ -31,6 +33,7 @@ class SurfaceReading:
     spacing_x: float | None = None
     spacing_y: float | None = None
     states_unit: bool = True
+    metres_by_default: bool = False
     title: str = ""
     instrument: str = ""
     measured_at: datetime | None = None
