@@ -69,7 +69,7 @@ def test_the_interval_is_students_by_hand(groove: Groove) -> None:
 
 
 def test_one_scan_is_no_ring(groove: Groove) -> None:
-    with raises(InvalidInput, match="a ring needs two scans with a whole groove, got 1"):
+    with raises(InvalidInput, match="a wear track needs two scans with a whole groove, got 1"):
         ring(groove, [3e-8])
     cut = replace(groove, complete=False, caveat="cut")
     with raises(InvalidInput, match=r"got 1 \(scan 2: cut\)"):
@@ -99,5 +99,5 @@ def test_the_interval_of_the_reduction_covers_the_truth_as_often_as_it_says(groo
 
 
 def test_nothing_to_compare_is_refused(groove: Groove) -> None:
-    with raises(InvalidInput, match="a ring worn without vibration and one worn with it"):
+    with raises(InvalidInput, match="a track worn without vibration and one worn with it"):
         wear_reduction_between_tracks([], [ring(groove, [1e-8, 2e-8])])

@@ -1,4 +1,4 @@
-"""From a recording to the record that a report shows: one function an analysis, each taking a dataset."""
+"""Friction analyses of a recording (xarray dataset): one function per analysis, each returning a record."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -6,11 +6,7 @@ from typing import TYPE_CHECKING
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, suggestion
 from sonolube.measurement.friction.loops import FrictionLoops, FrictionWork, friction_loops, friction_work
-from sonolube.measurement.friction.motor_current import (
-    MotorCalibration,
-    friction_from_motor_current,
-    motor_friction_uncertainty,
-)
+from sonolube.measurement.friction.motor_current import MotorCalibration, friction_from_motor_current
 from sonolube.measurement.friction.rotation import DiscRotation, disc_rotation, hall_pulse_times, revolutions_at
 from sonolube.measurement.friction.running_in import SteadyStateOnset, steady_state_onset
 from sonolube.measurement.friction.stick_slip import StickSlipEstimate, estimate_stick_slip
@@ -24,15 +20,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RunningIn:
-    """A test in windows, and where its friction and its fluctuation become steady.
+    """Friction in windows, with the onset of the steady state of its mean and of its fluctuation.
 
     Parameters
     ----------
     windows : WindowStatistics
         Friction in consecutive windows.
-    friction : SteadyState
+    friction : SteadyStateOnset
         Of the windows' means.
-    fluctuation : SteadyState
+    fluctuation : SteadyStateOnset
         Of the fluctuation in the windows, which takes longer when the pin vibrates.
     """
 
@@ -43,7 +39,7 @@ class RunningIn:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class FrictionCycles:
-    """The work of friction in all and, of a reciprocating motion, in each cycle.
+    """Frictional work of a whole recording and, for a reciprocating motion, of each cycle.
 
     Parameters
     ----------
@@ -59,7 +55,7 @@ class FrictionCycles:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class MotorFrictionTrace:
-    """Friction force over time as the motor's current tells it.
+    """Friction force over time from the motor current.
 
     Parameters
     ----------
@@ -68,7 +64,7 @@ class MotorFrictionTrace:
     friction_force : ndarray, shape (windows,)
         Mean in each window. [N]
     friction_force_uncertainty : ndarray, shape (windows,)
-        Standard uncertainty, the scatter of the current in the window included. [N]
+        Standard uncertainty, including the scatter of the current in the window. [N]
     """
 
     time: Floats
@@ -77,7 +73,17 @@ class MotorFrictionTrace:
 
 
 def channel_values(recording: "xr.Dataset", name: str) -> Floats:
-    """Return the values of a channel, or of the recording's time.
+    """Return the values of a channel, or of the axis, of a recording.
+
+    Parameters
+    ----------
+    recording : xarray.Dataset
+    name : str
+        Of the channel, or "time".
+
+    Returns
+    -------
+    ndarray, shape (samples,)
 
     Raises
     ------
@@ -103,17 +109,20 @@ def analyse_windows(
     ----------
     recording : xarray.Dataset
     of : str
-        The channel.
+        Name of the channel.
     window_duration : float
         Duration of each window. [s]
 
     Returns
     -------
     WindowStatistics
+
+    See Also
+    --------
+    window_statistics : of arrays.
     """
-    values = channel_values(recording, of)
     return window_statistics(
-        values,
+        channel_values(recording, of),
         time=channel_values(recording, "time"),
         window_duration=window_duration,
         channel=of,
@@ -124,20 +133,24 @@ def analyse_windows(
 def analyse_running_in(
     recording: "xr.Dataset", *, sliding_speed: float, window_duration: float = DEFAULT_WINDOW_DURATION
 ) -> RunningIn:
-    """Return where friction and its fluctuation become steady.
+    """Return the onset of the steady state of friction and of its fluctuation.
 
     Parameters
     ----------
     recording : xarray.Dataset
         With `friction_force`.
     sliding_speed : float
-        Speed of the sliding. [m/s]
+        Sliding speed. [m/s]
     window_duration : float
         Duration of each window. [s]
 
     Returns
     -------
     RunningIn
+
+    See Also
+    --------
+    steady_state_onset : of arrays.
 
     References
     ----------
@@ -156,20 +169,24 @@ def analyse_running_in(
 def analyse_voltage_steps(
     recording: "xr.Dataset", *, shortest_step: float = 1.0, settling_time: float = 0.5
 ) -> tuple[VoltageStep, ...]:
-    """Return the friction at each step of the voltage.
+    """Return the friction and its reduction at each step of the drive voltage.
 
     Parameters
     ----------
     recording : xarray.Dataset
         With `friction_force`, and `voltage_peak_to_peak` or the alternating `stack_voltage`.
     shortest_step : float
-        Seconds below which a level is a transition, not a step.
+        Duration in seconds below which a level is a transition, not a step.
     settling_time : float
-        Left out at the start of each step. [s]
+        Left out at the beginning of each step. [s]
 
     Returns
     -------
     tuple of VoltageStep
+
+    See Also
+    --------
+    friction_at_voltage_steps : of arrays.
 
     References
     ----------
@@ -190,7 +207,7 @@ def analyse_voltage_steps(
 
 
 def analyse_cycles(recording: "xr.Dataset") -> FrictionCycles:
-    """Return the work of friction, in all and cycle by cycle.
+    """Return the frictional work of a recording, and that of each cycle of a reciprocating motion.
 
     Parameters
     ----------
@@ -201,6 +218,10 @@ def analyse_cycles(recording: "xr.Dataset") -> FrictionCycles:
     -------
     FrictionCycles
 
+    See Also
+    --------
+    friction_work, friction_loops : of arrays.
+
     References
     ----------
     .. [1] D 4.5.4, figure 4.57.
@@ -209,25 +230,29 @@ def analyse_cycles(recording: "xr.Dataset") -> FrictionCycles:
     velocity = channel_values(recording, "relative_velocity")
     try:
         loops = friction_loops(time=time, friction_force=force, relative_velocity=velocity)
-    except InvalidInput:  # one stroke, such as a rod pulled through a ring
+    except InvalidInput:  # a single stroke, such as a rod pulled through a ring
         loops = None
     work = friction_work(time=time, friction_force=force, relative_velocity=velocity)
     return FrictionCycles(work=work, loops=loops)
 
 
-def analyse_stick_slip(recording: "xr.Dataset", *, least_fall: float | None = None) -> StickSlipEstimate:
+def analyse_stick_slip(recording: "xr.Dataset", *, minimum_drop: float | None = None) -> StickSlipEstimate:
     """Return frequency and amplitude of stick-slip.
 
     Parameters
     ----------
     recording : xarray.Dataset
         With `friction_force`, without gaps.
-    least_fall : float or None
-        The least fall, in N, that is a slip.
+    minimum_drop : float or None
+        Smallest force drop, in N, that counts as a slip.
 
     Returns
     -------
     StickSlipEstimate
+
+    See Also
+    --------
+    estimate_stick_slip : of arrays.
 
     References
     ----------
@@ -236,29 +261,33 @@ def analyse_stick_slip(recording: "xr.Dataset", *, least_fall: float | None = No
     return estimate_stick_slip(
         time=channel_values(recording, "time"),
         friction_force=channel_values(recording, "friction_force"),
-        least_fall=least_fall,
+        minimum_drop=minimum_drop,
     )
 
 
 def analyse_rotation(
     recording: "xr.Dataset", *, groove_diameter: float, magnets: int = 1, prominence: float = 0.25
 ) -> DiscRotation:
-    """Return the turning of the disc.
+    """Return the rotation of the disc from a Hall probe signal.
 
     Parameters
     ----------
     recording : xarray.Dataset
         With `magnetic_flux_density`.
     groove_diameter : float
-        Diameter of the circle under the pin. [m]
+        Diameter of the wear track under the pin. [m]
     magnets : int
-        Magnets at the rim.
+        Number of magnets at the rim.
     prominence : float
-        Height of the weakest pulse that counts, as a share of the strongest.
+        Prominence of the weakest pulse that counts, as a fraction of the strongest.
 
     Returns
     -------
-    Rotation
+    DiscRotation
+
+    See Also
+    --------
+    hall_pulse_times, disc_rotation : of arrays.
 
     References
     ----------
@@ -275,49 +304,55 @@ def analyse_rotation(
 def analyse_wobble(
     recording: "xr.Dataset",
     *,
-    turning: DiscRotation | None = None,
+    rotation: DiscRotation | None = None,
     rotation_speed: float | None = None,
     harmonics: int = 3,
 ) -> WobbleCorrection:
-    """Return the friction without what the turning disc's wobble adds.
+    """Return the friction force without its harmonics of the rotation, which the disc's wobble causes.
 
     Parameters
     ----------
     recording : xarray.Dataset
         With `friction_force`.
-    turning : Rotation or None
+    rotation : DiscRotation or None
         From `analyse_rotation`.
     rotation_speed : float or None
         Instead of it, where the speed is constant. [1/s]
     harmonics : int
-        How many multiples of the rotation are taken away.
+        Number of harmonics of the rotation that are removed.
 
     Returns
     -------
-    Wobble
+    WobbleCorrection
 
     Raises
     ------
     InvalidInput
-        If not exactly one of `turning` and `rotation_speed` is given.
+        If not exactly one of `rotation` and `rotation_speed` is given.
+
+    See Also
+    --------
+    remove_wobble : of arrays.
 
     References
     ----------
     .. [1] D 2.3.3 and 4.1.2 on the wobble of the disc.
     """
     time = channel_values(recording, "time")
-    if (turning is None) == (rotation_speed is None):
-        raise InvalidInput("give either turning, from the pulses, or a constant rotation_speed")
-    turns = revolutions_at(turning, time=time) if turning is not None else (rotation_speed or 0.0) * (time - time[0])
+    if (rotation is None) == (rotation_speed is None):
+        raise InvalidInput("give either rotation, from the pulses, or a constant rotation_speed")
+    revolutions = (
+        revolutions_at(rotation, time=time) if rotation is not None else (rotation_speed or 0.0) * (time - time[0])
+    )
     return remove_wobble(
-        revolutions=turns, friction_force=channel_values(recording, "friction_force"), harmonics=harmonics
+        revolutions=revolutions, friction_force=channel_values(recording, "friction_force"), harmonics=harmonics
     )
 
 
 def analyse_motor_current(
     recording: "xr.Dataset", *, motor: MotorCalibration, window_duration: float = DEFAULT_WINDOW_DURATION
 ) -> MotorFrictionTrace:
-    """Return the friction that the motor's current tells, in windows.
+    """Return the friction force from the motor current in consecutive windows.
 
     Parameters
     ----------
@@ -331,17 +366,21 @@ def analyse_motor_current(
     -------
     MotorFrictionTrace
 
+    See Also
+    --------
+    friction_from_motor_current : of arrays.
+
     References
     ----------
     .. [1] D 2.4.4.
     """
     windows = analyse_windows(recording, of="motor_current", window_duration=window_duration)
     known = windows.samples > 1
-    error = windows.deviation[known] / windows.samples[known] ** 0.5
+    friction_force, uncertainty = friction_from_motor_current(
+        motor,
+        motor_current=windows.mean[known],
+        motor_current_uncertainty=windows.deviation[known] / windows.samples[known] ** 0.5,
+    )
     return MotorFrictionTrace(
-        time=windows.time[known],
-        friction_force=friction_from_motor_current(motor, motor_current=windows.mean[known]),
-        friction_force_uncertainty=motor_friction_uncertainty(
-            motor, motor_current=windows.mean[known], motor_current_uncertainty=error
-        ),
+        time=windows.time[known], friction_force=friction_force, friction_force_uncertainty=uncertainty
     )

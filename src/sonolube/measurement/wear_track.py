@@ -1,4 +1,4 @@
-"""Wear of a disc from scans around its ring, and what vibration takes off it, with uncertainty."""
+"""Wear volume and wear rate of a wear track from scans around it, and wear reduction by vibration, with uncertainty."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -16,32 +16,32 @@ from sonolube.surfaces.height_map import HeightMap
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class WearTrack:
-    """The worn volume of a ring.
+    """Wear volume and wear rate of a circular wear track.
 
     Parameters
     ----------
     wear_volume : float
-        Volume below the unworn surface: mean section times circumference. [m3]
+        Volume below the unworn surface: mean cross-section area times circumference. [m3]
     wear_volume_uncertainty : float
         Standard error, from the scatter between scans. [m3]
     wear_volume_interval : tuple of float
-        95 % confidence interval after Student, in m3.
+        Student's 95 % confidence interval, in m3.
     pile_up_volume : float
-        Volume of ridges and projections, of the whole ring. [m3]
+        Volume of ridges and projections of the whole track. [m3]
     wear_rate : float
-        Worn volume per sliding distance. [m2]
+        Wear volume per sliding distance. [m2]
     wear_rate_uncertainty : float
         Its standard error. [m2]
     wear_rate_interval : tuple of float
         95 % confidence interval, in m2.
     groove_diameter : float
-        Diameter of the ring. [m]
+        Diameter of the track. [m]
     sliding_distance : float
-        Distance slid on it. [m]
+        Sliding distance on it. [m]
     cross_section_area : ndarray, shape (scans,)
-        Area of the mean section in each scan, in m2.
+        Area of the mean cross section of each scan. [m2]
     excluded_scans : tuple of str
-        Scans that do not count, by their place, and why.
+        Scans that do not count, by their number, with the reason.
     """
 
     wear_volume: float
@@ -58,24 +58,24 @@ class WearTrack:
 
     @property
     def net_volume(self) -> float:
-        """Volume that has left the disc, pile-up taken off. [m3]"""
+        """Wear volume less pile-up volume: volume removed from the disc. [m3]"""
         return self.wear_volume - self.pile_up_volume
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class WearReduction:
-    """What vibration takes off the wear.
+    """Wear reduction by vibration with its uncertainty and confidence interval.
 
     Parameters
     ----------
     wear_reduction : float
-        Share of the wear rate that is gone. []
+        Reduction relative to the intrinsic wear rate. []
     wear_reduction_uncertainty : float
         Its standard uncertainty. []
     interval : tuple of float
-        95 % confidence interval after Fieller; infinite where wear without vibration may be none.
+        Fieller's 95 % confidence interval; infinite where the wear rate without vibration may be zero.
     between_specimens : bool
-        Whether the uncertainty holds the scatter between specimens, or only that around single rings.
+        Whether the uncertainty includes the scatter between specimens, or only that between scans of single tracks.
     """
 
     wear_reduction: float
@@ -85,16 +85,16 @@ class WearReduction:
 
 
 def measure_wear_track(scans: Iterable[HeightMap], *, groove_diameter: float, sliding_distance: float) -> WearTrack:
-    """Measure the groove in scans around a ring.
+    """Return the wear of a track from the grooves in scans around it.
 
     Parameters
     ----------
     scans : iterable of HeightMap
-        As measured; eight in D. Read one at a time.
+        As measured; eight in D. Processed one at a time.
     groove_diameter : float
-        Diameter of the ring. [m]
+        Diameter of the track. [m]
     sliding_distance : float
-        Distance the pin slid on it. [m]
+        Sliding distance of the pin on it. [m]
 
     Returns
     -------
@@ -103,7 +103,11 @@ def measure_wear_track(scans: Iterable[HeightMap], *, groove_diameter: float, sl
     Raises
     ------
     InvalidInput
-        If fewer than two scans show a whole groove; the text says why.
+        If fewer than two scans show a whole groove, with the reasons.
+
+    See Also
+    --------
+    wear_track_from_grooves : from grooves that are already measured.
     """
     grooves: list[Groove | str] = []
     for scan in scans:
@@ -117,16 +121,16 @@ def measure_wear_track(scans: Iterable[HeightMap], *, groove_diameter: float, sl
 def wear_track_from_grooves(
     grooves: Sequence[Groove | str], *, groove_diameter: float, sliding_distance: float
 ) -> WearTrack:
-    """Return the wear of a ring from the grooves of its scans.
+    r"""Return the wear of a track from the measured grooves of its scans.
 
     Parameters
     ----------
     grooves : sequence of Groove or str
-        What each scan showed, or why it showed none.
+        Groove of each scan, or the reason why it shows none.
     groove_diameter : float
-        Diameter of the ring. [m]
+        Diameter of the track. [m]
     sliding_distance : float
-        Distance the pin slid on it. [m]
+        Sliding distance of the pin on it. [m]
 
     Returns
     -------
@@ -135,13 +139,16 @@ def wear_track_from_grooves(
     Raises
     ------
     InvalidInput
-        If fewer than two scans show a whole groove; the text says why.
+        If fewer than two scans show a whole groove, with the reasons.
 
     Notes
     -----
-    The volume of a ring is the area of its section times the circumference (Pappus). Scans without a groove, or with
-    an edge outside the field, do not count: where wear is below what a scan can show, the mean is one of the scans
-    that show it. Scatter between scans holds the uncertainty of each.
+    By Pappus's theorem, with the mean :math:`\bar A` of the cross-section areas and the diameter :math:`D_g`,
+
+    .. math:: V = \pi D_g \bar A , \qquad W = \frac{V}{D} \qquad \text{(D 2.2)} .
+
+    Scans without a groove, or with an edge outside the field, do not count: where the wear is below the resolution of a
+    scan, the mean is that of the scans that show it. The scatter between scans includes the uncertainty of each.
 
     References
     ----------
@@ -150,22 +157,22 @@ def wear_track_from_grooves(
     require_positive(groove_diameter=groove_diameter, sliding_distance=sliding_distance)
     whole = [groove for groove in grooves if isinstance(groove, Groove) and groove.complete]
     excluded_scans = tuple(
-        f"scan {place}: {groove if isinstance(groove, str) else groove.caveat}"
-        for place, groove in enumerate(grooves, start=1)
+        f"scan {number}: {groove if isinstance(groove, str) else groove.caveat}"
+        for number, groove in enumerate(grooves, start=1)
         if isinstance(groove, str) or not groove.complete
     )
     if len(whole) < 2:
         reasons = "; ".join(excluded_scans) or "there are no more"
-        raise InvalidInput(f"a ring needs two scans with a whole groove, got {len(whole)} ({reasons})")
-    around = math.pi * groove_diameter
+        raise InvalidInput(f"a wear track needs two scans with a whole groove, got {len(whole)} ({reasons})")
+    circumference = math.pi * groove_diameter
     area = np.array([groove.cross_section_area for groove in whole])
-    piled_up = float(np.mean([groove.pile_up_volume / groove.track_length for groove in whole])) * around
-    volume = mean_estimate(around * area)
+    pile_up = float(np.mean([groove.pile_up_volume / groove.track_length for groove in whole])) * circumference
+    volume = mean_estimate(circumference * area)
     return WearTrack(
         wear_volume=volume.mean,
         wear_volume_uncertainty=volume.uncertainty,
         wear_volume_interval=(volume.lower, volume.upper),
-        pile_up_volume=piled_up,
+        pile_up_volume=pile_up,
         wear_rate=float(wear_rate(wear_volume=volume.mean, sliding_distance=sliding_distance)),
         wear_rate_uncertainty=volume.uncertainty / sliding_distance,
         wear_rate_interval=(volume.lower / sliding_distance, volume.upper / sliding_distance),
@@ -177,14 +184,14 @@ def wear_track_from_grooves(
 
 
 def wear_reduction_between_tracks(without: Sequence[WearTrack], with_vibration: Sequence[WearTrack]) -> WearReduction:
-    """Return the wear reduction between specimens run without and with vibration.
+    r"""Return the wear reduction between tracks worn without and with vibration, with Fieller's interval.
 
     Parameters
     ----------
     without : sequence of WearTrack
-        One a specimen.
+        One per specimen.
     with_vibration : sequence of WearTrack
-        One a specimen.
+        One per specimen.
 
     Returns
     -------
@@ -195,34 +202,42 @@ def wear_reduction_between_tracks(without: Sequence[WearTrack], with_vibration: 
     InvalidInput
         If either is empty, or the mean wear rate without vibration is not positive.
 
+    See Also
+    --------
+    ratio_interval : Fieller's interval of a ratio of means.
+
     Notes
     -----
     Two specimens or more on each side give the scatter between specimens; otherwise it is that between the scans of
-    the rings, which says nothing of another specimen. The standard uncertainty takes the relative errors of both mean
-    rates in squares, the interval is that of `ratio_interval`.
+    the tracks, which does not extend to other specimens. With the mean rates and their standard errors,
+
+    .. math::
+
+        P_w = 1 - \frac{W_1}{W_0} \quad \text{(D 2.3)} , \qquad
+        u_P = \frac{W_1}{W_0} \sqrt{\left( \frac{u_0}{W_0} \right)^2 + \left( \frac{u_1}{W_1} \right)^2} .
 
     References
     ----------
     .. [1] D 2.3.
     """
     if not without or not with_vibration:
-        raise InvalidInput("wear reduction needs a ring worn without vibration and one worn with it")
+        raise InvalidInput("wear reduction needs a track worn without vibration and one worn with it")
     between = min(len(without), len(with_vibration)) >= 2
-    off, on = (_tests(rings, between) for rings in (without, with_vibration))
+    off, on = (_wear_rates(tracks, between) for tracks in (without, with_vibration))
     ratio = ratio_interval(on, off)
-    errors = [estimate.uncertainty / estimate.mean for estimate in (mean_estimate(off), mean_estimate(on))]
+    relative_errors = [estimate.uncertainty / estimate.mean for estimate in (mean_estimate(off), mean_estimate(on))]
     return WearReduction(
         wear_reduction=float(wear_reduction(intrinsic_wear_rate=off.mean(), reduced_wear_rate=on.mean())),
-        wear_reduction_uncertainty=abs(ratio.ratio) * math.hypot(*errors),
+        wear_reduction_uncertainty=abs(ratio.ratio) * math.hypot(*relative_errors),
         interval=(1 - ratio.upper, 1 - ratio.lower),
         between_specimens=between,
     )
 
 
-def _tests(rings: Sequence[WearTrack], between: bool) -> Floats:
+def _wear_rates(tracks: Sequence[WearTrack], between: bool) -> Floats:
     """Return the wear rate of each specimen, or of each scan, in m2."""
     if between:
-        return np.array([ring.wear_rate for ring in rings])
+        return np.array([track.wear_rate for track in tracks])
     return np.concatenate(
-        [math.pi * ring.groove_diameter / ring.sliding_distance * ring.cross_section_area for ring in rings]
+        [math.pi * track.groove_diameter / track.sliding_distance * track.cross_section_area for track in tracks]
     )

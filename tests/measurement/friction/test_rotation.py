@@ -101,7 +101,7 @@ def test_turns_between_pulses_of_an_even_speed_are_in_proportion() -> None:
 
 @pytest.mark.parametrize(
     ("time", "magnets", "match"),
-    [([1.0], 1, "a turn needs 2 pulses, got 1"), ([1.0, 1.0], 1, "must increase"), ([1.0, 2.0], 0, "magnets must be")],
+    [([1.0], 1, "a revolution needs 2 pulses, got 1"), ([1.0, 1.0], 1, "must increase"), ([1.0, 2.0], 0, "magnets must be")],
 )
 def test_pulses_without_a_turn_are_refused(time: list[float], magnets: int, match: str) -> None:
     with raises(InvalidInput, match=match):

@@ -1,4 +1,4 @@
-"""Few tests, honestly: scipy for Welch, enumeration for permutations, the definition for Fieller, ISO 5725 by hand."""
+"""Few repeated tests: scipy for Welch, enumeration of permutations, the definition of Fieller, ISO 5725 by hand."""
 
 from itertools import permutations
 

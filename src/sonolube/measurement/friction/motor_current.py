@@ -1,4 +1,4 @@
-"""Friction forces of a test: their reduction with its uncertainty, and friction told by the motor's current."""
+"""Friction force from the current of the motor that drives the disc, with its uncertainty."""
 
 from dataclasses import dataclass
 
@@ -6,94 +6,21 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
-from sonolube.measurement.statistics.autocorrelation import correlated_mean
-from sonolube.metrics import friction_from_current, friction_reduction
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class FrictionReductionEstimate:
-    """How much friction a vibration takes away, and how well that is known.
-
-    Parameters
-    ----------
-    friction_reduction : float
-        Share of the friction taken away. []
-    friction_reduction_uncertainty : float
-        Its standard uncertainty. []
-    intrinsic_friction_force : float
-        Mean without vibration. [N]
-    intrinsic_friction_force_uncertainty : float
-        Its standard error. [N]
-    reduced_friction_force : float
-        Mean with vibration. [N]
-    reduced_friction_force_uncertainty : float
-        Its standard error. [N]
-    """
-
-    friction_reduction: float
-    friction_reduction_uncertainty: float
-    intrinsic_friction_force: float
-    intrinsic_friction_force_uncertainty: float
-    reduced_friction_force: float
-    reduced_friction_force_uncertainty: float
-
-
-def estimate_friction_reduction(
-    *, intrinsic_friction_force: ArrayLike, reduced_friction_force: ArrayLike
-) -> FrictionReductionEstimate:
-    """Return the friction reduction between two stretches of a recording.
-
-    Parameters
-    ----------
-    intrinsic_friction_force : array_like, shape (samples,)
-        Evenly spaced samples without vibration; NaN is passed over. [N]
-    reduced_friction_force : array_like, shape (samples,)
-        Evenly spaced samples with vibration; NaN is passed over. [N]
-
-    Returns
-    -------
-    ReductionEstimate
-
-    Raises
-    ------
-    InvalidInput
-        If a stretch holds fewer than two values, or the mean without vibration is not positive.
-
-    Notes
-    -----
-    To first order, u^2 = (u1/F0)^2 + (F1 u0/F0^2)^2, the errors of the means heeding the correlation of the samples.
-    Good while u0/F0 is below a tenth; `comparison.ratio_interval` needs no such limit.
-
-    References
-    ----------
-    .. [1] D 2.1.
-    """
-    off, on = correlated_mean(intrinsic_friction_force), correlated_mean(reduced_friction_force)
-    reduction = friction_reduction(intrinsic_friction_force=off.mean, reduced_friction_force=on.mean)
-    return FrictionReductionEstimate(
-        friction_reduction=float(reduction),
-        friction_reduction_uncertainty=float(
-            np.hypot(on.uncertainty / off.mean, on.mean * off.uncertainty / off.mean**2)
-        ),
-        intrinsic_friction_force=off.mean,
-        intrinsic_friction_force_uncertainty=off.uncertainty,
-        reduced_friction_force=on.mean,
-        reduced_friction_force_uncertainty=on.uncertainty,
-    )
+from sonolube.metrics import friction_from_current
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class MotorCalibration:
-    """What is known of a motor that drives a disc against friction.
+    """Torque constant and idle current of the motor that drives a disc, with their uncertainties.
 
     Parameters
     ----------
     torque_constant : float
-        Torque at the disc per current, gears included. [N m/A]
+        Torque at the disc per current, gear included. [N m/A]
     idle_current : float
         Current at the same speed with the pin lifted. [A]
     groove_diameter : float
-        Diameter of the circle under the pin. [m]
+        Diameter of the wear track under the pin. [m]
     torque_constant_uncertainty : float
         Standard uncertainty. [N m/A]
     idle_current_uncertainty : float
@@ -120,46 +47,10 @@ class MotorCalibration:
         )
 
 
-def friction_from_motor_current(motor: MotorCalibration, *, motor_current: ArrayLike) -> Floats:
-    """Return the friction force that a motor's current tells at steady speed. [N]
-
-    Parameters
-    ----------
-    motor : MotorCalibration
-    motor_current : array_like, any shape
-        Current of the motor. [A]
-
-    Returns
-    -------
-    ndarray, shape of `motor_current`
-        Negative below the no-load current.
-
-    Raises
-    ------
-    InvalidInput
-        If a current is not finite.
-
-    Notes
-    -----
-    F = K_T (I - I_0)/(D_g/2). Only while the disc keeps its speed: an accelerating disc takes current of its own, and
-    the no-load current belongs to one speed.
-
-    References
-    ----------
-    .. [1] D 2.4.4, where the motor's current falls by 0.4 A with the friction.
-    """
-    return friction_from_current(
-        torque_constant=motor.torque_constant,
-        motor_current=motor_current,
-        idle_current=motor.idle_current,
-        groove_diameter=motor.groove_diameter,
-    )
-
-
-def motor_friction_uncertainty(
+def friction_from_motor_current(
     motor: MotorCalibration, *, motor_current: ArrayLike, motor_current_uncertainty: ArrayLike = 0.0
-) -> Floats:
-    """Return the standard uncertainty of the friction force that a motor's current tells. [N]
+) -> tuple[Floats, Floats]:
+    r"""Return the friction force from the motor current at constant speed, and its standard uncertainty. [N]
 
     Parameters
     ----------
@@ -171,19 +62,47 @@ def motor_friction_uncertainty(
 
     Returns
     -------
-    ndarray, shape of the broadcast arguments
+    friction_force : ndarray, shape of `motor_current`
+        Negative below the idle current. [N]
+    friction_force_uncertainty : ndarray, shape of the broadcast arguments
+        Its standard uncertainty. [N]
 
     Raises
     ------
     InvalidInput
         If a current is not finite, or an uncertainty negative.
+
+    See Also
+    --------
+    friction_from_current : the force for constants without a calibration record.
+
+    Notes
+    -----
+    First-order propagation of uncertainty:
+
+    .. math::
+
+        F_t = \frac{k_m (I_m - I_0)}{D_g/2} , \qquad
+        u_F^2 = \left( \frac{2}{D_g} \right)^2 \left[ k_m^2 (u_I^2 + u_{I0}^2) + (I_m - I_0)^2 u_K^2 \right] .
+
+    At constant speed only: an accelerating disc takes current of its own, and the idle current belongs to one speed.
+
+    References
+    ----------
+    .. [1] D 2.4.4, where the motor's current falls by 0.4 A with the friction.
     """
     current = require_finite(motor_current=motor_current)
-    of_currents = np.hypot(
+    current_uncertainty = np.hypot(
         require_non_negative(motor_current_uncertainty=motor_current_uncertainty), motor.idle_current_uncertainty
     )
-    torque = np.hypot(
-        motor.torque_constant * of_currents,
+    torque_uncertainty = np.hypot(
+        motor.torque_constant * current_uncertainty,
         motor.torque_constant_uncertainty * (current - motor.idle_current),
     )
-    return np.asarray(torque / (motor.groove_diameter / 2))
+    friction_force = friction_from_current(
+        torque_constant=motor.torque_constant,
+        motor_current=current,
+        idle_current=motor.idle_current,
+        groove_diameter=motor.groove_diameter,
+    )
+    return friction_force, np.asarray(torque_uncertainty / (motor.groove_diameter / 2))

@@ -1,4 +1,4 @@
-"""Where running-in ends and steady friction begins."""
+"""Onset of steady-state friction after running-in, from the friction of consecutive windows."""
 
 from dataclasses import dataclass
 
@@ -10,30 +10,30 @@ from sonolube.errors import InvalidInput
 from sonolube.measurement.statistics.autocorrelation import correlated_mean, statistical_inefficiency
 from sonolube.measurement.time_series import require_time_series
 
-_SETTLED_SHARE = 1 / 3  # of the test, at its end, which tells level and scatter
-_HOLD = 5  # windows that must stay within the band
-_FEWEST = 12  # windows
-_ROBUST = 1.4826  # deviation of a normal variable over its median absolute deviation
+_TAIL_FRACTION = 1 / 3  # of the test, at its end, that determines level and scatter
+_CONSECUTIVE = 5  # windows that must stay within the band
+_FEWEST_WINDOWS = 12
+_NORMAL_CONSISTENCY = 1.4826  # standard deviation of a normal variable over its median absolute deviation
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SteadyStateOnset:
-    """Steady friction, and how far the pin slid until it was reached.
+    """Onset and level of steady-state friction.
 
     Parameters
     ----------
     steady : bool
-        Whether the friction became steady at all.
+        Whether the friction became steady.
     reason : str
-        Why not; empty when steady.
+        Why it did not; empty where it did.
     start_time : float
-        Since the start of the first window. [s]
+        Time of the onset, since the first window. [s]
     sliding_distance : float
-        Slid until then. [m]
+        Sliding distance until the onset. [m]
     friction_force : float
-        Mean from then on. [N]
+        Mean after the onset. [N]
     friction_force_deviation : float
-        Scatter of the windows' means from then on. [N]
+        Standard deviation of the windows after the onset. [N]
     friction_force_uncertainty : float
         Standard error of the mean. [N]
     """
@@ -50,7 +50,7 @@ class SteadyStateOnset:
 def steady_state_onset(
     *, time: ArrayLike, friction_force: ArrayLike, sliding_speed: float, band: float = 3.0, least_band: float = 0.01
 ) -> SteadyStateOnset:
-    """Return where friction becomes steady.
+    r"""Return the onset of steady-state friction by a tolerance band about the level of the end of the test.
 
     Parameters
     ----------
@@ -59,16 +59,16 @@ def steady_state_onset(
     friction_force : array_like, shape (windows,)
         Mean, or fluctuation, in each window. [N]
     sliding_speed : float
-        Speed of the sliding. [m/s]
+        Sliding speed. [m/s]
     band : float
-        Half width of the band about the steady level, in scatters of the windows.
+        Half width of the band about the steady level, in standard deviations of the windows.
     least_band : float
-        The least half width, as a share of the level.
+        Smallest half width, as a fraction of the level.
 
     Returns
     -------
-    SteadyState
-        Of a test that does not become steady the numbers are those of its last third.
+    SteadyStateOnset
+        Of a test that does not become steady the values are those of its last third.
 
     Raises
     ------
@@ -78,28 +78,32 @@ def steady_state_onset(
     Notes
     -----
     Level and scatter are the median of the last third of the test and the scaled median absolute deviation about a line
-    through it. The friction is steady from the first of five windows in a row whose values lie within the band. It is
-    not steady when the last third itself drifts: when the line rises or falls, over its length, by more than the
-    scatter, by more than the least band, and by more than three standard errors that heed correlation. D 2.3.3 reads
+    through it,
+
+    .. math:: s = 1.4826\; \mathrm{median}\,|F_i - \hat F_i| .
+
+    The friction is steady from the first of five consecutive windows whose values lie within the band. It is not steady
+    when the last third itself drifts: when the line rises or falls, over its length, by more than the scatter, by more
+    than the smallest half width, and by more than three standard errors that account for autocorrelation. D 2.3.3 reads
     the distance off the curve by eye.
     """
     require_positive(sliding_speed=sliding_speed, least_band=least_band, band=band)
     t, f = require_time_series(time=time, friction_force=friction_force)
     known = np.isfinite(f)
     t, f = t[known], f[known]
-    if t.size < _FEWEST:
-        raise InvalidInput(f"a steady state needs at least {_FEWEST} windows, got {t.size}")
-    tail = slice(t.size - max(_HOLD, int(t.size * _SETTLED_SHARE)), t.size)
+    if t.size < _FEWEST_WINDOWS:
+        raise InvalidInput(f"a steady state needs at least {_FEWEST_WINDOWS} windows, got {t.size}")
+    tail = slice(t.size - max(_CONSECUTIVE, int(t.size * _TAIL_FRACTION)), t.size)
     level = float(np.median(f[tail]))
-    rise, residual = _line(t[tail], f[tail])
-    scatter = _ROBUST * float(np.median(np.abs(residual)))
+    rise, residual = _linear_trend(t[tail], f[tail])
+    scatter = _NORMAL_CONSISTENCY * float(np.median(np.abs(residual)))
     half_width = max(band * scatter, least_band * abs(level))
     reason = _drift(rise, residual, max(scatter, least_band * abs(level)))
     within = np.abs(f - level) <= half_width
-    held = np.convolve(within, np.ones(_HOLD), mode="valid") == _HOLD
+    held = np.convolve(within, np.ones(_CONSECUTIVE), mode="valid") == _CONSECUTIVE
     first = int(np.argmax(held)) if held.any() and not reason else tail.start
     if not held.any():
-        reason = reason or f"no {_HOLD} windows in a row stay within {half_width:.3g} N of {level:.3g} N"
+        reason = reason or f"no {_CONSECUTIVE} consecutive windows stay within {half_width:.3g} N of {level:.3g} N"
     estimate = correlated_mean(f[first:])
     start = float(t[first] - t[0])
     return SteadyStateOnset(
@@ -113,17 +117,18 @@ def steady_state_onset(
     )
 
 
-def _line(t: Floats, f: Floats) -> tuple[float, Floats]:
-    """Rise of a line through all points, from first to last, and what is left about it."""
+def _linear_trend(t: Floats, f: Floats) -> tuple[float, Floats]:
+    """Return the rise of the regression line from first to last point, and the residuals about it."""
     x = (t - t.mean()) / (t[-1] - t[0])
     rise = float(x @ f / (x @ x))
     return rise, f - f.mean() - rise * x
 
 
-def _drift(rise: float, residual: Floats, tolerated: float) -> str:
-    # the rise of a line over n even points has the variance 12 s^2/n, times what correlation adds
+def _drift(rise: float, residual: Floats, tolerance: float) -> str:
+    """Return a message where the trend is significant and above the tolerance; empty where it is not."""
+    # the rise of a regression line over n even points has the variance 12 s^2/n, times the statistical inefficiency
     variance = 12 * float(residual @ residual) / residual.size**2 * statistical_inefficiency(residual)
-    if abs(rise) > tolerated and abs(rise) > 3 * variance**0.5:
+    if abs(rise) > tolerance and abs(rise) > 3 * variance**0.5:
         return (
             f"the last third of the test still {'rises' if rise > 0 else 'falls'} by {abs(rise):.3g} N; run it longer"
         )

@@ -1,4 +1,4 @@
-"""How well a mean is known when neighbouring samples are alike."""
+"""Mean and standard error of correlated samples by their integrated autocorrelation."""
 
 from dataclasses import dataclass
 
@@ -8,12 +8,12 @@ from numpy.typing import ArrayLike
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
 
-_WINDOW = 5.0  # correlation times over which the autocorrelation is summed
+_WINDOW = 5.0  # correlation times over which the autocorrelation is summed, the c of Sokal
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class CorrelatedMean:
-    """A mean over correlated samples.
+    """Mean of correlated samples with its standard error.
 
     Parameters
     ----------
@@ -24,9 +24,9 @@ class CorrelatedMean:
     uncertainty : float
         Standard error of the mean.
     samples : int
-        Samples that hold a value.
+        Number of samples, without missing values.
     effective_samples : float
-        Independent samples that would know the mean as well.
+        Number of independent samples whose mean would have the same standard error.
     """
 
     mean: float
@@ -37,12 +37,12 @@ class CorrelatedMean:
 
 
 def correlated_mean(values: ArrayLike) -> CorrelatedMean:
-    """Return the mean of evenly spaced samples with a standard error that heeds their correlation.
+    r"""Return the mean of evenly spaced samples with a standard error that accounts for their autocorrelation.
 
     Parameters
     ----------
     values : array_like, shape (samples,)
-        In any unit; NaN is passed over.
+        In any unit; NaN is a missing value and is left out.
 
     Returns
     -------
@@ -51,13 +51,20 @@ def correlated_mean(values: ArrayLike) -> CorrelatedMean:
     Raises
     ------
     InvalidInput
-        If fewer than two samples hold a value.
+        If there are fewer than two samples.
+
+    See Also
+    --------
+    statistical_inefficiency : the factor g.
+    mean_estimate : the mean of independent tests.
 
     Notes
     -----
-    The standard error is s sqrt(g/n), g = 1 + 2 sum of rho(k), summed to the first lag beyond 5 g/2 [1]_. g is at least
-    1: an error smaller than that of independent samples is never claimed. Where n is below some fifty g, the estimate
-    of g itself is coarse and tends to be too small.
+    With the standard deviation s of n samples and their statistical inefficiency g, the standard error is
+
+    .. math:: u = s \sqrt{g/n} .
+
+    Where n is below about fifty g, the estimate of g itself is coarse and biased low.
 
     References
     ----------
@@ -79,7 +86,7 @@ def correlated_mean(values: ArrayLike) -> CorrelatedMean:
 
 
 def statistical_inefficiency(values: Floats) -> float:
-    """Return how many samples are worth one independent one, 1 + 2 sum of the autocorrelation; at least 1.
+    r"""Return the statistical inefficiency of evenly spaced samples: samples per independent sample, at least 1.
 
     Parameters
     ----------
@@ -89,19 +96,32 @@ def statistical_inefficiency(values: Floats) -> float:
     Returns
     -------
     float
+
+    Notes
+    -----
+    With the autocorrelation :math:`\rho`,
+
+    .. math:: g = 1 + 2 \sum_{k=1}^{M} \rho(k) ,
+
+    where Sokal's automatic window ends the sum at the first lag M of at least 5 g/2. [1]_ Values below 1, from negative
+    correlation, are replaced by 1, so that no standard error is below that of independent samples.
+
+    References
+    ----------
+    .. [1] A. Sokal, Monte Carlo methods in statistical mechanics (1997). doi:10.1007/978-1-4899-0319-8_6
     """
     centred = values - np.mean(values)
     spectrum = np.fft.rfft(centred, 2 ** int(np.ceil(np.log2(2 * values.size))))
     covariance = np.fft.irfft(np.abs(spectrum) ** 2)[: values.size]
     if covariance[0] <= 1e-24 * values.size * np.max(np.abs(values), initial=0.0) ** 2:
         return 1.0  # constant up to rounding
-    summed = 2 * np.cumsum(covariance / covariance[0]) - 1
-    enough = np.arange(values.size) >= _WINDOW * summed / 2
-    return float(max(1.0, summed[int(np.argmax(enough))] if enough.any() else values.size))
+    cumulative = 2 * np.cumsum(covariance / covariance[0]) - 1
+    sufficient = np.arange(values.size) >= _WINDOW * cumulative / 2
+    return float(max(1.0, cumulative[int(np.argmax(sufficient))] if sufficient.any() else values.size))
 
 
 def correlation_time(values: Floats, *, sample_interval: float) -> float:
-    """Return the integrated correlation time of evenly spaced samples. [s]
+    r"""Return the integrated autocorrelation time of evenly spaced samples. [s]
 
     Parameters
     ----------
@@ -113,12 +133,18 @@ def correlation_time(values: Floats, *, sample_interval: float) -> float:
     Returns
     -------
     float
-        Half a sample for independent samples.
+        Half a sample interval for independent samples.
 
     Raises
     ------
     InvalidInput
         If the interval is not positive.
+
+    Notes
+    -----
+    .. math:: \tau = \tfrac12\, g\, \Delta t
+
+    with the statistical inefficiency g of `statistical_inefficiency`.
     """
     require_positive(sample_interval=sample_interval)
     return statistical_inefficiency(values) / 2 * sample_interval

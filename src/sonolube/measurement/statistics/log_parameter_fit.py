@@ -1,4 +1,4 @@
-"""Least squares over the logarithms of positive parameters, with confidence confidence_intervals of all that follows from them."""
+"""Least squares over the logarithms of positive parameters, with confidence intervals of derived quantities."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -9,23 +9,24 @@ from scipy import stats
 from sonolube.checks import Floats
 from sonolube.measurement.statistics.autocorrelation import statistical_inefficiency
 
-_ROUNDING = 1e-10  # residuals below which nothing fits better
+_ROUNDING = 1e-10  # residuals below which fits do not differ
 _EVALUATIONS = 60  # for each parameter
 _STEP = 1e-6  # of central differences, in a logarithm
 
 Quantities = Callable[[Floats], Mapping[str, float]]
+"""Function that computes positive quantities by name from the logarithms of the parameters."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ConfidenceInterval:
-    """A number with its confidence interval.
+    """An estimate with its confidence interval.
 
     Parameters
     ----------
     value : float
-        Most likely value.
+        The estimate.
     lower, upper : float
-        Ends of the interval.
+        Limits of the interval.
     """
 
     value: float
@@ -35,18 +36,18 @@ class ConfidenceInterval:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class LogParameterFit:
-    """Where a sum of squares is least.
+    """Least-squares estimate of the logarithms of positive parameters.
 
     Parameters
     ----------
     logarithms : ndarray, shape (parameters,)
         Of the parameters.
     covariance : ndarray, shape (parameters, parameters)
-        Of the logarithms, for independent residuals of one variance; infinite where the data do not say.
+        Of the logarithms, for independent residuals of equal variance; infinite where the data do not determine it.
     residuals : ndarray, shape (samples,)
-        At that place.
+        At the estimate.
     converged : bool
-        Whether the search ended there by itself.
+        Whether the minimisation converged.
     """
 
     logarithms: Floats
@@ -56,26 +57,26 @@ class LogParameterFit:
 
     @property
     def sum_of_squares(self) -> float:
-        """Sum of the squares of the residuals."""
+        """Sum of squares of the residuals."""
         return float(np.sum(self.residuals**2))
 
     @property
     def information_criterion(self) -> float:
-        """Bayesian information criterion, up to a constant of the data."""
+        r"""Bayesian information criterion n ln(RSS/n) + k ln n for n residuals and k parameters."""
         n = self.residuals.size
         mean_square = max(self.sum_of_squares / n, _ROUNDING**2)
         return n * float(np.log(mean_square)) + self.logarithms.size * float(np.log(n))
 
 
 def fit_log_parameters(residuals: Callable[[Floats], Floats], start: Floats) -> LogParameterFit:
-    """Return where the sum of squares of residuals is least, sought from one place.
+    """Return the local least-squares estimate of log-parameters by the Levenberg-Marquardt method.
 
     Parameters
     ----------
     residuals : callable
-        Takes logarithms of the parameters, returns residuals of one variance.
+        Takes logarithms of the parameters, returns residuals of equal variance.
     start : ndarray, shape (parameters,)
-        Logarithms to start from.
+        Logarithms at which the minimisation starts.
 
     Returns
     -------
@@ -87,44 +88,54 @@ def fit_log_parameters(residuals: Callable[[Floats], Floats], start: Floats) -> 
     for place, value in enumerate(start):
         parameters.add(f"p{place}", value=float(value))
 
-    def cost(trial: "lmfit.Parameters") -> Floats:
+    def bounded_residuals(trial: "lmfit.Parameters") -> Floats:
         with np.errstate(all="ignore"):
             found = residuals(np.array(list(trial.valuesdict().values())))
         return np.clip(np.nan_to_num(found, nan=1e6), -1e6, 1e6)
 
-    found = lmfit.minimize(
-        cost, parameters, method="leastsq", ftol=1e-12, xtol=1e-12, max_nfev=_EVALUATIONS * (start.size + 1)
+    minimum = lmfit.minimize(
+        bounded_residuals,
+        parameters,
+        method="leastsq",
+        ftol=1e-12,
+        xtol=1e-12,
+        max_nfev=_EVALUATIONS * (start.size + 1),
     )
-    covariance = getattr(found, "covar", None)
+    covariance = getattr(minimum, "covar", None)
     return LogParameterFit(
-        logarithms=np.array(list(found.params.valuesdict().values())),
+        logarithms=np.array(list(minimum.params.valuesdict().values())),
         covariance=np.full((start.size,) * 2, np.inf) if covariance is None else np.asarray(covariance),
-        residuals=np.asarray(found.residual, dtype=np.float64),
-        converged=bool(found.success),
+        residuals=np.asarray(minimum.residual, dtype=np.float64),
+        converged=bool(minimum.success),
     )
 
 
 def residual_inefficiency(fit: LogParameterFit, *, rows: int) -> float:
-    """Return by how much neighbouring residuals resemble each other: samples over independent samples, at least 1.
+    """Return the statistical inefficiency of the residuals of a fit: samples per independent sample, at least 1.
 
     Parameters
     ----------
     fit : LogParameterFit
     rows : int
-        Residuals come in so many rows of equal length, one after the other.
+        Number of series of equal length that the residuals hold, one after the other.
 
     Returns
     -------
     float
+        The largest one of all series.
+
+    See Also
+    --------
+    statistical_inefficiency : of one series.
     """
-    parts = fit.residuals.reshape(rows, -1)
-    return max(statistical_inefficiency(row) if np.ptp(row) > _ROUNDING else 1.0 for row in parts)
+    series = fit.residuals.reshape(rows, -1)
+    return max(statistical_inefficiency(row) if np.ptp(row) > _ROUNDING else 1.0 for row in series)
 
 
 def confidence_intervals(
     fit: LogParameterFit, quantities: Quantities, *, correlation: float, confidence_level: float
 ) -> dict[str, ConfidenceInterval]:
-    """Return confidence intervals of positive quantities that follow from the parameters.
+    r"""Return confidence intervals of positive quantities derived from the parameters of a fit.
 
     Parameters
     ----------
@@ -132,32 +143,38 @@ def confidence_intervals(
     quantities : callable
         Takes logarithms of the parameters, returns the quantities by name.
     correlation : float
-        Samples over independent samples, by which the covariance grows.
+        Statistical inefficiency g of the residuals, `residual_inefficiency`, by which the covariance is multiplied.
     confidence_level : float
         Of the intervals. []
 
     Returns
     -------
-    dict of str to Interval
+    dict of str to ConfidenceInterval
 
     Notes
     -----
-    First order in the covariance, on a logarithmic scale: Student's t with as many degrees of freedom as independent
-    residuals exceed the parameters.
+    First-order propagation of the covariance C of the log-parameters p to the logarithms of the quantities q,
+
+    .. math:: \ln q \pm t_\nu \sqrt{g\, J C J^{\mathsf T}} , \qquad J = \frac{\partial \ln q}{\partial p} ,
+
+    with Student's t of :math:`\nu = n/g - k` degrees of freedom for n residuals and k parameters.
     """
     size = fit.logarithms.size
     freedom = max(1.0, fit.residuals.size / correlation - size)
     t = float(stats.t.ppf((1 + confidence_level) / 2, freedom))
     values = quantities(fit.logarithms)
-    slopes = np.stack(
+    jacobian = np.stack(
         [
-            (_logs(quantities(fit.logarithms + step)) - _logs(quantities(fit.logarithms - step))) / (2 * _STEP)
+            (_logarithms(quantities(fit.logarithms + step)) - _logarithms(quantities(fit.logarithms - step)))
+            / (2 * _STEP)
             for step in _STEP * np.eye(size)
         ],
         axis=-1,
     )
-    known = np.isfinite(fit.covariance).all()
-    variance = np.einsum("qi,ij,qj->q", slopes, fit.covariance, slopes) if known else np.full(len(slopes), np.inf)
+    determined = np.isfinite(fit.covariance).all()
+    variance = (
+        np.einsum("qi,ij,qj->q", jacobian, fit.covariance, jacobian) if determined else np.full(len(jacobian), np.inf)
+    )
     with np.errstate(over="ignore"):
         factors = np.exp(t * np.sqrt(np.maximum(variance, 0.0) * correlation))
     return {
@@ -166,5 +183,6 @@ def confidence_intervals(
     }
 
 
-def _logs(values: Mapping[str, float]) -> Floats:
+def _logarithms(values: Mapping[str, float]) -> Floats:
+    """Return the logarithms of quantities, those of zero as of the smallest positive float."""
     return np.asarray(np.log(np.maximum(np.array(list(values.values())), np.finfo(float).tiny)))
