@@ -1,4 +1,4 @@
-"""Wear of rings and its reduction, with the uncertainty that few scans leave."""
+"""Wear of tracks and its reduction: geometry, Student's interval by hand, and coverage."""
 
 import math
 from dataclasses import replace
@@ -44,7 +44,7 @@ def ring(groove: Groove, areas: list[float]) -> WearTrack:
     return wear_track_from_grooves(grooves, groove_diameter=DIAMETER, sliding_distance=DISTANCE)
 
 
-def test_scans_around_a_ring_give_its_volume() -> None:
+def test_scans_around_a_track_give_its_volume() -> None:
     found = measure_wear_track((scan(seed) for seed in range(4)), groove_diameter=DIAMETER, sliding_distance=DISTANCE)
     volume = math.pi * DIAMETER * SHAPE.cross_section_area
     assert found.wear_volume == approx(volume, rel=1e-3)
@@ -52,14 +52,14 @@ def test_scans_around_a_ring_give_its_volume() -> None:
     assert found.excluded_scans == ()
 
 
-def test_a_scan_without_groove_is_left_out_with_its_reason() -> None:
+def test_a_scan_without_groove_is_excluded_with_its_reason() -> None:
     scans = [scan(0), scan(1, depth=1e-15), scan(2)]
     found = measure_wear_track(scans, groove_diameter=DIAMETER, sliding_distance=DISTANCE)
     assert found.cross_section_area.size == 2
     assert found.excluded_scans[0].startswith("scan 2: no groove found")
 
 
-def test_the_interval_is_students_by_hand(groove: Groove) -> None:
+def test_the_confidence_interval_is_students_by_hand(groove: Groove) -> None:
     found = ring(groove, [3e-8, 4e-8, 5e-8])
     around = math.pi * DIAMETER
     assert found.wear_volume == approx(4e-8 * around)
@@ -68,7 +68,7 @@ def test_the_interval_is_students_by_hand(groove: Groove) -> None:
     assert found.wear_volume_interval == approx((4e-8 * around - half, 4e-8 * around + half))
 
 
-def test_one_scan_is_no_ring(groove: Groove) -> None:
+def test_a_single_scan_is_refused(groove: Groove) -> None:
     with raises(InvalidInput, match="a wear track needs two scans with a whole groove, got 1"):
         ring(groove, [3e-8])
     cut = replace(groove, complete=False, caveat="cut")
@@ -85,7 +85,7 @@ def test_the_reduction_is_that_of_the_mean_rates(groove: Groove) -> None:
     assert found.interval[0] < 0.5 < found.interval[1]
 
 
-def test_the_interval_of_the_reduction_covers_the_truth_as_often_as_it_says(groove: Groove) -> None:
+def test_the_interval_of_the_reduction_has_its_nominal_coverage(groove: Groove) -> None:
     rng = np.random.default_rng(0)
     covered = 0
     for _ in range(400):
@@ -98,6 +98,6 @@ def test_the_interval_of_the_reduction_covers_the_truth_as_often_as_it_says(groo
     assert 0.92 <= covered / 400 <= 0.99
 
 
-def test_nothing_to_compare_is_refused(groove: Groove) -> None:
+def test_a_reduction_without_tracks_of_both_kinds_is_refused(groove: Groove) -> None:
     with raises(InvalidInput, match="a track worn without vibration and one worn with it"):
         wear_reduction_between_tracks([], [ring(groove, [1e-8, 2e-8])])

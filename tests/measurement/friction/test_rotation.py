@@ -1,4 +1,4 @@
-"""Turns of a disc from pulses: published speeds, lost pulses, unequal magnets."""
+"""Rotation of a disc from pulses: published speeds, missing pulses, unequally spaced magnets."""
 
 import numpy as np
 import pytest
@@ -46,7 +46,7 @@ def test_pulses_are_timed_between_samples() -> None:
     assert hall_pulse_times(time=t, magnetic_flux_density=bells(t, at, np.ones(3), 0.02)) == approx(at, abs=2e-5)
 
 
-def test_a_magnet_turned_round_pulses_downwards() -> None:
+def test_a_magnet_of_reversed_polarity_gives_the_same_pulses() -> None:
     t = np.arange(0, 3, 0.0025)
     at = np.array([0.5, 1.5, 2.5])
     assert hall_pulse_times(time=t, magnetic_flux_density=-bells(t, at, np.ones(3))) == approx(at, abs=1e-5)
@@ -54,7 +54,7 @@ def test_a_magnet_turned_round_pulses_downwards() -> None:
 
 @given(st.integers(1, 17), st.integers(1, 3), st.floats(0.1, 20))
 @settings(max_examples=60, deadline=None)
-def test_lost_pulses_are_put_back_and_flagged(first: int, lost: int, period: float) -> None:
+def test_missing_pulses_are_interpolated_and_flagged(first: int, lost: int, period: float) -> None:
     every = period * np.arange(22)
     gone = np.arange(first, first + lost)
     found = disc_rotation(time=np.delete(every, gone), groove_diameter=0.05)
@@ -63,7 +63,7 @@ def test_lost_pulses_are_put_back_and_flagged(first: int, lost: int, period: flo
     assert found.revolutions == approx(np.arange(22))
 
 
-def test_a_jump_of_speed_is_not_a_lost_pulse() -> None:
+def test_a_step_of_speed_is_not_a_missing_pulse() -> None:
     # D 2.4.2: 50 to 77 turns a minute as the vibration takes friction away, and back
     interval = np.concatenate([np.full(10, 60 / 50), np.full(10, 60 / 77), np.full(10, 60 / 50)])
     found = disc_rotation(time=np.cumsum(interval), groove_diameter=60 * MM)
@@ -73,7 +73,7 @@ def test_a_jump_of_speed_is_not_a_lost_pulse() -> None:
 
 @given(st.lists(st.floats(0.2, 1.0), min_size=2, max_size=5), st.sets(st.integers(20, 60), max_size=4))
 @settings(max_examples=60, deadline=None)
-def test_unequal_magnets_give_an_even_speed(gaps: list[float], gone: set[int]) -> None:
+def test_unequally_spaced_magnets_give_a_constant_speed(gaps: list[float], gone: set[int]) -> None:
     shares = np.array(gaps) / sum(gaps)
     if np.ptp(np.sort(shares)) < 0.05:
         shares = np.linspace(1, 2, shares.size) / np.linspace(1, 2, shares.size).sum()
@@ -86,7 +86,7 @@ def test_unequal_magnets_give_an_even_speed(gaps: list[float], gone: set[int]) -
     assert np.flatnonzero(found.interpolated).tolist() == np.setdiff1d(np.arange(position.size), kept).tolist()
 
 
-def test_weak_magnets_count_when_asked_for() -> None:
+def test_a_lower_prominence_includes_weak_magnets() -> None:
     t = np.arange(0, 5, 0.001)
     at = np.arange(0.25, 5, 0.5)
     readings = bells(t, at, np.where(np.arange(at.size) % 2, 0.2, 1.0))
@@ -94,20 +94,24 @@ def test_weak_magnets_count_when_asked_for() -> None:
     assert hall_pulse_times(time=t, magnetic_flux_density=readings, prominence=0.1).size == 10
 
 
-def test_turns_between_pulses_of_an_even_speed_are_in_proportion() -> None:
+def test_revolutions_between_pulses_of_constant_speed_are_linear_in_time() -> None:
     found = disc_rotation(time=1.0 + 2.0 * np.arange(6), groove_diameter=0.05)
     assert revolutions_at(found, time=[0.0, 1.0, 2.0, 11.0, 13.0]) == approx([-0.5, 0.0, 0.5, 5.0, 6.0])
 
 
 @pytest.mark.parametrize(
     ("time", "magnets", "match"),
-    [([1.0], 1, "a revolution needs 2 pulses, got 1"), ([1.0, 1.0], 1, "must increase"), ([1.0, 2.0], 0, "magnets must be")],
+    [
+        ([1.0], 1, "a revolution needs 2 pulses, got 1"),
+        ([1.0, 1.0], 1, "must increase"),
+        ([1.0, 2.0], 0, "magnets must be"),
+    ],
 )
-def test_pulses_without_a_turn_are_refused(time: list[float], magnets: int, match: str) -> None:
+def test_too_few_or_unsorted_pulses_are_refused(time: list[float], magnets: int, match: str) -> None:
     with raises(InvalidInput, match=match):
         disc_rotation(time=time, groove_diameter=0.05, magnets=magnets)
 
 
-def test_a_still_disc_has_no_pulses() -> None:
+def test_a_constant_probe_signal_is_refused() -> None:
     with raises(InvalidInput, match="does not vary"):
         hall_pulse_times(time=np.arange(10.0), magnetic_flux_density=np.ones(10))

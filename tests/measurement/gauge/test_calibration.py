@@ -1,4 +1,4 @@
-"""A holder that bends with hysteresis as a force gauge: properties of Preisach's model, and loops that come back."""
+"""Force gauge with hysteresis: properties of Preisach's model, and recovery of known loops."""
 
 from itertools import pairwise
 
@@ -50,13 +50,13 @@ def output(history: list[float]) -> float:
 
 @settings(max_examples=25, deadline=None)
 @given(history=histories)
-def test_the_model_is_the_sum_of_its_relays(history: list[float]) -> None:
+def test_the_output_is_the_sum_of_single_relays(history: list[float]) -> None:
     assert output(history) == approx(relays_one_by_one(history), abs=0.02 * WEIGHTS.sum())
 
 
 @settings(deadline=None)
 @given(history=histories)
-def test_shares_and_output_agree_and_no_share_leaves_zero_to_one(history: list[float]) -> None:
+def test_relay_fractions_lie_between_zero_and_one_and_sum_to_the_output(history: list[float]) -> None:
     shares = relay_fractions(PLANE, np.array(history))
     assert shares.min() >= -1e-12
     assert shares.max() <= 1 + 1e-12
@@ -65,7 +65,7 @@ def test_shares_and_output_agree_and_no_share_leaves_zero_to_one(history: list[f
 
 @settings(deadline=None)
 @given(history=histories, inner=histories, top=st.floats(0, 6))
-def test_a_greater_extreme_wipes_out_lesser_ones(history: list[float], inner: list[float], top: float) -> None:
+def test_a_larger_extremum_wipes_out_smaller_ones(history: list[float], inner: list[float], top: float) -> None:
     below = [min(value, top) for value in inner]
     assert output([*history, 6.0, 0.0, *below, top, 0.0, 1.5]) == approx(output([0.0, top, 0.0, 1.5]), abs=1e-9)
     assert output([*history, 6.0]) == approx(WEIGHTS.sum())
@@ -73,7 +73,7 @@ def test_a_greater_extreme_wipes_out_lesser_ones(history: list[float], inner: li
 
 @settings(deadline=None)
 @given(low=st.floats(1, 3), high=st.floats(3, 5), before=histories)
-def test_loops_between_the_same_turns_are_congruent(low: float, high: float, before: list[float]) -> None:
+def test_minor_loops_between_the_same_extrema_are_congruent(low: float, high: float, before: list[float]) -> None:
     along = np.linspace(low, high, 9)
     loops = []
     for past in ([6.0], [0.0], before):
@@ -84,7 +84,7 @@ def test_loops_between_the_same_turns_are_congruent(low: float, high: float, bef
     assert loops[0] == approx(loops[2], abs=1e-9)
 
 
-def test_the_energy_of_the_greatest_loop_is_that_of_the_relays() -> None:
+def test_the_energy_of_the_major_loop_is_that_of_its_relays() -> None:
     up = np.linspace(0, 6, 4001)
     x = np.concatenate([up, up[::-1]])
     calibration = PreisachCalibration(
@@ -129,7 +129,7 @@ def holder() -> tuple[np.ndarray, np.ndarray]:
     return 1e-6 * x[: force.size], force
 
 
-def test_loops_of_a_bouc_wen_holder_come_back_closely(holder: tuple[np.ndarray, np.ndarray]) -> None:
+def test_loops_of_a_bouc_wen_holder_are_recovered_within_four_percent(holder: tuple[np.ndarray, np.ndarray]) -> None:
     calibration = fit_preisach(displacement=holder[0], applied_force=holder[1], levels=14)
     x = ramps(TEST)
     truth = bouc_wen(x)
@@ -141,7 +141,7 @@ def test_loops_of_a_bouc_wen_holder_come_back_closely(holder: tuple[np.ndarray, 
     assert np.sqrt(np.mean(miss**2)) < 0.6 * np.sqrt(np.mean(plain**2))
 
 
-def test_loops_of_a_preisach_holder_come_back_within_their_noise() -> None:
+def test_loops_of_a_preisach_holder_are_recovered_within_their_noise() -> None:
     x = ramps([6 * turn for turn in CALIBRATION])
     noise = 0.01 * WEIGHTS.sum()
     force = 2.0 + 4 * x - preisach_output(PLANE, WEIGHTS, x) + noise * np.random.default_rng(0).standard_normal(x.size)
@@ -154,7 +154,7 @@ def test_loops_of_a_preisach_holder_come_back_within_their_noise() -> None:
     assert np.mean(np.abs(known.applied_force - truth) < 2 * known.applied_force_uncertainty) > 0.95
 
 
-def test_the_uncertainty_of_the_sensor_counts_with_the_stiffness() -> None:
+def test_the_uncertainty_of_the_sensor_is_multiplied_by_the_stiffness() -> None:
     x = ramps([0.0, 1e-6, 0.0])
     found = force_from_preisach(
         fit_preisach(displacement=x, applied_force=3e6 * x), displacement=x, displacement_uncertainty=1e-8
@@ -163,7 +163,7 @@ def test_the_uncertainty_of_the_sensor_counts_with_the_stiffness() -> None:
     assert found.applied_force_uncertainty == approx(0.03, rel=1e-3)
 
 
-def test_polynomial_branches_come_back_from_their_loop() -> None:
+def test_polynomial_branches_are_recovered_from_their_loop() -> None:
     x = ramps([0.0, 1.0, 0.0], samples=200)
     rising = np.arange(x.size) < 200
     force = np.where(rising, 2 * x - x**2, x**3)
@@ -173,7 +173,7 @@ def test_polynomial_branches_come_back_from_their_loop() -> None:
     assert again.applied_force_uncertainty[100] == approx(0.01 * abs(2 - 2 * x[100]), rel=0.02)
 
 
-def test_a_reading_beyond_the_calibration_is_refused() -> None:
+def test_a_reading_outside_the_calibrated_range_is_refused() -> None:
     x = ramps([0.0, 1e-6, 0.0])
     found = fit_preisach(displacement=x, applied_force=3e6 * x)
     with raises(OutsideRange, match=r"displacement must lie between 0 and 1e-06 m, .* got 2e-06 m"):

@@ -1,4 +1,4 @@
-"""Impedance files: what each format means, and what is said of those that are wrong."""
+"""Impedance files: every format against one known circuit, and refusals of invalid files by name and line."""
 
 from pathlib import Path
 
@@ -38,7 +38,7 @@ def known_impedance(frequency: np.ndarray) -> np.ndarray:
         ("parallel.csv", None),
     ],
 )
-def test_every_format_gives_the_impedance_of_the_circuit_it_was_written_from(name: str, sweep: str | None) -> None:
+def test_every_format_gives_the_impedance_of_its_circuit(name: str, sweep: str | None) -> None:
     found = read_impedance(CORPUS / name, sweep=sweep)
     assert found.frequency == approx(np.linspace(20e3, 24e3, 9))
     assert np.abs(found.impedance / known_impedance(found.frequency) - 1).max() < 2e-6
@@ -50,20 +50,20 @@ def test_every_format_gives_the_impedance_of_the_circuit_it_was_written_from(nam
     ("name", "sweep"),
     [("magnitude-phase.4294a", "memory"), ("magnitude-phase.e4990a", "memory"), ("two-sweeps.mfia", "1")],
 )
-def test_another_sweep_of_a_file_is_read_on_request(name: str, sweep: str) -> None:
+def test_a_named_sweep_of_a_file_is_read(name: str, sweep: str) -> None:
     found = read_impedance(CORPUS / name, sweep=sweep)
     assert found.impedance * 1.02 == approx(known_impedance(found.frequency), rel=2e-6)
     assert found.sweep == sweep
 
 
-def test_a_choice_between_sweeps_is_not_guessed() -> None:
+def test_an_ambiguous_sweep_is_refused() -> None:
     with raises(InvalidInput, match=r"two-sweeps\.mfia: holds 2 sweeps; name one of them: 0, 1"):
         read_impedance(CORPUS / "two-sweeps.mfia")
     with raises(UnknownName, match=r"has no sweep '7'; it has '0', '1'"):
         read_impedance(CORPUS / "two-sweeps.mfia", sweep="7")
 
 
-def test_an_hp_4294a_file_as_it_came_from_the_instrument_is_read_whole() -> None:
+def test_a_measured_hp_4294a_file_is_read_whole() -> None:
     if not RB5100.is_file():
         skip(f"{RB5100.name} is not here")
     found = read_impedance(RB5100)
@@ -77,7 +77,7 @@ def test_an_hp_4294a_file_as_it_came_from_the_instrument_is_read_whole() -> None
     ("text", "unit"),
     [("|Z|(Ohm)", 1.0), ("|Z| [kOhm]", 1e3), ("abs(z)", 1.0), ("Z (mΩ)", 1e-3), ('"zmod / Mohm"', 1e6)],
 )
-def test_a_heading_says_quantity_and_unit(text: str, unit: float) -> None:
+def test_a_heading_gives_quantity_and_unit(text: str, unit: float) -> None:
     found = parse_heading(text)
     assert found is not None
     assert found.symbol == "|Z|"
@@ -85,7 +85,7 @@ def test_a_heading_says_quantity_and_unit(text: str, unit: float) -> None:
 
 
 @mark.parametrize("text", ["phase", "theta-z", "|Z| (V)", "frequency (rad)", "Z (bananas)", "depth (m)", ""])
-def test_a_heading_that_leaves_the_unit_open_or_wrong_is_none(text: str) -> None:
+def test_a_heading_with_a_missing_or_wrong_unit_is_none(text: str) -> None:
     assert parse_heading(text) is None
 
 
@@ -143,7 +143,7 @@ def test_a_4294a_file_cut_short_or_of_another_sweep_is_refused(tmp_path: Path) -
         read_impedance(path)
 
 
-def test_a_spectrum_must_be_one() -> None:
+def test_an_invalid_spectrum_is_refused() -> None:
     with raises(InvalidInput, match="frequency must increase, got 1 Hz"):
         ImpedanceSpectrum(frequency=np.array([1.0, 1.0]), impedance=np.array([1.0, 1j]))
     with raises(InvalidInput, match="impedance must not be zero, as it is at 2 Hz"):

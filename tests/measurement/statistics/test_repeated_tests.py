@@ -24,7 +24,7 @@ def test_a_mean_of_three_tests_has_students_interval() -> None:
 
 @given(tests, tests)
 @settings(max_examples=150, deadline=None)
-def test_welch_is_that_of_scipy(first: list[float], second: list[float]) -> None:
+def test_welchs_test_agrees_with_scipy(first: list[float], second: list[float]) -> None:
     assume(np.ptp(first) > 0.01 and np.ptp(second) > 0.01)
     found, known = compare_means(first, second), stats.ttest_ind(second, first, equal_var=False)
     assert found.t_statistic == approx(known.statistic, rel=1e-9, abs=1e-12)
@@ -35,7 +35,7 @@ def test_welch_is_that_of_scipy(first: list[float], second: list[float]) -> None
 
 @given(tests, tests)
 @settings(max_examples=40, deadline=None)
-def test_the_permutation_test_counts_every_order(first: list[float], second: list[float]) -> None:
+def test_the_permutation_test_agrees_with_enumeration_of_all_orders(first: list[float], second: list[float]) -> None:
     assume(len(first) + len(second) <= 7)
     observed = abs(np.mean(second) - np.mean(first))
     n = len(first)
@@ -44,18 +44,18 @@ def test_the_permutation_test_counts_every_order(first: list[float], second: lis
 
 
 @pytest.mark.parametrize(("n", "smallest"), [(2, 1 / 3), (3, 1 / 10), (4, 1 / 35)])
-def test_few_tests_cannot_be_more_significant_than_their_number(n: int, smallest: float) -> None:
+def test_few_tests_cannot_fall_below_the_smallest_permutation_p_value(n: int, smallest: float) -> None:
     found = compare_means(np.arange(n), 1000 + np.arange(n))
     assert found.smallest_permutation_p == approx(smallest)
     assert found.permutation_p == approx(smallest)
 
 
-def test_two_against_three_tests_reach_a_tenth() -> None:
+def test_two_against_three_tests_have_a_smallest_p_value_of_a_tenth() -> None:
     assert compare_means([0, 1], [100, 101, 103]).permutation_p == approx(0.1)
     assert compare_means([0, 1], [100, 101, 103]).smallest_permutation_p == approx(0.1)
 
 
-def test_tests_without_scatter_differ_surely_or_not_at_all() -> None:
+def test_tests_without_scatter_have_p_values_of_zero_or_one() -> None:
     assert compare_means([1, 1], [2, 2]).welch_p == 0
     assert compare_means([1, 1], [1, 1]).welch_p == 1
 
@@ -69,7 +69,7 @@ def test_repeatability_of_a_balanced_trial_worked_by_hand() -> None:
     assert found.repeatability_limit == approx(2.8 * 0.5**0.5)
 
 
-def test_repeatability_of_unequal_groups_recovers_the_components() -> None:
+def test_repeatability_of_unequal_groups_recovers_the_variance_components() -> None:
     rng = np.random.default_rng(3)
     groups = [rng.normal(rng.normal(5, 0.7), 0.2, rng.integers(2, 6)) for _ in range(4000)]
     found = repeatability(groups)
@@ -77,11 +77,11 @@ def test_repeatability_of_unequal_groups_recovers_the_components() -> None:
     assert found.between == approx(0.7, rel=0.04)
 
 
-def test_groups_that_agree_too_well_have_no_scatter_between_them() -> None:
+def test_groups_that_agree_within_their_scatter_have_no_variance_between_them() -> None:
     assert repeatability([[1, 3], [1, 3], [3, 1]]).between == 0
 
 
-def test_fiellers_interval_ends_where_its_definition_says() -> None:
+def test_the_limits_of_fiellers_interval_satisfy_its_definition() -> None:
     x, y = np.array([0.35, 0.41, 0.38]), np.array([1.02, 0.95, 1.08, 1.0])
     found = ratio_interval(x, y)
     v_x, v_y = x.var(ddof=1) / 3, y.var(ddof=1) / 4
@@ -91,7 +91,7 @@ def test_fiellers_interval_ends_where_its_definition_says() -> None:
         assert t == approx(stats.t.ppf(0.975, freedom))
 
 
-def test_fiellers_interval_holds_the_ratio_as_often_as_it_says() -> None:
+def test_fiellers_interval_has_its_nominal_coverage() -> None:
     rng = np.random.default_rng(5)
     hits = [
         (found := ratio_interval(rng.normal(0.4, 0.05, 4), rng.normal(1.0, 0.08, 4))).lower <= 0.4 <= found.upper
@@ -100,13 +100,13 @@ def test_fiellers_interval_holds_the_ratio_as_often_as_it_says() -> None:
     assert np.mean(hits) == approx(0.95, abs=0.02)
 
 
-def test_a_ratio_to_what_may_be_nothing_has_no_interval() -> None:
+def test_a_denominator_not_significantly_different_from_zero_leaves_the_interval_unbounded() -> None:
     found = ratio_interval([1.0, 1.1], [0.1, -0.05])
     assert not found.bounded
     assert "may be zero" in found.reason
 
 
-def test_a_single_test_has_no_interval() -> None:
+def test_a_single_test_is_refused() -> None:
     with raises(InvalidInput, match="tests must be at least two tests, got 1"):
         mean_estimate([1.0])
     with raises(InvalidInput, match="needs two groups and one with two tests"):

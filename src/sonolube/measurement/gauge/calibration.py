@@ -114,7 +114,7 @@ def fit_branches(*, displacement: ArrayLike, applied_force: ArrayLike, degree: i
     All unloading is taken as one curve, wherever it began; where the curves fan out, as in D figure 2.32, the deviation
     shows by how much, and `fit_preisach` models them.
     """
-    x, force = require_calibration_readings(displacement, applied_force)
+    x, force = require_calibration_readings(displacement=displacement, applied_force=applied_force)
     if not 1 <= degree <= 7:
         raise InvalidInput(f"degree must lie between 1 and 7, got {degree}")
     rising = loading_mask(x)
@@ -165,7 +165,7 @@ def force_from_branches(
 
     .. math:: F = p(x) , \qquad u_F^2 = s^2 + \left[ p'(x)\, u_x \right]^2 .
     """
-    x = require_calibrated_range(displacement, calibration.lowest, calibration.highest)
+    x = require_calibrated_range(displacement=displacement, lowest=calibration.lowest, highest=calibration.highest)
     u_x = float(require_non_negative(displacement_uncertainty=displacement_uncertainty))
     rising = loading_mask(x)
     slope = np.where(rising, calibration.loading.deriv()(x), calibration.unloading.deriv()(x))
@@ -221,7 +221,7 @@ def fit_preisach(*, displacement: ArrayLike, applied_force: ArrayLike, levels: i
     .. [1] D 2.4.3, figure 2.32.
     .. [2] I. D. Mayergoyz, Mathematical Models of Hysteresis and Their Applications, Elsevier (2003), chapter 1.
     """
-    x, force = require_calibration_readings(displacement, applied_force)
+    x, force = require_calibration_readings(displacement=displacement, applied_force=applied_force)
     if x.size < 2 * levels:
         raise InvalidInput(f"{x.size} samples are too few for {levels} levels; give {2 * levels} or use fewer levels")
     plane = PreisachPlane(lowest=float(x.min()), highest=float(x.max()), levels=levels)
@@ -272,7 +272,7 @@ def force_from_preisach(
     those before and after the reading.
     """
     plane = calibration.plane
-    x = require_calibrated_range(displacement, plane.lowest, plane.highest)
+    x = require_calibrated_range(displacement=displacement, lowest=plane.lowest, highest=plane.highest)
     u_x = float(require_non_negative(displacement_uncertainty=displacement_uncertainty))
     slipped = preisach_output(plane, calibration.weights, x)
     force = calibration.resting_force + _ramps(plane, x) @ calibration.reversible - slipped
@@ -312,7 +312,7 @@ def dissipated_energy(*, displacement: ArrayLike, applied_force: ArrayLike) -> f
 
     by the trapezoidal rule.
     """
-    x, force = require_readings(displacement, applied_force)
+    x, force = require_readings(displacement=displacement, applied_force=applied_force)
     return float(np.sum((np.roll(x, -1) - x) * (np.roll(force, -1) + force)) / 2)
 
 

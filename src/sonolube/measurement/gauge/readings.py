@@ -35,14 +35,15 @@ def loading_mask(x: Floats) -> NDArray[np.bool_]:
     return rising
 
 
-def require_calibrated_range(displacement: ArrayLike, lowest: float, highest: float) -> Floats:
+def require_calibrated_range(*, displacement: ArrayLike, lowest: float, highest: float) -> Floats:
     """Return displacements as a one-dimensional array; refuse any outside the calibrated range.
 
     Parameters
     ----------
     displacement : array_like, shape (samples,)
+        Reading of the sensor. [m]
     lowest, highest : float
-        Calibrated range, in the unit of the displacement.
+        Calibrated range, in metres.
 
     Returns
     -------
@@ -68,8 +69,25 @@ def require_calibrated_range(displacement: ArrayLike, lowest: float, highest: fl
     return x
 
 
-def require_readings(displacement: ArrayLike, applied_force: ArrayLike) -> tuple[Floats, Floats]:
-    """Return displacement and force as one-dimensional arrays of equal length; refuse values that are not finite."""
+def require_readings(*, displacement: ArrayLike, applied_force: ArrayLike) -> tuple[Floats, Floats]:
+    """Return displacement and force as one-dimensional arrays of equal length.
+
+    Parameters
+    ----------
+    displacement : array_like, shape (samples,)
+        Reading of the sensor. [m]
+    applied_force : array_like, shape (samples,)
+        Reading of the load cell. [N]
+
+    Returns
+    -------
+    tuple of ndarray, shape (samples,)
+
+    Raises
+    ------
+    InvalidInput
+        If the lengths differ or a value is not finite.
+    """
     x, force = require_finite(displacement=displacement), require_finite(applied_force=applied_force)
     if x.ndim != 1 or x.shape != force.shape or not x.size:
         raise InvalidInput(
@@ -79,9 +97,26 @@ def require_readings(displacement: ArrayLike, applied_force: ArrayLike) -> tuple
     return x, force
 
 
-def require_calibration_readings(displacement: ArrayLike, applied_force: ArrayLike) -> tuple[Floats, Floats]:
-    """Return displacement and force as `require_readings`; refuse a displacement that does not vary."""
-    x, force = require_readings(displacement, applied_force)
+def require_calibration_readings(*, displacement: ArrayLike, applied_force: ArrayLike) -> tuple[Floats, Floats]:
+    """Return displacement and force of a calibration as one-dimensional arrays of equal length.
+
+    Parameters
+    ----------
+    displacement : array_like, shape (samples,)
+        Reading of the sensor. [m]
+    applied_force : array_like, shape (samples,)
+        Reading of the load cell. [N]
+
+    Returns
+    -------
+    tuple of ndarray, shape (samples,)
+
+    Raises
+    ------
+    InvalidInput
+        As `require_readings`, and if the displacement does not vary.
+    """
+    x, force = require_readings(displacement=displacement, applied_force=applied_force)
     if x.size < 2 or np.ptp(x) == 0:
         raise InvalidInput("displacement does not vary")
     return x, force

@@ -1,4 +1,4 @@
-"""Vibration: amplitude in proportion to voltage, shapes of moving points, and likeness of shapes."""
+"""Vibration: proportionality of amplitude to voltage, operating deflection shapes and modal assurance."""
 
 import numpy as np
 from hypothesis import given
@@ -16,7 +16,7 @@ from sonolube.measurement.vibration import (
 VOLTS = np.array([5.1, 10.3, 15.5, 20.7, 25.9])
 
 
-def test_the_tribometer_moves_in_proportion_to_its_voltage() -> None:
+def test_the_amplitude_of_the_tribometer_is_proportional_to_its_voltage() -> None:
     # D Table 4.1: amplitudes in micrometres; 0.0892 um per volt peak to peak
     found = amplitude_per_volt(
         voltage_peak_to_peak=VOLTS, vibration_amplitude=1e-6 * np.array([0.46, 0.92, 1.38, 1.85, 2.31])
@@ -26,7 +26,7 @@ def test_the_tribometer_moves_in_proportion_to_its_voltage() -> None:
     assert found.lower < found.amplitude_per_volt < found.upper
 
 
-def test_a_curved_response_is_told_from_a_straight_one() -> None:
+def test_a_curved_response_is_distinguished_from_a_linear_one() -> None:
     curved = amplitude_per_volt(voltage_peak_to_peak=VOLTS, vibration_amplitude=1e-7 * VOLTS * (1 + 0.02 * VOLTS))
     assert not curved.proportional
     assert curved.curvature > 0.5
@@ -35,7 +35,7 @@ def test_a_curved_response_is_told_from_a_straight_one() -> None:
     assert straight.curvature == approx(0.0, abs=1e-9)
 
 
-def test_the_interval_of_the_slope_and_the_verdict_err_as_often_as_they_claim() -> None:
+def test_the_interval_of_the_slope_and_the_test_have_their_nominal_coverage() -> None:
     rng = np.random.default_rng(0)
     volts = np.linspace(5, 25, 9)
     held = straight = 0
@@ -52,14 +52,14 @@ def test_the_interval_of_the_slope_and_the_verdict_err_as_often_as_they_claim() 
 
 
 @mark.parametrize("frequency", [25e3, 22.3e3])
-def test_amplitudes_and_phases_come_back_from_signals(frequency: float) -> None:
+def test_complex_amplitudes_are_recovered_from_signals(frequency: float) -> None:
     time = 3e-3 + np.arange(2000) / 500e3
     known = np.array([1.0, -0.5j, 0.3 * np.exp(2j)])
     signals = np.real(known[:, np.newaxis] * np.exp(2j * np.pi * frequency * time)) + 7.0
     assert complex_amplitudes(time=time, signals=signals, frequency=frequency) == approx(known, abs=1e-9)
 
 
-def test_a_standing_wave_is_one_shape_and_a_running_one_is_not() -> None:
+def test_the_standing_wave_fraction_is_one_for_a_standing_and_half_for_a_travelling_wave() -> None:
     points = np.linspace(0, 1, 41)
     standing = operating_deflection_shape(3e-6 * np.exp(0.7j) * np.cos(2 * np.pi * points))
     assert standing.standing_wave_fraction == approx(1.0)
@@ -73,7 +73,7 @@ shapes = st.lists(st.complex_numbers(max_magnitude=10, min_magnitude=0.1), min_s
 
 
 @given(shape=shapes, other=shapes, factor=st.complex_numbers(max_magnitude=100, min_magnitude=0.01))
-def test_assurance_is_one_in_proportion_symmetric_and_never_more_than_one(
+def test_the_modal_assurance_criterion_is_symmetric_bounded_and_one_for_proportional_shapes(
     shape: list[complex], other: list[complex], factor: complex
 ) -> None:
     a, b = np.array(shape), np.array(other)
@@ -83,7 +83,7 @@ def test_assurance_is_one_in_proportion_symmetric_and_never_more_than_one(
     assert modal_assurance_criterion(factor * b, a)[0, 0] == approx(between)
 
 
-def test_modes_of_a_uniform_chain_are_told_apart() -> None:
+def test_modes_of_a_uniform_chain_are_orthogonal() -> None:
     # equal masses and springs between fixed ends: sines, orthogonal because the mass matrix is the unit one
     points = np.arange(1, 8)
     modes = np.sin(np.pi * np.multiply.outer(points, np.arange(1, 4)) / 8)
@@ -92,7 +92,7 @@ def test_modes_of_a_uniform_chain_are_told_apart() -> None:
     assert modal_assurance_criterion(mixed, modes)[0] == approx([0.5, 0.5, 0.0], abs=1e-12)
 
 
-def test_what_is_no_shape_is_refused() -> None:
+def test_invalid_shapes_and_signals_are_refused() -> None:
     with raises(InvalidInput, match="same points, got 2 and 3"):
         modal_assurance_criterion([1.0, 2.0], [1.0, 2.0, 3.0])
     with raises(InvalidInput, match="none of them zero"):
