@@ -61,7 +61,7 @@ class ColumnHeading(NamedTuple):
     Parameters
     ----------
     symbol : str
-        Symbol of the quantity, such as "f", "|Z|" or "theta_Z".
+        Symbol of the quantity, such as ``f``, ``|Z|`` or ``theta_Z``.
     scale : float
         Value of the column's unit in SI.
     """
