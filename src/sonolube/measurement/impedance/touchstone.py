@@ -1,5 +1,6 @@
 """Touchstone files of one port, versions 1 and 2."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import ClassVar, final
@@ -15,7 +16,7 @@ from sonolube.measurement.numeric_text import parse_number
 _FREQUENCY_UNITS = {"HZ": 1.0, "KHZ": 1e3, "MHZ": 1e6, "GHZ": 1e9}
 _PARAMETERS = ("S", "Y", "Z")
 _NUMBER_FORMATS = ("DB", "MA", "RI")
-_SKIPPED_KEYWORDS = ("[number of frequencies]", "[network data]", "[two-port data order]")
+_SKIPPED_KEYWORDS = ("[number of frequencies]", "[network data]", "[two-port data order]", "[matrix format]")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -85,8 +86,7 @@ class Touchstone:
         """
         options: _Options | None = None
         is_version_2, reference, rows, row_lines = False, None, [], []
-        for at, line in enumerate(lines, start=1):
-            text = line.partition("!")[0].strip()
+        for at, text in _statements(lines):
             if text.startswith("#"):
                 options = options or _options(path, at, text[1:].split())
             elif text.startswith("["):
@@ -95,7 +95,7 @@ class Touchstone:
                     break
                 is_version_2 |= keyword == "[version"
                 reference = _reference(path, at, keyword + "]", value.strip(), reference)
-            elif text:
+            else:
                 if options is None:
                     raise InvalidInput(f"{path}: line {at}: values before the option line, such as '# Hz S RI R 50'")
                 rows.append(_row(path, at, text))
@@ -111,6 +111,24 @@ class Touchstone:
                 lines=np.array(row_lines),
             )
         return {"": sweep}
+
+
+def _statements(lines: list[str]) -> Iterator[tuple[int, str]]:
+    """Yield line number and text of each statement, without comments, blank lines and information blocks of version 2.
+
+    A reference resistance on the line after its keyword is joined to it.
+    """
+    information, reference_line = False, 0
+    for at, line in enumerate(lines, start=1):
+        text = line.partition("!")[0].strip()
+        keyword = text.lower()
+        if keyword in ("[begin information]", "[end information]"):
+            information = keyword == "[begin information]"
+        elif keyword == "[reference]":
+            reference_line = at
+        elif text and not information:
+            yield at, f"[reference] {text}" if reference_line else text
+            reference_line = 0
 
 
 def _options(path: Path, at: int, words: list[str]) -> _Options:
