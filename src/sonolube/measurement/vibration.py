@@ -28,7 +28,7 @@ class AmplitudePerVolt:
     curvature : float
         Slope at the highest voltage less that at zero, relative to the mean slope, of a parabola through the origin.
     curvature_p_value : float
-        p-value of the curvature; a small one speaks against proportionality.
+        p-value of the curvature in the F test; a small one contradicts proportionality.
     proportional : bool
         Whether the p-value exceeds one less the confidence level.
     confidence_level : float

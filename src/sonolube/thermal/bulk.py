@@ -90,7 +90,7 @@ class HeatedDisc:
 
     Notes
     -----
-    The heat of a pin is spread over the whole circle, which holds where the disc turns often while it warms. The
+    The heat of a pin is averaged over the whole circle, which holds where the disc turns often while it warms. The
     temperature is uniform through the thickness, which holds for Biot numbers h t/k well below 0.1.
 
     References

@@ -214,8 +214,8 @@ def _axis(
         name, unit = _name_and_unit(column)
         if name in _TIME_LABELS or name == quantity:
             return _axis_column(column, table, path, quantity, ChannelSource(column=column.label, unit=unit))
-    wanted = {source.column for source in sources.values()}
-    time_bases = {(c.start or 0.0, c.interval) for c in table.columns if c.label in wanted and c.interval is not None}
+    selected = {source.column for source in sources.values()}
+    time_bases = {(c.start or 0.0, c.interval) for c in table.columns if c.label in selected and c.interval is not None}
     if len(time_bases) != 1:
         problem = "its channels have different time bases" if time_bases else "no column or property gives the time"
         raise InvalidInput(f"{path}: {problem}; name one with a mapping: axis.column or axis.sample_rate")

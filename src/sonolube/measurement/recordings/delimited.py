@@ -45,7 +45,7 @@ class DelimitedText:
         path : Path
             Of the file.
         mapping : RecordingMapping or None
-            The columns wanted and the layout of the text. Without it every column whose first cell is a number is
+            The columns to read and the layout of the text. Without it every column whose first cell is a number is
             read, and separator and decimal sign are detected.
 
         Returns

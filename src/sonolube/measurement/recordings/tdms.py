@@ -53,7 +53,7 @@ class Tdms:
         path : Path
             Of the file.
         mapping : RecordingMapping or None
-            The channels wanted; without it all of them.
+            The channels to read; without it all of them.
 
         Returns
         -------
@@ -76,7 +76,7 @@ class Tdms:
         path : Path
             Of the file.
         mapping : RecordingMapping or None
-            The channels wanted; without it all of them.
+            The channels to read; without it all of them.
         block_samples : int
             Rows of a block.
 

@@ -70,7 +70,7 @@ class SurfaceTopographyFormats:
             except InvalidInput:
                 raise
             except CannotDetectFileFormat:
-                raise InvalidInput(f"{path}: damaged, or of no format that SurfaceTopography knows") from None
+                raise InvalidInput(f"{path}: damaged, or of no format of SurfaceTopography") from None
             except Exception as failure:  # its readers raise exceptions of any type
                 cause = " ".join(str(failure).split()) or type(failure).__name__
                 raise InvalidInput(f"{path}: SurfaceTopography cannot read it: {cause[:200]}") from None
