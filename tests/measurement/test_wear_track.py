@@ -39,7 +39,7 @@ def groove() -> Groove:
     return measure_groove(scan(0))
 
 
-def ring(groove: Groove, areas: list[float]) -> WearTrack:
+def worn(groove: Groove, areas: list[float]) -> WearTrack:
     grooves = [replace(groove, cross_section_area=area) for area in areas]
     return wear_track_from_grooves(grooves, groove_diameter=DIAMETER, sliding_distance=DISTANCE)
 
@@ -60,7 +60,7 @@ def test_a_scan_without_groove_is_excluded_with_its_reason() -> None:
 
 
 def test_the_confidence_interval_is_students_by_hand(groove: Groove) -> None:
-    found = ring(groove, [3e-8, 4e-8, 5e-8])
+    found = worn(groove, [3e-8, 4e-8, 5e-8])
     around = math.pi * DIAMETER
     assert found.wear_volume == approx(4e-8 * around)
     assert found.wear_volume_uncertainty == approx(1e-8 / math.sqrt(3) * around)
@@ -70,14 +70,17 @@ def test_the_confidence_interval_is_students_by_hand(groove: Groove) -> None:
 
 def test_a_single_scan_is_refused(groove: Groove) -> None:
     with raises(InvalidInput, match="a wear track needs two scans with a whole groove, got 1"):
-        ring(groove, [3e-8])
+        worn(groove, [3e-8])
     cut = replace(groove, complete=False, caveat="cut")
     with raises(InvalidInput, match=r"got 1 \(scan 2: cut\)"):
         wear_track_from_grooves([groove, cut], groove_diameter=DIAMETER, sliding_distance=DISTANCE)
 
 
 def test_the_reduction_is_that_of_the_mean_rates(groove: Groove) -> None:
-    without, with_vibration = ring(groove, [4e-8, 4.1e-8, 3.9e-8]), ring(groove, [2e-8, 2.1e-8, 1.9e-8])
+    without, with_vibration = (
+        worn(groove, [4e-8, 4.1e-8, 3.9e-8]),
+        worn(groove, [2e-8, 2.1e-8, 1.9e-8]),
+    )
     found = wear_reduction_between_tracks([without], [with_vibration])
     assert found.wear_reduction == approx(0.5)
     assert found.wear_reduction_uncertainty == approx(0.5 * math.hypot(0.1 / 4, 0.1 / 2) / math.sqrt(3), rel=1e-6)
@@ -90,7 +93,7 @@ def test_the_interval_of_the_reduction_has_its_nominal_coverage(groove: Groove) 
     covered = 0
     for _ in range(400):
         off, on = (
-            [ring(groove, list(mean * rng.normal(1, 0.05, 2) + 0 * mean)) for _ in range(3)] for mean in (4e-8, 2e-8)
+            [worn(groove, list(mean * rng.normal(1, 0.05, 2) + 0 * mean)) for _ in range(3)] for mean in (4e-8, 2e-8)
         )
         found = wear_reduction_between_tracks(off, on)
         assert found.between_specimens
@@ -100,4 +103,4 @@ def test_the_interval_of_the_reduction_has_its_nominal_coverage(groove: Groove) 
 
 def test_a_reduction_without_tracks_of_both_kinds_is_refused(groove: Groove) -> None:
     with raises(InvalidInput, match="a track worn without vibration and one worn with it"):
-        wear_reduction_between_tracks([], [ring(groove, [1e-8, 2e-8])])
+        wear_reduction_between_tracks([], [worn(groove, [1e-8, 2e-8])])

@@ -26,14 +26,14 @@ FORCES = (0.89, 0.85, 0.67, 0.32, 0.12, 0.04)
 STARTS = (0.0, 12.5, 16.5, 20.5, 24.5, 28.5)
 
 
-def published_staircase(rate: float = RATE) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def published_voltage_steps(rate: float = RATE) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     t = seconds(32.5, rate)
     step = np.searchsorted(STARTS, t, side="right") - 1
     return t, np.array(FORCES)[step], np.array(VOLTS)[step]
 
 
 def test_the_voltage_steps_of_table_4_2_are_recovered_from_a_recording() -> None:
-    t, force, volts = published_staircase()
+    t, force, volts = published_voltage_steps()
     force = force + 0.03 * np.sin(2 * np.pi * t / 1.34)
     steps = analyse_voltage_steps(recording(t, friction_force=force, voltage_peak_to_peak=volts))
     assert [step.voltage_peak_to_peak for step in steps] == approx(list(VOLTS))
@@ -46,7 +46,7 @@ def test_the_voltage_steps_of_table_4_2_are_recovered_from_a_recording() -> None
 
 
 def test_the_steps_are_found_in_an_alternating_voltage() -> None:
-    t, force, volts = published_staircase()
+    t, force, volts = published_voltage_steps()
     alternating = volts / 2 * np.sin(2 * np.pi * 22_087 * t)  # aliased, as at 400 Hz it must be
     steps = analyse_voltage_steps(recording(t, friction_force=force, stack_voltage=alternating))
     assert [step.voltage_peak_to_peak for step in steps] == approx(list(VOLTS), rel=0.03)
@@ -54,14 +54,14 @@ def test_the_steps_are_found_in_an_alternating_voltage() -> None:
 
 
 def test_a_short_voltage_disturbance_begins_no_step() -> None:
-    t, force, volts = published_staircase()
+    t, force, volts = published_voltage_steps()
     volts[2000:2010] = 25.9
     steps = friction_at_voltage_steps(time=t, friction_force=force, voltage_peak_to_peak=volts)
     assert len(steps) == 6
 
 
 def test_voltage_steps_without_one_at_zero_voltage_are_refused() -> None:
-    t, force, volts = published_staircase()
+    t, force, volts = published_voltage_steps()
     with raises(InvalidInput, match="no step without voltage; the lowest is 5"):
         friction_at_voltage_steps(time=t, friction_force=force, voltage_peak_to_peak=volts + 5)
 
