@@ -22,7 +22,9 @@ _FONT = "font-family='DejaVu Sans, Verdana, sans-serif'"
 
 def layers() -> list[list[str]]:
     """Return the rooms of each layer, highest first, as `pyproject.toml` states them."""
-    contracts = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"]["contracts"]
+    contracts = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"][
+        "contracts"
+    ]
     stated = next(contract["layers"] for contract in contracts if contract.get("containers") == ["sonolube"])
     return [[room.strip() for room in layer.replace(":", "|").split("|")] for layer in stated]
 

@@ -22,6 +22,10 @@ from sphinx.util.docutils import SphinxDirective
 
 from sonolube.cli import main
 from sonolube.materials import Material, SourcedValue, material, material_names
+from sonolube.measurement.file_format import FileFormat
+from sonolube.measurement.impedance.formats import IMPEDANCE_FORMATS
+from sonolube.measurement.recordings.formats import RECORDING_FORMATS
+from sonolube.measurement.surface_files.formats import SURFACE_FORMATS
 from sonolube.published import errata
 from sonolube.rig import read_rig, rig_schema
 from sonolube.rig.file.json_schema import tables_of
@@ -79,8 +83,33 @@ def vocabulary() -> str:
     )
 
 
+def recording_formats() -> str:
+    """Return every file format of recordings with its suffixes and content."""
+    return _formats(RECORDING_FORMATS)
+
+
+def impedance_formats() -> str:
+    """Return every file format of impedance spectra with its suffixes and content."""
+    return _formats(IMPEDANCE_FORMATS)
+
+
+def surface_formats() -> str:
+    """Return every file format of surfaces with its suffixes and content."""
+    return _formats(SURFACE_FORMATS)
+
+
 TABLES: Mapping[str, Callable[[], str]] = {
-    table.__name__: table for table in (rig_keys, example_rigs, errata_of_d, materials_with_sources, vocabulary)
+    table.__name__: table
+    for table in (
+        rig_keys,
+        example_rigs,
+        errata_of_d,
+        materials_with_sources,
+        vocabulary,
+        recording_formats,
+        impedance_formats,
+        surface_formats,
+    )
 }
 
 
@@ -191,6 +220,18 @@ def _need(key: str, entry: Mapping[str, Any], required: Sequence[str]) -> str:
         return "required"
     default = entry.get("default")
     return "optional" if default is None or default == {} else f"default `{default}`"
+
+
+def _formats(formats: Iterable[FileFormat]) -> str:
+    rows = [
+        [
+            f"`{one.name}`",
+            ", ".join(f"`{suffix}`" for suffix in one.suffixes),
+            _plain((type(one).__doc__ or "").partition("\n")[0]),
+        ]
+        for one in formats
+    ]
+    return _grid(["Format", "Suffixes", "Content"], rows)
 
 
 def _material(shown: Material) -> str:

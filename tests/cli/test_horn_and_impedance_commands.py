@@ -16,7 +16,7 @@ pytest.importorskip("netgen.occ", reason="netgen-mesher is not installed")
 from sonolube.cli import main
 from sonolube.fem import cylinder, stepped_horn
 from sonolube.measurement.impedance.reader import read_impedance
-from sonolube.measurement.vibration import modal_assurance
+from sonolube.measurement.vibration import modal_assurance_criterion
 
 Command = Callable[..., CompletedProcess[str]]
 
@@ -97,8 +97,8 @@ def test_modes_come_as_animations_grids_and_shapes_at_points(sonolube: Command, 
     half_wave = np.cos(np.pi * np.arange(5) / 4)
     assert np.abs(axial) == approx(np.abs(half_wave), abs=0.02)
     measured = half_wave + 0.02 * np.random.default_rng(1).standard_normal(5)  # as a vibrometer sees it
-    assert int(np.argmax(modal_assurance(measured, shapes)[0])) == names.index("axial 1")
-    assert modal_assurance(measured, axial)[0, 0] > 0.99
+    assert int(np.argmax(modal_assurance_criterion(measured, shapes)[0])) == names.index("axial 1")
+    assert modal_assurance_criterion(measured, axial)[0, 0] > 0.99
     moving = sonolube("modes", "cylinder", *sizes, "--count", "1", "--animate", "--out", str(tmp_path))
     assert moving.returncode == 0, moving.stderr
     with Image.open(next(tmp_path.glob("*.gif"))) as animation:

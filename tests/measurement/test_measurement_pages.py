@@ -1,4 +1,4 @@
-"""The tutorial on measurements: its commands run on the files of its scripts and say what the page quotes."""
+"""The tutorial on measurements: its commands run on the files of its scripts and print what the page quotes."""
 
 import re
 import shlex
@@ -33,7 +33,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize("step", STEPS)
-def test_a_step_of_the_tutorial_says_what_the_page_quotes(
+def test_a_step_of_the_tutorial_prints_what_the_page_quotes(
     step: str, folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(folder)

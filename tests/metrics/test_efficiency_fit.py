@@ -1,4 +1,4 @@
-"""The efficiency line of measured runs: the closed form of regression, the spread of repeated fits, what is refused."""
+"""Efficiency line of measured runs: normal equations, coverage of its bands, and refusals."""
 
 import numpy as np
 import pytest
@@ -9,13 +9,13 @@ from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.metrics import (
     EfficiencyFit,
     EfficiencyLine,
-    efficiency_band,
     efficiency_coefficient,
+    efficiency_confidence_band,
+    efficiency_prediction_band,
     fit_efficiency,
     friction_at_power,
     power_estimate,
-    prediction_band,
-    require_covered,
+    require_fitted_speed,
 )
 
 SPEEDS = np.array([0.04, 0.065, 0.08, 0.1, 0.12, 0.15, 0.18])
@@ -28,14 +28,14 @@ def measured() -> EfficiencyFit:
     return fit_efficiency(sliding_speed=SPEEDS, efficiency_coefficient=0.672e-9 - 2.93e-9 * SPEEDS + SCATTER)
 
 
-def test_runs_on_a_line_give_the_line_back_without_scatter() -> None:
+def test_runs_on_a_line_are_fitted_by_that_line_without_scatter() -> None:
     fit = fit_efficiency(sliding_speed=SPEEDS, efficiency_coefficient=0.672e-9 - 2.93e-9 * SPEEDS)
     assert fit.line.slope == approx(-2.93e-9)
     assert fit.line.intercept == approx(0.672e-9)
     assert fit.efficiency_deviation == approx(0, abs=1e-22)
 
 
-def test_line_and_bands_are_those_of_the_normal_equations() -> None:
+def test_line_and_bands_agree_with_the_normal_equations() -> None:
     eta = 0.672e-9 - 2.93e-9 * SPEEDS + SCATTER
     design = np.stack([np.ones_like(SPEEDS), SPEEDS], axis=1)
     inverse = np.linalg.inv(design.T @ design)
@@ -48,39 +48,39 @@ def test_line_and_bands_are_those_of_the_normal_equations() -> None:
     assert errors == approx(np.sqrt(np.diag(covariance)))
     at = np.array([1.0, 0.11])
     reach = student.ppf(0.975, SPEEDS.size - 2) * np.sqrt(at @ covariance @ at)
-    low, high = efficiency_band(fit, sliding_speed=0.11)
+    low, high = efficiency_confidence_band(fit, sliding_speed=0.11)
     assert [low, high] == approx([at @ coefficients - reach, at @ coefficients + reach])
     wide = student.ppf(0.975, SPEEDS.size - 2) * np.sqrt(variance + at @ covariance @ at)
-    low, high = prediction_band(fit, sliding_speed=0.11)
+    low, high = efficiency_prediction_band(fit, sliding_speed=0.11)
     assert [low, high] == approx([at @ coefficients - wide, at @ coefficients + wide])
 
 
-def test_bands_hold_the_true_line_and_the_next_run_as_often_as_they_say() -> None:
+def test_the_confidence_and_prediction_bands_have_their_nominal_coverage() -> None:
     rng = np.random.default_rng(5)
     held = np.zeros(2)
     for _ in range(2000):
         eta = 1e-9 - 3e-9 * SPEEDS + 0.05e-9 * rng.standard_normal(SPEEDS.size)
         fit = fit_efficiency(sliding_speed=SPEEDS, efficiency_coefficient=eta)
         truth, run = 1e-9 - 3e-9 * 0.1, 1e-9 - 3e-9 * 0.1 + 0.05e-9 * rng.standard_normal()
-        for place, (band, value) in enumerate(((efficiency_band, truth), (prediction_band, run))):
+        for place, (band, value) in enumerate(((efficiency_confidence_band, truth), (efficiency_prediction_band, run))):
             low, high = band(fit, sliding_speed=0.1, confidence_level=0.9)
             held[place] += low <= value <= high
     assert held / 2000 == approx([0.9, 0.9], abs=0.02)
 
 
-def test_the_estimated_power_leaves_the_friction_wanted_and_its_ends_belong_to_the_band() -> None:
+def test_the_estimated_power_gives_the_target_friction_and_its_interval_follows_from_the_band() -> None:
     fit = measured()
     wanted = {"intrinsic_friction_force": 0.89, "sliding_speed": 0.0655, **RIG}
     found = power_estimate(fit, reduced_friction_force=0.4, **wanted)
     assert friction_at_power(fit.line, actuator_power=found.actuator_power, **wanted) == approx(0.4)
-    low, high = prediction_band(fit, sliding_speed=0.0655)
+    low, high = efficiency_prediction_band(fit, sliding_speed=0.0655)
     for power, efficiency in ((found.lowest_power, high), (found.highest_power, low)):
         assert power is not None
         back = efficiency_coefficient(reduced_friction_force=0.4, actuator_power=power, **wanted)
         assert back == approx(float(efficiency))
 
 
-def test_runs_that_scatter_to_nought_leave_the_power_without_an_upper_end() -> None:
+def test_a_band_that_reaches_zero_efficiency_leaves_the_power_without_an_upper_limit() -> None:
     noisy = 0.672e-9 - 2.93e-9 * SPEEDS + 20 * SCATTER
     fit = fit_efficiency(sliding_speed=SPEEDS, efficiency_coefficient=noisy)
     found = power_estimate(fit, intrinsic_friction_force=0.89, reduced_friction_force=0.4, sliding_speed=0.1, **RIG)
@@ -89,9 +89,9 @@ def test_runs_that_scatter_to_nought_leave_the_power_without_an_upper_end() -> N
 
 
 @pytest.mark.parametrize("speed", [0.02, 0.3])
-def test_a_speed_that_no_run_covers_is_refused_with_the_range(speed: float) -> None:
+def test_a_speed_outside_the_runs_is_refused_with_their_range(speed: float) -> None:
     with raises(OutsideRange, match=r"must lie within the runs, 0\.04 to 0\.18 m/s"):
-        require_covered(measured(), sliding_speed=speed)
+        require_fitted_speed(measured(), sliding_speed=speed)
     with raises(OutsideRange, match="measure there"):
         power_estimate(
             measured(), intrinsic_friction_force=0.89, reduced_friction_force=0.4, sliding_speed=speed, **RIG
@@ -101,6 +101,6 @@ def test_a_speed_that_no_run_covers_is_refused_with_the_range(speed: float) -> N
 @pytest.mark.parametrize(
     ("speeds", "said"), [([0.1, 0.2], "at least 3 runs"), ([0.1, 0.1, 0.1], "at least two speeds")]
 )
-def test_runs_that_make_no_line_are_refused(speeds: list[float], said: str) -> None:
+def test_too_few_runs_or_a_single_speed_are_refused(speeds: list[float], said: str) -> None:
     with raises(InvalidInput, match=said):
         fit_efficiency(sliding_speed=speeds, efficiency_coefficient=np.full(len(speeds), 1e-9))

@@ -126,12 +126,12 @@ def test_one_test_of_each_kind_gives_a_reduction_that_nobody_can_vouch_for(tmp_p
 
 
 def test_friction_by_the_motor_balances_its_torque(tmp_path: Path) -> None:
-    from sonolube.measurement.friction.forces import MotorFriction
+    from sonolube.measurement.friction.motor_current import MotorCalibration
 
     path = tmp_path / "motor.csv"
     lines = [f"{0.1 * i:.1f},{1.5 + 0.001 * (-1) ** i}" for i in range(100)]
     path.write_text("\n".join(["time (s),motor_current (A)", *lines]) + "\n", encoding="utf-8")
-    motor = MotorFriction(torque_constant=0.5, idle_current=1.0, groove_diameter=0.05)
+    motor = MotorCalibration(torque_constant=0.5, idle_current=1.0, groove_diameter=0.05)
     sheet = friction_sheet(path, settings=FrictionSettings(motor=motor))
     assert values(sheet)["friction_force"] == approx(0.5 * 0.5 / 0.025, rel=1e-3)  # torque over the groove's radius
 

@@ -1,4 +1,4 @@
-"""Bulk temperature against the equations of conduction, solved here by differences and by energy."""
+"""Bulk temperature against the heat equation, finite differences and energy conservation."""
 
 import numpy as np
 import pytest
@@ -25,22 +25,22 @@ DISC = HeatedDisc(solid=STEEL, thickness=2e-3, track_radius=0.014, disc_radius=0
 
 
 @pytest.mark.parametrize("depth", [1e-3, 10.0])
-def test_before_any_time_has_passed_nothing_is_warm_however_deep(depth: float) -> None:
+def test_a_half_space_has_no_rise_at_time_zero_at_any_depth(depth: float) -> None:
     assert half_space_rise(STEEL, heat_flux=1e4, time=[0.0, 1e-12], depth=depth) == approx([0.0, 0.0], abs=0)
 
 
-def test_a_half_space_stores_all_the_heat_it_got() -> None:
+def test_the_heat_stored_in_a_half_space_is_the_heat_supplied() -> None:
     stored = quad(lambda z: float(half_space_rise(STEEL, heat_flux=1e4, time=3.0, depth=z)), 0, 0.1, limit=200)[0]
     assert STEEL.density * STEEL.specific_heat_capacity * stored == approx(3e4, rel=1e-6)
 
 
-def test_the_surface_of_a_half_space_warms_with_the_root_of_time() -> None:
+def test_the_surface_of_a_half_space_warms_with_the_square_root_of_time() -> None:
     one, four = half_space_rise(STEEL, heat_flux=1e4, time=[1.0, 4.0])
     assert four == approx(2 * one)
     assert one == approx(2e4 * np.sqrt(STEEL.thermal_diffusivity / np.pi) / 16.2)
 
 
-def test_a_half_space_obeys_the_equation_of_heat() -> None:
+def test_the_half_space_satisfies_the_heat_equation() -> None:
     z, t, h, dt = 2e-3, 1.5, 1e-5, 1e-3
 
     def rise(depth: float, time: float) -> float:
@@ -51,7 +51,7 @@ def test_a_half_space_obeys_the_equation_of_heat() -> None:
     assert warming == approx(STEEL.thermal_diffusivity * curvature, rel=1e-4)
 
 
-def test_a_pin_obeys_the_equation_of_a_fin_and_ends_cold() -> None:
+def test_the_pin_satisfies_the_fin_equation_with_a_cold_end() -> None:
     x, h = 0.01, 1e-4
     left, here, right = pin_rise(PIN, heat_rate=0.5, depth=[x - h, x, x + h])
     m_squared = 2 * 40.0 / (16.2 * 2e-3)
@@ -59,7 +59,7 @@ def test_a_pin_obeys_the_equation_of_a_fin_and_ends_cold() -> None:
     assert pin_rise(PIN, heat_rate=0.5, depth=PIN.length) == approx(0.0, abs=1e-12)
 
 
-def test_the_heat_of_a_pin_goes_into_the_air_and_its_holder() -> None:
+def test_the_heat_into_a_pin_leaves_through_its_side_and_its_cold_end() -> None:
     places = np.linspace(0, PIN.length, 4001)
     rise = pin_rise(PIN, heat_rate=0.5, depth=places)
     into_air = 40.0 * 2 * np.pi * 2e-3 * trapezoid(rise, places)
@@ -67,13 +67,13 @@ def test_the_heat_of_a_pin_goes_into_the_air_and_its_holder() -> None:
     assert into_air + into_holder == approx(0.5, rel=1e-5)
 
 
-def test_a_pin_in_still_vacuum_is_a_plain_conductor() -> None:
+def test_a_pin_without_convection_has_a_linear_profile() -> None:
     bare = HeatedPin(solid=STEEL, pin_radius=2e-3, length=0.03, convection_coefficient=0.0)
     assert pin_conductance(bare) == approx(16.2 * bare.cross_section / 0.03)
     assert pin_rise(bare, heat_rate=1.0, depth=0.015) == approx(pin_rise(bare, heat_rate=1.0) / 2)
 
 
-def test_a_disc_is_as_warm_as_differences_over_its_radius_have_it() -> None:
+def test_the_disc_agrees_with_a_finite_volume_solution() -> None:
     edges = np.linspace(0, DISC.disc_radius, 4001)
     middles, step = (edges[1:] + edges[:-1]) / 2, edges[1]
     through = 2 * np.pi * edges[1:-1] * 16.2 * DISC.thickness / step
@@ -96,7 +96,7 @@ def test_a_track_outside_its_disc_is_refused() -> None:
 
 
 @given(time=st.floats(0.0, 1e3), conductance=st.floats(1e-3, 1.0), capacity=st.floats(0.1, 100.0))
-def test_a_lump_stores_what_it_does_not_lose(time: float, conductance: float, capacity: float) -> None:
+def test_a_lumped_body_conserves_energy(time: float, conductance: float, capacity: float) -> None:
     def rise(t: float) -> float:
         return float(lumped_rise(heat_rate=0.2, thermal_conductance=conductance, heat_capacity=capacity, time=t))
 

@@ -1,4 +1,4 @@
-"""Networks of bodies against a general solver, against energy and against a rod of many pieces."""
+"""Thermal networks against a general ODE solver, energy conservation and a discretised half-space."""
 
 import numpy as np
 from pytest import approx, raises
@@ -10,7 +10,7 @@ from sonolube.thermal import ThermalNetwork, ThermalSolid, half_space_rise, netw
 PIN_AND_ARM = ThermalNetwork(heat_capacity=(1.5, 40.0), links=((0, 1, 0.05),), losses=(0.005, 0.2))
 
 
-def test_a_network_is_what_a_general_solver_finds() -> None:
+def test_network_transients_agree_with_a_general_ode_solver() -> None:
     time = np.array([0.0, 3.0, 10.0, 26.0])
     heat = np.array([[0.2, 0.0], [0.05, 0.1], [0.0, 0.0]])
     found = network_rise(PIN_AND_ARM, time=time, heat_rate=heat)
@@ -25,14 +25,14 @@ def test_a_network_is_what_a_general_solver_finds() -> None:
         assert found[step + 1] == approx(state, rel=1e-7)
 
 
-def test_a_network_without_losses_keeps_all_heat() -> None:
+def test_a_network_without_losses_conserves_heat() -> None:
     closed = ThermalNetwork(heat_capacity=(2.0, 3.0, 5.0), links=((0, 1, 0.4), (1, 2, 0.1)), losses=(0.0, 0.0, 0.0))
     rise = network_rise(closed, time=[0.0, 7.0, 1e4], heat_rate=[[1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
     assert rise[1:] @ np.array([2.0, 3.0, 5.0]) == approx([7.0, 7.0])
     assert rise[2] == approx([0.7, 0.7, 0.7])
 
 
-def test_a_rod_of_many_pieces_is_a_half_space_before_heat_reaches_its_end() -> None:
+def test_a_discretised_rod_warms_like_a_half_space_before_heat_reaches_its_end() -> None:
     steel = ThermalSolid(thermal_conductivity=16.2, density=8000.0, specific_heat_capacity=500.0)
     count, piece = 400, 1e-4  # of one square metre across
     rod = ThermalNetwork(
@@ -47,11 +47,11 @@ def test_a_rod_of_many_pieces_is_a_half_space_before_heat_reaches_its_end() -> N
     assert rise[:150] == approx(half_space_rise(steel, heat_flux=1e4, time=10.0, depth=depths[:150]), rel=1e-3)
 
 
-def test_heat_that_does_not_fit_the_times_is_refused() -> None:
+def test_a_heat_rate_of_the_wrong_shape_is_refused() -> None:
     with raises(InvalidInput, match=r"heat_rate must have shape \(2, 2\), got \(1, 2\)"):
         network_rise(PIN_AND_ARM, time=[0.0, 1.0, 2.0], heat_rate=[[1.0, 0.0]])
 
 
-def test_a_link_to_nowhere_is_refused() -> None:
+def test_a_link_to_a_body_that_does_not_exist_is_refused() -> None:
     with raises(InvalidInput, match="links must join two of 1 bodies"):
         ThermalNetwork(heat_capacity=(1.0,), links=((0, 1, 0.1),), losses=(0.1,))

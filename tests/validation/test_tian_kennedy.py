@@ -13,7 +13,7 @@ from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 
 from sonolube.checks import Floats
-from sonolube.thermal import EllipticSource, HertzianSource, ThermalSolid, fast_rise, flash_rise, stationary_rise
+from sonolube.thermal import EllipticSource, HertzianSource, ThermalSolid, flash_rise, high_peclet_rise, low_peclet_rise
 
 UNIT = ThermalSolid(thermal_conductivity=1.0, density=1.0, specific_heat_capacity=1.0)
 CIRCLE = EllipticSource(half_length=1.0, half_width=1.0)
@@ -84,7 +84,7 @@ def test_a_fast_parabolic_source_is_hottest_where_half_spaces_say() -> None:
     middle = np.polynomial.legendre.leggauss(60)
     mean_of_chord = sum(w * behind(s) for s, w in zip(*middle, strict=True)) / 2
     mean = mean_of_chord * np.mean(half_chord**2.5) / np.mean(half_chord)  # flux and root of the length, by the length
-    rise = fast_rise(UNIT, HERTZ, heat_flux=1.0, sliding_speed=2.0)  # Pe = 1
+    rise = high_peclet_rise(UNIT, HERTZ, heat_flux=1.0, sliding_speed=2.0)  # Pe = 1
     assert rise.peak_temperature_rise == approx(peak / np.sqrt(np.pi), rel=1e-8)
     assert rise.mean_temperature_rise == approx(mean / np.sqrt(np.pi), rel=1e-4)
 
@@ -94,7 +94,7 @@ def test_a_resting_hertzian_ellipse_is_the_sum_over_its_points(aspect: float) ->
     source = HertzianSource(half_length=1.0, half_width=aspect)
     angles = (np.arange(2000) + 0.5) * 2 * np.pi / 2000
     rim = aspect / np.hypot(aspect * np.cos(angles), np.sin(angles))
-    rise = stationary_rise(UNIT, source, heat_flux=1.0)
+    rise = low_peclet_rise(UNIT, source, heat_flux=1.0)
     # each ray from the centre adds the quarter ellipse of flux over it
     assert rise.peak_temperature_rise == approx(3 / 2 * np.pi / 4 * rim.mean(), rel=1e-6)
     assert rise.mean_temperature_rise == approx(3 / 4 * float(rise.peak_temperature_rise))

@@ -14,12 +14,12 @@ from sonolube.figure import COLOURS, publication_style
 from sonolube.metrics import (
     EfficiencyFit,
     PowerEstimate,
-    efficiency_band,
     efficiency_coefficient,
+    efficiency_confidence_band,
+    efficiency_prediction_band,
     fit_efficiency,
     power_estimate,
-    prediction_band,
-    require_covered,
+    require_fitted_speed,
 )
 from sonolube.report import Finding, write_findings
 from sonolube.rig import Rig, dataset, write_netcdf
@@ -132,7 +132,7 @@ def calibrated(
             confidence_level=confidence_level,
         )
     elif sliding_speed is not None:
-        require_covered(fit, sliding_speed=sliding_speed)
+        require_fitted_speed(fit, sliding_speed=sliding_speed)
     return Calibration(
         rig=rig,
         fit=fit,
@@ -203,7 +203,7 @@ def write_calibration(found: Calibration, *, asked: list[tuple[str, str]], folde
         along="sliding_speed",
         title=f"Efficiency line of {found.rig.title}",
     )
-    for part, band in (("line", efficiency_band), ("run", prediction_band)):
+    for part, band in (("line", efficiency_confidence_band), ("run", efficiency_prediction_band)):
         low, high = band(found.fit, sliding_speed=v, confidence_level=found.confidence_level)
         results[f"lowest_{part}"] = ("sliding_speed", low, {"units": "m2/N"})
         results[f"highest_{part}"] = ("sliding_speed", high, {"units": "m2/N"})
@@ -219,8 +219,8 @@ def calibration_figure(found: Calibration) -> "Figure":
     v = np.linspace(found.fit.lowest_speed, found.fit.highest_speed, 101)
     level = f"{100 * found.confidence_level:g} %"
     for band, shade, label in (
-        (prediction_band, 0.12, f"one more run, {level}"),
-        (efficiency_band, 0.3, f"line, {level}"),
+        (efficiency_prediction_band, 0.12, f"one more run, {level}"),
+        (efficiency_confidence_band, 0.3, f"line, {level}"),
     ):
         low, high = band(found.fit, sliding_speed=v, confidence_level=found.confidence_level)
         axes.fill_between(

@@ -46,7 +46,7 @@ def friction(
     from functools import partial
 
     from sonolube.errors import InvalidInput
-    from sonolube.measurement.friction.forces import MotorFriction
+    from sonolube.measurement.friction.motor_current import MotorCalibration
     from sonolube.measurement.recordings.mapping import read_mapping
     from sonolube.report.measured.friction import FrictionSettings, friction_sheet
     from sonolube.report.measured.friction_comparison import comparison_sheet
@@ -55,7 +55,7 @@ def friction(
     if torque is not None:
         if idle is None or diameter is None:
             raise InvalidInput("--torque-constant needs --idle-current and --groove-diameter")
-        motor = MotorFriction(
+        motor = MotorCalibration(
             torque_constant=quantity(torque, unit="N m/A", option="--torque-constant") or 0.0,
             idle_current=quantity(idle, unit="A", option="--idle-current") or 0.0,
             groove_diameter=quantity(diameter, unit="m", option="--groove-diameter") or 0.0,

@@ -11,7 +11,7 @@ from sonolube.cli.measuring import Files, Report, Test, answer, each_file, quant
 from sonolube.cli.operate import Json
 
 if TYPE_CHECKING:
-    from sonolube.measurement.friction.wear_track import WearRing
+    from sonolube.measurement.wear_track import WearTrack
     from sonolube.report.measured.groove import RingSettings
     from sonolube.report.measured.sheet import Sheet
     from sonolube.report.measured.surface import SurfaceSettings
@@ -64,7 +64,7 @@ def groove(
         raise InvalidInput("a ring needs --groove-diameter and --sliding-distance")
     sheets: list[Sheet] = []
     refused: dict[str, str] = {}
-    rings: list[WearRing] = []
+    rings: list[WearTrack] = []
     for title, paths in (("the ring", files), ("the ring without vibration", without or [])):
         measured, missed, ring = _ring(title, paths, settings, around)
         sheets += measured
@@ -89,7 +89,7 @@ def groove(
 
 def _ring(
     title: str, paths: Sequence[Path], settings: "SurfaceSettings", around: "RingSettings | None"
-) -> tuple[list["Sheet"], dict[str, str], list["WearRing"]]:
+) -> tuple[list["Sheet"], dict[str, str], list["WearTrack"]]:
     """Return the sheets of scans and of their ring, the files refused, and the ring where there is one."""
     from sonolube.errors import InvalidInput, NoGroove
     from sonolube.report.measured.groove import groove_sheet, ring_sheet

@@ -12,12 +12,12 @@ from sonolube.checks import Complexes, Floats, require_non_negative, require_wit
 from sonolube.errors import InvalidInput
 from sonolube.identification.spectral_residual import LOG_COMPLEX, residual_named
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
-from sonolube.measurement.statistics.logarithmic_fit import (
-    Interval,
-    LogarithmicFit,
-    correlation_factor,
-    fit_logarithms,
-    intervals,
+from sonolube.measurement.statistics.log_parameter_fit import (
+    ConfidenceInterval,
+    LogParameterFit,
+    confidence_intervals,
+    fit_log_parameters,
+    residual_inefficiency,
 )
 
 _MOST_BRANCHES = 8
@@ -40,7 +40,7 @@ class CircuitFit:
         Branches in order of frequency.
     resonances : Resonances
         Frequencies without losses, quality and coupling factors of its branches.
-    intervals : mapping of str to Interval
+    intervals : mapping of str to ConfidenceInterval
         Of parallel_capacitance, and of each branch's resistance, inductance, capacitance, series_frequency,
         parallel_frequency, mechanical_quality_factor and coupling_factor, with its number after it: "resistance_1".
     residual : str
@@ -60,7 +60,7 @@ class CircuitFit:
 
     circuit: ButterworthVanDyke
     resonances: Resonances
-    intervals: Mapping[str, Interval]
+    intervals: Mapping[str, ConfidenceInterval]
     residual: str
     residual_rms: float
     information_criteria: tuple[float, ...]
@@ -80,9 +80,9 @@ class _Problem:
         model = circuit_admittance(_circuit(logarithms, self.series_resistance), frequency=self.frequency)
         return residual_named(self.residual)(model, self.admittance)
 
-    def correlation(self, fit: LogarithmicFit) -> float:
+    def correlation(self, fit: LogParameterFit) -> float:
         """Samples over independent samples among the residuals."""
-        return correlation_factor(fit, rows=fit.residuals.size // self.frequency.size)
+        return residual_inefficiency(fit, rows=fit.residuals.size // self.frequency.size)
 
     def inside(self, logarithms: Floats) -> bool:
         """Whether every branch is a mode within the sweep, and not a background that poses as one."""
@@ -158,14 +158,14 @@ def fit_circuit(
     )
     fits = _grown(proportional, most if branches is None else branches, by_criterion=branches is None)
     problem = replace(proportional, residual=residual)
-    chosen = fits[-1] if residual == LOG_COMPLEX else fit_logarithms(problem.residuals, fits[-1].logarithms)
+    chosen = fits[-1] if residual == LOG_COMPLEX else fit_log_parameters(problem.residuals, fits[-1].logarithms)
     return _record(problem, chosen, fits, branches, confidence_level)
 
 
-def _grown(problem: _Problem, most: int, *, by_criterion: bool) -> list[LogarithmicFit]:
+def _grown(problem: _Problem, most: int, *, by_criterion: bool) -> list[LogParameterFit]:
     """Return the fits with 1, 2, ... branches."""
     logarithms = np.array([np.log(_capacitance(problem))])
-    fits: list[LogarithmicFit] = []
+    fits: list[LogParameterFit] = []
     while len(fits) < most:
         fit = _with_one_more(problem, logarithms)
         if fit is None or (fits and not _stands(problem, fit, fits[-1], by_criterion=by_criterion)):
@@ -179,7 +179,7 @@ def _grown(problem: _Problem, most: int, *, by_criterion: bool) -> list[Logarith
     return fits
 
 
-def _stands(problem: _Problem, fit: LogarithmicFit, simpler: LogarithmicFit, *, by_criterion: bool) -> bool:
+def _stands(problem: _Problem, fit: LogParameterFit, simpler: LogParameterFit, *, by_criterion: bool) -> bool:
     """Whether the last branch is one: all is known within a factor, and the criterion, if it is to decide, is lower."""
     known = np.all(np.diag(fit.covariance) * problem.correlation(fit) < _LEAST_KNOWN**2)
     return bool(known) and (not by_criterion or fit.information_criterion < simpler.information_criterion)
@@ -195,11 +195,11 @@ def _capacitance(problem: _Problem) -> float:
     return float(np.median(capacitance[capacitance > 0]))
 
 
-def _with_one_more(problem: _Problem, logarithms: Floats) -> LogarithmicFit | None:
+def _with_one_more(problem: _Problem, logarithms: Floats) -> LogParameterFit | None:
     """Return the best fit with one branch more, or None where no pole stands up."""
     tried = []
     for candidate in _candidates(problem, logarithms)[:_TRIED]:
-        fit = fit_logarithms(problem.residuals, np.concatenate([logarithms, candidate]))
+        fit = fit_log_parameters(problem.residuals, np.concatenate([logarithms, candidate]))
         if problem.inside(fit.logarithms):
             tried.append(fit)
     return min(tried, key=lambda fit: fit.sum_of_squares, default=None)
@@ -276,14 +276,14 @@ def _quantities(logarithms: Floats) -> dict[str, float]:
 
 
 def _record(
-    problem: _Problem, fit: LogarithmicFit, fits: list[LogarithmicFit], wanted: int | None, confidence_level: float
+    problem: _Problem, fit: LogParameterFit, fits: list[LogParameterFit], wanted: int | None, confidence_level: float
 ) -> CircuitFit:
     circuit = _circuit(fit.logarithms, problem.series_resistance)
     correlation = problem.correlation(fit)
     return CircuitFit(
         circuit=circuit,
         resonances=resonances(circuit),
-        intervals=intervals(fit, _quantities, correlation=correlation, confidence_level=confidence_level),
+        intervals=confidence_intervals(fit, _quantities, correlation=correlation, confidence_level=confidence_level),
         residual=problem.residual,
         residual_rms=float(np.sqrt(fit.sum_of_squares / problem.frequency.size)),
         information_criteria=tuple(each.information_criterion for each in fits),
@@ -293,7 +293,7 @@ def _record(
     )
 
 
-def _caveats(fit: LogarithmicFit, branches: int, wanted: int | None, correlation: float) -> tuple[str, ...]:
+def _caveats(fit: LogParameterFit, branches: int, wanted: int | None, correlation: float) -> tuple[str, ...]:
     caveats = []
     if wanted is not None and branches < wanted:
         caveats.append(f"{wanted} branches were asked for; only {branches} stand up: sweep wider or with more points")

@@ -12,7 +12,12 @@ from sonolube.dynamics.structure import Structure, electrical_admittance
 from sonolube.errors import InvalidInput
 from sonolube.identification.spectral_residual import LOG_COMPLEX, residual_named
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
-from sonolube.measurement.statistics.logarithmic_fit import Interval, correlation_factor, fit_logarithms, intervals
+from sonolube.measurement.statistics.log_parameter_fit import (
+    ConfidenceInterval,
+    confidence_intervals,
+    fit_log_parameters,
+    residual_inefficiency,
+)
 
 _STIFFNESS_FACTORS = np.geomspace(1 / 30, 30, 121)
 _DAMPING_FACTORS = (0.1, 1.0, 10.0)
@@ -28,10 +33,10 @@ class StackFit:
     ----------
     stack : PiezoStack
         Its mass, limits and preload are those it was given.
-    intervals : mapping of str to Interval
+    intervals : mapping of str to ConfidenceInterval
         Of free_capacitance, free_stroke_per_volt, stack_stiffness, stack_damping, clamped_capacitance and
         coupling_factor.
-    charge_per_elongation : Interval
+    charge_per_elongation : ConfidenceInterval
         Blocked force per volt, in N/V.
     residual : str
         Name of what was made small.
@@ -46,8 +51,8 @@ class StackFit:
     """
 
     stack: PiezoStack
-    intervals: Mapping[str, Interval]
-    charge_per_elongation: Interval
+    intervals: Mapping[str, ConfidenceInterval]
+    charge_per_elongation: ConfidenceInterval
     residual: str
     residual_rms: float
     residual_correlation: float
@@ -109,11 +114,11 @@ def fit_stack(
         return electrical_admittance(in_structure(candidate), frequency=spectrum.frequency)
 
     guess = _first_guess(spectrum, replace(stack, coupling_factor=None), model)
-    fit = fit_logarithms(
+    fit = fit_log_parameters(
         lambda logarithms: compare(model(_stack(guess, logarithms)), spectrum.admittance), _logarithms(guess)
     )
-    correlation = correlation_factor(fit, rows=fit.residuals.size // spectrum.frequency.size)
-    known = intervals(
+    correlation = residual_inefficiency(fit, rows=fit.residuals.size // spectrum.frequency.size)
+    known = confidence_intervals(
         fit,
         lambda logarithms: _quantities(_stack(guess, logarithms)),
         correlation=correlation,
@@ -199,7 +204,7 @@ def _quantities(stack: PiezoStack) -> dict[str, float]:
     }
 
 
-def _caveats(converged: bool, correlation: float, stiffness: Interval) -> tuple[str, ...]:
+def _caveats(converged: bool, correlation: float, stiffness: ConfidenceInterval) -> tuple[str, ...]:
     caveats = []
     if not converged:
         caveats.append("the search did not end by itself; does the sweep hold a resonance of the stack?")

@@ -1,6 +1,7 @@
 """Materials: engineering materials and piezoelectric ceramics, each property with the source it was read from."""
 
-from sonolube.materials.piezo_ceramic import (
+from sonolube.materials.catalogue import Material, SourcedText, SourcedValue, material, material_names
+from sonolube.materials.piezoelectric import (
     PiezoCeramic,
     coupling_factors,
     piezo_ceramic,
@@ -8,7 +9,6 @@ from sonolube.materials.piezo_ceramic import (
     piezo_ceramic_from_stress_charge,
     piezo_ceramic_names,
 )
-from sonolube.materials.record import Material, SourcedText, SourcedValue, material, material_names
 
 __all__ = [
     "Material",

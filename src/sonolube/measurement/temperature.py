@@ -1,4 +1,4 @@
-"""Temperature at the contact: its rise, how fast it settles, and what vibration changes."""
+"""Temperature measurements: rise between time spans, step response in exponentials, and differences between tests."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -10,23 +10,23 @@ from scipy.optimize import least_squares
 
 from sonolube.checks import Floats, require_finite, require_positive, require_within
 from sonolube.errors import InvalidInput
-from sonolube.measurement.friction.time_base import require_signal
-from sonolube.measurement.statistics.correlation import correlated_mean, inefficiency
-from sonolube.measurement.statistics.logarithmic_fit import Interval
+from sonolube.measurement.statistics.autocorrelation import correlated_mean, statistical_inefficiency
+from sonolube.measurement.statistics.log_parameter_fit import ConfidenceInterval
+from sonolube.measurement.time_series import require_time_series
 
-_STARTS = 7  # time constants tried, over the duration
+_INITIAL_TIME_CONSTANTS = 7  # on a logarithmic grid over the duration
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class TemperatureRise:
-    """Difference of a temperature between two spans of time.
+    """Temperature rise between two time spans with its standard error.
 
     Parameters
     ----------
     temperature_rise : float
         Mean of the later span less that of the earlier. [K]
     temperature_rise_uncertainty : float
-        Standard error, heeding that neighbouring samples resemble each other. [K]
+        Standard error, accounting for the autocorrelation of samples. [K]
     """
 
     temperature_rise: float
@@ -35,48 +35,48 @@ class TemperatureRise:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class TemperatureResponse:
-    """A temperature that settles in one or two exponentials.
+    """Step response of a temperature as a sum of one or two exponentials, with confidence intervals.
 
     Parameters
     ----------
     final_temperature : Interval
-        Where it settles, in kelvin.
+        Asymptotic temperature, in kelvin.
     temperature_change : Interval
         Final less initial temperature, in kelvin.
     time_constants : tuple of Interval
         In seconds, the shorter first.
     temperature_changes : tuple of Interval
-        Share of each in the change, in kelvin.
+        Contribution of each exponential to the change, in kelvin.
     temperature_deviation : float
         Standard deviation of the samples about the curve. [K]
     confidence_level : float
         Of the intervals. []
     caveats : tuple of str
-        What speaks against the curve, one line each.
+        Reservations about the fit, one line each.
     """
 
-    final_temperature: Interval
-    temperature_change: Interval
-    time_constants: tuple[Interval, ...]
-    temperature_changes: tuple[Interval, ...]
+    final_temperature: ConfidenceInterval
+    temperature_change: ConfidenceInterval
+    time_constants: tuple[ConfidenceInterval, ...]
+    temperature_changes: tuple[ConfidenceInterval, ...]
     temperature_deviation: float
     confidence_level: float
     caveats: tuple[str, ...]
 
 
-def temperature_rise(
+def temperature_rise_between(
     *, time: ArrayLike, temperature: ArrayLike, before: tuple[float, float], after: tuple[float, float]
 ) -> TemperatureRise:
-    """Return by how much a temperature rose.
+    """Return the temperature rise between two time spans, as the difference of their means.
 
     Parameters
     ----------
     time : array_like, shape (samples,)
         Increasing. [s]
     temperature : array_like, shape (samples,)
-        From any zero, so degrees Celsius serve as well; NaN is no value. [K]
+        Relative to any zero, so degrees Celsius are accepted; NaN is a missing value. [K]
     before, after : tuple of two float
-        First and last time of the earlier and the later span, in seconds.
+        Beginning and end of the earlier and the later span, in seconds.
 
     Returns
     -------
@@ -87,26 +87,26 @@ def temperature_rise(
     InvalidInput
         If a span holds fewer than two values.
     """
-    t, value = require_signal(time=time, temperature=temperature)
+    t, value = require_time_series(time=time, temperature=temperature)
     first, last = (_span_mean(t, value, span, name) for span, name in ((before, "before"), (after, "after")))
     return TemperatureRise(
         temperature_rise=last[0] - first[0], temperature_rise_uncertainty=float(np.hypot(first[1], last[1]))
     )
 
 
-def temperature_response(
+def fit_temperature_response(
     *, time: ArrayLike, temperature: ArrayLike, exponentials: int | None = None, confidence_level: float = 0.95
 ) -> TemperatureResponse:
-    """Return the time constants with which a temperature settles after a step at the first sample.
+    r"""Return the exponential step response fitted to a temperature after a step of the heat at the first sample.
 
     Parameters
     ----------
     time : array_like, shape (samples,)
         Increasing. [s]
     temperature : array_like, shape (samples,)
-        From any zero; NaN is no value. [K]
+        Relative to any zero; NaN is a missing value. [K]
     exponentials : int or None
-        1 or 2; None takes the number that lowers the Bayesian information criterion.
+        1 or 2; None selects the number of the lower Bayesian information criterion.
     confidence_level : float
         Of the intervals. []
 
@@ -117,27 +117,32 @@ def temperature_response(
     Raises
     ------
     InvalidInput
-        If fewer than 8 values are there, they do not vary, or `exponentials` is neither 1 nor 2.
+        If there are fewer than 8 values, they do not vary, or `exponentials` is neither 1 nor 2.
 
     Notes
     -----
-    Intervals are first-order, on a logarithmic scale for time constants, and widened for residuals that resemble their
-    neighbours. A time constant longer than the record is doubted: record and constant are then one straight line.
+    Fits, with the asymptote and the changes eliminated as linear parameters (variable projection),
+
+    .. math:: T(t) = T_\infty - \sum_{k} \Delta T_k\, e^{-t/\tau_k} .
+
+    Intervals are first-order, on a logarithmic scale for time constants, and widened by the statistical inefficiency of
+    the residuals. A time constant longer than the record is reported in the caveats: the response is then nearly a
+    straight line, which does not determine it.
     """
     require_within(0.5, 0.9999, confidence_level=confidence_level)
     if exponentials not in (None, 1, 2):
         raise InvalidInput(f"exponentials must be 1 or 2, got {exponentials}")
-    t, value = require_signal(time=time, temperature=temperature)
+    t, value = require_time_series(time=time, temperature=temperature)
     known = np.isfinite(value)
     t, value = t[known] - t[0], value[known]
     if t.size < 8 or np.ptp(value) == 0:
         raise InvalidInput(f"a settling temperature needs 8 values that vary, got {t.size}")
-    fits = [_settled(t, value, count) for count in ((1, 2) if exponentials is None else (exponentials,))]
-    logarithms = min(fits, key=lambda fit: _criterion(t, value, fit))
+    fits = [_log_time_constants(t, value, count) for count in ((1, 2) if exponentials is None else (exponentials,))]
+    logarithms = min(fits, key=lambda fit: _information_criterion(t, value, fit))
     return _response(t, value, logarithms, confidence_level)
 
 
-def temperature_differences(
+def temperature_rise_by_stage(
     *,
     time: ArrayLike,
     temperature: ArrayLike,
@@ -145,45 +150,45 @@ def temperature_differences(
     reference_temperature: ArrayLike,
     stages: ArrayLike,
 ) -> tuple[TemperatureRise, ...]:
-    """Return by how much a temperature differs from that of a test without vibration, stage by stage.
+    """Return the temperature rise over a test without vibration, stage by stage.
 
     Parameters
     ----------
     time : array_like, shape (samples,)
-        Of the test with vibration, from its start. [s]
+        Time of the test with vibration, from its start. [s]
     temperature : array_like, shape (samples,)
         With vibration. [K]
     reference_time : array_like, shape (reference_samples,)
-        Of the test without vibration, from its start. [s]
+        Time of the test without vibration, from its start. [s]
     reference_temperature : array_like, shape (reference_samples,)
-        Without vibration, from the same zero. [K]
+        Without vibration, relative to the same zero. [K]
     stages : array_like, shape (stages + 1,)
-        Times at which stages begin, and at which the last ends, in seconds.
+        Times at which the stages begin, and at which the last ends, in seconds.
 
     Returns
     -------
     tuple of TemperatureRise
-        One a stage: with less without.
+        One per stage: with less without vibration.
 
     Raises
     ------
     InvalidInput
-        If stages do not rise or a stage holds fewer than two samples of both tests.
+        If stages do not increase or a stage holds fewer than two samples of both tests.
 
     Notes
     -----
-    The reference is taken between its samples by straight lines. The uncertainty is that of one pair of tests; how far
-    tests differ among themselves is for `compare` and several pairs to say.
+    The reference is interpolated linearly between its samples. The uncertainty is that of one pair of tests; the
+    scatter between tests follows from several pairs, by `compare_means`.
 
     References
     ----------
     .. [1] D 4.3.4, figure 4.34.
     """
-    t, value = require_signal(time=time, temperature=temperature)
-    t_0, reference = require_signal(time=reference_time, reference_temperature=reference_temperature)
+    t, value = require_time_series(time=time, temperature=temperature)
+    t_0, reference = require_time_series(time=reference_time, reference_temperature=reference_temperature)
     ends = require_finite(stages=stages)
     if ends.ndim != 1 or ends.size < 2 or np.any(np.diff(ends) <= 0):
-        raise InvalidInput("stages must be at least two times that rise")
+        raise InvalidInput("stages must be at least two increasing times")
     known = np.isfinite(reference)
     without = np.interp(t, t_0[known], reference[known], left=np.nan, right=np.nan)
     differences = []
@@ -194,18 +199,18 @@ def temperature_differences(
 
 
 def heating_rate(*, time: ArrayLike, temperature: ArrayLike, start_time: float, end_time: float) -> float:
-    """Return how fast a temperature rises over a span, as least squares see it, in kelvin per second.
+    """Return the heating rate over a time span, the slope of the regression line, in kelvin per second.
 
     Parameters
     ----------
     time : array_like, shape (samples,)
         Increasing. [s]
     temperature : array_like, shape (samples,)
-        From any zero; NaN is no value. [K]
+        Relative to any zero; NaN is a missing value. [K]
     start_time : float
-        Where the span begins. [s]
+        Beginning of the span. [s]
     end_time : float
-        Where it ends. [s]
+        End of the span. [s]
 
     Returns
     -------
@@ -216,7 +221,7 @@ def heating_rate(*, time: ArrayLike, temperature: ArrayLike, start_time: float, 
     InvalidInput
         If the span holds fewer than two values.
     """
-    t, value = require_signal(time=time, temperature=temperature)
+    t, value = require_time_series(time=time, temperature=temperature)
     require_positive(duration=end_time - start_time)
     inside = (t >= start_time) & (t <= end_time) & np.isfinite(value)
     if np.count_nonzero(inside) < 2:
@@ -225,78 +230,86 @@ def heating_rate(*, time: ArrayLike, temperature: ArrayLike, start_time: float, 
 
 
 def _span_mean(t: Floats, value: Floats, span: tuple[float, float], name: str) -> tuple[float, float]:
+    """Return the mean over a time span and its standard error."""
     start, end = span
     inside = (t >= start) & (t <= end) & np.isfinite(value)
     if np.count_nonzero(inside) < 2:
         raise InvalidInput(f"{name}, {start:g} to {end:g} s, holds {np.count_nonzero(inside)} values; two are needed")
-    known = correlated_mean(value[inside])
-    return known.mean, known.uncertainty
+    estimate = correlated_mean(value[inside])
+    return estimate.mean, estimate.uncertainty
 
 
-def _columns(t: Floats, logarithms: Floats) -> Floats:
+def _basis(t: Floats, logarithms: Floats) -> Floats:
+    """Return the columns of the linear parameters: a constant and the decaying exponentials."""
     return np.stack([np.ones_like(t), *(np.exp(-t / tau) for tau in np.exp(logarithms))], axis=-1)
 
 
-def _misses(t: Floats, value: Floats, logarithms: Floats) -> Floats:
-    columns = _columns(t, logarithms)
+def _projected_residuals(t: Floats, value: Floats, logarithms: Floats) -> Floats:
+    """Return the residuals after the linear parameters are eliminated."""
+    columns = _basis(t, logarithms)
     return np.asarray(columns @ np.linalg.lstsq(columns, value, rcond=None)[0] - value)
 
 
-def _settled(t: Floats, value: Floats, count: int) -> Floats:
-    """Return logarithms of the time constants; the temperatures follow linearly."""
+def _log_time_constants(t: Floats, value: Floats, count: int) -> Floats:
+    """Return the logarithms of the fitted time constants, the shorter first."""
     duration, shortest = float(t[-1]), float(np.median(np.diff(t)))
     bounds = np.log([shortest / 3, 30 * duration])
-    grid = np.geomspace(2 * shortest, 2 * duration, _STARTS)
+    initial = np.geomspace(2 * shortest, 2 * duration, _INITIAL_TIME_CONSTANTS)
     if count == 1:
-        starts = [np.log([tau]) for tau in grid]
+        starts = [np.log([tau]) for tau in initial]
     else:
-        starts = [np.log([short, long]) for at, short in enumerate(grid) for long in grid[at + 1 :]]
-    best = min(starts, key=lambda start: float(np.sum(_misses(t, value, start) ** 2)))
-    found = least_squares(
-        lambda logarithms: _misses(t, value, logarithms),
+        starts = [np.log([short, long]) for at, short in enumerate(initial) for long in initial[at + 1 :]]
+    best = min(starts, key=lambda start: float(np.sum(_projected_residuals(t, value, start) ** 2)))
+    minimum = least_squares(
+        lambda logarithms: _projected_residuals(t, value, logarithms),
         np.clip(best, bounds[0] + 1e-6, bounds[1] - 1e-6),
         bounds=(bounds[0], bounds[1]),
         xtol=1e-12,
         ftol=1e-12,
     )
-    return np.sort(found.x)
+    return np.sort(minimum.x)
 
 
-def _criterion(t: Floats, value: Floats, logarithms: Floats) -> float:
-    mean_square = max(float(np.mean(_misses(t, value, logarithms) ** 2)), (1e-10 * float(np.ptp(value))) ** 2)
+def _information_criterion(t: Floats, value: Floats, logarithms: Floats) -> float:
+    """Return the Bayesian information criterion of a fit, up to a constant of the data."""
+    mean_square = max(
+        float(np.mean(_projected_residuals(t, value, logarithms) ** 2)), (1e-10 * float(np.ptp(value))) ** 2
+    )
     return t.size * float(np.log(mean_square)) + (1 + 2 * logarithms.size) * float(np.log(t.size))
 
 
 def _response(t: Floats, value: Floats, logarithms: Floats, confidence_level: float) -> TemperatureResponse:
+    """Return the response of fitted time constants with its confidence intervals."""
     count = logarithms.size
-    columns = _columns(t, logarithms)
+    columns = _basis(t, logarithms)
     amplitudes = np.linalg.lstsq(columns, value, rcond=None)[0]
-    misses = value - columns @ amplitudes
+    residuals = value - columns @ amplitudes
     ratios = t[:, np.newaxis] / np.exp(logarithms)
     jacobian = np.concatenate([columns, amplitudes[1:] * ratios * columns[:, 1:]], axis=1)
-    alike = inefficiency(misses) if np.ptp(misses) > 0 else 1.0
-    variance = float(np.sum(misses**2)) / max(1, t.size - jacobian.shape[1])
-    size = np.linalg.norm(jacobian, axis=0)
-    inverse = np.linalg.pinv(jacobian / size)
-    covariance = alike * variance * (inverse @ inverse.T) / np.multiply.outer(size, size)
-    reach = float(stats.t.ppf((1 + confidence_level) / 2, max(1.0, t.size / alike - jacobian.shape[1])))
+    inefficiency = statistical_inefficiency(residuals) if np.ptp(residuals) > 0 else 1.0
+    variance = float(np.sum(residuals**2)) / max(1, t.size - jacobian.shape[1])
+    norms = np.linalg.norm(jacobian, axis=0)
+    inverse = np.linalg.pinv(jacobian / norms)
+    covariance = inefficiency * variance * (inverse @ inverse.T) / np.multiply.outer(norms, norms)
+    quantile = float(stats.t.ppf((1 + confidence_level) / 2, max(1.0, t.size / inefficiency - jacobian.shape[1])))
 
-    def linear(direction: Floats) -> Interval:
-        middle = float(direction @ amplitudes)
-        half = reach * float(np.sqrt(direction @ covariance[: count + 1, : count + 1] @ direction))
-        return Interval(value=middle, lower=middle - half, upper=middle + half)
+    def interval(direction: Floats) -> ConfidenceInterval:
+        """Return the interval of a linear combination of the amplitudes."""
+        estimate = float(direction @ amplitudes)
+        half = quantile * float(np.sqrt(direction @ covariance[: count + 1, : count + 1] @ direction))
+        return ConfidenceInterval(value=estimate, lower=estimate - half, upper=estimate + half)
 
-    places = np.eye(count + 1)
-    factors = np.exp(np.minimum(reach * np.sqrt(np.diag(covariance)[count + 1 :]), 300.0))
+    unit_vectors = np.eye(count + 1)
+    factors = np.exp(np.minimum(quantile * np.sqrt(np.diag(covariance)[count + 1 :]), 300.0))
     taus = np.exp(logarithms)
     return TemperatureResponse(
-        final_temperature=linear(places[0]),
-        temperature_change=linear(-places[1:].sum(axis=0)),
+        final_temperature=interval(unit_vectors[0]),
+        temperature_change=interval(-unit_vectors[1:].sum(axis=0)),
         time_constants=tuple(
-            Interval(value=float(tau), lower=float(tau / factor), upper=float(tau * factor))
+            ConfidenceInterval(value=float(tau), lower=float(tau / factor), upper=float(tau * factor))
             for tau, factor in zip(taus, factors, strict=True)
         ),
-        temperature_changes=tuple(linear(-place) for place in places[1:]),
+        temperature_changes=tuple(interval(-unit) for unit in unit_vectors[1:]),
         temperature_deviation=float(np.sqrt(variance)),
         confidence_level=confidence_level,
         caveats=_caveats(float(taus[-1]), float(t[-1])),
@@ -304,9 +317,10 @@ def _response(t: Floats, value: Floats, logarithms: Floats, confidence_level: fl
 
 
 def _caveats(longest: float, duration: float) -> tuple[str, ...]:
+    """Return the caveat of a time constant that exceeds the record."""
     if longest <= duration:
         return ()
     return (
         f"a time constant of {longest:.3g} s is longer than the record of {duration:.3g} s;"
-        " where it settles is a guess: record longer",
+        " the final temperature is an extrapolation: record longer",
     )

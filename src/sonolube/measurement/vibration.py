@@ -1,4 +1,4 @@
-"""Vibration as a vibrometer sees it: amplitude per volt, operating shapes, and how they resemble computed modes."""
+"""Vibrometer measurements: amplitude per volt, complex amplitudes, operating deflection shapes and modal assurance."""
 
 from dataclasses import dataclass
 
@@ -10,29 +10,29 @@ from sonolube.checks import Complexes, Floats, require_finite, require_finite_co
 from sonolube.errors import InvalidInput
 
 _LEAST_PERIODS = 1.0
+_LARGEST_CONDITION = 1e6  # of the least-squares columns, beyond which the frequency aliases
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class AmplitudePerVolt:
-    """Amplitude in proportion to the drive voltage, and whether it is.
+    """Vibration amplitude per drive voltage, with a test of proportionality.
 
     Parameters
     ----------
     amplitude_per_volt : float
-        Slope of the line through the origin. [m/V]
+        Slope of the regression line through the origin. [m/V]
     lower, upper : float
-        Ends of its confidence interval, in m/V.
+        Limits of its confidence interval, in m/V.
     amplitude_deviation : float
         Standard deviation of the amplitudes about the line. [m]
     curvature : float
-        By how much the slope at the highest voltage exceeds that at zero, as a share of the mean slope, by a parabola
-        through the origin.
-    curvature_p : float
-        Chance of as much curvature or more by scatter alone; small speaks against proportion.
+        Slope at the highest voltage less that at zero, relative to the mean slope, of a parabola through the origin.
+    curvature_p_value : float
+        p-value of the curvature in the F test; a small one contradicts proportionality.
     proportional : bool
-        Whether that chance exceeds one less the confidence level.
+        Whether the p-value exceeds one less the confidence level.
     confidence_level : float
-        Of interval and verdict. []
+        Of the interval and of the test. []
     """
 
     amplitude_per_volt: float
@@ -40,37 +40,38 @@ class AmplitudePerVolt:
     upper: float
     amplitude_deviation: float
     curvature: float
-    curvature_p: float
+    curvature_p_value: float
     proportional: bool
     confidence_level: float
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class OperatingShape:
-    """How the points of a surface move together at one frequency.
+class OperatingDeflectionShape:
+    """Operating deflection shape (ODS): relative motion of the points of a surface at one frequency.
 
     Parameters
     ----------
     shape : ndarray, shape (points,)
-        Real, greatest magnitude 1: motion in step with the whole.
+        Real part at the common phase, scaled to a largest magnitude of 1.
     greatest_amplitude : float
-        Amplitude at the point that moves most, in the unit of the signals.
+        Amplitude of the point that moves most, in the unit of the signals.
     phase : ndarray, shape (points,)
-        Of each point, from the motion of the whole. [rad]
-    standing_share : float
-        Share of the mean square that moves in step or opposed: 1 for a standing, half for a running wave.
+        Phase of each point relative to the common phase. [rad]
+    standing_wave_fraction : float
+        Fraction of the mean square motion that is in phase or in antiphase: 1 for a standing, 1/2 for a travelling
+        wave.
     """
 
     shape: Floats
     greatest_amplitude: float
     phase: Floats
-    standing_share: float
+    standing_wave_fraction: float
 
 
 def amplitude_per_volt(
     *, voltage_peak_to_peak: ArrayLike, vibration_amplitude: ArrayLike, confidence_level: float = 0.95
 ) -> AmplitudePerVolt:
-    """Return the amplitude per volt peak to peak, with a test of proportion.
+    r"""Return the vibration amplitude per volt by regression through the origin, with an F test of curvature.
 
     Parameters
     ----------
@@ -88,12 +89,19 @@ def amplitude_per_volt(
     Raises
     ------
     InvalidInput
-        If there are fewer than three pairs, a voltage is not positive or all are one.
+        If there are fewer than three pairs, a voltage is not positive or all voltages are equal.
 
     Notes
     -----
-    The test compares the line through the origin with a parabola through the origin, by Fisher's F with one degree of
-    freedom: ceramics stroke more per volt, and resonances soften, as the voltage rises.
+    With :math:`u_i = U_i/\max U`, the residual sums of squares :math:`R_1` of the line a u and :math:`R_2` of the
+    parabola :math:`b_1 u + b_2 u^2`,
+
+    .. math::
+
+        a = \frac{\sum u_i a_i}{\sum u_i^2} \pm t_{n-1} \sqrt{\frac{R_1}{(n - 1) \sum u_i^2}} , \qquad
+        F_{1,\,n-2} = \frac{R_1 - R_2}{R_2/(n - 2)} .
+
+    Curvature is expected: the stroke of ceramics per volt rises with the voltage, and resonances soften.
 
     References
     ----------
@@ -107,75 +115,81 @@ def amplitude_per_volt(
             "three pairs of voltage and amplitude at different voltages are needed,"
             f" got {volts.size} and {amplitude.size}"
         )
-    n, top = volts.size, float(volts.max())
-    u = volts / top
-    line = float(u @ amplitude / (u @ u))
-    left = float(np.sum((amplitude - line * u) ** 2))
+    n, highest = volts.size, float(volts.max())
+    u = volts / highest
+    slope = float(u @ amplitude / (u @ u))
+    squares_of_line = float(np.sum((amplitude - slope * u) ** 2))
     parabola, *_ = np.linalg.lstsq(np.stack([u, u**2], axis=-1), amplitude, rcond=None)
-    left_by_parabola = float(np.sum((amplitude - np.stack([u, u**2], axis=-1) @ parabola) ** 2))
+    squares_of_parabola = float(np.sum((amplitude - np.stack([u, u**2], axis=-1) @ parabola) ** 2))
     rounding = (1e-12 * float(np.abs(amplitude).max())) ** 2 * n
-    fisher = (left - left_by_parabola) * (n - 2) / max(left_by_parabola, rounding, np.finfo(float).tiny)
-    chance = float(stats.f.sf(max(fisher, 0.0), 1, n - 2)) if left > rounding else 1.0
-    deviation = float(np.sqrt(left / (n - 1)))
+    f_statistic = (
+        (squares_of_line - squares_of_parabola) * (n - 2) / max(squares_of_parabola, rounding, np.finfo(float).tiny)
+    )
+    p_value = float(stats.f.sf(max(f_statistic, 0.0), 1, n - 2)) if squares_of_line > rounding else 1.0
+    deviation = float(np.sqrt(squares_of_line / (n - 1)))
     half = float(stats.t.ppf((1 + confidence_level) / 2, n - 1)) * deviation / float(np.sqrt(u @ u))
     return AmplitudePerVolt(
-        amplitude_per_volt=line / top,
-        lower=(line - half) / top,
-        upper=(line + half) / top,
+        amplitude_per_volt=slope / highest,
+        lower=(slope - half) / highest,
+        upper=(slope + half) / highest,
         amplitude_deviation=deviation,
-        curvature=float(2 * parabola[1] / line) if line else 0.0,
-        curvature_p=chance,
-        proportional=chance > 1 - confidence_level,
+        curvature=float(2 * parabola[1] / slope) if slope else 0.0,
+        curvature_p_value=p_value,
+        proportional=p_value > 1 - confidence_level,
         confidence_level=confidence_level,
     )
 
 
 def complex_amplitudes(*, time: ArrayLike, signals: ArrayLike, frequency: float) -> Complexes:
-    """Return the complex amplitudes of signals at a known frequency, as least squares see them.
+    r"""Return the complex amplitudes of signals at a known frequency by linear least squares.
 
     Parameters
     ----------
     time : array_like, shape (samples,)
         Increasing. [s]
     signals : array_like, shape (points, samples)
-        One a point, in any unit: displacement, velocity or voltage.
+        One row per point, in any unit: displacement, velocity or voltage.
     frequency : float
         Of the drive. [Hz]
 
     Returns
     -------
     ndarray, shape (points,)
-        X of x = Re(X exp(2 pi i f t)); the mean of each signal is left out. A velocity over 2 pi i f is a displacement.
+        In the unit of the signals. A velocity amplitude over 2 pi i f is a displacement amplitude.
 
     Raises
     ------
     InvalidInput
         If the samples are fewer than 4, cover less than a period or do not fit the signals, or alias at the frequency.
+
+    Notes
+    -----
+    Fits :math:`x(t) = \bar x + \operatorname{Re}(X e^{2\pi i f t})` to each signal; the mean is left out of the result.
     """
     t, x = require_finite(time=time), np.atleast_2d(require_finite(signals=signals))
     omega = 2 * np.pi * float(require_positive(frequency=frequency))
     if t.ndim != 1 or t.size < 4 or x.ndim != 2 or x.shape[1] != t.size:
-        raise InvalidInput(f"signals must be rows of as many samples as time, got shapes {x.shape} and {t.shape}")
+        raise InvalidInput(f"signals must have one sample per time in each row, got shapes {x.shape} and {t.shape}")
     if np.ptp(t) * frequency < _LEAST_PERIODS:
         raise InvalidInput(f"time covers {np.ptp(t) * frequency:.2g} periods of {frequency:g} Hz; one is needed")
     columns = np.stack([np.ones_like(t), np.cos(omega * (t - t[0])), -np.sin(omega * (t - t[0]))], axis=-1)
-    if np.linalg.cond(columns) > 1e6:
-        raise InvalidInput(f"the samples cannot tell {frequency:g} Hz from a constant; sample faster")
-    found = np.linalg.lstsq(columns, x.T, rcond=None)[0]
-    return np.asarray((found[1] + 1j * found[2]) * np.exp(-1j * omega * t[0]))
+    if np.linalg.cond(columns) > _LARGEST_CONDITION:
+        raise InvalidInput(f"the samples cannot distinguish {frequency:g} Hz from a constant; sample faster")
+    coefficients = np.linalg.lstsq(columns, x.T, rcond=None)[0]
+    return np.asarray((coefficients[1] + 1j * coefficients[2]) * np.exp(-1j * omega * t[0]))
 
 
-def operating_shape(amplitudes: ArrayLike) -> OperatingShape:
-    """Return the shape in which points move, from their complex amplitudes.
+def operating_deflection_shape(amplitudes: ArrayLike) -> OperatingDeflectionShape:
+    r"""Return the operating deflection shape of points from their complex amplitudes.
 
     Parameters
     ----------
     amplitudes : array_like, shape (points,)
-        Complex, in any one unit; of points measured one after the other each over that of the drive at the time.
+        Complex, in any one unit; of points measured one after the other each divided by the drive's at the time.
 
     Returns
     -------
-    OperatingShape
+    OperatingDeflectionShape
 
     Raises
     ------
@@ -184,38 +198,40 @@ def operating_shape(amplitudes: ArrayLike) -> OperatingShape:
 
     Notes
     -----
-    The common phase is half that of the sum of squares, with which most of the motion is real.
+    The common phase, which maximises the real part of the motion, is half that of the sum of squares:
+
+    .. math:: \varphi_0 = \tfrac12 \arg \sum_k X_k^2 .
     """
     x = np.atleast_1d(require_finite_complex(amplitudes=amplitudes))
     if x.ndim != 1 or not x.size or not np.any(x):
-        raise InvalidInput("a shape needs a row of amplitudes that are not all zero")
+        raise InvalidInput("amplitudes must be one-dimensional and not all zero")
     greatest = float(np.abs(x).max())
-    unit = x / greatest
-    turned = unit * np.exp(-0.5j * np.angle(np.sum(unit**2)))
-    top = int(np.argmax(np.abs(turned)))
-    turned = turned * (-1.0 if turned[top].real < 0 else 1.0)
-    return OperatingShape(
-        shape=np.asarray(turned.real / np.abs(turned.real).max()),
+    scaled = x / greatest
+    in_phase = scaled * np.exp(-0.5j * np.angle(np.sum(scaled**2)))
+    largest = int(np.argmax(np.abs(in_phase)))
+    in_phase = in_phase * (-1.0 if in_phase[largest].real < 0 else 1.0)
+    return OperatingDeflectionShape(
+        shape=np.asarray(in_phase.real / np.abs(in_phase.real).max()),
         greatest_amplitude=greatest,
-        phase=np.angle(turned),
-        standing_share=float(np.sum(turned.real**2) / np.sum(np.abs(turned) ** 2)),
+        phase=np.angle(in_phase),
+        standing_wave_fraction=float(np.sum(in_phase.real**2) / np.sum(np.abs(in_phase) ** 2)),
     )
 
 
-def modal_assurance(first: ArrayLike, second: ArrayLike) -> Floats:
-    """Return the modal assurance criterion of each shape of one set with each of another.
+def modal_assurance_criterion(first: ArrayLike, second: ArrayLike) -> Floats:
+    r"""Return the modal assurance criterion (MAC) of each shape of one set with each of another.
 
     Parameters
     ----------
     first : array_like, shape (points,) or (points, shapes)
-        Such as operating shapes, real or complex, one a column.
+        Such as operating deflection shapes, real or complex, one per column.
     second : array_like, shape (points,) or (points, other_shapes)
         Such as computed modes at the same points.
 
     Returns
     -------
     ndarray, shape (shapes, other_shapes)
-        From 0, orthogonal, to 1, in proportion.
+        From 0, orthogonal, to 1, proportional.
 
     Raises
     ------
@@ -224,24 +240,27 @@ def modal_assurance(first: ArrayLike, second: ArrayLike) -> Floats:
 
     Notes
     -----
-    abs(a^H b)^2/((a^H a)(b^H b)), blind to scale and common phase. It does not weigh by mass: computed modes that are
-    orthogonal in mass need not give zero among themselves, nor do few points tell alike modes apart.
+    .. math:: \mathrm{MAC}(a, b) = \frac{|a^{\mathsf H} b|^2}{(a^{\mathsf H} a)(b^{\mathsf H} b)}
+
+    independent of scale and common phase. It is not weighted by mass: computed modes that are orthogonal in mass need
+    not have zero MAC among themselves, and few points do not distinguish similar modes.
 
     References
     ----------
     .. [1] R. J. Allemang, Sound and Vibration 37(8), 14 (2003).
     """
-    a, b = (_shapes(name, value) for name, value in (("first", first), ("second", second)))
+    a, b = (_unit_shapes(name, value) for name, value in (("first", first), ("second", second)))
     if a.shape[0] != b.shape[0]:
         raise InvalidInput(f"shapes must have the same points, got {a.shape[0]} and {b.shape[0]}")
     return np.asarray(np.abs(a.conj().T @ b) ** 2)
 
 
-def _shapes(name: str, value: ArrayLike) -> Complexes:
+def _unit_shapes(name: str, value: ArrayLike) -> Complexes:
+    """Return shapes as columns of unit norm; refuse zero shapes."""
     shapes = require_finite_complex(**{name: value})
     shapes = shapes[:, np.newaxis] if shapes.ndim == 1 else shapes
     greatest = np.abs(shapes).max(axis=0) if shapes.ndim == 2 and shapes.size else np.zeros(1)
     if shapes.ndim != 2 or np.any(greatest == 0):
         raise InvalidInput(f"{name} must be shapes in columns, none of them zero, got shape {shapes.shape}")
-    unit = shapes / greatest
-    return np.asarray(unit / np.linalg.norm(unit, axis=0))
+    scaled = shapes / greatest
+    return np.asarray(scaled / np.linalg.norm(scaled, axis=0))

@@ -1,4 +1,4 @@
-"""Measures by which experiments on ultrasonic lubrication are compared."""
+"""Measures of experiments on ultrasonic lubrication: reductions, kinematics, efficiency and motor friction."""
 
 from sonolube.metrics.efficiency import (
     EfficiencyLine,
@@ -8,14 +8,14 @@ from sonolube.metrics.efficiency import (
     power_for_friction,
 )
 from sonolube.metrics.efficiency_fit import (
-    FEWEST_RUNS,
+    MINIMUM_RUNS,
     EfficiencyFit,
     PowerEstimate,
-    efficiency_band,
+    efficiency_confidence_band,
+    efficiency_prediction_band,
     fit_efficiency,
     power_estimate,
-    prediction_band,
-    require_covered,
+    require_fitted_speed,
 )
 from sonolube.metrics.kinematics import (
     dot_spacing,
@@ -27,37 +27,37 @@ from sonolube.metrics.kinematics import (
 )
 from sonolube.metrics.motor import (
     DCMotor,
-    current_under_friction,
     friction_from_current,
-    motor_from_two_states,
+    motor_current_under_friction,
+    motor_from_two_operating_points,
     motor_speed,
 )
 from sonolube.metrics.reduction import friction_reduction, wear_rate, wear_reduction
 
 __all__ = [
-    "FEWEST_RUNS",
+    "MINIMUM_RUNS",
     "DCMotor",
     "EfficiencyFit",
     "EfficiencyLine",
     "PowerEstimate",
-    "current_under_friction",
     "dot_spacing",
     "efficiency_at",
-    "efficiency_band",
     "efficiency_coefficient",
+    "efficiency_confidence_band",
+    "efficiency_prediction_band",
     "fit_efficiency",
     "friction_at_power",
     "friction_from_current",
     "friction_reduction",
     "indentation_spacing",
     "linear_speed",
-    "motor_from_two_states",
+    "motor_current_under_friction",
+    "motor_from_two_operating_points",
     "motor_speed",
     "peak_vibration_velocity",
     "power_estimate",
     "power_for_friction",
-    "prediction_band",
-    "require_covered",
+    "require_fitted_speed",
     "sliding_distance",
     "superimposed_speed",
     "wear_rate",

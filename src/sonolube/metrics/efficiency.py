@@ -1,4 +1,4 @@
-"""Friction saved for the power spent, and power or friction from it."""
+"""Efficiency coefficient of friction reduction (D 4.1), and power and friction by an efficiency line (D 4.2 to 4.4)."""
 
 from dataclasses import dataclass
 
@@ -18,16 +18,16 @@ def efficiency_coefficient(
     normal_load: ArrayLike,
     actuator_power: ArrayLike,
 ) -> Floats:
-    """Return the frictional power saved per nominal pressure and actuator power. [m2/N]
+    r"""Return the efficiency coefficient: frictional power saved per nominal pressure and actuator power. [m2/N]
 
     Parameters
     ----------
     intrinsic_friction_force : array_like
-        Friction without vibration. [N]
+        Friction force without vibration. [N]
     reduced_friction_force : array_like
-        Friction with vibration. [N]
+        Friction force with vibration. [N]
     sliding_speed : array_like
-        Speed of the sliding. [m/s]
+        Sliding speed. [m/s]
     nominal_area : array_like
         Nominal contact area. [m2]
     normal_load : array_like
@@ -45,6 +45,10 @@ def efficiency_coefficient(
     InvalidInput
         If an area, load or power is not positive, a speed negative, or a value not finite.
 
+    Notes
+    -----
+    .. math:: \eta = \frac{(F_{t0} - F_{t1})\, v_r A_n}{F_N P_a} \qquad \text{(D 4.1)}
+
     References
     ----------
     .. [1] D 4.1.
@@ -59,19 +63,23 @@ def efficiency_coefficient(
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class EfficiencyLine:
-    """The efficiency coefficient of one rig as a line over sliding speed.
+    r"""The efficiency coefficient of one rig as a linear function of sliding speed.
 
     Parameters
     ----------
     slope : float
-        Change of the coefficient per speed; negative for D's rig. [m s/N]
+        Derivative of the coefficient with respect to speed, a; negative for D's rig. [m s/N]
     intercept : float
-        Coefficient at the lowest speeds. [m2/N]
+        Coefficient extrapolated to zero speed, b. [m2/N]
 
     Raises
     ------
     InvalidInput
         If a value is not finite, or the intercept not positive.
+
+    Notes
+    -----
+    .. math:: \eta = a\, v_r + b \qquad \text{(D 4.2)}
 
     References
     ----------
@@ -87,13 +95,13 @@ class EfficiencyLine:
 
 
 def efficiency_at(line: EfficiencyLine, *, sliding_speed: ArrayLike) -> Floats:
-    """Return the efficiency coefficient that a line gives at a speed. [m2/N]
+    """Return the efficiency coefficient of an efficiency line at a sliding speed, D 4.2. [m2/N]
 
     Parameters
     ----------
     line : EfficiencyLine
     sliding_speed : array_like, any shape
-        Speed of the sliding. [m/s]
+        Sliding speed. [m/s]
 
     Returns
     -------
@@ -104,7 +112,7 @@ def efficiency_at(line: EfficiencyLine, *, sliding_speed: ArrayLike) -> Floats:
     InvalidInput
         If a speed is negative or not finite.
     OutsideRange
-        If a speed lies where the line has fallen to zero, and vibration would save nothing.
+        If a speed lies at or beyond the zero of the line, where vibration saves no friction.
 
     References
     ----------
@@ -129,17 +137,17 @@ def power_for_friction(
     nominal_area: ArrayLike,
     normal_load: ArrayLike,
 ) -> Floats:
-    """Return the actuator power that brings friction down to a wanted force. [W]
+    r"""Return the actuator power that reduces friction to a target force. [W]
 
     Parameters
     ----------
     line : EfficiencyLine
     intrinsic_friction_force : array_like
-        Friction without vibration. [N]
+        Friction force without vibration. [N]
     reduced_friction_force : array_like
-        Friction wanted, at most the intrinsic one. [N]
+        Target friction force, at most the intrinsic one. [N]
     sliding_speed : array_like
-        Speed of the sliding. [m/s]
+        Sliding speed. [m/s]
     nominal_area : array_like
         Nominal contact area. [m2]
     normal_load : array_like
@@ -152,9 +160,17 @@ def power_for_friction(
     Raises
     ------
     InvalidInput
-        If a speed, area or load is not positive, or the wanted friction negative or above the intrinsic one.
+        If a speed, area or load is not positive, or the target friction negative or above the intrinsic one.
     OutsideRange
-        If a speed lies where the line has fallen to zero.
+        If a speed lies at or beyond the zero of the line.
+
+    See Also
+    --------
+    friction_at_power : the inverse.
+
+    Notes
+    -----
+    .. math:: P_a = \frac{(F_{t0} - F_{t1})\, v_r A_n}{F_N\, \eta} \qquad \text{(D 4.3)}
 
     References
     ----------
@@ -162,7 +178,7 @@ def power_for_friction(
     """
     intrinsic = require_positive(intrinsic_friction_force=intrinsic_friction_force)
     reduced = require_non_negative(reduced_friction_force=reduced_friction_force)
-    _refuse_more_friction(intrinsic, reduced)
+    _require_reduction(intrinsic, reduced)
     return (intrinsic - reduced) / _friction_saved_per_power(line, sliding_speed, nominal_area, normal_load)  # D 4.3
 
 
@@ -175,17 +191,17 @@ def friction_at_power(
     nominal_area: ArrayLike,
     normal_load: ArrayLike,
 ) -> Floats:
-    """Return the friction that an actuator power leaves. [N]
+    r"""Return the friction force that remains at an actuator power. [N]
 
     Parameters
     ----------
     line : EfficiencyLine
     intrinsic_friction_force : array_like
-        Friction without vibration. [N]
+        Friction force without vibration. [N]
     actuator_power : array_like
         Power drawn by the actuator. [W]
     sliding_speed : array_like
-        Speed of the sliding. [m/s]
+        Sliding speed. [m/s]
     nominal_area : array_like
         Nominal contact area. [m2]
     normal_load : array_like
@@ -200,22 +216,30 @@ def friction_at_power(
     InvalidInput
         If a speed, area or load is not positive, or a power negative.
     OutsideRange
-        If a speed lies where the line has fallen to zero, or a power exceeds what takes all friction away.
+        If a speed lies at or beyond the zero of the line, or a power exceeds the one that removes all friction.
+
+    See Also
+    --------
+    power_for_friction : the inverse.
+
+    Notes
+    -----
+    .. math:: F_{t1} = F_{t0} - \frac{F_N\, \eta\, P_a}{v_r A_n} \qquad \text{(D 4.4)}
 
     References
     ----------
-    .. [1] D 4.4, which prints both friction forces in each other's place.
+    .. [1] D 4.4, which prints the two friction forces interchanged.
     """
     intrinsic = require_positive(intrinsic_friction_force=intrinsic_friction_force)
     power = require_non_negative(actuator_power=actuator_power)
     saved_per_power = _friction_saved_per_power(line, sliding_speed, nominal_area, normal_load)
     reduced = intrinsic - saved_per_power * power  # D 4.4
-    needless = reduced < -1e-12 * intrinsic  # rounding must not refuse the very power that suffices
-    if np.any(needless):
+    excessive = reduced < -1e-12 * intrinsic  # tolerates rounding at exactly the sufficient power
+    if np.any(excessive):
         sufficient = intrinsic / saved_per_power
         raise OutsideRange(
-            f"actuator_power of {_first(power, needless):.4g} W is more than the {_first(sufficient, needless):.4g} W"
-            " that take all friction away on this efficiency line"
+            f"actuator_power of {_first(power, excessive):.4g} W is more than the {_first(sufficient, excessive):.4g} W"
+            " that remove all friction on this efficiency line"
         )
     return np.maximum(reduced, 0.0)
 
@@ -223,12 +247,14 @@ def friction_at_power(
 def _friction_saved_per_power(
     line: EfficiencyLine, sliding_speed: ArrayLike, nominal_area: ArrayLike, normal_load: ArrayLike
 ) -> Floats:
+    """Return the friction force saved per actuator power, F_N eta/(v A_n), in N/W."""
     v = require_positive(sliding_speed=sliding_speed)
     load, area = require_positive(normal_load=normal_load), require_positive(nominal_area=nominal_area)
     return load * efficiency_at(line, sliding_speed=v) / (v * area)
 
 
-def _refuse_more_friction(intrinsic: Floats, reduced: Floats) -> None:
+def _require_reduction(intrinsic: Floats, reduced: Floats) -> None:
+    """Refuse a target friction force above the intrinsic one."""
     above = reduced > intrinsic
     if np.any(above):
         raise InvalidInput(
@@ -238,4 +264,5 @@ def _refuse_more_friction(intrinsic: Floats, reduced: Floats) -> None:
 
 
 def _first(values: Floats, where: NDArray[np.bool_]) -> float:
+    """Return the first value at which a condition holds."""
     return float(np.broadcast_to(values, where.shape)[where].flat[0])

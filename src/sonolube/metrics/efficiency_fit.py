@@ -1,4 +1,4 @@
-"""The efficiency line of one's own rig: fitted to measured runs, with what the fit leaves open."""
+"""Efficiency line of a rig by linear regression on measured runs, with confidence and prediction bands."""
 
 from dataclasses import dataclass
 
@@ -10,25 +10,25 @@ from sonolube.checks import Floats, require_finite, require_non_negative, requir
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.metrics.efficiency import EfficiencyLine, efficiency_at, power_for_friction
 
-FEWEST_RUNS = 3
-"""Runs from which a line and its scatter can be told."""
+MINIMUM_RUNS = 3
+"""Least number of runs that determine a line and its residual deviation."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class EfficiencyFit:
-    """An efficiency line fitted to runs, for speeds between the slowest and the fastest of them.
+    """An efficiency line fitted to runs, valid between the slowest and the fastest of them.
 
     Parameters
     ----------
     line : EfficiencyLine
     runs : int
-        How many it was fitted to.
+        Number of runs it was fitted to.
     lowest_speed, highest_speed : float
         Speeds of the slowest and the fastest run. [m/s]
     mean_speed : float
         Mean speed of the runs. [m/s]
-    speed_spread : float
-        Sum of the squares of the speeds about their mean, in m2/s2.
+    speed_sum_of_squares : float
+        Sum of squares of the speeds about their mean, S_vv, in m2/s2.
     efficiency_deviation : float
         Standard deviation of the runs about the line. [m2/N]
     slope_uncertainty : float
@@ -42,7 +42,7 @@ class EfficiencyFit:
     lowest_speed: float
     highest_speed: float
     mean_speed: float
-    speed_spread: float
+    speed_sum_of_squares: float
     efficiency_deviation: float
     slope_uncertainty: float
     intercept_uncertainty: float
@@ -50,16 +50,16 @@ class EfficiencyFit:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PowerEstimate:
-    """The power that a friction takes, and between which it lies.
+    """Actuator power for a target friction force, with its prediction interval.
 
     Parameters
     ----------
     actuator_power : float
-        Power on the line. [W]
+        Power by the fitted line. [W]
     lowest_power : float
         Lower end of the interval. [W]
     highest_power : float or None
-        Upper end; None where the runs do not bound it, the band reaching an efficiency of nought. [W]
+        Upper end; None where the prediction band reaches zero efficiency, which leaves the power unbounded. [W]
     """
 
     actuator_power: float
@@ -68,7 +68,7 @@ class PowerEstimate:
 
 
 def fit_efficiency(*, sliding_speed: ArrayLike, efficiency_coefficient: ArrayLike) -> EfficiencyFit:
-    """Return the line of least squares through measured efficiency coefficients.
+    r"""Return the efficiency line fitted to measured efficiency coefficients by least squares.
 
     Parameters
     ----------
@@ -84,12 +84,20 @@ def fit_efficiency(*, sliding_speed: ArrayLike, efficiency_coefficient: ArrayLik
     Raises
     ------
     InvalidInput
-        If there are fewer than three runs, all at one speed, or the line starts at no positive efficiency.
+        If there are fewer than three runs, all at one speed, or the intercept is not positive.
 
     Notes
     -----
-    Runs scatter about the line alike and independently. Runs driven harder than needed, which D saw at its lowest
-    speeds, scatter downwards and pull the line down.
+    Ordinary linear regression with n runs, :math:`S_{vv} = \sum (v_i - \bar v)^2` and the residual variance
+    :math:`s^2 = \sum (\eta_i - a v_i - b)^2/(n - 2)`:
+
+    .. math::
+
+        a = \frac{\sum (v_i - \bar v)\, \eta_i}{S_{vv}} , \quad b = \bar\eta - a \bar v , \quad
+        u_a = \frac{s}{\sqrt{S_{vv}}} , \quad u_b = s \sqrt{\frac1n + \frac{\bar v^2}{S_{vv}}} .
+
+    Residuals are independent and of equal variance. Runs driven harder than needed, as D observed at its lowest speeds,
+    lie below the line and bias it downwards.
 
     References
     ----------
@@ -98,41 +106,44 @@ def fit_efficiency(*, sliding_speed: ArrayLike, efficiency_coefficient: ArrayLik
     v = np.atleast_1d(require_non_negative(sliding_speed=sliding_speed))
     eta = np.atleast_1d(require_finite(efficiency_coefficient=efficiency_coefficient))
     if v.ndim != 1 or v.shape != eta.shape:
-        raise InvalidInput(f"sliding_speed and efficiency_coefficient must be rows of runs, got {v.shape}, {eta.shape}")
-    if v.size < FEWEST_RUNS:
-        raise InvalidInput(f"an efficiency line needs at least {FEWEST_RUNS} runs, got {v.size}")
-    middle = float(v.mean())
-    spread = float(np.sum((v - middle) ** 2))
-    if spread <= 1e-12 * v.size * middle**2:
-        raise InvalidInput(f"all runs are at {middle:.4g} m/s: a line over speed needs at least two speeds")
-    slope = float((v - middle) @ eta) / spread
-    intercept = float(eta.mean()) - slope * middle
+        raise InvalidInput(
+            "sliding_speed and efficiency_coefficient must be one-dimensional and equal in length,"
+            f" got shapes {v.shape} and {eta.shape}"
+        )
+    if v.size < MINIMUM_RUNS:
+        raise InvalidInput(f"an efficiency line needs at least {MINIMUM_RUNS} runs, got {v.size}")
+    mean_speed = float(v.mean())
+    sum_of_squares = float(np.sum((v - mean_speed) ** 2))
+    if sum_of_squares <= 1e-12 * v.size * mean_speed**2:
+        raise InvalidInput(f"all runs are at {mean_speed:.4g} m/s: a line over speed needs at least two speeds")
+    slope = float((v - mean_speed) @ eta) / sum_of_squares
+    intercept = float(eta.mean()) - slope * mean_speed
     deviation = float(np.sqrt(np.sum((eta - intercept - slope * v) ** 2) / (v.size - 2)))
     return EfficiencyFit(
         line=EfficiencyLine(slope=slope, intercept=intercept),
         runs=v.size,
         lowest_speed=float(v.min()),
         highest_speed=float(v.max()),
-        mean_speed=middle,
-        speed_spread=spread,
+        mean_speed=mean_speed,
+        speed_sum_of_squares=sum_of_squares,
         efficiency_deviation=deviation,
-        slope_uncertainty=deviation / np.sqrt(spread),
-        intercept_uncertainty=deviation * float(np.sqrt(1 / v.size + middle**2 / spread)),
+        slope_uncertainty=deviation / np.sqrt(sum_of_squares),
+        intercept_uncertainty=deviation * float(np.sqrt(1 / v.size + mean_speed**2 / sum_of_squares)),
     )
 
 
-def efficiency_band(
+def efficiency_confidence_band(
     fit: EfficiencyFit, *, sliding_speed: ArrayLike, confidence_level: float = 0.95
 ) -> tuple[Floats, Floats]:
-    """Return between what the line itself lies at a speed. [m2/N]
+    r"""Return the confidence band of the efficiency line at a speed, its lower and upper limit. [m2/N]
 
     Parameters
     ----------
     fit : EfficiencyFit
     sliding_speed : array_like, any shape
-        Speed of the sliding. [m/s]
+        Sliding speed. [m/s]
     confidence_level : float
-        Probability with which the band holds the true line there. []
+        Probability with which the band contains the true line at that speed. []
 
     Returns
     -------
@@ -143,24 +154,32 @@ def efficiency_band(
     InvalidInput
         If the level lies outside 0 to 1.
     OutsideRange
-        If a speed is none that the runs cover.
+        If a speed lies outside the range of the runs.
+
+    See Also
+    --------
+    efficiency_prediction_band : the band of a further run.
+
+    Notes
+    -----
+    .. math:: \eta(v) \pm t_{n-2}\, s \sqrt{\frac1n + \frac{(v - \bar v)^2}{S_{vv}}}
     """
-    v = require_covered(fit, sliding_speed=sliding_speed)
+    v = require_fitted_speed(fit, sliding_speed=sliding_speed)
     return _band(fit, v, confidence_level, _line_error(fit, v))
 
 
-def prediction_band(
+def efficiency_prediction_band(
     fit: EfficiencyFit, *, sliding_speed: ArrayLike, confidence_level: float = 0.95
 ) -> tuple[Floats, Floats]:
-    """Return between what the efficiency of one more run lies at a speed. [m2/N]
+    r"""Return the prediction band of a further run's efficiency at a speed, its lower and upper limit. [m2/N]
 
     Parameters
     ----------
     fit : EfficiencyFit
     sliding_speed : array_like, any shape
-        Speed of the sliding. [m/s]
+        Sliding speed. [m/s]
     confidence_level : float
-        Probability with which the band holds that run. []
+        Probability with which the band contains that run. []
 
     Returns
     -------
@@ -171,9 +190,17 @@ def prediction_band(
     InvalidInput
         If the level lies outside 0 to 1.
     OutsideRange
-        If a speed is none that the runs cover.
+        If a speed lies outside the range of the runs.
+
+    See Also
+    --------
+    efficiency_confidence_band : the band of the line itself.
+
+    Notes
+    -----
+    .. math:: \eta(v) \pm t_{n-2}\, s \sqrt{1 + \frac1n + \frac{(v - \bar v)^2}{S_{vv}}}
     """
-    v = require_covered(fit, sliding_speed=sliding_speed)
+    v = require_fitted_speed(fit, sliding_speed=sliding_speed)
     return _band(fit, v, confidence_level, np.sqrt(fit.efficiency_deviation**2 + _line_error(fit, v) ** 2))
 
 
@@ -187,23 +214,23 @@ def power_estimate(
     normal_load: float,
     confidence_level: float = 0.95,
 ) -> PowerEstimate:
-    """Return the power that brings friction down to a wanted force in one more run, with its interval.
+    """Return the actuator power that reduces friction to a target force in a further run, with its prediction interval.
 
     Parameters
     ----------
     fit : EfficiencyFit
     intrinsic_friction_force : float
-        Friction without vibration. [N]
+        Friction force without vibration. [N]
     reduced_friction_force : float
-        Friction wanted, at most the intrinsic one. [N]
+        Target friction force, at most the intrinsic one. [N]
     sliding_speed : float
-        Speed of the sliding. [m/s]
+        Sliding speed. [m/s]
     nominal_area : float
         Nominal contact area. [m2]
     normal_load : float
         Force pressing the bodies together. [N]
     confidence_level : float
-        Probability with which the interval holds the power that run needs. []
+        Probability with which the interval contains the power that run needs. []
 
     Returns
     -------
@@ -212,16 +239,23 @@ def power_estimate(
     Raises
     ------
     InvalidInput
-        If a speed, area or load is not positive, or the wanted friction negative or above the intrinsic one.
+        If a speed, area or load is not positive, or the target friction negative or above the intrinsic one.
     OutsideRange
-        If the speed is none that the runs cover, or the line has fallen to zero there.
+        If the speed lies outside the range of the runs, or at or beyond the zero of the line.
+
+    See Also
+    --------
+    power_for_friction : the power by a line without uncertainty.
+    efficiency_prediction_band : the band from which the interval follows.
 
     References
     ----------
     .. [1] D 4.3.
     """
     v = float(require_positive(sliding_speed=sliding_speed))
-    low, high = (float(end) for end in prediction_band(fit, sliding_speed=v, confidence_level=confidence_level))
+    low, high = (
+        float(end) for end in efficiency_prediction_band(fit, sliding_speed=v, confidence_level=confidence_level)
+    )
     power = float(
         power_for_friction(
             fit.line,
@@ -232,22 +266,22 @@ def power_estimate(
             normal_load=normal_load,
         )
     )
-    middle = float(efficiency_at(fit.line, sliding_speed=v))
+    expected = float(efficiency_at(fit.line, sliding_speed=v))
     return PowerEstimate(
         actuator_power=power,
-        lowest_power=power * middle / high,
-        highest_power=power * middle / low if low > 0 else None,
+        lowest_power=power * expected / high,
+        highest_power=power * expected / low if low > 0 else None,
     )
 
 
-def require_covered(fit: EfficiencyFit, *, sliding_speed: ArrayLike) -> Floats:
-    """Return speeds as an array; refuse any slower or faster than all runs of the fit. [m/s]
+def require_fitted_speed(fit: EfficiencyFit, *, sliding_speed: ArrayLike) -> Floats:
+    """Return speeds as an array; refuse any outside the range of the runs of a fit. [m/s]
 
     Parameters
     ----------
     fit : EfficiencyFit
     sliding_speed : array_like, any shape
-        Speed of the sliding. [m/s]
+        Sliding speed. [m/s]
 
     Returns
     -------
@@ -256,25 +290,26 @@ def require_covered(fit: EfficiencyFit, *, sliding_speed: ArrayLike) -> Floats:
     Raises
     ------
     OutsideRange
-        Naming the range of the runs.
+        With the range of the runs.
     """
     v = require_non_negative(sliding_speed=sliding_speed)
-    beyond = (v < fit.lowest_speed * (1 - 1e-9)) | (v > fit.highest_speed * (1 + 1e-9))
-    if np.any(beyond):
+    outside = (v < fit.lowest_speed * (1 - 1e-9)) | (v > fit.highest_speed * (1 + 1e-9))
+    if np.any(outside):
         raise OutsideRange(
             f"sliding_speed must lie within the runs, {fit.lowest_speed:.4g} to {fit.highest_speed:.4g} m/s, got"
-            f" {float(v[beyond].flat[0]):.4g} m/s: measure there, the line is not to be carried on"
+            f" {float(v[outside].flat[0]):.4g} m/s: measure there, the line must not be extrapolated"
         )
     return v
 
 
 def _line_error(fit: EfficiencyFit, v: Floats) -> Floats:
-    """Return the standard error of the line at speeds."""
-    return fit.efficiency_deviation * np.sqrt(1 / fit.runs + (v - fit.mean_speed) ** 2 / fit.speed_spread)
+    """Return the standard error of the line at speeds, in m2/N."""
+    return fit.efficiency_deviation * np.sqrt(1 / fit.runs + (v - fit.mean_speed) ** 2 / fit.speed_sum_of_squares)
 
 
 def _band(fit: EfficiencyFit, v: Floats, confidence_level: float, error: Floats) -> tuple[Floats, Floats]:
+    """Return the line less and plus Student's t times an error."""
     level = float(require_within(0.0, 1.0, confidence_level=confidence_level))
-    middle = fit.line.slope * v + fit.line.intercept
-    reach = float(stdtrit(fit.runs - 2, (1 + level) / 2)) * error
-    return middle - reach, middle + reach
+    line = fit.line.slope * v + fit.line.intercept
+    half_width = float(stdtrit(fit.runs - 2, (1 + level) / 2)) * error
+    return line - half_width, line + half_width

@@ -1,4 +1,4 @@
-"""Speeds, distances and marks of a pin on a turning disc."""
+"""Kinematics of a pin on a rotating disc: speeds, sliding distance and spacing of marks along the track."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -7,14 +7,14 @@ from sonolube.checks import Floats, require_non_negative, require_positive
 
 
 def peak_vibration_velocity(*, frequency: ArrayLike, vibration_amplitude: ArrayLike) -> Floats:
-    """Return the highest velocity of a harmonic vibration, 2 pi f a. [m/s]
+    r"""Return the peak velocity of a harmonic vibration. [m/s]
 
     Parameters
     ----------
     frequency : array_like
         Frequency of the vibration. [Hz]
     vibration_amplitude : array_like, broadcast against `frequency`
-        Amplitude, from rest to peak. [m]
+        Displacement amplitude, zero to peak. [m]
 
     Returns
     -------
@@ -24,20 +24,24 @@ def peak_vibration_velocity(*, frequency: ArrayLike, vibration_amplitude: ArrayL
     ------
     InvalidInput
         If a frequency is not positive, an amplitude negative, or a value not finite.
+
+    Notes
+    -----
+    .. math:: v_1 = 2\pi f a
     """
     f = require_positive(frequency=frequency)
     return 2 * np.pi * f * require_non_negative(vibration_amplitude=vibration_amplitude)
 
 
 def superimposed_speed(*, sliding_speed: ArrayLike, vibration_velocity: ArrayLike) -> Floats:
-    """Return the speed at which the surfaces rub when a vibration crosses the sliding. [m/s]
+    r"""Return the superimposed speed of sliding and a vibration perpendicular to it, after D Table 4.5. [m/s]
 
     Parameters
     ----------
     sliding_speed : array_like
         Speed of the sliding. [m/s]
     vibration_velocity : array_like, broadcast against `sliding_speed`
-        Peak velocity of the vibration, `peak_vibration_velocity`. [m/s]
+        Peak velocity of the vibration, from `peak_vibration_velocity`. [m/s]
 
     Returns
     -------
@@ -50,9 +54,11 @@ def superimposed_speed(*, sliding_speed: ArrayLike, vibration_velocity: ArrayLik
 
     Notes
     -----
-    Takes of the vibration its half-wave mean, peak over pi: the positive half of the velocity averaged over the whole
-    period. It is the "average vibrational velocity" of D Table 4.5, whose cells this form gives within 2 %; the mean of
-    the modulus would be twice as high.
+    .. math:: v_s = \sqrt{v_r^2 + \left( \frac{v_1}{\pi} \right)^2}
+
+    The vibration enters by its half-wave mean, peak over pi: the positive half of the velocity averaged over the whole
+    period. It is the "average vibrational velocity" of D Table 4.5, whose cells this form reproduces within 2 %; the
+    mean of the absolute velocity would be twice as high.
     """
     v_r = require_non_negative(sliding_speed=sliding_speed)
     v_1 = require_non_negative(vibration_velocity=vibration_velocity)
@@ -60,7 +66,7 @@ def superimposed_speed(*, sliding_speed: ArrayLike, vibration_velocity: ArrayLik
 
 
 def dot_spacing(*, sliding_speed: ArrayLike, frequency: ArrayLike) -> Floats:
-    """Return the spacing along the track of the marks that each cycle of a vibration leaves. [m]
+    r"""Return the spacing along the wear track of the marks left by successive vibration cycles. [m]
 
     Parameters
     ----------
@@ -77,12 +83,16 @@ def dot_spacing(*, sliding_speed: ArrayLike, frequency: ArrayLike) -> Floats:
     ------
     InvalidInput
         If a speed is negative, a frequency not positive, or a value not finite.
+
+    Notes
+    -----
+    .. math:: s = \frac{v_r}{f}
     """
     return require_non_negative(sliding_speed=sliding_speed) / require_positive(frequency=frequency)
 
 
 def indentation_spacing(*, sliding_speed: ArrayLike, period: ArrayLike) -> Floats:
-    """Return the spacing along the track of the indentations that stick-slip leaves. [m]
+    r"""Return the spacing along the wear track of the indentations left by stick-slip. [m]
 
     Parameters
     ----------
@@ -99,19 +109,23 @@ def indentation_spacing(*, sliding_speed: ArrayLike, period: ArrayLike) -> Float
     ------
     InvalidInput
         If a speed is negative, a period not positive, or a value not finite.
+
+    Notes
+    -----
+    .. math:: s_i = v_r T
     """
     return require_non_negative(sliding_speed=sliding_speed) * require_positive(period=period)
 
 
 def linear_speed(*, rotation_speed: ArrayLike, groove_diameter: ArrayLike) -> Floats:
-    """Return the sliding speed of a pin on a turning disc. [m/s]
+    r"""Return the sliding speed of a pin on a rotating disc. [m/s]
 
     Parameters
     ----------
     rotation_speed : array_like
-        Turns of the disc per time. [1/s]
+        Rotational speed of the disc, revolutions per time. [1/s]
     groove_diameter : array_like, broadcast against `rotation_speed`
-        Diameter of the circle under the pin. [m]
+        Diameter of the wear track under the pin. [m]
 
     Returns
     -------
@@ -120,7 +134,11 @@ def linear_speed(*, rotation_speed: ArrayLike, groove_diameter: ArrayLike) -> Fl
     Raises
     ------
     InvalidInput
-        If a rotation is negative, a diameter not positive, or a value not finite.
+        If a rotational speed is negative, a diameter not positive, or a value not finite.
+
+    Notes
+    -----
+    .. math:: v_r = \pi D_g n
     """
     return (
         np.pi * require_non_negative(rotation_speed=rotation_speed) * require_positive(groove_diameter=groove_diameter)
@@ -128,14 +146,14 @@ def linear_speed(*, rotation_speed: ArrayLike, groove_diameter: ArrayLike) -> Fl
 
 
 def sliding_distance(*, revolutions: ArrayLike, groove_diameter: ArrayLike) -> Floats:
-    """Return the distance a pin slides on a turning disc. [m]
+    r"""Return the sliding distance of a pin on a rotating disc. [m]
 
     Parameters
     ----------
     revolutions : array_like
-        Turns of the disc, whole or not. []
+        Revolutions of the disc, not necessarily whole. []
     groove_diameter : array_like, broadcast against `revolutions`
-        Diameter of the circle under the pin. [m]
+        Diameter of the wear track under the pin. [m]
 
     Returns
     -------
@@ -144,6 +162,10 @@ def sliding_distance(*, revolutions: ArrayLike, groove_diameter: ArrayLike) -> F
     Raises
     ------
     InvalidInput
-        If the turns are negative, a diameter not positive, or a value not finite.
+        If the revolutions are negative, a diameter not positive, or a value not finite.
+
+    Notes
+    -----
+    .. math:: D = \pi D_g N
     """
     return np.pi * require_non_negative(revolutions=revolutions) * require_positive(groove_diameter=groove_diameter)

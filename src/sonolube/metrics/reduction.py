@@ -1,4 +1,4 @@
-"""How much friction and wear a vibration takes away."""
+"""Friction reduction, wear rate and wear reduction by vibration."""
 
 from numpy.typing import ArrayLike
 
@@ -6,24 +6,32 @@ from sonolube.checks import Floats, require_finite, require_non_negative, requir
 
 
 def friction_reduction(*, intrinsic_friction_force: ArrayLike, reduced_friction_force: ArrayLike) -> Floats:
-    """Return the share of the friction that the vibration takes away. []
+    r"""Return the friction reduction by vibration, relative to the intrinsic friction force. []
 
     Parameters
     ----------
     intrinsic_friction_force : array_like
-        Friction without vibration. [N]
+        Friction force without vibration. [N]
     reduced_friction_force : array_like, broadcast against `intrinsic_friction_force`
-        Friction with vibration; negative where the vibration drives. [N]
+        Friction force with vibration; negative where the vibration drives the motion. [N]
 
     Returns
     -------
     ndarray, shape of the broadcast arguments
-        1 for no friction left, negative for more friction than before.
+        1 where no friction is left, above 1 where the vibration drives, negative where friction has increased.
 
     Raises
     ------
     InvalidInput
-        If an intrinsic friction is not positive, or a value not finite.
+        If an intrinsic friction force is not positive, or a value not finite.
+
+    See Also
+    --------
+    wear_reduction
+
+    Notes
+    -----
+    .. math:: P_f = \frac{F_{t0} - F_{t1}}{F_{t0}} \qquad \text{(D 2.1)}
 
     References
     ----------
@@ -35,14 +43,14 @@ def friction_reduction(*, intrinsic_friction_force: ArrayLike, reduced_friction_
 
 
 def wear_reduction(*, intrinsic_wear_rate: ArrayLike, reduced_wear_rate: ArrayLike) -> Floats:
-    """Return the share of the wear that the vibration takes away. []
+    r"""Return the wear reduction by vibration, relative to the intrinsic wear rate. []
 
     Parameters
     ----------
     intrinsic_wear_rate : array_like
-        Volume worn per sliding distance without vibration. [m2]
+        Wear rate without vibration. [m2]
     reduced_wear_rate : array_like, broadcast against `intrinsic_wear_rate`
-        Volume worn per sliding distance with vibration. [m2]
+        Wear rate with vibration. [m2]
 
     Returns
     -------
@@ -53,6 +61,14 @@ def wear_reduction(*, intrinsic_wear_rate: ArrayLike, reduced_wear_rate: ArrayLi
     InvalidInput
         If an intrinsic rate is not positive, a reduced one negative, or a value not finite.
 
+    See Also
+    --------
+    friction_reduction, wear_rate
+
+    Notes
+    -----
+    .. math:: P_w = \frac{W_0 - W_1}{W_0} \qquad \text{(D 2.3)}
+
     References
     ----------
     .. [1] D 2.3.
@@ -62,14 +78,14 @@ def wear_reduction(*, intrinsic_wear_rate: ArrayLike, reduced_wear_rate: ArrayLi
 
 
 def wear_rate(*, wear_volume: ArrayLike, sliding_distance: ArrayLike) -> Floats:
-    """Return the volume worn per sliding distance. [m2]
+    r"""Return the wear rate, wear volume per sliding distance. [m2]
 
     Parameters
     ----------
     wear_volume : array_like
-        Volume worn away. [m3]
+        Wear volume. [m3]
     sliding_distance : array_like, broadcast against `wear_volume`
-        Distance slid meanwhile. [m]
+        Sliding distance over which it was worn. [m]
 
     Returns
     -------
@@ -79,6 +95,10 @@ def wear_rate(*, wear_volume: ArrayLike, sliding_distance: ArrayLike) -> Floats:
     ------
     InvalidInput
         If a volume is negative, a distance not positive, or a value not finite.
+
+    Notes
+    -----
+    .. math:: W = \frac{V}{D} \qquad \text{(D 2.2)}
 
     References
     ----------

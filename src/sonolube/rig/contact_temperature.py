@@ -11,15 +11,15 @@ from sonolube.rig.friction_and_wear import friction_ratio, prescribed_sine
 from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.record import Rig
 from sonolube.thermal import (
-    ContactHistory,
+    ContactTemperatureHistory,
     EllipticSource,
     HeatedContact,
     ThermalNetwork,
     ThermalSolid,
     contact_rise,
+    contact_temperature_history,
     frictional_heat_rate,
     peclet_number,
-    two_factor_history,
 )
 
 _STEPS = 200
@@ -53,7 +53,7 @@ class TemperaturePoint:
         Name of the friction model.
     caveats : tuple of str
         What speaks against trusting the numbers, each in one line.
-    with_vibration, without_vibration : ContactHistory
+    with_vibration, without_vibration : ContactTemperatureHistory
         Both tests in time.
     """
 
@@ -68,8 +68,8 @@ class TemperaturePoint:
     friction_ratio: float
     friction_model: str
     caveats: tuple[str, ...]
-    with_vibration: ContactHistory
-    without_vibration: ContactHistory
+    with_vibration: ContactTemperatureHistory
+    without_vibration: ContactTemperatureHistory
 
 
 def thermal_solid(name: str) -> ThermalSolid:
@@ -164,8 +164,8 @@ def temperature_point(
 
 def _history(
     rig: Rig, contact: HeatedContact, times: Floats, friction_force: float, vibration_heat_rate: float
-) -> ContactHistory:
-    return two_factor_history(
+) -> ContactTemperatureHistory:
+    return contact_temperature_history(
         contact,
         time=times,
         friction_force=friction_force,

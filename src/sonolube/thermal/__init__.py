@@ -1,4 +1,4 @@
-"""Heat of friction and vibration: flash temperature, partition, bulk rise, transients."""
+"""Heat of friction and vibration: flash temperature, heat partition, bulk temperature and thermal networks."""
 
 from sonolube.thermal.bulk import (
     HeatedDisc,
@@ -9,38 +9,38 @@ from sonolube.thermal.bulk import (
     pin_conductance,
     pin_rise,
 )
+from sonolube.thermal.contact_history import (
+    ContactTemperatureHistory,
+    HeatedContact,
+    contact_temperature_history,
+    frictional_heat_rate,
+    superimposed_heat_rate,
+)
 from sonolube.thermal.flash import (
-    ContactHeat,
+    ContactRise,
     FlashRise,
     blok_partition,
     contact_rise,
-    fast_rise,
     flash_rise,
+    high_peclet_rise,
+    low_peclet_rise,
     peclet_number,
-    stationary_rise,
 )
 from sonolube.thermal.jaeger import moving_band_rise, moving_rectangle_rise
 from sonolube.thermal.network import ThermalNetwork, network_rise
 from sonolube.thermal.solid import ThermalSolid
 from sonolube.thermal.source import EllipticSource, HeatSource, HertzianSource, RectangularSource
-from sonolube.thermal.two_factors import (
-    ContactHistory,
-    HeatedContact,
-    frictional_heat_rate,
-    superimposed_heat_rate,
-    two_factor_history,
-)
 from sonolube.thermal.vibration_heat import (
-    half_wave_energy,
-    inferred_conductance,
+    adiabatic_heat_rate,
+    half_wave_bar_energy,
+    interface_conductance,
     layer_conductance,
-    loss_heat_rate,
-    warming_heat_rate,
+    vibration_loss_heat_rate,
 )
 
 __all__ = [
-    "ContactHeat",
-    "ContactHistory",
+    "ContactRise",
+    "ContactTemperatureHistory",
     "EllipticSource",
     "FlashRise",
     "HeatSource",
@@ -51,17 +51,19 @@ __all__ = [
     "RectangularSource",
     "ThermalNetwork",
     "ThermalSolid",
+    "adiabatic_heat_rate",
     "blok_partition",
     "contact_rise",
+    "contact_temperature_history",
     "disc_track_rise",
-    "fast_rise",
     "flash_rise",
     "frictional_heat_rate",
     "half_space_rise",
-    "half_wave_energy",
-    "inferred_conductance",
+    "half_wave_bar_energy",
+    "high_peclet_rise",
+    "interface_conductance",
     "layer_conductance",
-    "loss_heat_rate",
+    "low_peclet_rise",
     "lumped_rise",
     "moving_band_rise",
     "moving_rectangle_rise",
@@ -69,8 +71,6 @@ __all__ = [
     "peclet_number",
     "pin_conductance",
     "pin_rise",
-    "stationary_rise",
     "superimposed_heat_rate",
-    "two_factor_history",
-    "warming_heat_rate",
+    "vibration_loss_heat_rate",
 ]

@@ -1,4 +1,4 @@
-"""Bulk temperature: how heat leaves through a half-space, a pin and a disc, in closed form."""
+r"""Bulk temperature rise in closed form: half-space, lumped body, pin as a fin and disc heated along a circle."""
 
 from dataclasses import dataclass
 
@@ -10,22 +10,22 @@ from sonolube.checks import Floats, require_non_negative, require_positive, requ
 from sonolube.errors import InvalidInput
 from sonolube.thermal.solid import ThermalSolid
 
-_FARTHEST = 40.0  # depth over reach of the heat beyond which a float holds no rise
+_DEEPEST = 40.0  # depth over diffusion length beyond which the rise underflows
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class HeatedPin:
-    """A round pin heated at its end face, cooled along its side by the air.
+    """A cylindrical pin heated uniformly at its end face and cooled by convection along its side: a fin.
 
     Parameters
     ----------
     solid : ThermalSolid
     pin_radius : float
-        Radius of the pin. [m]
+        Radius of the pin, r. [m]
     length : float
-        Length of the pin. [m]
+        Length of the pin, L. [m]
     convection_coefficient : float
-        Heat lost from the side to the air. [W/(m2 K)]
+        Heat transfer coefficient from the side to the air, h. [W/(m2 K)]
 
     Raises
     ------
@@ -34,7 +34,7 @@ class HeatedPin:
 
     Notes
     -----
-    A fin: even over its cross section, for Biot numbers h r/k well below 0.1.
+    The temperature is uniform over the cross section, which holds for Biot numbers h r/k well below 0.1.
 
     References
     ----------
@@ -57,31 +57,31 @@ class HeatedPin:
 
     @property
     def heat_capacity(self) -> float:
-        """Heat that warms the whole pin by a kelvin. [J/K]"""
+        """Heat that raises the temperature of the whole pin by one kelvin. [J/K]"""
         return self.cross_section * self.length * self.solid.density * self.solid.specific_heat_capacity
 
     @property
-    def cooling_parameter(self) -> float:
-        """Square root of the heat lost to the air over that conducted, times the length. []"""
+    def fin_parameter(self) -> float:
+        """Dimensionless fin parameter m L with m = sqrt(2 h/(k r)). []"""
         h, k = self.convection_coefficient, self.solid.thermal_conductivity
         return float(np.sqrt(2 * h / (k * self.pin_radius)) * self.length)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class HeatedDisc:
-    """A thin disc heated along a circle, as by a pin that turns round often while it warms; cooled on both faces.
+    """A thin disc heated uniformly along a circle and cooled by convection on both faces.
 
     Parameters
     ----------
     solid : ThermalSolid
     thickness : float
-        Thickness of the disc. [m]
+        Thickness of the disc, t. [m]
     track_radius : float
-        Radius of the heated circle. [m]
+        Radius of the heated circle, R. [m]
     disc_radius : float
-        Outer radius of the disc, its rim insulated. [m]
+        Outer radius of the disc, R_o; its rim is insulated. [m]
     convection_coefficient : float
-        Heat lost from each face to the air. [W/(m2 K)]
+        Heat transfer coefficient from each face to the air, h. [W/(m2 K)]
 
     Raises
     ------
@@ -90,7 +90,8 @@ class HeatedDisc:
 
     Notes
     -----
-    Even through its thickness, for Biot numbers h t/k well below 0.1.
+    The heat of a pin is averaged over the whole circle, which holds where the disc turns often while it warms. The
+    temperature is uniform through the thickness, which holds for Biot numbers h t/k well below 0.1.
 
     References
     ----------
@@ -115,15 +116,15 @@ class HeatedDisc:
 
 
 def half_space_rise(solid: ThermalSolid, *, heat_flux: ArrayLike, time: ArrayLike, depth: ArrayLike = 0.0) -> Floats:
-    """Return the rise in a half-space after heat has entered all its surface for some time. [K]
+    r"""Return the transient temperature rise in a half-space under a constant, uniform surface heat flux. [K]
 
     Parameters
     ----------
     solid : ThermalSolid
     heat_flux : array_like
-        Heat that enters. [W/m2]
+        Heat flux into the surface. [W/m2]
     time : array_like, broadcast against `heat_flux`
-        Time since it set in. [s]
+        Time since the flux was applied. [s]
     depth : array_like, broadcast against them
         Depth below the surface. [m]
 
@@ -136,32 +137,41 @@ def half_space_rise(solid: ThermalSolid, *, heat_flux: ArrayLike, time: ArrayLik
     InvalidInput
         If a value is negative or not finite.
 
+    Notes
+    -----
+    With the diffusion length :math:`\ell = 2\sqrt{\kappa t}`,
+
+    .. math::
+
+        \Delta T = \frac{q\,\ell}{k}
+        \left[ \frac{e^{-z^2/\ell^2}}{\sqrt{\pi}} - \frac{z}{\ell} \operatorname{erfc} \frac{z}{\ell} \right] .
+
     References
     ----------
     .. [1] H. S. Carslaw, J. C. Jaeger, Conduction of Heat in Solids, 2nd ed., Oxford (1959), section 2.9.
     """
     q = require_non_negative(heat_flux=heat_flux)
-    reach = 2 * np.sqrt(solid.thermal_diffusivity * require_non_negative(time=time))
-    z = np.minimum(require_non_negative(depth=depth) / np.maximum(reach, 1e-200), _FARTHEST)
-    below = np.exp(-(z**2)) / np.sqrt(np.pi) - z * erfc(z)
-    return np.asarray(q * reach / solid.thermal_conductivity * below)
+    diffusion_length = 2 * np.sqrt(solid.thermal_diffusivity * require_non_negative(time=time))
+    z = np.minimum(require_non_negative(depth=depth) / np.maximum(diffusion_length, 1e-200), _DEEPEST)
+    profile = np.exp(-(z**2)) / np.sqrt(np.pi) - z * erfc(z)
+    return np.asarray(q * diffusion_length / solid.thermal_conductivity * profile)
 
 
 def lumped_rise(
     *, heat_rate: ArrayLike, thermal_conductance: ArrayLike, heat_capacity: ArrayLike, time: ArrayLike
 ) -> Floats:
-    """Return the rise of a body of one temperature that is heated and loses heat in proportion to its rise. [K]
+    r"""Return the transient temperature rise of a body of uniform temperature by the lumped-capacitance method. [K]
 
     Parameters
     ----------
     heat_rate : array_like
-        Heat that enters. [W]
+        Heat into the body per time, constant. [W]
     thermal_conductance : array_like, broadcast against `heat_rate`
-        Heat lost per kelvin. [W/K]
+        Heat lost per time and kelvin of rise. [W/K]
     heat_capacity : array_like, broadcast against them
-        Heat that warms the body by a kelvin. [J/K]
+        Heat capacity of the body. [J/K]
     time : array_like, broadcast against them
-        Time since the heat set in. [s]
+        Time since the heat was applied. [s]
 
     Returns
     -------
@@ -174,7 +184,9 @@ def lumped_rise(
 
     Notes
     -----
-    For bodies that conduct within far better than they lose.
+    For bodies whose internal conductance is far above that to their surroundings (small Biot number):
+
+    .. math:: \Delta T = \frac{Q}{G} \left( 1 - e^{-G t/C} \right) .
     """
     q = require_non_negative(heat_rate=heat_rate)
     g = require_positive(thermal_conductance=thermal_conductance)
@@ -183,13 +195,13 @@ def lumped_rise(
 
 
 def pin_rise(pin: HeatedPin, *, heat_rate: ArrayLike, depth: ArrayLike = 0.0) -> Floats:
-    """Return the steady rise in a pin whose far end is held at the temperature of the air. [K]
+    r"""Return the steady temperature rise along a pin, a fin whose far end is held at the temperature of the air. [K]
 
     Parameters
     ----------
     pin : HeatedPin
     heat_rate : array_like
-        Heat that enters the face. [W]
+        Heat into the end face per time. [W]
     depth : array_like, broadcast against `heat_rate`
         Distance from the heated face. [m]
 
@@ -201,20 +213,27 @@ def pin_rise(pin: HeatedPin, *, heat_rate: ArrayLike, depth: ArrayLike = 0.0) ->
     ------
     InvalidInput
         If a heat is negative, a depth lies outside the pin, or a value is not finite.
+
+    Notes
+    -----
+    With :math:`m = \sqrt{2h/(k r)}`,
+
+    .. math:: \Delta T = \frac{Q}{k \pi r^2 m} \frac{\sinh m(L - z)}{\cosh m L} .
     """
     x = require_within(0.0, pin.length, depth=depth) / pin.length
-    m = max(pin.cooling_parameter, 1e-8)  # below, the air counts for nothing and the profile is straight
-    falls = -np.expm1(-2 * m * (1 - x)) * np.exp(-m * x) / (1 + np.exp(-2 * m))  # sinh m(1-x) over cosh m
+    m = max(pin.fin_parameter, 1e-8)  # below this value convection is negligible and the profile linear
+    profile = -np.expm1(-2 * m * (1 - x)) * np.exp(-m * x) / (1 + np.exp(-2 * m))  # sinh m(1-x) over cosh m
     gradient = require_non_negative(heat_rate=heat_rate) / (pin.solid.thermal_conductivity * pin.cross_section)
-    return np.asarray(gradient * pin.length / m * falls)
+    return np.asarray(gradient * pin.length / m * profile)
 
 
 def pin_conductance(pin: HeatedPin) -> float:
-    """Return heat into the face per kelvin of its rise, the far end held at the temperature of the air. [W/K]
+    """Return the steady thermal conductance of a pin: heat into its face per kelvin of rise of that face. [W/K]
 
     Parameters
     ----------
     pin : HeatedPin
+        Its far end is held at the temperature of the air, as in `pin_rise`.
 
     Returns
     -------
@@ -224,13 +243,13 @@ def pin_conductance(pin: HeatedPin) -> float:
 
 
 def disc_track_rise(disc: HeatedDisc, *, heat_rate: ArrayLike) -> Floats:
-    """Return the steady rise along the heated circle, averaged over a turn. [K]
+    r"""Return the steady temperature rise of a thin disc on the circle along which it is heated. [K]
 
     Parameters
     ----------
     disc : HeatedDisc
     heat_rate : array_like, any shape
-        Heat that enters along the circle. [W]
+        Heat into the circle per time. [W]
 
     Returns
     -------
@@ -240,10 +259,18 @@ def disc_track_rise(disc: HeatedDisc, *, heat_rate: ArrayLike) -> Floats:
     ------
     InvalidInput
         If a heat is negative or not finite.
+
+    Notes
+    -----
+    An annular fin with insulated rim. With :math:`m = \sqrt{2h/(k t)}` and the modified Bessel functions,
+
+    .. math::
+
+        \Delta T = \frac{Q}{2\pi k t}\, I_0(m R) \left[ K_0(m R) + I_0(m R) \frac{K_1(m R_o)}{I_1(m R_o)} \right] .
     """
     k_t = disc.solid.thermal_conductivity * disc.thickness
     m = np.sqrt(2 * disc.convection_coefficient / k_t)
     track, rim = m * disc.track_radius, m * disc.disc_radius
-    from_rim = i0e(track) * k1e(rim) / i1e(rim) * np.exp(2 * (track - rim))
-    of_one_watt = i0e(track) * (k0e(track) + from_rim) / (2 * np.pi * k_t)
-    return np.asarray(require_non_negative(heat_rate=heat_rate) * of_one_watt)
+    rim_term = i0e(track) * k1e(rim) / i1e(rim) * np.exp(2 * (track - rim))
+    rise_per_watt = i0e(track) * (k0e(track) + rim_term) / (2 * np.pi * k_t)
+    return np.asarray(require_non_negative(heat_rate=heat_rate) * rise_per_watt)

@@ -1,4 +1,4 @@
-"""Flash temperature: what a sliding patch of heat adds to the bulk, at any Peclet number."""
+"""Flash temperature of a sliding contact at any Peclet number, and the partition of its heat between two bodies."""
 
 from typing import NamedTuple
 
@@ -11,29 +11,29 @@ from sonolube.thermal.source import HeatSource
 
 
 class FlashRise(NamedTuple):
-    """Rise of the surface under a heat source over the bulk.
+    """Peak and mean surface temperature rise under a heat source, over the bulk temperature.
 
     Parameters
     ----------
     peak_temperature_rise : ndarray
-        Highest under the source. [K]
+        Maximum under the source. [K]
     mean_temperature_rise : ndarray
-        Mean under the source. [K]
+        Mean over the area of the source. [K]
     """
 
     peak_temperature_rise: Floats
     mean_temperature_rise: Floats
 
 
-class ContactHeat(NamedTuple):
-    """How two bodies share the heat of their contact.
+class ContactRise(NamedTuple):
+    """Flash temperature of a contact and the partition of its heat between both bodies.
 
     Parameters
     ----------
     heat_partition : ndarray
-        Share that flows into the body at which the source stands still. []
+        Fraction of the heat that flows into the body at which the source is stationary. []
     peak_temperature_rise : ndarray
-        Highest rise of the contact over the bulk of both. [K]
+        Peak rise of the contact over the bulk temperature of both bodies. [K]
     mean_temperature_rise : ndarray
         Mean rise of the contact. [K]
     """
@@ -44,14 +44,14 @@ class ContactHeat(NamedTuple):
 
 
 def peclet_number(solid: ThermalSolid, source: HeatSource, *, sliding_speed: ArrayLike) -> Floats:
-    """Return the Peclet number V b/(2 kappa) of a source on a solid. []
+    r"""Return the Peclet number of a heat source that moves over a solid. []
 
     Parameters
     ----------
     solid : ThermalSolid
     source : HeatSource
     sliding_speed : array_like, any shape
-        Speed of the source over the solid, zero at rest. [m/s]
+        Speed of the source over the solid, zero for a stationary source. [m/s]
 
     Returns
     -------
@@ -61,20 +61,28 @@ def peclet_number(solid: ThermalSolid, source: HeatSource, *, sliding_speed: Arr
     ------
     InvalidInput
         If a speed is negative or not finite.
+
+    Notes
+    -----
+    With the speed V, the half length b of the source along the sliding and the diffusivity kappa,
+
+    .. math:: \mathrm{Pe} = \frac{V b}{2\kappa} ,
+
+    the definition of Jaeger and of Tian and Kennedy; other authors leave out the factor 2.
     """
     v = require_non_negative(sliding_speed=sliding_speed)
     return v * source.half_length / (2 * solid.thermal_diffusivity)
 
 
-def stationary_rise(solid: ThermalSolid, source: HeatSource, *, heat_flux: ArrayLike) -> FlashRise:
-    """Return the steady rise under a source at rest.
+def low_peclet_rise(solid: ThermalSolid, source: HeatSource, *, heat_flux: ArrayLike) -> FlashRise:
+    r"""Return the steady rise under a stationary source, the limit of zero Peclet number.
 
     Parameters
     ----------
     solid : ThermalSolid
     source : HeatSource
     heat_flux : array_like, any shape
-        Heat that enters, mean over the source. [W/m2]
+        Heat flux into the solid, mean over the source. [W/m2]
 
     Returns
     -------
@@ -85,23 +93,36 @@ def stationary_rise(solid: ThermalSolid, source: HeatSource, *, heat_flux: Array
     InvalidInput
         If a flux is negative or not finite.
 
+    See Also
+    --------
+    high_peclet_rise : the limit of a fast source.
+    flash_rise : any Peclet number.
+
+    Notes
+    -----
+    .. math:: \Delta T_0 = c_0 \frac{\bar q b}{k}
+
+    with :math:`c_0` the source's `peak_low_peclet` or `mean_low_peclet`.
+
     References
     ----------
     .. [1] J. C. Jaeger, J. Proc. R. Soc. N.S.W. 76, 203 (1942).
     """
-    scale = _scale(solid, source, heat_flux)
-    return FlashRise(scale * source.still_peak, scale * source.still_mean)
+    scale = _rise_scale(solid, source, heat_flux)
+    return FlashRise(scale * source.peak_low_peclet, scale * source.mean_low_peclet)
 
 
-def fast_rise(solid: ThermalSolid, source: HeatSource, *, heat_flux: ArrayLike, sliding_speed: ArrayLike) -> FlashRise:
-    """Return the rise under a source so fast that heat flows only downwards.
+def high_peclet_rise(
+    solid: ThermalSolid, source: HeatSource, *, heat_flux: ArrayLike, sliding_speed: ArrayLike
+) -> FlashRise:
+    r"""Return the steady rise under a fast source, the limit of high Peclet number.
 
     Parameters
     ----------
     solid : ThermalSolid
     source : HeatSource
     heat_flux : array_like
-        Heat that enters, mean over the source. [W/m2]
+        Heat flux into the solid, mean over the source. [W/m2]
     sliding_speed : array_like, broadcast against `heat_flux`
         Speed of the source over the solid. [m/s]
 
@@ -114,9 +135,19 @@ def fast_rise(solid: ThermalSolid, source: HeatSource, *, heat_flux: ArrayLike, 
     InvalidInput
         If a flux is negative, a speed not positive, or a value not finite.
 
+    See Also
+    --------
+    low_peclet_rise : the limit of a stationary source.
+    flash_rise : any Peclet number.
+
     Notes
     -----
-    For Peclet numbers above ten or so. Each point is heated for as long as the source takes to pass it.
+    For Peclet numbers above about ten. Heat flows only normal to the surface: each point is heated like a half-space
+    for as long as the source takes to pass it, so that
+
+    .. math:: \Delta T_\infty = c_\infty \frac{\bar q b}{k} \frac{1}{\sqrt{\mathrm{Pe}}}
+
+    with :math:`c_\infty` the source's `peak_high_peclet`, for the mean times `mean_to_peak_high_peclet`.
 
     References
     ----------
@@ -124,21 +155,21 @@ def fast_rise(solid: ThermalSolid, source: HeatSource, *, heat_flux: ArrayLike, 
     """
     require_positive(sliding_speed=sliding_speed)
     pe = peclet_number(solid, source, sliding_speed=sliding_speed)
-    peak = _scale(solid, source, heat_flux) * source.fast_peak / np.sqrt(pe)
-    return FlashRise(peak, source.fast_mean_fraction * peak)
+    peak = _rise_scale(solid, source, heat_flux) * source.peak_high_peclet / np.sqrt(pe)
+    return FlashRise(peak, source.mean_to_peak_high_peclet * peak)
 
 
 def flash_rise(solid: ThermalSolid, source: HeatSource, *, heat_flux: ArrayLike, sliding_speed: ArrayLike) -> FlashRise:
-    """Return the steady rise under a sliding source at any speed.
+    r"""Return the steady flash temperature rise under a sliding source by Tian and Kennedy's interpolation.
 
     Parameters
     ----------
     solid : ThermalSolid
     source : HeatSource
     heat_flux : array_like
-        Heat that enters, mean over the source. [W/m2]
+        Heat flux into the solid, mean over the source. [W/m2]
     sliding_speed : array_like, broadcast against `heat_flux`
-        Speed of the source over the solid, zero at rest. [m/s]
+        Speed of the source over the solid, zero for a stationary source. [m/s]
 
     Returns
     -------
@@ -149,62 +180,81 @@ def flash_rise(solid: ThermalSolid, source: HeatSource, *, heat_flux: ArrayLike,
     InvalidInput
         If a flux or speed is negative or not finite.
 
+    See Also
+    --------
+    low_peclet_rise, high_peclet_rise : the limits between which this interpolates.
+    moving_band_rise, moving_rectangle_rise : the integrals that this approximates.
+
     Notes
     -----
-    Interpolates between both limits as c/sqrt(Pe_0 + Pe), in which the limits leave nothing to fit; with it the known
-    constants of Tian and Kennedy come out, whose text was not at hand: 2, 1.273 for the peak and 1.22, 0.6575 for the
-    mean of the circle, 2, 1.011 for the peak of the square, 2.32, 1.234 for that of a round `HertzianSource`, which is
-    18 % hotter than even flux. Against integrals over circle and square the peak is within 2.5 %, the mean within 4 %;
-    of Hertz within 1.5 and 5 %.
+    Interpolates between the limits of low and high Peclet number as
+
+    .. math:: \Delta T = \left( \Delta T_0^{-2} + \Delta T_\infty^{-2} \right)^{-1/2} ,
+
+    which has the form :math:`c/\sqrt{\mathrm{Pe}_0 + \mathrm{Pe}}` and leaves no constant to fit. It reproduces the
+    published constants of Tian and Kennedy, whose paper was not available in full: 2 and 1.273 for the peak and 1.22
+    and 0.6575 for the mean of the circle, 2 and 1.011 for the peak of the square, 2.32 and 1.234 for the peak of a
+    round `HertzianSource`, which is 18 % above that of a uniform flux. Against numerical integrals over circle and
+    square the peak is within 2.5 % and the mean within 4 %; for the Hertzian source within 1.5 % and 5 %.
 
     References
     ----------
     .. [1] X. Tian, F. E. Kennedy, J. Tribol. 116, 167 (1994). doi:10.1115/1.2927035
     .. [2] Y. S. Muzychka, M. M. Yovanovich, J. Tribol. 123, 624 (2001). doi:10.1115/1.1370516
     """
-    scale = _scale(solid, source, heat_flux)
+    scale = _rise_scale(solid, source, heat_flux)
     pe = peclet_number(solid, source, sliding_speed=sliding_speed)
-    peak = scale / np.sqrt(source.still_peak**-2 + pe / source.fast_peak**2)
-    mean = scale / np.sqrt(source.still_mean**-2 + pe / (source.fast_mean_fraction * source.fast_peak) ** 2)
+    peak = scale / np.sqrt(source.peak_low_peclet**-2 + pe / source.peak_high_peclet**2)
+    mean = scale / np.sqrt(
+        source.mean_low_peclet**-2 + pe / (source.mean_to_peak_high_peclet * source.peak_high_peclet) ** 2
+    )
     return FlashRise(peak, mean)
 
 
 def contact_rise(
-    still: ThermalSolid,
+    stationary: ThermalSolid,
     moving: ThermalSolid,
     source: HeatSource,
     *,
     heat_rate: ArrayLike,
     sliding_speed: ArrayLike,
-) -> ContactHeat:
-    """Return how heat parts between two bodies so that their mean temperatures in the contact agree.
+) -> ContactRise:
+    r"""Return the flash temperature of a contact and its heat partition by equal mean temperatures, after Jaeger.
 
     Parameters
     ----------
-    still : ThermalSolid
-        The body that carries the contact with it, such as a pin.
+    stationary : ThermalSolid
+        The body to which the contact is fixed, such as a pin.
     moving : ThermalSolid
-        The body that the contact passes over, such as a disc.
+        The body over which the contact moves, such as a disc.
     source : HeatSource
         The contact.
     heat_rate : array_like
-        Heat of the contact. [W]
+        Heat generated in the contact. [W]
     sliding_speed : array_like, broadcast against `heat_rate`
         Speed of the sliding, zero at rest. [m/s]
 
     Returns
     -------
-    ContactHeat
+    ContactRise
 
     Raises
     ------
     InvalidInput
         If a heat or speed is negative or not finite.
 
+    See Also
+    --------
+    blok_partition : the partition by equal peak temperatures.
+
     Notes
     -----
-    After Jaeger; `blok_partition` matches the peaks instead. Both bodies are half-spaces of one bulk temperature. The
-    peak is the higher of both bodies', which only agree in the mean.
+    Both bodies are half-spaces of the same bulk temperature. With the mean rises per unit flux :math:`\theta_1` of the
+    stationary and :math:`\theta_2` of the moving body, the fraction of the heat into the stationary body is
+
+    .. math:: \alpha = \frac{\theta_2}{\theta_1 + \theta_2} .
+
+    The peak rise returned is the higher of both bodies', whose surface temperatures agree in the mean only.
 
     References
     ----------
@@ -212,24 +262,24 @@ def contact_rise(
     .. [2] J. C. Jaeger, J. Proc. R. Soc. N.S.W. 76, 203 (1942).
     """
     q = require_non_negative(heat_rate=heat_rate) / source.area
-    below = stationary_rise(still, source, heat_flux=1.0)
-    above = flash_rise(moving, source, heat_flux=1.0, sliding_speed=sliding_speed)
-    share = _into_the_first(below.mean_temperature_rise, above.mean_temperature_rise)
-    peak = np.maximum(share * below.peak_temperature_rise, (1 - share) * above.peak_temperature_rise)
-    return ContactHeat(share + 0 * q, q * peak, q * share * below.mean_temperature_rise)
+    first = low_peclet_rise(stationary, source, heat_flux=1.0)
+    second = flash_rise(moving, source, heat_flux=1.0, sliding_speed=sliding_speed)
+    partition = _partition(first.mean_temperature_rise, second.mean_temperature_rise)
+    peak = np.maximum(partition * first.peak_temperature_rise, (1 - partition) * second.peak_temperature_rise)
+    return ContactRise(partition + 0 * q, q * peak, q * partition * first.mean_temperature_rise)
 
 
 def blok_partition(
-    still: ThermalSolid, moving: ThermalSolid, source: HeatSource, *, sliding_speed: ArrayLike
+    stationary: ThermalSolid, moving: ThermalSolid, source: HeatSource, *, sliding_speed: ArrayLike
 ) -> Floats:
-    """Return the share of heat into the still body that makes the highest temperatures of both agree. []
+    r"""Return the fraction of the heat into the stationary body by equal peak temperatures, after Blok. []
 
     Parameters
     ----------
-    still : ThermalSolid
-        The body that carries the contact with it, such as a pin.
+    stationary : ThermalSolid
+        The body to which the contact is fixed, such as a pin.
     moving : ThermalSolid
-        The body that the contact passes over, such as a disc.
+        The body over which the contact moves, such as a disc.
     source : HeatSource
         The contact.
     sliding_speed : array_like, any shape
@@ -244,18 +294,28 @@ def blok_partition(
     InvalidInput
         If a speed is negative or not finite.
 
+    See Also
+    --------
+    contact_rise : the partition by equal mean temperatures.
+
+    Notes
+    -----
+    As in `contact_rise`, :math:`\alpha = \theta_2/(\theta_1 + \theta_2)`, here with the peak rises per unit flux.
+
     References
     ----------
     .. [1] H. Blok, Proc. Gen. Disc. Lubrication, Inst. Mech. Eng. 2, 222 (1937).
     """
-    below = stationary_rise(still, source, heat_flux=1.0).peak_temperature_rise
-    above = flash_rise(moving, source, heat_flux=1.0, sliding_speed=sliding_speed).peak_temperature_rise
-    return _into_the_first(below, above)
+    first = low_peclet_rise(stationary, source, heat_flux=1.0).peak_temperature_rise
+    second = flash_rise(moving, source, heat_flux=1.0, sliding_speed=sliding_speed).peak_temperature_rise
+    return _partition(first, second)
 
 
-def _into_the_first(first: Floats, second: Floats) -> Floats:
+def _partition(first: Floats, second: Floats) -> Floats:
+    """Return the fraction of the heat into the first of two bodies, from their rises under equal flux."""
     return second / (first + second)
 
 
-def _scale(solid: ThermalSolid, source: HeatSource, heat_flux: ArrayLike) -> Floats:
+def _rise_scale(solid: ThermalSolid, source: HeatSource, heat_flux: ArrayLike) -> Floats:
+    """Return the unit of dimensionless rises, mean flux times half length over conductivity, in K."""
     return require_non_negative(heat_flux=heat_flux) * source.half_length / solid.thermal_conductivity

@@ -1,4 +1,4 @@
-"""Bodies of one temperature each, joined by conductances: transients without time steps."""
+"""Transients of a thermal network of lumped bodies, exactly by its modes."""
 
 from dataclasses import dataclass
 
@@ -11,12 +11,12 @@ from sonolube.errors import InvalidInput
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ThermalNetwork:
-    """Bodies that exchange heat with each other and with surroundings of constant temperature.
+    """Lumped heat capacities joined by thermal conductances to each other and to surroundings of constant temperature.
 
     Parameters
     ----------
     heat_capacity : tuple of float
-        Heat that warms each body by a kelvin. [J/K]
+        Heat capacity of each body, C. [J/K]
     links : tuple of tuple
         First body, second body and the conductance between them in W/K, for each pair that is joined.
     losses : tuple of float
@@ -25,7 +25,8 @@ class ThermalNetwork:
     Raises
     ------
     InvalidInput
-        If a capacity is not positive, a conductance negative, a link leads nowhere, or the numbers of bodies differ.
+        If a capacity is not positive, a conductance negative, a link names a body that does not exist, or the numbers
+        of bodies differ.
     """
 
     heat_capacity: tuple[float, ...]
@@ -36,7 +37,7 @@ class ThermalNetwork:
         require_positive(heat_capacity=self.heat_capacity)
         count = len(self.heat_capacity)
         if len(self.losses) != count:
-            raise InvalidInput(f"losses must be one to a body, got {len(self.losses)} for {count}")
+            raise InvalidInput(f"losses must hold one conductance for each of {count} bodies, got {len(self.losses)}")
         require_non_negative(thermal_conductance=[*self.losses, *[conductance for _, _, conductance in self.links]])
         for first, second, _ in self.links:
             if not (0 <= first < count and 0 <= second < count and first != second):
@@ -44,7 +45,7 @@ class ThermalNetwork:
 
     @property
     def conductance_matrix(self) -> Floats:
-        """Heat that leaves each body per kelvin of each body's rise, in W/K."""
+        """Conductance matrix G: heat that leaves each body per kelvin of each body's rise, in W/K."""
         matrix = np.diag(np.asarray(self.losses, dtype=np.float64))
         for first, second, conductance in self.links:
             matrix[[first, second], [first, second]] += conductance
@@ -53,13 +54,14 @@ class ThermalNetwork:
 
 
 def network_rise(network: ThermalNetwork, *, time: ArrayLike, heat_rate: ArrayLike) -> Floats:
-    """Return the rise of every body in time, heated by steps, from the temperature of the surroundings. [K]
+    r"""Return the transient temperature rise of every body of a network under stepwise constant heat input. [K]
 
     Parameters
     ----------
     network : ThermalNetwork
+        At the first time all bodies are at the temperature of the surroundings.
     time : array_like, shape (n,)
-        Rising times; the first is the start. [s]
+        Increasing times; the first is the start. [s]
     heat_rate : array_like, shape (n - 1, bodies)
         Heat into each body, constant from each time to the next. [W]
 
@@ -70,31 +72,37 @@ def network_rise(network: ThermalNetwork, *, time: ArrayLike, heat_rate: ArrayLi
     Raises
     ------
     InvalidInput
-        If times do not rise, the heat does not fit times and bodies, or a value is not finite.
+        If times do not increase, the heat does not fit times and bodies, or a value is not finite.
 
     Notes
     -----
-    Exact at the given times, by the modes of the network.
+    Exact at the given times. The balance
+
+    .. math:: \mathrm{diag}(C)\, \dot{T} + G\, T = Q
+
+    is decoupled by the eigenvectors of :math:`C^{-1/2} G C^{-1/2}`; over an interval h a mode of rate
+    :math:`\lambda` under the constant modal load p goes from a to
+    :math:`a e^{-\lambda h} + p (1 - e^{-\lambda h})/\lambda`.
     """
     t = require_finite(time=time)
     q = require_finite(heat_rate=heat_rate)
     count = len(network.heat_capacity)
     if t.ndim != 1 or t.size < 2 or np.any(np.diff(t) <= 0):
-        raise InvalidInput("time must be two or more rising times")
+        raise InvalidInput("time must be two or more increasing times")
     if q.shape != (t.size - 1, count):
         raise InvalidInput(f"heat_rate must have shape {(t.size - 1, count)}, got {q.shape}")
     root = np.sqrt(np.asarray(network.heat_capacity))
-    rates, shapes = np.linalg.eigh(network.conductance_matrix / np.outer(root, root))
+    rates, modes = np.linalg.eigh(network.conductance_matrix / np.outer(root, root))
     rates = np.maximum(rates, 0.0)  # a network without losses has a rate of zero, of either sign by rounding
-    drives = (q / root) @ shapes
+    modal_loads = (q / root) @ modes
     modal = np.zeros((t.size, count))
     for step, interval in enumerate(np.diff(t)):
         decay = np.exp(-rates * interval)
-        modal[step + 1] = decay * modal[step] + _grown(rates, interval) * drives[step]
-    return np.asarray(modal @ shapes.T / root)
+        modal[step + 1] = decay * modal[step] + _step_response(rates, interval) * modal_loads[step]
+    return np.asarray(modal @ modes.T / root)
 
 
-def _grown(rates: Floats, interval: float) -> Floats:
-    """Return (1 - exp(-rate interval))/rate, which is the interval where the rate is zero."""
+def _step_response(rates: Floats, interval: float) -> Floats:
+    """Return (1 - exp(-rate interval))/rate, in its limit the interval where the rate is zero."""
     safe = np.where(rates > 0, rates, 1.0)
     return np.where(rates > 0, -np.expm1(-safe * interval) / safe, interval)

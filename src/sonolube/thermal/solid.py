@@ -1,4 +1,4 @@
-"""A solid as heat sees it."""
+"""Thermal properties of a homogeneous, isotropic solid."""
 
 from dataclasses import dataclass
 
@@ -7,16 +7,16 @@ from sonolube.checks import require_positive
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ThermalSolid:
-    """What heat meets in a homogeneous, isotropic solid.
+    """Conductivity, density and specific heat capacity of a homogeneous, isotropic solid.
 
     Parameters
     ----------
     thermal_conductivity : float
-        Heat flux per gradient of the temperature. [W/(m K)]
+        Heat flux per temperature gradient, k. [W/(m K)]
     density : float
-        Mass density. [kg/m3]
+        Mass density, rho. [kg/m3]
     specific_heat_capacity : float
-        Heat per mass and kelvin. [J/(kg K)]
+        Heat per mass and kelvin, c_p. [J/(kg K)]
 
     Raises
     ------
@@ -25,7 +25,7 @@ class ThermalSolid:
 
     Notes
     -----
-    Properties are constants: for rises of some tens of kelvin.
+    The properties do not depend on temperature, which holds for rises of some tens of kelvin.
     """
 
     thermal_conductivity: float
@@ -41,5 +41,5 @@ class ThermalSolid:
 
     @property
     def thermal_diffusivity(self) -> float:
-        """Conductivity over heat capacity per volume. [m2/s]"""
+        """Thermal diffusivity, k/(rho c_p). [m2/s]"""
         return self.thermal_conductivity / (self.density * self.specific_heat_capacity)

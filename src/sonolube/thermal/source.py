@@ -1,4 +1,13 @@
-"""Patches on a half-space that take up heat, and the two limits of how hot they get."""
+r"""Heat sources on a half-space: geometry, and the limits of their surface temperature at low and high Peclet number.
+
+Rises are dimensionless, in units of :math:`\bar q b/k` with the mean flux :math:`\bar q`, the half length b along the
+sliding and the conductivity k. With the Peclet number Pe the limits are
+
+.. math::
+
+    \frac{\Delta T}{\bar q b/k} \to c_0 \quad (\mathrm{Pe} \to 0) , \qquad
+    \frac{\Delta T}{\bar q b/k} \to \frac{c_\infty}{\sqrt{\mathrm{Pe}}} \quad (\mathrm{Pe} \to \infty) .
+"""
 
 from dataclasses import dataclass
 from typing import Protocol
@@ -8,19 +17,22 @@ from scipy.special import beta, ellipk
 
 from sonolube.checks import require_positive
 
-_FAST_PEAK_OF_EVEN = float(2 / np.sqrt(np.pi))  # half a space heated for as long as the source passes
-_FAST_MEAN_OF_RECTANGLE = 2 / 3  # mean of sqrt(x) over its end value
-_FAST_MEAN_OF_ELLIPSE = float(4 / (3 * np.pi) * beta(1 / 2, 7 / 4))  # the same over all chords
-_STILL_MEAN_OF_ELLIPSE = 8 / (3 * np.pi)  # of any ellipse: mean and centre scale alike with the axes
-# Flux q = 3/2 sqrt(1 - x^2) of its mean along the middle chord makes the greatest, over s, of the integral up to s of
-# q/sqrt(2 pi (s - x)): at s = 0.652 of the half length behind the middle.
-_FAST_PEAK_OF_HERTZ = 2.3210497325 / float(np.sqrt(np.pi))
-_FAST_MEAN_OF_HERTZ = float(16 / (5 * np.pi) * beta(1 / 2, 9 / 4) / np.sqrt(np.pi)) / _FAST_PEAK_OF_HERTZ
-_STILL_MEAN_OF_HERTZ = 3 / 4  # of its peak, whatever the axes
+_PEAK_HIGH_PECLET_UNIFORM = float(2 / np.sqrt(np.pi))  # half-space heated for the time of passage of the whole length
+_MEAN_TO_PEAK_RECTANGLE = 2 / 3  # mean of sqrt(x) over its end value
+_MEAN_TO_PEAK_ELLIPSE = float(4 / (3 * np.pi) * beta(1 / 2, 7 / 4))  # the same, averaged over all chords
+_MEAN_TO_CENTRE_ELLIPSE = 8 / (3 * np.pi)  # at rest, for any ratio of axes: mean and centre scale alike
+# Flux q = 3/2 sqrt(1 - x^2) of its mean along the middle chord: the maximum, over s, of the integral up to s of
+# q/sqrt(2 pi (s - x)), which lies 0.652 half lengths behind the centre.
+_PEAK_HIGH_PECLET_HERTZ = 2.3210497325 / float(np.sqrt(np.pi))
+_MEAN_TO_PEAK_HERTZ = float(16 / (5 * np.pi) * beta(1 / 2, 9 / 4) / np.sqrt(np.pi)) / _PEAK_HIGH_PECLET_HERTZ
+_MEAN_TO_CENTRE_HERTZ = 3 / 4  # at rest, for any ratio of axes
 
 
 class HeatSource(Protocol):
-    """A patch of heat flux on a half-space; rises are in units of mean flux times `half_length` over conductivity."""
+    """Heat flux distributed over a patch of a half-space, with the low- and high-Peclet limits of its temperature.
+
+    Rises are in units of mean flux times `half_length` over thermal conductivity.
+    """
 
     @property
     def half_length(self) -> float:
@@ -31,37 +43,54 @@ class HeatSource(Protocol):
         """Area of the patch. [m2]"""
 
     @property
-    def still_peak(self) -> float:
-        """Rise at the centre, source at rest. []"""
+    def peak_low_peclet(self) -> float:
+        """Dimensionless rise at the centre of the stationary source, Pe = 0. []"""
 
     @property
-    def still_mean(self) -> float:
-        """Mean rise, source at rest. []"""
+    def mean_low_peclet(self) -> float:
+        """Dimensionless mean rise under the stationary source, Pe = 0. []"""
 
     @property
-    def fast_peak(self) -> float:
-        """Highest rise, source fast, times the root of the Peclet number. []"""
+    def peak_high_peclet(self) -> float:
+        """Dimensionless peak rise times the square root of the Peclet number, for Pe to infinity. []"""
 
     @property
-    def fast_mean_fraction(self) -> float:
-        """Mean rise over the highest where the source is fast. []"""
+    def mean_to_peak_high_peclet(self) -> float:
+        """Mean over peak rise for Pe to infinity. []"""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class EllipticSource:
-    """An elliptic patch of even flux, one axis along the sliding; round where both are equal.
+    r"""Uniform heat flux over an ellipse with one axis along the sliding; a circle where both axes are equal.
 
     Parameters
     ----------
     half_length : float
-        Half the axis along the sliding. [m]
+        Semi-axis along the sliding, b. [m]
     half_width : float
-        Half the axis across it. [m]
+        Semi-axis across the sliding, l. [m]
 
     Raises
     ------
     InvalidInput
         If a value is not positive and finite.
+
+    See Also
+    --------
+    HertzianSource : the same patch with a flux in proportion to the Hertzian pressure.
+    RectangularSource : uniform flux over a rectangle.
+
+    Notes
+    -----
+    With the complete elliptic integral K of parameter :math:`m = 1 - \min(b, l)^2/\max(b, l)^2`, the stationary rise at
+    the centre and its mean over the ellipse are
+
+    .. math::
+
+        \frac{\Delta T_0}{q b/k} = \frac{2}{\pi}\, K(m)\, \frac{\min(b, l)}{b} , \qquad
+        \overline{\Delta T} = \frac{8}{3\pi} \Delta T_0 .
+
+    At high Peclet number the peak is :math:`2/\sqrt{\pi\,\mathrm{Pe}}` at the trailing end of the middle chord.
 
     References
     ----------
@@ -80,46 +109,56 @@ class EllipticSource:
         return float(np.pi * self.half_length * self.half_width)
 
     @property
-    def still_peak(self) -> float:
-        """Rise at the centre, source at rest. []"""
+    def peak_low_peclet(self) -> float:
+        """Dimensionless rise at the centre of the stationary source, Pe = 0. []"""
         short, long = sorted((self.half_length, self.half_width))
         return float(2 / np.pi * ellipk(1 - (short / long) ** 2) * short / self.half_length)
 
     @property
-    def still_mean(self) -> float:
-        """Mean rise, source at rest. []"""
-        return float(_STILL_MEAN_OF_ELLIPSE * self.still_peak)
+    def mean_low_peclet(self) -> float:
+        """Dimensionless mean rise under the stationary source, Pe = 0. []"""
+        return float(_MEAN_TO_CENTRE_ELLIPSE * self.peak_low_peclet)
 
     @property
-    def fast_peak(self) -> float:
-        """Highest rise, source fast, times the root of the Peclet number. []"""
-        return _FAST_PEAK_OF_EVEN
+    def peak_high_peclet(self) -> float:
+        """Dimensionless peak rise times the square root of the Peclet number, for Pe to infinity. []"""
+        return _PEAK_HIGH_PECLET_UNIFORM
 
     @property
-    def fast_mean_fraction(self) -> float:
-        """Mean rise over the highest where the source is fast. []"""
-        return _FAST_MEAN_OF_ELLIPSE
+    def mean_to_peak_high_peclet(self) -> float:
+        """Mean over peak rise for Pe to infinity. []"""
+        return _MEAN_TO_PEAK_ELLIPSE
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class HertzianSource:
-    """An elliptic patch whose heat flux follows the pressure of Hertz: the parabolic source of Tian and Kennedy.
+    r"""Heat flux in proportion to the Hertzian pressure on an ellipse: the parabolic source of Tian and Kennedy.
 
     Parameters
     ----------
     half_length : float
-        Half the axis along the sliding. [m]
+        Semi-axis along the sliding, b. [m]
     half_width : float
-        Half the axis across it. [m]
+        Semi-axis across the sliding, l. [m]
 
     Raises
     ------
     InvalidInput
         If a value is not positive and finite.
 
+    See Also
+    --------
+    EllipticSource : the same patch with a uniform flux.
+
     Notes
     -----
-    At rest the rise falls with the square of the distance from the centre, as the indentation under that pressure does.
+    The flux is :math:`\tfrac32 \bar q \sqrt{1 - x^2/b^2 - y^2/l^2}`. The stationary rise falls with the square of the
+    distance from the centre, as the indentation under that pressure does; its mean is 3/4 of its value at the centre,
+
+    .. math:: \frac{\Delta T_0}{\bar q b/k} = \frac{3}{4}\, K(m)\, \frac{\min(b, l)}{b} ,
+
+    with the elliptic integral of `EllipticSource`. At high Peclet number the peak is
+    :math:`2.321/\sqrt{\pi\,\mathrm{Pe}}`, 0.652 b behind the centre.
 
     References
     ----------
@@ -139,42 +178,60 @@ class HertzianSource:
         return float(np.pi * self.half_length * self.half_width)
 
     @property
-    def still_peak(self) -> float:
-        """Rise at the centre, source at rest. []"""
+    def peak_low_peclet(self) -> float:
+        """Dimensionless rise at the centre of the stationary source, Pe = 0. []"""
         short, long = sorted((self.half_length, self.half_width))
         return float(3 / 4 * ellipk(1 - (short / long) ** 2) * short / self.half_length)
 
     @property
-    def still_mean(self) -> float:
-        """Mean rise, source at rest. []"""
-        return _STILL_MEAN_OF_HERTZ * self.still_peak
+    def mean_low_peclet(self) -> float:
+        """Dimensionless mean rise under the stationary source, Pe = 0. []"""
+        return _MEAN_TO_CENTRE_HERTZ * self.peak_low_peclet
 
     @property
-    def fast_peak(self) -> float:
-        """Highest rise, source fast, times the root of the Peclet number. []"""
-        return _FAST_PEAK_OF_HERTZ
+    def peak_high_peclet(self) -> float:
+        """Dimensionless peak rise times the square root of the Peclet number, for Pe to infinity. []"""
+        return _PEAK_HIGH_PECLET_HERTZ
 
     @property
-    def fast_mean_fraction(self) -> float:
-        """Mean rise over the highest where the source is fast. []"""
-        return _FAST_MEAN_OF_HERTZ
+    def mean_to_peak_high_peclet(self) -> float:
+        """Mean over peak rise for Pe to infinity. []"""
+        return _MEAN_TO_PEAK_HERTZ
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RectangularSource:
-    """A rectangular patch of even flux, one side along the sliding; square where both are equal.
+    r"""Uniform heat flux over a rectangle with one side along the sliding; a square where both sides are equal.
 
     Parameters
     ----------
     half_length : float
-        Half the side along the sliding. [m]
+        Half the side along the sliding, b. [m]
     half_width : float
-        Half the side across it. [m]
+        Half the side across the sliding, l. [m]
 
     Raises
     ------
     InvalidInput
         If a value is not positive and finite.
+
+    See Also
+    --------
+    EllipticSource : uniform flux over an ellipse.
+    moving_rectangle_rise : the temperature around this source by quadrature.
+
+    Notes
+    -----
+    With r = l/b the stationary rise at the centre and its mean over the rectangle are
+
+    .. math::
+
+        \frac{\Delta T_0}{q b/k} &= \frac{2}{\pi}
+        \left( r \operatorname{arsinh} \frac1r + \operatorname{arsinh} r \right) \\
+        \frac{\overline{\Delta T}}{q b/k} &= \frac{\Delta T_0}{q b/k} + \frac{2}{\pi}\,
+        \frac{1 + r^3 - (1 + r^2)^{3/2}}{3 r} .
+
+    At high Peclet number the peak is :math:`2/\sqrt{\pi\,\mathrm{Pe}}` along the trailing edge, the mean 2/3 of it.
 
     References
     ----------
@@ -193,24 +250,24 @@ class RectangularSource:
         return 4 * self.half_length * self.half_width
 
     @property
-    def still_peak(self) -> float:
-        """Rise at the centre, source at rest. []"""
+    def peak_low_peclet(self) -> float:
+        """Dimensionless rise at the centre of the stationary source, Pe = 0. []"""
         r = self.half_width / self.half_length
         return float(2 / np.pi * (r * np.arcsinh(1 / r) + np.arcsinh(r)))
 
     @property
-    def still_mean(self) -> float:
-        """Mean rise, source at rest. []"""
+    def mean_low_peclet(self) -> float:
+        """Dimensionless mean rise under the stationary source, Pe = 0. []"""
         r = self.half_width / self.half_length
         corner = (1 + r**3 - np.hypot(1, r) ** 3) / (3 * r)
         return float(2 / np.pi * (r * np.arcsinh(1 / r) + np.arcsinh(r) + corner))
 
     @property
-    def fast_peak(self) -> float:
-        """Highest rise, source fast, times the root of the Peclet number. []"""
-        return _FAST_PEAK_OF_EVEN
+    def peak_high_peclet(self) -> float:
+        """Dimensionless peak rise times the square root of the Peclet number, for Pe to infinity. []"""
+        return _PEAK_HIGH_PECLET_UNIFORM
 
     @property
-    def fast_mean_fraction(self) -> float:
-        """Mean rise over the highest where the source is fast. []"""
-        return _FAST_MEAN_OF_RECTANGLE
+    def mean_to_peak_high_peclet(self) -> float:
+        """Mean over peak rise for Pe to infinity. []"""
+        return _MEAN_TO_PEAK_RECTANGLE

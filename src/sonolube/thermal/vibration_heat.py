@@ -1,4 +1,4 @@
-"""Heat of vibration: losses in a horn, rubbing of what vibrates, and what an interface lets through."""
+"""Heat of vibration from stored energy and quality factor; heat rate and conductance from temperature rises."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -7,7 +7,7 @@ from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.errors import InvalidInput
 
 
-def half_wave_energy(
+def half_wave_bar_energy(
     *,
     density: ArrayLike,
     cross_section: ArrayLike,
@@ -15,7 +15,7 @@ def half_wave_energy(
     frequency: ArrayLike,
     axial_amplitude: ArrayLike,
 ) -> Floats:
-    """Return the energy in the vibration of a prismatic half-wave bar. [J]
+    r"""Return the vibration energy stored in a prismatic half-wave bar in axial resonance. [J]
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ def half_wave_energy(
     frequency : array_like, broadcast against them
         Frequency of the vibration. [Hz]
     axial_amplitude : array_like, broadcast against them
-        Amplitude of its ends. [m]
+        Displacement amplitude of its ends. [m]
 
     Returns
     -------
@@ -38,6 +38,16 @@ def half_wave_energy(
     ------
     InvalidInput
         If an amplitude is negative, another value not positive, or a value not finite.
+
+    See Also
+    --------
+    vibration_loss_heat_rate : the heat this energy turns into.
+
+    Notes
+    -----
+    The peak kinetic energy of the mode :math:`A \cos(\pi x/L)`:
+
+    .. math:: E = \tfrac14\, \rho S L\, (2\pi f A)^2 .
     """
     mass = require_positive(density=density) * require_positive(cross_section=cross_section)
     mass = mass * require_positive(length=length)
@@ -45,17 +55,17 @@ def half_wave_energy(
     return mass * velocity**2 / 4
 
 
-def loss_heat_rate(*, stored_energy: ArrayLike, frequency: ArrayLike, quality_factor: ArrayLike) -> Floats:
-    """Return the heat that a vibration turns into, omega E/Q. [W]
+def vibration_loss_heat_rate(*, stored_energy: ArrayLike, frequency: ArrayLike, quality_factor: ArrayLike) -> Floats:
+    r"""Return the heat per time dissipated by a vibration of known stored energy and quality factor. [W]
 
     Parameters
     ----------
     stored_energy : array_like
-        Energy in the vibration. [J]
+        Energy stored in the vibration. [J]
     frequency : array_like, broadcast against `stored_energy`
         Frequency of the vibration. [Hz]
     quality_factor : array_like, broadcast against them
-        Energy stored over that lost per radian. []
+        Stored energy over the energy lost per radian. []
 
     Returns
     -------
@@ -65,22 +75,26 @@ def loss_heat_rate(*, stored_energy: ArrayLike, frequency: ArrayLike, quality_fa
     ------
     InvalidInput
         If an energy is negative, another value not positive, or a value not finite.
+
+    Notes
+    -----
+    .. math:: Q_v = \frac{2\pi f E}{Q}
     """
     energy = require_non_negative(stored_energy=stored_energy)
     return 2 * np.pi * require_positive(frequency=frequency) * energy / require_positive(quality_factor=quality_factor)
 
 
-def warming_heat_rate(*, heat_capacity: ArrayLike, temperature_rise: ArrayLike, duration: ArrayLike) -> Floats:
-    """Return the heat that warms a body by so much in so long while it loses none: a loss inferred from a record. [W]
+def adiabatic_heat_rate(*, heat_capacity: ArrayLike, temperature_rise: ArrayLike, duration: ArrayLike) -> Floats:
+    r"""Return the heat per time inferred from the adiabatic temperature rise of a body. [W]
 
     Parameters
     ----------
     heat_capacity : array_like
-        Heat that warms the body by a kelvin. [J/K]
+        Heat capacity of the body. [J/K]
     temperature_rise : array_like, broadcast against `heat_capacity`
         Rise of its temperature. [K]
     duration : array_like, broadcast against them
-        How long it took. [s]
+        Time over which the temperature rose. [s]
 
     Returns
     -------
@@ -90,25 +104,31 @@ def warming_heat_rate(*, heat_capacity: ArrayLike, temperature_rise: ArrayLike, 
     ------
     InvalidInput
         If a rise is negative, another value not positive, or a value not finite.
+
+    Notes
+    -----
+    .. math:: Q = \frac{C\,\Delta T}{t}
+
+    The body loses no heat meanwhile, so the result is a lower bound of the heat generated.
     """
     capacity = require_positive(heat_capacity=heat_capacity)
     rise = require_non_negative(temperature_rise=temperature_rise)
     return capacity * rise / require_positive(duration=duration)
 
 
-def inferred_conductance(
-    *, temperature_rise: ArrayLike, sheltered_rise: ArrayLike, convection_coefficient: ArrayLike
+def interface_conductance(
+    *, temperature_rise: ArrayLike, rise_behind_interface: ArrayLike, convection_coefficient: ArrayLike
 ) -> Floats:
-    """Return what an interface conducts if a sensor behind it warms less than one without. [W/(m2 K)]
+    r"""Return the thermal conductance of an interface from the steady rises on both of its sides. [W/(m2 K)]
 
     Parameters
     ----------
     temperature_rise : array_like
-        Rise of the source, which a sensor without the interface shows. [K]
-    sheltered_rise : array_like, broadcast against `temperature_rise`
-        Rise shown behind the interface. [K]
+        Rise of the source, as a sensor without the interface shows it. [K]
+    rise_behind_interface : array_like, broadcast against `temperature_rise`
+        Rise of a sensor behind the interface. [K]
     convection_coefficient : array_like, broadcast against them
-        Heat that the sensor loses onwards, per area of the interface. [W/(m2 K)]
+        Heat that the sensor loses to its surroundings, per area of the interface and kelvin. [W/(m2 K)]
 
     Returns
     -------
@@ -117,21 +137,27 @@ def inferred_conductance(
     Raises
     ------
     InvalidInput
-        If a value is not positive and finite, or the sheltered rise is not the smaller.
+        If a value is not positive and finite, or the rise behind the interface is not the smaller.
+
+    See Also
+    --------
+    layer_conductance : the conductance of a layer of known conductivity.
 
     Notes
     -----
-    In a steady state the same heat crosses interface and sensor: h_c (T - T') = h T'.
+    In a steady state the same heat crosses interface and sensor, :math:`h_c (\Delta T - \Delta T') = h\,\Delta T'`:
+
+    .. math:: h_c = \frac{h\,\Delta T'}{\Delta T - \Delta T'} .
     """
     rise = require_positive(temperature_rise=temperature_rise)
-    behind = require_positive(sheltered_rise=sheltered_rise)
+    behind = require_positive(rise_behind_interface=rise_behind_interface)
     if np.any(behind >= rise):
-        raise InvalidInput("sheltered_rise must be smaller than temperature_rise")
+        raise InvalidInput("rise_behind_interface must be smaller than temperature_rise")
     return require_positive(convection_coefficient=convection_coefficient) * behind / (rise - behind)
 
 
 def layer_conductance(*, thermal_conductivity: ArrayLike, thickness: ArrayLike) -> Floats:
-    """Return what a layer conducts through its thickness. [W/(m2 K)]
+    r"""Return the thermal conductance of a plane layer through its thickness. [W/(m2 K)]
 
     Parameters
     ----------
@@ -148,5 +174,9 @@ def layer_conductance(*, thermal_conductivity: ArrayLike, thickness: ArrayLike) 
     ------
     InvalidInput
         If a value is not positive and finite.
+
+    Notes
+    -----
+    .. math:: h_c = \frac{k}{t}
     """
     return require_positive(thermal_conductivity=thermal_conductivity) / require_positive(thickness=thickness)

@@ -1,4 +1,4 @@
-"""Turns of a disc from pulses: published speeds, lost pulses, unequal magnets."""
+"""Rotation of a disc from pulses: published speeds, missing pulses, unequally spaced magnets."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from pytest import approx, raises
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.friction.rotation import pulse_times, revolutions_at, rotation
+from sonolube.measurement.friction.rotation import disc_rotation, hall_pulse_times, revolutions_at
 
 MM = 1e-3
 
@@ -31,83 +31,87 @@ def test_published_speeds_follow_from_the_pulses(
     period = 60 / turns_per_minute
     t = np.arange(0, 12 * period, 0.0025)
     at = 0.4 * period + period * np.arange(11)
-    found = rotation(
-        time=pulse_times(time=t, magnetic_flux_density=0.01 + bells(t, at, np.full(11, 0.05))),
+    found = disc_rotation(
+        time=hall_pulse_times(time=t, magnetic_flux_density=0.01 + bells(t, at, np.full(11, 0.05))),
         groove_diameter=diameter * MM,
     )
     assert found.mean_rotation_speed == approx(1 / period, rel=1e-4)
     assert found.sliding_speed == approx(speed * MM, abs=within * MM)
-    assert not found.repaired.any()
+    assert not found.interpolated.any()
 
 
 def test_pulses_are_timed_between_samples() -> None:
     t = np.arange(0, 3, 0.0025)
     at = np.array([0.50113, 1.50071, 2.49967])
-    assert pulse_times(time=t, magnetic_flux_density=bells(t, at, np.ones(3), 0.02)) == approx(at, abs=2e-5)
+    assert hall_pulse_times(time=t, magnetic_flux_density=bells(t, at, np.ones(3), 0.02)) == approx(at, abs=2e-5)
 
 
-def test_a_magnet_turned_round_pulses_downwards() -> None:
+def test_a_magnet_of_reversed_polarity_gives_the_same_pulses() -> None:
     t = np.arange(0, 3, 0.0025)
     at = np.array([0.5, 1.5, 2.5])
-    assert pulse_times(time=t, magnetic_flux_density=-bells(t, at, np.ones(3))) == approx(at, abs=1e-5)
+    assert hall_pulse_times(time=t, magnetic_flux_density=-bells(t, at, np.ones(3))) == approx(at, abs=1e-5)
 
 
 @given(st.integers(1, 17), st.integers(1, 3), st.floats(0.1, 20))
 @settings(max_examples=60, deadline=None)
-def test_lost_pulses_are_put_back_and_flagged(first: int, lost: int, period: float) -> None:
+def test_missing_pulses_are_interpolated_and_flagged(first: int, lost: int, period: float) -> None:
     every = period * np.arange(22)
     gone = np.arange(first, first + lost)
-    found = rotation(time=np.delete(every, gone), groove_diameter=0.05)
+    found = disc_rotation(time=np.delete(every, gone), groove_diameter=0.05)
     assert found.time == approx(every)
-    assert np.flatnonzero(found.repaired).tolist() == gone.tolist()
+    assert np.flatnonzero(found.interpolated).tolist() == gone.tolist()
     assert found.revolutions == approx(np.arange(22))
 
 
-def test_a_jump_of_speed_is_not_a_lost_pulse() -> None:
+def test_a_step_of_speed_is_not_a_missing_pulse() -> None:
     # D 2.4.2: 50 to 77 turns a minute as the vibration takes friction away, and back
     interval = np.concatenate([np.full(10, 60 / 50), np.full(10, 60 / 77), np.full(10, 60 / 50)])
-    found = rotation(time=np.cumsum(interval), groove_diameter=60 * MM)
-    assert not found.repaired.any()
+    found = disc_rotation(time=np.cumsum(interval), groove_diameter=60 * MM)
+    assert not found.interpolated.any()
     assert found.rotation_speed == approx(1 / interval[1:])
 
 
 @given(st.lists(st.floats(0.2, 1.0), min_size=2, max_size=5), st.sets(st.integers(20, 60), max_size=4))
 @settings(max_examples=60, deadline=None)
-def test_unequal_magnets_give_an_even_speed(gaps: list[float], gone: set[int]) -> None:
+def test_unequally_spaced_magnets_give_a_constant_speed(gaps: list[float], gone: set[int]) -> None:
     shares = np.array(gaps) / sum(gaps)
     if np.ptp(np.sort(shares)) < 0.05:
         shares = np.linspace(1, 2, shares.size) / np.linspace(1, 2, shares.size).sum()
     magnets = shares.size
     position = np.concatenate([[0.0], np.cumsum(np.tile(shares, 40))])
     kept = np.setdiff1d(np.arange(position.size), [i for i in gone if i < position.size - 1 and i % 7 == 0])
-    found = rotation(time=2.0 * position[kept], groove_diameter=0.05, magnets=magnets)
+    found = disc_rotation(time=2.0 * position[kept], groove_diameter=0.05, magnets=magnets)
     assert found.time == approx(2.0 * position)
     assert found.rotation_speed == approx(0.5)
-    assert np.flatnonzero(found.repaired).tolist() == np.setdiff1d(np.arange(position.size), kept).tolist()
+    assert np.flatnonzero(found.interpolated).tolist() == np.setdiff1d(np.arange(position.size), kept).tolist()
 
 
-def test_weak_magnets_count_when_asked_for() -> None:
+def test_a_lower_prominence_includes_weak_magnets() -> None:
     t = np.arange(0, 5, 0.001)
     at = np.arange(0.25, 5, 0.5)
     readings = bells(t, at, np.where(np.arange(at.size) % 2, 0.2, 1.0))
-    assert pulse_times(time=t, magnetic_flux_density=readings).size == 5
-    assert pulse_times(time=t, magnetic_flux_density=readings, prominence=0.1).size == 10
+    assert hall_pulse_times(time=t, magnetic_flux_density=readings).size == 5
+    assert hall_pulse_times(time=t, magnetic_flux_density=readings, prominence=0.1).size == 10
 
 
-def test_turns_between_pulses_of_an_even_speed_are_in_proportion() -> None:
-    found = rotation(time=1.0 + 2.0 * np.arange(6), groove_diameter=0.05)
+def test_revolutions_between_pulses_of_constant_speed_are_linear_in_time() -> None:
+    found = disc_rotation(time=1.0 + 2.0 * np.arange(6), groove_diameter=0.05)
     assert revolutions_at(found, time=[0.0, 1.0, 2.0, 11.0, 13.0]) == approx([-0.5, 0.0, 0.5, 5.0, 6.0])
 
 
 @pytest.mark.parametrize(
     ("time", "magnets", "match"),
-    [([1.0], 1, "a turn needs 2 pulses, got 1"), ([1.0, 1.0], 1, "must increase"), ([1.0, 2.0], 0, "magnets must be")],
+    [
+        ([1.0], 1, "a revolution needs 2 pulses, got 1"),
+        ([1.0, 1.0], 1, "must increase"),
+        ([1.0, 2.0], 0, "magnets must be"),
+    ],
 )
-def test_pulses_without_a_turn_are_refused(time: list[float], magnets: int, match: str) -> None:
+def test_too_few_or_unsorted_pulses_are_refused(time: list[float], magnets: int, match: str) -> None:
     with raises(InvalidInput, match=match):
-        rotation(time=time, groove_diameter=0.05, magnets=magnets)
+        disc_rotation(time=time, groove_diameter=0.05, magnets=magnets)
 
 
-def test_a_still_disc_has_no_pulses() -> None:
+def test_a_constant_probe_signal_is_refused() -> None:
     with raises(InvalidInput, match="does not vary"):
-        pulse_times(time=np.arange(10.0), magnetic_flux_density=np.ones(10))
+        hall_pulse_times(time=np.arange(10.0), magnetic_flux_density=np.ones(10))

@@ -1,4 +1,4 @@
-"""Impedance files: what each format means, and what is said of those that are wrong."""
+"""Impedance files: every format against one known circuit, and refusals of invalid files by name and line."""
 
 from pathlib import Path
 
@@ -6,7 +6,7 @@ import numpy as np
 from pytest import approx, mark, raises, skip
 
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.measurement.impedance.columns import heading
+from sonolube.measurement.impedance.column_headings import parse_heading
 from sonolube.measurement.impedance.reader import read_impedance
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 
@@ -38,7 +38,7 @@ def known_impedance(frequency: np.ndarray) -> np.ndarray:
         ("parallel.csv", None),
     ],
 )
-def test_every_format_gives_the_impedance_of_the_circuit_it_was_written_from(name: str, sweep: str | None) -> None:
+def test_every_format_gives_the_impedance_of_its_circuit(name: str, sweep: str | None) -> None:
     found = read_impedance(CORPUS / name, sweep=sweep)
     assert found.frequency == approx(np.linspace(20e3, 24e3, 9))
     assert np.abs(found.impedance / known_impedance(found.frequency) - 1).max() < 2e-6
@@ -50,20 +50,20 @@ def test_every_format_gives_the_impedance_of_the_circuit_it_was_written_from(nam
     ("name", "sweep"),
     [("magnitude-phase.4294a", "memory"), ("magnitude-phase.e4990a", "memory"), ("two-sweeps.mfia", "1")],
 )
-def test_another_sweep_of_a_file_is_read_on_request(name: str, sweep: str) -> None:
+def test_a_named_sweep_of_a_file_is_read(name: str, sweep: str) -> None:
     found = read_impedance(CORPUS / name, sweep=sweep)
     assert found.impedance * 1.02 == approx(known_impedance(found.frequency), rel=2e-6)
     assert found.sweep == sweep
 
 
-def test_a_choice_between_sweeps_is_not_guessed() -> None:
+def test_an_ambiguous_sweep_is_refused() -> None:
     with raises(InvalidInput, match=r"two-sweeps\.mfia: holds 2 sweeps; name one of them: 0, 1"):
         read_impedance(CORPUS / "two-sweeps.mfia")
     with raises(UnknownName, match=r"has no sweep '7'; it has '0', '1'"):
         read_impedance(CORPUS / "two-sweeps.mfia", sweep="7")
 
 
-def test_an_hp_4294a_file_as_it_came_from_the_instrument_is_read_whole() -> None:
+def test_a_measured_hp_4294a_file_is_read_whole() -> None:
     if not RB5100.is_file():
         skip(f"{RB5100.name} is not here")
     found = read_impedance(RB5100)
@@ -77,25 +77,25 @@ def test_an_hp_4294a_file_as_it_came_from_the_instrument_is_read_whole() -> None
     ("text", "unit"),
     [("|Z|(Ohm)", 1.0), ("|Z| [kOhm]", 1e3), ("abs(z)", 1.0), ("Z (mΩ)", 1e-3), ('"zmod / Mohm"', 1e6)],
 )
-def test_a_heading_says_quantity_and_unit(text: str, unit: float) -> None:
-    found = heading(text)
+def test_a_heading_gives_quantity_and_unit(text: str, unit: float) -> None:
+    found = parse_heading(text)
     assert found is not None
     assert found.symbol == "|Z|"
     assert found.scale == approx(unit)
 
 
 @mark.parametrize("text", ["phase", "theta-z", "|Z| (V)", "frequency (rad)", "Z (bananas)", "depth (m)", ""])
-def test_a_heading_that_leaves_the_unit_open_or_wrong_is_none(text: str) -> None:
-    assert heading(text) is None
+def test_a_heading_with_a_missing_or_wrong_unit_is_none(text: str) -> None:
+    assert parse_heading(text) is None
 
 
 WRONG = {
     "empty.csv": ("", r"empty\.csv: is empty"),
-    "cells.csv": ("f,R,X\n1,2,3\n2,3\n", r"line 3: has 2 cells where column 3 is wanted"),
+    "cells.csv": ("f,R,X\n1,2,3\n2,3\n", r"line 3: has 2 cells where column 3 is required"),
     "word.csv": ("f,R,X\n1,2,3\n2,three,4\n", r"line 3: 'three' is not a finite number"),
     "nan.csv": ("f,R,X\n1,nan,3\n", r"line 2: 'nan' is not a finite number"),
-    "zero.csv": ("f,R,X\n1,1,1\n2,0,0\n", r"line 3: the impedance is zero or without bound"),
-    "unsorted.csv": ("f,R,X\n1,1,1\n3,1,1\n2,1,1\n4,1,1\n", r"line 4: the frequency turns or stands still"),
+    "zero.csv": ("f,R,X\n1,1,1\n2,0,0\n", r"line 3: the impedance is zero or not finite"),
+    "unsorted.csv": ("f,R,X\n1,1,1\n3,1,1\n2,1,1\n4,1,1\n", r"line 4: the frequency is not monotonic"),
     "negative.csv": ("f,R,X\n-1,1,1\n", r"line 2: the frequency must be positive"),
     "phase.csv": ("f,|Z|,phase\n1,1,1\n", r"line 1: names no columns of frequency and impedance"),
     "cut.csv": ("!Keysight Technologies,E4990A\nFrequency(Hz), R(Ohm)-data, X(Ohm)-data\n1,2,3\n", "ends without END"),
@@ -104,7 +104,7 @@ WRONG = {
     "options.s1p": ("# HZ H RI R 50\n", r"line 1: unknown option 'H'"),
     "reference.s1p": ("# HZ S RI R -50\n", r"line 1: the reference resistance must be positive, got '-50'"),
     "keyword.s1p": ("[Version] 1.0\n", r"line 1: version '1\.0' is not known"),
-    "open.s1p": ("# HZ S RI R 50\n1000 1 0\n", r"line 2: the impedance is zero or without bound"),
+    "open.s1p": ("# HZ S RI R 50\n1000 1 0\n", r"line 2: the impedance is zero or not finite"),
     "short.mfia": ("chunk;timestamp;size;fieldname\n0;1\n", r"line 2: has 2 cells"),
     "lacking.mfia": ("chunk;timestamp;size;fieldname\n0;1;1;frequency;5\n", r"line 2: chunk '0' lacks"),
     "uneven.mfia": (
@@ -139,14 +139,14 @@ def test_a_4294a_file_cut_short_or_of_another_sweep_is_refused(tmp_path: Path) -
     whole = (CORPUS / "magnitude-phase.4294a").read_text()
     path = tmp_path / "half.txt"
     path.write_text(whole[: whole.index('"TRACE: B"')])
-    with raises(InvalidInput, match="holds 1 traces where A and B are wanted"):
+    with raises(InvalidInput, match="holds 1 traces where A and B are required"):
         read_impedance(path)
 
 
-def test_a_spectrum_must_be_one() -> None:
-    with raises(InvalidInput, match="frequency must rise, got 1 Hz"):
+def test_an_invalid_spectrum_is_refused() -> None:
+    with raises(InvalidInput, match="frequency must increase, got 1 Hz"):
         ImpedanceSpectrum(frequency=np.array([1.0, 1.0]), impedance=np.array([1.0, 1j]))
     with raises(InvalidInput, match="impedance must not be zero, as it is at 2 Hz"):
         ImpedanceSpectrum(frequency=np.array([1.0, 2.0]), impedance=np.array([1.0, 0j]))
-    with raises(InvalidInput, match="rows of one length"):
+    with raises(InvalidInput, match="one-dimensional and equal in length"):
         ImpedanceSpectrum(frequency=np.array([1.0, 2.0]), impedance=np.array([1.0 + 0j]))

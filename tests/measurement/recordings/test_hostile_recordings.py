@@ -1,4 +1,4 @@
-"""Broken and hostile files: each is either read or refused with one line that names it."""
+"""Damaged and hostile recordings are read or refused with one line that names the file."""
 
 import os
 import random
@@ -131,12 +131,12 @@ def test_an_empty_file_is_refused(tmp_path: Path) -> None:
     refuse(tmp_path, "empty.csv", b"", "is empty")
 
 
-def test_an_unknown_magic_is_refused_with_its_first_bytes(tmp_path: Path) -> None:
+def test_an_unknown_signature_is_refused_with_its_first_bytes(tmp_path: Path) -> None:
     refuse(tmp_path, "picture.dat", b"\x89PNG\r\n\x1a\n\0\0", r"byte 0: begins with b'\\x89PNG")
 
 
-def test_time_that_runs_backwards_is_refused_with_its_line(tmp_path: Path) -> None:
-    refuse(tmp_path, "back.csv", CSV("0,1\n1,1\n0.5,1\n"), r"line 4: time runs backwards at 0\.5 s")
+def test_time_that_decreases_is_refused_with_its_line(tmp_path: Path) -> None:
+    refuse(tmp_path, "back.csv", CSV("0,1\n1,1\n0.5,1\n"), r"line 4: time decreases to 0\.5 s")
 
 
 def test_time_that_repeats_is_refused_with_its_line(tmp_path: Path) -> None:
@@ -155,7 +155,7 @@ def test_a_word_among_numbers_is_refused_with_its_line(tmp_path: Path) -> None:
     refuse(tmp_path, "word.csv", CSV("0,1\n1,2\n2,overload\n"), r"line 4: 'friction_force' is 'overload'")
 
 
-def test_a_line_after_a_quoted_line_break_is_still_counted_right(tmp_path: Path) -> None:
+def test_lines_after_a_quoted_line_break_are_counted_correctly(tmp_path: Path) -> None:
     content = b'time,note,friction_force\n0,"a\nb",1\n1,x,oops\n'
     refuse(tmp_path, "quoted.csv", content, r"line 4: 'friction_force' is 'oops'")
 
@@ -168,7 +168,7 @@ def test_an_open_quote_is_refused_where_it_opens(tmp_path: Path) -> None:
     refuse(tmp_path, "quote.csv", CSV('0,1\n1,"2\n2,3\n'), r"line 3: ")
 
 
-def test_a_unit_of_another_kind_is_refused(tmp_path: Path) -> None:
+def test_a_unit_of_another_dimension_is_refused(tmp_path: Path) -> None:
     refuse(tmp_path, "unit.csv", b"time [s],friction_force [mm]\n0,1\n1,2\n", "is a length; wanted a force")
 
 
@@ -205,7 +205,7 @@ def test_an_lvm_file_cut_in_its_headers_is_refused(lines: int, tmp_path: Path) -
     refuse(tmp_path, "cut.lvm", b"".join(content[:lines]), r"line \d+: ")
 
 
-def test_a_file_of_nothing_but_its_magic_is_refused(tmp_path: Path) -> None:
+def test_a_file_of_only_its_signature_is_refused(tmp_path: Path) -> None:
     refuse(tmp_path, "magic.tdms", b"TDSm", "too short for a TDMS file")
     refuse(tmp_path, "magic.mat", b"MATLAB 5.0 MAT-file", "cannot be read as MATLAB")
     refuse(tmp_path, "magic.h5", b"\x89HDF\r\n\x1a\n", "cannot be read as HDF5")

@@ -1,4 +1,4 @@
-"""Recordings: what the readers give is what was written, in SI and with where it came from."""
+"""Recordings of every format against the data they were written from, in SI with provenance."""
 
 import hashlib
 import struct
@@ -14,7 +14,7 @@ from pytest import approx, raises
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.mapping import ChannelSource, RecordingMapping, read_mapping
-from sonolube.measurement.recordings.reader import blocks, read_recording, write_recording
+from sonolube.measurement.recordings.reader import read_recording, recording_blocks, write_recording
 
 CORPUS = Path(__file__).parent / "corpus"
 ROOT = Path(__file__).parents[3]
@@ -51,7 +51,7 @@ def test_dropped_samples_are_counted(tmp_path: Path) -> None:
     assert read_recording(path).attrs["dropped_samples"] == 3
 
 
-def test_an_export_with_one_row_a_cycle_stands_along_the_revolutions(tmp_path: Path) -> None:
+def test_an_export_with_one_row_per_cycle_has_the_axis_revolutions(tmp_path: Path) -> None:
     if not COF.is_file():
         pytest.skip(f"{COF.name} is not beside the project; see shared/data")
     mapping = ROOT / "examples" / "mappings" / "friction-by-cycle.toml"
@@ -67,20 +67,20 @@ def test_an_export_with_one_row_a_cycle_stands_along_the_revolutions(tmp_path: P
     assert np.array_equal(again["friction_coefficient"], recording["friction_coefficient"])
 
 
-def test_the_whole_export_is_no_recording_because_its_cycles_start_again() -> None:
+def test_an_export_whose_cycles_restart_is_refused() -> None:
     if not COF.is_file():
         pytest.skip(f"{COF.name} is not beside the project; see shared/data")
     mapping = RecordingMapping(
         channels={"friction_coefficient": ChannelSource(column="CoF.mean", unit="")},
         axis=ChannelSource(column="CycleID"),
-        along="revolutions",
+        axis_quantity="revolutions",
     )
-    with raises(InvalidInput, match=r"line 92: revolutions runs backwards at 2"):  # 30 rows of three lines, one header
+    with raises(InvalidInput, match=r"line 92: revolutions decreases to 2"):  # 30 rows of three lines, one header
         read_recording(COF, mapping=mapping)
 
 
 @pytest.mark.parametrize("name", ["one-x-column", "no-x-column", "many-x-columns"])
-def test_lvm_files_say_the_same_however_they_write_time(name: str) -> None:
+def test_lvm_files_with_any_layout_of_time_give_the_same_recording(name: str) -> None:
     recording = read_recording(CORPUS / f"{name}.lvm").isel(time=slice(0, 3))
     assert recording["time"].to_numpy() == approx([0.0, 0.0025, 0.005])
     assert recording["friction_force"].to_numpy().tolist() == [1.0, 1.25, 0.75]
@@ -89,17 +89,17 @@ def test_lvm_files_say_the_same_however_they_write_time(name: str) -> None:
     assert recording.attrs["begun"] == "2016/03/04 14:10:11.5"
 
 
-def test_segments_of_an_lvm_file_follow_by_their_own_clock() -> None:
+def test_segments_of_an_lvm_file_are_shifted_by_their_start_times() -> None:
     recording = read_recording(CORPUS / "decimal-comma-segments.lvm")
     assert recording["time"].to_numpy() == approx([0.0, 0.0025, 2.0, 2.0025])  # the second begins 2 s later
     assert recording["friction_force"].to_numpy().tolist() == [1.0, 1.25, 2.0, 2.25]
 
 
-def test_a_special_section_of_an_lvm_file_is_passed_over() -> None:
+def test_a_special_section_of_an_lvm_file_is_skipped() -> None:
     assert read_recording(CORPUS / "special-section.lvm")["friction_force"].to_numpy().tolist() == [1.0, 1.25]
 
 
-def test_tdms_segments_are_joined() -> None:
+def test_tdms_segments_are_concatenated() -> None:
     recording = read_recording(CORPUS / "two-segments.tdms")
     assert recording["friction_force"].to_numpy().tolist() == [1, 1.25, 1.5, 1.75, 2, 2.25, 2.5, 2.75]
     assert recording["drive"].to_numpy().tolist() == [0, 1, 2, 3, 10, 11, 12, 13]
@@ -107,7 +107,7 @@ def test_tdms_segments_are_joined() -> None:
     assert recording.attrs["sample_rate"] == approx(400.0)
 
 
-def test_a_tdms_file_cut_in_its_data_gives_what_is_there() -> None:
+def test_a_truncated_tdms_file_gives_its_complete_samples() -> None:
     recording = read_recording(CORPUS / "truncated.tdms")
     assert 4 <= recording.sizes["time"] < 8
     assert recording.attrs["incomplete"]
@@ -115,7 +115,7 @@ def test_a_tdms_file_cut_in_its_data_gives_what_is_there() -> None:
     assert np.array_equal(recording["friction_force"], whole["friction_force"])
 
 
-def test_interleaved_tdms_data_are_told_apart(tmp_path: Path) -> None:
+def test_interleaved_tdms_data_are_separated_by_channel(tmp_path: Path) -> None:
     def text(value: str) -> bytes:
         return struct.pack("<I", len(value)) + value.encode()
 
@@ -134,7 +134,7 @@ def test_interleaved_tdms_data_are_told_apart(tmp_path: Path) -> None:
     assert recording["normal_load"].to_numpy().tolist() == [10, 20, 30]
 
 
-def test_channels_of_different_rates_are_refused_until_a_mapping_chooses(tmp_path: Path) -> None:
+def test_channels_of_different_rates_are_refused_without_a_mapping_that_selects_one(tmp_path: Path) -> None:
     path = tmp_path / "rates.tdms"
     with TdmsWriter(path) as writer:
         fast = ChannelObject("g", "force", np.arange(100.0), {"wf_increment": 0.01})
@@ -147,16 +147,16 @@ def test_channels_of_different_rates_are_refused_until_a_mapping_chooses(tmp_pat
 
 
 @pytest.mark.parametrize("size", [1, 3, 4, 5, 8, 100])
-def test_blocks_put_together_are_the_whole(size: int) -> None:
+def test_concatenated_blocks_equal_the_whole_recording(size: int) -> None:
     path = CORPUS / "two-segments.tdms"
-    parts = list(blocks(path, block_samples=size))
+    parts = list(recording_blocks(path, block_samples=size))
     whole = read_recording(path)
     assert [part.sizes["time"] for part in parts[:-1]] == [size] * (len(parts) - 1)
     for name in ("time", "friction_force", "drive"):
         assert np.array_equal(np.concatenate([part[name] for part in parts]), whole[name])
 
 
-def test_matlab_files_of_both_kinds_say_the_same(tmp_path: Path) -> None:
+def test_matlab_files_of_versions_5_and_7_3_give_the_same_recording(tmp_path: Path) -> None:
     force = np.array([1.0, 1.5, 0.5])
     scipy.io.savemat(tmp_path / "five.mat", {"friction_force": force, "fs": 400.0, "test": {"load": force * 3}})
     with h5py.File(tmp_path / "seven.mat", "w", userblock_size=512) as file:
@@ -172,7 +172,7 @@ def test_matlab_files_of_both_kinds_say_the_same(tmp_path: Path) -> None:
         assert recording["time"].to_numpy() == approx([0, 0.0025, 0.005])
 
 
-def test_netcdf_of_either_kind_is_read(tmp_path: Path) -> None:
+def test_netcdf_3_and_4_give_the_recording_they_were_written_from(tmp_path: Path) -> None:
     recording = read_recording(CORPUS / "one-x-column.lvm")
     modern = write_recording(recording, path=tmp_path / "modern.nc")
     recording.to_netcdf(tmp_path / "classic.nc", engine="scipy", format="NETCDF3_64BIT")
@@ -186,7 +186,7 @@ def test_netcdf_of_either_kind_is_read(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("kind", ["ascii", "binary"])
-def test_a_vibrometers_universal_file_is_read(kind: str, tmp_path: Path) -> None:
+def test_a_universal_file_of_a_vibrometer_is_read(kind: str, tmp_path: Path) -> None:
     path = tmp_path / "vibrometer.uff"
     velocity = np.sin(np.arange(50) / 3)
     data = pyuff.prepare_58(
@@ -207,7 +207,7 @@ def test_a_vibrometers_universal_file_is_read(kind: str, tmp_path: Path) -> None
     assert recording.attrs["sample_rate"] == approx(1e5)
 
 
-def test_gauss_and_turns_per_minute_are_what_instruments_mean(tmp_path: Path) -> None:
+def test_gauss_and_rpm_are_converted_as_instruments_use_them(tmp_path: Path) -> None:
     path = tmp_path / "probe.csv"
     path.write_text(
         "time [s],magnetic_flux_density [G],rotation_speed [rpm],temperature [degC]\n0,10,60,20\n1,20,120,25\n"
@@ -218,7 +218,7 @@ def test_gauss_and_turns_per_minute_are_what_instruments_mean(tmp_path: Path) ->
     assert recording["temperature"].to_numpy() == approx([293.15, 298.15])
 
 
-def test_a_channel_without_a_stated_unit_says_so() -> None:
+def test_a_channel_without_a_stated_unit_is_marked() -> None:
     recording = read_recording(CORPUS / "tabs.txt")
     assert recording["friction_force"].attrs["source_unit"] == "not stated, taken as SI"
 
@@ -246,7 +246,7 @@ def test_a_wrong_mapping_is_refused_with_its_key(text: str, match: str, tmp_path
         read_mapping(path)
 
 
-def test_a_column_that_is_not_there_is_answered_with_the_closest(tmp_path: Path) -> None:
+def test_a_missing_column_is_refused_with_the_closest_label(tmp_path: Path) -> None:
     mapping = RecordingMapping(channels={"friction_force": ChannelSource(column="friction_forc")}, sample_rate=1.0)
     with raises(InvalidInput, match="has no column 'friction_forc'; did you mean friction_force"):
         read_recording(CORPUS / "tabs.txt", mapping=mapping)

@@ -1,4 +1,4 @@
-"""Damaged surface files are refused in one way only: with a line that names the file.
+"""Damaged surface files are read or refused with one line that names the file.
 
 Run as a program it does the same at length: ``python tests/measurement/surface_files/test_fuzzed_files.py 100000``.
 """
@@ -96,7 +96,7 @@ def fuzz(suffix: str, inputs: int, folder: Path, seed: int = 0) -> Counter[str]:
 
 
 @mark.parametrize("suffix", SUFFIXES)
-def test_a_damaged_file_is_read_or_refused_and_nothing_else(suffix: str, tmp_path: Path) -> None:
+def test_a_damaged_surface_file_is_read_or_refused(suffix: str, tmp_path: Path) -> None:
     counts = fuzz(suffix, 800, tmp_path)
     assert counts["read"] > 0
     assert counts["refused"] > 0
@@ -110,7 +110,7 @@ def test_every_small_file_of_the_corpus_is_read_or_refused(suffix: str, tmp_path
 
 @settings(max_examples=200, deadline=None)
 @given(content=st.binary(max_size=300), suffix=st.sampled_from(SUFFIXES))
-def test_any_bytes_at_all_are_read_or_refused(content: bytes, suffix: str) -> None:
+def test_any_bytes_are_read_or_refused_as_a_surface(content: bytes, suffix: str) -> None:
     with tempfile.TemporaryDirectory() as folder:
         outcome(content, Path(folder) / f"input{suffix}")
 

@@ -1,4 +1,4 @@
-"""Wyko OPD files: every dialect read to the same metres, every damage answered with the byte where it shows."""
+"""Wyko OPD files: all dialects against one picture, and refusals of damaged files with the byte."""
 
 import io
 import struct
@@ -12,8 +12,9 @@ from pytest import approx, importorskip, mark, raises, skip
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.measurement.surface_files.reader import read_surface_file
-from sonolube.measurement.surface_files.record import SurfaceReading
-from sonolube.measurement.surface_files.wyko import read_wyko
+from sonolube.measurement.surface_files.surface_reading import SurfaceReading
+from sonolube.measurement.surface_files.surface_topography import SurfaceTopographyFormats
+from sonolube.measurement.surface_files.wyko import WykoOpd
 
 MEASURED = Path(__file__).parents[4] / "shared" / "data" / "surfaces" / "opd-1.opd"
 Blocks = list[tuple[str, int, bytes]]
@@ -54,11 +55,11 @@ PLAIN: Blocks = [*SCALES, ("RAW_DATA", 3, floats(PICTURE))]
 
 
 def read(content: bytes) -> SurfaceReading:
-    return read_wyko(io.BytesIO(content), name="plate.opd")
+    return WykoOpd().read(io.BytesIO(content), Path("plate.opd"))
 
 
 @mark.parametrize("name", ["RAW_DATA", "RAW DATA", "Raw", "OPD", "SAMPLE_DATA"])
-def test_waves_become_metres_and_the_top_row_comes_first(name: str) -> None:
+def test_waves_are_converted_to_metres_with_the_top_row_first(name: str) -> None:
     reading = read(opd([*SCALES, (name, 3, floats(PICTURE))]))
     np.testing.assert_allclose(reading.height, 600e-9 * PICTURE, rtol=1e-7)
     assert reading.spacing_x == approx(0.2e-6)
@@ -69,25 +70,25 @@ def test_waves_become_metres_and_the_top_row_comes_first(name: str) -> None:
     "multiplier",
     [(6, struct.pack("<h", 100)), (7, struct.pack("<h", 100)), (7, number(100)), (12, struct.pack("<i", 100))],
 )
-def test_every_way_to_declare_the_multiplier_of_integers_is_understood(multiplier: tuple[int, bytes]) -> None:
+def test_every_declaration_of_the_multiplier_of_integers_is_read(multiplier: tuple[int, bytes]) -> None:
     reading = read(opd([*SCALES, ("Mult", *multiplier), ("RAW_DATA", 3, shorts(PICTURE, 100))]))
     np.testing.assert_allclose(reading.height, 600e-9 * PICTURE, rtol=1e-7)
 
 
-def test_bytes_are_heights_that_were_all_measured() -> None:
+def test_heights_of_one_byte_are_all_measured() -> None:
     content = struct.pack("<HHH", 2, 1, 1) + bytes([3, 255])
     reading = read(opd([*SCALES, ("OPD", 3, content)]))
     assert reading.height == approx(600e-9 * np.array([[3, 255]]))
 
 
-def test_an_image_is_not_taken_for_heights() -> None:
+def test_an_image_is_not_read_as_heights() -> None:
     image = ("Image", 3, struct.pack("<HHH", 1, 1, 1) + b"\x07")
     assert read(opd([image, *PLAIN])).height.shape == (2, 3)
     with raises(InvalidInput, match="no array of heights"):
         read(opd([*SCALES, image]))
 
 
-def test_title_and_date_are_read_where_they_stand() -> None:
+def test_title_and_date_are_read() -> None:
     stamped: Blocks = [*PLAIN, ("Title", 5, b"plate 7\0\0"), ("Date", 5, b"7/31/2015"), ("Time", 5, b"16:19:48")]
     reading = read(opd(stamped))
     assert reading.title == "plate 7"
@@ -95,11 +96,11 @@ def test_title_and_date_are_read_where_they_stand() -> None:
     assert read(opd([*PLAIN, ("DataSetName", 15, b"\x12\x01\x05plate")])).title == "plate"
 
 
-def test_a_date_that_is_none_is_no_reason_to_refuse_the_heights() -> None:
+def test_an_invalid_date_does_not_prevent_reading_the_heights() -> None:
     assert read(opd([*PLAIN, ("Date", 5, b"31.7.15"), ("Time", 5, b"late")])).measured_at is None
 
 
-def test_without_a_pixel_size_the_spacing_is_left_open() -> None:
+def test_without_a_pixel_size_there_is_no_spacing() -> None:
     assert read(opd([SCALES[0], PLAIN[3]])).spacing_x is None
 
 
@@ -128,13 +129,13 @@ def test_without_a_pixel_size_the_spacing_is_left_open() -> None:
         (opd([*SCALES, ("OPD", 3, floats(np.full((2, 3), np.nan)))]), "none of the 6 pixels was measured"),
     ],
 )
-def test_what_makes_no_sense_is_refused_where_it_stands(content: bytes, said: str) -> None:
+def test_invalid_content_is_refused_with_its_byte(content: bytes, said: str) -> None:
     with raises(InvalidInput, match=said) as refused:
         read(content)
     assert str(refused.value).startswith("plate.opd: ")
 
 
-def test_a_claim_of_gigabytes_costs_no_memory() -> None:
+def test_a_stated_size_of_gigabytes_allocates_no_memory() -> None:
     claim = bytearray(opd([*SCALES, ("OPD", 3, struct.pack("<HHH", 65535, 65535, 4) + bytes(64))]))
     struct.pack_into("<i", claim, 2 + 4 * 24 + 18, 2**31 - 1)
     tracemalloc.start()
@@ -152,12 +153,12 @@ def test_a_claim_of_gigabytes_costs_no_memory() -> None:
         opd([*SCALES, ("Mult", 7, struct.pack("<h", 100)), ("SAMPLE_DATA", 3, shorts(PICTURE, 100))]),
     ],
 )
-def test_surface_topography_reads_the_dialects_alike(content: bytes, tmp_path: Path) -> None:
+def test_the_dialects_agree_with_surface_topography(content: bytes, tmp_path: Path) -> None:
     (tmp_path / "plate.opd").write_bytes(content)
     compare_with_surface_topography(tmp_path / "plate.opd")
 
 
-def test_a_measured_file_is_read_as_surface_topography_reads_it() -> None:
+def test_a_measured_file_agrees_with_surface_topography() -> None:
     if not MEASURED.exists():
         skip(f"{MEASURED} is not here")
     compare_with_surface_topography(MEASURED)
@@ -170,9 +171,7 @@ def test_a_measured_file_is_read_as_surface_topography_reads_it() -> None:
 
 def compare_with_surface_topography(path: Path) -> None:
     importorskip("SurfaceTopography", exc_type=ImportError)
-    from sonolube.measurement.surface_files.surface_topography import read_with_surface_topography
-
-    own, other = read_surface_file(path).height_map, read_with_surface_topography(path)
+    own, other = read_surface_file(path).height_map, SurfaceTopographyFormats().read(io.BytesIO(), path)
     np.testing.assert_array_equal(np.isnan(own.height), np.isnan(other.height))
     np.testing.assert_allclose(own.height, other.height, rtol=1e-14)
     assert own.spacing_x == approx(other.spacing_x, rel=1e-14)

@@ -1,6 +1,7 @@
-"""Points as text find their way back onto the grid they were measured on."""
+"""XYZ text: points in any order restored to their grid, and refusals of what forms none."""
 
 import io
+from pathlib import Path
 
 import numpy as np
 from hypothesis import given, settings
@@ -10,12 +11,12 @@ from pytest import approx, mark, raises
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.surface_files.record import SurfaceReading
-from sonolube.measurement.surface_files.xyz import read_xyz
+from sonolube.measurement.surface_files.surface_reading import SurfaceReading
+from sonolube.measurement.surface_files.xyz import XyzText
 
 
 def read(text: str) -> SurfaceReading:
-    return read_xyz(io.BytesIO(text.encode()), name="plate.xyz")
+    return XyzText().read(io.BytesIO(text.encode()), Path("plate.xyz"))
 
 
 @settings(deadline=None)
@@ -25,7 +26,7 @@ def read(text: str) -> SurfaceReading:
     missing=st.integers(0, 11),
     origin=st.floats(-1e4, 1e4),
 )
-def test_points_in_any_order_come_back_as_the_map_they_were(
+def test_points_in_any_order_give_the_map_they_were_written_from(
     height: Floats, order: list[int], missing: int, origin: float
 ) -> None:
     y, x = np.divmod(np.arange(12), 4)
@@ -38,7 +39,7 @@ def test_points_in_any_order_come_back_as_the_map_they_were(
     assert found.spacing_y == approx(0.55, rel=1e-6)
 
 
-def test_positions_that_text_has_rounded_still_share_one_spacing() -> None:
+def test_rounded_positions_share_one_spacing() -> None:
     x = 0.196733 * np.arange(1000)
     found = read("\n".join(f"{a:.2f};{b};1" for b in (0, 1) for a in x))
     assert found.height.shape == (2, 1000)
@@ -46,12 +47,12 @@ def test_positions_that_text_has_rounded_still_share_one_spacing() -> None:
 
 
 @mark.parametrize("separator", [" ", "\t", ",", ";", ", ", "  "])
-def test_every_usual_separator_is_understood(separator: str) -> None:
+def test_every_usual_separator_is_read(separator: str) -> None:
     text = "\n".join(separator.join(point) for point in (("0", "0", "1"), ("1", "0", "2"), ("0", "1", "3")))
     np.testing.assert_array_equal(read(text).height, [[1, 2], [3, np.nan]])
 
 
-def test_headers_comments_and_missing_heights_are_passed_over() -> None:
+def test_headers_and_comments_are_skipped_and_missing_heights_are_nan() -> None:
     text = "X [um]\tY [um]\tZ [um]\n# by hand\n0 0 1\n\n1 0 No Data\n0 1 Bad\n1 1 nan\n2 0 5e-1\n2 1 4\n"
     np.testing.assert_array_equal(read(text).height, [[1, np.nan, 0.5], [np.nan, np.nan, 4]])
 
@@ -73,12 +74,12 @@ def test_headers_comments_and_missing_heights_are_passed_over() -> None:
         ("word\n" * 100, "byte 320: a point has three numbers"),
     ],
 )
-def test_what_is_no_grid_of_points_is_refused(text: str, said: str) -> None:
+def test_points_that_form_no_grid_are_refused(text: str, said: str) -> None:
     with raises(InvalidInput, match=said) as refused:
         read(text)
     assert str(refused.value).startswith("plate.xyz: ")
 
 
-def test_a_step_between_extremes_is_refused_and_not_allocated() -> None:
+def test_extreme_positions_are_refused_without_allocation() -> None:
     with raises(InvalidInput):
         read("0 0 1\n1e-300 0 1\n1e300 1 1\n-1e300 2 1\n")

@@ -1,1 +1,1 @@
-"""Friction in recordings: forces, steady state, voltage steps, friction loops, stick-slip and rotation."""
+"""Friction signals: windows, running-in, voltage steps, reduction, work loops, stick-slip, wobble and rotation."""

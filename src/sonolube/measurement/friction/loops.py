@@ -1,4 +1,4 @@
-"""Friction over velocity: the work it takes, in all and cycle by cycle."""
+"""Frictional work and friction loops: force over velocity integrated along a recording and per cycle."""
 
 from dataclasses import dataclass
 
@@ -7,29 +7,29 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.friction.time_base import require_signal
+from sonolube.measurement.time_series import require_time_series
 
-_HYSTERESIS = 0.1  # of the highest velocity, which a reversal must exceed to count
+_HYSTERESIS = 0.1  # of the peak velocity, which both sides of a reversal must exceed
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class FrictionWork:
-    """Work of friction along a recording.
+    """Frictional power and cumulative work along a recording.
 
     Parameters
     ----------
     time : ndarray, shape (samples,)
         As given. [s]
     frictional_power : ndarray, shape (samples,)
-        Friction times velocity; NaN where either is missing. [W]
+        Friction force times velocity; NaN where either is missing. [W]
     frictional_work : ndarray, shape (samples,)
-        Since the first sample. [J]
+        Cumulative work since the first sample. [J]
     sliding_distance : float
-        Slid in all, whatever the direction, where both are known. [m]
+        Total distance, irrespective of direction, where both signals are known. [m]
     friction_force : float
         Work over distance. [N]
     measured_fraction : float
-        Share of the time in which both are known; the work of the rest is missing.
+        Fraction of the time in which both signals are known; the work of the rest is not included.
     """
 
     time: Floats
@@ -42,22 +42,22 @@ class FrictionWork:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class FrictionLoops:
-    """Work of friction in each cycle of a reciprocating motion.
+    """Frictional work of each cycle of a reciprocating motion.
 
     Parameters
     ----------
     start_time : ndarray, shape (cycles,)
-        When the velocity turns positive. [s]
+        Time at which the velocity turns positive. [s]
     end_time : ndarray, shape (cycles,)
-        When it does so again. [s]
+        Time at which it does so again. [s]
     frictional_work : ndarray, shape (cycles,)
-        Area of the loop over displacement; a zero error of the force drops out. [J]
+        Area of the loop of force over displacement; a constant offset of the force cancels. [J]
     sliding_distance : ndarray, shape (cycles,)
-        There and back. [m]
+        Path length of the cycle, forth and back. [m]
     friction_force : ndarray, shape (cycles,)
         Work over distance. [N]
     measured_fraction : ndarray, shape (cycles,)
-        Share of the cycle in which force and velocity are known.
+        Fraction of the cycle in which force and velocity are known.
     """
 
     start_time: Floats
@@ -68,17 +68,17 @@ class FrictionLoops:
     measured_fraction: Floats
 
 
-def frictional_work(*, time: ArrayLike, friction_force: ArrayLike, relative_velocity: ArrayLike) -> FrictionWork:
-    """Return the work that friction takes along a recording.
+def friction_work(*, time: ArrayLike, friction_force: ArrayLike, relative_velocity: ArrayLike) -> FrictionWork:
+    r"""Return the frictional power and cumulative work along a recording.
 
     Parameters
     ----------
     time : array_like, shape (samples,)
         Increasing. [s]
     friction_force : array_like, shape (samples,)
-        Against the motion where it has the sign of the velocity; NaN where missing. [N]
+        Opposes the motion where it has the sign of the velocity; NaN where missing. [N]
     relative_velocity : array_like, shape (samples,)
-        Along the sliding; NaN where missing. [m/s]
+        Along the sliding direction; NaN where missing. [m/s]
 
     Returns
     -------
@@ -87,14 +87,24 @@ def frictional_work(*, time: ArrayLike, friction_force: ArrayLike, relative_velo
     Raises
     ------
     InvalidInput
-        If the time does not increase, a signal is all missing, or nothing slides.
+        If the time does not increase, a signal is all missing, or there is no sliding.
+
+    See Also
+    --------
+    friction_loops : the work of each cycle.
+
+    Notes
+    -----
+    .. math:: W(t) = \int_{t_0}^{t} F_t\, v\, dt' , \qquad \bar F_t = \frac{W}{\int |v|\, dt'} ,
+
+    by the trapezoidal rule.
 
     References
     ----------
     .. [1] D 4.5.4, figure 4.57 (f).
     """
-    t, f, v = require_signal(time=time, friction_force=friction_force, relative_velocity=relative_velocity)
-    work, distance, known = _sums(t, f, v)
+    t, f, v = require_time_series(time=time, friction_force=friction_force, relative_velocity=relative_velocity)
+    work, distance, known_time = _cumulative_integrals(t, f, v)
     if distance[-1] <= 0:
         raise InvalidInput("relative_velocity is zero wherever the friction is known")
     return FrictionWork(
@@ -103,21 +113,21 @@ def frictional_work(*, time: ArrayLike, friction_force: ArrayLike, relative_velo
         frictional_work=work,
         sliding_distance=float(distance[-1]),
         friction_force=float(work[-1] / distance[-1]),
-        measured_fraction=float(known[-1] / (t[-1] - t[0])),
+        measured_fraction=float(known_time[-1] / (t[-1] - t[0])),
     )
 
 
 def friction_loops(*, time: ArrayLike, friction_force: ArrayLike, relative_velocity: ArrayLike) -> FrictionLoops:
-    """Return the work of friction in each whole cycle of a reciprocating motion.
+    r"""Return the frictional work of each whole cycle of a reciprocating motion.
 
     Parameters
     ----------
     time : array_like, shape (samples,)
         Increasing. [s]
     friction_force : array_like, shape (samples,)
-        Against the motion where it has the sign of the velocity; NaN where missing. [N]
+        Opposes the motion where it has the sign of the velocity; NaN where missing. [N]
     relative_velocity : array_like, shape (samples,)
-        Along the sliding. [m/s]
+        Along the sliding direction. [m/s]
 
     Returns
     -------
@@ -128,48 +138,55 @@ def friction_loops(*, time: ArrayLike, friction_force: ArrayLike, relative_veloc
     InvalidInput
         If the time does not increase, a signal is all missing, or the velocity does not turn positive twice.
 
+    See Also
+    --------
+    friction_work : the cumulative work of the whole recording.
+
     Notes
     -----
-    Integrated by trapezia between samples, with the instants of reversal put between them. A reversal counts where
-    the velocity passes from below -10 % to above 10 % of its highest.
+    .. math:: W = \oint F_t\, v\, dt = \oint F_t\, dx ,
+
+    by the trapezoidal rule, with the interpolated instants of reversal inserted between the samples. A reversal counts
+    where the velocity passes from below -10 % to above 10 % of its peak.
     """
-    t, f, v = require_signal(time=time, friction_force=friction_force, relative_velocity=relative_velocity)
-    turns = _turns_positive(t, v)
-    if turns.size < 2:
-        raise InvalidInput(f"relative_velocity turns positive {turns.size} times; a cycle needs two")
-    all_t = np.concatenate([t, turns])
+    t, f, v = require_time_series(time=time, friction_force=friction_force, relative_velocity=relative_velocity)
+    reversals = _positive_reversals(t, v)
+    if reversals.size < 2:
+        raise InvalidInput(f"relative_velocity turns positive {reversals.size} times; a cycle needs two")
+    all_t = np.concatenate([t, reversals])
     order = np.argsort(all_t, kind="stable")
-    at_turns = np.interp(turns, t, f)
-    work, distance, known = _sums(
-        all_t[order], np.concatenate([f, at_turns])[order], np.concatenate([v, np.zeros(turns.size)])[order]
+    f_at_reversals = np.interp(reversals, t, f)
+    work, distance, known_time = _cumulative_integrals(
+        all_t[order], np.concatenate([f, f_at_reversals])[order], np.concatenate([v, np.zeros(reversals.size)])[order]
     )
     at = np.flatnonzero(order >= t.size)
-    area, slid = np.diff(work[at]), np.diff(distance[at])
+    loop_area, path_length = np.diff(work[at]), np.diff(distance[at])
     return FrictionLoops(
-        start_time=turns[:-1],
-        end_time=turns[1:],
-        frictional_work=area,
-        sliding_distance=slid,
-        friction_force=np.divide(area, slid, out=np.full(area.size, np.nan), where=slid > 0),
-        measured_fraction=np.diff(known[at]) / np.diff(turns),
+        start_time=reversals[:-1],
+        end_time=reversals[1:],
+        frictional_work=loop_area,
+        sliding_distance=path_length,
+        friction_force=np.divide(loop_area, path_length, out=np.full(loop_area.size, np.nan), where=path_length > 0),
+        measured_fraction=np.diff(known_time[at]) / np.diff(reversals),
     )
 
 
-def _turns_positive(t: Floats, v: Floats) -> Floats:
-    limit = _HYSTERESIS * float(np.nanmax(np.abs(v)))
-    decided = np.flatnonzero(np.abs(v) > limit)
-    rises = np.flatnonzero((v[decided[:-1]] < 0) & (v[decided[1:]] > 0))
-    turns = []
-    for before, after in zip(decided[rises], decided[rises + 1], strict=True):
-        stretch = v[before : after + 1]
-        last = int(before + np.flatnonzero(stretch < 0)[-1])
+def _positive_reversals(t: Floats, v: Floats) -> Floats:
+    """Return the interpolated times at which the velocity turns positive, with hysteresis."""
+    threshold = _HYSTERESIS * float(np.nanmax(np.abs(v)))
+    fast = np.flatnonzero(np.abs(v) > threshold)
+    rises = np.flatnonzero((v[fast[:-1]] < 0) & (v[fast[1:]] > 0))
+    reversals = []
+    for before, after in zip(fast[rises], fast[rises + 1], strict=True):
+        part = v[before : after + 1]
+        last = int(before + np.flatnonzero(part < 0)[-1])
         following = int(last + 1 + np.argmax(np.isfinite(v[last + 1 : after + 1])))
-        turns.append(t[last] - v[last] * (t[following] - t[last]) / (v[following] - v[last]))
-    return np.array(turns)
+        reversals.append(t[last] - v[last] * (t[following] - t[last]) / (v[following] - v[last]))
+    return np.array(reversals)
 
 
-def _sums(t: Floats, f: Floats, v: Floats) -> tuple[Floats, Floats, Floats]:
-    """Work, distance and known time since the first sample; unknown stretches add nothing."""
+def _cumulative_integrals(t: Floats, f: Floats, v: Floats) -> tuple[Floats, Floats, Floats]:
+    """Return cumulative work, distance and known time; intervals with a missing value contribute nothing."""
     power = f * v
     step = np.diff(t)
     known = np.isfinite(power[1:]) & np.isfinite(power[:-1])
@@ -179,5 +196,5 @@ def _sums(t: Floats, f: Floats, v: Floats) -> tuple[Floats, Floats, Floats]:
         np.where(known, step * (speed[1:] + speed[:-1]) / 2, 0.0),
         np.where(known, step, 0.0),
     )
-    work, distance, time = (np.concatenate([[0.0], np.cumsum(part)]) for part in parts)
-    return work, distance, time
+    work, distance, known_time = (np.concatenate([[0.0], np.cumsum(part)]) for part in parts)
+    return work, distance, known_time

@@ -1,4 +1,4 @@
-"""Turns of a disc from the pulses that magnets at its rim give a Hall probe."""
+"""Rotation of a disc from the pulses of magnets at its rim in a Hall probe signal."""
 
 from dataclasses import dataclass
 
@@ -9,81 +9,82 @@ from scipy.signal import find_peaks
 
 from sonolube.checks import Floats, require_finite, require_positive, require_within
 from sonolube.errors import InvalidInput
-from sonolube.measurement.friction.time_base import require_signal
-from sonolube.measurement.statistics.correlation import correlated_mean
+from sonolube.measurement.statistics.autocorrelation import correlated_mean
+from sonolube.measurement.time_series import require_time_series
 from sonolube.metrics import linear_speed
 
-_FIT = 0.25  # by which an interval may miss a multiple of its neighbours and still mean lost pulses
-_MOST_LOST = 5  # pulses in a row
+_MULTIPLE_TOLERANCE = 0.25  # relative deviation of an interval with missing pulses from a multiple of its neighbours
+_MOST_MISSING = 5  # consecutive pulses
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Rotation:
-    """The turning of a disc, turn by turn.
+class DiscRotation:
+    """Rotation of a disc: pulse times, revolutions and speeds.
 
     Parameters
     ----------
     time : ndarray, shape (pulses,)
-        When each pulse peaks. [s]
+        Time of the peak of each pulse. [s]
     revolutions : ndarray, shape (pulses,)
-        Turns since the first pulse. []
-    repaired : ndarray of bool, shape (pulses,)
-        Which pulses were missing and put where the others say.
+        Revolutions since the first pulse. []
+    interpolated : ndarray of bool, shape (pulses,)
+        Whether a pulse was missing and its time interpolated between its neighbours.
     rotation_speed : ndarray, shape (turns,)
-        Turns per time, from each pulse to the next of the same magnet. [1/s]
+        Rotational speed over each revolution, from a pulse to the next of the same magnet. [1/s]
     sliding_speed : ndarray, shape (turns,)
-        Speed at the groove. [m/s]
+        Speed at the wear track. [m/s]
     mean_rotation_speed : float
-        Turns over time from first to last pulse, in 1/s.
+        Revolutions over time from the first to the last pulse, in 1/s.
     rotation_speed_uncertainty : float
-        Standard error of the mean over the turns; 0 for a single one. [1/s]
+        Standard error of the mean over the revolutions; 0 for a single one. [1/s]
     """
 
     time: Floats
     revolutions: Floats
-    repaired: NDArray[np.bool_]
+    interpolated: NDArray[np.bool_]
     rotation_speed: Floats
     sliding_speed: Floats
     mean_rotation_speed: float
     rotation_speed_uncertainty: float
 
 
-def pulse_times(*, time: ArrayLike, magnetic_flux_density: ArrayLike, prominence: float = 0.25) -> Floats:
-    """Return when the pulses of a Hall probe peak. [s]
+def hall_pulse_times(*, time: ArrayLike, magnetic_flux_density: ArrayLike, prominence: float = 0.25) -> Floats:
+    """Return the times of the pulses in a Hall probe signal by peak detection with parabolic interpolation. [s]
 
     Parameters
     ----------
     time : array_like, shape (samples,)
         Increasing. [s]
     magnetic_flux_density : array_like, shape (samples,)
-        Reading of the probe, of either sign; any unit serves. [T]
+        Reading of the probe, of either sign; any unit is accepted. [T]
     prominence : float
-        Height of the weakest pulse that counts, as a share of the strongest: lower it for unequal magnets.
+        Prominence of the weakest pulse that counts, as a fraction of the strongest; lower it for unequal magnets.
 
     Returns
     -------
     ndarray, shape (pulses,)
-        Between samples, by a parabola through the highest three.
+        Between samples, at the vertex of a parabola through the highest three.
 
     Raises
     ------
     InvalidInput
-        If the reading does not vary, or no pulse stands out.
+        If the reading does not vary, or no pulse has the prominence.
     """
     require_within(0.01, 1.0, prominence=prominence)
-    t, b = require_signal(time=time, magnetic_flux_density=magnetic_flux_density)
+    t, b = require_time_series(time=time, magnetic_flux_density=magnetic_flux_density)
     known = np.isfinite(b)
     t, b = t[known], b[known] - np.median(b[known])
-    b = b if b.max() >= -b.min() else -b  # the field of a magnet turned round peaks downwards
+    b = b if b.max() >= -b.min() else -b  # a magnet of reversed polarity gives negative pulses
     if b.max() <= 0:
         raise InvalidInput("magnetic_flux_density does not vary")
     peaks = find_peaks(b, prominence=prominence * float(b.max()), plateau_size=1)[0]
     if not peaks.size:
         raise InvalidInput("magnetic_flux_density shows no pulse")
-    return _refined(t, b, peaks)
+    return _parabola_vertices(t, b, peaks)
 
 
-def _refined(t: Floats, b: Floats, peaks: NDArray[np.int64]) -> Floats:
+def _parabola_vertices(t: Floats, b: Floats, peaks: NDArray[np.int64]) -> Floats:
+    """Return the times of the vertices of parabolas through each peak sample and its neighbours."""
     before, at, after = b[peaks - 1], b[peaks], b[peaks + 1]
     left, right = t[peaks] - t[peaks - 1], t[peaks + 1] - t[peaks]
     rise, fall = (at - before) / left, (at - after) / right
@@ -91,33 +92,34 @@ def _refined(t: Floats, b: Floats, peaks: NDArray[np.int64]) -> Floats:
     return np.asarray(t[peaks] + shift)
 
 
-def rotation(*, time: ArrayLike, groove_diameter: float, magnets: int = 1) -> Rotation:
-    """Return the turning of a disc from the times of its pulses.
+def disc_rotation(*, time: ArrayLike, groove_diameter: float, magnets: int = 1) -> DiscRotation:
+    """Return the rotation of a disc from its pulse times, with missing pulses interpolated.
 
     Parameters
     ----------
     time : array_like, shape (pulses,)
-        When the pulses peak, as `pulse_times` gives them. [s]
+        Times of the pulses, from `hall_pulse_times`. [s]
     groove_diameter : float
-        Diameter of the circle under the pin. [m]
+        Diameter of the wear track under the pin. [m]
     magnets : int
-        Magnets at the rim; they need be equal neither in strength nor in spacing.
+        Number of magnets at the rim; they need not be equal in strength or spacing.
 
     Returns
     -------
-    Rotation
+    DiscRotation
 
     Raises
     ------
     InvalidInput
-        If the times do not increase, there are fewer pulses than a turn needs, or `magnets` is not positive.
+        If the times do not increase, there are fewer pulses than a revolution needs, or `magnets` is not positive.
 
     Notes
     -----
-    With one magnet, an interval that is a whole multiple of both its neighbours, within 25 %, has lost pulses: a
-    change of speed differs from one neighbour only. With several, the shares of a turn between them are learned where
-    two turns look most alike, and an interval that matches the sum of several shares has lost those between. Each turn
-    is timed from a magnet to the same magnet, so unequal spacing does not matter.
+    With one magnet, an interval that is a whole multiple of both its neighbours, within 25 %, has missing pulses: a
+    change of speed differs from one neighbour only. With several magnets, their fractions of a revolution are
+    identified where two consecutive revolutions are most alike, and an interval that matches the sum of several
+    fractions has missing pulses. Each revolution is timed from a magnet to the same magnet, so that unequal spacing has
+    no effect.
 
     References
     ----------
@@ -128,17 +130,17 @@ def rotation(*, time: ArrayLike, groove_diameter: float, magnets: int = 1) -> Ro
     if magnets < 1:
         raise InvalidInput(f"magnets must be positive, got {magnets}")
     if t.ndim != 1 or t.size < magnets + 1:
-        raise InvalidInput(f"a turn needs {magnets + 1} pulses, got {t.size}")
+        raise InvalidInput(f"a revolution needs {magnets + 1} pulses, got {t.size}")
     if np.any(np.diff(t) <= 0):
         raise InvalidInput("time of the pulses must increase")
-    shares, steps = (np.ones(1), _single_steps(t)) if magnets == 1 else _pattern(t, magnets)
-    times, repaired = _repaired(t, steps, shares)
-    position = np.concatenate([[0.0], np.cumsum(np.resize(shares, times.size - 1))])
+    fractions, steps = (np.ones(1), _steps_of_one_magnet(t)) if magnets == 1 else _fractions_and_steps(t, magnets)
+    times, interpolated = _with_missing_pulses(t, steps, fractions)
+    position = np.concatenate([[0.0], np.cumsum(np.resize(fractions, times.size - 1))])
     speed = 1 / (times[magnets:] - times[:-magnets])
-    return Rotation(
+    return DiscRotation(
         time=times,
         revolutions=position,
-        repaired=repaired,
+        interpolated=interpolated,
         rotation_speed=speed,
         sliding_speed=linear_speed(rotation_speed=speed, groove_diameter=groove_diameter),
         mean_rotation_speed=float(position[-1] / (times[-1] - times[0])),
@@ -146,71 +148,72 @@ def rotation(*, time: ArrayLike, groove_diameter: float, magnets: int = 1) -> Ro
     )
 
 
-def _single_steps(t: Floats) -> NDArray[np.int64]:
-    """How many turns lie between neighbouring pulses of one magnet."""
+def _steps_of_one_magnet(t: Floats) -> NDArray[np.int64]:
+    """Return the number of revolutions between neighbouring pulses of one magnet."""
     interval = np.diff(t)
     if interval.size < 2:
         return np.ones(interval.size, dtype=np.int64)
     before = np.concatenate([interval[1:2], interval[:-1]])
     after = np.concatenate([interval[1:], interval[-2:-1]])
     multiple = np.round(interval / np.maximum(before, after)).astype(np.int64)
-    fits = [np.abs(interval / other - multiple) <= _FIT * multiple for other in (before, after)]
-    lost = fits[0] & fits[1] & (multiple > 1) & (multiple <= _MOST_LOST + 1)
-    return np.where(lost, multiple, 1)
+    fits = [np.abs(interval / other - multiple) <= _MULTIPLE_TOLERANCE * multiple for other in (before, after)]
+    missing = fits[0] & fits[1] & (multiple > 1) & (multiple <= _MOST_MISSING + 1)
+    return np.where(missing, multiple, 1)
 
 
-def _pattern(t: Floats, magnets: int) -> tuple[Floats, NDArray[np.int64]]:
-    """Shares of a turn from the first pulse's magnet on, and how many magnets lie between neighbouring pulses."""
+def _fractions_and_steps(t: Floats, magnets: int) -> tuple[Floats, NDArray[np.int64]]:
+    """Return the fractions of a revolution from the first pulse's magnet on, and the magnets passed per interval."""
     interval = np.diff(t)
     first = 0
-    turn = interval[:magnets]
-    if interval.size >= 2 * magnets:  # learn where two turns look most alike
-        turns = np.lib.stride_tricks.sliding_window_view(interval, magnets)
-        now, then = turns[:-magnets], turns[magnets:]
-        first = int(np.argmin(np.max(np.abs(now - then) / (now + then), axis=1)))
-        turn = (now[first] + then[first]) / 2
-    duration = float(turn.sum())
-    shares = turn / duration
-    back = _follow(interval[:first][::-1], shares[::-1], duration)[::-1]
-    steps = np.concatenate([back, _follow(interval[first:], shares, duration)])
-    return np.roll(shares, int(back.sum()) % magnets), steps
+    revolution = interval[:magnets]
+    if interval.size >= 2 * magnets:  # identify the fractions where two consecutive revolutions are most alike
+        windows = np.lib.stride_tricks.sliding_window_view(interval, magnets)
+        current, following = windows[:-magnets], windows[magnets:]
+        first = int(np.argmin(np.max(np.abs(current - following) / (current + following), axis=1)))
+        revolution = (current[first] + following[first]) / 2
+    duration = float(revolution.sum())
+    fractions = revolution / duration
+    backward = _magnets_passed(interval[:first][::-1], fractions[::-1], duration)[::-1]
+    steps = np.concatenate([backward, _magnets_passed(interval[first:], fractions, duration)])
+    return np.roll(fractions, int(backward.sum()) % magnets), steps
 
 
-def _follow(interval: Floats, shares: Floats, duration: float) -> NDArray[np.int64]:
-    """How many magnets each interval passes, the turn lasting about as long as it did at the one before."""
+def _magnets_passed(interval: Floats, fractions: Floats, duration: float) -> NDArray[np.int64]:
+    """Return the number of magnets that pass in each interval, for slowly varying durations of a revolution."""
     steps = np.ones(interval.size, dtype=np.int64)
     magnet = 0
     for i, dt in enumerate(interval):
-        passed = np.cumsum(np.resize(np.roll(shares, -magnet), _MOST_LOST + 1))
+        passed = np.cumsum(np.resize(np.roll(fractions, -magnet), _MOST_MISSING + 1))
         steps[i] = int(np.argmin(np.abs(np.log(dt / duration / passed)))) + 1
         duration = float(dt / passed[steps[i] - 1])
-        magnet = (magnet + int(steps[i])) % shares.size
+        magnet = (magnet + int(steps[i])) % fractions.size
     return steps
 
 
-def _repaired(t: Floats, steps: NDArray[np.int64], shares: Floats) -> tuple[Floats, NDArray[np.bool_]]:
+def _with_missing_pulses(t: Floats, steps: NDArray[np.int64], fractions: Floats) -> tuple[Floats, NDArray[np.bool_]]:
+    """Return the times of all pulses, the missing ones interpolated, and which these are."""
     index = np.concatenate([[0], np.cumsum(steps)])
     every = np.arange(index[-1] + 1)
-    position = np.concatenate([[0.0], np.cumsum(np.resize(shares, every.size - 1))])
+    position = np.concatenate([[0.0], np.cumsum(np.resize(fractions, every.size - 1))])
     return np.asarray(np.interp(position, position[index], t)), ~np.isin(every, index)
 
 
-def revolutions_at(turning: Rotation, *, time: ArrayLike) -> Floats:
-    """Return the turns made since the first pulse, between pulses by a monotone cubic. []
+def revolutions_at(rotation: DiscRotation, *, time: ArrayLike) -> Floats:
+    """Return the revolutions made since the first pulse, by monotone cubic (PCHIP) interpolation between pulses. []
 
     Parameters
     ----------
-    turning : Rotation
+    rotation : DiscRotation
     time : array_like, any shape
-        When; before the first and after the last pulse at the speed of the nearest turn. [s]
+        Times; before the first and after the last pulse the speed is that of the nearest revolution. [s]
 
     Returns
     -------
     ndarray, shape of `time`
     """
     t = require_finite(time=time)
-    known_time, known = turning.time, turning.revolutions
-    within = PchipInterpolator(known_time, known)(np.clip(t, known_time[0], known_time[-1]))
-    early = known[0] + (t - known_time[0]) * turning.rotation_speed[0]
-    late = known[-1] + (t - known_time[-1]) * turning.rotation_speed[-1]
-    return np.asarray(np.where(t < known_time[0], early, np.where(t > known_time[-1], late, within)))
+    pulse_time, revolutions = rotation.time, rotation.revolutions
+    within = PchipInterpolator(pulse_time, revolutions)(np.clip(t, pulse_time[0], pulse_time[-1]))
+    before = revolutions[0] + (t - pulse_time[0]) * rotation.rotation_speed[0]
+    after = revolutions[-1] + (t - pulse_time[-1]) * rotation.rotation_speed[-1]
+    return np.asarray(np.where(t < pulse_time[0], before, np.where(t > pulse_time[-1], after, within)))

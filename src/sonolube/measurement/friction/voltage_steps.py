@@ -1,4 +1,4 @@
-"""A voltage raised in steps: friction at each, and what it takes away from the friction without voltage."""
+"""Friction and its reduction at each step of a drive voltage that is raised in steps."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -9,27 +9,27 @@ from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
 from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.measurement.friction.forces import measured_reduction
-from sonolube.measurement.friction.time_base import even_interval, require_signal
-from sonolube.measurement.statistics.correlation import correlated_mean
+from sonolube.measurement.friction.reduction import estimate_friction_reduction
+from sonolube.measurement.statistics.autocorrelation import correlated_mean
+from sonolube.measurement.time_series import require_time_series, uniform_sample_interval
 
-_PIECES = 10  # into which the shortest step is cut to find where it begins
+_SECTIONS_PER_STEP = 10  # sections of the shortest step, by whose medians steps are separated
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class StaircaseStep:
-    """Friction while the voltage stays.
+class VoltageStep:
+    """Friction during one step of constant voltage, and its reduction against the steps without voltage.
 
     Parameters
     ----------
     voltage_peak_to_peak : float
         Median over the step. [V]
     start_time : float
-        When the step begins. [s]
+        Beginning of the step. [s]
     end_time : float
-        When it ends. [s]
+        End of the step. [s]
     friction_force : float
-        Mean, the settling left out. [N]
+        Mean after the settling time. [N]
     friction_force_deviation : float
         Standard deviation of the samples. [N]
     friction_force_uncertainty : float
@@ -51,16 +51,16 @@ class StaircaseStep:
 
 
 def voltage_envelope(*, time: ArrayLike, stack_voltage: ArrayLike, window_duration: float = 0.05) -> Floats:
-    """Return the peak-to-peak value of an alternating voltage around each sample. [V]
+    """Return the peak-to-peak envelope of an alternating voltage by moving maximum and minimum. [V]
 
     Parameters
     ----------
     time : array_like, shape (samples,)
         Evenly spaced. [s]
     stack_voltage : array_like, shape (samples,)
-        Voltage as it alternates; NaN is passed over. [V]
+        Alternating voltage; NaN is left out. [V]
     window_duration : float
-        Duration over which highest and lowest are taken. [s]
+        Duration of the window over which maximum and minimum are taken. [s]
 
     Returns
     -------
@@ -73,13 +73,13 @@ def voltage_envelope(*, time: ArrayLike, stack_voltage: ArrayLike, window_durati
 
     Notes
     -----
-    A voltage may alternate faster than it is sampled, as long as the drive's frequency is further than 1/window from
-    every multiple of half the sampling rate: at such a multiple every sample meets the same phases, and the envelope
-    is too low or vanishes.
+    A voltage may alternate faster than it is sampled, as long as the drive frequency differs from every multiple of
+    half the sampling rate by more than 1/window: at such a multiple all samples have the same phases, and the envelope
+    is too low or zero.
     """
     require_positive(window_duration=window_duration)
-    t, u = require_signal(time=time, stack_voltage=stack_voltage)
-    samples = round(window_duration / even_interval(time=t))
+    t, u = require_time_series(time=time, stack_voltage=stack_voltage)
+    samples = round(window_duration / uniform_sample_interval(time=t))
     if samples < 8:
         raise InvalidInput(f"window_duration of {window_duration:.3g} s holds {samples} samples; at least 8 are needed")
     highest = maximum_filter1d(np.where(np.isnan(u), -np.inf, u), samples, mode="nearest")
@@ -87,7 +87,7 @@ def voltage_envelope(*, time: ArrayLike, stack_voltage: ArrayLike, window_durati
     return np.asarray(np.where(np.isfinite(highest), highest - lowest, np.nan))
 
 
-def staircase(
+def friction_at_voltage_steps(
     *,
     time: ArrayLike,
     friction_force: ArrayLike,
@@ -95,33 +95,37 @@ def staircase(
     shortest_step: float = 1.0,
     settling_time: float = 0.5,
     tolerance: float = 0.05,
-) -> tuple[StaircaseStep, ...]:
-    """Return the friction at each step of a voltage.
+) -> tuple[VoltageStep, ...]:
+    """Return mean friction and friction reduction at each step of a voltage.
 
     Parameters
     ----------
     time : array_like, shape (samples,)
         Increasing. [s]
     friction_force : array_like, shape (samples,)
-        NaN is passed over. [N]
+        NaN is left out. [N]
     voltage_peak_to_peak : array_like, shape (samples,)
         As set, or from `voltage_envelope`. [V]
     shortest_step : float
-        Seconds below which a level is a transition, not a step.
+        Duration in seconds below which a level is a transition, not a step.
     settling_time : float
-        Left out at the start of each step, and a tenth of it at the end. [s]
+        Left out at the beginning of each step, and a tenth of it at the end. [s]
     tolerance : float
-        Change of voltage that begins another step, as a share of the voltage's range.
+        Change of voltage that begins another step, as a fraction of the range of the voltage.
 
     Returns
     -------
-    tuple of StaircaseStep
+    tuple of VoltageStep
         In order of time.
 
     Raises
     ------
     InvalidInput
-        If no step is long enough, none is without voltage, or the friction without it is not positive.
+        If no step is long enough, none is without voltage, or the friction without voltage is not positive.
+
+    See Also
+    --------
+    estimate_friction_reduction : reduction and uncertainty of one step.
 
     References
     ----------
@@ -129,33 +133,35 @@ def staircase(
     """
     require_positive(shortest_step=shortest_step, tolerance=tolerance)
     require_non_negative(settling_time=settling_time)
-    t, f, u = require_signal(time=time, friction_force=friction_force, voltage_peak_to_peak=voltage_peak_to_peak)
+    t, f, u = require_time_series(time=time, friction_force=friction_force, voltage_peak_to_peak=voltage_peak_to_peak)
     threshold = tolerance * float(np.nanmax(u) - np.nanmin(u))
-    stretches = [
+    steps = [
         (first, last)
-        for first, last in _levels(t, u, threshold, shortest_step)
+        for first, last in _constant_levels(t, u, threshold, shortest_step)
         if t[last - 1] - t[first] > max(shortest_step, 2 * settling_time)
     ]
-    if not stretches:
-        raise InvalidInput(f"voltage_peak_to_peak stays nowhere for {max(shortest_step, 2 * settling_time):.3g} s")
-    cores = [_core(t, first, last, settling_time) for first, last in stretches]
-    levels = [float(np.nanmedian(u[core])) for core in cores]
+    if not steps:
+        raise InvalidInput(
+            f"voltage_peak_to_peak is constant nowhere for {max(shortest_step, 2 * settling_time):.3g} s"
+        )
+    settled = [_settled_part(t, first, last, settling_time) for first, last in steps]
+    levels = [float(np.nanmedian(u[part])) for part in settled]
     without = [level <= threshold for level in levels]
     if not any(without):
         raise InvalidInput(f"voltage_peak_to_peak has no step without voltage; the lowest is {min(levels):.3g} V")
-    intrinsic = np.concatenate([f[core] for core, off in zip(cores, without, strict=True) if off])
+    intrinsic = np.concatenate([f[part] for part, off in zip(settled, without, strict=True) if off])
     return tuple(
-        _step(t, f, level, stretch, core, None if off else intrinsic)
-        for level, stretch, core, off in zip(levels, stretches, cores, without, strict=True)
+        _voltage_step(t, f, level, step, part, None if off else intrinsic)
+        for level, step, part, off in zip(levels, steps, settled, without, strict=True)
     )
 
 
-def _levels(t: Floats, u: Floats, threshold: float, shortest: float) -> list[tuple[int, int]]:
-    """Stretches of samples on one level, those cut by a short disturbance joined."""
-    piece = max(1, round(shortest / _PIECES / float(np.median(np.diff(t)))))
-    starts = np.arange(0, t.size, piece)
+def _constant_levels(t: Floats, u: Floats, threshold: float, shortest: float) -> list[tuple[int, int]]:
+    """Return the sample ranges of constant level, with those joined that a short disturbance separates."""
+    section = max(1, round(shortest / _SECTIONS_PER_STEP / float(np.median(np.diff(t)))))
+    starts = np.arange(0, t.size, section)
     level = np.array(
-        [np.nanmedian(u[i : i + piece]) if np.isfinite(u[i : i + piece]).any() else np.nan for i in starts]
+        [np.nanmedian(u[i : i + section]) if np.isfinite(u[i : i + section]).any() else np.nan for i in starts]
     )
     known = np.isfinite(level)
     starts, level = starts[known], level[known]
@@ -173,25 +179,27 @@ def _levels(t: Floats, u: Floats, threshold: float, shortest: float) -> list[tup
     return [(first, last) for first, last, _ in runs]
 
 
-def _core(t: Floats, first: int, last: int, settling: float) -> slice:
+def _settled_part(t: Floats, first: int, last: int, settling: float) -> slice:
+    """Return the samples of a step without the settling at its beginning and a tenth of it at its end."""
     lower = int(np.searchsorted(t, t[first] + settling))
     upper = int(np.searchsorted(t, t[last - 1] - settling / 10, side="right"))
     return slice(lower, upper)
 
 
-def _step(
-    t: Floats, f: Floats, level: float, stretch: tuple[int, int], core: slice, intrinsic: Floats | None
-) -> StaircaseStep:
-    mean = correlated_mean(f[core])
+def _voltage_step(
+    t: Floats, f: Floats, level: float, step: tuple[int, int], part: slice, intrinsic: Floats | None
+) -> VoltageStep:
+    """Return the record of one step, with its reduction where the intrinsic friction is given."""
+    mean = correlated_mean(f[part])
     reduction = (
         None
         if intrinsic is None
-        else measured_reduction(intrinsic_friction_force=intrinsic, reduced_friction_force=f[core])
+        else estimate_friction_reduction(intrinsic_friction_force=intrinsic, reduced_friction_force=f[part])
     )
-    return StaircaseStep(
+    return VoltageStep(
         voltage_peak_to_peak=level,
-        start_time=float(t[stretch[0]]),
-        end_time=float(t[stretch[1] - 1]),
+        start_time=float(t[step[0]]),
+        end_time=float(t[step[1] - 1]),
         friction_force=mean.mean,
         friction_force_deviation=mean.deviation,
         friction_force_uncertainty=mean.uncertainty,

@@ -1,4 +1,4 @@
-"""Mean and fluctuation of a signal in consecutive windows, of arrays and of files larger than memory."""
+"""Mean, standard deviation and fluctuation of a signal in consecutive windows, of arrays and of streamed files."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -9,35 +9,38 @@ from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.measurement.friction.time_base import require_signal
 from sonolube.measurement.recordings.mapping import RecordingMapping
-from sonolube.measurement.recordings.reader import blocks
+from sonolube.measurement.recordings.reader import recording_blocks
+from sonolube.measurement.time_series import require_time_series
 
-DEFAULT_WINDOW = 2.0  # s, D 2.3.2
+DEFAULT_WINDOW_DURATION = 2.0
+"""Duration of a window of D 2.3.2, in seconds."""
+
+Signals = dict[str, Floats]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class WindowStatistics:
-    """A signal reduced to consecutive windows.
+    """Statistics of a signal in consecutive windows.
 
     Parameters
     ----------
     time : ndarray, shape (windows,)
         Middle of each window. [s]
     mean : ndarray, shape (windows,)
-        Mean in each window, in `unit`; NaN where it holds no value. So too the next two.
+        Mean in each window, in `unit`; NaN where it holds no value. The next two likewise.
     deviation : ndarray, shape (windows,)
         Standard deviation of the samples; NaN where there are fewer than two.
     fluctuation : ndarray, shape (windows,)
-        Root mean square of the difference from the window's mean.
+        Root mean square of the deviation from the window's mean.
     samples : ndarray of int, shape (windows,)
-        Samples that hold a value.
+        Number of samples that are not missing.
     window_duration : float
         Duration of each window. [s]
     channel : str
-        What the signal is.
+        Name of the signal.
     unit : str
-        Its unit.
+        Unit of the signal.
     """
 
     time: Floats
@@ -51,22 +54,27 @@ class WindowStatistics:
 
 
 def window_statistics(
-    signal: ArrayLike, *, time: ArrayLike, window_duration: float = DEFAULT_WINDOW, channel: str = "", unit: str = ""
+    signal: ArrayLike,
+    *,
+    time: ArrayLike,
+    window_duration: float = DEFAULT_WINDOW_DURATION,
+    channel: str = "",
+    unit: str = "",
 ) -> WindowStatistics:
-    """Return mean and fluctuation in consecutive boxcar windows, the last of which may be cut short.
+    r"""Return mean, standard deviation and fluctuation in consecutive windows, the last of which may be shorter.
 
     Parameters
     ----------
     signal : array_like, shape (samples,)
-        In any unit; NaN is passed over.
+        In any unit; NaN is left out.
     time : array_like, shape (samples,)
         Increasing; gaps are allowed, and windows without a sample left out. [s]
     window_duration : float
         Duration of each window. [s]
     channel : str
-        What the signal is, for the record.
+        Name of the signal, for the record.
     unit : str
-        Its unit, for the record.
+        Unit of the signal, for the record.
 
     Returns
     -------
@@ -77,13 +85,27 @@ def window_statistics(
     InvalidInput
         If the time does not increase, the signal has another length or no value, or the window is not positive.
 
+    See Also
+    --------
+    streamed_window_statistics : the same of a file that exceeds the memory.
+
+    Notes
+    -----
+    For the n samples of a window,
+
+    .. math::
+
+        \bar x = \frac1n \sum x_i , \qquad
+        s^2 = \frac{1}{n - 1} \sum (x_i - \bar x)^2 , \qquad
+        x_\mathrm{rms}^2 = \frac1n \sum (x_i - \bar x)^2 .
+
     References
     ----------
     .. [1] D 2.3.2 and 2.3.3: windows of 2 s at 400 Hz; their RMS is that of the variation, not of the force.
     """
     require_positive(window_duration=window_duration)
-    t, x = require_signal(time=time, **{channel or "signal": signal})
-    return _record([_moments(t, {channel: x}, t[0], window_duration)], channel, unit, t[0], window_duration)
+    t, x = require_time_series(time=time, **{channel or "signal": signal})
+    return _statistics([_moments(t, {channel: x}, t[0], window_duration)], channel, unit, t[0], window_duration)
 
 
 def streamed_window_statistics(
@@ -91,19 +113,19 @@ def streamed_window_statistics(
     *,
     channels: Sequence[str] | None = None,
     mapping: RecordingMapping | Path | None = None,
-    window_duration: float = DEFAULT_WINDOW,
+    window_duration: float = DEFAULT_WINDOW_DURATION,
     block_samples: int = 1 << 18,
 ) -> Mapping[str, WindowStatistics]:
-    """Return the window statistics of a file's channels without ever holding the file in memory.
+    """Return the window statistics of a file's channels, read in blocks without holding the file in memory.
 
     Parameters
     ----------
     path : Path
-        A recording; only TDMS is truly streamed.
+        A recording; only TDMS is streamed, other formats are read whole.
     channels : sequence of str or None
-        Which are wanted; all of them without it.
+        Names of the channels; without it all of them.
     mapping : RecordingMapping, Path or None
-        What the columns mean.
+        Assignment of the columns.
     window_duration : float
         Duration of each window. [s]
     block_samples : int
@@ -112,71 +134,72 @@ def streamed_window_statistics(
     Returns
     -------
     mapping of str to WindowStatistics
-        The same numbers as `window_statistics` of the whole.
+        Equal to `window_statistics` of the whole recording.
 
     Raises
     ------
     InvalidInput
-        As `blocks`, or if a channel is not there.
+        As `recording_blocks`, or if the recording lacks a channel.
     """
     require_positive(window_duration=window_duration)
     parts: list[_Moments] = []
     units: dict[str, str] = {}
     origin = None
-    for t, signals, written in _whole_windows(path, channels, mapping, window_duration, block_samples):
+    for t, signals, units_of_block in _complete_windows(path, channels, mapping, window_duration, block_samples):
         origin = t[0] if origin is None else origin
-        units = written
+        units = units_of_block
         parts.append(_moments(t, signals, origin, window_duration))
     if origin is None:
         raise InvalidInput(f"{path}: holds no samples")
     for name in units:
         if not any(part.channels[name][0].any() for part in parts):
             raise InvalidInput(f"{path}: channel {name!r} holds no value")
-    return {name: _record(parts, name, units[name], origin, window_duration) for name in units}
+    return {name: _statistics(parts, name, units[name], origin, window_duration) for name in units}
 
 
-Signals = dict[str, Floats]
-
-
-def _whole_windows(
+def _complete_windows(
     path: Path, channels: Sequence[str] | None, mapping: RecordingMapping | Path | None, window: float, size: int
 ) -> Iterator[tuple[Floats, Signals, dict[str, str]]]:
-    held_time, held, origin, units = np.empty(0), dict[str, Floats](), None, dict[str, str]()
-    for block in blocks(path, mapping=mapping, block_samples=size):
+    """Yield time, signals and units in parts that hold whole windows; the samples of a cut window are carried over."""
+    carried_time, carried, origin = np.empty(0), Signals(), None
+    units: dict[str, str] = {}
+    for block in recording_blocks(path, mapping=mapping, block_samples=size):
         names = list(channels) if channels is not None else [str(name) for name in block]
         for name in names:
             if name not in block:
                 raise InvalidInput(f"{path}: has no channel {name!r}; it has {', '.join(map(str, block))}")
         units = {name: str(block[name].attrs["units"]) for name in names}
-        t = np.concatenate([held_time, block["time"].to_numpy()])
+        t = np.concatenate([carried_time, block["time"].to_numpy()])
         signals = {
-            name: np.concatenate([held[name], block[name].to_numpy()]) if held else block[name].to_numpy()
+            name: np.concatenate([carried[name], block[name].to_numpy()]) if carried else block[name].to_numpy()
             for name in names
         }
         origin = t[0] if origin is None else origin
-        last = _window_of(t[-1:], origin, window)[0]
-        whole = int(np.searchsorted(t, origin + last * window - 1e-9 * window))
-        if whole:
-            yield t[:whole], {name: x[:whole] for name, x in signals.items()}, units
-        held_time, held = t[whole:], {name: x[whole:] for name, x in signals.items()}
-    if held_time.size:
-        yield held_time, held, units
+        last = _window_numbers(t[-1:], origin, window)[0]
+        complete = int(np.searchsorted(t, origin + last * window - 1e-9 * window))
+        if complete:
+            yield t[:complete], {name: x[:complete] for name, x in signals.items()}, units
+        carried_time, carried = t[complete:], {name: x[complete:] for name, x in signals.items()}
+    if carried_time.size:
+        yield carried_time, carried, units
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class _Moments:
-    """Number of the window, and of each channel the count, mean and sum of squares about it."""
+    """Numbers of the windows, and for each channel the count, mean and sum of squared deviations in each window."""
 
     window: NDArray[np.int64]
     channels: Mapping[str, tuple[NDArray[np.int64], Floats, Floats]]
 
 
-def _window_of(t: Floats, origin: float, window: float) -> NDArray[np.int64]:
+def _window_numbers(t: Floats, origin: float, window: float) -> NDArray[np.int64]:
+    """Return the number of the window of each sample, with a tolerance for rounded times."""
     return np.floor((t - origin) / window + 1e-9).astype(np.int64)
 
 
 def _moments(t: Floats, signals: Signals, origin: float, window: float) -> _Moments:
-    numbers = _window_of(t, origin, window)
+    """Return the moments of signals in each window."""
+    numbers = _window_numbers(t, origin, window)
     starts = np.concatenate([[0], np.flatnonzero(np.diff(numbers)) + 1])
     sizes = np.diff(np.append(starts, t.size))
     return _Moments(
@@ -187,6 +210,7 @@ def _moments(t: Floats, signals: Signals, origin: float, window: float) -> _Mome
 def _channel_moments(
     x: Floats, starts: NDArray[np.int64], sizes: NDArray[np.int64]
 ) -> tuple[NDArray[np.int64], Floats, Floats]:
+    """Return count, mean and sum of squared deviations of one signal in each window, missing values left out."""
     missing = np.isnan(x)
     some_missing = bool(missing.any())
     count = sizes - np.add.reduceat(missing.astype(np.int64), starts) if some_missing else sizes
@@ -199,7 +223,8 @@ def _channel_moments(
     return count, mean, squares
 
 
-def _record(parts: list[_Moments], channel: str, unit: str, origin: float, window: float) -> WindowStatistics:
+def _statistics(parts: list[_Moments], channel: str, unit: str, origin: float, window: float) -> WindowStatistics:
+    """Return the statistics of one channel from the moments of consecutive parts."""
     number = np.concatenate([part.window for part in parts])
     count, mean, squares = (np.concatenate([part.channels[channel][which] for part in parts]) for which in range(3))
     known = np.where(count > 0, count, np.nan)

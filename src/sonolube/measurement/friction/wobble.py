@@ -1,4 +1,4 @@
-"""What the wobble of a turning disc adds to the friction force, found at its rotation's harmonics and taken away."""
+"""Removal of the disc's wobble from a friction force: least-squares fit of the harmonics of the rotation."""
 
 from dataclasses import dataclass
 
@@ -10,19 +10,19 @@ from sonolube.errors import InvalidInput
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Wobble:
-    """A friction force without the part that repeats every turn.
+class WobbleCorrection:
+    """Friction force without its harmonics of the rotation, and the amplitudes and phases of these.
 
     Parameters
     ----------
     friction_force : ndarray, shape (samples,)
-        Without the wobble; NaN stays. [N]
+        Corrected for wobble; NaN stays. [N]
     wobble_amplitude : ndarray, shape (harmonics,)
-        Of the first and the higher harmonics. [N]
+        Of the first and the higher harmonics of the rotation. [N]
     phase : ndarray, shape (harmonics,)
-        Of each as amplitude times cos(k angle - phase). [rad]
+        Phase of each harmonic, written as amplitude times cos(k angle - phase). [rad]
     friction_force_deviation : float
-        Standard deviation of what is left about its trend. [N]
+        Standard deviation of the corrected force about its trend. [N]
     """
 
     friction_force: Floats
@@ -33,38 +33,49 @@ class Wobble:
 
 def remove_wobble(
     *, revolutions: ArrayLike, friction_force: ArrayLike, harmonics: int = 3, trend_degree: int = 1
-) -> Wobble:
-    """Return the friction force without its harmonics of the rotation.
+) -> WobbleCorrection:
+    r"""Return the friction force without its harmonics of the rotation, by linear least squares.
 
     Parameters
     ----------
     revolutions : array_like, shape (samples,)
-        Turns made until each sample, from the speed or from the pulses of a Hall probe; gaps are allowed. []
+        Revolutions made until each sample, from the speed or from the pulses of a Hall probe; gaps are allowed. []
     friction_force : array_like, shape (samples,)
         NaN where missing. [N]
     harmonics : int
-        How many multiples of the rotation are taken away.
+        Number of harmonics of the rotation that are removed.
     trend_degree : int
-        Degree of the polynomial fitted beside them, which stays in the force.
+        Degree of the polynomial trend fitted with them, which stays in the force.
 
     Returns
     -------
-    Wobble
+    WobbleCorrection
 
     Raises
     ------
     InvalidInput
-        If shapes differ, fewer than one turn is covered, or there are too few samples for the harmonics.
+        If shapes differ, fewer than one revolution is covered, or there are too few samples for the harmonics.
 
     Notes
     -----
-    A least-squares fit of the trend and the harmonics over the samples present, so that gaps do not leak from one
-    harmonic into another. Everything synchronous with the turning goes: also friction that a mark on the track causes.
+    With the revolutions N, Legendre polynomials P over their range and K harmonics, the fit over the known samples is
+
+    .. math:: F_t = \sum_{j=0}^{d} c_j P_j + \sum_{k=1}^{K} \left[ a_k \cos 2\pi k N + b_k \sin 2\pi k N \right] ,
+
+    so that gaps do not couple the harmonics. The whole rotation-synchronous part is removed: also friction caused by a
+    mark on the track.
+
+    References
+    ----------
+    .. [1] D 2.3.3 and 4.1.2 on the wobble of the disc.
     """
     n = require_finite(revolutions=revolutions)
     f = np.asarray(friction_force, dtype=np.float64)
     if n.ndim != 1 or f.shape != n.shape:
-        raise InvalidInput(f"revolutions and friction_force must be rows of one length, got {n.shape} and {f.shape}")
+        raise InvalidInput(
+            "revolutions and friction_force must be one-dimensional and equal in length,"
+            f" got shapes {n.shape} and {f.shape}"
+        )
     if np.isinf(f).any():
         raise InvalidInput("friction_force must be finite or NaN, got an infinite value")
     if harmonics < 1 or trend_degree < 0:
@@ -73,24 +84,24 @@ def remove_wobble(
     unknowns = 2 * harmonics + trend_degree + 1
     if known.sum() <= unknowns:
         raise InvalidInput(f"friction_force holds {known.sum()} values; {unknowns} unknowns need more")
-    turns = float(np.ptp(n[known]))
-    if turns < 1:
-        raise InvalidInput(f"revolutions cover {turns:.3g} of a turn; the wobble needs one")
+    covered = float(np.ptp(n[known]))
+    if covered < 1:
+        raise InvalidInput(f"revolutions cover {covered:.3g} of a revolution; the wobble needs one")
     orders = np.arange(1, harmonics + 1)
     angle = 2 * np.pi * np.multiply.outer(n, orders)
     waves = np.concatenate([np.cos(angle), np.sin(angle)], axis=1)
-    middle = n[known].min() + turns / 2
-    trend = np.polynomial.legendre.legvander(2 * (n - middle) / turns, trend_degree)
+    centre = n[known].min() + covered / 2
+    trend = np.polynomial.legendre.legvander(2 * (n - centre) / covered, trend_degree)
     design = np.concatenate([trend, waves], axis=1)
     solution, _, rank, _ = np.linalg.lstsq(design[known], f[known])
     if rank < unknowns:
-        raise InvalidInput(f"revolutions are sampled too coarsely for {harmonics} harmonics; take fewer")
-    of_waves = solution[trend_degree + 1 :]
-    cosine, sine = of_waves[:harmonics], of_waves[harmonics:]
-    left = f[known] - design[known] @ solution
-    return Wobble(
-        friction_force=f - waves @ of_waves,
+        raise InvalidInput(f"revolutions are sampled too coarsely for {harmonics} harmonics; use fewer")
+    wave_coefficients = solution[trend_degree + 1 :]
+    cosine, sine = wave_coefficients[:harmonics], wave_coefficients[harmonics:]
+    residual = f[known] - design[known] @ solution
+    return WobbleCorrection(
+        friction_force=f - waves @ wave_coefficients,
         wobble_amplitude=np.hypot(cosine, sine),
         phase=np.arctan2(sine, cosine),
-        friction_force_deviation=float(np.sqrt(left @ left / (left.size - unknowns))),
+        friction_force_deviation=float(np.sqrt(residual @ residual / (residual.size - unknowns))),
     )

@@ -1,33 +1,37 @@
-"""A displacement sensor as a force gauge: calibration of a holder that bends with hysteresis."""
+"""Calibration of a displacement sensor as a force gauge: polynomial branches, and Preisach's model of hysteresis."""
 
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial import Polynomial
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.optimize import nnls
 
-from sonolube.checks import Floats, require_finite, require_non_negative
-from sonolube.errors import InvalidInput, OutsideRange
-from sonolube.measurement.gauge.preisach import RelayPlane, cell_spans, preisach_output, shares_up
+from sonolube.checks import Floats, require_non_negative
+from sonolube.errors import InvalidInput
+from sonolube.measurement.gauge.preisach import PreisachPlane, mean_relay_widths, preisach_output, relay_fractions
+from sonolube.measurement.gauge.readings import (
+    loading_mask,
+    require_calibrated_range,
+    require_calibration_readings,
+    require_readings,
+)
 
-_TURN = 0.02  # share of the range by which the displacement must come back for a turn
-_MOST_ROWS = 20_000  # of a calibration, beyond which neighbouring samples are passed over
-_BEYOND = 1e-9  # share of the range
+_MOST_ROWS = 20_000  # of a calibration; longer ones are decimated
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class BranchCalibration:
-    """Force over displacement as two polynomials: one for loading, one for unloading.
+    """Force over displacement as two polynomials, of the loading and the unloading branch.
 
     Parameters
     ----------
     loading, unloading : Polynomial
         Force in newtons over displacement in metres.
     loading_deviation, unloading_deviation : float
-        Standard deviation of the calibration about them, in newtons.
+        Standard deviation of the calibration readings about them, in newtons.
     lowest, highest : float
-        Range of displacement that was calibrated, in metres.
+        Calibrated range of displacement, in metres.
     """
 
     loading: Polynomial
@@ -39,24 +43,24 @@ class BranchCalibration:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class HysteresisCalibration:
-    """Force over the history of displacement, after Preisach.
+class PreisachCalibration:
+    """Force over the history of displacement, by a nonlinear spring and Preisach's model of hysteresis.
 
     Parameters
     ----------
-    plane : RelayPlane
+    plane : PreisachPlane
         Relays of the displacement, in metres.
     reversible : ndarray, shape (levels,)
-        Force that the displacement of each level adds, in newtons; none is negative.
+        Force added by the spring over each level of displacement, in newtons; not negative.
     weights : ndarray, shape (cells,)
-        Force that the relays of a cell take off when up, in newtons; none is negative.
+        Force subtracted by the relays of each cell when up, in newtons; not negative.
     resting_force : float
         Force with all relays down, in newtons.
     force_deviation : float
-        Standard deviation of the calibration about the model, in newtons.
+        Standard deviation of the calibration readings about the model, in newtons.
     """
 
-    plane: RelayPlane
+    plane: PreisachPlane
     reversible: Floats
     weights: Floats
     resting_force: float
@@ -65,14 +69,14 @@ class HysteresisCalibration:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class ForceEstimate:
-    """Force as a calibrated displacement tells it.
+    """Force from a calibrated displacement, with its uncertainty.
 
     Parameters
     ----------
     applied_force : ndarray, shape (samples,)
-        Most likely value. [N]
+        Estimated force. [N]
     applied_force_uncertainty : ndarray, shape (samples,)
-        Standard uncertainty: scatter of the calibration, and displacement times stiffness. [N]
+        Standard uncertainty, of the calibration and of the displacement times the stiffness. [N]
     """
 
     applied_force: Floats
@@ -80,14 +84,14 @@ class ForceEstimate:
 
 
 def fit_branches(*, displacement: ArrayLike, applied_force: ArrayLike, degree: int = 3) -> BranchCalibration:
-    """Return the calibration by one polynomial for loading and one for unloading.
+    """Return the calibration by one polynomial for the loading and one for the unloading branch, by least squares.
 
     Parameters
     ----------
     displacement : array_like, shape (samples,)
         Reading of the sensor, in the order of time. [m]
     applied_force : array_like, shape (samples,)
-        Reading of the load cell that pulls. [N]
+        Reading of the load cell that applies the force. [N]
     degree : int
         Of both polynomials, 1 to 7.
 
@@ -100,22 +104,27 @@ def fit_branches(*, displacement: ArrayLike, applied_force: ArrayLike, degree: i
     InvalidInput
         If the lengths differ, a value is not finite, the displacement does not vary, or a branch has too few samples.
 
+    See Also
+    --------
+    fit_preisach : a calibration that depends on the history.
+    force_from_branches : the force by this calibration.
+
     Notes
     -----
-    Takes all unloading for one curve, wherever it began; where the curves fan out, as in D figure 2.32, the deviation
-    tells by how much, and `fit_hysteresis` follows them.
+    All unloading is taken as one curve, wherever it began; where the curves fan out, as in D figure 2.32, the deviation
+    shows by how much, and `fit_preisach` models them.
     """
-    x, force = _calibration_signals(displacement, applied_force)
+    x, force = require_calibration_readings(displacement=displacement, applied_force=applied_force)
     if not 1 <= degree <= 7:
         raise InvalidInput(f"degree must lie between 1 and 7, got {degree}")
-    rising = _loading(x)
+    rising = loading_mask(x)
     branches = {}
-    for name, own in (("loading", rising), ("unloading", ~rising)):
-        if np.unique(x[own]).size <= degree + 1:
-            raise InvalidInput(f"{name} has {int(own.sum())} samples, too few for a polynomial of degree {degree}")
-        polynomial = Polynomial.fit(x[own], force[own], degree)
-        misses = force[own] - polynomial(x[own])
-        branches[name] = polynomial, float(np.sqrt(np.sum(misses**2) / (misses.size - degree - 1)))
+    for name, branch in (("loading", rising), ("unloading", ~rising)):
+        if np.unique(x[branch]).size <= degree + 1:
+            raise InvalidInput(f"{name} has {int(branch.sum())} samples, too few for a polynomial of degree {degree}")
+        polynomial = Polynomial.fit(x[branch], force[branch], degree)
+        residual = force[branch] - polynomial(x[branch])
+        branches[name] = polynomial, float(np.sqrt(np.sum(residual**2) / (residual.size - degree - 1)))
     return BranchCalibration(
         loading=branches["loading"][0],
         unloading=branches["unloading"][0],
@@ -126,10 +135,10 @@ def fit_branches(*, displacement: ArrayLike, applied_force: ArrayLike, degree: i
     )
 
 
-def force_on_branches(
+def force_from_branches(
     calibration: BranchCalibration, *, displacement: ArrayLike, displacement_uncertainty: float = 0.0
 ) -> ForceEstimate:
-    """Return the force from a displacement and its direction.
+    r"""Return the force from a displacement and its direction, by the polynomials of both branches.
 
     Parameters
     ----------
@@ -148,35 +157,41 @@ def force_on_branches(
     InvalidInput
         If a reading is not finite or the uncertainty negative.
     OutsideRange
-        If a reading lies beyond the calibration.
+        If a reading lies outside the calibrated range.
+
+    Notes
+    -----
+    With the polynomial p of the branch and its residual deviation s,
+
+    .. math:: F = p(x) , \qquad u_F^2 = s^2 + \left[ p'(x)\, u_x \right]^2 .
     """
-    x = _within(displacement, calibration.lowest, calibration.highest)
-    spread = float(require_non_negative(displacement_uncertainty=displacement_uncertainty))
-    rising = _loading(x)
+    x = require_calibrated_range(displacement=displacement, lowest=calibration.lowest, highest=calibration.highest)
+    u_x = float(require_non_negative(displacement_uncertainty=displacement_uncertainty))
+    rising = loading_mask(x)
     slope = np.where(rising, calibration.loading.deriv()(x), calibration.unloading.deriv()(x))
-    scatter = np.where(rising, calibration.loading_deviation, calibration.unloading_deviation)
+    deviation = np.where(rising, calibration.loading_deviation, calibration.unloading_deviation)
     return ForceEstimate(
         applied_force=np.where(rising, calibration.loading(x), calibration.unloading(x)),
-        applied_force_uncertainty=np.hypot(scatter, slope * spread),
+        applied_force_uncertainty=np.hypot(deviation, slope * u_x),
     )
 
 
-def fit_hysteresis(*, displacement: ArrayLike, applied_force: ArrayLike, levels: int = 16) -> HysteresisCalibration:
-    """Return the calibration by Preisach's model, from loops that turn at different displacements.
+def fit_preisach(*, displacement: ArrayLike, applied_force: ArrayLike, levels: int = 16) -> PreisachCalibration:
+    r"""Return the calibration by Preisach's model, from loops that reverse at different displacements.
 
     Parameters
     ----------
     displacement : array_like, shape (samples,)
-        Reading of the sensor, in the order of time, from its lowest value on; the more turns at different values, the
-        better the inner loops are known. [m]
+        Reading of the sensor, in the order of time, from its lowest value on; reversals at many different values
+        determine the minor loops. [m]
     applied_force : array_like, shape (samples,)
-        Reading of the load cell that pulls. [N]
+        Reading of the load cell that applies the force. [N]
     levels : int
-        Cells along each side of the plane of relays, 2 to 64.
+        Cells along each side of the Preisach plane, 2 to 64.
 
     Returns
     -------
-    HysteresisCalibration
+    PreisachCalibration
 
     Raises
     ------
@@ -184,31 +199,41 @@ def fit_hysteresis(*, displacement: ArrayLike, applied_force: ArrayLike, levels:
         If the lengths differ, a value is not finite, the displacement does not vary or there are fewer samples than
         twice the levels.
 
+    See Also
+    --------
+    fit_branches : a calibration by two polynomials.
+    force_from_preisach : the force by this calibration.
+
     Notes
     -----
-    Force leads displacement: a spring, from which relays of the displacement take off what has slipped. Least squares
-    in which neither adds up to less than nothing, so that every loop dissipates. Loops between the same two
-    displacements are congruent in this model; where those of the holder depend on the force besides, the deviation
-    says so.
+    The force leads the displacement: a nonlinear spring, from which relays of the displacement subtract the part that
+    has slipped,
+
+    .. math:: F(t) = F_0 + \sum_l k_l\, r_l(x) - \sum_c w_c\, s_c[x] ,
+
+    with the ramps :math:`r_l` over each level and the relay fractions :math:`s_c` of `relay_fractions`. Non-negative
+    least squares for :math:`k_l` and :math:`w_c`, so that every loop dissipates energy. Minor loops between the same
+    two displacements are congruent in this model; where those of the holder also depend on the force, the deviation
+    shows it.
 
     References
     ----------
     .. [1] D 2.4.3, figure 2.32.
     .. [2] I. D. Mayergoyz, Mathematical Models of Hysteresis and Their Applications, Elsevier (2003), chapter 1.
     """
-    x, force = _calibration_signals(displacement, applied_force)
+    x, force = require_calibration_readings(displacement=displacement, applied_force=applied_force)
     if x.size < 2 * levels:
-        raise InvalidInput(f"{x.size} samples are too few for {levels} levels; give {2 * levels} or take fewer levels")
-    plane = RelayPlane(lowest=float(x.min()), highest=float(x.max()), levels=levels)
+        raise InvalidInput(f"{x.size} samples are too few for {levels} levels; give {2 * levels} or use fewer levels")
+    plane = PreisachPlane(lowest=float(x.min()), highest=float(x.max()), levels=levels)
     stride = -(-x.size // _MOST_ROWS)
-    ramps, shares, target = _ramps(plane, x[::stride]), shares_up(plane, x)[::stride], force[::stride]
-    # the resting force may have either sign: it is taken as the difference of two that are not negative
+    ramps, fractions, target = _ramps(plane, x[::stride]), relay_fractions(plane, x)[::stride], force[::stride]
+    # the resting force may have either sign: the difference of two that are not negative
     rest = np.ones((target.size, 1))
     scale = max(float(np.abs(target).max()), np.finfo(float).tiny)
-    columns = np.concatenate([ramps, -shares, rest, -rest], axis=1)
+    columns = np.concatenate([ramps, -fractions, rest, -rest], axis=1)
     solution = scale * nnls(columns, target / scale, maxiter=100 * columns.shape[1])[0]
     freedom = max(1, target.size - int(np.count_nonzero(solution)))
-    return HysteresisCalibration(
+    return PreisachCalibration(
         plane=plane,
         reversible=solution[:levels],
         weights=solution[levels:-2],
@@ -217,14 +242,14 @@ def fit_hysteresis(*, displacement: ArrayLike, applied_force: ArrayLike, levels:
     )
 
 
-def force_with_hysteresis(
-    calibration: HysteresisCalibration, *, displacement: ArrayLike, displacement_uncertainty: float = 0.0
+def force_from_preisach(
+    calibration: PreisachCalibration, *, displacement: ArrayLike, displacement_uncertainty: float = 0.0
 ) -> ForceEstimate:
-    """Return the force from the history of a displacement.
+    """Return the force from the history of a displacement, by Preisach's model.
 
     Parameters
     ----------
-    calibration : HysteresisCalibration
+    calibration : PreisachCalibration
     displacement : array_like, shape (samples,)
         Reading of the sensor, in the order of time, from the unloaded state on. [m]
     displacement_uncertainty : float
@@ -239,26 +264,27 @@ def force_with_hysteresis(
     InvalidInput
         If a reading is not finite or the uncertainty negative.
     OutsideRange
-        If a reading lies beyond the calibration.
+        If a reading lies outside the calibrated range.
 
     Notes
     -----
-    The uncertainty of a reading counts with the mean slope of the model over that reading, up and down.
+    The model of `fit_preisach`. The uncertainty of a reading is multiplied by the local slope of the force, the mean of
+    those before and after the reading.
     """
     plane = calibration.plane
-    x = _within(displacement, plane.lowest, plane.highest)
-    spread = float(require_non_negative(displacement_uncertainty=displacement_uncertainty))
+    x = require_calibrated_range(displacement=displacement, lowest=plane.lowest, highest=plane.highest)
+    u_x = float(require_non_negative(displacement_uncertainty=displacement_uncertainty))
     slipped = preisach_output(plane, calibration.weights, x)
     force = calibration.resting_force + _ramps(plane, x) @ calibration.reversible - slipped
     mean_slope = float(np.sum(calibration.reversible) - np.sum(calibration.weights)) / (plane.highest - plane.lowest)
     slope = _local_slope(x, force, mean_slope) if x.size > 1 else np.array([mean_slope])
     return ForceEstimate(
-        applied_force=force, applied_force_uncertainty=np.hypot(calibration.force_deviation, slope * spread)
+        applied_force=force, applied_force_uncertainty=np.hypot(calibration.force_deviation, slope * u_x)
     )
 
 
 def dissipated_energy(*, displacement: ArrayLike, applied_force: ArrayLike) -> float:
-    """Return the energy that a closed loop of force over displacement dissipates, in joules.
+    r"""Return the energy dissipated over a closed loop of force over displacement, its area, in joules.
 
     Parameters
     ----------
@@ -275,78 +301,49 @@ def dissipated_energy(*, displacement: ArrayLike, applied_force: ArrayLike) -> f
     ------
     InvalidInput
         If the lengths differ or a value is not finite.
+
+    See Also
+    --------
+    major_loop_dissipation : the same of a calibration.
+
+    Notes
+    -----
+    .. math:: E = \oint F\, dx ,
+
+    by the trapezoidal rule.
     """
-    x, force = _signals(displacement, applied_force)
+    x, force = require_readings(displacement=displacement, applied_force=applied_force)
     return float(np.sum((np.roll(x, -1) - x) * (np.roll(force, -1) + force)) / 2)
 
 
-def model_energy(calibration: HysteresisCalibration) -> float:
-    """Return the energy dissipated over the greatest loop calibrated, in joules: each relay's span times its force.
+def major_loop_dissipation(calibration: PreisachCalibration) -> float:
+    r"""Return the energy dissipated over the major loop of a Preisach calibration, in joules.
 
     Parameters
     ----------
-    calibration : HysteresisCalibration
+    calibration : PreisachCalibration
 
     Returns
     -------
     float
+
+    Notes
+    -----
+    .. math:: E = \sum_c w_c\, \overline{(\alpha - \beta)}_c
+
+    with the weights of the cells and the mean widths of their relays.
     """
-    return float(np.sum(cell_spans(calibration.plane) * calibration.weights))
+    return float(np.sum(mean_relay_widths(calibration.plane) * calibration.weights))
 
 
-def _ramps(plane: RelayPlane, x: Floats) -> Floats:
-    """Return which share of each level lies below the displacement, shape (samples, levels)."""
+def _ramps(plane: PreisachPlane, x: Floats) -> Floats:
+    """Return the fraction of each level that lies below the displacement, shape (samples, levels)."""
     place = (x - plane.lowest) / (plane.highest - plane.lowest) * plane.levels
     return np.asarray(np.clip(place[:, np.newaxis] - np.arange(plane.levels), 0.0, 1.0))
 
 
 def _local_slope(x: Floats, force: Floats, mean_slope: float) -> Floats:
+    """Return the slope of the force at each sample, the mean of those of both neighbouring intervals."""
     steps = np.diff(x)
-    moved = steps != 0
-    slopes = np.divide(np.diff(force), steps, out=np.full(steps.size, mean_slope), where=moved)
+    slopes = np.divide(np.diff(force), steps, out=np.full(steps.size, mean_slope), where=steps != 0)
     return np.concatenate([slopes[:1], (slopes[:-1] + slopes[1:]) / 2, slopes[-1:]])
-
-
-def _loading(x: Floats) -> NDArray[np.bool_]:
-    """Return where the displacement rises, a turn counting once it has come back by a share of the range."""
-    reach = _TURN * float(np.ptp(x))
-    rising = np.empty(x.size, dtype=np.bool_)
-    up, extreme, since = True, x[0], 0
-    for at, value in enumerate(x.tolist()):
-        if (value >= extreme) if up else (value <= extreme):
-            extreme, since = value, at
-        elif abs(value - extreme) > reach:
-            rising[since:at] = not up
-            up, extreme, since = not up, value, at
-        rising[at] = up
-    return rising
-
-
-def _within(displacement: ArrayLike, lowest: float, highest: float) -> Floats:
-    x = np.atleast_1d(require_finite(displacement=displacement))
-    if x.ndim != 1:
-        raise InvalidInput(f"displacement must be a row of readings, got shape {x.shape}")
-    slack = _BEYOND * (highest - lowest)
-    beyond = (x < lowest - slack) | (x > highest + slack)
-    if beyond.any():
-        raise OutsideRange(
-            f"displacement must lie between {lowest:.6g} and {highest:.6g} m, where it was calibrated,"
-            f" got {float(x[beyond][0]):.6g} m"
-        )
-    return x
-
-
-def _calibration_signals(displacement: ArrayLike, applied_force: ArrayLike) -> tuple[Floats, Floats]:
-    x, force = _signals(displacement, applied_force)
-    if x.size < 2 or np.ptp(x) == 0:
-        raise InvalidInput("displacement does not vary")
-    return x, force
-
-
-def _signals(displacement: ArrayLike, applied_force: ArrayLike) -> tuple[Floats, Floats]:
-    x, force = require_finite(displacement=displacement), require_finite(applied_force=applied_force)
-    if x.ndim != 1 or x.shape != force.shape or not x.size:
-        raise InvalidInput(
-            f"displacement and applied_force must be rows of one length, got {x.shape} and {force.shape}"
-        )
-    return x, force

@@ -1,4 +1,11 @@
-"""Preisach's model of hysteresis: many relays, of which the history of the input decides which are up."""
+r"""Preisach's model of hysteresis: relays on a triangular plane, whose states follow from the history of the input.
+
+A relay switches up when the input rises to its threshold alpha, and down when it falls to beta <= alpha. The plane of
+(alpha, beta) is divided into square cells of uniform density; with the weight w of each cell and the fraction s of its
+relays that are up, the output is
+
+.. math:: y = \sum_c w_c\, s_c .
+"""
 
 from dataclasses import dataclass
 
@@ -11,17 +18,17 @@ from sonolube.errors import InvalidInput
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class RelayPlane:
-    """Relays that go up at one input and down at a lower one, in square cells of equal density.
+class PreisachPlane:
+    """Preisach plane over a range of the input, divided into square cells of uniform relay density.
 
     Parameters
     ----------
     lowest : float
         Input at and below which all relays are down.
     highest : float
-        Input at and above which all are up.
+        Input at and above which all relays are up.
     levels : int
-        Cells along each side of the triangle.
+        Number of cells along each side of the triangle.
 
     Raises
     ------
@@ -41,137 +48,151 @@ class RelayPlane:
 
     @property
     def cells(self) -> int:
-        """Number of cells, those on the diagonal included."""
+        """Number of cells, including the triangles on the diagonal."""
         return self.levels * (self.levels + 1) // 2
 
 
-def shares_up(plane: RelayPlane, values: Floats) -> Floats:
-    """Return which share of each cell's relays is up along a history of the input.
+def relay_fractions(plane: PreisachPlane, values: Floats) -> Floats:
+    """Return the fraction of each cell's relays that is up, along a history of the input.
 
     Parameters
     ----------
-    plane : RelayPlane
+    plane : PreisachPlane
     values : ndarray, shape (samples,)
-        History of the input, all relays down before it.
+        History of the input, with all relays down before it.
 
     Returns
     -------
     ndarray, shape (samples, cells)
-        Cells by the level at which relays go up, then by that at which they go down.
+        Cells ordered by the level at which their relays switch up, then by that at which they switch down.
+
+    See Also
+    --------
+    preisach_output : the weighted sum of these fractions.
 
     Notes
     -----
-    Only the extremes that no later ones exceeded are remembered, which is the wiping-out property. [1]_
+    Only the extrema of the input that no later ones exceeded are stored, which is the wiping-out property. [1]_
 
     References
     ----------
     .. [1] I. D. Mayergoyz, Mathematical Models of Hysteresis and Their Applications, Elsevier (2003), chapter 1.
     """
-    shares = np.empty((values.size, plane.cells))
-    _fill(_in_cells(plane, values), plane.levels, shares)
-    return shares
+    fractions = np.empty((values.size, plane.cells))
+    _fill_fractions(_in_levels(plane, values), plane.levels, fractions)
+    return fractions
 
 
-def preisach_output(plane: RelayPlane, weights: Floats, values: Floats) -> Floats:
-    """Return the sum of the weights of all relays that are up, along a history of the input.
+def preisach_output(plane: PreisachPlane, weights: Floats, values: Floats) -> Floats:
+    """Return the output of Preisach's model, the sum of the weights of all relays that are up, along an input history.
 
     Parameters
     ----------
-    plane : RelayPlane
+    plane : PreisachPlane
     weights : ndarray, shape (cells,)
-        Of all relays of each cell together.
+        Weight of all relays of each cell together.
     values : ndarray, shape (samples,)
-        History of the input, all relays down before it.
+        History of the input, with all relays down before it.
 
     Returns
     -------
     ndarray, shape (samples,)
+
+    See Also
+    --------
+    relay_fractions : the fractions that are summed.
     """
-    return np.asarray(_output(_in_cells(plane, values), plane.levels, np.ascontiguousarray(weights)))
+    return np.asarray(_output(_in_levels(plane, values), plane.levels, np.ascontiguousarray(weights)))
 
 
-def cell_spans(plane: RelayPlane) -> Floats:
-    """Return how far apart going up and going down lie in each cell, on average, in units of the input.
+def mean_relay_widths(plane: PreisachPlane) -> Floats:
+    """Return the mean width alpha - beta of the relays of each cell, in units of the input.
 
     Parameters
     ----------
-    plane : RelayPlane
+    plane : PreisachPlane
 
     Returns
     -------
     ndarray, shape (cells,)
     """
-    up, down = _cells(plane.levels)
-    apart = np.where(up == down, 1 / 3, up - down)  # the mean over a triangle is a third of its side
-    return np.asarray((plane.highest - plane.lowest) / plane.levels * apart)
+    up, down = _cell_levels(plane.levels)
+    width = np.where(up == down, 1 / 3, up - down)  # over a triangle on the diagonal the mean is a third of its side
+    return np.asarray((plane.highest - plane.lowest) / plane.levels * width)
 
 
-def _in_cells(plane: RelayPlane, values: Floats) -> Floats:
+def _in_levels(plane: PreisachPlane, values: Floats) -> Floats:
+    """Return the input in units of the levels, from 0 at the lowest to `levels` at the highest."""
     return np.ascontiguousarray((values - plane.lowest) / (plane.highest - plane.lowest) * plane.levels)
 
 
-def _cells(levels: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _cell_levels(levels: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the levels at which the relays of each cell switch up and down."""
     up, down = np.tril_indices(levels)
     return up, down
 
 
 @numba.njit(cache=True)
-def _add_triangle(high: float, low: float, levels: int, factor: float, shares: Floats) -> None:
-    """Add the share of each cell with relays that go up by `high` and down not before `low`."""
+def _add_triangle(high: float, low: float, levels: int, factor: float, fractions: Floats) -> None:
+    """Add the fraction of each cell with relays of alpha up to `high` and beta from `low` on."""
     cell = 0
     for up in range(levels):
         a = min(max(high - up, 0.0), 1.0)
         for down in range(up + 1):
             b = min(max(down + 1 - low, 0.0), 1.0)
             if up > down:
-                shares[cell] += factor * a * b
+                fractions[cell] += factor * a * b
             elif a + b > 1:
-                shares[cell] += factor * (a + b - 1) ** 2
+                fractions[cell] += factor * (a + b - 1) ** 2
             cell += 1
 
 
 @numba.njit(cache=True)
-def _advance(x: float, turns: Floats, last: int) -> int:
-    """Take the input to x; `turns` are the bottom, a high, a low, ... and where the input is; returns its place.
+def _advance(x: float, extrema: Floats, last: int) -> int:
+    """Move the input to x and return the place of the current input in `extrema`.
 
-    A high that is exceeded, or a low, goes with the turn that followed it.
+    `extrema` holds the bottom, then alternating maxima and minima, and last the current input. An extremum that is
+    exceeded is wiped out together with the one that followed it.
     """
-    if x == turns[last]:
+    if x == extrema[last]:
         return last
-    rising = x > turns[last]
+    rising = x > extrema[last]
     if rising != (last % 2 == 1):
         last += 1
-    turns[last] = x
-    while last >= 2 and (turns[last] >= turns[last - 2] if rising else turns[last] <= turns[last - 2]):
-        turns[last - 2] = turns[last]
+    extrema[last] = x
+    while last >= 2 and (extrema[last] >= extrema[last - 2] if rising else extrema[last] <= extrema[last - 2]):
+        extrema[last - 2] = extrema[last]
         last -= 2
     return last
 
 
 @numba.njit(cache=True)
-def _fill_row(turns: Floats, last: int, levels: int, row: Floats) -> None:
+def _fill_row(extrema: Floats, last: int, levels: int, row: Floats) -> None:
+    """Fill a row with the fractions of all cells for the stored extrema."""
     row[:] = 0.0
     for place in range(1, last + 1):
         if place % 2 == 1:
-            _add_triangle(turns[place], turns[place - 1], levels, 1.0, row)
+            _add_triangle(extrema[place], extrema[place - 1], levels, 1.0, row)
         else:
-            _add_triangle(turns[place - 1], turns[place], levels, -1.0, row)
+            _add_triangle(extrema[place - 1], extrema[place], levels, -1.0, row)
 
 
 @numba.njit(cache=True)
-def _fill(x: Floats, levels: int, shares: Floats) -> None:
-    turns, last = np.zeros(x.size + 2), 0
+def _fill_fractions(x: Floats, levels: int, fractions: Floats) -> None:
+    """Fill the fractions of all cells along a history of the input."""
+    extrema, last = np.zeros(x.size + 2), 0
     for sample in range(x.size):
-        last = _advance(min(max(x[sample], 0.0), float(levels)), turns, last)
-        _fill_row(turns, last, levels, shares[sample])
+        last = _advance(min(max(x[sample], 0.0), float(levels)), extrema, last)
+        _fill_row(extrema, last, levels, fractions[sample])
 
 
 @numba.njit(cache=True)
 def _output(x: Floats, levels: int, weights: Floats) -> Floats:
-    turns, last = np.zeros(x.size + 2), 0
-    row, found = np.empty(weights.size), np.empty(x.size)
+    """Return the weighted sum of the fractions along a history of the input."""
+    extrema, last = np.zeros(x.size + 2), 0
+    row, output = np.empty(weights.size), np.empty(x.size)
     for sample in range(x.size):
-        last = _advance(min(max(x[sample], 0.0), float(levels)), turns, last)
-        _fill_row(turns, last, levels, row)
-        found[sample] = np.sum(row * weights)
-    return found
+        last = _advance(min(max(x[sample], 0.0), float(levels)), extrema, last)
+        _fill_row(extrema, last, levels, row)
+        output[sample] = np.sum(row * weights)
+    return output

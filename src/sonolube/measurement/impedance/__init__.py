@@ -1,1 +1,1 @@
-"""Impedance spectra: readers of analyser files."""
+"""Impedance spectra: readers of impedance analyser files."""

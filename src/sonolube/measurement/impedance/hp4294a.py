@@ -1,21 +1,22 @@
-"""Impedance as an HP, Agilent or Keysight 4294A saves it: two traces of text, one after the other."""
+"""Text files of the HP, Agilent or Keysight 4294A impedance analyser: two traces, one after the other."""
 
 import re
+from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple, final
 
 import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.impedance.columns import impedance_of
-from sonolube.measurement.impedance.spectrum import Points
-from sonolube.measurement.recordings.numbers import number
+from sonolube.measurement.file_format import first_lines
+from sonolube.measurement.impedance.column_headings import impedance_from_parts
+from sonolube.measurement.impedance.spectrum import ImpedanceSweep
+from sonolube.measurement.numeric_text import parse_number
 
-HP_4294A = "HP 4294A"
-MAGIC = "4294A"
+_SIGNATURE = "4294A"
 
-_PARTS = {
+_PARAMETERS = {  # parts of trace A and trace B, and the SI value of the unit of trace B
     "IMPEDANCE MAG PHASE (DEG)": ("|Z|", "theta_Z", np.pi / 180),
     "IMPEDANCE MAG PHASE (RAD)": ("|Z|", "theta_Z", 1.0),
     "IMPEDANCE REAL IMAG": ("R", "X", 1.0),
@@ -28,63 +29,80 @@ _SWEEPS = {"data": 1, "memory": 3}  # columns of their real parts
 
 
 class _Trace(NamedTuple):
-    begins: int
+    """One trace: line of its heading, lines of its rows, and their numbers."""
+
+    heading_line: int
     lines: list[int]
     rows: Floats
 
 
-def read_hp4294a(path: Path, lines: list[str]) -> dict[str, Points]:
-    """Return the sweeps of a 4294A: "data", and "memory" where the file has its traces.
+@final
+@dataclass(frozen=True, slots=True)
+class Hp4294A:
+    """Text files of the HP, Agilent or Keysight 4294A impedance analyser."""
 
-    Parameters
-    ----------
-    path : Path
-        Of the file, for messages.
-    lines : list of str
-        Of the file.
+    name: ClassVar[str] = "HP 4294A"
+    suffixes: ClassVar[tuple[str, ...]] = ()
 
-    Returns
-    -------
-    dict of str to Points
+    def recognises(self, head: bytes, path: Path) -> bool:
+        """Return whether the first line begins with the name of the instrument."""
+        return first_lines(head)[0].startswith(_SIGNATURE)
 
-    Raises
-    ------
-    InvalidInput
-        Naming the file and the line, if it was not swept over frequency, the traces are neither impedance nor
-        admittance, differ in frequency, are cut short or hold something else than numbers.
+    def read(self, path: Path, lines: list[str]) -> dict[str, ImpedanceSweep]:
+        """Return the sweep "data", and "memory" where the file has its traces.
 
-    Notes
-    -----
-    The real part of trace A is the first part of the parameter measured, that of trace B the second. The memory trace
-    often holds what the instrument computed from the circuit it fitted.
-    """
-    header, traces = _header_and_traces(path, lines)
-    parameter, at = header.get("MEASURE PARAMETER", ("", 1))
-    if parameter not in _PARTS:
-        raise InvalidInput(f"{path}: line {at}: measures {parameter[:40]!r}; known: {', '.join(_PARTS)}")
-    axis, at = header.get("SWEEP TYPE", ("", 1))
-    if "FREQ" not in axis:
-        raise InvalidInput(f"{path}: line {at}: sweeps {axis[:40]!r}, not frequency")
-    if len(traces) != 2:
-        raise InvalidInput(f"{path}: line {len(lines)}: holds {len(traces)} traces where A and B are wanted")
-    first, second = traces
-    _require_whole(path, header.get("NUMBER of POINTS"), traces)
-    if not np.array_equal(first.rows[:, 0], second.rows[:, 0]):
-        raise InvalidInput(f"{path}: line {second.begins}: trace B has other frequencies than trace A")
-    one, two, scale = _PARTS[parameter]
-    sweeps = {}
-    for sweep, column in _SWEEPS.items():
-        if column < min(first.rows.shape[1], second.rows.shape[1]):
-            with np.errstate(all="ignore"):
-                columns = {"f": first.rows[:, 0], one: first.rows[:, column], two: scale * second.rows[:, column]}
-            if sweep == "data" or np.any(columns[one] != 0):
-                sweeps[sweep] = Points(
-                    frequency=columns["f"], impedance=impedance_of(columns, (one, two)), lines=np.array(first.lines)
-                )
-    return sweeps
+        Parameters
+        ----------
+        path : Path
+            Of the file, for messages.
+        lines : list of str
+            Of the file.
+
+        Returns
+        -------
+        dict of str to ImpedanceSweep
+
+        Raises
+        ------
+        InvalidInput
+            Naming the file and the line, if the sweep is not over frequency, the traces are neither impedance nor
+            admittance, differ in frequency, are cut short or hold anything but numbers.
+
+        Notes
+        -----
+        The real part of trace A is the first part of the measured parameter, that of trace B the second. The memory
+        trace often holds the response that the instrument computed from a fitted circuit.
+        """
+        header, traces = _header_and_traces(path, lines)
+        parameter, at = header.get("MEASURE PARAMETER", ("", 1))
+        if parameter not in _PARAMETERS:
+            raise InvalidInput(f"{path}: line {at}: measures {parameter[:40]!r}; known: {', '.join(_PARAMETERS)}")
+        axis, at = header.get("SWEEP TYPE", ("", 1))
+        if "FREQ" not in axis:
+            raise InvalidInput(f"{path}: line {at}: sweeps {axis[:40]!r}, not frequency")
+        if len(traces) != 2:
+            raise InvalidInput(f"{path}: line {len(lines)}: holds {len(traces)} traces where A and B are required")
+        first, second = traces
+        _require_complete(path, header.get("NUMBER of POINTS"), traces)
+        if not np.array_equal(first.rows[:, 0], second.rows[:, 0]):
+            raise InvalidInput(f"{path}: line {second.heading_line}: trace B has other frequencies than trace A")
+        one, two, scale = _PARAMETERS[parameter]
+        sweeps = {}
+        for sweep, column in _SWEEPS.items():
+            if column < min(first.rows.shape[1], second.rows.shape[1]):
+                with np.errstate(all="ignore"):
+                    columns = {"f": first.rows[:, 0], one: first.rows[:, column], two: scale * second.rows[:, column]}
+                if sweep == "data" or np.any(columns[one] != 0):
+                    sweeps[sweep] = ImpedanceSweep(
+                        frequency=columns["f"],
+                        impedance=impedance_from_parts(columns, (one, two)),
+                        lines=np.array(first.lines),
+                    )
+        return sweeps
 
 
 def _header_and_traces(path: Path, lines: list[str]) -> tuple[dict[str, tuple[str, int]], list[_Trace]]:
+    """Return the entries of the header, each with its line, and the traces."""
     header: dict[str, tuple[str, int]] = {}
     blocks: list[tuple[int, list[tuple[int, list[float]]]]] = []
     for at, line in enumerate(lines[1:], start=2):
@@ -98,29 +116,32 @@ def _header_and_traces(path: Path, lines: list[str]) -> tuple[dict[str, tuple[st
             if not blocks:
                 raise InvalidInput(f"{path}: line {at}: values before any heading of columns")
             blocks[-1][1].append((at, _row(path, at, text)))
-    return header, [_trace(path, begins, rows) for begins, rows in blocks]
+    return header, [_trace(path, heading_line, rows) for heading_line, rows in blocks]
 
 
 def _row(path: Path, at: int, text: str) -> list[float]:
-    values = [number(cell, decimal_sign=".") for cell in text.split("\t")]
+    """Return the numbers of a row: frequency, and real and imaginary part of data and perhaps memory."""
+    values = [parse_number(cell, decimal_sign=".") for cell in text.split("\t")]
     known = [value for value in values if value is not None and np.isfinite(value)]
     if len(known) != len(values) or len(known) not in (3, 5):
         raise InvalidInput(f"{path}: line {at}: must hold 3 or 5 numbers between tabs, got {text[:40]!r}")
     return known
 
 
-def _trace(path: Path, begins: int, rows: list[tuple[int, list[float]]]) -> _Trace:
+def _trace(path: Path, heading_line: int, rows: list[tuple[int, list[float]]]) -> _Trace:
+    """Return the rows of a trace as one array; refuse none, and rows of different lengths."""
     if not rows:
-        raise InvalidInput(f"{path}: line {begins}: no values follow")
+        raise InvalidInput(f"{path}: line {heading_line}: no values follow")
     for at, row in rows:
         if len(row) != len(rows[0][1]):
             raise InvalidInput(
                 f"{path}: line {at}: has {len(row)} numbers where the trace began with {len(rows[0][1])}"
             )
-    return _Trace(begins, [at for at, _ in rows], np.array([row for _, row in rows]))
+    return _Trace(heading_line, [at for at, _ in rows], np.array([row for _, row in rows]))
 
 
-def _require_whole(path: Path, announced: tuple[str, int] | None, traces: list[_Trace]) -> None:
+def _require_complete(path: Path, announced: tuple[str, int] | None, traces: list[_Trace]) -> None:
+    """Refuse traces with fewer points than the header announces, or of different lengths."""
     points = announced[0] if announced else ""
     for trace in traces:
         if points.isdecimal() and str(len(trace.lines)) != points:

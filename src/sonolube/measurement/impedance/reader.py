@@ -1,47 +1,27 @@
-"""Impedance spectra from the files of analysers, whatever wrote them."""
+"""Reading of impedance spectra from files of impedance analysers, in any format of `IMPEDANCE_FORMATS`."""
 
 import hashlib
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
-from types import MappingProxyType
 
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.measurement.impedance.hp4294a import HP_4294A, MAGIC, read_hp4294a
-from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum, Points, rising
-from sonolube.measurement.impedance.tables import (
-    COLUMNS,
-    KEYSIGHT_E4990A,
-    MFIA,
-    read_columns,
-    read_keysight_e4990a,
-    read_mfia,
-)
-from sonolube.measurement.impedance.touchstone import TOUCHSTONE, read_touchstone
+from sonolube.measurement.file_format import HEAD_SIZE, detect_format
+from sonolube.measurement.impedance.formats import IMPEDANCE_FORMATS
+from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum, ImpedanceSweep, sorted_by_frequency
 
-_LARGEST = 1 << 28  # bytes; no sweep comes near
-
-IMPEDANCE_READERS: Mapping[str, Callable[[Path, list[str]], dict[str, Points]]] = MappingProxyType(
-    {
-        HP_4294A: read_hp4294a,
-        KEYSIGHT_E4990A: read_keysight_e4990a,
-        TOUCHSTONE: read_touchstone,
-        MFIA: read_mfia,
-        COLUMNS: read_columns,
-    }
-)
+_LARGEST_FILE = 1 << 28  # bytes; far above any sweep
 
 
 def read_impedance(path: Path, *, sweep: str | None = None) -> ImpedanceSpectrum:
-    """Return the impedance spectrum that a file holds.
+    """Return an impedance spectrum read from a file.
 
     Parameters
     ----------
     path : Path
-        HP 4294A text, Keysight E4990A CSV, touchstone of one port, Zurich Instruments MFIA CSV or a table whose
-        columns are named; known by its content, touchstone by its suffix.
+        In any format of `IMPEDANCE_FORMATS`, which is detected by content; touchstone by its suffix.
     sweep : str or None
-        Which of several sweeps, such as "memory" of a 4294A or a chunk number of an MFIA. None takes what was measured,
-        and is refused where that leaves a choice.
+        Name of one of several sweeps, such as "memory" of a 4294A or a chunk number of an MFIA. None selects the
+        measured sweep, and is refused where several remain.
 
     Returns
     -------
@@ -54,50 +34,26 @@ def read_impedance(path: Path, *, sweep: str | None = None) -> ImpedanceSpectrum
     UnknownName
         Naming the file, if it has no such sweep.
     """
-    content, lines = _content(path)
-    file_format = impedance_format_of(path, lines)
-    sweeps = IMPEDANCE_READERS[file_format](path, lines)
-    chosen = _chosen(path, sweeps, sweep)
-    points = rising(sweeps[chosen], path=path)
+    content, lines = _content_and_lines(path)
+    file_format = detect_format(IMPEDANCE_FORMATS, content[:HEAD_SIZE], path) or IMPEDANCE_FORMATS[-1]
+    sweeps = file_format.read(path, lines)
+    name = _selected_name(path, sweeps, sweep)
+    selected = sorted_by_frequency(sweeps[name], path=path)
     return ImpedanceSpectrum(
-        frequency=points.frequency,
-        impedance=points.impedance,
-        sweep=chosen,
+        frequency=selected.frequency,
+        impedance=selected.impedance,
+        sweep=name,
         file_name=path.name,
-        file_format=file_format,
+        file_format=file_format.name,
         sha256=hashlib.sha256(content).hexdigest(),
     )
 
 
-def impedance_format_of(path: Path, lines: list[str]) -> str:
-    """Return the name of the format of a file of impedance, by its suffix for touchstone, else by its first lines.
-
-    Parameters
-    ----------
-    path : Path
-        Of the file.
-    lines : list of str
-        Of the file.
-
-    Returns
-    -------
-    str
-        A key of `IMPEDANCE_READERS`.
-    """
-    if path.suffix.lower() in (".s1p", ".ts") or lines[0].lower().startswith("[version]"):
-        return TOUCHSTONE
-    if lines[0].startswith(MAGIC):
-        return HP_4294A
-    if lines[0].startswith("!") and any("E4990A" in line for line in lines[:4]):
-        return KEYSIGHT_E4990A
-    cells = lines[0].replace(",", ";").lower().split(";")
-    return MFIA if cells[0].strip() == "chunk" and "fieldname" in map(str.strip, cells) else COLUMNS
-
-
-def _content(path: Path) -> tuple[bytes, list[str]]:
+def _content_and_lines(path: Path) -> tuple[bytes, list[str]]:
+    """Return the bytes and the lines of a text file of limited size."""
     try:
-        if path.stat().st_size > _LARGEST:
-            raise InvalidInput(f"{path}: line 1: is larger than {_LARGEST >> 20} MiB, more than any sweep")
+        if path.stat().st_size > _LARGEST_FILE:
+            raise InvalidInput(f"{path}: line 1: is larger than {_LARGEST_FILE >> 20} MiB, more than any sweep")
         content = path.read_bytes()
     except OSError as failure:
         raise InvalidInput(f"{path}: cannot be read: {failure.strerror}") from None
@@ -111,11 +67,12 @@ def _content(path: Path) -> tuple[bytes, list[str]]:
     return content, text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 
-def _chosen(path: Path, sweeps: Mapping[str, Points], sweep: str | None) -> str:
-    if sweep is not None:
-        if sweep not in sweeps:
-            raise UnknownName(f"{path}: has no sweep {sweep!r}; it has {', '.join(map(repr, sweeps))}")
-        return sweep
+def _selected_name(path: Path, sweeps: Mapping[str, ImpedanceSweep], requested: str | None) -> str:
+    """Return the name of the requested sweep, without a request that of the measured or only one."""
+    if requested is not None:
+        if requested not in sweeps:
+            raise UnknownName(f"{path}: has no sweep {requested!r}; it has {', '.join(map(repr, sweeps))}")
+        return requested
     if "data" in sweeps or len(sweeps) == 1:
         return "data" if "data" in sweeps else next(iter(sweeps))
     names = ", ".join(name[:20] for name in list(sweeps)[:12])

@@ -1,4 +1,4 @@
-"""Impedance over frequency, as an analyser measured it, and the points of a file before they are one."""
+"""Electrical impedance spectra: the validated record, and the sweep of a file before validation."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,18 +12,18 @@ from sonolube.errors import InvalidInput
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class ImpedanceSpectrum:
-    """Electrical impedance over frequency.
+    """Electrical impedance over frequency, with its provenance.
 
     Parameters
     ----------
     frequency : ndarray, shape (n,)
         Increasing. [Hz]
     impedance : ndarray, shape (n,)
-        Complex; none is zero. [ohm]
+        Complex, not zero. [ohm]
     sweep : str
-        Which sweep of its file it is.
+        Name of the sweep in its file.
     file_name : str
-        File it was read from; empty where it was not.
+        File it was read from; empty where it was not read from a file.
     file_format : str
         Name of the format of that file.
     sha256 : str
@@ -32,7 +32,7 @@ class ImpedanceSpectrum:
     Raises
     ------
     InvalidInput
-        If the two differ in shape, a frequency is not positive or does not rise, or an impedance is zero or not finite.
+        If the shapes differ, a frequency is not positive or does not increase, or an impedance is zero or not finite.
     """
 
     frequency: Floats
@@ -47,10 +47,13 @@ class ImpedanceSpectrum:
         z = require_finite_complex(impedance=self.impedance)
         if f.ndim != 1 or f.shape != z.shape or not f.size:
             raise InvalidInput(
-                f"frequency and impedance must be rows of one length, got shapes {f.shape} and {z.shape}"
+                "frequency and impedance must be one-dimensional and equal in length,"
+                f" got shapes {f.shape} and {z.shape}"
             )
         if np.any(np.diff(f) <= 0):
-            raise InvalidInput(f"frequency must rise, got {f[1:][np.diff(f) <= 0][0]:.10g} Hz after as much or more")
+            raise InvalidInput(
+                f"frequency must increase, got {f[1:][np.diff(f) <= 0][0]:.10g} Hz after as much or more"
+            )
         if np.any(z == 0):
             raise InvalidInput(f"impedance must not be zero, as it is at {f[z == 0][0]:.10g} Hz")
         object.__setattr__(self, "frequency", f)
@@ -58,13 +61,13 @@ class ImpedanceSpectrum:
 
     @property
     def admittance(self) -> Complexes:
-        """Current per voltage, complex, in siemens."""
+        """Electrical admittance 1/Z, complex, in siemens."""
         return np.asarray(1 / self.impedance)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Points:
-    """The points of a sweep as a file gives them, not yet checked.
+class ImpedanceSweep:
+    """One sweep as a file holds it, in SI but not yet validated, with the line of each point.
 
     Parameters
     ----------
@@ -73,7 +76,7 @@ class Points:
     impedance : ndarray, shape (n,)
         As written, in SI. [ohm]
     lines : ndarray of int, shape (n,)
-        Line of the file on which each point stands.
+        Line number of each point in the file.
     """
 
     frequency: Floats
@@ -81,36 +84,37 @@ class Points:
     lines: NDArray[np.int64]
 
 
-def rising(points: Points, *, path: Path) -> Points:
-    """Return the points of a sweep in order of frequency.
+def sorted_by_frequency(sweep: ImpedanceSweep, *, path: Path) -> ImpedanceSweep:
+    """Return a sweep in order of increasing frequency, validated.
 
     Parameters
     ----------
-    points : Points
-        Of a sweep up or down.
+    sweep : ImpedanceSweep
+        Of increasing or decreasing frequency.
     path : Path
-        File they come from, for messages.
+        File it comes from, for messages.
 
     Returns
     -------
-    Points
+    ImpedanceSweep
 
     Raises
     ------
     InvalidInput
-        Naming the file and the line, if a frequency is not positive, the sweep turns or stands still, or an impedance
-        is zero or not finite.
+        Naming the file and the line, if a frequency is not positive, the sweep is not monotonic, or an impedance is
+        zero or not finite.
     """
-    f, z, lines = points.frequency, points.impedance, points.lines
+    f, z, lines = sweep.frequency, sweep.impedance, sweep.lines
     if f.size > 1 and f[-1] < f[0]:
         f, z, lines = f[::-1], z[::-1], lines[::-1]
     _refuse(~(np.isfinite(f) & (f > 0)), "the frequency must be positive", lines, path)
-    _refuse(np.concatenate([[False], np.diff(f) <= 0]), "the frequency turns or stands still", lines, path)
+    _refuse(np.concatenate([[False], np.diff(f) <= 0]), "the frequency is not monotonic", lines, path)
     usable = np.isfinite(z) & (np.abs(z) > np.finfo(float).tiny) & (np.abs(z) < 1 / np.finfo(float).tiny)
-    _refuse(~usable, "the impedance is zero or without bound", lines, path)
-    return Points(frequency=f, impedance=z, lines=lines)
+    _refuse(~usable, "the impedance is zero or not finite", lines, path)
+    return ImpedanceSweep(frequency=f, impedance=z, lines=lines)
 
 
-def _refuse(wrong: NDArray[np.bool_], reason: str, lines: NDArray[np.int64], path: Path) -> None:
-    if wrong.any():
-        raise InvalidInput(f"{path}: line {lines[int(np.argmax(wrong))]}: {reason}")
+def _refuse(invalid: NDArray[np.bool_], reason: str, lines: NDArray[np.int64], path: Path) -> None:
+    """Refuse a sweep with invalid points, naming the line of the first."""
+    if invalid.any():
+        raise InvalidInput(f"{path}: line {lines[int(np.argmax(invalid))]}: {reason}")

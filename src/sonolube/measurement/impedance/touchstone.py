@@ -1,147 +1,196 @@
-"""Impedance from touchstone files of one port (.s1p), versions 1 and 2."""
+"""Touchstone files of one port, versions 1 and 2."""
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import ClassVar, final
 
 import numpy as np
 
 from sonolube.checks import Complexes, Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.impedance.spectrum import Points
-from sonolube.measurement.recordings.numbers import number
+from sonolube.measurement.file_format import first_lines
+from sonolube.measurement.impedance.spectrum import ImpedanceSweep
+from sonolube.measurement.numeric_text import parse_number
 
-TOUCHSTONE = "touchstone"
-
-_FREQUENCY = {"HZ": 1.0, "KHZ": 1e3, "MHZ": 1e6, "GHZ": 1e9}
+_FREQUENCY_UNITS = {"HZ": 1.0, "KHZ": 1e3, "MHZ": 1e6, "GHZ": 1e9}
 _PARAMETERS = ("S", "Y", "Z")
-_NUMBERS = ("DB", "MA", "RI")
-_PASSED_OVER = ("[number of frequencies]", "[network data]", "[two-port data order]")
+_NUMBER_FORMATS = ("DB", "MA", "RI")
+_SKIPPED_KEYWORDS = ("[number of frequencies]", "[network data]", "[two-port data order]", "[matrix format]")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class _Options:
-    frequency: float = 1e9
+    """Option line of a file, with the defaults of the specification.
+
+    `normalised` holds whether impedances and admittances are relative to the reference resistance, as in version 1.
+    """
+
+    frequency_unit: float = 1e9
     parameter: str = "S"
-    numbers: str = "MA"
+    number_format: str = "MA"
     reference: float = 50.0
-    normalized: bool = True  # impedances and admittances count in the reference resistance: version 1 only
+    normalised: bool = True
 
 
-def read_touchstone(path: Path, lines: list[str]) -> dict[str, Points]:
-    """Return the one sweep of a touchstone file of one port.
-
-    Parameters
-    ----------
-    path : Path
-        Of the file, for messages.
-    lines : list of str
-        Of the file.
-
-    Returns
-    -------
-    dict of str to Points
-
-    Raises
-    ------
-    InvalidInput
-        Naming the file and the line, if there is no option line, an option or keyword is unknown, the file has more
-        ports than one, or a value is no number.
+@final
+@dataclass(frozen=True, slots=True)
+class Touchstone:
+    """Touchstone files of one port, versions 1 and 2.
 
     Notes
     -----
-    Scattering parameters become impedances as Z = R (1 + S)/(1 - S). Impedances and admittances of version 1 are
-    normalized to R, those of version 2 are not. The first option line counts.
+    Version 1 has no signature and is detected by its suffix, which is part of the format: it states the number of
+    ports. The suffix precedes the signatures of instruments, whose name a comment of the file may hold.
     """
-    options: _Options | None = None
-    version_2, reference, rows, at_row = False, None, [], []
+
+    name: ClassVar[str] = "touchstone"
+    suffixes: ClassVar[tuple[str, ...]] = (".s1p", ".ts")
+
+    def recognises(self, head: bytes, path: Path) -> bool:
+        """Return whether the suffix is that of a touchstone file, or the first line states the version."""
+        return path.suffix.lower() in self.suffixes or first_lines(head)[0].lower().startswith("[version]")
+
+    def read(self, path: Path, lines: list[str]) -> dict[str, ImpedanceSweep]:
+        r"""Return the one sweep of a touchstone file of one port, under an empty name.
+
+        Parameters
+        ----------
+        path : Path
+            Of the file, for messages.
+        lines : list of str
+            Of the file.
+
+        Returns
+        -------
+        dict of str to ImpedanceSweep
+
+        Raises
+        ------
+        InvalidInput
+            Naming the file and the line, if there is no option line, an option or keyword is unknown, the file has more
+            than one port, or a value is no number.
+
+        Notes
+        -----
+        With the reference resistance R, scattering parameters become impedances as
+
+        .. math:: Z = R\, \frac{1 + S}{1 - S} .
+
+        Impedances and admittances of version 1 are normalised to R, those of version 2 are not. Of several option lines
+        the first one holds.
+
+        References
+        ----------
+        .. [1] IBIS Open Forum, Touchstone File Format Specification, version 2.0 (2009).
+        """
+        options: _Options | None = None
+        is_version_2, reference, rows, row_lines = False, None, [], []
+        for at, text in _statements(lines):
+            if text.startswith("#"):
+                options = options or _options(path, at, text[1:].split())
+            elif text.startswith("["):
+                keyword, _, value = text.lower().partition("]")
+                if keyword == "[end":
+                    break
+                is_version_2 |= keyword == "[version"
+                reference = _reference(path, at, keyword + "]", value.strip(), reference)
+            else:
+                if options is None:
+                    raise InvalidInput(f"{path}: line {at}: values before the option line, such as '# Hz S RI R 50'")
+                rows.append(_row(path, at, text))
+                row_lines.append(at)
+        if not rows or options is None:
+            raise InvalidInput(f"{path}: line {len(lines)}: holds no values")
+        options = replace(options, reference=reference or options.reference, normalised=not is_version_2)
+        values = np.array(rows)
+        with np.errstate(all="ignore"):
+            sweep = ImpedanceSweep(
+                frequency=options.frequency_unit * values[:, 0],
+                impedance=_impedance(_complex(values[:, 1], values[:, 2], options.number_format), options),
+                lines=np.array(row_lines),
+            )
+        return {"": sweep}
+
+
+def _statements(lines: list[str]) -> Iterator[tuple[int, str]]:
+    """Yield line number and text of each statement, without comments, blank lines and information blocks of version 2.
+
+    A reference resistance on the line after its keyword is joined to it.
+    """
+    information, reference_line = False, 0
     for at, line in enumerate(lines, start=1):
         text = line.partition("!")[0].strip()
-        if text.startswith("#"):
-            options = options or _options(path, at, text[1:].split())
-        elif text.startswith("["):
-            keyword, _, value = text.lower().partition("]")
-            if keyword == "[end":
-                break
-            version_2 |= keyword == "[version"
-            reference = _keyword(path, at, keyword + "]", value.strip(), reference)
-        elif text:
-            if options is None:
-                raise InvalidInput(f"{path}: line {at}: values before the option line, such as '# Hz S RI R 50'")
-            rows.append(_row(path, at, text))
-            at_row.append(at)
-    if not rows or options is None:
-        raise InvalidInput(f"{path}: line {len(lines)}: holds no values")
-    known = _Options(
-        frequency=options.frequency,
-        parameter=options.parameter,
-        numbers=options.numbers,
-        reference=reference or options.reference,
-        normalized=not version_2,
-    )
-    values = np.array(rows)
-    with np.errstate(all="ignore"):
-        points = Points(
-            frequency=known.frequency * values[:, 0],
-            impedance=_impedance(_complex(values[:, 1], values[:, 2], known.numbers), known),
-            lines=np.array(at_row),
-        )
-    return {"": points}
+        keyword = text.lower()
+        if keyword in ("[begin information]", "[end information]"):
+            information = keyword == "[begin information]"
+        elif keyword == "[reference]":
+            reference_line = at
+        elif text and not information:
+            yield at, f"[reference] {text}" if reference_line else text
+            reference_line = 0
 
 
 def _options(path: Path, at: int, words: list[str]) -> _Options:
-    frequency, parameter, numbers, reference = 1e9, "S", "MA", 50.0
+    """Return the options of an option line."""
+    options = _Options()
     remaining = [word.upper() for word in words]
     while remaining:
         word = remaining.pop(0)
-        if word in _FREQUENCY:
-            frequency = _FREQUENCY[word]
+        if word in _FREQUENCY_UNITS:
+            options = replace(options, frequency_unit=_FREQUENCY_UNITS[word])
         elif word in _PARAMETERS:
-            parameter = word
-        elif word in _NUMBERS:
-            numbers = word
+            options = replace(options, parameter=word)
+        elif word in _NUMBER_FORMATS:
+            options = replace(options, number_format=word)
         elif word == "R" and remaining:
-            reference = _resistance(path, at, remaining.pop(0))
+            options = replace(options, reference=_resistance(path, at, remaining.pop(0)))
         else:
             raise InvalidInput(f"{path}: line {at}: unknown option {word[:20]!r}; write such as '# Hz S RI R 50'")
-    return _Options(frequency=frequency, parameter=parameter, numbers=numbers, reference=reference)
+    return options
 
 
-def _keyword(path: Path, at: int, keyword: str, value: str, reference: float | None) -> float | None:
+def _reference(path: Path, at: int, keyword: str, value: str, reference: float | None) -> float | None:
+    """Return the reference resistance after a keyword of version 2; refuse unknown keywords and several ports."""
     if keyword == "[reference]":
         return _resistance(path, at, value)
     if keyword == "[version]" and not value.startswith("2"):
         raise InvalidInput(f"{path}: line {at}: version {value[:20]!r} is not known; known: 1 and 2")
     if keyword == "[number of ports]" and value != "1":
         raise InvalidInput(f"{path}: line {at}: has {value[:20]!r} ports; an impedance has one")
-    if keyword not in (*_PASSED_OVER, "[version]", "[number of ports]"):
+    if keyword not in (*_SKIPPED_KEYWORDS, "[version]", "[number of ports]"):
         raise InvalidInput(f"{path}: line {at}: the keyword {keyword[:40]!r} is not known")
     return reference
 
 
 def _resistance(path: Path, at: int, text: str) -> float:
-    value = number(text, decimal_sign=".")
+    """Return a positive resistance in ohm."""
+    value = parse_number(text, decimal_sign=".")
     if value is None or not (np.isfinite(value) and value > 0):
         raise InvalidInput(f"{path}: line {at}: the reference resistance must be positive, got {text[:20]!r}")
     return value
 
 
 def _row(path: Path, at: int, text: str) -> list[float]:
-    values = [number(cell, decimal_sign=".") for cell in text.split()]
+    """Return the three numbers of a point of one port."""
+    values = [parse_number(cell, decimal_sign=".") for cell in text.split()]
     known = [value for value in values if value is not None and np.isfinite(value)]
     if len(values) != 3 or len(known) != 3:
         raise InvalidInput(f"{path}: line {at}: a point of one port is three numbers, got {text[:40]!r}")
     return known
 
 
-def _complex(first: Floats, second: Floats, numbers: str) -> Complexes:
-    if numbers == "RI":
+def _complex(first: Floats, second: Floats, number_format: str) -> Complexes:
+    """Return complex numbers from pairs as RI (real, imaginary), MA (magnitude, degrees) or DB (decibels, degrees)."""
+    if number_format == "RI":
         return np.asarray(first + 1j * second)
-    magnitude = 10 ** (first / 20) if numbers == "DB" else first
+    magnitude = 10 ** (first / 20) if number_format == "DB" else first
     return np.asarray(magnitude * np.exp(1j * np.radians(second)))
 
 
 def _impedance(values: Complexes, options: _Options) -> Complexes:
-    unit = options.reference if options.normalized else 1.0
+    """Return the impedance of scattering parameters, admittances or impedances, in ohm."""
+    unit = options.reference if options.normalised else 1.0
     if options.parameter == "Z":
         return unit * values
     if options.parameter == "Y":

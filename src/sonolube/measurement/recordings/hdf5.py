@@ -1,104 +1,64 @@
-"""HDF5 and netCDF files, among them the recordings that `write_recording` writes."""
+"""HDF5 and netCDF 4 files, among them the recordings written by `write_recording`."""
 
-from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar, final
 
 import numpy as np
 
 from sonolube.errors import InvalidInput
+from sonolube.measurement.recordings.attributes import column_from_attributes, origin_from_attributes
 from sonolube.measurement.recordings.mapping import RecordingMapping
-from sonolube.measurement.recordings.table import Column, Table, refusing
+from sonolube.measurement.recordings.raw_table import RawColumn, RawTable, refuse_library_errors
 
-FORMAT_HDF5 = "HDF5"
-FORMAT_NETCDF3 = "netCDF 3"
-HDF5_MAGIC = b"\x89HDF\r\n\x1a\n"
-NETCDF3_MAGIC = b"CDF"
-_ORIGIN = ("title", "file_name", "file_format", "sha256", "begun")
+_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 
-def read_hierarchical(path: Path, *, mapping: RecordingMapping | None = None) -> Table:
-    """Return the vectors of an HDF5 or netCDF file; those inside groups as `group/vector`.
+@final
+@dataclass(frozen=True, slots=True)
+class Hdf5:
+    """HDF5 files (also netCDF 4) whose one-dimensional numeric datasets are channels."""
 
-    Parameters
-    ----------
-    path : Path
-        Of the file.
-    mapping : RecordingMapping or None
-        Not needed here: vectors are all read.
+    name: ClassVar[str] = "HDF5"
+    suffixes: ClassVar[tuple[str, ...]] = (".h5", ".hdf5", ".nc")
 
-    Returns
-    -------
-    Table
-        Units come from the attributes `units` or `unit`, the time between samples from `sample_rate` of the vector or
-        of the file, in Hz.
+    def recognises(self, head: bytes, path: Path) -> bool:
+        """Return whether the file begins with the signature of HDF5."""
+        return head.startswith(_SIGNATURE)
 
-    Raises
-    ------
-    InvalidInput
-        Naming the file, if it cannot be read or holds no vector of numbers.
-    """
-    with path.open("rb") as stream:
-        old = stream.read(3) == NETCDF3_MAGIC
-    name = FORMAT_NETCDF3 if old else FORMAT_HDF5
-    with refusing(path, format_name=name):
-        columns, attributes = _netcdf3(path) if old else _hdf5(path)
-    if not columns:
-        raise InvalidInput(f"{path}: holds no vector of numbers")
-    return Table(columns=tuple(columns), format=name, begun=attributes.pop("begun", ""), origin=attributes)
+    def read(self, path: Path, *, mapping: RecordingMapping | None = None) -> RawTable:
+        """Return the vectors of an HDF5 file; those inside groups are labelled `group/vector`.
 
+        Parameters
+        ----------
+        path : Path
+            Of the file.
+        mapping : RecordingMapping or None
+            Not used: all vectors are read.
 
-def _origin(attributes: Mapping[str, Any]) -> dict[str, str]:
-    """What a file says of the one it came from, the first one where it came through several."""
-    origin = {}
-    for key in _ORIGIN:
-        value = attributes.get(f"original_{key}", attributes.get(key))
-        if value is not None:
-            origin[key] = value.decode(errors="replace") if isinstance(value, bytes) else str(value)
-    return origin
+        Returns
+        -------
+        RawTable
+            Units are those of the attributes `units` or `unit`, the sample interval that of the attribute `sample_rate`
+            of the vector or of the file, in Hz.
 
+        Raises
+        ------
+        InvalidInput
+            Naming the file, if it cannot be read or holds no vector of numbers.
+        """
+        import h5py
 
-def _hdf5(path: Path) -> tuple[list[Column], dict[str, str]]:
-    import h5py
+        columns: list[RawColumn] = []
+        with refuse_library_errors(path, format_name=self.name), h5py.File(path, "r") as file:
+            rate = file.attrs.get("sample_rate")
 
-    columns: list[Column] = []
+            def visit(label: str, item: Any) -> None:
+                if isinstance(item, h5py.Dataset) and item.dtype.kind in "fiub" and item.ndim == 1:
+                    columns.append(column_from_attributes(label, np.asarray(item[()]), dict(item.attrs), rate))
 
-    with h5py.File(path, "r") as file:
-        rate = file.attrs.get("sample_rate")
-
-        def visit(name: str, item: Any) -> None:
-            if isinstance(item, h5py.Dataset) and item.dtype.kind in "fiub" and item.ndim == 1:
-                columns.append(_column(name, np.asarray(item[()]), dict(item.attrs), rate))
-
-        file.visititems(visit)
-        return columns, _origin(file.attrs)
-
-
-def _netcdf3(path: Path) -> tuple[list[Column], dict[str, str]]:
-    from scipy.io import netcdf_file
-
-    with netcdf_file(path, "r", mmap=False) as file:
-        rate = getattr(file, "sample_rate", None)
-        columns = [
-            _column(name, np.array(variable[:]), dict(variable._attributes), rate)
-            for name, variable in file.variables.items()
-            if variable.data.dtype.kind in "fiub" and len(variable.shape) == 1
-        ]
-        return columns, _origin(file._attributes)
-
-
-def _column(name: str, values: Any, attributes: dict[str, Any], rate: Any) -> Column:
-    unit = attributes.get("units", attributes.get("unit"))
-    rate = attributes.get("sample_rate", rate)
-    rate = float(np.ravel(rate)[0]) if rate is not None else 0.0
-    fill = attributes.get("_FillValue")
-    numbers = values.astype(np.float64)
-    if fill is not None and np.ravel(fill).size == 1:
-        numbers = np.where(values == np.ravel(fill)[0], np.nan, numbers)
-    return Column(
-        label=name,
-        values=numbers,
-        unit=unit.decode() if isinstance(unit, bytes) else (str(unit) if unit is not None else None),
-        start=0.0,
-        interval=1 / rate if rate > 0 else None,
-    )
+            file.visititems(visit)
+            origin = origin_from_attributes(file.attrs)
+        if not columns:
+            raise InvalidInput(f"{path}: holds no vector of numbers")
+        return RawTable(columns=tuple(columns), format_name=self.name, begun=origin.pop("begun", ""), origin=origin)

@@ -1,4 +1,4 @@
-"""What the columns of an instrument's export mean: quantity, unit, calibration, and how the text is written."""
+"""Mapping of an instrument's columns to vocabulary quantities: column, unit, calibration and text layout (TOML)."""
 
 import tomllib
 from collections.abc import Mapping
@@ -12,7 +12,9 @@ from sonolube.errors import InvalidInput, UnknownName, suggestion
 from sonolube.units import to_si
 from sonolube.vocabulary import quantity
 
-AXES = ("time", "revolutions")
+AXIS_QUANTITIES = ("time", "revolutions")
+"""Quantities that can be the axis of a recording."""
+
 _KEYS = {"title", "axis", "text", "channels", "rows"}
 _AXIS_KEYS = {"quantity", "column", "unit", "gain", "offset", "sample_rate"}
 _TEXT_KEYS = {"separator", "decimal_sign", "lines_to_skip", "missing", "encoding"}
@@ -21,16 +23,16 @@ _CHANNEL_KEYS = {"column", "unit", "gain", "offset"}
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ChannelSource:
-    """Where a channel comes from.
+    """Source of one channel: the column of the file, its unit and its linear calibration.
 
     Parameters
     ----------
     column : str
-        What the file calls it, line breaks written as spaces.
+        Label of the column in the file, with line breaks written as spaces.
     unit : str or None
-        Unit of the calibrated value; None to take the file's.
+        Unit of the calibrated value; None for the unit stated in the file.
     gain, offset : float
-        Calibration: the value is what is read times the gain, plus the offset.
+        Calibration: value = gain * reading + offset.
 
     Raises
     ------
@@ -51,25 +53,25 @@ class ChannelSource:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class TextLayout:
-    """How a text export is written.
+    """Layout of a text export: separator, decimal sign, skipped lines, missing-value texts and encoding.
 
     Parameters
     ----------
     separator : str
-        Between cells; empty to find it out.
+        Character between cells; empty to detect it.
     decimal_sign : str
-        "." or ","; empty to find it out.
+        "." or ","; empty to detect it.
     lines_to_skip : int
-        Lines before the line of column names.
+        Lines before the line of column labels.
     missing : tuple of str
-        Texts that stand for no value, beside empty cells.
+        Texts that stand for a missing value, beside empty cells.
     encoding : str
-        Of the text.
+        Character encoding, by its Python name.
 
     Raises
     ------
     InvalidInput
-        If the separator is longer than one character, the decimal sign is neither of both, or both are the same.
+        If the separator is longer than one character, the decimal sign is neither "." nor ",", or both are the same.
     """
 
     separator: str = ""
@@ -91,36 +93,36 @@ class TextLayout:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RecordingMapping:
-    """What the columns of a file mean.
+    """Assignment of the columns of a file to vocabulary quantities, and the layout of its text.
 
     Parameters
     ----------
     channels : mapping of str to ChannelSource
-        Sources by the vocabulary's names.
+        Source of each channel, by its vocabulary name.
     axis : ChannelSource or None
-        The column along which the values stand; None where `sample_rate` or the file gives it.
-    along : str
-        What the axis is: "time", or "revolutions" for exports with one row a cycle.
+        Column of the axis (independent variable); None where `sample_rate` or the file states it.
+    axis_quantity : str
+        Quantity of the axis: "time", or "revolutions" for exports with one row per cycle.
     sample_rate : float or None
-        Rows per second, where no column gives the time. [Hz]
+        Rows per second, where no column holds the time. [Hz]
     text : TextLayout
-        How a text export is written.
+        Layout of a text export.
     rows : mapping of str to str
-        Cells that a row must have to be taken, by column: one test out of a file of many.
+        Required cell by column label; only matching rows are read, such as one test out of a file of many.
     title : str
-        What the recording is.
+        Title of the recording.
 
     Raises
     ------
     UnknownName
         If a channel's name is not in the vocabulary.
     InvalidInput
-        If the axis is unknown, or both a column and a sample rate give it.
+        If the axis quantity is unknown, or both a column and a sample rate define the axis.
     """
 
     channels: Mapping[str, ChannelSource]
     axis: ChannelSource | None = None
-    along: str = "time"
+    axis_quantity: str = "time"
     sample_rate: float | None = None
     text: TextLayout = field(default_factory=TextLayout)
     rows: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
@@ -129,8 +131,8 @@ class RecordingMapping:
     def __post_init__(self) -> None:
         for name in self.channels:
             quantity(name)
-        if self.along not in AXES:
-            raise InvalidInput(f"axis.quantity must be one of {', '.join(AXES)}, got {self.along!r}")
+        if self.axis_quantity not in AXIS_QUANTITIES:
+            raise InvalidInput(f"axis.quantity must be one of {', '.join(AXIS_QUANTITIES)}, got {self.axis_quantity!r}")
         if self.sample_rate is not None:
             require_positive(sample_rate=self.sample_rate)
             if self.axis is not None:
@@ -138,12 +140,12 @@ class RecordingMapping:
 
 
 def read_mapping(path: Path) -> RecordingMapping:
-    """Return the mapping that a TOML file describes.
+    """Return a recording mapping read from a TOML file.
 
     Parameters
     ----------
     path : Path
-        Sections `axis`, `text`, `rows` and one `channels.NAME` a channel, NAME being a word of the vocabulary.
+        Sections `axis`, `text`, `rows` and one `channels.NAME` per channel, NAME being a quantity of the vocabulary.
 
     Returns
     -------
@@ -152,7 +154,7 @@ def read_mapping(path: Path) -> RecordingMapping:
     Raises
     ------
     InvalidInput
-        Naming the file and the key, if the file is missing, is no TOML, or a key or a value is not understood.
+        Naming the file and the key, if the file is missing, is no TOML, or a key or a value is invalid.
     """
     try:
         content = tomllib.loads(path.read_text(encoding="utf-8-sig"))
@@ -169,10 +171,11 @@ def read_mapping(path: Path) -> RecordingMapping:
 
 
 def _mapping(content: dict[str, Any]) -> RecordingMapping:
+    """Return the mapping of a parsed TOML document."""
     _refuse_unknown(content, _KEYS, "")
     axis, text = _section(content, "axis", _AXIS_KEYS), _section(content, "text", _TEXT_KEYS)
     channels = _section(content, "channels", None)
-    along = axis.pop("quantity", "time")
+    axis_quantity = axis.pop("quantity", "time")
     rate = axis.pop("sample_rate", None)
     if "missing" in text:
         text["missing"] = tuple(text["missing"])
@@ -182,7 +185,7 @@ def _mapping(content: dict[str, Any]) -> RecordingMapping:
             {name: ChannelSource(**_section(channels, name, _CHANNEL_KEYS, "channels.")) for name in channels}
         ),
         axis=ChannelSource(**axis) if axis else None,
-        along=along,
+        axis_quantity=axis_quantity,
         sample_rate=to_si(rate, unit="Hz", name="axis.sample_rate") if isinstance(rate, str) else rate,
         text=TextLayout(**text),
         rows=MappingProxyType({name: str(value) for name, value in _section(content, "rows", None).items()}),
@@ -190,6 +193,7 @@ def _mapping(content: dict[str, Any]) -> RecordingMapping:
 
 
 def _section(content: Mapping[str, Any], name: str, known: set[str] | None, prefix: str = "") -> dict[str, Any]:
+    """Return a section as a new dictionary; refuse what is no section and unknown keys."""
     section = content.get(name, {})
     if not isinstance(section, dict):
         raise InvalidInput(f"{prefix}{name} must be a section, got {section!r}")
@@ -199,6 +203,7 @@ def _section(content: Mapping[str, Any], name: str, known: set[str] | None, pref
 
 
 def _refuse_unknown(section: Mapping[str, Any], known: set[str], prefix: str) -> None:
+    """Refuse a key that is not among the known ones, with the closest."""
     for key in section:
         if key not in known:
             raise InvalidInput(f"{prefix}{key}: unknown key; {suggestion(key, known) or 'known: ' + ', '.join(known)}")

@@ -1,56 +1,75 @@
-"""MATLAB files: version 5 through scipy, version 7.3, which is HDF5, through h5py."""
+"""MATLAB files: versions 4 to 7 through scipy, version 7.3, which is HDF5, through h5py."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar, final
 
 import numpy as np
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.mapping import RecordingMapping
-from sonolube.measurement.recordings.table import Column, Table, refusing
+from sonolube.measurement.recordings.raw_table import RawColumn, RawTable, refuse_library_errors
 
-FORMAT = "MATLAB"
-_RATES = ("sample_rate", "sampling_rate", "fs", "Fs")
+_SIGNATURE = b"MATLAB "
+_RATE_NAMES = ("sample_rate", "sampling_rate", "fs", "Fs")
 
 
-def read_matlab(path: Path, *, mapping: RecordingMapping | None = None) -> Table:
-    """Return the vectors of a MATLAB file, those inside structures as `structure.field`.
+@final
+@dataclass(frozen=True, slots=True)
+class Matlab:
+    """MATLAB files of version 4 to 7.3 whose numeric vectors are channels.
 
-    Parameters
-    ----------
-    path : Path
-        Of the file, version 4 to 7.3.
-    mapping : RecordingMapping or None
-        Not needed here: vectors are all read.
-
-    Returns
-    -------
-    Table
-        A scalar called `sample_rate` or `fs` gives the time between samples, in Hz.
-
-    Raises
-    ------
-    InvalidInput
-        Naming the file, if it is no MATLAB file or holds no vector of numbers.
+    Notes
+    -----
+    Version 4 has no signature and is detected by its suffix.
     """
-    with refusing(path, format_name=FORMAT):
-        with path.open("rb") as stream:
-            new = b"MATLAB 7.3" in stream.read(128)
-        arrays = dict(_version_73(path) if new else _version_5(path))
-    rates = [float(arrays[name].flat[0]) for name in _RATES if name in arrays and arrays[name].size == 1]
-    interval = 1 / rates[0] if rates and rates[0] > 0 else None
-    columns = tuple(
-        Column(label=name, values=array.ravel().astype(np.float64), interval=interval, start=0.0)
-        for name, array in arrays.items()
-        if array.size > 1 and max(array.shape) == array.size
-    )
-    if not columns:
-        raise InvalidInput(f"{path}: holds no vector of numbers")
-    return Table(columns=columns, format=FORMAT)
+
+    name: ClassVar[str] = "MATLAB"
+    suffixes: ClassVar[tuple[str, ...]] = (".mat",)
+
+    def recognises(self, head: bytes, path: Path) -> bool:
+        """Return whether the file begins with the signature of versions 5 to 7.3."""
+        return head.startswith(_SIGNATURE)
+
+    def read(self, path: Path, *, mapping: RecordingMapping | None = None) -> RawTable:
+        """Return the vectors of a MATLAB file; those inside structures are labelled `structure.field`.
+
+        Parameters
+        ----------
+        path : Path
+            Of the file.
+        mapping : RecordingMapping or None
+            Not used: all vectors are read.
+
+        Returns
+        -------
+        RawTable
+            A scalar called `sample_rate`, `sampling_rate` or `fs` gives the sample interval, in Hz.
+
+        Raises
+        ------
+        InvalidInput
+            Naming the file, if it is no MATLAB file or holds no vector of numbers.
+        """
+        with refuse_library_errors(path, format_name=self.name):
+            with path.open("rb") as stream:
+                is_hdf5 = b"MATLAB 7.3" in stream.read(128)
+            arrays = dict(_arrays_of_version_7_3(path) if is_hdf5 else _arrays_before_version_7_3(path))
+        rates = [float(arrays[name].flat[0]) for name in _RATE_NAMES if name in arrays and arrays[name].size == 1]
+        interval = 1 / rates[0] if rates and rates[0] > 0 else None
+        columns = tuple(
+            RawColumn(label=name, values=array.ravel().astype(np.float64), interval=interval, start=0.0)
+            for name, array in arrays.items()
+            if array.size > 1 and max(array.shape) == array.size
+        )
+        if not columns:
+            raise InvalidInput(f"{path}: holds no vector of numbers")
+        return RawTable(columns=columns, format_name=self.name)
 
 
-def _version_5(path: Path) -> Mapping[str, Any]:
+def _arrays_before_version_7_3(path: Path) -> Mapping[str, Any]:
+    """Return the numeric arrays of a file of version 4 to 7, and those of its structures."""
     from scipy.io import loadmat
 
     arrays: dict[str, Any] = {}
@@ -64,14 +83,15 @@ def _version_5(path: Path) -> Mapping[str, Any]:
     return arrays
 
 
-def _version_73(path: Path) -> Mapping[str, Any]:
+def _arrays_of_version_7_3(path: Path) -> Mapping[str, Any]:
+    """Return the numeric arrays of a file of version 7.3, and those of its structures."""
     import h5py
 
     arrays: dict[str, Any] = {}
 
     def visit(name: str, item: Any) -> None:
-        wanted = isinstance(item, h5py.Dataset) and item.dtype.kind in "fiub" and not name.startswith("#")
-        if wanted and item.attrs.get("MATLAB_class") != b"char" and not item.attrs.get("MATLAB_empty", 0):
+        is_numeric = isinstance(item, h5py.Dataset) and item.dtype.kind in "fiub" and not name.startswith("#")
+        if is_numeric and item.attrs.get("MATLAB_class") != b"char" and not item.attrs.get("MATLAB_empty", 0):
             arrays[name.replace("/", ".")] = np.asarray(item[()])
 
     with h5py.File(path, "r") as file:

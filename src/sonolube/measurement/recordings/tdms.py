@@ -1,91 +1,124 @@
-"""LabVIEW's binary recordings (TDMS), streamed: memory holds one chunk of the file and one block, never the file."""
+"""LabVIEW's binary recordings (TDMS), streamed by segment chunks so that memory holds one chunk and one block."""
 
 import struct
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, ClassVar, final
 
 import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.mapping import RecordingMapping
-from sonolube.measurement.recordings.table import Column, Table, one_line, refusing
+from sonolube.measurement.recordings.raw_table import RawColumn, RawTable, one_line, refuse_library_errors
 
-FORMAT = "TDMS"
-_LEAD_IN = 28
-_SHORT = 1 << 16  # bytes that may be asked for in vain
-_UNFINISHED = 0xFFFFFFFFFFFFFFFF
+TDMS_FORMAT = "TDMS"
+"""Name of the format in results."""
+
+_SIGNATURE = b"TDSm"
+_LEAD_IN = 28  # bytes before the metadata of a segment
+_UNCHECKED_READ = 1 << 16  # bytes; larger reads are limited to what the file holds
+_UNFINISHED = 0xFFFFFFFFFFFFFFFF  # length of a segment that was not closed
 _BIG_ENDIAN = 1 << 6
 
 
-def read_tdms(path: Path, *, mapping: RecordingMapping | None = None) -> Table:
-    """Return the channels of a TDMS file.
+@final
+@dataclass(frozen=True, slots=True)
+class Tdms:
+    """LabVIEW's binary recordings (TDMS), whole or in blocks of rows.
 
-    Parameters
+    Notes
+    -----
+    npTDMS reads the segments; lead-ins are validated against the size of the file before it does, and no read requests
+    more bytes than the file holds.
+
+    References
     ----------
-    path : Path
-        Of the file.
-    mapping : RecordingMapping or None
-        Which channels are wanted; all of them without it.
-
-    Returns
-    -------
-    Table
-
-    Raises
-    ------
-    InvalidInput
-        Naming the file and the byte, if it is no TDMS file, its headers contradict its size, or it holds no numbers.
+    .. [1] NI, TDMS File Format Internal Structure.
     """
-    tables = list(tdms_tables(path, mapping=mapping, block_samples=None))
-    return tables[0]
+
+    name: ClassVar[str] = TDMS_FORMAT
+    suffixes: ClassVar[tuple[str, ...]] = (".tdms",)
+
+    def recognises(self, head: bytes, path: Path) -> bool:
+        """Return whether the file begins with the tag of a segment."""
+        return head.startswith(_SIGNATURE)
+
+    def read(self, path: Path, *, mapping: RecordingMapping | None = None) -> RawTable:
+        """Return the channels of a TDMS file.
+
+        Parameters
+        ----------
+        path : Path
+            Of the file.
+        mapping : RecordingMapping or None
+            The channels to read; without it all of them.
+
+        Returns
+        -------
+        RawTable
+
+        Raises
+        ------
+        InvalidInput
+            Naming the file and the byte, if it is no TDMS file, its lead-ins contradict its size, or it holds no
+            numbers.
+        """
+        (table,) = self._tables(path, mapping, None)
+        return table
+
+    def read_blocks(self, path: Path, *, mapping: RecordingMapping | None, block_samples: int) -> Iterator[RawTable]:
+        """Yield the channels of a TDMS file in blocks of rows; the last may be shorter.
+
+        Parameters
+        ----------
+        path : Path
+            Of the file.
+        mapping : RecordingMapping or None
+            The channels to read; without it all of them.
+        block_samples : int
+            Rows of a block.
+
+        Yields
+        ------
+        RawTable
+
+        Raises
+        ------
+        InvalidInput
+            As `read`.
+        """
+        return self._tables(path, mapping, block_samples)
+
+    def _tables(self, path: Path, mapping: RecordingMapping | None, block_samples: int | None) -> Iterator[RawTable]:
+        """Yield blocks of rows, or one block with all rows where `block_samples` is None."""
+        from nptdms import TdmsFile
+
+        with path.open("rb") as stream:
+            incomplete = _check_lead_ins(stream, path)
+            stream.seek(0)
+            with refuse_library_errors(path, format_name=self.name, offset=stream.tell):
+                file = TdmsFile.open(_LimitedStream(stream))
+            channels = _selected_channels(file, path, mapping)
+            columns = {label: _empty_column(label, channel) for label, channel in channels.items()}
+            _require_equal_lengths(channels, path, incomplete)
+            with refuse_library_errors(path, format_name=self.name, offset=stream.tell):
+                rows = 0
+                for values in _blocks(file, channels, block_samples):
+                    filled = tuple(replace(column, values=values[label]) for label, column in columns.items())
+                    yield RawTable(
+                        columns=filled,
+                        format_name=self.name,
+                        begun=_start_time(channels),
+                        first_row=rows,
+                        incomplete=incomplete,
+                    )
+                    rows += filled[0].values.size
 
 
-def tdms_tables(path: Path, *, mapping: RecordingMapping | None, block_samples: int | None) -> Iterator[Table]:
-    """Yield the channels of a TDMS file in blocks of rows; the last may be shorter.
-
-    Parameters
-    ----------
-    path : Path
-        Of the file.
-    mapping : RecordingMapping or None
-        Which channels are wanted; all of them without it.
-    block_samples : int or None
-        Rows of a block; None for one block with all.
-
-    Yields
-    ------
-    Table
-
-    Raises
-    ------
-    InvalidInput
-        As `read_tdms`.
-    """
-    from nptdms import TdmsFile
-
-    with path.open("rb") as stream:
-        unfinished = _check_lead_ins(stream, path)
-        stream.seek(0)
-        with refusing(path, format_name=FORMAT, offset=stream.tell):
-            file = TdmsFile.open(_Bounded(stream))
-        channels = _wanted_channels(file, path, mapping)
-        columns = {label: _column(label, channel) for label, channel in channels.items()}
-        _refuse_unequal(channels, path, unfinished)
-        with refusing(path, format_name=FORMAT, offset=stream.tell):
-            rows = 0
-            for values in _blocks(file, channels, block_samples):
-                filled = tuple(replace(column, values=values[label]) for label, column in columns.items())
-                yield Table(
-                    columns=filled, format=FORMAT, begun=_begun(channels), first_row=rows, incomplete=unfinished
-                )
-                rows += filled[0].values.size
-
-
-class _Bounded:
-    """A file that never promises more bytes than it has, whatever a hostile length asks for."""
+class _LimitedStream:
+    """Binary stream whose reads never request more bytes than the file holds, whatever length a damaged file states."""
 
     def __init__(self, stream: BinaryIO) -> None:
         self._stream = stream
@@ -94,64 +127,72 @@ class _Bounded:
         stream.seek(0)
 
     def read(self, size: int = -1) -> bytes:
-        if 0 <= size <= _SHORT:
+        if 0 <= size <= _UNCHECKED_READ:
             return self._stream.read(size)
-        left = max(self._size - self._stream.tell(), 0)
-        return self._stream.read(left if size < 0 else min(size, left))
+        available = max(self._size - self._stream.tell(), 0)
+        return self._stream.read(available if size < 0 else min(size, available))
 
 
 def _check_lead_ins(stream: BinaryIO, path: Path) -> bool:
-    """Follow the segments through the file; return whether the last is unfinished."""
+    """Validate the lead-ins of all segments; return whether the last segment is incomplete."""
     size, position = stream.seek(0, 2), 0
     while position + _LEAD_IN <= size:
         stream.seek(position)
-        lead = stream.read(_LEAD_IN)
-        if lead[:4] != b"TDSm":
-            raise InvalidInput(f"{path}: byte {position}: a segment must begin with TDSm, got {lead[:4]!r}")
-        order = ">" if struct.unpack_from("<I", lead, 4)[0] & _BIG_ENDIAN else "<"
-        following, data = struct.unpack_from(order + "QQ", lead, 12)
-        if data > size - position - _LEAD_IN:
+        lead_in = stream.read(_LEAD_IN)
+        if lead_in[:4] != _SIGNATURE:
+            raise InvalidInput(f"{path}: byte {position}: a segment must begin with TDSm, got {lead_in[:4]!r}")
+        order = ">" if struct.unpack_from("<I", lead_in, 4)[0] & _BIG_ENDIAN else "<"
+        segment_length, metadata_length = struct.unpack_from(order + "QQ", lead_in, 12)
+        if metadata_length > size - position - _LEAD_IN:
             raise InvalidInput(
-                f"{path}: byte {position}: announces {data} bytes of description, more than the file has"
+                f"{path}: byte {position}: announces {metadata_length} bytes of description, more than the file has"
             )
-        if following == _UNFINISHED:
+        if segment_length == _UNFINISHED:
             return True
-        if data > following:
-            raise InvalidInput(f"{path}: byte {position}: a segment of {following} bytes has {data} of description")
-        if following >= 2**62:
-            raise InvalidInput(f"{path}: byte {position}: announces a segment of {following} bytes")
-        position += _LEAD_IN + following
+        if metadata_length > segment_length:
+            raise InvalidInput(
+                f"{path}: byte {position}: a segment of {segment_length} bytes has {metadata_length} of description"
+            )
+        if segment_length >= 2**62:
+            raise InvalidInput(f"{path}: byte {position}: announces a segment of {segment_length} bytes")
+        position += _LEAD_IN + segment_length
     if size < _LEAD_IN:
         raise InvalidInput(f"{path}: is too short for a TDMS file ({size} bytes)")
     return position != size
 
 
-def _wanted_channels(file: Any, path: Path, mapping: RecordingMapping | None) -> dict[str, Any]:
-    every = {
+def _selected_channels(file: Any, path: Path, mapping: RecordingMapping | None) -> dict[str, Any]:
+    """Return the numeric channels with samples that the mapping names, or all, by unique labels."""
+    by_full_name = {
         one_line(f"{group.name}/{channel.name}"): channel for group in file.groups() for channel in group.channels()
     }
-    short = [channel.name for channel in every.values()]
-    labelled = {(one_line(c.name) if short.count(c.name) == 1 else label): c for label, c in every.items()}
-    numeric = {label: c for label, c in labelled.items() if _is_numeric(c) and len(c) > 0}
+    names = [channel.name for channel in by_full_name.values()]
+    labelled = {
+        (one_line(channel.name) if names.count(channel.name) == 1 else full_name): channel
+        for full_name, channel in by_full_name.items()
+    }
+    numeric = {label: channel for label, channel in labelled.items() if _is_numeric(channel) and len(channel) > 0}
     if mapping is not None and mapping.channels:
-        wanted = {source.column for source in mapping.channels.values()}
-        wanted |= {mapping.axis.column} if mapping.axis else set()
-        numeric = {label: c for label, c in numeric.items() if label in wanted}
+        requested = {source.column for source in mapping.channels.values()}
+        requested |= {mapping.axis.column} if mapping.axis else set()
+        numeric = {label: channel for label, channel in numeric.items() if label in requested}
     if not numeric:
         raise InvalidInput(f"{path}: holds no channel of numbers" + (" that the mapping names" if mapping else ""))
     return numeric
 
 
 def _is_numeric(channel: Any) -> bool:
+    """Return whether the samples of a channel are real numbers or booleans."""
     kind = getattr(channel.dtype, "kind", "O")
     return kind in "fiub"
 
 
-def _column(label: str, channel: Any) -> Column:
+def _empty_column(label: str, channel: Any) -> RawColumn:
+    """Return the column of a channel without its values: label, unit and waveform time base."""
     properties = channel.properties
     unit = properties.get("unit_string") or properties.get("NI_UnitDescription")
     interval, start = properties.get("wf_increment"), properties.get("wf_start_offset", 0.0)
-    return Column(
+    return RawColumn(
         label=label,
         values=np.empty(0),
         unit=str(unit) if unit else None,
@@ -160,40 +201,44 @@ def _column(label: str, channel: Any) -> Column:
     )
 
 
-def _refuse_unequal(channels: dict[str, Any], path: Path, unfinished: bool) -> None:
+def _require_equal_lengths(channels: dict[str, Any], path: Path, incomplete: bool) -> None:
+    """Refuse channels of different lengths, except where the last segment is incomplete."""
     lengths = {label: len(channel) for label, channel in channels.items()}
-    if len(set(lengths.values())) > 1 and not unfinished:
+    if len(set(lengths.values())) > 1 and not incomplete:
         text = ", ".join(f"{label} {size}" for label, size in lengths.items())
         raise InvalidInput(f"{path}: channels have different numbers of samples ({text[:200]}); choose with a mapping")
 
 
 def _blocks(file: Any, channels: dict[str, Any], block_samples: int | None) -> Iterator[dict[str, Floats]]:
-    held: dict[str, list[Floats]] = {label: [] for label in channels}
+    """Yield the samples of all channels in blocks of rows, from the chunks of the file."""
+    pending: dict[str, list[Floats]] = {label: [] for label in channels}
     rows = dict.fromkeys(channels, 0)
     for chunk in file.data_chunks():
         for label, channel in channels.items():
             part = np.asarray(chunk[channel.group_name][channel.name][:])
             if part.size:
-                held[label].append(part.astype(np.float64, copy=False))
+                pending[label].append(part.astype(np.float64, copy=False))
                 rows[label] += part.size
         while block_samples is not None and min(rows.values()) >= block_samples:
-            yield _take(held, block_samples)
+            yield _take(pending, block_samples)
             rows = {label: count - block_samples for label, count in rows.items()}
-    rest = min(rows.values())
-    if rest or block_samples is None:
-        yield _take(held, rest)
+    remaining = min(rows.values())
+    if remaining or block_samples is None:
+        yield _take(pending, remaining)
 
 
-def _take(held: dict[str, list[Floats]], rows: int) -> dict[str, Floats]:
+def _take(pending: dict[str, list[Floats]], rows: int) -> dict[str, Floats]:
+    """Remove and return the first rows of all channels."""
     taken = {}
-    for label, parts in held.items():
+    for label, parts in pending.items():
         joined = parts[0] if len(parts) == 1 else np.concatenate(parts or [np.empty(0)])
         taken[label] = joined[:rows]
-        held[label] = [joined[rows:]] if joined.size > rows else []
+        pending[label] = [joined[rows:]] if joined.size > rows else []
     return taken
 
 
-def _begun(channels: dict[str, Any]) -> str:
+def _start_time(channels: dict[str, Any]) -> str:
+    """Return the start of the waveform of the first channel that states one; empty where none does."""
     times = [
         channel.properties["wf_start_time"] for channel in channels.values() if "wf_start_time" in channel.properties
     ]

@@ -1,76 +1,93 @@
-"""Universal files (UFF), data set 58: what vibrometers and modal software export."""
+"""Universal files (UFF), data set 58, as vibrometers and modal analysis software export them."""
 
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar, final
 
 import numpy as np
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.mapping import RecordingMapping
-from sonolube.measurement.recordings.table import Column, Table, refusing
+from sonolube.measurement.recordings.raw_table import RawColumn, RawTable, refuse_library_errors
 
-FORMAT = "universal file"
-_TIME_RESPONSE = 1
-
-
-def read_universal_file(path: Path, *, mapping: RecordingMapping | None = None) -> Table:
-    """Return the time responses of a universal file.
-
-    Parameters
-    ----------
-    path : Path
-        Of the file.
-    mapping : RecordingMapping or None
-        Not needed here: responses are all read.
-
-    Returns
-    -------
-    Table
-        Labels are those of the ordinate, or of the response's node and direction where it has none.
-
-    Raises
-    ------
-    InvalidInput
-        Naming the file, if it cannot be read, holds no time response, or one of uneven spacing beside others.
-    """
-    import pyuff
-
-    with refusing(path, format_name=FORMAT):
-        file = pyuff.UFF(str(path))
-        types = np.atleast_1d(file.get_set_types())
-        sets = [file.read_sets(int(index)) for index in np.flatnonzero(types == 58)]
-        responses = [
-            data for data in sets if data["func_type"] in (0, _TIME_RESPONSE) and not np.iscomplexobj(data["data"])
-        ]
-        columns = [_column(data, responses) for data in responses]
-    if not columns:
-        raise InvalidInput(f"{path}: holds no time response (data set 58, function type 1)")
-    for data in responses:
-        if len(data["data"]) != data["num_pts"]:
-            raise InvalidInput(f"{path}: a response of {data['num_pts']} values has {len(data['data'])}")
-    uneven = [data for data in responses if data["abscissa_spacing"] == 0]
-    if uneven and len(responses) > 1:
-        raise InvalidInput(f"{path}: responses of uneven spacing must each have a file of their own")
-    if uneven:
-        columns.insert(0, Column(label="time", values=np.asarray(uneven[0]["x"], dtype=np.float64), unit="s"))
-    return Table(columns=tuple(columns), format=FORMAT)
+_GENERAL, _TIME_RESPONSE = 0, 1  # function types of data set 58
 
 
-def _column(data: dict[str, Any], every: list[dict[str, Any]]) -> Column:
+@final
+@dataclass(frozen=True, slots=True)
+class UniversalFile:
+    """Universal files (UFF) with time responses in data set 58."""
+
+    name: ClassVar[str] = "universal file"
+    suffixes: ClassVar[tuple[str, ...]] = (".uff", ".unv")
+
+    def recognises(self, head: bytes, path: Path) -> bool:
+        """Return whether the first line is the delimiter -1 and the second the number of a data set."""
+        lines = [line.strip() for line in head.splitlines()[:2]]
+        return lines[:1] == [b"-1"] and len(lines) > 1 and lines[1][:6].split(b"b")[0].strip().isdigit()
+
+    def read(self, path: Path, *, mapping: RecordingMapping | None = None) -> RawTable:
+        """Return the time responses of a universal file.
+
+        Parameters
+        ----------
+        path : Path
+            Of the file.
+        mapping : RecordingMapping or None
+            Not used: all responses are read.
+
+        Returns
+        -------
+        RawTable
+            Labels are those of the ordinate, or node and direction of the response where it has none.
+
+        Raises
+        ------
+        InvalidInput
+            Naming the file, if it cannot be read, holds no time response, or an unevenly sampled one beside others.
+        """
+        import pyuff
+
+        with refuse_library_errors(path, format_name=self.name):
+            file = pyuff.UFF(str(path))
+            types = np.atleast_1d(file.get_set_types())
+            sets = [file.read_sets(int(index)) for index in np.flatnonzero(types == 58)]
+            responses = [
+                data
+                for data in sets
+                if data["func_type"] in (_GENERAL, _TIME_RESPONSE) and not np.iscomplexobj(data["data"])
+            ]
+            columns = [_column(data, responses) for data in responses]
+        if not columns:
+            raise InvalidInput(f"{path}: holds no time response (data set 58, function type 1)")
+        for data in responses:
+            if len(data["data"]) != data["num_pts"]:
+                raise InvalidInput(f"{path}: a response of {data['num_pts']} values has {len(data['data'])}")
+        uneven = [data for data in responses if data["abscissa_spacing"] == 0]
+        if uneven and len(responses) > 1:
+            raise InvalidInput(f"{path}: unevenly sampled responses must each have a file of their own")
+        if uneven:
+            columns.insert(0, RawColumn(label="time", values=np.asarray(uneven[0]["x"], dtype=np.float64), unit="s"))
+        return RawTable(columns=tuple(columns), format_name=self.name)
+
+
+def _column(data: dict[str, Any], responses: list[dict[str, Any]]) -> RawColumn:
+    """Return the column of one response, labelled uniquely among all responses."""
     label = _text(data, "ordinate_axis_lab")
-    if not label or sum(_text(other, "ordinate_axis_lab") == label for other in every) > 1:
+    if not label or sum(_text(other, "ordinate_axis_lab") == label for other in responses) > 1:
         label = f"{label or 'response'} node {data['rsp_node']} direction {data['rsp_dir']}"
     unit = _text(data, "ordinate_axis_units_lab")
-    even = data["abscissa_spacing"] == 1
-    return Column(
+    evenly_sampled = data["abscissa_spacing"] == 1
+    return RawColumn(
         label=label,
         values=np.asarray(data["data"], dtype=np.float64),
         unit=unit or None,
-        start=float(data["abscissa_min"]) if even else None,
-        interval=float(data["abscissa_inc"]) if even else None,
+        start=float(data["abscissa_min"]) if evenly_sampled else None,
+        interval=float(data["abscissa_inc"]) if evenly_sampled else None,
     )
 
 
 def _text(data: dict[str, Any], key: str) -> str:
+    """Return a text field; empty for the placeholders NONE and NO NAME."""
     text = str(data.get(key, "")).strip()
     return "" if text.upper() in ("NONE", "NO NAME") else text

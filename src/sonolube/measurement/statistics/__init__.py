@@ -1,1 +1,1 @@
-"""Statistics of measured series: confidence intervals, correlation and fits of logarithms."""
+"""Statistics of measurements: correlated samples, few repeated tests, and fits of log-parameters."""

@@ -1,1 +1,1 @@
-"""Surface topography files: readers of profilometer formats."""
+"""Surface files: readers of profilometer formats as height maps in metres."""

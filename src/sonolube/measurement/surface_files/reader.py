@@ -1,36 +1,29 @@
-"""Surface files in: a format found by its content, heights in metres, and where they came from."""
+"""Reading of surface files as height maps in metres with their provenance, in any format of `SURFACE_FORMATS`."""
 
 import hashlib
-import warnings
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
-from typing import BinaryIO
-
-import numpy as np
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.surface_files.record import SurfaceReading
-from sonolube.measurement.surface_files.surface_topography import read_with_surface_topography
-from sonolube.measurement.surface_files.wyko import WYKO_MAGIC, read_wyko
-from sonolube.measurement.surface_files.xyz import is_point, read_xyz
+from sonolube.measurement.file_format import detect_format, read_head
+from sonolube.measurement.surface_files.formats import SURFACE_FORMATS
+from sonolube.measurement.surface_files.surface_reading import SurfaceReading
 from sonolube.surfaces import HeightMap
 from sonolube.units import convert
 
-_NPY_MAGIC = b"\x93NUMPY"
-_HEAD = 8192
 _SPACING_ADVICE = "give spacing_x and spacing_y, the distances of columns and rows in m"
 _UNIT_ADVICE = 'give length_unit, such as "um"'
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class SurfaceFile:
-    """A height map and where it came from.
+    """A height map and its provenance.
 
     Parameters
     ----------
     height_map : HeightMap
-        What was measured.
+        The measured heights.
     path : Path
         The file it was read from.
     sha256 : str
@@ -38,9 +31,9 @@ class SurfaceFile:
     format_name : str
         The file's format, such as "Wyko OPD".
     title, instrument : str
-        As the file gives them; empty where it does not.
+        As the file states them; empty where it does not.
     measured_at : datetime or None
-        When it was measured, by the instrument's clock; None where the file does not say.
+        Time of the measurement by the instrument's clock; None where the file does not state it.
     """
 
     height_map: HeightMap
@@ -59,24 +52,25 @@ def read_surface_file(
     spacing_y: float | None = None,
     length_unit: str | None = None,
 ) -> SurfaceFile:
-    """Read a surface file and its provenance.
+    """Return the height map of a surface file with its provenance.
 
     Parameters
     ----------
     path : Path or str
-        Wyko OPD, NPY or XYZ text; with the extra ``surfaces`` also SUR, X3P, SDF, PLU, VK, AL3D, GWY, OPDx, MetroPro
-        and the other formats of SurfaceTopography. The content decides, not the name.
+        In any format of `SURFACE_FORMATS`, which is detected by content and then by suffix: Wyko OPD, NPY or XYZ text;
+        with the extra ``surfaces`` also SUR, X3P, SDF, PLU, VK, AL3D, GWY, OPDx, MetroPro and the other formats of
+        SurfaceTopography.
     spacing_x, spacing_y : float, optional
-        Distance of neighbouring columns and rows, only for a file that does not say, such as NPY. [m]
+        Distance of neighbouring columns and rows, only for a file that does not state it, such as NPY. [m]
     length_unit : str, optional
-        Unit of the lengths in a file that does not say, such as "um": needed for XYZ text; an NPY file without it
-        holds metres.
+        Unit of the lengths in a file that does not state it, such as "um": required for XYZ text; an NPY file without
+        it is in metres.
 
     Returns
     -------
     SurfaceFile
-        Heights in metres. Columns follow x and rows follow y as the file has them: where it holds a picture the first
-        row is the top, where it holds positions (XYZ text) the first row has the smallest y.
+        Heights in metres. Columns follow x and rows follow y as in the file: where it holds a picture the first row is
+        the top, where it holds positions (XYZ text) the first row has the smallest y.
 
     Raises
     ------
@@ -86,13 +80,14 @@ def read_surface_file(
 
     Notes
     -----
-    Memory stays within a small multiple of the file's size, whatever the file claims, for OPD, NPY and XYZ.
+    For OPD, NPY and XYZ files memory stays within a small multiple of the file's size, whatever size the file states.
     """
     place = Path(path)
+    file_format = detect_format(SURFACE_FORMATS, read_head(place), place) or SURFACE_FORMATS[-1]
     try:
         with place.open("rb") as stream:
             digest = hashlib.file_digest(stream, "sha256").hexdigest()
-            reading = _read(stream, place)
+            reading = file_format.read(stream, place)
     except OSError as failure:
         raise InvalidInput(f"{place}: cannot be read: {failure.strerror or failure}") from None
     height_map = _height_map(reading, place, spacing_x=spacing_x, spacing_y=spacing_y, length_unit=length_unit)
@@ -114,16 +109,16 @@ def read_height_map(
     spacing_y: float | None = None,
     length_unit: str | None = None,
 ) -> HeightMap:
-    """Read the heights of a surface file.
+    """Return the height map of a surface file.
 
     Parameters
     ----------
     path : Path or str
         The file, in any format of `read_surface_file`.
     spacing_x, spacing_y : float, optional
-        Distance of neighbouring columns and rows, only for a file that does not say, such as NPY. [m]
+        Distance of neighbouring columns and rows, only for a file that does not state it, such as NPY. [m]
     length_unit : str, optional
-        Unit of the lengths in a file that does not say, such as "um".
+        Unit of the lengths in a file that does not state it, such as "um".
 
     Returns
     -------
@@ -133,43 +128,12 @@ def read_height_map(
     ------
     InvalidInput
         As `read_surface_file`.
+
+    See Also
+    --------
+    read_surface_file : the same with provenance.
     """
     return read_surface_file(path, spacing_x=spacing_x, spacing_y=spacing_y, length_unit=length_unit).height_map
-
-
-def _read(stream: BinaryIO, path: Path) -> SurfaceReading:
-    stream.seek(0)
-    head = stream.read(_HEAD)
-    if not head:
-        raise InvalidInput(f"{path}: byte 0: the file is empty")
-    suffix = path.suffix.lower()
-    if head[2:].startswith(WYKO_MAGIC) or suffix == ".opd":
-        return read_wyko(stream, name=str(path))
-    if head.startswith(_NPY_MAGIC) or suffix == ".npy":
-        return _read_npy(stream, path)
-    if suffix == ".xyz" or _are_points(head):
-        return read_xyz(stream, name=str(path))
-    return read_with_surface_topography(path)
-
-
-def _are_points(head: bytes) -> bool:
-    """Return whether text ends in lines of three numbers."""
-    whole_lines = head.splitlines()[: -1 if len(head) == _HEAD else None]
-    return b"\0" not in head and len(whole_lines) > 3 and all(is_point(line) for line in whole_lines[-3:])
-
-
-def _read_npy(stream: BinaryIO, path: Path) -> SurfaceReading:
-    stream.seek(0)
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of old headers
-            mapped = np.load(path, mmap_mode="r", allow_pickle=False)  # mapped: refuses a size beyond the file's
-            height = np.array(mapped, dtype=np.float64) if mapped.ndim == 2 and mapped.dtype.kind in "fiu" else None
-    except Exception as failure:  # of a damaged header comes whatever evaluating it raises
-        raise InvalidInput(f"{path}: not a whole NPY file: {' '.join(str(failure).split())[:200]}") from None
-    if height is None:
-        raise InvalidInput(f"{path}: heights are a matrix of numbers, got shape {mapped.shape} of {mapped.dtype}")
-    return SurfaceReading(height=height, format_name="NPY", states_unit=False)
 
 
 def _height_map(
@@ -180,10 +144,11 @@ def _height_map(
     spacing_y: float | None,
     length_unit: str | None,
 ) -> HeightMap:
+    """Return the height map in metres, with the unit and spacings of the file or those given."""
     if reading.states_unit and length_unit is not None:
         raise InvalidInput(f"{path}: {reading.format_name} states its unit; leave length_unit out")
-    if not reading.states_unit and length_unit is None and reading.format_name != "NPY":
-        raise InvalidInput(f"{path}: {reading.format_name} does not say its unit; {_UNIT_ADVICE}")
+    if length_unit is None and not (reading.states_unit or reading.metres_by_default):
+        raise InvalidInput(f"{path}: {reading.format_name} does not state its unit; {_UNIT_ADVICE}")
     unit = convert(1.0, from_unit=length_unit, to_unit="m") if length_unit else 1.0
     try:
         step_x, step_y = _spacings(reading, unit, spacing_x=spacing_x, spacing_y=spacing_y)
@@ -195,6 +160,7 @@ def _height_map(
 def _spacings(
     reading: SurfaceReading, unit: float, *, spacing_x: float | None, spacing_y: float | None
 ) -> tuple[float, float]:
+    """Return the spacings in metres, of the file or those given; refuse both and neither."""
     if reading.spacing_x is not None and reading.spacing_y is not None:
         if spacing_x is not None or spacing_y is not None:
             raise InvalidInput(f"{reading.format_name} states its spacing; leave spacing_x and spacing_y out")

@@ -1,62 +1,83 @@
-"""The many formats that the SurfaceTopography library reads, behind the extra ``surfaces``."""
+"""All formats of the SurfaceTopography library, with the extra ``surfaces``."""
 
 import warnings
+from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO, ClassVar, final
 
 import numpy as np
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.surface_files.record import SurfaceReading
+from sonolube.measurement.surface_files.surface_reading import SurfaceReading
 
-_TITLES = ("Title", "DataSetName", "object_name")
+_TITLE_KEYS = ("Title", "DataSetName", "object_name")
 
 
-def read_with_surface_topography(path: Path) -> SurfaceReading:
-    """Read the default channel of a file in any format that SurfaceTopography knows.
+@final
+@dataclass(frozen=True, slots=True)
+class SurfaceTopographyFormats:
+    """All formats of the SurfaceTopography library: SUR, X3P, SDF, PLU, VK, AL3D, GWY, OPDx, MetroPro and more.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
-    SurfaceReading
-        Rows and columns as SurfaceTopography orders y and x. A profile becomes one row of square pixels.
-
-    Raises
-    ------
-    InvalidInput
-        If the library is not installed, knows no such format, or fails on the file.
+    Notes
+    -----
+    The fallback: SurfaceTopography detects the format itself.
 
     References
     ----------
     .. [1] M. C. Röttger et al., Surf. Topogr.: Metrol. Prop. 10, 035032 (2022). doi:10.1088/2051-672X/ac860a
     """
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of its dependencies, about what they lack
-        try:
-            import SurfaceTopography
-            from SurfaceTopography.Exceptions import CannotDetectFileFormat
-        except ImportError:
-            raise InvalidInput(
-                f"{path}: neither Wyko OPD, NPY nor XYZ text; for other formats: "
-                'pip install "sonolube[surfaces]", which brings SurfaceTopography'
-            ) from None
-        try:
-            return _reading(SurfaceTopography.open_topography(str(path)), path=path)
-        except InvalidInput:
-            raise
-        except CannotDetectFileFormat:
-            raise InvalidInput(f"{path}: damaged, or of no format that SurfaceTopography knows") from None
-        except Exception as failure:  # its readers let errors of any kind through
-            cause = " ".join(str(failure).split()) or type(failure).__name__
-            raise InvalidInput(f"{path}: SurfaceTopography cannot read it: {cause[:200]}") from None
+
+    name: ClassVar[str] = "SurfaceTopography"
+    suffixes: ClassVar[tuple[str, ...]] = ()
+
+    def recognises(self, head: bytes, path: Path) -> bool:
+        """Return True: the library detects its formats itself."""
+        return True
+
+    def read(self, stream: BinaryIO, path: Path) -> SurfaceReading:
+        """Return the default channel of a file in any format of SurfaceTopography.
+
+        Parameters
+        ----------
+        stream : binary file
+            Not used: the library opens the file by its path.
+        path : Path
+            Of the file.
+
+        Returns
+        -------
+        SurfaceReading
+            Rows and columns as SurfaceTopography orders y and x. A profile becomes one row of square pixels.
+
+        Raises
+        ------
+        InvalidInput
+            If the library is not installed, does not recognise the format, or fails on the file.
+        """
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of the library's dependencies, about missing optional parts
+            try:
+                import SurfaceTopography
+                from SurfaceTopography.Exceptions import CannotDetectFileFormat
+            except ImportError:
+                raise InvalidInput(
+                    f"{path}: neither Wyko OPD, NPY nor XYZ text; for other formats: "
+                    'pip install "sonolube[surfaces]", which brings SurfaceTopography'
+                ) from None
+            try:
+                return _reading(SurfaceTopography.open_topography(str(path)), path=path)
+            except InvalidInput:
+                raise
+            except CannotDetectFileFormat:
+                raise InvalidInput(f"{path}: damaged, or of no format of SurfaceTopography") from None
+            except Exception as failure:  # its readers raise exceptions of any type
+                cause = " ".join(str(failure).split()) or type(failure).__name__
+                raise InvalidInput(f"{path}: SurfaceTopography cannot read it: {cause[:200]}") from None
 
 
 def _reading(reader: Any, *, path: Path) -> SurfaceReading:
+    """Return the default channel of an open reader of the library."""
     channel = reader.default_channel
     states_unit, states_size = channel.unit is not None, channel.physical_sizes is not None
     assumed: dict[str, Any] = {} if states_unit else {"unit": "m"}
@@ -74,20 +95,21 @@ def _reading(reader: Any, *, path: Path) -> SurfaceReading:
         spacing_x=float(steps[0]) if states_size else None,
         spacing_y=float(steps[-1]) if states_size else None,
         states_unit=states_unit,
-        title=next((str(found) for key in _TITLES if (found := info.get("raw_metadata", {}).get(key))), ""),
+        title=next((str(found) for key in _TITLE_KEYS if (found := info.get("raw_metadata", {}).get(key))), ""),
         instrument=_instrument(info.get("instrument", {})),
-        measured_at=_moment(info.get("acquisition_time")),
+        measured_at=_measured_at(info.get("acquisition_time")),
     )
 
 
 def _instrument(known: dict[str, Any]) -> str:
+    """Return vendor, name and serial number of the instrument, as far as they are stated."""
     return " ".join(str(known[key]) for key in ("vendor", "name", "serial") if known.get(key))
 
 
-def _moment(given: Any) -> datetime | None:
-    """Return a date as one without zone; None for text that is no date and for the epoch that stands for none."""
+def _measured_at(stated: Any) -> datetime | None:
+    """Return a date without time zone; None for text that is no date and for the epoch, which stands for none."""
     try:
-        moment = given if isinstance(given, datetime) else datetime.fromisoformat(str(given))
+        moment = stated if isinstance(stated, datetime) else datetime.fromisoformat(str(stated))
     except ValueError:
         return None
     return None if moment.year <= 1970 else moment.replace(tzinfo=None)

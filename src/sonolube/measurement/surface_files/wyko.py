@@ -1,31 +1,32 @@
-"""Wyko OPD files, which Veeco's and Bruker's Vision software writes from white-light interferometers.
+"""Wyko OPD files of Veeco's and Bruker's Vision software for white-light interferometers.
 
 The file is little-endian: two bytes, a directory of entries of 24 bytes (name, type, length, attribute), the first of
 which describes the directory itself, and then the blocks one after the other in the directory's order. Dialects differ
-in which blocks they have and in the type they declare for one, so a number is read by its length. Nothing that the file
-says of its own size is believed beyond the size it has.
+in which blocks they have and in the type they declare for a block, so a number is read by its length. Every size that
+the file states is checked against the size it has.
 """
 
 import math
 import struct
+from dataclasses import dataclass
 from datetime import datetime
-from typing import BinaryIO, NamedTuple
+from pathlib import Path
+from typing import BinaryIO, ClassVar, NamedTuple, final
 
 import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.surface_files.record import SurfaceReading
+from sonolube.measurement.surface_files.surface_reading import SurfaceReading
 
-WYKO_MAGIC = b"Directory"
-"""What stands at byte 2 of every Wyko OPD file."""
+_SIGNATURE = b"Directory"  # at byte 2
 
 _ENTRY = struct.Struct("<16shiH")  # name, type, length, attribute
 _ARRAY_HEADER = struct.Struct("<HHH")  # columns, rows, bytes an element
 _ARRAY, _TEXT, _SHORT, _FLOAT, _DOUBLE, _STRING, _LONG = 3, 5, 6, 7, 8, 15, 12
 _HEIGHT_BLOCKS = ("RAW_DATA", "RAW DATA", "Raw", "OPD", "SAMPLE_DATA")
 _ELEMENTS = {1: "u1", 2: "<i2", 4: "<f4"}
-_BAD_FROM = {1: math.inf, 2: 32766, 4: float(np.float32(1e38))}  # by bytes an element: this and above were not measured
+_INVALID_FROM = {1: math.inf, 2: 32766, 4: float(np.float32(1e38))}  # by bytes per element: this and above is no data
 _LONGEST_DIRECTORY = 1 << 20
 _LONGEST_TEXT = 256
 _STRING_MARK = b"\x12\x01"  # before the length and the characters of a short serialized string
@@ -33,70 +34,90 @@ _DATES = ("%m/%d/%Y %H:%M:%S", "%m/%d/%y %H:%M:%S", "%m/%d/%Y %I:%M:%S %p", "%m/
 
 
 class _Block(NamedTuple):
+    """One block of the file: name, type, offset and length in bytes."""
+
     name: str
     kind: int
     offset: int
     length: int
 
 
-def read_wyko(stream: BinaryIO, *, name: str) -> SurfaceReading:
-    """Read the heights of a Wyko OPD file.
+@final
+@dataclass(frozen=True, slots=True)
+class WykoOpd:
+    """Wyko OPD files of Veeco's and Bruker's Vision software, in all its dialects."""
 
-    Parameters
-    ----------
-    stream : binary file
-        The file, open for reading; it must be seekable.
-    name : str
-        What to call it in an error.
+    name: ClassVar[str] = "Wyko OPD"
+    suffixes: ClassVar[tuple[str, ...]] = (".opd",)
 
-    Returns
-    -------
-    SurfaceReading
-        Its first row is the top of the picture as Vision shows it. Of several height arrays the first is read.
+    def recognises(self, head: bytes, path: Path) -> bool:
+        """Return whether the directory begins at byte 2."""
+        return head[2:].startswith(_SIGNATURE)
 
-    Raises
-    ------
-    InvalidInput
-        Naming the byte at which the file stops making sense.
+    def read(self, stream: BinaryIO, path: Path) -> SurfaceReading:
+        r"""Return the heights of a Wyko OPD file.
 
-    Notes
-    -----
-    Heights are stored in waves: times the wavelength [nm], over the multiplier of integer arrays. Pixels at or above
-    1e38, in integer arrays 32766, were not measured. The pixel size [mm] is that of columns; rows stand the aspect
-    ratio times as far apart.
-    """
-    blocks = _directory(stream, name=name)
-    wavelength = _number(stream, blocks, "Wavelength", name=name)
-    if wavelength is None:
-        raise InvalidInput(f"{name}: no block 'Wavelength' in the directory, so heights have no scale")
-    multiplier = _number(stream, blocks, "Mult", name=name) or 1.0
-    pixel_size = _number(stream, blocks, "Pixel_size", name=name)
-    aspect = _number(stream, blocks, "Aspect", name=name) or 1.0
-    waves = _waves(stream, blocks, name=name)
-    with np.errstate(over="ignore", under="ignore"):
-        height = waves * (1e-9 * wavelength / multiplier)
-    if np.isinf(height).any():
-        raise InvalidInput(f"{name}: wavelength {wavelength:g} nm over {multiplier:g} makes heights infinite")
-    return SurfaceReading(
-        height=height,
-        format_name="Wyko OPD",
-        spacing_x=None if pixel_size is None else 1e-3 * pixel_size,
-        spacing_y=None if pixel_size is None else 1e-3 * pixel_size * aspect,
-        title=_text(stream, blocks, "Title", name=name) or _text(stream, blocks, "DataSetName", name=name),
-        measured_at=_moment(_text(stream, blocks, "Date", name=name) + " " + _text(stream, blocks, "Time", name=name)),
-    )
+        Parameters
+        ----------
+        stream : binary file
+            The file, open for reading; seekable.
+        path : Path
+            Of the file, for messages.
+
+        Returns
+        -------
+        SurfaceReading
+            Its first row is the top of the picture as Vision shows it. Of several height arrays the first is read.
+
+        Raises
+        ------
+        InvalidInput
+            Naming the byte at which the content is invalid.
+
+        Notes
+        -----
+        Heights are stored in waves: with the wavelength in nm and the multiplier m of integer arrays,
+
+        .. math:: z = 10^{-9} \frac{\lambda}{m}\, w .
+
+        Pixels at or above 1e38, in integer arrays 32766, were not measured. The pixel size in mm is that of columns;
+        rows are the aspect ratio times as far apart.
+        """
+        blocks = _directory(stream, path)
+        wavelength = _number(stream, blocks, "Wavelength", path)
+        if wavelength is None:
+            raise InvalidInput(f"{path}: no block 'Wavelength' in the directory, so heights have no scale")
+        multiplier = _number(stream, blocks, "Mult", path) or 1.0
+        pixel_size = _number(stream, blocks, "Pixel_size", path)
+        aspect = _number(stream, blocks, "Aspect", path) or 1.0
+        waves = _waves(stream, blocks, path)
+        with np.errstate(over="ignore", under="ignore"):
+            height = waves * (1e-9 * wavelength / multiplier)
+        if np.isinf(height).any():
+            raise InvalidInput(f"{path}: wavelength {wavelength:g} nm over {multiplier:g} makes heights infinite")
+        return SurfaceReading(
+            height=height,
+            format_name=self.name,
+            spacing_x=None if pixel_size is None else 1e-3 * pixel_size,
+            spacing_y=None if pixel_size is None else 1e-3 * pixel_size * aspect,
+            title=_text(stream, blocks, "Title", path) or _text(stream, blocks, "DataSetName", path),
+            measured_at=_measured_at(_text(stream, blocks, "Date", path) + " " + _text(stream, blocks, "Time", path)),
+        )
 
 
-def _directory(stream: BinaryIO, *, name: str) -> dict[str, _Block]:
+def _directory(stream: BinaryIO, path: Path) -> dict[str, _Block]:
+    """Return the blocks of the file by name, the first of each name."""
     size = stream.seek(0, 2)
     if size == 0:
-        raise InvalidInput(f"{name}: byte 0: the file is empty")
-    title, _, length, _ = _ENTRY.unpack(_bytes(stream, 2, _ENTRY.size, name=name, what="the directory"))
-    if _name(title) != WYKO_MAGIC.decode():
-        raise InvalidInput(f"{name}: byte 2: not a Wyko OPD file, which has 'Directory' here")
+        raise InvalidInput(f"{path}: byte 0: the file is empty")
+    title, _, length, _ = _ENTRY.unpack(_bytes(stream, 2, _ENTRY.size, path, "the directory"))
+    if _terminated(title) != _SIGNATURE.decode():
+        raise InvalidInput(f"{path}: byte 2: not a Wyko OPD file, which has 'Directory' here")
     if not _ENTRY.size <= length <= _LONGEST_DIRECTORY or length % _ENTRY.size:
-        raise InvalidInput(f"{name}: byte 20: a directory of {length} bytes is none of entries of {_ENTRY.size}")
-    entries = _bytes(stream, 2, length, name=name, what="the directory")
+        raise InvalidInput(
+            f"{path}: byte 20: a directory of {length} bytes has no whole number of entries of {_ENTRY.size}"
+        )
+    entries = _bytes(stream, 2, length, path, "the directory")
     blocks: dict[str, _Block] = {}
     offset = 2 + length
     for index, (raw_name, kind, block_length, _) in enumerate(_ENTRY.iter_unpack(entries)):
@@ -104,41 +125,42 @@ def _directory(stream: BinaryIO, *, name: str) -> dict[str, _Block]:
             continue
         if offset + block_length > size:
             raise InvalidInput(
-                f"{name}: byte {2 + _ENTRY.size * index}: block {_name(raw_name)!r} should end at byte"
+                f"{path}: byte {2 + _ENTRY.size * index}: block {_terminated(raw_name)!r} should end at byte"
                 f" {offset + block_length}, but the file ends at {size}; it is truncated or damaged"
             )
-        blocks.setdefault(_name(raw_name), _Block(_name(raw_name), kind, offset, block_length))
+        blocks.setdefault(_terminated(raw_name), _Block(_terminated(raw_name), kind, offset, block_length))
         offset += block_length
     return blocks
 
 
-def _waves(stream: BinaryIO, blocks: dict[str, _Block], *, name: str) -> Floats:
+def _waves(stream: BinaryIO, blocks: dict[str, _Block], path: Path) -> Floats:
+    """Return the first height array in waves, top row first, NaN where it was not measured."""
     found = next((block for block in blocks.values() if block.name in _HEIGHT_BLOCKS and block.kind == _ARRAY), None)
     if found is None:
-        raise InvalidInput(f"{name}: no array of heights in the directory; looked for {', '.join(_HEIGHT_BLOCKS)}")
-    header = _bytes(stream, found.offset, _ARRAY_HEADER.size, name=name, what=f"array {found.name!r}")
+        raise InvalidInput(f"{path}: no array of heights in the directory; looked for {', '.join(_HEIGHT_BLOCKS)}")
+    header = _bytes(stream, found.offset, _ARRAY_HEADER.size, path, f"array {found.name!r}")
     columns, rows, element = _ARRAY_HEADER.unpack(header)
     if element not in _ELEMENTS:
-        raise InvalidInput(f"{name}: byte {found.offset + 4}: elements of {element} bytes; 1, 2 and 4 are known")
+        raise InvalidInput(f"{path}: byte {found.offset + 4}: elements of {element} bytes; 1, 2 and 4 are known")
     needed = columns * rows * element
     if not 0 < needed <= found.length - _ARRAY_HEADER.size:
         raise InvalidInput(
-            f"{name}: byte {found.offset}: {columns} x {rows} elements of {element} bytes do not fit"
+            f"{path}: byte {found.offset}: {columns} x {rows} elements of {element} bytes do not fit"
             f" into a block of {found.length} bytes"
         )
-    content = _bytes(stream, found.offset + _ARRAY_HEADER.size, needed, name=name, what=f"array {found.name!r}")
+    content = _bytes(stream, found.offset + _ARRAY_HEADER.size, needed, path, f"array {found.name!r}")
     by_column = np.frombuffer(content, dtype=np.dtype(_ELEMENTS[element])).reshape(columns, rows)
     with np.errstate(invalid="ignore"):
         waves: Floats = by_column[:, ::-1].T.astype(np.float64)  # columns one after the other, each from the bottom up
-        waves[~(np.abs(waves) < _BAD_FROM[element]) if element == 4 else waves >= _BAD_FROM[element]] = np.nan
+        waves[~(np.abs(waves) < _INVALID_FROM[element]) if element == 4 else waves >= _INVALID_FROM[element]] = np.nan
     if np.isnan(waves).all():
-        raise InvalidInput(f"{name}: byte {found.offset}: none of the {waves.size} pixels was measured")
+        raise InvalidInput(f"{path}: byte {found.offset}: none of the {waves.size} pixels was measured")
     return waves
 
 
-def _number(stream: BinaryIO, blocks: dict[str, _Block], wanted: str, *, name: str) -> float | None:
+def _number(stream: BinaryIO, blocks: dict[str, _Block], block_name: str, path: Path) -> float | None:
     """Return the positive number in a block; None where there is no such block."""
-    block = blocks.get(wanted)
+    block = blocks.get(block_name)
     if block is None:
         return None
     layout = {
@@ -151,29 +173,31 @@ def _number(stream: BinaryIO, blocks: dict[str, _Block], wanted: str, *, name: s
     }.get((block.kind, block.length))
     if layout is None:
         raise InvalidInput(
-            f"{name}: byte {block.offset}: block {wanted!r} of type {block.kind} and {block.length} bytes is no number"
+            f"{path}: byte {block.offset}: block {block_name!r} of type {block.kind} and {block.length} bytes is no"
+            " number"
         )
-    content = _bytes(stream, block.offset, block.length, name=name, what=f"block {wanted!r}")
+    content = _bytes(stream, block.offset, block.length, path, f"block {block_name!r}")
     value = float(struct.unpack(layout, content)[0])
     if not (math.isfinite(value) and value > 0):
-        raise InvalidInput(f"{name}: byte {block.offset}: {wanted} must be positive and finite, got {value!r}")
+        raise InvalidInput(f"{path}: byte {block.offset}: {block_name} must be positive and finite, got {value!r}")
     return value
 
 
-def _text(stream: BinaryIO, blocks: dict[str, _Block], wanted: str, *, name: str) -> str:
-    """Return the text in a block; empty where there is no such block or it holds something else."""
-    block = blocks.get(wanted)
+def _text(stream: BinaryIO, blocks: dict[str, _Block], block_name: str, path: Path) -> str:
+    """Return the text in a block; empty where there is no such block or it holds no text."""
+    block = blocks.get(block_name)
     if block is None or block.kind not in (_TEXT, _STRING):
         return ""
-    content = _bytes(stream, block.offset, min(block.length, _LONGEST_TEXT), name=name, what=f"block {wanted!r}")
+    content = _bytes(stream, block.offset, min(block.length, _LONGEST_TEXT), path, f"block {block_name!r}")
     if block.kind == _STRING:
         if len(content) < 3 or not content.startswith(_STRING_MARK):
             return ""
         content = content[3 : 3 + content[2]]
-    return _name(content)
+    return _terminated(content)
 
 
-def _moment(text: str) -> datetime | None:
+def _measured_at(text: str) -> datetime | None:
+    """Return the date and time in any of the spellings of Vision; None for other text."""
     for form in _DATES:
         try:
             return datetime.strptime(text.strip(), form)
@@ -182,13 +206,15 @@ def _moment(text: str) -> datetime | None:
     return None
 
 
-def _name(content: bytes) -> str:
+def _terminated(content: bytes) -> str:
+    """Return the text up to the first null byte."""
     return content.split(b"\0", 1)[0].decode("latin-1").strip()
 
 
-def _bytes(stream: BinaryIO, offset: int, length: int, *, name: str, what: str) -> bytes:
+def _bytes(stream: BinaryIO, offset: int, length: int, path: Path, part: str) -> bytes:
+    """Return some bytes of the file; refuse a file that ends within them."""
     stream.seek(offset)
     content = stream.read(length)
     if len(content) < length:
-        raise InvalidInput(f"{name}: byte {offset + len(content)}: the file ends within {what}")
+        raise InvalidInput(f"{path}: byte {offset + len(content)}: the file ends within {part}")
     return content

@@ -1,81 +1,100 @@
-"""Points of a surface as text, x y z on a line, brought back onto the grid they were measured on."""
+"""XYZ text: points of a surface in any order, restored to the regular grid on which they were measured."""
 
 import math
 from array import array
-from typing import BinaryIO
+from dataclasses import dataclass
+from pathlib import Path
+from typing import BinaryIO, ClassVar, final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.surface_files.record import SurfaceReading
+from sonolube.measurement.file_format import HEAD_SIZE
+from sonolube.measurement.surface_files.surface_reading import SurfaceReading
 
 _LONGEST_LINE = 1024
 _MOST_HEADER_LINES = 64
 _SEPARATORS = bytes.maketrans(b",;", b"  ")
 _COMMENTS = (b"#", b"%", b"//", b"*")
-_MISSING = ([b"bad"], [b"no", b"data"])  # as Wyko and Zygo write it; "nan" is a number
-_COINCIDENT = 1e-6  # of the extent: positions closer than this are one
-_OFF_GRID = 0.1  # of the spacing: positions may lie this far off, as text rounds them
-_LEAST_FILLED = 0.05
+_MISSING = ([b"bad"], [b"no", b"data"])  # spellings of Wyko and Zygo; "nan" is a number
+_COINCIDENCE = 1e-6  # of the extent: closer positions are one
+_GRID_TOLERANCE = 0.1  # of the spacing: by which rounding may move positions
+_LEAST_FILLED = 0.05  # fraction of the grid
 
 
-def read_xyz(stream: BinaryIO, *, name: str) -> SurfaceReading:
-    """Read points x, y, z onto a regular grid.
+@final
+@dataclass(frozen=True, slots=True)
+class XyzText:
+    """XYZ text: points x, y, z of a regular grid, one per line in any order; lengths in a unit the user gives."""
 
-    Parameters
-    ----------
-    stream : binary file
-        The text, open for reading: three numbers on a line, parted by blanks, commas or semicolons; in any order of
-        lines. Lines before the first point and lines that start with ``#`` are passed over. A point whose height is
-        written ``nan``, ``Bad`` or ``No Data``, and a grid position without a point, was not measured.
-    name : str
-        What to call it in an error.
+    name: ClassVar[str] = "XYZ text"
+    suffixes: ClassVar[tuple[str, ...]] = (".xyz",)
 
-    Returns
-    -------
-    SurfaceReading
-        The first row has the smallest y. Text does not say its unit.
+    def recognises(self, head: bytes, path: Path) -> bool:
+        """Return whether the last whole lines of the head are three numbers each."""
+        whole_lines = head.splitlines()[: -1 if len(head) == HEAD_SIZE else None]
+        return b"\0" not in head and len(whole_lines) > 3 and all(_is_point(line) for line in whole_lines[-3:])
 
-    Raises
-    ------
-    InvalidInput
-        Naming the byte at which a line is no point, or saying how the points fail to be a grid.
-    """
-    x, y, z = _points(stream, name=name)
-    column, spacing_x = _grid(x, name=name, axis="x")
-    row, spacing_y = _grid(y, name=name, axis="y")
-    columns, rows = int(column.max()) + 1, int(row.max()) + 1
-    if z.size < _LEAST_FILLED * columns * rows:
-        raise InvalidInput(f"{name}: {z.size} points fill too little of a {columns} x {rows} grid; are they scattered?")
-    cell = row * columns + column
-    if np.unique(cell).size < cell.size:
-        twice = int(np.flatnonzero(np.bincount(cell) > 1)[0])
-        first = int(np.flatnonzero(cell == twice)[0])
-        raise InvalidInput(f"{name}: more than one point at x = {x[first]:g}, y = {y[first]:g}")
-    height = np.full(rows * columns, np.nan)
-    height[cell] = z
-    if np.isnan(height).all():
-        raise InvalidInput(f"{name}: none of the {z.size} points has a height")
-    return SurfaceReading(
-        height=height.reshape(rows, columns),
-        format_name="XYZ text",
-        spacing_x=spacing_x,
-        spacing_y=spacing_y,
-        states_unit=False,
-    )
+    def read(self, stream: BinaryIO, path: Path) -> SurfaceReading:
+        """Return the heights of points x, y, z on their regular grid.
+
+        Parameters
+        ----------
+        stream : binary file
+            The text, open for reading: three numbers on a line, separated by blanks, commas or semicolons; in any order
+            of lines. Lines before the first point and lines that start with ``#`` are skipped. A point whose height is
+            written ``nan``, ``Bad`` or ``No Data``, and a grid position without a point, was not measured.
+        path : Path
+            Of the file, for messages.
+
+        Returns
+        -------
+        SurfaceReading
+            The first row has the smallest y. The text does not state its unit.
+
+        Raises
+        ------
+        InvalidInput
+            Naming the byte at which a line is no point, or stating how the points fail to form a grid.
+        """
+        x, y, z = _points(stream, path)
+        column, spacing_x = _grid(x, path, axis="x")
+        row, spacing_y = _grid(y, path, axis="y")
+        columns, rows = int(column.max()) + 1, int(row.max()) + 1
+        if z.size < _LEAST_FILLED * columns * rows:
+            raise InvalidInput(
+                f"{path}: {z.size} points fill too little of a {columns} x {rows} grid; are they scattered?"
+            )
+        cell = row * columns + column
+        if np.unique(cell).size < cell.size:
+            twice = int(np.flatnonzero(np.bincount(cell) > 1)[0])
+            first = int(np.flatnonzero(cell == twice)[0])
+            raise InvalidInput(f"{path}: more than one point at x = {x[first]:g}, y = {y[first]:g}")
+        height = np.full(rows * columns, np.nan)
+        height[cell] = z
+        if np.isnan(height).all():
+            raise InvalidInput(f"{path}: none of the {z.size} points has a height")
+        return SurfaceReading(
+            height=height.reshape(rows, columns),
+            format_name=self.name,
+            spacing_x=spacing_x,
+            spacing_y=spacing_y,
+            states_unit=False,
+        )
 
 
-def is_point(line: bytes) -> bool:
-    """Return whether a line of text is a point: three numbers, the last of which may say that it is missing."""
+def _is_point(line: bytes) -> bool:
+    """Return whether a line of text is a point: three numbers, the last of which may be a missing-value text."""
     try:
         return _point(line) is not None
     except ValueError:
         return False
 
 
-def _points(stream: BinaryIO, *, name: str) -> tuple[Floats, Floats, Floats]:
+def _points(stream: BinaryIO, path: Path) -> tuple[Floats, Floats, Floats]:
+    """Return the coordinates of all points of the text."""
     stream.seek(0)
     values = array("d")
     offset = header_lines = 0
@@ -85,18 +104,18 @@ def _points(stream: BinaryIO, *, name: str) -> tuple[Floats, Floats, Floats]:
         except ValueError as failure:
             header_lines += 1
             if values or header_lines > _MOST_HEADER_LINES or len(line) == _LONGEST_LINE:
-                raise InvalidInput(f"{name}: byte {offset}: {failure}: {line[:40].decode('latin-1')!r}") from None
+                raise InvalidInput(f"{path}: byte {offset}: {failure}: {line[:40].decode('latin-1')!r}") from None
         else:
             values.extend(point or ())
         offset += len(line)
     if not values:
-        raise InvalidInput(f"{name}: byte {offset}: " + ("no point x y z found" if offset else "the file is empty"))
+        raise InvalidInput(f"{path}: byte {offset}: " + ("no point x y z found" if offset else "the file is empty"))
     points = np.frombuffer(values, dtype=np.float64).reshape(-1, 3)
     return points[:, 0], points[:, 1], points[:, 2]
 
 
 def _point(line: bytes) -> tuple[float, float, float] | None:
-    """Return the point on a line, None for a line without one."""
+    """Return the point on a line; None for a blank line and a comment."""
     words = line.translate(_SEPARATORS).split()
     try:
         x, y, z = map(float, words)
@@ -110,7 +129,7 @@ def _point(line: bytes) -> tuple[float, float, float] | None:
 
 
 def _unmeasured(words: list[bytes]) -> tuple[float, float, float]:
-    """Return a point whose height is a word that says it is missing."""
+    """Return a point whose height is a missing-value text, as NaN."""
     try:
         if [word.lower() for word in words[2:]] in _MISSING:
             return float(words[0]), float(words[1]), math.nan
@@ -119,24 +138,23 @@ def _unmeasured(words: list[bytes]) -> tuple[float, float, float]:
     raise ValueError("a point has three numbers, x y z")
 
 
-def _grid(position: Floats, *, name: str, axis: str) -> tuple[NDArray[np.intp], float]:
-    """Return the index of each position on the evenly spaced line that they share, and its spacing."""
+def _grid(position: Floats, path: Path, *, axis: str) -> tuple[NDArray[np.intp], float]:
+    """Return the index of each position on the regular grid of one axis, and the spacing of that grid."""
     with np.errstate(over="ignore"):
         distinct = np.unique(position)
         extent = float(distinct[-1] - distinct[0])
     if not (0 < extent < math.inf):
-        raise InvalidInput(f"{name}: points of one {axis} make no surface; it needs two at the least")
-    steps = np.diff(distinct)
-    lines = distinct[np.concatenate(([True], steps > _COINCIDENT * extent))]
+        raise InvalidInput(f"{path}: points of one {axis} make no surface, which needs at least two")
+    lines = distinct[np.concatenate(([True], np.diff(distinct) > _COINCIDENCE * extent))]
     steps = np.diff(lines)
     if not steps.size:
-        raise InvalidInput(f"{name}: more {axis} than {1 / _COINCIDENT:.0e} are no grid that was measured")
-    spacing = extent / float(np.sum(np.rint(steps / steps.min())))  # the shortest step alone is rounded too much
+        raise InvalidInput(f"{path}: more {axis} than {1 / _COINCIDENCE:.0e} are no measured grid")
+    spacing = extent / float(np.sum(np.rint(steps / steps.min())))  # the shortest step alone is too coarsely rounded
     index = np.rint((position - distinct[0]) / spacing)
     off = np.abs(position - distinct[0] - index * spacing)
-    if off.max() > _OFF_GRID * spacing:
+    if off.max() > _GRID_TOLERANCE * spacing:
         worst = float(position[np.argmax(off)])
         raise InvalidInput(
-            f"{name}: {axis} = {worst:g} lies off the grid of spacing {spacing:g} that its neighbours make"
+            f"{path}: {axis} = {worst:g} lies off the grid of spacing {spacing:g} that its neighbours make"
         )
     return index.astype(np.intp), spacing

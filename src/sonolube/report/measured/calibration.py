@@ -7,14 +7,14 @@ from pathlib import Path
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.measurement.analysis import channel
+from sonolube.measurement.friction_analysis import channel_values
 from sonolube.measurement.gauge.calibration import (
     BranchCalibration,
-    HysteresisCalibration,
+    PreisachCalibration,
     fit_branches,
-    fit_hysteresis,
-    force_with_hysteresis,
-    model_energy,
+    fit_preisach,
+    force_from_preisach,
+    major_loop_dissipation,
 )
 from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.measurement.recordings.reader import read_recording
@@ -74,8 +74,8 @@ def calibration_sheet(path: Path, *, settings: CalibrationSettings) -> Sheet:
         If the file cannot be read or its displacement does not vary.
     """
     recording = read_recording(path, mapping=settings.mapping)
-    x, force = channel(recording, "displacement"), channel(recording, "applied_force")
-    hysteresis = fit_hysteresis(displacement=x, applied_force=force, levels=settings.levels)
+    x, force = channel_values(recording, "displacement"), channel_values(recording, "applied_force")
+    hysteresis = fit_preisach(displacement=x, applied_force=force, levels=settings.levels)
     span = float(np.ptp(force))
     values = (
         Value(
@@ -93,7 +93,7 @@ def calibration_sheet(path: Path, *, settings: CalibrationSettings) -> Sheet:
         Value(
             name="dissipated_energy",
             label="Energy lost in the greatest loop",
-            value=model_energy(hysteresis),
+            value=major_loop_dissipation(hysteresis),
             unit="J",
         ),
         Value(
@@ -115,7 +115,7 @@ def calibration_sheet(path: Path, *, settings: CalibrationSettings) -> Sheet:
     )
 
 
-def calibrated_hysteresis(path: Path, *, settings: CalibrationSettings) -> HysteresisCalibration:
+def calibrated_hysteresis(path: Path, *, settings: CalibrationSettings) -> PreisachCalibration:
     """Return the calibration of a recording, to tell forces by.
 
     Parameters
@@ -126,7 +126,7 @@ def calibrated_hysteresis(path: Path, *, settings: CalibrationSettings) -> Hyste
 
     Returns
     -------
-    HysteresisCalibration
+    PreisachCalibration
 
     Raises
     ------
@@ -134,21 +134,21 @@ def calibrated_hysteresis(path: Path, *, settings: CalibrationSettings) -> Hyste
         As `calibration_sheet`.
     """
     recording = read_recording(path, mapping=settings.mapping)
-    return fit_hysteresis(
-        displacement=channel(recording, "displacement"),
-        applied_force=channel(recording, "applied_force"),
+    return fit_preisach(
+        displacement=channel_values(recording, "displacement"),
+        applied_force=channel_values(recording, "applied_force"),
         levels=settings.levels,
     )
 
 
-def force_sheet(path: Path, *, calibration: HysteresisCalibration, settings: CalibrationSettings) -> Sheet:
+def force_sheet(path: Path, *, calibration: PreisachCalibration, settings: CalibrationSettings) -> Sheet:
     """Return the force that a recorded displacement tells.
 
     Parameters
     ----------
     path : Path
         A recording with `displacement`, from the unloaded state on.
-    calibration : HysteresisCalibration
+    calibration : PreisachCalibration
     settings : CalibrationSettings
 
     Returns
@@ -163,9 +163,9 @@ def force_sheet(path: Path, *, calibration: HysteresisCalibration, settings: Cal
         If the displacement leaves the range that was calibrated.
     """
     recording = read_recording(path, mapping=settings.mapping)
-    told = force_with_hysteresis(
+    told = force_from_preisach(
         calibration,
-        displacement=channel(recording, "displacement"),
+        displacement=channel_values(recording, "displacement"),
         displacement_uncertainty=settings.displacement_uncertainty,
     )
     # readings share the error of the calibration, so that averaging does not lower it
@@ -185,7 +185,7 @@ def force_sheet(path: Path, *, calibration: HysteresisCalibration, settings: Cal
         name="force",
         title="Force told by the displacement",
         caption="With its standard uncertainty as a band.",
-        draw=partial(figures.force, channel(recording, "time"), told),
+        draw=partial(figures.force, channel_values(recording, "time"), told),
     )
     return sheet_of([Part(values=values, figures=(drawn,))], title=path.name, source=recording_source(recording))
 

@@ -4,18 +4,18 @@ from typing import TYPE_CHECKING
 
 from sonolube.checks import Floats
 from sonolube.figure import COLOURS
-from sonolube.measurement.gauge.calibration import ForceEstimate, HysteresisCalibration, force_with_hysteresis
+from sonolube.measurement.gauge.calibration import ForceEstimate, PreisachCalibration, force_from_preisach
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def loops(x: Floats, force: Floats, calibration: HysteresisCalibration) -> "Figure":
+def loops(x: Floats, force: Floats, calibration: PreisachCalibration) -> "Figure":
     """Return force over displacement, measured and of the model, over what is left between them."""
     import matplotlib.pyplot as plt
 
     figure, (top, bottom) = plt.subplots(2, 1, figsize=(5.0, 4.8), sharex=True, height_ratios=(3, 1))
-    model = force_with_hysteresis(calibration, displacement=x).applied_force
+    model = force_from_preisach(calibration, displacement=x).applied_force
     um = 1e6 * x
     top.plot(um, force, ".", color="0.55", markersize=3, label="measured")
     top.plot(um, model, color=COLOURS[1], linewidth=1, label="Preisach's model")

@@ -11,23 +11,23 @@ import numpy as np
 
 from sonolube.checks import require_positive
 from sonolube.errors import InvalidInput
-from sonolube.measurement.analysis import (
+from sonolube.measurement.friction.motor_current import MotorCalibration
+from sonolube.measurement.friction.running_in import SteadyStateOnset, steady_state_onset
+from sonolube.measurement.friction.windows import DEFAULT_WINDOW_DURATION, WindowStatistics, streamed_window_statistics
+from sonolube.measurement.friction_analysis import (
     analyse_cycles,
     analyse_motor_current,
     analyse_running_in,
-    analyse_staircase,
     analyse_stick_slip,
+    analyse_voltage_steps,
     analyse_windows,
     analyse_wobble,
-    channel,
+    channel_values,
 )
-from sonolube.measurement.friction.forces import MotorFriction
-from sonolube.measurement.friction.steady_state import SteadyState, steady_state
-from sonolube.measurement.friction.windows import DEFAULT_WINDOW, WindowStatistics, streamed_window_statistics
 from sonolube.measurement.recordings.mapping import RecordingMapping
-from sonolube.measurement.recordings.reader import format_of, read_recording
-from sonolube.measurement.recordings.tdms import FORMAT as TDMS
-from sonolube.measurement.statistics.correlation import correlated_mean
+from sonolube.measurement.recordings.reader import read_recording, recording_format_name
+from sonolube.measurement.recordings.tdms import TDMS_FORMAT as TDMS
+from sonolube.measurement.statistics.autocorrelation import correlated_mean
 from sonolube.report.measured import friction_figures as figures
 from sonolube.report.measured.sheet import (
     Part,
@@ -64,7 +64,7 @@ class FrictionSettings:
         Speed of the sliding, for the distance to the steady state. [m/s]
     rotation_speed : float or None
         Turns per time, to take away what the disc's wobble adds. [1/s]
-    motor : MotorFriction or None
+    motor : MotorCalibration or None
         To tell friction by the motor's current.
 
     Raises
@@ -74,10 +74,10 @@ class FrictionSettings:
     """
 
     mapping: RecordingMapping | None = None
-    window_duration: float = DEFAULT_WINDOW
+    window_duration: float = DEFAULT_WINDOW_DURATION
     sliding_speed: float | None = None
     rotation_speed: float | None = None
-    motor: MotorFriction | None = None
+    motor: MotorCalibration | None = None
 
     def __post_init__(self) -> None:
         require_positive(window_duration=self.window_duration)
@@ -105,7 +105,7 @@ def friction_sheet(path: Path, *, settings: FrictionSettings) -> Sheet:
     InvalidInput
         If the file cannot be read or records no friction.
     """
-    if path.is_file() and path.stat().st_size > _LARGE and format_of(path) == TDMS:
+    if path.is_file() and path.stat().st_size > _LARGE and recording_format_name(path) == TDMS:
         return _streamed(path, settings)
     recording = read_recording(path, mapping=settings.mapping)
     motor = settings.motor
@@ -130,7 +130,7 @@ def recording_source(recording: "xr.Dataset") -> dict[str, str]:
 def _parts(recording: "xr.Dataset", settings: FrictionSettings) -> list[Part]:
     found = [name for name in _CHANNELS if name in recording.variables]
     if not found:
-        channel(recording, "friction_force")  # says which channels there are
+        channel_values(recording, "friction_force")  # says which channels there are
     name = found[0]
     parts = [_level(recording, name)]
     if "time" not in recording.variables:
@@ -154,7 +154,7 @@ def _parts(recording: "xr.Dataset", settings: FrictionSettings) -> list[Part]:
 
 
 def _level(recording: "xr.Dataset", name: str) -> Part:
-    mean = correlated_mean(channel(recording, name))
+    mean = correlated_mean(channel_values(recording, name))
     scatter = Value(
         name=f"{name}_deviation",
         label="Standard deviation of the samples",
@@ -164,11 +164,11 @@ def _level(recording: "xr.Dataset", name: str) -> Part:
     return Part(values=(known(name, mean.mean, uncertainty=mean.uncertainty), scatter))
 
 
-def _windows(recording: "xr.Dataset", windows: WindowStatistics, steady: SteadyState | None) -> Part:
+def _windows(recording: "xr.Dataset", windows: WindowStatistics, steady: SteadyStateOnset | None) -> Part:
     draw = partial(
         figures.trace,
-        channel(recording, "time"),
-        channel(recording, windows.channel),
+        channel_values(recording, "time"),
+        channel_values(recording, windows.channel),
         windows=windows,
         steady=steady,
     )
@@ -198,18 +198,18 @@ def _trace_figure(windows: WindowStatistics, draw: Callable[[], "Figure"]) -> Sh
 
 
 def _cycle_figure(recording: "xr.Dataset", name: str) -> SheetFigure:
-    along = channel(recording, "revolutions")
+    along = channel_values(recording, "revolutions")
     return SheetFigure(
         name="trace",
         title="Trace by cycle",
         caption="One value a cycle, as the instrument gives it.",
-        draw=partial(figures.by_cycle, along, channel(recording, name), name),
+        draw=partial(figures.by_cycle, along, channel_values(recording, name), name),
     )
 
 
-def _quietly_steady(windows: WindowStatistics, sliding_speed: float) -> SteadyState | None:
+def _quietly_steady(windows: WindowStatistics, sliding_speed: float) -> SteadyStateOnset | None:
     try:
-        return steady_state(time=windows.time, friction_force=windows.mean, sliding_speed=sliding_speed)
+        return steady_state_onset(time=windows.time, friction_force=windows.mean, sliding_speed=sliding_speed)
     except InvalidInput:
         return None
 
@@ -219,7 +219,7 @@ def _running_in(recording: "xr.Dataset", settings: FrictionSettings, sliding_spe
     return _steady_part(found.friction, found.fluctuation)
 
 
-def _steady_part(friction: SteadyState, fluctuation: SteadyState) -> Part:
+def _steady_part(friction: SteadyStateOnset, fluctuation: SteadyStateOnset) -> Part:
     if not friction.steady:
         return Part(not_found=(f"steady friction: {friction.reason}",))
     values = [
@@ -248,7 +248,7 @@ def _steady_part(friction: SteadyState, fluctuation: SteadyState) -> Part:
 
 
 def _staircase(recording: "xr.Dataset") -> Part:
-    steps = analyse_staircase(recording)
+    steps = analyse_voltage_steps(recording)
     names = (
         "voltage_peak_to_peak",
         "start_time",
@@ -280,7 +280,7 @@ def _stick_slip(recording: "xr.Dataset", rotation_speed: float | None) -> Part:
         without_wobble = analyse_wobble(recording, rotation_speed=rotation_speed).friction_force
         recording = recording.assign(friction_force=("time", without_wobble))
     found = analyse_stick_slip(recording)
-    if not found.found:
+    if not found.detected:
         return Part(not_found=(f"stick-slip: {found.reason}",))
     amplitude = known(
         "stick_slip_amplitude", found.stick_slip_amplitude, uncertainty=found.stick_slip_amplitude_uncertainty
@@ -310,7 +310,9 @@ def _cycles(recording: "xr.Dataset") -> Part:
         name="loops",
         title="Friction over velocity",
         caption="Every cycle of the recording; the work is the area of the loop over displacement.",
-        draw=partial(figures.loops, channel(recording, "relative_velocity"), channel(recording, "friction_force")),
+        draw=partial(
+            figures.loops, channel_values(recording, "relative_velocity"), channel_values(recording, "friction_force")
+        ),
     )
     return Part(values=tuple(values), figures=(drawn,))
 
@@ -335,7 +337,7 @@ def _wobble(recording: "xr.Dataset", rotation_speed: float) -> Part:
     return Part(values=(*values, left))
 
 
-def _motor(recording: "xr.Dataset", settings: FrictionSettings, motor: MotorFriction) -> Part:
+def _motor(recording: "xr.Dataset", settings: FrictionSettings, motor: MotorCalibration) -> Part:
     trace = analyse_motor_current(recording, motor=motor, window_duration=settings.window_duration)
     mean = float(trace.friction_force.mean())
     # all windows share the errors of torque constant and idle current, so that averaging does not lower them
@@ -358,7 +360,7 @@ def _streamed(path: Path, settings: FrictionSettings) -> Sheet:
     steady = None
     if settings.sliding_speed is not None:
         steady = _quietly_steady(windows, settings.sliding_speed)
-        settle = partial(steady_state, time=windows.time, sliding_speed=settings.sliding_speed)
+        settle = partial(steady_state_onset, time=windows.time, sliding_speed=settings.sliding_speed)
         parts.append(
             attempted(
                 lambda: _steady_part(settle(friction_force=windows.mean), settle(friction_force=windows.fluctuation)),

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from functools import partial
 
-from sonolube.measurement.statistics.intervals import compare, ratio_interval
+from sonolube.measurement.statistics.repeated_tests import compare_means, ratio_interval
 from sonolube.report.measured import friction_figures as figures
 from sonolube.report.measured.sheet import Part, Sheet, SheetFigure, Value, attempted, known, sheet_of
 
@@ -62,7 +62,7 @@ def _reduction(on: Sequence[float], off: Sequence[float]) -> Part:
 
 
 def _significance(on: Sequence[float], off: Sequence[float]) -> Part:
-    found = compare(off, on)
+    found = compare_means(off, on)
     values = (
         Value(name="welch_p", label="Chance of so large a difference by scatter, Welch", value=found.welch_p, unit=""),
         Value(

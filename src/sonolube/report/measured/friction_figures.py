@@ -7,10 +7,10 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.figure import COLOURS, MARKERS
-from sonolube.measurement.analysis import MotorFrictionTrace
-from sonolube.measurement.friction.steady_state import SteadyState
-from sonolube.measurement.friction.voltage_steps import StaircaseStep
+from sonolube.measurement.friction.running_in import SteadyStateOnset
+from sonolube.measurement.friction.voltage_steps import VoltageStep
 from sonolube.measurement.friction.windows import WindowStatistics
+from sonolube.measurement.friction_analysis import MotorFrictionTrace
 from sonolube.vocabulary import quantities
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ _LABELS = {"friction_force": "friction force (N)", "friction_coefficient": "coef
 
 
 def trace(
-    t: Floats | None, signal: Floats | None, *, windows: WindowStatistics, steady: SteadyState | None
+    t: Floats | None, signal: Floats | None, *, windows: WindowStatistics, steady: SteadyStateOnset | None
 ) -> "Figure":
     """Return the samples with windows and where the steady state begins; without samples, where they are too many."""
     import matplotlib.pyplot as plt
@@ -54,7 +54,7 @@ def by_cycle(cycles: Floats, signal: Floats, name: str) -> "Figure":
     return figure
 
 
-def staircase(steps: Sequence[StaircaseStep]) -> "Figure":
+def staircase(steps: Sequence[VoltageStep]) -> "Figure":
     """Return friction and its reduction over the voltage."""
     import matplotlib.pyplot as plt
 

@@ -7,8 +7,13 @@ from pathlib import Path
 
 import numpy as np
 
-from sonolube.measurement.friction.wear_track import WearReduction, WearRing, ring_of_grooves, wear_reduction_of_rings
 from sonolube.measurement.surface_files.reader import read_surface_file
+from sonolube.measurement.wear_track import (
+    WearReduction,
+    WearTrack,
+    wear_reduction_between_tracks,
+    wear_track_from_grooves,
+)
 from sonolube.report.measured import groove_figures as figures
 from sonolube.report.measured.sheet import (
     Column,
@@ -95,7 +100,7 @@ def groove_sheet(path: Path, *, settings: SurfaceSettings) -> tuple[Sheet, Groov
 
 def ring_sheet(
     title: str, grooves: Sequence[tuple[str, Groove | str]], *, settings: RingSettings
-) -> tuple[Sheet, WearRing]:
+) -> tuple[Sheet, WearTrack]:
     """Return the wear of a ring from the grooves of its scans.
 
     Parameters
@@ -109,14 +114,14 @@ def ring_sheet(
     Returns
     -------
     Sheet
-    WearRing
+    WearTrack
 
     Raises
     ------
     InvalidInput
         If fewer than two scans show a whole groove.
     """
-    ring = ring_of_grooves(
+    ring = wear_track_from_grooves(
         [groove for _, groove in grooves],
         groove_diameter=settings.groove_diameter,
         sliding_distance=settings.sliding_distance,
@@ -150,7 +155,7 @@ def ring_sheet(
         name="sections",
         title="Area of the mean section by scan",
         columns=(Column(name="scan", label="Scan"), Column(name="cross_section_area", label="Area", unit="m2")),
-        rows=tuple(zip(counted, map(float, ring.section_area), strict=True)),
+        rows=tuple(zip(counted, map(float, ring.cross_section_area), strict=True)),
     )
     drawn = SheetFigure(
         name="ring",
@@ -158,23 +163,23 @@ def ring_sheet(
         caption="Area of the mean section of each scan; the line is the mean, the band its 95 % interval.",
         draw=partial(figures.ring, ring),
     )
-    part = Part(values=tuple(values), tables=(table,), figures=(drawn,), caveats=ring.left_out)
+    part = Part(values=tuple(values), tables=(table,), figures=(drawn,), caveats=ring.excluded_scans)
     return sheet_of([part], title=title, source={}), ring
 
 
-def wear_reduction_sheet(without: Sequence[WearRing], with_vibration: Sequence[WearRing]) -> Sheet:
+def wear_reduction_sheet(without: Sequence[WearTrack], with_vibration: Sequence[WearTrack]) -> Sheet:
     """Return what vibration takes off the wear.
 
     Parameters
     ----------
-    without, with_vibration : sequence of WearRing
+    without, with_vibration : sequence of WearTrack
         One a specimen.
 
     Returns
     -------
     Sheet
     """
-    found: WearReduction = wear_reduction_of_rings(without, with_vibration)
+    found: WearReduction = wear_reduction_between_tracks(without, with_vibration)
     caveats: tuple[str, ...] = ()
     if not found.between_specimens:
         caveats = (

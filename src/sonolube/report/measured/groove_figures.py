@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from sonolube.checks import Floats
 from sonolube.figure import COLOURS, MARKERS
-from sonolube.measurement.friction.wear_track import WearRing
+from sonolube.measurement.wear_track import WearTrack
 from sonolube.report.measured.surface_figures import length_scale, show_map
 from sonolube.surfaces import HeightMap
 from sonolube.surfaces.grooves.groove import Groove
@@ -74,12 +74,12 @@ def height_map(levelled: HeightMap, worn: NDArray[np.bool_]) -> "Figure":
     return figure
 
 
-def ring(found: WearRing) -> "Figure":
+def ring(found: WearTrack) -> "Figure":
     """Return the area of each scan's section, with mean and interval."""
     import matplotlib.pyplot as plt
 
     figure, axes = plt.subplots(figsize=(4.6, 3.0))
-    area = 1e12 * found.section_area
+    area = 1e12 * found.cross_section_area
     around = math.pi * found.groove_diameter
     low, high = (1e12 * end / around for end in found.wear_volume_interval)
     place = np.arange(1, area.size + 1)

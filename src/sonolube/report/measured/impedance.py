@@ -12,7 +12,7 @@ from sonolube.identification.spectral_residual import LOG_COMPLEX
 from sonolube.identification.stack import fit_stack
 from sonolube.measurement.impedance.reader import read_impedance
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
-from sonolube.measurement.statistics.logarithmic_fit import Interval
+from sonolube.measurement.statistics.log_parameter_fit import ConfidenceInterval
 from sonolube.report.measured import impedance_figures as figures
 from sonolube.report.measured.sheet import Part, Sheet, SheetFigure, Value, known, sheet_of
 from sonolube.units import engineering
@@ -131,11 +131,11 @@ def _stack(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings, sought: Sta
     return Part(values=values, figures=(drawn,), caveats=fit.caveats)
 
 
-def _values(intervals: Mapping[str, Interval]) -> tuple[Value, ...]:
+def _values(intervals: Mapping[str, ConfidenceInterval]) -> tuple[Value, ...]:
     return tuple(_value(name, interval) for name, interval in intervals.items())
 
 
-def _value(name: str, interval: Interval) -> Value:
+def _value(name: str, interval: ConfidenceInterval) -> Value:
     ends = (interval.lower, interval.upper)
     if name in quantities():
         return known(name, interval.value, interval=ends)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from sonolube.measurement.analysis import analyse_rotation, channel
+from sonolube.measurement.friction_analysis import analyse_rotation, channel_values
 from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.measurement.recordings.reader import read_recording
 from sonolube.report.measured import rotation_figures as figures
@@ -63,14 +63,14 @@ def rotation_sheet(path: Path, *, settings: RotationSettings) -> Sheet:
     )
     around, error = np.pi * settings.groove_diameter, turning.rotation_speed_uncertainty
     turns = turning.rotation_speed
-    repaired = int(turning.repaired.sum())
+    interpolated = int(turning.interpolated.sum())
     values = [
         known("rotation_speed", turning.mean_rotation_speed, uncertainty=error),
         known("sliding_speed", around * turning.mean_rotation_speed, uncertainty=around * error),
         known("revolutions", float(turning.revolutions[-1])),
         known("sliding_distance", around * float(turning.revolutions[-1])),
         Value(name="pulses", label="Pulses", value=float(turning.time.size), unit=""),
-        Value(name="repaired_pulses", label="Missing pulses put in", value=float(repaired), unit=""),
+        Value(name="repaired_pulses", label="Missing pulses put in", value=float(interpolated), unit=""),
     ]
     if turns.size > 1:
         spread = float(turns.std(ddof=1)) / turning.mean_rotation_speed
@@ -89,13 +89,18 @@ def rotation_sheet(path: Path, *, settings: RotationSettings) -> Sheet:
             title="Pulses of the probe",
             caption="The first turns, with the pulses that count and those put in where one was missing.",
             draw=partial(
-                figures.pulses, channel(recording, "time"), channel(recording, "magnetic_flux_density"), turning
+                figures.pulses,
+                channel_values(recording, "time"),
+                channel_values(recording, "magnetic_flux_density"),
+                turning,
             ),
         ),
     )
     caveats: tuple[str, ...] = ()
-    if repaired > turning.time.size / 10:
-        caveats = (f"{repaired} of {turning.time.size} pulses were missing; lower the prominence or move the probe",)
+    if interpolated > turning.time.size / 10:
+        caveats = (
+            f"{interpolated} of {turning.time.size} pulses were missing; lower the prominence or move the probe",
+        )
     return sheet_of(
         [Part(values=tuple(values), figures=drawn, caveats=caveats)],
         title=path.name,

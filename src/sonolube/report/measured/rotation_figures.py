@@ -6,7 +6,7 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.figure import COLOURS, MARKERS
-from sonolube.measurement.friction.rotation import Rotation
+from sonolube.measurement.friction.rotation import DiscRotation
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 _TURNS_SHOWN = 6
 
 
-def speed(turning: Rotation) -> "Figure":
+def speed(turning: DiscRotation) -> "Figure":
     """Return the rotation speed turn by turn, with the speed at the groove on the right."""
     import matplotlib.pyplot as plt
 
@@ -38,7 +38,7 @@ def speed(turning: Rotation) -> "Figure":
     return figure
 
 
-def pulses(t: Floats, flux_density: Floats, turning: Rotation) -> "Figure":
+def pulses(t: Floats, flux_density: Floats, turning: DiscRotation) -> "Figure":
     """Return the first turns of the probe's reading with the pulses in it."""
     import matplotlib.pyplot as plt
 
@@ -47,7 +47,10 @@ def pulses(t: Floats, flux_density: Floats, turning: Rotation) -> "Figure":
     shown = t <= end + 0.02 * (end - t[0])
     axes.plot(t[shown], flux_density[shown], color="0.5", linewidth=0.8, label="reading")
     early = turning.time <= end
-    for which, name, place in ((early & ~turning.repaired, "pulses", 0), (early & turning.repaired, "put in", 1)):
+    for which, name, place in (
+        (early & ~turning.interpolated, "pulses", 0),
+        (early & turning.interpolated, "put in", 1),
+    ):
         if which.any():
             at = turning.time[which]
             height = np.interp(at, t, flux_density)

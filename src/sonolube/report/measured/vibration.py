@@ -11,16 +11,16 @@ import numpy as np
 
 from sonolube.checks import Complexes, Floats, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.measurement.analysis import channel
-from sonolube.measurement.recordings.dataset import in_si
+from sonolube.measurement.friction_analysis import channel_values
+from sonolube.measurement.recordings.dataset import convert_to_si
 from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.measurement.recordings.reader import read_recording
 from sonolube.measurement.vibration import (
-    OperatingShape,
+    OperatingDeflectionShape,
     amplitude_per_volt,
     complex_amplitudes,
-    modal_assurance,
-    operating_shape,
+    modal_assurance_criterion,
+    operating_deflection_shape,
 )
 from sonolube.report.measured import vibration_figures as figures
 from sonolube.report.measured.friction import recording_source
@@ -91,7 +91,7 @@ def vibration_sheet(path: Path, *, settings: VibrationSettings) -> Sheet:
     """
     recording = read_recording(path, mapping=settings.mapping)
     points, signals, velocities = _points(recording, path)
-    time, f = channel(recording, "time"), settings.frequency
+    time, f = channel_values(recording, "time"), settings.frequency
     per_rate = np.where(velocities, 1 / (2j * np.pi * f), 1.0)
     motion = complex_amplitudes(time=time, signals=signals, frequency=f) * per_rate
     errors = _errors(time, signals, f) * np.abs(per_rate)
@@ -109,7 +109,7 @@ def vibration_sheet(path: Path, *, settings: VibrationSettings) -> Sheet:
             ),
         ]
         motion = motion * np.exp(-1j * np.angle(drive))
-    shape = operating_shape(motion)
+    shape = operating_deflection_shape(motion)
     parts = [Part(values=tuple(values), tables=(_table(points, motion, errors),))]
     if len(points) > 1:
         parts.append(_shape(points, shape))
@@ -148,7 +148,7 @@ def _points(recording: "xr.Dataset", path: Path) -> tuple[list[str], Floats, Flo
         unit = str(recording[name].attrs.get("units", ""))
         for si, is_velocity in (("m", False), ("m/s", True)):
             try:
-                values = in_si(channel(recording, name), written_unit=unit, unit=si, name=name)
+                values = convert_to_si(channel_values(recording, name), written_unit=unit, unit=si, name=name)
             except InvalidInput:
                 continue
             names.append(name)
@@ -162,7 +162,9 @@ def _points(recording: "xr.Dataset", path: Path) -> tuple[list[str], Floats, Flo
 def _drive_voltage(recording: "xr.Dataset", time: Floats, frequency: float) -> complex | None:
     for name in map(str, recording):
         if str(recording[name].attrs.get("units", "")) == "V":
-            return complex(complex_amplitudes(time=time, signals=channel(recording, name), frequency=frequency)[0])
+            return complex(
+                complex_amplitudes(time=time, signals=channel_values(recording, name), frequency=frequency)[0]
+            )
     return None
 
 
@@ -198,9 +200,12 @@ def _table(points: Sequence[str], motion: Complexes, errors: Floats) -> SheetTab
     return SheetTable(name="points", title="Points", columns=columns, rows=rows)
 
 
-def _shape(points: Sequence[str], shape: OperatingShape) -> Part:
+def _shape(points: Sequence[str], shape: OperatingDeflectionShape) -> Part:
     value = Value(
-        name="standing_share", label="Share of the motion that stands in step", value=shape.standing_share, unit=""
+        name="standing_wave_fraction",
+        label="Share of the motion that stands in step",
+        value=shape.standing_wave_fraction,
+        unit="",
     )
     drawn = SheetFigure(
         name="shape",
@@ -212,7 +217,7 @@ def _shape(points: Sequence[str], shape: OperatingShape) -> Part:
 
 
 def _assurance(motion: Complexes, modes: Floats) -> Part:
-    likeness = modal_assurance(motion, modes)[0]
+    likeness = modal_assurance_criterion(motion, modes)[0]
     columns = (Column(name="mode", label="Mode"), Column(name="assurance", label="Modal assurance"))
     rows = tuple((f"{place}", float(value)) for place, value in enumerate(likeness, start=1))
     drawn = SheetFigure(
@@ -232,7 +237,10 @@ def _proportion(pairs: Sequence[tuple[float, float]]) -> Part:
         known("amplitude_per_volt", found.amplitude_per_volt, interval=(found.lower, found.upper)),
         known("amplitude_deviation", found.amplitude_deviation),
         Value(
-            name="curvature_p", label="Chance of such a curvature by scatter alone", value=found.curvature_p, unit=""
+            name="curvature_p_value",
+            label="Chance of such a curvature by scatter alone",
+            value=found.curvature_p_value,
+            unit="",
         ),
     )
     caveats: tuple[str, ...] = ()

@@ -7,13 +7,13 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.figure import COLOURS, MARKERS
-from sonolube.measurement.vibration import AmplitudePerVolt, OperatingShape
+from sonolube.measurement.vibration import AmplitudePerVolt, OperatingDeflectionShape
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def shape(points: Sequence[str], found: OperatingShape) -> "Figure":
+def shape(points: Sequence[str], found: OperatingDeflectionShape) -> "Figure":
     """Return the shape and the phases, point by point."""
     import matplotlib.pyplot as plt
 

@@ -12,7 +12,13 @@ from itertools import chain
 from math import pi
 from typing import Final
 
-from sonolube.metrics import DCMotor, current_under_friction, friction_from_current, motor_from_two_states, motor_speed
+from sonolube.metrics import (
+    DCMotor,
+    friction_from_current,
+    motor_current_under_friction,
+    motor_from_two_operating_points,
+    motor_speed,
+)
 from sonolube.published import PrintedNumber
 from sonolube.published.values import cell, stated
 from sonolube.reproduce.row import Row, compare
@@ -28,7 +34,7 @@ def rows() -> Iterator[Row]:
 
 def welder_motor(tip: int) -> DCMotor:
     """Return the motor as one test shows it: 0 with the round tip, 1 with the flat one."""
-    return motor_from_two_states(
+    return motor_from_two_operating_points(
         motor_voltage=said("2.4.2-motor-voltage").value,
         motor_current=[current.value for current in _currents(tip)],
         rotation_speed=[in_table("2.8", "rotation_speed", 2 * tip + on).value for on in (0, 1)],
@@ -63,7 +69,7 @@ def _of_tip(tip: int) -> Iterator[Row]:
         resistance=(voltage - constant * 2 * pi * speed) / before.value,
     )
     current = float(
-        current_under_friction(
+        motor_current_under_friction(
             loaded, friction_force=vibrating - still, idle_current=before.value, groove_diameter=_groove(tip)
         )
     )

@@ -8,13 +8,13 @@ from sonolube.checks import Floats
 from sonolube.friction import sine_stick_slip_ratio
 from sonolube.materials import material
 from sonolube.thermal import (
-    ContactHistory,
+    ContactTemperatureHistory,
     EllipticSource,
     HeatedContact,
     ThermalNetwork,
     ThermalSolid,
+    contact_temperature_history,
     frictional_heat_rate,
-    two_factor_history,
 )
 from sonolube.validation.inputs import said
 from sonolube.validation.power_map import actuator_power, printed
@@ -138,7 +138,7 @@ def heated_contact(*, disc: ThermalSolid = POWDER_COATING) -> HeatedContact:
     return HeatedContact(pin=pin, disc=disc, source=EllipticSource(half_length=radius, half_width=radius), network=_NUT)
 
 
-def history(test: TemperatureTest, *, step: float = 0.25) -> ContactHistory:
+def history(test: TemperatureTest, *, step: float = 0.25) -> ContactTemperatureHistory:
     """Return the computed temperature of a test in time, at steps of `step` seconds."""
     start, dry = said("4.3.3-motor-start").value, said("4.3.3-vibration-start").value
     level, rest = said("4.3.3-level-duration").value, said("4.3.3-cooling-duration").value
@@ -149,7 +149,7 @@ def history(test: TemperatureTest, *, step: float = 0.25) -> ContactHistory:
     shaken = turning & (middle > dry) & test.vibrated
     at_level = np.clip((middle - dry) // level, 0, voltages().size - 1).astype(int)
     friction = said("4.1.3-friction-coated-last").value * test.normal_load * np.where(shaken, FRICTION_KEPT, 1.0)
-    return two_factor_history(
+    return contact_temperature_history(
         heated_contact(),
         time=moments,
         friction_force=np.where(turning, friction, 0.0),

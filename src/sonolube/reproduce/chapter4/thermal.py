@@ -27,13 +27,13 @@ from sonolube.reproduce.chapter4.temperature_tests import (
 )
 from sonolube.reproduce.row import Row, compare
 from sonolube.thermal import (
+    adiabatic_heat_rate,
     flash_rise,
-    half_wave_energy,
-    inferred_conductance,
+    half_wave_bar_energy,
+    interface_conductance,
     layer_conductance,
-    loss_heat_rate,
     superimposed_heat_rate,
-    warming_heat_rate,
+    vibration_loss_heat_rate,
 )
 from sonolube.validation.inputs import named, said
 from sonolube.validation.power_map import printed
@@ -144,16 +144,18 @@ def _waveguide_peak() -> Row:
     capacity = volume * density * aluminium.value("specific_heat_capacity")
     first, peak = (said(f"4.3.5-temperature-{state}").value for state in ("first", "peak"))
     duration = said("4.3.5-vibration-duration").value
-    needed = float(warming_heat_rate(heat_capacity=capacity, temperature_rise=peak - first, duration=duration))
+    needed = float(adiabatic_heat_rate(heat_capacity=capacity, temperature_rise=peak - first, duration=duration))
     power = said("2.1.2-welder-power").value
-    energy = half_wave_energy(
+    energy = half_wave_bar_energy(
         density=density,
         cross_section=width * thickness,
         length=length,
         frequency=said("2.1.2-welder-frequency").value,
         axial_amplitude=said("4.3.5-waveguide-amplitude").value,
     )
-    at_one = loss_heat_rate(stored_energy=energy, frequency=said("2.1.2-welder-frequency").value, quality_factor=1.0)
+    at_one = vibration_loss_heat_rate(
+        stored_energy=energy, frequency=said("2.1.2-welder-frequency").value, quality_factor=1.0
+    )
     note = (
         f"The aluminium waveguide of section 2.1 warmed evenly, without loss, by all {1e-3 * power:g} kW of the "
         "welder. "
@@ -178,8 +180,8 @@ def _foil_peak() -> Row:
     )
     onward = 100.0  # W/(m2 K), tape and air
     joint = float(
-        inferred_conductance(
-            temperature_rise=peak - first, sheltered_rise=sheltered - first, convection_coefficient=onward
+        interface_conductance(
+            temperature_rise=peak - first, rise_behind_interface=sheltered - first, convection_coefficient=onward
         )
     )
     behind = first + (peak - first) * foil / (foil + onward)

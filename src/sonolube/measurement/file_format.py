@@ -1,0 +1,95 @@
+"""Detection of a file's format by its first bytes, then by the suffix of its name, from an ordered table of formats."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import ClassVar, Protocol, TypeVar
+
+from sonolube.errors import InvalidInput
+
+HEAD_SIZE = 8192
+"""Number of bytes at the beginning of a file by which its format is detected."""
+
+
+class FileFormat(Protocol):
+    """Name, signature and suffixes of one file format.
+
+    Attributes
+    ----------
+    name : str
+        Name of the format in results and messages; unique in its table.
+    suffixes : tuple of str
+        Usual suffixes of its files in lower case with the dot, such as ".tdms".
+    """
+
+    name: ClassVar[str]
+    suffixes: ClassVar[tuple[str, ...]]
+
+    def recognises(self, head: bytes, path: Path) -> bool:
+        """Return whether the first bytes of a file carry the signature of the format.
+
+        Parameters
+        ----------
+        head : bytes
+            The first `HEAD_SIZE` bytes of the file, fewer if the file is shorter.
+        path : Path
+            Of the file, for formats whose suffix is part of their definition.
+
+        Returns
+        -------
+        bool
+        """
+
+
+FormatT = TypeVar("FormatT", bound=FileFormat)
+
+
+def read_head(path: Path) -> bytes:
+    """Return the first `HEAD_SIZE` bytes of a file.
+
+    Raises
+    ------
+    InvalidInput
+        Naming the file, if it cannot be read or is empty.
+    """
+    try:
+        with path.open("rb") as stream:
+            head = stream.read(HEAD_SIZE)
+    except OSError as failure:
+        raise InvalidInput(f"{path}: cannot be read: {failure.strerror or failure}") from None
+    if not head:
+        raise InvalidInput(f"{path}: is empty")
+    return head
+
+
+def detect_format(formats: Sequence[FormatT], head: bytes, path: Path) -> FormatT | None:
+    """Return the format of a file: by signature, else by suffix, else the last of the table where it accepts the file.
+
+    Parameters
+    ----------
+    formats : sequence of FileFormat
+        In order of precedence. The last one is the fallback, which no signature and no suffix identifies, such as
+        delimited text.
+    head : bytes
+        The first bytes of the file, from `read_head`.
+    path : Path
+        Of the file.
+
+    Returns
+    -------
+    FileFormat or None
+        None where no format of the table fits.
+    """
+    *specific, fallback = formats
+    for known in specific:
+        if known.recognises(head, path):
+            return known
+    for known in specific:
+        if path.suffix.lower() in known.suffixes:
+            return known
+    return fallback if fallback.recognises(head, path) else None
+
+
+def first_lines(head: bytes) -> list[str]:
+    """Return the first lines of a text file, decoded as UTF-8 with any byte order mark removed; the last may be cut."""
+    text = head.decode("utf-8-sig", errors="ignore")
+    return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")

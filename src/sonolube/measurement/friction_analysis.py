@@ -1,0 +1,386 @@
+"""Friction analyses of a recording (xarray dataset): one function per analysis, each returning a record."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from sonolube.checks import Floats
+from sonolube.errors import InvalidInput, suggestion
+from sonolube.measurement.friction.loops import FrictionLoops, FrictionWork, friction_loops, friction_work
+from sonolube.measurement.friction.motor_current import MotorCalibration, friction_from_motor_current
+from sonolube.measurement.friction.rotation import DiscRotation, disc_rotation, hall_pulse_times, revolutions_at
+from sonolube.measurement.friction.running_in import SteadyStateOnset, steady_state_onset
+from sonolube.measurement.friction.stick_slip import StickSlipEstimate, estimate_stick_slip
+from sonolube.measurement.friction.voltage_steps import VoltageStep, friction_at_voltage_steps, voltage_envelope
+from sonolube.measurement.friction.windows import DEFAULT_WINDOW_DURATION, WindowStatistics, window_statistics
+from sonolube.measurement.friction.wobble import WobbleCorrection, remove_wobble
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RunningIn:
+    """Friction in windows, with the onset of the steady state of its mean and of its fluctuation.
+
+    Parameters
+    ----------
+    windows : WindowStatistics
+        Friction in consecutive windows.
+    friction : SteadyStateOnset
+        Of the windows' means.
+    fluctuation : SteadyStateOnset
+        Of the fluctuation in the windows, which takes longer when the pin vibrates.
+    """
+
+    windows: WindowStatistics
+    friction: SteadyStateOnset
+    fluctuation: SteadyStateOnset
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FrictionCycles:
+    """Frictional work of a whole recording and, for a reciprocating motion, of each cycle.
+
+    Parameters
+    ----------
+    work : FrictionWork
+        Along the recording.
+    loops : FrictionLoops or None
+        Cycle by cycle; None where the velocity does not turn positive twice.
+    """
+
+    work: FrictionWork
+    loops: FrictionLoops | None
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class MotorFrictionTrace:
+    """Friction force over time from the motor current.
+
+    Parameters
+    ----------
+    time : ndarray, shape (windows,)
+        Middle of each window. [s]
+    friction_force : ndarray, shape (windows,)
+        Mean in each window. [N]
+    friction_force_uncertainty : ndarray, shape (windows,)
+        Standard uncertainty, including the scatter of the current in the window. [N]
+    """
+
+    time: Floats
+    friction_force: Floats
+    friction_force_uncertainty: Floats
+
+
+def channel_values(recording: "xr.Dataset", name: str) -> Floats:
+    """Return the values of a channel, or of the axis, of a recording.
+
+    Parameters
+    ----------
+    recording : xarray.Dataset
+    name : str
+        Of the channel, or "time".
+
+    Returns
+    -------
+    ndarray, shape (samples,)
+
+    Raises
+    ------
+    InvalidInput
+        If the recording has no such channel, with those it has.
+    """
+    if name not in recording.variables:
+        names = [str(known) for known in recording.variables]
+        title = recording.attrs.get("file_name", "the recording")
+        raise InvalidInput(
+            f"{title} has no channel {name!r}; {suggestion(name, names) or 'it has ' + ', '.join(names)}"
+        )
+    values: Floats = recording[name].to_numpy()
+    return values
+
+
+def analyse_windows(
+    recording: "xr.Dataset", *, of: str = "friction_force", window_duration: float = DEFAULT_WINDOW_DURATION
+) -> WindowStatistics:
+    """Return mean and fluctuation of a channel in consecutive windows.
+
+    Parameters
+    ----------
+    recording : xarray.Dataset
+    of : str
+        Name of the channel.
+    window_duration : float
+        Duration of each window. [s]
+
+    Returns
+    -------
+    WindowStatistics
+
+    See Also
+    --------
+    window_statistics : of arrays.
+    """
+    return window_statistics(
+        channel_values(recording, of),
+        time=channel_values(recording, "time"),
+        window_duration=window_duration,
+        channel=of,
+        unit=str(recording[of].attrs.get("units", "")),
+    )
+
+
+def analyse_running_in(
+    recording: "xr.Dataset", *, sliding_speed: float, window_duration: float = DEFAULT_WINDOW_DURATION
+) -> RunningIn:
+    """Return the onset of the steady state of friction and of its fluctuation.
+
+    Parameters
+    ----------
+    recording : xarray.Dataset
+        With `friction_force`.
+    sliding_speed : float
+        Sliding speed. [m/s]
+    window_duration : float
+        Duration of each window. [s]
+
+    Returns
+    -------
+    RunningIn
+
+    See Also
+    --------
+    steady_state_onset : of arrays.
+
+    References
+    ----------
+    .. [1] D 2.3.3, Table 2.3.
+    """
+    windows = analyse_windows(recording, window_duration=window_duration)
+    return RunningIn(
+        windows=windows,
+        friction=steady_state_onset(time=windows.time, friction_force=windows.mean, sliding_speed=sliding_speed),
+        fluctuation=steady_state_onset(
+            time=windows.time, friction_force=windows.fluctuation, sliding_speed=sliding_speed
+        ),
+    )
+
+
+def analyse_voltage_steps(
+    recording: "xr.Dataset", *, shortest_step: float = 1.0, settling_time: float = 0.5
+) -> tuple[VoltageStep, ...]:
+    """Return the friction and its reduction at each step of the drive voltage.
+
+    Parameters
+    ----------
+    recording : xarray.Dataset
+        With `friction_force`, and `voltage_peak_to_peak` or the alternating `stack_voltage`.
+    shortest_step : float
+        Duration in seconds below which a level is a transition, not a step.
+    settling_time : float
+        Left out at the beginning of each step. [s]
+
+    Returns
+    -------
+    tuple of VoltageStep
+
+    See Also
+    --------
+    friction_at_voltage_steps : of arrays.
+
+    References
+    ----------
+    .. [1] D 4.1.2, figure 4.3, Table 4.2.
+    """
+    time = channel_values(recording, "time")
+    if "voltage_peak_to_peak" in recording:
+        level = channel_values(recording, "voltage_peak_to_peak")
+    else:
+        level = voltage_envelope(time=time, stack_voltage=channel_values(recording, "stack_voltage"))
+    return friction_at_voltage_steps(
+        time=time,
+        friction_force=channel_values(recording, "friction_force"),
+        voltage_peak_to_peak=level,
+        shortest_step=shortest_step,
+        settling_time=settling_time,
+    )
+
+
+def analyse_cycles(recording: "xr.Dataset") -> FrictionCycles:
+    """Return the frictional work of a recording, and that of each cycle of a reciprocating motion.
+
+    Parameters
+    ----------
+    recording : xarray.Dataset
+        With `friction_force` and `relative_velocity`.
+
+    Returns
+    -------
+    FrictionCycles
+
+    See Also
+    --------
+    friction_work, friction_loops : of arrays.
+
+    References
+    ----------
+    .. [1] D 4.5.4, figure 4.57.
+    """
+    time, force = channel_values(recording, "time"), channel_values(recording, "friction_force")
+    velocity = channel_values(recording, "relative_velocity")
+    try:
+        loops = friction_loops(time=time, friction_force=force, relative_velocity=velocity)
+    except InvalidInput:  # a single stroke, such as a rod pulled through a ring
+        loops = None
+    work = friction_work(time=time, friction_force=force, relative_velocity=velocity)
+    return FrictionCycles(work=work, loops=loops)
+
+
+def analyse_stick_slip(recording: "xr.Dataset", *, minimum_drop: float | None = None) -> StickSlipEstimate:
+    """Return frequency and amplitude of stick-slip.
+
+    Parameters
+    ----------
+    recording : xarray.Dataset
+        With `friction_force`, without gaps.
+    minimum_drop : float or None
+        Smallest force drop, in N, that counts as a slip.
+
+    Returns
+    -------
+    StickSlipEstimate
+
+    See Also
+    --------
+    estimate_stick_slip : of arrays.
+
+    References
+    ----------
+    .. [1] D 2.3.2 to 2.3.4.
+    """
+    return estimate_stick_slip(
+        time=channel_values(recording, "time"),
+        friction_force=channel_values(recording, "friction_force"),
+        minimum_drop=minimum_drop,
+    )
+
+
+def analyse_rotation(
+    recording: "xr.Dataset", *, groove_diameter: float, magnets: int = 1, prominence: float = 0.25
+) -> DiscRotation:
+    """Return the rotation of the disc from a Hall probe signal.
+
+    Parameters
+    ----------
+    recording : xarray.Dataset
+        With `magnetic_flux_density`.
+    groove_diameter : float
+        Diameter of the wear track under the pin. [m]
+    magnets : int
+        Number of magnets at the rim.
+    prominence : float
+        Prominence of the weakest pulse that counts, as a fraction of the strongest.
+
+    Returns
+    -------
+    DiscRotation
+
+    See Also
+    --------
+    hall_pulse_times, disc_rotation : of arrays.
+
+    References
+    ----------
+    .. [1] D 4.1.1.
+    """
+    pulses = hall_pulse_times(
+        time=channel_values(recording, "time"),
+        magnetic_flux_density=channel_values(recording, "magnetic_flux_density"),
+        prominence=prominence,
+    )
+    return disc_rotation(time=pulses, groove_diameter=groove_diameter, magnets=magnets)
+
+
+def analyse_wobble(
+    recording: "xr.Dataset",
+    *,
+    rotation: DiscRotation | None = None,
+    rotation_speed: float | None = None,
+    harmonics: int = 3,
+) -> WobbleCorrection:
+    """Return the friction force without its harmonics of the rotation, which the disc's wobble causes.
+
+    Parameters
+    ----------
+    recording : xarray.Dataset
+        With `friction_force`.
+    rotation : DiscRotation or None
+        From `analyse_rotation`.
+    rotation_speed : float or None
+        Instead of it, where the speed is constant. [1/s]
+    harmonics : int
+        Number of harmonics of the rotation that are removed.
+
+    Returns
+    -------
+    WobbleCorrection
+
+    Raises
+    ------
+    InvalidInput
+        If not exactly one of `rotation` and `rotation_speed` is given.
+
+    See Also
+    --------
+    remove_wobble : of arrays.
+
+    References
+    ----------
+    .. [1] D 2.3.3 and 4.1.2 on the wobble of the disc.
+    """
+    time = channel_values(recording, "time")
+    if (rotation is None) == (rotation_speed is None):
+        raise InvalidInput("give either rotation, from the pulses, or a constant rotation_speed")
+    revolutions = (
+        revolutions_at(rotation, time=time) if rotation is not None else (rotation_speed or 0.0) * (time - time[0])
+    )
+    return remove_wobble(
+        revolutions=revolutions, friction_force=channel_values(recording, "friction_force"), harmonics=harmonics
+    )
+
+
+def analyse_motor_current(
+    recording: "xr.Dataset", *, motor: MotorCalibration, window_duration: float = DEFAULT_WINDOW_DURATION
+) -> MotorFrictionTrace:
+    """Return the friction force from the motor current in consecutive windows.
+
+    Parameters
+    ----------
+    recording : xarray.Dataset
+        With `motor_current`.
+    motor : MotorCalibration
+    window_duration : float
+        Duration of each window. [s]
+
+    Returns
+    -------
+    MotorFrictionTrace
+
+    See Also
+    --------
+    friction_from_motor_current : of arrays.
+
+    References
+    ----------
+    .. [1] D 2.4.4.
+    """
+    windows = analyse_windows(recording, of="motor_current", window_duration=window_duration)
+    known = windows.samples > 1
+    friction_force, uncertainty = friction_from_motor_current(
+        motor,
+        motor_current=windows.mean[known],
+        motor_current_uncertainty=windows.deviation[known] / windows.samples[known] ** 0.5,
+    )
+    return MotorFrictionTrace(
+        time=windows.time[known], friction_force=friction_force, friction_force_uncertainty=uncertainty
+    )

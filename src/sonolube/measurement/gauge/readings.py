@@ -1,0 +1,122 @@
+"""Validated displacement and force readings of a force gauge, and the direction of a displacement history."""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sonolube.checks import Floats, require_finite
+from sonolube.errors import InvalidInput, OutsideRange
+
+_REVERSAL = 0.02  # of the range, by which the displacement must return for a reversal
+_RANGE_TOLERANCE = 1e-9  # of the range
+
+
+def loading_mask(x: Floats) -> NDArray[np.bool_]:
+    """Return where a displacement is on a loading branch, with hysteresis against small reversals.
+
+    Parameters
+    ----------
+    x : ndarray, shape (samples,)
+        Displacement in order of time.
+
+    Returns
+    -------
+    ndarray of bool, shape (samples,)
+    """
+    threshold = _REVERSAL * float(np.ptp(x))
+    rising = np.empty(x.size, dtype=np.bool_)
+    up, extreme, since = True, x[0], 0
+    for at, value in enumerate(x.tolist()):
+        if (value >= extreme) if up else (value <= extreme):
+            extreme, since = value, at
+        elif abs(value - extreme) > threshold:
+            rising[since:at] = not up
+            up, extreme, since = not up, value, at
+        rising[at] = up
+    return rising
+
+
+def require_calibrated_range(*, displacement: ArrayLike, lowest: float, highest: float) -> Floats:
+    """Return displacements as a one-dimensional array; refuse any outside the calibrated range.
+
+    Parameters
+    ----------
+    displacement : array_like, shape (samples,)
+        Reading of the sensor. [m]
+    lowest, highest : float
+        Calibrated range, in metres.
+
+    Returns
+    -------
+    ndarray, shape (samples,)
+
+    Raises
+    ------
+    InvalidInput
+        If a reading is not finite.
+    OutsideRange
+        If a reading lies outside the range.
+    """
+    x = np.atleast_1d(require_finite(displacement=displacement))
+    if x.ndim != 1:
+        raise InvalidInput(f"displacement must be one-dimensional, got shape {x.shape}")
+    tolerance = _RANGE_TOLERANCE * (highest - lowest)
+    outside = (x < lowest - tolerance) | (x > highest + tolerance)
+    if outside.any():
+        raise OutsideRange(
+            f"displacement must lie between {lowest:.6g} and {highest:.6g} m, where it was calibrated,"
+            f" got {float(x[outside][0]):.6g} m"
+        )
+    return x
+
+
+def require_readings(*, displacement: ArrayLike, applied_force: ArrayLike) -> tuple[Floats, Floats]:
+    """Return displacement and force as one-dimensional arrays of equal length.
+
+    Parameters
+    ----------
+    displacement : array_like, shape (samples,)
+        Reading of the sensor. [m]
+    applied_force : array_like, shape (samples,)
+        Reading of the load cell. [N]
+
+    Returns
+    -------
+    tuple of ndarray, shape (samples,)
+
+    Raises
+    ------
+    InvalidInput
+        If the lengths differ or a value is not finite.
+    """
+    x, force = require_finite(displacement=displacement), require_finite(applied_force=applied_force)
+    if x.ndim != 1 or x.shape != force.shape or not x.size:
+        raise InvalidInput(
+            "displacement and applied_force must be one-dimensional and equal in length,"
+            f" got shapes {x.shape} and {force.shape}"
+        )
+    return x, force
+
+
+def require_calibration_readings(*, displacement: ArrayLike, applied_force: ArrayLike) -> tuple[Floats, Floats]:
+    """Return displacement and force of a calibration as one-dimensional arrays of equal length.
+
+    Parameters
+    ----------
+    displacement : array_like, shape (samples,)
+        Reading of the sensor. [m]
+    applied_force : array_like, shape (samples,)
+        Reading of the load cell. [N]
+
+    Returns
+    -------
+    tuple of ndarray, shape (samples,)
+
+    Raises
+    ------
+    InvalidInput
+        As `require_readings`, and if the displacement does not vary.
+    """
+    x, force = require_readings(displacement=displacement, applied_force=applied_force)
+    if x.size < 2 or np.ptp(x) == 0:
+        raise InvalidInput("displacement does not vary")
+    return x, force

@@ -1,0 +1,136 @@
+"""Impedance in text tables whose first row names the columns, and the sweep that named columns define."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import ClassVar, final
+
+import numpy as np
+
+from sonolube.errors import InvalidInput
+from sonolube.measurement.impedance.column_headings import (
+    IMPEDANCE_PARTS,
+    ColumnHeading,
+    impedance_from_parts,
+    parse_heading,
+)
+from sonolube.measurement.impedance.spectrum import ImpedanceSweep
+from sonolube.measurement.numeric_text import parse_number
+
+_COMMENTS = ("#", "!", "%")
+
+NumberedCells = tuple[int, list[str]]  # line of a row, and its cells
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class NamedColumns:
+    """Any text table whose first row names the columns, such as `frequency (kHz)`, `|Z| (ohm)`, `phase (deg)`.
+
+    Notes
+    -----
+    Has no signature: the fallback for every text file.
+    """
+
+    name: ClassVar[str] = "table with named columns"
+    suffixes: ClassVar[tuple[str, ...]] = (".csv", ".tsv", ".txt")
+
+    def recognises(self, head: bytes, path: Path) -> bool:
+        """Return True: any text may be a table."""
+        return True
+
+    def read(self, path: Path, lines: list[str]) -> dict[str, ImpedanceSweep]:
+        """Return the one sweep of a table, under an empty name.
+
+        Parameters
+        ----------
+        path : Path
+            Of the file, for messages.
+        lines : list of str
+            Of the file. Lines that begin with #, ! or % are skipped; cells stand between tabs, semicolons or commas.
+
+        Returns
+        -------
+        dict of str to ImpedanceSweep
+
+        Raises
+        ------
+        InvalidInput
+            Naming the file and the line, if the headings name no frequency and impedance, or a cell is no number.
+        """
+        numbered = [
+            (at, line) for at, line in enumerate(lines, start=1) if line.strip() and not line.startswith(_COMMENTS)
+        ]
+        if not numbered:
+            raise InvalidInput(f"{path}: line {len(lines)}: holds no row")
+        separator = next((sign for sign in "\t;," if sign in numbered[0][1]), ",")
+        rows = [(at, line.split(separator)) for at, line in numbered]
+        at, labels = rows[0]
+        decimal_sign = "," if separator != "," and any("," in cell for _, row in rows[1:9] for cell in row) else "."
+        headings = [parse_heading(label) for label in labels]
+        return {"": sweep_from_columns(path, at, headings, rows[1:], decimal_sign=decimal_sign)}
+
+
+def sweep_from_columns(
+    path: Path,
+    heading_line: int,
+    headings: list[ColumnHeading | None],
+    rows: list[NumberedCells],
+    *,
+    decimal_sign: str,
+) -> ImpedanceSweep:
+    """Return the sweep of a table by the headings of its columns.
+
+    Parameters
+    ----------
+    path : Path
+        Of the file, for messages.
+    heading_line : int
+        Line of the headings, for messages.
+    headings : list of ColumnHeading or None
+        One per column; None for columns of other quantities.
+    rows : list of (int, list of str)
+        Line and cells of each row.
+    decimal_sign : str
+        "." or ",".
+
+    Returns
+    -------
+    ImpedanceSweep
+        Of the first column of each quantity, and the first pair of `IMPEDANCE_PARTS` that the table has.
+
+    Raises
+    ------
+    InvalidInput
+        Naming the file and the line, if the headings name no frequency and impedance, or a cell is no number.
+    """
+    place = {heading.symbol: at for at, heading in reversed(list(enumerate(headings))) if heading}
+    pair = next((pair for pair in IMPEDANCE_PARTS if all(part in place for part in pair)), None)
+    if "f" not in place or pair is None:
+        raise InvalidInput(
+            f"{path}: line {heading_line}: names no columns of frequency and impedance, such as"
+            " 'frequency (Hz)', '|Z| (ohm)', 'phase (deg)' or 'R (ohm)', 'X (ohm)'"
+        )
+    if not rows:
+        raise InvalidInput(f"{path}: line {heading_line}: no values follow")
+    columns = {}
+    for symbol in ("f", *pair):
+        values = np.array([_finite_number(path, row, place[symbol], decimal_sign) for row in rows])
+        scale = next(heading.scale for heading in headings if heading and heading.symbol == symbol)
+        with np.errstate(all="ignore"):
+            columns[symbol] = scale * values
+    return ImpedanceSweep(
+        frequency=columns["f"],
+        impedance=impedance_from_parts(columns, pair),
+        lines=np.array([line for line, _ in rows]),
+    )
+
+
+def _finite_number(path: Path, row: NumberedCells, at: int, decimal_sign: str) -> float:
+    """Return the number in one cell of a row; refuse a missing cell and what is no finite number."""
+    line, cells = row
+    if at >= len(cells):
+        raise InvalidInput(f"{path}: line {line}: has {len(cells)} cells where column {at + 1} is required")
+    value = parse_number(cells[at], decimal_sign=decimal_sign)
+    if value is None or not np.isfinite(value):
+        raise InvalidInput(f"{path}: line {line}: {cells[at].strip()[:40]!r} is not a finite number")
+    return value

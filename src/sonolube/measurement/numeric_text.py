@@ -1,0 +1,65 @@
+"""Parsing of numbers in text with either decimal sign."""
+
+import math
+
+import numpy as np
+
+from sonolube.checks import Floats
+
+
+def parse_number(cell: str, *, decimal_sign: str) -> float | None:
+    """Return the number in a cell of text, or None where it holds none.
+
+    Parameters
+    ----------
+    cell : str
+        As written.
+    decimal_sign : str
+        "." or ","; the other one is refused, so that a separator of thousands is never read as a decimal sign.
+
+    Returns
+    -------
+    float or None
+    """
+    text = cell.strip()
+    if decimal_sign == ",":
+        if "." in text:
+            return None
+        text = text.replace(",", ".")
+    if "_" in text:  # float() accepts 1_000, which no instrument writes
+        return None
+    try:
+        value = float(text)
+    except ValueError:
+        return None
+    return value if text.isascii() else None
+
+
+def parse_numbers(cells: list[str], *, decimal_sign: str, missing: frozenset[str]) -> tuple[Floats, int | None]:
+    """Return the numbers of a column of text, and the first row that holds neither a number nor a missing-value text.
+
+    Parameters
+    ----------
+    cells : list of str
+        As written.
+    decimal_sign : str
+        "." or ",".
+    missing : frozenset of str
+        Texts that stand for a missing value, beside empty cells.
+
+    Returns
+    -------
+    values : ndarray, shape (rows,)
+        NaN for missing values; only the rows before `invalid_row` where there is one.
+    invalid_row : int or None
+    """
+    values = np.empty(len(cells))
+    for row, cell in enumerate(cells):
+        value = parse_number(cell, decimal_sign=decimal_sign)
+        if value is None:
+            stripped = cell.strip()
+            if stripped and stripped not in missing:
+                return values[:row], row
+            value = math.nan
+        values[row] = value
+    return values, None

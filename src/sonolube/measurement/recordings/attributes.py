@@ -1,0 +1,54 @@
+"""Raw columns and provenance from the attributes of hierarchical files (HDF5 and netCDF)."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from sonolube.measurement.recordings.raw_table import RawColumn
+
+_ORIGIN_KEYS = ("title", "file_name", "file_format", "sha256", "begun")
+
+
+def column_from_attributes(label: str, values: Any, attributes: Mapping[str, Any], file_rate: Any) -> RawColumn:
+    """Return a column with unit, sample interval and missing values by the attributes of its variable.
+
+    Parameters
+    ----------
+    label : str
+        Name of the variable.
+    values : ndarray, shape (rows,)
+        Of the variable.
+    attributes : mapping of str to object
+        Of the variable: `units` or `unit`, `sample_rate` in Hz, `_FillValue`.
+    file_rate : object
+        Attribute `sample_rate` of the file, in Hz; None where it has none.
+
+    Returns
+    -------
+    RawColumn
+    """
+    unit = attributes.get("units", attributes.get("unit"))
+    rate = attributes.get("sample_rate", file_rate)
+    rate = float(np.ravel(rate)[0]) if rate is not None else 0.0
+    fill = attributes.get("_FillValue")
+    numbers = values.astype(np.float64)
+    if fill is not None and np.ravel(fill).size == 1:
+        numbers = np.where(values == np.ravel(fill)[0], np.nan, numbers)
+    return RawColumn(
+        label=label,
+        values=numbers,
+        unit=unit.decode() if isinstance(unit, bytes) else (str(unit) if unit is not None else None),
+        start=0.0,
+        interval=1 / rate if rate > 0 else None,
+    )
+
+
+def origin_from_attributes(attributes: Mapping[str, Any]) -> dict[str, str]:
+    """Return the provenance of the original file: the first one of a recording that was written several times."""
+    origin = {}
+    for key in _ORIGIN_KEYS:
+        value = attributes.get(f"original_{key}", attributes.get(key))
+        if value is not None:
+            origin[key] = value.decode(errors="replace") if isinstance(value, bytes) else str(value)
+    return origin

@@ -1,0 +1,109 @@
+"""File formats of recordings: their protocol and the ordered table of all of them.
+
+A format is one class in a file of its own and one entry of `RECORDING_FORMATS`; detection, messages and documentation
+derive from the table.
+"""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Protocol, runtime_checkable
+
+from sonolube.errors import InvalidInput
+from sonolube.measurement.file_format import FileFormat, detect_format, read_head
+from sonolube.measurement.recordings.delimited import DelimitedText
+from sonolube.measurement.recordings.hdf5 import Hdf5
+from sonolube.measurement.recordings.lvm import LabviewText
+from sonolube.measurement.recordings.mapping import RecordingMapping
+from sonolube.measurement.recordings.matlab import Matlab
+from sonolube.measurement.recordings.netcdf3 import NetCdf3
+from sonolube.measurement.recordings.raw_table import RawTable
+from sonolube.measurement.recordings.tdms import Tdms
+from sonolube.measurement.recordings.uff import UniversalFile
+
+
+class RecordingFormat(FileFormat, Protocol):
+    """Reader of one file format of recordings."""
+
+    def read(self, path: Path, *, mapping: RecordingMapping | None = None) -> RawTable:
+        """Return the columns of a file.
+
+        Parameters
+        ----------
+        path : Path
+            Of the file.
+        mapping : RecordingMapping or None
+            Assignment of the columns, for formats that read only those it names or need its text layout.
+
+        Returns
+        -------
+        RawTable
+
+        Raises
+        ------
+        InvalidInput
+            Naming the file, the line or byte where known, and the reason, if the file cannot be read.
+        """
+
+
+@runtime_checkable
+class StreamedRecordingFormat(RecordingFormat, Protocol):
+    """Reader of a file format that can also be read in blocks, without holding the file in memory."""
+
+    def read_blocks(self, path: Path, *, mapping: RecordingMapping | None, block_samples: int) -> Iterator[RawTable]:
+        """Yield the columns of a file in blocks of rows; the last may be shorter.
+
+        Parameters
+        ----------
+        path : Path
+            Of the file.
+        mapping : RecordingMapping or None
+            As `read`.
+        block_samples : int
+            Rows of a block.
+
+        Yields
+        ------
+        RawTable
+
+        Raises
+        ------
+        InvalidInput
+            As `read`.
+        """
+
+
+RECORDING_FORMATS: tuple[RecordingFormat, ...] = (
+    Tdms(),
+    LabviewText(),
+    Matlab(),
+    Hdf5(),
+    NetCdf3(),
+    UniversalFile(),
+    DelimitedText(),
+)
+"""File formats of recordings in order of detection; the last one is the fallback."""
+
+
+def recording_format(path: Path) -> RecordingFormat:
+    """Return the format of a recording, by its signature, then by its suffix.
+
+    Parameters
+    ----------
+    path : Path
+        Of the file.
+
+    Returns
+    -------
+    RecordingFormat
+
+    Raises
+    ------
+    InvalidInput
+        If the file is missing, empty, or of no known format.
+    """
+    head = read_head(path)
+    found = detect_format(RECORDING_FORMATS, head, path)
+    if found is None:
+        known = ", ".join(one.name for one in RECORDING_FORMATS)
+        raise InvalidInput(f"{path}: byte 0: begins with {head[:8]!r}, which is no known format of recordings: {known}")
+    return found

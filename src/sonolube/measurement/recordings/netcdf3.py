@@ -1,0 +1,62 @@
+"""Classic netCDF files (version 3)."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import ClassVar, final
+
+import numpy as np
+
+from sonolube.errors import InvalidInput
+from sonolube.measurement.recordings.attributes import column_from_attributes, origin_from_attributes
+from sonolube.measurement.recordings.mapping import RecordingMapping
+from sonolube.measurement.recordings.raw_table import RawTable, refuse_library_errors
+
+_SIGNATURES = (b"CDF\1", b"CDF\2", b"CDF\5")  # classic, 64-bit offset, 64-bit data
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class NetCdf3:
+    """Classic netCDF files (version 3) whose one-dimensional numeric variables are channels."""
+
+    name: ClassVar[str] = "netCDF 3"
+    suffixes: ClassVar[tuple[str, ...]] = (".nc",)
+
+    def recognises(self, head: bytes, path: Path) -> bool:
+        """Return whether the file begins with a signature of classic netCDF."""
+        return head.startswith(_SIGNATURES)
+
+    def read(self, path: Path, *, mapping: RecordingMapping | None = None) -> RawTable:
+        """Return the vectors of a classic netCDF file.
+
+        Parameters
+        ----------
+        path : Path
+            Of the file.
+        mapping : RecordingMapping or None
+            Not used: all vectors are read.
+
+        Returns
+        -------
+        RawTable
+            Units are those of the attributes `units` or `unit`, the sample interval that of the attribute `sample_rate`
+            of the vector or of the file, in Hz.
+
+        Raises
+        ------
+        InvalidInput
+            Naming the file, if it cannot be read or holds no vector of numbers.
+        """
+        from scipy.io import netcdf_file
+
+        with refuse_library_errors(path, format_name=self.name), netcdf_file(path, "r", mmap=False) as file:
+            rate = getattr(file, "sample_rate", None)
+            columns = [
+                column_from_attributes(label, np.array(variable[:]), dict(variable._attributes), rate)
+                for label, variable in file.variables.items()
+                if variable.data.dtype.kind in "fiub" and len(variable.shape) == 1
+            ]
+            origin = origin_from_attributes(file._attributes)
+        if not columns:
+            raise InvalidInput(f"{path}: holds no vector of numbers")
+        return RawTable(columns=tuple(columns), format_name=self.name, begun=origin.pop("begun", ""), origin=origin)

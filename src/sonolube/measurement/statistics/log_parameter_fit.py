@@ -1,0 +1,188 @@
+"""Least squares over the logarithms of positive parameters, with confidence intervals of derived quantities."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+from sonolube.checks import Floats
+from sonolube.measurement.statistics.autocorrelation import statistical_inefficiency
+
+_ROUNDING = 1e-10  # residuals below which fits do not differ
+_EVALUATIONS = 60  # for each parameter
+_STEP = 1e-6  # of central differences, in a logarithm
+
+Quantities = Callable[[Floats], Mapping[str, float]]
+"""Function that computes positive quantities by name from the logarithms of the parameters."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ConfidenceInterval:
+    """An estimate with its confidence interval.
+
+    Parameters
+    ----------
+    value : float
+        The estimate.
+    lower, upper : float
+        Limits of the interval.
+    """
+
+    value: float
+    lower: float
+    upper: float
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class LogParameterFit:
+    """Least-squares estimate of the logarithms of positive parameters.
+
+    Parameters
+    ----------
+    logarithms : ndarray, shape (parameters,)
+        Of the parameters.
+    covariance : ndarray, shape (parameters, parameters)
+        Of the logarithms, for independent residuals of equal variance; infinite where the data do not determine it.
+    residuals : ndarray, shape (samples,)
+        At the estimate.
+    converged : bool
+        Whether the minimisation converged.
+    """
+
+    logarithms: Floats
+    covariance: Floats
+    residuals: Floats
+    converged: bool
+
+    @property
+    def sum_of_squares(self) -> float:
+        """Sum of squares of the residuals."""
+        return float(np.sum(self.residuals**2))
+
+    @property
+    def information_criterion(self) -> float:
+        r"""Bayesian information criterion n ln(RSS/n) + k ln n for n residuals and k parameters."""
+        n = self.residuals.size
+        mean_square = max(self.sum_of_squares / n, _ROUNDING**2)
+        return n * float(np.log(mean_square)) + self.logarithms.size * float(np.log(n))
+
+
+def fit_log_parameters(residuals: Callable[[Floats], Floats], start: Floats) -> LogParameterFit:
+    """Return the local least-squares estimate of log-parameters by the Levenberg-Marquardt method.
+
+    Parameters
+    ----------
+    residuals : callable
+        Takes logarithms of the parameters, returns residuals of equal variance.
+    start : ndarray, shape (parameters,)
+        Logarithms at which the minimisation starts.
+
+    Returns
+    -------
+    LogParameterFit
+    """
+    import lmfit
+
+    parameters = lmfit.Parameters()
+    for place, value in enumerate(start):
+        parameters.add(f"p{place}", value=float(value))
+
+    def bounded_residuals(trial: "lmfit.Parameters") -> Floats:
+        with np.errstate(all="ignore"):
+            found = residuals(np.array(list(trial.valuesdict().values())))
+        return np.clip(np.nan_to_num(found, nan=1e6), -1e6, 1e6)
+
+    minimum = lmfit.minimize(
+        bounded_residuals,
+        parameters,
+        method="leastsq",
+        ftol=1e-12,
+        xtol=1e-12,
+        max_nfev=_EVALUATIONS * (start.size + 1),
+    )
+    covariance = getattr(minimum, "covar", None)
+    return LogParameterFit(
+        logarithms=np.array(list(minimum.params.valuesdict().values())),
+        covariance=np.full((start.size,) * 2, np.inf) if covariance is None else np.asarray(covariance),
+        residuals=np.asarray(minimum.residual, dtype=np.float64),
+        converged=bool(minimum.success),
+    )
+
+
+def residual_inefficiency(fit: LogParameterFit, *, rows: int) -> float:
+    """Return the statistical inefficiency of the residuals of a fit: samples per independent sample, at least 1.
+
+    Parameters
+    ----------
+    fit : LogParameterFit
+    rows : int
+        Number of series of equal length that the residuals hold, one after the other.
+
+    Returns
+    -------
+    float
+        The largest one of all series.
+
+    See Also
+    --------
+    statistical_inefficiency : of one series.
+    """
+    series = fit.residuals.reshape(rows, -1)
+    return max(statistical_inefficiency(row) if np.ptp(row) > _ROUNDING else 1.0 for row in series)
+
+
+def confidence_intervals(
+    fit: LogParameterFit, quantities: Quantities, *, correlation: float, confidence_level: float
+) -> dict[str, ConfidenceInterval]:
+    r"""Return confidence intervals of positive quantities derived from the parameters of a fit.
+
+    Parameters
+    ----------
+    fit : LogParameterFit
+    quantities : callable
+        Takes logarithms of the parameters, returns the quantities by name.
+    correlation : float
+        Statistical inefficiency g of the residuals, `residual_inefficiency`, by which the covariance is multiplied.
+    confidence_level : float
+        Of the intervals. []
+
+    Returns
+    -------
+    dict of str to ConfidenceInterval
+
+    Notes
+    -----
+    First-order propagation of the covariance C of the log-parameters p to the logarithms of the quantities q,
+
+    .. math:: \ln q \pm t_\nu \sqrt{g\, J C J^{\mathsf T}} , \qquad J = \frac{\partial \ln q}{\partial p} ,
+
+    with Student's t of :math:`\nu = n/g - k` degrees of freedom for n residuals and k parameters.
+    """
+    size = fit.logarithms.size
+    freedom = max(1.0, fit.residuals.size / correlation - size)
+    t = float(stats.t.ppf((1 + confidence_level) / 2, freedom))
+    values = quantities(fit.logarithms)
+    jacobian = np.stack(
+        [
+            (_logarithms(quantities(fit.logarithms + step)) - _logarithms(quantities(fit.logarithms - step)))
+            / (2 * _STEP)
+            for step in _STEP * np.eye(size)
+        ],
+        axis=-1,
+    )
+    determined = np.isfinite(fit.covariance).all()
+    variance = (
+        np.einsum("qi,ij,qj->q", jacobian, fit.covariance, jacobian) if determined else np.full(len(jacobian), np.inf)
+    )
+    with np.errstate(over="ignore"):
+        factors = np.exp(t * np.sqrt(np.maximum(variance, 0.0) * correlation))
+    return {
+        name: ConfidenceInterval(value=value, lower=float(value / factor), upper=float(value * factor))
+        for (name, value), factor in zip(values.items(), factors, strict=True)
+    }
+
+
+def _logarithms(values: Mapping[str, float]) -> Floats:
+    """Return the logarithms of quantities, those of zero as of the smallest positive float."""
+    return np.asarray(np.log(np.maximum(np.array(list(values.values())), np.finfo(float).tiny)))
