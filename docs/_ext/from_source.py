@@ -85,17 +85,17 @@ def vocabulary() -> str:
 
 def recording_formats() -> str:
     """Return every file format of recordings with its suffixes and content."""
-    return _formats(RECORDING_FORMATS)
+    return _formats(RECORDING_FORMATS.values())
 
 
 def impedance_formats() -> str:
     """Return every file format of impedance spectra with its suffixes and content."""
-    return _formats(IMPEDANCE_FORMATS)
+    return _formats(IMPEDANCE_FORMATS.values())
 
 
 def surface_formats() -> str:
     """Return every file format of surfaces with its suffixes and content."""
-    return _formats(SURFACE_FORMATS)
+    return _formats(SURFACE_FORMATS.values())
 
 
 TABLES: Mapping[str, Callable[[], str]] = {

@@ -4,16 +4,22 @@ import json
 import os
 import subprocess
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 
 from pytest import approx, mark
 
+from sonolube.measurement.file_format import FileFormat
 from sonolube.measurement.impedance.formats import IMPEDANCE_FORMATS
 from sonolube.measurement.recordings.formats import RECORDING_FORMATS
 from sonolube.measurement.surface_files.formats import SURFACE_FORMATS
 
 PAGE = (Path(__file__).parents[3] / "docs" / "reference" / "measurement.md").read_text(encoding="utf-8")
-TABLES = {"recordings": RECORDING_FORMATS, "impedance": IMPEDANCE_FORMATS, "surface_files": SURFACE_FORMATS}
+TABLES: dict[str, Mapping[str, FileFormat]] = {
+    "recordings": RECORDING_FORMATS,
+    "impedance": IMPEDANCE_FORMATS,
+    "surface_files": SURFACE_FORMATS,
+}
 
 TOY_FORMAT = '''
 """Toy recordings: a signature, the sample rate in Hz, then one friction force in N per line."""
@@ -48,9 +54,8 @@ class Toy:
 
 @mark.parametrize("room", TABLES)
 def test_names_of_formats_are_unique_and_their_suffixes_are_lower_case(room: str) -> None:
-    names = [one.name for one in TABLES[room]]
-    assert len(set(names)) == len(names)
-    suffixes = [suffix for one in TABLES[room] for suffix in one.suffixes]
+    assert [one.name for one in TABLES[room].values()] == list(TABLES[room])
+    suffixes = [suffix for one in TABLES[room].values() for suffix in one.suffixes]
     assert all(suffix.startswith(".") and suffix == suffix.lower() for suffix in suffixes)
 
 
@@ -59,15 +64,13 @@ def test_the_reference_shows_the_table_of_formats(table: str) -> None:
     assert f"\n<!-- table: {table} -->\n" in PAGE
 
 
-def test_a_format_is_added_by_one_file_and_one_entry_of_the_table(copied_package: Path, tmp_path: Path) -> None:
+def test_a_format_is_added_by_one_file_and_one_line_of_the_table(copied_package: Path, tmp_path: Path) -> None:
     recordings = copied_package / "measurement" / "recordings"
     (recordings / "toy.py").write_text(TOY_FORMAT)
     table = (recordings / "formats.py").read_text()
-    entry = "    Tdms(),\n"
-    assert entry in table
-    table = table.replace(entry, f"{entry}    Toy(),\n")
-    imports = "from sonolube.measurement.recordings.tdms import Tdms\n"
-    table = table.replace(imports, f"{imports}from sonolube.measurement.recordings.toy import Toy\n")
+    line = '        "TDMS": "sonolube.measurement.recordings.tdms:Tdms",\n'
+    assert line in table
+    table = table.replace(line, line + '        "toy": "sonolube.measurement.recordings.toy:Toy",\n')
     (recordings / "formats.py").write_text(table)
     recording = tmp_path / "test.dat"
     recording.write_text("TOY\n400\n" + "\n".join(f"{1 + 0.25 * (-1) ** n}" for n in range(4000)))

@@ -1,6 +1,6 @@
 """File formats of impedance spectra: their protocol and the ordered table of all of them.
 
-A format is one class in a file of its own and one entry of `IMPEDANCE_FORMATS`; detection and documentation derive from
+A format is one class in a file of its own and one line of `IMPEDANCE_FORMATS`; detection and documentation derive from
 the table.
 """
 
@@ -8,12 +8,8 @@ from pathlib import Path
 from typing import Protocol
 
 from sonolube.measurement.file_format import FileFormat
-from sonolube.measurement.impedance.hp4294a import Hp4294A
-from sonolube.measurement.impedance.keysight_e4990a import KeysightE4990A
-from sonolube.measurement.impedance.mfia import Mfia
-from sonolube.measurement.impedance.named_columns import NamedColumns
 from sonolube.measurement.impedance.spectrum import ImpedanceSweep
-from sonolube.measurement.impedance.touchstone import Touchstone
+from sonolube.variants import VariantTable
 
 
 class ImpedanceFormat(FileFormat, Protocol):
@@ -42,11 +38,15 @@ class ImpedanceFormat(FileFormat, Protocol):
         """
 
 
-IMPEDANCE_FORMATS: tuple[ImpedanceFormat, ...] = (
-    Touchstone(),
-    Hp4294A(),
-    KeysightE4990A(),
-    Mfia(),
-    NamedColumns(),
+IMPEDANCE_FORMATS: VariantTable[ImpedanceFormat] = VariantTable(
+    "impedance format",
+    {
+        "touchstone": "sonolube.measurement.impedance.touchstone:Touchstone",
+        "HP 4294A": "sonolube.measurement.impedance.hp4294a:Hp4294A",
+        "Keysight E4990A": "sonolube.measurement.impedance.keysight_e4990a:KeysightE4990A",
+        "Zurich Instruments MFIA": "sonolube.measurement.impedance.mfia:Mfia",
+        "table with named columns": "sonolube.measurement.impedance.named_columns:NamedColumns",
+    },
+    made=lambda known: known(),
 )
-"""File formats of impedance spectra in order of detection; the last one is the fallback."""
+"""File formats of impedance spectra in order of detection, the last one as fallback; a new one takes its file and one line."""

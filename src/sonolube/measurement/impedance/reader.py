@@ -35,7 +35,8 @@ def read_impedance(path: Path, *, sweep: str | None = None) -> ImpedanceSpectrum
         Naming the file, if it has no such sweep.
     """
     content, lines = _content_and_lines(path)
-    file_format = detect_format(IMPEDANCE_FORMATS, content[:HEAD_SIZE], path) or IMPEDANCE_FORMATS[-1]
+    formats = tuple(IMPEDANCE_FORMATS.values())
+    file_format = detect_format(formats, content[:HEAD_SIZE], path) or formats[-1]
     sweeps = file_format.read(path, lines)
     name = _selected_name(path, sweeps, sweep)
     selected = sorted_by_frequency(sweeps[name], path=path)

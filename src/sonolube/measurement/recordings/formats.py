@@ -1,6 +1,6 @@
 """File formats of recordings: their protocol and the ordered table of all of them.
 
-A format is one class in a file of its own and one entry of `RECORDING_FORMATS`; detection, messages and documentation
+A format is one class in a file of its own and one line of `RECORDING_FORMATS`; detection, messages and documentation
 derive from the table.
 """
 
@@ -10,15 +10,9 @@ from typing import Protocol, runtime_checkable
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.file_format import FileFormat, detect_format, read_head
-from sonolube.measurement.recordings.delimited import DelimitedText
-from sonolube.measurement.recordings.hdf5 import Hdf5
-from sonolube.measurement.recordings.lvm import LabviewText
 from sonolube.measurement.recordings.mapping import RecordingMapping
-from sonolube.measurement.recordings.matlab import Matlab
-from sonolube.measurement.recordings.netcdf3 import NetCdf3
 from sonolube.measurement.recordings.raw_table import RawTable
-from sonolube.measurement.recordings.tdms import Tdms
-from sonolube.measurement.recordings.uff import UniversalFile
+from sonolube.variants import VariantTable
 
 
 class RecordingFormat(FileFormat, Protocol):
@@ -72,16 +66,20 @@ class StreamedRecordingFormat(RecordingFormat, Protocol):
         """
 
 
-RECORDING_FORMATS: tuple[RecordingFormat, ...] = (
-    Tdms(),
-    LabviewText(),
-    Matlab(),
-    Hdf5(),
-    NetCdf3(),
-    UniversalFile(),
-    DelimitedText(),
+RECORDING_FORMATS: VariantTable[RecordingFormat] = VariantTable(
+    "recording format",
+    {
+        "TDMS": "sonolube.measurement.recordings.tdms:Tdms",
+        "LabVIEW measurement text": "sonolube.measurement.recordings.lvm:LabviewText",
+        "MATLAB": "sonolube.measurement.recordings.matlab:Matlab",
+        "HDF5": "sonolube.measurement.recordings.hdf5:Hdf5",
+        "netCDF 3": "sonolube.measurement.recordings.netcdf3:NetCdf3",
+        "universal file": "sonolube.measurement.recordings.uff:UniversalFile",
+        "delimited text": "sonolube.measurement.recordings.delimited:DelimitedText",
+    },
+    made=lambda known: known(),
 )
-"""File formats of recordings in order of detection; the last one is the fallback."""
+"""File formats of recordings in order of detection, the last one as fallback; a new one takes its file and one line."""
 
 
 def recording_format(path: Path) -> RecordingFormat:
@@ -102,8 +100,8 @@ def recording_format(path: Path) -> RecordingFormat:
         If the file is missing, empty, or of no known format.
     """
     head = read_head(path)
-    found = detect_format(RECORDING_FORMATS, head, path)
+    found = detect_format(tuple(RECORDING_FORMATS.values()), head, path)
     if found is None:
-        known = ", ".join(one.name for one in RECORDING_FORMATS)
+        known = ", ".join(RECORDING_FORMATS)
         raise InvalidInput(f"{path}: byte 0: begins with {head[:8]!r}, which is no known format of recordings: {known}")
     return found

@@ -1,6 +1,6 @@
 """File formats of surfaces: their protocol and the ordered table of all of them.
 
-A format is one class in a file of its own and one entry of `SURFACE_FORMATS`; detection and documentation derive from
+A format is one class in a file of its own and one line of `SURFACE_FORMATS`; detection and documentation derive from
 the table.
 """
 
@@ -8,11 +8,8 @@ from pathlib import Path
 from typing import BinaryIO, Protocol
 
 from sonolube.measurement.file_format import FileFormat
-from sonolube.measurement.surface_files.npy import Npy
 from sonolube.measurement.surface_files.surface_reading import SurfaceReading
-from sonolube.measurement.surface_files.surface_topography import SurfaceTopographyFormats
-from sonolube.measurement.surface_files.wyko import WykoOpd
-from sonolube.measurement.surface_files.xyz import XyzText
+from sonolube.variants import VariantTable
 
 
 class SurfaceFormat(FileFormat, Protocol):
@@ -39,10 +36,14 @@ class SurfaceFormat(FileFormat, Protocol):
         """
 
 
-SURFACE_FORMATS: tuple[SurfaceFormat, ...] = (
-    WykoOpd(),
-    Npy(),
-    XyzText(),
-    SurfaceTopographyFormats(),
+SURFACE_FORMATS: VariantTable[SurfaceFormat] = VariantTable(
+    "surface format",
+    {
+        "Wyko OPD": "sonolube.measurement.surface_files.wyko:WykoOpd",
+        "NPY": "sonolube.measurement.surface_files.npy:Npy",
+        "XYZ text": "sonolube.measurement.surface_files.xyz:XyzText",
+        "SurfaceTopography": "sonolube.measurement.surface_files.surface_topography:SurfaceTopographyFormats",
+    },
+    made=lambda known: known(),
 )
-"""File formats of surfaces in order of detection; the last one is the fallback."""
+"""File formats of surfaces in order of detection, the last one as fallback; a new one takes its file and one line."""

@@ -83,7 +83,8 @@ def read_surface_file(
     For OPD, NPY and XYZ files memory stays within a small multiple of the file's size, whatever size the file states.
     """
     place = Path(path)
-    file_format = detect_format(SURFACE_FORMATS, read_head(place), place) or SURFACE_FORMATS[-1]
+    formats = tuple(SURFACE_FORMATS.values())
+    file_format = detect_format(formats, read_head(place), place) or formats[-1]
     try:
         with place.open("rb") as stream:
             digest = hashlib.file_digest(stream, "sha256").hexdigest()
