@@ -7,14 +7,14 @@ import pytest
 from pytest import approx, raises
 
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.identification import Fact, Relation, misses
+from sonolube.identification import Fact, Relation, normalized_residuals
 
 SEEN = {"resonance": np.array([21.0, 22.0, 23.0])}
 
 
 def missed(relation: Relation) -> list[float]:
     fact = Fact(name="resonance", value=22.0, tolerance=0.5, rank=1, relation=relation)
-    return [float(miss) for miss in misses([fact], SEEN)[:, 0]]
+    return [float(miss) for miss in normalized_residuals([fact], SEEN)[:, 0]]
 
 
 def test_a_value_is_missed_by_tolerances_to_either_side() -> None:
@@ -44,4 +44,4 @@ def test_an_unknown_relation_is_refused() -> None:
 
 def test_a_fact_of_nothing_observed_is_answered_with_the_closest() -> None:
     with raises(UnknownName, match=r"unknown observable 'resonanse'; did you mean resonance\?"):
-        misses([Fact(name="resonanse", value=1.0, tolerance=1.0, rank=1)], SEEN)
+        normalized_residuals([Fact(name="resonanse", value=1.0, tolerance=1.0, rank=1)], SEEN)

@@ -10,8 +10,8 @@ from sonolube.actuator import Branch, ButterworthVanDyke, PiezoStack, circuit_ad
 from sonolube.dynamics.chain import chain_structure, pin_on_disc_chain
 from sonolube.dynamics.structure import Structure, electrical_admittance
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.identification.impedance import fit_circuit
-from sonolube.identification.stack import fit_stack
+from sonolube.identification.circuit_fit import fit_circuit
+from sonolube.identification.stack_fit import fit_stack
 from sonolube.measurement.impedance.reader import read_impedance
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 

@@ -10,10 +10,10 @@ from scipy.integrate import quad
 
 from sonolube.errors import InvalidInput
 from sonolube.surfaces import (
+    GaussianCorrelationSpectrum,
     HeightMap,
-    SingleScaleSpectrum,
     autocorrelation,
-    decay_lengths,
+    correlation_lengths,
     gaussian_surface,
     height_parameters,
     hybrid_parameters,
@@ -44,7 +44,7 @@ def holed(surface: HeightMap, *, share: float, seed: int = 0) -> HeightMap:
 
 RANDOM = gaussian_surface(
     rms_height=1e-6,
-    spectrum=SingleScaleSpectrum(correlation_length=10e-6),
+    spectrum=GaussianCorrelationSpectrum(correlation_length=10e-6),
     shape=(400, 500),
     spacing_x=DX,
     spacing_y=DY,
@@ -54,18 +54,18 @@ RANDOM = gaussian_surface(
 
 def test_a_sine_has_the_heights_of_a_sine() -> None:
     found = height_parameters(sine())
-    assert found.mean_roughness == approx(2 * AMPLITUDE / math.pi, rel=1e-3)
+    assert found.arithmetic_mean_height == approx(2 * AMPLITUDE / math.pi, rel=1e-3)
     assert found.rms_height == approx(AMPLITUDE / math.sqrt(2), rel=1e-9)
     assert found.total_height == approx(2 * AMPLITUDE, rel=1e-3)
-    assert found.peak_height + found.valley_depth == approx(found.total_height)
+    assert found.maximum_peak_height + found.maximum_pit_depth == approx(found.total_height)
     assert found.skewness == approx(0, abs=1e-9)
     assert found.kurtosis == approx(1.5, rel=1e-9)
 
 
 def test_four_pixels_come_out_as_by_hand() -> None:
     found = height_parameters(surface_of(np.array([[0.0, 0.0], [0.0, 4.0]])))
-    assert (found.mean_roughness, found.rms_height) == approx((1.5, math.sqrt(3)))
-    assert (found.peak_height, found.valley_depth) == approx((3, 1))
+    assert (found.arithmetic_mean_height, found.rms_height) == approx((1.5, math.sqrt(3)))
+    assert (found.maximum_peak_height, found.maximum_pit_depth) == approx((3, 1))
     assert (found.skewness, found.kurtosis) == approx((6 / 3**1.5, 21 / 9))
 
 
@@ -80,25 +80,25 @@ def test_a_sine_is_as_steep_as_a_sine(direction: float) -> None:
     steepness = AMPLITUDE * WAVE
     found = hybrid_parameters(sine(direction))
     whole_waves = direction in (0.0, math.pi / 2)
-    assert found.rms_slope == approx(steepness / math.sqrt(2), rel=4e-3 if whole_waves else 0.02)
+    assert found.rms_gradient == approx(steepness / math.sqrt(2), rel=4e-3 if whole_waves else 0.02)
     area = quad(lambda u: math.sqrt(1 + (steepness * math.cos(u)) ** 2), 0, math.pi)[0] / math.pi
-    assert found.developed_area_ratio == approx(area - 1, rel=8e-3 if whole_waves else 0.04)
+    assert found.developed_interfacial_area_ratio == approx(area - 1, rel=8e-3 if whole_waves else 0.04)
 
 
 def test_a_tilted_plane_is_steeper_by_its_slope_whatever_the_spacing() -> None:
     found = hybrid_parameters(surface_of(0.3 * GRID_X - 0.4 * GRID_Y))
-    assert found.rms_slope == approx(0.5)
-    assert found.developed_area_ratio == approx(math.sqrt(1.25) - 1)
+    assert found.rms_gradient == approx(0.5)
+    assert found.developed_interfacial_area_ratio == approx(math.sqrt(1.25) - 1)
 
 
 def test_the_area_of_a_nearly_flat_surface_keeps_its_digits() -> None:
-    assert hybrid_parameters(surface_of(1e-7 * GRID_X)).developed_area_ratio == approx(5e-15, rel=1e-6)
+    assert hybrid_parameters(surface_of(1e-7 * GRID_X)).developed_interfacial_area_ratio == approx(5e-15, rel=1e-6)
 
 
 def test_each_missing_pixel_costs_the_cells_around_it_only() -> None:
     plane = 0.3 * GRID_X
     plane[50, 60] = plane[0, 0] = plane[-1, 7] = np.nan
-    assert hybrid_parameters(surface_of(plane)).rms_slope == approx(0.3)
+    assert hybrid_parameters(surface_of(plane)).rms_gradient == approx(0.3)
 
 
 @given(factor=st.floats(0.01, 100), shift=st.floats(-1e-3, 1e-3))
@@ -106,7 +106,7 @@ def test_each_missing_pixel_costs_the_cells_around_it_only() -> None:
 def test_heights_scale_and_do_not_care_for_the_datum(factor: float, shift: float) -> None:
     small = RANDOM.height[:40, :40]
     one, other = height_parameters(surface_of(small)), height_parameters(surface_of(factor * small + shift))
-    for name in ("mean_roughness", "rms_height", "peak_height", "valley_depth", "total_height"):
+    for name in ("arithmetic_mean_height", "rms_height", "maximum_peak_height", "maximum_pit_depth", "total_height"):
         assert getattr(other, name) == approx(factor * getattr(one, name), rel=1e-6)
     assert (other.skewness, other.kurtosis) == approx((one.skewness, one.kurtosis), rel=1e-4, abs=1e-4)
 
@@ -131,7 +131,7 @@ def test_turning_the_map_turns_the_lay() -> None:
 def test_the_autocorrelation_of_a_wave_falls_to_a_fifth_where_the_cosine_does() -> None:
     found = spatial_parameters(sine(waves=SHORT_WAVE))
     assert found.autocorrelation_length == approx(math.acos(0.2) / SHORT_WAVE, rel=0.01)
-    assert not found.decays_everywhere
+    assert not found.decays_in_all_directions
     assert found.texture_aspect_ratio < 0.1
     assert found.texture_direction == approx(math.pi / 2, abs=0.02)
 
@@ -147,13 +147,15 @@ def test_an_egg_box_correlates_as_a_product_of_cosines() -> None:
 
 
 def test_a_random_surface_correlates_as_it_was_made() -> None:
-    found = decay_lengths(autocorrelation(RANDOM), directions=[0.0, 0.7, math.pi / 2, 2.0], threshold=math.exp(-1))
+    found = correlation_lengths(
+        autocorrelation(RANDOM), directions=[0.0, 0.7, math.pi / 2, 2.0], threshold=math.exp(-1)
+    )
     assert found.decayed.all()
     assert found.distance == approx(10e-6, rel=0.05)
     isotropic = spatial_parameters(RANDOM)
     assert isotropic.autocorrelation_length == approx(10e-6 * math.sqrt(math.log(5)), rel=0.06)
     assert 0.85 < isotropic.texture_aspect_ratio <= 1
-    assert isotropic.decays_everywhere
+    assert isotropic.decays_in_all_directions
 
 
 def direct_autocovariance(surface: HeightMap, down: int, right: int) -> float:

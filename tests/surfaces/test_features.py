@@ -6,7 +6,13 @@ import numpy as np
 from pytest import approx, mark, raises
 
 from sonolube.errors import InvalidInput
-from sonolube.surfaces import HeightMap, SingleScaleSpectrum, feature_parameters, gaussian_surface, summits
+from sonolube.surfaces import (
+    GaussianCorrelationSpectrum,
+    HeightMap,
+    feature_parameters,
+    gaussian_surface,
+    summit_statistics,
+)
 
 PERIOD = 20e-6
 WAVE = 2 * math.pi / PERIOD
@@ -57,14 +63,14 @@ def test_missing_pixels_part_hills() -> None:
 def test_the_density_of_significant_peaks_is_not_that_of_summits() -> None:
     rough = gaussian_surface(
         rms_height=1e-6,
-        spectrum=SingleScaleSpectrum(correlation_length=10e-6),
+        spectrum=GaussianCorrelationSpectrum(correlation_length=10e-6),
         shape=(300, 400),
         spacing_x=1e-6,
         spacing_y=1e-6,
         seed=3,
     )
     noisy = rough.with_height(rough.height + 0.05e-6 * np.random.default_rng(0).standard_normal(rough.height.shape))
-    assert summits(noisy).summit_density > 5 * feature_parameters(noisy).peak_density
+    assert summit_statistics(noisy).summit_density > 5 * feature_parameters(noisy).peak_density
     assert feature_parameters(noisy).peak_density == approx(feature_parameters(rough).peak_density, rel=0.2)
 
 

@@ -27,7 +27,7 @@ RAMP = surface_of(3.0 * SHARES)
 def test_gaussian_heights_have_the_material_ratio_of_the_normal_law() -> None:
     curve = material_ratio_curve(GAUSSIAN)
     heights = np.array([-2.0, -0.5, 0.0, 1.0, 3.0])
-    assert curve.ratio_above(section_height=heights) == approx(norm.sf(heights), rel=1e-3)
+    assert curve.ratio_above(intersection_height=heights) == approx(norm.sf(heights), rel=1e-3)
     shares = np.array([0.01, 0.1, 0.5, 0.8, 0.999])
     assert curve.height_at(material_ratio=shares) == approx(norm.isf(shares), abs=1e-3)
 
@@ -78,7 +78,7 @@ def test_missing_pixels_do_not_change_the_share_of_the_rest() -> None:
     height = GAUSSIAN.height.copy()
     height[np.random.default_rng(1).random(height.shape) < 0.3] = np.nan
     sparse = material_ratio_curve(GAUSSIAN.with_height(height))
-    assert sparse.ratio_above(section_height=0.5) == approx(norm.sf(0.5), abs=3e-3)
+    assert sparse.ratio_above(intersection_height=0.5) == approx(norm.sf(0.5), abs=3e-3)
 
 
 @given(heights=st.lists(st.integers(-20, 20), min_size=6, max_size=6, unique=True), share=st.floats(0.1, 0.9))
@@ -86,13 +86,13 @@ def test_missing_pixels_do_not_change_the_share_of_the_rest() -> None:
 def test_height_and_ratio_are_inverse_to_each_other(heights: list[int], share: float) -> None:
     curve = material_ratio_curve(HeightMap(height=np.array(heights, float).reshape(2, 3), spacing_x=1.0, spacing_y=1.0))
     there = curve.height_at(material_ratio=share)
-    assert curve.ratio_above(section_height=there) == approx(share)
-    assert curve.ratio_above(section_height=[math.nextafter(curve.height[0], np.inf), -100.0]) == approx([0, 1])
+    assert curve.ratio_above(intersection_height=there) == approx(share)
+    assert curve.ratio_above(intersection_height=[math.nextafter(curve.height[0], np.inf), -100.0]) == approx([0, 1])
 
 
 def test_pixels_of_one_height_share_their_ratio() -> None:
     curve = material_ratio_curve(HeightMap(height=np.array([[0.0, 0, 0], [4, 4, 4]]), spacing_x=1.0, spacing_y=1.0))
-    assert curve.ratio_above(section_height=[2.1, 1.9, -2.1]) == approx([0, 0.5, 1], abs=0.1)
+    assert curve.ratio_above(intersection_height=[2.1, 1.9, -2.1]) == approx([0, 0.5, 1], abs=0.1)
 
 
 def test_a_map_that_is_flat_or_a_point_is_refused() -> None:

@@ -7,9 +7,9 @@ from pytest import approx, mark, raises
 
 from sonolube.errors import InvalidInput
 from sonolube.surfaces import (
+    GaussianCorrelationSpectrum,
     HeightMap,
     SelfAffineSpectrum,
-    SingleScaleSpectrum,
     areal_spectrum,
     gaussian_surface,
     moments_of_spectrum,
@@ -18,7 +18,7 @@ from sonolube.surfaces import (
 )
 
 DX, DY = 1e-6, 2e-6
-SPECTRUM = SingleScaleSpectrum(correlation_length=8e-6)
+SPECTRUM = GaussianCorrelationSpectrum(correlation_length=8e-6)
 RANDOM = gaussian_surface(rms_height=1e-6, spectrum=SPECTRUM, shape=(512, 1024), spacing_x=DX, spacing_y=DY, seed=7)
 
 
@@ -85,7 +85,7 @@ SELF_AFFINE = SelfAffineSpectrum(
 
 @mark.parametrize("spectrum", [SPECTRUM, SELF_AFFINE], ids=["single scale", "self-affine"])
 def test_moments_of_a_generated_surface_are_the_closed_forms(
-    spectrum: SingleScaleSpectrum | SelfAffineSpectrum,
+    spectrum: GaussianCorrelationSpectrum | SelfAffineSpectrum,
 ) -> None:
     surface = gaussian_surface(
         rms_height=2e-6, spectrum=spectrum, shape=(512, 1024), spacing_x=DX, spacing_y=DY, seed=5

@@ -15,7 +15,7 @@ _PERIMETER_SHARE = (math.pi - 1 + math.log(2)) / 24  # of a pixel's width, along
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class PressedSurface:
+class BoundaryElementContact:
     """What pressing a surface against a rigid flat does.
 
     Parameters
@@ -39,15 +39,15 @@ class PressedSurface:
     reason: tuple[str, ...]
 
 
-def press(
+def boundary_element_contact(
     surface: HeightMap, *, normal_load: ArrayLike, effective_modulus: float, periodic: bool = True
-) -> PressedSurface:
+) -> BoundaryElementContact:
     """Press an elastic surface against a rigid flat, without friction or adhesion.
 
     Parameters
     ----------
     surface : HeightMap
-        Without missing pixels; if periodic, its opposite edges fit each other: see `mirrored`.
+        Without missing pixels; if periodic, its opposite edges fit each other: see `mirror_extension`.
     normal_load : array_like, shape (n,)
         Force pressing the bodies together, over the whole map. [N]
     effective_modulus : float
@@ -87,7 +87,7 @@ def press(
     tolerance = 1e-5 * float(np.ptp(surface.height)) or math.inf
     solved = [_solve(system, surface, float(load), tolerance, periodic) for load in loads]
     gap, area, peak = np.array([numbers for numbers, _ in solved]).T
-    return PressedSurface(
+    return BoundaryElementContact(
         normal_load=loads,
         separation=gap,
         real_contact_area=area,
@@ -96,7 +96,7 @@ def press(
     )
 
 
-def mirrored(surface: HeightMap) -> HeightMap:
+def mirror_extension(surface: HeightMap) -> HeightMap:
     """Return the map with its mirror images beside it, which makes a periodic map of any.
 
     Parameters

@@ -6,7 +6,7 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.figure import COLOURS, LINES, MARKERS
-from sonolube.reference_solutions.law_comparison import REFEREE, LawComparison, LawCurve
+from sonolube.reference_solutions.law_comparison import REFERENCE_SOLUTION, LawComparison, LawCurve
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -15,7 +15,7 @@ _TITLES = {
     "exponential": "exponential heights",
     "gaussian": "Gaussian heights",
     "persson": "Persson",
-    REFEREE: "boundary elements",
+    REFERENCE_SOLUTION: "boundary elements",
 }
 
 
@@ -32,7 +32,7 @@ def comparison_table(comparison: LawComparison) -> list[str]:
         A heading of two lines, then one line a load.
     """
     laws = comparison.laws
-    columns = [reduced_curve(comparison, curve) for curve in laws.values()]
+    columns = [dimensionless_curve(comparison, curve) for curve in laws.values()]
     width = 8 * len(laws)
     heading = f"{'p/(E* h)':>10}  {'gap/Rq':^{width}}  {'area share':^{width}}  {'k Rq/F':^{width}}"
     names = "".join(f"{name[:7]:>8}" for name in laws)
@@ -64,10 +64,10 @@ def comparison_figure(comparison: LawComparison) -> "Figure":
     for index, (name, curve) in enumerate(comparison.laws.items()):
         style = (
             {"marker": MARKERS[0], "ls": "", "color": "black", "zorder": 3}
-            if name == REFEREE
+            if name == REFERENCE_SOLUTION
             else {"ls": LINES[index], "color": COLOURS[index]}
         )
-        for panel, values in zip(axes, reduced_curve(comparison, curve), strict=True):
+        for panel, values in zip(axes, dimensionless_curve(comparison, curve), strict=True):
             panel.plot(comparison.reduced_pressure, values, label=_TITLES[name], **style)
     labels = ("Mean gap over rms height", "Real over nominal area", "Stiffness × rms height over load")
     for panel, label in zip(axes, labels, strict=True):
@@ -79,7 +79,7 @@ def comparison_figure(comparison: LawComparison) -> "Figure":
     return figure
 
 
-def reduced_curve(comparison: LawComparison, curve: LawCurve) -> tuple[Floats, Floats, Floats]:
+def dimensionless_curve(comparison: LawComparison, curve: LawCurve) -> tuple[Floats, Floats, Floats]:
     """Return gap over rms height, real over nominal area, and stiffness times rms height over load.
 
     Parameters

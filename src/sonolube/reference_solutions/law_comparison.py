@@ -21,13 +21,20 @@ from sonolube.contact import (
 )
 from sonolube.contact.persson import PerssonContact, persson_area, persson_separation, persson_stiffness
 from sonolube.errors import InvalidInput
-from sonolube.reference_solutions.boundary_element import press
-from sonolube.surfaces import HeightMap, areal_spectrum, radial_spectrum, roughness, spectral_moments, summits
+from sonolube.reference_solutions.boundary_element import boundary_element_contact
+from sonolube.surfaces import (
+    HeightMap,
+    areal_spectrum,
+    contact_roughness,
+    radial_spectrum,
+    spectral_moments,
+    summit_statistics,
+)
 
 QUANTITIES = ("separation", "real_contact_area", "normal_stiffness")
 """What the laws are compared in."""
 
-REFEREE = "boundary_element"
+REFERENCE_SOLUTION = "boundary_element"
 """The law that judges the others."""
 
 _HEIGHTS: Mapping[str, HeightDistribution] = {"exponential": ExponentialHeights(), "gaussian": GaussianHeights()}
@@ -60,7 +67,7 @@ class LawComparison:
     ----------
     rms_height : float
         Standard deviation of the heights of the surface. [m]
-    rms_slope : float
+    rms_gradient : float
         Root mean square of the gradient. []
     nominal_area : float
         Area of the map. [m2]
@@ -73,7 +80,7 @@ class LawComparison:
     """
 
     rms_height: float
-    rms_slope: float
+    rms_gradient: float
     nominal_area: float
     effective_modulus: float
     normal_load: Floats
@@ -82,7 +89,7 @@ class LawComparison:
     @property
     def reduced_pressure(self) -> Floats:
         """Nominal pressure over modulus and slope, p/(E* h'), an array of shape (n,)."""
-        return self.normal_load / (self.nominal_area * self.effective_modulus * self.rms_slope)
+        return self.normal_load / (self.nominal_area * self.effective_modulus * self.rms_gradient)
 
 
 def compare_laws(
@@ -124,7 +131,7 @@ def compare_laws(
     load = x * require_positive(effective_modulus=effective_modulus) * slope * area
     return LawComparison(
         rms_height=float(np.std(surface.height)),
-        rms_slope=slope,
+        rms_gradient=slope,
         nominal_area=area,
         effective_modulus=effective_modulus,
         normal_load=load,
@@ -134,12 +141,12 @@ def compare_laws(
                 for name, heights in _HEIGHTS.items()
             },
             "persson": _persson(surface, load, area, effective_modulus),
-            REFEREE: _boundary_element(surface, load, effective_modulus),
+            REFERENCE_SOLUTION: _boundary_element(surface, load, effective_modulus),
         },
     )
 
 
-def where_laws_hold(
+def validity_ranges(
     comparison: LawComparison, *, tolerance: float = 0.2
 ) -> Mapping[str, Mapping[str, tuple[float, float] | None]]:
     """Return for each law and quantity the real area shares between which it keeps within a tolerance of the referee.
@@ -157,14 +164,14 @@ def where_laws_hold(
         The longest unbroken range of the referee's real area over the nominal one; None where no two neighbouring
         loads keep within the tolerance: curves that merely cross do not hold.
     """
-    share = comparison.laws[REFEREE].real_contact_area / comparison.nominal_area
+    share = comparison.laws[REFERENCE_SOLUTION].real_contact_area / comparison.nominal_area
     return {
         law: {
             quantity: _longest(np.abs(deviation(comparison, law=law, quantity=quantity)) <= tolerance, share)
             for quantity in QUANTITIES
         }
         for law in comparison.laws
-        if law != REFEREE
+        if law != REFERENCE_SOLUTION
     }
 
 
@@ -183,7 +190,7 @@ def deviation(comparison: LawComparison, *, law: str, quantity: str) -> Floats:
     ndarray, shape (n,)
         Of the gap in rms heights, of the others in their own value.
     """
-    one, judge = (getattr(comparison.laws[name], quantity) for name in (law, REFEREE))
+    one, judge = (getattr(comparison.laws[name], quantity) for name in (law, REFERENCE_SOLUTION))
     return np.asarray((one - judge) / (comparison.rms_height if quantity == "separation" else judge))
 
 
@@ -191,7 +198,7 @@ def _statistical(
     surface: HeightMap, heights: HeightDistribution, load: Floats, area: float, modulus: float
 ) -> LawCurve:
     contact = RoughContact(
-        roughness=roughness(surface),
+        roughness=contact_roughness(surface),
         # neither Poisson's ratio nor the tangential stiffness enters where nothing yields
         pair=ContactPair(effective_modulus=modulus, poisson_ratio=0.3, yield_strength=math.inf, mindlin_ratio=1.0),
         nominal_area=area,
@@ -200,7 +207,7 @@ def _statistical(
     )
     d = separation(contact, normal_load=load)
     return LawCurve(
-        separation=d + summits(surface).mean_summit_height,
+        separation=d + summit_statistics(surface).mean_summit_height,
         real_contact_area=real_contact_area(contact, separation=d),
         normal_stiffness=normal_stiffness(contact, separation=d),
     )
@@ -217,7 +224,7 @@ def _persson(surface: HeightMap, load: Floats, area: float, modulus: float) -> L
 
 
 def _boundary_element(surface: HeightMap, load: Floats, modulus: float) -> LawCurve:
-    pressed = press(surface, normal_load=load, effective_modulus=modulus)
+    pressed = boundary_element_contact(surface, normal_load=load, effective_modulus=modulus)
     unsolved = next((reason for reason in pressed.reason if reason), "")
     if unsolved:
         raise InvalidInput(f"boundary elements did not converge: {unsolved}; take fewer or lower pressures")

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from sonolube.errors import InvalidInput
-from sonolube.surfaces.correlation import autocorrelation, decay_lengths
-from sonolube.surfaces.grid_kernel import central_sums, extent, slope_sums
+from sonolube.surfaces.correlation import autocorrelation, correlation_lengths
+from sonolube.surfaces.grid_kernel import central_moment_sums, count_sum_and_extremes, gradient_and_area_sums
 from sonolube.surfaces.height_map import HeightMap
 from sonolube.surfaces.spectrum import areal_spectrum
 
@@ -23,13 +23,13 @@ class HeightParameters:
 
     Parameters
     ----------
-    mean_roughness : float
+    arithmetic_mean_height : float
         Arithmetic mean deviation, Sa. [m]
     rms_height : float
         Standard deviation, Sq. [m]
-    peak_height : float
+    maximum_peak_height : float
         Highest point above the mean, Sp. [m]
-    valley_depth : float
+    maximum_pit_depth : float
         Deepest point below the mean, Sv. [m]
     total_height : float
         Highest to deepest point, Sz. [m]
@@ -39,10 +39,10 @@ class HeightParameters:
         Fourth moment over the fourth power of the standard deviation, Sku; 3 for Gaussian heights. []
     """
 
-    mean_roughness: float
+    arithmetic_mean_height: float
     rms_height: float
-    peak_height: float
-    valley_depth: float
+    maximum_peak_height: float
+    maximum_pit_depth: float
     total_height: float
     skewness: float
     kurtosis: float
@@ -54,14 +54,14 @@ class HybridParameters:
 
     Parameters
     ----------
-    rms_slope : float
+    rms_gradient : float
         Root mean square of the gradient, Sdq. []
-    developed_area_ratio : float
+    developed_interfacial_area_ratio : float
         Excess of the surface's area over that of its plane, as a share of the latter, Sdr. []
     """
 
-    rms_slope: float
-    developed_area_ratio: float
+    rms_gradient: float
+    developed_interfacial_area_ratio: float
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -76,7 +76,7 @@ class SpatialParameters:
         That distance over the longest one in any direction, Str: 1 for an isotropic surface. []
     texture_direction : float
         Direction of the lay, Std, from 0 to pi; 0 along the rows, growing from columns towards rows. [rad]
-    decays_everywhere : bool
+    decays_in_all_directions : bool
         Whether the autocorrelation falls to 0.2 in every direction within half the map. Where it does not, the
         texture aspect ratio is an upper bound.
     """
@@ -84,7 +84,7 @@ class SpatialParameters:
     autocorrelation_length: float
     texture_aspect_ratio: float
     texture_direction: float
-    decays_everywhere: bool
+    decays_in_all_directions: bool
 
 
 def height_parameters(surface: HeightMap) -> HeightParameters:
@@ -110,18 +110,18 @@ def height_parameters(surface: HeightMap) -> HeightParameters:
     """
     _require_area(surface)
     z = np.ascontiguousarray(surface.height)
-    count, total, lowest, highest = extent(z)
+    count, total, lowest, highest = count_sum_and_extremes(z)
     if lowest == highest:
         raise InvalidInput(
             f"height must vary, got {lowest!r} m in every measured pixel: skewness and kurtosis have no meaning"
         )
     mean = total / count
-    first, second, third, fourth = (part / count for part in central_sums(z, mean))
+    first, second, third, fourth = (part / count for part in central_moment_sums(z, mean))
     return HeightParameters(
-        mean_roughness=first,
+        arithmetic_mean_height=first,
         rms_height=math.sqrt(second),
-        peak_height=highest - mean,
-        valley_depth=mean - lowest,
+        maximum_peak_height=highest - mean,
+        maximum_pit_depth=mean - lowest,
         total_height=highest - lowest,
         skewness=third / second**1.5,
         kurtosis=fourth / second**2,
@@ -156,13 +156,13 @@ def hybrid_parameters(surface: HeightMap) -> HybridParameters:
     """
     _require_area(surface)
     z = np.ascontiguousarray(surface.height)
-    cells, squares, excess = slope_sums(z, surface.spacing_x, surface.spacing_y)
+    cells, squares, excess = gradient_and_area_sums(z, surface.spacing_x, surface.spacing_y)
     if cells == 0:
         raise InvalidInput(
             f"a slope needs four neighbouring measured pixels; with {surface.missing_fraction:.0%} missing there "
             "are none"
         )
-    return HybridParameters(rms_slope=math.sqrt(squares / cells), developed_area_ratio=excess / cells)
+    return HybridParameters(rms_gradient=math.sqrt(squares / cells), developed_interfacial_area_ratio=excess / cells)
 
 
 def spatial_parameters(surface: HeightMap) -> SpatialParameters:
@@ -195,7 +195,7 @@ def spatial_parameters(surface: HeightMap) -> SpatialParameters:
     _require_area(surface)
     correlation = autocorrelation(surface)
     directions = np.arange(_RAYS) * math.pi / _RAYS
-    lengths = decay_lengths(correlation, directions=directions, threshold=_THRESHOLD)
+    lengths = correlation_lengths(correlation, directions=directions, threshold=_THRESHOLD)
     decayed = lengths.decayed
     if not decayed.any():
         raise InvalidInput(
@@ -206,7 +206,7 @@ def spatial_parameters(surface: HeightMap) -> SpatialParameters:
         autocorrelation_length=shortest,
         texture_aspect_ratio=shortest / max(shortest, float(lengths.distance.max())),
         texture_direction=_direction_of_lay(surface),
-        decays_everywhere=bool(decayed.all()),
+        decays_in_all_directions=bool(decayed.all()),
     )
 
 

@@ -11,11 +11,11 @@ from numpy.typing import ArrayLike
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.surfaces.grid_kernel import (
-    central_sums,
-    differences_along_columns,
-    differences_along_rows,
-    extent,
-    highest_of_eight,
+    central_moment_sums,
+    column_difference_sums,
+    count_sum_and_extremes,
+    local_maxima,
+    row_difference_sums,
 )
 from sonolube.surfaces.height_map import HeightMap
 from sonolube.surfaces.roughness import Roughness
@@ -77,7 +77,7 @@ class SamplingDependence:
     summit_density: Floats
 
 
-def summits(surface: HeightMap) -> SummitStatistics:
+def summit_statistics(surface: HeightMap) -> SummitStatistics:
     """Return the statistics of the pixels that are higher than all their eight neighbours.
 
     Parameters
@@ -98,14 +98,14 @@ def summits(surface: HeightMap) -> SummitStatistics:
     -----
     A summit's curvature is the mean of the negative second differences along row and column at its pixel, which
     underrates narrow summits: with ten pixels to the correlation length by about 1 %. Noise of the instrument counts as
-    summits: filter first, and see `against_sampling_interval`.
+    summits: filter first, and see `sampling_dependence`.
 
     References
     ----------
     .. [1] J. A. Greenwood, Proc. R. Soc. A 393, 133 (1984). doi:10.1098/rspa.1984.0050
     """
     z = np.ascontiguousarray(surface.height)
-    candidates, places = highest_of_eight(z)
+    candidates, places = local_maxima(z)
     if places.size < 2:
         raise InvalidInput(f"a surface needs two summits for statistics, got {places.size} among {candidates} pixels")
     columns = z.shape[1]
@@ -143,8 +143,8 @@ def spectral_moments(surface: HeightMap) -> SpectralMoments:
     .. [1] J. I. McCool, Wear 107, 37 (1986). doi:10.1016/0043-1648(86)90045-1
     """
     z = np.ascontiguousarray(surface.height)
-    firsts_x, slopes_x, seconds_x, bends_x = differences_along_rows(z)
-    firsts_y, slopes_y, seconds_y, bends_y = differences_along_columns(z)
+    firsts_x, slopes_x, seconds_x, bends_x = row_difference_sums(z)
+    firsts_y, slopes_y, seconds_y, bends_y = column_difference_sums(z)
     if not min(firsts_x, firsts_y, seconds_x, seconds_y) > 0:
         raise InvalidInput("spectral moments need three neighbouring measured pixels along a row and along a column")
     dx, dy = surface.spacing_x, surface.spacing_y
@@ -155,7 +155,7 @@ def spectral_moments(surface: HeightMap) -> SpectralMoments:
     )
 
 
-def gaussian_summits(moments: SpectralMoments) -> SummitStatistics:
+def nayak_summit_statistics(moments: SpectralMoments) -> SummitStatistics:
     """Return the summits of an isotropic Gaussian surface with these spectral moments.
 
     Parameters
@@ -191,15 +191,15 @@ def gaussian_summits(moments: SpectralMoments) -> SummitStatistics:
 
 
 def _from_moments(surface: HeightMap) -> SummitStatistics:
-    return gaussian_summits(spectral_moments(surface))
+    return nayak_summit_statistics(spectral_moments(surface))
 
 
 _METHODS: Mapping[str, Callable[[HeightMap], SummitStatistics]] = MappingProxyType(
-    {"summits": summits, "moments": _from_moments}
+    {"summits": summit_statistics, "moments": _from_moments}
 )
 
 
-def roughness(surface: HeightMap, *, method: str = "summits") -> Roughness:
+def contact_roughness(surface: HeightMap, *, method: str = "summits") -> Roughness:
     """Return the roughness as the contact models take it.
 
     Parameters
@@ -218,7 +218,7 @@ def roughness(surface: HeightMap, *, method: str = "summits") -> Roughness:
     UnknownName
         If the method is unknown.
     InvalidInput
-        As by `summits`, `spectral_moments` and `gaussian_summits`.
+        As by `summit_statistics`, `spectral_moments` and `nayak_summit_statistics`.
     """
     if method not in _METHODS:
         raise UnknownName.among(_METHODS, kind="method", name=method)
@@ -230,7 +230,7 @@ def roughness(surface: HeightMap, *, method: str = "summits") -> Roughness:
     )
 
 
-def combined(first: Roughness, second: Roughness) -> Roughness:
+def combined_roughness(first: Roughness, second: Roughness) -> Roughness:
     """Return the roughness of two surfaces in contact, as of one rough surface against a smooth one.
 
     Parameters
@@ -263,12 +263,12 @@ def combined(first: Roughness, second: Roughness) -> Roughness:
 
 
 def _equivalent_moments(one: Roughness) -> tuple[float, float]:
-    """Return m2 and m4 of the Gaussian surface that has such summits."""
+    """Return m2 and m4 of the Gaussian surface that has such summit_statistics."""
     curvature_variance = (1 / (_CURVATURE * one.summit_radius)) ** 2
     return _DENSITY * curvature_variance / one.summit_density, curvature_variance
 
 
-def against_sampling_interval(
+def sampling_dependence(
     surface: HeightMap, *, sampling_interval: ArrayLike, method: str = "summits"
 ) -> SamplingDependence:
     """Return the roughness as found with coarser sampling.
@@ -279,7 +279,7 @@ def against_sampling_interval(
     sampling_interval : array_like, shape (n,)
         Distances of neighbouring points wanted; along rows and columns the nearest whole number of pixels is taken. [m]
     method : {"summits", "moments"}
-        As by `roughness`.
+        As by `contact_roughness`.
 
     Returns
     -------
@@ -297,7 +297,7 @@ def against_sampling_interval(
     """
     wanted = np.atleast_1d(require_positive(sampling_interval=sampling_interval))
     coarser = [_decimated(surface, float(interval)) for interval in wanted]
-    found = [roughness(one, method=method) for one in coarser]
+    found = [contact_roughness(one, method=method) for one in coarser]
     return SamplingDependence(
         sampling_interval=np.array([math.sqrt(one.spacing_x * one.spacing_y) for one in coarser]),
         rms_height=np.array([one.rms_height for one in found]),
@@ -307,9 +307,9 @@ def against_sampling_interval(
 
 
 def _mean_and_variance(height: Floats) -> tuple[float, float]:
-    count, total, _, _ = extent(height)
+    count, total, _, _ = count_sum_and_extremes(height)
     mean = total / count
-    return mean, central_sums(height, mean)[1] / count
+    return mean, central_moment_sums(height, mean)[1] / count
 
 
 def _decimated(surface: HeightMap, interval: float) -> HeightMap:

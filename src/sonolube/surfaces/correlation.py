@@ -38,7 +38,7 @@ class Autocorrelation:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class DecayLengths:
+class CorrelationLengths:
     """How far the autocorrelation stays above a threshold, direction by direction.
 
     Parameters
@@ -96,7 +96,7 @@ def autocorrelation(surface: HeightMap) -> Autocorrelation:
     )
 
 
-def decay_lengths(correlation: Autocorrelation, *, directions: ArrayLike, threshold: float) -> DecayLengths:
+def correlation_lengths(correlation: Autocorrelation, *, directions: ArrayLike, threshold: float) -> CorrelationLengths:
     """Return how far the normalized autocorrelation stays above a threshold.
 
     Parameters
@@ -116,7 +116,7 @@ def decay_lengths(correlation: Autocorrelation, *, directions: ArrayLike, thresh
     distance = np.zeros(angles.size)
     decayed = np.zeros(angles.size, dtype=np.bool_)
     _march(correlation.normalized, np.cos(angles) / step_x, np.sin(angles) / step_y, threshold, distance, decayed)
-    return DecayLengths(distance=distance, decayed=decayed)
+    return CorrelationLengths(distance=distance, decayed=decayed)
 
 
 def _sums_of_products(value: Floats, half_y: int, half_x: int) -> Floats:

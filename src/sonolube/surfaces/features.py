@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from sonolube.checks import Floats, require_within
 from sonolube.errors import InvalidInput
-from sonolube.surfaces.grid_kernel import extent
+from sonolube.surfaces.grid_kernel import count_sum_and_extremes
 from sonolube.surfaces.height_map import HeightMap
 
 
@@ -62,7 +62,7 @@ def feature_parameters(surface: HeightMap, *, pruning: float = 0.05) -> FeatureP
     """
     require_within(0.0, 1.0, pruning=pruning)
     z = np.ascontiguousarray(surface.height)
-    count, _, lowest, highest = extent(z)
+    count, _, lowest, highest = count_sum_and_extremes(z)
     if lowest == highest:
         raise InvalidInput(f"height must vary, got {lowest!r} m in every measured pixel: a flat map has no hills")
     peaks = _significant_peaks(z, np.argsort(-z, axis=None)[:count], pruning * (highest - lowest))

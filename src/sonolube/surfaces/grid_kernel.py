@@ -11,7 +11,7 @@ _LANES = 8  # running extremes side by side, which a vector unit takes at once
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
-def extent(height: Floats) -> tuple[int, float, float, float]:
+def count_sum_and_extremes(height: Floats) -> tuple[int, float, float, float]:
     """Return how many pixels were measured, and their sum, lowest and highest."""
     rows, columns = height.shape
     lowest = np.full(_LANES, np.inf)
@@ -40,7 +40,7 @@ def extent(height: Floats) -> tuple[int, float, float, float]:
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
-def central_sums(height: Floats, mean: float) -> tuple[float, float, float, float]:
+def central_moment_sums(height: Floats, mean: float) -> tuple[float, float, float, float]:
     """Return the sums of the modulus, square, cube and fourth power of the deviation from `mean`."""
     first, second, third, fourth = 0.0, 0.0, 0.0, 0.0
     for row in range(height.shape[0]):
@@ -62,7 +62,7 @@ def central_sums(height: Floats, mean: float) -> tuple[float, float, float, floa
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
-def slope_sums(height: Floats, spacing_x: float, spacing_y: float) -> tuple[int, float, float]:
+def gradient_and_area_sums(height: Floats, spacing_x: float, spacing_y: float) -> tuple[int, float, float]:
     """Return the number of cells of four measured pixels, and the sums of square slope and excess of area over them.
 
     Each cell is cut into triangles along either diagonal; the four corners' triangles count a quarter each.
@@ -93,7 +93,7 @@ def slope_sums(height: Floats, spacing_x: float, spacing_y: float) -> tuple[int,
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
-def differences_along_rows(height: Floats) -> tuple[float, float, float, float]:
+def row_difference_sums(height: Floats) -> tuple[float, float, float, float]:
     """Return count and sum of squares of first, then of second differences of neighbours in a row."""
     firsts, slopes, seconds, bends = 0.0, 0.0, 0.0, 0.0
     for row in range(height.shape[0]):
@@ -112,7 +112,7 @@ def differences_along_rows(height: Floats) -> tuple[float, float, float, float]:
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
-def differences_along_columns(height: Floats) -> tuple[float, float, float, float]:
+def column_difference_sums(height: Floats) -> tuple[float, float, float, float]:
     """Return count and sum of squares of first, then of second differences of neighbours in a column."""
     firsts, slopes, seconds, bends = 0.0, 0.0, 0.0, 0.0
     for row in range(1, height.shape[0]):
@@ -132,7 +132,7 @@ def differences_along_columns(height: Floats) -> tuple[float, float, float, floa
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
-def highest_of_eight(height: Floats) -> tuple[int, NDArray[np.int64]]:
+def local_maxima(height: Floats) -> tuple[int, NDArray[np.int64]]:
     """Return how many pixels have eight measured neighbours, and the flat places of those above all their eight."""
     rows, columns = height.shape
     found = np.empty(max(rows * columns // 4 + 1, 1), dtype=np.int64)  # two summits never touch

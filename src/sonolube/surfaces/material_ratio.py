@@ -35,20 +35,20 @@ class MaterialRatioCurve:
         """Share of the surface at or above each height, of its shape. []"""
         return (np.arange(self.height.size) + 0.5) / self.height.size
 
-    def ratio_above(self, *, section_height: ArrayLike) -> Floats:
+    def ratio_above(self, *, intersection_height: ArrayLike) -> Floats:
         """Return the areal material ratio Smr(c). []
 
         Parameters
         ----------
-        section_height : array_like, any shape
+        intersection_height : array_like, any shape
             Height of the section over the mean, c. [m]
 
         Returns
         -------
-        ndarray, shape of `section_height`
+        ndarray, shape of `intersection_height`
             0 above the highest and 1 below the deepest pixel.
         """
-        c = require_finite(section_height=section_height)
+        c = require_finite(intersection_height=intersection_height)
         rising, n = self.height[::-1], self.height.size
         upper = np.clip(np.searchsorted(rising, c), 1, n - 1)
         low, high = rising[upper - 1], rising[upper]
@@ -172,7 +172,7 @@ def functional_parameters(surface: HeightMap | MaterialRatioCurve) -> Functional
         raise InvalidInput(f"functional parameters need ten measured pixels that differ in height, got {z.size}")
     top, slope = _equivalent_line(z)
     bottom = top + slope
-    peaks_end, valleys_start = (float(ratio) for ratio in curve.ratio_above(section_height=[top, bottom]))
+    peaks_end, valleys_start = (float(ratio) for ratio in curve.ratio_above(intersection_height=[top, bottom]))
     first, second = (float(height) for height in curve.height_at(material_ratio=[_PEAKS_END, _CORE_END]))
     level = np.array([top, bottom, first, second])
     peak_area, above_bottom, peak_material, above_second = (float(volume) for volume in _material_above(z, level))

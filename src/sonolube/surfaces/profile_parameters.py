@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.surfaces.height_map import HeightMap
-from sonolube.surfaces.spectrum import Along, profiles
+from sonolube.surfaces.spectrum import ProfileDirection, profiles
 
 _SECTIONS = 5
 _POINTS_PER_SECTION = 10  # fewer would make the height of a section a matter of sampling
@@ -24,13 +24,13 @@ class ProfileParameters:
 
     Parameters
     ----------
-    mean_roughness : float
+    arithmetic_mean_height : float
         Arithmetic mean deviation, Ra. [m]
     rms_height : float
         Standard deviation, Rq. [m]
-    peak_height : float
+    maximum_peak_height : float
         Highest point above the mean line, Rp. [m]
-    valley_depth : float
+    maximum_pit_depth : float
         Deepest point below the mean line, Rv. [m]
     total_height : float
         Highest to deepest point of the whole profile, Rt. [m]
@@ -40,19 +40,19 @@ class ProfileParameters:
         Third moment over the cube of the standard deviation, Rsk. []
     kurtosis : float
         Fourth moment over the fourth power of the standard deviation, Rku. []
-    mean_element_width : float or None
+    mean_profile_element_spacing : float or None
         Mean width of a peak and its valley, RSm; None where the profile holds no whole element. [m]
     """
 
-    mean_roughness: float
+    arithmetic_mean_height: float
     rms_height: float
-    peak_height: float
-    valley_depth: float
+    maximum_peak_height: float
+    maximum_pit_depth: float
     total_height: float
     mean_section_height: float
     skewness: float
     kurtosis: float
-    mean_element_width: float | None
+    mean_profile_element_spacing: float | None
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -63,21 +63,21 @@ class ProfileStatistics:
     ----------
     mean : ProfileParameters
         Mean over the profiles.
-    spread : ProfileParameters
+    standard_deviation : ProfileParameters
         Standard deviation over the profiles.
     profile_count : int
         Profiles taken.
-    left_out : int
+    excluded_count : int
         Profiles with fewer than two measured heights, or flat ones.
     """
 
     mean: ProfileParameters
-    spread: ProfileParameters
+    standard_deviation: ProfileParameters
     profile_count: int
-    left_out: int
+    excluded_count: int
 
 
-def profile_parameters(*, height: ArrayLike, spacing: float, sampling_length: float | None = None) -> ProfileParameters:
+def profile_parameters(*, height: ArrayLike, spacing: float, section_length: float | None = None) -> ProfileParameters:
     """Return Ra, Rq, Rp, Rv, Rt, Rz, Rsk, Rku and RSm.
 
     Parameters
@@ -86,7 +86,7 @@ def profile_parameters(*, height: ArrayLike, spacing: float, sampling_length: fl
         Heights along the profile, NaN where missing; levelled and filtered as wanted. [m]
     spacing : float
         Distance of neighbouring points of a profile. [m]
-    sampling_length : float, optional
+    section_length : float, optional
         Length of a section for Rz. Without it a profile of 50 points or more is cut into five equal sections, a
         shorter one into none. [m]
 
@@ -125,28 +125,28 @@ def profile_parameters(*, height: ArrayLike, spacing: float, sampling_length: fl
         )
     z -= z[measured].mean()
     deviation = z[measured]
-    section = _section_points(z.size, spacing, sampling_length)
+    section = _section_points(z.size, spacing, section_length)
     heights = [np.ptp(part) for part in _sections(z, section) if part.size]
     square = deviation**2
     rms = math.sqrt(square.mean())
-    section_height = float(np.mean(heights))
+    intersection_height = float(np.mean(heights))
     return ProfileParameters(
-        mean_roughness=float(np.abs(deviation).mean()),
+        arithmetic_mean_height=float(np.abs(deviation).mean()),
         rms_height=rms,
-        peak_height=float(deviation.max()),
-        valley_depth=float(-deviation.min()),
+        maximum_peak_height=float(deviation.max()),
+        maximum_pit_depth=float(-deviation.min()),
         total_height=float(np.ptp(deviation)),
-        mean_section_height=section_height,
+        mean_section_height=intersection_height,
         skewness=float((square * deviation).mean() / rms**3),
         kurtosis=float((square**2).mean() / rms**4),
-        mean_element_width=_element_width(
-            spacing * np.flatnonzero(measured).astype(np.float64), deviation, section_height
+        mean_profile_element_spacing=_element_width(
+            spacing * np.flatnonzero(measured).astype(np.float64), deviation, intersection_height
         ),
     )
 
 
 def profile_statistics(
-    surface: HeightMap, *, along: Along = "rows", sampling_length: float | None = None
+    surface: HeightMap, *, along: ProfileDirection = "rows", section_length: float | None = None
 ) -> ProfileStatistics:
     """Return mean and spread of the parameters of all profiles along rows or columns.
 
@@ -155,7 +155,7 @@ def profile_statistics(
     surface : HeightMap
     along : {"rows", "columns"}
         Which way the profiles run.
-    sampling_length : float, optional
+    section_length : float, optional
         As in `profile_parameters`. [m]
 
     Returns
@@ -175,12 +175,12 @@ def profile_statistics(
     usable = [line for line in lines if np.isfinite(line).sum() > 1 and np.nanmax(line) > np.nanmin(line)]
     if not usable:
         raise InvalidInput(f"none of the {len(lines)} {along} holds two measured heights that differ")
-    each = [profile_parameters(height=line, spacing=spacing, sampling_length=sampling_length) for line in usable]
+    each = [profile_parameters(height=line, spacing=spacing, section_length=section_length) for line in usable]
     return ProfileStatistics(
         mean=_over(each, np.mean),
-        spread=_over(each, np.std),
+        standard_deviation=_over(each, np.std),
         profile_count=len(usable),
-        left_out=len(lines) - len(usable),
+        excluded_count=len(lines) - len(usable),
     )
 
 
@@ -193,15 +193,15 @@ def _over(each: Sequence[ProfileParameters], measure: Callable[[Sequence[float]]
     return ProfileParameters(**found)
 
 
-def _section_points(points: int, spacing: float, sampling_length: float | None) -> int:
-    if sampling_length is None:
+def _section_points(points: int, spacing: float, section_length: float | None) -> int:
+    if section_length is None:
         return points // _SECTIONS if points >= _SECTIONS * _POINTS_PER_SECTION else points
-    require_positive(sampling_length=sampling_length)
-    wanted = round(sampling_length / spacing)
+    require_positive(section_length=section_length)
+    wanted = round(section_length / spacing)
     if not 2 <= wanted <= points:
         raise InvalidInput(
-            f"sampling_length must lie between two points and the profile's {points * spacing!r} m, "
-            f"got {sampling_length!r} m"
+            f"section_length must lie between two points and the profile's {points * spacing!r} m, "
+            f"got {section_length!r} m"
         )
     return wanted
 
@@ -211,8 +211,8 @@ def _sections(height: Floats, points: int) -> list[Floats]:
     return [part[np.isfinite(part)] for part in sections]
 
 
-def _element_width(position: Floats, deviation: Floats, section_height: float) -> float | None:
-    side = np.flatnonzero(np.abs(deviation) >= _LEAST_ELEMENT * section_height)
+def _element_width(position: Floats, deviation: Floats, intersection_height: float) -> float | None:
+    side = np.flatnonzero(np.abs(deviation) >= _LEAST_ELEMENT * intersection_height)
     arrives = side[1:][np.diff(np.sign(deviation[side])) != 0]
     crossings = np.flatnonzero(np.signbit(deviation[1:]) != np.signbit(deviation[:-1]))
     last = crossings[np.searchsorted(crossings, arrives, side="left") - 1]

@@ -13,7 +13,7 @@ from sonolube.errors import InvalidInput
 from sonolube.surfaces.height_map import HeightMap
 
 Window = Literal["hann", "none"]
-Along = Literal["rows", "columns"]
+ProfileDirection = Literal["rows", "columns"]
 
 _BLOCK = 64  # profiles transformed at a time, which then stay in the cache
 
@@ -188,7 +188,9 @@ def radial_spectrum(spectrum: ArealSpectrum) -> RadialSpectrum:
     return RadialSpectrum(wavenumber=radius / count, areal_spectral_density=density / count)
 
 
-def profile_spectrum(surface: HeightMap, *, along: Along = "rows", window: Window = "hann") -> ProfileSpectrum:
+def profile_spectrum(
+    surface: HeightMap, *, along: ProfileDirection = "rows", window: Window = "hann"
+) -> ProfileSpectrum:
     """Return the mean power spectral density of the profiles along rows or columns.
 
     Parameters
@@ -266,7 +268,7 @@ def moments_of_spectrum(spectrum: ArealSpectrum) -> SpectralMoments:
     )
 
 
-def profiles(surface: HeightMap, *, along: Along) -> tuple[Floats, float]:
+def profiles(surface: HeightMap, *, along: ProfileDirection) -> tuple[Floats, float]:
     """Return the heights of a map with a profile in each row, and the distance of a profile's points in m.
 
     Parameters

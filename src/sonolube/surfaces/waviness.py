@@ -6,14 +6,14 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
+from sonolube.surfaces.form_removal import remove_form
 from sonolube.surfaces.height_map import HeightMap
-from sonolube.surfaces.levelling import level
 
 _PADDING = 8  # points of the spectrum to one of the plain transform, so that a parabola finds the peak
 _FEWEST_WAVES = 1.5  # in the map: what is longer cannot be told from form
 
 
-def waviness_lengths(height_map: HeightMap, *, along: Literal["rows", "columns"] = "rows", most: int = 3) -> Floats:
+def dominant_wavelengths(height_map: HeightMap, *, along: Literal["rows", "columns"] = "rows", most: int = 3) -> Floats:
     """Wavelengths of the waviness in one direction, the strongest first. [m]
 
     Parameters
@@ -47,7 +47,7 @@ def waviness_lengths(height_map: HeightMap, *, along: Literal["rows", "columns"]
     .. [1] D 4.1.3, where Fourier transforms of the heights give 0.18 mm in both directions for a powder coating and
        1.25 mm and 0.95 mm for its coarser level.
     """
-    z = np.nan_to_num(level(height_map).height)
+    z = np.nan_to_num(remove_form(height_map).height)
     spacing = height_map.spacing_x
     if along == "columns":
         z, spacing = z.T, height_map.spacing_y

@@ -8,15 +8,15 @@ from pytest import approx, mark, raises
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, NoGroove
 from sonolube.surfaces import (
-    GeneratedGroove,
+    GaussianCorrelationSpectrum,
     GrooveShape,
     GrooveTrack,
     HeightMap,
     ScannedField,
-    SingleScaleSpectrum,
+    SyntheticGroove,
     gaussian_surface,
-    generated_groove,
     measure_groove,
+    synthetic_groove,
 )
 
 FIELD = ScannedField(field_shape=(240, 320), spacing_x=7.5e-6, spacing_y=7.5e-6)
@@ -24,17 +24,17 @@ ARC = GrooveTrack(track_direction=0.7, track_curvature=1 / 29e-3, track_offset=0
 RING_DIAMETERS = (25.2e-3, 25.4e-3, 34.3e-3, 58.2e-3, 60e-3, 66.04e-3)  # D 2.3 to 2.5
 
 
-def of_table_size(seed: int, kind: str, field: ScannedField = FIELD) -> GeneratedGroove:
+def of_table_size(seed: int, kind: str, field: ScannedField = FIELD) -> SyntheticGroove:
     rng = np.random.default_rng(seed)
     shape = GrooveShape(groove_width=rng.uniform(0.5e-3, 1.5e-3), groove_depth=rng.uniform(20e-6, 100e-6))
     bend = rng.choice([-1, 1]) * 2 / rng.choice(RING_DIAMETERS) if kind == "curved" else 0.0
     offset = rng.choice([-1, 1]) * rng.uniform(0.2e-3, 0.45e-3) if kind == "off-centre" else rng.uniform(-5e-5, 5e-5)
     track = GrooveTrack(track_direction=rng.uniform(0, math.pi), track_curvature=bend, track_offset=offset)
-    return generated_groove(shape, track=track, seed=seed, field=field)
+    return synthetic_groove(shape, track=track, seed=seed, field=field)
 
 
-def made(*, field: ScannedField = FIELD, seed: int = 1, track: GrooveTrack = ARC, **shape: float) -> GeneratedGroove:
-    return generated_groove(
+def made(*, field: ScannedField = FIELD, seed: int = 1, track: GrooveTrack = ARC, **shape: float) -> SyntheticGroove:
+    return synthetic_groove(
         GrooveShape(**({"groove_width": 0.7e-3, "groove_depth": 40e-6} | shape)), track=track, seed=seed, field=field
     )
 
@@ -74,7 +74,7 @@ def test_the_stated_uncertainty_is_that_of_random_waviness_too() -> None:
         known = of_table_size(seed, "straight", field)
         waves = gaussian_surface(
             rms_height=1e-6,
-            spectrum=SingleScaleSpectrum(correlation_length=0.32e-3),
+            spectrum=GaussianCorrelationSpectrum(correlation_length=0.32e-3),
             shape=(480, 640),
             spacing_x=7.5e-6,
             spacing_y=7.5e-6,
@@ -101,7 +101,7 @@ def test_ridges_are_told_apart_from_the_groove(height: float) -> None:
 
 def test_material_that_sticks_in_the_groove_counts_as_piled_up() -> None:
     known = made(groove_width=0.9e-3)
-    across, along = ARC.across_and_along(known.scan)
+    across, along = ARC.curvilinear_coordinates(known.scan)
     stuck = np.hypot(across - 0.1e-3, along) < 0.1e-3
     height = np.where(stuck, known.unworn.height + 10e-6, known.scan.height)
     groove = measure_groove(known.scan.with_height(height))

@@ -20,7 +20,7 @@ tracks = st.builds(
 
 @given(track=tracks)
 def test_a_pixel_is_found_again_from_where_it_lies_beside_and_along_the_track(track: GrooveTrack) -> None:
-    row, column = track.place(FIELD, *track.across_and_along(FIELD))
+    row, column = track.place(FIELD, *track.curvilinear_coordinates(FIELD))
     rows, columns = np.indices(FIELD.height.shape)
     assert row == approx(rows, abs=1e-7)
     assert column == approx(columns, abs=1e-7)
@@ -28,7 +28,7 @@ def test_a_pixel_is_found_again_from_where_it_lies_beside_and_along_the_track(tr
 
 def test_pixels_lie_as_far_from_an_arc_as_from_its_centre_less_the_radius() -> None:
     track = GrooveTrack(track_direction=0.0, track_curvature=1 / 2e-3, track_offset=0.3e-3)
-    across, _ = track.across_and_along(FIELD)
+    across, _ = track.curvilinear_coordinates(FIELD)
     x, y = FIELD.x - FIELD.x[-1] / 2, FIELD.y - FIELD.y[-1] / 2
     to_centre = np.hypot(x[None, :], y[:, None] - 2e-3)  # the centre lies to the left of the direction
     assert across == approx(1.7e-3 - to_centre, abs=1e-15)
@@ -37,7 +37,7 @@ def test_pixels_lie_as_far_from_an_arc_as_from_its_centre_less_the_radius() -> N
 
 def test_length_along_an_arc_is_its_angle_times_the_radius() -> None:
     track = GrooveTrack(track_direction=0.0, track_curvature=1 / 2e-3, track_offset=0.3e-3)
-    _, along = track.across_and_along(FIELD)
+    _, along = track.curvilinear_coordinates(FIELD)
     x, y = FIELD.x - FIELD.x[-1] / 2, FIELD.y - FIELD.y[-1] / 2
     assert along == approx(1.7e-3 * np.arctan2(x[None, :], 2e-3 - y[:, None]), abs=1e-15)
 

@@ -10,9 +10,9 @@ from scipy.optimize import least_squares
 
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput, NoGroove
-from sonolube.surfaces.grooves.field_positions import from_middle
+from sonolube.surfaces.form_removal import fit_form
+from sonolube.surfaces.grooves.plane_coordinates import centred_coordinates
 from sonolube.surfaces.height_map import HeightMap
-from sonolube.surfaces.levelling import form
 
 Mask = NDArray[np.bool_]
 
@@ -28,7 +28,7 @@ _DEVIATION_OVER_MEDIAN = 1.4826  # of Gaussian heights
 _LEAST_DEPTH = 1e-12  # m: no instrument shows less
 
 
-def disc_groove_volume(*, groove_diameter: ArrayLike, groove_width: ArrayLike, tip_radius: ArrayLike) -> Floats:
+def disc_volume_loss(*, groove_diameter: ArrayLike, groove_width: ArrayLike, tip_radius: ArrayLike) -> Floats:
     """Return the volume of a groove whose section is that of the unworn ball. [m3]
 
     Parameters
@@ -63,7 +63,7 @@ def disc_groove_volume(*, groove_diameter: ArrayLike, groove_width: ArrayLike, t
     return np.asarray(ring * (r**2 * np.arcsin(d / (2 * r)) - d / 4 * np.sqrt(4 * r**2 - d**2)))
 
 
-def ball_cap_volume(*, scar_diameter: ArrayLike, tip_radius: ArrayLike) -> Floats:
+def pin_volume_loss(*, scar_diameter: ArrayLike, tip_radius: ArrayLike) -> Floats:
     """Return the volume of the cap that a flat scar cuts off a ball. [m3]
 
     Parameters
@@ -92,7 +92,7 @@ def ball_cap_volume(*, scar_diameter: ArrayLike, tip_radius: ArrayLike) -> Float
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class WornCap:
+class WearScar:
     """What a ball has lost, from a map of its tip.
 
     Parameters
@@ -119,7 +119,7 @@ class WornCap:
     worn: Mask
 
 
-def worn_cap(surface: HeightMap, *, tip_radius: float | None = None) -> WornCap:
+def wear_scar(surface: HeightMap, *, tip_radius: float | None = None) -> WearScar:
     """Measure the scar of a ball against the ball around it.
 
     Parameters
@@ -149,7 +149,7 @@ def worn_cap(surface: HeightMap, *, tip_radius: float | None = None) -> WornCap:
     """
     if tip_radius is not None:
         require_positive(tip_radius=tip_radius)
-    start = form(surface, degree=2, robust=True).height
+    start = fit_form(surface, degree=2, robust=True).height
     levelled = surface.with_height(surface.height - start)
     worn = np.zeros(surface.height.shape, dtype=np.bool_)
     ball = _starting_ball(surface, start, tip_radius)
@@ -167,7 +167,7 @@ def worn_cap(surface: HeightMap, *, tip_radius: float | None = None) -> WornCap:
     rimmed = _with_rim(worn)
     depth = -np.where(levelled.measured, levelled.height, _smooth(levelled))
     slopes = np.array([column[rimmed].sum() for column in _ball_slopes(surface, ball, len(covariance))]) * pixel
-    return WornCap(
+    return WearScar(
         tip_radius=float(ball[3]),
         scar_diameter=math.sqrt(4 / math.pi * pixel * _area(levelled, worn)),
         wear_volume=float(depth[rimmed].sum()) * pixel,
@@ -185,7 +185,7 @@ def _within_ball(tip_radius: ArrayLike, **chord: ArrayLike) -> tuple[Floats, Flo
 
 
 def _starting_ball(surface: HeightMap, paraboloid: Floats, tip_radius: float | None) -> Floats:
-    x, y = from_middle(surface)
+    x, y = centred_coordinates(surface)
     u, v = np.broadcast_to(x, paraboloid.shape).ravel(), np.broadcast_to(y, paraboloid.shape).ravel()
     scale = max(float(np.ptp(u)), float(np.ptp(v))) / 2
     design = np.stack([np.ones_like(u), u / scale, v / scale, (u**2 + v**2) / scale**2], axis=1)
@@ -198,7 +198,7 @@ def _starting_ball(surface: HeightMap, paraboloid: Floats, tip_radius: float | N
 
 
 def _ball_height(surface: HeightMap, ball: Floats) -> Floats:
-    x, y = from_middle(surface)
+    x, y = centred_coordinates(surface)
     x0, y0, top, r = ball
     square = (x - x0) ** 2 + (y - y0) ** 2
     if float(square.max()) > r**2:
@@ -208,7 +208,7 @@ def _ball_height(surface: HeightMap, ball: Floats) -> Floats:
 
 def _ball_slopes(surface: HeightMap, ball: Floats, count: int) -> list[Floats]:
     """Return the change of the ball's height with its centre, top and radius."""
-    x, y = from_middle(surface)
+    x, y = centred_coordinates(surface)
     x0, y0, _, r = ball
     root = np.sqrt(r**2 - (x - x0) ** 2 - (y - y0) ** 2)
     return [(x - x0) / root, (y - y0) / root, np.ones_like(root), r / root - 1][:count]
@@ -219,7 +219,7 @@ def _fitted_ball(surface: HeightMap, unworn: Mask, start: Floats, tip_radius: fl
     if pixels.size < 20:
         raise InvalidInput(f"hardly anything of the ball is unworn, {pixels.size} pixels")
     pixels = np.random.default_rng(0).choice(pixels, min(_POINTS, pixels.size), replace=False)
-    x, y = (np.broadcast_to(part, surface.height.shape).flat[pixels] for part in from_middle(surface))
+    x, y = (np.broadcast_to(part, surface.height.shape).flat[pixels] for part in centred_coordinates(surface))
     z = surface.height.flat[pixels]
     reach = max(float(np.ptp(x)), float(np.ptp(y)))
     size = np.array([reach, reach, max(float(np.ptp(z)), np.finfo(float).tiny), start[3]])

@@ -10,7 +10,7 @@ from scipy.optimize import minimize
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, NoGroove
-from sonolube.surfaces.grooves.field_positions import concentric, from_middle
+from sonolube.surfaces.grooves.plane_coordinates import arc_coordinates, centred_coordinates
 from sonolube.surfaces.grooves.track import GrooveTrack
 from sonolube.surfaces.height_map import HeightMap
 
@@ -27,7 +27,7 @@ _RIDGE = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class FoundGroove:
+class DetectedGroove:
     """Where a groove lies, before the unworn surface is known well.
 
     Parameters
@@ -46,7 +46,7 @@ class FoundGroove:
     contrast: float
 
 
-def find_groove(surface: HeightMap) -> FoundGroove:
+def detect_groove(surface: HeightMap) -> DetectedGroove:
     """Find a straight or circular groove.
 
     Parameters
@@ -87,7 +87,7 @@ def find_groove(surface: HeightMap) -> FoundGroove:
     middle, room = (left + right) / 2, section.step / 2 + _ROOM * (right - left)
     room_left = room if first > 0 else math.inf  # what the field cuts may be worn to its very corner
     room_right = room if last < section.across.size else math.inf
-    return FoundGroove(
+    return DetectedGroove(
         track=GrooveTrack(
             track_direction=track.track_direction, track_curvature=track.track_curvature, track_offset=float(middle)
         ),
@@ -129,7 +129,7 @@ def _points(surface: HeightMap, blocks: int) -> _Points:
     measured = surface.measured
     count = total(measured.astype(np.float64))
     used = count > 0
-    x, y = from_middle(surface)
+    x, y = centred_coordinates(surface)
     fields = (np.where(measured, values, 0.0) for values in (x + 0 * y, y + 0 * x, surface.height))
     px, py, height = (total(values)[used] / count[used] for values in fields)
     if height.size < 100:
@@ -169,7 +169,7 @@ def _unexplained(points: _Points, direction: float, curvature: float) -> float:
     """Return the squares of heights that no section and no slope along the track explain."""
     if abs(curvature) * points.reach > 4:
         return math.inf
-    across, along = concentric(points.x, points.y, direction, curvature)
+    across, along = arc_coordinates(points.x, points.y, direction, curvature)
     sections = _hats(across, points.side, np.stack([points.height, along - along.mean()]))
     z, t = points.height, along - along.mean()
     rest_zz = z @ z - sections[0, 0]
@@ -199,7 +199,7 @@ def _hats(across: Floats, step: float, values: Floats) -> Floats:
 
 
 def _section(points: _Points, track: GrooveTrack) -> _Section:
-    across, along = concentric(points.x, points.y, track.track_direction, track.track_curvature)
+    across, along = arc_coordinates(points.x, points.y, track.track_direction, track.track_curvature)
     bins = ((across - across.min()) / points.side).astype(np.intp)
     count = np.bincount(bins).astype(np.float64)
     used = count > 0

@@ -9,15 +9,15 @@ from scipy.ndimage import uniform_filter
 
 from sonolube.checks import Floats
 from sonolube.errors import NoGroove
-from sonolube.surfaces.grooves.detection import find_groove
+from sonolube.surfaces.grooves.detection import detect_groove
 from sonolube.surfaces.grooves.sections import (
     CrossSections,
-    Extent,
-    MeanSection,
-    band_around,
+    GrooveExtent,
+    MeanCrossSection,
+    band_with_margin,
     cross_sections,
-    extent,
-    mean_section,
+    groove_extent,
+    mean_cross_section,
 )
 from sonolube.surfaces.grooves.track import GrooveTrack
 from sonolube.surfaces.grooves.unworn_reference import UnwornReference, unworn_reference
@@ -79,7 +79,7 @@ class Groove:
     reference: UnwornReference
     worn: Mask
     piled_up: Mask
-    section: MeanSection
+    section: MeanCrossSection
     sections: CrossSections
     groove_width: float
     groove_depth: float
@@ -122,18 +122,18 @@ def measure_groove(surface: HeightMap) -> Groove:
     lie where the mean section meets the unworn surface, so that roughness is not rectified into volume. A groove must
     be worth its free section: where waves alone account for the heights with greater evidence, there is none.
     """
-    found = find_groove(surface)
+    found = detect_groove(surface)
     track, band = found.track, found.worn_band
     left_out: Mask | None = None
     for turn in range(_ROUNDS):
         reference = unworn_reference(surface, track=track, worn_band=band, left_out=left_out)
         levelled = surface.with_height(surface.height - reference.surface.height)
         track = reference.better_track(track)
-        across, _ = track.across_and_along(surface)
+        across, _ = track.curvilinear_coordinates(surface)
         left_out = _spikes(levelled, across, band) | _projections(levelled, across, band)
-        section = mean_section(levelled, across, levelled.measured)
-        edges = extent(section, band)
-        before, around = band, band_around(edges)
+        section = mean_cross_section(levelled, across, levelled.measured)
+        edges = groove_extent(section, band)
+        before, around = band, band_with_margin(edges)
         band = (min(band[0], around[0]), max(band[1], around[1]))
         if turn and np.allclose(band, before, rtol=0, atol=_RESTED * section.step):
             break
@@ -145,9 +145,9 @@ def measure_groove(surface: HeightMap) -> Groove:
 
 
 def _measured(
-    levelled: HeightMap, reference: UnwornReference, track: GrooveTrack, section: MeanSection, edges: Extent
+    levelled: HeightMap, reference: UnwornReference, track: GrooveTrack, section: MeanCrossSection, edges: GrooveExtent
 ) -> Groove:
-    across, _ = track.across_and_along(levelled)
+    across, _ = track.curvilinear_coordinates(levelled)
     pixel = levelled.spacing_x * levelled.spacing_y
     inside = (across > edges.left) & (across < edges.right)
     beside = (across < edges.left_foot) | (across > edges.right_foot)
@@ -223,7 +223,7 @@ def _refuse_waviness(reference: UnwornReference, *, depth: float) -> None:
         )
 
 
-def _caveat(edges: Extent, relative_uncertainty: float, missing_fraction: float) -> str:
+def _caveat(edges: GrooveExtent, relative_uncertainty: float, missing_fraction: float) -> str:
     caveats = []
     if not (edges.left_seen and edges.right_seen):
         caveats.append("an edge of the groove lies outside the field: width, area and volume are of what is seen")

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.surfaces.grooves.reference_waves import Waves
-from sonolube.surfaces.grooves.worn_blocks import SHORTEST_WAVE, WornBlocks
+from sonolube.surfaces.grooves.blocks import SHORTEST_RELATIVE_WAVELENGTH, BlockAverages
+from sonolube.surfaces.grooves.waviness_model import WavinessModel
 
 _MOST_WAVES = 4
 _LONGEST = 3.0  # plane wave, over the longer side: longer ones are no waves to this field
@@ -22,9 +22,9 @@ _DEVIATION_OVER_MEDIAN = 1.4826  # of Gaussian heights
 _STARTS = 6  # hills of what a further wave would explain, from which it is refined
 
 
-def plane_waves(
-    blocks: WornBlocks, *, noise: tuple[float, ...] | None = None, form_terms: int = 3
-) -> tuple[list[Waves], bool]:
+def fit_plane_waves(
+    blocks: BlockAverages, *, noise: tuple[float, ...] | None = None, form_terms: int = 3
+) -> tuple[list[WavinessModel], bool]:
     """Return sets of up to four plane waves of any direction and length, as many as the blocks bear out.
 
     Parameters
@@ -63,7 +63,7 @@ def plane_waves(
     return [search.as_waves(unlike[cost]) for cost in sorted(unlike)], enough
 
 
-def _noise_of_neighbours(blocks: WornBlocks) -> tuple[float, ...]:
+def _noise_of_neighbours(blocks: BlockAverages) -> tuple[float, ...]:
     """Return the variance of what does not go on from block to block, from third differences along the rows."""
     scale = (_DEVIATION_OVER_MEDIAN**2) / 20  # variance of the third difference of noise is 20 times its own
     differences = (np.diff(blocks.mean_height[part], 3) for part in blocks.parts)
@@ -86,7 +86,7 @@ class _Fit(NamedTuple):
 class _Search:
     """The search for plane waves beside form and section, of which only what these cannot explain is seen."""
 
-    blocks: WornBlocks
+    blocks: BlockAverages
     form_terms: int
     root: Floats  # of the weights, (n, 1)
     flat: Floats  # form and section, weighted
@@ -94,7 +94,7 @@ class _Search:
     seen_height: Floats
 
     @classmethod
-    def of(cls, blocks: WornBlocks, noise: tuple[float, ...], form_terms: int) -> "_Search":
+    def of(cls, blocks: BlockAverages, noise: tuple[float, ...], form_terms: int) -> "_Search":
         root = np.sqrt(blocks.weight / np.repeat(noise, [part.stop - part.start for part in blocks.parts]))[:, None]
         flat = root * np.concatenate([blocks.form(form_terms), blocks.section], axis=1)
         basis = np.linalg.qr(flat)[0]
@@ -134,7 +134,7 @@ class _Search:
     def _cost(self, modes: Floats, amplitudes: Floats, misfit: float) -> float:
         longer, wavenumber = self.blocks.longer_side, np.hypot(*modes.T)
         if (
-            np.any(wavenumber > 1 / (SHORTEST_WAVE * longer))
+            np.any(wavenumber > 1 / (SHORTEST_RELATIVE_WAVELENGTH * longer))
             or np.any(wavenumber < 1 / (_LONGEST * longer))
             or np.any(np.hypot(*amplitudes.reshape(2, -1)) > _HIGHEST * self.blocks.spread)
         ):
@@ -143,7 +143,7 @@ class _Search:
         cost = count * math.log(max(misfit, _EXACT) / count) + count - float(np.sum(np.log(self.root[:, 0] ** 2)))
         return cost + float(np.sum(np.log(self.blocks.weight))) + (self.form_terms + 4 * len(modes)) * math.log(count)
 
-    def as_waves(self, fit: _Fit) -> Waves:
+    def as_waves(self, fit: _Fit) -> WavinessModel:
         waves = self.waves(fit.modes)
         sum_of_waves = np.concatenate(waves, axis=1) @ fit.amplitudes
         free = _least_squares(self.flat, self.root[:, 0] * self.blocks.mean_height - sum_of_waves)
@@ -153,7 +153,7 @@ class _Search:
         covariance *= float(fit.rest @ fit.rest) / max(len(jacobian) - jacobian.shape[1], 1)
         kept = np.concatenate([np.arange(self.form_terms), np.arange(free.size, jacobian.shape[1])])
         cosine, sine = fit.amplitudes.reshape(2, -1)
-        return Waves(
+        return WavinessModel(
             form=free[: self.form_terms],
             half_side=self.blocks.longer_side / 2,
             modes=fit.modes,

@@ -24,7 +24,7 @@ _ROOM = 0.04  # of the worn width, left beside it
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class MeanSection:
+class MeanCrossSection:
     """The mean section of a groove.
 
     Parameters
@@ -71,7 +71,7 @@ class CrossSections:
     height: Floats
 
 
-class Extent(NamedTuple):
+class GrooveExtent(NamedTuple):
     """What of the mean section is worn and what piled up, as distances from the track in m."""
 
     left: float
@@ -81,7 +81,7 @@ class Extent(NamedTuple):
     left_seen: bool
     right_seen: bool
 
-    def shifted(self, shift: float) -> "Extent":
+    def shifted(self, shift: float) -> "GrooveExtent":
         """Return it with all distances moved by `shift`, in m."""
         return self._replace(
             left=self.left + shift,
@@ -91,7 +91,7 @@ class Extent(NamedTuple):
         )
 
 
-def mean_section(levelled: HeightMap, across: Floats, counted: Mask) -> MeanSection:
+def mean_cross_section(levelled: HeightMap, across: Floats, counted: Mask) -> MeanCrossSection:
     """Return the mean over pixels of equal distance from the track.
 
     Parameters
@@ -118,10 +118,10 @@ def mean_section(levelled: HeightMap, across: Floats, counted: Mask) -> MeanSect
     known = shown > 0
     height = np.full(size, np.nan)
     height[known] = np.interp(middle[known], place[known] / shown[known], total[known] / shown[known])
-    return MeanSection(across=middle, height=height, pixels=shown)
+    return MeanCrossSection(across=middle, height=height, pixels=shown)
 
 
-def extent(section: MeanSection, worn_band: tuple[float, float]) -> Extent:
+def groove_extent(section: MeanCrossSection, worn_band: tuple[float, float]) -> GrooveExtent:
     """Return edges of the groove and feet of its ridges.
 
     Parameters
@@ -152,7 +152,7 @@ def extent(section: MeanSection, worn_band: tuple[float, float]) -> Extent:
     first = _outward(z, low[0], -1, lambda height: height < -tolerance)
     last = _outward(z, low[-1], 1, lambda height: height < -tolerance)
     left, right = _crossing(s, z, first, first - 1), _crossing(s, z, last, last + 1)
-    return Extent(
+    return GrooveExtent(
         left=left,
         right=right,
         left_foot=_foot(s, z, first, -1, least, tolerance, left),
@@ -162,7 +162,7 @@ def extent(section: MeanSection, worn_band: tuple[float, float]) -> Extent:
     )
 
 
-def band_around(found: Extent) -> tuple[float, float]:
+def band_with_margin(found: GrooveExtent) -> tuple[float, float]:
     """Return worn width and ridges with a little room on both sides, in m."""
     room = _ROOM * (found.right - found.left)
     return found.left_foot - room, found.right_foot + room
@@ -187,7 +187,7 @@ def cross_sections(
     -------
     CrossSections
     """
-    across, along = track.across_and_along(levelled)
+    across, along = track.curvilinear_coordinates(levelled)
     near = (across >= reach[0]) & (across <= reach[1])
     step = max(levelled.spacing_x, levelled.spacing_y)
     start, stop = float(along[near].min()), float(along[near].max())

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sonolube.checks import Floats, require_finite
-from sonolube.surfaces.grooves.field_positions import concentric, from_middle
+from sonolube.surfaces.grooves.plane_coordinates import arc_coordinates, centred_coordinates
 from sonolube.surfaces.height_map import HeightMap
 
 
@@ -41,7 +41,7 @@ class GrooveTrack:
         """Diameter of the ring of which the track is an arc; infinite where it is straight. [m]"""
         return 2 * abs(1 / self.track_curvature - self.track_offset) if self.track_curvature else math.inf
 
-    def across_and_along(self, surface: HeightMap) -> tuple[Floats, Floats]:
+    def curvilinear_coordinates(self, surface: HeightMap) -> tuple[Floats, Floats]:
         """Return where each pixel lies beside the track, and how far along it, counted from the middle of the field.
 
         Parameters
@@ -55,8 +55,8 @@ class GrooveTrack:
         along : ndarray, shape of the heights
             Length of the track up to there in m.
         """
-        x, y = from_middle(surface)
-        across, along = concentric(x, y, self.track_direction, self.track_curvature)
+        x, y = centred_coordinates(surface)
+        across, along = arc_coordinates(x, y, self.track_direction, self.track_curvature)
         return across - self.track_offset, along * (1 - self.track_curvature * self.track_offset)
 
     def place(self, surface: HeightMap, across: Floats, along: Floats) -> tuple[Floats, Floats]:

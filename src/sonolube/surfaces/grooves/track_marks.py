@@ -118,7 +118,7 @@ def track_marks(groove: Groove, *, inner_share: float = 0.6, lane_points: int = 
 
 def _lanes(groove: Groove, inner_share: float, lane_points: int) -> tuple[Floats, float]:
     # less the section at each pixel's own distance: on slopes, the nearest pixel of a slanting track would step
-    across, _ = groove.track.across_and_along(groove.levelled)
+    across, _ = groove.track.curvilinear_coordinates(groove.levelled)
     flat = groove.levelled.with_height(groove.levelled.height - groove.section.at(across))
     reach = inner_share * groove.groove_width / 2
     sections = cross_sections(flat, groove.track, reach=(-reach, reach))

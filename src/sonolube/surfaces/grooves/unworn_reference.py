@@ -6,14 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sonolube.surfaces.grooves.field_positions import from_middle
-from sonolube.surfaces.grooves.plane_waves import plane_waves
-from sonolube.surfaces.grooves.random_waves import random_waves
-from sonolube.surfaces.grooves.reference_waves import Waves, weights
+from sonolube.surfaces.form_removal import fit_form
+from sonolube.surfaces.grooves.blocks import BlockAverages, block_averages
+from sonolube.surfaces.grooves.plane_coordinates import centred_coordinates
+from sonolube.surfaces.grooves.plane_waves import fit_plane_waves
+from sonolube.surfaces.grooves.random_field import fit_random_field
 from sonolube.surfaces.grooves.track import GrooveTrack
-from sonolube.surfaces.grooves.worn_blocks import WornBlocks, worn_blocks
+from sonolube.surfaces.grooves.waviness_model import WavinessModel, model_probabilities
 from sonolube.surfaces.height_map import HeightMap
-from sonolube.surfaces.levelling import form
 
 Mask = NDArray[np.bool_]
 
@@ -33,13 +33,13 @@ class UnwornReference:
     """
 
     surface: HeightMap
-    models: list[Waves]
-    blocks: WornBlocks
+    models: list[WavinessModel]
+    blocks: BlockAverages
 
     @property
     def waviness_height(self) -> float:
         """Standard deviation of the likeliest waves over the field. [m]"""
-        x, y = from_middle(self.surface)
+        x, y = centred_coordinates(self.surface)
         return float(np.std(self.models[0].heights(x, y) - self.models[0].form_alone(x, y)))
 
     def better_track(self, track: GrooveTrack) -> GrooveTrack:
@@ -82,8 +82,8 @@ class UnwornReference:
         float
             In m3: what each model leaves open, and how far the models differ.
         """
-        x, y = from_middle(self.surface)
-        weight = weights(self.models)
+        x, y = centred_coordinates(self.surface)
+        weight = model_probabilities(self.models)
         volume = np.array([float(model.heights(x, y)[region].sum()) for model in self.models])
         sums = [model.sums(x, y, region) for model in self.models]
         own = np.array([float(s @ model.covariance @ s) for s, model in zip(sums, self.models, strict=True)])
@@ -127,24 +127,24 @@ def unworn_reference(
     ----------
     .. [1] D. J. C. MacKay, Neural Comput. 4, 415 (1992). doi:10.1162/neco.1992.4.3.415
     """
-    across, _ = track.across_and_along(surface)
+    across, _ = track.curvilinear_coordinates(surface)
     unworn = (across <= worn_band[0]) | (across >= worn_band[1])
-    plane = form(surface, degree=1, reference=unworn if left_out is None else unworn & ~left_out).height
-    blocks = worn_blocks(
+    plane = fit_form(surface, degree=1, reference=unworn if left_out is None else unworn & ~left_out).height
+    blocks = block_averages(
         surface.with_height(surface.height - plane), track=track, worn_band=worn_band, left_out=left_out
     )
     models = _models(blocks)
-    x, y = from_middle(surface)
-    waves = sum(weight * model.heights(x, y) for weight, model in zip(weights(models), models, strict=True))
+    x, y = centred_coordinates(surface)
+    waves = sum(weight * model.heights(x, y) for weight, model in zip(model_probabilities(models), models, strict=True))
     return UnwornReference(surface=surface.with_height(plane + waves), models=models, blocks=blocks)
 
 
-def _models(blocks: WornBlocks) -> list[Waves]:
-    few, enough = plane_waves(blocks)
+def _models(blocks: BlockAverages) -> list[WavinessModel]:
+    few, enough = fit_plane_waves(blocks)
     if enough:
         return few
-    random = random_waves(blocks)
+    random = fit_random_field(blocks)
     found = [random]
     for terms in (3, 6):
-        found += plane_waves(blocks, noise=random.noise, form_terms=terms)[0]
+        found += fit_plane_waves(blocks, noise=random.noise, form_terms=terms)[0]
     return sorted(found, key=lambda model: model.cost)

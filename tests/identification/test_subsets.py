@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from pytest import raises
 
 from sonolube.errors import InvalidInput
-from sonolube.identification import compatibility
+from sonolube.identification import consistent_subsets
 
 NAMES = "abcdef"
 
@@ -23,7 +23,7 @@ def test_conflicts_and_compatible_sets_are_those_of_the_definition(clashes: list
 
     met = [some for some in subsets(NAMES) if can_be_met(some)]
     unmet = [some for some in subsets(NAMES) if not can_be_met(some)]
-    found = compatibility(NAMES, can_be_met)
+    found = consistent_subsets(NAMES, can_be_met)
     assert set(found.compatible) == {some for some in met if not any(some < other for other in met)}
     assert set(found.conflicts) == {some for some in unmet if not any(other < some for other in unmet)}
 
@@ -35,10 +35,10 @@ def test_demands_without_conflict_are_tried_once() -> None:
         tried.append(names)
         return True
 
-    assert compatibility(NAMES, can_be_met).compatible == (frozenset(NAMES),)
+    assert consistent_subsets(NAMES, can_be_met).compatible == (frozenset(NAMES),)
     assert len(tried) == 1
 
 
 def test_more_demands_than_can_be_looked_through_are_refused() -> None:
     with raises(InvalidInput, match="at most 16 facts can be weighed against each other, got 17"):
-        compatibility([str(number) for number in range(17)], lambda names: True)
+        consistent_subsets([str(number) for number in range(17)], lambda names: True)

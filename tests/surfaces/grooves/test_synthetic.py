@@ -6,14 +6,14 @@ import numpy as np
 from pytest import approx, mark, raises
 
 from sonolube.errors import InvalidInput
-from sonolube.surfaces import GrooveShape, GrooveTrack, ScannedField, disc_groove_volume, generated_groove
+from sonolube.surfaces import GrooveShape, GrooveTrack, ScannedField, disc_volume_loss, synthetic_groove
 
 STRAIGHT = GrooveTrack(track_direction=0.0, track_curvature=0.0, track_offset=0.1e-3)
 SHAPE = GrooveShape(groove_width=0.8e-3, groove_depth=60e-6, pile_up_height=5e-6, pile_up_width=0.1e-3)
 
 
 def test_a_straight_groove_holds_its_section_times_the_length_of_the_field() -> None:
-    made = generated_groove(SHAPE, track=STRAIGHT, seed=0)
+    made = synthetic_groove(SHAPE, track=STRAIGHT, seed=0)
     radius = (0.4e-3**2 + 60e-6**2) / (2 * 60e-6)
     angle = 2 * math.asin(0.4e-3 / radius)
     segment = radius**2 / 2 * (angle - math.sin(angle))  # of a circle
@@ -24,13 +24,13 @@ def test_a_straight_groove_holds_its_section_times_the_length_of_the_field() -> 
 
 def test_a_ring_of_the_section_is_the_groove_of_the_standard() -> None:
     ball = (0.4e-3**2 + 60e-6**2) / (2 * 60e-6)
-    ring = disc_groove_volume(groove_diameter=58.2e-3, groove_width=0.8e-3, tip_radius=ball)
+    ring = disc_volume_loss(groove_diameter=58.2e-3, groove_width=0.8e-3, tip_radius=ball)
     assert math.pi * 58.2e-3 * SHAPE.cross_section_area == approx(float(ring), rel=1e-10)
 
 
 def test_depth_is_missing_from_the_scan_and_nothing_else() -> None:
     field = ScannedField(rms_height=0.0, missing_fraction=0.0)
-    made = generated_groove(SHAPE, track=STRAIGHT, seed=4, field=field)
+    made = synthetic_groove(SHAPE, track=STRAIGHT, seed=4, field=field)
     pixel = field.spacing_x * field.spacing_y
     gone = float(np.sum(made.unworn.height - made.scan.height)) * pixel
     assert gone == approx(made.wear_volume - made.pile_up_volume)
@@ -38,24 +38,24 @@ def test_depth_is_missing_from_the_scan_and_nothing_else() -> None:
 
 def test_the_field_has_the_tilt_the_waviness_the_roughness_and_the_holes_asked_for() -> None:
     bare = GrooveShape(groove_width=1e-4, groove_depth=1e-15)
-    tilted = generated_groove(bare, track=STRAIGHT, seed=1, field=ScannedField(waviness_amplitude=0.0, rms_height=0.0))
+    tilted = synthetic_groove(bare, track=STRAIGHT, seed=1, field=ScannedField(waviness_amplitude=0.0, rms_height=0.0))
     assert np.ptp(tilted.unworn.height) == approx(5e-6)
     assert tilted.scan.missing_fraction == approx(0.05, abs=0.005)
-    wavy = generated_groove(bare, track=STRAIGHT, seed=1, field=ScannedField(tilt=0.0, rms_height=0.0))
+    wavy = synthetic_groove(bare, track=STRAIGHT, seed=1, field=ScannedField(tilt=0.0, rms_height=0.0))
     assert np.ptp(wavy.unworn.height) == approx(2e-6, rel=1e-3)
-    rough = generated_groove(bare, track=STRAIGHT, seed=1, field=ScannedField(tilt=0.0, waviness_amplitude=0.0))
+    rough = synthetic_groove(bare, track=STRAIGHT, seed=1, field=ScannedField(tilt=0.0, waviness_amplitude=0.0))
     assert np.nanstd(rough.scan.height) == approx(0.6e-6, rel=0.02)
 
 
 def test_indentations_leave_the_mean_depth_over_whole_spacings() -> None:
     shape = GrooveShape(groove_width=0.8e-3, groove_depth=60e-6, indentation_spacing=0.3e-3, indentation_fraction=0.2)
-    dented, even = (generated_groove(which, track=STRAIGHT, seed=0).wear_volume for which in (shape, SHAPE))
+    dented, even = (synthetic_groove(which, track=STRAIGHT, seed=0).wear_volume for which in (shape, SHAPE))
     assert dented == approx(even, rel=1e-6)
 
 
 @mark.parametrize("seed", range(2))
 def test_the_same_seed_gives_the_same_scan(seed: int) -> None:
-    one, other = (generated_groove(SHAPE, track=STRAIGHT, seed=seed).scan.height for _ in range(2))
+    one, other = (synthetic_groove(SHAPE, track=STRAIGHT, seed=seed).scan.height for _ in range(2))
     np.testing.assert_array_equal(one, other)
 
 

@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.surfaces.grooves.reference_waves import Waves
-from sonolube.surfaces.grooves.worn_blocks import LEAST_HEIGHT, WornBlocks
+from sonolube.surfaces.grooves.blocks import HEIGHT_RESOLUTION, BlockAverages
+from sonolube.surfaces.grooves.waviness_model import WavinessModel
 
 _RINGS = 6  # of wavenumber, each with a spectral density of its own
 _CANDOUR = 1.7  # error over the uncertainty that a spectrum told from the same map would give, on generated maps
@@ -18,7 +18,7 @@ _FAINT = 1e-6  # so: it need not settle
 _EXACT = 1e-12
 
 
-def random_waves(blocks: WornBlocks) -> Waves:
+def fit_random_field(blocks: BlockAverages) -> WavinessModel:
     """Return the expectation of a random field, given its blocks; its spectrum and noise by their evidence.
 
     Parameters
@@ -66,7 +66,7 @@ def random_waves(blocks: WornBlocks) -> Waves:
     cost = _log_noise(parts, used_noise) + misfit + float(mean[free:] ** 2 @ prior - np.sum(np.log(prior)))
     cost += float(np.linalg.slogdet(precision)[1] - np.linalg.slogdet(precision[:free, :free])[1])
     kept = np.concatenate([np.arange(3), bound])
-    return Waves(
+    return WavinessModel(
         form=mean[kept[:6]],
         half_side=blocks.longer_side / 2,
         modes=modes,
@@ -89,7 +89,7 @@ class _Part(NamedTuple):
     blocks: int
 
     @classmethod
-    def of(cls, blocks: WornBlocks, design: Floats, part: slice) -> "_Part":
+    def of(cls, blocks: BlockAverages, design: Floats, part: slice) -> "_Part":
         weighted = blocks.weight[part, None] * design[part]
         z = blocks.mean_height[part]
         return cls(design[part].T @ weighted, weighted.T @ z, float(blocks.weight[part] @ z**2), z.size)
@@ -98,7 +98,7 @@ class _Part(NamedTuple):
         return max(0.0, float(self.square - 2 * mean @ self.moment + mean @ self.gram @ mean))
 
     def variance(self, mean: Floats, used: float, scale: float) -> float:
-        return float(max(self.rest(mean) / max(self.blocks - used, 1.0), (_FAINT * scale) ** 2, LEAST_HEIGHT**2))
+        return float(max(self.rest(mean) / max(self.blocks - used, 1.0), (_FAINT * scale) ** 2, HEIGHT_RESOLUTION**2))
 
 
 def _log_noise(parts: list[_Part], noise: Floats) -> float:

@@ -8,7 +8,7 @@ from sonolube.checks import Floats
 from sonolube.surfaces.height_map import HeightMap
 
 
-def from_middle(surface: HeightMap) -> tuple[Floats, Floats]:
+def centred_coordinates(surface: HeightMap) -> tuple[Floats, Floats]:
     """Return the positions of columns and rows from the middle of the field.
 
     Parameters
@@ -28,7 +28,7 @@ def from_middle(surface: HeightMap) -> tuple[Floats, Floats]:
     return x[None, :], y[:, None]
 
 
-def concentric(x: Floats, y: Floats, direction: float, curvature: float) -> tuple[Floats, Floats]:
+def arc_coordinates(x: Floats, y: Floats, direction: float, curvature: float) -> tuple[Floats, Floats]:
     """Return distance to the left of a circle through the origin, and arc length along it, for points of the plane.
 
     Parameters
@@ -54,7 +54,7 @@ def concentric(x: Floats, y: Floats, direction: float, curvature: float) -> tupl
     return across, np.arctan2(curvature * ahead, 1 - curvature * left) / curvature
 
 
-def powers(u: Floats, v: Floats, terms: int) -> list[Floats]:
+def monomials(u: Floats, v: Floats, terms: int) -> list[Floats]:
     """Return 1, u, v, u^2, u v and v^2, the first few of them.
 
     Parameters

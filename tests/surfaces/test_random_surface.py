@@ -8,9 +8,15 @@ from pytest import approx, mark, raises
 from scipy.integrate import quad
 
 from sonolube.errors import InvalidInput, OutsideRange
-from sonolube.surfaces import HeightMap, HeightSpectrum, SelfAffineSpectrum, SingleScaleSpectrum, gaussian_surface
+from sonolube.surfaces import (
+    GaussianCorrelationSpectrum,
+    HeightMap,
+    HeightSpectrum,
+    SelfAffineSpectrum,
+    gaussian_surface,
+)
 
-SINGLE_SCALE = SingleScaleSpectrum(correlation_length=8e-6)
+SINGLE_SCALE = GaussianCorrelationSpectrum(correlation_length=8e-6)
 SELF_AFFINE = SelfAffineSpectrum(
     hurst_exponent=0.6, longest_wavelength=200e-6, rolloff_wavelength=50e-6, shortest_wavelength=5e-6
 )
@@ -47,7 +53,7 @@ def test_the_seed_decides() -> None:
 def test_moments_are_integrals_of_the_density(spectrum: HeightSpectrum) -> None:
     def moment(power: int) -> float:
         def integrand(k: float) -> float:
-            return float(spectrum.relative_density(wavenumber=np.array(k * 1e6)) * k ** (power + 1))
+            return float(spectrum.relative_spectral_density(wavenumber=np.array(k * 1e6)) * k ** (power + 1))
 
         return math.fsum(quad(integrand, a, b, epsabs=0)[0] for a, b in pieces)
 
@@ -64,7 +70,7 @@ def test_a_grid_too_coarse_or_too_small_is_refused() -> None:
     with raises(OutsideRange, match="at most half the shortest wave, 8e-06 m; got 5e-06 m and 2e-06 m"):
         made(spacing_x=5e-6)
     with raises(OutsideRange, match=r"must be at least .* long both ways"):
-        made(SingleScaleSpectrum(correlation_length=1e-3))
+        made(GaussianCorrelationSpectrum(correlation_length=1e-3))
 
 
 def test_wavelengths_out_of_order_are_refused() -> None:

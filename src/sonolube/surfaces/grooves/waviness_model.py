@@ -1,4 +1,4 @@
-"""Waves that may pass below a groove, and how likely they are."""
+"""WavinessModel that may pass below a groove, and how likely they are."""
 
 import math
 from dataclasses import dataclass
@@ -7,11 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.checks import Floats
-from sonolube.surfaces.grooves.field_positions import powers
+from sonolube.surfaces.grooves.plane_coordinates import monomials
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Waves:
+class WavinessModel:
     """A plane and waves.
 
     Parameters
@@ -50,7 +50,7 @@ class Waves:
 
     def form_alone(self, x: Floats, y: Floats) -> Floats:
         """Return the form's heights in m at columns x and rows y, of shapes (1, columns) and (rows, 1) and in m."""
-        terms = powers(x / self.half_side, y / self.half_side, self.form.size)
+        terms = monomials(x / self.half_side, y / self.half_side, self.form.size)
         return np.asarray(sum(share * power for share, power in zip(self.form, terms, strict=True)))
 
     def heights(self, x: Floats, y: Floats) -> Floats:
@@ -61,7 +61,7 @@ class Waves:
 
     def sums(self, x: Floats, y: Floats, region: NDArray[np.bool_]) -> Floats:
         """Return the change of the sum of heights over a region with each of the fitted numbers, shape (p,)."""
-        terms = powers(x / self.half_side, y / self.half_side, self.form.size)
+        terms = monomials(x / self.half_side, y / self.half_side, self.form.size)
         form = [float(np.sum(np.broadcast_to(power, region.shape)[region])) for power in terms]
         x, y = x.ravel(), y.ravel()
         along_x, along_y = self._turning(x, y)
@@ -80,7 +80,7 @@ class Waves:
         return np.exp(turn * np.outer(x, self.modes[:, 0])), np.exp(turn * np.outer(y, self.modes[:, 1]))
 
 
-def weights(models: list[Waves]) -> Floats:
+def model_probabilities(models: list[WavinessModel]) -> Floats:
     """Return the probability of each model after its evidence, shape (models,)."""
     cost = np.array([model.cost for model in models])
     weight = np.exp((cost.min() - cost) / 2)

@@ -1,4 +1,4 @@
-"""The stack in a structure from the impedance measured at its terminals."""
+"""Parameters of a piezoelectric stack in a known structure, by least squares on its measured impedance spectrum."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -16,33 +16,33 @@ from sonolube.measurement.statistics.logarithmic_fit import Interval, correlatio
 
 _STIFFNESS_FACTORS = np.geomspace(1 / 30, 30, 121)
 _DAMPING_FACTORS = (0.1, 1.0, 10.0)
-_LEAST_POINTS = 8
+_FEWEST_POINTS = 8
 _CORRELATED = 3.0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class StackFit:
-    """The stack with which a structure draws the current measured.
+    """Parameters of a stack fitted to an impedance spectrum, with confidence intervals.
 
     Parameters
     ----------
     stack : PiezoStack
-        Its mass, limits and preload are those it was given.
+        Fitted stack; mass, limits and preload are those of the initial one.
     intervals : mapping of str to Interval
-        Of free_capacitance, free_stroke_per_volt, stack_stiffness, stack_damping, clamped_capacitance and
-        coupling_factor.
+        Confidence intervals of free_capacitance, free_stroke_per_volt, stack_stiffness, stack_damping,
+        clamped_capacitance and coupling_factor.
     charge_per_elongation : Interval
-        Blocked force per volt, in N/V.
+        Confidence interval of the blocked force per volt, in N/V.
     residual : str
-        Name of what was made small.
+        Name of the residual whose sum of squares was minimised.
     residual_rms : float
-        Its root mean square.
+        Root mean square of the residual.
     residual_correlation : float
-        Samples over independent samples among the residuals, for which the intervals are widened.
+        Number of residuals over the number of independent ones, for which the intervals are widened.
     confidence_level : float
         Of the intervals. []
     caveats : tuple of str
-        What speaks against the fit, one line each.
+        Warnings about the fit, one line each.
     """
 
     stack: PiezoStack
@@ -63,18 +63,18 @@ def fit_stack(
     residual: str = LOG_COMPLEX,
     confidence_level: float = 0.95,
 ) -> StackFit:
-    """Return the stack whose structure fits a measured spectrum best, the contact free.
+    r"""Stack parameters from the impedance spectrum of its structure, the contact free, by nonlinear least squares.
 
     Parameters
     ----------
     spectrum : ImpedanceSpectrum
-        Over a resonance in which the stack takes part.
+        Measured over a resonance in which the stack takes part.
     stack : PiezoStack
-        As its maker states it, or as guessed.
+        Initial values: as its maker states them, or guessed.
     in_structure : callable
-        Returns the structure with a stack in it; all else about the structure is known.
+        Structure for a given stack; everything else about the structure is known.
     residual : str
-        "log-complex" or "linear-magnitude".
+        "log-complex" or "linear-magnitude"; see `residual_named`.
     confidence_level : float
         Of the intervals. []
 
@@ -85,42 +85,51 @@ def fit_stack(
     Raises
     ------
     InvalidInput
-        If the spectrum has fewer than 8 points, or no stack within 30 times the stiffness stated comes near it.
+        If the spectrum has fewer than 8 points, or no stack within 30 times the initial stiffness fits it.
     UnknownName
         If the residual is none of `RESIDUALS`.
 
+    See Also
+    --------
+    sonolube.identification.circuit_fit.fit_circuit : Equivalent circuit, without knowledge of the structure.
+
     Notes
     -----
-    With everything else known the admittance i w (C_S + (N d33 k_p)^2 h(w)) gives all four parameters: h, elongation
-    per force along the stack, has its resonance where the stiffness puts it, as high as the damping lets it; the
-    distance of the two resonances and the level give the rest. The search starts at the best of 363 stiffnesses and
-    dampings, for which the two factors follow linearly. Masses that are a tenth wrong make the stiffness a tenth wrong.
+    The admittance of the structure is
+
+    .. math:: Y(\omega) = i\omega \left[C_S + (N d_{33} k_p)^2\, h(\omega; k_p, c_p)\right]
+
+    with the elongation per force :math:`h` along the stack. The frequency and width of its resonance determine
+    :math:`k_p` and :math:`c_p`; the level and the distance to the antiresonance determine :math:`C_S` and
+    :math:`N d_{33}`. Initial values are the best of 363 pairs :math:`(k_p, c_p)`, for each of which the two factors
+    follow by non-negative linear least squares. A relative error of the masses causes the same relative error of the
+    stiffness.
 
     References
     ----------
-    .. [1] D 3.3.4, figure 3.12, where parameters were found by matching the curves.
+    .. [1] D 3.3.4, figure 3.12, where the parameters were found by matching the curves by eye.
     """
     compare = residual_named(residual)
     require_within(0.5, 0.9999, confidence_level=confidence_level)
-    if spectrum.frequency.size < _LEAST_POINTS:
-        raise InvalidInput(f"a spectrum of {spectrum.frequency.size} points is too short; give {_LEAST_POINTS}")
+    if spectrum.frequency.size < _FEWEST_POINTS:
+        raise InvalidInput(f"spectrum must have at least {_FEWEST_POINTS} points, got {spectrum.frequency.size}")
 
     def model(candidate: PiezoStack) -> Complexes:
         return electrical_admittance(in_structure(candidate), frequency=spectrum.frequency)
 
-    guess = _first_guess(spectrum, replace(stack, coupling_factor=None), model)
+    initial = _initial_stack(spectrum, replace(stack, coupling_factor=None), model)
     fit = fit_logarithms(
-        lambda logarithms: compare(model(_stack(guess, logarithms)), spectrum.admittance), _logarithms(guess)
+        lambda logarithms: compare(model(_stack(initial, logarithms)), spectrum.admittance), _logarithms(initial)
     )
     correlation = correlation_factor(fit, rows=fit.residuals.size // spectrum.frequency.size)
     known = intervals(
         fit,
-        lambda logarithms: _quantities(_stack(guess, logarithms)),
+        lambda logarithms: _quantities(_stack(initial, logarithms)),
         correlation=correlation,
         confidence_level=confidence_level,
     )
     return StackFit(
-        stack=_stack(guess, fit.logarithms),
+        stack=_stack(initial, fit.logarithms),
         charge_per_elongation=known.pop("charge_per_elongation"),
         intervals=known,
         residual=residual,
@@ -131,9 +140,10 @@ def fit_stack(
     )
 
 
-def _first_guess(
+def _initial_stack(
     spectrum: ImpedanceSpectrum, stack: PiezoStack, model: Callable[[PiezoStack], Complexes]
 ) -> PiezoStack:
+    """Initial values: best of a grid of stiffnesses and dampings, capacitance and stroke by linear least squares."""
     omega, measured = 2 * np.pi * spectrum.frequency, spectrum.admittance
     best, least = None, np.inf
     for stiffness in stack.stack_stiffness * _STIFFNESS_FACTORS:
@@ -149,9 +159,9 @@ def _first_guess(
             scale = np.abs(columns).max(axis=0)
             stacked = np.concatenate([columns.real, columns.imag]) / scale
             target = np.concatenate([np.ones_like(omega), np.zeros_like(omega)])
-            (clamped, square), miss = nnls(stacked, target)
-            if miss < least and clamped > 0 and square > 0:
-                least = miss
+            (clamped, square), misfit = nnls(stacked, target)
+            if misfit < least and clamped > 0 and square > 0:
+                least = misfit
                 force = float(np.sqrt(square / scale[1]))
                 best = replace(
                     trial,
@@ -160,22 +170,24 @@ def _first_guess(
                 )
     if best is None:
         raise InvalidInput(
-            "no stack in this structure comes near the spectrum; do its masses and the sweep fit together?"
+            "no stack in this structure fits the spectrum; check the masses of the structure and the range of the sweep"
         )
     return best
 
 
 def _light_damping(stack: PiezoStack) -> float:
-    return 1e-6 * stack.stack_stiffness / (2 * np.pi)  # a loss of 2 % at 20 kHz
+    """Damping that gives a loss factor of 2 % at 20 kHz, in N s/m."""
+    return 1e-6 * stack.stack_stiffness / (2 * np.pi)
 
 
 def _logarithms(stack: PiezoStack) -> Floats:
+    """Unbounded parameters of a stack: ln C_T, ln k^2/(1 - k^2), ln k_p and ln c_p, shape (4,)."""
     squared = stack.derived_coupling_factor**2
     return np.log([stack.free_capacitance, squared / (1 - squared), stack.stack_stiffness, stack.stack_damping])
 
 
 def _stack(template: PiezoStack, logarithms: Floats) -> PiezoStack:
-    """Return the stack of ln C_T, ln k^2/(1 - k^2), ln k_p and ln c_p: any such numbers make a possible one."""
+    """Stack of the unbounded parameters, any of which make a possible stack."""
     capacitance, odds, stiffness, damping = np.exp(np.clip(logarithms, -200, 200)).tolist()
     squared = min(odds / (1 + odds), 1 - 1e-12)
     return replace(
@@ -188,6 +200,7 @@ def _stack(template: PiezoStack, logarithms: Floats) -> PiezoStack:
 
 
 def _quantities(stack: PiezoStack) -> dict[str, float]:
+    """Quantities of a stack whose confidence intervals are reported."""
     return {
         "free_capacitance": stack.free_capacitance,
         "free_stroke_per_volt": stack.free_stroke_per_volt,
@@ -200,13 +213,15 @@ def _quantities(stack: PiezoStack) -> dict[str, float]:
 
 
 def _caveats(converged: bool, correlation: float, stiffness: Interval) -> tuple[str, ...]:
+    """Warnings about convergence, an undetermined stiffness and correlated residuals."""
     caveats = []
     if not converged:
-        caveats.append("the search did not end by itself; does the sweep hold a resonance of the stack?")
+        caveats.append("the fit did not converge; sweep over a resonance of the stack")
     if not stiffness.upper < 4 * stiffness.lower:
-        caveats.append("the stiffness is hardly known; sweep over a resonance in which the stack takes part")
+        caveats.append("the stiffness is hardly determined; sweep over a resonance in which the stack takes part")
     if correlation > _CORRELATED:
         caveats.append(
-            f"residuals resemble their neighbours over {correlation:.0f} points: the structure leaves something out"
+            f"residuals are correlated over {correlation:.0f} points: the structure does not describe the spectrum"
+            " fully"
         )
     return tuple(caveats)

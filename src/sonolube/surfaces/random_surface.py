@@ -13,7 +13,7 @@ from sonolube.surfaces.spectrum import SpectralMoments
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class SingleScaleSpectrum:
+class GaussianCorrelationSpectrum:
     """Isotropic spectrum of the autocorrelation exp(-r^2/l^2): hills and valleys of about one size.
 
     Parameters
@@ -37,7 +37,7 @@ class SingleScaleSpectrum:
         """Wave below which there is less than 1e-4 of the variance. [m]"""
         return self.correlation_length
 
-    def relative_density(self, *, wavenumber: Floats) -> Floats:
+    def relative_spectral_density(self, *, wavenumber: Floats) -> Floats:
         """Return the areal density up to a factor.
 
         Parameters
@@ -118,7 +118,7 @@ class SelfAffineSpectrum:
                 f"{self.longest_wavelength!r} m, {self.rolloff_wavelength!r} m and {self.shortest_wavelength!r} m"
             )
 
-    def relative_density(self, *, wavenumber: Floats) -> Floats:
+    def relative_spectral_density(self, *, wavenumber: Floats) -> Floats:
         """Return the areal density over that below the roll-off.
 
         Parameters
@@ -162,7 +162,7 @@ class SelfAffineSpectrum:
         return float(plateau + knee ** (2 + 2 * self.hurst_exponent) * slope)
 
 
-HeightSpectrum = SingleScaleSpectrum | SelfAffineSpectrum
+HeightSpectrum = GaussianCorrelationSpectrum | SelfAffineSpectrum
 
 
 def gaussian_surface(
@@ -220,7 +220,7 @@ def gaussian_surface(
         )
     noise = fft.rfft2(np.random.default_rng(seed).standard_normal((rows, columns)), workers=-1)
     k = np.hypot(fft.rfftfreq(columns, spacing_x)[None, :], fft.fftfreq(rows, spacing_y)[:, None])
-    density = spectrum.relative_density(wavenumber=k)
+    density = spectrum.relative_spectral_density(wavenumber=k)
     density[0, 0] = 0.0
     mirrored = 2 * density.sum() - density[:, 0].sum() - (density[:, -1].sum() if columns % 2 == 0 else 0.0)
     noise *= np.sqrt(density * (rows * columns / mirrored))

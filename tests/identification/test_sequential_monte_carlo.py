@@ -40,7 +40,7 @@ def test_the_posterior_of_a_linear_problem_is_the_exact_normal() -> None:
     assert np.cov(drawn) / np.outer(deviation, deviation) == approx(
         covariance / np.outer(deviation, deviation), abs=0.08
     )
-    assert found.has_settled
+    assert found.has_converged
 
 
 def test_what_no_fact_settles_stays_as_wide_as_its_bounds() -> None:

@@ -1,4 +1,4 @@
-"""Levelling takes off the form that was put on, and nothing else."""
+"""Levelling takes off the fit_form that was put on, and nothing else."""
 
 import numpy as np
 from hypothesis import given, settings
@@ -7,7 +7,7 @@ from pytest import approx, mark, raises
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.surfaces import HeightMap, form, level
+from sonolube.surfaces import HeightMap, fit_form, remove_form
 
 ROWS, COLUMNS = 60, 80
 X, Y = np.meshgrid(np.linspace(0, 1, COLUMNS), np.linspace(0, 1, ROWS))
@@ -32,9 +32,9 @@ def holes(seed: int) -> Floats:
 @given(degree=st.integers(0, 12), seed=st.integers(0, 1000))
 def test_a_polynomial_is_removed_whole_whatever_pixels_are_missing(degree: int, seed: int) -> None:
     shape = polynomial(degree, seed)
-    flat = level(surface(shape + holes(seed)), degree=degree).height
+    flat = remove_form(surface(shape + holes(seed)), degree=degree).height
     np.testing.assert_allclose(flat[np.isfinite(flat)], 0, atol=1e-18)
-    assert form(surface(shape + holes(seed)), degree=degree).height == approx(shape, abs=1e-17)
+    assert fit_form(surface(shape + holes(seed)), degree=degree).height == approx(shape, abs=1e-17)
 
 
 @settings(deadline=None)
@@ -45,12 +45,12 @@ def test_the_fit_is_the_one_of_the_textbook(degree: int, seed: int) -> None:
     known = np.isfinite(z.ravel())
     coefficients = np.linalg.lstsq(design[known], z.ravel()[known])[0]
     np.testing.assert_allclose(
-        form(surface(z), degree=degree).height.ravel(), design @ coefficients, atol=1e-12 * np.nanmax(np.abs(z))
+        fit_form(surface(z), degree=degree).height.ravel(), design @ coefficients, atol=1e-12 * np.nanmax(np.abs(z))
     )
 
 
 def test_what_remains_has_no_part_left_along_the_form() -> None:
-    remains = level(surface(np.random.default_rng(3).normal(size=X.shape)), degree=2).height
+    remains = remove_form(surface(np.random.default_rng(3).normal(size=X.shape)), degree=2).height
     for part in (np.ones_like(X), X, Y, X * Y, X**2, Y**2):
         assert np.mean(remains * part) == approx(0, abs=1e-15)
 
@@ -61,40 +61,40 @@ def test_a_groove_does_not_tilt_a_robust_reference(width: float, degree: int) ->
     noise = 5e-9 * np.random.default_rng(5).normal(size=X.shape)
     tilt = 20e-6 * X - 8e-6 * Y
     groove = np.where(np.abs(X - 0.35 - width / 2) < width / 2, -10e-6, 0.0)  # off the middle
-    shape = form(surface(tilt + groove + noise), degree=degree, robust=True).height
+    shape = fit_form(surface(tilt + groove + noise), degree=degree, robust=True).height
     assert np.max(np.abs(shape - tilt)) < 2e-9
-    plain = form(surface(tilt + groove + noise), degree=degree).height
+    plain = fit_form(surface(tilt + groove + noise), degree=degree).height
     assert np.max(np.abs(plain - tilt)) > 500e-9
 
 
 def test_a_groove_in_a_perfect_plane_leaves_the_plane_exact() -> None:
     tilt = 20e-6 * X - 8e-6 * Y
     groove = np.where(np.abs(X - 0.6) < 0.1, -10e-6 * (1 - ((X - 0.6) / 0.1) ** 2), 0.0)
-    assert np.max(np.abs(form(surface(tilt + groove), robust=True).height - tilt)) < 1e-12
+    assert np.max(np.abs(fit_form(surface(tilt + groove), robust=True).height - tilt)) < 1e-12
 
 
 def test_without_outliers_the_robust_form_is_nearly_that_of_least_squares() -> None:
     z = 1e-7 * np.random.default_rng(7).normal(size=X.shape) + 3e-6 * X
-    robust, plain = form(surface(z), robust=True).height, form(surface(z)).height
+    robust, plain = fit_form(surface(z), robust=True).height, fit_form(surface(z)).height
     assert np.max(np.abs(robust - plain)) < 1e-7 * 3 / np.sqrt(X.size)
 
 
 def test_only_the_reference_counts() -> None:
     z = 1e-6 * X + np.where(X > 0.5, 5e-6 * Y, 0.0)
-    shape = form(surface(z), reference=X <= 0.5).height
+    shape = fit_form(surface(z), reference=X <= 0.5).height
     np.testing.assert_allclose(shape, 1e-6 * X, atol=1e-17)
 
 
 def test_a_profile_is_levelled_along_itself() -> None:
     profile = HeightMap(height=np.array([[0.0, 1.0, 2.0, 3.0]]), spacing_x=1e-6, spacing_y=1e-6)
-    np.testing.assert_allclose(level(profile).height, 0, atol=1e-15)
+    np.testing.assert_allclose(remove_form(profile).height, 0, atol=1e-15)
 
 
 def test_missing_pixels_stay_missing_and_have_a_form_all_the_same() -> None:
     z = 1e-6 * X
     z[3, 4] = np.nan
-    assert np.isnan(level(surface(z)).height[3, 4])
-    assert form(surface(z)).height[3, 4] == approx(1e-6 * X[3, 4])
+    assert np.isnan(remove_form(surface(z)).height[3, 4])
+    assert fit_form(surface(z)).height[3, 4] == approx(1e-6 * X[3, 4])
 
 
 @mark.parametrize(
@@ -110,4 +110,4 @@ def test_missing_pixels_stay_missing_and_have_a_form_all_the_same() -> None:
 )
 def test_what_cannot_be_fitted_is_refused(degree: int, reference: np.ndarray | None, said: str) -> None:
     with raises(InvalidInput, match=said):
-        form(surface(X), degree=degree, reference=reference)
+        fit_form(surface(X), degree=degree, reference=reference)

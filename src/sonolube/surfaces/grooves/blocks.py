@@ -9,16 +9,16 @@ from scipy.ndimage import uniform_filter1d
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.surfaces.grooves.field_positions import from_middle, powers
+from sonolube.surfaces.grooves.plane_coordinates import centred_coordinates, monomials
 from sonolube.surfaces.grooves.track import GrooveTrack
 from sonolube.surfaces.height_map import HeightMap
 
 Mask = NDArray[np.bool_]
 
-SHORTEST_WAVE = 1 / 6
+SHORTEST_RELATIVE_WAVELENGTH = 1 / 6
 """Shortest wave of a reference, over the longer side of the field."""
 
-LEAST_HEIGHT = 1e-12
+HEIGHT_RESOLUTION = 1e-12
 """No instrument shows less, in m."""
 
 _BOX = 1.5  # period of the modes over the field: a wave of any length lies near one
@@ -32,7 +32,7 @@ _DEVIATION_OVER_MEDIAN = 1.4826  # of Gaussian heights
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class WornBlocks:
+class BlockAverages:
     """Means of a scan over small squares.
 
     Parameters
@@ -79,16 +79,18 @@ class WornBlocks:
     @property
     def spread(self) -> float:
         """Standard deviation of the unworn blocks. [m]"""
-        return max(float(np.std(self.mean_height[: self.unworn])), LEAST_HEIGHT)
+        return max(float(np.std(self.mean_height[: self.unworn])), HEIGHT_RESOLUTION)
 
     def modes(self) -> Floats:
         """Return the waves of a box around the field, one of each pair k and -k, in waves per metre, shape (n, 2)."""
         longer = self.longer_side
         box_x, box_y = (_BOX * length for length in self.field)
-        reach_x, reach_y = (int(box / (SHORTEST_WAVE * longer)) for box in (box_x, box_y))
+        reach_x, reach_y = (int(box / (SHORTEST_RELATIVE_WAVELENGTH * longer)) for box in (box_x, box_y))
         i, j = (part.ravel() for part in np.meshgrid(np.arange(reach_x + 1), np.arange(-reach_y, reach_y + 1)))
         modes = np.stack([i / box_x, j / box_y], axis=1)
-        return np.asarray(modes[((i > 0) | (j > 0)) & (np.hypot(*modes.T) <= 1 / (SHORTEST_WAVE * longer))])
+        return np.asarray(
+            modes[((i > 0) | (j > 0)) & (np.hypot(*modes.T) <= 1 / (SHORTEST_RELATIVE_WAVELENGTH * longer))]
+        )
 
     def waves(self, modes: Floats) -> tuple[Floats, Floats]:
         """Return cosine and sine of each mode in the middle of each block, both of shape (blocks, modes)."""
@@ -98,9 +100,9 @@ class WornBlocks:
     def form(self, terms: int) -> Floats:
         """Return the first powers of position over half the longer side, shape (blocks, terms)."""
         half = self.longer_side / 2
-        return np.stack(powers(self.x / half, self.y / half, terms), axis=1)
+        return np.stack(monomials(self.x / half, self.y / half, terms), axis=1)
 
-    def without_groove(self) -> "WornBlocks":
+    def without_groove(self) -> "BlockAverages":
         """Return the blocks as if nothing were worn."""
         return replace(
             self,
@@ -111,9 +113,9 @@ class WornBlocks:
         )
 
 
-def worn_blocks(
+def block_averages(
     surface: HeightMap, *, track: GrooveTrack, worn_band: tuple[float, float], left_out: Mask | None = None
-) -> WornBlocks:
+) -> BlockAverages:
     """Return the scan in blocks.
 
     Parameters
@@ -138,7 +140,7 @@ def worn_blocks(
     rows, columns = surface.height.shape
     field = (columns * surface.spacing_x, rows * surface.spacing_y)
     longer = max(field)
-    across, along = track.across_and_along(surface)
+    across, along = track.curvilinear_coordinates(surface)
     counted = surface.measured if left_out is None else surface.measured & ~left_out
     inside = (across > worn_band[0]) & (across < worn_band[1])
     worn = counted & inside
@@ -149,7 +151,7 @@ def worn_blocks(
         section[worn] = means[0]
         turned[worn] = -slope * (ahead - means[1])
         bent[worn] = -slope * (ahead**2 / 2 - means[2])
-    x, y = from_middle(surface)
+    x, y = centred_coordinates(surface)
     fields = (x, y, surface.height - section, section, across, turned, bent, along)
     edges = _edges(surface, longer / _BLOCKS)
     unworn, groove = (_means(fields, mask, edges) for mask in (counted & ~inside, worn))
@@ -164,7 +166,7 @@ def worn_blocks(
             [_hats(groove[4], _KNOT * longer), _uneven(groove[3], groove[7] / longer), groove[5:7].T]
         )
     both = np.concatenate([unworn, groove], axis=1)
-    return WornBlocks(
+    return BlockAverages(
         x=both[0],
         y=both[1],
         mean_height=both[2],

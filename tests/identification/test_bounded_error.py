@@ -43,7 +43,7 @@ def test_what_the_facts_determine_is_recovered() -> None:
     values = [estimate.value for estimate in found.estimates.values()]
     assert values == approx([MASS, STIFFNESS, DAMPING], rel=1e-4)
     assert found.conflicts == ()
-    assert found.free_directions == ()
+    assert found.unidentifiable_directions == ()
 
 
 def test_intervals_are_those_of_error_propagation_by_extremes() -> None:
@@ -57,7 +57,7 @@ def test_intervals_are_those_of_error_propagation_by_extremes() -> None:
 
 def test_a_frequency_alone_leaves_mass_and_stiffness_free_in_proportion() -> None:
     found = identified(fact("rate"))
-    free = np.array([list(direction.exponents.values()) for direction in found.free_directions])
+    free = np.array([list(direction.exponents.values()) for direction in found.unidentifiable_directions])
     assert len(free) == 2
     # both the common scale of mass and stiffness, and damping, lie in the free plane
     for wanted in (np.array([1, 1, 0]) / math.sqrt(2), np.array([0, 0, 1])):
@@ -77,11 +77,11 @@ def test_facts_that_contradict_each_other_are_named_and_rank_decides() -> None:
     wrong = fact("half_rate", 50.0, rank=2)  # the rate is 50/s, so half of it is not
     found = identified(wrong, fact("rate"), fact("weight"))
     assert found.conflicts == (frozenset({"rate", "half_rate"}),)
-    assert found.kept == {"rate", "weight"}
-    assert [reading.kept for reading in found.readings] == [{"rate", "weight"}, {"half_rate", "weight"}]
-    assert found.readings[0].misses["half_rate"] == approx(-50, rel=1e-2)
-    assert found.rest_holds_without("rate")
-    assert not found.rest_holds_without("weight")
+    assert found.satisfied == {"rate", "weight"}
+    assert [reading.satisfied for reading in found.consistent_fits] == [{"rate", "weight"}, {"half_rate", "weight"}]
+    assert found.consistent_fits[0].residuals["half_rate"] == approx(-50, rel=1e-2)
+    assert found.is_consistent_without("rate")
+    assert not found.is_consistent_without("weight")
     assert found.estimates["arm_stiffness"].value == approx(STIFFNESS, rel=1e-3)
 
 
@@ -89,7 +89,7 @@ def test_three_facts_can_clash_though_any_two_hold() -> None:
     # sqrt(k m) and m fix the rate to half of what is asked
     found = identified(fact("impedance"), fact("weight"), fact("rate", 100.0))
     assert found.conflicts == (frozenset({"impedance", "weight", "rate"}),)
-    assert {reading.kept for reading in found.readings} == {
+    assert {reading.satisfied for reading in found.consistent_fits} == {
         frozenset({"impedance", "weight"}),
         frozenset({"impedance", "rate"}),
         frozenset({"weight", "rate"}),

@@ -7,10 +7,10 @@ import numpy as np
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive, require_within
 from sonolube.errors import InvalidInput
-from sonolube.surfaces.generated import SingleScaleSpectrum, gaussian_surface
-from sonolube.surfaces.grooves.field_positions import from_middle
+from sonolube.surfaces.grooves.plane_coordinates import centred_coordinates
 from sonolube.surfaces.grooves.track import GrooveTrack
 from sonolube.surfaces.height_map import HeightMap
+from sonolube.surfaces.random_surface import GaussianCorrelationSpectrum, gaussian_surface
 
 _PIXELS_TO_CORRELATION = 2.0  # the roughness is as fine as the pixels show
 
@@ -129,7 +129,7 @@ class ScannedField:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class GeneratedGroove:
+class SyntheticGroove:
     """A worn scan of which everything is known.
 
     Parameters
@@ -150,9 +150,9 @@ class GeneratedGroove:
     pile_up_volume: float
 
 
-def generated_groove(
+def synthetic_groove(
     shape: GrooveShape, *, track: GrooveTrack, seed: int, field: ScannedField | None = None
-) -> GeneratedGroove:
+) -> SyntheticGroove:
     """Return a scan with a groove of known volume.
 
     Parameters
@@ -181,14 +181,14 @@ def generated_groove(
     unworn = HeightMap(
         height=_plane(field, rng) + _wave(field, rng), spacing_x=field.spacing_x, spacing_y=field.spacing_y
     )
-    across, along = track.across_and_along(unworn)
+    across, along = track.curvilinear_coordinates(unworn)
     depth, ridge = shape.depth_at(across, along), shape.ridge_at(across)
     height = unworn.height - depth + ridge
     if field.rms_height:
         height += _roughness(field, seed)
     height[rng.random(height.shape) < field.missing_fraction] = np.nan
     pixel = field.spacing_x * field.spacing_y
-    return GeneratedGroove(
+    return SyntheticGroove(
         scan=unworn.with_height(height),
         unworn=unworn,
         wear_volume=float(depth.sum()) * pixel,
@@ -198,7 +198,7 @@ def generated_groove(
 
 def _positions(field: ScannedField) -> tuple[Floats, Floats]:
     flat = HeightMap(height=np.zeros(field.field_shape), spacing_x=field.spacing_x, spacing_y=field.spacing_y)
-    return from_middle(flat)
+    return centred_coordinates(flat)
 
 
 def _plane(field: ScannedField, rng: np.random.Generator) -> Floats:
@@ -219,7 +219,7 @@ def _roughness(field: ScannedField, seed: int) -> Floats:
     length = _PIXELS_TO_CORRELATION * max(field.spacing_x, field.spacing_y)
     return gaussian_surface(
         rms_height=require_finite(rms_height=field.rms_height).item(),
-        spectrum=SingleScaleSpectrum(correlation_length=length),
+        spectrum=GaussianCorrelationSpectrum(correlation_length=length),
         shape=field.field_shape,
         spacing_x=field.spacing_x,
         spacing_y=field.spacing_y,

@@ -24,7 +24,9 @@ _SETTLED = 1e-4  # change of the form, over the scale of what remains
 _FLAT = 1e-9  # of the range of heights: what remains is no smaller
 
 
-def form(height_map: HeightMap, *, degree: int = 1, robust: bool = False, reference: Mask | None = None) -> HeightMap:
+def fit_form(
+    height_map: HeightMap, *, degree: int = 1, robust: bool = False, reference: Mask | None = None
+) -> HeightMap:
     """Fit a polynomial to the heights by least squares.
 
     Parameters
@@ -41,7 +43,7 @@ def form(height_map: HeightMap, *, degree: int = 1, robust: bool = False, refere
     Returns
     -------
     HeightMap
-        The form, at missing pixels too; subtract it, or let `level` do so.
+        The form, at missing pixels too; subtract it, or let `remove_form` do so.
 
     Raises
     ------
@@ -74,7 +76,9 @@ def form(height_map: HeightMap, *, degree: int = 1, robust: bool = False, refere
     return height_map.with_height(_values(basis, coefficients) + middle)
 
 
-def level(height_map: HeightMap, *, degree: int = 1, robust: bool = False, reference: Mask | None = None) -> HeightMap:
+def remove_form(
+    height_map: HeightMap, *, degree: int = 1, robust: bool = False, reference: Mask | None = None
+) -> HeightMap:
     """Take the form off the heights, which then lie about zero.
 
     Parameters
@@ -91,18 +95,18 @@ def level(height_map: HeightMap, *, degree: int = 1, robust: bool = False, refer
     Returns
     -------
     HeightMap
-        The heights less their `form`.
+        The heights less their `fit_form`.
 
     Raises
     ------
     InvalidInput
-        As `form`.
+        As `fit_form`.
 
     Notes
     -----
     Heights are subtracted, the surface is not turned: right to a part in a thousand for tilts to 2.5 degrees.
     """
-    removed = form(height_map, degree=degree, robust=robust, reference=reference)
+    removed = fit_form(height_map, degree=degree, robust=robust, reference=reference)
     return height_map.with_height(height_map.height - removed.height)
 
 
