@@ -1,4 +1,4 @@
-"""Identification of a single oscillator, whose every answer is known in closed form."""
+"""Bounded-error identification of a single oscillator, whose results are known in closed form."""
 
 import math
 from collections.abc import Mapping
@@ -38,7 +38,7 @@ def identified(*facts: Fact, seed: int = 0) -> Identification:
     return identify(oscillator, facts=facts, bounds=BOUNDS, seed=seed)
 
 
-def test_what_the_facts_determine_is_recovered() -> None:
+def test_parameters_that_the_facts_determine_are_recovered() -> None:
     found = identified(fact("rate"), fact("quality"), fact("weight"))
     values = [estimate.value for estimate in found.estimates.values()]
     assert values == approx([MASS, STIFFNESS, DAMPING], rel=1e-4)
@@ -46,7 +46,7 @@ def test_what_the_facts_determine_is_recovered() -> None:
     assert found.unidentifiable_directions == ()
 
 
-def test_intervals_are_those_of_error_propagation_by_extremes() -> None:
+def test_feasible_intervals_are_those_of_worst_case_error_propagation() -> None:
     # k = m omega^2: extremes at the ends of both tolerances
     stiffness = identified(fact("rate"), fact("quality"), fact("weight")).estimates["arm_stiffness"]
     assert stiffness.lower == approx(STIFFNESS * 0.99**3, rel=2e-3)
@@ -55,7 +55,7 @@ def test_intervals_are_those_of_error_propagation_by_extremes() -> None:
     assert not stiffness.upper_is_bound
 
 
-def test_a_frequency_alone_leaves_mass_and_stiffness_free_in_proportion() -> None:
+def test_a_frequency_alone_determines_only_the_ratio_of_stiffness_to_mass() -> None:
     found = identified(fact("rate"))
     free = np.array([list(direction.exponents.values()) for direction in found.unidentifiable_directions])
     assert len(free) == 2
@@ -69,41 +69,41 @@ def test_a_frequency_alone_leaves_mass_and_stiffness_free_in_proportion() -> Non
     )
 
 
-def test_what_no_fact_settles_stays_at_the_middle_of_its_bounds() -> None:
+def test_a_parameter_that_no_fact_determines_stays_at_the_middle_of_its_bounds() -> None:
     assert identified(fact("rate")).estimates["arm_damping"].value == approx(1.0, rel=1e-2)
 
 
-def test_facts_that_contradict_each_other_are_named_and_rank_decides() -> None:
+def test_contradicting_facts_are_named_and_the_rank_decides() -> None:
     wrong = fact("half_rate", 50.0, rank=2)  # the rate is 50/s, so half of it is not
     found = identified(wrong, fact("rate"), fact("weight"))
     assert found.conflicts == (frozenset({"rate", "half_rate"}),)
     assert found.satisfied == {"rate", "weight"}
-    assert [reading.satisfied for reading in found.consistent_fits] == [{"rate", "weight"}, {"half_rate", "weight"}]
+    assert [fit.satisfied for fit in found.consistent_fits] == [{"rate", "weight"}, {"half_rate", "weight"}]
     assert found.consistent_fits[0].residuals["half_rate"] == approx(-50, rel=1e-2)
     assert found.is_consistent_without("rate")
     assert not found.is_consistent_without("weight")
     assert found.estimates["arm_stiffness"].value == approx(STIFFNESS, rel=1e-3)
 
 
-def test_three_facts_can_clash_though_any_two_hold() -> None:
-    # sqrt(k m) and m fix the rate to half of what is asked
+def test_three_facts_can_be_inconsistent_though_any_two_are_consistent() -> None:
+    # sqrt(k m) and m fix the rate to half of the stated one
     found = identified(fact("impedance"), fact("weight"), fact("rate", 100.0))
     assert found.conflicts == (frozenset({"impedance", "weight", "rate"}),)
-    assert {reading.satisfied for reading in found.consistent_fits} == {
+    assert {fit.satisfied for fit in found.consistent_fits} == {
         frozenset({"impedance", "weight"}),
         frozenset({"impedance", "rate"}),
         frozenset({"weight", "rate"}),
     }
 
 
-def test_a_limit_ends_an_interval() -> None:
+def test_a_limit_ends_a_feasible_interval() -> None:
     light = Fact(name="weight", value=5.0, tolerance=0.1, rank=1, relation="<=")
     found = identified(fact("rate"), fact("quality"), light)
     assert found.estimates["tip_mass"].upper == approx(5.1, rel=1e-2)
     assert found.conflicts == ()
 
 
-def test_the_same_seed_gives_the_same_answer_and_another_agrees() -> None:
+def test_the_same_seed_gives_the_same_result_and_another_agrees() -> None:
     facts = fact("rate"), fact("weight"), fact("half_rate", 50.0)
     assert identified(*facts, seed=3) == identified(*facts, seed=3)
     other = identified(*facts, seed=4)
@@ -111,19 +111,19 @@ def test_the_same_seed_gives_the_same_answer_and_another_agrees() -> None:
     assert other.estimates["arm_stiffness"].value == approx(STIFFNESS, rel=1e-3)
 
 
-def test_a_fact_beyond_every_system_is_refused() -> None:
-    with raises(InvalidInput, match="fact weight cannot be met by any parameters within the bounds"):
+def test_a_fact_that_no_parameters_satisfy_is_refused() -> None:
+    with raises(InvalidInput, match="fact weight cannot be satisfied by any parameters within the bounds"):
         identified(fact("rate"), fact("weight", 50.0))
 
 
-def test_no_facts_or_one_twice_are_refused() -> None:
+def test_no_facts_or_two_of_one_name_are_refused() -> None:
     with raises(InvalidInput, match="facts must not be empty"):
         identified()
     with raises(InvalidInput, match="facts must differ in name, got rate twice"):
         identified(fact("rate"), fact("rate"))
 
 
-def test_a_fact_of_nothing_observed_is_refused_before_any_search() -> None:
+def test_a_fact_of_an_unknown_observable_is_refused_before_any_search() -> None:
     with raises(UnknownName, match="unknown observable 'colour'"):
         identified(Fact(name="colour", value=1.0, tolerance=0.1, rank=1))
 

@@ -1,4 +1,4 @@
-"""Draws of a posterior against problems whose posterior is known exactly."""
+"""Posterior samples against problems whose posterior is known exactly."""
 
 from collections.abc import Mapping
 
@@ -43,15 +43,15 @@ def test_the_posterior_of_a_linear_problem_is_the_exact_normal() -> None:
     assert found.has_converged
 
 
-def test_what_no_fact_settles_stays_as_wide_as_its_bounds() -> None:
+def test_a_parameter_that_no_fact_determines_keeps_its_prior() -> None:
     found = posterior(observe, facts=facts(), bounds=BOUNDS, seed=1)
-    assert found.free == ("c",)
+    assert found.unidentified == ("c",)
     shares = np.log(found.draws["c"] / 0.1) / np.log(100)
     assert 0 <= shares.min() < shares.max() <= 1
     assert stats.kstest(shares, "uniform").statistic < 0.08
 
 
-def test_a_limit_cuts_off_and_costs_nothing_where_it_is_kept() -> None:
+def test_a_limit_truncates_the_prior_and_leaves_it_unchanged_elsewhere() -> None:
     at_most = Fact(name="sum", value=50.0, tolerance=1e-3, rank=1, relation="<=")
     found = posterior(observe, facts=[at_most], bounds=BOUNDS)
     total = np.log(found.draws["a"] * found.draws["b"])
@@ -61,24 +61,24 @@ def test_a_limit_cuts_off_and_costs_nothing_where_it_is_kept() -> None:
     assert total.mean() == approx(-width / 3, rel=0.05)
 
 
-def test_draws_of_one_place_belong_together() -> None:
+def test_samples_of_one_index_belong_together() -> None:
     found = posterior(observe, facts=facts(), bounds=BOUNDS)
     total = np.log(found.draws["a"] * found.draws["b"])
     assert total.std() == approx(TOLERANCES[0], rel=0.15)
     assert np.log(found.draws["a"]).std() > 5 * TOLERANCES[0]
 
 
-def test_the_same_seed_draws_the_same() -> None:
+def test_the_same_seed_gives_the_same_samples() -> None:
     one, other = (posterior(observe, facts=facts(), bounds=BOUNDS, draws=256, seed=3) for _ in range(2))
     assert np.array_equal(one.draws["a"], other.draws["a"])
 
 
-@pytest.mark.parametrize(("draws", "said"), [(255, "multiple of 4"), (64, "at least 256")])
-def test_too_few_draws_are_refused(draws: int, said: str) -> None:
-    with raises(InvalidInput, match=said):
+@pytest.mark.parametrize(("draws", "message"), [(255, "multiple of 4"), (64, "at least 256")])
+def test_too_few_or_unequal_draws_are_refused(draws: int, message: str) -> None:
+    with raises(InvalidInput, match=message):
         posterior(observe, facts=facts(), bounds=BOUNDS, draws=draws)
 
 
-def test_nothing_known_is_refused() -> None:
+def test_no_facts_are_refused() -> None:
     with raises(InvalidInput, match=r"facts must not be empty"):
         posterior(observe, facts=[], bounds=BOUNDS)

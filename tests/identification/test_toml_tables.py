@@ -1,7 +1,9 @@
-"""An identification as tables of a rig file."""
+"""Identified parameters as tables of a rig file."""
 
+import re
 import tomllib
 from collections.abc import Mapping
+from dataclasses import replace
 
 import pytest
 from pytest import approx
@@ -32,7 +34,7 @@ def found() -> Identification:
     return identify(masses, facts=facts, bounds=bounds)
 
 
-def test_tables_hold_what_was_identified_and_the_stack(found: Identification) -> None:
+def test_tables_hold_the_estimates_and_the_stack(found: Identification) -> None:
     tables = tomllib.loads(rig_tables(found, STACK))
     assert set(tables) == {"stack", "structure"}
     read = {
@@ -44,10 +46,35 @@ def test_tables_hold_what_was_identified_and_the_stack(found: Identification) ->
         assert read[name] == approx(getattr(STACK, name))
 
 
-def test_comments_tell_how_each_fact_fares_and_what_stays_free(found: Identification) -> None:
+def test_comments_state_residuals_conflicts_and_undetermined_directions(found: Identification) -> None:
     text = rig_tables(found, STACK)
-    assert "# - sum: 0.5 kg for 0.5 kg +- 0.01 kg, kept at" in text
-    assert "given up at -200.00 tolerances; rank 2, hearsay" in text
-    assert "# Not to be had together: sum, double." in text
+    assert "# - sum: 0.5 kg for 0.5 kg +- 0.01 kg, satisfied at" in text
+    assert "rejected at -200.00 tolerances; rank 2, hearsay" in text
+    assert "# Mutually inconsistent: sum, double." in text
     assert "# not limited by any fact from 1000 N/m to 1e+06 N/m" in text
-    assert "# Left free to a factor of e and more: " in text
+    assert "# Not determined within a factor of e: " in text
+
+
+def test_entries_that_were_not_identified_keep_their_values_in_their_order(found: Identification) -> None:
+    stiff = replace(STACK, preload=800.0, stack_stiffness=2.123456789e9)
+    structure = {"tip_damping": 1 / 3, "tip_mass": 9.0, "reaction_mass": 9.0, "arm_stiffness": 9.0}
+    tables = tomllib.loads(rig_tables(found, stiff, structure=structure))
+    assert list(tables["structure"]) == list(structure)
+    assert to_si(tables["structure"]["tip_damping"], unit="N s/m", name="") == approx(1 / 3, rel=1e-11)
+    assert to_si(tables["structure"]["tip_mass"], unit="kg", name="") == approx(
+        found.estimates["tip_mass"].value, rel=1e-4
+    )
+    assert to_si(tables["stack"]["stack_stiffness"], unit="N/m", name="") == approx(2.123456789e9, rel=1e-11)
+    assert tables["stack"]["preload"] == "800 N"
+
+
+def test_an_identified_entry_of_the_stack_stands_in_its_table_with_its_interval() -> None:
+    facts = [Fact(name="stiffness", value=1.5e9, tolerance=1e7, rank=1, unit="N/m", source="pull test")]
+    found = identify(
+        lambda parameters: {"stiffness": parameters["stack_stiffness"]},
+        facts=facts,
+        bounds={"stack_stiffness": (1e8, 1e10)},
+    )
+    text = rig_tables(found, STACK, structure={"tip_mass": 0.1})
+    assert re.search(r'^stack_stiffness = "1.5e\+09 N/m"  # 1.490\de\+09 N/m to 1.509\de\+09 N/m$', text, re.MULTILINE)
+    assert set(tomllib.loads(text)["structure"]) == {"tip_mass"}

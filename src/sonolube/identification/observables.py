@@ -157,7 +157,7 @@ def observable_named(name: str) -> Observable:
     if name in OBSERVABLES:
         return OBSERVABLES[name]
     stem, _, number = name.rpartition("_")
-    if stem in NUMBERED_OBSERVABLES and number.isascii() and number.isdigit() and 1 <= int(number[:4]) == int(number):
+    if stem in NUMBERED_OBSERVABLES and number.isascii() and number.isdigit() and len(number) < 4 and int(number) > 0:
         return NUMBERED_OBSERVABLES[stem](int(number))
     known = [*OBSERVABLES, *(f"{stem}_1" for stem in NUMBERED_OBSERVABLES)]
     raise UnknownName.among(known, kind="observable", name=name)
