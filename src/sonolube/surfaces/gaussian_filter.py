@@ -1,7 +1,8 @@
-"""Gaussian filters after ISO 16610: waviness from roughness, on maps and profiles, past edges and missing pixels.
+"""Gaussian regression filters of ISO 16610 for height maps and profiles with edges and missing pixels.
 
-In the words of ISO 25178-3 a low pass that takes off the shortest wavelengths is the S-filter, a high pass that takes
-off the longest the L-filter, and what lies between both the S-L surface, on which roughness is evaluated.
+In terms of ISO 25178-3, a low pass that removes the shortest wavelengths is the S-filter, a high pass that removes the
+longest is the L-filter, their cutoffs are the nesting indices, and the band between both is the S-L surface, on which
+roughness is evaluated.
 """
 
 import math
@@ -12,34 +13,34 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput, ModelRangeWarning, OutsideRange
-from sonolube.surfaces.height_map import HeightMap
+from sonolube.surfaces.height_map import HeightMap, Mask
 from sonolube.surfaces.local_regression import Widths, local_regression
 
-# Width of the weight over the cutoff, such that half of the amplitude passes there.
+# Width of the weight over the cutoff, such that half of the amplitude is transmitted at the cutoff.
 _WIDTH_OVER_CUTOFF = {
     0: math.sqrt(math.log(2) / math.pi),  # alpha of ISO 16610-21: transmission exp(-u), u = pi (alpha lc/l)^2
     2: 0.7309134280946760,  # gamma of ISO 16610-31: transmission (1 + u) exp(-u), half where u = 1.67834699
 }
-_LEAST_PIXELS = 5  # to the cutoff (ISO 25178-3, table 1)
-_BISQUARE_REACH = 4.4478  # medians of the distance, three standard deviations (ISO 16610-31)
-_MOST_ROUNDS = 50
-_SETTLED = 1e-3
+_LEAST_PIXELS = 5  # per cutoff (ISO 25178-3, table 1)
+_BISQUARE_REACH = 4.4478  # medians of the absolute residuals, three standard deviations (ISO 16610-31)
+_MOST_ITERATIONS = 50
+_CONVERGED = 1e-3  # relative change of the scale
 
 
-def low_pass(height_map: HeightMap, *, cutoff_length: float, order: int = 0, robust: bool = False) -> HeightMap:
-    """Keep the waviness: wavelengths longer than the cutoff (as S-filter: all but the noise).
+def low_pass(surface: HeightMap, *, cutoff_length: float, order: int = 0, robust: bool = False) -> HeightMap:
+    r"""Low-pass (waviness or S-filtered) surface by an areal Gaussian regression filter of ISO 16610.
 
     Parameters
     ----------
-    height_map : HeightMap
-        The surface; take its form off first (`level`). Missing pixels weigh nothing and stay missing.
+    surface : HeightMap
+        Surface with its form removed (`remove_form`). Missing pixels have weight zero and stay missing.
     cutoff_length : float
-        Wavelength of which half the amplitude passes; five pixels at the least. [m]
+        Nesting index: wavelength at which half the amplitude is transmitted, five pixels or more. [m]
     order : int
-        Of the regression: 0, the Gaussian filter of ISO 16610-61; 2, which follows slopes and curvature up to the
-        edges.
+        Order of the regression: 0, the Gaussian filter of ISO 16610-61, or 2, which reproduces slopes and curvature up
+        to the edges.
     robust : bool
-        Whether pixels far from the waviness lose their weight (ISO 16610-71), so that a groove does not pull it down.
+        Whether pixels far from the waviness lose weight (ISO 16610-71), so that a groove does not distort it.
 
     Returns
     -------
@@ -52,73 +53,83 @@ def low_pass(height_map: HeightMap, *, cutoff_length: float, order: int = 0, rob
     InvalidInput
         If the cutoff is not positive or the order neither 0 nor 2.
 
+    See Also
+    --------
+    high_pass, band_pass, profile_low_pass : L-filter, S-L surface, and the filter for profiles.
+
     Notes
     -----
-    A wave of length l along any direction passes with exp(-u) at order 0 and (1 + u) exp(-u) at order 2, where
-    u = pi (c cutoff/l)**2 and c = 0.4697 or 0.7309 makes it one half at the cutoff. Within one cutoff of an edge
-    order 0 bends towards the mean; it keeps constants exactly, order 2 every paraboloid. The robust filter weighs by
-    Tukey's bisquare at three standard deviations until the scale rests; order 2 is the standard's choice for it.
+    Away from edges the transmission at the wavelength :math:`\lambda` in any direction is
+
+    .. math:: e^{-u} \ \text{(order 0)}, \qquad (1 + u)\, e^{-u} \ \text{(order 2)}, \qquad
+        u = \pi \left(\frac{c \lambda_c}{\lambda}\right)^2 ,
+
+    with :math:`c = 0.4697` or :math:`0.7309`, which make it one half at the cutoff :math:`\lambda_c`. Order 0
+    reproduces constants exactly and deviates towards the mean within one cutoff of an edge; order 2 reproduces every
+    paraboloid.
+    The robust filter weighs residuals by Tukey's bisquare at three standard deviations, iterated until the scale
+    converges; the standard uses it with order 2.
 
     References
     ----------
     .. [1] ISO 16610-61:2015 and ISO 16610-71:2014, areal Gaussian and robust Gaussian regression filters.
     .. [2] S. Brinkmann et al., Int. J. Mach. Tools Manuf. 41, 2153 (2001). doi:10.1016/S0890-6955(01)00082-7
-    .. [3] D 4.1.3, where the waviness of plates is told from their roughness.
+    .. [3] D 4.1.3, where waviness and roughness of plates are separated.
     """
-    widths = _widths(order, cutoff_length, spacing_x=height_map.spacing_x, spacing_y=height_map.spacing_y)
-    return height_map.with_height(_smooth(height_map.height, widths, order=order, robust=robust))
+    widths = _widths(order, cutoff_length, spacing_x=surface.spacing_x, spacing_y=surface.spacing_y)
+    return surface.with_height(_smooth(surface.height, widths, order=order, robust=robust))
 
 
-def high_pass(height_map: HeightMap, *, cutoff_length: float, order: int = 0, robust: bool = False) -> HeightMap:
-    """Keep the roughness: wavelengths shorter than the cutoff (the L-filter).
+def high_pass(surface: HeightMap, *, cutoff_length: float, order: int = 0, robust: bool = False) -> HeightMap:
+    """High-pass (roughness) surface: the surface less its low pass (L-filter).
 
     Parameters
     ----------
-    height_map : HeightMap
-        The surface; missing pixels stay missing.
+    surface : HeightMap
+        Missing pixels stay missing.
     cutoff_length : float
-        Wavelength of which half the amplitude passes. [m]
+        Nesting index: wavelength at which half the amplitude is transmitted. [m]
     order : int
-        Of the regression, 0 or 2.
+        Order of the regression, 0 or 2.
     robust : bool
-        Whether pixels far from the waviness lose their weight, so that a groove keeps its depth.
+        Whether pixels far from the waviness lose weight, so that a groove keeps its depth.
 
     Returns
     -------
     HeightMap
-        The heights less their `low_pass`.
+        Heights less their `low_pass`.
 
     Raises
     ------
     InvalidInput
         As `low_pass`.
     """
-    waviness = low_pass(height_map, cutoff_length=cutoff_length, order=order, robust=robust)
-    return height_map.with_height(height_map.height - waviness.height)
+    waviness = low_pass(surface, cutoff_length=cutoff_length, order=order, robust=robust)
+    return surface.with_height(surface.height - waviness.height)
 
 
 def band_pass(
-    height_map: HeightMap,
+    surface: HeightMap,
     *,
     short_cutoff_length: float,
     long_cutoff_length: float,
     order: int = 0,
     robust: bool = False,
 ) -> HeightMap:
-    """Keep what lies between two cutoffs: the S-L surface, without noise and without waviness.
+    """S-L surface of ISO 25178-3: short wavelengths removed by the S-filter and long ones by the L-filter.
 
     Parameters
     ----------
-    height_map : HeightMap
-        The surface; missing pixels stay missing.
+    surface : HeightMap
+        Missing pixels stay missing.
     short_cutoff_length : float
-        Nesting index of the S-filter: shorter waves are taken off. [m]
+        Nesting index of the S-filter, which removes shorter wavelengths. [m]
     long_cutoff_length : float
-        Nesting index of the L-filter: longer waves are taken off. [m]
+        Nesting index of the L-filter, which removes longer wavelengths. [m]
     order : int
-        Of the regression, 0 or 2.
+        Order of the regressions, 0 or 2.
     robust : bool
-        Whether the L-filter lets pixels far from the waviness lose their weight.
+        Whether pixels far from the waviness lose weight in the L-filter.
 
     Returns
     -------
@@ -135,39 +146,39 @@ def band_pass(
             f"short_cutoff_length {short_cutoff_length:g} m must be less than long_cutoff_length"
             f" {long_cutoff_length:g} m"
         )
-    without_noise = low_pass(height_map, cutoff_length=short_cutoff_length, order=order)
+    without_noise = low_pass(surface, cutoff_length=short_cutoff_length, order=order)
     return high_pass(without_noise, cutoff_length=long_cutoff_length, order=order, robust=robust)
 
 
 def profile_low_pass(
     *, height: ArrayLike, spacing_x: float, cutoff_length: float, order: int = 0, robust: bool = False
 ) -> Floats:
-    """Keep the waviness of profiles.
+    """Low-pass (waviness) profiles by a profile Gaussian regression filter of ISO 16610.
 
     Parameters
     ----------
     height : array_like, shape (..., points)
-        Profiles, each filtered for itself along its last axis; NaN where it was not measured. [m]
+        Profiles, each filtered along the last axis; NaN where not measured. [m]
     spacing_x : float
         Distance of neighbouring points. [m]
     cutoff_length : float
-        Wavelength of which half the amplitude passes; five points at the least. [m]
+        Nesting index: wavelength at which half the amplitude is transmitted, five points or more. [m]
     order : int
-        Of the regression: 0, the Gaussian filter of ISO 16610-21; 2, which follows slopes up to the ends.
+        Order of the regression: 0, the Gaussian filter of ISO 16610-21, or 2, which reproduces slopes up to the ends.
     robust : bool
-        Whether points far from the waviness lose their weight (ISO 16610-31); all profiles share one scale.
+        Whether points far from the waviness lose weight (ISO 16610-31); all profiles share one scale.
 
     Returns
     -------
     ndarray, shape of `height`
-        Subtract it for the roughness.
+        The waviness; subtract it from the profiles for the roughness.
 
     Raises
     ------
     OutsideRange
         If the cutoff is shorter than five points.
     InvalidInput
-        If a spacing or the cutoff is not positive, the order is neither 0 nor 2, or nothing was measured.
+        If the spacing or the cutoff is not positive, the order is neither 0 nor 2, or nothing was measured.
 
     References
     ----------
@@ -176,13 +187,14 @@ def profile_low_pass(
     z = np.asarray(height, dtype=np.float64)
     if z.ndim == 0 or not np.isfinite(z).any() or np.isinf(z).any():
         raise InvalidInput(
-            "height must be an array of profiles, finite or NaN where not measured, and somewhere measured"
+            "height must be an array of profiles with a measured point, finite or NaN where not measured"
         )
     widths = _widths(order, cutoff_length, spacing_x=spacing_x, spacing_y=None)
     return _smooth(z.reshape(-1, z.shape[-1]), widths, order=order, robust=robust).reshape(z.shape)
 
 
 def _widths(order: int, cutoff_length: float, *, spacing_x: float, spacing_y: float | None) -> Widths:
+    """Widths of the Gaussian weight in pixels, for checked order, spacings and cutoff."""
     if order not in _WIDTH_OVER_CUTOFF:
         raise InvalidInput(f"order must be 0 or 2, got {order!r}")
     coarsest = float(require_positive(spacing_x=spacing_x))
@@ -191,38 +203,38 @@ def _widths(order: int, cutoff_length: float, *, spacing_x: float, spacing_y: fl
     require_positive(cutoff_length=cutoff_length)
     if cutoff_length < _LEAST_PIXELS * coarsest * (1 - 1e-9):
         raise OutsideRange(
-            f"cutoff_length {cutoff_length:g} m is shorter than {_LEAST_PIXELS} pixels of {coarsest:g} m:"
-            " they cannot show the wave that it halves"
+            f"cutoff_length must be at least {_LEAST_PIXELS} pixels of {coarsest:g} m, which resolve a wave of that"
+            f" length; got {cutoff_length:g} m"
         )
     width = _WIDTH_OVER_CUTOFF[order] * cutoff_length
     return (None if spacing_y is None else width / spacing_y, width / spacing_x)
 
 
 def _smooth(height: Floats, widths: Widths, *, order: int, robust: bool) -> Floats:
+    """Filtered heights, NaN where missing."""
     measured = np.isfinite(height)
-    middle = float(np.mean(height[measured]))  # taken off and added again: constants pass to the last digit
-    z = np.where(measured, height - middle, 0.0)
+    mean = float(np.mean(height[measured]))  # subtracted and added again, so that constants are reproduced exactly
+    z = np.where(measured, height - mean, 0.0)
     weights = measured.astype(np.float64)
     smooth = local_regression(z, weights, widths=widths, order=order)
     if robust:
-        smooth = _robust(z, measured, smooth, widths, order)
-    return np.where(measured, smooth + middle, np.nan)
+        smooth = _robust_smooth(z, measured, smooth, widths, order)
+    return np.where(measured, smooth + mean, np.nan)
 
 
-def _robust(
-    z: Floats, measured: np.ndarray[tuple[int, ...], np.dtype[np.bool_]], smooth: Floats, widths: Widths, order: int
-) -> Floats:
+def _robust_smooth(z: Floats, measured: Mask, smooth: Floats, widths: Widths, order: int) -> Floats:
+    """Robust regression by iteratively reweighted least squares with Tukey's bisquare, from a first smooth."""
     scale = math.inf
-    for _ in range(_MOST_ROUNDS):
-        distance = np.abs(z - smooth)
-        before, scale = scale, _BISQUARE_REACH * float(np.median(distance[measured]))
-        if scale == 0 or abs(before - scale) <= _SETTLED * scale:
+    for _ in range(_MOST_ITERATIONS):
+        residual = np.abs(z - smooth)
+        previous, scale = scale, _BISQUARE_REACH * float(np.median(residual[measured]))
+        if scale == 0 or abs(previous - scale) <= _CONVERGED * scale:
             return smooth
-        weights = measured * np.maximum(0.0, 1 - (distance / scale) ** 2) ** 2
-        again = local_regression(z, weights, widths=widths, order=order)
-        smooth = np.where(np.isfinite(again), again, smooth)  # amid outliers only: as it was
+        weights = measured * np.maximum(0.0, 1 - (residual / scale) ** 2) ** 2
+        refined = local_regression(z, weights, widths=widths, order=order)
+        smooth = np.where(np.isfinite(refined), refined, smooth)  # unchanged where only outliers are within reach
     warnings.warn(
-        ModelRangeWarning(f"the robust filter has not settled in {_MOST_ROUNDS} rounds; its scale still moves"),
+        ModelRangeWarning(f"the robust filter has not converged in {_MOST_ITERATIONS} iterations"),
         stacklevel=4,
     )
     return smooth

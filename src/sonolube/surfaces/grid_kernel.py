@@ -1,4 +1,4 @@
-"""Sums over the pixels of a map, in one pass each; missing pixels count for nothing."""
+"""Compiled sums over the measured pixels of a height map, and its local maxima; missing pixels are NaN."""
 
 import numba
 import numpy as np
@@ -6,13 +6,13 @@ from numpy.typing import NDArray
 
 from sonolube.checks import Floats
 
-__all__: list[str] = []  # of use in this room only
-_LANES = 8  # running extremes side by side, which a vector unit takes at once
+__all__: list[str] = []  # used in this room only
+_LANES = 8  # running extremes side by side, one vector register
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
 def count_sum_and_extremes(height: Floats) -> tuple[int, float, float, float]:
-    """Return how many pixels were measured, and their sum, lowest and highest."""
+    """Number of measured pixels, and sum, minimum and maximum of their heights."""
     rows, columns = height.shape
     lowest = np.full(_LANES, np.inf)
     highest = np.full(_LANES, -np.inf)
@@ -41,7 +41,7 @@ def count_sum_and_extremes(height: Floats) -> tuple[int, float, float, float]:
 
 @numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
 def central_moment_sums(height: Floats, mean: float) -> tuple[float, float, float, float]:
-    """Return the sums of the modulus, square, cube and fourth power of the deviation from `mean`."""
+    """Sums of the absolute value, square, cube and fourth power of the deviation from `mean`."""
     first, second, third, fourth = 0.0, 0.0, 0.0, 0.0
     for row in range(height.shape[0]):
         line = height[row]
@@ -63,9 +63,9 @@ def central_moment_sums(height: Floats, mean: float) -> tuple[float, float, floa
 
 @numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
 def gradient_and_area_sums(height: Floats, spacing_x: float, spacing_y: float) -> tuple[int, float, float]:
-    """Return the number of cells of four measured pixels, and the sums of square slope and excess of area over them.
+    """Number of cells of four measured pixels, and sums over them of squared gradient and excess area.
 
-    Each cell is cut into triangles along either diagonal; the four corners' triangles count a quarter each.
+    Each cell is divided into triangles along either diagonal, which gives four triangles of a quarter weight each.
     """
     per_x, per_y = 1 / spacing_x**2, 1 / spacing_y**2
     cells, squares, excess = 0.0, 0.0, 0.0
@@ -94,7 +94,7 @@ def gradient_and_area_sums(height: Floats, spacing_x: float, spacing_y: float) -
 
 @numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
 def row_difference_sums(height: Floats) -> tuple[float, float, float, float]:
-    """Return count and sum of squares of first, then of second differences of neighbours in a row."""
+    """Number and sum of squares of first differences along rows, then of second differences."""
     firsts, slopes, seconds, bends = 0.0, 0.0, 0.0, 0.0
     for row in range(height.shape[0]):
         z = height[row]
@@ -113,7 +113,7 @@ def row_difference_sums(height: Floats) -> tuple[float, float, float, float]:
 
 @numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
 def column_difference_sums(height: Floats) -> tuple[float, float, float, float]:
-    """Return count and sum of squares of first, then of second differences of neighbours in a column."""
+    """Number and sum of squares of first differences along columns, then of second differences."""
     firsts, slopes, seconds, bends = 0.0, 0.0, 0.0, 0.0
     for row in range(1, height.shape[0]):
         z0, z1 = height[row - 1], height[row]
@@ -133,9 +133,9 @@ def column_difference_sums(height: Floats) -> tuple[float, float, float, float]:
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
 def local_maxima(height: Floats) -> tuple[int, NDArray[np.int64]]:
-    """Return how many pixels have eight measured neighbours, and the flat places of those above all their eight."""
+    """Number of measured pixels with eight measured neighbours, and flat indices of those higher than all eight."""
     rows, columns = height.shape
-    found = np.empty(max(rows * columns // 4 + 1, 1), dtype=np.int64)  # two summits never touch
+    found = np.empty(max(rows * columns // 4 + 1, 1), dtype=np.int64)  # two maxima are never neighbours
     candidates, count = 0, 0
     for row in range(1, rows - 1):
         south, here, north = height[row - 1], height[row], height[row + 1]

@@ -1,4 +1,4 @@
-"""Surfaces made to measure: Gaussian heights of a known spectrum."""
+"""Randomly rough surfaces: Gaussian heights with a given power spectrum, by spectral synthesis."""
 
 import math
 from dataclasses import dataclass
@@ -14,12 +14,17 @@ from sonolube.surfaces.spectrum import SpectralMoments
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GaussianCorrelationSpectrum:
-    """Isotropic spectrum of the autocorrelation exp(-r^2/l^2): hills and valleys of about one size.
+    r"""Isotropic spectrum of the Gaussian autocorrelation exp(-r^2/l^2): asperities of about one size.
 
     Parameters
     ----------
     correlation_length : float
-        Distance l in which the autocorrelation falls to 1/e. [m]
+        Distance l over which the autocorrelation decays to 1/e. [m]
+
+    Notes
+    -----
+    .. math:: C(k) \propto e^{-(\pi l k)^2}, \qquad
+        m_0 = \sigma^2, \quad m_2 = \frac{2\sigma^2}{l^2}, \quad m_4 = \frac{12\sigma^2}{l^4}, \quad \alpha = 3 .
     """
 
     correlation_length: float
@@ -29,21 +34,21 @@ class GaussianCorrelationSpectrum:
 
     @property
     def longest_wavelength(self) -> float:
-        """Longest wave that carries much of the height, as a length a map must hold. [m]"""
+        """Wavelength that a map must contain to represent the spectrum. [m]"""
         return math.pi * self.correlation_length
 
     @property
     def shortest_wavelength(self) -> float:
-        """Wave below which there is less than 1e-4 of the variance. [m]"""
+        """Wavelength below which the spectrum has less than 1e-4 of the variance. [m]"""
         return self.correlation_length
 
     def relative_spectral_density(self, *, wavenumber: Floats) -> Floats:
-        """Return the areal density up to a factor.
+        """Areal power spectral density up to a factor.
 
         Parameters
         ----------
         wavenumber : ndarray, any shape
-            Waves per length. [1/m]
+            Wavenumber, in waves per length. [1/m]
 
         Returns
         -------
@@ -52,7 +57,7 @@ class GaussianCorrelationSpectrum:
         return np.asarray(np.exp(-np.square(math.pi * self.correlation_length * wavenumber)))
 
     def moments(self, *, rms_height: float) -> SpectralMoments:
-        """Return the spectral moments in closed form.
+        """Spectral moments m0, m2 and m4 in closed form.
 
         Parameters
         ----------
@@ -74,26 +79,31 @@ class GaussianCorrelationSpectrum:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SelfAffineSpectrum:
-    """Isotropic spectrum that falls as a power of the wavenumber, as of ground, worn and fractured surfaces.
-
-    The density is constant from the longest wavelength to the roll-off, falls as k^(-2 - 2H) to the shortest
-    wavelength, and is zero outside.
+    r"""Isotropic self-affine spectrum with roll-off, as of ground, worn and fractured surfaces.
 
     Parameters
     ----------
     hurst_exponent : float
-        H, between 0 and 1; the smaller, the more of the height lies in short waves. []
+        Hurst exponent H, between 0 and 1; the smaller, the rougher at short wavelengths. []
     longest_wavelength : float
-        Longest wavelength. [m]
+        Longest wavelength of the spectrum. [m]
     rolloff_wavelength : float
-        Wavelength above which the density is constant. [m]
+        Roll-off wavelength, above which the density is constant. [m]
     shortest_wavelength : float
-        Shortest wavelength. [m]
+        Shortest wavelength of the spectrum. [m]
 
     Raises
     ------
     InvalidInput
-        If a value is out of range or the wavelengths are not in falling order.
+        If a value is out of range or the wavelengths are not in descending order.
+
+    Notes
+    -----
+    With the wavenumbers :math:`k_L < k_r < k_s` of the three wavelengths
+
+    .. math:: C(k) \propto \begin{cases} 1 & k_L \le k \le k_r \\ (k/k_r)^{-2 - 2H} & k_r < k \le k_s \end{cases}
+
+    and zero elsewhere.
 
     References
     ----------
@@ -114,28 +124,28 @@ class SelfAffineSpectrum:
         )
         if not self.longest_wavelength >= self.rolloff_wavelength > self.shortest_wavelength:
             raise InvalidInput(
-                "longest_wavelength, rolloff_wavelength and shortest_wavelength must fall in this order, got "
+                "longest_wavelength, rolloff_wavelength and shortest_wavelength must be in descending order, got "
                 f"{self.longest_wavelength!r} m, {self.rolloff_wavelength!r} m and {self.shortest_wavelength!r} m"
             )
 
     def relative_spectral_density(self, *, wavenumber: Floats) -> Floats:
-        """Return the areal density over that below the roll-off.
+        """Areal power spectral density over that below the roll-off.
 
         Parameters
         ----------
         wavenumber : ndarray, any shape
-            Waves per length. [1/m]
+            Wavenumber, in waves per length. [1/m]
 
         Returns
         -------
         ndarray, shape of `wavenumber`
         """
-        rolled = np.maximum(wavenumber * self.rolloff_wavelength, 1.0) ** (-2 - 2 * self.hurst_exponent)
+        density = np.maximum(wavenumber * self.rolloff_wavelength, 1.0) ** (-2 - 2 * self.hurst_exponent)
         inside = (wavenumber * self.longest_wavelength >= 1) & (wavenumber * self.shortest_wavelength <= 1)
-        return np.where(inside, rolled, 0.0)
+        return np.where(inside, density, 0.0)
 
     def moments(self, *, rms_height: float) -> SpectralMoments:
-        """Return the spectral moments in closed form.
+        """Spectral moments m0, m2 and m4 in closed form.
 
         Parameters
         ----------
@@ -154,12 +164,12 @@ class SelfAffineSpectrum:
         return SpectralMoments(height_variance=rms_height**2, slope_variance=scale * m2, curvature_variance=scale * m4)
 
     def _radial_integral(self, power: int) -> float:
-        """Return the integral of k^power times the relative density."""
-        low, knee, high = 1 / self.longest_wavelength, 1 / self.rolloff_wavelength, 1 / self.shortest_wavelength
-        plateau = (knee ** (power + 1) - low ** (power + 1)) / (power + 1)
-        fall = power - 1 - 2 * self.hurst_exponent
-        slope = math.log(high / knee) if fall == 0 else (high**fall - knee**fall) / fall
-        return float(plateau + knee ** (2 + 2 * self.hurst_exponent) * slope)
+        """Integral of k^power times the relative density over k."""
+        low, rolloff, high = 1 / self.longest_wavelength, 1 / self.rolloff_wavelength, 1 / self.shortest_wavelength
+        plateau = (rolloff ** (power + 1) - low ** (power + 1)) / (power + 1)
+        exponent = power - 1 - 2 * self.hurst_exponent
+        decay = math.log(high / rolloff) if exponent == 0 else (high**exponent - rolloff**exponent) / exponent
+        return float(plateau + rolloff ** (2 + 2 * self.hurst_exponent) * decay)
 
 
 HeightSpectrum = GaussianCorrelationSpectrum | SelfAffineSpectrum
@@ -174,26 +184,26 @@ def gaussian_surface(
     spacing_y: float,
     seed: int,
 ) -> HeightMap:
-    """Return a random surface with Gaussian heights and the given spectrum.
+    """Periodic random surface with Gaussian heights and a given power spectrum, by spectral synthesis.
 
     Parameters
     ----------
     rms_height : float
-        Standard deviation of heights over many such surfaces; that of one map scatters about it. [m]
-    spectrum : SingleScaleSpectrum or SelfAffineSpectrum
+        Standard deviation of heights in the ensemble; that of one map scatters about it. [m]
+    spectrum : GaussianCorrelationSpectrum or SelfAffineSpectrum
     shape : tuple of int
-        Rows and columns.
+        Numbers of rows and columns.
     spacing_x : float
         Distance of neighbouring columns. [m]
     spacing_y : float
         Distance of neighbouring rows. [m]
     seed : int
-        The same seed gives the same surface.
+        Seed of the random numbers.
 
     Returns
     -------
     HeightMap
-        Periodic: opposite edges fit each other.
+        Periodic: opposite edges are continuous.
 
     Raises
     ------
@@ -204,25 +214,25 @@ def gaussian_surface(
 
     Notes
     -----
-    White noise is weighted with the root of the spectrum in the space of wavenumbers.
+    The Fourier transform of white noise is multiplied by the square root of the spectral density.
     """
     require_positive(rms_height=rms_height, spacing_x=spacing_x, spacing_y=spacing_y)
     rows, columns = shape
     if max(spacing_x, spacing_y) > spectrum.shortest_wavelength / 2 * (1 + 1e-9):
         raise OutsideRange(
-            f"spacing_x and spacing_y must be at most half the shortest wave, {spectrum.shortest_wavelength!r} m; "
-            f"got {spacing_x!r} m and {spacing_y!r} m"
+            "spacing_x and spacing_y must be at most half the shortest wavelength, "
+            f"{spectrum.shortest_wavelength!r} m; got {spacing_x!r} m and {spacing_y!r} m"
         )
     if min(rows * spacing_y, columns * spacing_x) < spectrum.longest_wavelength * (1 - 1e-9):
         raise OutsideRange(
-            f"the map must be at least {spectrum.longest_wavelength!r} m long both ways, "
+            f"the map must be at least {spectrum.longest_wavelength!r} m long in both directions, "
             f"got {rows * spacing_y!r} m by {columns * spacing_x!r} m"
         )
     noise = fft.rfft2(np.random.default_rng(seed).standard_normal((rows, columns)), workers=-1)
     k = np.hypot(fft.rfftfreq(columns, spacing_x)[None, :], fft.fftfreq(rows, spacing_y)[:, None])
     density = spectrum.relative_spectral_density(wavenumber=k)
     density[0, 0] = 0.0
-    mirrored = 2 * density.sum() - density[:, 0].sum() - (density[:, -1].sum() if columns % 2 == 0 else 0.0)
-    noise *= np.sqrt(density * (rows * columns / mirrored))
+    total = 2 * density.sum() - density[:, 0].sum() - (density[:, -1].sum() if columns % 2 == 0 else 0.0)
+    noise *= np.sqrt(density * (rows * columns / total))
     height = rms_height * fft.irfft2(noise, s=(rows, columns), workers=-1, overwrite_x=True)
     return HeightMap(height=height, spacing_x=spacing_x, spacing_y=spacing_y)
