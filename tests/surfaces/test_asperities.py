@@ -1,4 +1,4 @@
-"""Summits where they were put, and as many and as sharp as theory says of Gaussian surfaces."""
+"""Summit statistics of surfaces with known summits, and of Gaussian surfaces against Nayak's theory."""
 
 import math
 
@@ -62,7 +62,7 @@ def test_finite_differences_give_the_moments_of_the_spectrum(spectrum: HeightSpe
     assert found.curvature_variance == approx(exact.curvature_variance, rel=0.04)
 
 
-def test_a_single_wavelength_in_all_directions_has_the_least_bandwidth() -> None:
+def test_waves_of_one_length_in_all_directions_have_the_least_bandwidth() -> None:
     # m2 = m0 q^2/2 and m4 = m0 3 q^4/8 of a ring in the plane of wavenumbers
     moments = SpectralMoments(height_variance=2.0, slope_variance=9.0, curvature_variance=2.0 * 81 * 3 / 8)
     assert moments.bandwidth == approx(1.5)
@@ -77,7 +77,7 @@ def test_theory_gives_the_roughness_parameter_of_mccool() -> None:
         assert beta**2 == approx(3.717e-4 / (1 - found.summit_height_deviation**2), rel=1e-3)
 
 
-def test_caps_of_one_radius_are_found_with_that_radius_and_number() -> None:
+def test_spherical_caps_have_their_number_and_radius() -> None:
     radius, pitch, count = 40e-6, 20, 8
     offset = (np.arange(pitch * count) % pitch - pitch // 2) * 1e-6
     height = np.sqrt(radius**2 - offset[:, None] ** 2 - offset[None, :] ** 2)
@@ -90,7 +90,7 @@ def test_caps_of_one_radius_are_found_with_that_radius_and_number() -> None:
 
 
 @mark.parametrize("missing", [False, True])
-def test_an_egg_box_has_one_summit_to_a_cell_and_its_curvature(missing: bool) -> None:
+def test_an_egg_box_has_one_summit_per_cell_and_its_curvature(missing: bool) -> None:
     x, y = 0.5e-6 * np.arange(800), 1e-6 * np.arange(400)
     wave = 2 * math.pi / 20e-6
     height = 1e-6 * (np.cos(wave * (x[None, :] - 5e-6)) + np.cos(wave * (y[:, None] - 5e-6)))
@@ -112,7 +112,7 @@ def test_coarser_sampling_finds_fewer_and_blunter_summits() -> None:
     assert found.summit_density[0] == approx(exact.summit_density, rel=0.1)
 
 
-def test_both_methods_give_a_contact_model_the_same_roughness() -> None:
+def test_both_methods_give_the_same_contact_roughness() -> None:
     surface = random_surface(SINGLE_SCALE, seed=4)
     counted, inferred = contact_roughness(surface), contact_roughness(surface, method="moments")
     assert counted.rms_height == approx(inferred.rms_height, rel=0.05)
@@ -120,7 +120,7 @@ def test_both_methods_give_a_contact_model_the_same_roughness() -> None:
     assert counted.summit_density == approx(inferred.summit_density, rel=0.05)
 
 
-def test_the_combined_roughness_is_that_of_the_added_heights() -> None:
+def test_the_combined_roughness_is_that_of_the_sum_of_the_heights() -> None:
     first = random_surface(SINGLE_SCALE, seed=1)
     second = random_surface(SELF_AFFINE, seed=2, rms_height=3e-6)
     gap = first.with_height(first.height + second.height)
@@ -135,7 +135,7 @@ sizes = st.floats(1e-8, 1e-4)
 
 
 @given(rms=sizes, radius=sizes, density=st.floats(1e8, 1e13))
-def test_two_like_surfaces_are_rougher_by_the_root_of_two(rms: float, radius: float, density: float) -> None:
+def test_two_equal_surfaces_have_the_roughness_of_one_times_root_two(rms: float, radius: float, density: float) -> None:
     one = Roughness(rms_height=rms, summit_radius=radius, summit_density=density)
     both = combined_roughness(one, one)
     assert both.rms_height == approx(math.sqrt(2) * rms, rel=1e-6)
@@ -143,9 +143,9 @@ def test_two_like_surfaces_are_rougher_by_the_root_of_two(rms: float, radius: fl
     assert both.summit_density == approx(density)
 
 
-def test_a_surface_without_summits_is_told_so() -> None:
+def test_a_surface_without_summits_is_refused() -> None:
     plane = HeightMap(height=np.add.outer(np.arange(5.0), np.arange(6.0)), spacing_x=1e-6, spacing_y=1e-6)
-    with raises(InvalidInput, match="needs two summits for statistics, got 0 among 12 pixels"):
+    with raises(InvalidInput, match="require two summits, got 0 among 12 pixels"):
         summit_statistics(plane)
     with raises(InvalidInput, match="curvature_variance must be positive"):
         spectral_moments(plane)
@@ -157,7 +157,7 @@ def test_a_surface_without_summits_is_told_so() -> None:
             spectral_moments(line)
 
 
-def test_moments_of_no_profile_are_refused() -> None:
+def test_a_bandwidth_that_no_profile_has_is_refused() -> None:
     with raises(InvalidInput, match=r"bandwidth must exceed 1, got 0\.5"):
         nayak_summit_statistics(SpectralMoments(height_variance=1.0, slope_variance=2.0, curvature_variance=2.0))
 

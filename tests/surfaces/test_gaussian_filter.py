@@ -1,4 +1,4 @@
-"""Gaussian filters pass what ISO 16610 says they pass, up to the edge and past what was not measured."""
+"""Gaussian regression filters against the transmission of ISO 16610 and local fits, with edges and missing pixels."""
 
 from typing import Any
 
@@ -37,7 +37,7 @@ def holes(shape: tuple[int, ...], share: float = 0.3) -> Floats:
 
 @mark.parametrize("order", [0, 2])
 @mark.parametrize("wavelength", [0.5 * CUTOFF, CUTOFF, 3 * CUTOFF])
-def test_a_wave_of_a_profile_passes_as_the_standard_says(wavelength: float, order: int) -> None:
+def test_a_wave_of_a_profile_has_the_transmission_of_the_standard(wavelength: float, order: int) -> None:
     x = 1e-6 * np.arange(800)
     wave = np.cos(2 * np.pi * (x - x[400]) / wavelength)
     passed = profile_low_pass(height=wave, spacing_x=1e-6, cutoff_length=CUTOFF, order=order)
@@ -47,7 +47,7 @@ def test_a_wave_of_a_profile_passes_as_the_standard_says(wavelength: float, orde
 
 @mark.parametrize("order", [0, 2])
 @mark.parametrize("direction", [0.0, 0.6, np.pi / 2])
-def test_half_of_a_wave_passes_at_the_cutoff_whatever_its_direction_and_the_pixels(
+def test_half_of_a_wave_is_transmitted_at_the_cutoff_in_any_direction_and_on_any_grid(
     direction: float, order: int
 ) -> None:
     x, y = grid(160, 320)
@@ -58,7 +58,7 @@ def test_half_of_a_wave_passes_at_the_cutoff_whatever_its_direction_and_the_pixe
 
 @mark.parametrize("order", [0, 2])
 @mark.parametrize("robust", [False, True])
-def test_a_constant_passes_to_the_last_digit_at_edges_and_beside_holes(order: int, robust: bool) -> None:
+def test_a_constant_is_reproduced_exactly_at_edges_and_beside_missing_pixels(order: int, robust: bool) -> None:
     z = 3.3e-6 + holes((40, 50), 0.6)
     np.testing.assert_array_equal(
         low_pass(surface(z), cutoff_length=CUTOFF, order=order, robust=robust).height, z + 0 * z
@@ -67,7 +67,7 @@ def test_a_constant_passes_to_the_last_digit_at_edges_and_beside_holes(order: in
 
 @mark.parametrize("robust", [False, True])
 @mark.parametrize("cutoff", [20e-6, CUTOFF, 1e-3])
-def test_a_paraboloid_passes_the_second_order_untouched_at_edges_and_beside_holes(cutoff: float, robust: bool) -> None:
+def test_the_second_order_reproduces_a_paraboloid_at_edges_and_missing_pixels(cutoff: float, robust: bool) -> None:
     x, y = grid(60, 70)
     z = 1e-6 + 0.3 * x - 0.2 * y + 500 * x**2 - 900 * x * y + 700 * y**2
     passed = low_pass(surface(z + holes(z.shape)), cutoff_length=cutoff, order=2, robust=robust).height
@@ -78,7 +78,7 @@ def test_a_paraboloid_passes_the_second_order_untouched_at_edges_and_beside_hole
 
 @settings(max_examples=25, deadline=None)
 @given(seed=st.integers(0, 999), row=st.integers(0, 23), column=st.integers(0, 29), order=st.sampled_from([0, 2]))
-def test_each_pixel_is_the_weighted_fit_around_it(seed: int, row: int, column: int, order: int) -> None:
+def test_each_pixel_is_the_weighted_polynomial_fit_around_it(seed: int, row: int, column: int, order: int) -> None:
     z = np.random.default_rng(seed).normal(size=(24, 30)) + np.roll(holes((24, 30)), seed, axis=1)
     z[row, column] = 0.7
     x, y = grid(24, 30)
@@ -93,7 +93,7 @@ def test_each_pixel_is_the_weighted_fit_around_it(seed: int, row: int, column: i
 
 
 @mark.parametrize("order", [0, 2])
-def test_pixels_of_any_shape_show_the_same_surface(order: int) -> None:
+def test_the_filtered_surface_does_not_depend_on_the_shape_of_the_pixels(order: int) -> None:
     def bumps(x: Floats, y: Floats) -> Floats:
         return np.asarray(
             np.exp(-(np.hypot(x - 150e-6, y - 120e-6) ** 2) / 3.6e-9) + np.sin(x / 40e-6) * np.cos(y / 50e-6)
@@ -113,14 +113,14 @@ def test_an_isolated_pixel_keeps_its_own_height() -> None:
         assert low_pass(surface(z), cutoff_length=40e-6, order=order).height[190, 190] == approx(1.0, abs=1e-6)
 
 
-def test_waviness_and_roughness_make_up_the_surface() -> None:
+def test_waviness_and_roughness_add_up_to_the_surface() -> None:
     z = np.random.default_rng(2).normal(size=(50, 60)) + holes((50, 60))
     parts: dict[str, Any] = {"cutoff_length": CUTOFF, "order": 2}
     whole = low_pass(surface(z), **parts).height + high_pass(surface(z), **parts).height
     np.testing.assert_allclose(whole, z, atol=1e-14)
 
 
-def test_a_band_keeps_what_lies_within_and_neither_end() -> None:
+def test_a_band_pass_keeps_wavelengths_between_the_cutoffs() -> None:
     x, _ = grid(2, 2000, 1e-6)
 
     def kept(wavelength: float) -> float:
@@ -133,7 +133,7 @@ def test_a_band_keeps_what_lies_within_and_neither_end() -> None:
     assert kept(2000e-6) < 0.02
 
 
-def test_a_robust_high_pass_keeps_a_groove_as_deep_as_it_is() -> None:
+def test_a_robust_high_pass_keeps_the_depth_of_a_groove() -> None:
     x, y = grid(120, 150)
     waviness = 2e-6 * np.sin(x / 120e-6) * np.cos(y / 150e-6)
     noise = 2e-8 * np.random.default_rng(4).normal(size=x.shape)
@@ -146,7 +146,7 @@ def test_a_robust_high_pass_keeps_a_groove_as_deep_as_it_is() -> None:
     assert abs(plain[bottom].mean() + 5e-6) > 0.5e-6
 
 
-def test_profiles_are_filtered_each_for_itself_and_as_a_map_of_one_row() -> None:
+def test_profiles_are_filtered_separately_and_like_maps_of_one_row() -> None:
     z = np.random.default_rng(6).normal(size=(2, 3, 90)) + holes((2, 3, 90))
     for order in (0, 2):
         found = profile_low_pass(height=z, spacing_x=2e-6, cutoff_length=CUTOFF, order=order)
@@ -156,7 +156,7 @@ def test_profiles_are_filtered_each_for_itself_and_as_a_map_of_one_row() -> None
         np.testing.assert_allclose(alone, row, atol=1e-12)
 
 
-def test_large_maps_are_treated_in_strips_without_a_seam() -> None:
+def test_large_maps_are_filtered_in_strips_without_a_seam() -> None:
     x, y = grid(2100, 1100)
     z = 1e-6 * np.sin(x / 70e-6) * np.sin(y / 90e-6)
     whole = low_pass(surface(z), cutoff_length=40e-6, order=2).height
@@ -165,23 +165,27 @@ def test_large_maps_are_treated_in_strips_without_a_seam() -> None:
 
 
 @mark.parametrize(
-    ("arguments", "error", "said"),
+    ("arguments", "error", "message"),
     [
         ({"cutoff_length": 0.0}, InvalidInput, r"cutoff_length must be positive, got 0\.0 m"),
-        ({"cutoff_length": 19e-6}, OutsideRange, "cutoff_length 1.9e-05 m is shorter than 5 pixels of 4e-06 m"),
+        (
+            {"cutoff_length": 19e-6},
+            OutsideRange,
+            "cutoff_length must be at least 5 pixels of 4e-06 m",
+        ),
         ({"cutoff_length": CUTOFF, "order": 1}, InvalidInput, "order must be 0 or 2, got 1"),
     ],
 )
-def test_filters_that_cannot_be_are_refused(arguments: Any, error: type[Exception], said: str) -> None:
-    with raises(error, match=said):
+def test_an_impossible_cutoff_or_order_is_refused(arguments: Any, error: type[Exception], message: str) -> None:
+    with raises(error, match=message):
         low_pass(surface(np.zeros((9, 9))), **arguments)
 
 
-def test_a_band_the_wrong_way_round_is_refused() -> None:
+def test_cutoffs_in_the_wrong_order_are_refused() -> None:
     with raises(InvalidInput, match=r"short_cutoff_length 0\.0002 m must be less than long_cutoff_length 0\.0001 m"):
         band_pass(surface(np.zeros((9, 9))), short_cutoff_length=2e-4, long_cutoff_length=1e-4)
 
 
-def test_a_profile_of_nothing_is_refused() -> None:
-    with raises(InvalidInput, match="somewhere measured"):
+def test_a_profile_without_a_measured_point_is_refused() -> None:
+    with raises(InvalidInput, match="an array of profiles with a measured point"):
         profile_low_pass(height=[np.nan, np.nan], spacing_x=1e-6, cutoff_length=CUTOFF)

@@ -1,4 +1,4 @@
-"""Profile parameters of waves that are known by heart."""
+"""Profile parameters against closed forms of waves."""
 
 import math
 
@@ -31,14 +31,14 @@ def test_a_sine_has_the_parameters_of_a_sine() -> None:
     assert found.mean_profile_element_spacing == approx(WAVELENGTH, rel=1e-6)
 
 
-def test_the_section_height_is_the_mean_of_five_sections_and_the_total_height_that_of_all() -> None:
+def test_the_maximum_height_is_the_mean_of_five_sections_and_the_total_height_that_of_the_profile() -> None:
     growing = np.repeat([1.0, 2.0, 3.0, 4.0, 5.0], 400) * sine()
     found = profile_parameters(height=growing, spacing=SPACING)
     assert found.mean_section_height == approx(3 * 4e-6, rel=1e-3)
     assert found.total_height == approx(5 * 4e-6, rel=1e-3)
 
 
-def test_a_sampling_length_says_how_long_a_section_is() -> None:
+def test_the_section_length_can_be_given() -> None:
     growing = np.repeat([1.0, 2.0, 3.0, 4.0, 5.0], 400) * sine()
     found = profile_parameters(height=growing, spacing=SPACING, section_length=2 * 400 * SPACING)
     assert found.mean_section_height == approx((2 + 4) / 2 * 4e-6, rel=1e-3)  # the last half section is left out
@@ -50,7 +50,7 @@ def test_a_short_profile_is_one_section() -> None:
     assert found.mean_profile_element_spacing is None
 
 
-def test_ripples_lower_than_a_tenth_make_no_elements() -> None:
+def test_ripples_below_a_tenth_of_the_maximum_height_make_no_profile_elements() -> None:
     rippled = sine() + 0.1e-6 * np.sin(2 * math.pi * X / 1.7e-6)
     assert profile_parameters(height=rippled, spacing=SPACING).mean_profile_element_spacing == approx(
         WAVELENGTH, rel=0.01
@@ -59,7 +59,7 @@ def test_ripples_lower_than_a_tenth_make_no_elements() -> None:
 
 @given(share=st.floats(0.0, 0.5), seed=st.integers(0, 100))
 @settings(max_examples=15, deadline=None)
-def test_missing_points_leave_what_the_rest_says(share: float, seed: int) -> None:
+def test_missing_points_do_not_change_the_parameters_beyond_sampling_error(share: float, seed: int) -> None:
     height = sine()
     height[np.random.default_rng(seed).random(height.size) < share] = np.nan
     found = profile_parameters(height=height, spacing=SPACING)
@@ -69,7 +69,7 @@ def test_missing_points_leave_what_the_rest_says(share: float, seed: int) -> Non
 
 @given(factor=st.floats(0.01, 100), shift=st.floats(-1e-3, 1e-3))
 @settings(max_examples=15, deadline=None)
-def test_heights_scale_and_the_datum_does_not_matter(factor: float, shift: float) -> None:
+def test_parameters_scale_with_the_heights_and_do_not_depend_on_the_datum(factor: float, shift: float) -> None:
     noise = 1e-6 * np.random.default_rng(1).standard_normal(500)
     one = profile_parameters(height=noise, spacing=SPACING)
     other = profile_parameters(height=factor * noise + shift, spacing=SPACING)
@@ -99,22 +99,22 @@ def test_profiles_without_heights_are_left_out_and_counted() -> None:
 
 
 @mark.parametrize(
-    ("height", "said"),
+    ("height", "message"),
     [
-        (np.full(9, np.nan), "must hold two measured values that differ, got 0 measured"),
-        (np.zeros(9), "two measured values that differ, got 9 measured"),
-        (np.zeros((2, 9)), r"line of numbers, got shape \(2, 9\)"),
+        (np.full(9, np.nan), "must have two different measured values, got 0 measured"),
+        (np.zeros(9), "two different measured values, got 9 measured"),
+        (np.zeros((2, 9)), r"one-dimensional array of numbers, got shape \(2, 9\)"),
         (np.array([0.0, np.inf]), "infinite"),
         (np.array([1.0]), "got 1 measured"),
     ],
 )
-def test_what_is_no_profile_is_refused(height: np.ndarray, said: str) -> None:
-    with raises(InvalidInput, match=said):
+def test_heights_of_no_profile_are_refused(height: np.ndarray, message: str) -> None:
+    with raises(InvalidInput, match=message):
         profile_parameters(height=height, spacing=SPACING)
 
 
 def test_a_map_without_profiles_and_a_section_longer_than_the_profile_are_refused() -> None:
-    with raises(InvalidInput, match="none of the 2 rows holds two measured heights that differ"):
+    with raises(InvalidInput, match="none of the 2 rows has two different measured heights"):
         profile_statistics(HeightMap(height=np.ones((2, 3)), spacing_x=1.0, spacing_y=1.0))
     with raises(InvalidInput, match=r"section_length must lie between .* got 0\.01 m"):
         profile_parameters(height=sine(), spacing=SPACING, section_length=0.01)

@@ -1,4 +1,4 @@
-"""Generated surfaces are what was asked for, and refuse what their grid cannot hold."""
+"""Random surfaces: deviation, spectrum and moments as specified, and grids that cannot represent them."""
 
 import math
 from itertools import pairwise
@@ -29,13 +29,13 @@ def made(spectrum: HeightSpectrum = SINGLE_SCALE, *, seed: int = 0, spacing_x: f
 
 
 @mark.parametrize("spectrum", [SINGLE_SCALE, SELF_AFFINE], ids=["single scale", "self-affine"])
-def test_heights_have_the_deviation_asked_for_and_no_mean(spectrum: HeightSpectrum) -> None:
+def test_heights_have_the_specified_deviation_and_zero_mean(spectrum: HeightSpectrum) -> None:
     variances = [np.var(made(spectrum, seed=seed).height) for seed in range(12)]
     assert math.sqrt(np.mean(variances)) == approx(3e-6, rel=0.05)
     assert np.mean(made(spectrum).height) == approx(0, abs=1e-18)
 
 
-def test_the_seed_decides() -> None:
+def test_the_seed_determines_the_surface() -> None:
     assert np.array_equal(made(seed=1).height, made(seed=1).height)
     assert not np.array_equal(made(seed=1).height, made(seed=2).height)
 
@@ -50,7 +50,7 @@ def test_the_seed_decides() -> None:
         ),
     ],
 )
-def test_moments_are_integrals_of_the_density(spectrum: HeightSpectrum) -> None:
+def test_moments_are_integrals_of_the_spectral_density(spectrum: HeightSpectrum) -> None:
     def moment(power: int) -> float:
         def integrand(k: float) -> float:
             return float(spectrum.relative_spectral_density(wavenumber=np.array(k * 1e6)) * k ** (power + 1))
@@ -67,14 +67,14 @@ def test_moments_are_integrals_of_the_density(spectrum: HeightSpectrum) -> None:
 
 
 def test_a_grid_too_coarse_or_too_small_is_refused() -> None:
-    with raises(OutsideRange, match="at most half the shortest wave, 8e-06 m; got 5e-06 m and 2e-06 m"):
+    with raises(OutsideRange, match="at most half the shortest wavelength, 8e-06 m; got 5e-06 m and 2e-06 m"):
         made(spacing_x=5e-6)
-    with raises(OutsideRange, match=r"must be at least .* long both ways"):
+    with raises(OutsideRange, match=r"must be at least .* long in both directions"):
         made(GaussianCorrelationSpectrum(correlation_length=1e-3))
 
 
 def test_wavelengths_out_of_order_are_refused() -> None:
-    with raises(InvalidInput, match="must fall in this order"):
+    with raises(InvalidInput, match="must be in descending order"):
         SelfAffineSpectrum(
             hurst_exponent=0.5, longest_wavelength=1e-6, rolloff_wavelength=2e-6, shortest_wavelength=1e-7
         )

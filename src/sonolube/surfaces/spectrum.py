@@ -267,7 +267,8 @@ def moments_of_spectrum(spectrum: ArealSpectrum) -> SpectralMoments:
 
     Notes
     -----
-    .. math:: m_n = \frac12 \iint \left[(2\pi k_x)^n + (2\pi k_y)^n\right] C \,\mathrm{d}k_x \mathrm{d}k_y, \quad n = 2, 4 .
+    .. math:: m_n = \frac12 \iint \left[(2\pi k_x)^n + (2\pi k_y)^n\right] C \,\mathrm{d}k_x \mathrm{d}k_y,
+        \qquad n = 2, 4 .
 
     In m4 the shortest wavelengths of the map, noise included, have the largest weight.
     """
