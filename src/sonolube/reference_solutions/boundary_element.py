@@ -57,7 +57,7 @@ def boundary_element_contact(
 
     Returns
     -------
-    PressedSurface
+    BoundaryElementContact
 
     Raises
     ------

@@ -111,7 +111,7 @@ def correlation_lengths(correlation: Autocorrelation, *, directions: ArrayLike, 
 
     Returns
     -------
-    DecayLengths
+    CorrelationLengths
     """
     angles = np.atleast_1d(require_finite(directions=directions))
     step_x, step_y = (lag[1] - lag[0] if lag.size > 1 else 1.0 for lag in (correlation.lag_x, correlation.lag_y))

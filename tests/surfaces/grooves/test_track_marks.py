@@ -1,4 +1,4 @@
-"""Marks along a track repeat at the spacing at which they were made."""
+"""Periodic marks along synthetic tracks: their spacing, and none where there are none."""
 
 from pytest import approx, mark
 
@@ -19,7 +19,7 @@ def test_the_spacing_of_indentations_is_speed_times_period(speed: float) -> None
     assert found.dot_spacing_uncertainty < 0.01 * spacing
 
 
-def test_dots_of_the_vibration_show_where_pixels_are_fine_enough() -> None:
+def test_dots_of_the_vibration_are_found_where_pixels_resolve_them() -> None:
     field = ScannedField(
         field_shape=(240, 320),
         spacing_x=0.5e-6,
@@ -36,15 +36,15 @@ def test_dots_of_the_vibration_show_where_pixels_are_fine_enough() -> None:
     assert found.dot_spacing == approx(3.95e-6, rel=0.005)
 
 
-def test_an_even_groove_has_no_marks_and_says_why() -> None:
+def test_an_even_groove_has_no_marks_and_the_result_a_reason() -> None:
     shape = GrooveShape(groove_width=0.7e-3, groove_depth=60e-6)
     for seed in range(4):
         found = track_marks(measure_groove(synthetic_groove(shape, track=TRACK, seed=seed, field=FIELD).scan))
         assert found.dot_spacing is None
-        assert "no wave along the track" in found.reason
+        assert "no peak of the spectrum along the track" in found.reason
 
 
-def test_the_pixels_that_a_slanting_track_crosses_are_no_marks() -> None:
+def test_the_pixel_grid_under_a_slanting_track_makes_no_marks() -> None:
     # pi/2 - 1.5 between track and pixel columns: it crosses one every 3.75 um/sin(0.0708), 53 um
     for seed in (1, 7, 13, 19):
         track = GrooveTrack(track_direction=1.5, track_curvature=0.0, track_offset=1.5e-4)

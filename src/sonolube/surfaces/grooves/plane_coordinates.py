@@ -1,4 +1,4 @@
-"""Positions in the field of a scan: from its middle, and from circles through it."""
+"""Coordinates in the field of a scan: Cartesian from its centre, and along a circular arc."""
 
 import math
 
@@ -9,7 +9,7 @@ from sonolube.surfaces.height_map import HeightMap
 
 
 def centred_coordinates(surface: HeightMap) -> tuple[Floats, Floats]:
-    """Return the positions of columns and rows from the middle of the field.
+    """Positions of columns and rows relative to the centre of the field.
 
     Parameters
     ----------
@@ -18,9 +18,9 @@ def centred_coordinates(surface: HeightMap) -> tuple[Floats, Floats]:
     Returns
     -------
     x : ndarray, shape (1, columns)
-        In m.
+        Positions of the columns, in m.
     y : ndarray, shape (rows, 1)
-        In m.
+        Positions of the rows, in m.
     """
     rows, columns = surface.height.shape
     x = surface.x - surface.spacing_x * (columns - 1) / 2
@@ -29,40 +29,51 @@ def centred_coordinates(surface: HeightMap) -> tuple[Floats, Floats]:
 
 
 def arc_coordinates(x: Floats, y: Floats, direction: float, curvature: float) -> tuple[Floats, Floats]:
-    """Return distance to the left of a circle through the origin, and arc length along it, for points of the plane.
+    r"""Curvilinear coordinates of points with respect to a circle through the origin.
 
     Parameters
     ----------
     x, y : ndarray
-        Points, that broadcast against each other, in m.
+        Cartesian coordinates that broadcast against each other, in m.
     direction : float
-        Of the circle at the origin, in rad.
+        Direction of the circle at the origin, in rad.
     curvature : float
-        Of the circle, in 1/m, positive where it bends to the left; zero for a line.
+        Curvature of the circle in 1/m, positive for a centre to the left; zero for a line.
 
     Returns
     -------
-    left : ndarray, shape of the broadcast points
-    along : ndarray, shape of the broadcast points
+    transverse : ndarray, shape of the broadcast points
+        Distance from the circle in m, positive to the left of its direction.
+    arc_length : ndarray, shape of the broadcast points
+        Length along the circle from the origin to the foot of the point, in m.
+
+    Notes
+    -----
+    With the coordinates :math:`a` ahead and :math:`l` to the left of the origin and the curvature :math:`\kappa`
+
+    .. math:: s = \frac{2 l - \kappa (l^2 + a^2)}{1 + \sqrt{(1 - \kappa l)^2 + (\kappa a)^2}}, \qquad
+        t = \frac1\kappa \operatorname{atan2}(\kappa a, 1 - \kappa l) ,
+
+    which has the limit :math:`s = l`, :math:`t = a` of a line without cancellation.
     """
     cos, sin = math.cos(direction), math.sin(direction)
     ahead, left = x * cos + y * sin, y * cos - x * sin
     if curvature == 0:
         return left, ahead
-    shrunk = np.sqrt(np.square(1 - curvature * left) + np.square(curvature * ahead))  # distance to the centre, times k
-    across = (2 * left - curvature * (np.square(left) + np.square(ahead))) / (1 + shrunk)
-    return across, np.arctan2(curvature * ahead, 1 - curvature * left) / curvature
+    from_centre = np.sqrt(np.square(1 - curvature * left) + np.square(curvature * ahead))  # times the curvature
+    transverse = (2 * left - curvature * (np.square(left) + np.square(ahead))) / (1 + from_centre)
+    return transverse, np.arctan2(curvature * ahead, 1 - curvature * left) / curvature
 
 
 def monomials(u: Floats, v: Floats, terms: int) -> list[Floats]:
-    """Return 1, u, v, u^2, u v and v^2, the first few of them.
+    """First monomials 1, u, v, u^2, u v and v^2 of two coordinates.
 
     Parameters
     ----------
     u, v : ndarray
-        Of shapes that broadcast.
+        Coordinates that broadcast against each other.
     terms : int
-        6 at the most.
+        Number of monomials, 6 at most.
 
     Returns
     -------

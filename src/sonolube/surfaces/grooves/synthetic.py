@@ -1,4 +1,4 @@
-"""Worn surfaces made to measure: a groove of known volume in a tilted, wavy, rough field with missing pixels."""
+"""Synthetic scans of a wear groove of known volume in a tilted, wavy and rough surface with missing pixels."""
 
 import math
 from dataclasses import dataclass
@@ -12,27 +12,27 @@ from sonolube.surfaces.grooves.track import GrooveTrack
 from sonolube.surfaces.height_map import HeightMap
 from sonolube.surfaces.random_surface import GaussianCorrelationSpectrum, gaussian_surface
 
-_PIXELS_TO_CORRELATION = 2.0  # the roughness is as fine as the pixels show
+_PIXELS_PER_CORRELATION_LENGTH = 2.0  # the finest roughness that the pixels resolve
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GrooveShape:
-    """A groove with the cross-section that a ball leaves, the segment of a circle, between two ridges.
+    """Cross-section of a wear groove: the circular segment that a ball leaves, between parabolic pile-up ridges.
 
     Parameters
     ----------
     groove_width : float
-        Distance of its edges on the unworn surface. [m]
+        Distance of the edges on the unworn surface. [m]
     groove_depth : float
         Greatest depth below the unworn surface, at most half the width. [m]
     pile_up_height : float
         Height of the ridge beyond each edge. [m]
     pile_up_width : float
-        Width of each ridge, whose section is a parabola. [m]
+        Width of each ridge. [m]
     indentation_spacing : float or None
-        Spacing along the track at which the groove is deeper and shallower in turn; None for an even one. [m]
+        Period of a sinusoidal modulation of the depth along the track; None for none. [m]
     indentation_fraction : float
-        Share of the depth by which it is so. []
+        Amplitude of that modulation over the depth. []
 
     Raises
     ------
@@ -57,53 +57,55 @@ class GrooveShape:
 
     @property
     def cross_section_area(self) -> float:
-        """Area of the section below the unworn surface, the mean along the track. [m2]"""
+        """Area of the cross-section below the unworn surface, averaged along the track. [m2]"""
         radius = self._radius
         half_angle = math.asin(min(1.0, self.groove_width / (2 * radius)))
         return radius**2 * half_angle - self.groove_width / 2 * (radius - self.groove_depth)
 
     @property
     def _radius(self) -> float:
+        """Radius of the circular segment. [m]"""
         return (self.groove_width**2 / 4 + self.groove_depth**2) / (2 * self.groove_depth)
 
-    def depth_at(self, across: Floats, along: Floats) -> Floats:
-        """Return the depth at positions across and along the track, in m."""
+    def depth_at(self, transverse: Floats, arc_length: Floats) -> Floats:
+        """Depth below the unworn surface at points of given coordinates in m about the track, in m."""
         half, radius = self.groove_width / 2, self._radius
-        inside = np.sqrt(radius**2 - np.minimum(np.abs(across), half) ** 2) - (radius - self.groove_depth)
+        depth = np.sqrt(radius**2 - np.minimum(np.abs(transverse), half) ** 2) - (radius - self.groove_depth)
         if self.indentation_spacing is not None:
-            inside = inside * (1 + self.indentation_fraction * np.cos(2 * math.pi * along / self.indentation_spacing))
-        return np.asarray(inside)
+            phase = 2 * math.pi * arc_length / self.indentation_spacing
+            depth = depth * (1 + self.indentation_fraction * np.cos(phase))
+        return np.asarray(depth)
 
-    def ridge_at(self, across: Floats) -> Floats:
-        """Return the height of the ridges at positions across the track, in m."""
+    def ridge_at(self, transverse: Floats) -> Floats:
+        """Height of the pile-up ridges at transverse distances in m from the track, in m."""
         if not self.pile_up_width:
-            return np.zeros_like(across)
-        from_crest = (np.abs(across) - self.groove_width / 2) / self.pile_up_width * 2 - 1
+            return np.zeros_like(transverse)
+        from_crest = (np.abs(transverse) - self.groove_width / 2) / self.pile_up_width * 2 - 1
         return self.pile_up_height * np.maximum(0.0, 1 - from_crest**2)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ScannedField:
-    """The field of a scan and everything in it that is not the groove.
+    """Field of a synthetic scan: grid, tilt, waviness, roughness and missing pixels.
 
     Parameters
     ----------
     field_shape : tuple of int
-        Rows and columns.
+        Numbers of rows and columns.
     spacing_x : float
         Distance of neighbouring columns. [m]
     spacing_y : float
         Distance of neighbouring rows. [m]
     tilt : float
-        Rise of the plane from its lowest to its highest corner. [m]
+        Height difference between the lowest and the highest corner of the mean plane. [m]
     waviness_amplitude : float
-        Amplitude of the waviness, a plane wave of random direction and phase. [m]
+        Amplitude of a plane wave of random direction and phase. [m]
     waviness_length : float
-        Wavelength of the waviness. [m]
+        Wavelength of that wave. [m]
     rms_height : float
         Standard deviation of the roughness. [m]
     missing_fraction : float
-        Share of pixels without a height, scattered at random. []
+        Fraction of randomly placed missing pixels. []
 
     Raises
     ------
@@ -125,23 +127,23 @@ class ScannedField:
         require_non_negative(tilt=self.tilt, waviness_amplitude=self.waviness_amplitude, rms_height=self.rms_height)
         require_within(0.0, 0.99, missing_fraction=self.missing_fraction)
         if len(self.field_shape) != 2 or min(self.field_shape) < 1:
-            raise InvalidInput(f"field_shape must be rows and columns, got {self.field_shape!r}")
+            raise InvalidInput(f"field_shape must be two numbers, of rows and columns, got {self.field_shape!r}")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class SyntheticGroove:
-    """A worn scan of which everything is known.
+    """Synthetic scan of a wear groove with its exact volumes.
 
     Parameters
     ----------
     scan : HeightMap
-        What an instrument would have measured.
+        Heights as measured.
     unworn : HeightMap
-        The tilted, wavy plane it was before, without roughness.
+        Unworn surface: tilt and waviness without roughness.
     wear_volume : float
-        Volume of the groove below the unworn surface within the field. [m3]
+        Exact volume of the groove below the unworn surface within the field. [m3]
     pile_up_volume : float
-        Volume of the ridges within the field. [m3]
+        Exact volume of the ridges within the field. [m3]
     """
 
     scan: HeightMap
@@ -153,36 +155,36 @@ class SyntheticGroove:
 def synthetic_groove(
     shape: GrooveShape, *, track: GrooveTrack, seed: int, field: ScannedField | None = None
 ) -> SyntheticGroove:
-    """Return a scan with a groove of known volume.
+    """Synthetic scan of a wear groove of known volume.
 
     Parameters
     ----------
     shape : GrooveShape
-        Its section.
+        Cross-section of the groove.
     track : GrooveTrack
-        Where it runs.
+        Its centre line.
     seed : int
-        The same seed gives the same scan.
+        Seed of the random numbers.
     field : ScannedField, optional
-        The field around it: 2.4 mm by 1.8 mm with a tilt of 5 um, a wave of 1 um every millimetre, a roughness of
-        0.6 um and 5 % missing pixels where it is not given.
+        Field of the scan; by default 2.4 mm by 1.8 mm with a tilt of 5 um, a wave of 1 um amplitude and 1 mm length, a
+        roughness of 0.6 um and 5 % of the pixels missing.
 
     Returns
     -------
-    GeneratedGroove
+    SyntheticGroove
 
     Notes
     -----
-    Depth and ridges are taken off and put on the rough surface, so that groove and surroundings are equally rough.
-    Volumes are sums over the pixels, missing ones too.
+    Depth and ridges are subtracted from and added to the rough surface, so that groove and surroundings have the same
+    roughness. Volumes are sums over all pixels, including missing ones.
     """
     field = field or ScannedField()
     rng = np.random.default_rng(seed)
     unworn = HeightMap(
         height=_plane(field, rng) + _wave(field, rng), spacing_x=field.spacing_x, spacing_y=field.spacing_y
     )
-    across, along = track.curvilinear_coordinates(unworn)
-    depth, ridge = shape.depth_at(across, along), shape.ridge_at(across)
+    transverse, arc_length = track.curvilinear_coordinates(unworn)
+    depth, ridge = shape.depth_at(transverse, arc_length), shape.ridge_at(transverse)
     height = unworn.height - depth + ridge
     if field.rms_height:
         height += _roughness(field, seed)
@@ -197,11 +199,13 @@ def synthetic_groove(
 
 
 def _positions(field: ScannedField) -> tuple[Floats, Floats]:
+    """Positions of columns and rows relative to the centre of a field, in m."""
     flat = HeightMap(height=np.zeros(field.field_shape), spacing_x=field.spacing_x, spacing_y=field.spacing_y)
     return centred_coordinates(flat)
 
 
 def _plane(field: ScannedField, rng: np.random.Generator) -> Floats:
+    """Plane of the field's tilt in a random direction."""
     x, y = _positions(field)
     angle = rng.uniform(0, 2 * math.pi)
     plane = x * math.cos(angle) + y * math.sin(angle)
@@ -209,14 +213,18 @@ def _plane(field: ScannedField, rng: np.random.Generator) -> Floats:
 
 
 def _wave(field: ScannedField, rng: np.random.Generator) -> Floats:
+    """Plane wave of the field's waviness in a random direction."""
     x, y = _positions(field)
     angle, phase = rng.uniform(0, 2 * math.pi, 2)
-    turn = 2 * math.pi / field.waviness_length
-    return np.asarray(field.waviness_amplitude * np.sin(turn * (x * math.cos(angle) + y * math.sin(angle)) + phase))
+    wavenumber = 2 * math.pi / field.waviness_length
+    return np.asarray(
+        field.waviness_amplitude * np.sin(wavenumber * (x * math.cos(angle) + y * math.sin(angle)) + phase)
+    )
 
 
 def _roughness(field: ScannedField, seed: int) -> Floats:
-    length = _PIXELS_TO_CORRELATION * max(field.spacing_x, field.spacing_y)
+    """Random roughness of the field."""
+    length = _PIXELS_PER_CORRELATION_LENGTH * max(field.spacing_x, field.spacing_y)
     return gaussian_surface(
         rms_height=require_finite(rms_height=field.rms_height).item(),
         spectrum=GaussianCorrelationSpectrum(correlation_length=length),

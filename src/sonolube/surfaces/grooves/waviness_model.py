@@ -1,4 +1,4 @@
-"""WavinessModel that may pass below a groove, and how likely they are."""
+"""Waviness model of the unworn surface: polynomial form and plane waves, with covariance and Bayesian evidence."""
 
 import math
 from dataclasses import dataclass
@@ -12,29 +12,34 @@ from sonolube.surfaces.grooves.plane_coordinates import monomials
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class WavinessModel:
-    """A plane and waves.
+    r"""Polynomial form and a sum of plane waves.
 
     Parameters
     ----------
     form : ndarray, shape (3,) or (6,)
-        Height in the middle of the field in m, and what x/l, y/l and perhaps x^2/l^2, x y/l^2, y^2/l^2 add, with l half
-        the longer side of the field.
+        Coefficients in m of 1, x/l, y/l and, with six, x^2/l^2, x y/l^2, y^2/l^2, with l half the longer side of the
+        field.
     half_side : float
-        That half, in m.
+        Half the longer side of the field, l, in m.
     modes : ndarray, shape (n, 2)
-        Waves per metre along x and y.
+        Wavenumbers along x and y, in waves per metre.
     cosine, sine : ndarray, shape (n,)
-        Amplitudes in m, the phase counted from the middle of the field.
+        Amplitudes in m, with phase zero at the centre of the field.
     section : ndarray, shape (functions,)
-        What the section takes of the worn blocks (`WornBlocks.section`).
+        Coefficients of the basis functions `BlockAverages.section`.
     covariance : ndarray, shape (p, p)
-        Of form, cosines and sines, and where they were fitted, of all components of the modes along x, then along y.
+        Covariance of form, cosines and sines and, where wavenumbers were fitted, of their components along x, then y.
     noise : tuple of float
-        Variance of the means of unworn and of worn blocks about it, in m2; of worn ones also what varies in the groove.
+        Variances in m2 of the means of unworn and of worn blocks about the model.
     cost : float
-        Minus twice the logarithm of the evidence; the smaller, the better the model.
+        Minus twice the logarithm of the evidence, up to a constant; the smaller, the more probable the model.
     random : bool
-        Whether they stand for a random field.
+        Whether the waves are the posterior mean of a random field rather than a few fitted waves.
+
+    Notes
+    -----
+    .. math:: z(x, y) = \sum_j f_j\, p_j(x/l, y/l)
+        + \sum_i \left[c_i \cos 2\pi (k_{x,i} x + k_{y,i} y) + s_i \sin 2\pi (k_{x,i} x + k_{y,i} y)\right]
     """
 
     form: Floats
@@ -49,22 +54,22 @@ class WavinessModel:
     random: bool
 
     def form_alone(self, x: Floats, y: Floats) -> Floats:
-        """Return the form's heights in m at columns x and rows y, of shapes (1, columns) and (rows, 1) and in m."""
+        """Heights of the form in m at positions x, shape (1, columns), and y, shape (rows, 1), in m."""
         terms = monomials(x / self.half_side, y / self.half_side, self.form.size)
-        return np.asarray(sum(share * power for share, power in zip(self.form, terms, strict=True)))
+        return np.asarray(sum(factor * power for factor, power in zip(self.form, terms, strict=True)))
 
     def heights(self, x: Floats, y: Floats) -> Floats:
-        """Return the heights in m at columns x and rows y, of shapes (1, columns) and (rows, 1) and in m."""
-        along_x, along_y = self._turning(x.ravel(), y.ravel())
+        """Heights of form and waves in m at positions x, shape (1, columns), and y, shape (rows, 1), in m."""
+        along_x, along_y = self._complex_waves(x.ravel(), y.ravel())
         waves = (along_y * (self.cosine - 1j * self.sine)) @ along_x.T
         return np.asarray(self.form_alone(x, y) + waves.real)
 
-    def sums(self, x: Floats, y: Floats, region: NDArray[np.bool_]) -> Floats:
-        """Return the change of the sum of heights over a region with each of the fitted numbers, shape (p,)."""
+    def height_sum_gradient(self, x: Floats, y: Floats, region: NDArray[np.bool_]) -> Floats:
+        """Gradient of the sum of the heights over a region with respect to the fitted parameters, shape (p,)."""
         terms = monomials(x / self.half_side, y / self.half_side, self.form.size)
         form = [float(np.sum(np.broadcast_to(power, region.shape)[region])) for power in terms]
         x, y = x.ravel(), y.ravel()
-        along_x, along_y = self._turning(x, y)
+        along_x, along_y = self._complex_waves(x, y)
         in_rows = region.astype(np.float64) @ along_x  # (rows, n)
         waves = np.sum(along_y * in_rows, axis=0)
         sums = [np.array(form), waves.real, waves.imag]
@@ -75,13 +80,14 @@ class WavinessModel:
             sums += [(amplitude * by_x).real, (amplitude * by_y).real]
         return np.concatenate(sums)
 
-    def _turning(self, x: Floats, y: Floats) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-        turn = 2j * math.pi
-        return np.exp(turn * np.outer(x, self.modes[:, 0])), np.exp(turn * np.outer(y, self.modes[:, 1]))
+    def _complex_waves(self, x: Floats, y: Floats) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+        """Factors exp(2 pi i k_x x) and exp(2 pi i k_y y), whose products are the waves."""
+        factor = 2j * math.pi
+        return np.exp(factor * np.outer(x, self.modes[:, 0])), np.exp(factor * np.outer(y, self.modes[:, 1]))
 
 
 def model_probabilities(models: list[WavinessModel]) -> Floats:
-    """Return the probability of each model after its evidence, shape (models,)."""
+    """Posterior probabilities of models of equal prior probability, from their evidence, shape (models,)."""
     cost = np.array([model.cost for model in models])
     weight = np.exp((cost.min() - cost) / 2)
     return np.asarray(weight / weight.sum())
