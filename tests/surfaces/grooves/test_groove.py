@@ -24,7 +24,7 @@ ARC = GrooveTrack(track_direction=0.7, track_curvature=1 / 29e-3, track_offset=0
 RING_DIAMETERS = (25.2e-3, 25.4e-3, 34.3e-3, 58.2e-3, 60e-3, 66.04e-3)  # D 2.3 to 2.5
 
 
-def groove_of_the_dissertation(seed: int, kind: str, field: ScannedField = FIELD) -> SyntheticGroove:
+def published_size(seed: int, kind: str, field: ScannedField = FIELD) -> SyntheticGroove:
     rng = np.random.default_rng(seed)
     shape = GrooveShape(groove_width=rng.uniform(0.5e-3, 1.5e-3), groove_depth=rng.uniform(20e-6, 100e-6))
     bend = rng.choice([-1, 1]) * 2 / rng.choice(RING_DIAMETERS) if kind == "curved" else 0.0
@@ -63,7 +63,7 @@ def test_a_parabolic_groove_is_measured_to_a_thousandth() -> None:
 def test_grooves_of_the_dissertations_size_are_all_found_and_measured_to_one_per_cent(kind: str) -> None:
     errors = []
     for seed in range(20):
-        known = groove_of_the_dissertation(seed, kind)
+        known = published_size(seed, kind)
         errors.append(abs(measure_groove(known.scan).wear_volume / known.wear_volume - 1))
     assert np.median(errors) < 0.002
     assert max(errors) < 0.01
@@ -73,7 +73,7 @@ def test_the_stated_uncertainty_covers_random_waviness() -> None:
     field = ScannedField(field_shape=(240, 320), spacing_x=7.5e-6, spacing_y=7.5e-6, waviness_amplitude=0.0)
     scores = []
     for seed in range(10):
-        known = groove_of_the_dissertation(seed, "straight", field)
+        known = published_size(seed, "straight", field)
         waves = gaussian_surface(
             rms_height=1e-6,
             spectrum=GaussianCorrelationSpectrum(correlation_length=0.32e-3),
