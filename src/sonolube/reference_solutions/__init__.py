@@ -1,4 +1,4 @@
-"""Referees of rough contact: boundary elements on the very surface, against which every law can be held."""
+"""Reference solutions of rough contact: boundary elements on a height map, and contact laws compared with them."""
 
 from sonolube.reference_solutions.boundary_element import (
     BoundaryElementContact,

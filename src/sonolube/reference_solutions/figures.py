@@ -1,4 +1,4 @@
-"""What the laws say of one surface, as a table and as a figure."""
+"""Table and figure of contact laws compared on one surface, in dimensionless quantities."""
 
 from typing import TYPE_CHECKING
 
@@ -20,7 +20,7 @@ _TITLES = {
 
 
 def comparison_table(comparison: LawComparison) -> list[str]:
-    """Return the laws side by side as lines, all reduced: gap in rms heights, area in shares, stiffness by slope.
+    """Contact laws side by side as lines of text: gap over rms height, area fraction, and dimensionless stiffness.
 
     Parameters
     ----------
@@ -29,12 +29,12 @@ def comparison_table(comparison: LawComparison) -> list[str]:
     Returns
     -------
     list of str
-        A heading of two lines, then one line a load.
+        A heading of two lines, then one line per load.
     """
     laws = comparison.laws
     columns = [dimensionless_curve(comparison, curve) for curve in laws.values()]
     width = 8 * len(laws)
-    heading = f"{'p/(E* h)':>10}  {'gap/Rq':^{width}}  {'area share':^{width}}  {'k Rq/F':^{width}}"
+    heading = f"{'p/(E* h)':>10}  {'gap/Rq':^{width}}  {'area fraction':^{width}}  {'k Rq/F':^{width}}"
     names = "".join(f"{name[:7]:>8}" for name in laws)
     return [
         heading,
@@ -48,7 +48,7 @@ def comparison_table(comparison: LawComparison) -> list[str]:
 
 
 def comparison_figure(comparison: LawComparison) -> "Figure":
-    """Draw gap, real area and stiffness over the nominal pressure by every law.
+    """Figure of gap, real contact area and stiffness over the nominal pressure by every contact law.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def comparison_figure(comparison: LawComparison) -> "Figure":
         )
         for panel, values in zip(axes, dimensionless_curve(comparison, curve), strict=True):
             panel.plot(comparison.reduced_pressure, values, label=_TITLES[name], **style)
-    labels = ("Mean gap over rms height", "Real over nominal area", "Stiffness × rms height over load")
+    labels = ("Mean gap / rms height", "Real / nominal contact area", "Stiffness × rms height / load")
     for panel, label in zip(axes, labels, strict=True):
         panel.set(xscale="log", xlabel="Nominal pressure $p/(E^* h')$", ylabel=label)
     axes[0].axhline(0, color="0.6", lw=0.8)
@@ -80,7 +80,7 @@ def comparison_figure(comparison: LawComparison) -> "Figure":
 
 
 def dimensionless_curve(comparison: LawComparison, curve: LawCurve) -> tuple[Floats, Floats, Floats]:
-    """Return gap over rms height, real over nominal area, and stiffness times rms height over load.
+    r"""Dimensionless gap, area and stiffness of one law.
 
     Parameters
     ----------
@@ -90,6 +90,8 @@ def dimensionless_curve(comparison: LawComparison, curve: LawCurve) -> tuple[Flo
     Returns
     -------
     tuple of three ndarray, shape (n,)
+        Gap over rms height, real over nominal contact area, and stiffness times rms height over load,
+        :math:`\bar u/R_q`, :math:`A_r/A_n` and :math:`k_n R_q/F_N`.
     """
     return (
         curve.separation / comparison.rms_height,

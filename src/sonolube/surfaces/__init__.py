@@ -1,4 +1,4 @@
-"""Surfaces: height maps, their form, waviness, numbers and wear, and what a rough surface is to a contact model."""
+"""Surface metrology: height maps, filters, ISO 25178 and 21920 parameters, spectra, asperities and wear grooves."""
 
 from sonolube.surfaces.areal_parameters import (
     HeightParameters,
