@@ -120,11 +120,11 @@ def summit_statistics(surface: HeightMap) -> SummitStatistics:
     columns = z.shape[1]
     flat = z.ravel()
     top = flat[indices]
-    bend_x = 2 * top - flat[indices - 1] - flat[indices + 1]
-    bend_y = 2 * top - flat[indices - columns] - flat[indices + columns]
+    second_x = 2 * top - flat[indices - 1] - flat[indices + 1]
+    second_y = 2 * top - flat[indices - columns] - flat[indices + columns]
     return SummitStatistics(
         summit_density=indices.size / (candidates * surface.spacing_x * surface.spacing_y),
-        mean_summit_curvature=float(np.mean(bend_x / surface.spacing_x**2 + bend_y / surface.spacing_y**2)) / 2,
+        mean_summit_curvature=float(np.mean(second_x / surface.spacing_x**2 + second_y / surface.spacing_y**2)) / 2,
         mean_summit_height=float(np.mean(top)) - _mean_and_variance(z)[0],
         summit_height_deviation=float(np.std(top)),
     )

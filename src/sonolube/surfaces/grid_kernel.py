@@ -95,40 +95,40 @@ def gradient_and_area_sums(height: Floats, spacing_x: float, spacing_y: float) -
 @numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
 def row_difference_sums(height: Floats) -> tuple[float, float, float, float]:
     """Number and sum of squares of first differences along rows, then of second differences."""
-    firsts, slopes, seconds, bends = 0.0, 0.0, 0.0, 0.0
+    firsts, slopes, seconds, curvatures = 0.0, 0.0, 0.0, 0.0
     for row in range(height.shape[0]):
         z = height[row]
         a, b, c, d = 0.0, 0.0, 0.0, 0.0
         for column in range(height.shape[1] - 1):
-            step = z[column + 1] - z[column]
-            a += 1.0 if step == step else 0.0
-            b += step * step if step == step else 0.0
+            first = z[column + 1] - z[column]
+            a += 1.0 if first == first else 0.0
+            b += first * first if first == first else 0.0
         for column in range(height.shape[1] - 2):
-            bend = z[column] - 2 * z[column + 1] + z[column + 2]
-            c += 1.0 if bend == bend else 0.0
-            d += bend * bend if bend == bend else 0.0
-        firsts, slopes, seconds, bends = firsts + a, slopes + b, seconds + c, bends + d
-    return firsts, slopes, seconds, bends
+            second = z[column] - 2 * z[column + 1] + z[column + 2]
+            c += 1.0 if second == second else 0.0
+            d += second * second if second == second else 0.0
+        firsts, slopes, seconds, curvatures = firsts + a, slopes + b, seconds + c, curvatures + d
+    return firsts, slopes, seconds, curvatures
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
 def column_difference_sums(height: Floats) -> tuple[float, float, float, float]:
     """Number and sum of squares of first differences along columns, then of second differences."""
-    firsts, slopes, seconds, bends = 0.0, 0.0, 0.0, 0.0
+    firsts, slopes, seconds, curvatures = 0.0, 0.0, 0.0, 0.0
     for row in range(1, height.shape[0]):
         z0, z1 = height[row - 1], height[row]
         z2 = height[min(row + 1, height.shape[0] - 1)]
         inside = 1.0 if row + 1 < height.shape[0] else 0.0
         a, b, c, d = 0.0, 0.0, 0.0, 0.0
         for column in range(height.shape[1]):
-            step = z1[column] - z0[column]
-            bend = z0[column] - 2 * z1[column] + z2[column]
-            a += 1.0 if step == step else 0.0
-            b += step * step if step == step else 0.0
-            c += 1.0 if bend == bend else 0.0
-            d += bend * bend if bend == bend else 0.0
-        firsts, slopes, seconds, bends = firsts + a, slopes + b, seconds + inside * c, bends + inside * d
-    return firsts, slopes, seconds, bends
+            first = z1[column] - z0[column]
+            second = z0[column] - 2 * z1[column] + z2[column]
+            a += 1.0 if first == first else 0.0
+            b += first * first if first == first else 0.0
+            c += 1.0 if second == second else 0.0
+            d += second * second if second == second else 0.0
+        firsts, slopes, seconds, curvatures = firsts + a, slopes + b, seconds + inside * c, curvatures + inside * d
+    return firsts, slopes, seconds, curvatures
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
