@@ -158,6 +158,13 @@ def test_the_quality_factor_of_a_mode_is_one_over_twice_its_damping_ratio() -> N
     )
 
 
+def test_an_undamped_mode_has_a_finite_quality_factor_and_settling_time() -> None:
+    build, values = CASES[0]
+    undamped = {**values, "damping_ratio": 1e-30}
+    assert 1e12 < observed("quality_factor_2", build, undamped) < math.inf
+    assert 1e6 < observed("resonance_settling_time", build, undamped) < math.inf
+
+
 @KINDS
 def test_the_amplitude_per_volt_is_half_the_receptance(build: StructureBuilder, values: dict[str, float]) -> None:
     receptance = float(np.abs(drive_receptance(build(values), frequency=15e3)))

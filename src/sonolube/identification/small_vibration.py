@@ -22,6 +22,7 @@ _SETTLED = 0.02  # amplitude over the initial one at which a transient counts as
 _OSCILLATORY = 1e-9  # imaginary part of a pole over its modulus, below which it is rounding
 _RIGID = 1e-12  # square of a natural frequency over the largest one, below which it is rounding
 _FLOATING = 1e-9  # displacement of the contact in a rigid mode over its largest in any
+_HIGHEST_QUALITY = 1e15  # beyond which damping is rounding
 _TINY = float(np.finfo(float).tiny)
 
 _Number = TypeVar("_Number", np.float64, np.complex128)
@@ -222,7 +223,8 @@ def quality_factor_of(pole: Complexes) -> Floats:
     -------
     ndarray, shape of `pole`
     """
-    return np.asarray(np.abs(pole) / np.maximum(-2 * pole.real, _TINY))
+    modulus = np.abs(pole)
+    return np.asarray(modulus / np.maximum(-2 * pole.real, modulus / _HIGHEST_QUALITY + _TINY))
 
 
 def settling_time_of(pole: Complexes) -> Floats:

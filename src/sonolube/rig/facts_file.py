@@ -30,14 +30,21 @@ from sonolube.identification import (
 from sonolube.rig.file.plausible import plausible_si
 from sonolube.rig.file.reader import rig_content, rig_from
 from sonolube.rig.file.section import Section
-from sonolube.rig.file.sections import RigFile, StackSection, StructureSection, Text
+from sonolube.rig.file.sections import RigFile, StructureSection, Text
 from sonolube.units import kind_of, to_si
 from sonolube.vocabulary import unit_of
 
 _LARGEST_FILE = 1_000_000  # bytes
 _MOST_FACTS = 16
 _LEAST_NUMBER, _LARGEST_NUMBER = 1e-9, 1e9  # of a pure number
-_FREE = (*StructureSection.model_fields, *(name for name in StackSection.model_fields if name != "coupling_factor"))
+_FREE = (
+    *StructureSection.model_fields,
+    "free_capacitance",
+    "free_stroke_per_volt",
+    "stack_stiffness",
+    "stack_damping",
+    "stack_mass",
+)
 
 
 class ConditionsSection(Section):
@@ -125,16 +132,14 @@ def rig_forward_model(path: str | Path, problem: IdentificationProblem) -> Forwa
         As `read_rig`, or if the file lacks the tables, the bounds allow impossible structures, or a condition that an
         observable requires is missing.
     """
-    file = _rig_file(path)
-    assert file.stack is not None  # checked by _rig_file
-    assert file.structure is not None
-    stack, structure = file.stack.model_dump(), file.structure.model_dump()
+    stack, structure = _stack_and_structure(path)
 
     def build(parameters: Mapping[str, float]) -> Structure:
-        changed_stack, changed = (
+        own_stack, own_structure = (
             {name: parameters.get(name, value) for name, value in table.items()} for table in (stack, structure)
         )
-        return chain_structure(pin_on_disc_chain(PiezoStack(**changed_stack), **changed))
+        own_stack["coupling_factor"] = None  # the stated one belongs to the file's stack
+        return chain_structure(pin_on_disc_chain(PiezoStack(**own_stack), **own_structure))
 
     reference = reference_parameters(build, bounds=problem.bounds)
     return structure_model(parametric_structure(build, reference=reference), problem.observations)
@@ -160,21 +165,19 @@ def identified_tables(path: str | Path, identification: Identification) -> str:
     InvalidInput
         As `read_rig`, or if the file lacks the tables.
     """
-    file = _rig_file(path)
-    assert file.stack is not None  # checked by _rig_file
-    assert file.structure is not None
-    return rig_tables(identification, PiezoStack(**file.stack.model_dump()), structure=file.structure.model_dump())
+    stack, structure = _stack_and_structure(path)
+    return rig_tables(identification, PiezoStack(**stack), structure=structure)
 
 
-def _rig_file(path: str | Path) -> RigFile:
-    """Content of a rig's file, checked, with both tables."""
+def _stack_and_structure(path: str | Path) -> tuple[dict[str, Any], dict[str, float]]:
+    """Entries of both tables of a rig's file, checked, in SI."""
     content = rig_content(path)
     with _prefixed(str(path)):
         rig_from(content)
         file = RigFile.model_validate(content)
         if file.stack is None or file.structure is None:
             raise InvalidInput("the tables stack and structure are missing; give both to identify their entries")
-        return file
+        return file.stack.model_dump(), file.structure.model_dump()
 
 
 def _toml(path: Path) -> dict[str, Any]:
