@@ -31,7 +31,7 @@ from sonolube.surfaces import (
     profile_spectrum,
     radial_spectrum,
     spatial_parameters,
-    summits,
+    summit_statistics,
 )
 
 SURFACE = gaussian_surface(
@@ -53,7 +53,7 @@ OURS: dict[str, Callable[[], object]] = {
     "autocorrelation": lambda: autocorrelation(SURFACE),
     "decay and texture": lambda: spatial_parameters(SURFACE),
     "material ratio": lambda: functional_parameters(SURFACE),
-    "summits": lambda: summits(SURFACE),
+    "summits": lambda: summit_statistics(SURFACE),
     "hills": lambda: feature_parameters(SURFACE),
     "Gaussian filter": lambda: low_pass(SURFACE, cutoff_length=80e-6),
 }

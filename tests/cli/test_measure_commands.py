@@ -134,7 +134,7 @@ def test_the_stack_of_a_rig_is_found_in_the_impedance_that_the_rig_computes(
 def test_rings_of_known_depth_give_their_volume_and_the_reduction(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from sonolube.surfaces import GrooveShape, GrooveTrack, ScannedField, generated_groove
+    from sonolube.surfaces import GrooveShape, GrooveTrack, ScannedField, synthetic_groove
 
     field = ScannedField(field_shape=(160, 220), spacing_x=11e-6, spacing_y=11e-6)
     areas = {}
@@ -143,7 +143,7 @@ def test_rings_of_known_depth_give_their_volume_and_the_reduction(
         shape = GrooveShape(groove_width=0.8e-3, groove_depth=depth)
         for place in (1, 2):
             track = GrooveTrack(track_direction=0.4 * place, track_curvature=0.0, track_offset=0.0)
-            scan = generated_groove(shape, track=track, seed=place, field=field).scan
+            scan = synthetic_groove(shape, track=track, seed=place, field=field).scan
             np.save(tmp_path / ring / f"{place}.npy", scan.height)
         across = np.linspace(-0.5e-3, 0.5e-3, 20001)
         areas[ring] = float(np.trapezoid(shape.depth_at(across, np.zeros_like(across)), across))

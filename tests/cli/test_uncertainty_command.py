@@ -11,7 +11,7 @@ from pytest import CaptureFixture, approx, raises
 from sonolube.cli import main
 from sonolube.cli.uncertainty_output import Identified, uncertainty_lines
 from sonolube.design import propagate
-from sonolube.identification import Direction, Posterior
+from sonolube.identification import Posterior, SingularDirection
 from sonolube.rig import read_rig
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"
@@ -89,8 +89,10 @@ def test_what_cannot_be_had_is_refused_in_one_line(
 def test_what_facts_leave_free_is_said() -> None:
     draws = np.geomspace(1.0, 1000.0, 40)
     drawn = Identified(
-        posterior=Posterior(draws={"arm_damping": draws}, free=("arm_damping",), scale_reduction=1.3),
-        free_directions=(Direction(exponents={"arm_damping": 0.99, "tip_mass": 0.01}, sensitivity=0.2),),
+        posterior=Posterior(draws={"arm_damping": draws}, unidentified=("arm_damping",), potential_scale_reduction=1.3),
+        unidentifiable_directions=(
+            SingularDirection(exponents={"arm_damping": 0.99, "tip_mass": 0.01}, sensitivity=0.2),
+        ),
     )
     rig = RIGS / "tribometer.toml"
     result = propagate(rig, samples=32, joint=drawn.draws_by_key())

@@ -29,7 +29,7 @@ RMS_HEIGHT = 1e-6
 
 def spectrum(points: int = 4000) -> RadialSpectrum:
     k = np.geomspace(1e3, 1e5, points)
-    relative = SELF_AFFINE.relative_density(wavenumber=np.clip(k, 1e3 * (1 + 1e-12), 1e5 * (1 - 1e-12)))
+    relative = SELF_AFFINE.relative_spectral_density(wavenumber=np.clip(k, 1e3 * (1 + 1e-12), 1e5 * (1 - 1e-12)))
     # scaled so that the integral of 2 pi k C over k is the variance
     scale = RMS_HEIGHT**2 / np.trapezoid(2 * math.pi * k * relative, k)
     return RadialSpectrum(wavenumber=k, areal_spectral_density=scale * relative)
@@ -75,18 +75,18 @@ def gap_by_the_double_integral(pressure: float, gamma: float) -> float:
 
 def test_the_slope_is_that_of_the_closed_moments() -> None:
     moments = SELF_AFFINE.moments(rms_height=RMS_HEIGHT)
-    assert CONTACT.rms_slope == approx(math.sqrt(2 * moments.slope_variance), rel=1e-4)
+    assert CONTACT.rms_gradient == approx(math.sqrt(2 * moments.slope_variance), rel=1e-4)
 
 
 def test_the_area_starts_as_the_root_of_8_over_pi_and_ends_full() -> None:
-    low = persson_area_fraction(nominal_pressure=1e5, effective_modulus=E_STAR, rms_slope=0.1)
+    low = persson_area_fraction(nominal_pressure=1e5, effective_modulus=E_STAR, rms_gradient=0.1)
     assert low == approx(math.sqrt(8 / math.pi) * 1e5 / (E_STAR * 0.1), rel=1e-9)
     assert persson_area(CONTACT, normal_load=1e9) == approx(AREA)
 
 
 def test_the_gap_is_the_double_integral_of_yang_and_persson() -> None:
     for share in (1e-3, 0.03, 0.3):
-        pressure = share * E_STAR * CONTACT.rms_slope
+        pressure = share * E_STAR * CONTACT.rms_gradient
         for gamma in (0.45, 1.0):
             contact = PerssonContact(
                 spectrum=SPECTRUM, effective_modulus=E_STAR, nominal_area=AREA, energy_fraction=gamma
@@ -97,7 +97,7 @@ def test_the_gap_is_the_double_integral_of_yang_and_persson() -> None:
 
 def test_the_work_of_closing_the_gap_is_the_elastic_energy_of_the_flattened_waves() -> None:
     # all waves pressed flat: E*/4 times the mean of q h^2, over the plane of wavenumbers
-    load = np.geomspace(1e-8, 100, 4000) * AREA * E_STAR * CONTACT.rms_slope
+    load = np.geomspace(1e-8, 100, 4000) * AREA * E_STAR * CONTACT.rms_gradient
     gap = persson_separation(CONTACT, normal_load=load)
     work = -np.trapezoid(load, gap) / AREA
     k = SPECTRUM.wavenumber
@@ -113,7 +113,7 @@ def test_the_stiffness_is_the_slope_of_the_load(load: float) -> None:
 
 
 def test_a_low_load_falls_exponentially_with_the_gap() -> None:
-    low = 1e-5 * AREA * E_STAR * CONTACT.rms_slope
+    low = 1e-5 * AREA * E_STAR * CONTACT.rms_gradient
     lengths = [load / persson_stiffness(CONTACT, normal_load=load) for load in (low, low / 100)]
     assert lengths[0] == approx(lengths[1], rel=1e-3)
     assert 0.3 * RMS_HEIGHT < lengths[0] < 0.6 * RMS_HEIGHT  # u0 is about half the rms height for H = 0.8

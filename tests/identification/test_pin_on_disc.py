@@ -1,4 +1,4 @@
-"""What a pin-on-disc rig shows, against closed forms, the dynamics of its structure and a motion followed in time."""
+"""Observables of the pin-on-disc chain against closed forms, the dynamics room and a transient integrated in time."""
 
 import math
 from dataclasses import replace
@@ -14,7 +14,7 @@ from sonolube.dynamics.chain import chain_structure, pin_on_disc_chain
 from sonolube.dynamics.linear import poles
 from sonolube.dynamics.structure import Structure, drive_receptance, electrical_admittance, with_contact_spring
 from sonolube.errors import InvalidInput
-from sonolube.identification import Fact, PinOnDiscTest, identify, observer
+from sonolube.identification import Fact, PinOnDiscTest, identify, pin_on_disc_model
 
 STACK = PiezoStack(
     free_capacitance=360e-9, free_stroke_per_volt=8.68e-9, stack_stiffness=2e9, stack_mass=0.07, stack_damping=30.0
@@ -38,9 +38,9 @@ RIG = {
 }
 
 
-def seen(test: PinOnDiscTest = TEST, **changes: float) -> dict[str, float]:
-    shown = observer(test)({name: np.array([value]) for name, value in {**RIG, **changes}.items()})
-    return {name: float(values[0]) for name, values in shown.items()}
+def observed(test: PinOnDiscTest = TEST, **changes: float) -> dict[str, float]:
+    values = pin_on_disc_model(test)({name: np.array([value]) for name, value in {**RIG, **changes}.items()})
+    return {name: float(each[0]) for name, each in values.items()}
 
 
 def structure(**changes: float) -> Structure:
@@ -56,70 +56,72 @@ def state_matrix(rig: Structure) -> Floats:
 def test_an_effective_mass_of_105_grams_on_the_printed_stack_resonates_at_22_kilohertz() -> None:
     effective = 0.15 * 0.35 / (0.15 + 0.35)
     assert effective == approx(0.105)
-    assert seen()["electrical_resonance"] == approx(math.sqrt(2e9 / effective) / (2 * math.pi), rel=1e-4)
-    assert seen()["electrical_resonance"] == approx(22e3, rel=2e-3)
+    assert observed()["electrical_resonance"] == approx(math.sqrt(2e9 / effective) / (2 * math.pi), rel=1e-4)
+    assert observed()["electrical_resonance"] == approx(22e3, rel=2e-3)
 
 
 def test_the_resonance_is_where_conductance_peaks() -> None:
     frequency = np.linspace(21.5e3, 22.5e3, 20001)
     conductance = electrical_admittance(structure(tip_damping=500.0), frequency=frequency).real
     peak = frequency[np.argmax(conductance)]
-    assert seen(tip_damping=500.0)["electrical_resonance"] == approx(peak, rel=2e-4)
+    assert observed(tip_damping=500.0)["electrical_resonance"] == approx(peak, rel=2e-4)
 
 
 def test_the_printed_damping_alone_gives_a_quality_of_482() -> None:
     # Q = sqrt(k_p m_e)/c_p = k_p/(omega c_p)
-    shown = seen(arm_damping=1e-6)
-    assert shown["resonance_quality"] == approx(2e9 / (2 * math.pi * shown["electrical_resonance"] * 30), rel=1e-4)
-    assert shown["resonance_quality"] == approx(482, rel=3e-3)
+    found = observed(arm_damping=1e-6)
+    assert found["resonance_quality_factor"] == approx(
+        2e9 / (2 * math.pi * found["electrical_resonance"] * 30), rel=1e-4
+    )
+    assert found["resonance_quality_factor"] == approx(482, rel=3e-3)
 
 
-def test_the_tip_moves_as_the_structure_receives_the_drive() -> None:
+def test_the_amplitude_of_the_tip_is_the_receptance_of_the_structure() -> None:
     expected = abs(drive_receptance(structure(), frequency=22e3)) / 2
-    assert seen()["tip_amplitude_per_volt"] == approx(float(expected), rel=1e-6)
+    assert observed()["amplitude_per_volt"] == approx(float(expected), rel=1e-6)
 
 
-def test_the_power_that_the_stack_takes_is_what_the_dampers_turn_into_heat() -> None:
+def test_the_electrical_power_is_the_power_dissipated_by_the_dampers() -> None:
     rig, omega = structure(tip_damping=300.0), 2 * math.pi * 22e3
     dynamic = rig.stiffness_matrix + 1j * omega * rig.damping_matrix - omega**2 * rig.mass_matrix
     velocity = 1j * omega * np.linalg.solve(dynamic, rig.drive_vector * 25.9 / 2)
     heat = float((velocity.conj() @ rig.damping_matrix @ velocity).real) / 2
-    assert seen(tip_damping=300.0)["dissipated_power"] == approx(heat, rel=1e-6)
+    assert observed(tip_damping=300.0)["dissipated_power"] == approx(heat, rel=1e-6)
 
 
-def test_far_below_resonance_the_tip_gets_its_share_of_the_free_stroke() -> None:
+def test_far_below_resonance_the_free_stroke_divides_inversely_to_the_masses() -> None:
     # two free masses: the tip moves by M/(m_1 + M) of the elongation
-    shown = seen(replace(TEST, frequency=2e3), arm_stiffness=1.0, arm_damping=1e-6)
+    found = observed(replace(TEST, frequency=2e3), arm_stiffness=1.0, arm_damping=1e-6)
     share = 0.35 / 0.5
-    gain = 1 / (1 - (2e3 / shown["electrical_resonance"]) ** 2)
-    assert shown["tip_amplitude_per_volt"] == approx(8.68e-9 / 2 * share * gain, rel=1e-4)
+    gain = 1 / (1 - (2e3 / found["electrical_resonance"]) ** 2)
+    assert found["amplitude_per_volt"] == approx(8.68e-9 / 2 * share * gain, rel=1e-4)
 
 
 @pytest.mark.parametrize("detuning", [0.0, 10.0, 300.0])
-def test_the_share_of_resonance_is_that_of_an_oscillator(detuning: float) -> None:
-    peak = seen()["electrical_resonance"]
-    shown = seen(replace(TEST, frequency=peak - detuning))
-    half_width = peak / (2 * shown["resonance_quality"])
-    assert shown["resonance_share"] == approx(1 / math.hypot(1, detuning / half_width), rel=1e-2)
+def test_the_amplitude_off_resonance_is_that_of_an_oscillator(detuning: float) -> None:
+    peak = observed()["electrical_resonance"]
+    found = observed(replace(TEST, frequency=peak - detuning))
+    half_width = peak / (2 * found["resonance_quality_factor"])
+    assert found["resonance_amplitude_ratio"] == approx(1 / math.hypot(1, detuning / half_width), rel=1e-2)
 
 
-def test_free_motions_on_the_disc_are_those_of_the_structure_on_a_spring() -> None:
+def test_the_residual_oscillation_is_that_of_the_structure_on_a_contact_spring() -> None:
     free = poles(with_contact_spring(structure(), normal_stiffness=3.0 / 2e-6))
     arm, slowest = free[0], min(-free[:4].real)
-    assert seen()["arm_frequency"] == approx(abs(arm) / (2 * math.pi), rel=1e-6)
-    assert seen()["arm_settling"] == approx(math.log(50) / slowest, rel=1e-5)
-    assert seen()["fluctuation_left"] == approx(math.exp(arm.real * 0.05), rel=1e-5)
+    assert observed()["residual_frequency"] == approx(abs(arm) / (2 * math.pi), rel=1e-6)
+    assert observed()["residual_settling_time"] == approx(math.log(50) / slowest, rel=1e-5)
+    assert observed()["residual_fraction"] == approx(math.exp(arm.real * 0.05), rel=1e-5)
 
 
-def test_on_a_stiff_contact_the_arm_swings_on_its_own_spring() -> None:
-    shown = seen(replace(TEST, decay_length=1e-10), arm_damping=1e-6)
-    assert shown["arm_frequency"] == approx(math.sqrt(2e5 / 0.5) / (2 * math.pi), rel=1e-3)
-    assert shown["heavier_arm_frequency"] == approx(math.sqrt(2e5 / 0.857) / (2 * math.pi), rel=1e-3)
+def test_on_a_stiff_contact_the_arm_oscillates_on_its_own_spring() -> None:
+    found = observed(replace(TEST, decay_length=1e-10), arm_damping=1e-6)
+    assert found["residual_frequency"] == approx(math.sqrt(2e5 / 0.5) / (2 * math.pi), rel=1e-3)
+    assert found["residual_frequency_with_added_mass"] == approx(math.sqrt(2e5 / 0.857) / (2 * math.pi), rel=1e-3)
 
 
 def test_the_stack_has_settled_to_two_percent_after_its_settling_time() -> None:
     rig = structure(tip_damping=100.0)
-    time, period = seen(tip_damping=100.0)["tip_settling"], 1 / 22e3
+    time, period = observed(tip_damping=100.0)["resonance_settling_time"], 1 / 22e3
     start = np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0])
 
     def swing(from_time: float) -> float:
@@ -133,40 +135,40 @@ def test_the_stack_has_settled_to_two_percent_after_its_settling_time() -> None:
     assert swing(time) / swing(0.0) == approx(0.02, rel=0.02)
 
 
-def test_parameters_are_recovered_from_what_a_known_rig_shows() -> None:
+def test_parameters_are_recovered_from_the_observables_of_a_known_rig() -> None:
     truth = {**RIG, "tip_damping": 200.0}
     wanted = (
         "electrical_resonance",
-        "tip_amplitude_per_volt",
-        "resonance_quality",
-        "arm_frequency",
-        "heavier_arm_frequency",
-        "arm_settling",
+        "amplitude_per_volt",
+        "resonance_quality_factor",
+        "residual_frequency",
+        "residual_frequency_with_added_mass",
+        "residual_settling_time",
         "arm_mass",
     )
-    shown = seen(tip_damping=200.0)
-    facts = [Fact(name=name, value=shown[name], tolerance=1e-3 * shown[name], rank=1) for name in wanted]
+    values = observed(tip_damping=200.0)
+    facts = [Fact(name=name, value=values[name], tolerance=1e-3 * values[name], rank=1) for name in wanted]
     bounds = {name: (value / 5, value * 5) for name, value in truth.items()}
-    found = identify(observer(TEST), facts=facts, bounds=bounds)
-    assert found.kept == set(wanted)
+    found = identify(pin_on_disc_model(TEST), facts=facts, bounds=bounds)
+    assert found.satisfied == set(wanted)
     for name, estimate in found.estimates.items():
         assert estimate.lower <= truth[name] <= estimate.upper, name
         assert estimate.value == approx(truth[name], rel=0.01), name
-    assert found.free_directions == ()
+    assert found.unidentifiable_directions == ()
 
 
-def test_the_stack_alone_tells_nothing_of_the_arm() -> None:
-    shown = seen()
+def test_facts_of_the_stack_alone_do_not_determine_the_arm() -> None:
+    values = observed()
     facts = [
-        Fact(name=name, value=shown[name], tolerance=0.01 * shown[name], rank=1)
-        for name in ("electrical_resonance", "tip_amplitude_per_volt", "resonance_quality")
+        Fact(name=name, value=values[name], tolerance=0.01 * values[name], rank=1)
+        for name in ("electrical_resonance", "amplitude_per_volt", "resonance_quality_factor")
     ]
-    found = identify(observer(TEST), facts=facts, bounds={name: (v / 3, v * 3) for name, v in RIG.items()})
+    found = identify(pin_on_disc_model(TEST), facts=facts, bounds={name: (v / 3, v * 3) for name, v in RIG.items()})
     for name in ("arm_mass", "arm_stiffness"):
         estimate = found.estimates[name]
         assert estimate.lower_is_bound, name
         assert estimate.upper_is_bound, name
-    assert len(found.free_directions) >= 2
+    assert len(found.unidentifiable_directions) >= 2
 
 
 @pytest.mark.parametrize("name", ["frequency", "voltage_peak_to_peak", "normal_load", "decay_length", "settling_time"])
@@ -177,4 +179,4 @@ def test_a_test_without_a_positive_setting_is_refused_by_name(name: str) -> None
 
 def test_a_missing_parameter_is_named() -> None:
     with raises(InvalidInput, match=r"parameters must be tip_mass, reaction_mass, .*, got tip_mass"):
-        observer(TEST)({"tip_mass": np.array([0.1])})
+        pin_on_disc_model(TEST)({"tip_mass": np.array([0.1])})

@@ -19,8 +19,8 @@ from sonolube.surfaces import (
     GrooveTrack,
     HeightMap,
     ScannedField,
-    generated_groove,
     measure_groove,
+    synthetic_groove,
 )
 
 FIELD = ScannedField(field_shape=(240, 320), spacing_x=7.5e-6, spacing_y=7.5e-6)
@@ -31,7 +31,7 @@ DIAMETER, DISTANCE = 58.2e-3, 292.5  # D Table 2.2
 def scan(seed: int, depth: float = 75e-6) -> HeightMap:
     track = GrooveTrack(track_direction=0.1 * seed, track_curvature=2 / DIAMETER, track_offset=0.0)
     shape = GrooveShape(groove_width=0.7e-3, groove_depth=depth)
-    return generated_groove(shape, track=track, seed=seed, field=FIELD).scan
+    return synthetic_groove(shape, track=track, seed=seed, field=FIELD).scan
 
 
 @fixture(scope="module")

@@ -228,7 +228,9 @@ def peak_velocity(read: Reader) -> Span:
 DERIVED: dict[tuple[str, str], Relation] = {
     **distance_and_turns("2.2"),
     ("2.2", "groove_diameter"): groove_diameter,
-    ("2.4", "total_height"): lambda read: over(np.add, read("2.4", "peak_height"), read("2.4", "valley_depth")),
+    ("2.4", "total_height"): lambda read: over(
+        np.add, read("2.4", "maximum_peak_height"), read("2.4", "maximum_pit_depth")
+    ),
     ("2.5", "wear_rate_drop"): lambda read: over(
         np.subtract, read("2.5", "intrinsic_wear_rate"), read("2.5", "reduced_wear_rate")
     ),

@@ -23,7 +23,7 @@ from sonolube.report.measured.friction_comparison import comparison_sheet
 from sonolube.report.measured.impedance import ImpedanceSettings, impedance_sheet
 from sonolube.report.measured.sheet import Sheet, known
 from sonolube.report.measured.surface import SurfaceSettings, surface_sheet
-from sonolube.surfaces import SingleScaleSpectrum, gaussian_surface
+from sonolube.surfaces import GaussianCorrelationSpectrum, gaussian_surface
 
 RB5100 = Path(__file__).parents[3] / "shared" / "data" / "impedance" / "RB5100.txt"
 NPY = SurfaceSettings(spacing_x=1e-6, spacing_y=1e-6)
@@ -49,7 +49,7 @@ def report_of(*sheets: Sheet) -> MeasurementReport:
 
 @pytest.fixture(scope="module")
 def plate(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    spectrum = SingleScaleSpectrum(correlation_length=5e-6)
+    spectrum = GaussianCorrelationSpectrum(correlation_length=5e-6)
     surface = gaussian_surface(
         rms_height=0.4e-6, spectrum=spectrum, shape=(128, 160), spacing_x=1e-6, spacing_y=1e-6, seed=1
     )

@@ -1,4 +1,4 @@
-"""Areal parameters against closed forms of simple surfaces, and against the symmetries that ISO 25178 demands."""
+"""Areal parameters against closed forms of simple surfaces, and the symmetries that ISO 25178-2 implies."""
 
 import math
 
@@ -10,10 +10,10 @@ from scipy.integrate import quad
 
 from sonolube.errors import InvalidInput
 from sonolube.surfaces import (
+    GaussianCorrelationSpectrum,
     HeightMap,
-    SingleScaleSpectrum,
     autocorrelation,
-    decay_lengths,
+    correlation_lengths,
     gaussian_surface,
     height_parameters,
     hybrid_parameters,
@@ -44,7 +44,7 @@ def holed(surface: HeightMap, *, share: float, seed: int = 0) -> HeightMap:
 
 RANDOM = gaussian_surface(
     rms_height=1e-6,
-    spectrum=SingleScaleSpectrum(correlation_length=10e-6),
+    spectrum=GaussianCorrelationSpectrum(correlation_length=10e-6),
     shape=(400, 500),
     spacing_x=DX,
     spacing_y=DY,
@@ -52,61 +52,61 @@ RANDOM = gaussian_surface(
 )
 
 
-def test_a_sine_has_the_heights_of_a_sine() -> None:
+def test_a_sine_has_the_height_parameters_of_a_sine() -> None:
     found = height_parameters(sine())
-    assert found.mean_roughness == approx(2 * AMPLITUDE / math.pi, rel=1e-3)
+    assert found.arithmetic_mean_height == approx(2 * AMPLITUDE / math.pi, rel=1e-3)
     assert found.rms_height == approx(AMPLITUDE / math.sqrt(2), rel=1e-9)
     assert found.total_height == approx(2 * AMPLITUDE, rel=1e-3)
-    assert found.peak_height + found.valley_depth == approx(found.total_height)
+    assert found.maximum_peak_height + found.maximum_pit_depth == approx(found.total_height)
     assert found.skewness == approx(0, abs=1e-9)
     assert found.kurtosis == approx(1.5, rel=1e-9)
 
 
-def test_four_pixels_come_out_as_by_hand() -> None:
+def test_the_parameters_of_four_pixels_are_those_computed_by_hand() -> None:
     found = height_parameters(surface_of(np.array([[0.0, 0.0], [0.0, 4.0]])))
-    assert (found.mean_roughness, found.rms_height) == approx((1.5, math.sqrt(3)))
-    assert (found.peak_height, found.valley_depth) == approx((3, 1))
+    assert (found.arithmetic_mean_height, found.rms_height) == approx((1.5, math.sqrt(3)))
+    assert (found.maximum_peak_height, found.maximum_pit_depth) == approx((3, 1))
     assert (found.skewness, found.kurtosis) == approx((6 / 3**1.5, 21 / 9))
 
 
-def test_integers_exponentially_spread_are_skewed_by_two_and_have_a_kurtosis_of_nine() -> None:
+def test_exponentially_distributed_heights_have_skewness_two_and_kurtosis_nine() -> None:
     quantiles = -np.log1p(-(np.arange(1_000_000) + 0.5) / 1_000_000)
     found = height_parameters(surface_of(quantiles.reshape(1000, 1000)))
     assert (found.skewness, found.kurtosis) == approx((2, 9), rel=5e-3)
 
 
 @mark.parametrize("direction", [0.0, 0.4, math.pi / 2])
-def test_a_sine_is_as_steep_as_a_sine(direction: float) -> None:
+def test_a_sine_has_the_gradient_of_a_sine_in_any_direction(direction: float) -> None:
     steepness = AMPLITUDE * WAVE
     found = hybrid_parameters(sine(direction))
     whole_waves = direction in (0.0, math.pi / 2)
-    assert found.rms_slope == approx(steepness / math.sqrt(2), rel=4e-3 if whole_waves else 0.02)
+    assert found.rms_gradient == approx(steepness / math.sqrt(2), rel=4e-3 if whole_waves else 0.02)
     area = quad(lambda u: math.sqrt(1 + (steepness * math.cos(u)) ** 2), 0, math.pi)[0] / math.pi
-    assert found.developed_area_ratio == approx(area - 1, rel=8e-3 if whole_waves else 0.04)
+    assert found.developed_interfacial_area_ratio == approx(area - 1, rel=8e-3 if whole_waves else 0.04)
 
 
-def test_a_tilted_plane_is_steeper_by_its_slope_whatever_the_spacing() -> None:
+def test_a_tilted_plane_has_its_gradient_at_any_spacing() -> None:
     found = hybrid_parameters(surface_of(0.3 * GRID_X - 0.4 * GRID_Y))
-    assert found.rms_slope == approx(0.5)
-    assert found.developed_area_ratio == approx(math.sqrt(1.25) - 1)
+    assert found.rms_gradient == approx(0.5)
+    assert found.developed_interfacial_area_ratio == approx(math.sqrt(1.25) - 1)
 
 
-def test_the_area_of_a_nearly_flat_surface_keeps_its_digits() -> None:
-    assert hybrid_parameters(surface_of(1e-7 * GRID_X)).developed_area_ratio == approx(5e-15, rel=1e-6)
+def test_the_developed_area_of_a_nearly_flat_surface_has_no_cancellation() -> None:
+    assert hybrid_parameters(surface_of(1e-7 * GRID_X)).developed_interfacial_area_ratio == approx(5e-15, rel=1e-6)
 
 
-def test_each_missing_pixel_costs_the_cells_around_it_only() -> None:
+def test_a_missing_pixel_removes_only_the_cells_around_it() -> None:
     plane = 0.3 * GRID_X
     plane[50, 60] = plane[0, 0] = plane[-1, 7] = np.nan
-    assert hybrid_parameters(surface_of(plane)).rms_slope == approx(0.3)
+    assert hybrid_parameters(surface_of(plane)).rms_gradient == approx(0.3)
 
 
 @given(factor=st.floats(0.01, 100), shift=st.floats(-1e-3, 1e-3))
 @settings(max_examples=20, deadline=None)
-def test_heights_scale_and_do_not_care_for_the_datum(factor: float, shift: float) -> None:
+def test_parameters_scale_with_the_heights_and_do_not_depend_on_the_datum(factor: float, shift: float) -> None:
     small = RANDOM.height[:40, :40]
     one, other = height_parameters(surface_of(small)), height_parameters(surface_of(factor * small + shift))
-    for name in ("mean_roughness", "rms_height", "peak_height", "valley_depth", "total_height"):
+    for name in ("arithmetic_mean_height", "rms_height", "maximum_peak_height", "maximum_pit_depth", "total_height"):
         assert getattr(other, name) == approx(factor * getattr(one, name), rel=1e-6)
     assert (other.skewness, other.kurtosis) == approx((one.skewness, one.kurtosis), rel=1e-4, abs=1e-4)
 
@@ -122,21 +122,21 @@ def test_pixels_missing_at_random_change_the_deviation_within_its_sampling_error
     assert ratio == approx(1, abs=5 * error + 1e-12)
 
 
-def test_turning_the_map_turns_the_lay() -> None:
+def test_rotating_the_map_rotates_the_lay() -> None:
     found, turned = (spatial_parameters(sine(way, waves=SHORT_WAVE)) for way in (0.4, 0.4 + math.pi / 2))
     assert found.texture_direction == approx(0.4 + math.pi / 2, abs=0.02)
     assert turned.texture_direction == approx(0.4, abs=0.02)
 
 
-def test_the_autocorrelation_of_a_wave_falls_to_a_fifth_where_the_cosine_does() -> None:
+def test_the_autocorrelation_of_a_wave_decays_to_a_fifth_where_the_cosine_does() -> None:
     found = spatial_parameters(sine(waves=SHORT_WAVE))
     assert found.autocorrelation_length == approx(math.acos(0.2) / SHORT_WAVE, rel=0.01)
-    assert not found.decays_everywhere
+    assert not found.decays_in_all_directions
     assert found.texture_aspect_ratio < 0.1
     assert found.texture_direction == approx(math.pi / 2, abs=0.02)
 
 
-def test_an_egg_box_correlates_as_a_product_of_cosines() -> None:
+def test_the_autocorrelation_of_an_egg_box_is_a_product_of_cosines() -> None:
     box = surface_of(AMPLITUDE * np.cos(SHORT_WAVE * GRID_X) * np.cos(SHORT_WAVE * GRID_Y))
     found = autocorrelation(box)
     expected = np.outer(np.cos(SHORT_WAVE * found.lag_y), np.cos(SHORT_WAVE * found.lag_x))
@@ -146,14 +146,16 @@ def test_an_egg_box_correlates_as_a_product_of_cosines() -> None:
     assert found.normalized[centre, near] == approx(expected[centre, near], abs=0.01)
 
 
-def test_a_random_surface_correlates_as_it_was_made() -> None:
-    found = decay_lengths(autocorrelation(RANDOM), directions=[0.0, 0.7, math.pi / 2, 2.0], threshold=math.exp(-1))
+def test_a_random_surface_has_the_autocorrelation_of_its_spectrum() -> None:
+    found = correlation_lengths(
+        autocorrelation(RANDOM), directions=[0.0, 0.7, math.pi / 2, 2.0], threshold=math.exp(-1)
+    )
     assert found.decayed.all()
     assert found.distance == approx(10e-6, rel=0.05)
     isotropic = spatial_parameters(RANDOM)
     assert isotropic.autocorrelation_length == approx(10e-6 * math.sqrt(math.log(5)), rel=0.06)
     assert 0.85 < isotropic.texture_aspect_ratio <= 1
-    assert isotropic.decays_everywhere
+    assert isotropic.decays_in_all_directions
 
 
 def direct_autocovariance(surface: HeightMap, down: int, right: int) -> float:
@@ -177,32 +179,32 @@ def test_the_autocovariance_is_the_mean_product_of_measured_pairs(share: float, 
 @mark.parametrize("parameters", [height_parameters, hybrid_parameters, spatial_parameters])
 @mark.parametrize("shape", [(1, 1), (1, 9), (9, 1)])
 def test_a_line_has_no_areal_parameters(parameters: object, shape: tuple[int, int]) -> None:
-    with raises(InvalidInput, match=f"at least 2 rows and 2 columns of height, got {shape[0]} x {shape[1]}"):
+    with raises(InvalidInput, match=f"at least 2 rows and 2 columns, got {shape[0]} x {shape[1]}"):
         parameters(surface_of(np.arange(shape[0] * shape[1], dtype=float).reshape(shape)))  # type: ignore[operator]
 
 
-def test_a_flat_map_has_no_skewness_and_is_told_so() -> None:
+def test_a_flat_map_is_refused() -> None:
     with raises(InvalidInput, match=r"height must vary, got 0\.1 m in every measured pixel"):
         height_parameters(surface_of(np.full((3, 4), 0.1)))
     with raises(InvalidInput, match="flat map has no autocorrelation"):
         spatial_parameters(surface_of(np.full((3, 4), 0.1)))
 
 
-def test_a_map_of_islands_has_no_slope() -> None:
+def test_a_map_of_isolated_pixels_has_no_gradient() -> None:
     islands = np.full((6, 6), np.nan)
     islands[::2, ::2] = np.arange(9.0).reshape(3, 3)
-    with raises(InvalidInput, match="four neighbouring measured pixels; with 75% missing"):
+    with raises(InvalidInput, match="four neighbouring measured pixels; with 75% of the pixels missing"):
         hybrid_parameters(surface_of(islands))
 
 
-def test_a_row_without_a_measured_pixel_counts_for_nothing() -> None:
+def test_a_row_without_a_measured_pixel_is_left_out() -> None:
     height = RANDOM.height.copy()
     height[17] = np.nan
     rest = height_parameters(surface_of(np.delete(height, 17, axis=0)))
     assert height_parameters(surface_of(height)).rms_height == approx(rest.rms_height)
 
 
-def test_a_map_smaller_than_its_texture_is_told_so() -> None:
+def test_a_map_smaller_than_its_texture_is_refused() -> None:
     bowl = surface_of(np.full((6, 6), 0.0))
     tilted = bowl.with_height(np.sign(np.arange(6.0) - 2.5)[:, None] * np.array([[1, -1, 1, -1, 1, -1.0]]))
     assert spatial_parameters(tilted).autocorrelation_length < DX

@@ -1,4 +1,4 @@
-"""Summits where they were put, and as many and as sharp as theory says of Gaussian surfaces."""
+"""Summit statistics of surfaces with known summits, and of Gaussian surfaces against Nayak's theory."""
 
 import math
 
@@ -9,22 +9,22 @@ from pytest import approx, mark, raises
 
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.surfaces import (
+    GaussianCorrelationSpectrum,
     HeightMap,
     HeightSpectrum,
     Roughness,
     SelfAffineSpectrum,
-    SingleScaleSpectrum,
     SpectralMoments,
-    against_sampling_interval,
-    combined,
-    gaussian_summits,
+    combined_roughness,
+    contact_roughness,
     gaussian_surface,
-    roughness,
+    nayak_summit_statistics,
+    sampling_dependence,
     spectral_moments,
-    summits,
+    summit_statistics,
 )
 
-SINGLE_SCALE = SingleScaleSpectrum(correlation_length=12e-6)
+SINGLE_SCALE = GaussianCorrelationSpectrum(correlation_length=12e-6)
 SELF_AFFINE = SelfAffineSpectrum(
     hurst_exponent=0.8, longest_wavelength=256e-6, rolloff_wavelength=128e-6, shortest_wavelength=16e-6
 )
@@ -38,8 +38,8 @@ def random_surface(spectrum: HeightSpectrum, *, seed: int, rms_height: float = 1
 
 @mark.parametrize("spectrum", [SINGLE_SCALE, SELF_AFFINE], ids=["single scale", "self-affine"])
 def test_summits_of_a_gaussian_surface_are_those_of_nayak(spectrum: HeightSpectrum) -> None:
-    theory = gaussian_summits(spectrum.moments(rms_height=1e-6))
-    counted = [summits(random_surface(spectrum, seed=seed)) for seed in range(3)]
+    theory = nayak_summit_statistics(spectrum.moments(rms_height=1e-6))
+    counted = [summit_statistics(random_surface(spectrum, seed=seed)) for seed in range(3)]
     number = sum(one.summit_density for one in counted) * 800 * 1.25e-6 * 1024e-6
     scatter = 3 / math.sqrt(number)
     sampling = 0.03  # finite differences at 16 points to the shortest wave
@@ -62,7 +62,7 @@ def test_finite_differences_give_the_moments_of_the_spectrum(spectrum: HeightSpe
     assert found.curvature_variance == approx(exact.curvature_variance, rel=0.04)
 
 
-def test_a_single_wavelength_in_all_directions_has_the_least_bandwidth() -> None:
+def test_waves_of_one_length_in_all_directions_have_the_least_bandwidth() -> None:
     # m2 = m0 q^2/2 and m4 = m0 3 q^4/8 of a ring in the plane of wavenumbers
     moments = SpectralMoments(height_variance=2.0, slope_variance=9.0, curvature_variance=2.0 * 81 * 3 / 8)
     assert moments.bandwidth == approx(1.5)
@@ -72,17 +72,17 @@ def test_theory_gives_the_roughness_parameter_of_mccool() -> None:
     # beta^2 = 3.717e-4/(1 - (sigma_s/Rq)^2) ties density, radius and deviation for every bandwidth
     for curvature in (2.0, 10.0, 1000.0):
         moments = SpectralMoments(height_variance=1.0, slope_variance=1.0, curvature_variance=curvature)
-        found = gaussian_summits(moments)
+        found = nayak_summit_statistics(moments)
         beta = found.summit_density * found.summit_radius
         assert beta**2 == approx(3.717e-4 / (1 - found.summit_height_deviation**2), rel=1e-3)
 
 
-def test_caps_of_one_radius_are_found_with_that_radius_and_number() -> None:
+def test_spherical_caps_have_their_number_and_radius() -> None:
     radius, pitch, count = 40e-6, 20, 8
     offset = (np.arange(pitch * count) % pitch - pitch // 2) * 1e-6
     height = np.sqrt(radius**2 - offset[:, None] ** 2 - offset[None, :] ** 2)
     heights = np.kron(np.random.default_rng(0).permutation(count**2).reshape(count, count), np.ones((pitch, pitch)))
-    found = summits(HeightMap(height=height + 1e-7 * heights, spacing_x=1e-6, spacing_y=1e-6))
+    found = summit_statistics(HeightMap(height=height + 1e-7 * heights, spacing_x=1e-6, spacing_y=1e-6))
     area = (pitch * count - 2) ** 2 * 1e-12
     assert found.summit_density * area == approx(count**2)
     assert found.summit_radius == approx(radius, rel=1e-3)
@@ -90,13 +90,13 @@ def test_caps_of_one_radius_are_found_with_that_radius_and_number() -> None:
 
 
 @mark.parametrize("missing", [False, True])
-def test_an_egg_box_has_one_summit_to_a_cell_and_its_curvature(missing: bool) -> None:
+def test_an_egg_box_has_one_summit_per_cell_and_its_curvature(missing: bool) -> None:
     x, y = 0.5e-6 * np.arange(800), 1e-6 * np.arange(400)
     wave = 2 * math.pi / 20e-6
     height = 1e-6 * (np.cos(wave * (x[None, :] - 5e-6)) + np.cos(wave * (y[:, None] - 5e-6)))
     if missing:
         height[100:200, 200:480] = np.nan
-    found = summits(HeightMap(height=height, spacing_x=0.5e-6, spacing_y=1e-6))
+    found = summit_statistics(HeightMap(height=height, spacing_x=0.5e-6, spacing_y=1e-6))
     assert found.summit_density == approx(1 / 20e-6**2, rel=0.015)
     assert found.mean_summit_curvature == approx(1e-6 * wave**2, rel=0.006)
     assert found.summit_height_deviation == approx(0, abs=1e-15)
@@ -104,28 +104,28 @@ def test_an_egg_box_has_one_summit_to_a_cell_and_its_curvature(missing: bool) ->
 
 def test_coarser_sampling_finds_fewer_and_blunter_summits() -> None:
     surface = random_surface(SELF_AFFINE, seed=2)
-    found = against_sampling_interval(surface, sampling_interval=[1.2e-6, 3e-6, 6e-6, 12e-6])
+    found = sampling_dependence(surface, sampling_interval=[1.2e-6, 3e-6, 6e-6, 12e-6])
     assert found.sampling_interval == approx(np.sqrt(1e-6 * 1.25e-6 * np.array([1, 3 * 2, 6 * 5, 12 * 10])))
     assert np.all(np.diff(found.summit_density) < 0)
     assert np.all(np.diff(found.summit_radius) > 0)
-    exact = gaussian_summits(SELF_AFFINE.moments(rms_height=1e-6))
+    exact = nayak_summit_statistics(SELF_AFFINE.moments(rms_height=1e-6))
     assert found.summit_density[0] == approx(exact.summit_density, rel=0.1)
 
 
-def test_both_methods_give_a_contact_model_the_same_roughness() -> None:
+def test_both_methods_give_the_same_contact_roughness() -> None:
     surface = random_surface(SINGLE_SCALE, seed=4)
-    counted, inferred = roughness(surface), roughness(surface, method="moments")
+    counted, inferred = contact_roughness(surface), contact_roughness(surface, method="moments")
     assert counted.rms_height == approx(inferred.rms_height, rel=0.05)
     assert counted.summit_radius == approx(inferred.summit_radius, rel=0.05)
     assert counted.summit_density == approx(inferred.summit_density, rel=0.05)
 
 
-def test_the_combined_roughness_is_that_of_the_added_heights() -> None:
+def test_the_combined_roughness_is_that_of_the_sum_of_the_heights() -> None:
     first = random_surface(SINGLE_SCALE, seed=1)
     second = random_surface(SELF_AFFINE, seed=2, rms_height=3e-6)
     gap = first.with_height(first.height + second.height)
-    both = combined(roughness(first, method="moments"), roughness(second, method="moments"))
-    added = roughness(gap, method="moments")
+    both = combined_roughness(contact_roughness(first, method="moments"), contact_roughness(second, method="moments"))
+    added = contact_roughness(gap, method="moments")
     assert both.rms_height == approx(added.rms_height, rel=0.01)
     assert both.summit_radius == approx(added.summit_radius, rel=0.01)
     assert both.summit_density == approx(added.summit_density, rel=0.01)
@@ -135,36 +135,36 @@ sizes = st.floats(1e-8, 1e-4)
 
 
 @given(rms=sizes, radius=sizes, density=st.floats(1e8, 1e13))
-def test_two_like_surfaces_are_rougher_by_the_root_of_two(rms: float, radius: float, density: float) -> None:
+def test_two_equal_surfaces_have_the_roughness_of_one_times_root_two(rms: float, radius: float, density: float) -> None:
     one = Roughness(rms_height=rms, summit_radius=radius, summit_density=density)
-    both = combined(one, one)
+    both = combined_roughness(one, one)
     assert both.rms_height == approx(math.sqrt(2) * rms, rel=1e-6)
     assert both.summit_radius == approx(radius / math.sqrt(2))
     assert both.summit_density == approx(density)
 
 
-def test_a_surface_without_summits_is_told_so() -> None:
+def test_a_surface_without_summits_is_refused() -> None:
     plane = HeightMap(height=np.add.outer(np.arange(5.0), np.arange(6.0)), spacing_x=1e-6, spacing_y=1e-6)
-    with raises(InvalidInput, match="needs two summits for statistics, got 0 among 12 pixels"):
-        summits(plane)
+    with raises(InvalidInput, match="require two summits, got 0 among 12 pixels"):
+        summit_statistics(plane)
     with raises(InvalidInput, match="curvature_variance must be positive"):
         spectral_moments(plane)
     for shape in ((1, 1), (1, 9)):
         line = HeightMap(height=np.arange(math.prod(shape), dtype=float).reshape(shape), spacing_x=1e-6, spacing_y=1e-6)
         with raises(InvalidInput, match="two summits"):
-            summits(line)
+            summit_statistics(line)
         with raises(InvalidInput, match="three neighbouring measured pixels"):
             spectral_moments(line)
 
 
-def test_moments_of_no_profile_are_refused() -> None:
+def test_a_bandwidth_that_no_profile_has_is_refused() -> None:
     with raises(InvalidInput, match=r"bandwidth must exceed 1, got 0\.5"):
-        gaussian_summits(SpectralMoments(height_variance=1.0, slope_variance=2.0, curvature_variance=2.0))
+        nayak_summit_statistics(SpectralMoments(height_variance=1.0, slope_variance=2.0, curvature_variance=2.0))
 
 
 def test_an_unknown_method_and_a_finer_interval_than_the_map_are_refused() -> None:
     surface = random_surface(SINGLE_SCALE, seed=4)
     with raises(UnknownName, match="unknown method 'summit'; did you mean summits"):
-        roughness(surface, method="summit")
+        contact_roughness(surface, method="summit")
     with raises(InvalidInput, match="sampling_interval must be at least the spacing"):
-        against_sampling_interval(surface, sampling_interval=1e-7)
+        sampling_dependence(surface, sampling_interval=1e-7)

@@ -1,4 +1,4 @@
-"""Hills are counted where they stand, and bumps below the pruning height are not."""
+"""Significant peaks of surfaces with known hills, with and without Wolf pruning."""
 
 import math
 
@@ -6,7 +6,13 @@ import numpy as np
 from pytest import approx, mark, raises
 
 from sonolube.errors import InvalidInput
-from sonolube.surfaces import HeightMap, SingleScaleSpectrum, feature_parameters, gaussian_surface, summits
+from sonolube.surfaces import (
+    GaussianCorrelationSpectrum,
+    HeightMap,
+    feature_parameters,
+    gaussian_surface,
+    summit_statistics,
+)
 
 PERIOD = 20e-6
 WAVE = 2 * math.pi / PERIOD
@@ -18,13 +24,13 @@ def surface_of(height: np.ndarray) -> HeightMap:
     return HeightMap(height=height, spacing_x=0.5e-6, spacing_y=1e-6)
 
 
-def test_an_egg_box_has_one_hill_to_a_cell_and_the_curvature_of_its_waves() -> None:
+def test_an_egg_box_has_one_hill_per_cell_and_the_curvature_of_its_waves() -> None:
     found = feature_parameters(surface_of(EGG_BOX))
     assert found.peak_density == approx(1 / PERIOD**2, rel=1e-12)
     assert found.mean_peak_curvature == approx(1e-6 * WAVE**2, rel=0.006)
 
 
-def test_bumps_lower_than_the_pruning_height_are_no_hills() -> None:
+def test_peaks_below_the_pruning_threshold_are_not_significant() -> None:
     ripple = 0.08e-6 * np.sin(8 * WAVE * X)  # of 0.16 um, against 0.2 um that 5 % of Sz ask for
     rippled = surface_of(EGG_BOX + ripple)
     assert feature_parameters(rippled).peak_density == approx(1 / PERIOD**2, rel=1e-12)
@@ -42,11 +48,11 @@ def hills(surface: HeightMap) -> float:
 
 
 @mark.parametrize(("depth", "expected"), [(0.04, 1), (0.06, 2)])
-def test_a_saddle_parts_two_hills_if_it_is_a_twentieth_of_the_height_deep(depth: float, expected: int) -> None:
+def test_a_saddle_separates_two_hills_from_a_twentieth_of_the_height_on(depth: float, expected: int) -> None:
     assert hills(ridge_with_saddle(depth)) == approx(expected)
 
 
-def test_missing_pixels_part_hills() -> None:
+def test_missing_pixels_separate_hills() -> None:
     whole = ridge_with_saddle(0.02)
     cut = whole.height.copy()
     cut[:, 20] = np.nan
@@ -57,29 +63,29 @@ def test_missing_pixels_part_hills() -> None:
 def test_the_density_of_significant_peaks_is_not_that_of_summits() -> None:
     rough = gaussian_surface(
         rms_height=1e-6,
-        spectrum=SingleScaleSpectrum(correlation_length=10e-6),
+        spectrum=GaussianCorrelationSpectrum(correlation_length=10e-6),
         shape=(300, 400),
         spacing_x=1e-6,
         spacing_y=1e-6,
         seed=3,
     )
     noisy = rough.with_height(rough.height + 0.05e-6 * np.random.default_rng(0).standard_normal(rough.height.shape))
-    assert summits(noisy).summit_density > 5 * feature_parameters(noisy).peak_density
+    assert summit_statistics(noisy).summit_density > 5 * feature_parameters(noisy).peak_density
     assert feature_parameters(noisy).peak_density == approx(feature_parameters(rough).peak_density, rel=0.2)
 
 
-def test_heights_scaled_or_shifted_have_the_same_hills() -> None:
+def test_scaled_or_shifted_heights_have_the_same_hills() -> None:
     one, other = feature_parameters(surface_of(EGG_BOX)), feature_parameters(surface_of(3 * EGG_BOX - 1e-3))
     assert other.peak_density == one.peak_density
     assert other.mean_peak_curvature == approx(3 * one.mean_peak_curvature)
 
 
-def test_a_surface_without_hills_is_told_so() -> None:
+def test_a_surface_without_hills_is_refused() -> None:
     with raises(InvalidInput, match="flat map has no hills"):
         feature_parameters(surface_of(np.ones((4, 4))))
-    with raises(InvalidInput, match="none of 1 peaks has four measured neighbours"):
+    with raises(InvalidInput, match="none of the 1 peaks has four measured neighbours"):
         feature_parameters(surface_of(np.add.outer(np.arange(4.0), np.arange(4.0))))
-    with raises(InvalidInput, match="none of 1 peaks has four measured neighbours"):
+    with raises(InvalidInput, match="none of the 1 peaks has four measured neighbours"):
         feature_parameters(surface_of(np.arange(4.0)[None, :]))
     with raises(InvalidInput, match="pruning must lie between 0 and 1"):
         feature_parameters(surface_of(EGG_BOX), pruning=2.0)

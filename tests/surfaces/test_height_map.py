@@ -1,4 +1,4 @@
-"""Height maps hold what was measured and say what was not."""
+"""Height maps: missing pixels, spacings and refused heights."""
 
 import numpy as np
 from pytest import approx, mark, raises
@@ -20,17 +20,19 @@ def test_columns_and_rows_keep_their_own_spacing() -> None:
 
 
 @mark.parametrize(
-    ("height", "said"),
+    ("height", "message"),
     [
-        (np.full((2, 2), np.nan), "no measured pixel among 4"),
-        (np.empty((0, 3)), "no measured pixel among 0"),
+        (np.full((2, 2), np.nan), "must have a measured pixel, but all 4 are NaN"),
+        (np.empty((0, 3)), "must have a measured pixel, but all 0 are NaN"),
         (np.array([[1.0, np.inf]]), "infinite"),
         (np.zeros(3), r"matrix of numbers, got shape \(3,\)"),
         (np.array([["a"]]), "matrix of numbers"),
     ],
 )
-def test_what_is_no_surface_is_refused(height: np.ndarray[tuple[int, ...], np.dtype[np.float64]], said: str) -> None:
-    with raises(InvalidInput, match=said):
+def test_impossible_heights_are_refused(
+    height: np.ndarray[tuple[int, ...], np.dtype[np.float64]], message: str
+) -> None:
+    with raises(InvalidInput, match=message):
         HeightMap(height=height, spacing_x=1e-6, spacing_y=1e-6)
 
 

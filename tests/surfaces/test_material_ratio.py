@@ -1,4 +1,4 @@
-"""The material ratio curve of heights whose distribution is known in closed form."""
+"""Material ratio curves and their parameters for height distributions in closed form."""
 
 import math
 
@@ -27,12 +27,12 @@ RAMP = surface_of(3.0 * SHARES)
 def test_gaussian_heights_have_the_material_ratio_of_the_normal_law() -> None:
     curve = material_ratio_curve(GAUSSIAN)
     heights = np.array([-2.0, -0.5, 0.0, 1.0, 3.0])
-    assert curve.ratio_above(section_height=heights) == approx(norm.sf(heights), rel=1e-3)
+    assert curve.ratio_above(intersection_height=heights) == approx(norm.sf(heights), rel=1e-3)
     shares = np.array([0.01, 0.1, 0.5, 0.8, 0.999])
     assert curve.height_at(material_ratio=shares) == approx(norm.isf(shares), abs=1e-3)
 
 
-def test_gaussian_heights_have_the_core_of_a_straight_line_through_their_middle() -> None:
+def test_gaussian_heights_have_the_core_of_the_line_through_the_middle_of_their_curve() -> None:
     found = functional_parameters(GAUSSIAN)
     # least squares over 30 to 70 % of the material, the flattest 40 % by symmetry
     first = quad(lambda p: (p - 0.5) * norm.isf(p), 0.3, 0.7)[0]
@@ -46,7 +46,7 @@ def test_gaussian_heights_have_the_core_of_a_straight_line_through_their_middle(
     assert found.reduced_valley_depth == approx(2 * area / share, rel=2e-3)
 
 
-def test_gaussian_heights_hold_the_volumes_of_the_normal_law() -> None:
+def test_gaussian_heights_have_the_volumes_of_the_normal_law() -> None:
     found = functional_parameters(GAUSSIAN)
     z1, z2 = norm.isf([0.1, 0.8])
     above = [quad(norm.sf, z, 12)[0] for z in (z1, z2)]
@@ -57,7 +57,7 @@ def test_gaussian_heights_hold_the_volumes_of_the_normal_law() -> None:
     assert found.valley_void_volume == approx(below[1], rel=1e-4)
 
 
-def test_evenly_spread_heights_are_all_core() -> None:
+def test_uniformly_distributed_heights_are_all_core() -> None:
     found = functional_parameters(RAMP)
     assert found.core_height == approx(3.0)
     assert found.reduced_peak_height == approx(0, abs=1e-5)
@@ -74,11 +74,11 @@ def test_a_plateau_with_valleys_has_deep_valleys_and_low_peaks() -> None:
     assert found.reduced_valley_depth > 10 * found.reduced_peak_height
 
 
-def test_missing_pixels_do_not_change_the_share_of_the_rest() -> None:
+def test_missing_pixels_do_not_change_the_material_ratio() -> None:
     height = GAUSSIAN.height.copy()
     height[np.random.default_rng(1).random(height.shape) < 0.3] = np.nan
     sparse = material_ratio_curve(GAUSSIAN.with_height(height))
-    assert sparse.ratio_above(section_height=0.5) == approx(norm.sf(0.5), abs=3e-3)
+    assert sparse.ratio_above(intersection_height=0.5) == approx(norm.sf(0.5), abs=3e-3)
 
 
 @given(heights=st.lists(st.integers(-20, 20), min_size=6, max_size=6, unique=True), share=st.floats(0.1, 0.9))
@@ -86,17 +86,17 @@ def test_missing_pixels_do_not_change_the_share_of_the_rest() -> None:
 def test_height_and_ratio_are_inverse_to_each_other(heights: list[int], share: float) -> None:
     curve = material_ratio_curve(HeightMap(height=np.array(heights, float).reshape(2, 3), spacing_x=1.0, spacing_y=1.0))
     there = curve.height_at(material_ratio=share)
-    assert curve.ratio_above(section_height=there) == approx(share)
-    assert curve.ratio_above(section_height=[math.nextafter(curve.height[0], np.inf), -100.0]) == approx([0, 1])
+    assert curve.ratio_above(intersection_height=there) == approx(share)
+    assert curve.ratio_above(intersection_height=[math.nextafter(curve.height[0], np.inf), -100.0]) == approx([0, 1])
 
 
-def test_pixels_of_one_height_share_their_ratio() -> None:
+def test_pixels_of_one_height_have_one_ratio() -> None:
     curve = material_ratio_curve(HeightMap(height=np.array([[0.0, 0, 0], [4, 4, 4]]), spacing_x=1.0, spacing_y=1.0))
-    assert curve.ratio_above(section_height=[2.1, 1.9, -2.1]) == approx([0, 0.5, 1], abs=0.1)
+    assert curve.ratio_above(intersection_height=[2.1, 1.9, -2.1]) == approx([0, 0.5, 1], abs=0.1)
 
 
 def test_a_map_that_is_flat_or_a_point_is_refused() -> None:
     with raises(InvalidInput, match="two measured pixels, got 1"):
         material_ratio_curve(HeightMap(height=np.zeros((1, 1)), spacing_x=1.0, spacing_y=1.0))
-    with raises(InvalidInput, match="ten measured pixels that differ in height"):
+    with raises(InvalidInput, match="ten measured pixels of different heights"):
         functional_parameters(HeightMap(height=np.ones((9, 9)), spacing_x=1.0, spacing_y=1.0))

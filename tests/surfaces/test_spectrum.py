@@ -1,4 +1,4 @@
-"""Spectra keep the variance they are made of, and find the waves that were put in."""
+"""Power spectra: Parseval's theorem, single waves, and moments in closed form."""
 
 import math
 
@@ -7,9 +7,9 @@ from pytest import approx, mark, raises
 
 from sonolube.errors import InvalidInput
 from sonolube.surfaces import (
+    GaussianCorrelationSpectrum,
     HeightMap,
     SelfAffineSpectrum,
-    SingleScaleSpectrum,
     areal_spectrum,
     gaussian_surface,
     moments_of_spectrum,
@@ -18,7 +18,7 @@ from sonolube.surfaces import (
 )
 
 DX, DY = 1e-6, 2e-6
-SPECTRUM = SingleScaleSpectrum(correlation_length=8e-6)
+SPECTRUM = GaussianCorrelationSpectrum(correlation_length=8e-6)
 RANDOM = gaussian_surface(rms_height=1e-6, spectrum=SPECTRUM, shape=(512, 1024), spacing_x=DX, spacing_y=DY, seed=7)
 
 
@@ -34,12 +34,12 @@ def test_the_spectrum_integrates_to_the_variance(shape: tuple[int, int]) -> None
     assert profile_spectrum(surface, window="none").height_variance == approx(lines.var())
 
 
-def test_a_window_costs_no_power() -> None:
+def test_a_window_does_not_change_the_level_of_the_spectrum() -> None:
     assert areal_spectrum(RANDOM).height_variance == approx(RANDOM.height.var(), rel=0.1)
     assert profile_spectrum(RANDOM, along="columns").height_variance == approx(RANDOM.height.var(), rel=0.1)
 
 
-def test_missing_pixels_leave_the_level_of_the_spectrum() -> None:
+def test_missing_pixels_do_not_change_the_level_of_the_spectrum() -> None:
     height = RANDOM.height.copy()
     height[np.random.default_rng(0).random(height.shape) < 0.2] = np.nan
     height[11] = np.nan
@@ -48,7 +48,7 @@ def test_missing_pixels_leave_the_level_of_the_spectrum() -> None:
     assert profile_spectrum(sparse).height_variance == approx(profile_spectrum(RANDOM).height_variance, rel=0.02)
 
 
-def test_a_wave_stands_at_its_wavenumber_whatever_the_spacings() -> None:
+def test_a_wave_has_its_peak_at_its_wavenumber_at_any_spacing() -> None:
     y, x = np.meshgrid(DY * np.arange(60), DX * np.arange(100), indexing="ij")
     wave = HeightMap(height=np.cos(2 * math.pi * (0.05e6 * x - 0.1e6 * y)), spacing_x=DX, spacing_y=DY)
     found = areal_spectrum(wave, window="none")
@@ -60,7 +60,7 @@ def test_a_wave_stands_at_its_wavenumber_whatever_the_spacings() -> None:
     assert ring.wavenumber[ring.areal_spectral_density.argmax()] == approx(math.hypot(0.05e6, 0.1e6), rel=0.05)
 
 
-def test_the_radial_spectrum_is_that_which_the_surface_was_made_with() -> None:
+def test_the_radial_spectrum_is_that_of_the_synthesis() -> None:
     found = radial_spectrum(areal_spectrum(RANDOM, window="none"))
     length = SPECTRUM.correlation_length
     expected = 1e-12 * math.pi * length**2 * np.exp(-((math.pi * length * found.wavenumber) ** 2))
@@ -85,7 +85,7 @@ SELF_AFFINE = SelfAffineSpectrum(
 
 @mark.parametrize("spectrum", [SPECTRUM, SELF_AFFINE], ids=["single scale", "self-affine"])
 def test_moments_of_a_generated_surface_are_the_closed_forms(
-    spectrum: SingleScaleSpectrum | SelfAffineSpectrum,
+    spectrum: GaussianCorrelationSpectrum | SelfAffineSpectrum,
 ) -> None:
     surface = gaussian_surface(
         rms_height=2e-6, spectrum=spectrum, shape=(512, 1024), spacing_x=DX, spacing_y=DY, seed=5
@@ -97,7 +97,7 @@ def test_moments_of_a_generated_surface_are_the_closed_forms(
     assert found.curvature_variance == approx(exact.curvature_variance, rel=0.02)
 
 
-def test_the_spectrum_of_a_line_gives_no_ring_and_no_window_is_made_up() -> None:
+def test_a_line_an_unknown_window_or_direction_are_refused() -> None:
     line = HeightMap(height=np.arange(9.0)[None, :], spacing_x=DX, spacing_y=DY)
     with raises(InvalidInput, match="at least 2 rows and 2 columns, got 1 x 9"):
         radial_spectrum(areal_spectrum(line))

@@ -38,7 +38,7 @@ def theirs(surface: HeightMap, *, periodic: bool) -> object:
 def test_both_find_the_same_deviation_and_gradient() -> None:
     topography = theirs(SURFACE, periodic=False)
     assert height_parameters(SURFACE).rms_height == approx(topography.rms_height_from_area())  # type: ignore[attr-defined]
-    assert hybrid_parameters(SURFACE).rms_slope == approx(topography.rms_gradient(), rel=2e-3)  # type: ignore[attr-defined]
+    assert hybrid_parameters(SURFACE).rms_gradient == approx(topography.rms_gradient(), rel=2e-3)  # type: ignore[attr-defined]
 
 
 def test_both_find_the_same_slope_and_curvature_along_rows() -> None:

@@ -61,10 +61,10 @@ def theirs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, float]:
 @pytest.mark.external
 def test_heights_agree_to_rounding(theirs: dict[str, float]) -> None:
     found = height_parameters(SURFACE)
-    assert 1e6 * found.mean_roughness == approx(theirs["Sa"])
+    assert 1e6 * found.arithmetic_mean_height == approx(theirs["Sa"])
     assert 1e6 * found.rms_height == approx(theirs["Sq"])
-    assert 1e6 * found.peak_height == approx(theirs["Sp"])
-    assert 1e6 * found.valley_depth == approx(theirs["Sv"])
+    assert 1e6 * found.maximum_peak_height == approx(theirs["Sp"])
+    assert 1e6 * found.maximum_pit_depth == approx(theirs["Sv"])
     assert 1e6 * found.total_height == approx(theirs["Sz"])
     assert (found.skewness, found.kurtosis) == approx((theirs["Ssk"], theirs["Sku"]))
 
@@ -72,8 +72,8 @@ def test_heights_agree_to_rounding(theirs: dict[str, float]) -> None:
 @pytest.mark.external
 def test_slope_area_and_reach_agree(theirs: dict[str, float]) -> None:
     hybrid, spatial = hybrid_parameters(SURFACE), spatial_parameters(SURFACE)
-    assert 100 * hybrid.developed_area_ratio == approx(theirs["Sdr"])
-    assert hybrid.rms_slope == approx(theirs["Sdq"], rel=1e-4)
+    assert 100 * hybrid.developed_interfacial_area_ratio == approx(theirs["Sdr"])
+    assert hybrid.rms_gradient == approx(theirs["Sdq"], rel=1e-4)
     assert 1e6 * spatial.autocorrelation_length == approx(theirs["Sal"], rel=2e-3)
     assert spatial.texture_aspect_ratio == approx(theirs["Str"], rel=2e-3)
 

@@ -24,17 +24,17 @@ def found() -> Identification:
 
 def test_facts_are_the_printed_numbers() -> None:
     assert FACTS["electrical_resonance"].value == 22e3
-    assert FACTS["tip_amplitude_per_volt"].value == approx(0.0892e-6, rel=1e-3)
-    assert FACTS["arm_frequency"].value == 100
-    assert FACTS["arm_settling"].value == 0.05
-    assert FACTS["resonance_quality"].value == approx(482, rel=1e-3)
+    assert FACTS["amplitude_per_volt"].value == approx(0.0892e-6, rel=1e-3)
+    assert FACTS["residual_frequency"].value == 100
+    assert FACTS["residual_settling_time"].value == 0.05
+    assert FACTS["resonance_quality_factor"].value == approx(482, rel=1e-3)
     assert tribometer_stack().derived_coupling_factor == approx(0.647, abs=5e-4)
     assert tribometer_test().decay_length == approx(2e-6)
 
 
 def test_the_amplitude_at_28_volts_is_the_same_amplitude_per_volt() -> None:
     # 3 V amplitude times a gain of 4.67 gives 28.02 V peak to peak; 2.5 um is printed to 0.05 um
-    assert abs(FACTS["tip_amplitude_per_volt"].value * 28.02 - 2.5e-6) < 0.05e-6
+    assert abs(FACTS["amplitude_per_volt"].value * 28.02 - 2.5e-6) < 0.05e-6
 
 
 @pytest.mark.slow
@@ -42,45 +42,45 @@ def test_the_printed_damping_cannot_give_the_measured_amplitude_at_resonance_beh
     found: Identification,
 ) -> None:
     # at resonance Q = 482 would move the tip by 0.00868 um/V * 482 / 2 = 2.1 um per volt peak to peak, not 0.0892
-    measured = {"mass_ratio", "resonance_share", "tip_amplitude_per_volt"}
-    assert frozenset(measured | {"resonance_quality"}) in found.conflicts
-    assert frozenset(measured | {"tip_settling"}) in found.conflicts
+    measured = {"mass_ratio", "resonance_amplitude_ratio", "amplitude_per_volt"}
+    assert frozenset(measured | {"resonance_quality_factor"}) in found.conflicts
+    assert frozenset(measured | {"resonance_settling_time"}) in found.conflicts
 
 
 @pytest.mark.slow
 def test_the_measured_amplitude_at_resonance_costs_more_than_the_stated_power(found: Identification) -> None:
     # the stack's force in phase with its velocity: half of 12.95 V * 17.36 N/V * 0.334 m/s is 37.5 W, not 5.31 W
-    assert frozenset({"dissipated_power", "resonance_share", "tip_amplitude_per_volt"}) in found.conflicts
+    assert frozenset({"dissipated_power", "resonance_amplitude_ratio", "amplitude_per_volt"}) in found.conflicts
     velocity = 2.31e-6 * 2 * math.pi * 22e3 * (1 + found.estimates["tip_mass"].value / (0.07 + 2.4057))
     assert found.observed["dissipated_power"] == approx(12.95 * 8.68e-9 * 2e9 * velocity / 2, rel=0.01)
 
 
 @pytest.mark.slow
 def test_what_settles_in_time_cannot_stay(found: Identification) -> None:
-    assert frozenset({"arm_settling", "fluctuation_left"}) in found.conflicts
+    assert frozenset({"residual_settling_time", "residual_fraction"}) in found.conflicts
     assert math.exp(-math.log(50) * 0.05 / 0.075) < 0.25  # left after 0.05 s at the slowest settling that agrees
 
 
 @pytest.mark.slow
 def test_no_single_fact_explains_every_conflict_and_the_tuning_explains_all_but_the_arms(found: Identification) -> None:
-    assert not any(found.rest_holds_without(name) for name in FACTS)
-    others = set(found.conflicts) - {frozenset({"arm_settling", "fluctuation_left"})}
-    assert all("resonance_share" in conflict for conflict in others)
-    given_up = [set(FACTS) - reading.kept for reading in found.readings]
-    assert {"resonance_share", "fluctuation_left"} in given_up
+    assert not any(found.is_consistent_without(name) for name in FACTS)
+    others = set(found.conflicts) - {frozenset({"residual_settling_time", "residual_fraction"})}
+    assert all("resonance_amplitude_ratio" in conflict for conflict in others)
+    given_up = [set(FACTS) - reading.satisfied for reading in found.consistent_fits]
+    assert {"resonance_amplitude_ratio", "residual_fraction"} in given_up
 
 
 @pytest.mark.slow
 def test_the_rig_keeps_what_was_measured(found: Identification) -> None:
-    assert {fact.name for fact in found.facts if fact.rank == 1} <= found.kept
-    assert all(abs(found.readings[0].misses[name]) <= 1 for name in found.kept)
+    assert {fact.name for fact in found.facts if fact.rank == 1} <= found.satisfied
+    assert all(abs(found.consistent_fits[0].residuals[name]) <= 1 for name in found.satisfied)
     mass = {name: estimate.value for name, estimate in found.estimates.items()}
     behind = mass["reaction_mass"] + 0.07
     effective = mass["tip_mass"] * behind / (mass["tip_mass"] + behind)
     assert effective == approx(0.1047, rel=1e-3)  # of two masses on 2e9 N/m at 22 kHz
     # gain over the free stroke of half the voltage, shared between tip and reaction mass
-    gain = FACTS["tip_amplitude_per_volt"].value * 2 / 8.68e-9 * (mass["tip_mass"] + behind) / behind
-    assert found.observed["resonance_quality"] == approx(gain, rel=0.02)
+    gain = FACTS["amplitude_per_volt"].value * 2 / 8.68e-9 * (mass["tip_mass"] + behind) / behind
+    assert found.observed["resonance_quality_factor"] == approx(gain, rel=0.02)
 
 
 @pytest.mark.slow
@@ -88,7 +88,7 @@ def test_the_arms_damping_is_not_to_be_had_from_the_facts(found: Identification)
     damping = found.estimates["arm_damping"]
     assert damping.lower_is_bound
     assert damping.upper_is_bound
-    assert found.free_directions[0].exponents["arm_damping"] == approx(1, abs=0.05)
+    assert found.unidentifiable_directions[0].exponents["arm_damping"] == approx(1, abs=0.05)
 
 
 @pytest.mark.slow

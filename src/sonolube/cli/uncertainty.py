@@ -111,7 +111,7 @@ def _identified(path: Path, seed: int, advance: Callable[[int, int], None]) -> "
 
     from sonolube.cli.uncertainty_output import Identified
     from sonolube.errors import InvalidInput
-    from sonolube.identification import observer, posterior
+    from sonolube.identification import pin_on_disc_model, posterior
     from sonolube.rig import read_rig
     from sonolube.validation.tribometer import (
         BOUNDS,
@@ -127,6 +127,6 @@ def _identified(path: Path, seed: int, advance: Callable[[int, int], None]) -> "
     ):
         raise InvalidInput(f"{path}: --identified needs the tribometer's stack, which the facts are of")
     found = tribometer_identification(seed=seed)
-    believed = [fact for fact in found.facts if fact.name in found.kept]
-    drawn = posterior(observer(tribometer_test()), facts=believed, bounds=BOUNDS, seed=seed, advance=advance)
-    return Identified(posterior=drawn, free_directions=found.free_directions)
+    believed = [fact for fact in found.facts if fact.name in found.satisfied]
+    drawn = posterior(pin_on_disc_model(tribometer_test()), facts=believed, bounds=BOUNDS, seed=seed, advance=advance)
+    return Identified(posterior=drawn, unidentifiable_directions=found.unidentifiable_directions)

@@ -20,7 +20,7 @@ from sonolube.design import (
 )
 from sonolube.errors import InvalidInput
 from sonolube.figure import publication_style
-from sonolube.identification import Direction, Posterior
+from sonolube.identification import Posterior, SingularDirection
 from sonolube.report import Finding, FindingTable, write_findings
 from sonolube.rig import Rig, write_netcdf
 from sonolube.units import engineering
@@ -43,7 +43,7 @@ class Identified:
     """Draws of a rig's structure from what facts leave of it, and the ways in which they leave it free."""
 
     posterior: Posterior
-    free_directions: tuple[Direction, ...]
+    unidentifiable_directions: tuple[SingularDirection, ...]
 
     def draws_by_key(self) -> dict[str, Floats]:
         """Return the draws by their keys in a rig file."""
@@ -111,10 +111,10 @@ def uncertainty_object(rig: Rig, result: "xr.Dataset", drawn: Identified | None,
     }
     if drawn is not None:
         told["identified"] = {
-            "scale_reduction": drawn.posterior.scale_reduction,
-            "settled": drawn.posterior.has_settled,
-            "free": [f"structure.{name}" for name in drawn.posterior.free],
-            "free_directions": [dict(direction.exponents) for direction in drawn.free_directions],
+            "potential_scale_reduction": drawn.posterior.potential_scale_reduction,
+            "settled": drawn.posterior.has_converged,
+            "free": [f"structure.{name}" for name in drawn.posterior.unidentified],
+            "unidentifiable_directions": [dict(direction.exponents) for direction in drawn.unidentifiable_directions],
             "quantiles": {key: np.quantile(values, _BAND).tolist() for key, values in drawn.draws_by_key().items()},
         }
     if result.attrs["swept"]:
@@ -345,7 +345,7 @@ def _identified_lines(told: dict[str, Any]) -> list[str]:
         return []
     found = told["identified"]
     lines = [f"    {key:<34} {text}" for key, text in _identified_rows(told)]
-    for direction in found["free_directions"]:
+    for direction in found["unidentifiable_directions"]:
         moved = " ".join(f"{name}^{exponent:+.2f}" for name, exponent in direction.items() if abs(exponent) > 0.1)
         lines.append(f"    left free by the facts, to a factor of e and more: {moved}")
     return [*lines, f"    {_agreement(found)}"]
@@ -353,7 +353,7 @@ def _identified_lines(told: dict[str, Any]) -> list[str]:
 
 def _agreement(found: dict[str, Any]) -> str:
     agree = "agree" if found["settled"] else "do not agree yet: take the ends with caution"
-    return f"independent populations of draws {agree} ({found['scale_reduction']:.2f})"
+    return f"independent populations of draws {agree} ({found['potential_scale_reduction']:.2f})"
 
 
 def _sobol_lines(told: dict[str, Any], unit: str) -> list[str]:

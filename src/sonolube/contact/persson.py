@@ -74,13 +74,15 @@ class PerssonContact:
         object.__setattr__(self, "_bands", _bands(self.spectrum))
 
     @property
-    def rms_slope(self) -> float:
+    def rms_gradient(self) -> float:
         """Root mean square of the gradient. []"""
         inverse_width = self._bands[1]
         return math.sqrt(2 / inverse_width[-1] ** 2)
 
 
-def persson_area_fraction(*, nominal_pressure: ArrayLike, effective_modulus: ArrayLike, rms_slope: ArrayLike) -> Floats:
+def persson_area_fraction(
+    *, nominal_pressure: ArrayLike, effective_modulus: ArrayLike, rms_gradient: ArrayLike
+) -> Floats:
     """Return the real area over the nominal one. []
 
     Parameters
@@ -89,7 +91,7 @@ def persson_area_fraction(*, nominal_pressure: ArrayLike, effective_modulus: Arr
         Load over the nominal area. [Pa]
     effective_modulus : array_like, broadcastable to `nominal_pressure`
         Combined modulus of both bodies. [Pa]
-    rms_slope : array_like, broadcastable to `nominal_pressure`
+    rms_gradient : array_like, broadcastable to `nominal_pressure`
         Root mean square of the gradient: sqrt(2 m2) for an isotropic surface. []
 
     Returns
@@ -108,7 +110,7 @@ def persson_area_fraction(*, nominal_pressure: ArrayLike, effective_modulus: Arr
     """
     p = require_positive(nominal_pressure=nominal_pressure)
     E = require_positive(effective_modulus=effective_modulus)
-    return np.asarray(erf(math.sqrt(2) * p / (E * require_positive(rms_slope=rms_slope))))
+    return np.asarray(erf(math.sqrt(2) * p / (E * require_positive(rms_gradient=rms_gradient))))
 
 
 def persson_area(contact: PerssonContact, *, normal_load: ArrayLike) -> Floats:
@@ -131,7 +133,7 @@ def persson_area(contact: PerssonContact, *, normal_load: ArrayLike) -> Floats:
     """
     p = require_positive(normal_load=normal_load) / contact.nominal_area
     share = persson_area_fraction(
-        nominal_pressure=p, effective_modulus=contact.effective_modulus, rms_slope=contact.rms_slope
+        nominal_pressure=p, effective_modulus=contact.effective_modulus, rms_gradient=contact.rms_gradient
     )
     return contact.nominal_area * share
 
@@ -223,7 +225,7 @@ def persson_load(contact: PerssonContact, *, separation: ArrayLike) -> Floats:
         If a gap is so wide that its load underflows, or so narrow that contact is full.
     """
     gaps = require_positive(separation=separation)
-    unit = contact.nominal_area * contact.effective_modulus * contact.rms_slope
+    unit = contact.nominal_area * contact.effective_modulus * contact.rms_gradient
     low, high = math.log(unit) - 300.0, math.log(4 * unit)
 
     def surplus(log_load: float, gap: float) -> float:

@@ -1,4 +1,4 @@
-"""Facts: what is known of a system from outside, how closely, and how much it is to be trusted."""
+"""Facts about a system, ranked and with tolerances, and the residuals of a model against them."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -9,38 +9,42 @@ import numpy as np
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput, UnknownName
 
-Observe = Callable[[Mapping[str, Floats]], Mapping[str, Floats]]
+ForwardModel = Callable[[Mapping[str, Floats]], Mapping[str, Floats]]
+"""Observables of n systems, by name, from arrays of shape (n,) of their parameters, by name."""
+
+Bounds = Mapping[str, tuple[float, float]]
+"""Lower and upper bound of each free parameter, by name, in SI."""
+
 Relation = Literal["=", ">=", "<="]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Fact:
-    """One number that a model of the system should give.
+    """Observed value of one observable, or a limit on it, with its tolerance.
 
     Parameters
     ----------
     name : str
-        Name of the observable it is a number of.
+        Name of the fact, which is the name of the observable in the results of the forward model.
     value : float
-        The number, in SI, positive.
+        Observed value in the SI unit of the observable, positive.
     tolerance : float
-        How far from it a model may lie and still agree; in the unit of the number.
+        Largest absolute deviation of a model's value that still agrees with the fact, in the same unit.
     rank : int
-        How much it is to be trusted: 1 for the best, larger for less.
+        Reliability: 1 for the most reliable facts, larger for less reliable ones.
     unit : str
-        Its SI unit; empty for a pure number.
+        SI unit of the observable; empty for a pure number.
     relation : str
-        "=" where the number is the value, ">=" or "<=" where it is a limit that may be passed by no more than the
-        tolerance.
+        "=" for a value; ">=" or "<=" for a limit, which may be violated by no more than the tolerance.
     meaning : str
-        What it states, in a few words.
+        Statement of the fact in a few words.
     source : str
-        Where it stands.
+        Reference of the statement.
 
     Raises
     ------
     InvalidInput
-        If number or tolerance is not positive and finite, the rank below 1 or the relation none of the three.
+        If value or tolerance is not positive and finite, the rank is below 1 or the relation is none of the three.
     """
 
     name: str
@@ -63,30 +67,39 @@ class Fact:
             raise InvalidInput(f"fact {self.name}: relation must be =, >= or <=, got {self.relation!r}")
 
 
-def misses(facts: Sequence[Fact], observed: Mapping[str, Floats]) -> Floats:
-    """Return by how many tolerances observed numbers miss each fact, 0 where a limit is kept.
+def normalized_residuals(facts: Sequence[Fact], observed: Mapping[str, Floats]) -> Floats:
+    r"""Residuals of observables against facts in units of the tolerances.
 
     Parameters
     ----------
     facts : sequence of Fact
     observed : mapping of str to ndarray, shape (n,)
-        What n systems show, by the name of the fact.
+        Observables of n systems, by the name of the fact.
 
     Returns
     -------
     ndarray, shape (n, number of facts)
+        Between -1 and 1 where a fact is satisfied; 0 where a limit is not violated.
 
     Raises
     ------
     UnknownName
-        If a fact names nothing observed.
+        If a fact names no observable of `observed`.
+
+    Notes
+    -----
+    For the observable :math:`y_i` of a fact with value :math:`v_i` and tolerance :math:`\tau_i`
+
+    .. math:: r_i = \frac{y_i - v_i}{\tau_i},
+
+    replaced by :math:`\min(r_i, 0)` for a lower limit and by :math:`\max(r_i, 0)` for an upper one.
     """
     columns = []
     for fact in facts:
         if fact.name not in observed:
             raise UnknownName.among(observed, kind="observable", name=fact.name)
-        miss = (observed[fact.name] - fact.value) / fact.tolerance
+        residual = (observed[fact.name] - fact.value) / fact.tolerance
         if fact.relation != "=":
-            miss = np.minimum(miss, 0.0) if fact.relation == ">=" else np.maximum(miss, 0.0)
-        columns.append(miss)
+            residual = np.minimum(residual, 0.0) if fact.relation == ">=" else np.maximum(residual, 0.0)
+        columns.append(residual)
     return np.stack(columns, axis=-1)

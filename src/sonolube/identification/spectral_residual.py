@@ -1,4 +1,4 @@
-"""How far a model's admittance lies from a measured spectrum: the choices of what to square and add."""
+"""Residuals of a model's admittance against a measured spectrum, for least squares."""
 
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
@@ -13,11 +13,13 @@ LINEAR_MAGNITUDE = "linear-magnitude"
 
 
 def _log_complex(model: Complexes, measured: Complexes) -> Floats:
-    ratio = np.log(model / measured)  # the principal branch: phases are compared on the circle
+    """Logarithms of the magnitude ratio, then phase differences in rad, shape (2n,)."""
+    ratio = np.log(model / measured)  # principal branch: phase differences lie between -pi and pi
     return np.concatenate([ratio.real, ratio.imag])
 
 
 def _linear_magnitude(model: Complexes, measured: Complexes) -> Floats:
+    """Differences of the magnitudes over the largest measured one, shape (n,)."""
     magnitude = np.abs(measured)
     return np.asarray((np.abs(model) - magnitude) / magnitude.max())
 
@@ -28,14 +30,12 @@ RESIDUALS: Mapping[str, Callable[[Complexes, Complexes], Floats]] = MappingProxy
 
 
 def residual_named(name: str) -> Callable[[Complexes, Complexes], Floats]:
-    """Return what compares a model's admittance with the measured one.
+    r"""Residual function of a name, which takes a model's admittance and the measured one.
 
     Parameters
     ----------
     name : str
-        "log-complex": logarithm of the ratio, magnitudes in its real and phases in its imaginary part, so that every
-        point counts as much in proportion. "linear-magnitude": difference of magnitudes over the greatest one, so that
-        the points about the resonance settle nearly all.
+        "log-complex" or "linear-magnitude".
 
     Returns
     -------
@@ -45,6 +45,18 @@ def residual_named(name: str) -> Callable[[Complexes, Complexes], Floats]:
     ------
     UnknownName
         If it is none of `RESIDUALS`.
+
+    Notes
+    -----
+    For the model's admittance :math:`Y_i` and the measured one :math:`\hat Y_i`, "log-complex" is
+
+    .. math:: \left(\operatorname{Re} \ln \frac{Y_i}{\hat Y_i},\ \operatorname{Im} \ln \frac{Y_i}{\hat Y_i}\right),
+
+    which gives every point the same relative weight, and "linear-magnitude" is
+
+    .. math:: \frac{|Y_i| - |\hat Y_i|}{\max_j |\hat Y_j|},
+
+    in which points about the resonance have nearly all the weight.
     """
     if name not in RESIDUALS:
         raise UnknownName.among(RESIDUALS, kind="residual", name=name)

@@ -1,29 +1,33 @@
-"""Referees of rough contact: boundary elements on the very surface, against which every law can be held."""
+"""Reference solutions of rough contact: boundary elements on a height map, and contact laws compared with them."""
 
-from sonolube.reference_solutions.boundary_element import PressedSurface, mirrored, press
-from sonolube.reference_solutions.figures import comparison_figure, comparison_table, reduced_curve
+from sonolube.reference_solutions.boundary_element import (
+    BoundaryElementContact,
+    boundary_element_contact,
+    mirror_extension,
+)
+from sonolube.reference_solutions.figures import comparison_figure, comparison_table, dimensionless_curve
 from sonolube.reference_solutions.law_comparison import (
     QUANTITIES,
-    REFEREE,
+    REFERENCE_SOLUTION,
     LawComparison,
     LawCurve,
     compare_laws,
     deviation,
-    where_laws_hold,
+    validity_ranges,
 )
 
 __all__ = [
     "QUANTITIES",
-    "REFEREE",
+    "REFERENCE_SOLUTION",
+    "BoundaryElementContact",
     "LawComparison",
     "LawCurve",
-    "PressedSurface",
+    "boundary_element_contact",
     "compare_laws",
     "comparison_figure",
     "comparison_table",
     "deviation",
-    "mirrored",
-    "press",
-    "reduced_curve",
-    "where_laws_hold",
+    "dimensionless_curve",
+    "mirror_extension",
+    "validity_ranges",
 ]

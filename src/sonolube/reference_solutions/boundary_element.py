@@ -1,4 +1,4 @@
-"""Elastic contact of a height map by boundary elements, with the ContactMechanics library, behind an extra."""
+"""Elastic contact of a height map with a rigid flat by the boundary element method of the ContactMechanics library."""
 
 import math
 from dataclasses import dataclass
@@ -11,25 +11,25 @@ from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.surfaces import HeightMap
 
-_PERIMETER_SHARE = (math.pi - 1 + math.log(2)) / 24  # of a pixel's width, along each edge of the contact
+_PERIMETER_CORRECTION = (math.pi - 1 + math.log(2)) / 24  # area per pixel edge of the contact's outline, in pixels [2]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class PressedSurface:
-    """What pressing a surface against a rigid flat does.
+class BoundaryElementContact:
+    """Elastic contact of a surface with a rigid flat under given loads.
 
     Parameters
     ----------
     normal_load : ndarray, shape (n,)
         Force pressing the bodies together. [N]
     separation : ndarray, shape (n,)
-        Mean gap between the deformed surfaces; for a lone body the height of the flat over the zero of heights. [m]
+        Mean gap between the deformed surfaces; for a single body the height of the flat above zero height. [m]
     real_contact_area : ndarray, shape (n,)
         Real contact area. [m2]
     peak_pressure : ndarray, shape (n,)
-        Highest pressure of any pixel. [Pa]
+        Largest pressure of a pixel. [Pa]
     reason : tuple of str, length n
-        Why a load was not solved, empty where it was; its numbers are then NaN.
+        Reason why a load has no solution, whose values are then NaN; empty where it has one.
     """
 
     normal_load: Floats
@@ -39,25 +39,25 @@ class PressedSurface:
     reason: tuple[str, ...]
 
 
-def press(
+def boundary_element_contact(
     surface: HeightMap, *, normal_load: ArrayLike, effective_modulus: float, periodic: bool = True
-) -> PressedSurface:
-    """Press an elastic surface against a rigid flat, without friction or adhesion.
+) -> BoundaryElementContact:
+    r"""Frictionless, non-adhesive contact of an elastic height map with a rigid flat, by boundary elements.
 
     Parameters
     ----------
     surface : HeightMap
-        Without missing pixels; if periodic, its opposite edges fit each other: see `mirrored`.
+        Without missing pixels; if periodic, with continuous opposite edges: see `mirror_extension`.
     normal_load : array_like, shape (n,)
         Force pressing the bodies together, over the whole map. [N]
     effective_modulus : float
-        Combined modulus of both bodies. [Pa]
+        Effective modulus E* of both bodies. [Pa]
     periodic : bool
-        Whether the map repeats for ever, or stands alone on a half-space.
+        Whether the map is repeated periodically, or is a single body on a half-space.
 
     Returns
     -------
-    PressedSurface
+    BoundaryElementContact
 
     Raises
     ------
@@ -66,8 +66,14 @@ def press(
 
     Notes
     -----
-    Constrained conjugate gradients on the Fourier-transformed half-space. The pixels under pressure overrate the area
-    along their outline; the excess that an outline of that length has on average is taken off.
+    The displacements follow from the pressures by convolution with the Boussinesq kernel of the half-space; the contact
+    conditions
+
+    .. math:: p \ge 0, \qquad g \ge 0, \qquad p\, g = 0, \qquad \sum p\, \Delta x \Delta y = F_N
+
+    for pressure :math:`p` and gap :math:`g` are solved by constrained conjugate gradients [1]_ with fast Fourier
+    transforms. The pixels under pressure overestimate the area along their outline; the mean excess of an outline of
+    that length is subtracted [2]_.
 
     References
     ----------
@@ -79,15 +85,15 @@ def press(
     require_positive(effective_modulus=effective_modulus)
     if not surface.measured.all():
         raise InvalidInput(
-            f"boundary elements need every height, but {100 * surface.missing_fraction:.2g} % of the pixels are "
+            f"boundary elements require every height, but {100 * surface.missing_fraction:.2g} % of the pixels are "
             "missing: crop the map or fill them"
         )
     system = _system(surface, effective_modulus, periodic)
-    # a load is met, and the surfaces kept apart, to this share of the heights
+    # of load and penetration, relative to the range of heights
     tolerance = 1e-5 * float(np.ptp(surface.height)) or math.inf
     solved = [_solve(system, surface, float(load), tolerance, periodic) for load in loads]
     gap, area, peak = np.array([numbers for numbers, _ in solved]).T
-    return PressedSurface(
+    return BoundaryElementContact(
         normal_load=loads,
         separation=gap,
         real_contact_area=area,
@@ -96,8 +102,8 @@ def press(
     )
 
 
-def mirrored(surface: HeightMap) -> HeightMap:
-    """Return the map with its mirror images beside it, which makes a periodic map of any.
+def mirror_extension(surface: HeightMap) -> HeightMap:
+    """Even periodic extension of a height map: the map and its mirror images.
 
     Parameters
     ----------
@@ -106,24 +112,25 @@ def mirrored(surface: HeightMap) -> HeightMap:
     Returns
     -------
     HeightMap
-        Of twice as many rows and columns, with the same distribution of heights.
+        Twice as many rows and columns, with the same height distribution.
     """
-    beside = np.concatenate([surface.height, surface.height[:, ::-1]], axis=1)
+    doubled = np.concatenate([surface.height, surface.height[:, ::-1]], axis=1)
     return HeightMap(
-        height=np.concatenate([beside, beside[::-1]], axis=0),
+        height=np.concatenate([doubled, doubled[::-1]], axis=0),
         spacing_x=surface.spacing_x,
         spacing_y=surface.spacing_y,
     )
 
 
 def _system(surface: HeightMap, modulus: float, periodic: bool) -> Any:
+    """Contact system of the library; refused with the remedy where it is not installed."""
     try:
         from ContactMechanics import FreeFFTElasticHalfSpace, PeriodicFFTElasticHalfSpace
         from ContactMechanics.Factory import make_system
         from SurfaceTopography import Topography
     except ImportError:
         raise InvalidInput(
-            'boundary elements need ContactMechanics: pip install "sonolube[boundary-element]"'
+            'boundary elements require ContactMechanics: pip install "sonolube[boundary-element]"'
         ) from None
     points = surface.height.T.shape
     sizes = (points[0] * surface.spacing_x, points[1] * surface.spacing_y)
@@ -135,24 +142,25 @@ def _system(surface: HeightMap, modulus: float, periodic: bool) -> Any:
 def _solve(
     system: Any, surface: HeightMap, load: float, tolerance: float, periodic: bool
 ) -> tuple[tuple[float, float, float], str]:
+    """Mean gap, real area and peak pressure under a load, and the reason of a failure."""
     found = system.minimize_proxy(external_force=load, pentol=tolerance, maxiter=2000)
     if not found.success:
-        return (math.nan, math.nan, math.nan), f"{load:.4g} N was not solved in 2000 steps: {found.message}"
+        return (math.nan, math.nan, math.nan), f"no convergence for {load:.4g} N in 2000 iterations: {found.message}"
     pixel = surface.spacing_x * surface.spacing_y
     columns, rows = surface.height.T.shape
-    pressed = system.force[:columns, :rows] > 0
+    contact = system.force[:columns, :rows] > 0
     gap = float(np.mean(system.disp) - np.mean(surface.height)) if periodic else 0.0
-    area, peak = _area(pressed, surface, periodic), float(system.force.max()) / pixel
+    area, peak = _corrected_area(contact, surface, periodic), float(system.force.max()) / pixel
     return (gap - float(system.offset), area, peak), ""
 
 
-def _area(pressed: NDArray[np.bool_], surface: HeightMap, periodic: bool) -> float:
-    """Return the area of the pixels under pressure, less what their outline overrates on average."""
+def _corrected_area(contact: NDArray[np.bool_], surface: HeightMap, periodic: bool) -> float:
+    """Area of the pixels in contact less the mean excess along their outline."""
     across, along = (
-        np.count_nonzero(pressed ^ np.roll(pressed, 1, axis))
+        np.count_nonzero(contact ^ np.roll(contact, 1, axis))
         if periodic
-        else np.count_nonzero(np.diff(pressed, axis=axis))
+        else np.count_nonzero(np.diff(contact, axis=axis))
         for axis in (0, 1)
     )
     pixel = surface.spacing_x * surface.spacing_y
-    return pixel * max(np.count_nonzero(pressed) - _PERIMETER_SHARE * (across + along), 0.0)
+    return pixel * max(np.count_nonzero(contact) - _PERIMETER_CORRECTION * (across + along), 0.0)

@@ -1,4 +1,4 @@
-"""What the laws say of one surface, as a table and as a figure."""
+"""Table and figure of contact laws compared on one surface, in dimensionless quantities."""
 
 from typing import TYPE_CHECKING
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.figure import COLOURS, LINES, MARKERS
-from sonolube.reference_solutions.law_comparison import REFEREE, LawComparison, LawCurve
+from sonolube.reference_solutions.law_comparison import REFERENCE_SOLUTION, LawComparison, LawCurve
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -15,12 +15,12 @@ _TITLES = {
     "exponential": "exponential heights",
     "gaussian": "Gaussian heights",
     "persson": "Persson",
-    REFEREE: "boundary elements",
+    REFERENCE_SOLUTION: "boundary elements",
 }
 
 
 def comparison_table(comparison: LawComparison) -> list[str]:
-    """Return the laws side by side as lines, all reduced: gap in rms heights, area in shares, stiffness by slope.
+    """Contact laws side by side as lines of text: gap over rms height, area fraction, and dimensionless stiffness.
 
     Parameters
     ----------
@@ -29,12 +29,12 @@ def comparison_table(comparison: LawComparison) -> list[str]:
     Returns
     -------
     list of str
-        A heading of two lines, then one line a load.
+        A heading of two lines, then one line per load.
     """
     laws = comparison.laws
-    columns = [reduced_curve(comparison, curve) for curve in laws.values()]
+    columns = [dimensionless_curve(comparison, curve) for curve in laws.values()]
     width = 8 * len(laws)
-    heading = f"{'p/(E* h)':>10}  {'gap/Rq':^{width}}  {'area share':^{width}}  {'k Rq/F':^{width}}"
+    heading = f"{'p/(E* h)':>10}  {'gap/Rq':^{width}}  {'area fraction':^{width}}  {'k Rq/F':^{width}}"
     names = "".join(f"{name[:7]:>8}" for name in laws)
     return [
         heading,
@@ -48,7 +48,7 @@ def comparison_table(comparison: LawComparison) -> list[str]:
 
 
 def comparison_figure(comparison: LawComparison) -> "Figure":
-    """Draw gap, real area and stiffness over the nominal pressure by every law.
+    """Figure of gap, real contact area and stiffness over the nominal pressure by every contact law.
 
     Parameters
     ----------
@@ -64,12 +64,12 @@ def comparison_figure(comparison: LawComparison) -> "Figure":
     for index, (name, curve) in enumerate(comparison.laws.items()):
         style = (
             {"marker": MARKERS[0], "ls": "", "color": "black", "zorder": 3}
-            if name == REFEREE
+            if name == REFERENCE_SOLUTION
             else {"ls": LINES[index], "color": COLOURS[index]}
         )
-        for panel, values in zip(axes, reduced_curve(comparison, curve), strict=True):
+        for panel, values in zip(axes, dimensionless_curve(comparison, curve), strict=True):
             panel.plot(comparison.reduced_pressure, values, label=_TITLES[name], **style)
-    labels = ("Mean gap over rms height", "Real over nominal area", "Stiffness × rms height over load")
+    labels = ("Mean gap / rms height", "Real / nominal contact area", "Stiffness × rms height / load")
     for panel, label in zip(axes, labels, strict=True):
         panel.set(xscale="log", xlabel="Nominal pressure $p/(E^* h')$", ylabel=label)
     axes[0].axhline(0, color="0.6", lw=0.8)
@@ -79,8 +79,8 @@ def comparison_figure(comparison: LawComparison) -> "Figure":
     return figure
 
 
-def reduced_curve(comparison: LawComparison, curve: LawCurve) -> tuple[Floats, Floats, Floats]:
-    """Return gap over rms height, real over nominal area, and stiffness times rms height over load.
+def dimensionless_curve(comparison: LawComparison, curve: LawCurve) -> tuple[Floats, Floats, Floats]:
+    r"""Dimensionless gap, area and stiffness of one law.
 
     Parameters
     ----------
@@ -90,6 +90,8 @@ def reduced_curve(comparison: LawComparison, curve: LawCurve) -> tuple[Floats, F
     Returns
     -------
     tuple of three ndarray, shape (n,)
+        Gap over rms height, real over nominal contact area, and stiffness times rms height over load,
+        :math:`\bar u/R_q`, :math:`A_r/A_n` and :math:`k_n R_q/F_N`.
     """
     return (
         curve.separation / comparison.rms_height,

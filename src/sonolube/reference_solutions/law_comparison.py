@@ -1,4 +1,4 @@
-"""Statistical laws, Persson's theory and boundary elements on one and the same surface."""
+"""Statistical contact laws and Persson's theory compared with boundary elements on one surface."""
 
 import math
 from collections.abc import Mapping
@@ -21,26 +21,33 @@ from sonolube.contact import (
 )
 from sonolube.contact.persson import PerssonContact, persson_area, persson_separation, persson_stiffness
 from sonolube.errors import InvalidInput
-from sonolube.reference_solutions.boundary_element import press
-from sonolube.surfaces import HeightMap, areal_spectrum, radial_spectrum, roughness, spectral_moments, summits
+from sonolube.reference_solutions.boundary_element import boundary_element_contact
+from sonolube.surfaces import (
+    HeightMap,
+    areal_spectrum,
+    contact_roughness,
+    radial_spectrum,
+    spectral_moments,
+    summit_statistics,
+)
 
 QUANTITIES = ("separation", "real_contact_area", "normal_stiffness")
-"""What the laws are compared in."""
+"""Quantities in which the contact laws are compared."""
 
-REFEREE = "boundary_element"
-"""The law that judges the others."""
+REFERENCE_SOLUTION = "boundary_element"
+"""Name of the reference solution among the laws."""
 
 _HEIGHTS: Mapping[str, HeightDistribution] = {"exponential": ExponentialHeights(), "gaussian": GaussianHeights()}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class LawCurve:
-    """What one law says of a surface under some loads.
+    """Contact of a surface over the load by one contact law.
 
     Parameters
     ----------
     separation : ndarray, shape (n,)
-        Mean gap; for the statistical laws separation of the undeformed mean planes. [m]
+        Mean gap; for the statistical laws the separation of the undeformed mean planes. [m]
     real_contact_area : ndarray, shape (n,)
         Real contact area. [m2]
     normal_stiffness : ndarray, shape (n,)
@@ -54,18 +61,18 @@ class LawCurve:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class LawComparison:
-    """The laws beside each other on one surface.
+    """Contact laws compared on one surface.
 
     Parameters
     ----------
     rms_height : float
         Standard deviation of the heights of the surface. [m]
-    rms_slope : float
+    rms_gradient : float
         Root mean square of the gradient. []
     nominal_area : float
         Area of the map. [m2]
     effective_modulus : float
-        Combined modulus of both bodies. [Pa]
+        Effective modulus E* of both bodies. [Pa]
     normal_load : ndarray, shape (n,)
         Force pressing the bodies together. [N]
     laws : mapping of str to LawCurve
@@ -73,7 +80,7 @@ class LawComparison:
     """
 
     rms_height: float
-    rms_slope: float
+    rms_gradient: float
     nominal_area: float
     effective_modulus: float
     normal_load: Floats
@@ -81,23 +88,23 @@ class LawComparison:
 
     @property
     def reduced_pressure(self) -> Floats:
-        """Nominal pressure over modulus and slope, p/(E* h'), an array of shape (n,)."""
-        return self.normal_load / (self.nominal_area * self.effective_modulus * self.rms_slope)
+        """Nominal pressure over effective modulus and rms gradient, p/(E* h'), shape (n,)."""
+        return self.normal_load / (self.nominal_area * self.effective_modulus * self.rms_gradient)
 
 
 def compare_laws(
     surface: HeightMap, *, effective_modulus: float, reduced_pressure: ArrayLike | None = None
 ) -> LawComparison:
-    """Press a surface against a rigid flat by every law, all elastic, with no number fitted.
+    r"""Elastic contact of a surface with a rigid flat by every contact law, without fitted parameters.
 
     Parameters
     ----------
     surface : HeightMap
         Periodic, without missing pixels: see `mirrored`.
     effective_modulus : float
-        Combined modulus of both bodies. [Pa]
+        Effective modulus E* of both bodies. [Pa]
     reduced_pressure : array_like, shape (n,), optional
-        Nominal pressures p/(E* h') in rising order, three or more; 13 from 0.001 to 0.3 where absent. []
+        Nominal pressures p/(E* h') in ascending order, three or more; by default 13 from 0.001 to 0.3. []
 
     Returns
     -------
@@ -106,25 +113,28 @@ def compare_laws(
     Raises
     ------
     InvalidInput
-        If a value is not positive, fewer than three pressures are given or not in rising order, pixels are missing,
-        a load was not solved, or ContactMechanics is not installed.
+        If a value is not positive, fewer than three pressures are given or they do not ascend, pixels are missing, the
+        boundary elements do not converge, or ContactMechanics is not installed.
 
     Notes
     -----
-    The asperities of the statistical laws are the summits counted on the map; Persson's theory takes the map's own
-    spectrum. The stiffness of boundary elements is the slope of the logarithm of their load over their gap, by
-    differences of the second order.
+    The statistical laws take the summits counted on the map, Persson's theory its power spectrum. The stiffness of the
+    boundary elements is
+
+    .. math:: k_n = -F_N\, \frac{\mathrm{d} \ln F_N}{\mathrm{d} \bar u}
+
+    by differences of second order.
     """
-    level = np.geomspace(1e-3, 0.3, 13) if reduced_pressure is None else np.atleast_1d(reduced_pressure)
-    x = require_positive(reduced_pressure=level)
+    pressures = np.geomspace(1e-3, 0.3, 13) if reduced_pressure is None else np.atleast_1d(reduced_pressure)
+    x = require_positive(reduced_pressure=pressures)
     if x.size < 3 or not np.all(np.diff(x) > 0):
-        raise InvalidInput(f"reduced_pressure needs three or more values in rising order, got {x.size}")
-    slope = math.sqrt(2 * spectral_moments(surface).slope_variance)
+        raise InvalidInput(f"reduced_pressure must have three or more values in ascending order, got {x.size}")
+    gradient = math.sqrt(2 * spectral_moments(surface).slope_variance)
     area = surface.height.size * surface.spacing_x * surface.spacing_y
-    load = x * require_positive(effective_modulus=effective_modulus) * slope * area
+    load = x * require_positive(effective_modulus=effective_modulus) * gradient * area
     return LawComparison(
         rms_height=float(np.std(surface.height)),
-        rms_slope=slope,
+        rms_gradient=gradient,
         nominal_area=area,
         effective_modulus=effective_modulus,
         normal_load=load,
@@ -134,65 +144,67 @@ def compare_laws(
                 for name, heights in _HEIGHTS.items()
             },
             "persson": _persson(surface, load, area, effective_modulus),
-            REFEREE: _boundary_element(surface, load, effective_modulus),
+            REFERENCE_SOLUTION: _boundary_element(surface, load, effective_modulus),
         },
     )
 
 
-def where_laws_hold(
+def validity_ranges(
     comparison: LawComparison, *, tolerance: float = 0.2
 ) -> Mapping[str, Mapping[str, tuple[float, float] | None]]:
-    """Return for each law and quantity the real area shares between which it keeps within a tolerance of the referee.
+    """Ranges of real area fraction in which each law is within a tolerance of the boundary elements, by quantity.
 
     Parameters
     ----------
     comparison : LawComparison
     tolerance : float
-        Greatest deviation from boundary elements: of the gap as a share of the rms height, of the others of their
-        value.
+        Largest deviation from the boundary elements, of the gap over the rms height, of the others relative.
 
     Returns
     -------
     mapping of str to mapping of str to tuple of two floats, or None
-        The longest unbroken range of the referee's real area over the nominal one; None where no two neighbouring
-        loads keep within the tolerance: curves that merely cross do not hold.
+        For each law and quantity, the longest range of real over nominal area of the boundary elements in which all
+        loads are within the tolerance; None where no two neighbouring loads are, so that an intersection of two curves
+        is not a range.
     """
-    share = comparison.laws[REFEREE].real_contact_area / comparison.nominal_area
+    fraction = comparison.laws[REFERENCE_SOLUTION].real_contact_area / comparison.nominal_area
     return {
         law: {
-            quantity: _longest(np.abs(deviation(comparison, law=law, quantity=quantity)) <= tolerance, share)
+            quantity: _longest_range(np.abs(deviation(comparison, law=law, quantity=quantity)) <= tolerance, fraction)
             for quantity in QUANTITIES
         }
         for law in comparison.laws
-        if law != REFEREE
+        if law != REFERENCE_SOLUTION
     }
 
 
 def deviation(comparison: LawComparison, *, law: str, quantity: str) -> Floats:
-    """Return how far a law lies from boundary elements.
+    """Deviation of a contact law from the boundary elements.
 
     Parameters
     ----------
     comparison : LawComparison
     law : str
-        Its name in the comparison.
+        Name of the law in the comparison.
     quantity : {"separation", "real_contact_area", "normal_stiffness"}
 
     Returns
     -------
     ndarray, shape (n,)
-        Of the gap in rms heights, of the others in their own value.
+        Of the gap over the rms height, of the others relative.
     """
-    one, judge = (getattr(comparison.laws[name], quantity) for name in (law, REFEREE))
-    return np.asarray((one - judge) / (comparison.rms_height if quantity == "separation" else judge))
+    value, reference = (getattr(comparison.laws[name], quantity) for name in (law, REFERENCE_SOLUTION))
+    scale = comparison.rms_height if quantity == "separation" else reference
+    return np.asarray((value - reference) / scale)
 
 
 def _statistical(
     surface: HeightMap, heights: HeightDistribution, load: Floats, area: float, modulus: float
 ) -> LawCurve:
+    """Contact by a statistical law of elastic asperities with the summits counted on the map."""
     contact = RoughContact(
-        roughness=roughness(surface),
-        # neither Poisson's ratio nor the tangential stiffness enters where nothing yields
+        roughness=contact_roughness(surface),
+        # without yielding, Poisson's ratio and the tangential stiffness have no effect
         pair=ContactPair(effective_modulus=modulus, poisson_ratio=0.3, yield_strength=math.inf, mindlin_ratio=1.0),
         nominal_area=area,
         heights=heights,
@@ -200,13 +212,14 @@ def _statistical(
     )
     d = separation(contact, normal_load=load)
     return LawCurve(
-        separation=d + summits(surface).mean_summit_height,
+        separation=d + summit_statistics(surface).mean_summit_height,
         real_contact_area=real_contact_area(contact, separation=d),
         normal_stiffness=normal_stiffness(contact, separation=d),
     )
 
 
 def _persson(surface: HeightMap, load: Floats, area: float, modulus: float) -> LawCurve:
+    """Contact by Persson's theory with the spectrum of the map."""
     spectrum = radial_spectrum(areal_spectrum(surface, window="none"))
     contact = PerssonContact(spectrum=spectrum, effective_modulus=modulus, nominal_area=area)
     return LawCurve(
@@ -217,20 +230,21 @@ def _persson(surface: HeightMap, load: Floats, area: float, modulus: float) -> L
 
 
 def _boundary_element(surface: HeightMap, load: Floats, modulus: float) -> LawCurve:
-    pressed = press(surface, normal_load=load, effective_modulus=modulus)
-    unsolved = next((reason for reason in pressed.reason if reason), "")
+    """Contact by boundary elements, refused where a load does not converge."""
+    contact = boundary_element_contact(surface, normal_load=load, effective_modulus=modulus)
+    unsolved = next((reason for reason in contact.reason if reason), "")
     if unsolved:
         raise InvalidInput(f"boundary elements did not converge: {unsolved}; take fewer or lower pressures")
-    slope = np.gradient(np.log(load), pressed.separation, edge_order=2)
+    rate = np.gradient(np.log(load), contact.separation, edge_order=2)
     return LawCurve(
-        separation=pressed.separation,
-        real_contact_area=pressed.real_contact_area,
-        normal_stiffness=np.asarray(-load * slope),
+        separation=contact.separation,
+        real_contact_area=contact.real_contact_area,
+        normal_stiffness=np.asarray(-load * rate),
     )
 
 
-def _longest(held: NDArray[np.bool_], share: Floats) -> tuple[float, float] | None:
-    """Return the area shares at the ends of the longest run of true values, of two or more."""
-    runs = np.flatnonzero(np.diff(np.concatenate([[0], held.astype(int), [0]]))).reshape(-1, 2)
+def _longest_range(within: NDArray[np.bool_], fraction: Floats) -> tuple[float, float] | None:
+    """Area fractions at the ends of the longest run of two or more true values."""
+    runs = np.flatnonzero(np.diff(np.concatenate([[0], within.astype(int), [0]]))).reshape(-1, 2)
     first, last = max(runs.tolist(), key=lambda run: run[1] - run[0], default=(0, 0))
-    return (float(share[first]), float(share[last - 1])) if last - first > 1 else None
+    return (float(fraction[first]), float(fraction[last - 1])) if last - first > 1 else None

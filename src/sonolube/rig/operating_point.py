@@ -186,7 +186,7 @@ def friction_under(
     ----------
     rig : Rig
     ratio : float
-        Friction with vibration over friction without. []
+        Friction with vibration over friction without, dimensionless.
     vibration_amplitude : float
         Vibration normal to the contact, zero to peak. [m]
     actuator_power : float or None
@@ -260,7 +260,7 @@ def wear_under(
     ----------
     rig : Rig
     ratio : float
-        Wear rate with vibration over that without. []
+        Wear rate with vibration over that without, dimensionless.
     model : str
         Name of the wear model.
     vibration_amplitude : float

@@ -1,4 +1,4 @@
-"""Surfaces: height maps, their form, waviness, numbers and wear, and what a rough surface is to a contact model."""
+"""Surface metrology: height maps, filters, ISO 25178 and 21920 parameters, spectra, asperities and wear grooves."""
 
 from sonolube.surfaces.areal_parameters import (
     HeightParameters,
@@ -11,25 +11,24 @@ from sonolube.surfaces.areal_parameters import (
 from sonolube.surfaces.asperities import (
     SamplingDependence,
     SummitStatistics,
-    against_sampling_interval,
-    combined,
-    gaussian_summits,
-    roughness,
+    combined_roughness,
+    contact_roughness,
+    nayak_summit_statistics,
+    sampling_dependence,
     spectral_moments,
-    summits,
+    summit_statistics,
 )
-from sonolube.surfaces.correlation import Autocorrelation, DecayLengths, autocorrelation, decay_lengths
+from sonolube.surfaces.correlation import Autocorrelation, CorrelationLengths, autocorrelation, correlation_lengths
 from sonolube.surfaces.features import FeatureParameters, feature_parameters
-from sonolube.surfaces.filtering import band_pass, high_pass, low_pass, profile_low_pass
-from sonolube.surfaces.generated import HeightSpectrum, SelfAffineSpectrum, SingleScaleSpectrum, gaussian_surface
-from sonolube.surfaces.grooves.ball_on_disc import WornCap, ball_cap_volume, disc_groove_volume, worn_cap
-from sonolube.surfaces.grooves.detection import FoundGroove, find_groove
-from sonolube.surfaces.grooves.generated import GeneratedGroove, GrooveShape, ScannedField, generated_groove
+from sonolube.surfaces.form_removal import fit_form, remove_form
+from sonolube.surfaces.gaussian_filter import band_pass, high_pass, low_pass, profile_low_pass
+from sonolube.surfaces.grooves.ball_on_disc import WearScar, disc_volume_loss, pin_volume_loss, wear_scar
+from sonolube.surfaces.grooves.detection import DetectedGroove, detect_groove
 from sonolube.surfaces.grooves.groove import Groove, measure_groove
+from sonolube.surfaces.grooves.synthetic import GrooveShape, ScannedField, SyntheticGroove, synthetic_groove
 from sonolube.surfaces.grooves.track import GrooveTrack
 from sonolube.surfaces.grooves.track_marks import TrackMarks, track_marks
 from sonolube.surfaces.height_map import HeightMap
-from sonolube.surfaces.levelling import form, level
 from sonolube.surfaces.material_ratio import (
     FunctionalParameters,
     MaterialRatioCurve,
@@ -41,6 +40,12 @@ from sonolube.surfaces.profile_parameters import (
     ProfileStatistics,
     profile_parameters,
     profile_statistics,
+)
+from sonolube.surfaces.random_surface import (
+    GaussianCorrelationSpectrum,
+    HeightSpectrum,
+    SelfAffineSpectrum,
+    gaussian_surface,
 )
 from sonolube.surfaces.roughness import Roughness
 from sonolube.surfaces.spectrum import (
@@ -54,16 +59,16 @@ from sonolube.surfaces.spectrum import (
     profiles,
     radial_spectrum,
 )
-from sonolube.surfaces.waviness import waviness_lengths
+from sonolube.surfaces.waviness import dominant_wavelengths
 
 __all__ = [
     "ArealSpectrum",
     "Autocorrelation",
-    "DecayLengths",
+    "CorrelationLengths",
+    "DetectedGroove",
     "FeatureParameters",
-    "FoundGroove",
     "FunctionalParameters",
-    "GeneratedGroove",
+    "GaussianCorrelationSpectrum",
     "Groove",
     "GrooveShape",
     "GrooveTrack",
@@ -80,46 +85,46 @@ __all__ = [
     "SamplingDependence",
     "ScannedField",
     "SelfAffineSpectrum",
-    "SingleScaleSpectrum",
     "SpatialParameters",
     "SpectralMoments",
     "SummitStatistics",
+    "SyntheticGroove",
     "TrackMarks",
-    "WornCap",
-    "against_sampling_interval",
+    "WearScar",
     "areal_spectrum",
     "autocorrelation",
-    "ball_cap_volume",
     "band_pass",
-    "combined",
-    "decay_lengths",
-    "disc_groove_volume",
+    "combined_roughness",
+    "contact_roughness",
+    "correlation_lengths",
+    "detect_groove",
+    "disc_volume_loss",
+    "dominant_wavelengths",
     "feature_parameters",
-    "find_groove",
-    "form",
+    "fit_form",
     "functional_parameters",
-    "gaussian_summits",
     "gaussian_surface",
-    "generated_groove",
     "height_parameters",
     "high_pass",
     "hybrid_parameters",
-    "level",
     "low_pass",
     "material_ratio_curve",
     "measure_groove",
     "moments_of_spectrum",
+    "nayak_summit_statistics",
+    "pin_volume_loss",
     "profile_low_pass",
     "profile_parameters",
     "profile_spectrum",
     "profile_statistics",
     "profiles",
     "radial_spectrum",
-    "roughness",
+    "remove_form",
+    "sampling_dependence",
     "spatial_parameters",
     "spectral_moments",
-    "summits",
+    "summit_statistics",
+    "synthetic_groove",
     "track_marks",
-    "waviness_lengths",
-    "worn_cap",
+    "wear_scar",
 ]

@@ -1,4 +1,4 @@
-"""Summits of a rough surface, counted or inferred from its spectrum, for the contact models."""
+"""Summit statistics of a rough surface, counted or by Nayak's theory, and the roughness that contact models take."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -11,26 +11,26 @@ from numpy.typing import ArrayLike
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.surfaces.grid_kernel import (
-    central_sums,
-    differences_along_columns,
-    differences_along_rows,
-    extent,
-    highest_of_eight,
+    central_moment_sums,
+    column_difference_sums,
+    count_sum_and_extremes,
+    local_maxima,
+    row_difference_sums,
 )
 from sonolube.surfaces.height_map import HeightMap
 from sonolube.surfaces.roughness import Roughness
 from sonolube.surfaces.spectrum import SpectralMoments
 
-# Nayak's theory of isotropic Gaussian surfaces
+# constants of Nayak's theory of isotropic Gaussian surfaces
 _DENSITY = 1 / (6 * math.pi * math.sqrt(3))
 _CURVATURE = 8 / (3 * math.sqrt(math.pi))
 _MEAN_HEIGHT = 4 / math.sqrt(math.pi)
-_LOST_VARIANCE = 0.8968
+_VARIANCE_LOSS = 0.8968
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SummitStatistics:
-    """What the summits of one surface are like.
+    """Density, curvature and heights of the summits of a surface.
 
     Parameters
     ----------
@@ -51,18 +51,18 @@ class SummitStatistics:
 
     @property
     def summit_radius(self) -> float:
-        """Inverse of the mean curvature; the mean of radii would be ruled by the flattest summits. [m]"""
+        """Inverse of the mean curvature; a mean of radii would be dominated by the flattest summits. [m]"""
         return 1 / self.mean_summit_curvature
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class SamplingDependence:
-    """What becomes of the summits as the surface is sampled more coarsely.
+    """Contact roughness of one surface over the sampling interval.
 
     Parameters
     ----------
     sampling_interval : ndarray, shape (n,)
-        Root of the area of a pixel. [m]
+        Square root of the area of a pixel. [m]
     rms_height : ndarray, shape (n,)
         Standard deviation of asperity heights. [m]
     summit_radius : ndarray, shape (n,)
@@ -77,13 +77,13 @@ class SamplingDependence:
     summit_density: Floats
 
 
-def summits(surface: HeightMap) -> SummitStatistics:
-    """Return the statistics of the pixels that are higher than all their eight neighbours.
+def summit_statistics(surface: HeightMap) -> SummitStatistics:
+    r"""Statistics of the summits of a height map, the pixels higher than all their eight neighbours.
 
     Parameters
     ----------
     surface : HeightMap
-        Pixels at the edge or beside a missing one are neither counted nor charged to the area.
+        Pixels at the edge or beside a missing one are left out of the count and of the area.
 
     Returns
     -------
@@ -94,40 +94,49 @@ def summits(surface: HeightMap) -> SummitStatistics:
     InvalidInput
         If there are fewer than two summits.
 
+    See Also
+    --------
+    nayak_summit_statistics : The same from spectral moments, for an isotropic Gaussian surface.
+    sonolube.surfaces.features.feature_parameters : Density of significant peaks Spd, which is not the summit density.
+
     Notes
     -----
-    A summit's curvature is the mean of the negative second differences along row and column at its pixel, which
-    underrates narrow summits: with ten pixels to the correlation length by about 1 %. Noise of the instrument counts as
-    summits: filter first, and see `against_sampling_interval`.
+    The curvature of a summit is the mean of the negative second differences along row and column,
+
+    .. math:: \kappa = \frac12 \left( \frac{2 z_{i,j} - z_{i,j-1} - z_{i,j+1}}{\Delta x^2}
+        + \frac{2 z_{i,j} - z_{i-1,j} - z_{i+1,j}}{\Delta y^2} \right) ,
+
+    which underestimates narrow summits: by about 1 % with ten pixels per correlation length. Noise of the instrument
+    counts as summits: filter beforehand, and see `sampling_dependence`.
 
     References
     ----------
     .. [1] J. A. Greenwood, Proc. R. Soc. A 393, 133 (1984). doi:10.1098/rspa.1984.0050
     """
     z = np.ascontiguousarray(surface.height)
-    candidates, places = highest_of_eight(z)
-    if places.size < 2:
-        raise InvalidInput(f"a surface needs two summits for statistics, got {places.size} among {candidates} pixels")
+    candidates, indices = local_maxima(z)
+    if indices.size < 2:
+        raise InvalidInput(f"summit statistics require two summits, got {indices.size} among {candidates} pixels")
     columns = z.shape[1]
     flat = z.ravel()
-    top = flat[places]
-    bend_x = 2 * top - flat[places - 1] - flat[places + 1]
-    bend_y = 2 * top - flat[places - columns] - flat[places + columns]
+    top = flat[indices]
+    second_x = 2 * top - flat[indices - 1] - flat[indices + 1]
+    second_y = 2 * top - flat[indices - columns] - flat[indices + columns]
     return SummitStatistics(
-        summit_density=places.size / (candidates * surface.spacing_x * surface.spacing_y),
-        mean_summit_curvature=float(np.mean(bend_x / surface.spacing_x**2 + bend_y / surface.spacing_y**2)) / 2,
+        summit_density=indices.size / (candidates * surface.spacing_x * surface.spacing_y),
+        mean_summit_curvature=float(np.mean(second_x / surface.spacing_x**2 + second_y / surface.spacing_y**2)) / 2,
         mean_summit_height=float(np.mean(top)) - _mean_and_variance(z)[0],
         summit_height_deviation=float(np.std(top)),
     )
 
 
 def spectral_moments(surface: HeightMap) -> SpectralMoments:
-    """Return m0, m2 and m4 from finite differences of neighbouring pixels, the mean of both directions.
+    r"""Spectral moments m0, m2 and m4 of a height map by finite differences, averaged over both directions.
 
     Parameters
     ----------
     surface : HeightMap
-        Differences with a missing pixel in them are left out.
+        Differences that include a missing pixel are left out.
 
     Returns
     -------
@@ -136,27 +145,37 @@ def spectral_moments(surface: HeightMap) -> SpectralMoments:
     Raises
     ------
     InvalidInput
-        If the map is flat, or no three neighbouring pixels were measured in either direction.
+        If the map is flat, or no three neighbouring pixels were measured along a row or along a column.
+
+    See Also
+    --------
+    sonolube.surfaces.spectrum.moments_of_spectrum : The same as integrals of the power spectrum.
+
+    Notes
+    -----
+    .. math:: m_0 = \overline{z^2}, \qquad
+        m_2 = \overline{\left(\frac{z_{i+1} - z_i}{\Delta}\right)^2}, \qquad
+        m_4 = \overline{\left(\frac{z_{i+1} - 2 z_i + z_{i-1}}{\Delta^2}\right)^2} .
 
     References
     ----------
     .. [1] J. I. McCool, Wear 107, 37 (1986). doi:10.1016/0043-1648(86)90045-1
     """
     z = np.ascontiguousarray(surface.height)
-    firsts_x, slopes_x, seconds_x, bends_x = differences_along_rows(z)
-    firsts_y, slopes_y, seconds_y, bends_y = differences_along_columns(z)
+    firsts_x, slopes_x, seconds_x, curvatures_x = row_difference_sums(z)
+    firsts_y, slopes_y, seconds_y, curvatures_y = column_difference_sums(z)
     if not min(firsts_x, firsts_y, seconds_x, seconds_y) > 0:
-        raise InvalidInput("spectral moments need three neighbouring measured pixels along a row and along a column")
+        raise InvalidInput("spectral moments require three neighbouring measured pixels along a row and along a column")
     dx, dy = surface.spacing_x, surface.spacing_y
     return SpectralMoments(
         height_variance=_mean_and_variance(z)[1],
         slope_variance=(slopes_x / firsts_x / dx**2 + slopes_y / firsts_y / dy**2) / 2,
-        curvature_variance=(bends_x / seconds_x / dx**4 + bends_y / seconds_y / dy**4) / 2,
+        curvature_variance=(curvatures_x / seconds_x / dx**4 + curvatures_y / seconds_y / dy**4) / 2,
     )
 
 
-def gaussian_summits(moments: SpectralMoments) -> SummitStatistics:
-    """Return the summits of an isotropic Gaussian surface with these spectral moments.
+def nayak_summit_statistics(moments: SpectralMoments) -> SummitStatistics:
+    r"""Summit statistics of an isotropic Gaussian surface from its spectral moments, by Nayak's theory.
 
     Parameters
     ----------
@@ -169,15 +188,21 @@ def gaussian_summits(moments: SpectralMoments) -> SummitStatistics:
     Raises
     ------
     InvalidInput
-        If the bandwidth is so small that no surface has such moments.
+        If the bandwidth is not above 1, which no profile has.
 
     Notes
     -----
-    An isotropic Gaussian surface has a bandwidth of 1.5 or more.
+    With the bandwidth :math:`\alpha = m_0 m_4/m_2^2`, 1.5 or more for an isotropic Gaussian surface, density, mean
+    curvature, mean height and variance of the heights of summits are
+
+    .. math:: \eta = \frac{m_4}{6\pi\sqrt3\, m_2}, \qquad \bar\kappa_s = \frac83 \sqrt{\frac{m_4}{\pi}}, \qquad
+        \bar z_s = 4 \sqrt{\frac{m_0}{\pi\alpha}}, \qquad
+        \sigma_s^2 = \left(1 - \frac{0.8968}{\alpha}\right) m_0 .
 
     References
     ----------
     .. [1] P. R. Nayak, J. Lubr. Technol. 93, 398 (1971). doi:10.1115/1.3451608
+    .. [2] J. I. McCool, Wear 107, 37 (1986). doi:10.1016/0043-1648(86)90045-1
     """
     m0, m2, m4, alpha = moments.height_variance, moments.slope_variance, moments.curvature_variance, moments.bandwidth
     if not alpha > 1:
@@ -186,39 +211,40 @@ def gaussian_summits(moments: SpectralMoments) -> SummitStatistics:
         summit_density=_DENSITY * m4 / m2,
         mean_summit_curvature=_CURVATURE * math.sqrt(m4),
         mean_summit_height=_MEAN_HEIGHT * math.sqrt(m0 / alpha),
-        summit_height_deviation=math.sqrt((1 - _LOST_VARIANCE / alpha) * m0),
+        summit_height_deviation=math.sqrt((1 - _VARIANCE_LOSS / alpha) * m0),
     )
 
 
 def _from_moments(surface: HeightMap) -> SummitStatistics:
-    return gaussian_summits(spectral_moments(surface))
+    """Summit statistics by Nayak's theory from the moments of a height map."""
+    return nayak_summit_statistics(spectral_moments(surface))
 
 
 _METHODS: Mapping[str, Callable[[HeightMap], SummitStatistics]] = MappingProxyType(
-    {"summits": summits, "moments": _from_moments}
+    {"summits": summit_statistics, "moments": _from_moments}
 )
 
 
-def roughness(surface: HeightMap, *, method: str = "summits") -> Roughness:
-    """Return the roughness as the contact models take it.
+def contact_roughness(surface: HeightMap, *, method: str = "summits") -> Roughness:
+    """Roughness of a height map as the statistical contact models take it.
 
     Parameters
     ----------
     surface : HeightMap
     method : {"summits", "moments"}
-        Whether summits are counted, or inferred from the spectral moments as of an isotropic Gaussian surface.
+        Summits counted (`summit_statistics`), or inferred from the spectral moments (`nayak_summit_statistics`).
 
     Returns
     -------
     Roughness
-        Its `rms_height` is the deviation of summit heights, not that of the surface.
+        Its `rms_height` is the standard deviation of summit heights, not that of the surface.
 
     Raises
     ------
     UnknownName
         If the method is unknown.
     InvalidInput
-        As by `summits`, `spectral_moments` and `gaussian_summits`.
+        As by `summit_statistics`, `spectral_moments` and `nayak_summit_statistics`.
     """
     if method not in _METHODS:
         raise UnknownName.among(_METHODS, kind="method", name=method)
@@ -230,8 +256,8 @@ def roughness(surface: HeightMap, *, method: str = "summits") -> Roughness:
     )
 
 
-def combined(first: Roughness, second: Roughness) -> Roughness:
-    """Return the roughness of two surfaces in contact, as of one rough surface against a smooth one.
+def combined_roughness(first: Roughness, second: Roughness) -> Roughness:
+    r"""Equivalent roughness of two rough surfaces in contact, as one rough surface against a smooth one.
 
     Parameters
     ----------
@@ -243,43 +269,49 @@ def combined(first: Roughness, second: Roughness) -> Roughness:
 
     Notes
     -----
-    Heights of unrelated surfaces add up, and so do their spectral moments. Each roughness stands for the moments of the
-    isotropic Gaussian surface with such summits; the sum of the moments gives the summits of the gap.
+    The spectral moments of independent surfaces add. Each roughness is taken for the isotropic Gaussian surface with
+    such summits, and the sums of the moments give the summits of the gap:
+
+    .. math:: \frac{1}{R^2} = \frac{1}{R_1^2} + \frac{1}{R_2^2}, \qquad
+        \frac{1}{\eta R^2} = \frac{1}{\eta_1 R_1^2} + \frac{1}{\eta_2 R_2^2}, \qquad
+        \sigma^2 = \sigma_1^2 + \sigma_2^2
+        + 0.8968\, \frac{(m_{2,1} m_{4,2} - m_{2,2} m_{4,1})^2}{m_{4,1} m_{4,2} (m_{4,1} + m_{4,2})} .
 
     References
     ----------
     .. [1] J. I. McCool, Wear 107, 37 (1986). doi:10.1016/0043-1648(86)90045-1
     """
-    slope_1, bend_1 = _equivalent_moments(first)
-    slope_2, bend_2 = _equivalent_moments(second)
-    slope, bend = slope_1 + slope_2, bend_1 + bend_2
-    # m0 - 0.8968 m2^2/m4 of the sums, less that of each: written so that it cannot fall below zero
-    unlikeness = _LOST_VARIANCE * (slope_1 * bend_2 - slope_2 * bend_1) ** 2 / (bend_1 * bend_2 * bend)
+    m2_1, m4_1 = _equivalent_moments(first)
+    m2_2, m4_2 = _equivalent_moments(second)
+    m2, m4 = m2_1 + m2_2, m4_1 + m4_2
+    # m0 - 0.8968 m2^2/m4 of the sums, less that of each, in a form that is never negative
+    excess = _VARIANCE_LOSS * (m2_1 * m4_2 - m2_2 * m4_1) ** 2 / (m4_1 * m4_2 * m4)
     return Roughness(
-        rms_height=math.sqrt(first.rms_height**2 + second.rms_height**2 + unlikeness),
-        summit_radius=1 / (_CURVATURE * math.sqrt(bend)),
-        summit_density=_DENSITY * bend / slope,
+        rms_height=math.sqrt(first.rms_height**2 + second.rms_height**2 + excess),
+        summit_radius=1 / (_CURVATURE * math.sqrt(m4)),
+        summit_density=_DENSITY * m4 / m2,
     )
 
 
 def _equivalent_moments(one: Roughness) -> tuple[float, float]:
-    """Return m2 and m4 of the Gaussian surface that has such summits."""
+    """Spectral moments m2 and m4 of the isotropic Gaussian surface that has such summits."""
     curvature_variance = (1 / (_CURVATURE * one.summit_radius)) ** 2
     return _DENSITY * curvature_variance / one.summit_density, curvature_variance
 
 
-def against_sampling_interval(
+def sampling_dependence(
     surface: HeightMap, *, sampling_interval: ArrayLike, method: str = "summits"
 ) -> SamplingDependence:
-    """Return the roughness as found with coarser sampling.
+    """Contact roughness of a height map resampled at coarser intervals.
 
     Parameters
     ----------
     surface : HeightMap
     sampling_interval : array_like, shape (n,)
-        Distances of neighbouring points wanted; along rows and columns the nearest whole number of pixels is taken. [m]
+        Requested distances of neighbouring points; along rows and columns the nearest whole number of pixels is taken.
+        [m]
     method : {"summits", "moments"}
-        As by `roughness`.
+        As in `contact_roughness`.
 
     Returns
     -------
@@ -288,16 +320,16 @@ def against_sampling_interval(
     Raises
     ------
     InvalidInput
-        If an interval is shorter than half a pixel, or so long that too few points or summits are left.
+        If an interval is shorter than half a pixel, or so long that too few points or summits remain.
 
     Notes
     -----
-    Radius and density of summits have no value of their own on a surface with ever finer detail: they follow the
-    interval. A contact model takes them at the interval that suits its scale.
+    On a surface with detail at all scales the radius and density of summits have no limit as the interval decreases. A
+    contact model requires them at the interval that suits its scale.
     """
-    wanted = np.atleast_1d(require_positive(sampling_interval=sampling_interval))
-    coarser = [_decimated(surface, float(interval)) for interval in wanted]
-    found = [roughness(one, method=method) for one in coarser]
+    requested = np.atleast_1d(require_positive(sampling_interval=sampling_interval))
+    coarser = [_decimated(surface, float(interval)) for interval in requested]
+    found = [contact_roughness(one, method=method) for one in coarser]
     return SamplingDependence(
         sampling_interval=np.array([math.sqrt(one.spacing_x * one.spacing_y) for one in coarser]),
         rms_height=np.array([one.rms_height for one in found]),
@@ -307,12 +339,14 @@ def against_sampling_interval(
 
 
 def _mean_and_variance(height: Floats) -> tuple[float, float]:
-    count, total, _, _ = extent(height)
+    """Mean and variance of the measured heights."""
+    count, total, _, _ = count_sum_and_extremes(height)
     mean = total / count
-    return mean, central_sums(height, mean)[1] / count
+    return mean, central_moment_sums(height, mean)[1] / count
 
 
 def _decimated(surface: HeightMap, interval: float) -> HeightMap:
+    """Every n-th row and column of a map, at about the interval."""
     step_x, step_y = round(interval / surface.spacing_x), round(interval / surface.spacing_y)
     if min(step_x, step_y) < 1:
         raise InvalidInput(

@@ -1,4 +1,4 @@
-"""Autocorrelation of a height map, and how far it reaches."""
+"""Autocorrelation of a height map, and the distances over which it decays."""
 
 from dataclasses import dataclass
 
@@ -14,16 +14,16 @@ from sonolube.surfaces.height_map import HeightMap
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Autocorrelation:
-    """Mean product of height deviations some way apart.
+    """Autocovariance of the heights of a map over the lag.
 
     Parameters
     ----------
     lag_x : ndarray, shape (2p + 1,)
-        Distance along the rows, from -p to p columns. [m]
+        Lag along the rows, from -p to p columns. [m]
     lag_y : ndarray, shape (2q + 1,)
-        Distance along the columns, from -q to q rows. [m]
+        Lag along the columns, from -q to q rows. [m]
     autocovariance : ndarray, shape (2q + 1, 2p + 1)
-        Mean product of deviations so far apart; NaN where no two measured pixels are. [m2]
+        Mean product of deviations from the mean height at that lag; NaN where no pair of pixels was measured. [m2]
     """
 
     lag_x: Floats
@@ -32,19 +32,19 @@ class Autocorrelation:
 
     @property
     def normalized(self) -> Floats:
-        """Autocovariance over its value at no lag, of the same shape."""
+        """Autocovariance over its value at zero lag, of the same shape."""
         rows, columns = self.autocovariance.shape
         return np.asarray(self.autocovariance / self.autocovariance[rows // 2, columns // 2])
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class DecayLengths:
-    """How far the autocorrelation stays above a threshold, direction by direction.
+class CorrelationLengths:
+    """Distances over which the autocorrelation decays to a threshold, by direction.
 
     Parameters
     ----------
     distance : ndarray, shape (n,)
-        Distance at which it first falls to the threshold; where it does not, how far it is known.
+        Distance in m at which it first falls to the threshold; where it does not, up to which it is known.
     decayed : ndarray of bool, shape (n,)
         Whether it falls to the threshold.
     """
@@ -54,7 +54,7 @@ class DecayLengths:
 
 
 def autocorrelation(surface: HeightMap) -> Autocorrelation:
-    """Return the autocorrelation for lags up to half the map each way.
+    r"""Autocorrelation of a height map for lags up to half its size, by Fourier transform.
 
     Parameters
     ----------
@@ -72,9 +72,11 @@ def autocorrelation(surface: HeightMap) -> Autocorrelation:
 
     Notes
     -----
-    The sum of products at each lag is divided by the number of products in it, so that neither edges nor missing
-    pixels bias it; the estimate scatters more the fewer products there are. Sums are taken by Fourier transform,
-    padded with so many zeros that opposite edges do not meet.
+    .. math:: A(\tau) = \frac{\sum_r z(r)\, z(r + \tau)}{\#\{r : \text{both measured}\}}
+
+    with the deviations z from the mean height. Division by the number of products makes the estimate unbiased at edges
+    and missing pixels; its scatter increases as that number decreases. Both sums are correlations, taken by Fourier
+    transform with zero padding against wrap-around.
     """
     measured = surface.measured
     z = surface.height
@@ -85,41 +87,42 @@ def autocorrelation(surface: HeightMap) -> Autocorrelation:
     half_y, half_x = rows // 2, columns // 2
     lag_y, lag_x = np.arange(-half_y, half_y + 1), np.arange(-half_x, half_x + 1)
     if measured.all():
-        pairs = np.outer(rows - np.abs(lag_y), columns - np.abs(lag_x)).astype(np.float64)
+        counts = np.outer(rows - np.abs(lag_y), columns - np.abs(lag_x)).astype(np.float64)
     else:
-        pairs = np.rint(_sums_of_products(measured.astype(np.float64), half_y, half_x))
+        counts = np.rint(_sums_of_products(measured.astype(np.float64), half_y, half_x))
     sums = _sums_of_products(deviation, half_y, half_x)
     return Autocorrelation(
         lag_x=lag_x * surface.spacing_x,
         lag_y=lag_y * surface.spacing_y,
-        autocovariance=np.divide(sums, pairs, out=np.full_like(sums, np.nan), where=pairs > 0),
+        autocovariance=np.divide(sums, counts, out=np.full_like(sums, np.nan), where=counts > 0),
     )
 
 
-def decay_lengths(correlation: Autocorrelation, *, directions: ArrayLike, threshold: float) -> DecayLengths:
-    """Return how far the normalized autocorrelation stays above a threshold.
+def correlation_lengths(correlation: Autocorrelation, *, directions: ArrayLike, threshold: float) -> CorrelationLengths:
+    """Distances over which the normalised autocorrelation decays to a threshold, by direction.
 
     Parameters
     ----------
     correlation : Autocorrelation
     directions : array_like, shape (n,)
-        Angles in rad from the direction of the rows.
+        Angles from the direction of the rows, in rad.
     threshold : float
-        Between 0 and 1.
+        Value of the normalised autocorrelation, between 0 and 1.
 
     Returns
     -------
-    DecayLengths
+    CorrelationLengths
     """
     angles = np.atleast_1d(require_finite(directions=directions))
     step_x, step_y = (lag[1] - lag[0] if lag.size > 1 else 1.0 for lag in (correlation.lag_x, correlation.lag_y))
     distance = np.zeros(angles.size)
     decayed = np.zeros(angles.size, dtype=np.bool_)
-    _march(correlation.normalized, np.cos(angles) / step_x, np.sin(angles) / step_y, threshold, distance, decayed)
-    return DecayLengths(distance=distance, decayed=decayed)
+    _first_decay(correlation.normalized, np.cos(angles) / step_x, np.sin(angles) / step_y, threshold, distance, decayed)
+    return CorrelationLengths(distance=distance, decayed=decayed)
 
 
 def _sums_of_products(value: Floats, half_y: int, half_x: int) -> Floats:
+    """Sums of the products of values at each lag up to half the map, shape (2 half_y + 1, 2 half_x + 1)."""
     rows, columns = value.shape
     long_y, long_x = fft.next_fast_len(rows + half_y, real=True), fft.next_fast_len(columns + half_x, real=True)
     spectrum = fft.fft(fft.rfft(value, n=long_x, axis=1, workers=-1), n=long_y, axis=0, workers=-1, overwrite_x=True)
@@ -134,7 +137,7 @@ def _sums_of_products(value: Floats, half_y: int, half_x: int) -> Floats:
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
-def _march(
+def _first_decay(
     correlation: Floats,
     per_x: Floats,
     per_y: Floats,
@@ -142,7 +145,7 @@ def _march(
     distance: Floats,
     decayed: NDArray[np.bool_],
 ) -> None:
-    """Walk out from the centre along each direction, half a pixel at a time, reading between pixels linearly."""
+    """Write distance and decay for each direction, by bilinear interpolation in steps of half a pixel from zero lag."""
     half_y, half_x = correlation.shape[0] // 2, correlation.shape[1] // 2
     for ray in range(per_x.size):
         stride = 0.5 / max(abs(per_x[ray]), abs(per_y[ray]))

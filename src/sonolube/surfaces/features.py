@@ -1,4 +1,4 @@
-"""Hills of a height map, told from mere bumps by Wolf pruning."""
+"""Feature parameters of a height map after ISO 25178-2: hills by watershed segmentation with Wolf pruning."""
 
 from dataclasses import dataclass
 
@@ -8,20 +8,20 @@ from numpy.typing import NDArray
 
 from sonolube.checks import Floats, require_within
 from sonolube.errors import InvalidInput
-from sonolube.surfaces.grid_kernel import extent
+from sonolube.surfaces.grid_kernel import count_sum_and_extremes
 from sonolube.surfaces.height_map import HeightMap
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class FeatureParameters:
-    """The significant hills of a surface.
+    """Density and curvature of the significant peaks of a surface.
 
     Parameters
     ----------
     peak_density : float
-        Hills per area, Spd; not the summit density of a contact model. [1/m2]
+        Density of peaks Spd: significant hills per area; not the summit density of a contact model. [1/m2]
     mean_peak_curvature : float
-        Mean of both principal curvatures at their peaks, on average, Spc. [1/m]
+        Arithmetic mean peak curvature Spc: mean of both principal curvatures, averaged over the peaks. [1/m]
     """
 
     peak_density: float
@@ -29,14 +29,15 @@ class FeatureParameters:
 
 
 def feature_parameters(surface: HeightMap, *, pruning: float = 0.05) -> FeatureParameters:
-    """Return Spd and Spc.
+    """Density of peaks Spd and arithmetic mean peak curvature Spc of ISO 25178-2, with Wolf pruning.
 
     Parameters
     ----------
     surface : HeightMap
-        Filtered as wanted. Hills do not reach across missing pixels.
+        Scale-limited surface. Hills do not extend across missing pixels.
     pruning : float
-        Least height of a significant hill over its highest saddle, as a share of the total height, from 0 to 1.
+        Wolf pruning threshold: least height of a significant hill above its highest saddle over the total height Sz,
+        from 0 to 1.
 
     Returns
     -------
@@ -49,10 +50,11 @@ def feature_parameters(surface: HeightMap, *, pruning: float = 0.05) -> FeatureP
 
     Notes
     -----
-    The map is segmented into hills (watersheds). Where a hill stands less than 5 % of Sz above the saddle to a higher
-    one it is merged with that one, the lowest hill first. What is left are a few hills a wavelength of the waviness
-    apart: Spd may be fifty times below the density of summits, which counts every pixel above its eight neighbours,
-    and falls when a single scratch raises Sz. A contact model wants `summits`, never this.
+    The map is segmented into hills by the watershed of the inverted surface. A hill whose peak is less than 5 % of Sz
+    above the saddle to a higher hill is merged with it, the lowest first. The remaining hills are about a wavelength of
+    the waviness apart: Spd can be fifty times below the density of summits, which counts every pixel above its eight
+    neighbours, and it decreases when a single scratch raises Sz. A contact model requires
+    `sonolube.surfaces.asperities.summit_statistics`, not Spd.
 
     References
     ----------
@@ -62,58 +64,61 @@ def feature_parameters(surface: HeightMap, *, pruning: float = 0.05) -> FeatureP
     """
     require_within(0.0, 1.0, pruning=pruning)
     z = np.ascontiguousarray(surface.height)
-    count, _, lowest, highest = extent(z)
+    count, _, lowest, highest = count_sum_and_extremes(z)
     if lowest == highest:
         raise InvalidInput(f"height must vary, got {lowest!r} m in every measured pixel: a flat map has no hills")
     peaks = _significant_peaks(z, np.argsort(-z, axis=None)[:count], pruning * (highest - lowest))
     row, column = np.divmod(peaks, z.shape[1])
     inside = (row > 0) & (row < z.shape[0] - 1) & (column > 0) & (column < z.shape[1] - 1)
     row, column = row[inside], column[inside]
-    bend_x = (2 * z[row, column] - z[row, column - 1] - z[row, column + 1]) / surface.spacing_x**2
-    bend_y = (2 * z[row, column] - z[row - 1, column] - z[row + 1, column]) / surface.spacing_y**2
-    curvature = (bend_x + bend_y)[np.isfinite(bend_x + bend_y)] / 2
+    curvature_x = (2 * z[row, column] - z[row, column - 1] - z[row, column + 1]) / surface.spacing_x**2
+    curvature_y = (2 * z[row, column] - z[row - 1, column] - z[row + 1, column]) / surface.spacing_y**2
+    curvature = (curvature_x + curvature_y)[np.isfinite(curvature_x + curvature_y)] / 2
     if curvature.size == 0:
-        raise InvalidInput(f"none of {peaks.size} peaks has four measured neighbours, so their curvature is unknown")
+        raise InvalidInput(
+            f"none of the {peaks.size} peaks has four measured neighbours, which their curvature requires"
+        )
     return FeatureParameters(
         peak_density=peaks.size / (count * surface.spacing_x * surface.spacing_y),
         mean_peak_curvature=float(curvature.mean()),
     )
 
 
-def _significant_peaks(height: Floats, falling: NDArray[np.int64], least: float) -> NDArray[np.int64]:
-    """Return the flat places of peaks that stand at least `least` above the saddle to a higher peak.
+def _significant_peaks(height: Floats, descending: NDArray[np.int64], least: float) -> NDArray[np.int64]:
+    """Flat indices of the peaks at least `least` above the saddle to a higher peak.
 
-    A hill that missing pixels keep from all higher ones is measured from its foot.
+    A hill that missing pixels separate from all higher ones is measured from its lowest pixel.
     """
     z = height.ravel()
     hill = np.full(z.size, -1, dtype=np.int32)
     foot = np.empty(z.size)
-    lasting = np.zeros(z.size, dtype=np.bool_)
-    _let_water_fall(height, falling, least, hill, foot, lasting)
-    alone = np.flatnonzero(hill == np.arange(z.size))
-    lasting[alone] = z[alone] - foot[alone] >= least
-    return np.flatnonzero(lasting)
+    significant = np.zeros(z.size, dtype=np.bool_)
+    _watershed(height, descending, least, hill, foot, significant)
+    unmerged = np.flatnonzero(hill == np.arange(z.size))
+    significant[unmerged] = z[unmerged] - foot[unmerged] >= least
+    return np.flatnonzero(significant)
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
-def _let_water_fall(
+def _watershed(
     height: Floats,
-    falling: NDArray[np.int64],
+    descending: NDArray[np.int64],
     least: float,
     hill: NDArray[np.int32],
     foot: Floats,
-    lasting: NDArray[np.bool_],
+    significant: NDArray[np.bool_],
 ) -> None:
-    """Write for each pixel one of the same hill nearer to its peak, for each peak its foot, and which peaks last.
+    """Segment the map into hills by union-find over the pixels in descending order of height.
 
-    The water falls from the highest pixel down. One that emerges alone is a peak; one that joins two hills is their
-    saddle, and the lower of both peaks then lasts or is lost.
+    Writes the parent of each pixel in the tree of its hill, the lowest pixel of each peak's hill, and which peaks are
+    significant. A pixel without a higher neighbour is a peak; one that joins two hills is their saddle, where the lower
+    hill is merged into the higher one.
     """
     rows, columns = height.shape
     z = height.ravel()
-    for order in range(falling.size):
-        place = falling[order]
-        row, column = place // columns, place % columns
+    for order in range(descending.size):
+        pixel = descending[order]
+        row, column = pixel // columns, pixel % columns
         peak: int = -1
         for r in range(max(row - 1, 0), min(row + 2, rows)):
             for c in range(max(column - 1, 0), min(column + 2, columns)):
@@ -124,19 +129,19 @@ def _let_water_fall(
                     peak = other
                 elif other != peak:
                     higher, lower = (peak, other) if z[peak] >= z[other] else (other, peak)
-                    lasting[lower] = z[lower] - z[place] >= least
+                    significant[lower] = z[lower] - z[pixel] >= least
                     hill[lower] = higher
                     peak = higher
         if peak < 0:
-            peak = place
-        hill[place] = peak
-        foot[peak] = z[place]
+            peak = pixel
+        hill[pixel] = peak
+        foot[peak] = z[pixel]
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _peak_of(hill: NDArray[np.int32], place: int) -> int:
-    """Return the peak of a pixel's hill, and shorten the way there for later."""
-    while hill[place] != place:
-        hill[place] = hill[hill[place]]
-        place = hill[place]
-    return place
+def _peak_of(hill: NDArray[np.int32], pixel: int) -> int:
+    """Peak of a pixel's hill: the root of its tree, with path halving."""
+    while hill[pixel] != pixel:
+        hill[pixel] = hill[hill[pixel]]
+        pixel = hill[pixel]
+    return pixel

@@ -1,4 +1,4 @@
-"""Sums over the pixels of a map, in one pass each; missing pixels count for nothing."""
+"""Compiled sums over the measured pixels of a height map, and its local maxima; missing pixels are NaN."""
 
 import numba
 import numpy as np
@@ -6,13 +6,13 @@ from numpy.typing import NDArray
 
 from sonolube.checks import Floats
 
-__all__: list[str] = []  # of use in this room only
-_LANES = 8  # running extremes side by side, which a vector unit takes at once
+__all__: list[str] = []  # used in this room only
+_LANES = 8  # running extremes side by side, one vector register
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
-def extent(height: Floats) -> tuple[int, float, float, float]:
-    """Return how many pixels were measured, and their sum, lowest and highest."""
+def count_sum_and_extremes(height: Floats) -> tuple[int, float, float, float]:
+    """Number of measured pixels, and sum, minimum and maximum of their heights."""
     rows, columns = height.shape
     lowest = np.full(_LANES, np.inf)
     highest = np.full(_LANES, -np.inf)
@@ -40,8 +40,8 @@ def extent(height: Floats) -> tuple[int, float, float, float]:
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
-def central_sums(height: Floats, mean: float) -> tuple[float, float, float, float]:
-    """Return the sums of the modulus, square, cube and fourth power of the deviation from `mean`."""
+def central_moment_sums(height: Floats, mean: float) -> tuple[float, float, float, float]:
+    """Sums of the absolute value, square, cube and fourth power of the deviation from `mean`."""
     first, second, third, fourth = 0.0, 0.0, 0.0, 0.0
     for row in range(height.shape[0]):
         line = height[row]
@@ -62,10 +62,10 @@ def central_sums(height: Floats, mean: float) -> tuple[float, float, float, floa
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
-def slope_sums(height: Floats, spacing_x: float, spacing_y: float) -> tuple[int, float, float]:
-    """Return the number of cells of four measured pixels, and the sums of square slope and excess of area over them.
+def gradient_and_area_sums(height: Floats, spacing_x: float, spacing_y: float) -> tuple[int, float, float]:
+    """Number of cells of four measured pixels, and sums over them of squared gradient and excess area.
 
-    Each cell is cut into triangles along either diagonal; the four corners' triangles count a quarter each.
+    Each cell is divided into triangles along either diagonal, which gives four triangles of a quarter weight each.
     """
     per_x, per_y = 1 / spacing_x**2, 1 / spacing_y**2
     cells, squares, excess = 0.0, 0.0, 0.0
@@ -93,49 +93,49 @@ def slope_sums(height: Floats, spacing_x: float, spacing_y: float) -> tuple[int,
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
-def differences_along_rows(height: Floats) -> tuple[float, float, float, float]:
-    """Return count and sum of squares of first, then of second differences of neighbours in a row."""
-    firsts, slopes, seconds, bends = 0.0, 0.0, 0.0, 0.0
+def row_difference_sums(height: Floats) -> tuple[float, float, float, float]:
+    """Number and sum of squares of first differences along rows, then of second differences."""
+    firsts, slopes, seconds, curvatures = 0.0, 0.0, 0.0, 0.0
     for row in range(height.shape[0]):
         z = height[row]
         a, b, c, d = 0.0, 0.0, 0.0, 0.0
         for column in range(height.shape[1] - 1):
-            step = z[column + 1] - z[column]
-            a += 1.0 if step == step else 0.0
-            b += step * step if step == step else 0.0
+            first = z[column + 1] - z[column]
+            a += 1.0 if first == first else 0.0
+            b += first * first if first == first else 0.0
         for column in range(height.shape[1] - 2):
-            bend = z[column] - 2 * z[column + 1] + z[column + 2]
-            c += 1.0 if bend == bend else 0.0
-            d += bend * bend if bend == bend else 0.0
-        firsts, slopes, seconds, bends = firsts + a, slopes + b, seconds + c, bends + d
-    return firsts, slopes, seconds, bends
+            second = z[column] - 2 * z[column + 1] + z[column + 2]
+            c += 1.0 if second == second else 0.0
+            d += second * second if second == second else 0.0
+        firsts, slopes, seconds, curvatures = firsts + a, slopes + b, seconds + c, curvatures + d
+    return firsts, slopes, seconds, curvatures
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
-def differences_along_columns(height: Floats) -> tuple[float, float, float, float]:
-    """Return count and sum of squares of first, then of second differences of neighbours in a column."""
-    firsts, slopes, seconds, bends = 0.0, 0.0, 0.0, 0.0
+def column_difference_sums(height: Floats) -> tuple[float, float, float, float]:
+    """Number and sum of squares of first differences along columns, then of second differences."""
+    firsts, slopes, seconds, curvatures = 0.0, 0.0, 0.0, 0.0
     for row in range(1, height.shape[0]):
         z0, z1 = height[row - 1], height[row]
         z2 = height[min(row + 1, height.shape[0] - 1)]
         inside = 1.0 if row + 1 < height.shape[0] else 0.0
         a, b, c, d = 0.0, 0.0, 0.0, 0.0
         for column in range(height.shape[1]):
-            step = z1[column] - z0[column]
-            bend = z0[column] - 2 * z1[column] + z2[column]
-            a += 1.0 if step == step else 0.0
-            b += step * step if step == step else 0.0
-            c += 1.0 if bend == bend else 0.0
-            d += bend * bend if bend == bend else 0.0
-        firsts, slopes, seconds, bends = firsts + a, slopes + b, seconds + inside * c, bends + inside * d
-    return firsts, slopes, seconds, bends
+            first = z1[column] - z0[column]
+            second = z0[column] - 2 * z1[column] + z2[column]
+            a += 1.0 if first == first else 0.0
+            b += first * first if first == first else 0.0
+            c += 1.0 if second == second else 0.0
+            d += second * second if second == second else 0.0
+        firsts, slopes, seconds, curvatures = firsts + a, slopes + b, seconds + inside * c, curvatures + inside * d
+    return firsts, slopes, seconds, curvatures
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
-def highest_of_eight(height: Floats) -> tuple[int, NDArray[np.int64]]:
-    """Return how many pixels have eight measured neighbours, and the flat places of those above all their eight."""
+def local_maxima(height: Floats) -> tuple[int, NDArray[np.int64]]:
+    """Number of measured pixels with eight measured neighbours, and flat indices of those higher than all eight."""
     rows, columns = height.shape
-    found = np.empty(max(rows * columns // 4 + 1, 1), dtype=np.int64)  # two summits never touch
+    found = np.empty(max(rows * columns // 4 + 1, 1), dtype=np.int64)  # two maxima are never neighbours
     candidates, count = 0, 0
     for row in range(1, rows - 1):
         south, here, north = height[row - 1], height[row], height[row + 1]

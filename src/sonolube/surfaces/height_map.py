@@ -1,4 +1,4 @@
-"""A measured or generated surface: heights on a rectangular grid, some of them missing."""
+"""Height maps: measured or generated heights of a surface on a rectangular grid, with missing pixels."""
 
 from dataclasses import dataclass
 
@@ -8,17 +8,20 @@ from numpy.typing import NDArray
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
 
-_BEYOND_ANY_SURFACE = 1e6  # m; powers of heights stay within what a float can hold
+Mask = NDArray[np.bool_]
+"""A truth value for each pixel."""
+
+_LARGEST_HEIGHT = 1e6  # m; fourth powers of heights stay within floating-point range
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class HeightMap:
-    """Heights of a surface over a rectangular grid, row by row.
+    """Heights of a surface on a rectangular grid.
 
     Parameters
     ----------
     height : ndarray, shape (rows, columns)
-        Height, positive out of the material; NaN where it was not measured. [m]
+        Height, positive out of the material; NaN where not measured. [m]
     spacing_x : float
         Distance of neighbouring columns. [m]
     spacing_y : float
@@ -41,35 +44,37 @@ class HeightMap:
         if z.ndim != 2 or z.dtype.kind not in "fiu":
             raise InvalidInput(f"height must be a matrix of numbers, got shape {z.shape} of {z.dtype}")
         if np.isinf(z).any():
-            raise InvalidInput("height must be finite, or NaN where it was not measured; got an infinite value")
-        if (np.abs(z) > _BEYOND_ANY_SURFACE).any():
-            raise InvalidInput(f"height lies beyond any surface, {np.nanmax(np.abs(z)):g} m: look at its unit")
+            raise InvalidInput("height must be finite, or NaN where not measured; got an infinite value")
+        if (np.abs(z) > _LARGEST_HEIGHT).any():
+            raise InvalidInput(
+                f"height must not exceed {_LARGEST_HEIGHT:g} m, got {np.nanmax(np.abs(z)):g} m; check its unit"
+            )
         if not np.isfinite(z).any():
-            raise InvalidInput(f"height holds no measured pixel among {z.size}")
+            raise InvalidInput(f"height must have a measured pixel, but all {z.size} are NaN")
         object.__setattr__(self, "height", z.astype(np.float64, copy=False))
 
     @property
-    def measured(self) -> NDArray[np.bool_]:
-        """Which pixels were measured, of the map's shape."""
+    def measured(self) -> Mask:
+        """Mask of the measured pixels, of the shape of the heights."""
         return np.isfinite(self.height)
 
     @property
     def missing_fraction(self) -> float:
-        """Share of pixels that were not measured."""
+        """Fraction of the pixels that were not measured."""
         return 1 - float(np.mean(self.measured))
 
     @property
     def x(self) -> Floats:
-        """Positions of the columns from the first, in m."""
+        """Positions of the columns, from 0 at the first, in m."""
         return self.spacing_x * np.arange(self.height.shape[1], dtype=np.float64)
 
     @property
     def y(self) -> Floats:
-        """Positions of the rows from the first, in m."""
+        """Positions of the rows, from 0 at the first, in m."""
         return self.spacing_y * np.arange(self.height.shape[0], dtype=np.float64)
 
     def with_height(self, height: Floats) -> "HeightMap":
-        """Return a map of other heights on the same grid.
+        """Height map of other heights on the same grid.
 
         Raises
         ------
@@ -77,5 +82,5 @@ class HeightMap:
             As at construction, or if the shape differs.
         """
         if np.shape(height) != self.height.shape:
-            raise InvalidInput(f"height must keep the shape {self.height.shape}, got {np.shape(height)}")
+            raise InvalidInput(f"height must have the shape {self.height.shape}, got {np.shape(height)}")
         return HeightMap(height=height, spacing_x=self.spacing_x, spacing_y=self.spacing_y)

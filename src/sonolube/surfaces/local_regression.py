@@ -1,8 +1,7 @@
-"""Local polynomials under a Gaussian weight, at every pixel at once.
+"""Local polynomial regression with a Gaussian weight at every pixel, by Fourier transform.
 
-The sums over the neighbourhood of every pixel are correlations, taken by Fourier transform; what is missing or outside
-weighs nothing, so edges and holes need no extrapolation. Where a neighbourhood does not decide a coefficient the
-polynomial loses that term and no other.
+The moments of the neighbourhood of every pixel are correlations. Missing pixels and those outside the map have weight
+zero, so that edges and holes require no extrapolation. A term that a neighbourhood does not determine is dropped there.
 """
 
 from collections.abc import Iterator
@@ -15,33 +14,46 @@ from scipy import fft
 
 from sonolube.checks import Complexes, Floats
 
-REACH = 3.2  # in widths of the weight, which has fallen to 1e-14 there
-_STRIP = 1 << 21  # pixels treated at a time, which bounds the memory
-_UNDECIDED = 1e-6  # of the sum of weights: a pivot below it is noise
-_UNWEIGHTED = 1e-9  # of the weight of a full neighbourhood
+REACH = 3.2  # in widths of the weight, which is 1e-14 there
+_STRIP = 1 << 21  # pixels per strip, which bounds the memory
+_LEAST_PIVOT = 1e-6  # over the sum of weights: a smaller pivot is rounding
+_LEAST_WEIGHT = 1e-9  # over the weight of a full neighbourhood
 
 Widths = tuple[float | None, float | None]
-"""Of the weight exp(-pi (distance/width)**2), in pixels down the rows and along the columns; None: not that way."""
+"""Widths of the weight exp(-pi (distance/width)^2) in pixels, along the columns and along the rows; None: not used."""
 
 
 def local_regression(z: Floats, weights: Floats, *, widths: Widths, order: int) -> Floats:
-    """Return at every pixel the value there of the polynomial fitted around it.
+    r"""Local polynomial regression of a map: the value at each pixel of the polynomial fitted around it.
 
     Parameters
     ----------
     z : ndarray, shape (rows, columns)
-        Heights, finite also where they weigh nothing.
+        Heights, finite also where their weight is zero.
     weights : ndarray, shape of `z`
-        What each pixel counts, from 0 to 1.
+        Weight of each pixel, from 0 to 1.
     widths : pair of float or None
-        Widths of the Gaussian weight in pixels.
+        Widths :math:`w` of the Gaussian weight in pixels.
     order : int
         0 for the weighted mean, 2 for a local paraboloid.
 
     Returns
     -------
     ndarray, shape of `z`
-        NaN where no pixel within reach counts.
+        NaN where no pixel within reach has weight.
+
+    Notes
+    -----
+    At each pixel :math:`r` the coefficients of the polynomial :math:`p_r` of the order minimise
+
+    .. math:: \sum_s g(s - r)\, \omega_s \left[z_s - p_r(s - r)\right]^2 , \qquad
+        g(d) = e^{-\pi (d/w)^2} ,
+
+    with the weights :math:`\omega`, and the result is :math:`p_r(0)`.
+
+    References
+    ----------
+    .. [1] ISO 16610-31:2016 and ISO 16610-71:2014, Gaussian regression filters.
     """
     if order == 0:
         return _patch_regression(z, weights, widths, order)
@@ -52,16 +64,17 @@ def local_regression(z: Floats, weights: Floats, *, widths: Widths, order: int) 
 
 
 def _strips(shape: tuple[int, ...], width: float | None) -> Iterator[tuple[slice, slice, slice]]:
-    """Return strips of rows: which to keep, which to treat with their surroundings, where the kept are in these."""
-    halo = 0 if width is None else int(np.ceil(REACH * width))
-    rows = max(_STRIP // shape[1], halo, 1)
+    """Slices of the rows to keep, of the strip to filter with its margins, and of the kept rows within the strip."""
+    margin = 0 if width is None else int(np.ceil(REACH * width))
+    rows = max(_STRIP // shape[1], margin, 1)
     for first in range(0, shape[0], rows):
-        start, stop = max(first - halo, 0), min(first + rows + halo, shape[0])
+        start, stop = max(first - margin, 0), min(first + rows + margin, shape[0])
         last = min(first + rows, shape[0])
         yield slice(first, last), slice(start, stop), slice(first - start, last - start)
 
 
 def _patch_regression(z: Floats, weights: Floats, widths: Widths, order: int) -> Floats:
+    """Local polynomial regression of a map that fits into memory as a whole."""
     sums = _Correlation.of(z.shape, widths, order)
     uniform = bool(np.all(weights == 1))
     spectrum_z = sums.forward(z if uniform else weights * z)
@@ -75,11 +88,11 @@ def _patch_regression(z: Floats, weights: Floats, widths: Widths, order: int) ->
     if order == 0:
         weight = moment(0, 0)
         fitted = sums.backward(spectrum_z, 0, 0)
-        np.divide(fitted, weight, out=fitted, where=weight > _UNWEIGHTED * sums.full_weight)
-        fitted[weight <= _UNWEIGHTED * sums.full_weight] = np.nan
+        np.divide(fitted, weight, out=fitted, where=weight > _LEAST_WEIGHT * sums.full_weight)
+        fitted[weight <= _LEAST_WEIGHT * sums.full_weight] = np.nan
         return fitted
     terms = [(a, b) for a in range(order + 1) for b in range(order + 1 - a) if widths[0] is not None or a == 0]
-    terms.reverse()  # the constant last, so that elimination alone yields it
+    terms.reverse()  # the constant last, so that elimination yields it without back substitution
     powers = sorted({(a + c, b + d) for a, b in terms for c, d in terms})
     moments = np.empty((len(powers), *z.shape))
     for plane, (a, b) in zip(moments, powers, strict=True):
@@ -90,21 +103,26 @@ def _patch_regression(z: Floats, weights: Floats, widths: Widths, order: int) ->
     table = np.array([[powers.index((a + c, b + d)) for c, d in terms] for a, b in terms])
     fitted = np.empty(z.size)
     _constant_terms(
-        moments.reshape(len(powers), -1), values.reshape(len(terms), -1), table, _UNWEIGHTED * sums.full_weight, fitted
+        moments.reshape(len(powers), -1),
+        values.reshape(len(terms), -1),
+        table,
+        _LEAST_WEIGHT * sums.full_weight,
+        fitted,
     )
     return fitted.reshape(z.shape)
 
 
 class _Correlation(NamedTuple):
-    """Sums over neighbourhoods: weight times powers of the distance, in a unit that keeps them near one."""
+    """Correlations of a map with the weight times powers of the distance, in units that keep them near one."""
 
     shape: tuple[int, int]
-    lines: tuple[Floats | None, Floats]  # by power: the sums of a line of ones, down and along
+    lines: tuple[Floats | None, Floats]  # by power: sums over a line of ones, along columns and rows
     spectra: tuple[Complexes | None, Complexes]  # by power
     full_weight: float
 
     @classmethod
     def of(cls, shape: tuple[int, ...], widths: Widths, order: int) -> "_Correlation":
+        """Correlation for maps of a shape, with powers of the distance up to twice the order."""
         rows, columns = shape
         width_y, width_x = widths
         assert width_x is not None
@@ -117,11 +135,13 @@ class _Correlation(NamedTuple):
         return cls((rows, columns), (line_y, line_x), (spectrum_y, spectrum_x), full)
 
     def forward(self, field: Floats) -> Complexes:
+        """Fourier transform of a map, padded with zeros."""
         down, along = self.spectra
         spectrum = fft.rfft(field, along.shape[1], axis=1)
         return np.asarray(spectrum if down is None else fft.fft(spectrum, down.shape[1], axis=0, overwrite_x=True))
 
     def backward(self, spectrum: Complexes, power_y: int, power_x: int) -> Floats:
+        """Correlation of a transformed map with the weight times powers of the distance."""
         down, along = self.spectra
         product = spectrum * along[power_x, : along.shape[1] // 2 + 1]
         if down is not None:
@@ -130,13 +150,14 @@ class _Correlation(NamedTuple):
         return np.asarray(fft.irfft(product, along.shape[1], axis=1, overwrite_x=True)[:, : self.shape[1]])
 
     def of_ones(self, power_y: int, power_x: int) -> Floats:
+        """Correlation of a map of ones with the weight times powers of the distance."""
         down, along = self.lines
         column = np.ones(self.shape[0]) if down is None else down[power_y]
         return np.outer(column, along[power_x])
 
 
 def _line(count: int, width: float, order: int) -> tuple[Complexes, Floats]:
-    """Return the spectra of weight times power of distance along one axis, and their sums over a line of ones."""
+    """Spectra of weight times powers of the distance along one axis, and their sums over a line of ones."""
     reach = min(int(np.ceil(REACH * width)), count - 1)
     size = fft.next_fast_len(count + reach, real=True)
     k = np.arange(-reach, reach + 1)
@@ -151,7 +172,7 @@ def _line(count: int, width: float, order: int) -> tuple[Complexes, Floats]:
 def _constant_terms(
     moments: Floats, values: Floats, table: NDArray[np.int64], least_weight: float, fitted: Floats
 ) -> None:
-    """Solve the normal equations of every pixel for their last unknown, by elimination; weak terms drop out."""
+    """Solve the normal equations of every pixel for the last unknown by elimination, dropping terms of small pivots."""
     terms = table.shape[0]
     a = np.empty((terms, terms))
     b = np.empty(terms)
@@ -165,7 +186,7 @@ def _constant_terms(
             for j in range(i + 1):
                 a[i, j] = moments[table[i, j], pixel]
         for i in range(terms - 1):
-            if a[i, i] <= _UNDECIDED * weight:
+            if a[i, i] <= _LEAST_PIVOT * weight:
                 continue
             for j in range(i + 1, terms):
                 factor = a[j, i] / a[i, i]

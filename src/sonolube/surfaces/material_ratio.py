@@ -1,4 +1,4 @@
-"""The material ratio curve of a height map, and what it says of bearing, running in and holding fluid."""
+"""Material ratio (Abbott-Firestone) curve of a height map, and its material ratio and volume parameters."""
 
 from dataclasses import dataclass
 
@@ -9,96 +9,96 @@ from sonolube.checks import Floats, require_finite, require_within
 from sonolube.errors import InvalidInput
 from sonolube.surfaces.height_map import HeightMap
 
-_SECANT = 0.4  # of the material, over which ISO 25178-2 seeks the flattest part of the curve
-_PEAKS_END, _CORE_END = 0.1, 0.8  # material ratios that bound the core in ISO 25178-3
+_SECANT = 0.4  # material ratio spanned by the secant of least slope (ISO 25178-2)
+_PEAKS_END, _CORE_END = 0.1, 0.8  # material ratios that bound the core volume (ISO 25178-3)
 _LEAST_PIXELS = 10
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class MaterialRatioCurve:
-    """The Abbott curve: which share of the surface lies at or above a height.
+    """Material ratio (Abbott-Firestone) curve: fraction of the surface at or above each height.
 
     Parameters
     ----------
     height : ndarray, shape (n,)
-        Heights of all measured pixels over their mean, from the highest to the deepest. [m]
+        Heights of all measured pixels above their mean, in descending order. [m]
 
     Notes
     -----
-    The i-th of n heights, counted from 1, stands at the material ratio (i - 1/2)/n; between them the curve is straight.
+    The i-th of n heights, counted from 1, has the material ratio (i - 1/2)/n; between heights the curve is linear.
     """
 
     height: Floats
 
     @property
     def material_ratio(self) -> Floats:
-        """Share of the surface at or above each height, of its shape. []"""
+        """Fraction of the surface at or above each height, of its shape. []"""
         return (np.arange(self.height.size) + 0.5) / self.height.size
 
-    def ratio_above(self, *, section_height: ArrayLike) -> Floats:
-        """Return the areal material ratio Smr(c). []
+    def ratio_above(self, *, intersection_height: ArrayLike) -> Floats:
+        """Areal material ratio Smr(c) of ISO 25178-2. []
 
         Parameters
         ----------
-        section_height : array_like, any shape
-            Height of the section over the mean, c. [m]
+        intersection_height : array_like, any shape
+            Height c of the intersecting plane above the mean. [m]
 
         Returns
         -------
-        ndarray, shape of `section_height`
-            0 above the highest and 1 below the deepest pixel.
+        ndarray, shape of `intersection_height`
+            0 above the highest and 1 below the lowest pixel.
         """
-        c = require_finite(section_height=section_height)
-        rising, n = self.height[::-1], self.height.size
-        upper = np.clip(np.searchsorted(rising, c), 1, n - 1)
-        low, high = rising[upper - 1], rising[upper]
+        c = require_finite(intersection_height=intersection_height)
+        ascending, n = self.height[::-1], self.height.size
+        upper = np.clip(np.searchsorted(ascending, c), 1, n - 1)
+        low, high = ascending[upper - 1], ascending[upper]
         between = np.divide(c - low, high - low, out=np.zeros_like(c), where=high > low)
         ratio = 1 - (upper - 0.5 + between) / n
-        return np.where(c > rising[-1], 0.0, np.where(c < rising[0], 1.0, ratio))
+        return np.where(c > ascending[-1], 0.0, np.where(c < ascending[0], 1.0, ratio))
 
     def height_at(self, *, material_ratio: ArrayLike) -> Floats:
-        """Return the inverse material ratio Smc(p), as height over the mean. [m]
+        """Inverse areal material ratio Smc(p) of ISO 25178-2, as height above the mean. [m]
 
         Parameters
         ----------
         material_ratio : array_like, any shape
-            Share of the surface at or above that height, p, from 0 to 1. []
+            Fraction p of the surface at or above that height, from 0 to 1. []
 
         Returns
         -------
         ndarray, shape of `material_ratio`
         """
         p = require_within(0.0, 1.0, material_ratio=material_ratio)
-        place = np.clip(p * self.height.size - 0.5, 0.0, self.height.size - 1.0)
-        before = np.minimum(place.astype(np.int64), self.height.size - 2)
+        position = np.clip(p * self.height.size - 0.5, 0.0, self.height.size - 1.0)
+        before = np.minimum(position.astype(np.int64), self.height.size - 2)
         high, low = self.height[before], self.height[before + 1]
-        return np.asarray(high + (place - before) * (low - high))
+        return np.asarray(high + (position - before) * (low - high))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class FunctionalParameters:
-    """The material ratio curve in numbers.
+    """Material ratio and volume parameters of ISO 25178-2.
 
     Parameters
     ----------
     core_height : float
-        Height of the core, Sk. [m]
+        Core height Sk. [m]
     reduced_peak_height : float
-        Mean height of the peaks above the core, Spk. [m]
+        Reduced peak height Spk: height of the triangle of the area of the peaks above the core. [m]
     reduced_valley_depth : float
-        Mean depth of the valleys below the core, Svk. [m]
+        Reduced valley (dale) depth Svk: depth of the triangle of the area of the valleys below the core. [m]
     peak_material_ratio : float
-        Share of the surface that is peaks, Smr1. []
+        Material ratio Smr1 at the upper end of the core. []
     valley_material_ratio : float
-        Share of the surface that is not valleys, Smr2. []
+        Material ratio Smr2 at the lower end of the core. []
     peak_material_volume : float
-        Material above the material ratio of 10 %, per area, Vmp. [m]
+        Peak material volume Vmp: material above the height of 10 % material ratio, per area. [m]
     core_material_volume : float
-        Material between 10 and 80 %, per area, Vmc. [m]
+        Core material volume Vmc: material between the heights of 10 and 80 %, per area. [m]
     core_void_volume : float
-        Void between 10 and 80 %, per area, Vvc. [m]
+        Core void volume Vvc: void between the heights of 10 and 80 %, per area. [m]
     valley_void_volume : float
-        Void below 80 %, per area, Vvv. [m]
+        Valley (dale) void volume Vvv: void below the height of 80 %, per area. [m]
     """
 
     core_height: float
@@ -113,7 +113,7 @@ class FunctionalParameters:
 
 
 def material_ratio_curve(surface: HeightMap) -> MaterialRatioCurve:
-    """Return the material ratio curve of the measured pixels.
+    """Material ratio (Abbott-Firestone) curve of the measured pixels of a height map.
 
     Parameters
     ----------
@@ -134,14 +134,14 @@ def material_ratio_curve(surface: HeightMap) -> MaterialRatioCurve:
     """
     z = surface.height[surface.measured]
     if z.size < 2:
-        raise InvalidInput(f"a material ratio curve needs two measured pixels, got {z.size}")
+        raise InvalidInput(f"a material ratio curve requires two measured pixels, got {z.size}")
     z -= z.mean()
     z.sort()
     return MaterialRatioCurve(height=z[::-1])
 
 
 def functional_parameters(surface: HeightMap | MaterialRatioCurve) -> FunctionalParameters:
-    """Return Sk, Spk, Svk, Smr1, Smr2, Vmp, Vmc, Vvc and Vvv.
+    r"""Parameters Sk, Spk, Svk, Smr1, Smr2, Vmp, Vmc, Vvc and Vvv of ISO 25178-2 from the material ratio curve.
 
     Parameters
     ----------
@@ -158,9 +158,15 @@ def functional_parameters(surface: HeightMap | MaterialRatioCurve) -> Functional
 
     Notes
     -----
-    The equivalent straight line is fitted by least squares where the secant over 40 % of the material is flattest. It
-    is meant for curves of one inflection, as of honed and ground surfaces; peaks and valleys are replaced by triangles
-    of equal area.
+    The equivalent straight line is the least-squares fit where the secant over 40 % of the material ratio has the least
+    slope. Its heights at the material ratios 0 and 1 bound the core; peaks above and valleys below are replaced by
+    triangles of equal area. The method is defined for curves with one point of inflection, as of honed and ground
+    surfaces. Volumes per area follow from the curve :math:`c(p)`:
+
+    .. math:: V_m(p) = \int_0^p [c(s) - c(p)]\, \mathrm{d}s, \qquad V_v(p) = \int_p^1 [c(p) - c(s)]\, \mathrm{d}s ,
+
+    :math:`V_{mp} = V_m(0.1)`, :math:`V_{mc} = V_m(0.8) - V_{mp}`, :math:`V_{vv} = V_v(0.8)`,
+    :math:`V_{vc} = V_v(0.1) - V_{vv}`.
 
     References
     ----------
@@ -169,14 +175,14 @@ def functional_parameters(surface: HeightMap | MaterialRatioCurve) -> Functional
     curve = surface if isinstance(surface, MaterialRatioCurve) else material_ratio_curve(surface)
     z = curve.height
     if z.size < _LEAST_PIXELS or z[0] == z[-1]:
-        raise InvalidInput(f"functional parameters need ten measured pixels that differ in height, got {z.size}")
+        raise InvalidInput(f"functional parameters require ten measured pixels of different heights, got {z.size}")
     top, slope = _equivalent_line(z)
     bottom = top + slope
-    peaks_end, valleys_start = (float(ratio) for ratio in curve.ratio_above(section_height=[top, bottom]))
+    peaks_end, valleys_start = (float(ratio) for ratio in curve.ratio_above(intersection_height=[top, bottom]))
     first, second = (float(height) for height in curve.height_at(material_ratio=[_PEAKS_END, _CORE_END]))
     level = np.array([top, bottom, first, second])
     peak_area, above_bottom, peak_material, above_second = (float(volume) for volume in _material_above(z, level))
-    # heights are counted from their mean, so that the void below a level is the material above it plus the level
+    # heights are relative to their mean, so that the void below a level is the material above it plus the level
     valley_area, first_void, valley_void = above_bottom + bottom, peak_material + first, above_second + second
     return FunctionalParameters(
         core_height=-slope,
@@ -192,7 +198,7 @@ def functional_parameters(surface: HeightMap | MaterialRatioCurve) -> Functional
 
 
 def _equivalent_line(height: Floats) -> tuple[float, float]:
-    """Return value at ratio 0 and slope of the line through the flattest 40 % of the curve."""
+    """Height at material ratio 0 and slope of the line fitted to the flattest 40 % of the curve."""
     n = height.size
     span = round(_SECANT * n)
     start = int(np.argmin(height[: n - span] - height[span:]))
@@ -204,7 +210,7 @@ def _equivalent_line(height: Floats) -> tuple[float, float]:
 
 
 def _material_above(height: Floats, level: Floats) -> Floats:
-    """Return the volume of material above each level, per area."""
+    """Material volume above each level, per area."""
     n = height.size
     counts = n - np.searchsorted(height[::-1], level, side="right")
     return np.array([np.sum(height[:count]) - one * count for count, one in zip(counts, level, strict=True)]) / n

@@ -1,4 +1,4 @@
-"""Roughness as the statistical contact models see it: spherical summits of one radius, scattered in height."""
+"""Roughness of the statistical contact models: spherical summits of one radius with distributed heights."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ from sonolube.checks import require_positive
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Roughness:
-    """The combined roughness of two surfaces, as of one rough surface against a smooth one.
+    """Equivalent roughness of two surfaces in contact, as one rough surface against a smooth one.
 
     Parameters
     ----------
@@ -39,5 +39,5 @@ class Roughness:
 
     @property
     def roughness_parameter(self) -> float:
-        """Roughness parameter beta, density times deviation times radius; 0.03 to 0.05 for most surfaces."""
+        """Roughness parameter beta: density times standard deviation times radius; 0.03 to 0.05 for most surfaces."""
         return self.summit_density * self.rms_height * self.summit_radius

@@ -1,4 +1,4 @@
-"""Power spectra of a height map, and the moments they give."""
+"""Power spectral densities of a height map, areal, radial and of profiles, and spectral moments by integration."""
 
 import math
 from dataclasses import dataclass
@@ -13,27 +13,27 @@ from sonolube.errors import InvalidInput
 from sonolube.surfaces.height_map import HeightMap
 
 Window = Literal["hann", "none"]
-Along = Literal["rows", "columns"]
+ProfileDirection = Literal["rows", "columns"]
 
-_BLOCK = 64  # profiles transformed at a time, which then stay in the cache
+_BLOCK = 64  # profiles transformed at a time, which fit into the cache
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class ArealSpectrum:
-    """Two-sided power spectral density of heights over the plane of wavenumbers, of which a half is kept.
+    """Two-sided areal power spectral density of heights, stored for non-negative wavenumbers along the rows.
 
     Parameters
     ----------
     wavenumber_x : ndarray, shape (p,)
-        Waves per length along the rows, from zero up. [1/m]
+        Wavenumber along the rows, in waves per length, from zero. [1/m]
     wavenumber_y : ndarray, shape (rows,)
-        Waves per length along the columns, from negative to positive. [1/m]
+        Wavenumber along the columns, in waves per length, from negative to positive. [1/m]
     areal_spectral_density : ndarray, shape (rows, p)
-        Power spectral density; the other half follows from its symmetry about the origin. [m4]
+        Areal power spectral density; the other half follows from its symmetry about the origin. [m4]
     height_variance : float
-        Its integral over the whole plane. [m2]
+        Integral of the density over the plane of wavenumbers. [m2]
     columns : int
-        Columns of the map: where even, the last wavenumber along the rows is its own mirror image.
+        Number of columns of the map; where it is even, the last wavenumber along the rows occurs only once.
     """
 
     wavenumber_x: Floats
@@ -45,14 +45,14 @@ class ArealSpectrum:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class RadialSpectrum:
-    """Areal power spectral density, averaged over rings of one wavenumber.
+    """Areal power spectral density averaged over direction.
 
     Parameters
     ----------
     wavenumber : ndarray, shape (n,)
-        Mean wavenumber of each ring that holds any. [1/m]
+        Mean wavenumber of each ring, in waves per length. [1/m]
     areal_spectral_density : ndarray, shape (n,)
-        Mean density over the ring. [m4]
+        Mean areal power spectral density over the ring. [m4]
     """
 
     wavenumber: Floats
@@ -61,16 +61,16 @@ class RadialSpectrum:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class ProfileSpectrum:
-    """Two-sided power spectral density of profiles, of which the positive half is kept.
+    """Two-sided power spectral density of profiles, stored for non-negative wavenumbers.
 
     Parameters
     ----------
     wavenumber : ndarray, shape (n,)
-        Waves per length, from zero up. [1/m]
+        Wavenumber in waves per length, from zero. [1/m]
     profile_spectral_density : ndarray, shape (n,)
-        Power spectral density, the mean over all profiles. [m3]
+        Power spectral density, averaged over the profiles. [m3]
     height_variance : float
-        Its integral over negative and positive wavenumbers. [m2]
+        Integral of the density over negative and positive wavenumbers. [m2]
     """
 
     wavenumber: Floats
@@ -80,7 +80,7 @@ class ProfileSpectrum:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SpectralMoments:
-    """Moments of the spectrum of a profile along any direction of an isotropic surface.
+    """Spectral moments m0, m2 and m4 of profiles of an isotropic surface.
 
     Parameters
     ----------
@@ -110,18 +110,18 @@ class SpectralMoments:
 
     @property
     def bandwidth(self) -> float:
-        """Nayak's alpha, m0 m4/m2^2: 1.5 at least for an isotropic Gaussian surface, and then of one wavelength. []"""
+        """Nayak's bandwidth parameter m0 m4/m2^2: 1.5 or more for an isotropic Gaussian surface. []"""
         return self.height_variance * self.curvature_variance / self.slope_variance**2
 
 
 def areal_spectrum(surface: HeightMap, *, window: Window = "hann") -> ArealSpectrum:
-    """Return the power spectral density over the plane of wavenumbers.
+    r"""Areal power spectral density of a height map by windowed Fourier transform.
 
     Parameters
     ----------
     surface : HeightMap
     window : {"hann", "none"}
-        Weight that fades towards the edges, or equal weight, which suits periodic maps only.
+        Hann window, or none, which is right for periodic maps only.
 
     Returns
     -------
@@ -134,10 +134,15 @@ def areal_spectrum(surface: HeightMap, *, window: Window = "hann") -> ArealSpect
 
     Notes
     -----
-    Missing pixels have weight zero. The weighted mean is removed, and the sum of squared weights divided out, so that
-    the integral over the plane is the weighted variance (Parseval). Gaps smear the spectrum by that of their pattern:
-    with more than a few per cent missing read the steep end with care. Densities are over waves per length; over
-    angular wavenumbers q = 2 pi k the number is the same if the integral is taken with dq/(2 pi).
+    With the weight :math:`w` (the window, zero where missing) and heights :math:`z` less their weighted mean
+
+    .. math:: C(k_x, k_y) = \frac{\Delta x \Delta y}{\sum w^2}
+        \left| \sum w z\, e^{-2\pi i (k_x x + k_y y)} \right|^2, \qquad
+        \iint C \,\mathrm{d}k_x \mathrm{d}k_y = \frac{\sum w^2 z^2}{\sum w^2} .
+
+    Missing pixels convolve the spectrum with that of their pattern: with more than a few per cent of them missing its
+    steep end is unreliable. Densities are over waves per length; over angular wavenumbers q = 2 pi k the values are the
+    same if integrals are taken with dq/(2 pi).
 
     References
     ----------
@@ -145,7 +150,9 @@ def areal_spectrum(surface: HeightMap, *, window: Window = "hann") -> ArealSpect
     """
     rows, columns = surface.height.shape
     weighted = np.empty((rows, columns))
-    squares = _weigh(np.ascontiguousarray(surface.height), _window(rows, window), _window(columns, window), weighted)
+    squares = _apply_window(
+        np.ascontiguousarray(surface.height), _window(rows, window), _window(columns, window), weighted
+    )
     dx, dy = surface.spacing_x, surface.spacing_y
     transform = fft.rfft2(weighted, workers=-1, overwrite_x=True)
     density = transform.real**2
@@ -155,13 +162,13 @@ def areal_spectrum(surface: HeightMap, *, window: Window = "hann") -> ArealSpect
         wavenumber_x=fft.rfftfreq(columns, dx),
         wavenumber_y=fft.fftshift(fft.fftfreq(rows, dy)),
         areal_spectral_density=fft.fftshift(density, axes=0),
-        height_variance=float(_both_halves(columns) @ density.sum(axis=0)) / (rows * columns * dx * dy),
+        height_variance=float(_multiplicity(columns) @ density.sum(axis=0)) / (rows * columns * dx * dy),
         columns=columns,
     )
 
 
 def radial_spectrum(spectrum: ArealSpectrum) -> RadialSpectrum:
-    """Return the spectrum averaged over direction, in rings as wide as the coarser step of wavenumber.
+    """Areal power spectral density averaged over direction, in rings of the larger of both wavenumber steps.
 
     Parameters
     ----------
@@ -170,32 +177,36 @@ def radial_spectrum(spectrum: ArealSpectrum) -> RadialSpectrum:
     Returns
     -------
     RadialSpectrum
-        Up to the highest wavenumber that both directions hold.
+        Up to the largest wavenumber of both directions.
 
     Raises
     ------
     InvalidInput
-        If the map is a line or a point, so that there is no ring.
+        If the map has fewer than two rows or columns.
     """
     kx, ky = spectrum.wavenumber_x, spectrum.wavenumber_y
     if kx.size < 2 or ky.size < 2:
-        raise InvalidInput(f"a radial spectrum needs at least 2 rows and 2 columns, got {ky.size} x {spectrum.columns}")
+        raise InvalidInput(
+            f"a radial spectrum requires at least 2 rows and 2 columns, got {ky.size} x {spectrum.columns}"
+        )
     ring_width = max(kx[1], ky[1] - ky[0])
     rings = int(min(kx[-1], -ky[0]) / ring_width + 0.5)
     sums = np.zeros((3, rings + 1))
-    _ring_sums(kx, ky, _both_halves(spectrum.columns), spectrum.areal_spectral_density, 1 / ring_width, sums)
+    _ring_sums(kx, ky, _multiplicity(spectrum.columns), spectrum.areal_spectral_density, 1 / ring_width, sums)
     count, radius, density = sums[:, sums[0] > 0]
     return RadialSpectrum(wavenumber=radius / count, areal_spectral_density=density / count)
 
 
-def profile_spectrum(surface: HeightMap, *, along: Along = "rows", window: Window = "hann") -> ProfileSpectrum:
-    """Return the mean power spectral density of the profiles along rows or columns.
+def profile_spectrum(
+    surface: HeightMap, *, along: ProfileDirection = "rows", window: Window = "hann"
+) -> ProfileSpectrum:
+    """Mean power spectral density of the profiles along rows or columns of a height map.
 
     Parameters
     ----------
     surface : HeightMap
     along : {"rows", "columns"}
-        Which way the profiles run.
+        Direction of the profiles.
     window : {"hann", "none"}
         As in `areal_spectrum`.
 
@@ -210,32 +221,32 @@ def profile_spectrum(surface: HeightMap, *, along: Along = "rows", window: Windo
 
     Notes
     -----
-    Each profile loses its own mean; missing pixels have weight zero, and profiles with fewer than two measured pixels
-    are left out.
+    The weighted mean of each profile is removed; missing pixels have weight zero, and profiles with fewer than two
+    measured pixels are left out.
     """
     height, spacing = profiles(surface, along=along)
     height = height[np.isfinite(height).sum(axis=1) > 1]
     if height.size == 0:
-        raise InvalidInput(f"a spectrum along {along} needs two measured pixels in one of them")
+        raise InvalidInput(f"a spectrum along {along} requires two measured pixels in one of them")
     points = height.shape[1]
     weight = _window(points, window)
     weighted = np.empty((_BLOCK, points))
     density = np.zeros(points // 2 + 1)
     for start in range(0, len(height), _BLOCK):
         block = height[start : start + _BLOCK]
-        squares = _weigh_each(block, weight, weighted[: len(block)])
+        squares = _apply_window_to_rows(block, weight, weighted[: len(block)])
         transform = fft.rfft(weighted[: len(block)], axis=1)
         density += (1 / squares) @ (transform.real**2 + transform.imag**2)
     density *= spacing / len(height)
     return ProfileSpectrum(
         wavenumber=fft.rfftfreq(points, spacing),
         profile_spectral_density=density,
-        height_variance=float(_both_halves(points) @ density) / (points * spacing),
+        height_variance=float(_multiplicity(points) @ density) / (points * spacing),
     )
 
 
 def moments_of_spectrum(spectrum: ArealSpectrum) -> SpectralMoments:
-    """Return m0, m2 and m4 as integrals of the spectrum, the mean of both directions.
+    r"""Spectral moments m0, m2 and m4 as integrals of the areal power spectrum, averaged over both directions.
 
     Parameters
     ----------
@@ -248,32 +259,39 @@ def moments_of_spectrum(spectrum: ArealSpectrum) -> SpectralMoments:
     Raises
     ------
     InvalidInput
-        If a moment is zero, as of a flat map or a line.
+        If a moment is zero, as for a flat map or a line.
+
+    See Also
+    --------
+    sonolube.surfaces.asperities.spectral_moments : By finite differences, which damp the shortest wavelengths.
 
     Notes
     -----
-    m4 gives the finest waves of the map the greatest weight, noise included; `spectral_moments` takes finite
-    differences instead, which damp them.
+    .. math:: m_n = \frac12 \iint \left[(2\pi k_x)^n + (2\pi k_y)^n\right] C \,\mathrm{d}k_x \mathrm{d}k_y,
+        \qquad n = 2, 4 .
+
+    In m4 the shortest wavelengths of the map, noise included, have the largest weight.
     """
-    times = _both_halves(spectrum.columns)
-    along_x, along_y = times * spectrum.areal_spectral_density.sum(axis=0), spectrum.areal_spectral_density @ times
-    share = spectrum.height_variance / (along_x.sum() or 1.0)
+    multiplicity = _multiplicity(spectrum.columns)
+    density = spectrum.areal_spectral_density
+    along_x, along_y = multiplicity * density.sum(axis=0), density @ multiplicity
+    step = spectrum.height_variance / (along_x.sum() or 1.0)
     qx, qy = 2 * math.pi * spectrum.wavenumber_x, 2 * math.pi * spectrum.wavenumber_y
     return SpectralMoments(
         height_variance=spectrum.height_variance,
-        slope_variance=float(share * (along_x @ qx**2 + along_y @ qy**2) / 2),
-        curvature_variance=float(share * (along_x @ qx**4 + along_y @ qy**4) / 2),
+        slope_variance=float(step * (along_x @ qx**2 + along_y @ qy**2) / 2),
+        curvature_variance=float(step * (along_x @ qx**4 + along_y @ qy**4) / 2),
     )
 
 
-def profiles(surface: HeightMap, *, along: Along) -> tuple[Floats, float]:
-    """Return the heights of a map with a profile in each row, and the distance of a profile's points in m.
+def profiles(surface: HeightMap, *, along: ProfileDirection) -> tuple[Floats, float]:
+    """Profiles of a height map, one per row of the result, and the distance of neighbouring points in m.
 
     Parameters
     ----------
     surface : HeightMap
     along : {"rows", "columns"}
-        Which way the profiles run.
+        Direction of the profiles.
 
     Returns
     -------
@@ -282,7 +300,7 @@ def profiles(surface: HeightMap, *, along: Along) -> tuple[Floats, float]:
     Raises
     ------
     InvalidInput
-        If `along` is neither rows nor columns.
+        If `along` is neither "rows" nor "columns".
     """
     if along == "rows":
         return np.ascontiguousarray(surface.height), surface.spacing_x
@@ -292,6 +310,7 @@ def profiles(surface: HeightMap, *, along: Along) -> tuple[Floats, float]:
 
 
 def _window(points: int, window: Window) -> Floats:
+    """Weights of a window at a number of points."""
     if window == "none":
         return np.ones(points)
     if window == "hann":
@@ -299,18 +318,18 @@ def _window(points: int, window: Window) -> Floats:
     raise InvalidInput(f"window must be hann or none, got {window!r}")
 
 
-def _both_halves(points: int) -> Floats:
-    """Return how often each wavenumber of a half spectrum stands in the whole one."""
-    times = np.full(points // 2 + 1, 2.0)
-    times[0] = 1.0
+def _multiplicity(points: int) -> Floats:
+    """Number of occurrences of each wavenumber of a half spectrum in the two-sided one."""
+    multiplicity = np.full(points // 2 + 1, 2.0)
+    multiplicity[0] = 1.0
     if points % 2 == 0:
-        times[-1] = 1.0
-    return times
+        multiplicity[-1] = 1.0
+    return multiplicity
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
-def _weigh(height: Floats, weight_y: Floats, weight_x: Floats, weighted: Floats) -> float:
-    """Write the weighted deviations from the weighted mean, zero where missing; return the sum of squared weights."""
+def _apply_window(height: Floats, weight_y: Floats, weight_x: Floats, weighted: Floats) -> float:
+    """Write weighted deviations from the weighted mean, zero where missing; return the sum of squared weights."""
     rows, columns = height.shape
     total, squares, sums = 0.0, 0.0, 0.0
     for row in range(rows):
@@ -335,8 +354,8 @@ def _weigh(height: Floats, weight_y: Floats, weight_x: Floats, weighted: Floats)
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
-def _weigh_each(height: Floats, weight: Floats, weighted: Floats) -> Floats:
-    """Do as `_weigh` for each row by itself; return each row's sum of squared weights."""
+def _apply_window_to_rows(height: Floats, weight: Floats, weighted: Floats) -> Floats:
+    """As `_apply_window`, for each row separately; return the sum of squared weights of each row."""
     squares = np.zeros(height.shape[0])
     for row in range(height.shape[0]):
         line = height[row]
@@ -356,13 +375,13 @@ def _weigh_each(height: Floats, weight: Floats, weighted: Floats) -> Floats:
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
-def _ring_sums(kx: Floats, ky: Floats, times: Floats, density: Floats, per_width: float, sums: Floats) -> None:
-    """Add up number, wavenumber and density of what falls into each ring, the origin left out."""
+def _ring_sums(kx: Floats, ky: Floats, multiplicity: Floats, density: Floats, per_width: float, sums: Floats) -> None:
+    """Add number, wavenumber and density of the points in each ring to `sums`, the origin left out."""
     for row in range(ky.size):
         for column in range(kx.size):
             k = math.sqrt(kx[column] ** 2 + ky[row] ** 2)
             ring = int(k * per_width + 0.5)
             if ring < sums.shape[1] and k > 0:
-                sums[0, ring] += times[column]
-                sums[1, ring] += times[column] * k
-                sums[2, ring] += times[column] * density[row, column]
+                sums[0, ring] += multiplicity[column]
+                sums[1, ring] += multiplicity[column] * k
+                sums[2, ring] += multiplicity[column] * density[row, column]

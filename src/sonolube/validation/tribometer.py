@@ -8,7 +8,7 @@ import math
 
 from sonolube.actuator.stack import PiezoStack
 from sonolube.contact import decay_length
-from sonolube.identification import Fact, Identification, PinOnDiscTest, identify, observer
+from sonolube.identification import Fact, Identification, PinOnDiscTest, identify, pin_on_disc_model
 from sonolube.published import PrintedNumber
 from sonolube.published.values import Computed, over_rounding
 from sonolube.validation.contacts import wear_contact
@@ -50,7 +50,7 @@ def tribometer_identification(*, seed: int = 0) -> Identification:
     -------
     Identification
     """
-    return identify(observer(tribometer_test()), facts=tribometer_facts(), bounds=BOUNDS, seed=seed)
+    return identify(pin_on_disc_model(tribometer_test()), facts=tribometer_facts(), bounds=BOUNDS, seed=seed)
 
 
 def tribometer_test() -> PinOnDiscTest:
@@ -110,7 +110,7 @@ def _measured() -> tuple[Fact, ...]:
             source="D 2.3.1, 4.1.1, A.3.1.3",
         ),
         _printed(
-            "tip_amplitude_per_volt",
+            "amplitude_per_volt",
             per_volt,
             rank=1,
             unit="m/V",
@@ -118,7 +118,7 @@ def _measured() -> tuple[Fact, ...]:
             source="D Table 4.1; 2.5 um at 28.0 V of D 2.3.1 and A.3.1 is the same",
         ),
         Fact(
-            name="resonance_share",
+            name="resonance_amplitude_ratio",
             value=1.0,
             tolerance=1 - _HALF_POWER,
             rank=1,
@@ -149,7 +149,7 @@ def _simulated() -> tuple[Fact, ...]:
     settling = said("3.3.4-settling-time").value
     return (
         _printed(
-            "resonance_quality",
+            "resonance_quality_factor",
             quality,
             rank=2,
             meaning="k_p/(2 pi f c_p): the printed damping is all there is",
@@ -166,7 +166,7 @@ def _simulated() -> tuple[Fact, ...]:
             source="D Table 4.1, from the capacitance alone",
         ),
         Fact(
-            name="tip_settling",
+            name="resonance_settling_time",
             value=settling,
             tolerance=settling / 2,
             rank=2,
@@ -175,7 +175,7 @@ def _simulated() -> tuple[Fact, ...]:
             source="D 3.3.4",
         ),
         Fact(
-            name="arm_settling",
+            name="residual_settling_time",
             value=settling,
             tolerance=settling / 2,
             rank=2,
@@ -184,7 +184,7 @@ def _simulated() -> tuple[Fact, ...]:
             source="D 3.3.4",
         ),
         Fact(
-            name="arm_frequency",
+            name="residual_frequency",
             value=said("3.3.4-residual-frequency").value,
             tolerance=20.0,
             rank=2,
@@ -199,7 +199,7 @@ def _concluded() -> tuple[Fact, ...]:
     hung = said("A.3.1.1-weight").value / _GRAVITY
     return (
         Fact(
-            name="fluctuation_left",
+            name="residual_fraction",
             value=0.5,
             tolerance=0.25,
             rank=3,
@@ -208,7 +208,7 @@ def _concluded() -> tuple[Fact, ...]:
             source="D 3.3.4; one half is what 'stays' is taken for",
         ),
         Fact(
-            name="heavier_arm_frequency",
+            name="residual_frequency_with_added_mass",
             value=said("4.1.2-arm-frequency").value,
             tolerance=20.0,
             rank=3,

@@ -1,4 +1,4 @@
-"""Volumes of ASTM G99, and a ball's scar measured against the ball."""
+"""Volume losses of ASTM G99 against integrals, and wear scars measured on synthetic balls."""
 
 import math
 
@@ -8,7 +8,7 @@ from scipy.integrate import quad
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, NoGroove
-from sonolube.surfaces import HeightMap, ball_cap_volume, disc_groove_volume, worn_cap
+from sonolube.surfaces import HeightMap, disc_volume_loss, pin_volume_loss, wear_scar
 
 RADIUS, PIXEL = 4e-3, 4e-6
 
@@ -23,34 +23,34 @@ def ball(scar_diameter: float, *, noise: float = 0.05e-6, missing: float = 0.05)
     return HeightMap(height=height, spacing_x=PIXEL, spacing_y=PIXEL)
 
 
-def test_the_groove_of_a_ball_is_its_segment_swept_around_the_ring() -> None:
+def test_the_disc_volume_loss_is_the_circular_segment_times_the_length_of_the_track() -> None:
     width, r = 1.5e-3, 2e-3
     section, _ = quad(lambda s: math.sqrt(r**2 - s**2) - math.sqrt(r**2 - width**2 / 4), -width / 2, width / 2)
-    volume = disc_groove_volume(groove_diameter=50e-3, groove_width=width, tip_radius=r)
+    volume = disc_volume_loss(groove_diameter=50e-3, groove_width=width, tip_radius=r)
     assert volume == approx(math.pi * 50e-3 * section, rel=1e-9)
 
 
-def test_the_cap_is_the_solid_of_revolution() -> None:
+def test_the_pin_volume_loss_is_the_solid_of_revolution() -> None:
     d, r = 1.5e-3, 2e-3
     volume, _ = quad(lambda z: math.pi * (r**2 - z**2), math.sqrt(r**2 - d**2 / 4), r, epsabs=0, epsrel=1e-12)
-    assert ball_cap_volume(scar_diameter=d, tip_radius=r) == approx(volume, rel=1e-9)
+    assert pin_volume_loss(scar_diameter=d, tip_radius=r) == approx(volume, rel=1e-9)
 
 
-def test_a_small_scar_keeps_its_digits() -> None:
+def test_the_volume_of_a_small_scar_has_no_cancellation() -> None:
     d, r = 1e-6, 5e-3
-    assert ball_cap_volume(scar_diameter=d, tip_radius=r) == approx(math.pi * d**4 / (64 * r), rel=1e-7)
+    assert pin_volume_loss(scar_diameter=d, tip_radius=r) == approx(math.pi * d**4 / (64 * r), rel=1e-7)
 
 
 def test_a_hemisphere_is_the_largest_cap() -> None:
-    assert ball_cap_volume(scar_diameter=2.0, tip_radius=1.0) == approx(2 / 3 * math.pi)
+    assert pin_volume_loss(scar_diameter=2.0, tip_radius=1.0) == approx(2 / 3 * math.pi)
     with raises(InvalidInput, match=r"scar_diameter must not exceed the ball's diameter, got 2\.1 m"):
-        ball_cap_volume(scar_diameter=2.1, tip_radius=1.0)
+        pin_volume_loss(scar_diameter=2.1, tip_radius=1.0)
 
 
 @mark.parametrize("known", [None, RADIUS])
-def test_a_flat_on_a_ball_is_measured_as_the_cap_it_lacks(known: float | None) -> None:
-    scar = worn_cap(ball(0.4e-3), tip_radius=known)
-    volume = float(ball_cap_volume(scar_diameter=0.4e-3, tip_radius=RADIUS))
+def test_a_flat_on_a_ball_has_the_volume_of_the_missing_cap(known: float | None) -> None:
+    scar = wear_scar(ball(0.4e-3), tip_radius=known)
+    volume = float(pin_volume_loss(scar_diameter=0.4e-3, tip_radius=RADIUS))
     assert scar.tip_radius == approx(RADIUS, rel=1e-3)
     assert scar.wear_volume == approx(volume, abs=max(4 * scar.wear_volume_uncertainty, 2e-3 * volume))
     assert scar.scar_diameter == approx(0.4e-3, abs=0.5 * PIXEL)
@@ -58,13 +58,13 @@ def test_a_flat_on_a_ball_is_measured_as_the_cap_it_lacks(known: float | None) -
 
 @mark.parametrize("diameter", [0.15e-3, 0.4e-3, 0.6e-3])
 @mark.parametrize("noise", [0.0, 5e-9, 50e-9, 200e-9])
-def test_neither_noise_nor_smoothing_moves_the_edge_of_a_flat(diameter: float, noise: float) -> None:
-    assert worn_cap(ball(diameter, noise=noise)).scar_diameter == approx(diameter, abs=0.5 * PIXEL)
+def test_neither_noise_nor_smoothing_shifts_the_edge_of_a_flat(diameter: float, noise: float) -> None:
+    assert wear_scar(ball(diameter, noise=noise)).scar_diameter == approx(diameter, abs=0.5 * PIXEL)
 
 
 @mark.parametrize("noise", [0.0, 5e-9, 50e-9])
 @mark.parametrize("wall", ["steep", "bowl", "ramp"])
-def test_nor_that_of_a_scar_with_other_walls(wall: str, noise: float) -> None:
+def test_the_edge_of_a_scar_with_other_walls_is_found(wall: str, noise: float) -> None:
     diameter, depth = 0.4e-3, 1e-6
     unworn = ball(1e-9, noise=noise)
     x, y = np.meshgrid((np.arange(320) - 150) * PIXEL, (np.arange(240) - 130) * PIXEL)
@@ -74,16 +74,16 @@ def test_nor_that_of_a_scar_with_other_walls(wall: str, noise: float) -> None:
         "bowl": np.maximum(1 - 4 * (x**2 + y**2) / diameter**2, 0),
         "ramp": np.clip(inwards / (10 * PIXEL), 0, 1),
     }[wall]
-    scar = worn_cap(unworn.with_height(unworn.height - depth * lost))
+    scar = wear_scar(unworn.with_height(unworn.height - depth * lost))
     assert scar.scar_diameter == approx(diameter, abs=PIXEL)
 
 
 def test_an_unworn_ball_has_no_scar() -> None:
     with raises(NoGroove, match="no scar found"):
-        worn_cap(ball(1e-9))
+        wear_scar(ball(1e-9))
 
 
-def test_a_dish_is_no_ball() -> None:
+def test_a_concave_map_is_refused() -> None:
     dish = ball(0.4e-3)
-    with raises(InvalidInput, match="bends upwards"):
-        worn_cap(dish.with_height(-dish.height))
+    with raises(InvalidInput, match="the map is concave"):
+        wear_scar(dish.with_height(-dish.height))

@@ -1,4 +1,4 @@
-"""Tracks: lines and arcs through a field, and positions beside and along them."""
+"""Tracks, lines and arcs through a field, and curvilinear coordinates about them."""
 
 import math
 
@@ -19,29 +19,29 @@ tracks = st.builds(
 
 
 @given(track=tracks)
-def test_a_pixel_is_found_again_from_where_it_lies_beside_and_along_the_track(track: GrooveTrack) -> None:
-    row, column = track.place(FIELD, *track.across_and_along(FIELD))
+def test_the_pixel_position_inverts_the_curvilinear_coordinates(track: GrooveTrack) -> None:
+    row, column = track.pixel_position(FIELD, *track.curvilinear_coordinates(FIELD))
     rows, columns = np.indices(FIELD.height.shape)
     assert row == approx(rows, abs=1e-7)
     assert column == approx(columns, abs=1e-7)
 
 
-def test_pixels_lie_as_far_from_an_arc_as_from_its_centre_less_the_radius() -> None:
+def test_the_transverse_distance_is_the_radius_less_the_distance_to_the_centre() -> None:
     track = GrooveTrack(track_direction=0.0, track_curvature=1 / 2e-3, track_offset=0.3e-3)
-    across, _ = track.across_and_along(FIELD)
+    transverse, _ = track.curvilinear_coordinates(FIELD)
     x, y = FIELD.x - FIELD.x[-1] / 2, FIELD.y - FIELD.y[-1] / 2
     to_centre = np.hypot(x[None, :], y[:, None] - 2e-3)  # the centre lies to the left of the direction
-    assert across == approx(1.7e-3 - to_centre, abs=1e-15)
+    assert transverse == approx(1.7e-3 - to_centre, abs=1e-15)
     assert track.groove_diameter == approx(3.4e-3)
 
 
-def test_length_along_an_arc_is_its_angle_times_the_radius() -> None:
+def test_the_arc_length_is_the_angle_times_the_radius() -> None:
     track = GrooveTrack(track_direction=0.0, track_curvature=1 / 2e-3, track_offset=0.3e-3)
-    _, along = track.across_and_along(FIELD)
+    _, arc_length = track.curvilinear_coordinates(FIELD)
     x, y = FIELD.x - FIELD.x[-1] / 2, FIELD.y - FIELD.y[-1] / 2
-    assert along == approx(1.7e-3 * np.arctan2(x[None, :], 2e-3 - y[:, None]), abs=1e-15)
+    assert arc_length == approx(1.7e-3 * np.arctan2(x[None, :], 2e-3 - y[:, None]), abs=1e-15)
 
 
-def test_a_straight_track_is_an_arc_of_no_finite_diameter() -> None:
+def test_a_straight_track_has_an_infinite_diameter() -> None:
     track = GrooveTrack(track_direction=1.0, track_curvature=0.0, track_offset=0.0)
     assert track.groove_diameter == math.inf

@@ -1,9 +1,9 @@
-"""Marks along a track repeat at the spacing at which they were made."""
+"""Periodic marks along synthetic tracks: their spacing, and none where there are none."""
 
 from pytest import approx, mark
 
 from sonolube.metrics import indentation_spacing
-from sonolube.surfaces import GrooveShape, GrooveTrack, ScannedField, generated_groove, measure_groove, track_marks
+from sonolube.surfaces import GrooveShape, GrooveTrack, ScannedField, measure_groove, synthetic_groove, track_marks
 
 FIELD = ScannedField(field_shape=(240, 320), spacing_x=7.5e-6, spacing_y=7.5e-6)
 TRACK = GrooveTrack(track_direction=0.3, track_curvature=1 / 29e-3, track_offset=0.0)
@@ -13,13 +13,13 @@ TRACK = GrooveTrack(track_direction=0.3, track_curvature=1 / 29e-3, track_offset
 def test_the_spacing_of_indentations_is_speed_times_period(speed: float) -> None:
     spacing = float(indentation_spacing(sliding_speed=speed, period=0.01))  # D 2.4: 0.203, 0.406, 0.87 mm
     shape = GrooveShape(groove_width=0.7e-3, groove_depth=60e-6, indentation_spacing=spacing, indentation_fraction=0.05)
-    found = track_marks(measure_groove(generated_groove(shape, track=TRACK, seed=2, field=FIELD).scan))
+    found = track_marks(measure_groove(synthetic_groove(shape, track=TRACK, seed=2, field=FIELD).scan))
     assert found.dot_spacing == approx(spacing, rel=0.01)
     assert found.dot_spacing_uncertainty is not None
     assert found.dot_spacing_uncertainty < 0.01 * spacing
 
 
-def test_dots_of_the_vibration_show_where_pixels_are_fine_enough() -> None:
+def test_dots_of_the_vibration_are_found_where_pixels_resolve_them() -> None:
     field = ScannedField(
         field_shape=(240, 320),
         spacing_x=0.5e-6,
@@ -32,21 +32,21 @@ def test_dots_of_the_vibration_show_where_pixels_are_fine_enough() -> None:
         groove_width=50e-6, groove_depth=2e-6, indentation_spacing=3.95e-6, indentation_fraction=0.05
     )  # 87 mm/s at 22 kHz
     track = GrooveTrack(track_direction=0.3, track_curvature=0.0, track_offset=0.0)
-    found = track_marks(measure_groove(generated_groove(shape, track=track, seed=0, field=field).scan))
+    found = track_marks(measure_groove(synthetic_groove(shape, track=track, seed=0, field=field).scan))
     assert found.dot_spacing == approx(3.95e-6, rel=0.005)
 
 
-def test_an_even_groove_has_no_marks_and_says_why() -> None:
+def test_an_even_groove_has_no_marks_and_the_result_a_reason() -> None:
     shape = GrooveShape(groove_width=0.7e-3, groove_depth=60e-6)
     for seed in range(4):
-        found = track_marks(measure_groove(generated_groove(shape, track=TRACK, seed=seed, field=FIELD).scan))
+        found = track_marks(measure_groove(synthetic_groove(shape, track=TRACK, seed=seed, field=FIELD).scan))
         assert found.dot_spacing is None
-        assert "no wave along the track" in found.reason
+        assert "no peak of the spectrum along the track" in found.reason
 
 
-def test_the_pixels_that_a_slanting_track_crosses_are_no_marks() -> None:
+def test_the_pixel_grid_under_a_slanting_track_makes_no_marks() -> None:
     # pi/2 - 1.5 between track and pixel columns: it crosses one every 3.75 um/sin(0.0708), 53 um
     for seed in (1, 7, 13, 19):
         track = GrooveTrack(track_direction=1.5, track_curvature=0.0, track_offset=1.5e-4)
         shape = GrooveShape(groove_width=0.9e-3, groove_depth=60e-6)
-        assert track_marks(measure_groove(generated_groove(shape, track=track, seed=seed).scan)).dot_spacing is None
+        assert track_marks(measure_groove(synthetic_groove(shape, track=track, seed=seed).scan)).dot_spacing is None

@@ -49,4 +49,4 @@ IMPEDANCE_FORMATS: VariantTable[ImpedanceFormat] = VariantTable(
     },
     made=lambda known: known(),
 )
-"""File formats of impedance spectra in order of detection, the last one as fallback; a new one takes its file and one line."""
+"""File formats of impedance spectra in order of detection, the last as fallback; a new one takes a file and a line."""

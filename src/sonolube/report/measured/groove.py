@@ -28,7 +28,7 @@ from sonolube.report.measured.sheet import (
 )
 from sonolube.report.measured.surface import SurfaceSettings, surface_source
 from sonolube.report.measured.surface_figures import abbott
-from sonolube.surfaces import disc_groove_volume, material_ratio_curve, measure_groove, track_marks, worn_cap
+from sonolube.surfaces import disc_volume_loss, material_ratio_curve, measure_groove, track_marks, wear_scar
 from sonolube.surfaces.grooves.groove import Groove
 
 _STRAIGHT = 100  # lengths of track, beyond which a diameter is the scan's whim
@@ -146,7 +146,7 @@ def ring_sheet(
     ]
     if settings.tip_radius is not None:
         width = float(np.mean([g.groove_width for _, g in grooves if isinstance(g, Groove) and g.complete]))
-        volume = disc_groove_volume(
+        volume = disc_volume_loss(
             groove_diameter=settings.groove_diameter, groove_width=width, tip_radius=settings.tip_radius
         )
         label = "The same by ASTM G99's geometry, from width and tip"
@@ -214,7 +214,7 @@ def cap_sheet(path: Path, *, settings: SurfaceSettings, tip_radius: float | None
     file = read_surface_file(
         path, spacing_x=settings.spacing_x, spacing_y=settings.spacing_y, length_unit=settings.length_unit
     )
-    cap = worn_cap(file.height_map, tip_radius=tip_radius)
+    cap = wear_scar(file.height_map, tip_radius=tip_radius)
     values = (
         Value(
             name="pin_volume",

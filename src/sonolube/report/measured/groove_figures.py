@@ -48,12 +48,12 @@ def sections(groove: Groove) -> "Figure":
     import matplotlib.pyplot as plt
 
     figure, axes = plt.subplots(figsize=(6.4, 3.2))
-    single = groove.sections
-    for at in np.linspace(0, single.along.size - 1, _SINGLE + 2).round().astype(int)[1:-1]:
-        axes.plot(1e3 * single.across, 1e6 * single.height[at], color="0.7", linewidth=0.6)
-    mean = groove.section
-    shown = (mean.across >= single.across[0]) & (mean.across <= single.across[-1])
-    axes.plot(1e3 * mean.across[shown], 1e6 * mean.height[shown], color=COLOURS[0], label="mean section")
+    single = groove.cross_sections
+    for at in np.linspace(0, single.arc_length.size - 1, _SINGLE + 2).round().astype(int)[1:-1]:
+        axes.plot(1e3 * single.transverse, 1e6 * single.height[at], color="0.7", linewidth=0.6)
+    mean = groove.mean_cross_section
+    shown = (mean.transverse >= single.transverse[0]) & (mean.transverse <= single.transverse[-1])
+    axes.plot(1e3 * mean.transverse[shown], 1e6 * mean.height[shown], color=COLOURS[0], label="mean section")
     axes.axhline(0, color=COLOURS[1], linewidth=1, linestyle="--", label="unworn surface")
     edges = 1e3 * groove.groove_width * np.array([-0.5, 0.5])
     axes.plot(edges, [0, 0], MARKERS[1], color=COLOURS[1], label="edges")

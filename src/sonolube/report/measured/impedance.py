@@ -7,9 +7,9 @@ from pathlib import Path
 
 from sonolube.actuator import PiezoStack
 from sonolube.dynamics import Structure
-from sonolube.identification.impedance import fit_circuit
+from sonolube.identification.circuit_fit import fit_circuit
 from sonolube.identification.spectral_residual import LOG_COMPLEX
-from sonolube.identification.stack import fit_stack
+from sonolube.identification.stack_fit import fit_stack
 from sonolube.measurement.impedance.reader import read_impedance
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 from sonolube.measurement.statistics.log_parameter_fit import ConfidenceInterval

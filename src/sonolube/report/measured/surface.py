@@ -23,38 +23,38 @@ from sonolube.report.measured.sheet import (
 )
 from sonolube.surfaces import (
     HeightMap,
-    against_sampling_interval,
     areal_spectrum,
     autocorrelation,
+    contact_roughness,
+    dominant_wavelengths,
     feature_parameters,
     functional_parameters,
     height_parameters,
     high_pass,
     hybrid_parameters,
-    level,
     low_pass,
     material_ratio_curve,
     profile_statistics,
     radial_spectrum,
-    roughness,
+    remove_form,
+    sampling_dependence,
     spatial_parameters,
     spectral_moments,
-    summits,
-    waviness_lengths,
+    summit_statistics,
 )
 from sonolube.units import engineering
 
 _SYMBOLS: Mapping[str, str] = MappingProxyType(
     {
-        "mean_roughness": "Sa",
+        "arithmetic_mean_height": "Sa",
         "rms_height": "Sq",
-        "peak_height": "Sp",
-        "valley_depth": "Sv",
+        "maximum_peak_height": "Sp",
+        "maximum_pit_depth": "Sv",
         "total_height": "Sz",
         "skewness": "Ssk",
         "kurtosis": "Sku",
-        "rms_slope": "Sdq",
-        "developed_area_ratio": "Sdr",
+        "rms_gradient": "Sdq",
+        "developed_interfacial_area_ratio": "Sdr",
         "autocorrelation_length": "Sal",
         "texture_aspect_ratio": "Str",
         "texture_direction": "Std",
@@ -73,15 +73,15 @@ _SYMBOLS: Mapping[str, str] = MappingProxyType(
 )
 _LABELS: Mapping[str, str] = MappingProxyType(
     {
-        "mean_roughness": "mean deviation of heights",
+        "arithmetic_mean_height": "mean deviation of heights",
         "rms_height": "standard deviation of heights",
-        "peak_height": "highest above the mean",
-        "valley_depth": "deepest below the mean",
+        "maximum_peak_height": "highest above the mean",
+        "maximum_pit_depth": "deepest below the mean",
         "total_height": "highest to deepest",
         "skewness": "skewness",
         "kurtosis": "kurtosis",
-        "rms_slope": "root mean square slope",
-        "developed_area_ratio": "excess of area",
+        "rms_gradient": "root mean square slope",
+        "developed_interfacial_area_ratio": "excess of area",
         "autocorrelation_length": "autocorrelation length",
         "texture_aspect_ratio": "texture aspect ratio",
         "texture_direction": "direction of the lay",
@@ -98,7 +98,14 @@ _LABELS: Mapping[str, str] = MappingProxyType(
         "mean_peak_curvature": "mean curvature of their peaks",
     }
 )
-_PROFILE = ("mean_roughness", "rms_height", "peak_height", "valley_depth", "total_height", "mean_section_height")
+_PROFILE = (
+    "arithmetic_mean_height",
+    "rms_height",
+    "maximum_peak_height",
+    "maximum_pit_depth",
+    "total_height",
+    "mean_section_height",
+)
 _PROFILE_LABELS = ("Ra", "Rq", "Rp", "Rv", "Rt", "Rz")
 _COARSENINGS = (1, 2, 4, 8)  # times the pixel, at which summits are sought
 
@@ -153,7 +160,7 @@ def surface_sheet(path: Path, *, settings: SurfaceSettings) -> Sheet:
     file = read_surface_file(
         path, spacing_x=settings.spacing_x, spacing_y=settings.spacing_y, length_unit=settings.length_unit
     )
-    levelled = level(file.height_map, degree=settings.degree, robust=settings.robust)
+    levelled = remove_form(file.height_map, degree=settings.degree, robust=settings.robust)
     surface = _filtered(levelled, settings)
     parts = [_part(height_parameters(surface))]
     for measure in (hybrid_parameters, spatial_parameters, functional_parameters, feature_parameters):
@@ -199,7 +206,7 @@ def _filtered(levelled: HeightMap, settings: SurfaceSettings) -> HeightMap:
 
 def _part(record: object) -> Part:
     names = [each.name for each in fields(record) if each.name in _SYMBOLS]  # type: ignore[arg-type]
-    small = not getattr(record, "decays_everywhere", True)
+    small = not getattr(record, "decays_in_all_directions", True)
     return Part(
         values=tuple(known(name, getattr(record, name), label=f"{_SYMBOLS[name]}, {_LABELS[name]}") for name in names),
         caveats=("Str is an upper bound: the map is too small for its texture",) if small else (),
@@ -207,8 +214,8 @@ def _part(record: object) -> Part:
 
 
 def _summits(surface: HeightMap) -> Part:
-    counted, moments = summits(surface), spectral_moments(surface)
-    for_contact = roughness(surface)
+    counted, moments = summit_statistics(surface), spectral_moments(surface)
+    for_contact = contact_roughness(surface)
     return Part(
         values=(
             known("summit_density", counted.summit_density),
@@ -226,7 +233,7 @@ def _profiles(surface: HeightMap) -> Part:
     for along in ("rows", "columns"):
         if min(surface.height.shape) > 1 or surface.height.shape[along == "rows"] > 1:
             found = profile_statistics(surface, along=along)
-            for kind, record in (("mean", found.mean), ("deviation", found.spread)):
+            for kind, record in (("mean", found.mean), ("deviation", found.standard_deviation)):
                 rows.append((f"{found.profile_count} {along}", kind, *(getattr(record, name) for name in _PROFILE)))
     columns = (Column(name="profiles", label="Profiles"), Column(name="statistic", label=""))
     measured = tuple(column(name, label) for name, label in zip(_PROFILE, _PROFILE_LABELS, strict=True))
@@ -239,7 +246,7 @@ def _sampling(surface: HeightMap) -> Part:
     rows: list[tuple[float, ...]] = []
     for times in _COARSENINGS:
         try:
-            found = against_sampling_interval(surface, sampling_interval=times * pixel)
+            found = sampling_dependence(surface, sampling_interval=times * pixel)
         except InvalidInput:
             break
         rows.append(
@@ -263,7 +270,9 @@ def _sampling(surface: HeightMap) -> Part:
 
 def _waviness(levelled: HeightMap) -> Part:
     rows = [
-        (along, float(length)) for along in ("rows", "columns") for length in waviness_lengths(levelled, along=along)
+        (along, float(length))
+        for along in ("rows", "columns")
+        for length in dominant_wavelengths(levelled, along=along)
     ]
     columns = (Column(name="along", label="Along"), column("waviness_length", "Wavelength"))
     return Part(tables=(SheetTable(name="waviness", title="Waviness", columns=columns, rows=tuple(rows)),))

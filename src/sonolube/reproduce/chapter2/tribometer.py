@@ -145,8 +145,8 @@ def _surfaces() -> Iterator[Row]:
             cell("2.4", "total_height", row),
             over_rounding(
                 add,
-                in_table("2.4", "peak_height", row),
-                in_table("2.4", "valley_depth", row),
+                in_table("2.4", "maximum_peak_height", row),
+                in_table("2.4", "maximum_pit_depth", row),
             ),
             "R_p + R_v.",
         )

@@ -1,1 +1,1 @@
-"""Wear grooves in height maps: detection, sections, volume with its uncertainty, and generated grooves."""
+"""Wear grooves in height maps: detection, unworn reference, cross-sections, volume with uncertainty; wear scars."""

@@ -1,4 +1,4 @@
-"""Finding a wear groove in a scan, wherever it lies, however wide it is and whichever way it runs."""
+"""Detection of a straight or circular wear groove in a scan, by least squares over the direction and curvature."""
 
 import math
 from dataclasses import dataclass
@@ -10,35 +10,35 @@ from scipy.optimize import minimize
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, NoGroove
-from sonolube.surfaces.grooves.field_positions import concentric, from_middle
+from sonolube.surfaces.grooves.plane_coordinates import arc_coordinates, centred_coordinates
 from sonolube.surfaces.grooves.track import GrooveTrack
 from sonolube.surfaces.height_map import HeightMap
 
 _COARSE, _FINE = 72, 160  # blocks along the longer side
 _DIRECTIONS = 60
-_TURNS = (-1.0, -0.4, -0.15, 0.0, 0.15, 0.4, 1.0)  # turn of the track over the longer side, in rad
-_LEAST_SEEN = 0.1  # of the fullest bin of a section: others see too little of the track
-_LEAST_UNWORN = 0.06  # share of the section
+_TURNS = (-1.0, -0.4, -0.15, 0.0, 0.15, 0.4, 1.0)  # change of direction of the track over the longer side, in rad
+_LEAST_BLOCKS = 0.1  # of a bin of the section, over those of the fullest
+_LEAST_UNWORN = 0.06  # fraction of the section
 _LEAST_WORN = 3  # bins
-_LEAST_CONTRAST = 5.0  # depth over the spread beside the groove
-_SHOULDER = 0.4  # slope of the unworn ends over the mean slope of the flanks
-_ROOM = 0.05  # of the width, left beside what is worn
-_RIDGE = 1e-9
+_LEAST_CONTRAST = 5.0  # depth over the standard deviation beside the groove
+_LARGEST_SHOULDER = 0.4  # slope of the unworn ends over the mean slope of the flanks
+_MARGIN = 0.05  # of the worn width, on either side of it
+_REGULARIZATION = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class FoundGroove:
-    """Where a groove lies, before the unworn surface is known well.
+class DetectedGroove:
+    """Position of a detected wear groove, before the unworn reference is fitted.
 
     Parameters
     ----------
     track : GrooveTrack
-        Its middle line.
+        Centre line of the groove.
     worn_band : tuple of float
-        Between which distances from the track the surface is worn or piled up, with some room beside it, in m;
-        infinite where the field ends before.
+        Distances from the track in m between which the surface is worn or piled up, with a margin; infinite where the
+        field ends within.
     contrast : float
-        Greatest depth of its mean section over the spread of the mean section beside it.
+        Greatest depth of the mean section over the standard deviation of the mean section beside the groove.
     """
 
     track: GrooveTrack
@@ -46,58 +46,65 @@ class FoundGroove:
     contrast: float
 
 
-def find_groove(surface: HeightMap) -> FoundGroove:
-    """Find a straight or circular groove.
+def detect_groove(surface: HeightMap) -> DetectedGroove:
+    r"""Position of a straight or circular wear groove in a scan, by least squares and a likelihood ratio.
 
     Parameters
     ----------
     surface : HeightMap
-        As measured: tilted, wavy, rough, with missing pixels; with the form of a ball or cylinder taken off.
+        As measured: tilted, wavy, rough, with missing pixels; the form of a ball or cylinder removed beforehand.
 
     Returns
     -------
-    FoundGroove
+    DetectedGroove
 
     Raises
     ------
     NoGroove
-        If nothing stands out, or a groove leaves nothing of the unworn surface in the field.
+        If the contrast is below 5, or the groove fills the field.
 
     Notes
     -----
-    Along a groove the section stays the same. Of all directions and curvatures that is taken in which one section and
-    a slope along the track leave the least of the heights unexplained. In this section the worn stretch is the one
-    that splits it into two populations about a straight line with the greatest likelihood, the line going through the
-    outer one. No share of the field has to be unworn but a sixteenth of the section.
+    The cross-section is the same all along a groove. The direction and curvature of the track minimise the residual sum
+    of squares of the heights about one section f(s) and a slope along the track,
+
+    .. math:: \min_{\text{direction, curvature}} \ \min_{f, g} \sum \left[z - f(s) - g\, t\right]^2 ,
+
+    in the curvilinear coordinates :math:`s`, :math:`t`. The worn interval of the section divides it into inner and
+    outer points about the regression line of the outer ones with the greatest likelihood,
+
+    .. math:: n_o \ln \overline{r_o^2} + n_i \ln \overline{r_i^2} \to \min .
+
+    Only a sixteenth of the section has to be unworn.
     """
     track = _track(surface)
-    section = _section(_points(surface, _FINE), track)
-    first, last, line = _worn_stretch(section)
-    outer = np.ones(section.across.size, dtype=np.bool_)
+    section = _section(_block_means(surface, _FINE), track)
+    first, last, line = _worn_interval(section)
+    outer = np.ones(section.transverse.size, dtype=np.bool_)
     outer[first:last] = False
-    below = section.height - line[0] - line[1] * section.across
-    spread = math.sqrt(float(np.mean(below[outer] ** 2)) + section.noise**2)
-    depth = -float(np.min(_smoothed(below[first:last])))
-    if depth < _LEAST_CONTRAST * spread:
+    residual = section.height - line[0] - line[1] * section.transverse
+    deviation = math.sqrt(float(np.mean(residual[outer] ** 2)) + section.noise**2)
+    depth = -float(np.min(_moving_average(residual[first:last])))
+    if depth < _LEAST_CONTRAST * deviation:
         raise NoGroove(
-            f"no groove found: the deepest trough is {depth:.2g} m deep, and heights beside it vary by {spread:.2g} m"
+            f"no groove found: the deepest trough is {depth:.2g} m deep; heights beside it vary by {deviation:.2g} m"
         )
-    _refuse_a_bowl(section.across, below, first, last, depth)
-    left, right = section.across[first], section.across[last - 1]
-    middle, room = (left + right) / 2, section.step / 2 + _ROOM * (right - left)
-    room_left = room if first > 0 else math.inf  # what the field cuts may be worn to its very corner
-    room_right = room if last < section.across.size else math.inf
-    return FoundGroove(
+    _require_shoulders(section.transverse, residual, first, last, depth)
+    left, right = section.transverse[first], section.transverse[last - 1]
+    middle, margin = (left + right) / 2, section.step / 2 + _MARGIN * (right - left)
+    left_margin = margin if first > 0 else math.inf  # a groove cut by the field may extend to its corner
+    right_margin = margin if last < section.transverse.size else math.inf
+    return DetectedGroove(
         track=GrooveTrack(
             track_direction=track.track_direction, track_curvature=track.track_curvature, track_offset=float(middle)
         ),
-        worn_band=(float(left - middle - room_left), float(right - middle + room_right)),
-        contrast=depth / spread,
+        worn_band=(float(left - middle - left_margin), float(right - middle + right_margin)),
+        contrast=depth / deviation,
     )
 
 
-class _Points(NamedTuple):
-    """Means of small squares of a scan."""
+class _Blocks(NamedTuple):
+    """Means of a scan over square blocks."""
 
     x: Floats
     y: Floats
@@ -107,15 +114,16 @@ class _Points(NamedTuple):
 
 
 class _Section(NamedTuple):
-    """Mean height across a track."""
+    """Mean height over the distance from a track."""
 
-    across: Floats
+    transverse: Floats
     height: Floats
     noise: float
     step: float
 
 
-def _points(surface: HeightMap, blocks: int) -> _Points:
+def _block_means(surface: HeightMap, blocks: int) -> _Blocks:
+    """Means of positions and heights over square blocks, so many along the longer side of the field."""
     rows, columns = surface.height.shape
     reach = max(rows * surface.spacing_y, columns * surface.spacing_x)
     edges = [
@@ -129,25 +137,27 @@ def _points(surface: HeightMap, blocks: int) -> _Points:
     measured = surface.measured
     count = total(measured.astype(np.float64))
     used = count > 0
-    x, y = from_middle(surface)
+    x, y = centred_coordinates(surface)
     fields = (np.where(measured, values, 0.0) for values in (x + 0 * y, y + 0 * x, surface.height))
     px, py, height = (total(values)[used] / count[used] for values in fields)
     if height.size < 100:
         raise InvalidInput(
-            f"a groove needs more of the field measured than {height.size} blocks of {reach / blocks:.2g} m"
+            f"detection of a groove requires at least 100 measured blocks of {reach / blocks:.2g} m, got {height.size};"
+            " scan a larger field or more finely"
         )
     side = max(surface.spacing_x, surface.spacing_y, reach / blocks)
-    return _Points(px, py, height - height.mean(), side, reach)
+    return _Blocks(px, py, height - height.mean(), side, reach)
 
 
 def _track(surface: HeightMap) -> GrooveTrack:
-    points = _points(surface, _COARSE)
+    """Track through the centre of the field of least residual, by grid search and simplex refinement."""
+    points = _block_means(surface, _COARSE)
     starts = [(math.pi * step / _DIRECTIONS, turn / points.reach) for step in range(_DIRECTIONS) for turn in _TURNS]
-    unexplained = [_unexplained(points, *start) for start in starts]
-    best = starts[int(np.argmin(unexplained))]
-    direction, curvature = _least_unexplained(points, *best)
-    direction, curvature = _least_unexplained(_points(surface, _FINE), direction, curvature)
-    half_turns = math.floor(direction / math.pi)  # the other way along the same track, left is right
+    residuals = [_residual_sum(points, *start) for start in starts]
+    best = starts[int(np.argmin(residuals))]
+    direction, curvature = _refined_track(points, *best)
+    direction, curvature = _refined_track(_block_means(surface, _FINE), direction, curvature)
+    half_turns = math.floor(direction / math.pi)  # reversal of the direction changes the sign of the curvature
     return GrooveTrack(
         track_direction=direction - half_turns * math.pi,
         track_curvature=-curvature if half_turns % 2 else curvature,
@@ -155,9 +165,11 @@ def _track(surface: HeightMap) -> GrooveTrack:
     )
 
 
-def _least_unexplained(points: _Points, direction: float, curvature: float) -> tuple[float, float]:
+def _refined_track(points: _Blocks, direction: float, curvature: float) -> tuple[float, float]:
+    """Direction and curvature of least residual near the given ones, by the simplex method of Nelder and Mead."""
+
     def at(offset: Floats) -> float:
-        return _unexplained(points, direction + offset[0], curvature + offset[1] / points.reach)
+        return _residual_sum(points, direction + offset[0], curvature + offset[1] / points.reach)
 
     simplex = np.array([[0.0, 0.0], [0.03, 0.0], [0.0, 0.08]])
     options = {"initial_simplex": simplex, "xatol": 1e-4, "fatol": 1e-6 * at(np.zeros(2)), "maxfev": 120}
@@ -165,29 +177,28 @@ def _least_unexplained(points: _Points, direction: float, curvature: float) -> t
     return float(direction + found[0]), float(curvature + found[1] / points.reach)
 
 
-def _unexplained(points: _Points, direction: float, curvature: float) -> float:
-    """Return the squares of heights that no section and no slope along the track explain."""
+def _residual_sum(points: _Blocks, direction: float, curvature: float) -> float:
+    """Residual sum of squares of the heights about one section and a slope along the track."""
     if abs(curvature) * points.reach > 4:
         return math.inf
-    across, along = concentric(points.x, points.y, direction, curvature)
-    sections = _hats(across, points.side, np.stack([points.height, along - along.mean()]))
-    z, t = points.height, along - along.mean()
-    rest_zz = z @ z - sections[0, 0]
-    rest_zt, rest_tt = z @ t - sections[0, 1], t @ t - sections[1, 1]
-    return float(rest_zz - rest_zt**2 / max(rest_tt, np.finfo(float).tiny))
+    transverse, arc_length = arc_coordinates(points.x, points.y, direction, curvature)
+    z, t = points.height, arc_length - arc_length.mean()
+    projected = _projected_products(transverse, points.side, np.stack([z, t]))
+    zz, zt, tt = z @ z - projected[0, 0], z @ t - projected[0, 1], t @ t - projected[1, 1]
+    return float(zz - zt**2 / max(tt, np.finfo(float).tiny))
 
 
-def _hats(across: Floats, step: float, values: Floats) -> Floats:
-    """Return products of values as projected on functions that are linear between knots across the track."""
-    place = (across - across.min()) / step
-    knot = place.astype(np.intp)
-    share = place - knot
+def _projected_products(transverse: Floats, step: float, values: Floats) -> Floats:
+    """Scalar products of the projections of values on piecewise linear functions of the distance from the track."""
+    position = (transverse - transverse.min()) / step
+    knot = position.astype(np.intp)
+    share = position - knot
     knots = int(knot.max()) + 2
     banded = np.zeros((2, knots))
     banded[1] = np.bincount(knot, (1 - share) ** 2, minlength=knots)
     banded[1] += np.bincount(knot + 1, share**2, minlength=knots)
     banded[0, 1:] = np.bincount(knot, share * (1 - share), minlength=knots)[:-1]
-    banded[1] += _RIDGE * banded[1].max()
+    banded[1] += _REGULARIZATION * banded[1].max()
     moments = np.stack(
         [
             np.bincount(knot, (1 - share) * value, minlength=knots)
@@ -198,26 +209,27 @@ def _hats(across: Floats, step: float, values: Floats) -> Floats:
     return np.asarray(moments @ solveh_banded(banded, moments.T, check_finite=False))
 
 
-def _section(points: _Points, track: GrooveTrack) -> _Section:
-    across, along = concentric(points.x, points.y, track.track_direction, track.track_curvature)
-    bins = ((across - across.min()) / points.side).astype(np.intp)
+def _section(points: _Blocks, track: GrooveTrack) -> _Section:
+    """Mean section of a track, its slope along the track removed."""
+    transverse, arc_length = arc_coordinates(points.x, points.y, track.track_direction, track.track_curvature)
+    bins = ((transverse - transverse.min()) / points.side).astype(np.intp)
     count = np.bincount(bins).astype(np.float64)
     used = count > 0
 
     def mean(values: Floats) -> Floats:
         return np.bincount(bins, values) / np.maximum(count, 1.0)
 
-    z, t = points.height - mean(points.height)[bins], along - mean(along)[bins]
+    z, t = points.height - mean(points.height)[bins], arc_length - mean(arc_length)[bins]
     slope = float(z @ t) / max(float(t @ t), np.finfo(float).tiny)
-    rest = z - slope * t
-    used &= count >= _LEAST_SEEN * np.quantile(count[used], 0.9)
-    noise = float(np.std(rest)) / math.sqrt(float(np.median(count[used])))
-    return _Section(mean(across)[used], mean(points.height - slope * along)[used], noise, points.side)
+    residual = z - slope * t
+    used &= count >= _LEAST_BLOCKS * np.quantile(count[used], 0.9)
+    noise = float(np.std(residual)) / math.sqrt(float(np.median(count[used])))
+    return _Section(mean(transverse)[used], mean(points.height - slope * arc_length)[used], noise, points.side)
 
 
-def _worn_stretch(section: _Section) -> tuple[int, int, tuple[float, float]]:
-    """Return first and last bin of the stretch that stands out most, and the line through the others."""
-    s, z, count = section.across, section.height, section.across.size
+def _worn_interval(section: _Section) -> tuple[int, int, tuple[float, float]]:
+    """First bin, end and outer regression line of the interval of greatest likelihood."""
+    s, z, count = section.transverse, section.height, section.transverse.size
     origin = float(s.mean())
     powers = np.stack([np.ones(count), s - origin, (s - origin) ** 2, z, (s - origin) * z, z**2])
     sums = np.concatenate([np.zeros((6, 1)), np.cumsum(powers, axis=1)], axis=1)
@@ -229,36 +241,37 @@ def _worn_stretch(section: _Section) -> tuple[int, int, tuple[float, float]]:
     wide = outer[0] >= max(_LEAST_UNWORN * count, 4)
     first, last, inner, outer = first[wide], last[wide], inner[:, wide], outer[:, wide]
     if not first.size:
-        raise NoGroove("no groove found: the field shows too few heights across any track")
+        raise NoGroove("no groove found: too few measured heights across any track")
     n, sx, sxx, sz, sxz, _ = outer
     slope = (n * sxz - sx * sz) / (n * sxx - sx**2)
     level = (sz - slope * sx) / n
 
-    def squares(part: Floats) -> Floats:
+    def variance(part: Floats) -> Floats:
         n, sx, sxx, sz, sxz, szz = part
-        rest = szz - 2 * level * sz - 2 * slope * sxz + level**2 * n + 2 * level * slope * sx + slope**2 * sxx
-        return np.asarray(np.maximum(rest, 0.0) / n + floor)
+        squares = szz - 2 * level * sz - 2 * slope * sxz + level**2 * n + 2 * level * slope * sx + slope**2 * sxx
+        return np.asarray(np.maximum(squares, 0.0) / n + floor)
 
     floor = section.noise**2 + (1e-4 * float(np.ptp(z))) ** 2
-    likelihood = outer[0] * np.log(squares(outer)) + inner[0] * np.log(squares(inner))
-    sunk = inner[3] - level * inner[0] - slope * inner[1] < 0
-    likelihood[~sunk] = np.inf
-    best = int(np.argmin(likelihood))
-    if not np.isfinite(likelihood[best]):
+    cost = outer[0] * np.log(variance(outer)) + inner[0] * np.log(variance(inner))
+    below = inner[3] - level * inner[0] - slope * inner[1] < 0
+    cost[~below] = np.inf
+    best = int(np.argmin(cost))
+    if not np.isfinite(cost[best]):
         raise NoGroove("no groove found: nothing lies below its surroundings")
     line = (float(level[best] - slope[best] * origin), float(slope[best]))
     return int(first[best]), int(last[best]), line
 
 
-def _refuse_a_bowl(across: Floats, below: Floats, first: int, last: int, depth: float) -> None:
-    """Refuse a section that falls from end to end: the groove goes on beyond the field."""
-    if min(first, across.size - last) < 2:
+def _require_shoulders(transverse: Floats, residual: Floats, first: int, last: int, depth: float) -> None:
+    """Refuse a section whose ends slope towards the groove on both sides: it extends beyond the field."""
+    if min(first, transverse.size - last) < 2:
         return
     ends = (slice(0, first), -1), (slice(last, None), 1)
-    steepness = min(way * np.polyfit(across[end], below[end], 1)[0] for end, way in ends)
-    if steepness > _SHOULDER * 2 * depth / (across[last - 1] - across[first]):
-        raise NoGroove("no groove found: what is worn fills the whole field; scan a wider one")
+    slope = min(sign * np.polyfit(transverse[end], residual[end], 1)[0] for end, sign in ends)
+    if slope > _LARGEST_SHOULDER * 2 * depth / (transverse[last - 1] - transverse[first]):
+        raise NoGroove("no groove found: the worn surface fills the whole field; scan a wider one")
 
 
-def _smoothed(values: Floats) -> Floats:
+def _moving_average(values: Floats) -> Floats:
+    """Mean over three neighbours, where there are three."""
     return np.convolve(values, np.full(3, 1 / 3), mode="valid") if values.size >= 3 else values

@@ -1,77 +1,73 @@
-"""Wear grooves: how wide and deep, how much is gone and how much piled up, with what uncertainty."""
+"""Wear groove of a scan: width, depth, wear and pile-up volume with uncertainty, against the unworn reference."""
 
 import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter
 
 from sonolube.checks import Floats
 from sonolube.errors import NoGroove
-from sonolube.surfaces.grooves.detection import find_groove
+from sonolube.surfaces.grooves.detection import detect_groove
 from sonolube.surfaces.grooves.sections import (
     CrossSections,
-    Extent,
-    MeanSection,
-    band_around,
+    GrooveExtent,
+    MeanCrossSection,
+    band_with_margin,
     cross_sections,
-    extent,
-    mean_section,
+    groove_extent,
+    mean_cross_section,
 )
 from sonolube.surfaces.grooves.track import GrooveTrack
 from sonolube.surfaces.grooves.unworn_reference import UnwornReference, unworn_reference
-from sonolube.surfaces.height_map import HeightMap
+from sonolube.surfaces.height_map import HeightMap, Mask
 
-Mask = NDArray[np.bool_]
-
-_ROUNDS = 3
-_SPIKE = 8.0  # standard deviations: debris and dust, which count for no reference
-_SMOOTHED = 5  # pixels: over which a projection must stand above the unworn surface
-_PROJECTION = 5.0  # standard deviations of the smoothed unworn surface
-_RESTED = 2.0  # pixels that an edge still moves
-_BEYOND_WAVINESS = 10.0  # depth over the spread of the waviness: beyond dispute above
-_UNCERTAIN, _HOLED = 0.1, 0.3
-_INNER = 10  # parts of the width, of which the outermost may hold a ridge and no projection
-_BESIDE = 0.5  # of the width, shown beside it in sections
+_MOST_ITERATIONS = 3
+_SPIKE = 8.0  # height of debris and dust over the standard deviation of the unworn surface
+_WINDOW = 5  # pixels, of the smoothing in which projections are detected
+_PROJECTION = 5.0  # height of a projection over the standard deviation of the smoothed unworn surface
+_CONVERGED = 2.0  # pixels, change of an edge
+_BEYOND_WAVINESS = 10.0  # depth over the standard deviation of the waviness from which the evidence is not compared
+_UNCERTAIN, _MISSING = 0.1, 0.3  # relative uncertainty and fraction of missing pixels from which on a caveat is given
+_ZONES = 10  # of the width; in the outermost ones a height above the unworn surface belongs to the ridge
+_BESIDE = 0.5  # of the width, on either side of the groove in cross-sections
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Groove:
-    """A wear groove as measured in one scan.
+    """Wear groove measured in one scan.
 
     Parameters
     ----------
     track : GrooveTrack
-        Its middle line.
+        Centre line of the groove.
     levelled : HeightMap
-        Heights above the unworn surface, for views in three dimensions and Abbott curves.
+        Heights above the unworn reference, for 3D views and material ratio curves.
     reference : UnwornReference
         The unworn surface.
     worn, piled_up : bool array, shape of the heights
-        Pixels of the groove, and pixels beside or in it that stand above the unworn surface.
-    section : MeanSection
-        Its mean section.
-    sections : CrossSections
-        Single sections along the straightened track.
+        Pixels of the groove, and pixels of ridges and projections above the unworn surface.
+    mean_cross_section : MeanCrossSection
+    cross_sections : CrossSections
+        Single cross-sections along the track.
     groove_width : float
-        Distance of the edges, where the mean section meets the unworn surface. [m]
+        Distance of the edges, where the mean cross-section meets the unworn surface. [m]
     groove_depth : float
-        Greatest depth of the mean section. [m]
+        Greatest depth of the mean cross-section. [m]
     cross_section_area : float
-        Area of the mean section below the unworn surface: volume per length of track. [m2]
+        Area of the mean cross-section below the unworn surface: volume per length of track. [m2]
     track_length : float
-        Length of track in the field, area of the groove over its width. [m]
+        Length of track in the field: area of the groove over its width. [m]
     wear_volume : float
         Volume below the unworn surface within the field. [m3]
     wear_volume_uncertainty : float
-        Standard uncertainty, from the unworn surface under the groove, roughness and missing pixels. [m3]
+        Standard uncertainty from the reference under the groove, roughness and missing pixels. [m3]
     pile_up_volume : float
         Volume of ridges and projections above the unworn surface within the field. [m3]
     complete : bool
-        Whether both edges lie in the field, so that the section is the whole one.
+        Whether both edges lie in the field.
     caveat : str
-        What is doubtful about it; empty where nothing is.
+        Warnings about the result; empty where there are none.
     """
 
     track: GrooveTrack
@@ -79,8 +75,8 @@ class Groove:
     reference: UnwornReference
     worn: Mask
     piled_up: Mask
-    section: MeanSection
-    sections: CrossSections
+    mean_cross_section: MeanCrossSection
+    cross_sections: CrossSections
     groove_width: float
     groove_depth: float
     cross_section_area: float
@@ -93,17 +89,17 @@ class Groove:
 
     @property
     def net_volume(self) -> float:
-        """Volume that has left the field: what is missing below the unworn surface less what piled up. [m3]"""
+        """Net wear volume: volume below the unworn surface less the pile-up volume. [m3]"""
         return self.wear_volume - self.pile_up_volume
 
 
 def measure_groove(surface: HeightMap) -> Groove:
-    """Find a groove and measure it against the surface as it was before.
+    r"""Wear groove of a scan: detection, unworn reference, and volumes by integration over pixels.
 
     Parameters
     ----------
     surface : HeightMap
-        As measured, not levelled; with the form of a ball or cylinder taken off.
+        As measured, not levelled; the form of a ball or cylinder removed beforehand.
 
     Returns
     -------
@@ -112,58 +108,68 @@ def measure_groove(surface: HeightMap) -> Groove:
     Raises
     ------
     NoGroove
-        If nothing stands out, a trough is no more than waviness, or the groove fills the whole field.
+        If no groove is detected, waviness alone has the greater evidence, or the groove fills the field.
     InvalidInput
         If too little of the field was measured.
 
+    See Also
+    --------
+    sonolube.surfaces.grooves.ball_on_disc.disc_volume_loss : Volume from width and tip radius alone, by ASTM G99.
+
     Notes
     -----
-    The volume is the sum over pixels between the edges; a missing pixel counts as the mean section is deep there. Edges
-    lie where the mean section meets the unworn surface, so that roughness is not rectified into volume. A groove must
-    be worth its free section: where waves alone account for the heights with greater evidence, there is none.
+    With the heights :math:`z` above the unworn reference and the area :math:`\Delta x \Delta y` of a pixel
+
+    .. math:: V = -\Delta x \Delta y \sum_{\text{worn}} z, \qquad
+        V_\text{pile-up} = \Delta x \Delta y \sum_{\text{piled up}} z .
+
+    A missing pixel takes the height of the mean cross-section. The edges are those of the mean cross-section, so that
+    roughness is not rectified into volume. A shallow groove is accepted only if a reference with a free section has
+    greater evidence than waviness alone.
     """
-    found = find_groove(surface)
-    track, band = found.track, found.worn_band
-    left_out: Mask | None = None
-    for turn in range(_ROUNDS):
-        reference = unworn_reference(surface, track=track, worn_band=band, left_out=left_out)
+    detected = detect_groove(surface)
+    track, band = detected.track, detected.worn_band
+    excluded: Mask | None = None
+    for iteration in range(_MOST_ITERATIONS):
+        reference = unworn_reference(surface, track=track, worn_band=band, excluded=excluded)
         levelled = surface.with_height(surface.height - reference.surface.height)
-        track = reference.better_track(track)
-        across, _ = track.across_and_along(surface)
-        left_out = _spikes(levelled, across, band) | _projections(levelled, across, band)
-        section = mean_section(levelled, across, levelled.measured)
-        edges = extent(section, band)
-        before, around = band, band_around(edges)
-        band = (min(band[0], around[0]), max(band[1], around[1]))
-        if turn and np.allclose(band, before, rtol=0, atol=_RESTED * section.step):
+        track = reference.refined_track(track)
+        transverse, _ = track.curvilinear_coordinates(surface)
+        excluded = _spikes(levelled, transverse, band) | _projections(levelled, transverse, band)
+        section = mean_cross_section(levelled, transverse, levelled.measured)
+        edges = groove_extent(section, band)
+        previous, enclosing = band, band_with_margin(edges)
+        band = (min(band[0], enclosing[0]), max(band[1], enclosing[1]))
+        if iteration and np.allclose(band, previous, rtol=0, atol=_CONVERGED * section.step):
             break
-    _refuse_waviness(reference, depth=-float(np.nanmin(section.height)))
+    _require_evidence(reference, depth=-float(np.nanmin(section.height)))
     middle = (edges.left + edges.right) / 2
     track = replace(track, track_offset=track.track_offset + middle)
-    section = replace(section, across=section.across - middle)
+    section = replace(section, transverse=section.transverse - middle)
     return _measured(levelled, reference, track, section, edges.shifted(-middle))
 
 
 def _measured(
-    levelled: HeightMap, reference: UnwornReference, track: GrooveTrack, section: MeanSection, edges: Extent
+    levelled: HeightMap, reference: UnwornReference, track: GrooveTrack, section: MeanCrossSection, edges: GrooveExtent
 ) -> Groove:
-    across, _ = track.across_and_along(levelled)
+    """Groove between known edges, its volumes and their uncertainty."""
+    transverse, _ = track.curvilinear_coordinates(levelled)
     pixel = levelled.spacing_x * levelled.spacing_y
-    inside = (across > edges.left) & (across < edges.right)
-    beside = (across < edges.left_foot) | (across > edges.right_foot)
-    spread = float(np.std(_smooth(levelled)[beside]))
-    projection = _projections(levelled, across, (edges.left, edges.right))
+    inside = (transverse > edges.left) & (transverse < edges.right)
+    beside = (transverse < edges.left_foot) | (transverse > edges.right_foot)
+    deviation = float(np.std(_smooth(levelled)[beside]))
+    projection = _projections(levelled, transverse, (edges.left, edges.right))
     worn, piled_up = inside & ~projection, projection | ~(inside | beside)
-    height = np.where(levelled.measured, levelled.height, section.at(across))
+    height = np.where(levelled.measured, levelled.height, section.at(transverse))
     width = edges.right - edges.left
     missing = inside & ~levelled.measured
-    about = levelled.height[inside & levelled.measured] - section.at(across[inside & levelled.measured])
+    residual = levelled.height[inside & levelled.measured] - section.at(transverse[inside & levelled.measured])
     area = pixel * np.count_nonzero(inside)
     wear_volume = -float(height[worn].sum()) * pixel
     uncertainty = math.hypot(
         reference.volume_uncertainty(inside),
-        spread * math.sqrt(_SMOOTHED**2 * pixel * area),
-        float(np.std(about)) * math.sqrt(np.count_nonzero(missing)) * pixel,
+        deviation * math.sqrt(_WINDOW**2 * pixel * area),
+        float(np.std(residual)) * math.sqrt(np.count_nonzero(missing)) * pixel,
     )
     return Groove(
         track=track,
@@ -171,66 +177,72 @@ def _measured(
         reference=reference,
         worn=worn,
         piled_up=piled_up,
-        section=section,
-        sections=cross_sections(
+        mean_cross_section=section,
+        cross_sections=cross_sections(
             levelled, track, reach=(edges.left_foot - _BESIDE * width, edges.right_foot + _BESIDE * width)
         ),
         groove_width=width,
         groove_depth=-float(np.nanmin(section.height)),
-        cross_section_area=_area_of_section(height, worn, inside, across, section.step),
+        cross_section_area=_mean_section_area(height, worn, inside, transverse, section.step),
         track_length=area / width,
         wear_volume=wear_volume,
         wear_volume_uncertainty=uncertainty,
         pile_up_volume=float(height[piled_up].sum()) * pixel,
-        complete=edges.left_seen and edges.right_seen,
+        complete=edges.left_in_field and edges.right_in_field,
         caveat=_caveat(edges, uncertainty / wear_volume, np.count_nonzero(missing) / np.count_nonzero(inside)),
     )
 
 
-def _spikes(levelled: HeightMap, across: Floats, band: tuple[float, float]) -> Mask:
-    beside = levelled.measured & ((across < band[0]) | (across > band[1]))
-    spread = 1.4826 * float(np.median(np.abs(levelled.height[beside])))  # of Gaussian heights
-    return beside & (np.abs(np.where(beside, levelled.height, 0.0)) > _SPIKE * spread)
+def _spikes(levelled: HeightMap, transverse: Floats, band: tuple[float, float]) -> Mask:
+    """Mask of debris and dust beside the band, by the median absolute deviation."""
+    beside = levelled.measured & ((transverse < band[0]) | (transverse > band[1]))
+    deviation = 1.4826 * float(np.median(np.abs(levelled.height[beside])))  # of Gaussian heights
+    return beside & (np.abs(np.where(beside, levelled.height, 0.0)) > _SPIKE * deviation)
 
 
-def _projections(levelled: HeightMap, across: Floats, between: tuple[float, float]) -> Mask:
-    """Return where, well inside a groove, the surface stands above the unworn one."""
-    smooth, room = _smooth(levelled), (between[1] - between[0]) / _INNER
-    inside = (across > between[0] + room) & (across < between[1] - room)
-    spread = float(np.std(smooth[(across < between[0]) | (across > between[1])]))
-    return inside & (smooth > _PROJECTION * spread)
+def _projections(levelled: HeightMap, transverse: Floats, between: tuple[float, float]) -> Mask:
+    """Mask of adhered material: pixels well inside a groove that lie above the unworn surface after smoothing."""
+    smooth, margin = _smooth(levelled), (between[1] - between[0]) / _ZONES
+    inside = (transverse > between[0] + margin) & (transverse < between[1] - margin)
+    deviation = float(np.std(smooth[(transverse < between[0]) | (transverse > between[1])]))
+    return inside & (smooth > _PROJECTION * deviation)
 
 
 def _smooth(levelled: HeightMap) -> Floats:
-    share = uniform_filter(levelled.measured.astype(np.float64), _SMOOTHED)
-    total = uniform_filter(np.where(levelled.measured, levelled.height, 0.0), _SMOOTHED)
-    return np.where(share > 1 / 2, total / np.maximum(share, 1 / 2), 0.0)
+    """Moving average of the measured heights; zero where less than half of the window was measured."""
+    fraction = uniform_filter(levelled.measured.astype(np.float64), _WINDOW)
+    total = uniform_filter(np.where(levelled.measured, levelled.height, 0.0), _WINDOW)
+    return np.where(fraction > 1 / 2, total / np.maximum(fraction, 1 / 2), 0.0)
 
 
-def _area_of_section(height: Floats, worn: Mask, inside: Mask, across: Floats, step: float) -> float:
-    bins = np.floor((across[inside] - across[inside].min()) / step).astype(np.intp)
+def _mean_section_area(height: Floats, worn: Mask, inside: Mask, transverse: Floats, step: float) -> float:
+    """Area below the unworn surface of the mean cross-section of the worn pixels."""
+    bins = np.floor((transverse[inside] - transverse[inside].min()) / step).astype(np.intp)
     depth = np.where(worn, -height, 0.0)[inside]
     count = np.bincount(bins)
     return float(np.sum(np.bincount(bins, depth)[count > 0] / count[count > 0])) * step
 
 
-def _refuse_waviness(reference: UnwornReference, *, depth: float) -> None:
+def _require_evidence(reference: UnwornReference, *, depth: float) -> None:
+    """Refuse a shallow groove for which waviness alone has the greater evidence."""
     if depth > _BEYOND_WAVINESS * reference.waviness_height:
         return
-    if not reference.groove_is_borne_out():
-        raise NoGroove(
-            f"no groove found: the trough, {depth:.2g} m deep, is accounted for by waviness as well as by wear"
-        )
+    if not reference.groove_has_evidence():
+        raise NoGroove(f"no groove found: the trough, {depth:.2g} m deep, is explained by waviness as well as by wear")
 
 
-def _caveat(edges: Extent, relative_uncertainty: float, missing_fraction: float) -> str:
+def _caveat(edges: GrooveExtent, relative_uncertainty: float, missing_fraction: float) -> str:
+    """Warnings about cut edges, a large uncertainty and missing pixels."""
     caveats = []
-    if not (edges.left_seen and edges.right_seen):
-        caveats.append("an edge of the groove lies outside the field: width, area and volume are of what is seen")
+    if not (edges.left_in_field and edges.right_in_field):
+        caveats.append("an edge of the groove lies outside the field: width, area and volume are of the part inside")
     if relative_uncertainty > _UNCERTAIN:
         caveats.append(
-            f"the volume is uncertain by {relative_uncertainty:.0%}: the unworn surface is wavy, or little of it seen"
+            f"the volume is uncertain by {relative_uncertainty:.0%}: the unworn surface is wavy, or little of it is in"
+            " the field"
         )
-    if missing_fraction > _HOLED:
-        caveats.append(f"{missing_fraction:.0%} of the groove was not measured and is taken to be as deep as the rest")
+    if missing_fraction > _MISSING:
+        caveats.append(
+            f"{missing_fraction:.0%} of the groove was not measured and is assumed to be as deep as the rest"
+        )
     return "; ".join(caveats)

@@ -1,4 +1,4 @@
-"""Sections across a groove: the mean one, its edges and ridges, and single ones along the straightened track."""
+"""Cross-sections of a wear groove: the mean one with its edges and ridges, and single ones along the track."""
 
 import math
 from collections.abc import Callable
@@ -11,78 +11,76 @@ from numpy.typing import NDArray
 from sonolube.checks import Floats
 from sonolube.errors import NoGroove
 from sonolube.surfaces.grooves.track import GrooveTrack
-from sonolube.surfaces.height_map import HeightMap
+from sonolube.surfaces.height_map import HeightMap, Mask
 
-Mask = NDArray[np.bool_]
-
-_LEAST_SEEN = 0.02  # of the fullest bin
-_SURE = 4.0  # spreads of the mean section beside the groove
-_LEAST_SHARE = 0.005  # of the depth: what counts as worn or piled up
-_EXACT = 1e-4  # of the depth: less is rounding
-_GAP = 5  # pixels between edge and ridge
-_ROOM = 0.04  # of the worn width, left beside it
+_LEAST_PIXELS = 0.02  # of a bin, over those of the fullest
+_SIGNIFICANT = 4.0  # height over the standard deviation of the mean section beside the groove
+_LEAST_FRACTION = 0.005  # of the depth, from which a height counts as worn or piled up
+_ROUNDING = 1e-4  # of the depth
+_GAP = 5  # pixels, largest between edge and ridge
+_MARGIN = 0.04  # of the groove width, on either side of it
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class MeanSection:
-    """The mean section of a groove.
+class MeanCrossSection:
+    """Mean cross-section of a wear groove.
 
     Parameters
     ----------
-    across : ndarray, shape (n,)
-        Distance from the track, rising in equal steps, in m.
+    transverse : ndarray, shape (n,)
+        Distance from the track, ascending in equal steps, in m.
     height : ndarray, shape (n,)
         Mean height above the unworn surface; NaN where nothing was measured. [m]
     pixels : ndarray, shape (n,)
-        Measured pixels in each mean.
+        Number of measured pixels in each mean.
     """
 
-    across: Floats
+    transverse: Floats
     height: Floats
     pixels: NDArray[np.intp]
 
     @property
     def step(self) -> float:
-        """Distance of neighbouring means. [m]"""
-        return float(self.across[1] - self.across[0])
+        """Distance of neighbouring points. [m]"""
+        return float(self.transverse[1] - self.transverse[0])
 
-    def at(self, across: Floats) -> Floats:
-        """Return the mean height at distances from the track, in m."""
+    def at(self, transverse: Floats) -> Floats:
+        """Mean height at distances in m from the track, by linear interpolation, in m."""
         known = np.isfinite(self.height)
-        return np.interp(across, self.across[known], self.height[known])
+        return np.interp(transverse, self.transverse[known], self.height[known])
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class CrossSections:
-    """Sections square to the track, the track laid straight.
+    """Cross-sections perpendicular to the track, resampled at the nearest pixels.
 
     Parameters
     ----------
-    along : ndarray, shape (sections,)
-        Length of the track up to each section, from the middle of the field, in m.
-    across : ndarray, shape (points,)
+    arc_length : ndarray, shape (sections,)
+        Length along the track of each section from the centre of the field, in m.
+    transverse : ndarray, shape (points,)
         Distance from the track, in m.
     height : ndarray, shape (sections, points)
         Height above the unworn surface at the nearest pixel; NaN where that is missing or outside the field. [m]
     """
 
-    along: Floats
-    across: Floats
+    arc_length: Floats
+    transverse: Floats
     height: Floats
 
 
-class Extent(NamedTuple):
-    """What of the mean section is worn and what piled up, as distances from the track in m."""
+class GrooveExtent(NamedTuple):
+    """Edges of the groove and outer ends of its ridges in the mean cross-section, as distances from the track in m."""
 
     left: float
     right: float
-    left_foot: float  # of the ridge, or the edge itself where there is none
+    left_foot: float  # outer end of the ridge; the edge itself where there is no ridge
     right_foot: float
-    left_seen: bool
-    right_seen: bool
+    left_in_field: bool
+    right_in_field: bool
 
-    def shifted(self, shift: float) -> "Extent":
-        """Return it with all distances moved by `shift`, in m."""
+    def shifted(self, shift: float) -> "GrooveExtent":
+        """The same with `shift` in m added to all distances."""
         return self._replace(
             left=self.left + shift,
             right=self.right + shift,
@@ -91,87 +89,89 @@ class Extent(NamedTuple):
         )
 
 
-def mean_section(levelled: HeightMap, across: Floats, counted: Mask) -> MeanSection:
-    """Return the mean over pixels of equal distance from the track.
+def mean_cross_section(levelled: HeightMap, transverse: Floats, counted: Mask) -> MeanCrossSection:
+    """Mean cross-section: means of the heights over pixels of equal distance from the track.
 
     Parameters
     ----------
     levelled : HeightMap
         Heights above the unworn surface.
-    across : ndarray, shape of the heights
+    transverse : ndarray, shape of the heights
         Distance of each pixel from the track, in m.
     counted : bool array, shape of the heights
-        Pixels that count.
+        Pixels to average.
 
     Returns
     -------
-    MeanSection
+    MeanCrossSection
     """
     step = max(levelled.spacing_x, levelled.spacing_y)
-    first = math.floor(float(across.min()) / step)
-    bins = np.floor(across / step).astype(np.intp) - first
+    first = math.floor(float(transverse.min()) / step)
+    bins = np.floor(transverse / step).astype(np.intp) - first
     size = int(bins.max()) + 1
-    shown = np.bincount(bins[counted], minlength=size)
-    total = np.bincount(bins[counted], levelled.height[counted], minlength=size)
-    place = np.bincount(bins[counted], across[counted], minlength=size)
+    count = np.bincount(bins[counted], minlength=size)
+    height_sum = np.bincount(bins[counted], levelled.height[counted], minlength=size)
+    position_sum = np.bincount(bins[counted], transverse[counted], minlength=size)
     middle = np.asarray((np.arange(size) + first + 0.5) * step, dtype=np.float64)
-    known = shown > 0
+    known = count > 0
     height = np.full(size, np.nan)
-    height[known] = np.interp(middle[known], place[known] / shown[known], total[known] / shown[known])
-    return MeanSection(across=middle, height=height, pixels=shown)
+    height[known] = np.interp(middle[known], position_sum[known] / count[known], height_sum[known] / count[known])
+    return MeanCrossSection(transverse=middle, height=height, pixels=count)
 
 
-def extent(section: MeanSection, worn_band: tuple[float, float]) -> Extent:
-    """Return edges of the groove and feet of its ridges.
+def groove_extent(section: MeanCrossSection, worn_band: tuple[float, float]) -> GrooveExtent:
+    """Edges of the groove and outer ends of its ridges, from the mean cross-section.
 
     Parameters
     ----------
-    section : MeanSection
+    section : MeanCrossSection
     worn_band : tuple of float
-        Between which distances wear was taken for possible; what lies outside tells how sure the heights are.
+        Distances in m between which the surface may be worn; outside, the scatter of the mean heights is estimated.
 
     Returns
     -------
-    Extent
+    GrooveExtent
 
     Raises
     ------
     NoGroove
-        If the mean section nowhere falls clearly below the unworn surface.
+        If the mean section is nowhere significantly below the unworn surface.
     """
-    seen = section.pixels >= _LEAST_SEEN * section.pixels.max()
-    s, z = section.across[seen], section.height[seen]
+    populated = section.pixels >= _LEAST_PIXELS * section.pixels.max()
+    s, z = section.transverse[populated], section.height[populated]
     band = (s > worn_band[0]) & (s < worn_band[1])
-    spread = math.sqrt(float(np.mean(z[~band] ** 2))) if np.any(~band) else 0.0
+    deviation = math.sqrt(float(np.mean(z[~band] ** 2))) if np.any(~band) else 0.0
     depth = -float(np.min(z[band], initial=0.0))
-    least = max(_SURE * spread, _LEAST_SHARE * depth)
+    least = max(_SIGNIFICANT * deviation, _LEAST_FRACTION * depth)
     low = np.flatnonzero(band & (z < -least))
     if not low.size:
-        raise NoGroove(f"no groove found: its mean section, {depth:.2g} m deep, is lost in a spread of {spread:.2g} m")
-    tolerance = max(min(spread, least / 2), _EXACT * depth)
-    first = _outward(z, low[0], -1, lambda height: height < -tolerance)
-    last = _outward(z, low[-1], 1, lambda height: height < -tolerance)
-    left, right = _crossing(s, z, first, first - 1), _crossing(s, z, last, last + 1)
-    return Extent(
+        raise NoGroove(
+            f"no groove found: its mean section is {depth:.2g} m deep, and the surface varies by {deviation:.2g} m"
+        )
+    tolerance = max(min(deviation, least / 2), _ROUNDING * depth)
+    first = _last_outward(z, low[0], -1, lambda height: height < -tolerance)
+    last = _last_outward(z, low[-1], 1, lambda height: height < -tolerance)
+    left, right = _zero_crossing(s, z, first, first - 1), _zero_crossing(s, z, last, last + 1)
+    return GrooveExtent(
         left=left,
         right=right,
-        left_foot=_foot(s, z, first, -1, least, tolerance, left),
-        right_foot=_foot(s, z, last, 1, least, tolerance, right),
-        left_seen=bool(first > 0),
-        right_seen=bool(last < s.size - 1),
+        left_foot=_ridge_end(s, z, first, -1, least, tolerance, left),
+        right_foot=_ridge_end(s, z, last, 1, least, tolerance, right),
+        left_in_field=bool(first > 0),
+        right_in_field=bool(last < s.size - 1),
     )
 
 
-def band_around(found: Extent) -> tuple[float, float]:
-    """Return worn width and ridges with a little room on both sides, in m."""
-    room = _ROOM * (found.right - found.left)
-    return found.left_foot - room, found.right_foot + room
+def band_with_margin(found: GrooveExtent) -> tuple[float, float]:
+    """Distances in m that enclose groove and ridges with a margin on either side."""
+    margin = _MARGIN * (found.right - found.left)
+    return found.left_foot - margin, found.right_foot + margin
 
 
 def cross_sections(
     levelled: HeightMap, track: GrooveTrack, *, reach: tuple[float, float], sections: int | None = None
 ) -> CrossSections:
-    """Return sections square to the track, wherever one crosses the field.
+    """Cross-sections perpendicular to the track, at every arc length at which one crosses the field.
 
     Parameters
     ----------
@@ -179,34 +179,36 @@ def cross_sections(
         Heights above the unworn surface.
     track : GrooveTrack
     reach : tuple of float
-        From which to which distance from the track they run, in m.
+        Distances from the track in m between which they extend.
     sections : int, optional
-        How many; one a pixel where it is not given.
+        Number of sections; one per pixel by default.
 
     Returns
     -------
     CrossSections
     """
-    across, along = track.across_and_along(levelled)
-    near = (across >= reach[0]) & (across <= reach[1])
+    transverse, arc_length = track.curvilinear_coordinates(levelled)
+    near = (transverse >= reach[0]) & (transverse <= reach[1])
     step = max(levelled.spacing_x, levelled.spacing_y)
-    start, stop = float(along[near].min()), float(along[near].max())
+    start, stop = float(arc_length[near].min()), float(arc_length[near].max())
     t = np.linspace(start, stop, sections or max(2, round((stop - start) / step)))
     s = np.linspace(reach[0], reach[1], max(2, round((reach[1] - reach[0]) / step)))
-    row, column = (np.rint(place).astype(np.intp) for place in track.place(levelled, *np.meshgrid(s, t)))
+    row, column = (np.rint(each).astype(np.intp) for each in track.pixel_position(levelled, *np.meshgrid(s, t)))
     rows, columns = levelled.height.shape
     inside = (row >= 0) & (row < rows) & (column >= 0) & (column < columns)
     height = np.where(inside, levelled.height[row.clip(0, rows - 1), column.clip(0, columns - 1)], np.nan)
-    return CrossSections(along=t, across=s, height=height)
+    return CrossSections(arc_length=t, transverse=s, height=height)
 
 
-def _outward(z: Floats, index: int, way: int, goes_on: Callable[[float], bool]) -> int:
-    while 0 <= index + way < z.size and goes_on(float(z[index + way])):
-        index += way
+def _last_outward(z: Floats, index: int, step: int, condition: Callable[[float], bool]) -> int:
+    """Last index in steps of +1 or -1 up to which the heights satisfy a condition."""
+    while 0 <= index + step < z.size and condition(float(z[index + step])):
+        index += step
     return index
 
 
-def _crossing(s: Floats, z: Floats, inner: int, outer: int) -> float:
+def _zero_crossing(s: Floats, z: Floats, inner: int, outer: int) -> float:
+    """Distance at which the height is zero between two points, by linear interpolation; the outer one if below zero."""
     if not 0 <= outer < z.size:
         return float(s[inner])
     if z[outer] <= 0:
@@ -214,11 +216,11 @@ def _crossing(s: Floats, z: Floats, inner: int, outer: int) -> float:
     return float(s[inner] - z[inner] * (s[outer] - s[inner]) / (z[outer] - z[inner]))
 
 
-def _foot(s: Floats, z: Floats, edge: int, way: int, least: float, tolerance: float, otherwise: float) -> float:
-    """Return where the ridge beyond an edge ends, or else the edge."""
-    beyond = z[edge:][1 : _GAP + 1] if way > 0 else z[:edge][::-1][:_GAP]
+def _ridge_end(s: Floats, z: Floats, edge: int, step: int, least: float, tolerance: float, otherwise: float) -> float:
+    """Outer end of the ridge beyond an edge, `otherwise` where there is none."""
+    beyond = z[edge:][1 : _GAP + 1] if step > 0 else z[:edge][::-1][:_GAP]
     if not np.any(beyond > tolerance):
         return otherwise
-    start = edge + way * (1 + int(np.argmax(beyond > tolerance)))
-    end = _outward(z, start, way, lambda height: height > tolerance)
+    start = edge + step * (1 + int(np.argmax(beyond > tolerance)))
+    end = _last_outward(z, start, step, lambda height: height > tolerance)
     return float(s[end]) if z[min(start, end) : max(start, end) + 1].max() > least else otherwise

@@ -1,4 +1,4 @@
-"""The track of a wear groove through a scan: a line or an arc of a circle, and positions across and along it."""
+"""Track of a wear groove in a scan, a line or a circular arc, and curvilinear coordinates about it."""
 
 import math
 from dataclasses import dataclass
@@ -6,23 +6,23 @@ from dataclasses import dataclass
 import numpy as np
 
 from sonolube.checks import Floats, require_finite
-from sonolube.surfaces.grooves.field_positions import concentric, from_middle
+from sonolube.surfaces.grooves.plane_coordinates import arc_coordinates, centred_coordinates
 from sonolube.surfaces.height_map import HeightMap
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GrooveTrack:
-    """Where a groove runs in a scan, seen from the middle of the field.
+    """Centre line of a wear groove in a scan, relative to the centre of the field.
 
     Parameters
     ----------
     track_direction : float
-        Angle from the rows towards the columns at which the track passes the middle. [rad]
+        Direction of the track past the centre of the field, from the rows towards the columns. [rad]
     track_curvature : float
-        One over the radius of the circle about the ring's centre that passes through the middle of the field; zero for
-        a straight track, positive where the centre lies to the left of the direction. [1/m]
+        Curvature of the concentric circle through the centre of the field; zero for a straight track, positive for a
+        centre to the left of the direction. [1/m]
     track_offset : float
-        Distance of the track from the middle of the field, positive to the left of the direction. [m]
+        Distance of the track from the centre of the field, positive to the left of the direction. [m]
     """
 
     track_direction: float
@@ -38,11 +38,11 @@ class GrooveTrack:
 
     @property
     def groove_diameter(self) -> float:
-        """Diameter of the ring of which the track is an arc; infinite where it is straight. [m]"""
+        """Diameter of the circular wear track on the disc; infinite for a straight track. [m]"""
         return 2 * abs(1 / self.track_curvature - self.track_offset) if self.track_curvature else math.inf
 
-    def across_and_along(self, surface: HeightMap) -> tuple[Floats, Floats]:
-        """Return where each pixel lies beside the track, and how far along it, counted from the middle of the field.
+    def curvilinear_coordinates(self, surface: HeightMap) -> tuple[Floats, Floats]:
+        """Transverse distance and arc length of each pixel with respect to the track.
 
         Parameters
         ----------
@@ -50,36 +50,36 @@ class GrooveTrack:
 
         Returns
         -------
-        across : ndarray, shape of the heights
+        transverse : ndarray, shape of the heights
             Distance from the track in m, positive to the left of its direction.
-        along : ndarray, shape of the heights
-            Length of the track up to there in m.
+        arc_length : ndarray, shape of the heights
+            Length along the track from the centre of the field, in m.
         """
-        x, y = from_middle(surface)
-        across, along = concentric(x, y, self.track_direction, self.track_curvature)
-        return across - self.track_offset, along * (1 - self.track_curvature * self.track_offset)
+        x, y = centred_coordinates(surface)
+        transverse, arc_length = arc_coordinates(x, y, self.track_direction, self.track_curvature)
+        return transverse - self.track_offset, arc_length * (1 - self.track_curvature * self.track_offset)
 
-    def place(self, surface: HeightMap, across: Floats, along: Floats) -> tuple[Floats, Floats]:
-        """Return the row and column, with fractions, of positions beside and along the track.
+    def pixel_position(self, surface: HeightMap, transverse: Floats, arc_length: Floats) -> tuple[Floats, Floats]:
+        """Fractional row and column of points given by curvilinear coordinates; inverse of `curvilinear_coordinates`.
 
         Parameters
         ----------
         surface : HeightMap
-        across : ndarray, any shape
+        transverse : ndarray, any shape
             Distances from the track in m.
-        along : ndarray, shape of `across`
+        arc_length : ndarray, shape of `transverse`
             Lengths along the track in m.
 
         Returns
         -------
-        row : ndarray, shape of `across`
-        column : ndarray, shape of `across`
+        row : ndarray, shape of `transverse`
+        column : ndarray, shape of `transverse`
         """
-        k, from_circle = self.track_curvature, across + self.track_offset
-        turn = k * along / (1 - k * self.track_offset)
-        half = along / (1 - k * self.track_offset) * np.sinc(turn / (2 * math.pi)) / 2  # sin(turn/2)/k
+        k, from_circle = self.track_curvature, transverse + self.track_offset
+        angle = k * arc_length / (1 - k * self.track_offset)
+        half = arc_length / (1 - k * self.track_offset) * np.sinc(angle / (2 * math.pi)) / 2  # sin(angle/2)/k
         radius = 1 - k * from_circle
-        left, ahead = from_circle + 2 * k * half**2 * radius, 2 * half * np.cos(turn / 2) * radius
+        left, ahead = from_circle + 2 * k * half**2 * radius, 2 * half * np.cos(angle / 2) * radius
         cos, sin = math.cos(self.track_direction), math.sin(self.track_direction)
         rows, columns = surface.height.shape
         column = (ahead * cos - left * sin) / surface.spacing_x + (columns - 1) / 2

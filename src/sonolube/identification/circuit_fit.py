@@ -1,0 +1,336 @@
+"""Butterworth-Van Dyke circuits from measured impedance spectra, by rational approximation and least squares."""
+
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.interpolate import AAA
+
+from sonolube.actuator import Branch, ButterworthVanDyke, Resonances, circuit_admittance, resonances
+from sonolube.checks import Complexes, Floats, require_non_negative, require_within
+from sonolube.errors import InvalidInput
+from sonolube.identification.spectral_residual import LOG_COMPLEX, residual_named
+from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
+from sonolube.measurement.statistics.log_parameter_fit import (
+    ConfidenceInterval,
+    LogParameterFit,
+    confidence_intervals,
+    fit_log_parameters,
+    residual_inefficiency,
+)
+
+_MOST_BRANCHES = 8
+_TERMS = (3, 4, 5, 6, 8, 10)  # of the rational approximations whose poles are tried
+_LOWEST_QUALITY, _HIGHEST_QUALITY = 3.0, 1e7
+_ROUNDING = 1e-9  # current of a branch over the total, below which it is rounding
+_MOST_CANDIDATES = 3  # fitted for the next branch
+_CORRELATED = 3.0  # residuals over independent ones, from which on a warning is given
+_POINTS_PER_BRANCH = 4
+_LARGEST_ERROR = 0.5  # standard error of the logarithm of a parameter
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class CircuitFit:
+    """Butterworth-Van Dyke circuit fitted to an impedance spectrum, with confidence intervals.
+
+    Parameters
+    ----------
+    circuit : ButterworthVanDyke
+        Fitted circuit, branches in order of frequency.
+    resonances : Resonances
+        Series and parallel frequencies without losses, quality and coupling factors of its branches.
+    intervals : mapping of str to ConfidenceInterval
+        Confidence intervals of parallel_capacitance, and of each branch's resistance, inductance, capacitance,
+        series_frequency, parallel_frequency, mechanical_quality_factor and coupling_factor, followed by the branch's
+        number: "resistance_1".
+    residual : str
+        Name of the residual whose sum of squares was minimised.
+    residual_rms : float
+        Root mean square of the residual: for "log-complex" of relative magnitude and phase in rad together, for
+        "linear-magnitude" relative to the largest admittance.
+    information_criteria : tuple of float
+        Bayesian information criterion of the log-complex residual with 1, 2, ... branches.
+    residual_correlation : float
+        Number of residuals over the number of independent ones, for which the intervals are widened.
+    confidence_level : float
+        Of the intervals. []
+    caveats : tuple of str
+        Warnings about the fit, one line each.
+    """
+
+    circuit: ButterworthVanDyke
+    resonances: Resonances
+    intervals: Mapping[str, ConfidenceInterval]
+    residual: str
+    residual_rms: float
+    information_criteria: tuple[float, ...]
+    residual_correlation: float
+    confidence_level: float
+    caveats: tuple[str, ...]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Spectrum:
+    """Measured admittance, series resistance of the leads, and the residual to minimise."""
+
+    frequency: Floats
+    admittance: Complexes
+    series_resistance: float
+    residual: str
+
+    def residuals(self, logarithms: Floats) -> Floats:
+        """Residuals of the circuit of given logarithms of its parameters."""
+        model = circuit_admittance(_circuit(logarithms, self.series_resistance), frequency=self.frequency)
+        return residual_named(self.residual)(model, self.admittance)
+
+    def correlation(self, fit: LogParameterFit) -> float:
+        """Number of residuals over the number of independent ones."""
+        return residual_inefficiency(fit, rows=fit.residuals.size // self.frequency.size)
+
+    def resolves(self, logarithms: Floats) -> bool:
+        """Whether every branch resonates within the sweep with a plausible quality factor."""
+        modes = logarithms[1:].reshape(-1, 3)
+        f_s, quality = np.exp(modes[:, 0]), np.exp(modes[:, 1])
+        swept = (f_s > self.frequency[0]) & (f_s < self.frequency[-1])
+        return bool(np.all(swept & (quality > _LOWEST_QUALITY) & (quality < _HIGHEST_QUALITY)))
+
+
+def fit_circuit(
+    spectrum: ImpedanceSpectrum,
+    *,
+    branches: int | None = None,
+    residual: str = LOG_COMPLEX,
+    series_resistance: float = 0.0,
+    confidence_level: float = 0.95,
+) -> CircuitFit:
+    r"""Butterworth-Van Dyke circuit of an impedance spectrum, by rational approximation and nonlinear least squares.
+
+    Parameters
+    ----------
+    spectrum : ImpedanceSpectrum
+    branches : int or None
+        Number of branches (modes); None takes as many as lower the Bayesian information criterion.
+    residual : str
+        "log-complex" or "linear-magnitude" (see `residual_named`); they give different quality factors where the
+        circuit does not describe the spectrum fully.
+    series_resistance : float
+        Known resistance of the leads. [ohm]
+    confidence_level : float
+        Of the intervals. []
+
+    Returns
+    -------
+    CircuitFit
+
+    Raises
+    ------
+    InvalidInput
+        If the spectrum has fewer than 8 points or shows no capacitance or no resonance, or `branches` is not 1 to 8 or
+        more than its points allow.
+    UnknownName
+        If the residual is none of `RESIDUALS`.
+
+    See Also
+    --------
+    sonolube.identification.stack_fit.fit_stack : Stack parameters, where the structure about the stack is known.
+
+    Notes
+    -----
+    With the parallel capacitance :math:`C_0` and, for each branch, the series frequency :math:`f_s`, quality factor
+    :math:`Q` and capacitance :math:`C`, the admittance behind the leads is
+
+    .. math:: Y(f) = 2\pi i f \left[C_0 + \sum_k \frac{C_k}{1 - (f/f_{s,k})^2 + i f/(f_{s,k} Q_k)}\right] .
+
+    Branches are added one by one. Candidates are the decaying poles of rational (AAA) approximations [1]_ to the
+    difference between measured and fitted admittance, within the sweep and with a quality factor of 3 or more. The
+    candidates that explain most are fitted together with all earlier branches, and the best fit is taken. This
+    selection minimises the log-complex residual, in which weak modes have weight; a branch of which a parameter has a
+    standard error above a factor of e^0.5 is rejected. Another residual is minimised only at the end.
+
+    Confidence intervals are of first order and widened for the correlation of residuals. They account for noise, not
+    for dielectric losses and other properties that the circuit leaves out.
+
+    References
+    ----------
+    .. [1] Y. Nakatsukasa, O. Sete and L. N. Trefethen, SIAM J. Sci. Comput. 40, A1494 (2018). doi:10.1137/16M1106122
+    .. [2] IEEE Std 176-1987, for the definitions of f_s, f_p and the coupling factor.
+    """
+    residual_named(residual)
+    require_non_negative(series_resistance=series_resistance)
+    require_within(0.5, 0.9999, confidence_level=confidence_level)
+    most = min(_MOST_BRANCHES, spectrum.frequency.size // _POINTS_PER_BRANCH - 1)
+    if most < 1:
+        raise InvalidInput(
+            f"spectrum must have at least {2 * _POINTS_PER_BRANCH} points, got {spectrum.frequency.size}"
+        )
+    if branches is not None and not 1 <= branches <= most:
+        raise InvalidInput(
+            f"branches must lie between 1 and {most} for {spectrum.frequency.size} points, got {branches}"
+        )
+    log_complex = _Spectrum(
+        frequency=spectrum.frequency,
+        admittance=spectrum.admittance,
+        series_resistance=series_resistance,
+        residual=LOG_COMPLEX,
+    )
+    fits = _fits_by_branches(log_complex, most if branches is None else branches, by_criterion=branches is None)
+    measured = replace(log_complex, residual=residual)
+    chosen = fits[-1] if residual == LOG_COMPLEX else fit_log_parameters(measured.residuals, fits[-1].logarithms)
+    return _circuit_fit(measured, chosen, fits, branches, confidence_level)
+
+
+def _fits_by_branches(spectrum: _Spectrum, most: int, *, by_criterion: bool) -> list[LogParameterFit]:
+    """Fits with 1, 2, ... branches, up to the last accepted one."""
+    logarithms = np.array([np.log(_capacitance(spectrum))])
+    fits: list[LogParameterFit] = []
+    while len(fits) < most:
+        fit = _with_one_more_branch(spectrum, logarithms)
+        if fit is None or (fits and not _is_accepted(spectrum, fit, fits[-1], by_criterion=by_criterion)):
+            break
+        fits.append(fit)
+        logarithms = fit.logarithms
+    if not fits:
+        raise InvalidInput(
+            "no resonance found in the spectrum; sweep over one with more points, and check the sign of the phase"
+        )
+    return fits
+
+
+def _is_accepted(spectrum: _Spectrum, fit: LogParameterFit, simpler: LogParameterFit, *, by_criterion: bool) -> bool:
+    """Whether all parameters are determined within a factor, and the information criterion, if it decides, is lower."""
+    determined = np.all(np.diag(fit.covariance) * spectrum.correlation(fit) < _LARGEST_ERROR**2)
+    return bool(determined) and (not by_criterion or fit.information_criterion < simpler.information_criterion)
+
+
+def _capacitance(spectrum: _Spectrum) -> float:
+    """Median capacitance behind the leads where it is positive, the initial parallel capacitance. [F]"""
+    y = spectrum.admittance / (1 - spectrum.series_resistance * spectrum.admittance)
+    capacitance = np.imag(y) / (2 * np.pi * spectrum.frequency)
+    if not np.any(capacitance > 0):
+        raise InvalidInput(
+            "the current leads the voltage at no frequency, as it does in a capacitance; check the sign of the phase"
+        )
+    return float(np.median(capacitance[capacitance > 0]))
+
+
+def _with_one_more_branch(spectrum: _Spectrum, logarithms: Floats) -> LogParameterFit | None:
+    """Best fit with one branch more, or None where every candidate leaves the sweep or is not resonant."""
+    fits = []
+    for candidate in _candidates(spectrum, logarithms)[:_MOST_CANDIDATES]:
+        fit = fit_log_parameters(spectrum.residuals, np.concatenate([logarithms, candidate]))
+        if spectrum.resolves(fit.logarithms):
+            fits.append(fit)
+    return min(fits, key=lambda fit: fit.sum_of_squares, default=None)
+
+
+def _candidates(spectrum: _Spectrum, logarithms: Floats) -> list[Floats]:
+    """Logarithms of frequency, quality factor and capacitance of possible branches, the most explaining first."""
+    f = spectrum.frequency
+    circuit = _circuit(logarithms, spectrum.series_resistance)
+    fitted = circuit_admittance(circuit, frequency=f)
+    capacitive = (spectrum.admittance - fitted) / (2j * np.pi * f)
+    relative = spectrum.admittance / fitted - 1
+    ranked = []
+    for pole in {*_poles(f, capacitive), *_poles(f, relative)}:
+        f_s, quality = abs(pole), abs(pole) / (-2 * pole.real)
+        if not (f[0] < f_s < f[-1] and _LOWEST_QUALITY < quality < _HIGHEST_QUALITY):
+            continue
+        shape = 2j * np.pi * f / (1 - (f / f_s) ** 2 + 1j * f / (f_s * quality)) / fitted
+        capacitance = float(np.real(np.vdot(shape, relative)) / np.real(np.vdot(shape, shape)))
+        explained = capacitance**2 * float(np.real(np.vdot(shape, shape)))
+        if capacitance > 0 and explained > f.size * _ROUNDING**2:
+            ranked.append((explained, np.log([f_s, quality, capacitance])))
+    distinct: list[Floats] = []
+    for _, candidate in sorted(ranked, key=lambda pair: -pair[0]):
+        if all(abs(candidate[0] - other[0]) > np.exp(-other[1]) for other in distinct):  # a resonance width apart
+            distinct.append(candidate)
+    return distinct
+
+
+def _poles(f: Floats, values: Complexes) -> list[complex]:
+    """Decaying poles of AAA approximations that are real for real signals, in Hz."""
+    scale = float(np.sqrt(f[0] * f[-1]))
+    x, y = np.concatenate([1j * f, -1j * f]) / scale, np.concatenate([values, values.conj()])
+    found: list[complex] = []
+    for terms in _TERMS:
+        with warnings.catch_warnings(), np.errstate(all="ignore"):
+            warnings.simplefilter("ignore", RuntimeWarning)  # about the limited number of terms
+            poles = scale * AAA(x, y, max_terms=terms, rtol=1e-10).poles()
+        found.extend(complex(pole) for pole in poles if pole.imag > 0 and pole.real < 0)
+    return found
+
+
+def _circuit(logarithms: Floats, series_resistance: float) -> ButterworthVanDyke:
+    """Circuit of the logarithms of C_0 and, for each branch, of f_s, Q and C."""
+    values = np.exp(np.clip(logarithms, -300, 300))
+    branches = tuple(
+        Branch(
+            resistance=1 / (2 * np.pi * f_s * quality * capacitance),
+            inductance=1 / ((2 * np.pi * f_s) ** 2 * capacitance),
+            capacitance=capacitance,
+        )
+        for f_s, quality, capacitance in sorted(values[1:].reshape(-1, 3).tolist())
+    )
+    return ButterworthVanDyke(
+        parallel_capacitance=float(values[0]), branches=branches, series_resistance=series_resistance
+    )
+
+
+def _quantities(logarithms: Floats) -> dict[str, float]:
+    """Quantities of a circuit whose confidence intervals are reported."""
+    circuit = _circuit(logarithms, 0.0)
+    found = resonances(circuit)
+    named = {"parallel_capacitance": circuit.parallel_capacitance}
+    for index, branch in enumerate(circuit.branches):
+        named |= {
+            f"resistance_{index + 1}": branch.resistance,
+            f"inductance_{index + 1}": branch.inductance,
+            f"capacitance_{index + 1}": branch.capacitance,
+            f"series_frequency_{index + 1}": float(found.series_frequency[index]),
+            f"parallel_frequency_{index + 1}": float(found.parallel_frequency[index]),
+            f"mechanical_quality_factor_{index + 1}": float(found.mechanical_quality_factor[index]),
+            f"coupling_factor_{index + 1}": float(found.coupling_factor[index]),
+        }
+    return named
+
+
+def _circuit_fit(
+    spectrum: _Spectrum,
+    fit: LogParameterFit,
+    fits: list[LogParameterFit],
+    requested: int | None,
+    confidence_level: float,
+) -> CircuitFit:
+    """Result record of the chosen fit; `fits` are those with 1, 2, ... branches."""
+    circuit = _circuit(fit.logarithms, spectrum.series_resistance)
+    correlation = spectrum.correlation(fit)
+    return CircuitFit(
+        circuit=circuit,
+        resonances=resonances(circuit),
+        intervals=confidence_intervals(fit, _quantities, correlation=correlation, confidence_level=confidence_level),
+        residual=spectrum.residual,
+        residual_rms=float(np.sqrt(fit.sum_of_squares / spectrum.frequency.size)),
+        information_criteria=tuple(each.information_criterion for each in fits),
+        residual_correlation=correlation,
+        confidence_level=confidence_level,
+        caveats=_caveats(fit, len(circuit.branches), requested, correlation),
+    )
+
+
+def _caveats(fit: LogParameterFit, branches: int, requested: int | None, correlation: float) -> tuple[str, ...]:
+    """Warnings about too few branches, convergence and correlated residuals."""
+    caveats = []
+    if requested is not None and branches < requested:
+        caveats.append(
+            f"{requested} branches were requested; the spectrum determines only {branches}: sweep wider or with more"
+            " points"
+        )
+    if not fit.converged:
+        caveats.append("the fit did not converge; take fewer branches")
+    if correlation > _CORRELATED:
+        caveats.append(
+            f"residuals are correlated over {correlation:.0f} points: the circuit does not describe the spectrum fully;"
+            " dielectric losses or weaker modes may be missing"
+        )
+    return tuple(caveats)

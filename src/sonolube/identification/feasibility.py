@@ -1,0 +1,115 @@
+"""Consistency of facts under a model: a global search for a feasible point for each set of facts in question."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from sonolube.checks import Floats
+from sonolube.errors import InvalidInput
+from sonolube.identification.bounded_search import BoundedModel, find_feasible_point
+from sonolube.identification.fact import Fact
+from sonolube.identification.subsets import ConsistentSubsets, consistent_subsets
+
+_ATTEMPTS, _CONFIRMING_ATTEMPTS = 2, 10  # searches for a set, and those that confirm a minimal conflict
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ConsistentFacts:
+    """Minimal conflicts and maximal consistent subsets of facts, with feasible points that prove the consistency.
+
+    Parameters
+    ----------
+    subsets : ConsistentSubsets
+        Of the names of the facts.
+    points : mapping of frozenset of str to tuple of ndarray
+        For each maximal consistent subset, logarithms of parameters with which its facts hold.
+    """
+
+    subsets: ConsistentSubsets
+    points: Mapping[frozenset[str], tuple[Floats, ...]]
+
+
+def consistent_facts(bounded: BoundedModel, facts: Sequence[Fact], *, seed: int) -> ConsistentFacts:
+    """Minimal conflicts and maximal consistent subsets of facts under a bounded model.
+
+    Parameters
+    ----------
+    bounded : BoundedModel
+    facts : sequence of Fact
+    seed : int
+        Seed of the searches.
+
+    Returns
+    -------
+    ConsistentFacts
+
+    Raises
+    ------
+    InvalidInput
+        If there are more than 16 facts, or a fact that no parameters within the bounds satisfy even alone.
+
+    Notes
+    -----
+    A search that fails proves nothing. So every minimal conflict is confirmed by ten more searches at the end, and
+    where one of them finds a feasible point, the subsets are enumerated again with that knowledge.
+    """
+    oracle = _FeasibilityOracle(bounded=bounded, facts=facts, seed=seed)
+    names = [fact.name for fact in facts]
+    subsets = consistent_subsets(names, oracle.is_satisfiable)
+    while oracle.refute(subsets.conflicts):
+        subsets = consistent_subsets(names, oracle.is_satisfiable)
+    for conflict in subsets.conflicts:
+        if len(conflict) == 1:
+            raise InvalidInput(
+                f"fact {next(iter(conflict))} cannot be satisfied by any parameters within the bounds; widen the bounds"
+                " or its tolerance"
+            )
+    return ConsistentFacts(
+        subsets=subsets,
+        points={
+            names: tuple(point for satisfied, point in oracle.found if names <= satisfied)
+            for names in subsets.consistent
+        },
+    )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _FeasibilityOracle:
+    """Memoised searches: feasible points with the facts that each satisfies, and sets for which every search failed."""
+
+    bounded: BoundedModel
+    facts: Sequence[Fact]
+    seed: int
+    found: list[tuple[frozenset[str], Floats]] = field(default_factory=list)
+    failed: set[frozenset[str]] = field(default_factory=set)
+
+    def is_satisfiable(self, names: frozenset[str]) -> bool:
+        """Whether a feasible point of these facts is known or found by a few searches."""
+        if not names or any(names <= satisfied for satisfied, _ in self.found):
+            return True
+        if names in self.failed or not self._search(names, attempts=_ATTEMPTS):
+            self.failed.add(names)
+            return False
+        return True
+
+    def refute(self, conflicts: Sequence[frozenset[str]]) -> bool:
+        """Search each conflict again; where one is refuted, forget the failures on its subsets and return true."""
+        refuted = [conflict for conflict in conflicts if self._search(conflict, attempts=_CONFIRMING_ATTEMPTS)]
+        self.failed.difference_update({names for names in self.failed if any(names <= known for known in refuted)})
+        return bool(refuted)
+
+    def _search(self, names: frozenset[str], *, attempts: int) -> bool:
+        """Whether one of several seeds finds a feasible point, which is then recorded."""
+        chosen = [fact for fact in self.facts if fact.name in names]
+        for attempt in range(attempts):
+            point = find_feasible_point(self.bounded, chosen, seed=self.seed + attempt)
+            if point is not None:
+                self.found.append((self._satisfied(point), point))
+                return True
+        return False
+
+    def _satisfied(self, point: Floats) -> frozenset[str]:
+        """Names of all facts that hold within their tolerance at a point."""
+        residuals = self.bounded.residuals(self.facts, point[np.newaxis])[0]
+        return frozenset(fact.name for fact, residual in zip(self.facts, residuals, strict=True) if abs(residual) <= 1)

@@ -1,0 +1,109 @@
+"""Identified parameters as the tables `stack` and `structure` of a rig file, with the verdict on each fact."""
+
+import math
+from collections.abc import Mapping
+
+from sonolube.actuator import PiezoStack
+from sonolube.identification.fact import Fact
+from sonolube.identification.result import Identification, ParameterEstimate
+from sonolube.vocabulary import unit_of
+
+_STACK = ("free_capacitance", "free_stroke_per_volt", "stack_stiffness", "stack_mass", "stack_damping")
+_STATED = ("lowest_voltage", "highest_voltage", "preload", "coupling_factor")  # where they are known
+_SHOWN_EXPONENT = 0.1  # least exponent of a direction that is written
+
+
+def rig_tables(
+    identification: Identification, stack: PiezoStack, *, structure: Mapping[str, float] | None = None
+) -> str:
+    """Tables `stack` and `structure` of a rig file from an identification.
+
+    Parameters
+    ----------
+    identification : Identification
+        Of entries of the two tables.
+    stack : PiezoStack
+        Entries of the table `stack` that were not identified.
+    structure : mapping of str to float, optional
+        Entries of the table `structure` in SI, in the order in which to write them; identified ones are replaced.
+        Without it the table holds the identified entries alone.
+
+    Returns
+    -------
+    str
+        TOML. Comments state the verdict on each fact, the minimal conflicts, the unidentifiable directions, and the
+        feasible interval of each identified parameter.
+    """
+    estimates = identification.estimates
+    stated = [name for name in _STATED if getattr(stack, name) is not None]
+    fixed = {name: float(getattr(stack, name)) for name in (*_STACK, *stated)}
+    entries = structure if structure is not None else [name for name in estimates if name not in fixed]
+    fixed.update(structure or {})
+    return (
+        "\n".join(
+            [
+                "[stack]",
+                *(_line(name, fixed, estimates) for name in (*_STACK, *stated)),
+                "",
+                *_comments(identification),
+                "[structure]",
+                *(_line(name, fixed, estimates) for name in entries),
+            ]
+        )
+        + "\n"
+    )
+
+
+def _line(name: str, fixed: Mapping[str, float], estimates: Mapping[str, ParameterEstimate]) -> str:
+    """One entry, with the feasible interval where it was identified."""
+    unit = unit_of(name)
+    if name in estimates:
+        return f'{name} = "{_quantity(estimates[name].value, unit)}"  # {_interval(name, estimates[name])}'
+    digits = 5 if math.isclose(float(f"{fixed[name]:.5g}"), fixed[name], rel_tol=1e-12) else 12
+    return f'{name} = "{_quantity(fixed[name], unit, digits=digits)}"'
+
+
+def _quantity(value: float, unit: str, *, digits: int = 5) -> str:
+    """Value in SI with its unit, as a rig file takes it."""
+    return f"{value:.{digits}g} {unit}".rstrip()
+
+
+def _interval(name: str, estimate: ParameterEstimate) -> str:
+    """Feasible interval as text, with the ends that are only bounds of the search marked."""
+    lower, upper = (_quantity(end, unit_of(name)) for end in (estimate.lower, estimate.upper))
+    if estimate.lower_is_bound and estimate.upper_is_bound:
+        return f"not limited by any fact from {lower} to {upper}"
+    at_lower, at_upper = " (bound)" * estimate.lower_is_bound, " (bound)" * estimate.upper_is_bound
+    return f"{lower}{at_lower} to {upper}{at_upper}"
+
+
+def _comments(identification: Identification) -> list[str]:
+    """Comment lines on the facts, their conflicts and the directions in which they determine nothing."""
+    names = [fact.name for fact in identification.facts]
+    conflicts = [", ".join(name for name in names if name in conflict) for conflict in identification.conflicts]
+    directions = [
+        " ".join(
+            f"{name}^{exponent:+.2f}"
+            for name, exponent in direction.exponents.items()
+            if abs(exponent) > _SHOWN_EXPONENT
+        )
+        for direction in identification.unidentifiable_directions
+    ]
+    return [
+        "# Identified from the facts below. All satisfied ones still hold at either end of a parameter's interval.",
+        *(f"# - {_verdict(fact, identification)}" for fact in identification.facts),
+        *(f"# Mutually inconsistent: {conflict}." for conflict in conflicts),
+        *(f"# Not determined within a factor of e: {direction}." for direction in directions),
+    ]
+
+
+def _verdict(fact: Fact, identification: Identification) -> str:
+    """Model value, stated value, residual and source of one fact."""
+    residual = round(identification.consistent_fits[0].residuals[fact.name], 2) + 0.0  # no minus zero
+    limit = "" if fact.relation == "=" else f"{fact.relation} "
+    verdict = "satisfied" if fact.name in identification.satisfied else "rejected"
+    return (
+        f"{fact.name}: {_quantity(identification.observed[fact.name], fact.unit)} for {limit}"
+        f"{_quantity(fact.value, fact.unit)} +- {_quantity(fact.tolerance, fact.unit)}, {verdict} at {residual:+.2f}"
+        f" tolerances; rank {fact.rank}, {fact.source}"
+    )

@@ -1,0 +1,298 @@
+"""Files of facts for the identification of a rig: TOML tables to an identification problem and its forward model."""
+
+import tomllib
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from types import MappingProxyType
+from typing import Annotated, Any
+
+from pydantic import Field, ValidationError
+
+from sonolube.actuator import PiezoStack
+from sonolube.dynamics import Structure, chain_structure, pin_on_disc_chain
+from sonolube.errors import InvalidInput, SonolubeError, UnknownName, suggestion
+from sonolube.identification import (
+    Bounds,
+    Conditions,
+    Fact,
+    ForwardModel,
+    Identification,
+    IdentificationProblem,
+    Observation,
+    Relation,
+    observable_unit,
+    parametric_structure,
+    reference_parameters,
+    rig_tables,
+    structure_model,
+)
+from sonolube.rig.file.plausible import plausible_si
+from sonolube.rig.file.reader import rig_content, rig_from
+from sonolube.rig.file.section import Section
+from sonolube.rig.file.sections import RigFile, Text
+from sonolube.rig.file.structures import PinOnDiscSection
+from sonolube.units import kind_of, to_si
+from sonolube.vocabulary import unit_of
+
+_LARGEST_FILE = 1_000_000  # bytes
+_MOST_FACTS = 16
+_LEAST_NUMBER, _LARGEST_NUMBER = 1e-9, 1e9  # of a pure number
+_FREE = (
+    *(name for name in PinOnDiscSection.model_fields if name != "kind"),
+    "free_capacitance",
+    "free_stroke_per_volt",
+    "stack_stiffness",
+    "stack_damping",
+    "stack_mass",
+)
+
+
+class ConditionsSection(Section):
+    """Conditions of an observation; see `sonolube.identification.Conditions`."""
+
+    frequency: float | None = None
+    voltage_peak_to_peak: float | None = None
+    normal_load: float | None = None
+    decay_length: float | None = None
+    observation_time: float | None = None
+    added_mass: float | None = None
+    added_to: Text | None = None
+
+
+class FactSection(ConditionsSection):
+    """One fact: an observable, its value or limit, tolerance, rank and source, and conditions of its own."""
+
+    observable: Text
+    value: str | float
+    tolerance: str | float
+    rank: Annotated[int, Field(ge=1)]
+    relation: Relation = "="
+    name: Text | None = None
+    meaning: str = ""
+    source: Text
+
+
+class FactsFile(Section):
+    """A file of facts about a rig."""
+
+    title: Text
+    source: Text
+    parameters: Annotated[dict[str, list[str]], Field(min_length=1)]
+    conditions: ConditionsSection = ConditionsSection()
+    facts: Annotated[list[FactSection], Field(min_length=1, max_length=_MOST_FACTS)]
+
+
+def read_facts(path: str | Path) -> IdentificationProblem:
+    """Identification problem from a TOML file of facts.
+
+    Parameters
+    ----------
+    path : str or Path
+        File with `title`, `source`, and the tables `parameters` (lower and upper bound of each free entry of a rig
+        file's tables `structure` and `stack`), `conditions` (of all observations) and `facts` (an array of tables, in
+        the order of trust among equals of rank). Quantities are text with a unit.
+
+    Returns
+    -------
+    IdentificationProblem
+
+    Raises
+    ------
+    InvalidInput
+        In one line that names the file, the key and the value: the file cannot be read, is larger than 1 MB or no TOML,
+        a key is unknown or missing, a value has a wrong unit or is not plausible, an observable is unknown, or two
+        facts have one name.
+    """
+    path = Path(path)
+    with _prefixed(str(path)):
+        try:
+            file = FactsFile.model_validate(_toml(path))
+        except ValidationError as refusal:
+            raise InvalidInput(_first_error(refusal)) from None
+        return _problem(file)
+
+
+def rig_forward_model(path: str | Path, problem: IdentificationProblem) -> ForwardModel:
+    """Forward model of a rig for the observations of an identification problem.
+
+    Parameters
+    ----------
+    path : str or Path
+        The rig's file, with the tables `stack` and `structure`; entries that are not free keep their values.
+    problem : IdentificationProblem
+
+    Returns
+    -------
+    callable
+        See `sonolube.identification.structure_model`.
+
+    Raises
+    ------
+    InvalidInput
+        As `read_rig`, or if the file lacks the tables, the bounds allow impossible structures, or a condition that an
+        observable requires is missing.
+    """
+    stack, structure = _stack_and_structure(path)
+
+    def build(parameters: Mapping[str, float]) -> Structure:
+        own_stack, own_structure = (
+            {name: parameters.get(name, value) for name, value in table.items()} for table in (stack, structure)
+        )
+        own_stack["coupling_factor"] = None  # the stated one belongs to the file's stack
+        return chain_structure(pin_on_disc_chain(PiezoStack(**own_stack), **own_structure))
+
+    reference = reference_parameters(build, bounds=problem.bounds)
+    return structure_model(parametric_structure(build, reference=reference), problem.observations)
+
+
+def identified_tables(path: str | Path, identification: Identification) -> str:
+    """Tables `stack` and `structure` of a rig with identified parameters, as text for `with_tables`.
+
+    Parameters
+    ----------
+    path : str or Path
+        The rig's file, with both tables; entries that were not identified keep their values.
+    identification : Identification
+        Of entries of the two tables.
+
+    Returns
+    -------
+    str
+        TOML, with comments on facts and feasible intervals.
+
+    Raises
+    ------
+    InvalidInput
+        As `read_rig`, or if the file lacks the tables.
+    """
+    stack, structure = _stack_and_structure(path)
+    return rig_tables(identification, PiezoStack(**stack), structure=structure)
+
+
+def _stack_and_structure(path: str | Path) -> tuple[dict[str, Any], dict[str, float]]:
+    """Entries of both tables of a rig's file, checked, in SI."""
+    content = rig_content(path)
+    with _prefixed(str(path)):
+        rig_from(content)
+        file = RigFile.model_validate(content)
+        if file.stack is None or file.structure is None:
+            raise InvalidInput("the tables stack and structure are missing; give both to identify their entries")
+        if not isinstance(file.structure, PinOnDiscSection):
+            raise InvalidInput(f'structure.kind: "{file.structure.kind}" has no entries to identify; "pin_on_disc" has')
+        return file.stack.model_dump(), file.structure.entries()
+
+
+def _toml(path: Path) -> dict[str, Any]:
+    """Content of a TOML file of bounded size."""
+    try:
+        if path.stat().st_size > _LARGEST_FILE:
+            raise InvalidInput("larger than a file of facts can be (1 MB)")
+        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except FileNotFoundError:
+        raise InvalidInput("no such file") from None
+    except OSError as failure:
+        raise InvalidInput(f"cannot be read: {failure.strerror}") from None
+    except UnicodeDecodeError as failure:
+        raise InvalidInput(f"not UTF-8 text: byte {failure.object[failure.start]:#04x} at {failure.start}") from None
+    except tomllib.TOMLDecodeError as failure:
+        raise InvalidInput(f"not valid TOML: {failure}") from None
+    except RecursionError:
+        raise InvalidInput("not valid TOML: nested too deeply") from None
+
+
+def _problem(file: FactsFile) -> IdentificationProblem:
+    """Bounds, facts and observations of a checked file, in SI."""
+    bounds = {name: _bounds(name, ends) for name, ends in file.parameters.items()}
+    names = [section.name or section.observable for section in file.facts]
+    for name in names:
+        if names.count(name) > 1:
+            raise InvalidInput(f"facts: two facts have the name {name}; give one of them a name of its own")
+    facts, observations = [], {}
+    common = file.conditions.model_dump(exclude_none=True)
+    for index, (name, section) in enumerate(zip(names, file.facts, strict=True)):
+        with _prefixed(f"facts.{index}"):
+            own = section.model_dump(include=set(ConditionsSection.model_fields), exclude_none=True)
+            observations[name] = Observation(observable=section.observable, conditions=Conditions(**{**common, **own}))
+            facts.append(_fact(name, section, bounds))
+    return IdentificationProblem(
+        facts=tuple(facts),
+        observations=MappingProxyType(observations),
+        bounds=MappingProxyType(bounds),
+        title=file.title,
+        source=file.source,
+    )
+
+
+def _fact(name: str, section: FactSection, bounds: Bounds) -> Fact:
+    """Fact of one section, in the unit of its observable."""
+    try:
+        unit = observable_unit(section.observable, bounds)
+    except UnknownName as refusal:
+        raise InvalidInput(f"observable: {refusal}") from None
+    return Fact(
+        name=name,
+        value=_quantity("value", section.value, unit),
+        tolerance=_quantity("tolerance", section.tolerance, unit),
+        rank=section.rank,
+        unit=unit,
+        relation=section.relation,
+        meaning=section.meaning,
+        source=section.source,
+    )
+
+
+def _quantity(key: str, value: str | float, unit: str) -> float:
+    """Number in SI from text with a unit; pure numbers, such as quality factors, may stand without quotes."""
+    if unit:
+        if not isinstance(value, str):
+            raise InvalidInput(f"{key} {value!r} has no unit; wanted {kind_of(unit)}, in quotes")
+        return plausible_si(value, unit=unit, name=key)
+    number = to_si(value, unit="", name=key) if isinstance(value, str) else value
+    if not _LEAST_NUMBER <= number <= _LARGEST_NUMBER:
+        raise InvalidInput(f"{key} must lie between {_LEAST_NUMBER:g} and {_LARGEST_NUMBER:g}, got {value}")
+    return number
+
+
+def _bounds(name: str, ends: Sequence[str]) -> tuple[float, float]:
+    """Lower and upper bound of a free parameter, in SI."""
+    if name not in _FREE:
+        raise InvalidInput(
+            f"parameters.{name}: no entry of the tables structure and stack; {suggestion(name, _FREE)}".removesuffix(
+                "; "
+            )
+        )
+    if len(ends) != 2:
+        raise InvalidInput(f"parameters.{name}: must be a lower and an upper bound, got {len(ends)} values")
+    lower, upper = (plausible_si(end, unit=unit_of(name), name=f"parameters.{name}") for end in ends)
+    if not 0 < lower < upper:
+        raise InvalidInput(f"parameters.{name}: bounds must be positive and rise, got {ends[0]} and {ends[1]}")
+    return lower, upper
+
+
+def _first_error(refusal: ValidationError) -> str:
+    """First error of a file as one line, with the number of the others; an unknown key before a missing one."""
+    errors = refusal.errors(include_url=False, include_context=False)
+    first = min(errors, key=lambda error: error["type"] != "extra_forbidden")
+    key = ".".join(str(part) for part in first["loc"])
+    rest = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
+    return f"{key}: {_reason(first['type'], first['loc'], first['msg'])}{rest}".removeprefix(": ")
+
+
+def _reason(kind: str, place: tuple[int | str, ...], message: str) -> str:
+    """Reason of a refusal in plain words."""
+    if kind == "extra_forbidden":
+        table = next((part for part in place[:-1] if isinstance(part, str)), "")
+        sections: Mapping[str, type[Section]] = {"facts": FactSection, "conditions": ConditionsSection}
+        section = sections.get(table, FactsFile)
+        return f"unknown key; {suggestion(str(place[-1]), section.model_fields)}".removesuffix("; ")
+    return "missing" if kind == "missing" else message.removeprefix("Value error, ").strip()
+
+
+@contextmanager
+def _prefixed(place: str) -> Iterator[None]:
+    """Prefix refusals with the place in the file."""
+    try:
+        yield
+    except SonolubeError as refusal:
+        raise InvalidInput(f"{place}: {refusal}") from None

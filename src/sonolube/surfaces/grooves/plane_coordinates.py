@@ -1,0 +1,82 @@
+"""Coordinates in the field of a scan: Cartesian from its centre, and along a circular arc."""
+
+import math
+
+import numpy as np
+
+from sonolube.checks import Floats
+from sonolube.surfaces.height_map import HeightMap
+
+
+def centred_coordinates(surface: HeightMap) -> tuple[Floats, Floats]:
+    """Positions of columns and rows relative to the centre of the field.
+
+    Parameters
+    ----------
+    surface : HeightMap
+
+    Returns
+    -------
+    x : ndarray, shape (1, columns)
+        Positions of the columns, in m.
+    y : ndarray, shape (rows, 1)
+        Positions of the rows, in m.
+    """
+    rows, columns = surface.height.shape
+    x = surface.x - surface.spacing_x * (columns - 1) / 2
+    y = surface.y - surface.spacing_y * (rows - 1) / 2
+    return x[None, :], y[:, None]
+
+
+def arc_coordinates(x: Floats, y: Floats, direction: float, curvature: float) -> tuple[Floats, Floats]:
+    r"""Curvilinear coordinates of points with respect to a circle through the origin.
+
+    Parameters
+    ----------
+    x, y : ndarray
+        Cartesian coordinates that broadcast against each other, in m.
+    direction : float
+        Direction of the circle at the origin, in rad.
+    curvature : float
+        Curvature of the circle in 1/m, positive for a centre to the left; zero for a line.
+
+    Returns
+    -------
+    transverse : ndarray, shape of the broadcast points
+        Distance from the circle in m, positive to the left of its direction.
+    arc_length : ndarray, shape of the broadcast points
+        Length along the circle from the origin to the foot of the point, in m.
+
+    Notes
+    -----
+    With the coordinates :math:`a` ahead and :math:`l` to the left of the origin and the curvature :math:`\kappa`
+
+    .. math:: s = \frac{2 l - \kappa (l^2 + a^2)}{1 + \sqrt{(1 - \kappa l)^2 + (\kappa a)^2}}, \qquad
+        t = \frac1\kappa \operatorname{atan2}(\kappa a, 1 - \kappa l) ,
+
+    which has the limit :math:`s = l`, :math:`t = a` of a line without cancellation.
+    """
+    cos, sin = math.cos(direction), math.sin(direction)
+    ahead, left = x * cos + y * sin, y * cos - x * sin
+    if curvature == 0:
+        return left, ahead
+    from_centre = np.sqrt(np.square(1 - curvature * left) + np.square(curvature * ahead))  # times the curvature
+    transverse = (2 * left - curvature * (np.square(left) + np.square(ahead))) / (1 + from_centre)
+    return transverse, np.arctan2(curvature * ahead, 1 - curvature * left) / curvature
+
+
+def monomials(u: Floats, v: Floats, terms: int) -> list[Floats]:
+    """First monomials 1, u, v, u^2, u v and v^2 of two coordinates.
+
+    Parameters
+    ----------
+    u, v : ndarray
+        Coordinates that broadcast against each other.
+    terms : int
+        Number of monomials, 6 at most.
+
+    Returns
+    -------
+    list of ndarray
+    """
+    return [np.ones_like(u + v), u + 0 * v, v + 0 * u, u**2 + 0 * v, u * v, v**2 + 0 * u][:terms]

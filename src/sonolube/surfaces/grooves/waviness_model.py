@@ -1,0 +1,93 @@
+"""Waviness model of the unworn surface: polynomial form and plane waves, with covariance and Bayesian evidence."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sonolube.checks import Floats
+from sonolube.surfaces.grooves.plane_coordinates import monomials
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class WavinessModel:
+    r"""Polynomial form and a sum of plane waves.
+
+    Parameters
+    ----------
+    form : ndarray, shape (3,) or (6,)
+        Coefficients in m of 1, x/l, y/l and, with six, x^2/l^2, x y/l^2, y^2/l^2, with l half the longer side of the
+        field.
+    half_side : float
+        Half the longer side of the field, l, in m.
+    modes : ndarray, shape (n, 2)
+        Wavenumbers along x and y, in waves per metre.
+    cosine, sine : ndarray, shape (n,)
+        Amplitudes in m, with phase zero at the centre of the field.
+    section : ndarray, shape (functions,)
+        Coefficients of the basis functions `BlockAverages.section`.
+    covariance : ndarray, shape (p, p)
+        Covariance of form, cosines and sines and, where wavenumbers were fitted, of their components along x, then y.
+    noise : tuple of float
+        Variances in m2 of the means of unworn and of worn blocks about the model.
+    cost : float
+        Minus twice the logarithm of the evidence, up to a constant; the smaller, the more probable the model.
+    random : bool
+        Whether the waves are the posterior mean of a random field rather than a few fitted waves.
+
+    Notes
+    -----
+    .. math:: z(x, y) = \sum_j f_j\, p_j(x/l, y/l)
+        + \sum_i \left[c_i \cos 2\pi (k_{x,i} x + k_{y,i} y) + s_i \sin 2\pi (k_{x,i} x + k_{y,i} y)\right]
+    """
+
+    form: Floats
+    half_side: float
+    modes: Floats
+    cosine: Floats
+    sine: Floats
+    section: Floats
+    covariance: Floats
+    noise: tuple[float, ...]
+    cost: float
+    random: bool
+
+    def form_alone(self, x: Floats, y: Floats) -> Floats:
+        """Heights of the form in m at positions x, shape (1, columns), and y, shape (rows, 1), in m."""
+        terms = monomials(x / self.half_side, y / self.half_side, self.form.size)
+        return np.asarray(sum(factor * power for factor, power in zip(self.form, terms, strict=True)))
+
+    def heights(self, x: Floats, y: Floats) -> Floats:
+        """Heights of form and waves in m at positions x, shape (1, columns), and y, shape (rows, 1), in m."""
+        along_x, along_y = self._complex_waves(x.ravel(), y.ravel())
+        waves = (along_y * (self.cosine - 1j * self.sine)) @ along_x.T
+        return np.asarray(self.form_alone(x, y) + waves.real)
+
+    def height_sum_gradient(self, x: Floats, y: Floats, region: NDArray[np.bool_]) -> Floats:
+        """Gradient of the sum of the heights over a region with respect to the fitted parameters, shape (p,)."""
+        terms = monomials(x / self.half_side, y / self.half_side, self.form.size)
+        form = [float(np.sum(np.broadcast_to(power, region.shape)[region])) for power in terms]
+        x, y = x.ravel(), y.ravel()
+        along_x, along_y = self._complex_waves(x, y)
+        in_rows = region.astype(np.float64) @ along_x  # (rows, n)
+        waves = np.sum(along_y * in_rows, axis=0)
+        sums = [np.array(form), waves.real, waves.imag]
+        if not self.random:  # d/dk of c cos + s sin = 2 pi x (-c sin + s cos)
+            amplitude = 2 * math.pi * (self.sine + 1j * self.cosine)
+            by_x = np.sum(along_y * (region @ (x[:, None] * along_x)), axis=0)
+            by_y = np.sum(y[:, None] * along_y * in_rows, axis=0)
+            sums += [(amplitude * by_x).real, (amplitude * by_y).real]
+        return np.concatenate(sums)
+
+    def _complex_waves(self, x: Floats, y: Floats) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+        """Factors exp(2 pi i k_x x) and exp(2 pi i k_y y), whose products are the waves."""
+        factor = 2j * math.pi
+        return np.exp(factor * np.outer(x, self.modes[:, 0])), np.exp(factor * np.outer(y, self.modes[:, 1]))
+
+
+def model_probabilities(models: list[WavinessModel]) -> Floats:
+    """Posterior probabilities of models of equal prior probability, from their evidence, shape (models,)."""
+    cost = np.array([model.cost for model in models])
+    weight = np.exp((cost.min() - cost) / 2)
+    return np.asarray(weight / weight.sum())

@@ -1,0 +1,148 @@
+"""Equivalent circuits fitted to spectra of known ones: values, numbers of branches and coverage of the intervals."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from pytest import approx, fixture, mark, raises, skip
+
+from sonolube.actuator import Branch, ButterworthVanDyke, circuit_admittance
+from sonolube.errors import InvalidInput, UnknownName
+from sonolube.identification.circuit_fit import fit_circuit
+from sonolube.measurement.impedance.reader import read_impedance
+from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
+
+RB5100 = Path(__file__).parents[3] / "shared" / "data" / "impedance" / "RB5100.txt"
+
+
+def branch(frequency: float, quality: float, capacitance: float) -> Branch:
+    omega = 2 * np.pi * frequency
+    return Branch(
+        resistance=1 / (omega * capacitance * quality), inductance=1 / (omega**2 * capacitance), capacitance=capacitance
+    )
+
+
+ONE = ButterworthVanDyke(parallel_capacitance=2e-9, branches=(branch(22e3, 150, 3e-10),))
+THREE = ButterworthVanDyke(
+    parallel_capacitance=5e-9,
+    branches=(branch(19e3, 90, 4e-10), branch(22e3, 300, 5e-11), branch(27e3, 60, 3e-10)),
+)
+
+
+def spectrum(
+    circuit: ButterworthVanDyke, *, noise: float = 0.0, seed: int = 0, points: int = 401, to: float = 32e3
+) -> ImpedanceSpectrum:
+    f = np.linspace(16e3, to, points)
+    rng = np.random.default_rng(seed)
+    scatter = noise * (rng.standard_normal(points) + 1j * rng.standard_normal(points))
+    return ImpedanceSpectrum(frequency=f, impedance=np.exp(scatter) / circuit_admittance(circuit, frequency=f))
+
+
+@mark.parametrize("residual", ["log-complex", "linear-magnitude"])
+def test_a_circuit_is_recovered_from_its_spectrum_without_noise(residual: str) -> None:
+    found = fit_circuit(spectrum(ONE), residual=residual)
+    assert len(found.circuit.branches) == 1
+    assert found.circuit.parallel_capacitance == approx(2e-9, rel=1e-4)
+    assert found.circuit.branches[0].resistance == approx(ONE.branches[0].resistance, rel=1e-4)
+    # closed forms of one branch
+    assert found.resonances.series_frequency[0] == approx(22e3, rel=1e-6)
+    assert found.resonances.parallel_frequency[0] == approx(22e3 * np.sqrt(1 + 3e-10 / 2e-9), rel=1e-5)
+    assert found.resonances.coupling_factor[0] == approx(np.sqrt(3e-10 / 2.3e-9), rel=1e-4)
+    assert found.resonances.mechanical_quality_factor[0] == approx(150, rel=1e-4)
+    assert found.residual == residual
+
+
+@mark.parametrize("noise", [0.0, 0.003, 0.02])
+def test_the_number_of_branches_is_recovered(noise: float) -> None:
+    for circuit, count in ((ONE, 1), (THREE, 3)):
+        found = fit_circuit(spectrum(circuit, noise=noise, seed=3))
+        assert len(found.circuit.branches) == count
+        for made, known in zip(found.circuit.branches, circuit.branches, strict=True):
+            assert made.capacitance == approx(known.capacitance, rel=1e-3 + 5 * noise)
+
+
+def test_a_known_resistance_of_the_leads_is_accounted_for() -> None:
+    behind = replace(ONE, series_resistance=25.0)
+    found = fit_circuit(spectrum(behind), series_resistance=25.0)
+    assert found.circuit.branches[0].resistance == approx(ONE.branches[0].resistance, rel=1e-3)
+
+
+def test_confidence_intervals_have_their_nominal_coverage() -> None:
+    truth = {"parallel_capacitance": 2e-9, "mechanical_quality_factor_1": 150.0, "series_frequency_1": 22e3}
+    held = dict.fromkeys(truth, 0)
+    runs = 80
+    for seed in range(runs):
+        known = fit_circuit(
+            spectrum(ONE, noise=0.02, seed=seed, points=161), branches=1, confidence_level=0.9
+        ).intervals
+        for name, value in truth.items():
+            held[name] += known[name].lower <= value <= known[name].upper
+    # 72 expected, 64 three binomial deviations below
+    assert all(count >= 64 for count in held.values()), held
+    assert any(count < runs for count in held.values()), held
+
+
+def test_a_mode_buried_in_noise_is_not_fitted_and_no_spurious_branch_is_added() -> None:
+    buried = replace(ONE, branches=(*ONE.branches, branch(28e3, 20, 2e-13)))
+    found = fit_circuit(spectrum(buried, noise=0.01))
+    assert len(found.circuit.branches) == 1
+    requested = fit_circuit(spectrum(ONE), branches=3)
+    assert len(requested.circuit.branches) < 3
+    assert "3 branches were requested" in requested.caveats[0]
+
+
+def test_dielectric_losses_raise_a_caveat_and_widen_the_intervals() -> None:
+    f = np.linspace(16e3, 32e3, 401)
+    lossy = circuit_admittance(ONE, frequency=f) + 2 * np.pi * f * 2e-9 * 0.05
+    found = fit_circuit(ImpedanceSpectrum(frequency=f, impedance=1 / lossy))
+    assert len(found.circuit.branches) == 1
+    assert found.residual_correlation > 3
+    assert "the circuit does not describe the spectrum fully" in found.caveats[0]
+
+
+@mark.parametrize(("wrong", "message"), [
+    (lambda s: replace(s, impedance=s.impedance.conj()), "no resonance found .* check the sign of the phase"),
+    (lambda s: replace(s, impedance=2j * np.pi * s.frequency * 1e-3), "leads the voltage at no frequency"),
+    (lambda s: replace(s, frequency=s.frequency[:6], impedance=s.impedance[:6]), "at least 8 points, got 6"),
+    (lambda s: replace(s, impedance=1 / (2j * np.pi * s.frequency * 1e-9)), "no resonance found"),
+])  # fmt: skip
+def test_a_spectrum_without_a_resonance_is_refused(wrong: object, message: str) -> None:
+    with raises(InvalidInput, match=message):
+        fit_circuit(wrong(spectrum(ONE)))  # type: ignore[operator]
+
+
+def test_unknown_residuals_and_impossible_numbers_are_refused() -> None:
+    with raises(UnknownName, match=r"unknown residual 'log'; did you mean log-complex\?|unknown residual 'log'"):
+        fit_circuit(spectrum(ONE), residual="log")
+    with raises(InvalidInput, match="branches must lie between 1 and 8 for 401 points, got 9"):
+        fit_circuit(spectrum(ONE), branches=9)
+
+
+@fixture(scope="module")
+def rb5100() -> ImpedanceSpectrum:
+    if not RB5100.is_file():
+        skip(f"{RB5100.name} is not available")
+    return read_impedance(RB5100)
+
+
+def test_the_linear_fit_of_a_transducer_gives_its_published_values(rb5100: ImpedanceSpectrum) -> None:
+    found = fit_circuit(rb5100, residual="linear-magnitude")
+    assert found.circuit.parallel_capacitance == approx(1.574e-9, rel=1e-3)
+    assert found.circuit.branches[0].resistance == approx(22.2, abs=0.05)
+    assert found.resonances.series_frequency == approx([154_397], abs=2)
+    assert found.resonances.parallel_frequency == approx([182_966], abs=5)
+    assert found.resonances.mechanical_quality_factor == approx([73], abs=0.2)
+
+
+def test_the_logarithmic_fit_of_the_same_transducer_has_a_higher_quality_factor(rb5100: ImpedanceSpectrum) -> None:
+    found = fit_circuit(rb5100)
+    assert found.residual == "log-complex"
+    assert found.resonances.mechanical_quality_factor == approx([91.6], abs=0.5)
+    assert any("does not describe the spectrum fully" in caveat for caveat in found.caveats)
+
+
+def test_the_curve_that_the_analyser_computed_is_one_branch_to_its_last_digit(rb5100: ImpedanceSpectrum) -> None:
+    found = fit_circuit(read_impedance(RB5100, sweep="memory"))
+    assert len(found.circuit.branches) == 1
+    assert found.residual_rms < 1e-6
+    assert found.caveats == ()
