@@ -8,9 +8,8 @@ from numpy.typing import NDArray
 
 from sonolube.actuator.drive import Drive
 from sonolube.contact import GapMotion, separation
-from sonolube.dynamics.long_time_response import Attained, attained_motion
-from sonolube.dynamics.steady_friction import motion
-from sonolube.dynamics.steady_state import Status, SteadyStates, steady_state
+from sonolube.dynamics import Status, SteadyStates, contact_motion, steady_state
+from sonolube.dynamics.long_time_response import LongTimeResponse, march_until_settled
 from sonolube.errors import OutsideRange
 from sonolube.rig.excitation import ramp_of, voltage_harmonics, waveform_of
 from sonolube.rig.linear_response import gap_law_of, require_drive, require_structure
@@ -103,7 +102,7 @@ def steady_motion(rig: Rig) -> SteadyMotion:
     Where the balanced vibration is stable and alone it is what appears. Anything else is marched from rest, the voltage
     coming up as the rig's drive says, until transients have died out.
     """
-    balanced = _balanced(rig, falling=False)
+    balanced = _balanced(rig, upper_branch=False)
     if balanced.status == Status.PERIODIC:
         return _of_balance(rig, balanced, balanced.reason(()))
     if balanced.stability_undetermined(()):
@@ -112,10 +111,10 @@ def steady_motion(rig: Rig) -> SteadyMotion:
     told = f"{_why_marched(balanced)}; {_from_rest(require_drive(rig))}"
     found = attained.attractor
     if balanced.status == Status.MULTISTABLE and found.order == 1:
-        for states in (balanced, _balanced(rig, falling=True)):
+        for states in (balanced, _balanced(rig, upper_branch=True)):
             if _same(states, attained):
                 appears = engineering(float(states.vibration_amplitude), "m")
-                return _of_balance(rig, states, f"{told} that of {appears} appears{states.hopping(())}")
+                return _of_balance(rig, states, f"{told} that of {appears} appears{states.contact_loss_note(())}")
     early = (
         "" if attained.settled else f"; followed for {engineering(attained.marched_time, 's')}, before all is settled"
     )
@@ -140,7 +139,7 @@ def gap_motion(states: SteadyStates, point: int | tuple[int, ...]) -> GapMotion:
     InvalidInput
         If the point did not converge.
     """
-    period = motion(states, point, samples=_SAMPLES)
+    period = contact_motion(states, point, samples=_SAMPLES)
     return GapMotion(
         displacement=period.displacement,
         normal_force=period.normal_force,
@@ -149,7 +148,7 @@ def gap_motion(states: SteadyStates, point: int | tuple[int, ...]) -> GapMotion:
     )
 
 
-def _balanced(rig: Rig, *, falling: bool) -> SteadyStates:
+def _balanced(rig: Rig, *, upper_branch: bool) -> SteadyStates:
     structure, drive = require_structure(rig), require_drive(rig)
     return steady_state(
         structure,
@@ -159,14 +158,14 @@ def _balanced(rig: Rig, *, falling: bool) -> SteadyStates:
         voltage_harmonics=voltage_harmonics(drive),
         voltage_offset=drive.voltage_offset,
         separation=separation(rig.contact, normal_load=rig.normal_load),
-        falling=falling,
+        upper_branch=upper_branch,
     )
 
 
-def _marched(rig: Rig) -> Attained:
+def _marched(rig: Rig) -> LongTimeResponse:
     drive = require_drive(rig)
     assert drive.voltage_peak_to_peak is not None
-    return attained_motion(
+    return march_until_settled(
         require_structure(rig),
         gap_law_of(rig),
         normal_load=rig.normal_load,
@@ -193,7 +192,7 @@ def _from_rest(drive: Drive) -> str:
     return f"with the voltage brought up by a {drive.ramp_shape} ramp of {engineering(drive.ramp_duration, 's')},"
 
 
-def _same(states: SteadyStates, attained: Attained) -> bool:
+def _same(states: SteadyStates, attained: LongTimeResponse) -> bool:
     own = float(states.vibration_amplitude)
     return bool(abs(attained.amplitudes[0] - own) <= _SAME * own)
 
@@ -224,7 +223,7 @@ def _of_balance(rig: Rig, states: SteadyStates, reason: str) -> SteadyMotion:
     )
 
 
-def _of_march(rig: Rig, attained: Attained, balanced: SteadyStates, reason: str) -> SteadyMotion:
+def _of_march(rig: Rig, attained: LongTimeResponse, balanced: SteadyStates, reason: str) -> SteadyMotion:
     assert rig.stack is not None
     found, drive, record = attained.attractor, require_drive(rig), attained.record
     slow, repeats = float(found.beat_frequency), int(found.order)
@@ -259,7 +258,7 @@ def _of_march(rig: Rig, attained: Attained, balanced: SteadyStates, reason: str)
 
 
 def _stretches(
-    rig: Rig, x: NDArray[np.float64], force: NDArray[np.float64], attained: Attained, frequency: float
+    rig: Rig, x: NDArray[np.float64], force: NDArray[np.float64], attained: LongTimeResponse, frequency: float
 ) -> list[GapMotion]:
     """Cut a motion that does not repeat into beats, where the gap is widest and velocities close; tilt gaps shut."""
     steps, slow = attained.steps_per_period, float(attained.attractor.beat_frequency)
