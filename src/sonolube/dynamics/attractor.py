@@ -166,6 +166,9 @@ def classify_attractor(
         march,
         structure,
         gap_law,
+        frequency=f,
+        voltage_peak_to_peak=swing,
+        voltage_offset=offset,
         waveform=waveform,
         steps_per_period=steps_per_period,
         ramp=NO_RAMP,
@@ -174,9 +177,6 @@ def classify_attractor(
     )
     observed = run(
         normal_load=load,
-        frequency=f,
-        voltage_peak_to_peak=swing,
-        voltage_offset=offset,
         periods=periods,
         initial_state=initial_state,
         recorded_periods=_RECORDED,
@@ -184,14 +184,7 @@ def classify_attractor(
     )
 
     def advance_pair(states: State) -> State:
-        return run(
-            normal_load=np.stack([load, load]),
-            frequency=f,
-            voltage_peak_to_peak=swing,
-            voltage_offset=offset,
-            periods=_ROUND,
-            initial_state=states,
-        ).final_state
+        return run(normal_load=np.stack([load, load]), periods=_ROUND, initial_state=states).final_state
 
     diverged = observed.status == "diverged"
     order, settling = _repetition(observed, f)

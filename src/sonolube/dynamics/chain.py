@@ -80,6 +80,8 @@ class LumpedChain:
         Body on the contact's side of the stack, and body behind it; either may be "ground".
     contact : str
         Body that touches the other surface.
+    loaded : str or None
+        Body that the weights of the dead load hang on, where that is known.
 
     Raises
     ------
@@ -95,6 +97,7 @@ class LumpedChain:
     stack: PiezoStack
     stack_between: tuple[str, str]
     contact: str
+    loaded: str | None = None
 
     def __post_init__(self) -> None:
         if GROUND in self.masses:
@@ -106,8 +109,9 @@ class LumpedChain:
         for name in (end for pair in pairs for end in pair):
             if name not in self.masses and name != GROUND:
                 raise UnknownName.among([*self.masses, GROUND], kind="body", name=name)
-        if self.contact not in self.masses:
-            raise UnknownName.among(self.masses, kind="body", name=self.contact)
+        for body in (self.contact, self.loaded):
+            if body is not None and body not in self.masses:
+                raise UnknownName.among(self.masses, kind="body", name=body)
 
 
 def chain_structure(chain: LumpedChain) -> Structure:
@@ -153,6 +157,7 @@ def chain_structure(chain: LumpedChain) -> Structure:
         drive_vector=stack.charge_per_elongation * elongation,
         contact_vector=np.array([float(name == chain.contact) for name in names]),
         clamped_capacitance=stack.clamped_capacitance,
+        load_vector=None if chain.loaded is None else np.array([float(name == chain.loaded) for name in names]),
     )
 
 
@@ -218,6 +223,7 @@ def pin_on_disc_chain(
         stack=stack,
         stack_between=("tip", "reaction"),
         contact="tip",
+        loaded="arm",
     )
 
 

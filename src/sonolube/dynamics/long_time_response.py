@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -157,17 +158,14 @@ def march_until_settled(
     observed = _multiple_of_sixteen(
         settling / _DECAY_TIMES
     )  # a decay time holds several cycles of a weakly damped mode
-    run = partial(
-        march,
-        structure,
-        gap_law,
-        normal_load=normal_load,
-        frequency=frequency,
-        voltage_peak_to_peak=voltage_peak_to_peak,
-        voltage_offset=voltage_offset,
-        waveform=waveform,
-        strobed_periods=settling,
-    )
+    point: dict[str, Any] = {
+        "normal_load": normal_load,
+        "frequency": frequency,
+        "voltage_peak_to_peak": voltage_peak_to_peak,
+        "voltage_offset": voltage_offset,
+        "waveform": waveform,
+    }
+    run = partial(march, structure, gap_law, **point, strobed_periods=settling)
     most = _MOST_STEPS // (_TABLE_COST if gap_law.kind == TABULATED else 1)
     ramped, steps = math.ceil(ramp.duration * frequency), _first_steps(structure, frequency)
     if ramped * steps > most:
@@ -191,31 +189,13 @@ def march_until_settled(
         if not _changes(earlier, marched):
             break
     attractor = classify_attractor(
-        structure,
-        gap_law,
-        normal_load=normal_load,
-        frequency=frequency,
-        voltage_peak_to_peak=voltage_peak_to_peak,
-        voltage_offset=voltage_offset,
-        waveform=waveform,
-        initial_state=marched.final_state,
-        periods=observed,
-        steps_per_period=steps,
+        structure, gap_law, **point, initial_state=marched.final_state, periods=observed, steps_per_period=steps
     )
     recorded = int(attractor.order) or _multiple_of_sixteen(_BEATS * _periods_per_beat(attractor, frequency))
     finer = max(steps, _RECORDED_STEPS)
     recorded = min(recorded, _MOST_RECORDED // finer)
     record = trajectory(
-        structure,
-        gap_law,
-        normal_load=normal_load,
-        frequency=frequency,
-        voltage_peak_to_peak=voltage_peak_to_peak,
-        voltage_offset=voltage_offset,
-        waveform=waveform,
-        initial_state=attractor.final_state,
-        periods=recorded,
-        steps_per_period=finer,
+        structure, gap_law, **point, initial_state=attractor.final_state, periods=recorded, steps_per_period=finer
     )
     each = record.contact.displacement[:-1].reshape(recorded, finer)
     return LongTimeResponse(

@@ -1,6 +1,6 @@
 """Linear structure with one electrical port and one contact point: its matrices and its frequency responses."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -27,6 +27,8 @@ class Structure:
         Displacement of the contact per coordinate c, which is also generalised force per contact force.
     clamped_capacitance : float
         Capacitance C_S of the stack with all coordinates clamped. [F]
+    load_vector : ndarray, shape (n,), optional
+        Displacement of the weights of the dead load per coordinate, where it is known where they hang.
 
     Raises
     ------
@@ -51,6 +53,7 @@ class Structure:
     drive_vector: Floats
     contact_vector: Floats
     clamped_capacitance: float
+    load_vector: Floats | None = None
 
     def __post_init__(self) -> None:
         require_non_negative(clamped_capacitance=self.clamped_capacitance)
@@ -64,7 +67,7 @@ class Structure:
             if lowest < -1e-9 * scale or (name == "mass_matrix" and lowest <= 0):
                 demand = "positive definite" if name == "mass_matrix" else "positive semidefinite"
                 raise InvalidInput(f"{name} must be {demand}, got an eigenvalue of {lowest:.4g}")
-        for name in ("drive_vector", "contact_vector"):
+        for name in ("drive_vector", "contact_vector", *(("load_vector",) if self.load_vector is not None else ())):
             vector = require_finite(**{name: getattr(self, name)})
             if vector.shape != (n,):
                 raise InvalidInput(f"{name} must have shape ({n},), got {vector.shape}")
@@ -214,13 +217,10 @@ def with_contact_spring(structure: Structure, *, normal_stiffness: float, contac
     k = require_non_negative(normal_stiffness=normal_stiffness)
     d = require_non_negative(contact_damping=contact_damping)
     projector = np.multiply.outer(structure.contact_vector, structure.contact_vector)
-    return Structure(
-        mass_matrix=structure.mass_matrix,
+    return replace(
+        structure,
         damping_matrix=structure.damping_matrix + d * projector,
         stiffness_matrix=structure.stiffness_matrix + k * projector,
-        drive_vector=structure.drive_vector,
-        contact_vector=structure.contact_vector,
-        clamped_capacitance=structure.clamped_capacitance,
     )
 
 
