@@ -47,7 +47,9 @@ class CompileProcess(Listener):
                 )
 
     def on_end(self, event: Event) -> None:
-        """Ignore the end of a compilation."""
+        """Wait for the process after `newton_solve`: it is ahead with the kernels that the caller requires next."""
+        if event.data["dispatcher"] is newton_solve:
+            self.wait()
 
     def wait(self) -> int | None:
         """Wait for the process and return its exit status, or None if none was started."""
