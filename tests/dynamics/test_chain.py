@@ -59,7 +59,7 @@ def test_the_dissertations_matrices_have_the_same_natural_frequencies(
     k_p = 2e9
     printed = np.array([[k_p + k1, k_p, 0], [k_p, k_p + k2, -k2], [0, -k2, k2]])  # D 3.31: x1 points downwards
     theirs = np.sqrt(np.maximum(eigvalsh(printed, np.diag([m1, m2 + 0.07, m3])), 0)) / (2 * np.pi)
-    # there x2 and x3 stand for heights and x1 for a depth, which turns the sign of the coupling k_p alone
+    # there x2 and x3 are heights and x1 a depth, which reverses the sign of the coupling k_p alone
     assert ours == approx(theirs, rel=1e-6, abs=1e-5 * theirs[-1])
 
 

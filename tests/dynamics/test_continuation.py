@@ -33,7 +33,7 @@ def falling_frequency() -> ResponseCurve:
 
 
 def marched_amplitude(point: ResponseCurve, periods: int) -> float:
-    """Half of peak to peak after some periods that began on the curve, stepped by an integrator."""
+    """Return half the peak-to-peak displacement after some periods of direct integration from a point of the curve."""
     omega, volts = 2 * np.pi * float(point.frequency[0]), float(point.voltage_amplitude[0])
     balance = point.equations.at(
         point.equations.stack(float(point.mean_displacement[0]), point.harmonics[0]), omega=omega, scale=volts

@@ -32,7 +32,7 @@ HELD = chain_structure(replace(CHAIN, springs=(*CHAIN.springs, Spring(between=("
 
 @st.composite
 def proportional(draw: st.DrawFn) -> Structure:
-    """Any structure whose damping is a sum of shares of its masses and its stiffness."""
+    """Return any structure with Rayleigh damping, a combination of mass and stiffness matrix."""
     n = draw(st.integers(1, 4))
     rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     roots, springs = rng.normal(size=(2, n, n))

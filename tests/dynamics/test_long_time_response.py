@@ -38,12 +38,12 @@ SLOWLY = StartUpRamp(duration=0.2, shape="cosine")
 
 
 @cache
-def attained(which: str) -> LongTimeResponse:
+def response(which: str) -> LongTimeResponse:
     drive, volts = {"beating": (BEATING, BEATING_VOLTS), "double": (DOUBLE, DOUBLE_VOLTS)}[which]
     return march_until_settled(TRIBOMETER, ROUGH, **drive, voltage_peak_to_peak=2 * volts, ramp=SLOWLY)
 
 
-def balanced(which: str, *, upper_branch: bool = False) -> SteadyStates:
+def steady(which: str, *, upper_branch: bool = False) -> SteadyStates:
     drive, volts = {"beating": (BEATING, BEATING_VOLTS), "double": (DOUBLE, DOUBLE_VOLTS)}[which]
     return steady_state(TRIBOMETER, ROUGH, **drive, voltage_amplitude=volts, upper_branch=upper_branch)
 
@@ -51,7 +51,7 @@ def balanced(which: str, *, upper_branch: bool = False) -> SteadyStates:
 def integrated(
     load: float, frequency: float, volts: float, *, start: NDArray[np.float64], until: float
 ) -> NDArray[np.float64]:
-    """The contact's displacement seen eight times a period, by DOP853 from a state, the drive at once."""
+    """Return the contact's displacement at eight samples per period, by DOP853 from a state, without a ramp."""
     s, omega = TRIBOMETER, 2 * np.pi * frequency
     inverse = np.linalg.inv(s.mass_matrix)
 
@@ -100,9 +100,9 @@ def test_the_dissipated_power_is_the_electrical_power_of_harmonic_balance() -> N
 
 
 def test_an_unstable_vibration_is_replaced_by_a_beat_whatever_the_ramp_of_the_voltage() -> None:
-    assert balanced("beating").status == Status.UNSTABLE
+    assert steady("beating").status == Status.UNSTABLE
     found, at_once = (
-        attained("beating"),
+        response("beating"),
         march_until_settled(TRIBOMETER, ROUGH, **BEATING, voltage_peak_to_peak=2 * BEATING_VOLTS),
     )
     assert found.attractor.kind == at_once.attractor.kind == "beating"
@@ -112,25 +112,25 @@ def test_an_unstable_vibration_is_replaced_by_a_beat_whatever_the_ramp_of_the_vo
 
 
 def test_another_integrator_finds_the_same_beat() -> None:
-    found = attained("beating").attractor
+    found = response("beating").attractor
     start = np.concatenate([found.final_state.coordinates, found.final_state.velocities]) * 0.98
-    seen = integrated(61.209, 22436.58, BEATING_VOLTS, start=start, until=0.05)
-    once_a_period = seen.reshape(-1, 8)[-512:, 0]
-    assert np.ptp(once_a_period) / 2 == approx(float(found.beat_amplitude), rel=0.05)
-    spectrum = np.abs(np.fft.rfft((once_a_period - once_a_period.mean()) * np.hanning(512), 8192))
+    samples = integrated(61.209, 22436.58, BEATING_VOLTS, start=start, until=0.05)
+    strobed = samples.reshape(-1, 8)[-512:, 0]
+    assert np.ptp(strobed) / 2 == approx(float(found.beat_amplitude), rel=0.05)
+    spectrum = np.abs(np.fft.rfft((strobed - strobed.mean()) * np.hanning(512), 8192))
     assert np.argmax(spectrum) / 8192 * 22436.58 == approx(float(found.beat_frequency), rel=0.02)
 
 
 def test_of_two_coexisting_vibrations_a_slow_ramp_reaches_the_smaller() -> None:
-    small, large = balanced("double"), balanced("double", upper_branch=True)
+    small, large = steady("double"), steady("double", upper_branch=True)
     assert small.status == large.status == Status.MULTISTABLE
     assert float(small.coexisting_amplitude) == approx(float(large.vibration_amplitude), rel=1e-6)
-    assert attained("double").attractor.order == 1
-    assert attained("double").amplitudes == approx(float(small.vibration_amplitude), rel=1e-3)
+    assert response("double").attractor.order == 1
+    assert response("double").amplitudes == approx(float(small.vibration_amplitude), rel=1e-3)
 
 
 def test_another_integrator_started_from_the_final_state_repeats_the_motion() -> None:
-    found = attained("double").attractor
+    found = response("double").attractor
     start = np.concatenate([found.final_state.coordinates, found.final_state.velocities])
-    seen = np.asarray(integrated(95.5875, 446.00634, DOUBLE_VOLTS, start=start, until=0.1)).reshape(-1, 8)
-    assert seen[-1] == approx(seen[0], abs=2e-3 * float(attained("double").amplitudes[0]))
+    samples = np.asarray(integrated(95.5875, 446.00634, DOUBLE_VOLTS, start=start, until=0.1)).reshape(-1, 8)
+    assert samples[-1] == approx(samples[0], abs=2e-3 * float(response("double").amplitudes[0]))

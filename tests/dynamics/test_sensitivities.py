@@ -70,7 +70,7 @@ def compare(
     varied: Callable[[float], SteadyStates],
     unit: NDArray[np.float64] | float,
 ) -> None:
-    """Compare with central differences in shares of a unit, extrapolated to a step of zero."""
+    """Compare with central differences in fractions of a unit, extrapolated to a step of zero."""
 
     def differences(step: float) -> list[NDArray[np.float64]]:
         up, down = varied(step), varied(-step)

@@ -32,7 +32,7 @@ def states_at(gap_law: GapLaw, load: float, frequency: float, amplitude: float) 
 
 
 def integrated(states: SteadyStates) -> NDArray[np.complex128]:
-    """Multipliers of the coordinates' own equations, disturbed and integrated, with nothing of the code under test."""
+    """Return the multipliers from direct integration of the variational equation of the coordinates."""
     structure, law, n = states.structure, states.gap_law, states.structure.coordinates
     omega, load = 2 * np.pi * float(states.frequency), np.float64(states.normal_load)
     inverse, k = np.linalg.inv(structure.mass_matrix), np.arange(1, states.harmonics.size + 1)

@@ -43,7 +43,7 @@ def voltage_for(amplitude: float, frequency: float, structure: Structure = TRIBO
 
 
 def coordinates(states: SteadyStates) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
-    """Harmonics and mean of all coordinates, from the contact force over the period and the structure's matrices."""
+    """Return harmonics and mean of all coordinates from the contact force over the period and the matrices."""
     structure, samples = states.structure, 2048
     force = np.fft.rfft(contact_motion(states, (), samples=samples).normal_force) / samples
     voltage = np.zeros(65, dtype=complex)
@@ -65,7 +65,7 @@ def coordinates(states: SteadyStates) -> tuple[NDArray[np.complex128], NDArray[n
 
 
 def march_one_period(states: SteadyStates) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The state at the start of a period and, by an integrator that knows nothing of harmonics, at its end."""
+    """Return the state at the start of a period and, by direct integration, at its end."""
     structure, gap_law = states.structure, states.gap_law
     omega, load = 2 * np.pi * float(states.frequency), float(states.normal_load)
     k = np.arange(1, states.voltage_harmonics.size + 1)

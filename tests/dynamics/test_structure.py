@@ -29,7 +29,7 @@ ONE_MASS = Structure(
 
 @st.composite
 def structures(draw: st.DrawFn) -> Structure:
-    """Up to four coordinates with any passive coupling, some of them floating."""
+    """Return any passive structure with up to four coordinates, some of them floating."""
     n = draw(st.integers(1, 4))
     rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     springs, dampers = rng.normal(size=(2, draw(st.integers(1, 4)), n))

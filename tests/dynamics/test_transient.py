@@ -41,7 +41,7 @@ def tribometer(*, c_p: float = 30.0, k_2: float = 2e5, c_2: float = 20.0) -> Str
 
 
 def held(*, c: float) -> Structure:
-    """Return one mass on a spring to ground, driven and touched."""
+    """Return one mass on a spring to the ground, with drive and contact at the mass."""
     return Structure(
         mass_matrix=np.array([[0.1]]),
         damping_matrix=np.array([[c]]),

@@ -64,7 +64,7 @@ def first_order_modes(structure: Structure) -> FirstOrderModes:
 
     Returns
     -------
-    StatePairs
+    FirstOrderModes
 
     Raises
     ------

@@ -136,7 +136,7 @@ def march_until_settled(
 
     Returns
     -------
-    Attained
+    LongTimeResponse
 
     Raises
     ------

@@ -74,7 +74,7 @@ def gaussian() -> TabulatedGap:
 
 
 def batch(law: TabulatedGap | ExponentialGap, structure: Structure) -> SteadyStates:
-    """Loads from grazing to firm, amplitudes to many decay lengths."""
+    """Return steady states at light to heavy loads, with amplitudes up to many decay lengths."""
     loads, frequencies = np.array([0.5, 3.0, 40.0, 100.0]), np.array([[8e3], [15e3], [22e3]])
     swing = 5e-6 / np.abs(drive_receptance(structure, frequency=frequencies.ravel()))[:, np.newaxis]
     return steady_state(structure, law, normal_load=loads, frequency=frequencies, voltage_amplitude=swing)
@@ -151,7 +151,7 @@ def test_the_sensitivity_to_the_load_is_a_central_difference(gaussian: Tabulated
 
 
 def integrate(structure: Structure, load: float, frequency: float, volts: float, periods: int) -> tuple[Array, Array]:
-    """Displacement and force over the last period, by the contact's own force and an integrator."""
+    """Return displacement and force over the last period, by direct integration with the force of the rough contact."""
     d, omega, inverse = (
         separation(CONTACT, normal_load=load),
         2 * np.pi * frequency,
@@ -208,8 +208,8 @@ def test_gaussian_heights_carry_the_dead_load_of_a_floating_structure_in_the_mea
     assert np.all(states.status != Status.NOT_CONVERGED)
     for index in np.ndindex(states.status.shape):
         own = contact_motion(states, index, samples=4096)
-        resting = separation(CONTACT, normal_load=states.normal_load[index])
-        assert normal_force(CONTACT, separation=resting + own.displacement).mean() == approx(
+        at_rest = separation(CONTACT, normal_load=states.normal_load[index])
+        assert normal_force(CONTACT, separation=at_rest + own.displacement).mean() == approx(
             states.normal_load[index], rel=1e-5
         )
 

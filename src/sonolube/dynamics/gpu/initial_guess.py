@@ -185,12 +185,12 @@ def sinusoidal_truncation(
     pairs: Floats, tolerance: float, omega: float, load: float, length: float, amplitude: float
 ) -> tuple[int, int, int]:
     """Return harmonics, coupled harmonics and the first order of the force that is truncated."""
-    beta, share, harmonics, coupled, truncated, order = amplitude / length, 1.0, 2, 1, 1, 1
-    while share >= tolerance and order < _MOST_ORDERS:
+    beta, force_ratio, harmonics, coupled, truncated, order = amplitude / length, 1.0, 2, 1, 1, 1
+    while force_ratio >= tolerance and order < _MOST_ORDERS:
         # upper bound of I_k/I_(k-1) by D. E. Amos
-        share *= beta / (order - 0.5 + math.sqrt((order + 0.5) ** 2 + beta * beta))
-        response = 2 * load * share * receptance_bound(pairs, order * omega)
-        if share >= tolerance:
+        force_ratio *= beta / (order - 0.5 + math.sqrt((order + 0.5) ** 2 + beta * beta))
+        response = 2 * load * force_ratio * receptance_bound(pairs, order * omega)
+        if force_ratio >= tolerance:
             if response > 0.5 * tolerance * amplitude:
                 harmonics = order
             if response > WEAK / 10 * length:

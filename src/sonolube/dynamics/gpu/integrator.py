@@ -20,7 +20,7 @@ from sonolube.dynamics.waveform import Sine, Waveform, waveform_value
 HALF_TRACE, SQUARE, TRACELESS, CONTACT, DRIVE, X, V = 0, 1, 2, 6, 10, 14, 16
 """Rows of a pair of states; contact and drive input c and b have four rows each, with their images under B. []"""
 FIRST_PART, SECOND_PART, COSINE, SINE, JUMP = range(5)
-"""Rows of what the steps of a period share. []"""
+"""Rows of the table common to all trajectories, one column per step of a period. []"""
 PREDICTED, AHEAD, WEIGHTS = PAST + 1, 2 * PAST + 1, 6 * PAST + 1
 """First weights of predicted forces and of forces ahead, and the number of weights. []"""
 FIRST, SECOND, OLDEST, CONSTANT, HELD, RECENT, STEP = 0, 1, 2, 3, 6, 12, 12 + PAST

@@ -82,12 +82,12 @@ def write_force_contributions(size: int, step: Floats, forces: Floats, added: Fl
 
 @on_device
 def write_ramp_contributions(
-    size: int, step: Floats, slope: float, bend: float, one: float, other: float, added: Floats
+    size: int, step: Floats, slope: float, bend: float, first_part: float, second_part: float, added: Floats
 ) -> None:
     """Write the contributions of slope and bend of the ramp within a step to each state."""
     for k in range(size):
-        linear = one * step[HELD, k] + other * step[HELD + 1, k] + step[HELD + 2, k]
-        quadratic = one * step[HELD + 3, k] + other * step[HELD + 4, k] + step[HELD + 5, k]
+        linear = first_part * step[HELD, k] + second_part * step[HELD + 1, k] + step[HELD + 2, k]
+        quadratic = first_part * step[HELD + 3, k] + second_part * step[HELD + 4, k] + step[HELD + 5, k]
         added[k] = slope * linear + bend * quadratic
 
 
@@ -98,8 +98,8 @@ def free_step(
     held: Floats,
     step: Floats,
     ramp: tuple[float, float, float],
-    one: float,
-    other: float,
+    first_part: float,
+    second_part: float,
     added: Floats,
     y: Floats,
 ) -> None:
@@ -108,10 +108,10 @@ def free_step(
     for k in range(0, size, 2):
         first, second = y[k], y[k + 1]
         for i in range(k, k + 2):
-            constant = one * held[CONSTANT, i] + other * held[CONSTANT + 1, i] + held[CONSTANT + 2, i]
+            constant = first_part * held[CONSTANT, i] + second_part * held[CONSTANT + 1, i] + held[CONSTANT + 2, i]
             y[i] = held[FIRST, i] * first + held[SECOND, i] * second + level * constant
     if slope != 0.0 or bend != 0.0:
-        write_ramp_contributions(pairs.shape[1] * 2, step, slope, bend, one, other, added)
+        write_ramp_contributions(pairs.shape[1] * 2, step, slope, bend, first_part, second_part, added)
         for k in range(size):
             y[k] += added[k]
 

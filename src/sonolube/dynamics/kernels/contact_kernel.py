@@ -105,11 +105,11 @@ def contact_force_rows(
             slope[lane] = law.parameter if touching > 0 else 0.0
     if len(damped) == 1:
         for lane in range(LANES):
-            share = 1 - law.damping * v[lane]
-            drag[lane] = law.damping * force[lane] if share > 0 else 0.0
-            share = max(share, 0.0)
-            force[lane] *= share
-            slope[lane] *= share
+            factor = 1 - law.damping * v[lane]
+            drag[lane] = law.damping * force[lane] if factor > 0 else 0.0
+            factor = max(factor, 0.0)
+            force[lane] *= factor
+            slope[lane] *= factor
 
 
 @numba.njit(**INNER)

@@ -319,8 +319,8 @@ def _lane_rows(
 
 def _aligned(values: Floats) -> Floats:
     """Return a flat copy aligned to a cache line, for vector loads."""
-    room = np.empty(values.size + 8)
-    first = -(room.ctypes.data // 8) % 8
-    flat = room[first : first + values.size]
+    padded = np.empty(values.size + 8)
+    first = -(padded.ctypes.data // 8) % 8
+    flat = padded[first : first + values.size]
     flat[:] = values.ravel()
     return flat

@@ -310,11 +310,11 @@ def _drive_contributions(
     powers, scale = np.arange(3)[:, np.newaxis], h[:, np.newaxis, np.newaxis, np.newaxis]
     steady = scale * _propagated(modes.state_matrix, modes.drive_input, np.multiply.outer(h, 1 - nodes))
     offset = np.einsum("fmqa,kq->fkma", steady, weights * nodes**powers)
-    at, share = _split_at_corners(waveform, steps, nodes, weights)
+    at, split_weights = _split_at_corners(waveform, steps, nodes, weights)
     moved = scale * _propagated(modes.state_matrix, modes.drive_input, np.multiply.outer(h, 1 - at.ravel()))
     moved = moved.reshape(*moved.shape[:2], *at.shape, 2)
     values = waveform_value(waveform, phase=2 * np.pi / steps * (np.arange(steps)[:, np.newaxis] + at))
-    weighted = share * values * at ** powers[..., np.newaxis]
+    weighted = split_weights * values * at ** powers[..., np.newaxis]
     if at.shape[0] == 1:  # the same nodes in every step
         return np.einsum("fmqa,knq->fknma", moved[:, :, 0], weighted), offset
     return np.einsum("fmnqa,knq->fknma", moved, weighted), offset

@@ -200,13 +200,13 @@ def _restart(
 
 
 @numba.njit(cache=True, fastmath=_FASTMATH, error_model="numpy")
-def _ramp_factors(share: Floats, time: float, ramp_steps: Floats, cosine_shaped: bool) -> None:
+def _ramp_factors(factor: Floats, time: float, ramp_steps: Floats, cosine_shaped: bool) -> None:
     """Write the ramp factor of every lane at a time in steps."""
     for lane in range(LANES):
-        share[lane] = min((time + RAMP_EPSILON) / (ramp_steps[lane] + RAMP_EPSILON), 1.0)
+        factor[lane] = min((time + RAMP_EPSILON) / (ramp_steps[lane] + RAMP_EPSILON), 1.0)
     if cosine_shaped:
         for lane in range(LANES):
-            share[lane] = 0.5 - 0.5 * np.cos(np.pi * share[lane])
+            factor[lane] = 0.5 - 0.5 * np.cos(np.pi * factor[lane])
 
 
 @numba.njit(cache=True, fastmath=_FASTMATH, error_model="numpy")
