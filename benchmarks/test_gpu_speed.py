@@ -1,12 +1,11 @@
-"""Steady states and trajectories on a GPU, beside what the card could do.
+"""Steady states and trajectories on a GPU against the limits of the card.
 
-Steady states come with friction at 16 sliding speeds and stability; points are those of `test_steady_state_speed.py`.
-Trajectories are 2,200 periods of such points from rest, of 16 steps each, the first 220 ramping up. The time is that of
-the whole call, transfers included. Bytes are what points bring along and answers take; what spills from a thread's
-registers to its own memory is not counted. Operations are counted from the algorithm, for steady states at the
-harmonics, samples and steps that each point took, sums, products, quotients and roots as one each, sines and
-exponentials as twenty. The bars are the card's own: bandwidth from its bus, peak from its multiprocessors, their units
-for doubles and its clock.
+Steady states include friction at 16 sliding speeds and stability; points are those of `test_steady_state_speed.py`.
+Trajectories are 2,200 periods of such points from rest with 16 steps per period, the first 220 with a ramp. The time is
+that of the whole call, transfers included. Bytes are those transferred; registers spilled to local memory do not count.
+Operations are counted from the algorithm, for steady states with the harmonics, samples and steps that each point took:
+sums, products, quotients and roots as one each, sines and exponentials as twenty. The limits are the card's own:
+bandwidth from its bus, peak from its multiprocessors, their double-precision units and its clock.
 """
 
 import os
@@ -21,10 +20,10 @@ from pytest_benchmark.fixture import BenchmarkFixture
 from sonolube.contact import decay_length
 from sonolube.dynamics import ExponentialGap, StartUpRamp, drive_receptance, march
 from sonolube.dynamics.backend import device_name
-from sonolube.dynamics.first_order_modes import state_pairs
-from sonolube.dynamics.harmonic_balance.contact_kernel import law_of
-from sonolube.dynamics.harmonic_balance.receptance import contact_port
-from sonolube.dynamics.time_marching.integrator import quadrature
+from sonolube.dynamics.first_order_modes import first_order_modes
+from sonolube.dynamics.harmonic_balance.batch import BatchProblem, BatchSolution
+from sonolube.dynamics.harmonic_balance.receptance import pole_residue_model
+from sonolube.dynamics.time_marching.integrator import step_quadrature
 from sonolube.rig import read_rig
 
 RIG = read_rig(Path(__file__).parent.parent / "examples" / "rigs" / "tribometer.toml")
@@ -48,37 +47,38 @@ def drawn(points: int) -> dict[str, Any]:
     return {"omega": 2 * np.pi * frequency, "load": load, "voltage": volts[:, np.newaxis].astype(complex)}
 
 
-def operations(found: Any, pairs: int, phases: NDArray[np.float64]) -> float:
-    """Return how many operations the points took."""
-    h, samples, n, steps = (values[found.done].astype(float) for values in found.effort)
+def operations(found: tuple[BatchSolution, Any], pairs: int, nodes: NDArray[np.float64]) -> float:
+    """Return the number of operations of the solved points."""
+    solution, effort = found
+    h, samples, n, steps = (values[solution.on_gpu].astype(float) for values in effort)
     size, rows = 2.0 * pairs, 2 * n + 1
     instant = 2 * HARD + 10 * h + 2 * HARD + 10 * (h + n + 1)
     step = (samples / 2 + 1) * instant + 16 * h + 12 * rows**2 + 2 / 3 * rows**3
     kick = 3 * HARD + 16 * h + 7 * size**2
     growth = samples * kick + 22 * (2 * size**3 + 3 * size**2)
-    means = phases * (20 + 16 * h + HARD + 9 * SPEEDS.size)
+    means = nodes * (20 + 16 * h + HARD + 9 * SPEEDS.size)
     return float(np.sum(steps * step + growth + means))
 
 
 def operations_of_a_march(pairs: int, nodes: int) -> float:
-    """Return how many operations a trajectory takes, the making of its step included, the ramp's curvature not."""
+    """Return the number of operations of a trajectory, with its integrator, without the curvature of the ramp."""
     states = 2 * pairs
-    step = 13 * states + 10 + 30 + 9  # motion, what past forces foretell, the contact's force, sums
+    step = 13 * states + 10 + 30 + 9  # motion, predictor, contact force, sums
     made = pairs * nodes * (2 * (3 * HARD + 12) + 4 * SAMPLED)
     return float(PERIODS * STEPS * step + made)
 
 
-def phases_of(found: Any, omega: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the phases that each point's means took, at least."""
-    from sonolube.dynamics.friction_average.elliptic_quadrature import crowding_of
-    from sonolube.dynamics.gpu.friction_average import crowded_levels
+def nodes_of(solution: BatchSolution, omega: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the least number of quadrature nodes of each solved point's friction averages."""
+    from sonolube.dynamics.friction_average.elliptic_quadrature import node_table_row
+    from sonolube.dynamics.gpu.friction_average import node_tables
 
-    fastest = omega[found.done] * np.abs(found.solutions.harmonics[found.done, 0])
-    return np.asarray(crowded_levels(1e-7).numbers[0][crowding_of(SPEEDS[0] / fastest)], dtype=np.float64)
+    fastest = omega[solution.on_gpu] * np.abs(solution.harmonics[solution.on_gpu, 0])
+    return np.asarray(node_tables(1e-7).sizes[0][node_table_row(SPEEDS[0] / fastest)], dtype=np.float64)
 
 
 def limits() -> dict[str, float]:
-    """Return the card's bandwidth, in bytes per second, and its peak of operations on doubles, in 1/s."""
+    """Return bandwidth, in bytes per second, and peak rate of double-precision operations of the card, in 1/s."""
     import numba.cuda
 
     card: Any = numba.cuda.get_current_device()  # type: ignore[no-untyped-call]
@@ -95,20 +95,31 @@ def test_steady_states_with_friction_beside_the_limits_of_the_card(benchmark: Be
     from sonolube.dynamics.gpu import solve_on_gpu
 
     assert RIG.structure is not None
-    port, law, given = contact_port(RIG.structure), law_of(ExponentialGap(decay_length=LENGTH))[1], drawn(POINTS)
-    chosen = {"speeds": SPEEDS, "least": 1, "falling": False, "stability": True, "tolerance": 1e-6}
+    model, law, given = pole_residue_model(RIG.structure), ExponentialGap(decay_length=LENGTH), drawn(POINTS)
+    problem = BatchProblem(
+        model=model,
+        gap_law=law,
+        omega=given["omega"],
+        load=given["load"],
+        voltage=given["voltage"],
+        static_displacement=np.zeros(POINTS),
+        minimum_harmonics=1,
+        upper_branch=False,
+        stability=True,
+        tolerance=1e-6,
+        speeds=SPEEDS,
+    )
 
-    def solved(count: int) -> Any:
-        own = {name: values[:count] for name, values in given.items()}
-        return solve_on_gpu(port, law, own["omega"], own["load"], own["voltage"], np.zeros(count), **chosen)  # type: ignore[arg-type]
+    def solved(count: int) -> tuple[BatchSolution, Any]:
+        return solve_on_gpu(problem.select(np.arange(count)))
 
     solved(1000)  # compiles
     found = benchmark.pedantic(solved, args=(POINTS,), rounds=5)  # type: ignore[no-untyped-call]
-    assert found.done.mean() > 0.99
+    assert found[0].on_gpu.mean() > 0.99
     assert benchmark.stats is not None
     seconds, card = benchmark.stats.stats.min, limits()
     bytes_moved = 8.0 * POINTS * (3 + 2 + 10 + 24 + 2 + 2 * SPEEDS.size + 5)
-    done = operations(found, port.trace.size, phases_of(found, given["omega"]))
+    done = operations(found, model.trace.size, nodes_of(found[0], given["omega"]))
     benchmark.extra_info |= {
         "device": device_name("gpu"),
         "points a second": POINTS / seconds,
@@ -144,12 +155,12 @@ def test_trajectories_beside_the_limits_of_the_card(benchmark: BenchmarkFixture)
     found = benchmark.pedantic(marched, args=(TRAJECTORIES, PERIODS), rounds=3)  # type: ignore[no-untyped-call]
     assert np.mean(found.status != "diverged") > 0.99
     assert benchmark.stats is not None
-    pairs = state_pairs(structure)
-    modes, slowest = pairs.generator.shape[0], float(given["omega"].min()) / (2 * np.pi)
+    pairs = first_order_modes(structure)
+    modes, slowest = pairs.state_matrix.shape[0], float(given["omega"].min()) / (2 * np.pi)
     seconds, card = benchmark.stats.stats.min, limits()
     states = 2 * modes
     bytes_moved = 8.0 * TRAJECTORIES * (8 + states + 8 + STEPS * (states + 1) + states + states + 2)
-    done = TRAJECTORIES * operations_of_a_march(modes, quadrature(pairs, steps=STEPS, slowest=slowest)[0].size)
+    done = TRAJECTORIES * operations_of_a_march(modes, step_quadrature(pairs, steps=STEPS, slowest=slowest)[0].size)
     benchmark.extra_info |= {
         "device": device_name("gpu"),
         "trajectories a second": TRAJECTORIES / seconds,

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from pytest_benchmark.fixture import BenchmarkFixture
 from scipy.integrate import solve_ivp
 
-from sonolube.dynamics.gap_law import ExponentialGap
+from sonolube.dynamics import ExponentialGap
 from sonolube.dynamics.structure import Structure
 from sonolube.dynamics.transient import march
 from sonolube.dynamics.waveform import StartUpRamp

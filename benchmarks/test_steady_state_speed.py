@@ -27,10 +27,9 @@ from pytest_benchmark.fixture import BenchmarkFixture
 from scipy.integrate import solve_ivp
 
 from sonolube.contact import decay_length
-from sonolube.dynamics import ExponentialGap
-from sonolube.dynamics.friction_average.elliptic_quadrature import crowded_points, crowding_of
-from sonolube.dynamics.steady_friction import sliding_friction
-from sonolube.dynamics.steady_state import steady_state
+from sonolube.dynamics import ExponentialGap, steady_state
+from sonolube.dynamics.friction_average.elliptic_quadrature import elliptic_nodes, node_table_row
+from sonolube.dynamics.kinematic_friction import friction_averages
 from sonolube.dynamics.structure import contact_receptance, drive_receptance
 from sonolube.rig import read_rig
 
@@ -73,8 +72,8 @@ def ours(
         stability=stability,
         workers=workers,
     )
-    means = sliding_friction(states, sliding_speed=SPEEDS, workers=workers)
-    return np.abs(states.harmonics[:, 0]), states.mean_normal_force, means.loaded
+    means = friction_averages(states, sliding_speed=SPEEDS, workers=workers)
+    return np.abs(states.harmonics[:, 0]), states.mean_normal_force, means.force_weighted
 
 
 @contextmanager
@@ -196,7 +195,7 @@ def jax_balance(points: dict[str, Array], *, by_hand: bool) -> Callable[[], Any]
     """Return a compiled harmonic balance of the same points in JAX.
 
     Newton's method takes `jacfwd` and `jnp.linalg.solve`, or by hand an analytic Jacobian and an elimination written
-    out. Friction is averaged over phases that crowd where the first harmonic turns.
+    out. Friction is averaged over nodes clustered at the extrema of the first harmonic.
     """
     jax = pytest.importorskip("jax", reason="the rival is a harmonic balance in JAX")
     jax.config.update("jax_enable_x64", True)
@@ -205,15 +204,15 @@ def jax_balance(points: dict[str, Array], *, by_hand: bool) -> Callable[[], Any]
     free = drive_receptance(structure(), frequency=points["frequency"]) * points["voltage_amplitude"]
     orders = np.arange(1, HARMONICS + 1)
     received = contact_receptance(structure(), frequency=np.multiply.outer(points["frequency"], orders))
-    row, crowded = int(crowding_of(SPEEDS.min() / np.max(omega * np.abs(free)))), crowded_points(8)
-    inside = slice(0, crowded.count[row])
-    circle, weight = crowded.cosine[row, inside] + 1j * crowded.sine[row, inside], crowded.weight[row, inside]
+    row, nodes = int(node_table_row(SPEEDS.min() / np.max(omega * np.abs(free)))), elliptic_nodes(8)
+    inside = slice(0, nodes.count[row])
+    circle, weight = nodes.cosine[row, inside] + 1j * nodes.sine[row, inside], nodes.weight[row, inside]
     motion = jax_motion(jax, by_hand, samples=24)
 
     def one(omega: Any, load: Any, free: Any, received: Any) -> Any:
         u = motion(load, free, received)
         first = u[1] - 1j * u[2]
-        z = circle * 1j * jnp.conj(first / jnp.abs(first))  # crowded at +-90 degrees, turns of the first harmonic
+        z = circle * 1j * jnp.conj(first / jnp.abs(first))  # clustered at +-90 degrees, extrema of the first harmonic
         power, x, v = jnp.ones_like(z), u[0], 0.0
         for k in range(HARMONICS):
             power = power * z
@@ -319,9 +318,9 @@ FIRST_CALL = """
 import time
 import numpy as np
 began = time.perf_counter()
-from sonolube.dynamics.steady_friction import sliding_friction
-from sonolube.dynamics.steady_state import steady_state
-from sonolube.dynamics.gap_law import ExponentialGap
+from sonolube.dynamics.kinematic_friction import friction_averages
+from sonolube.dynamics import steady_state
+from sonolube.dynamics import ExponentialGap
 from sonolube.dynamics.structure import Structure
 imported, worked = time.perf_counter(), time.process_time()
 structure = Structure(
@@ -333,7 +332,7 @@ states = steady_state(
     structure, ExponentialGap(decay_length=2e-6), normal_load=3.0, frequency=22e3, voltage_amplitude=14.0,
     stability=STABILITY,
 )
-sliding_friction(states, sliding_speed=np.geomspace(1e-3, 1, 16))
+friction_averages(states, sliding_speed=np.geomspace(1e-3, 1, 16))
 print(imported - began, time.perf_counter() - imported, time.process_time() - worked)
 """
 

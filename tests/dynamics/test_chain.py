@@ -41,7 +41,7 @@ RIG = chain_structure(CHAIN)
 masses, stiffnesses, dampings = st.floats(0.01, 5), st.floats(1e3, 1e8), st.floats(0, 200)
 
 
-def test_the_rigs_matrices_are_those_of_figure_3_8_with_all_heights_upwards() -> None:
+def test_the_matrices_of_the_rig_are_those_of_figure_3_8_with_all_heights_upwards() -> None:
     assert RIG.mass_matrix == approx(np.diag([0.15, 0.35, 0.5]))
     k_p, k_2 = 2e9, 2e5
     assert RIG.stiffness_matrix == approx(np.array([[k_p, -k_p, 0], [-k_p, k_p + k_2, -k_2], [0, -k_2, k_2]]))
@@ -59,7 +59,7 @@ def test_the_dissertations_matrices_have_the_same_natural_frequencies(
     k_p = 2e9
     printed = np.array([[k_p + k1, k_p, 0], [k_p, k_p + k2, -k2], [0, -k2, k2]])  # D 3.31: x1 points downwards
     theirs = np.sqrt(np.maximum(eigvalsh(printed, np.diag([m1, m2 + 0.07, m3])), 0)) / (2 * np.pi)
-    # there x2 and x3 stand for heights and x1 for a depth, which turns the sign of the coupling k_p alone
+    # there x2 and x3 are heights and x1 a depth, which reverses the sign of the coupling k_p alone
     assert ours == approx(theirs, rel=1e-6, abs=1e-5 * theirs[-1])
 
 
@@ -73,7 +73,7 @@ def test_the_dissertations_matrices_have_the_same_natural_frequencies(
     k1=st.floats(0, 1e9),
     frequency=st.floats(10, 1e5),
 )
-def test_the_dissertations_impedances_once_mended_give_the_structures_admittance(
+def test_the_corrected_impedances_of_the_dissertation_give_the_admittance_of_the_structure(
     m1: float, m2: float, m3: float, k2: float, c2: float, c1: float, k1: float, frequency: float
 ) -> None:
     # D 3.34 to 3.41 with open-circuit stiffness in 3.37, the stack once in 3.39, m0 with m2, no F_N in 3.40
@@ -92,7 +92,7 @@ def test_the_dissertations_impedances_once_mended_give_the_structures_admittance
     assert complex(electrical_admittance(structure, frequency=frequency)) == approx(1 / impedance, rel=1e-5)
 
 
-def test_a_link_to_the_ground_holds_its_mass() -> None:
+def test_a_spring_to_the_ground_adds_its_stiffness() -> None:
     chain = LumpedChain(
         masses={"pin": 0.2},
         springs=(Spring(between=("pin", GROUND), spring_stiffness=3e6),),
@@ -108,7 +108,7 @@ def test_a_link_to_the_ground_holds_its_mass() -> None:
     assert structure.drive_vector == approx(62 * 140e-12 * 2e9)
 
 
-def test_a_chain_without_links_to_the_ground_carries_its_momentum_on() -> None:
+def test_a_chain_without_links_to_the_ground_conserves_momentum() -> None:
     # forces within the chain cannot move its centre of mass, whatever the voltage
     floating = chain_structure(replace(CHAIN, dampers=CHAIN.dampers[:1]))
     assert floating.stiffness_matrix.sum(axis=0) == approx(np.zeros(3), abs=1e-3)
@@ -117,14 +117,14 @@ def test_a_chain_without_links_to_the_ground_carries_its_momentum_on() -> None:
 
 
 @given(order=st.permutations(["tip", "reaction", "arm"]), frequency=st.floats(10, 1e5))
-def test_the_order_of_the_masses_is_only_that_of_the_coordinates(order: list[str], frequency: float) -> None:
+def test_the_order_of_the_masses_does_not_change_the_responses(order: list[str], frequency: float) -> None:
     shuffled = chain_structure(replace(CHAIN, masses={name: CHAIN.masses[name] for name in order}))
     for response in (electrical_admittance, drive_receptance, contact_receptance):
         same = complex(response(RIG, frequency=frequency))
         assert complex(response(shuffled, frequency=frequency)) == approx(same, rel=1e-6)
 
 
-def test_modes_handed_back_make_the_same_structure() -> None:
+def test_the_modal_structure_has_the_responses_of_the_original_one() -> None:
     undamped = chain_structure(
         pin_on_disc_chain(
             replace(STACK, stack_damping=0.0),
@@ -148,7 +148,7 @@ def test_modes_handed_back_make_the_same_structure() -> None:
         assert response(handed, frequency=f) == approx(response(undamped, frequency=f), rel=1e-6)
 
 
-def test_a_modes_damping_ratio_is_half_the_loss_over_its_resonance() -> None:
+def test_the_resonant_amplification_is_half_the_inverse_damping_ratio() -> None:
     one = modal_structure(
         frequencies=[1e3],
         damping_ratios=[0.01],
@@ -175,14 +175,12 @@ def test_a_modes_damping_ratio_is_half_the_loss_over_its_resonance() -> None:
         ({"contact": "ground"}, UnknownName, r"unknown body 'ground'"),
     ],
 )
-def test_a_chain_that_cannot_be_is_refused(
-    changes: dict[str, object], error: type[SonolubeError], message: str
-) -> None:
+def test_an_inconsistent_chain_is_refused(changes: dict[str, object], error: type[SonolubeError], message: str) -> None:
     with raises(error, match=message):
         replace(CHAIN, **changes)  # type: ignore[arg-type]
 
 
-def test_links_that_cannot_be_are_refused() -> None:
+def test_invalid_springs_and_dampers_are_refused() -> None:
     with raises(InvalidInput, match=r"spring_stiffness must be positive, got 0\.0 N/m"):
         Spring(between=("a", "b"), spring_stiffness=0)
     with raises(InvalidInput, match=r"viscous_damping must not be negative, got -1\.0 N s/m"):
@@ -191,7 +189,7 @@ def test_links_that_cannot_be_are_refused() -> None:
         Spring(between=("a", "a"), spring_stiffness=1)
 
 
-def test_the_rigs_fields_are_refused_by_their_own_names() -> None:
+def test_invalid_masses_of_the_rig_are_refused_by_name() -> None:
     with raises(InvalidInput, match=r"arm_mass must be positive, got -0\.5 kg"):
         pin_on_disc_chain(STACK, tip_mass=0.15, reaction_mass=0.28, arm_mass=-0.5, arm_stiffness=2e5, arm_damping=20.0)
 
@@ -205,7 +203,7 @@ def test_the_rigs_fields_are_refused_by_their_own_names() -> None:
         ({"drive_participation": [1.0]}, r"drive_vector must have shape \(2,\), got \(1,\)"),
     ],
 )
-def test_modes_that_do_not_fit_together_are_refused(changes: dict[str, object], message: str) -> None:
+def test_inconsistent_modal_data_are_refused(changes: dict[str, object], message: str) -> None:
     two = {
         "frequencies": [0.0, 1e3],
         "damping_ratios": 0.01,

@@ -1,4 +1,4 @@
-"""Response curves through folds, each branch beside direct integration."""
+"""Response curves through folds, each branch against direct integration."""
 
 from dataclasses import replace
 
@@ -8,9 +8,8 @@ from numpy.typing import NDArray
 from pytest import approx, raises
 from scipy.integrate import solve_ivp
 
-from sonolube.dynamics.continuation import ResponseCurve, crossings, reached_by_ramp, response_curve
-from sonolube.dynamics.gap_law import HertzGap, LinearGap
-from sonolube.dynamics.steady_state import Status, steady_state
+from sonolube.dynamics import HertzGap, LinearGap, Status, steady_state
+from sonolube.dynamics.continuation import ResponseCurve, reached_by_ramp, response_curve, solutions_at
 from sonolube.dynamics.structure import Structure, drive_receptance, with_contact_spring
 from sonolube.errors import InvalidInput
 
@@ -34,7 +33,7 @@ def falling_frequency() -> ResponseCurve:
 
 
 def marched_amplitude(point: ResponseCurve, periods: int) -> float:
-    """Half of peak to peak after some periods that began on the curve, stepped by an integrator."""
+    """Return half the peak-to-peak displacement after some periods of direct integration from a point of the curve."""
     omega, volts = 2 * np.pi * float(point.frequency[0]), float(point.voltage_amplitude[0])
     balance = point.equations.at(
         point.equations.stack(float(point.mean_displacement[0]), point.harmonics[0]), omega=omega, scale=volts
@@ -60,37 +59,39 @@ def marched_amplitude(point: ResponseCurve, periods: int) -> float:
     return float(np.ptp(found.y[0]) / 2)
 
 
-def test_a_softening_contact_bends_its_resonance_over(falling_frequency: ResponseCurve) -> None:
+def test_a_softening_contact_bends_the_resonance_curve_to_two_folds(falling_frequency: ResponseCurve) -> None:
     assert falling_frequency.complete
     assert len(falling_frequency.folds) == 2
     top = np.argmax(falling_frequency.vibration_amplitude)
     assert falling_frequency.frequency[top] < 0.95 * RESONANCE
 
 
-def test_between_the_folds_the_outer_vibrations_are_stable(falling_frequency: ResponseCurve) -> None:
+def test_between_the_folds_the_outer_branches_are_stable_and_the_middle_one_is_not(
+    falling_frequency: ResponseCurve,
+) -> None:
     between = float(falling_frequency.frequency[falling_frequency.folds].mean())
-    found = crossings(falling_frequency, at=between)
+    found = solutions_at(falling_frequency, at=between)
     assert found.frequency == approx(np.full(3, between))
     assert found.stable.tolist() == [True, False, True]
     large, _, small = found.vibration_amplitude
     assert large > 3 * small
 
 
-def test_integration_stays_on_both_stable_branches(falling_frequency: ResponseCurve) -> None:
+def test_direct_integration_stays_on_both_stable_branches(falling_frequency: ResponseCurve) -> None:
     between = float(falling_frequency.frequency[falling_frequency.folds].mean())
     for backward in (False, True):
         point = reached_by_ramp(falling_frequency, at=between, backward=backward)
         assert marched_amplitude(point, 60) == approx(point.vibration_amplitude[0], rel=1e-3)
 
 
-def test_integration_leaves_the_branch_between(falling_frequency: ResponseCurve) -> None:
+def test_direct_integration_leaves_the_unstable_branch(falling_frequency: ResponseCurve) -> None:
     between = float(falling_frequency.frequency[falling_frequency.folds].mean())
-    found = crossings(falling_frequency, at=between)
+    found = solutions_at(falling_frequency, at=between)
     middle = replace(found, mean_displacement=found.mean_displacement[1:2], harmonics=found.harmonics[1:2])
     assert abs(marched_amplitude(middle, 120) / found.vibration_amplitude[1] - 1) > 0.1
 
 
-def test_a_voltage_ramp_ends_where_it_came_from(falling_frequency: ResponseCurve) -> None:
+def test_raised_and_lowered_voltages_end_on_different_branches(falling_frequency: ResponseCurve) -> None:
     between = float(falling_frequency.frequency[falling_frequency.folds].mean())
     curve = response_curve(BLOCKS, BALL, normal_load=20.0, voltage_amplitude=(2.0, 200.0), frequency=between)
     assert curve.complete
@@ -98,7 +99,7 @@ def test_a_voltage_ramp_ends_where_it_came_from(falling_frequency: ResponseCurve
     assert rising.vibration_amplitude[0] < falling.vibration_amplitude[0]
     for point, backward in ((rising, False), (falling, True)):
         states = steady_state(
-            BLOCKS, BALL, normal_load=20.0, frequency=between, voltage_amplitude=50.0, falling=backward
+            BLOCKS, BALL, normal_load=20.0, frequency=between, voltage_amplitude=50.0, upper_branch=backward
         )
         assert states.status == Status.MULTISTABLE
         assert states.vibration_amplitude == approx(point.vibration_amplitude[0], rel=1e-4)
@@ -107,7 +108,7 @@ def test_a_voltage_ramp_ends_where_it_came_from(falling_frequency: ResponseCurve
     assert jumped.vibration_amplitude[0] > 3 * rising.vibration_amplitude[0]
 
 
-def test_a_linear_contact_has_the_resonance_curve_of_a_spring() -> None:
+def test_the_response_curve_on_a_linear_contact_is_that_of_a_spring() -> None:
     spring = LinearGap(normal_stiffness=1.3e7)
     curve = response_curve(BLOCKS, spring, normal_load=20.0, voltage_amplitude=0.5, frequency=(600.0, 1100.0), orders=4)
     sprung = with_contact_spring(BLOCKS, normal_stiffness=1.3e7)
@@ -117,8 +118,8 @@ def test_a_linear_contact_has_the_resonance_curve_of_a_spring() -> None:
     assert curve.stable.all()
 
 
-def test_a_curve_needs_one_range() -> None:
-    with raises(InvalidInput, match="give a pair, where the curve starts and ends"):
+def test_a_curve_without_a_range_is_refused() -> None:
+    with raises(InvalidInput, match="give a pair, start and end of the curve,"):
         response_curve(BLOCKS, BALL, normal_load=20.0, voltage_amplitude=50.0, frequency=700.0)
 
 

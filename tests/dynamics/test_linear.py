@@ -8,7 +8,7 @@ from pytest import approx, raises
 from sonolube.actuator import PiezoStack, circuit_admittance
 from sonolube.checks import Floats
 from sonolube.dynamics.chain import GROUND, LumpedChain, Spring, chain_structure, modal_structure, pin_on_disc_chain
-from sonolube.dynamics.linear import equivalent_branches, modes, poles, resonance_frequencies, static_contact
+from sonolube.dynamics.linear import equivalent_circuit, modes, poles, resonance_frequencies, static_contact
 from sonolube.dynamics.structure import (
     Structure,
     contact_receptance,
@@ -32,7 +32,7 @@ HELD = chain_structure(replace(CHAIN, springs=(*CHAIN.springs, Spring(between=("
 
 @st.composite
 def proportional(draw: st.DrawFn) -> Structure:
-    """Any structure whose damping is a sum of shares of its masses and its stiffness."""
+    """Return any structure with Rayleigh damping, a combination of mass and stiffness matrix."""
     n = draw(st.integers(1, 4))
     rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     roots, springs = rng.normal(size=(2, n, n))
@@ -48,7 +48,7 @@ def proportional(draw: st.DrawFn) -> Structure:
     )
 
 
-def test_two_free_masses_ring_on_their_reduced_mass() -> None:
+def test_two_free_masses_vibrate_at_the_frequency_of_their_reduced_mass() -> None:
     pair = chain_structure(
         LumpedChain(
             masses={"near": 0.15, "far": 0.28},
@@ -66,7 +66,7 @@ def test_two_free_masses_ring_on_their_reduced_mass() -> None:
     assert found.damping_ratio[1] == approx(30 / (2 * np.sqrt(2e9 * reduced)))
 
 
-def test_the_rig_floats_sways_near_a_hundred_hertz_and_rings_at_22_kilohertz() -> None:
+def test_the_rig_has_a_rigid_mode_one_near_a_hundred_hertz_and_one_at_22_kilohertz() -> None:
     found = modes(RIG)
     assert found.rigid.tolist() == [True, False, False]
     # the arm against all the rest on its spring
@@ -85,7 +85,7 @@ def test_shapes_are_orthogonal_in_masses_and_in_stiffness(structure: Structure) 
 
 
 @given(structure=proportional(), seed=st.integers(0, 2**32 - 1))
-def test_no_motion_has_a_rayleigh_quotient_outside_the_natural_frequencies(structure: Structure, seed: int) -> None:
+def test_every_rayleigh_quotient_lies_between_the_extreme_natural_frequencies(structure: Structure, seed: int) -> None:
     x = np.random.default_rng(seed).normal(size=structure.coordinates)
     quotient = (x @ structure.stiffness_matrix @ x) / (x @ structure.mass_matrix @ x)
     lowest, highest = (2 * np.pi * modes(structure).natural_frequency[[0, -1]]) ** 2
@@ -93,7 +93,9 @@ def test_no_motion_has_a_rayleigh_quotient_outside_the_natural_frequencies(struc
 
 
 @given(structure=proportional(), stiffness=st.floats(1, 1e9))
-def test_a_spring_at_the_contact_lowers_no_natural_frequency(structure: Structure, stiffness: float) -> None:
+def test_a_spring_at_the_contact_raises_natural_frequencies_up_to_the_next_one(
+    structure: Structure, stiffness: float
+) -> None:
     free = modes(structure).natural_frequency
     sprung = modes(with_contact_spring(structure, normal_stiffness=stiffness)).natural_frequency
     assert np.all(sprung >= free * (1 - 1e-9))
@@ -101,7 +103,7 @@ def test_a_spring_at_the_contact_lowers_no_natural_frequency(structure: Structur
 
 
 @given(structure=proportional())
-def test_with_proportional_damping_each_pair_of_poles_is_a_mode(structure: Structure) -> None:
+def test_with_proportional_damping_each_pair_of_poles_belongs_to_a_mode(structure: Structure) -> None:
     found = modes(structure)
     assume(np.all(found.damping_ratio < 0.99))
     omega = 2 * np.pi * found.natural_frequency
@@ -120,7 +122,7 @@ def test_every_pole_solves_the_equation_of_free_motion() -> None:
         assert singular[-1] < 1e-9 * singular[0]
 
 
-def test_free_motion_does_not_grow_and_a_floating_rig_drifts() -> None:
+def test_poles_lie_in_the_left_half_plane_but_for_two_at_zero_of_a_floating_rig() -> None:
     exponents = poles(RIG)
     assert exponents.real.max() < 1e-6
     assert np.sum(np.abs(exponents) < 1e-6) == 2
@@ -132,7 +134,7 @@ def test_weak_damping_gives_poles_the_modes_damping_ratios_to_first_order() -> N
     assert modes(RIG).damping_ratio[1] == approx(20 * 4 / (2 * 2 * np.pi * 142.35), rel=1e-3)
 
 
-def test_an_overdamped_mode_creeps_back() -> None:
+def test_an_overdamped_mode_has_two_real_poles() -> None:
     creeping = modal_structure(
         frequencies=[100.0],
         damping_ratios=2.0,
@@ -148,20 +150,20 @@ def test_an_overdamped_mode_creeps_back() -> None:
 # -- static
 
 
-def test_a_floating_rig_has_no_place_of_its_own() -> None:
+def test_a_floating_rig_has_no_static_stiffness_and_no_static_displacement() -> None:
     found = static_contact(RIG)
     assert found.static_stiffness == 0
     assert found.displacement_per_volt is None
 
 
-def test_a_held_rig_stands_on_its_springs_in_series_and_pushes_its_tip_down() -> None:
+def test_the_static_stiffness_of_a_grounded_rig_is_that_of_its_springs_in_series() -> None:
     found = static_contact(HELD)
     assert found.static_stiffness == approx(1 / (1 / 2e9 + 1 / 2e5 + 1 / 1e5))
     assert found.displacement_per_volt == approx(-62 * 140e-12)
 
 
 @given(structure=proportional())
-def test_static_stiffness_is_the_limit_of_slow_motion(structure: Structure) -> None:
+def test_the_static_stiffness_is_the_low_frequency_limit_of_the_receptance(structure: Structure) -> None:
     found = static_contact(structure)
     slow = 1e-4 * float(modes(structure).natural_frequency[0])
     compliance = complex(contact_receptance(structure, frequency=slow)).real
@@ -174,15 +176,15 @@ def test_static_stiffness_is_the_limit_of_slow_motion(structure: Structure) -> N
 
 
 @given(structure=proportional(), frequencies=st.lists(st.floats(10, 1e5), min_size=1, max_size=5))
-def test_with_proportional_damping_the_circuit_draws_the_structures_current(
+def test_with_proportional_damping_the_equivalent_circuit_has_the_admittance_of_the_structure(
     structure: Structure, frequencies: list[float]
 ) -> None:
-    circuit = circuit_admittance(equivalent_branches(structure), frequency=frequencies)
+    circuit = circuit_admittance(equivalent_circuit(structure), frequency=frequencies)
     exact = electrical_admittance(structure, frequency=frequencies)
     assert np.all(np.abs(circuit - exact) <= 1e-9 * np.abs(exact) + 1e-15)
 
 
-def test_the_rigs_impedance_falls_at_22_kilohertz_and_peaks_above() -> None:
+def test_the_impedance_of_the_rig_has_its_minimum_at_22_kilohertz_and_its_maximum_above() -> None:
     # D figure 3.12 in kind
     f = np.linspace(15e3, 40e3, 25001)
     size = np.abs(1 / electrical_admittance(RIG, frequency=f))
@@ -195,7 +197,7 @@ def test_the_rigs_impedance_falls_at_22_kilohertz_and_peaks_above() -> None:
     assert found.mechanical_quality_factor[-1] == approx(1 / (2 * modes(RIG).damping_ratio[-1]))
 
 
-def test_open_circuited_the_stack_is_stiffer_by_its_coupling() -> None:
+def test_parallel_resonances_are_those_of_the_open_circuited_stack() -> None:
     opened = chain_structure(
         replace(
             CHAIN,
@@ -211,14 +213,14 @@ def shape_at(index: int) -> Floats:
     return modes(RIG).shapes[:, index]
 
 
-def test_the_ringing_mode_keeps_the_centre_of_mass_and_leaves_the_arm_alone() -> None:
+def test_the_ultrasonic_mode_keeps_the_centre_of_mass_and_does_not_move_the_arm() -> None:
     ringing = shape_at(2)
     assert RIG.mass_matrix.diagonal() @ ringing == approx(0, abs=1e-9)
     assert abs(ringing[2]) < 1e-4 * abs(ringing[0])
     assert ringing[1] / ringing[0] == approx(-0.15 / 0.35, rel=1e-3)
 
 
-def test_a_stack_at_a_node_of_its_structure_sees_no_mode() -> None:
+def test_a_mode_with_a_node_at_the_stack_has_no_motional_branch() -> None:
     silent = modal_structure(
         frequencies=[1e3, 2e3],
         damping_ratios=0.01,
@@ -226,10 +228,10 @@ def test_a_stack_at_a_node_of_its_structure_sees_no_mode() -> None:
         contact_participation=[1.0, 1.0],
         clamped_capacitance=1e-9,
     )
-    assert len(equivalent_branches(silent).branches) == 1
+    assert len(equivalent_circuit(silent).branches) == 1
     assert resonance_frequencies(silent).series_frequency == approx(2e3)
 
 
-def test_a_structure_without_a_stack_has_no_circuit() -> None:
+def test_a_structure_without_capacitance_has_no_equivalent_circuit() -> None:
     with raises(InvalidInput, match=r"parallel_capacitance must be positive, got 0\.0 F"):
-        equivalent_branches(replace(RIG, clamped_capacitance=0.0))
+        equivalent_circuit(replace(RIG, clamped_capacitance=0.0))

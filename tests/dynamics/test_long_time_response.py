@@ -1,4 +1,4 @@
-"""What a drive ends in, against linear theory, harmonic balance and an integrator that knows nothing of either."""
+"""Long-time responses against linear theory, harmonic balance and direct integration."""
 
 from functools import cache
 from typing import Any
@@ -8,9 +8,8 @@ from numpy.typing import NDArray
 from pytest import approx
 from scipy.integrate import solve_ivp
 
-from sonolube.dynamics.gap_law import ExponentialGap
-from sonolube.dynamics.long_time_response import Attained, attained_motion, settling_periods
-from sonolube.dynamics.steady_state import Status, SteadyStates, steady_state
+from sonolube.dynamics import ExponentialGap, Status, SteadyStates, steady_state
+from sonolube.dynamics.long_time_response import LongTimeResponse, march_until_settled, settling_periods
 from sonolube.dynamics.structure import Structure, drive_receptance, with_contact_spring
 from sonolube.dynamics.waveform import StartUpRamp
 
@@ -39,20 +38,20 @@ SLOWLY = StartUpRamp(duration=0.2, shape="cosine")
 
 
 @cache
-def attained(which: str) -> Attained:
+def response(which: str) -> LongTimeResponse:
     drive, volts = {"beating": (BEATING, BEATING_VOLTS), "double": (DOUBLE, DOUBLE_VOLTS)}[which]
-    return attained_motion(TRIBOMETER, ROUGH, **drive, voltage_peak_to_peak=2 * volts, ramp=SLOWLY)
+    return march_until_settled(TRIBOMETER, ROUGH, **drive, voltage_peak_to_peak=2 * volts, ramp=SLOWLY)
 
 
-def balanced(which: str, *, falling: bool = False) -> SteadyStates:
+def steady(which: str, *, upper_branch: bool = False) -> SteadyStates:
     drive, volts = {"beating": (BEATING, BEATING_VOLTS), "double": (DOUBLE, DOUBLE_VOLTS)}[which]
-    return steady_state(TRIBOMETER, ROUGH, **drive, voltage_amplitude=volts, falling=falling)
+    return steady_state(TRIBOMETER, ROUGH, **drive, voltage_amplitude=volts, upper_branch=upper_branch)
 
 
 def integrated(
     load: float, frequency: float, volts: float, *, start: NDArray[np.float64], until: float
 ) -> NDArray[np.float64]:
-    """The contact's displacement seen eight times a period, by DOP853 from a state, the drive at once."""
+    """Return the contact's displacement at eight samples per period, by DOP853 from a state, without a ramp."""
     s, omega = TRIBOMETER, 2 * np.pi * frequency
     inverse = np.linalg.inv(s.mass_matrix)
 
@@ -71,14 +70,16 @@ def integrated(
 
 def test_a_small_drive_ends_in_the_vibration_of_linear_theory() -> None:
     volts = 1e-9 / abs(drive_receptance(TRIBOMETER, frequency=20e3))
-    found = attained_motion(TRIBOMETER, ROUGH, normal_load=3.0, frequency=20e3, voltage_peak_to_peak=2 * float(volts))
+    found = march_until_settled(
+        TRIBOMETER, ROUGH, normal_load=3.0, frequency=20e3, voltage_peak_to_peak=2 * float(volts)
+    )
     touching = with_contact_spring(TRIBOMETER, normal_stiffness=3.0 / DECAY)
     expected = float(volts * abs(drive_receptance(touching, frequency=20e3)))
     assert found.attractor.order == 1
     assert found.amplitudes == approx(expected, rel=1e-3)
 
 
-def test_transients_are_given_twelve_decay_times_of_the_slowest_motion() -> None:
+def test_the_settling_time_is_twelve_decay_times_of_the_slowest_mode() -> None:
     # one mass of 2 kg on its contact of 3 N over 2 um, damped by 40 N s/m: decays as exp(-10 t)
     one = Structure(
         mass_matrix=np.eye(1) * 2,
@@ -91,18 +92,18 @@ def test_transients_are_given_twelve_decay_times_of_the_slowest_motion() -> None
     assert settling_periods(one, ROUGH, normal_load=3.0, frequency=1e3) == approx(1200, abs=1)
 
 
-def test_power_is_that_which_harmonic_balance_draws_from_the_drive() -> None:
+def test_the_dissipated_power_is_the_electrical_power_of_harmonic_balance() -> None:
     states = steady_state(TRIBOMETER, ROUGH, normal_load=3.0, frequency=22e3, voltage_amplitude=14.0)
-    found = attained_motion(TRIBOMETER, ROUGH, normal_load=3.0, frequency=22e3, voltage_peak_to_peak=28.0)
+    found = march_until_settled(TRIBOMETER, ROUGH, normal_load=3.0, frequency=22e3, voltage_peak_to_peak=28.0)
     assert found.dissipated_power == approx(float(states.dissipated_power), rel=1e-3)
     assert found.amplitudes == approx(float(states.vibration_amplitude), rel=1e-3)
 
 
-def test_an_unstable_vibration_gives_way_to_a_beat_however_slowly_the_voltage_comes_up() -> None:
-    assert balanced("beating").status == Status.UNSTABLE
+def test_an_unstable_vibration_is_replaced_by_a_beat_whatever_the_ramp_of_the_voltage() -> None:
+    assert steady("beating").status == Status.UNSTABLE
     found, at_once = (
-        attained("beating"),
-        attained_motion(TRIBOMETER, ROUGH, **BEATING, voltage_peak_to_peak=2 * BEATING_VOLTS),
+        response("beating"),
+        march_until_settled(TRIBOMETER, ROUGH, **BEATING, voltage_peak_to_peak=2 * BEATING_VOLTS),
     )
     assert found.attractor.kind == at_once.attractor.kind == "beating"
     assert found.attractor.beat_frequency == approx(float(at_once.attractor.beat_frequency), rel=0.01)
@@ -110,26 +111,26 @@ def test_an_unstable_vibration_gives_way_to_a_beat_however_slowly_the_voltage_co
     assert np.ptp(found.amplitudes) > 0.05 * found.amplitudes.mean()
 
 
-def test_another_integrator_sees_the_same_beat() -> None:
-    found = attained("beating").attractor
-    start = np.concatenate([found.state.coordinates, found.state.rates]) * 0.98
-    seen = integrated(61.209, 22436.58, BEATING_VOLTS, start=start, until=0.05)
-    once_a_period = seen.reshape(-1, 8)[-512:, 0]
-    assert np.ptp(once_a_period) / 2 == approx(float(found.beat_amplitude), rel=0.05)
-    spectrum = np.abs(np.fft.rfft((once_a_period - once_a_period.mean()) * np.hanning(512), 8192))
+def test_another_integrator_finds_the_same_beat() -> None:
+    found = response("beating").attractor
+    start = np.concatenate([found.final_state.coordinates, found.final_state.velocities]) * 0.98
+    samples = integrated(61.209, 22436.58, BEATING_VOLTS, start=start, until=0.05)
+    strobed = samples.reshape(-1, 8)[-512:, 0]
+    assert np.ptp(strobed) / 2 == approx(float(found.beat_amplitude), rel=0.05)
+    spectrum = np.abs(np.fft.rfft((strobed - strobed.mean()) * np.hanning(512), 8192))
     assert np.argmax(spectrum) / 8192 * 22436.58 == approx(float(found.beat_frequency), rel=0.02)
 
 
-def test_of_two_vibrations_a_slow_rise_reaches_the_smaller_and_both_last() -> None:
-    small, large = balanced("double"), balanced("double", falling=True)
+def test_of_two_coexisting_vibrations_a_slow_ramp_reaches_the_smaller() -> None:
+    small, large = steady("double"), steady("double", upper_branch=True)
     assert small.status == large.status == Status.MULTISTABLE
     assert float(small.coexisting_amplitude) == approx(float(large.vibration_amplitude), rel=1e-6)
-    assert attained("double").attractor.order == 1
-    assert attained("double").amplitudes == approx(float(small.vibration_amplitude), rel=1e-3)
+    assert response("double").attractor.order == 1
+    assert response("double").amplitudes == approx(float(small.vibration_amplitude), rel=1e-3)
 
 
-def test_another_integrator_started_where_the_march_ended_stays_there() -> None:
-    found = attained("double").attractor
-    start = np.concatenate([found.state.coordinates, found.state.rates])
-    seen = np.asarray(integrated(95.5875, 446.00634, DOUBLE_VOLTS, start=start, until=0.1)).reshape(-1, 8)
-    assert seen[-1] == approx(seen[0], abs=2e-3 * float(attained("double").amplitudes[0]))
+def test_another_integrator_started_from_the_final_state_repeats_the_motion() -> None:
+    found = response("double").attractor
+    start = np.concatenate([found.final_state.coordinates, found.final_state.velocities])
+    samples = np.asarray(integrated(95.5875, 446.00634, DOUBLE_VOLTS, start=start, until=0.1)).reshape(-1, 8)
+    assert samples[-1] == approx(samples[0], abs=2e-3 * float(response("double").amplitudes[0]))

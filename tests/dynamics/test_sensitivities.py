@@ -1,4 +1,4 @@
-"""Gradients of steady vibrations beside central differences."""
+"""Sensitivities of steady vibrations against central differences."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -8,10 +8,9 @@ import pytest
 from numpy.typing import NDArray
 from pytest import approx, raises
 
-from sonolube.dynamics.gap_law import ExponentialGap, GapLaw, HertzGap, LinearGap
-from sonolube.dynamics.sensitivities import StructureChange, gradients
-from sonolube.dynamics.steady_friction import sliding_friction
-from sonolube.dynamics.steady_state import SteadyStates, steady_state
+from sonolube.dynamics import ExponentialGap, GapLaw, HertzGap, LinearGap, SteadyStates, steady_state
+from sonolube.dynamics.kinematic_friction import friction_averages
+from sonolube.dynamics.sensitivities import StructureChange, steady_state_sensitivities
 from sonolube.dynamics.structure import Structure
 from sonolube.errors import InvalidInput
 
@@ -61,7 +60,7 @@ def moved(structure: Structure, change: StructureChange, share: float) -> Struct
 
 
 def solve(structure: Structure, gap_law: GapLaw, **drive: NDArray[np.float64]) -> SteadyStates:
-    return steady_state(structure, gap_law, least_harmonics=24, stability=False, **(DRIVE | drive))  # type: ignore[arg-type]
+    return steady_state(structure, gap_law, minimum_harmonics=24, stability=False, **(DRIVE | drive))  # type: ignore[arg-type]
 
 
 def compare(
@@ -71,11 +70,11 @@ def compare(
     varied: Callable[[float], SteadyStates],
     unit: NDArray[np.float64] | float,
 ) -> None:
-    """Compare with central differences in shares of a unit, extrapolated to a step of zero."""
+    """Compare with central differences in fractions of a unit, extrapolated to a step of zero."""
 
     def differences(step: float) -> list[NDArray[np.float64]]:
         up, down = varied(step), varied(-step)
-        friction = [sliding_friction(states, sliding_speed=SPEEDS).kinematic for states in (up, down)]
+        friction = [friction_averages(states, sliding_speed=SPEEDS).kinematic for states in (up, down)]
         pairs = (
             (up.vibration_amplitude, down.vibration_amplitude),
             (up.mean_displacement, down.mean_displacement),
@@ -83,7 +82,7 @@ def compare(
         )
         return [(one - other) / (2 * step) for one, other in pairs]
 
-    found = gradients(solve(structure, gap_law), sliding_speed=SPEEDS, structure_changes=CHANGES)
+    found = steady_state_sensitivities(solve(structure, gap_law), sliding_speed=SPEEDS, structure_changes=CHANGES)
     amplitude, mean, kinematic = (
         (4 * fine - coarse) / 3 for coarse, fine in zip(differences(2e-4), differences(1e-4), strict=True)
     )
@@ -94,7 +93,7 @@ def compare(
 
 @pytest.mark.parametrize("structure", [FLOATING, HELD], ids=["floating", "held"])
 @pytest.mark.parametrize("name", CHANGES)
-def test_gradients_by_the_structure_are_central_differences(structure: Structure, name: str) -> None:
+def test_sensitivities_to_the_structure_are_central_differences(structure: Structure, name: str) -> None:
     law = LAWS["rough"]
     compare(name, structure, law, lambda step: solve(moved(structure, CHANGES[name], step), law), 1.0)
 
@@ -109,7 +108,7 @@ def test_gradients_by_the_structure_are_central_differences(structure: Structure
         ("voltage_offset", 1.0),
     ],
 )
-def test_gradients_by_load_and_drive_are_central_differences(
+def test_sensitivities_to_load_and_drive_are_central_differences(
     structure: Structure, name: str, unit: NDArray[np.float64] | float
 ) -> None:
     law = LAWS["rough"]
@@ -132,7 +131,7 @@ def test_gradients_by_load_and_drive_are_central_differences(
         ("spring", "normal_stiffness"),
     ],
 )
-def test_gradients_by_the_contact_are_central_differences(law: str, name: str) -> None:
+def test_sensitivities_to_the_contact_law_are_central_differences(law: str, name: str) -> None:
     gap_law, drive = LAWS[law], DRIVE
     if law != "rough":
         # a contact that never opens, whose force is smooth
@@ -141,9 +140,9 @@ def test_gradients_by_the_contact_are_central_differences(law: str, name: str) -
 
     def varied(step: float) -> SteadyStates:
         changed = replace(gap_law, **{name: value * (1 + step)})  # type: ignore[type-var]
-        return steady_state(HELD, changed, least_harmonics=24, stability=False, **drive)  # type: ignore[arg-type]
+        return steady_state(HELD, changed, minimum_harmonics=24, stability=False, **drive)  # type: ignore[arg-type]
 
-    found = gradients(varied(0.0), sliding_speed=SPEEDS)
+    found = steady_state_sensitivities(varied(0.0), sliding_speed=SPEEDS)
     up, down = varied(1e-4), varied(-1e-4)
     difference = (up.vibration_amplitude - down.vibration_amplitude) / 2e-4
     assert found.vibration_amplitude[name] * value == approx(difference, rel=3e-6, abs=1e-14)
@@ -151,6 +150,6 @@ def test_gradients_by_the_contact_are_central_differences(law: str, name: str) -
     assert found.mean_displacement[name] * value == approx(difference, rel=3e-6, abs=1e-14)
 
 
-def test_a_name_that_is_taken_is_refused() -> None:
+def test_a_parameter_name_that_is_taken_is_refused() -> None:
     with raises(InvalidInput, match="must not be named 'frequency', which is taken"):
-        gradients(solve(FLOATING, LAWS["rough"]), structure_changes={"frequency": StructureChange()})
+        steady_state_sensitivities(solve(FLOATING, LAWS["rough"]), structure_changes={"frequency": StructureChange()})

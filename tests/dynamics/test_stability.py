@@ -1,4 +1,4 @@
-"""Floquet multipliers beside a variational equation integrated directly, and beside what is known of them."""
+"""Floquet multipliers against the directly integrated variational equation and closed forms."""
 
 from dataclasses import replace
 
@@ -8,10 +8,9 @@ from numpy.typing import NDArray
 from pytest import approx, raises
 from scipy.integrate import solve_ivp
 
-from sonolube.dynamics.gap_law import ExponentialGap, GapLaw, HertzGap, LinearGap
+from sonolube.dynamics import ExponentialGap, GapLaw, HertzGap, LinearGap, Status, SteadyStates, steady_state
 from sonolube.dynamics.linear import poles
 from sonolube.dynamics.stability import floquet_multipliers
-from sonolube.dynamics.steady_state import Status, SteadyStates, steady_state
 from sonolube.dynamics.structure import Structure, drive_receptance, with_contact_spring
 from sonolube.errors import InvalidInput
 
@@ -33,7 +32,7 @@ def states_at(gap_law: GapLaw, load: float, frequency: float, amplitude: float) 
 
 
 def integrated(states: SteadyStates) -> NDArray[np.complex128]:
-    """Multipliers of the coordinates' own equations, disturbed and integrated, with nothing of the code under test."""
+    """Return the multipliers from direct integration of the variational equation of the coordinates."""
     structure, law, n = states.structure, states.gap_law, states.structure.coordinates
     omega, load = 2 * np.pi * float(states.frequency), np.float64(states.normal_load)
     inverse, k = np.linalg.inv(structure.mass_matrix), np.arange(1, states.harmonics.size + 1)
@@ -72,7 +71,7 @@ def integrated(states: SteadyStates) -> NDArray[np.complex128]:
         (HertzGap(tip_radius=5e-3, effective_modulus=60e9), 20.0, 24e3, 0.2e-6),
     ],
 )
-def test_multipliers_are_those_of_the_integrated_disturbance(
+def test_multipliers_are_those_of_the_integrated_variational_equation(
     gap_law: GapLaw, load: float, frequency: float, amplitude: float
 ) -> None:
     states = states_at(gap_law, load, frequency, amplitude)
@@ -81,7 +80,7 @@ def test_multipliers_are_those_of_the_integrated_disturbance(
     assert np.sum(found) == approx(np.sum(expected), abs=2e-7)
 
 
-def test_the_quick_verdict_is_that_of_the_multipliers() -> None:
+def test_the_status_agrees_with_the_multipliers() -> None:
     random = np.random.default_rng(8)
     points = 75
     frequency = np.concatenate([random.uniform(5e3, 1e5, 45), random.uniform(22.8e3, 24.2e3, 30)])
@@ -95,7 +94,7 @@ def test_the_quick_verdict_is_that_of_the_multipliers() -> None:
     assert 3 < np.count_nonzero(states.status == Status.UNSTABLE) < points
 
 
-def test_a_linear_contact_turns_with_the_poles_of_the_sprung_structure() -> None:
+def test_multipliers_on_a_linear_contact_follow_from_the_poles_of_the_sprung_structure() -> None:
     states = steady_state(
         TRIBOMETER, LinearGap(normal_stiffness=5e6), normal_load=20.0, frequency=22e3, voltage_amplitude=0.1
     )
@@ -104,27 +103,27 @@ def test_a_linear_contact_turns_with_the_poles_of_the_sprung_structure() -> None
     assert np.sort(np.abs(floquet_multipliers(states))) == approx(np.sort(expected), abs=1e-8)
 
 
-def test_the_product_of_the_multipliers_is_what_dampers_take() -> None:
+def test_the_product_of_the_multipliers_is_the_phase_space_contraction() -> None:
     # Liouville: volumes in phase space shrink at the trace of M^-1 C
     states = states_at(ROUGH, 60.0, 8e3, 10e-6)
     shrunk = np.exp(-np.trace(np.linalg.solve(TRIBOMETER.mass_matrix, TRIBOMETER.damping_matrix)) / 8e3)
     assert np.prod(floquet_multipliers(states)) == approx(shrunk, rel=1e-8)
 
 
-def test_without_dampers_no_disturbance_fades() -> None:
+def test_without_dampers_all_multipliers_lie_on_the_unit_circle() -> None:
     lossless = replace(TRIBOMETER, damping_matrix=np.zeros((3, 3)))
     states = steady_state(lossless, ROUGH, normal_load=3.0, frequency=30e3, voltage_amplitude=20.0)
     assert states.status == Status.PERIODIC
     assert np.abs(floquet_multipliers(states)) == approx(np.ones(6), abs=1e-7)
 
 
-def test_an_unstable_vibration_says_what_to_try() -> None:
+def test_the_reason_of_an_unstable_vibration_names_a_remedy() -> None:
     states = states_at(ROUGH, 80.0, 23.9e3, 8e-6)
     assert states.status == Status.UNSTABLE
     assert "march the point in time" in states.reason(())
     assert np.abs(floquet_multipliers(states)[0]) > 1.001
 
 
-def test_kicks_too_few_are_refused() -> None:
+def test_too_few_kicks_are_refused() -> None:
     with raises(InvalidInput, match="kicks must be at least 8, got 4"):
         floquet_multipliers(states_at(ROUGH, 3.0, 22e3, 1e-6), kicks=4)

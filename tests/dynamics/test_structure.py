@@ -29,7 +29,7 @@ ONE_MASS = Structure(
 
 @st.composite
 def structures(draw: st.DrawFn) -> Structure:
-    """Up to four coordinates with any passive coupling, some of them floating."""
+    """Return any passive structure with up to four coordinates, some of them floating."""
     n = draw(st.integers(1, 4))
     rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     springs, dampers = rng.normal(size=(2, draw(st.integers(1, 4)), n))
@@ -47,7 +47,7 @@ def structures(draw: st.DrawFn) -> Structure:
 frequencies = st.floats(10, 1e5)
 
 
-def test_one_mass_on_a_spring_answers_as_the_text_book_says() -> None:
+def test_one_mass_on_a_spring_has_the_textbook_responses() -> None:
     f = np.array([1e3, 7.117e3, 50e3])
     omega = 2 * np.pi * f
     compliance = 1 / (2e8 - 0.1 * omega**2 + 20j * omega)
@@ -67,7 +67,7 @@ def test_displacement_per_volt_is_charge_per_force(structure: Structure, frequen
 
 
 @given(structure=structures(), frequency=frequencies)
-def test_what_the_drive_puts_in_the_dampers_take_out(structure: Structure, frequency: float) -> None:
+def test_the_electrical_power_is_dissipated_by_the_dampers(structure: Structure, frequency: float) -> None:
     omega = 2 * np.pi * frequency
     dynamic = structure.stiffness_matrix - omega**2 * structure.mass_matrix + 1j * omega * structure.damping_matrix
     velocity = 1j * omega * np.linalg.solve(dynamic, 3.0 * structure.drive_vector)
@@ -78,7 +78,7 @@ def test_what_the_drive_puts_in_the_dampers_take_out(structure: Structure, frequ
 
 
 @given(structure=structures(), frequency=frequencies)
-def test_no_structure_gives_power_at_either_port(structure: Structure, frequency: float) -> None:
+def test_every_structure_is_passive_at_both_ports(structure: Structure, frequency: float) -> None:
     y = complex(electrical_admittance(structure, frequency=frequency))
     mobility = 2j * np.pi * frequency * complex(contact_receptance(structure, frequency=frequency))
     assert y.real >= -1e-9 * abs(y)
@@ -86,7 +86,7 @@ def test_no_structure_gives_power_at_either_port(structure: Structure, frequency
 
 
 @given(structure=structures(), stiffness=st.floats(0, 1e9), damping=st.floats(0, 100), frequency=frequencies)
-def test_a_spring_at_the_contact_stands_beside_the_structures_own(
+def test_a_spring_at_the_contact_adds_to_the_inverse_receptance(
     structure: Structure, stiffness: float, damping: float, frequency: float
 ) -> None:
     sprung = with_contact_spring(structure, normal_stiffness=stiffness, contact_damping=damping)
@@ -107,7 +107,7 @@ def test_a_spring_at_the_contact_stands_beside_the_structures_own(
         ({"clamped_capacitance": -1e-9}, r"clamped_capacitance must not be negative, got -1e-09 F"),
     ],
 )
-def test_a_structure_that_cannot_be_is_refused(changes: dict[str, Any], message: str) -> None:
+def test_an_inconsistent_structure_is_refused(changes: dict[str, Any], message: str) -> None:
     with raises(InvalidInput, match=message):
         replace(ONE_MASS, **changes)
 

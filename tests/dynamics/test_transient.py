@@ -1,4 +1,4 @@
-"""Marching against closed forms, conservation and other integrators."""
+"""Time marching against closed forms, conservation laws and other integrators."""
 
 from typing import Any
 
@@ -11,11 +11,11 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 from scipy.optimize import fsolve
 
-from sonolube.dynamics.gap_law import ExponentialGap, GapLaw, HertzGap, LinearGap
+from sonolube.dynamics import ExponentialGap, GapLaw, HertzGap, LinearGap
 from sonolube.dynamics.structure import Structure, drive_receptance, dynamic_stiffness
-from sonolube.dynamics.time_marching.records import State, displacement_harmonics
+from sonolube.dynamics.trajectories import State, displacement_harmonics
 from sonolube.dynamics.transient import march, trajectory
-from sonolube.dynamics.waveform import WAVEFORMS, PiecewiseLinear, StartUpRamp, harmonics, sampled_waveform
+from sonolube.dynamics.waveform import WAVEFORMS, PiecewiseLinear, StartUpRamp, fourier_coefficients, sampled_waveform
 from sonolube.errors import InvalidInput
 
 Array = NDArray[np.float64]
@@ -41,7 +41,7 @@ def tribometer(*, c_p: float = 30.0, k_2: float = 2e5, c_2: float = 20.0) -> Str
 
 
 def held(*, c: float) -> Structure:
-    """Return one mass on a spring to ground, driven and touched."""
+    """Return one mass on a spring to the ground, with drive and contact at the mass."""
     return Structure(
         mass_matrix=np.array([[0.1]]),
         damping_matrix=np.array([[c]]),
@@ -103,7 +103,7 @@ def by_dop853(
 
 @pytest.mark.parametrize("steps", [8, 20])
 @pytest.mark.parametrize("c_2", [0.0, 20.0, 447.0, 2e4])
-def test_without_contact_every_step_is_exact_whatever_the_damping(steps: int, c_2: float) -> None:
+def test_without_contact_every_step_is_exact_for_any_damping(steps: int, c_2: float) -> None:
     # harmonic motion, which the dynamic stiffness gives, and free motion by the matrix exponential
     s, periods, swing = tribometer(c_2=c_2), 50, 10.0
     x0, v0 = np.array([1e-6, -2e-6, 0.5e-6]), np.array([0.01, 0.2, -0.02])
@@ -121,7 +121,7 @@ def test_without_contact_every_step_is_exact_whatever_the_damping(steps: int, c_
         periods=periods,
         steps_per_period=steps,
         strobed_periods=periods,
-        initial_state=State(coordinates=x0, rates=v0),
+        initial_state=State(coordinates=x0, velocities=v0),
     )
     assert marched.strobed.displacement == approx(np.array(ends), abs=2e-12 * np.abs(ends).max())
 
@@ -152,7 +152,7 @@ def test_a_linear_ramp_is_exact_without_contact() -> None:
     assert marched.strobed.displacement[-1] == approx(expected, rel=1e-11)
 
 
-def test_a_waveform_with_corners_inside_the_steps_moves_a_free_contact_as_its_fourier_series_does() -> None:
+def test_a_waveform_with_corners_within_steps_gives_the_response_of_its_fourier_series() -> None:
     s, f = held(c=2000.0), 700.0
     waveform = sampled_waveform([0.0, 1.0, 0.3, -0.4, -1.0, 0.2, 0.5])
     marched = march(
@@ -166,7 +166,7 @@ def test_a_waveform_with_corners_inside_the_steps_moves_a_free_contact_as_its_fo
         waveform=waveform,
     )
     orders = np.arange(1, 1001)
-    lines = 3.0 * drive_receptance(s, frequency=f * orders) * harmonics(waveform, 1000)[1:]
+    lines = 3.0 * drive_receptance(s, frequency=f * orders) * fourier_coefficients(waveform, 1000)[1:]
     phases = 2 * np.pi * np.arange(1, 9) / 8
     expected = 2 * (lines @ np.exp(1j * np.multiply.outer(orders, phases))).real
     assert marched.last_periods.displacement == approx(expected, abs=1e-7 * np.abs(expected).max())
@@ -199,7 +199,7 @@ def test_the_error_falls_with_the_fifth_power_of_the_step_or_faster(tau: float, 
     assert errors[-1] < 5e-8 * np.ptp(exact)
 
 
-def test_the_start_up_over_200_periods_is_that_of_another_integrator() -> None:
+def test_a_start_up_of_200_periods_agrees_with_another_integrator() -> None:
     s = tribometer()
     exact = by_dop853(s, swing=17.0, ramp=100 / F, periods=200)
     for steps, error in ((12, 1e-4), (16, 1e-5), (64, 1e-10)):
@@ -220,7 +220,7 @@ def test_the_start_up_over_200_periods_is_that_of_another_integrator() -> None:
 @pytest.mark.parametrize(
     "law", [ROUGH, HertzGap(tip_radius=5e-3, effective_modulus=1e11), LinearGap(normal_stiffness=1e7)]
 )
-def test_plain_runge_kutta_with_many_steps_finds_the_same_bouncing(law: GapLaw) -> None:
+def test_impacting_agrees_with_runge_kutta_in_many_steps(law: GapLaw) -> None:
     s, swing, periods, steps = tribometer(), 200.0, 10, 1000
     A, b, c = state_matrix(s)
     h, z = 1 / (F * steps), np.zeros(6)
@@ -248,7 +248,7 @@ def test_plain_runge_kutta_with_many_steps_finds_the_same_bouncing(law: GapLaw) 
     assert marched.final_state.coordinates == approx(z[:3], abs=1e-5 * np.ptp(marched.last_periods.displacement))
 
 
-def test_a_contact_that_ends_at_a_corner_lowers_the_order_and_says_so() -> None:
+def test_a_corner_at_the_loss_of_contact_lowers_the_order_and_is_reported() -> None:
     def ends(steps: int) -> tuple[Array, str]:
         marched = march(
             tribometer(),
@@ -265,7 +265,10 @@ def test_a_contact_that_ends_at_a_corner_lowers_the_order_and_says_so() -> None:
     steps = (32, 128, 512)
     errors = [np.sqrt(np.mean((ends(count)[0] - exact) ** 2)) for count in steps]
     assert 1.4 < -np.polyfit(np.log(steps), np.log(errors), 1)[0] < 2.6
-    assert ends(32)[1] == "the force reaches zero at a corner, where the error falls only with the square of the step"
+    assert (
+        ends(32)[1]
+        == "the force has a corner at the loss of contact, where the error falls only as the square of the step"
+    )
 
 
 def test_energy_is_conserved_without_drive_and_damping() -> None:
@@ -278,9 +281,9 @@ def test_energy_is_conserved_without_drive_and_damping() -> None:
         voltage_peak_to_peak=0.0,
         periods=300,
         steps_per_period=32,
-        initial_state=State(coordinates=np.zeros(3), rates=np.array([0.6, -0.2, 0.02])),
+        initial_state=State(coordinates=np.zeros(3), velocities=np.array([0.6, -0.2, 0.02])),
     )
-    x, v = motion.states.coordinates, motion.states.rates
+    x, v = motion.states.coordinates, motion.states.velocities
     kinetic = np.einsum("ti,ij,tj->t", v, s.mass_matrix, v) / 2
     elastic = np.einsum("ti,ij,tj->t", x, s.stiffness_matrix, x) / 2
     pressed = LOAD * (2e-6 * np.expm1(-x[:, 0] / 2e-6) + x[:, 0])
@@ -288,19 +291,19 @@ def test_energy_is_conserved_without_drive_and_damping() -> None:
     assert kinetic + elastic + pressed == approx(kinetic[0], rel=1e-7)
 
 
-def test_the_work_of_the_drive_is_what_the_dampers_take() -> None:
+def test_the_work_of_the_drive_is_dissipated_by_the_dampers() -> None:
     s = tribometer(c_p=2000.0, c_2=400.0)
     motion = trajectory(
         s, ROUGH, normal_load=LOAD, frequency=F, voltage_peak_to_peak=100.0, periods=1500, steps_per_period=64
     )
     last = slice(-64, None)
-    v = motion.states.rates[last]
+    v = motion.states.velocities[last]
     supplied = np.mean((v @ s.drive_vector) * motion.voltage[last])
     taken = np.mean(np.einsum("ti,ij,tj->t", v, s.damping_matrix, v))
     assert supplied == approx(taken, rel=1e-5)
 
 
-def test_a_floating_structure_carries_its_load_in_the_mean_however_it_hops() -> None:
+def test_the_mean_force_under_a_floating_structure_is_its_load_whatever_the_loss_of_contact() -> None:
     marched = march(
         tribometer(c_p=600.0, c_2=300.0),
         ROUGH,
@@ -319,7 +322,7 @@ def test_a_floating_structure_carries_its_load_in_the_mean_however_it_hops() -> 
     )
 
 
-def test_a_held_structure_rests_where_spring_contact_and_offset_balance() -> None:
+def test_a_grounded_structure_rests_where_spring_contact_and_offset_balance() -> None:
     marched = march(
         held(c=500.0),
         ROUGH,
@@ -334,7 +337,7 @@ def test_a_held_structure_rests_where_spring_contact_and_offset_balance() -> Non
     assert 1e7 * x == approx(10.0 * 2.0 + LOAD * (np.exp(-x / 2e-6) - 1), rel=1e-9)
 
 
-def test_without_contact_a_resonance_builds_up_as_one_minus_the_decay_of_its_free_motion() -> None:
+def test_without_contact_a_resonance_builds_up_as_one_minus_its_free_decay() -> None:
     s = held(c=20.0)  # 1591.5 Hz, decay rate 100 /s
     f = np.sqrt(1e7 / 0.1) / (2 * np.pi)
     marched = march(
@@ -346,7 +349,7 @@ def test_without_contact_a_resonance_builds_up_as_one_minus_the_decay_of_its_fre
     assert marched.envelope.first_harmonic_amplitude[5:] == approx(expected[5:], rel=0.01)
 
 
-def test_a_march_can_be_interrupted() -> None:
+def test_a_march_can_be_continued_from_its_final_state() -> None:
     s = tribometer()
 
     def go(periods: int, start: State | None) -> State:
@@ -364,7 +367,7 @@ def test_a_march_can_be_interrupted() -> None:
     assert go(40, go(60, None)).coordinates == approx(go(100, None).coordinates, rel=1e-7)
 
 
-def test_points_do_not_disturb_each_other() -> None:
+def test_points_of_a_batch_are_independent() -> None:
     s = tribometer()
     load, f, swing = np.linspace(1, 5, 70), np.linspace(21e3, 23e3, 70), np.linspace(1, 60, 70)
 
@@ -386,7 +389,7 @@ def test_points_do_not_disturb_each_other() -> None:
     assert together[[0, 33, 69]] == approx(go([0, 33, 69], 1), rel=1e-9)
 
 
-def test_one_trajectory_is_the_march_of_its_point() -> None:
+def test_a_trajectory_is_the_march_of_its_point() -> None:
     conditions: dict[str, Any] = {
         "normal_load": LOAD,
         "frequency": F,
@@ -426,7 +429,7 @@ def test_many_periods_take_bounded_memory() -> None:
     assert marched.last_periods.displacement.shape == (2, 8)
 
 
-def test_steps_too_long_for_the_contact_are_told() -> None:
+def test_steps_too_long_for_the_contact_are_reported_as_coarse() -> None:
     def go(steps: int) -> Any:
         return march(
             tribometer(),
@@ -466,17 +469,23 @@ def test_steps_too_long_for_the_contact_are_told() -> None:
         ({"periods": 0}, r"periods must be at least 1, got 0"),
         ({"workers": 0}, r"workers must be at least 1, got 0"),
         ({"strobed_periods": 0}, r"strobed_periods must be at least 1"),
-        ({"initial_state": State(coordinates=np.zeros(2), rates=np.zeros(3))}, r"3 coordinates and rates .* \(2,\)"),
-        ({"initial_state": State(coordinates=np.full(3, np.nan), rates=np.zeros(3))}, r"coordinates must be finite"),
+        (
+            {"initial_state": State(coordinates=np.zeros(2), velocities=np.zeros(3))},
+            r"3 coordinates and velocities .* \(2,\)",
+        ),
+        (
+            {"initial_state": State(coordinates=np.full(3, np.nan), velocities=np.zeros(3))},
+            r"coordinates must be finite",
+        ),
     ],
 )
-def test_what_cannot_be_marched_is_refused_by_name(change: dict[str, Any], message: str) -> None:
+def test_invalid_arguments_of_a_march_are_refused_by_name(change: dict[str, Any], message: str) -> None:
     conditions: dict[str, Any] = {"normal_load": LOAD, "frequency": F, "voltage_peak_to_peak": 1.0, "periods": 1}
     with raises(InvalidInput, match=message):
         march(tribometer(), ROUGH, **{**conditions, **change})
 
 
-def test_a_jump_within_a_step_is_refused_with_the_steps_that_would_do() -> None:
+def test_a_jump_within_a_step_is_refused_with_a_suitable_number_of_steps() -> None:
     third = PiecewiseLinear(
         starts_at=np.array([0.0, 2 * np.pi / 3]), first=np.array([2 / 3, -1 / 3]), last=np.array([2 / 3, -1 / 3])
     )
@@ -488,13 +497,13 @@ def test_a_jump_within_a_step_is_refused_with_the_steps_that_would_do() -> None:
     march(tribometer(), ROUGH, waveform=third, steps_per_period=12, **conditions)
 
 
-def test_a_trajectory_is_of_one_point() -> None:
+def test_a_trajectory_of_several_points_is_refused() -> None:
     two: Any = np.ones(2)
     with raises(InvalidInput, match="trajectory takes one point, got 2; march takes many"):
         trajectory(tribometer(), ROUGH, normal_load=two, frequency=F, voltage_peak_to_peak=1.0, periods=1)
 
 
-def test_modes_that_damping_couples_and_makes_coincide_are_refused() -> None:
+def test_coupled_modes_with_coinciding_poles_are_refused() -> None:
     # two coupled oscillators, one damped: (x^2 + g x + 1) (x^2 + k) - 0.01 has a double root x for some g and k
     def double_root(unknown: Array) -> list[float]:
         real, imaginary, g, k = unknown
@@ -512,5 +521,5 @@ def test_modes_that_damping_couples_and_makes_coincide_are_refused() -> None:
         contact_vector=np.array([1.0, 0.0]),
         clamped_capacitance=1e-9,
     )
-    with raises(InvalidInput, match=r"damping_matrix makes .* coincide"):
+    with raises(InvalidInput, match=r"damping_matrix .* coincide"):
         march(s, ROUGH, normal_load=1.0, frequency=1e3, voltage_peak_to_peak=1.0, periods=1)

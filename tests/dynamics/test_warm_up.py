@@ -1,4 +1,4 @@
-"""A first call compiles its kernels in two processes, later ones in none, and nothing is left running."""
+"""Parallel compilation of the kernels at a first call, and none at later ones."""
 
 import os
 import subprocess
@@ -8,17 +8,17 @@ from pathlib import Path
 import pytest
 from numba.core.event import Event, EventStatus, broadcast
 
-from sonolube.dynamics.harmonic_balance.contact_kernel import Compiled
-from sonolube.dynamics.harmonic_balance.floquet_kernel import growth_rates
-from sonolube.dynamics.harmonic_balance.harmonic_kernel import balance
-from sonolube.dynamics.warm_up import compiling_alongside
+from sonolube.dynamics.harmonic_balance.floquet_kernel import monodromy_power_norms
+from sonolube.dynamics.harmonic_balance.harmonic_kernel import newton_solve
+from sonolube.dynamics.kernels.contact_kernel import KernelVariant
+from sonolube.dynamics.warm_up import compile_in_parallel
 
-UNDAMPED = Compiled(kind=(), damped=())
+UNDAMPED = KernelVariant(kind=(), damped=())
 CALL = """
-from sonolube.dynamics import ExponentialGap, Structure, sliding_friction, steady_state
-from sonolube.dynamics.harmonic_balance.floquet_kernel import growth_rates
-from sonolube.dynamics.harmonic_balance.harmonic_kernel import balance
-from sonolube.dynamics.friction_average.kernel import sliding_means
+from sonolube.dynamics import ExponentialGap, Structure, friction_averages, steady_state
+from sonolube.dynamics.harmonic_balance.floquet_kernel import monodromy_power_norms
+from sonolube.dynamics.harmonic_balance.harmonic_kernel import newton_solve
+from sonolube.dynamics.friction_average.elliptic_kernel import elliptic_averages
 structure = Structure(
     mass_matrix=[[0.1]], damping_matrix=[[30.0]], stiffness_matrix=[[2e9]], drive_vector=[17.0], contact_vector=[1.0],
     clamped_capacitance=2e-7,
@@ -27,13 +27,13 @@ states = steady_state(
     structure, ExponentialGap(decay_length=2e-6, force_damping={damping}), normal_load=3.0, frequency=22e3,
     voltage_amplitude=14.0, stability={stability}, relative_tolerance={tolerance}, workers=2,
 )
-sliding_friction(states, sliding_speed=[0.1])
-print([sum(kernel.stats.cache_misses.values()) for kernel in (balance, growth_rates, sliding_means)])
+friction_averages(states, sliding_speed=[0.1])
+print([sum(kernel.stats.cache_misses.values()) for kernel in (newton_solve, monodromy_power_norms, elliptic_averages)])
 """
 
 
 @pytest.mark.parametrize(("damping", "stability", "tolerance"), [(0.0, True, 1e-6), (0.5, False, 1e-4)])
-def test_the_caller_compiles_the_first_kernel_only_and_finds_the_others(
+def test_the_caller_compiles_only_the_first_kernel_and_loads_the_others_from_the_cache(
     tmp_path: Path, damping: float, stability: bool, tolerance: float
 ) -> None:
     def compiled() -> str:
@@ -51,35 +51,35 @@ def begin_to_compile(kernel: object) -> None:
 
 
 def interrupted() -> None:
-    begin_to_compile(balance)
+    begin_to_compile(newton_solve)
     raise KeyboardInterrupt
 
 
-def test_an_interrupted_caller_ends_the_other_process() -> None:
-    with pytest.raises(KeyboardInterrupt), compiling_alongside(UNDAMPED, stability=True, tolerance=1e-6) as helper:
+def test_an_interrupted_caller_kills_the_second_process() -> None:
+    with pytest.raises(KeyboardInterrupt), compile_in_parallel(UNDAMPED, stability=True, tolerance=1e-6) as process:
         interrupted()
-    assert helper.wait() not in {None, 0}
+    assert process.wait() not in {None, 0}
 
 
-def test_no_process_is_started_for_other_kernels() -> None:
-    with compiling_alongside(UNDAMPED, stability=True, tolerance=1e-6) as helper:
-        begin_to_compile(growth_rates)
-    assert helper.wait() is None
+def test_no_process_is_started_when_another_kernel_is_compiled() -> None:
+    with compile_in_parallel(UNDAMPED, stability=True, tolerance=1e-6) as process:
+        begin_to_compile(monodromy_power_norms)
+    assert process.wait() is None
 
 
 @pytest.mark.parametrize(
     ("where", "name", "value"),
     [
-        (sys, "executable", "/nowhere/python"),  # can't be started
-        (sys, "executable", ""),  # an interpreter within another program
-        (sys, "frozen", True),  # the executable is a program of its own
-        (os, "cpu_count", lambda: 1),  # nothing would be gained
+        (sys, "executable", "/nowhere/python"),  # cannot be started
+        (sys, "executable", ""),  # an embedded interpreter
+        (sys, "frozen", True),  # a frozen program
+        (os, "cpu_count", lambda: 1),  # a single CPU
     ],
 )
-def test_the_caller_does_without_where_no_process_can_help(
+def test_the_caller_works_where_no_second_process_can_be_started(
     monkeypatch: pytest.MonkeyPatch, where: object, name: str, value: object
 ) -> None:
     monkeypatch.setattr(where, name, value, raising=False)
-    with compiling_alongside(UNDAMPED, stability=True, tolerance=1e-6) as helper:
-        begin_to_compile(balance)
-    assert helper.wait() is None
+    with compile_in_parallel(UNDAMPED, stability=True, tolerance=1e-6) as process:
+        begin_to_compile(newton_solve)
+    assert process.wait() is None

@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 from pytest import approx, raises
 
-from sonolube.dynamics import extremes, value
-from sonolube.dynamics.steady_friction import motion as vibration
-from sonolube.dynamics.steady_state import Status, steady_state
+from sonolube.dynamics import Status, steady_state, waveform_extremes, waveform_value
+from sonolube.dynamics import contact_motion as vibration
 from sonolube.dynamics.structure import contact_receptance, drive_receptance
 from sonolube.errors import InvalidInput
 from sonolube.friction import FRICTION_MODELS
@@ -127,7 +126,7 @@ def test_a_vibration_found_under_a_hard_drive_answers_its_own_force() -> None:
 def test_lost_contact_is_told() -> None:
     result = simulated("drive.voltage_peak_to_peak=200V", "drive.voltage_offset=0V").vibration
     assert result.contact_loss_fraction == approx(np.mean(result.motions[0].normal_force < 0.03), abs=2e-3)
-    assert f"it hops, without contact for {result.contact_loss_fraction:.2%} of the time" in result.reason
+    assert f"contact is lost for {result.contact_loss_fraction:.2%} of the time" in result.reason
 
 
 def test_a_slow_start_excites_the_arm_less() -> None:
@@ -152,13 +151,13 @@ def test_samples_of_a_triangle_are_the_triangle() -> None:
         simulate(named).vibration.vibration_amplitude, rel=1e-9
     )
     assert given.drive is not None
-    assert value(waveform_of(given.drive), phase=np.pi / 2) == approx(0.5)
+    assert waveform_value(waveform_of(given.drive), phase=np.pi / 2) == approx(0.5)
 
 
 def test_the_voltage_of_a_lopsided_waveform_reaches_as_far_as_its_samples_do() -> None:
     drive = rig_from(sampled([1, 0, 0, 0], offset="10 V")).drive
     assert drive is not None
-    assert extremes(waveform_of(drive)) == approx((-0.25, 0.75))
+    assert waveform_extremes(waveform_of(drive)) == approx((-0.25, 0.75))
     assert voltage_range(drive) == approx((10 - 7, 10 + 21))
 
 

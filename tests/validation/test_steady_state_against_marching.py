@@ -22,7 +22,7 @@ from sonolube.dynamics import (
     steady_state,
 )
 from sonolube.dynamics.linear import poles
-from sonolube.dynamics.long_time_response import attained_motion
+from sonolube.dynamics.long_time_response import march_until_settled
 from sonolube.dynamics.structure import with_contact_spring
 from sonolube.rig import read_rig
 from sonolube.rig.driven_rig import driven_rig
@@ -120,7 +120,7 @@ def test_every_point_has_a_status_and_every_solution_its_numbers(points: int) ->
 def test_what_is_called_unstable_does_not_last(points: int) -> None:
     states = balanced(points)
     for point in np.flatnonzero(states.status == Status.UNSTABLE):
-        found = attained_motion(
+        found = march_until_settled(
             STRUCTURE,
             LAW,
             normal_load=float(states.normal_load[point]),

@@ -31,7 +31,7 @@ from sonolube.cli import (
     uncertainty,
 )
 from sonolube.errors import SonolubeError
-from sonolube.threads import still_busy
+from sonolube.threads import threads_running
 
 _INTERRUPTED = 130
 _LONGEST = 1200  # characters of a complaint, which may quote what was given
@@ -102,7 +102,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         code = _refuse(command, f"does not fit into memory; ask for fewer points: {refusal}")
     except (KeyboardInterrupt, typer.Abort):
         code = _INTERRUPTED
-    if code == _INTERRUPTED and still_busy():
+    if code == _INTERRUPTED and threads_running():
         sys.stdout.flush()
         os._exit(_INTERRUPTED)
     sys.exit(code if isinstance(code, int) else 0)

@@ -62,11 +62,11 @@ def sweep(
     from sonolube.cli.progress import progress
     from sonolube.cli.sweep_output import sweep_lines, sweep_object, write_sweep
     from sonolube.design import sweep as swept
-    from sonolube.dynamics.backend import available
+    from sonolube.dynamics.backend import usable_backend
 
     plan = _plan(rig, over, sample, points, seed, list(changes or ()))
     with told_if_unused():
-        chosen = available(backend.value)
+        chosen = usable_backend(backend.value)
     folder = out or Path("out") / f"{rig.stem}-sweep-{plan.digest[:8]}{'-gpu' if chosen == 'gpu' else ''}"
     with told_if_unused(), progress("sweeping") as advance:
         result = swept(

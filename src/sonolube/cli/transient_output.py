@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sonolube.cli.output import closing_lines
-from sonolube.dynamics.time_marching.records import Trajectory
+from sonolube.dynamics.trajectories import Trajectory
 from sonolube.figure import COLOURS, publication_style, write_figure
 from sonolube.rig import Rig, StartUp, dataset, write_netcdf
 from sonolube.units import engineering

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats, require_non_negative, require_positive
-from sonolube.dynamics.backend import Backend, available, device_name
+from sonolube.dynamics.backend import Backend, device_name, usable_backend
 from sonolube.errors import InvalidInput
 from sonolube.rig import NUMBERS, STATUSES, Rig, gridded, point_batch
 from sonolube.rig.driven_rig import require_drive
@@ -201,7 +201,7 @@ def sufficient_power(*, friction_reduction: ArrayLike, actuator_power: ArrayLike
 
 
 def _mapped(rig: Rig, kind: str, backend: Backend, **axes: ArrayLike) -> "xr.Dataset":
-    backend = available(backend)
+    backend = usable_backend(backend)
     values = {name: np.atleast_1d(require_positive(**{name: array})) for name, array in axes.items()}
     for name, array in values.items():
         if array.ndim != 1 or np.any(np.diff(array) <= 0):

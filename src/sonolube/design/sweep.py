@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from sonolube.design.chunk_dataset import InFile, InMemory
 from sonolube.design.chunk_store import ChunkStore
 from sonolube.design.plan import SETTINGS, SweepPlan
-from sonolube.dynamics.backend import Backend, available, device_name
+from sonolube.dynamics.backend import Backend, device_name, usable_backend
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.rig import NUMBERS, STATUSES, PointBatch, point_batch
-from sonolube.threads import threads
+from sonolube.threads import thread_pool
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -80,7 +80,7 @@ def sweep(
     """
     if chunk_points < 1 or workers < 1:
         raise InvalidInput(f"chunk_points and workers must be at least 1, got {chunk_points} and {workers}")
-    backend = available(backend)
+    backend = usable_backend(backend)
     device, store = device_name(backend), None
     if folder is not None:
         store = ChunkStore(
@@ -209,7 +209,7 @@ def _first_done(under_way: dict[Future[PointBatch], int]) -> set[Future[PointBat
 @contextmanager
 def _executor(workers: int, scheduler: str | None) -> Iterator[Executor]:
     if scheduler is None:
-        with threads(workers) as pool:
+        with thread_pool(workers) as pool:
             yield pool
         return
     try:

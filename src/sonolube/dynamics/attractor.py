@@ -1,4 +1,4 @@
-"""What a trajectory settles to: a period, several, a beat, chaos, or nothing; and how long it takes."""
+"""Classification of attractors as periodic, subharmonic, beating or chaotic; Lyapunov exponents and beats."""
 
 import math
 import warnings
@@ -11,68 +11,69 @@ from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive, require_within
 from sonolube.dynamics.backend import Backend
-from sonolube.dynamics.gap_law import LOST, GapLaw
+from sonolube.dynamics.gap_laws.protocol import CONTACT_LOSS_THRESHOLD, GapLaw
 from sonolube.dynamics.structure import Structure
-from sonolube.dynamics.time_marching.records import ContactMotion, Envelope, State, Trajectories
-from sonolube.dynamics.transient import AT_ONCE, march
+from sonolube.dynamics.trajectories import ContactMotion, Envelope, State, Trajectories
+from sonolube.dynamics.transient import NO_RAMP, march
 from sonolube.dynamics.waveform import Waveform
 from sonolube.errors import GpuUnused, InvalidInput
 
-_HIGHEST_ORDER = 8  # subharmonics looked for
-_SAME = 1e-3  # spread of strobed instants, over the peak-to-peak displacement, that counts as repetition
-_SHRINKS = 0.7  # spread in the later half of the strobed instants, over that in the earlier, that counts as settling
-_CHAOTIC = 0.02  # growth of a disturbance a period, as an exponent
-_SURE = 0.005  # exponent that a disturbance of a stable motion can seem to have
-_ROUND = 16  # periods for which a disturbance grows before it is made small again
-_MOST_ROUNDS = 64  # in which a disturbance is watched
+_HIGHEST_ORDER = 8  # of subharmonics
+_REPETITION = 1e-3  # range of strobed samples, over the peak-to-peak displacement, below which a motion repeats
+_SETTLING = 0.7  # deviation of the later strobed samples over that of the earlier below which a motion is settling
+_CHAOTIC = 0.02  # Lyapunov exponent per period above which a motion is chaotic
+_EXPONENT_ERROR = 0.005  # of the Lyapunov exponent
+_ROUND = 16  # periods between renormalisations of the disturbance
+_MOST_ROUNDS = 64
 _DISTURBANCE = 1e-6  # over the motion itself
-_RECORDED = 32  # periods in which a loss of contact is looked for
-_FINER = 8  # instants to a step in which its loss is looked for
+_RECORDED = 32  # periods in which the time without contact is measured
+_SUBDIVISIONS = 8  # of a step, for the time without contact
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Attractors:
-    """What each point of a batch settles to.
+    """Attractors of the points of a batch.
 
     Parameters
     ----------
     kind : ndarray of str, shape (...)
-        "periodic", "subharmonic", "beating", "chaotic", "settling" where it is still on its way, or "diverged".
+        "periodic", "subharmonic", "beating" (quasi-periodic), "chaotic", "settling" for a transient that still decays,
+        or "diverged".
     order : ndarray of int, shape (...)
-        Periods of the drive after which the motion repeats; 0 where it does not.
-    exponent : ndarray, shape (...)
-        Growth exponent of a disturbance per period of the drive, negative where it dies out, to within 0.005; not a
-        number where diverged.
+        Number of drive periods after which the motion repeats; 0 where it does not.
+    lyapunov_exponent : ndarray, shape (...)
+        Largest Lyapunov exponent per period of the drive, negative for a stable motion, to within 0.005; NaN where
+        diverged.
     contact_loss_fraction : ndarray, shape (...)
-        Share of the time in which the contact force is below 0.01 F_N. []
+        Fraction of the time in which the contact force is below 0.01 F_N. []
     beat_frequency : ndarray, shape (...)
-        Frequency of the slow motion of the contact seen once a period, zero where there is none. [Hz]
+        Frequency of the slow motion in samples once per period, zero where there is none. [Hz]
     beat_amplitude : ndarray, shape (...)
-        Half its peak-to-peak displacement. [m]
+        Half the peak-to-peak displacement of the slow motion. [m]
     description : ndarray of str, shape (...)
-        All of this in a sentence, with advice where something is wrong.
-    state : State
-        The state at the end, from which to march on.
+        Summary of the above in a sentence, with a remedy where one is needed.
+    final_state : State
+        State at the end, from which marching can continue.
     """
 
     kind: NDArray[np.str_]
     order: NDArray[np.intp]
-    exponent: Floats
+    lyapunov_exponent: Floats
     contact_loss_fraction: Floats
     beat_frequency: Floats
     beat_amplitude: Floats
     description: NDArray[np.str_]
-    state: State
+    final_state: State
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Beat:
-    """The strongest slow motion in samples.
+    """Strongest slow oscillation in equally spaced samples.
 
     Parameters
     ----------
     beat_frequency : ndarray, shape (...)
-        Its frequency, zero where nothing moves. [Hz]
+        Frequency of the oscillation, zero for constant samples. [Hz]
     beat_amplitude : ndarray, shape (...)
         Half the peak-to-peak displacement over the later half of the samples. [m]
     """
@@ -81,7 +82,7 @@ class Beat:
     beat_amplitude: Floats
 
 
-def describe(
+def classify_attractor(
     structure: Structure,
     gap_law: GapLaw,
     *,
@@ -96,7 +97,7 @@ def describe(
     workers: int = 1,
     backend: Backend = "cpu",
 ) -> Attractors:
-    """March on from where a trajectory ended, and say what it settled to.
+    r"""Classify the attractors that trajectories have reached, by marching on from their final states.
 
     Parameters
     ----------
@@ -107,21 +108,19 @@ def describe(
     frequency : array_like, broadcast against `normal_load`
         Frequency of the drive. [Hz]
     voltage_peak_to_peak : array_like, broadcast against `normal_load`
-        Drive voltage, peak to peak. [V]
+        Peak-to-peak drive voltage. [V]
     voltage_offset : array_like, broadcast against `normal_load`
-        Its mean. [V]
+        Mean drive voltage. [V]
     initial_state : State
-        Where to start: the final state of a march that passed the transient.
+        Final state of a march beyond the transient.
     waveform : Waveform or None
-        Shape of the voltage; a sine if None.
+        Waveform of the voltage; a sine if None.
     periods : int
-        Periods to watch, a multiple of 16, at least 32; a beat slower than all of them together is not seen.
-    steps_per_period : int
-        As for `march`.
-    workers : int
-        As for `march`.
+        Periods to observe, a multiple of 16, at least 32; a beat slower than all of them together is not resolved.
+    steps_per_period, workers
+        As in `march`.
     backend : {"cpu", "gpu"}
-        As for `march`.
+        As in `march`.
 
     Returns
     -------
@@ -130,18 +129,25 @@ def describe(
     Raises
     ------
     InvalidInput
-        As `march` does, or if the periods are no multiple of 16 or too few.
+        As `march`, or if the periods are not a multiple of 16 or too few.
 
     Warns
     -----
     GpuUnused
-        As `march` does.
+        As `march`.
+
+    See Also
+    --------
+    march, march_until_settled, floquet_multipliers
 
     Notes
     -----
-    The motion repeats after p periods if displacement and velocity, seen once a period, return to within a thousandth
-    of the peak-to-peak displacement at every p-th instant. The exponent is that of two trajectories which start a
-    millionth apart and are brought together again every 16 periods, 64 times at most, from the later half of this. [1]_
+    The motion repeats after p periods if the Poincare samples of displacement and velocity, taken once per period,
+    return to within a thousandth of the peak-to-peak displacement at every p-th sample. The largest Lyapunov exponent
+    is estimated from two trajectories with an initial distance :math:`\delta_0` of a millionth, renormalised every 16
+    periods, 64 times at most, of which the later half is averaged [1]_:
+
+    .. math:: \lambda = \frac{1}{16}\left\langle \ln\frac{\delta}{\delta_0} \right\rangle
 
     References
     ----------
@@ -156,77 +162,70 @@ def describe(
         require_non_negative(voltage_peak_to_peak=voltage_peak_to_peak),
         require_finite(voltage_offset=voltage_offset),
     )
-    go = partial(
+    run = partial(
         march,
         structure,
         gap_law,
-        waveform=waveform,
-        steps_per_period=steps_per_period,
-        ramp=AT_ONCE,
-        workers=workers,
-        backend=backend,
-    )
-    watched = go(
-        normal_load=load,
         frequency=f,
         voltage_peak_to_peak=swing,
         voltage_offset=offset,
+        waveform=waveform,
+        steps_per_period=steps_per_period,
+        ramp=NO_RAMP,
+        workers=workers,
+        backend=backend,
+    )
+    observed = run(
+        normal_load=load,
         periods=periods,
         initial_state=initial_state,
         recorded_periods=_RECORDED,
         strobed_periods=periods,
     )
 
-    def both(states: State) -> State:
-        return go(
-            normal_load=np.stack([load, load]),
-            frequency=f,
-            voltage_peak_to_peak=swing,
-            voltage_offset=offset,
-            periods=_ROUND,
-            initial_state=states,
-        ).final_state
+    def advance_pair(states: State) -> State:
+        return run(normal_load=np.stack([load, load]), periods=_ROUND, initial_state=states).final_state
 
-    diverged = watched.status == "diverged"
-    repeats = _repeats(watched, f)
-    at_rest = gap_law.stiffness(np.zeros_like(load), load)
+    diverged = observed.status == "diverged"
+    order, settling = _repetition(observed, f)
+    stiffness = gap_law.stiffness(np.zeros_like(load), load)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", GpuUnused)  # which was told already
+        warnings.simplefilter("ignore", GpuUnused)  # it was issued already
         rounds = min(periods // _ROUND, _MOST_ROUNDS)
-        exponent = _exponent(structure, both, watched.final_state, f, at_rest, rounds)
-    slow = beat(displacement=watched.strobed.displacement, interval=1 / f)
+        exponent = _lyapunov_exponent(structure, advance_pair, observed.final_state, f, stiffness, rounds)
+    slow = beat(displacement=observed.strobed.displacement, interval=1 / f)
     kind = np.select(
-        [diverged, repeats.order == 1, repeats.order > 1, exponent > _CHAOTIC, repeats.shrinking],
+        [diverged, order == 1, order > 1, exponent > _CHAOTIC, settling],
         ["diverged", "periodic", "subharmonic", "chaotic", "settling"],
         "beating",
     )
-    open_share = _contact_loss_fraction(gap_law, watched.last_periods, load, f * steps_per_period)
+    loss = _contact_loss_fraction(gap_law, observed.last_periods, load, f * steps_per_period)
     found = Attractors(
         kind=kind,
-        order=np.where(diverged, 0, repeats.order),
-        exponent=np.where(diverged, np.nan, exponent),
-        contact_loss_fraction=np.where(diverged, np.nan, open_share),
+        order=np.where(diverged, 0, order),
+        lyapunov_exponent=np.where(diverged, np.nan, exponent),
+        contact_loss_fraction=np.where(diverged, np.nan, loss),
         beat_frequency=slow.beat_frequency,
         beat_amplitude=slow.beat_amplitude,
         description=np.empty(kind.shape, dtype=np.str_),
-        state=watched.final_state,
+        final_state=observed.final_state,
     )
-    return replace(found, description=_descriptions(found, watched.advice))
+    return replace(found, description=_descriptions(found, observed.advice))
 
 
 def settling_time(envelope: Envelope, *, band: float = 0.02) -> Floats:
-    """Return when the amplitude of the first harmonic comes within a band about its last value, to stay. [s]
+    """Return the settling time: when the first-harmonic amplitude enters a band about its last value for good. [s]
 
     Parameters
     ----------
     envelope : Envelope
     band : float
-        Half the width of the band, over the last value.
+        Half-width of the band over the last value.
 
     Returns
     -------
     ndarray, shape of the points
-        To the width of the envelope's windows; the last window's end where it never settles.
+        Resolved to the envelope's windows; the end of the last window where the amplitude never settles.
 
     Raises
     ------
@@ -242,12 +241,12 @@ def settling_time(envelope: Envelope, *, band: float = 0.02) -> Floats:
 
 
 def beat(*, displacement: ArrayLike, interval: ArrayLike) -> Beat:
-    """Return frequency and amplitude of the slow motion in equally spaced samples.
+    """Return frequency and amplitude of the strongest slow oscillation in samples, by linear prediction.
 
     Parameters
     ----------
     displacement : array_like, shape (..., n)
-        Once a period, or means over periods, such as those of an envelope. [m]
+        Samples once per period, or means over periods, such as those of an envelope. [m]
     interval : array_like, shape (...)
         Time between samples, in s.
 
@@ -262,8 +261,8 @@ def beat(*, displacement: ArrayLike, interval: ArrayLike) -> Beat:
 
     Notes
     -----
-    The strongest line of the spectrum says where to look; the frequency is that of the damped oscillation which best
-    foretells each sample from two before it, a quarter of a beat apart. [1]_
+    The strongest line of the spectrum is the initial estimate; the frequency is that of the damped oscillation that
+    best predicts each sample from two previous ones, spaced by a quarter of a beat [1]_.
 
     References
     ----------
@@ -273,77 +272,85 @@ def beat(*, displacement: ArrayLike, interval: ArrayLike) -> Beat:
     if samples.ndim == 0 or samples.shape[-1] < 8:
         raise InvalidInput(f"displacement must have at least 8 samples, got shape {samples.shape}")
     rows = samples.reshape(-1, samples.shape[-1])
-    found = np.array([_turns_a_sample(row) for row in rows]).reshape(samples.shape[:-1])
+    found = np.array([_cycles_per_sample(row) for row in rows]).reshape(samples.shape[:-1])
     later = samples[..., samples.shape[-1] // 2 :]
     return Beat(beat_frequency=found / np.asarray(interval), beat_amplitude=np.ptp(later, axis=-1) / 2)
 
 
-def _turns_a_sample(samples: Floats) -> float:
-    steady = samples - samples.mean()
-    if not np.all(np.isfinite(steady)) or np.ptp(steady) <= 1e-9 * np.abs(samples).max(initial=0.0):
+def _cycles_per_sample(samples: Floats) -> float:
+    """Return the frequency of the strongest slow oscillation in one row of samples, in cycles per sample."""
+    centred = samples - samples.mean()
+    if not np.all(np.isfinite(centred)) or np.ptp(centred) <= 1e-9 * np.abs(samples).max(initial=0.0):
         return 0.0
-    spectrum = np.abs(np.fft.rfft(steady * np.hanning(steady.size), 8 * steady.size))
-    guess = max(int(np.argmax(spectrum)), 8) / (8 * steady.size)
-    lag = min(max(round(0.25 / guess), 1), steady.size // 4)
-    newest, middle, oldest = steady[2 * lag :], steady[lag:-lag], steady[: -2 * lag]
+    spectrum = np.abs(np.fft.rfft(centred * np.hanning(centred.size), 8 * centred.size))
+    guess = max(int(np.argmax(spectrum)), 8) / (8 * centred.size)
+    lag = min(max(round(0.25 / guess), 1), centred.size // 4)
+    newest, middle, oldest = centred[2 * lag :], centred[lag:-lag], centred[: -2 * lag]
     (twice, square, _), *_ = np.linalg.lstsq(np.column_stack([middle, oldest, np.ones(middle.size)]), newest)
     cosine = twice / (2 * math.sqrt(-square)) if square < 0 else math.inf
     return math.acos(cosine) / (2 * math.pi * lag) if abs(cosine) < 1 else float(guess)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class _Repeats:
-    order: NDArray[np.intp]
-    shrinking: NDArray[np.bool_]
-
-
-def _repeats(watched: Trajectories, f: Floats) -> _Repeats:
-    """Return after how many periods each motion repeats, 0 for never, and whether its instants draw together."""
-    seen = np.stack(
-        [watched.strobed.displacement, watched.strobed.velocity / (2 * np.pi * f[..., np.newaxis])], axis=-1
+def _repetition(observed: Trajectories, f: Floats) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
+    """Return the number of periods after which each motion repeats, 0 for never, and whether its samples converge."""
+    samples = np.stack(
+        [observed.strobed.displacement, observed.strobed.velocity / (2 * np.pi * f[..., np.newaxis])], axis=-1
     )
-    scale = np.ptp(watched.last_periods.displacement, axis=-1)
+    scale = np.ptp(observed.last_periods.displacement, axis=-1)
     order = np.zeros(f.shape, dtype=np.intp)
     for p in range(_HIGHEST_ORDER, 0, -1):
-        spread = np.max([np.ptp(seen[..., first::p, :], axis=-2).max(axis=-1) for first in range(p)], axis=0)
-        order = np.where(spread <= _SAME * scale, p, order)
-    half = seen.shape[-2] // 2
-    early, late = (np.std(part, axis=-2).max(axis=-1) for part in (seen[..., :half, :], seen[..., half:, :]))
-    return _Repeats(order=order, shrinking=late < _SHRINKS * early)
+        extent = np.max([np.ptp(samples[..., first::p, :], axis=-2).max(axis=-1) for first in range(p)], axis=0)
+        order = np.where(extent <= _REPETITION * scale, p, order)
+    half = samples.shape[-2] // 2
+    early, late = (np.std(part, axis=-2).max(axis=-1) for part in (samples[..., :half, :], samples[..., half:, :]))
+    return order, np.asarray(late < _SETTLING * early)
 
 
-def _exponent(
-    structure: Structure, both: Callable[[State], State], start: State, f: Floats, stiffness: Floats, rounds: int
+def _lyapunov_exponent(
+    structure: Structure,
+    advance_pair: Callable[[State], State],
+    start: State,
+    f: Floats,
+    stiffness: Floats,
+    rounds: int,
 ) -> Floats:
-    """Return the mean growth of a small disturbance over the later half of the rounds, as an exponent per period."""
+    """Return the largest Lyapunov exponent per period, from the growth of a small disturbance in the later rounds.
+
+    The norm of a disturbance is the root of its energy, with the contact linearised, which does not oscillate in
+    undamped free motion.
+    """
     omega, n = 2 * np.pi * f, structure.coordinates
 
-    def size(state: State) -> Floats:  # the root of the energy of small motions, which no mode makes swing
-        kinetic = np.einsum("...i,ij,...j->...", state.rates, structure.mass_matrix, state.rates)
+    def norm(state: State) -> Floats:
+        kinetic = np.einsum("...i,ij,...j->...", state.velocities, structure.mass_matrix, state.velocities)
         elastic = np.einsum("...i,ij,...j->...", state.coordinates, structure.stiffness_matrix, state.coordinates)
         return np.asarray(np.sqrt(kinetic + elastic + stiffness * (state.coordinates @ structure.contact_vector) ** 2))
 
-    small = _DISTURBANCE * np.maximum(size(start), 1e-300)[..., np.newaxis]
-    aside = np.random.default_rng(0).normal(size=(2, n))  # any direction: it turns into the fastest growing one
-    gap = State(coordinates=aside[0] / omega[..., np.newaxis], rates=np.broadcast_to(aside[1], (*f.shape, n)))
+    initial = _DISTURBANCE * np.maximum(norm(start), 1e-300)[..., np.newaxis]
+    direction = np.random.default_rng(0).normal(size=(2, n))  # arbitrary: it turns into the fastest growing one
+    disturbance = State(
+        coordinates=direction[0] / omega[..., np.newaxis], velocities=np.broadcast_to(direction[1], (*f.shape, n))
+    )
     growth = []
     for _ in range(rounds):
-        scale = small / size(gap)[..., np.newaxis]
-        ends = both(
+        scale = initial / norm(disturbance)[..., np.newaxis]
+        ends = advance_pair(
             State(
-                coordinates=np.stack([start.coordinates, start.coordinates + scale * gap.coordinates]),
-                rates=np.stack([start.rates, start.rates + scale * gap.rates]),
+                coordinates=np.stack([start.coordinates, start.coordinates + scale * disturbance.coordinates]),
+                velocities=np.stack([start.velocities, start.velocities + scale * disturbance.velocities]),
             )
         )
-        start = State(coordinates=ends.coordinates[0], rates=ends.rates[0])
-        gap = State(coordinates=np.diff(ends.coordinates, axis=0)[0], rates=np.diff(ends.rates, axis=0)[0])
-        growth.append(np.log(np.maximum(size(gap), 1e-300) / small[..., 0]))
+        start = State(coordinates=ends.coordinates[0], velocities=ends.velocities[0])
+        disturbance = State(
+            coordinates=np.diff(ends.coordinates, axis=0)[0], velocities=np.diff(ends.velocities, axis=0)[0]
+        )
+        growth.append(np.log(np.maximum(norm(disturbance), 1e-300) / initial[..., 0]))
     return np.asarray(np.mean(growth[rounds // 2 :], axis=0) / _ROUND)
 
 
 def _contact_loss_fraction(gap_law: GapLaw, motion: ContactMotion, load: Floats, rate: Floats) -> Floats:
-    """Look between the steps as well, along the cubics through displacements and velocities at their ends."""
-    s = (np.arange(_FINER) / _FINER)[:, np.newaxis]
+    """Return the fraction of the time without contact, between steps by cubic Hermite interpolation."""
+    s = (np.arange(_SUBDIVISIONS) / _SUBDIVISIONS)[:, np.newaxis]
     x, v = (
         motion.displacement[..., np.newaxis, :],
         motion.velocity[..., np.newaxis, :] / rate[..., np.newaxis, np.newaxis],
@@ -353,14 +360,15 @@ def _contact_loss_fraction(gap_law: GapLaw, motion: ContactMotion, load: Floats,
         start + s * (3 * (after - before) - 2 * start - end + s * (2 * (before - after) + start + end))
     )
     weight = load[..., np.newaxis, np.newaxis]
-    return np.asarray(np.mean(gap_law.force(between, weight) < LOST * weight, axis=(-2, -1)))
+    return np.asarray(np.mean(gap_law.force(between, weight) < CONTACT_LOSS_THRESHOLD * weight, axis=(-2, -1)))
 
 
 def _descriptions(found: Attractors, advice: NDArray[np.str_]) -> NDArray[np.str_]:
+    """Return the description of every attractor."""
     fields = (
         found.kind,
         found.order,
-        found.exponent,
+        found.lyapunov_exponent,
         found.contact_loss_fraction,
         found.beat_frequency,
         found.beat_amplitude,
@@ -371,17 +379,18 @@ def _descriptions(found: Attractors, advice: NDArray[np.str_]) -> NDArray[np.str
 
 
 def _description(
-    kind: str, order: int, exponent: float, open_share: float, frequency: float, amplitude: float, advice: str
+    kind: str, order: int, exponent: float, loss: float, frequency: float, amplitude: float, advice: str
 ) -> str:
+    """Return the description of one attractor: kind, stability, beat, time without contact and advice."""
     slow = f"{frequency:.4g} Hz with an amplitude of {amplitude * 1e6:.3g} um"
-    dies_out = exponent < -_SURE
-    words = {
-        "periodic": "periodic" + (f"; a disturbance dies out by exp({exponent:.3g}) a period" if dies_out else ""),
+    decays = exponent < -_EXPONENT_ERROR
+    texts = {
+        "periodic": "periodic" + (f"; a disturbance decays by exp({exponent:.3g}) a period" if decays else ""),
         "subharmonic": f"subharmonic, repeats after {order} periods",
         "beating": f"beats at {slow}",
         "chaotic": f"chaotic; a disturbance grows by exp({exponent:.3g}) a period",
         "settling": f"still settling, at {slow}; march on for longer",
         "diverged": "diverged",
     }
-    bouncing = f"without contact for {open_share:.2%} of the time" if open_share > 0 else ""
-    return "; ".join(filter(None, (words[kind], bouncing, advice)))
+    no_contact = f"without contact for {loss:.2%} of the time" if loss > 0 else ""
+    return "; ".join(filter(None, (texts[kind], no_contact, advice)))

@@ -1,4 +1,4 @@
-"""Lumped chains: masses on one line, springs and dampers between them, a stack between two of them."""
+"""Lumped-parameter and modal structures: chains of masses, springs, dampers and a stack; modes of finite elements."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -66,16 +66,16 @@ class Damper:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class LumpedChain:
-    """Masses that move along the normal of the contact, and what joins them.
+    """Lumped-parameter model: masses that move along the contact normal, joined by springs, dampers and one stack.
 
     Parameters
     ----------
     masses : mapping of str to float
-        Mass of each body in kg, by name; its order is that of the coordinates.
+        Mass of each body in kg, by name; their order is that of the coordinates.
     springs : tuple of Spring
     dampers : tuple of Damper
     stack : PiezoStack
-        Its own mass goes with the body behind it.
+        Its own mass is added to the body behind it.
     stack_between : tuple of two str
         Body on the contact's side of the stack, and body behind it; either may be "ground".
     contact : str
@@ -115,7 +115,7 @@ class LumpedChain:
 
 
 def chain_structure(chain: LumpedChain) -> Structure:
-    """Return the chain as a structure, whose coordinates are the heights of its masses.
+    r"""Return the structure of a lumped chain, whose coordinates are the heights of its masses.
 
     Parameters
     ----------
@@ -125,26 +125,36 @@ def chain_structure(chain: LumpedChain) -> Structure:
     -------
     Structure
         Coordinates in the order of `masses`, each positive away from the other surface.
+
+    Notes
+    -----
+    A spring of stiffness k (a damper likewise) between coordinates i and j adds
+    :math:`k\,(e_j - e_i)(e_j - e_i)^T` to the matrix; the stack adds its stiffness and damping in the same way and the
+    drive vector :math:`b = N d_{33} k_p\,(e_j - e_i)`.
+
+    References
+    ----------
+    .. [1] D 3.31, with all heights positive away from the disc.
     """
     names = list(chain.masses)
     stack, (near, behind) = chain.stack, chain.stack_between
     mass = np.diag([float(chain.masses[name]) for name in names])
     if behind != GROUND:
         mass[names.index(behind), names.index(behind)] += stack.stack_mass
-    along = _difference(names, (near, behind))
-    stiffness = stack.stack_stiffness * np.multiply.outer(along, along)
-    damping = stack.stack_damping * np.multiply.outer(along, along)
+    elongation = _elongation_vector(names, (near, behind))
+    stiffness = stack.stack_stiffness * np.multiply.outer(elongation, elongation)
+    damping = stack.stack_damping * np.multiply.outer(elongation, elongation)
     for spring in chain.springs:
-        change = _difference(names, spring.between)
-        stiffness += spring.spring_stiffness * np.multiply.outer(change, change)
+        vector = _elongation_vector(names, spring.between)
+        stiffness += spring.spring_stiffness * np.multiply.outer(vector, vector)
     for damper in chain.dampers:
-        change = _difference(names, damper.between)
-        damping += damper.viscous_damping * np.multiply.outer(change, change)
+        vector = _elongation_vector(names, damper.between)
+        damping += damper.viscous_damping * np.multiply.outer(vector, vector)
     return Structure(
         mass_matrix=mass,
         damping_matrix=damping,
         stiffness_matrix=stiffness,
-        drive_vector=stack.charge_per_elongation * along,
+        drive_vector=stack.charge_per_elongation * elongation,
         contact_vector=np.array([float(name == chain.contact) for name in names]),
         clamped_capacitance=stack.clamped_capacitance,
         load_vector=None if chain.loaded is None else np.array([float(name == chain.loaded) for name in names]),
@@ -161,7 +171,7 @@ def pin_on_disc_chain(
     arm_damping: float,
     tip_damping: float = 0.0,
 ) -> LumpedChain:
-    """Return the three masses of the pin-on-disc tribometer: tip, reaction mass, loading arm.
+    """Return the three-mass chain of the pin-on-disc tribometer: tip, reaction mass, loading arm.
 
     Parameters
     ----------
@@ -176,14 +186,14 @@ def pin_on_disc_chain(
     arm_stiffness : float
         Stiffness k_2 between reaction mass and arm. [N/m]
     arm_damping : float
-        Damping c_2 beside it. [N s/m]
+        Damping c_2 parallel to that stiffness. [N s/m]
     tip_damping : float
         Damping c_1 between tip and disc. [N s/m]
 
     Returns
     -------
     LumpedChain
-        Of masses "tip", "reaction" and "arm", that floats under its dead load.
+        Of masses "tip", "reaction" and "arm"; it floats: no spring connects it to the ground.
 
     Raises
     ------
@@ -192,8 +202,9 @@ def pin_on_disc_chain(
 
     Notes
     -----
-    All heights count away from the disc. D's matrices carry the stack's stiffness with a plus off the diagonal, since
-    there x1 and x2 point in opposite directions, and F_N as if it drove the arm, of which it is the weight.
+    All heights are positive away from the disc. D's matrices have the stack's stiffness with a positive sign off the
+    diagonal, since there x1 and x2 point in opposite directions, and treat F_N as a drive of the arm, whose weight it
+    is.
 
     References
     ----------
@@ -224,25 +235,25 @@ def modal_structure(
     contact_participation: ArrayLike,
     clamped_capacitance: float,
 ) -> Structure:
-    """Return the structure that modes describe, such as those of finite elements.
+    """Return the structure in modal coordinates, from natural frequencies, damping ratios and participation factors.
 
     Parameters
     ----------
     frequencies : array_like, shape (n,)
-        Natural frequency of each mode in Hz, the stack short-circuited; zero for rigid modes.
+        Natural frequency of each mode with the stack short-circuited, in Hz; zero for rigid-body modes.
     damping_ratios : array_like, shape (n,) or ()
         Damping over critical damping of each mode.
     drive_participation : array_like, shape (n,)
         Modal force per volt, in N/V for shapes normalised to a modal mass of 1 kg.
     contact_participation : array_like, shape (n,)
-        Displacement of the contact in each shape so normalised, positive away from the other body.
+        Displacement of the contact in each mode shape of unit modal mass, positive away from the other body.
     clamped_capacitance : float
-        Capacitance with all modes held; it has to include the static share of modes left out. [F]
+        Capacitance with all these modes clamped; it must include the static contribution of truncated modes. [F]
 
     Returns
     -------
     Structure
-        Coordinates are the modal ones.
+        In modal coordinates.
 
     Raises
     ------
@@ -265,12 +276,13 @@ def modal_structure(
     )
 
 
-def _difference(names: list[str], ends: tuple[str, str]) -> Floats:
-    """Return how the distance from the first end to the second changes with each coordinate."""
+def _elongation_vector(names: list[str], ends: tuple[str, str]) -> Floats:
+    """Return the derivative of the distance from the first end to the second with respect to each coordinate."""
     first, second = ends
     return np.array([float(name == second) - float(name == first) for name in names])
 
 
 def _require_two_ends(kind: str, ends: tuple[str, str]) -> None:
+    """Refuse a spring, damper or stack whose two ends are the same."""
     if len(ends) != 2 or ends[0] == ends[1]:
         raise InvalidInput(f"a {kind} needs two different ends, got {', '.join(map(repr, ends))}")

@@ -1,4 +1,4 @@
-"""Curves of steady vibration over voltage or frequency, followed by their arc length through every fold."""
+"""Response curves over voltage or frequency, by pseudo-arclength continuation through folds."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -8,45 +8,46 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.checks import Complexes, Floats, require_positive
-from sonolube.dynamics.gap_law import ExponentialGap, GapLaw, TabulatedGap, length_of_change
-from sonolube.dynamics.harmonic_balance.extrema import measure
-from sonolube.dynamics.harmonic_balance.floquet_exponent import GROWTH, growth
-from sonolube.dynamics.harmonic_balance.receptance import contact_port
-from sonolube.dynamics.harmonic_balance.residual import PointEquations
-from sonolube.dynamics.steady_state import Status, steady_state
+from sonolube.dynamics.gap_laws.protocol import GapLaw, force_decay_length
+from sonolube.dynamics.harmonic_balance.extrema import response_measures
+from sonolube.dynamics.harmonic_balance.floquet_exponent import STABILITY_THRESHOLD, floquet_exponents
+from sonolube.dynamics.harmonic_balance.receptance import pole_residue_model
+from sonolube.dynamics.harmonic_balance.residual import HarmonicBalanceEquations
+from sonolube.dynamics.steady_state_response import steady_state
+from sonolube.dynamics.steady_states import Status
 from sonolube.dynamics.structure import Structure
 from sonolube.errors import InvalidInput
 
-_EXACT = 1e-10  # last step of a corrector, in reaches of the contact
-_CORRECTIONS = 8
-_SHORTEST, _LONGEST = 1e-7, 0.1  # steps, in shares of the parameter's range and reaches of the contact
-_TURN = 0.95  # cosine between neighbouring tangents below which steps shorten
+_CORRECTOR_TOLERANCE = 1e-10  # last corrector step, in decay lengths of the contact
+_CORRECTOR_STEPS = 8
+_SHORTEST, _LONGEST = 1e-7, 0.1  # arclength steps, in fractions of the parameter's range and decay lengths
+_LARGEST_TURN, _SMALL_TURN = 0.95, 0.99  # cosines between successive tangents: shorten below, lengthen above
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class ResponseCurve:
-    """Steady vibrations along a curve, in the order in which it was followed.
+    """Steady vibrations along a response curve, in the order of continuation.
 
     Parameters
     ----------
     along : {"voltage", "frequency"}
-        What varies.
+        Continuation parameter.
     voltage_amplitude : ndarray, shape (n,)
         Amplitude of the sinusoidal drive. [V]
     frequency : ndarray, shape (n,)
         Frequency of the drive. [Hz]
     mean_displacement : ndarray, shape (n,)
-        Mean of the contact's displacement. [m]
+        Mean displacement of the contact. [m]
     harmonics : ndarray of complex, shape (n, H)
         Harmonics of the contact's displacement, in m.
     vibration_amplitude : ndarray, shape (n,)
-        Half of the displacement from peak to peak. [m]
+        Half of the peak-to-peak displacement. [m]
     stable : ndarray of bool, shape (n,)
-        Whether small disturbances die away.
+        Whether all Floquet multipliers lie within the unit circle.
     complete : bool
-        Whether the curve was followed to the end of its range.
-    equations : PointEquations
-        What holds along the curve.
+        Whether the curve reached the end of its range.
+    equations : HarmonicBalanceEquations
+        Equations that the points of the curve satisfy.
     """
 
     along: Literal["voltage", "frequency"]
@@ -57,18 +58,18 @@ class ResponseCurve:
     vibration_amplitude: Floats
     stable: NDArray[np.bool_]
     complete: bool
-    equations: PointEquations
+    equations: HarmonicBalanceEquations
 
     @property
     def parameter(self) -> Floats:
-        """What varies along the curve: voltage, in V, or frequency, in Hz."""
+        """Continuation parameter: voltage amplitude, in V, or frequency, in Hz."""
         return self.voltage_amplitude if self.along == "voltage" else self.frequency
 
     @property
     def folds(self) -> NDArray[np.intp]:
-        """Indices at which the curve turns back."""
-        ahead = np.sign(np.diff(self.parameter))
-        return 1 + np.flatnonzero(ahead[1:] * ahead[:-1] < 0)
+        """Indices of the folds, where the parameter reverses its direction."""
+        direction = np.sign(np.diff(self.parameter))
+        return 1 + np.flatnonzero(direction[1:] * direction[:-1] < 0)
 
 
 def response_curve(
@@ -81,7 +82,7 @@ def response_curve(
     orders: int = 12,
     most_points: int = 4000,
 ) -> ResponseCurve:
-    """Follow the steady vibration over a range of voltage or of frequency.
+    r"""Return the steady vibration along a range of voltage or frequency, by pseudo-arclength continuation.
 
     Parameters
     ----------
@@ -90,13 +91,13 @@ def response_curve(
     normal_load : float
         Dead load on the contact. [N]
     voltage_amplitude : float or pair of float
-        Amplitude of the sinusoidal drive; two for where the curve starts and ends. [V]
+        Amplitude of the sinusoidal drive; a pair is the start and the end of the curve. [V]
     frequency : float or pair of float
-        Frequency of the drive; two for where the curve starts and ends. [Hz]
+        Frequency of the drive; a pair is the start and the end of the curve. [Hz]
     orders : int
-        Harmonics of the contact.
+        Number of harmonics of the contact.
     most_points : int
-        Points after which a curve is left incomplete.
+        Number of points after which the curve is left incomplete.
 
     Returns
     -------
@@ -108,10 +109,18 @@ def response_curve(
         If not exactly one of voltage and frequency is a pair, a value is not positive, or no vibration was found at the
         start.
 
+    See Also
+    --------
+    solutions_at, reached_by_ramp, steady_state
+
     Notes
     -----
-    Keller's pseudo-arclength: a step along the tangent, then Newton's method in the plane across it, which does not
-    mind folds. Stability comes from the growth of disturbances, as in `sonolube.dynamics.stability`.
+    With the residual R of harmonic balance, the scaled unknowns and parameter y, and the unit tangent t at the last
+    point :math:`y_0`, the next point solves
+
+    .. math:: R(y) = 0, \qquad t \cdot (y - y_0) = \Delta s
+
+    by Newton's method, which stays regular at folds [1]_. Stability is that of `floquet_exponents`.
 
     References
     ----------
@@ -120,37 +129,37 @@ def response_curve(
     load = float(require_positive(normal_load=normal_load))
     volts, hertz = require_positive(voltage_amplitude=voltage_amplitude), require_positive(frequency=frequency)
     if sorted((volts.shape, hertz.shape)) != [(), (2,)]:
-        raise InvalidInput("give a pair, where the curve starts and ends, for either voltage_amplitude or frequency")
+        raise InvalidInput("give a pair, start and end of the curve, for either voltage_amplitude or frequency")
     along: Literal["voltage", "frequency"] = "voltage" if volts.shape else "frequency"
     first, last = (float(values) for values in (volts if along == "voltage" else hertz))
-    equations = PointEquations(
+    equations = HarmonicBalanceEquations(
         structure=structure,
         gap_law=gap_law,
         normal_load=load,
         voltage_harmonics=np.ones(1, dtype=np.complex128),
         voltage_offset=0.0,
         orders=orders,
-        samples=8 * orders if isinstance(gap_law, ExponentialGap | TabulatedGap) else max(8 * orders, 512),
+        samples=max(8 * orders, 512) if gap_law.has_corner else 8 * orders,
     )
     start = steady_state(
         structure, gap_law, normal_load=load, frequency=hertz.flat[0], voltage_amplitude=volts.flat[0], stability=False
     )
     if start.status == Status.NOT_CONVERGED:
-        raise InvalidInput(f"no vibration was found where the curve should start; {start.reason(())}")
+        raise InvalidInput(f"no vibration was found at the start of the curve; {start.reason(())}")
     path = _Path(
         equations=equations,
         along=along,
         fixed=float(hertz if along == "voltage" else volts),
         first=first,
         last=last,
-        length=float(length_of_change(gap_law, load)),
+        length=float(force_decay_length(gap_law, load)),
     )
     rows = list(path.follow(equations.stack(float(start.mean_displacement), start.harmonics), most_points))
     return _curve(path, np.array(rows), complete=abs(rows[-1][-1] - 0.5) == 0.5)
 
 
-def crossings(curve: ResponseCurve, *, at: float) -> ResponseCurve:
-    """Return all vibrations of the curve at one value of its parameter, in the curve's order.
+def solutions_at(curve: ResponseCurve, *, at: float) -> ResponseCurve:
+    """Return all steady vibrations of a response curve at one value of its parameter, in the curve's order.
 
     Parameters
     ----------
@@ -161,28 +170,32 @@ def crossings(curve: ResponseCurve, *, at: float) -> ResponseCurve:
     Returns
     -------
     ResponseCurve
-        Of as many points as the curve passes the value.
+        One point for each time the curve passes the value.
+
+    See Also
+    --------
+    reached_by_ramp
     """
     path = _path_of(curve)
     before, after = curve.parameter[:-1] - at, curve.parameter[1:] - at
     passed = np.flatnonzero((before * after < 0) | (before == 0))
-    rows = [path.solve_at(_between(curve, int(i), at), path.share(at)) for i in passed]
+    rows = [path.solve_at(_interpolated(curve, int(i), at), path.fraction(at)) for i in passed]
     if curve.parameter[-1] == at:
-        rows.append(path.solve_at(_row(curve, -1), path.share(at)))
+        rows.append(path.solve_at(_row(curve, -1), path.fraction(at)))
     found = [row for row in rows if row is not None]
     return _curve(path, np.array(found).reshape(len(found), 2 * curve.equations.orders + 2), complete=curve.complete)
 
 
 def reached_by_ramp(curve: ResponseCurve, *, at: float, backward: bool = False) -> ResponseCurve:
-    """Return the one vibration that a slow change of the parameter ends at, jumping where the curve folds back.
+    """Return the steady vibration at the end of a slow ramp of the parameter, with jumps at the folds.
 
     Parameters
     ----------
     curve : ResponseCurve
     at : float
-        Voltage amplitude, in V, or frequency, in Hz, where the change ends.
+        Voltage amplitude, in V, or frequency, in Hz, at the end of the ramp.
     backward : bool
-        Whether the change began at the curve's end rather than at its start.
+        Whether the ramp started at the end of the curve rather than at its start.
 
     Returns
     -------
@@ -194,11 +207,15 @@ def reached_by_ramp(curve: ResponseCurve, *, at: float, backward: bool = False) 
     InvalidInput
         If the curve does not reach the value.
 
+    See Also
+    --------
+    solutions_at
+
     Notes
     -----
-    At a fold the vibration is taken to jump to where the curve next passes the fold's value.
+    At a fold the vibration is assumed to jump to the next point of the curve at the same parameter.
     """
-    found = crossings(curve, at=at)
+    found = solutions_at(curve, at=at)
     if not found.parameter.size:
         raise InvalidInput(f"the curve does not reach {curve.along} {at:.6g}")
     chosen = slice(-1, None) if backward else slice(0, 1)
@@ -215,23 +232,23 @@ def reached_by_ramp(curve: ResponseCurve, *, at: float, backward: bool = False) 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class _Path:
-    """The curve in pure numbers: unknowns over the contact's reach, and the share of the range passed."""
+    """Solution curve in dimensionless form: unknowns over the decay length, and the fraction of the range passed."""
 
-    equations: PointEquations
+    equations: HarmonicBalanceEquations
     along: Literal["voltage", "frequency"]
     fixed: float  # the other parameter, in V or Hz
     first: float
     last: float
     length: float
 
-    def share(self, parameter: float) -> float:
+    def fraction(self, parameter: float) -> float:
         return (parameter - self.first) / (self.last - self.first)
 
-    def parameter(self, share: Floats) -> Floats:
-        return self.first + share * (self.last - self.first)
+    def parameter(self, fraction: Floats) -> Floats:
+        return self.first + fraction * (self.last - self.first)
 
     def linearise(self, y: Floats) -> tuple[Floats, Floats]:
-        """Return the residual and its derivatives, the last column by the share."""
+        """Return the residual and its derivatives, the last column by the fraction of the range."""
         value = float(self.parameter(y[-1]))
         volts, hertz = (value, self.fixed) if self.along == "voltage" else (self.fixed, value)
         balance = self.equations.at(y[:-1] * self.length, omega=2 * np.pi * hertz, scale=volts)
@@ -241,41 +258,41 @@ class _Path:
         matrix = np.column_stack([balance.jacobian * self.length, rate * (self.last - self.first)])
         return balance.residual / unit, matrix / unit[:, np.newaxis]
 
-    def correct(self, y: Floats, across: Floats, beyond: float) -> Floats | None:
-        """Return the point of the curve in the plane across . y = beyond, if Newton's method finds it."""
-        for _ in range(_CORRECTIONS):
+    def correct(self, y: Floats, normal: Floats, offset: float) -> Floats | None:
+        """Return the point of the curve in the plane normal . y = offset, or None if Newton's method fails."""
+        for _ in range(_CORRECTOR_STEPS):
             residual, matrix = self.linearise(y)
-            step = np.linalg.solve(np.vstack([matrix, across]), np.append(residual, across @ y - beyond))
+            step = np.linalg.solve(np.vstack([matrix, normal]), np.append(residual, normal @ y - offset))
             y = y - step
             if not np.all(np.isfinite(y)):
                 return None
-            if np.abs(step).max() < _EXACT:
+            if np.abs(step).max() < _CORRECTOR_TOLERANCE:
                 return y
         return None
 
-    def solve_at(self, y: Floats, share: float) -> Floats | None:
-        """Return the point of the curve with this share nearby."""
-        across = np.zeros(y.size)
-        across[-1] = 1.0
-        return self.correct(y, across, share)
+    def solve_at(self, y: Floats, fraction: float) -> Floats | None:
+        """Return the nearby point of the curve at a fraction of the range, or None if Newton's method fails."""
+        normal = np.zeros(y.size)
+        normal[-1] = 1.0
+        return self.correct(y, normal, fraction)
 
-    def tangent(self, y: Floats, along: Floats) -> Floats:
-        """Return the unit tangent that goes on along the one given."""
+    def tangent(self, y: Floats, previous: Floats) -> Floats:
+        """Return the unit tangent at a point, in the direction of the previous one."""
         _, matrix = self.linearise(y)
-        ahead = np.linalg.solve(np.vstack([matrix, along]), np.append(np.zeros(y.size - 1), 1.0))
-        return np.asarray(ahead / np.linalg.norm(ahead))
+        direction = np.linalg.solve(np.vstack([matrix, previous]), np.append(np.zeros(y.size - 1), 1.0))
+        return np.asarray(direction / np.linalg.norm(direction))
 
     def follow(self, start: Floats, most_points: int) -> Iterator[Floats]:
-        """Yield the points of the curve, from share 0 until it leaves the range."""
+        """Yield the points of the curve, from fraction 0 until it leaves the range."""
         y = self.solve_at(np.append(start / self.length, 0.0), 0.0)
         if y is None:
-            raise InvalidInput("orders are too few for the vibration where the curve starts")
+            raise InvalidInput("orders are too few for the vibration at the start of the curve; take more")
         yield y
-        ahead = np.zeros(y.size)
-        ahead[-1] = 1.0
-        ahead, step = self.tangent(y, ahead), _LONGEST / 10
+        tangent = np.zeros(y.size)
+        tangent[-1] = 1.0
+        tangent, step = self.tangent(y, tangent), _LONGEST / 10
         for _ in range(most_points - 1):
-            found, turned, step = self._next(y, ahead, step)
+            found, turned, step = self._next(y, tangent, step)
             if found is None:
                 return
             if not 0.0 <= found[-1] <= 1.0:
@@ -285,22 +302,23 @@ class _Path:
                 if final is not None:
                     yield final
                 return
-            y, ahead = found, turned
+            y, tangent = found, turned
             yield y
 
-    def _next(self, y: Floats, ahead: Floats, step: float) -> tuple[Floats | None, Floats, float]:
-        """Return the next point, its tangent and the step to try from there."""
+    def _next(self, y: Floats, tangent: Floats, step: float) -> tuple[Floats | None, Floats, float]:
+        """Return the next point, its tangent and the arclength step to try from there."""
         while step > _SHORTEST:
-            found = self.correct(y + step * ahead, ahead, float(ahead @ y) + step)
+            found = self.correct(y + step * tangent, tangent, float(tangent @ y) + step)
             if found is not None:
-                turned = self.tangent(found, ahead)
-                if turned @ ahead > _TURN:
-                    return found, turned, min(1.5 * step, _LONGEST) if turned @ ahead > 0.99 else step
+                turned = self.tangent(found, tangent)
+                if turned @ tangent > _LARGEST_TURN:
+                    return found, turned, min(1.5 * step, _LONGEST) if turned @ tangent > _SMALL_TURN else step
             step /= 2
-        return None, ahead, step
+        return None, tangent, step
 
 
 def _path_of(curve: ResponseCurve) -> _Path:
+    """Return the dimensionless form of a response curve."""
     other = curve.frequency if curve.along == "voltage" else curve.voltage_amplitude
     return _Path(
         equations=curve.equations,
@@ -308,23 +326,26 @@ def _path_of(curve: ResponseCurve) -> _Path:
         fixed=float(other[0]),
         first=float(curve.parameter[0]),
         last=float(curve.parameter[-1]),
-        length=float(length_of_change(curve.equations.gap_law, curve.equations.normal_load)),
+        length=float(force_decay_length(curve.equations.gap_law, curve.equations.normal_load)),
     )
 
 
 def _row(curve: ResponseCurve, index: int) -> Floats:
+    """Return one point of a response curve in dimensionless form."""
     path = _path_of(curve)
     unknowns = curve.equations.stack(float(curve.mean_displacement[index]), curve.harmonics[index])
-    return np.append(unknowns / path.length, path.share(float(curve.parameter[index])))
+    return np.append(unknowns / path.length, path.fraction(float(curve.parameter[index])))
 
 
-def _between(curve: ResponseCurve, index: int, at: float) -> Floats:
+def _interpolated(curve: ResponseCurve, index: int, at: float) -> Floats:
+    """Return the linear interpolation between a point and its successor at one value of the parameter."""
     before, after = curve.parameter[index], curve.parameter[index + 1]
     weight = (at - before) / (after - before)
     return (1 - weight) * _row(curve, index) + weight * _row(curve, index + 1)  # type: ignore[no-any-return]
 
 
 def _curve(path: _Path, rows: Floats, *, complete: bool) -> ResponseCurve:
+    """Return the response curve of points in dimensionless form, with their measures and stability."""
     own = path.equations
     mean, parameter = rows[:, 0] * path.length, path.parameter(rows[:, -1])
     harmonics = (rows[:, 1 : own.orders + 1] + 1j * rows[:, own.orders + 1 : -1]) * path.length
@@ -332,16 +353,16 @@ def _curve(path: _Path, rows: Floats, *, complete: bool) -> ResponseCurve:
     volts, hertz = (parameter, other) if path.along == "voltage" else (other, parameter)
     loads, counts = np.full(mean.shape, own.normal_load), np.full(mean.shape, own.orders)
     motion = (own.gap_law, 2 * np.pi * hertz, loads, mean, harmonics, counts)
-    measures = measure(*motion)  # type: ignore[arg-type]
-    rates = growth(contact_port(own.structure), *motion, 4 * counts)  # type: ignore[arg-type]
+    measures = response_measures(*motion)  # type: ignore[arg-type]
+    exponents = floquet_exponents(pole_residue_model(own.structure), *motion, 4 * counts)  # type: ignore[arg-type]
     return ResponseCurve(
         along=path.along,
         voltage_amplitude=volts,
         frequency=hertz,
         mean_displacement=mean,
         harmonics=harmonics,  # type: ignore[arg-type]
-        vibration_amplitude=measures.amplitude,
-        stable=rates <= GROWTH,
+        vibration_amplitude=measures.vibration_amplitude,
+        stable=exponents <= STABILITY_THRESHOLD,
         complete=complete,
         equations=own,
     )

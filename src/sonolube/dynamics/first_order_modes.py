@@ -1,4 +1,7 @@
-"""A structure as pairs of states that do not know of each other, whatever its damping."""
+r"""Block-diagonal first-order (state-space) form of a structure: uncoupled pairs of states, for any damping.
+
+Each pair of states belongs to two poles of the structure: a complex conjugate pair, or two real poles.
+"""
 
 from dataclasses import dataclass
 
@@ -11,43 +14,49 @@ from sonolube.dynamics.linear import modes
 from sonolube.dynamics.structure import Structure
 from sonolube.errors import InvalidInput
 
-_UNCOUPLED = 1e-12  # damping between two modes, over the largest, that rounding may have made
-_WORST_CONDITION = 1e7  # of the change of basis, which costs as many digits
+_UNCOUPLED = 1e-12  # modal damping between two modes, over the largest, that is rounding
+_WORST_CONDITION = 1e7  # largest condition number of the change of basis, which costs as many digits
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class StatePairs:
-    """The state s of a structure in pairs: s' = A s + b V + c (F_n - F_N), each pair with an A of its own.
+class FirstOrderModes:
+    r"""A structure as n uncoupled pairs of states.
 
     Parameters
     ----------
-    generator : ndarray, shape (n, 2, 2)
-        A of each pair, in 1/s.
-    drive : ndarray, shape (n, 2)
-        b of each pair.
-    contact : ndarray, shape (n, 2)
-        c of each pair.
+    state_matrix : ndarray, shape (n, 2, 2)
+        State matrix A of each pair, in 1/s.
+    drive_input : ndarray, shape (n, 2)
+        Input vector b of the drive voltage of each pair.
+    contact_input : ndarray, shape (n, 2)
+        Input vector c of the contact force of each pair.
     to_displacement : ndarray, shape (coordinates, n, 2)
         Coordinates of the structure per state.
     to_velocity : ndarray, shape (coordinates, n, 2)
-        Their rates per state.
+        Velocities of the coordinates per state.
     from_displacement : ndarray, shape (n, 2, coordinates)
         States per coordinate.
     from_velocity : ndarray, shape (n, 2, coordinates)
-        States per rate.
+        States per velocity of a coordinate.
+
+    Notes
+    -----
+    The pair s of states obeys
+
+    .. math:: \dot s = A s + b V + c\,(F_n - F_N) .
     """
 
-    generator: Floats
-    drive: Floats
-    contact: Floats
+    state_matrix: Floats
+    drive_input: Floats
+    contact_input: Floats
     to_displacement: Floats
     to_velocity: Floats
     from_displacement: Floats
     from_velocity: Floats
 
 
-def state_pairs(structure: Structure) -> StatePairs:
-    """Return the structure as pairs of states.
+def first_order_modes(structure: Structure) -> FirstOrderModes:
+    r"""Return the block-diagonal first-order form of a structure.
 
     Parameters
     ----------
@@ -55,81 +64,84 @@ def state_pairs(structure: Structure) -> StatePairs:
 
     Returns
     -------
-    StatePairs
+    FirstOrderModes
 
     Raises
     ------
     InvalidInput
-        If damping makes modes coincide that it also couples, so that no pairs exist.
+        If poles of modes that the damping couples coincide, so that the state matrix cannot be block-diagonalised.
 
     Notes
     -----
-    Modes that damping leaves uncoupled, rigid ones among them, are pairs as they stand. The others are sorted into
-    pairs of exponents, each with an orthonormal basis of its own plane from a Schur form, which a critically damped
-    pair does not disturb.
+    A mode that the damping does not couple to others (a rigid-body mode for example) is a pair by itself, with its
+    modal displacement and velocity as states. The coupled modes are sorted into pairs of poles; the invariant plane of
+    each pair is spanned by an orthonormal basis from an ordered real Schur form, which stays well conditioned for
+    critically damped pairs.
     """
     natural, n = modes(structure), structure.coordinates
     omega, shapes = 2 * np.pi * natural.natural_frequency, natural.shapes
-    rate = np.where(natural.rigid, omega.max() or 1.0, omega)  # velocities are measured in it, to balance the state
+    rate = np.where(natural.rigid, omega.max() or 1.0, omega)  # unit of velocities, which balances the state
     damping = shapes.T @ structure.damping_matrix @ shapes
     damping[np.abs(damping) <= _UNCOUPLED * np.abs(damping).max(initial=0.0)] = 0.0
-    modal_generator = np.zeros((n, 2, n, 2))
+    modal_matrix = np.zeros((n, 2, n, 2))
     modal = np.arange(n)
-    modal_generator[modal, 0, modal, 1], modal_generator[modal, 1, modal, 0] = rate, -(omega**2) / rate
-    modal_generator[:, 1, :, 1] = -damping * rate / rate[:, np.newaxis]
+    modal_matrix[modal, 0, modal, 1], modal_matrix[modal, 1, modal, 0] = rate, -(omega**2) / rate
+    modal_matrix[:, 1, :, 1] = -damping * rate / rate[:, np.newaxis]
     basis = np.zeros((n, 2, n, 2))
     coupled, member_of = connected_components(damping != 0, directed=False)
     for component in range(coupled):
         members = np.flatnonzero(member_of == component)
         inside = np.ix_(members, np.arange(2), members, np.arange(2))
         side = 2 * members.size
-        planes = np.eye(2) if side == 2 else _invariant_planes(modal_generator[inside].reshape(side, side))
+        planes = np.eye(2) if side == 2 else _invariant_planes(modal_matrix[inside].reshape(side, side))
         basis[inside] = planes.reshape(members.size, 2, members.size, 2)
     flat = basis.reshape(2 * n, 2 * n)
     inverse = np.linalg.inv(flat)
-    generator = (inverse @ modal_generator.reshape(2 * n, 2 * n) @ flat).reshape(n, 2, n, 2)[modal, :, modal, :]
+    blocks = (inverse @ modal_matrix.reshape(2 * n, 2 * n) @ flat).reshape(n, 2, n, 2)[modal, :, modal, :]
     position, velocity = np.zeros((n, n, 2)), np.zeros((n, n, 2))
     position[:, :, 0], velocity[:, :, 1] = shapes, shapes * rate
     into = inverse.reshape(n, 2, n, 2)
-    pull = shapes.T / rate[:, np.newaxis]  # rate of the second state of each mode per force on the coordinates
-    force = np.einsum("paq,qj->paj", into[..., 1], pull)
-    momenta = shapes.T @ structure.mass_matrix
-    return StatePairs(
-        generator=generator,
-        drive=force @ structure.drive_vector,
-        contact=force @ structure.contact_vector,
+    acceleration = shapes.T / rate[:, np.newaxis]  # of the second state of each mode, per generalised force
+    force = np.einsum("paq,qj->paj", into[..., 1], acceleration)
+    modal_mass = shapes.T @ structure.mass_matrix
+    return FirstOrderModes(
+        state_matrix=blocks,
+        drive_input=force @ structure.drive_vector,
+        contact_input=force @ structure.contact_vector,
         to_displacement=np.einsum("jma,mapb->jpb", position, basis),
         to_velocity=np.einsum("jma,mapb->jpb", velocity, basis),
-        from_displacement=np.einsum("paq,qj->paj", into[..., 0], momenta),
-        from_velocity=np.einsum("paq,qj->paj", into[..., 1], momenta / rate[:, np.newaxis]),
+        from_displacement=np.einsum("paq,qj->paj", into[..., 0], modal_mass),
+        from_velocity=np.einsum("paq,qj->paj", into[..., 1], modal_mass / rate[:, np.newaxis]),
     )
 
 
-def _invariant_planes(generator: Floats) -> Floats:
-    """Return as columns the orthonormal bases of planes that the generator maps onto themselves."""
-    exponents = np.linalg.eigvals(generator)
-    swinging = exponents[exponents.imag > 0]
-    creeping = np.sort(exponents[exponents.imag == 0].real)
-    pairs = [(one, one.conjugate()) for one in swinging] + list(zip(creeping[::2], creeping[1::2], strict=True))
-    planes = np.hstack([_plane(generator, pair) for pair in pairs])
+def _invariant_planes(matrix: Floats) -> Floats:
+    """Return orthonormal bases of two-dimensional invariant subspaces of a state matrix, as columns."""
+    poles = np.linalg.eigvals(matrix)
+    oscillating = poles[poles.imag > 0]
+    overdamped = np.sort(poles[poles.imag == 0].real)
+    pairs = [(pole, pole.conjugate()) for pole in oscillating]
+    pairs += list(zip(overdamped[::2], overdamped[1::2], strict=True))
+    planes = np.hstack([_invariant_plane(matrix, pair) for pair in pairs])
     condition = float(np.linalg.cond(planes))
     if condition > _WORST_CONDITION:
         raise InvalidInput(
-            "damping_matrix makes modes coincide that it couples (condition of their separation"
+            "damping_matrix couples modes whose poles nearly coincide (condition number of their separation"
             f" {condition:.1g}); change a damper by a part in a thousand"
         )
     return planes
 
 
-def _plane(generator: Floats, pair: tuple[complex, complex]) -> Floats:
-    # the nearest two: reordering a real Schur form moves conjugates together and disturbs exponents by rounding
-    nearest = np.sort(np.abs(np.linalg.eigvals(generator)[:, np.newaxis] - np.array(pair)).min(axis=1))
+def _invariant_plane(matrix: Floats, pair: tuple[complex, complex]) -> Floats:
+    """Return an orthonormal basis of the invariant subspace of one pair of poles, by an ordered real Schur form."""
+    # select the two nearest: reordering a real Schur form keeps conjugates together and perturbs poles by rounding
+    nearest = np.sort(np.abs(np.linalg.eigvals(matrix)[:, np.newaxis] - np.array(pair)).min(axis=1))
     bound = (nearest[1] + nearest[2]) / 2
 
-    def chosen(real: float, imaginary: float = 0.0) -> bool:
-        return bool(min(abs(complex(real, imaginary) - one) for one in pair) <= bound)
+    def selected(real: float, imaginary: float = 0.0) -> bool:
+        return bool(min(abs(complex(real, imaginary) - pole) for pole in pair) <= bound)
 
-    _, vectors, count = schur(generator, sort=chosen)
+    _, vectors, count = schur(matrix, sort=selected)
     if count != 2:
-        raise InvalidInput(f"damping_matrix makes {count} exponents of the motion coincide; change a damper slightly")
+        raise InvalidInput(f"damping_matrix makes {count} poles of the structure coincide; change a damper slightly")
     return np.asarray(vectors[:, :2], dtype=np.float64)

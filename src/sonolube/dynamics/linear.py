@@ -1,4 +1,4 @@
-"""Free and static behaviour of a structure: its modes, its poles, its circuit, its static stiffness."""
+"""Linear analysis of a structure: natural modes, poles, equivalent circuit and static stiffness at the contact."""
 
 from dataclasses import dataclass
 
@@ -10,8 +10,8 @@ from sonolube.actuator import Branch, ButterworthVanDyke, Resonances, resonances
 from sonolube.checks import Complexes, Floats
 from sonolube.dynamics.structure import Structure
 
-_RIGID = 1e-12  # square of a frequency over that of the highest mode below which rounding made it
-_SILENT = 1e-12  # share of a mode in the capacitance below which it leaves no trace in the current
+_RIGID = 1e-12  # omega^2 over that of the highest mode below which a mode is rigid but for rounding
+_UNDRIVEN = 1e-12  # motional over clamped capacitance below which a mode is not driven but for rounding
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -21,15 +21,15 @@ class Modes:
     Parameters
     ----------
     natural_frequency : ndarray, shape (n,)
-        Frequency without damping, zero for rigid modes. [Hz]
+        Frequency without damping, zero for rigid-body modes. [Hz]
     damped_frequency : ndarray, shape (n,)
-        Frequency of free decay; zero where the mode creeps back. [Hz]
+        Frequency of free decay; zero for an overdamped mode. [Hz]
     damping_ratio : ndarray, shape (n,)
-        Damping over critical damping; zero for rigid modes. []
+        Damping over critical damping; zero for rigid-body modes. []
     shapes : ndarray, shape (n, n)
-        One mode a column, of unit modal mass; the contact's displacement is not negative.
+        One mode per column, of unit modal mass, signed such that the displacement of the contact is not negative.
     rigid : ndarray of bool, shape (n,)
-        Modes that no spring resists.
+        Whether a mode is a rigid-body mode, which no spring resists.
     """
 
     natural_frequency: Floats
@@ -41,14 +41,14 @@ class Modes:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class StaticContact:
-    """How the structure meets its contact at rest.
+    """Static stiffness and static displacement of a structure at its contact.
 
     Parameters
     ----------
     static_stiffness : float
-        Force per displacement of the contact; zero where it floats, infinite where it is held. [N/m]
+        Force per displacement of the contact; zero for a floating structure, infinite for a rigid support. [N/m]
     displacement_per_volt : float or None
-        Displacement of the free contact per volt; None where the structure floats and has no place of its own. [m/V]
+        Static displacement of the free contact per volt; None for a floating structure, where it is undetermined. [m/V]
     """
 
     static_stiffness: float
@@ -56,7 +56,7 @@ class StaticContact:
 
 
 def modes(structure: Structure) -> Modes:
-    """Return the natural modes.
+    r"""Return the natural modes of a structure, by the generalised symmetric eigenvalue problem of K and M.
 
     Parameters
     ----------
@@ -68,8 +68,12 @@ def modes(structure: Structure) -> Modes:
 
     Notes
     -----
-    Frequencies and shapes are those without damping. Damping ratios are phi.C.phi/(2 omega), exact where damping leaves
-    the modes uncoupled and otherwise right to first order in it; `poles` has no such limit.
+    Frequencies and shapes are those without damping,
+
+    .. math:: K\phi = \omega^2 M\phi, \qquad \phi^T M \phi = 1, \qquad \zeta = \frac{\phi^T C \phi}{2\omega} .
+
+    The damping ratios are exact for modal (classical) damping and otherwise correct to first order in the damping;
+    `poles` are exact for any damping.
     """
     squares, shapes = eigh(structure.stiffness_matrix, structure.mass_matrix)
     rigid = squares <= _RIGID * squares[-1]
@@ -87,7 +91,7 @@ def modes(structure: Structure) -> Modes:
 
 
 def poles(structure: Structure) -> Complexes:
-    """Return the exponents lambda of all free motions exp(lambda t), complex, in 1/s.
+    r"""Return the poles of a structure, the exponents of its free motions, complex, in 1/s.
 
     Parameters
     ----------
@@ -95,20 +99,26 @@ def poles(structure: Structure) -> Complexes:
 
     Returns
     -------
-    ndarray, shape (2n,)
-        In order of their modulus, those of a pair beside each other; two for each rigid mode, one or both zero.
+    ndarray of complex, shape (2n,)
+        In order of modulus, conjugate poles adjacent; two for each rigid-body mode, one or both zero.
+
+    Notes
+    -----
+    The roots :math:`\lambda` of
+
+    .. math:: \det(\lambda^2 M + \lambda C + K) = 0 .
     """
     natural = modes(structure)
     omega = np.diag(2 * np.pi * natural.natural_frequency)
     damping = natural.shapes.T @ structure.damping_matrix @ natural.shapes
-    # the state is omega times modal displacements, and modal velocities: its squared length is twice the energy
+    # state: omega times modal displacements, then modal velocities, whose squared norm is twice the energy
     exponents = np.linalg.eigvals(np.block([[np.zeros_like(omega), omega], [-omega, -damping]]))
     order = np.lexsort((exponents.imag, exponents.real.round(9), np.abs(exponents).round(9)))
     return np.asarray(exponents[order], dtype=np.complex128)
 
 
 def static_contact(structure: Structure) -> StaticContact:
-    """Return the static stiffness at the contact, and where a constant voltage puts it.
+    r"""Return the static stiffness at the contact and the static displacement of the contact per volt.
 
     Parameters
     ----------
@@ -117,23 +127,29 @@ def static_contact(structure: Structure) -> StaticContact:
     Returns
     -------
     StaticContact
+
+    Notes
+    -----
+    .. math:: S_0 = \left(c^T K^{-1} c\right)^{-1}, \qquad \bar x/V = c^T K^{-1} b
+
+    evaluated over the elastic modes; a rigid-body mode that moves the contact makes the structure floating.
     """
     natural = modes(structure)
     contact = structure.contact_vector @ natural.shapes
     drive = structure.drive_vector @ natural.shapes
     if np.any(np.abs(contact[natural.rigid]) > 1e-9 * np.abs(contact).max()):
         return StaticContact(static_stiffness=0.0, displacement_per_volt=None)
-    sprung = ~natural.rigid
-    compliance = contact[sprung] / (2 * np.pi * natural.natural_frequency[sprung]) ** 2
-    own = float(compliance @ contact[sprung])
+    elastic = ~natural.rigid
+    response = contact[elastic] / (2 * np.pi * natural.natural_frequency[elastic]) ** 2
+    compliance = float(response @ contact[elastic])
     return StaticContact(
-        static_stiffness=1 / own if own > 0 else float("inf"),
-        displacement_per_volt=float(compliance @ drive[sprung]),
+        static_stiffness=1 / compliance if compliance > 0 else float("inf"),
+        displacement_per_volt=float(response @ drive[elastic]),
     )
 
 
-def equivalent_branches(structure: Structure) -> ButterworthVanDyke:
-    """Return the circuit that draws the structure's current, the contact free.
+def equivalent_circuit(structure: Structure) -> ButterworthVanDyke:
+    r"""Return the Butterworth-Van Dyke equivalent circuit of a structure with its contact free.
 
     Parameters
     ----------
@@ -142,7 +158,7 @@ def equivalent_branches(structure: Structure) -> ButterworthVanDyke:
     Returns
     -------
     ButterworthVanDyke
-        One branch for each mode that the stack drives.
+        One motional branch for each mode that the stack drives.
 
     Raises
     ------
@@ -151,7 +167,11 @@ def equivalent_branches(structure: Structure) -> ButterworthVanDyke:
 
     Notes
     -----
-    Exact where damping leaves the modes uncoupled; otherwise each branch has its mode's damping ratio to first order.
+    With the modal participation :math:`p = \phi^T b` of the stack,
+
+    .. math:: L = \frac{1}{p^2}, \qquad C = \frac{p^2}{\omega^2}, \qquad R = \frac{2\zeta\omega}{p^2} .
+
+    Exact for modal (classical) damping; otherwise each branch has its mode's damping ratio to first order.
     """
     natural = modes(structure)
     participation = structure.drive_vector @ natural.shapes
@@ -163,13 +183,13 @@ def equivalent_branches(structure: Structure) -> ButterworthVanDyke:
             capacitance=participation[i] ** 2 / omega[i] ** 2,
         )
         for i in np.flatnonzero(~natural.rigid)
-        if participation[i] ** 2 > _SILENT * omega[i] ** 2 * structure.clamped_capacitance
+        if participation[i] ** 2 > _UNDRIVEN * omega[i] ** 2 * structure.clamped_capacitance
     ]
     return ButterworthVanDyke(parallel_capacitance=structure.clamped_capacitance, branches=tuple(branches))
 
 
 def resonance_frequencies(structure: Structure) -> Resonances:
-    """Return where the electrical admittance and impedance of the structure peak, the contact free.
+    """Return the series and parallel resonance frequencies of the electrical admittance with the contact free.
 
     Parameters
     ----------
@@ -178,11 +198,11 @@ def resonance_frequencies(structure: Structure) -> Resonances:
     Returns
     -------
     Resonances
-        Of the modes that the stack drives, without damping; the quality factors have it.
+        Of the modes that the stack drives; frequencies without damping, which enters the quality factors.
 
     Raises
     ------
     InvalidInput
         If the clamped capacitance is zero.
     """
-    return resonances(equivalent_branches(structure))
+    return resonances(equivalent_circuit(structure))

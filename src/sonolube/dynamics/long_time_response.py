@@ -1,60 +1,61 @@
-"""What a drive switched on from rest ends in: marched until transients are gone, named, and recorded."""
+"""Long-time response to a drive switched on from rest: marched until transients decay, classified and recorded."""
 
 import math
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.dynamics.attractor import Attractors, describe
-from sonolube.dynamics.first_order_modes import state_pairs
-from sonolube.dynamics.gap_law import GapLaw, TabulatedGap
+from sonolube.dynamics.attractor import Attractors, classify_attractor
+from sonolube.dynamics.first_order_modes import first_order_modes
+from sonolube.dynamics.gap_laws.protocol import GapLaw
+from sonolube.dynamics.kernels.contact_kernel import TABULATED
 from sonolube.dynamics.linear import poles
 from sonolube.dynamics.structure import Structure, with_contact_spring
-from sonolube.dynamics.time_marching.integrator import fewest_steps
-from sonolube.dynamics.time_marching.records import Trajectories, Trajectory
-from sonolube.dynamics.transient import AT_ONCE, march, trajectory
+from sonolube.dynamics.time_marching.integrator import minimum_steps
+from sonolube.dynamics.trajectories import Trajectories, Trajectory
+from sonolube.dynamics.transient import NO_RAMP, march, trajectory
 from sonolube.dynamics.waveform import StartUpRamp, Waveform
 from sonolube.errors import InvalidInput
 
-_DECAYS = 12.0  # of the slowest small motion, after which a transient is 6e-6 of itself
-_FEWEST, _MOST = 256, 200_000  # periods to march
-_COARSEST, _FINEST = 16, 1024  # steps a period to try
-_RECORDED = 128  # steps a period recorded at least
-_MOST_STEPS = 20_000_000  # to march, which take seconds
-_MOST_STEPS = 2**23  # marched with steps that follow, which take seconds
-_TABLE_COSTS = 8  # times as much a step as a force with a formula
+_DECAY_TIMES = 12.0  # of the slowest small motion, after which a transient has decayed to 6e-6
+_FEWEST_PERIODS, _MOST_PERIODS = 256, 200_000  # of a transient
+_FEWEST_STEPS, _MOST_STEPS_PER_PERIOD = 16, 1024  # steps per period to try
+_RECORDED_STEPS = 128  # least number of recorded steps per period
+_MOST_STEPS = 2**23  # to march with the final step, which take seconds
+_TABLE_COST = 8  # of a step with a tabulated force over one with a formula
 _MOST_RECORDED = 2**19  # steps
-_PATIENCE = 40  # times to march on where the motion still changes
-_GROWS, _SHRINKS = 1.02, 0.7  # ratios of the spread of strobed instants beyond which a motion still changes
-_AT_REST = 1e-7  # spread over the peak-to-peak displacement below which it is nothing but rounding
-_BEATS = 10  # recorded of a motion that does not repeat
-_LONGEST = 4096  # periods watched or recorded at most
-_STILL = 1e-9  # decay rate over frequency of a motion below which rounding made it
+_MOST_CONTINUATIONS = 40  # marches to add while the motion still changes
+_GROWING, _DECAYING = 1.02, 0.7  # ratios of the deviation of strobed samples beyond which a motion still changes
+_ROUNDING = 1e-7  # deviation over the peak-to-peak displacement below which it is rounding
+_BEATS = 10  # to record of a motion that does not repeat
+_LONGEST = 4096  # periods to observe or to record, at most
+_UNDAMPED = 1e-9  # decay rate over frequency below which a pole is undamped but for rounding
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Attained:
-    """The motion that a point ends in.
+class LongTimeResponse:
+    """Long-time response of one point.
 
     Parameters
     ----------
     attractor : Attractors
-        What it is, of one point.
+        Classification of the motion.
     marched_time : float
-        How long it was marched before it was looked at, in s.
+        Time marched before the motion was classified, in s.
     steps_per_period : int
-        Steps of the record.
+        Time steps per period of the record.
     record : Trajectory
-        Each step of one repetition, or of ten beats and 256 periods at least of a motion without one; it starts
-        at phase zero, and the last instant belongs to what follows.
+        Every step of one repetition, or of ten beats and at least 256 periods of a motion that does not repeat; it
+        starts at phase zero, and its last instant is the first one of the next repetition.
     amplitudes : ndarray, shape (periods,)
-        Half of the displacement from peak to peak in each period of the record, in m.
+        Half of the peak-to-peak displacement in each period of the record, in m.
     dissipated_power : float
-        Mean power that dampers and contact turn to heat. [W]
+        Mean power dissipated by dampers and contact. [W]
     settled : bool
-        Whether it was marched for as long as small motions take to die out.
+        Whether it was marched for as long as small motions take to decay.
     """
 
     attractor: Attractors
@@ -67,12 +68,12 @@ class Attained:
 
     @property
     def periods(self) -> int:
-        """Periods of the drive in the record."""
+        """Number of drive periods in the record."""
         return int(self.amplitudes.size)
 
 
 def settling_periods(structure: Structure, gap_law: GapLaw, *, normal_load: float, frequency: float) -> int:
-    """Return the periods of the drive in which small motions about rest have died out.
+    r"""Return the number of drive periods in which small motions about equilibrium decay.
 
     Parameters
     ----------
@@ -90,16 +91,20 @@ def settling_periods(structure: Structure, gap_law: GapLaw, *, normal_load: floa
 
     Notes
     -----
-    Under the exponential law the mean stiffness of a contact that carries its dead load is that at rest, whatever the
-    vibration: slow motions decay beside it as they do about rest.
+    With the poles :math:`\lambda` of the structure on the linearised contact,
+
+    .. math:: n = \frac{12 f}{\min(-\mathrm{Re}\,\lambda)} .
+
+    Under the exponential law the mean stiffness of a contact that carries its dead load is that at equilibrium,
+    whatever the vibration: slow motions decay during vibration as they do about equilibrium.
     """
     stiffness = float(gap_law.stiffness(np.zeros(1), normal_load)[0])
     rates = -poles(with_contact_spring(structure, normal_stiffness=stiffness)).real
-    slowest = min((float(rate) for rate in rates if rate > _STILL * frequency), default=math.inf)
-    return int(np.clip(math.ceil(_DECAYS * frequency / slowest), _FEWEST, _MOST))
+    slowest = min((float(rate) for rate in rates if rate > _UNDAMPED * frequency), default=math.inf)
+    return int(np.clip(math.ceil(_DECAY_TIMES * frequency / slowest), _FEWEST_PERIODS, _MOST_PERIODS))
 
 
-def attained_motion(
+def march_until_settled(
     structure: Structure,
     gap_law: GapLaw,
     *,
@@ -108,9 +113,9 @@ def attained_motion(
     voltage_peak_to_peak: float,
     voltage_offset: float = 0.0,
     waveform: Waveform | None = None,
-    ramp: StartUpRamp = AT_ONCE,
-) -> Attained:
-    """March one point from rest until its transients are gone, and say what it does then.
+    ramp: StartUpRamp = NO_RAMP,
+) -> LongTimeResponse:
+    """Return the long-time response of one point: march it from rest until transients decay, then classify it.
 
     Parameters
     ----------
@@ -121,127 +126,122 @@ def attained_motion(
     frequency : float
         Frequency of the drive. [Hz]
     voltage_peak_to_peak : float
-        Drive voltage, peak to peak. [V]
+        Peak-to-peak drive voltage. [V]
     voltage_offset : float
-        Its mean. [V]
+        Mean drive voltage. [V]
     waveform : Waveform or None
-        Shape of the voltage; a sine if None.
+        Waveform of the voltage; a sine if None.
     ramp : StartUpRamp
-        How voltage and offset come up, which decides where several motions are possible.
+        Ramp of amplitude and offset of the voltage, which decides where several motions coexist.
 
     Returns
     -------
-    Attained
+    LongTimeResponse
 
     Raises
     ------
     InvalidInput
-        As `march` does, or if the march runs away even at 1024 steps a period.
+        As `march`, or if the solution diverges even with 1024 steps per period.
+
+    See Also
+    --------
+    classify_attractor, march
 
     Notes
     -----
-    Steps are halved until they follow the contact, or 1024 a period do not, which the attractor's description then
-    tells. A motion whose instants, seen once a period, still draw apart or together is marched on, forty times at most:
-    what leaves an unstable vibration can take long to show. Some 8 million steps are all that it gets, a million on a
-    table: where these are fewer than transients need, `settled` is false.
+    The step is halved until it resolves the contact, up to 1024 steps per period; if these are too coarse, the
+    attractor's description states so. A motion whose Poincare samples still diverge or converge is marched on, forty
+    times at most, since the departure from an unstable vibration can be slow. At most 8 million steps are marched, one
+    million with a tabulated contact law: where these are fewer than the transient requires, `settled` is false.
     """
     settling = settling_periods(structure, gap_law, normal_load=normal_load, frequency=frequency)
-    watched = _sixteens(settling / _DECAYS)  # a decay time holds several turns of a motion that is hardly damped
-    go = partial(
-        march,
-        structure,
-        gap_law,
-        normal_load=normal_load,
-        frequency=frequency,
-        voltage_peak_to_peak=voltage_peak_to_peak,
-        voltage_offset=voltage_offset,
-        waveform=waveform,
-        strobed_periods=settling,
-    )
-    most = _MOST_STEPS // (_TABLE_COSTS if isinstance(gap_law, TabulatedGap) else 1)
-    rising, steps = math.ceil(ramp.duration * frequency), _first_steps(structure, frequency)
-    if rising * steps > most:
-        raise InvalidInput(f"a ramp of {ramp.duration:g} s is {rising} periods of the drive, too many to march")
-    with np.errstate(over="ignore", invalid="ignore"):  # of steps too coarse to follow
-        for periods in (rising + min(settling, _FEWEST), rising + settling):  # what runs away does so soon
+    observed = _multiple_of_sixteen(
+        settling / _DECAY_TIMES
+    )  # a decay time holds several cycles of a weakly damped mode
+    point: dict[str, Any] = {
+        "normal_load": normal_load,
+        "frequency": frequency,
+        "voltage_peak_to_peak": voltage_peak_to_peak,
+        "voltage_offset": voltage_offset,
+        "waveform": waveform,
+    }
+    run = partial(march, structure, gap_law, **point, strobed_periods=settling)
+    most = _MOST_STEPS // (_TABLE_COST if gap_law.kind == TABULATED else 1)
+    ramped, steps = math.ceil(ramp.duration * frequency), _first_steps(structure, frequency)
+    if ramped * steps > most:
+        raise InvalidInput(f"a ramp of {ramp.duration:g} s is {ramped} periods of the drive, too many to march")
+    with np.errstate(over="ignore", invalid="ignore"):  # of coarse steps that diverge
+        for periods in (ramped + min(settling, _FEWEST_PERIODS), ramped + settling):  # divergence occurs early
             while True:
                 periods = min(periods, most // steps)
-                marched = go(periods=periods, ramp=ramp, steps_per_period=steps)
-                if marched.status == "marched" or steps >= _FINEST:
+                marched = run(periods=periods, ramp=ramp, steps_per_period=steps)
+                if marched.status == "marched" or steps >= _MOST_STEPS_PER_PERIOD:
                     break
                 steps *= 2
     if marched.status == "diverged":
-        raise InvalidInput(f"no motion to follow at {frequency:.6g} Hz under {normal_load:.4g} N: {marched.advice}")
-    for _ in range(_PATIENCE):
+        raise InvalidInput(f"the march diverged at {frequency:.6g} Hz under {normal_load:.4g} N: {marched.advice}")
+    for _ in range(_MOST_CONTINUATIONS):
         if (periods + settling) * steps > most:
             break
         earlier = marched
-        marched = go(periods=settling, initial_state=earlier.final_state, steps_per_period=steps)
+        marched = run(periods=settling, initial_state=earlier.final_state, steps_per_period=steps)
         periods += settling
         if not _changes(earlier, marched):
             break
-    attractor = describe(
-        structure,
-        gap_law,
-        normal_load=normal_load,
-        frequency=frequency,
-        voltage_peak_to_peak=voltage_peak_to_peak,
-        voltage_offset=voltage_offset,
-        waveform=waveform,
-        initial_state=marched.final_state,
-        periods=watched,
-        steps_per_period=steps,
+    attractor = classify_attractor(
+        structure, gap_law, **point, initial_state=marched.final_state, periods=observed, steps_per_period=steps
     )
-    recorded = int(attractor.order) or _sixteens(_BEATS * _per_beat(attractor, frequency))
-    finer = max(steps, _RECORDED)
+    recorded = int(attractor.order) or _multiple_of_sixteen(_BEATS * _periods_per_beat(attractor, frequency))
+    finer = max(steps, _RECORDED_STEPS)
     recorded = min(recorded, _MOST_RECORDED // finer)
     record = trajectory(
-        structure,
-        gap_law,
-        normal_load=normal_load,
-        frequency=frequency,
-        voltage_peak_to_peak=voltage_peak_to_peak,
-        voltage_offset=voltage_offset,
-        waveform=waveform,
-        initial_state=attractor.state,
-        periods=recorded,
-        steps_per_period=finer,
+        structure, gap_law, **point, initial_state=attractor.final_state, periods=recorded, steps_per_period=finer
     )
     each = record.contact.displacement[:-1].reshape(recorded, finer)
-    return Attained(
+    return LongTimeResponse(
         attractor=attractor,
         marched_time=periods / frequency,
         steps_per_period=finer,
         record=record,
         amplitudes=np.ptp(each, axis=1) / 2,
-        dissipated_power=_dissipated(structure, gap_law, record, normal_load),
-        settled=periods - rising >= settling,
+        dissipated_power=_dissipated_power(structure, gap_law, record, normal_load),
+        settled=periods - ramped >= settling,
     )
 
 
 def _first_steps(structure: Structure, frequency: float) -> int:
-    fewest = fewest_steps(state_pairs(structure), frequency=frequency)
-    return int(min(_COARSEST * 2 ** max(math.ceil(math.log2(fewest / _COARSEST)), 0), _FINEST))
+    """Return the number of steps per period to try first: 16 times a power of two."""
+    fewest = minimum_steps(first_order_modes(structure), frequency=frequency)
+    doublings = max(math.ceil(math.log2(fewest / _FEWEST_STEPS)), 0)
+    return int(min(_FEWEST_STEPS * 2**doublings, _MOST_STEPS_PER_PERIOD))
 
 
 def _changes(earlier: Trajectories, later: Trajectories) -> bool:
+    """Return whether the deviation of the strobed samples still grows or decays from one march to the next."""
     before, now = (float(np.std(each.strobed.displacement)) for each in (earlier, later))
-    rounding = _AT_REST * float(np.ptp(later.last_periods.displacement))
-    return max(before, now) > rounding and not _SHRINKS * before <= now <= _GROWS * before
+    rounding = _ROUNDING * float(np.ptp(later.last_periods.displacement))
+    return max(before, now) > rounding and not _DECAYING * before <= now <= _GROWING * before
 
 
-def _sixteens(periods: float) -> int:
-    return int(np.clip(16 * math.ceil(periods / 16), _FEWEST, _LONGEST))
+def _multiple_of_sixteen(periods: float) -> int:
+    """Return a number of periods rounded up to a multiple of 16, from 256 to 4096."""
+    return int(np.clip(16 * math.ceil(periods / 16), _FEWEST_PERIODS, _LONGEST))
 
 
-def _per_beat(attractor: Attractors, frequency: float) -> float:
+def _periods_per_beat(attractor: Attractors, frequency: float) -> float:
+    """Return the number of drive periods per beat, zero without a beat."""
     slow = float(attractor.beat_frequency)
     return frequency / slow if slow > 0 else 0.0
 
 
-def _dissipated(structure: Structure, gap_law: GapLaw, record: Trajectory, load: float) -> float:
-    """Return the mean of v.C.v, and of what the contact takes by pushing less while it opens."""
-    rates, contact = record.states.rates[:-1], record.contact
-    dampers = np.einsum("ti,ij,tj->t", rates, structure.damping_matrix, rates)
-    lag = (gap_law.force(contact.displacement, load) - contact.normal_force) * contact.velocity
-    return float(np.mean(dampers) + np.mean(lag[:-1]))
+def _dissipated_power(structure: Structure, gap_law: GapLaw, record: Trajectory, load: float) -> float:
+    r"""Return the mean power dissipated by dampers and contact, in W.
+
+    Notes
+    -----
+    .. math:: P = \left\langle \dot x^T C \dot x \right\rangle + \left\langle (F - F_n)\,v \right\rangle
+    """
+    velocities, contact = record.states.velocities[:-1], record.contact
+    dampers = np.einsum("ti,ij,tj->t", velocities, structure.damping_matrix, velocities)
+    damping_power = (gap_law.force(contact.displacement, load) - contact.normal_force) * contact.velocity
+    return float(np.mean(dampers) + np.mean(damping_power[:-1]))

@@ -1,29 +1,28 @@
-"""Stability of periodic vibrations: Floquet multipliers of the motion linearised about them."""
+"""Stability of periodic vibrations: Floquet multipliers of the linearised motion."""
 
 import numpy as np
 from scipy.linalg import block_diag, expm
 
 from sonolube.checks import Complexes, Floats
-from sonolube.dynamics.harmonic_balance.receptance import ContactPort, contact_port
-from sonolube.dynamics.steady_friction import motion
-from sonolube.dynamics.steady_state import Status, SteadyStates
+from sonolube.dynamics.harmonic_balance.receptance import PoleResidueModel, pole_residue_model
+from sonolube.dynamics.steady_states import Status, SteadyStates, contact_motion
 from sonolube.errors import InvalidInput
 
 
 def floquet_multipliers(states: SteadyStates, *, kicks: int = 512) -> Complexes:
-    """Return the factors by which small disturbances multiply in one period.
+    r"""Return the Floquet multipliers of steady states: factors by which small disturbances grow in one period.
 
     Parameters
     ----------
     states : SteadyStates
     kicks : int
-        Instants a period at which the contact acts on the disturbance; errors fall with the fourth power.
+        Instants per period at which the contact acts on the disturbance; errors fall with its fourth power.
 
     Returns
     -------
     ndarray of complex, shape (..., 2m)
-        For each of the m pairs of states that drive or contact can see, largest modulus first. The vibration is stable
-        where all moduli are below one.
+        Two for each of the m pairs of states that drive or contact excite, largest modulus first. The vibration is
+        stable where all moduli are below one.
 
     Raises
     ------
@@ -32,43 +31,52 @@ def floquet_multipliers(states: SteadyStates, *, kicks: int = 512) -> Complexes:
 
     Notes
     -----
-    Between instants the structure moves exactly; the contact's momentary stiffness and damping enter as kicks, which is
-    second order, and two such periods are extrapolated. Where the force has corners, as at the loss of a linear
-    contact, the order is lower.
+    A disturbance s of the pairs of states, with the displacement :math:`x(s)` and the velocity :math:`v(s)` of the
+    contact, obeys
+
+    .. math:: \dot s = A s - c\,\left[k(t)\,x(s) + d(t)\,v(s)\right]
+
+    with the momentary stiffness k and damping d of the contact. The multipliers are the eigenvalues of the monodromy
+    matrix, from kick-drift splitting: between instants the structure moves exactly, and at each instant the contact
+    acts as an impulse. The splitting is of second order; monodromy matrices with n and 2n kicks are extrapolated.
+    Where the force has corners, as at the loss of a linear contact, the order is lower.
     """
     if kicks < 8:
         raise InvalidInput(f"kicks must be at least 8, got {kicks!r}")
     if np.any(states.status == Status.NOT_CONVERGED):
         raise InvalidInput("states must have converged: a point without a vibration has no stability")
-    port = contact_port(states.structure)
+    model = pole_residue_model(states.structure)
     shape = states.frequency.shape
-    found = np.empty((states.frequency.size, 2 * port.trace.size), dtype=np.complex128)
+    multipliers = np.empty((states.frequency.size, 2 * model.trace.size), dtype=np.complex128)
     for point, index in enumerate(np.ndindex(shape)):
-        coarse, fine = (_one_period(port, states, index, count) for count in (kicks, 2 * kicks))
-        multipliers = np.linalg.eigvals((4 * fine - coarse) / 3)
-        found[point] = multipliers[np.argsort(-np.abs(multipliers))]
-    return found.reshape(*shape, -1)
+        coarse, fine = (_monodromy_matrix(model, states, index, count) for count in (kicks, 2 * kicks))
+        eigenvalues = np.linalg.eigvals((4 * fine - coarse) / 3)
+        multipliers[point] = eigenvalues[np.argsort(-np.abs(eigenvalues))]
+    return multipliers.reshape(*shape, -1)
 
 
-def _one_period(port: ContactPort, states: SteadyStates, index: tuple[int, ...], kicks: int) -> Floats:
-    """Return the matrix of one period on the pairs of states, from mid-kick to mid-kick."""
-    pairs = port.trace.size
+def _monodromy_matrix(model: PoleResidueModel, states: SteadyStates, index: tuple[int, ...], kicks: int) -> Floats:
+    """Return the monodromy matrix of one steady state on the pairs of states, from mid-kick to mid-kick."""
+    pairs = model.trace.size
     step = 1 / states.frequency[index] / kicks
-    free = block_diag(*(expm(step * generator) for generator in port.generator))
-    contact = motion(states, index, samples=kicks)
-    lag = states.gap_law.force_damping
-    share = np.maximum(1 - lag * contact.velocity, 0.0)
-    stiffness = share * states.gap_law.stiffness(contact.displacement, states.normal_load[index])
-    damping = lag * (share > 0) * states.gap_law.force(contact.displacement, states.normal_load[index])
-    push, feel, sense = port.push.reshape(-1), port.displacement.reshape(-1), port.velocity.reshape(-1)
+    drift = block_diag(*(expm(step * matrix) for matrix in model.state_matrix))
+    contact = contact_motion(states, index, samples=kicks)
+    tau = states.gap_law.force_damping
+    factor = np.maximum(1 - tau * contact.velocity, 0.0)
+    stiffness = factor * states.gap_law.stiffness(contact.displacement, states.normal_load[index])
+    damping = tau * (factor > 0) * states.gap_law.force(contact.displacement, states.normal_load[index])
+    contact_input, displacement, velocity = (
+        each.reshape(-1) for each in (model.contact_input, model.displacement_output, model.velocity_output)
+    )
 
     def kick(matrix: Floats, instant: int, duration: float) -> Floats:
-        # the contact's velocity w becomes w exp(-g d t) - (1 - exp(-g d t)) k x / d, g its jump per impulse
-        fade = float(sense @ push) * damping[instant] * duration
-        held = duration * (-np.expm1(-fade) / fade if fade > 0 else 1.0)
-        return matrix - np.outer(push, held * (stiffness[instant] * feel + damping[instant] * sense) @ matrix)
+        # velocity w of the contact becomes w exp(-g d t) - (1 - exp(-g d t)) k x / d, g its change per impulse
+        decay = float(velocity @ contact_input) * damping[instant] * duration
+        held = duration * (-np.expm1(-decay) / decay if decay > 0 else 1.0)
+        impulse = held * (stiffness[instant] * displacement + damping[instant] * velocity) @ matrix
+        return matrix - np.outer(contact_input, impulse)
 
     period = kick(np.eye(2 * pairs), 0, step / 2)
     for instant in range(1, kicks):
-        period = kick(free @ period, instant, step)
-    return kick(free @ period, 0, step / 2)
+        period = kick(drift @ period, instant, step)
+    return kick(drift @ period, 0, step / 2)

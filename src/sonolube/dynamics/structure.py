@@ -1,23 +1,17 @@
-"""A linear structure with one electrical port and one contact: what dynamics knows of a rig, a horn or its modes."""
+"""Linear structure with one electrical port and one contact point: its matrices and its frequency responses."""
 
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
+from sonolube.checks import Complexes, Floats, require_finite, require_non_negative, require_positive
 from sonolube.errors import InvalidInput
-
-Complexes = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Structure:
-    """Masses, dampers and springs, a piezoelectric stack among them, that touch another body at one point.
-
-    The coordinates x obey M x'' + C x' + K x = b V + c (F_n - F_N), where V is the drive voltage, F_n the contact force
-    and F_N the dead load; the contact's displacement, positive away from the other body, is c.x; the charge on the
-    stack is C_S V + b.x. Displacements start from the static equilibrium under the dead load without voltage.
+    r"""Linear structure with a piezoelectric stack that touches another body at one point.
 
     Parameters
     ----------
@@ -28,18 +22,29 @@ class Structure:
     stiffness_matrix : ndarray, shape (n, n)
         Symmetric, positive semidefinite, with the stack short-circuited; singular where the structure floats.
     drive_vector : ndarray, shape (n,)
-        Force per volt, which is also charge per displacement.
+        Generalised force per volt b, which is also charge per displacement (reciprocity).
     contact_vector : ndarray, shape (n,)
-        Displacement of the contact per coordinate, which is also force per contact force.
+        Displacement of the contact per coordinate c, which is also generalised force per contact force.
     clamped_capacitance : float
-        Capacitance of the stack with all coordinates held. [F]
+        Capacitance C_S of the stack with all coordinates clamped. [F]
     load_vector : ndarray, shape (n,), optional
         Displacement of the weights of the dead load per coordinate, where it is known where they hang.
 
     Raises
     ------
     InvalidInput
-        If shapes disagree, a matrix is not symmetric, the masses are not positive or an energy could be negative.
+        If shapes disagree, a matrix is not symmetric, the mass matrix is not positive definite, or another one not
+        positive semidefinite.
+
+    Notes
+    -----
+    The generalised coordinates x obey
+
+    .. math:: M\ddot x + C\dot x + K x = b V + c\,(F_n - F_N)
+
+    with the drive voltage V, the contact force :math:`F_n` and the dead load :math:`F_N`. The displacement of the
+    contact, positive away from the other body, is :math:`c^T x`; the charge on the stack is
+    :math:`q = C_S V + b^T x`. Displacements count from the static equilibrium under the dead load without voltage.
     """
 
     mass_matrix: Floats
@@ -69,12 +74,12 @@ class Structure:
 
     @property
     def coordinates(self) -> int:
-        """Number of coordinates, n."""
+        """Number of generalised coordinates, n."""
         return len(self.mass_matrix)
 
 
 def dynamic_stiffness(structure: Structure, *, frequency: ArrayLike) -> Complexes:
-    """Return K + i omega C - omega^2 M.
+    r"""Return the dynamic stiffness matrix, complex, in N/m.
 
     Parameters
     ----------
@@ -90,6 +95,10 @@ def dynamic_stiffness(structure: Structure, *, frequency: ArrayLike) -> Complexe
     ------
     InvalidInput
         If a frequency is not positive.
+
+    Notes
+    -----
+    .. math:: D(\omega) = K + i\omega C - \omega^2 M
     """
     omega = 2 * np.pi * require_positive(frequency=frequency)[..., np.newaxis, np.newaxis]
     stiffness = structure.stiffness_matrix - omega**2 * structure.mass_matrix
@@ -97,7 +106,7 @@ def dynamic_stiffness(structure: Structure, *, frequency: ArrayLike) -> Complexe
 
 
 def contact_receptance(structure: Structure, *, frequency: ArrayLike) -> Complexes:
-    """Return displacement of the contact per force on it, the drive short-circuited, complex, in m/N.
+    r"""Return the receptance of the contact: displacement per contact force, stack short-circuited, in m/N.
 
     Parameters
     ----------
@@ -107,18 +116,26 @@ def contact_receptance(structure: Structure, *, frequency: ArrayLike) -> Complex
 
     Returns
     -------
-    ndarray, shape of `frequency`
+    ndarray of complex, shape of `frequency`
 
     Raises
     ------
     InvalidInput
         If a frequency is not positive.
+
+    See Also
+    --------
+    drive_receptance, dynamic_stiffness
+
+    Notes
+    -----
+    .. math:: G(\omega) = c^T D(\omega)^{-1} c
     """
     return _response(structure, frequency, structure.contact_vector) @ structure.contact_vector
 
 
 def drive_receptance(structure: Structure, *, frequency: ArrayLike) -> Complexes:
-    """Return displacement of the free contact per volt, complex, in m/V.
+    r"""Return the displacement of the free contact per volt of the drive, complex, in m/V.
 
     Parameters
     ----------
@@ -128,18 +145,26 @@ def drive_receptance(structure: Structure, *, frequency: ArrayLike) -> Complexes
 
     Returns
     -------
-    ndarray, shape of `frequency`
+    ndarray of complex, shape of `frequency`
 
     Raises
     ------
     InvalidInput
         If a frequency is not positive.
+
+    See Also
+    --------
+    contact_receptance, electrical_admittance
+
+    Notes
+    -----
+    .. math:: H(\omega) = c^T D(\omega)^{-1} b
     """
     return _response(structure, frequency, structure.drive_vector) @ structure.contact_vector
 
 
 def electrical_admittance(structure: Structure, *, frequency: ArrayLike) -> Complexes:
-    """Return current per voltage at the stack, the contact free, complex, in siemens.
+    r"""Return the electrical admittance of the stack with the contact free, complex, in siemens.
 
     Parameters
     ----------
@@ -149,12 +174,16 @@ def electrical_admittance(structure: Structure, *, frequency: ArrayLike) -> Comp
 
     Returns
     -------
-    ndarray, shape of `frequency`
+    ndarray of complex, shape of `frequency`
 
     Raises
     ------
     InvalidInput
         If a frequency is not positive.
+
+    Notes
+    -----
+    .. math:: Y(\omega) = i\omega\,\left[C_S + b^T D(\omega)^{-1} b\right]
     """
     omega = 2 * np.pi * require_positive(frequency=frequency)
     motional = _response(structure, frequency, structure.drive_vector) @ structure.drive_vector
@@ -162,7 +191,7 @@ def electrical_admittance(structure: Structure, *, frequency: ArrayLike) -> Comp
 
 
 def with_contact_spring(structure: Structure, *, normal_stiffness: float, contact_damping: float = 0.0) -> Structure:
-    """Return the structure with a linear spring and damper at the contact, as small motions feel it.
+    r"""Return the structure with a linear spring and damper at its contact: the contact linearised about equilibrium.
 
     Parameters
     ----------
@@ -175,20 +204,28 @@ def with_contact_spring(structure: Structure, *, normal_stiffness: float, contac
     Returns
     -------
     Structure
+
+    Raises
+    ------
+    InvalidInput
+        If the stiffness or the damping is negative.
+
+    Notes
+    -----
+    .. math:: K + k\,c c^T, \qquad C + d\,c c^T
     """
-    k, c = (
-        require_non_negative(normal_stiffness=normal_stiffness),
-        require_non_negative(contact_damping=contact_damping),
-    )
-    share = np.multiply.outer(structure.contact_vector, structure.contact_vector)
+    k = require_non_negative(normal_stiffness=normal_stiffness)
+    d = require_non_negative(contact_damping=contact_damping)
+    projector = np.multiply.outer(structure.contact_vector, structure.contact_vector)
     return replace(
         structure,
-        damping_matrix=structure.damping_matrix + c * share,
-        stiffness_matrix=structure.stiffness_matrix + k * share,
+        damping_matrix=structure.damping_matrix + d * projector,
+        stiffness_matrix=structure.stiffness_matrix + k * projector,
     )
 
 
 def _response(structure: Structure, frequency: ArrayLike, force: Floats) -> Complexes:
+    """Return the complex coordinates under a harmonic generalised force, shape of `frequency` with (n,) appended."""
     stiffness = dynamic_stiffness(structure, frequency=frequency)
     forces = np.broadcast_to(force.astype(np.complex128)[:, np.newaxis], (*stiffness.shape[:-1], 1))
     return np.asarray(np.linalg.solve(stiffness, forces)[..., 0], dtype=np.complex128)

@@ -1,22 +1,22 @@
-"""Transients: start-up, hopping, bouncing and whatever else a structure does against its contact, marched in time."""
+"""Transient response of a structure against its contact: start-up, impacting and any other motion, by time marching."""
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
-from sonolube.dynamics.backend import Backend
-from sonolube.dynamics.first_order_modes import StatePairs, state_pairs
-from sonolube.dynamics.gap_law import GapLaw
-from sonolube.dynamics.sharing import shared_march
+from sonolube.dynamics.backend import Backend, cpu_fallback, usable_backend
+from sonolube.dynamics.first_order_modes import FirstOrderModes, first_order_modes
+from sonolube.dynamics.gap_laws.protocol import GapLaw, damped_force
 from sonolube.dynamics.structure import Structure
-from sonolube.dynamics.time_marching.batch import Marched, Points, Schedule, march_points
-from sonolube.dynamics.time_marching.records import ContactMotion, Envelope, State, Trajectories, Trajectory
-from sonolube.dynamics.time_marching.step_control import force_in_motion, resolution
+from sonolube.dynamics.time_marching.batch import MarchingProblem, MarchingSchedule, MarchingSolution, march_on_cpu
+from sonolube.dynamics.time_marching.step_control import assess_steps
+from sonolube.dynamics.trajectories import ContactMotion, Envelope, State, Trajectories, Trajectory
 from sonolube.dynamics.waveform import Sine, StartUpRamp, Waveform, drive_voltage, ramp_factor
 from sonolube.errors import InvalidInput
 
-_WINDOWS = 256  # entries of an envelope unless asked otherwise
-AT_ONCE = StartUpRamp(duration=0.0)
+_WINDOWS = 256  # default number of entries of an envelope
+NO_RAMP = StartUpRamp(duration=0.0)
+"""Ramp of a drive that is switched on with its full amplitude."""
 
 
 def march(
@@ -30,7 +30,7 @@ def march(
     periods: int,
     steps_per_period: int = 16,
     waveform: Waveform | None = None,
-    ramp: StartUpRamp = AT_ONCE,
+    ramp: StartUpRamp = NO_RAMP,
     initial_state: State | None = None,
     periods_per_window: int | None = None,
     recorded_periods: int = 1,
@@ -38,7 +38,7 @@ def march(
     workers: int = 1,
     backend: Backend = "cpu",
 ) -> Trajectories:
-    """March many points in time.
+    """Return the trajectories of a batch of points, by time marching with an exponential integrator.
 
     Parameters
     ----------
@@ -49,83 +49,88 @@ def march(
     frequency : array_like, broadcast against `normal_load`
         Frequency of the drive. [Hz]
     voltage_peak_to_peak : array_like, broadcast against `normal_load`
-        Drive voltage, peak to peak. [V]
+        Peak-to-peak drive voltage. [V]
     voltage_offset : array_like, broadcast against `normal_load`
-        Its mean. [V]
+        Mean drive voltage. [V]
     periods : int
-        Periods of the drive to march.
+        Number of drive periods to march.
     steps_per_period : int
         A multiple of 4, at least 8.
     waveform : Waveform or None
-        Shape of the voltage; a sine if None.
+        Waveform of the voltage; a sine if None.
     ramp : StartUpRamp
-        How voltage and offset come up.
+        Ramp of amplitude and offset of the voltage.
     initial_state : State or None
-        Start, for each point or one for all; rest under the dead load if None.
+        Initial state, of each point or one for all; equilibrium under the dead load if None.
     periods_per_window : int or None
-        Periods to an entry of the envelope; as many as keep it at 256 entries if None.
+        Periods per entry of the envelope; such that it has at most 256 entries if None.
     recorded_periods : int
-        Periods at the end of which every step is returned.
+        Number of periods, at the end, of which every step is returned.
     strobed_periods : int
-        Periods at the end of which the last instant is returned.
+        Number of periods, at the end, of which the last instant is returned.
     workers : int
-        Threads of the processor to march with. Results do not depend on it.
+        Number of threads of the CPU. Results do not depend on it.
     backend : {"cpu", "gpu"}
-        Whether an NVIDIA GPU marches all points, a thread to each.
+        Whether an NVIDIA GPU marches the points, one per thread.
 
     Returns
     -------
     Trajectories
-        With the shape of the broadcast arguments in front.
+        Arrays start with the shape of the broadcast arguments.
 
     Raises
     ------
     InvalidInput
-        If a load or frequency is not positive, a voltage swing negative, a value not finite, a count out of range,
-        shapes do not match, or the waveform jumps within a step.
+        If a load or frequency is not positive, a peak-to-peak voltage negative, a value not finite, a count out of
+        range, shapes do not match, or the waveform jumps within a step.
 
     Warns
     -----
     GpuUnused
-        If a GPU was asked for and there is none, or it does not march this contact, structure or waveform.
+        If a GPU was requested and none is available, or it does not support this contact, structure or waveform.
+
+    See Also
+    --------
+    trajectory, steady_state, classify_attractor
 
     Notes
     -----
-    Without contact the steps are exact, whatever their length, under any waveform and a linear ramp. The contact force
-    is integrated to fifth order, by `step_filter`, where it is smooth: under the exponential law, before and after any
-    jump of the voltage or end of a ramp, which restart the integration. Where Hertzian or linear contact is lost, or
-    damping would pull, the force has a corner and the order falls to two; `advice` says so. An amplitude of fourteen
-    micrometres over a decay length of two takes 12 steps a period for an error of 1e-4 of amplitude, mean force and
-    friction, and 16 for 1e-5. Steps must also follow the contact at its stiffest; `status` is "coarse" where they do
-    not.
+    Without contact force the steps are exact, whatever their length, under any waveform and a linear ramp. The contact
+    force is integrated to fifth order (`exponential_integrator`) where it is smooth: under the exponential law, before
+    and after a jump of the voltage or the end of a ramp, at which the integration restarts. Where contact of spheres or
+    springs is lost, or damping would make the force tensile, the force has a corner and the order falls to two;
+    `advice` names this. An amplitude of fourteen micrometres over a decay length of two takes 12 steps per period for
+    an error of 1e-4 of amplitude, mean force and friction, and 16 for 1e-5. Steps must also resolve the contact at its
+    stiffest; `status` is "coarse" where they do not.
 
-    A GPU takes the same steps, but its sums round otherwise, by parts in 1e15 a step. Where disturbances do not grow
-    its answers are within 1e-9 of the processor's, over the largest of their kind; in chaos rounding grows on either.
+    A GPU takes the same steps but rounds sums differently, by 1e-15 per step. Where disturbances do not grow, its
+    results are within 1e-9 of the CPU's, over the largest of their kind; in chaotic motion rounding grows on either.
     """
-    shape, points = _points(normal_load, frequency, voltage_peak_to_peak, voltage_offset)
-    pairs = state_pairs(structure)
-    schedule = Schedule(
-        waveform=Sine() if waveform is None else waveform,
-        ramp=ramp,
-        steps=steps_per_period,
-        periods=periods,
-        window=-(-periods // _WINDOWS) if periods_per_window is None else periods_per_window,
-        recorded=recorded_periods,
-        strobed=strobed_periods,
+    problem, shape = _problem(
+        structure,
+        gap_law,
+        (normal_load, frequency, voltage_peak_to_peak, voltage_offset),
+        initial_state,
+        MarchingSchedule(
+            waveform=Sine() if waveform is None else waveform,
+            ramp=ramp,
+            steps=steps_per_period,
+            periods=periods,
+            window=-(-periods // _WINDOWS) if periods_per_window is None else periods_per_window,
+            recorded=recorded_periods,
+            strobed=strobed_periods,
+        ),
     )
-    start = _start(pairs, structure, initial_state, shape)
-    contact_rows = _contact_rows(pairs, structure)
-    marched = shared_march(pairs, contact_rows, gap_law, points, start, schedule, workers=workers, backend=backend)
-    load = points.normal_load
-    verdict = resolution(marched, contact_rows, gap_law, load, steps_per_period)
+    solution = _solve(problem, workers, backend)
+    assessment = assess_steps(problem, solution)
     return Trajectories(
-        status=verdict.status.reshape(shape),
-        advice=verdict.advice.reshape(shape),
-        step_error=verdict.step_error.reshape(shape),
-        envelope=_envelope(marched, points.frequency, schedule, shape),
-        last_periods=_contact_motion(marched.recorded[:, :-1], contact_rows, gap_law, load, shape),
-        strobed=_contact_motion(marched.strobed, contact_rows, gap_law, load, shape),
-        final_state=_state(pairs, marched.final, shape),
+        status=assessment.status.reshape(shape),
+        advice=assessment.advice.reshape(shape),
+        step_error=assessment.step_error.reshape(shape),
+        envelope=_envelope(problem, solution, shape),
+        last_periods=_contact_motion(problem, solution.recorded[:, :-1], shape),
+        strobed=_contact_motion(problem, solution.strobed, shape),
+        final_state=_state(problem.modes, solution.final, shape),
     )
 
 
@@ -140,10 +145,10 @@ def trajectory(
     periods: int,
     steps_per_period: int = 16,
     waveform: Waveform | None = None,
-    ramp: StartUpRamp = AT_ONCE,
+    ramp: StartUpRamp = NO_RAMP,
     initial_state: State | None = None,
 ) -> Trajectory:
-    """March one point and return every step.
+    """Return the trajectory of one point with every time step, by the integrator of `march`.
 
     Parameters
     ----------
@@ -154,19 +159,19 @@ def trajectory(
     frequency : float
         Frequency of the drive. [Hz]
     voltage_peak_to_peak : float
-        Drive voltage, peak to peak. [V]
+        Peak-to-peak drive voltage. [V]
     voltage_offset : float
-        Its mean. [V]
+        Mean drive voltage. [V]
     periods : int
-        Periods of the drive to march.
+        Number of drive periods to march.
     steps_per_period : int
         A multiple of 4, at least 8.
     waveform : Waveform or None
-        Shape of the voltage; a sine if None.
+        Waveform of the voltage; a sine if None.
     ramp : StartUpRamp
-        How voltage and offset come up.
+        Ramp of amplitude and offset of the voltage.
     initial_state : State or None
-        Start; rest under the dead load if None.
+        Initial state; equilibrium under the dead load if None.
 
     Returns
     -------
@@ -175,36 +180,56 @@ def trajectory(
     Raises
     ------
     InvalidInput
-        As `march` does.
+        As `march`, or if there is more than one point.
+
+    See Also
+    --------
+    march
     """
-    shape, points = _points(normal_load, frequency, voltage_peak_to_peak, voltage_offset)
-    if shape:
-        raise InvalidInput(f"trajectory takes one point, got {points.frequency.size}; march takes many")
     shaped = Sine() if waveform is None else waveform
-    pairs = state_pairs(structure)
-    contact_rows = _contact_rows(pairs, structure)
-    schedule = Schedule(
+    schedule = MarchingSchedule(
         waveform=shaped, ramp=ramp, steps=steps_per_period, periods=periods, window=periods, recorded=periods, strobed=1
     )
-    start = _start(pairs, structure, initial_state, shape)
-    marched = march_points(pairs, contact_rows, gap_law, points, start, schedule, workers=1)
-    verdict = resolution(marched, contact_rows, gap_law, points.normal_load, steps_per_period)
-    states = np.concatenate([start[np.newaxis, :, :1], marched.recorded[:, :-1]])
+    point = (normal_load, frequency, voltage_peak_to_peak, voltage_offset)
+    problem, shape = _problem(structure, gap_law, point, initial_state, schedule)
+    if shape:
+        raise InvalidInput(f"trajectory takes one point, got {problem.frequency.size}; march takes many")
+    solution = march_on_cpu(problem, workers=1)
+    assessment = assess_steps(problem, solution)
+    states = np.concatenate([problem.start[np.newaxis, :, :1], solution.recorded[:, :-1]])
     time = np.arange(states.shape[0]) / (frequency * steps_per_period)
-    at_rest = {"voltage_offset": voltage_offset, "voltage_peak_to_peak": voltage_peak_to_peak, "frequency": frequency}
+    drive = {"voltage_offset": voltage_offset, "voltage_peak_to_peak": voltage_peak_to_peak, "frequency": frequency}
     return Trajectory(
         time=time,
-        voltage=ramp_factor(ramp, time=time) * drive_voltage(shaped, **at_rest, time=time),
-        contact=_contact_motion(states, contact_rows, gap_law, points.normal_load, shape),
-        states=_state(pairs, states[..., 0].T, (time.size,)),
-        status=str(verdict.status[0]),
-        advice=str(verdict.advice[0]),
+        voltage=ramp_factor(ramp, time=time) * drive_voltage(shaped, **drive, time=time),
+        contact=_contact_motion(problem, states, shape),
+        states=_state(problem.modes, states[..., 0].T, (time.size,)),
+        status=str(assessment.status[0]),
+        advice=str(assessment.advice[0]),
     )
 
 
-def _points(
-    normal_load: ArrayLike, frequency: ArrayLike, voltage_peak_to_peak: ArrayLike, voltage_offset: ArrayLike
-) -> tuple[tuple[int, ...], Points]:
+def _solve(problem: MarchingProblem, workers: int, backend: Backend) -> MarchingSolution:
+    """Return the trajectories of a batch by a GPU where requested, available and supported, else by the CPU."""
+    if usable_backend(backend) == "gpu":
+        from sonolube.dynamics.gpu import march_on_gpu, unsupported_march
+
+        reason = unsupported_march(problem)
+        if not reason:
+            return march_on_gpu(problem)
+        cpu_fallback(reason)
+    return march_on_cpu(problem, workers)
+
+
+def _problem(
+    structure: Structure,
+    gap_law: GapLaw,
+    points: tuple[ArrayLike, ArrayLike, ArrayLike, ArrayLike],
+    initial_state: State | None,
+    schedule: MarchingSchedule,
+) -> tuple[MarchingProblem, tuple[int, ...]]:
+    """Return the marching problem of checked and broadcast loads, frequencies, voltages and offsets, and its shape."""
+    normal_load, frequency, voltage_peak_to_peak, voltage_offset = points
     checked = (
         require_positive(normal_load=normal_load),
         require_positive(frequency=frequency),
@@ -218,67 +243,79 @@ def _points(
         raise InvalidInput(f"load, frequency, voltage and offset must have matching shapes, got {shapes}") from None
     if not f.size:
         raise InvalidInput("there must be at least one point to march")
-    return f.shape, Points(
-        normal_load=load.ravel(), frequency=f.ravel(), voltage_peak_to_peak=swing.ravel(), voltage_offset=offset.ravel()
+    modes = first_order_modes(structure)
+    problem = MarchingProblem(
+        modes=modes,
+        contact_output=np.stack(
+            [
+                np.einsum("j,jpb->pb", structure.contact_vector, each)
+                for each in (modes.to_displacement, modes.to_velocity)
+            ]
+        ),
+        gap_law=gap_law,
+        schedule=schedule,
+        normal_load=load.ravel(),
+        frequency=f.ravel(),
+        voltage_peak_to_peak=swing.ravel(),
+        voltage_offset=offset.ravel(),
+        start=_start(modes, structure, initial_state, f.shape),
     )
+    return problem, f.shape
 
 
-def _contact_rows(pairs: StatePairs, structure: Structure) -> Floats:
-    return np.stack(
-        [np.einsum("j,jpb->pb", structure.contact_vector, each) for each in (pairs.to_displacement, pairs.to_velocity)]
-    )
-
-
-def _start(pairs: StatePairs, structure: Structure, state: State | None, shape: tuple[int, ...]) -> Floats:
-    """Return the state of each point, shape (2 n, points)."""
+def _start(modes: FirstOrderModes, structure: Structure, state: State | None, shape: tuple[int, ...]) -> Floats:
+    """Return the initial states of all points, shape (2 n, points)."""
     n, count = structure.coordinates, int(np.prod(shape))
     if state is None:
         return np.zeros((2 * n, count))
     try:
         x = np.broadcast_to(require_finite(coordinates=state.coordinates), (*shape, n)).reshape(count, n)
-        v = np.broadcast_to(require_finite(rates=state.rates), (*shape, n)).reshape(count, n)
+        v = np.broadcast_to(require_finite(velocities=state.velocities), (*shape, n)).reshape(count, n)
     except ValueError as refusal:
         if isinstance(refusal, InvalidInput):
             raise
         raise InvalidInput(
-            f"initial_state must have {n} coordinates and rates for each of {count} points,"
-            f" got shapes {np.shape(state.coordinates)} and {np.shape(state.rates)}"
+            f"initial_state must have {n} coordinates and velocities for each of {count} points,"
+            f" got shapes {np.shape(state.coordinates)} and {np.shape(state.velocities)}"
         ) from None
-    states = np.einsum("paj,lj->pal", pairs.from_displacement, x) + np.einsum("paj,lj->pal", pairs.from_velocity, v)
+    states = np.einsum("paj,lj->pal", modes.from_displacement, x) + np.einsum("paj,lj->pal", modes.from_velocity, v)
     return np.asarray(states.reshape(2 * n, count))
 
 
-def _state(pairs: StatePairs, states: Floats, shape: tuple[int, ...]) -> State:
-    n = pairs.generator.shape[0]
-    x, v = (each.reshape(n, 2 * n) @ states for each in (pairs.to_displacement, pairs.to_velocity))
-    return State(coordinates=x.T.reshape(*shape, n), rates=v.T.reshape(*shape, n))
+def _state(modes: FirstOrderModes, states: Floats, shape: tuple[int, ...]) -> State:
+    """Return coordinates and velocities from pairs of states."""
+    n = modes.state_matrix.shape[0]
+    x, v = (each.reshape(n, 2 * n) @ states for each in (modes.to_displacement, modes.to_velocity))
+    return State(coordinates=x.T.reshape(*shape, n), velocities=v.T.reshape(*shape, n))
 
 
-def _contact_motion(
-    states: Floats, contact_rows: Floats, gap_law: GapLaw, load: Floats, shape: tuple[int, ...]
-) -> ContactMotion:
-    x, v = (np.einsum("m,tml->lt", row.ravel(), states) for row in contact_rows)
-    force = force_in_motion(gap_law, x, v, load[:, np.newaxis])
+def _contact_motion(problem: MarchingProblem, states: Floats, shape: tuple[int, ...]) -> ContactMotion:
+    """Return the motion of the contact and its force from pairs of states, shape (times, 2 n, points)."""
+    x, v = (np.einsum("m,tml->lt", row.ravel(), states) for row in problem.contact_output)
+    with np.errstate(over="ignore", invalid="ignore"):  # of points that diverged
+        force = damped_force(problem.gap_law, x, v, problem.normal_load[:, np.newaxis])
     return ContactMotion(
         displacement=x.reshape(*shape, -1), velocity=v.reshape(*shape, -1), normal_force=force.reshape(*shape, -1)
     )
 
 
-def _envelope(marched: Marched, f: Floats, schedule: Schedule, shape: tuple[int, ...]) -> Envelope:
-    ends = np.minimum(np.arange(1, marched.statistics.shape[0] + 1) * schedule.window, schedule.periods)
+def _envelope(problem: MarchingProblem, solution: MarchingSolution, shape: tuple[int, ...]) -> Envelope:
+    """Return the envelope from the statistics of the windows."""
+    schedule, statistics = problem.schedule, solution.statistics
+    ends = np.minimum(np.arange(1, statistics.shape[0] + 1) * schedule.window, schedule.periods)
     samples = np.diff(ends, prepend=0)[:, np.newaxis] * schedule.steps
-    highest, lowest, total, cosine, sine, force, strongest, weakest = np.moveaxis(marched.statistics, 1, 0)
+    highest, lowest, total, cosine, sine, force, strongest, weakest = np.moveaxis(statistics, 1, 0)
 
-    def of_points(values: Floats) -> Floats:
+    def shaped(values: Floats) -> Floats:
         return values.T.reshape(*shape, -1)
 
     return Envelope(
-        time=of_points(ends[:, np.newaxis] / f),
-        first_harmonic_amplitude=of_points(2 * np.hypot(cosine, sine) / samples),
-        mean_displacement=of_points(total / samples),
-        highest_displacement=of_points(highest),
-        lowest_displacement=of_points(lowest),
-        mean_normal_force=of_points(force / samples),
-        highest_normal_force=of_points(strongest),
-        lowest_normal_force=of_points(weakest),
+        time=shaped(ends[:, np.newaxis] / problem.frequency),
+        first_harmonic_amplitude=shaped(2 * np.hypot(cosine, sine) / samples),
+        mean_displacement=shaped(total / samples),
+        highest_displacement=shaped(highest),
+        lowest_displacement=shaped(lowest),
+        mean_normal_force=shaped(force / samples),
+        highest_normal_force=shaped(strongest),
+        lowest_normal_force=shaped(weakest),
     )

@@ -1,7 +1,7 @@
-"""Compiling what a first call needs in two processes side by side, since within one numba compiles kernel after kernel.
+"""Parallel compilation of the kernels at a first call: numba compiles one kernel after another within a process.
 
-While the caller's process compiles the kernel that comes first, another one compiles those that follow, into the cache
-that all processes share. Later calls find everything there and start nothing.
+While the caller's process compiles the first kernel, a second process compiles those that follow, into the cache that
+all processes share. Later calls find every kernel there and start no process.
 """
 
 import os
@@ -13,90 +13,100 @@ from contextlib import contextmanager, suppress
 import numpy as np
 from numba.core.event import Event, Listener, install_listener
 
-from sonolube.dynamics.friction_average.elliptic_quadrature import crowded_points
-from sonolube.dynamics.friction_average.kernel import precision, scratch, sliding_means
-from sonolube.dynamics.harmonic_balance.contact_kernel import Compiled, Law
-from sonolube.dynamics.harmonic_balance.floquet_kernel import growth_rates, period_room
-from sonolube.dynamics.harmonic_balance.harmonic_kernel import balance
+from sonolube.dynamics.friction_average.elliptic_kernel import elliptic_averages, friction_workspace, sum_precision
+from sonolube.dynamics.friction_average.elliptic_quadrature import elliptic_nodes
+from sonolube.dynamics.harmonic_balance.floquet_kernel import monodromy_power_norms, period_workspace
+from sonolube.dynamics.harmonic_balance.harmonic_kernel import newton_solve
+from sonolube.dynamics.kernels.contact_kernel import KernelVariant, LawParameters
 
 
-class Helper(Listener):
-    """A process that compiles what follows `balance`, from when that has to be compiled."""
+class CompileProcess(Listener):
+    """Process that compiles the kernels after `newton_solve`, started when numba begins to compile that one.
 
-    def __init__(self, compiled: Compiled, stability: bool, tolerance: float) -> None:
-        choices = len(compiled.kind), len(compiled.damped), stability, tolerance
-        self._work = f"from {__name__} import compile_what_follows; compile_what_follows{choices}"
+    Parameters
+    ----------
+    variant : KernelVariant
+    stability : bool
+        Whether stability is to be computed.
+    tolerance : float
+        Relative error of the steady states.
+    """
+
+    def __init__(self, variant: KernelVariant, stability: bool, tolerance: float) -> None:
+        arguments = len(variant.kind), len(variant.damped), stability, tolerance
+        self._code = f"from {__name__} import compile_remaining_kernels; compile_remaining_kernels{arguments}"
         self._process: subprocess.Popen[bytes] | None = None
 
     def on_start(self, event: Event) -> None:
-        """Start the process; where none can be started, its work is left to the caller."""
-        if event.data["dispatcher"] is balance and self._process is None:
+        """Start the process; where that fails, the caller compiles the remaining kernels itself."""
+        if event.data["dispatcher"] is newton_solve and self._process is None:
             silent = subprocess.DEVNULL
             with suppress(OSError):
                 self._process = subprocess.Popen(
-                    [sys.executable, "-P", "-c", self._work], stdin=silent, stdout=silent, stderr=silent
+                    [sys.executable, "-P", "-c", self._code], stdin=silent, stdout=silent, stderr=silent
                 )
 
     def on_end(self, event: Event) -> None:
-        """Let the process go on."""
+        """Wait for the process after `newton_solve`: it is ahead with the kernels that the caller requires next."""
+        if event.data["dispatcher"] is newton_solve:
+            self.wait()
 
     def wait(self) -> int | None:
-        """Return the process's exit status once it has ended, or None if there was none."""
+        """Wait for the process and return its exit status, or None if none was started."""
         return None if self._process is None else self._process.wait()
 
     def stop(self) -> None:
-        """End the process at once if it is still running."""
+        """Kill the process if it is still running."""
         if self._process is not None:
             self._process.kill()
             self._process.wait()
 
 
 @contextmanager
-def compiling_alongside(compiled: Compiled, *, stability: bool, tolerance: float) -> Iterator[Helper]:
-    """Where `balance` has to be compiled, have another process compile what judges and averages its answers meanwhile.
+def compile_in_parallel(variant: KernelVariant, *, stability: bool, tolerance: float) -> Iterator[CompileProcess]:
+    """Compile the kernels for stability and friction in a second process if `newton_solve` has to be compiled within.
 
     Parameters
     ----------
-    compiled : Compiled
+    variant : KernelVariant
     stability : bool
-        Whether stability is to be judged.
+        Whether stability is to be computed.
     tolerance : float
-        Relative error of the steady states, on which the precision of their means depends.
+        Relative error of the steady states, which determines the precision of their friction averages.
 
     Yields
     ------
-    Helper
+    CompileProcess
         It has ended when the context has.
     """
-    helper = Helper(compiled, stability, tolerance)
+    process = CompileProcess(variant, stability, tolerance)
     if (os.cpu_count() or 1) == 1 or not sys.executable or getattr(sys, "frozen", False):
-        yield helper  # which no event will start
+        yield process  # not listening, and hence never started
         return
     try:
-        with install_listener("numba:compile", helper):
-            yield helper
-        helper.wait()
+        with install_listener("numba:compile", process):
+            yield process
+        process.wait()
     finally:
-        helper.stop()
+        process.stop()
 
 
-def compile_what_follows(kind: int, damped: int, stability: bool, tolerance: float) -> None:
-    """Compile, and so cache, the kernels that follow `balance`, by giving them no points to treat.
+def compile_remaining_kernels(kind: int, damped: int, stability: bool, tolerance: float) -> None:
+    """Compile, and so cache, the kernels that follow `newton_solve`, by calling them with empty batches.
 
     Parameters
     ----------
     kind, damped : int
-        Lengths of the tuples of `sonolube.dynamics.harmonic_balance.contact_kernel.Compiled`.
+        Lengths of the tuples of `KernelVariant`.
     stability, tolerance
-        As in `compiling_alongside`.
+        As in `compile_in_parallel`.
     """
-    compiled, law = Compiled((0,) * kind, (0,) * damped), Law(0.0, 0.0, np.empty((0, 4)))
-    nothing, points = np.empty((0, 0)), np.empty(0, dtype=np.int64)
-    speeds = np.ones(1, dtype=precision(tolerance))
+    variant, law = KernelVariant((0,) * kind, (0,) * damped), LawParameters(0.0, 0.0, np.empty((0, 4)))
+    empty, points = np.empty((0, 0)), np.empty(0, dtype=np.int64)
+    speeds = np.ones(1, dtype=sum_precision(tolerance))
     if stability:
-        room, rates = period_room(0, 0), np.empty(0)
-        growth_rates(*compiled, law, nothing, nothing, nothing, nothing, points, points, points, room, rates, rates)
-    means = np.empty((2, 0, 1))
-    sliding_means(
-        *compiled, law, nothing, nothing, points, points, points, speeds, crowded_points(0), scratch(0, speeds), means
-    )
+        work, norms = period_workspace(0, 0), np.empty(0)
+        monodromy_power_norms(*variant, law, empty, empty, empty, empty, points, points, points, work, norms, norms)
+    averages, nodes = np.empty((2, 0, 1)), elliptic_nodes(0)
+    workspace = friction_workspace(0, speeds)
+    elliptic_averages(*variant, law, empty, empty, points, points, points, speeds, nodes, workspace, averages)

@@ -1,4 +1,4 @@
-"""Shapes of the drive voltage: one period about zero mean, from -1/2 to 1/2 where it is symmetric."""
+"""Waveforms of the drive voltage: one period of zero mean and unit peak-to-peak height, and its start-up ramp."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -10,31 +10,38 @@ from numpy.typing import ArrayLike
 from sonolube.checks import Complexes, Floats, require_finite, require_non_negative, require_positive
 from sonolube.errors import InvalidInput, UnknownName
 
-_TURN = 2 * np.pi
+_PERIOD = 2 * np.pi
 
 
 @dataclass(frozen=True, slots=True)
 class Sine:
-    """Half the sine of the phase."""
+    r"""Sinusoidal waveform of unit peak-to-peak height.
+
+    Notes
+    -----
+    .. math:: w(\theta) = \tfrac12\sin\theta
+    """
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class PiecewiseLinear:
-    """A period of straight pieces, with or without jumps between them.
+    """Piecewise linear waveform, with or without jumps between its pieces.
 
     Parameters
     ----------
     starts_at : ndarray, shape (n,)
-        Phase at which each piece starts, rising, from 0 to less than 2 pi; the last one ends where the first starts.
+        Phase at which each piece starts, increasing, from 0 to less than 2 pi, in rad; the last piece ends where the
+        first one starts.
     first : ndarray, shape (n,)
         Value at the start of each piece.
     last : ndarray, shape (n,)
-        Value at its end.
+        Value at the end of each piece.
 
     Raises
     ------
     InvalidInput
-        If shapes disagree, phases do not rise within a turn, the mean is not zero or peak to peak is not one.
+        If shapes disagree, phases do not increase within a period, the mean is not zero or the peak-to-peak height is
+        not one.
     """
 
     starts_at: Floats
@@ -45,9 +52,12 @@ class PiecewiseLinear:
         start = require_finite(starts_at=self.starts_at, first=self.first, last=self.last)
         if start.shape != (start.size,) or not start.size or not start.shape == self.first.shape == self.last.shape:
             raise InvalidInput("starts_at, first and last must be arrays of one axis and the same length")
-        if start[0] < 0 or start[-1] >= _TURN or np.any(np.diff(start) <= 0):
-            raise InvalidInput("starts_at must rise, and lie between 0 and 2 pi, less than the latter")
-        mean, (lowest, highest) = float(self._lengths @ (self.first + self.last)) / (2 * _TURN), extremes(self)
+        if start[0] < 0 or start[-1] >= _PERIOD or np.any(np.diff(start) <= 0):
+            raise InvalidInput("starts_at must increase, and lie between 0 and 2 pi, less than the latter")
+        mean, (lowest, highest) = (
+            float(self._lengths @ (self.first + self.last)) / (2 * _PERIOD),
+            waveform_extremes(self),
+        )
         if abs(mean) > 1e-9 or abs(highest - lowest - 1) > 1e-9:
             raise InvalidInput(
                 f"a waveform must have mean 0 and peak to peak 1, got {mean:.4g} and {highest - lowest:.4g}"
@@ -55,7 +65,7 @@ class PiecewiseLinear:
 
     @property
     def _lengths(self) -> Floats:
-        return np.diff(self.starts_at, append=self.starts_at[0] + _TURN)
+        return np.diff(self.starts_at, append=self.starts_at[0] + _PERIOD)
 
     @property
     def _slopes(self) -> Floats:
@@ -66,7 +76,7 @@ Waveform = Sine | PiecewiseLinear
 
 
 def sampled_waveform(samples: ArrayLike) -> PiecewiseLinear:
-    """Return the waveform through equally spaced samples of one period, brought to zero mean and unit height.
+    """Return the piecewise linear waveform through equally spaced samples of one period, normalised.
 
     Parameters
     ----------
@@ -76,7 +86,7 @@ def sampled_waveform(samples: ArrayLike) -> PiecewiseLinear:
     Returns
     -------
     PiecewiseLinear
-        Straight between samples, without jumps.
+        Linear between samples, without jumps; of zero mean and unit peak-to-peak height.
 
     Raises
     ------
@@ -93,18 +103,18 @@ def sampled_waveform(samples: ArrayLike) -> PiecewiseLinear:
     if height == 0:
         raise InvalidInput(f"samples must not all be equal, got {float(given[0])!r} throughout")
     values = (given - given.mean()) / height
-    starts_at = np.linspace(0.0, _TURN, given.size, endpoint=False, dtype=np.float64)
+    starts_at = np.linspace(0.0, _PERIOD, given.size, endpoint=False, dtype=np.float64)
     return PiecewiseLinear(starts_at=starts_at, first=values, last=np.roll(values, -1))
 
 
-def value(waveform: Waveform, *, phase: ArrayLike) -> Floats:
-    """Return the waveform at a phase; on a jump, what follows it.
+def waveform_value(waveform: Waveform, *, phase: ArrayLike) -> Floats:
+    """Return the value of a waveform at a phase; at a jump, the value after it.
 
     Parameters
     ----------
     waveform : Waveform
     phase : array_like, any shape
-        Phase in the period, any number of turns. [rad]
+        Phase, of any number of periods. [rad]
 
     Returns
     -------
@@ -118,14 +128,14 @@ def value(waveform: Waveform, *, phase: ArrayLike) -> Floats:
     theta = require_finite(phase=phase)
     if isinstance(waveform, Sine):
         return np.asarray(0.5 * np.sin(theta))
-    theta = theta % _TURN
-    piece = np.searchsorted(waveform.starts_at, theta, side="right") - 1  # -1 before the first: the last piece, wrapped
-    into = (theta - waveform.starts_at[piece]) % _TURN
+    theta = theta % _PERIOD
+    piece = np.searchsorted(waveform.starts_at, theta, side="right") - 1  # -1 before the first: the last, wrapped
+    into = (theta - waveform.starts_at[piece]) % _PERIOD
     return np.asarray(waveform.first[piece] + waveform._slopes[piece] * into)
 
 
-def harmonics(waveform: Waveform, count: int) -> Complexes:
-    """Return the exact Fourier coefficients c_0 to c_count of the sum of c_k exp(i k phase) over k of both signs.
+def fourier_coefficients(waveform: Waveform, count: int) -> Complexes:
+    r"""Return the exact Fourier coefficients c_0 to c_count of a waveform.
 
     Parameters
     ----------
@@ -135,8 +145,9 @@ def harmonics(waveform: Waveform, count: int) -> Complexes:
 
     Returns
     -------
-    ndarray, shape (count + 1,)
-        The amplitude of harmonic k is 2 c_k; that of the mean, c_0, is zero.
+    ndarray of complex, shape (count + 1,)
+        Of :math:`w(\theta) = \sum_{k=-\infty}^{\infty} c_k e^{ik\theta}`: harmonic k has the complex amplitude
+        2 c_k; the mean c_0 is zero.
 
     Raises
     ------
@@ -145,7 +156,11 @@ def harmonics(waveform: Waveform, count: int) -> Complexes:
 
     Notes
     -----
-    By parts, c_k is the sum over the starts of pieces of [jump/(ik) + change of slope/(ik)^2] exp(-ik phase)/(2 pi).
+    Integration by parts over the pieces, which start at the phases :math:`\theta_j` with the jump
+    :math:`\Delta w_j` and the change of slope :math:`\Delta w'_j`, gives
+
+    .. math:: c_k = \frac{1}{2\pi} \sum_j
+              \left[\frac{\Delta w_j}{ik} + \frac{\Delta w'_j}{(ik)^2}\right] e^{-ik\theta_j}
     """
     if count < 0:
         raise InvalidInput(f"count must not be negative, got {count!r}")
@@ -154,15 +169,15 @@ def harmonics(waveform: Waveform, count: int) -> Complexes:
         coefficients[1:2] = -0.25j
         return coefficients
     ik = 1j * np.arange(1, count + 1)
-    turns = np.exp(-np.multiply.outer(ik, waveform.starts_at))
+    rotation = np.exp(-np.multiply.outer(ik, waveform.starts_at))
     jump = waveform.first - np.roll(waveform.last, 1)
-    bend = waveform._slopes - np.roll(waveform._slopes, 1)
-    coefficients[1:] = (turns @ jump / ik + turns @ bend / ik**2) / _TURN
+    slope_change = waveform._slopes - np.roll(waveform._slopes, 1)
+    coefficients[1:] = (rotation @ jump / ik + rotation @ slope_change / ik**2) / _PERIOD
     return coefficients
 
 
-def jumps(waveform: Waveform) -> Floats:
-    """Return the phases within one turn at which the waveform jumps, in order.
+def jump_phases(waveform: Waveform) -> Floats:
+    """Return the phases within one period at which the waveform jumps, in increasing order, in rad.
 
     Parameters
     ----------
@@ -177,8 +192,8 @@ def jumps(waveform: Waveform) -> Floats:
     return waveform.starts_at[np.abs(waveform.first - np.roll(waveform.last, 1)) > 1e-12]
 
 
-def extremes(waveform: Waveform) -> tuple[float, float]:
-    """Return the lowest and the highest value.
+def waveform_extremes(waveform: Waveform) -> tuple[float, float]:
+    """Return the lowest and the highest value of a waveform.
 
     Parameters
     ----------
@@ -187,7 +202,7 @@ def extremes(waveform: Waveform) -> tuple[float, float]:
     Returns
     -------
     lowest, highest : float
-        One apart; -1/2 and 1/2 for the named waveforms.
+        They differ by one; -1/2 and 1/2 for the named waveforms.
     """
     if isinstance(waveform, Sine):
         return -0.5, 0.5
@@ -196,7 +211,7 @@ def extremes(waveform: Waveform) -> tuple[float, float]:
 
 
 def _pieces(*pieces: tuple[float, float, float]) -> PiecewiseLinear:
-    """Return the waveform of pieces, each given by its start in half turns, first and last value."""
+    """Return the waveform of pieces, each given by its start in units of pi, its first and its last value."""
     start, first, last = np.array(pieces).T
     return PiecewiseLinear(starts_at=start * np.pi, first=first, last=last)
 
@@ -209,7 +224,7 @@ WAVEFORMS: Mapping[str, Waveform] = MappingProxyType(
         "sawtooth": _pieces((1.0, -0.5, 0.5)),
     }
 )
-"""The named waveforms, each with a fundamental in phase with the sine; the sawtooth rises, and jumps down."""
+"""Waveforms by name, each with a fundamental in phase with the sine; the sawtooth rises, then jumps down."""
 
 
 def drive_voltage(
@@ -220,7 +235,7 @@ def drive_voltage(
     frequency: ArrayLike,
     time: ArrayLike,
 ) -> Floats:
-    """Return the drive voltage over time. [V]
+    r"""Return the drive voltage at given times. [V]
 
     Parameters
     ----------
@@ -242,9 +257,15 @@ def drive_voltage(
     ------
     InvalidInput
         If a peak-to-peak voltage is negative, a frequency not positive, or a value not finite.
+
+    Notes
+    -----
+    .. math:: V(t) = U_0 + U_{pp}\,w(2\pi f t)
     """
-    turns = require_positive(frequency=frequency) * require_finite(time=time)
-    swing = require_non_negative(voltage_peak_to_peak=voltage_peak_to_peak) * value(waveform, phase=_TURN * turns)
+    periods = require_positive(frequency=frequency) * require_finite(time=time)
+    swing = require_non_negative(voltage_peak_to_peak=voltage_peak_to_peak) * waveform_value(
+        waveform, phase=_PERIOD * periods
+    )
     return require_finite(voltage_offset=voltage_offset) + swing
 
 
@@ -253,14 +274,14 @@ RAMP_SHAPES = ("linear", "cosine")
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class StartUpRamp:
-    """How the drive is switched on.
+    """Ramp by which offset and amplitude of the drive rise from zero when it is switched on.
 
     Parameters
     ----------
     duration : float
-        Time from nothing to full amplitude; zero for a switch. [s]
+        Time from zero to full amplitude; zero for a step. [s]
     shape : str
-        "linear", or "cosine" for half a wave without corners.
+        "linear", or "cosine" for half a cosine wave, whose slope is continuous.
 
     Raises
     ------
@@ -280,7 +301,7 @@ class StartUpRamp:
 
 
 def ramp_factor(ramp: StartUpRamp, *, time: ArrayLike) -> Floats:
-    """Return the share of the full amplitude. []
+    r"""Return the fraction of the full drive amplitude that a ramp has reached. []
 
     Parameters
     ----------
@@ -297,6 +318,11 @@ def ramp_factor(ramp: StartUpRamp, *, time: ArrayLike) -> Floats:
     ------
     InvalidInput
         If a time is not finite.
+
+    Notes
+    -----
+    With :math:`s = \min(\max(t/T, 0), 1)`, the factor is s for a linear ramp and
+    :math:`\tfrac12 - \tfrac12\cos\pi s` for a cosine ramp.
     """
     t = require_finite(time=time)
     if ramp.duration == 0:

@@ -6,7 +6,15 @@ from numpy.typing import ArrayLike
 from sonolube.actuator.drive import Drive
 from sonolube.actuator.drive_power import driver_power
 from sonolube.checks import Complexes, Floats, require_non_negative
-from sonolube.dynamics import WAVEFORMS, Sine, StartUpRamp, Waveform, extremes, harmonics, sampled_waveform
+from sonolube.dynamics import (
+    WAVEFORMS,
+    Sine,
+    StartUpRamp,
+    Waveform,
+    fourier_coefficients,
+    sampled_waveform,
+    waveform_extremes,
+)
 
 _VOLTAGE_HARMONICS = 64  # the 65th of a square wave moves the tip by less than 1e-5 of the first
 
@@ -48,7 +56,7 @@ def voltage_harmonics(drive: Drive, *, voltage_peak_to_peak: ArrayLike | None = 
     """
     waveform = waveform_of(drive)
     count = 1 if isinstance(waveform, Sine) else _VOLTAGE_HARMONICS
-    return 2 * _swing(drive, voltage_peak_to_peak)[..., np.newaxis] * harmonics(waveform, count)[1:]
+    return 2 * _swing(drive, voltage_peak_to_peak)[..., np.newaxis] * fourier_coefficients(waveform, count)[1:]
 
 
 def voltage_range(
@@ -69,7 +77,9 @@ def voltage_range(
     pair of ndarray
     """
     offset = np.asarray(drive.voltage_offset if voltage_offset is None else voltage_offset, dtype=np.float64)
-    lowest, highest = (offset + _swing(drive, voltage_peak_to_peak) * part for part in extremes(waveform_of(drive)))
+    lowest, highest = (
+        offset + _swing(drive, voltage_peak_to_peak) * part for part in waveform_extremes(waveform_of(drive))
+    )
     return lowest, highest
 
 

@@ -7,9 +7,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats
 from sonolube.contact import HarmonicMotions, separation
+from sonolube.dynamics import Status, SteadyStates
 from sonolube.dynamics.backend import Backend
-from sonolube.dynamics.kernels.peak_velocity import highest_velocities
-from sonolube.dynamics.steady_state import Status, SteadyStates
+from sonolube.dynamics.kernels.peak_velocity import peak_velocities
 from sonolube.errors import SonolubeError
 from sonolube.rig.driven_rig import DrivenRig, driven_rig
 from sonolube.rig.excitation import voltage_range
@@ -210,7 +210,7 @@ def _shifted(reason: NDArray[np.int16], refusal: NDArray[np.int16]) -> NDArray[n
 
 def _measures(states: SteadyStates) -> Floats:
     velocity = np.empty(states.frequency.size)
-    highest_velocities(2 * np.pi * states.frequency, states.harmonics, velocity)
+    peak_velocities(2 * np.pi * states.frequency, states.harmonics, velocity)
     velocity[states.status == Status.NOT_CONVERGED] = np.nan
     return np.stack(
         (

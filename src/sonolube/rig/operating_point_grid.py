@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 from sonolube.actuator.stack import require_allowed_voltage
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
 from sonolube.contact import GapMotion, separation
+from sonolube.dynamics import Status, SteadyStates, steady_state
 from sonolube.dynamics.backend import Backend
-from sonolube.dynamics.steady_state import Status, SteadyStates, steady_state
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.rig.driven_rig import DrivenRig, driven_rig
 from sonolube.rig.excitation import amplifier_power, voltage_harmonics, voltage_range

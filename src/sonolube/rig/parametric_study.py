@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats, require_non_negative, require_positive
-from sonolube.dynamics import WAVEFORMS, Status, modes
-from sonolube.dynamics.steady_friction import motion
+from sonolube.dynamics import WAVEFORMS, Status, contact_motion, modes
 from sonolube.errors import InvalidInput
 from sonolube.rig.datasets import gridded
 from sonolube.rig.driven_rig import DrivenRig, driven_rig
@@ -283,7 +282,7 @@ def _periods(rig: Rig, volts: Floats, offset: Floats) -> tuple[Floats, Floats]:
     states = steady_states(rig, voltage_peak_to_peak=volts, voltage_offset=offset)
     displacement, normal_force = np.full((2, volts.size, _PHASES), np.nan)
     for point in np.flatnonzero(states.status != Status.NOT_CONVERGED):
-        period = motion(states, int(point), samples=_PHASES)
+        period = contact_motion(states, int(point), samples=_PHASES)
         displacement[point], normal_force[point] = period.displacement, period.normal_force
     return displacement, normal_force
 

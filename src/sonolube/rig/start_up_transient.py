@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from sonolube.checks import require_positive
 from sonolube.dynamics.attractor import beat, settling_time
-from sonolube.dynamics.time_marching.records import Trajectory
+from sonolube.dynamics.trajectories import Trajectory
 from sonolube.dynamics.transient import march, trajectory
 from sonolube.errors import InvalidInput
 from sonolube.rig.driven_rig import driven_rig

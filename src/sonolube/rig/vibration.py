@@ -8,9 +8,8 @@ from numpy.typing import NDArray
 
 from sonolube.actuator.drive import Drive
 from sonolube.contact import GapMotion, separation
-from sonolube.dynamics.long_time_response import Attained, attained_motion
-from sonolube.dynamics.steady_friction import motion
-from sonolube.dynamics.steady_state import Status, SteadyStates, steady_state
+from sonolube.dynamics import Status, SteadyStates, contact_motion, steady_state
+from sonolube.dynamics.long_time_response import LongTimeResponse, march_until_settled
 from sonolube.errors import OutsideRange
 from sonolube.rig.driven_rig import DrivenRig, driven_rig
 from sonolube.rig.excitation import start_up_ramp, voltage_harmonics, waveform_of
@@ -105,7 +104,7 @@ def steady_vibration(rig: Rig) -> SteadyVibration:
     rest, with the start-up ramp of its drive, until transients have decayed.
     """
     rig = driven_rig(rig)
-    balanced = _balanced(rig, falling=False)
+    balanced = _balanced(rig, upper_branch=False)
     if balanced.status == Status.PERIODIC:
         return _of_balance(rig, balanced, balanced.reason(()))
     if balanced.stability_undetermined(()):
@@ -114,10 +113,10 @@ def steady_vibration(rig: Rig) -> SteadyVibration:
     route = f"{_why_marched(balanced)}; {_from_rest(rig.drive)}"
     found = attained.attractor
     if balanced.status == Status.MULTISTABLE and found.order == 1:
-        for states in (balanced, _balanced(rig, falling=True)):
+        for states in (balanced, _balanced(rig, upper_branch=True)):
             if _same(states, attained):
                 appears = engineering(float(states.vibration_amplitude), "m")
-                return _of_balance(rig, states, f"{route} that of {appears} appears{states.hopping(())}")
+                return _of_balance(rig, states, f"{route} that of {appears} appears{states.contact_loss_note(())}")
     early = (
         "" if attained.settled else f"; followed for {engineering(attained.marched_time, 's')}, before it has settled"
     )
@@ -142,7 +141,7 @@ def gap_motion(states: SteadyStates, point: int | tuple[int, ...]) -> GapMotion:
     InvalidInput
         If the point did not converge.
     """
-    period = motion(states, point, samples=_SAMPLES)
+    period = contact_motion(states, point, samples=_SAMPLES)
     return GapMotion(
         displacement=period.displacement,
         normal_force=period.normal_force,
@@ -151,7 +150,7 @@ def gap_motion(states: SteadyStates, point: int | tuple[int, ...]) -> GapMotion:
     )
 
 
-def _balanced(rig: DrivenRig, *, falling: bool) -> SteadyStates:
+def _balanced(rig: DrivenRig, *, upper_branch: bool) -> SteadyStates:
     drive = rig.drive
     return steady_state(
         rig.structure,
@@ -161,13 +160,13 @@ def _balanced(rig: DrivenRig, *, falling: bool) -> SteadyStates:
         voltage_harmonics=voltage_harmonics(drive),
         voltage_offset=drive.voltage_offset,
         separation=separation(rig.contact, normal_load=rig.normal_load),
-        falling=falling,
+        upper_branch=upper_branch,
     )
 
 
-def _marched(rig: DrivenRig) -> Attained:
+def _marched(rig: DrivenRig) -> LongTimeResponse:
     drive = rig.drive
-    return attained_motion(
+    return march_until_settled(
         rig.structure,
         gap_law_of(rig),
         normal_load=rig.normal_load,
@@ -196,7 +195,7 @@ def _from_rest(drive: Drive) -> str:
     return f"with the voltage brought up by a {drive.ramp_shape} ramp of {engineering(drive.ramp_duration, 's')},"
 
 
-def _same(states: SteadyStates, attained: Attained) -> bool:
+def _same(states: SteadyStates, attained: LongTimeResponse) -> bool:
     own = float(states.vibration_amplitude)
     return bool(abs(attained.amplitudes[0] - own) <= _SAME * own)
 
@@ -226,7 +225,7 @@ def _of_balance(rig: DrivenRig, states: SteadyStates, reason: str) -> SteadyVibr
     )
 
 
-def _of_march(rig: DrivenRig, attained: Attained, balanced: SteadyStates, reason: str) -> SteadyVibration:
+def _of_march(rig: DrivenRig, attained: LongTimeResponse, balanced: SteadyStates, reason: str) -> SteadyVibration:
     found, drive, record = attained.attractor, rig.drive, attained.record
     slow, repeats = float(found.beat_frequency), int(found.order)
     x, force = record.contact.displacement, record.contact.normal_force
@@ -260,7 +259,7 @@ def _of_march(rig: DrivenRig, attained: Attained, balanced: SteadyStates, reason
 
 
 def _segments(
-    rig: Rig, x: NDArray[np.float64], force: NDArray[np.float64], attained: Attained, frequency: float
+    rig: Rig, x: NDArray[np.float64], force: NDArray[np.float64], attained: LongTimeResponse, frequency: float
 ) -> list[GapMotion]:
     """Return segments of a motion that does not repeat, cut at the widest gaps and made periodic by a linear term."""
     steps, slow = attained.steps_per_period, float(attained.attractor.beat_frequency)

@@ -11,7 +11,7 @@ from sonolube.design.optimisation.screening import Task
 from sonolube.design.optimisation.space import Choice, rig_of, stack_of, structure_of
 from sonolube.design.optimisation.target import exact_swing, highest_swing
 from sonolube.dynamics import Status
-from sonolube.dynamics.sensitivities import StructureChange, gradients
+from sonolube.dynamics.sensitivities import StructureChange, steady_state_sensitivities
 from sonolube.rig import steady_states
 from sonolube.rig.driven_rig import DrivenRig
 from sonolube.rig.friction_and_wear import friction_ratio, prescribed_sine
@@ -100,7 +100,7 @@ def tangent(task: Task, point: Point) -> dict[str, float]:
     if int(states.status[0]) == Status.NOT_CONVERGED:
         return dict.fromkeys(task.space.bounds, 0.0)
     changes = {name: _change(task, point.choice, name) for name in task.space.ranges}
-    every = gradients(states, structure_changes=changes).vibration_amplitude
+    every = steady_state_sensitivities(states, structure_changes=changes).vibration_amplitude
     found = {name: float(values[0]) for name, values in every.items()}
     drive = rig.drive
     amplitude = float(states.vibration_amplitude[0])

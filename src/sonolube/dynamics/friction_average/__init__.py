@@ -1,1 +1,1 @@
-"""Period averages of the kinematic friction factor, by quadrature in compiled kernels."""
+"""Averages of the kinematic friction factor over a period of vibration, by quadrature in compiled kernels."""

@@ -1,9 +1,10 @@
-"""Points of a period that crowd where its motion turns, for means over it of what depends on the velocity.
+r"""Nodes and weights for averages over a period of functions of v_r/sqrt(v_r^2 + v^2), by elliptic substitution.
 
-The mean of v_r/sqrt(v_r^2 + v^2) over a period has branch points close to the real axis wherever the vibration velocity
-v passes through zero, so that even samples converge slowly. For one sine, theta = am(u) with uniform u takes them away
-from the axis, whatever the sliding speed; for a motion that turns twice, a Moebius map of the circle first moves its
-two turns a half turn apart. What remains is analytic in a wide strip, and the trapezoidal rule converges geometrically.
+The integrand has branch points near the real axis wherever the vibration velocity v passes through zero, so that the
+trapezoidal rule converges slowly for slow sliding. For a sinusoidal motion the substitution
+:math:`\theta = \mathrm{am}(u\,|\,m)` with Jacobi's amplitude moves the branch points away from the axis, whatever the
+sliding speed; for a motion with two extrema, a Moebius map of the unit circle first moves these half a period apart.
+What remains is analytic in a wide strip, in which the trapezoidal rule converges geometrically.
 """
 
 from functools import lru_cache
@@ -14,15 +15,16 @@ from scipy.special import ellipkm1
 
 from sonolube.checks import Complexes, Floats, Integers
 
-TOGETHER = 4  # points that a kernel adds at once, which spares the sums' going to and fro
-_ROWS = 4  # steps of crowding to a decade of the ratio of the slowest sliding to the vibration's peak velocity
-_STEEPEST = 24  # most such steps
-# Accelerations of the higher harmonics over that of the first, and up to each how many times as many points it takes.
-_RICHNESS, _FINENESS = np.array([0.1, 1.0, 2.0]), np.array([1, 2, 4, 16])
+NODES_PER_PASS = 4
+"""Nodes that a kernel accumulates at once, which saves memory traffic of the sums. []"""
+_ROWS_PER_DECADE = 4  # rows of the node table per decade of the ratio of sliding speed to peak velocity
+_LAST_ROW = 24
+# Acceleration of the higher harmonics over that of the first, and factors on the number of nodes between these limits.
+_ACCELERATION_RATIOS, _NODE_FACTORS = np.array([0.1, 1.0, 2.0]), np.array([1, 2, 4, 16])
 
 
-class Crowded(NamedTuple):
-    """Points exp(i phi) of the circle, crowded at +-i, one row to each step of crowding; weights sum to one."""
+class EllipticNodes(NamedTuple):
+    """Nodes exp(i phi) on the unit circle, clustered at +-i, one row per speed ratio; the weights of a row sum to 1."""
 
     cosine: Floats  # (rows, most)
     sine: Floats
@@ -31,36 +33,44 @@ class Crowded(NamedTuple):
 
 
 @lru_cache(maxsize=64)
-def crowded_points(extra: int, tolerance: float = 1e-6) -> Crowded:
-    """Return the points for each step of the ratio of sliding speed to peak velocity.
+def elliptic_nodes(extra: int, tolerance: float = 1e-6) -> EllipticNodes:
+    r"""Return the table of nodes for each ratio of sliding speed to peak velocity.
 
     Parameters
     ----------
     extra : int
-        Points added for the sake of a steep contact force.
+        Additional nodes for a steep contact force.
     tolerance : float
-        Relative error to hold.
+        Relative error.
 
     Returns
     -------
-    Crowded
+    EllipticNodes
+        Row r for the ratio :math:`q = 10^{-r/4}`.
+
+    Notes
+    -----
+    With the complementary parameter :math:`m_1 = q^2/(1 + q^2)`, n nodes are at
+
+    .. math:: \varphi_j = \mathrm{am}\!\left(\tfrac{4 K}{n}\left(j + \tfrac12\right) \Big|\, 1 - m_1\right),
+              \qquad w_j \propto \sqrt{m_1 + (1 - m_1)\cos^2\varphi_j} .
     """
-    ratios = 10.0 ** (-np.arange(_STEEPEST + 1) / _ROWS)
-    digits = -np.log10(tolerance)  # each takes one point per e-fold
-    count = TOGETHER * np.ceil((digits * np.log(4 / ratios) + extra + 4) / TOGETHER).astype(np.int64)
+    ratios = 10.0 ** (-np.arange(_LAST_ROW + 1) / _ROWS_PER_DECADE)
+    digits = -np.log10(tolerance)  # each requires one node per e-fold of 4/q
+    count = NODES_PER_PASS * np.ceil((digits * np.log(4 / ratios) + extra + 4) / NODES_PER_PASS).astype(np.int64)
     cosine, sine, weight = np.zeros((3, ratios.size, count.max()))
-    for row, (ratio, samples) in enumerate(zip(ratios, count, strict=True)):
+    for row, (ratio, nodes) in enumerate(zip(ratios, count, strict=True)):
         complement = ratio**2 / (1 + ratio**2)
-        u = 4 * ellipkm1(complement) * (np.arange(samples) + 0.5) / samples
+        u = 4 * ellipkm1(complement) * (np.arange(nodes) + 0.5) / nodes
         phase = _jacobi_amplitude(u, complement)
         density = np.sqrt(complement + (1 - complement) * np.cos(phase) ** 2)
-        cosine[row, :samples], sine[row, :samples] = np.cos(phase), np.sin(phase)
-        weight[row, :samples] = density / density.sum()
-    return Crowded(cosine, sine, weight, count)
+        cosine[row, :nodes], sine[row, :nodes] = np.cos(phase), np.sin(phase)
+        weight[row, :nodes] = density / density.sum()
+    return EllipticNodes(cosine, sine, weight, count)
 
 
 def _jacobi_amplitude(u: Floats, complement: float) -> Floats:
-    """Return am(u | 1 - complement) by descending Landen steps, which a complement near zero does not disturb."""
+    """Return am(u | 1 - complement) by descending Landen transformations, accurate for a complement near zero."""
     means, differences = [1.0], [0.0]
     root = np.sqrt(complement)
     while abs(means[-1] - root) > 1e-16 * means[-1] and len(means) < 12:
@@ -72,35 +82,42 @@ def _jacobi_amplitude(u: Floats, complement: float) -> Floats:
     return np.asarray(phase)
 
 
-def turned_circle(turns: Floats) -> Floats:
-    """Return what moves the points +-i of the circle to the two turns of each motion by (w + alpha)/(1 + alpha w).
+def moebius_parameters(extremum_phases: Floats) -> Floats:
+    r"""Return the Moebius map of the unit circle that moves +-i to the two extrema of each motion.
 
     Parameters
     ----------
-    turns : ndarray, shape (p, 2)
-        Phases of the two turns.
+    extremum_phases : ndarray, shape (p, 2)
+        Phases of maximum and minimum displacement, in rad.
 
     Returns
     -------
     ndarray, shape (3, p)
-        alpha, and the turn of the circle that follows as cosine and sine.
+        Parameter :math:`\alpha`, and cosine and sine of the rotation :math:`\gamma`.
+
+    Notes
+    -----
+    .. math:: z = e^{i\gamma}\,\frac{w + \alpha}{1 + \alpha w}
     """
-    half = 0.5 * (turns[:, 0] - turns[:, 1]) % np.pi
-    return np.array([np.tan(0.25 * np.pi - 0.5 * half), np.cos(turns[:, 0] - half), np.sin(turns[:, 0] - half)])
+    half = 0.5 * (extremum_phases[:, 0] - extremum_phases[:, 1]) % np.pi
+    rotation = extremum_phases[:, 0] - half
+    return np.array([np.tan(0.25 * np.pi - 0.5 * half), np.cos(rotation), np.sin(rotation)])
 
 
-def crowding_of(ratio: Floats) -> Integers:
-    """Return the row of `crowded_points` for a ratio of sliding speed to peak velocity."""
-    steps = np.ceil(-_ROWS * np.log10(np.fmax(ratio, 10.0 ** (-_STEEPEST / _ROWS))))  # also where it is not a number
+def node_table_row(ratio: Floats) -> Integers:
+    """Return the row of `elliptic_nodes` for a ratio of sliding speed to peak velocity."""
+    smallest = 10.0 ** (-_LAST_ROW / _ROWS_PER_DECADE)
+    steps = np.ceil(-_ROWS_PER_DECADE * np.log10(np.fmax(ratio, smallest)))  # the smallest for NaN, too
     return np.asarray(np.maximum(steps, 0).astype(np.int64))
 
 
-def fineness_of(harmonics: Complexes) -> Integers:
-    """Return how many times as many points motions of two turns need, since their higher harmonics carry shoulders.
+def node_count_factor(harmonics: Complexes) -> Integers:
+    """Return the factor on the number of nodes that motions with two extrema require for their higher harmonics.
 
     Parameters
     ----------
-    harmonics : ndarray of complex, shape (p, room)
+    harmonics : ndarray of complex, shape (p, H)
+        Displacement harmonics, in m.
 
     Returns
     -------
@@ -109,40 +126,41 @@ def fineness_of(harmonics: Complexes) -> Integers:
 
     Notes
     -----
-    A velocity that nearly vanishes between its turns brings further branch points near the axis. Doubling the points
-    squares the error; the steps hold 1e-5 for speeds down to a thousandth of the peak velocity.
+    A velocity that nearly vanishes between the extrema brings further branch points close to the real axis. Twice the
+    nodes square the error; the factors hold 1e-5 for sliding speeds down to a thousandth of the peak velocity.
     """
     parts = np.abs(np.ascontiguousarray(harmonics).view(np.float64))
-    accelerations = np.repeat(np.arange(1.0, harmonics.shape[1] + 1) ** 2, 2)
+    squared_orders = np.repeat(np.arange(1.0, harmonics.shape[1] + 1) ** 2, 2)
     first = parts[:, 0] + parts[:, 1]
-    richness = (parts @ accelerations - first) / np.maximum(first, 1e-300)
-    return np.asarray(_FINENESS[np.searchsorted(_RICHNESS, richness)])
+    acceleration_ratio = (parts @ squared_orders - first) / np.maximum(first, 1e-300)
+    return np.asarray(_NODE_FACTORS[np.searchsorted(_ACCELERATION_RATIOS, acceleration_ratio)])
 
 
-def phases_of(turns: Floats, ratio: float, fineness: int) -> tuple[Complexes, Floats]:
-    """Return points exp(i theta) and weights for means over one period, crowded at the turns where there are two.
+def quadrature_nodes(extremum_phases: Floats, ratio: float, factor: int) -> tuple[Complexes, Floats]:
+    """Return nodes exp(i theta) and weights for averages over one period of one motion.
 
     Parameters
     ----------
-    turns : ndarray, shape (2,)
-        Phases of the two turns, or NaN.
+    extremum_phases : ndarray, shape (2,)
+        Phases of maximum and minimum displacement, in rad; NaN for a motion with more extrema.
     ratio : float
-        Least sliding speed over peak velocity.
-    fineness : int
-        As by `fineness_of`.
+        Smallest sliding speed over peak velocity.
+    factor : int
+        From `node_count_factor`.
 
     Returns
     -------
-    points, weights : ndarray, shape (samples,)
+    nodes, weights : ndarray, shape (samples,)
+        Equally spaced for a motion with more than two extrema.
     """
-    if np.isnan(turns[0]):
+    if np.isnan(extremum_phases[0]):
         samples = 2**15
         return np.exp(2j * np.pi * np.arange(samples) / samples), np.full(samples, 1 / samples)
-    alpha, along, across = turned_circle(turns[np.newaxis])[:, 0]
-    crowded = crowded_points(32, 1e-6**fineness)
-    row = int(crowding_of(np.float64(ratio)))  # type: ignore[arg-type]
-    inside = slice(0, crowded.count[row])
-    w = crowded.cosine[row, inside] + 1j * crowded.sine[row, inside]
+    alpha, cosine, sine = moebius_parameters(extremum_phases[np.newaxis])[:, 0]
+    table = elliptic_nodes(32, 1e-6**factor)
+    row = int(node_table_row(np.float64(ratio)))  # type: ignore[arg-type]
+    inside = slice(0, table.count[row])
+    w = table.cosine[row, inside] + 1j * table.sine[row, inside]
     density = (1 - alpha**2) / np.abs(1 + alpha * w) ** 2
-    points = complex(along, across) * (w + alpha) / (1 + alpha * w)
-    return points, crowded.weight[row, inside] * density
+    nodes = complex(cosine, sine) * (w + alpha) / (1 + alpha * w)
+    return nodes, table.weight[row, inside] * density

@@ -1,9 +1,9 @@
-"""Batches on an NVIDIA GPU, one thread to a point: steady states with their friction, and marches in time.
+"""Batches on an NVIDIA GPU, one thread per point: steady states with their friction, and time marching.
 
-Loaded when asked for.
+Imported on demand only, since it requires numba-cuda.
 """
 
-from sonolube.dynamics.gpu.launch import Fused, solve_on_gpu, unserved
-from sonolube.dynamics.gpu.marching import march_on_gpu, unmarched
+from sonolube.dynamics.gpu.marching_batch import march_on_gpu, unsupported_march
+from sonolube.dynamics.gpu.steady_state_batch import solve_on_gpu, unsupported_steady_state
 
-__all__ = ["Fused", "march_on_gpu", "solve_on_gpu", "unmarched", "unserved"]
+__all__ = ["march_on_gpu", "solve_on_gpu", "unsupported_march", "unsupported_steady_state"]

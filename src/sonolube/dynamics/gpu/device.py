@@ -1,4 +1,4 @@
-"""Functions that run in threads of a GPU."""
+"""Compilation of GPU device functions, and chunks of a batch that fit into the memory of a GPU."""
 
 from collections.abc import Callable, Iterator
 from threading import Lock
@@ -9,19 +9,19 @@ import numpy as np
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-cuda: Any = numba.cuda  # which has no types
+cuda: Any = numba.cuda  # numba.cuda has no types
 
 THREADS = 128
-"""Threads to a block. []"""
-TURN = Lock()
-"""Held by who has a chunk on the GPU: one at a time, whatever the threads of the processor that ask."""
+"""Threads per block. []"""
+GPU_LOCK = Lock()
+"""Lock held while a chunk is on the GPU: one at a time, whatever the number of CPU threads that request one."""
 MOST_AT_ONCE = 262_144
-"""Points on the GPU at a time, at most. []"""
-_ROOM = 2**28  # numbers of all points on the GPU at a time, which bounds its memory at 2 GB
+"""Largest number of points on the GPU at a time. []"""
+_CAPACITY = 2**28  # numbers of all points on the GPU at a time, which bounds its memory at 2 GB
 
 
 def on_device(function: Function) -> Function:
-    """Return a function compiled for threads of the GPU, to be called by others there.
+    """Compile a function as a device function, to be called by GPU threads.
 
     Parameters
     ----------
@@ -35,25 +35,25 @@ def on_device(function: Function) -> Function:
 
 
 def chunks(points: int, numbers: int) -> Iterator[slice]:
-    """Return the points to have on the GPU together, one chunk after another.
+    """Return the chunks of a batch to treat together on the GPU.
 
     Parameters
     ----------
     points : int
-        All of them.
+        Size of the batch.
     numbers : int
-        Numbers that come and go with a point.
+        Numbers transferred per point.
 
     Yields
     ------
     slice
     """
-    size = min(max(_ROOM // numbers // THREADS, 1) * THREADS, MOST_AT_ONCE)
+    size = min(max(_CAPACITY // numbers // THREADS, 1) * THREADS, MOST_AT_ONCE)
     return (slice(first, min(first + size, points)) for first in range(0, points, size))
 
 
-def trial() -> bool:
-    """Return whether the GPU compiles and runs the least of kernels; what its driver raises goes through."""
+def runs_test_kernel() -> bool:
+    """Return whether the GPU compiles and runs a minimal kernel; exceptions of its driver pass through."""
 
     def count(numbers: Any) -> None:
         numbers[cuda.grid(1)] += 1

@@ -1,62 +1,66 @@
-"""What a motion with two turns a period does at an exponential contact, by a thread."""
+"""Extrema of a periodic motion and its time without contact, by GPU threads.
+
+The method is that of `sonolube.dynamics.harmonic_balance.extrema`.
+"""
 
 import math
 
 from sonolube.checks import Floats
 from sonolube.dynamics.gpu.device import on_device
 
-_PLAIN = 0.7  # share of the higher harmonics' accelerations up to which a motion surely turns only twice
-_SLOW = 0.05  # share of the peak velocity below which a minimum of the speed is nearly a turn
-_SCAN = 16  # samples per harmonic to find the turns of any other motion
+_WEAK_HARMONICS = 0.7  # sum of k^2 |X_k|, k > 1, over |X_1| up to which a motion certainly has two extrema
+_CLEAR = 0.99  # level over amplitude, at most, from which the search for its crossing starts
+_SLOW = 0.05  # velocity over its peak below which a minimum of the speed is nearly an extremum
+_SAMPLES_PER_HARMONIC = 16  # to find the extrema of any other motion
 
 
 @on_device
-def swing(unknown: Floats, h: int, cosine: float, sine: float) -> tuple[float, float, float]:
+def phase_derivatives(unknown: Floats, h: int, cosine: float, sine: float) -> tuple[float, float, float]:
     """Return displacement about the mean and its first two derivatives by phase."""
-    c, s, x, rate, bend = 1.0, 0.0, 0.0, 0.0, 0.0
+    c, s, x, slope, bend = 1.0, 0.0, 0.0, 0.0, 0.0
     for k in range(1, h + 1):
         c, s = c * cosine - s * sine, c * sine + s * cosine
         real, imaginary = unknown[0, k] * c - unknown[1, k] * s, unknown[0, k] * s + unknown[1, k] * c
         x += real
-        rate -= k * imaginary
+        slope -= k * imaginary
         bend -= k * k * real
-    return x, rate, bend
+    return x, slope, bend
 
 
 @on_device
-def rate_at(unknown: Floats, h: int, j: int, count: int) -> float:
-    """Return the velocity over omega at the j-th of some instants."""
+def sampled_slope(unknown: Floats, h: int, j: int, count: int) -> float:
+    """Return the derivative of the displacement by phase at the j-th of equally spaced samples."""
     phase = 2 * math.pi * j / count
-    return swing(unknown, h, math.cos(phase), math.sin(phase))[1]
+    return phase_derivatives(unknown, h, math.cos(phase), math.sin(phase))[1]
 
 
 @on_device
-def two_turns(unknown: Floats, h: int, scanned: bool) -> tuple[bool, float, float]:
-    """Return whether a motion turns only twice, and about the phases where it turns down and up.
+def extremum_estimates(unknown: Floats, h: int, sampled: bool) -> tuple[bool, float, float]:
+    """Return whether a motion has two extrema, and estimates of the phases of maximum and minimum.
 
-    What the higher harmonics leave open takes samples, where these are wanted.
+    Motions with strong higher harmonics are sampled on request, and otherwise reported to have more extrema.
     """
     re, im = unknown[0, 1], unknown[1, 1]
     size, higher = math.sqrt(re * re + im * im), 0.0
     for k in range(2, h + 1):
         higher += k * k * (abs(unknown[0, k]) + abs(unknown[1, k]))
-    if higher < _PLAIN * size:
+    if higher < _WEAK_HARMONICS * size:
         return True, math.atan2(-im, re), math.atan2(im, -re)
-    if not scanned:
+    if not sampled:
         return False, 0.0, 0.0
-    return scanned_turns(unknown, h)
+    return sampled_extremum_estimates(unknown, h)
 
 
 @on_device
-def scanned_turns(unknown: Floats, h: int) -> tuple[bool, float, float]:
-    """Return the same by samples."""
-    count, fastest = _SCAN * h, 0.0
+def sampled_extremum_estimates(unknown: Floats, h: int) -> tuple[bool, float, float]:
+    """Return what `extremum_estimates` does, by samples of the slope."""
+    count, fastest = _SAMPLES_PER_HARMONIC * h, 0.0
     for j in range(count):
-        fastest = max(fastest, abs(rate_at(unknown, h, j, count)))
+        fastest = max(fastest, abs(sampled_slope(unknown, h, j, count)))
     ups, downs, slow, upper, lower = 0, 0, 0, 0.0, 0.0
-    before, here = rate_at(unknown, h, -1, count), rate_at(unknown, h, 0, count)
+    before, here = sampled_slope(unknown, h, -1, count), sampled_slope(unknown, h, 0, count)
     for j in range(count):
-        after = rate_at(unknown, h, j + 1, count)
+        after = sampled_slope(unknown, h, j + 1, count)
         if before > 0 and here <= 0:
             ups += 1
             upper = 2 * math.pi * (j - 1 + before / (before - here)) / count
@@ -70,32 +74,32 @@ def scanned_turns(unknown: Floats, h: int) -> tuple[bool, float, float]:
 
 
 @on_device
-def turn(unknown: Floats, h: int, near: float) -> tuple[float, float]:
-    """Return the phase nearby at which the velocity vanishes, and the displacement there about the mean."""
-    phase, height = near, 0.0
+def extremum(unknown: Floats, h: int, near: float) -> tuple[float, float]:
+    """Return the phase of the extremum near a phase, and the displacement there about the mean."""
+    phase, displacement = near, 0.0
     for _ in range(20):
-        x, rate, bend = swing(unknown, h, math.cos(phase), math.sin(phase))
-        step = rate / bend
+        x, slope, bend = phase_derivatives(unknown, h, math.cos(phase), math.sin(phase))
+        step = slope / bend
         phase -= 2 * math.atan(0.5 * step)
-        height = x - 0.5 * rate * step
+        displacement = x - 0.5 * slope * step
         if abs(step) < 1e-5:
             break
-    return math.atan2(math.sin(phase), math.cos(phase)), height
+    return math.atan2(math.sin(phase), math.cos(phase)), displacement
 
 
 @on_device
-def crossing(unknown: Floats, h: int, level: float, upper: float, lower: float) -> float:
-    """Return the phase between two turns at which a displacement is passed."""
+def level_crossing(unknown: Floats, h: int, level: float, upper: float, lower: float) -> float:
+    """Return the phase between maximum and minimum at which a level is crossed, by Newton's method with bisection."""
     inside, outside = upper, lower
     size = math.sqrt(unknown[0, 1] ** 2 + unknown[1, 1] ** 2)
-    phase = upper + (lower - upper) / math.pi * math.acos(min(max(level / size, -0.99), 0.99))
+    phase = upper + (lower - upper) / math.pi * math.acos(min(max(level / size, -_CLEAR), _CLEAR))
     for _ in range(60):
-        x, rate, _ = swing(unknown, h, math.cos(phase), math.sin(phase))
+        x, slope, _ = phase_derivatives(unknown, h, math.cos(phase), math.sin(phase))
         if x > level:
             inside = phase
         else:
             outside = phase
-        step = (x - level) / rate
+        step = (x - level) / slope
         phase -= step
         if (phase - inside) * (phase - outside) >= 0:
             phase = 0.5 * (inside + outside)
@@ -105,13 +109,13 @@ def crossing(unknown: Floats, h: int, level: float, upper: float, lower: float) 
 
 
 @on_device
-def loss_fraction(unknown: Floats, h: int, beyond: float, upper: float, high: float, lower: float, low: float) -> float:
-    """Return the share of the period beyond a displacement, given the turns."""
-    if low >= beyond:
+def fraction_above(unknown: Floats, h: int, loss: float, upper: float, high: float, lower: float, low: float) -> float:
+    """Return the fraction of the period beyond a displacement, given phases and displacements of the extrema."""
+    if low >= loss:
         return 1.0
-    if high <= beyond:
+    if high <= loss:
         return 0.0
-    level = beyond - unknown[0, 0]
-    after = crossing(unknown, h, level, upper, lower if lower > upper else lower + 2 * math.pi)
-    before = crossing(unknown, h, level, upper, lower if lower < upper else lower - 2 * math.pi)
+    level = loss - unknown[0, 0]
+    after = level_crossing(unknown, h, level, upper, lower if lower > upper else lower + 2 * math.pi)
+    before = level_crossing(unknown, h, level, upper, lower if lower < upper else lower - 2 * math.pi)
     return (after - before) / (2 * math.pi)

@@ -1,190 +1,179 @@
-"""Steps of one trajectory and its starts without a past, by a thread; the method is `dynamics.marching_kernel`'s.
+"""Coefficients of the exponential integrator, by the GPU thread that marches with them.
 
-Loops over what every step needs run to numbers known when the kernel is compiled: these arrays become registers.
-Loops over the rest run to the extent of an array, lest they be unrolled and crowd the registers too.
+They are those of `sonolube.dynamics.time_marching.integrator`. What does not depend on the frequency, the weights of
+samples of force and voltage at the nodes of a step, comes from the CPU; each thread integrates the free motion between
+the nodes at its own frequency.
 """
 
-import math
+from typing import NamedTuple
+
+import numpy as np
 
 from sonolube.checks import Floats
+from sonolube.dynamics.first_order_modes import FirstOrderModes
 from sonolube.dynamics.gpu.device import on_device
-from sonolube.dynamics.gpu.step_matrices import FIRST, FIRST_PART, HELD, RECENT, SECOND, SECOND_PART, STEADY, V, X
-from sonolube.dynamics.time_marching.integrator import PAST
-from sonolube.dynamics.time_marching.marching_kernel import INSTANT, SWEEPS, exponential
+from sonolube.dynamics.gpu.receptance import transition_factors
+from sonolube.dynamics.time_marching.batch import MarchingProblem
+from sonolube.dynamics.time_marching.integrator import PAST, force_weights, start_history, step_quadrature
+from sonolube.dynamics.waveform import Sine, Waveform, waveform_value
 
-FREQUENCY, SWING, OFFSET, LOAD = 0, 1, 2, 3
-"""Rows of the settings of a point; after the load come three constants of the contact law and its damping. []"""
+HALF_TRACE, SQUARE, TRACELESS, CONTACT, DRIVE, X, V = 0, 1, 2, 6, 10, 14, 16
+"""Rows of a pair of states; contact and drive input c and b have four rows each, with their images under B. []"""
+FIRST_PART, SECOND_PART, COSINE, SINE, JUMP = range(5)
+"""Rows of the table common to all trajectories, one column per step of a period. []"""
+PREDICTED, AHEAD, WEIGHTS = PAST + 1, 2 * PAST + 1, 6 * PAST + 1
+"""First weights of predicted forces and of forces ahead, and the number of weights. []"""
+FIRST, SECOND, OLDEST, CONSTANT, HELD, RECENT, STEP = 0, 1, 2, 3, 6, 12, 12 + PAST
+"""Rows of a step: those of every step, held in registers, then the drive of ramps and the recent forces. []"""
+AT_CONTACT = PAST * PAST
+"""Contributions of five forces at the contact: past ones one step ahead, those ahead at each of the next four. []"""
 
-power_of_e = on_device(exponential.py_func)
+
+class StepTables(NamedTuple):
+    """Tables that all threads read, independent of the frequency."""
+
+    pairs: Floats  # (18, n): half the trace, square of the traceless part B, B, c and b with images, contact outputs
+    nodes: Floats  # (q,): quadrature nodes within a step
+    force_weights: Floats  # (31, q): of samples of the force, for corrected and predicted step, and for those ahead
+    voltage_weights: Floats  # (9, q): of both parts of the waveform and of the offset, under ramps of 1, s and s^2
+    backward: Floats  # (5, 5): extrapolation of the forces now and at the next four steps to the past
+    phases: Floats  # (5, steps): two parts of the waveform, cosine and sine at the end, one before a jump
+
+
+def step_tables(problem: MarchingProblem) -> StepTables:
+    """Return the tables from which threads compute their steps.
+
+    Parameters
+    ----------
+    problem : MarchingProblem
+        With a waveform without corners within steps.
+
+    Returns
+    -------
+    StepTables
+    """
+    schedule = problem.schedule
+    nodes, weights = step_quadrature(problem.modes, steps=schedule.steps, slowest=float(problem.frequency.min()))
+    force = force_weights(nodes, weights, schedule.steps)
+    parts, shapes = _separated_waveform(schedule.waveform, schedule.steps, nodes)
+    voltage = [weights * nodes**power * shape for power in range(3) for shape in (*shapes, np.ones_like(nodes))]
+    ends = 2 * np.pi * np.arange(1, schedule.steps + 1) / schedule.steps
+    jump = np.zeros(schedule.steps)
+    jump[schedule.jump_steps] = 1.0
+    return StepTables(
+        _pair_rows(problem.modes, problem.contact_output),
+        nodes,
+        np.vstack([force.corrected.T, force.predicted.T, *force.ahead.swapaxes(1, 2)]),
+        np.stack(voltage),
+        start_history(schedule.steps),
+        np.stack([*parts, np.cos(ends), np.sin(ends), jump]),
+    )
+
+
+def _pair_rows(modes: FirstOrderModes, contact_output: Floats) -> Floats:
+    """Return the pairs of states as columns of one array, shape (18, n)."""
+    middle = np.trace(modes.state_matrix, axis1=1, axis2=2) / 2
+    traceless = modes.state_matrix - middle[:, np.newaxis, np.newaxis] * np.eye(2)
+    images = [np.einsum("pab,pb->ap", traceless, each) for each in (modes.contact_input, modes.drive_input)]
+    return np.ascontiguousarray(
+        np.vstack(
+            [
+                middle,
+                -np.linalg.det(traceless),
+                traceless.reshape(-1, 4).T,
+                modes.contact_input.T,
+                images[0],
+                modes.drive_input.T,
+                images[1],
+                contact_output[0].T,
+                contact_output[1].T,
+            ]
+        )
+    )
+
+
+def _separated_waveform(waveform: Waveform, steps: int, nodes: Floats) -> tuple[Floats, Floats]:
+    """Return a waveform as a sum of two products: factors of each step, shape (2, steps), and shapes at the nodes."""
+    theta = 2 * np.pi / steps
+    starts = theta * np.arange(steps)
+    if isinstance(waveform, Sine):
+        return np.stack([np.sin(starts), np.cos(starts)]), 0.5 * np.stack(
+            [np.cos(theta * nodes), np.sin(theta * nodes)]
+        )
+    early, late = (waveform_value(waveform, phase=starts + theta * part) for part in (0.25, 0.75))
+    return np.stack([1.5 * early - 0.5 * late, 2 * (late - early)]), np.stack([np.ones_like(nodes), nodes])
 
 
 @on_device
-def log_force_at(cells: Floats, position: float) -> float:
-    """Return the logarithm of the force by a table, as `sonolube.dynamics.kernels.force_table` does."""
-    at, last = 0, cells.shape[0] - 1
-    if position >= last - 1:
-        at = last
-    elif position >= 0.0:  # neither where it is not a number
-        at = int(math.floor(position)) + 1  # noqa: RUF046 - a GPU rounds to a float
-    u = position - (at - 1)
-    value: float = cells[at, 0] + u * (cells[at, 1] + u * (cells[at, 2] + u * cells[at, 3]))
-    return value
+def write_sums(
+    half_trace: float, square: float, duration: float, nodes: Floats, weights: Floats, inputs: Floats, sums: Floats
+) -> None:
+    """Write the contribution of each weighted input to a pair of states over a step, by quadrature."""
+    for row in range(weights.shape[0]):
+        sums[row, 0], sums[row, 1] = 0.0, 0.0
+    for node in range(nodes.size):
+        even, odd = transition_factors(half_trace, square, duration * (1 - nodes[node]))
+        first, second = even * inputs[0] + odd * inputs[2], even * inputs[1] + odd * inputs[3]
+        for row in range(weights.shape[0]):
+            sums[row, 0] += weights[row, node] * (duration * first)
+            sums[row, 1] += weights[row, node] * (duration * second)
 
 
 @on_device
-def contact_force(kind: int, damped: bool, cells: Floats, settings: Floats, point: int, x: float, v: float) -> float:
-    """Return the contact force of an instant."""
-    load, first, second = settings[LOAD, point], settings[LOAD + 1, point], settings[LOAD + 2, point]
-    force: float
-    if kind == 0:
-        force = load * power_of_e(-x * first)
-    elif kind == 1:
-        approach = max(second - x, 0.0)
-        force = first * approach * math.sqrt(approach)
-    elif kind == 2:
-        force = max(load - first * x, 0.0)
-    else:
-        force = load * power_of_e(log_force_at(cells, second + first * x) - settings[LOAD + 3, point])
-    if damped:
-        force *= max(1.0 - settings[LOAD + 4, point] * v, 0.0)
-    return force
+def write_step(
+    pairs: Floats,
+    nodes: Floats,
+    force_weights: Floats,
+    voltage_weights: Floats,
+    duration: float,
+    peak_to_peak: float,
+    offset: float,
+    sums: Floats,
+    step: Floats,
+    at_contact: Floats,
+) -> None:
+    """Write the coefficients of the step of one trajectory.
 
-
-@on_device
-def ramp_share(time: float, ramp_steps: float, cosine_shaped: bool) -> float:
-    """Return the share of the full drive at a time, in steps."""
-    share = min((time + INSTANT) / (ramp_steps + INSTANT), 1.0)
-    return 0.5 - 0.5 * math.cos(math.pi * share) if cosine_shaped else share
-
-
-@on_device
-def ramp_parabola(now: int, ramp_steps: float, cosine_shaped: bool) -> tuple[float, float, float]:
-    """Return the ramp within a step as level + slope s + bend s^2."""
-    if now > ramp_steps:
-        return 1.0, 0.0, 0.0
-    level = ramp_share(now, ramp_steps, cosine_shaped)
-    middle = ramp_share(now + 0.5, ramp_steps, cosine_shaped)
-    end = ramp_share(now + 1.0, ramp_steps, cosine_shaped)
-    return level, 4 * middle - 3 * level - end, 2 * (level - 2 * middle + end)
-
-
-@on_device
-def write_recent(size: int, step: Floats, forces: Floats, added: Floats) -> None:
-    """Write what recent forces add to each state."""
-    for k in range(size):
-        total = 0.0
+    Rows of the step are those of `ExponentialIntegrator`: propagator, contribution of the oldest force, drive, recent
+    forces. At the contact there are the predictor of the past forces, then the contributions of forces ahead.
+    """
+    for which in range(2):
+        for j in range(AT_CONTACT):
+            at_contact[which, j] = 0.0
+    for pair in range(pairs.shape[1]):
+        one, two = 2 * pair, 2 * pair + 1
+        half_trace, square = pairs[HALF_TRACE, pair], pairs[SQUARE, pair]
+        write_sums(half_trace, square, duration, nodes, voltage_weights, pairs[DRIVE : DRIVE + 4, pair], sums)
+        for part in range(voltage_weights.shape[0]):
+            scale = offset if part % 3 == 2 else peak_to_peak
+            step[CONSTANT + part, one], step[CONSTANT + part, two] = scale * sums[part, 0], scale * sums[part, 1]
+        write_sums(half_trace, square, duration, nodes, force_weights, pairs[CONTACT : CONTACT + 4, pair], sums)
+        even, odd = transition_factors(half_trace, square, duration)
+        a, b = even + odd * pairs[TRACELESS, pair], odd * pairs[TRACELESS + 1, pair]
+        c, d = odd * pairs[TRACELESS + 2, pair], even + odd * pairs[TRACELESS + 3, pair]
+        step[FIRST, one], step[SECOND, one], step[FIRST, two], step[SECOND, two] = a, b, c, d
+        first, second = 0.0, 0.0
+        for j in range(PAST):  # filter W(q) = (1 - E q) V(q) + q^5 U, with the delay operator q
+            first, second = sums[j, 0] + a * first + b * second, sums[j, 1] + c * first + d * second
+            step[RECENT + j, one], step[RECENT + j, two] = first, second
+            ahead_first, ahead_second = (
+                sums[PREDICTED + j, 0] + a * first + b * second,
+                sums[PREDICTED + j, 1] + c * first + d * second,
+            )
+            add_at_contact(pairs, pair, ahead_first, ahead_second, j, at_contact)
+        first, second = sums[PAST, 0] + a * first + b * second, sums[PAST, 1] + c * first + d * second
+        step[OLDEST, one], step[OLDEST, two] = first, second
+        add_at_contact(pairs, pair, -first, -second, PAST - 1, at_contact)
         for j in range(PAST):
-            total += step[RECENT + j, k] * forces[j]
-        added[k] = total
+            first, second = 0.0, 0.0
+            for step_ahead in range(PAST - 1):
+                added = AHEAD + PAST * step_ahead + j
+                first, second = sums[added, 0] + a * first + b * second, sums[added, 1] + c * first + d * second
+                add_at_contact(pairs, pair, first, second, PAST * (step_ahead + 1) + j, at_contact)
 
 
 @on_device
-def write_ramped(size: int, step: Floats, slope: float, bend: float, one: float, other: float, added: Floats) -> None:
-    """Write what the drive adds to each state for the slope and the bend of its ramp within a step."""
-    for k in range(size):
-        sloping = one * step[HELD, k] + other * step[HELD + 1, k] + step[HELD + 2, k]
-        bending = one * step[HELD + 3, k] + other * step[HELD + 4, k] + step[HELD + 5, k]
-        added[k] = slope * sloping + bend * bending
-
-
-@on_device
-def move(
-    size: int,
-    pairs: Floats,
-    held: Floats,
-    step: Floats,
-    ramp: tuple[float, float, float],
-    one: float,
-    other: float,
-    added: Floats,
-    y: Floats,
-) -> None:
-    """Move states by a step of the free structure under two parts of the waveform and the offset."""
-    level, slope, bend = ramp
-    for k in range(0, size, 2):
-        first, second = y[k], y[k + 1]
-        for i in range(k, k + 2):
-            steady = one * held[STEADY, i] + other * held[STEADY + 1, i] + held[STEADY + 2, i]
-            y[i] = held[FIRST, i] * first + held[SECOND, i] * second + level * steady
-    if slope != 0.0 or bend != 0.0:
-        write_ramped(pairs.shape[1] * 2, step, slope, bend, one, other, added)
-        for k in range(size):
-            y[k] += added[k]
-
-
-@on_device
-def seen(size: int, pairs: Floats, row: int, states: Floats) -> float:
-    """Return displacement or velocity of the contact."""
-    total = 0.0
-    for k in range(0, size, 2):
-        total += pairs[row, k // 2] * states[k] + pairs[row + 1, k // 2] * states[k + 1]
-    return total
-
-
-@on_device
-def collocate(
-    kind: int,
-    damped: bool,
-    cells: Floats,
-    settings: Floats,
-    point: int,
-    at_contact: Floats,
-    past: int,
-    free: Floats,
-    forces_ahead: Floats,
-) -> None:
-    """Write the forces now and at the next four steps, each by the motion that all of them bring about."""
-    load = settings[LOAD, point]
-    force = contact_force(kind, damped, cells, settings, point, free[0, 0], free[1, 0]) - load
-    for j in range(past):
-        forces_ahead[j] = force
-    for _ in range(SWEEPS):
-        for i in range(past - 1):
-            x, v = free[0, i + 1], free[1, i + 1]
-            for j in range(past):
-                x += at_contact[0, past * (i + 1) + j] * forces_ahead[j]
-                v += at_contact[1, past * (i + 1) + j] * forces_ahead[j]
-            forces_ahead[i + 1] = contact_force(kind, damped, cells, settings, point, x, v) - load
-
-
-@on_device
-def start_anew(
-    size: int,
-    kind: int,
-    damped: bool,
-    cells: Floats,
-    settings: Floats,
-    point: int,
-    pairs: Floats,
-    phases: Floats,
-    backward: Floats,
-    now: int,
-    ramp_steps: float,
-    cosine_shaped: bool,
-    held: Floats,
-    step: Floats,
-    at_contact: Floats,
-    y: Floats,
-    forces: Floats,
-    added: Floats,
-    state: Floats,
-    free: Floats,
-    forces_ahead: Floats,
-) -> None:
-    """Replace the past by one that continues the forces of the next four steps; the state is not touched."""
-    write_recent(pairs.shape[1] * 2, step, forces, added)
-    for k in range(size):
-        y[k] += added[k]
-        state[k] = y[k]
-    for i in range(backward.shape[0]):
-        free[0, i], free[1, i] = seen(size, pairs, X, state), seen(size, pairs, V, state)
-        phase, ramp = (now + i) % phases.shape[1], ramp_parabola(now + i, ramp_steps, cosine_shaped)
-        move(size, pairs, held, step, ramp, phases[FIRST_PART, phase], phases[SECOND_PART, phase], added, state)
-    collocate(kind, damped, cells, settings, point, at_contact, backward.shape[0], free, forces_ahead)
-    for j in range(PAST):
-        forces[j] = 0.0
-        for i in range(backward.shape[0]):
-            forces[j] += backward[j, i] * forces_ahead[i]
-    write_recent(pairs.shape[1] * 2, step, forces, added)
-    for k in range(size):
-        y[k] -= added[k]
+def add_at_contact(pairs: Floats, pair: int, first: float, second: float, place: int, at_contact: Floats) -> None:
+    """Add the displacement and velocity of the contact due to one pair of states."""
+    at_contact[0, place] += pairs[X, pair] * first + pairs[X + 1, pair] * second
+    at_contact[1, place] += pairs[V, pair] * first + pairs[V + 1, pair] * second

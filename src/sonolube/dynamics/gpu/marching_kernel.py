@@ -1,7 +1,7 @@
-"""One kernel from the settings of a trajectory to its statistics and its last periods: a thread to a trajectory.
+"""GPU kernel of time marching: one trajectory per thread.
 
-A thread makes the step of its own frequency, marches, and keeps state, forces and sums in registers and memory of its
-own; only what was asked for is written. What must be known at compile time is fixed by `marching_kernel`.
+A thread computes the step of its own frequency, marches, and keeps state, forces and sums in registers and local
+memory; only requested results are written. Integers that must be known at compile time are fixed by `marching_kernel`.
 """
 
 import math
@@ -13,18 +13,6 @@ from numba import float64
 from sonolube.checks import Floats
 from sonolube.dynamics.gpu.device import cuda
 from sonolube.dynamics.gpu.integrator import (
-    FREQUENCY,
-    LOAD,
-    OFFSET,
-    SWING,
-    contact_force,
-    move,
-    ramp_parabola,
-    seen,
-    start_anew,
-    write_recent,
-)
-from sonolube.dynamics.gpu.step_matrices import (
     AT_CONTACT,
     COSINE,
     FIRST_PART,
@@ -32,18 +20,30 @@ from sonolube.dynamics.gpu.step_matrices import (
     JUMP,
     OLDEST,
     SECOND_PART,
-    SHARES,
     SINE,
     STEP,
+    WEIGHTS,
     V,
     X,
     write_step,
 )
+from sonolube.dynamics.gpu.time_step import (
+    FREQUENCY,
+    LOAD,
+    OFFSET,
+    PEAK_TO_PEAK,
+    contact_force,
+    contact_output,
+    free_step,
+    ramp_parabola,
+    restart,
+    write_force_contributions,
+)
 from sonolube.dynamics.time_marching.integrator import PAST
 
 _AT_CONTACT = (2, AT_CONTACT)
-_SUMS = (SHARES, 2)
-_SEEN = (2, PAST)
+_SUMS = (WEIGHTS, 2)
+_OUTPUT = (2, PAST)
 
 
 @cache
@@ -53,11 +53,11 @@ def marching_kernel(n: int, kind: int, damped: bool) -> Any:
     Parameters
     ----------
     n : int
-        Pairs of states.
+        Number of pairs of states.
     kind : int
-        Of the contact law.
+        `GapLaw.kind`.
     damped : bool
-        Whether the contact is.
+        Whether the contact is damped.
 
     Returns
     -------
@@ -67,15 +67,15 @@ def marching_kernel(n: int, kind: int, damped: bool) -> Any:
 
 
 def marching_points(n: int, kind: int, damped: bool) -> Any:
-    """Return what `marching_kernel` compiles."""
+    """Return the Python function that `marching_kernel` compiles; arguments as there."""
     m = 2 * n
-    often, all_rows = (HELD, m), (STEP, m)
+    held_rows, all_rows = (HELD, m), (STEP, m)
 
     def march_points(
         pairs: Floats,
         nodes: Floats,
-        force_shares: Floats,
-        voltage_shares: Floats,
+        force_weights: Floats,
+        voltage_weights: Floats,
         backward: Floats,
         phases: Floats,
         cells: Floats,
@@ -89,56 +89,56 @@ def marching_points(n: int, kind: int, damped: bool) -> Any:
         recorded: Floats,
         strobed: Floats,
         final: Floats,
-        yielded: Floats,
+        step_response: Floats,
     ) -> None:
         """March many trajectories, each by one thread; points are the last axis of every array that has them.
 
         Parameters
         ----------
-        pairs, nodes, force_shares, voltage_shares, backward, phases : ndarray
-            `Steps`.
+        pairs, nodes, force_weights, voltage_weights, backward, phases : ndarray
+            `StepTables`.
         cells : ndarray, shape (c, 4)
-            Table of a tabulated law, anything for any other.
+            Coefficients of a tabulated law, arbitrary for any other.
         ramp_duration : float
-            In s.
+            Duration of the ramp, in s.
         cosine_shaped : bool
             Shape of the ramp.
         periods, window : int
-            Periods to march, and to a window of the statistics.
+            Periods to march, and per window of the statistics.
         settings : ndarray, shape (8, p)
-            Frequency, voltage peak to peak, offset, and the rows of the contact law.
+            Frequency, peak-to-peak voltage, offset, and the rows of the contact law.
         start : ndarray, shape (2 n, p)
-            States.
+            Initial states.
         statistics : ndarray, shape (windows, 8, p)
-            Written, as the other arrays are: see `sonolube.dynamics.time_marching.batch.Marched`.
+            Written, like the arrays that follow: see `MarchingSolution`.
         recorded : ndarray, shape (steps to record, 2 n + 1, p)
         strobed : ndarray, shape (periods to record, 2 n, p)
         final : ndarray, shape (2 n, p)
-        yielded : ndarray, shape (2, p)
+        step_response : ndarray, shape (2, p)
         """
         point = cuda.grid(1)
         if point >= settings.shape[1]:
             return
-        # y, held, foreseen and forces become registers, as `stepping` says
-        y, held, foreseen = (
+        # y, held, predictor and forces become registers, see `sonolube.dynamics.gpu.time_step`
+        y, held, predictor = (
             cuda.local.array(m, float64),
-            cuda.local.array(often, float64),
-            cuda.local.array(_SEEN, float64),
+            cuda.local.array(held_rows, float64),
+            cuda.local.array(_OUTPUT, float64),
         )
         forces, state = cuda.local.array(PAST, float64), cuda.local.array(m, float64)
         step, at_contact = cuda.local.array(all_rows, float64), cuda.local.array(_AT_CONTACT, float64)
         added, sums = cuda.local.array(m, float64), cuda.local.array(_SUMS, float64)
-        free, forces_ahead = cuda.local.array(_SEEN, float64), cuda.local.array(PAST, float64)
+        free, forces_ahead = cuda.local.array(_OUTPUT, float64), cuda.local.array(PAST, float64)
 
         steps, frequency = phases.shape[1], settings[FREQUENCY, point]
         ramp_steps, load = ramp_duration * frequency * steps, settings[LOAD, point]
         write_step(
             pairs,
             nodes,
-            force_shares,
-            voltage_shares,
+            force_weights,
+            voltage_weights,
             1 / (frequency * steps),
-            settings[SWING, point],
+            settings[PEAK_TO_PEAK, point],
             settings[OFFSET, point],
             sums,
             step,
@@ -148,10 +148,10 @@ def marching_points(n: int, kind: int, damped: bool) -> Any:
             for k in range(m):
                 held[row, k] = step[row, k]
         for which in range(2):
-            yielded[which, point] = 0.0
+            step_response[which, point] = 0.0
             for j in range(PAST):
-                foreseen[which, j] = at_contact[which, j]
-                yielded[which, point] += at_contact[which, PAST + j]
+                predictor[which, j] = at_contact[which, j]
+                step_response[which, point] += at_contact[which, PAST + j]
         for k in range(m):
             y[k] = start[k, point]
         for j in range(PAST):
@@ -163,7 +163,7 @@ def marching_points(n: int, kind: int, damped: bool) -> Any:
             for phase in range(steps):
                 now = period * steps + phase
                 if now == 0 or phases[JUMP, phase] > 0 or now >= ramp_steps > now - 1:
-                    start_anew(
+                    restart(
                         m,
                         kind,
                         damped,
@@ -187,16 +187,16 @@ def marching_points(n: int, kind: int, damped: bool) -> Any:
                         forces_ahead,
                     )
                 ramp = ramp_parabola(now, ramp_steps, cosine_shaped)
-                move(m, pairs, held, step, ramp, phases[FIRST_PART, phase], phases[SECOND_PART, phase], added, y)
+                free_step(m, pairs, held, step, ramp, phases[FIRST_PART, phase], phases[SECOND_PART, phase], added, y)
                 for k in range(m):
                     y[k] += held[OLDEST, k] * forces[PAST - 1]
-                x, v = seen(m, pairs, X, y), 0.0
+                x, v = contact_output(m, pairs, X, y), 0.0
                 for j in range(PAST):
-                    x += foreseen[0, j] * forces[j]
+                    x += predictor[0, j] * forces[j]
                 if damped:
-                    v = seen(m, pairs, V, y)
+                    v = contact_output(m, pairs, V, y)
                     for j in range(PAST):
-                        v += foreseen[1, j] * forces[j]
+                        v += predictor[1, j] * forces[j]
                 force = contact_force(kind, damped, cells, settings, point, x, v)
                 for j in range(PAST - 1, 0, -1):
                     forces[j] = forces[j - 1]
@@ -207,12 +207,12 @@ def marching_points(n: int, kind: int, damped: bool) -> Any:
                 if damped:  # otherwise the extremes of the force are those of the displacement
                     strongest, weakest = max(strongest, force), min(weakest, force)
                 if now >= unrecorded:
-                    write_recent(pairs.shape[1] * 2, step, forces, added)
+                    write_force_contributions(pairs.shape[1] * 2, step, forces, added)
                     for k in range(m):
                         recorded[now - unrecorded, k, point] = y[k] + added[k]
                     recorded[now - unrecorded, m, point] = forces[0]
             if period >= unstrobed:
-                write_recent(pairs.shape[1] * 2, step, forces, added)
+                write_force_contributions(pairs.shape[1] * 2, step, forces, added)
                 for k in range(m):
                     strobed[period - unstrobed, k, point] = y[k] + added[k]
             if (period + 1) % window == 0 or period == periods - 1:
@@ -224,7 +224,7 @@ def marching_points(n: int, kind: int, damped: bool) -> Any:
                 statistics[place, 6, point], statistics[place, 7, point] = strongest, weakest
                 highest, lowest, strongest, weakest = -math.inf, math.inf, -math.inf, math.inf
                 total, cosine, sine, pushed = 0.0, 0.0, 0.0, 0.0
-        write_recent(pairs.shape[1] * 2, step, forces, added)
+        write_force_contributions(pairs.shape[1] * 2, step, forces, added)
         for k in range(m):
             final[k, point] = y[k] + added[k]
 

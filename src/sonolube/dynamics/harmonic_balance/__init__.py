@@ -1,1 +1,1 @@
-"""Harmonic balance: steady states of a structure with one nonlinear contact, by Newton's method over harmonics."""
+"""Harmonic balance: periodic steady states by Newton's method on the harmonics of the contact's displacement."""

@@ -1,10 +1,14 @@
-"""The modified Bessel functions of order 0 and 1 that an exponential contact makes of a sine, to within 2e-6."""
+"""Modified Bessel functions I_0 and I_1 by polynomial approximations, with errors below 2e-6.
+
+They are the mean and the first harmonic of an exponential contact force under a sinusoidal displacement.
+"""
 
 import numpy as np
 
 from sonolube.checks import Floats
 
-# polynomials, lowest power first (Abramowitz and Stegun 9.8.1 to 9.8.4), of the square up to BEND, then of the inverse
+# Coefficients, lowest power first (Abramowitz and Stegun 9.8.1 to 9.8.4): up to BEND polynomials in the squared
+# argument, beyond it in the inverse argument, both over BEND.
 BEND = 3.75
 SMALL_0 = (1.0, 3.5156229, 3.0899424, 1.2067492, 0.2659732, 0.0360768, 0.0045813)
 SMALL_1 = (0.5, 0.87890594, 0.51498869, 0.15084934, 0.02658733, 0.00301532, 0.00032411)
@@ -42,15 +46,19 @@ def bessel_ratio(argument: Floats) -> Floats:
 
     Returns
     -------
-    ndarray
+    ndarray, shape of `argument`
+
+    References
+    ----------
+    .. [1] M. Abramowitz and I. A. Stegun, Handbook of Mathematical Functions, 9.8.1 to 9.8.4.
     """
-    near, far = _both_sides(argument)
+    near, far = _scaled_arguments(argument)
     small = argument * _polynomial(SMALL_1, near) / _polynomial(SMALL_0, near)
     large = _polynomial(LARGE_1, far) / _polynomial(LARGE_0, far)
     return np.asarray(np.where(argument < BEND, small, large))
 
 
-def bessel_logarithm(argument: Floats) -> Floats:
+def log_bessel_i0(argument: Floats) -> Floats:
     """Return ln I_0.
 
     Parameters
@@ -60,18 +68,24 @@ def bessel_logarithm(argument: Floats) -> Floats:
 
     Returns
     -------
-    ndarray
+    ndarray, shape of `argument`
+
+    References
+    ----------
+    .. [1] M. Abramowitz and I. A. Stegun, Handbook of Mathematical Functions, 9.8.1 and 9.8.2.
     """
-    near, far = _both_sides(argument)
+    near, far = _scaled_arguments(argument)
     large = argument + np.log(_polynomial(LARGE_0, far) / np.sqrt(np.maximum(argument, BEND)))
     return np.asarray(np.where(argument < BEND, np.log(_polynomial(SMALL_0, near)), large))
 
 
-def _both_sides(argument: Floats) -> tuple[Floats, Floats]:
+def _scaled_arguments(argument: Floats) -> tuple[Floats, Floats]:
+    """Return the variables of the polynomials on either side of BEND, clipped to their ranges."""
     return np.square(np.minimum(argument / BEND, 1.0)), BEND / np.maximum(argument, BEND)
 
 
 def _polynomial(coefficients: tuple[float, ...], argument: Floats) -> Floats:
+    """Return a polynomial by Horner's scheme, coefficients lowest power first."""
     result = np.full_like(argument, coefficients[-1])
     for coefficient in coefficients[-2::-1]:
         result *= argument

@@ -1,4 +1,8 @@
-"""What a periodic motion does at the contact: its turning points, its forces and how long the contact is lost."""
+"""Measures of periodic motions at the contact: extrema of displacement and force, and the time without contact.
+
+Most motions have one maximum and one minimum per period, which Newton's method finds. Motions with more extrema, and
+forces that damping shifts against the displacement, are sampled.
+"""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -7,24 +11,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.checks import Complexes, Floats, Integers
-from sonolube.dynamics.gap_law import LOST, GapLaw
+from sonolube.dynamics.gap_laws.protocol import CONTACT_LOSS_THRESHOLD, GapLaw, damped_force
 
-_PLAIN = 0.7  # share of the higher harmonics' accelerations up to which a motion surely turns only twice
-_CLEAR = 0.99  # level over amplitude at which to begin looking for its passage at most
-_SLOW = 0.05  # share of the peak velocity below which a minimum of the speed is nearly a turn
-_SCAN, _FEWEST = 16, 256  # samples per harmonic to find the turns of any other motion, and at least
-_SAMPLES = 2**18  # at once
-_NEWTON, _PASSES = 20, 5  # steps
+_WEAK_HARMONICS = 0.7  # sum of k^2 |X_k|, k > 1, over |X_1| up to which a motion certainly has two extrema
+_CLEAR = 0.99  # level over amplitude, at most, from which the search for its crossing starts
+_SLOW = 0.05  # velocity over its peak below which a minimum of the speed is nearly an extremum
+_SAMPLES_PER_HARMONIC, _FEWEST_SAMPLES = 16, 256  # to find the extrema of any other motion
+_SAMPLES_AT_ONCE = 2**18
+_NEWTON_STEPS, _CROSSING_STEPS = 20, 5
 
 
-class Measures(NamedTuple):
-    """Measures of the motion, one entry of each array to a point."""
+class ResponseMeasures(NamedTuple):
+    """Measures of the contact's motion, one entry of each array per point."""
 
-    amplitude: Floats  # (p,) m, half of peak to peak
-    turns: Floats  # (p, 2): phases of the upper and the lower turn; NaN where there are more
+    vibration_amplitude: Floats  # (p,) m, half of peak to peak
+    extremum_phases: Floats  # (p, 2) rad, of maximum and minimum displacement; NaN with more than two extrema
     lowest_displacement: Floats  # (p,) m
-    force: Floats  # (p, 2) N: highest and lowest
-    lost: Floats  # (p,) share of the period
+    highest_normal_force: Floats  # (p,) N
+    lowest_normal_force: Floats  # (p,) N
+    contact_loss_fraction: Floats  # (p,) fraction of the period below 0.01 F_N
 
 
 class _Motions(NamedTuple):
@@ -35,64 +40,65 @@ class _Motions(NamedTuple):
     mean: Floats  # (p,) m
     harmonics: Complexes  # (H, p) m, X_1 first
 
-    def among(self, chosen: NDArray[np.intp]) -> "_Motions":
+    def select(self, chosen: NDArray[np.intp]) -> "_Motions":
         return _Motions(self.omega[chosen], self.load[chosen], self.mean[chosen], self.harmonics[:, chosen])
 
 
-def measure(
+def response_measures(
     gap_law: GapLaw, omega: Floats, load: Floats, mean: Floats, harmonics: Complexes, count: Integers
-) -> Measures:
-    """Measure every motion.
+) -> ResponseMeasures:
+    """Return the measures of periodic motions at the contact.
 
     Parameters
     ----------
     gap_law : GapLaw
     omega, load, mean : ndarray, shape (p,)
         Angular frequency, in rad/s, dead load, in N, and mean displacement, in m.
-    harmonics : ndarray of complex, shape (p, room)
+    harmonics : ndarray of complex, shape (p, H)
+        Displacement harmonics, in m.
     count : ndarray of int, shape (p,)
-        Harmonics of each motion.
+        Number of harmonics of each motion.
 
     Returns
     -------
-    Measures
+    ResponseMeasures
     """
     most = int(count.max(initial=1))
     rows = np.ascontiguousarray(harmonics[:, :most].T)
     rows[np.arange(1, most + 1)[:, np.newaxis] > count] = 0.0
     motions = _Motions(omega, load, mean, rows)
     size = np.abs(rows[0])
-    plain = _acceleration(rows[1:], first=2) < _PLAIN * size
-    measures = Measures(
-        *(np.full(shape, np.nan) for shape in (omega.size, (omega.size, 2), omega.size, (omega.size, 2), omega.size))
-    )
-    above = np.conj(rows[0]) / (size + 1e-300)  # where the first harmonic turns
-    below = -above
-    for own in _in_parts(np.flatnonzero(~plain), most):
-        above[own], below[own] = _two_turns(motions.among(own))
-    twice = ~np.isnan(above)
-    _measure_two_turns(gap_law, motions, above, below, twice, measures)
-    for own in _in_parts(np.flatnonzero(~twice | (gap_law.force_damping > 0.0)), most):
-        _scan(gap_law, motions.among(own), own, twice[own], measures)
+    weak = _acceleration(rows[1:], first=2) < _WEAK_HARMONICS * size
+    points = omega.size
+    measures = ResponseMeasures(*(np.full((points, 2) if i == 1 else points, np.nan) for i in range(6)))
+    maximum = np.conj(rows[0]) / (size + 1e-300)  # exp(i phase), of the first harmonic
+    minimum = -maximum
+    for own in _chunks(np.flatnonzero(~weak), most):
+        maximum[own], minimum[own] = _extremum_estimates(motions.select(own))
+    has_two_extrema = ~np.isnan(maximum)
+    _measure_between_extrema(gap_law, motions, maximum, minimum, has_two_extrema, measures)
+    for own in _chunks(np.flatnonzero(~has_two_extrema | (gap_law.force_damping > 0.0)), most):
+        _measure_by_samples(gap_law, motions.select(own), own, has_two_extrema[own], measures)
     return measures
 
 
-def _in_parts(points: NDArray[np.intp], harmonics: int) -> Iterator[NDArray[np.intp]]:
-    """Yield points a few at a time, so that their samples do not fill the memory."""
-    step = max(_SAMPLES // max(_SCAN * harmonics, _FEWEST), 1)
+def _chunks(points: NDArray[np.intp], harmonics: int) -> Iterator[NDArray[np.intp]]:
+    """Yield points a few at a time, to bound the memory of their samples."""
+    step = max(_SAMPLES_AT_ONCE // max(_SAMPLES_PER_HARMONIC * harmonics, _FEWEST_SAMPLES), 1)
     for start in range(0, points.size, step):
         yield points[start : start + step]
 
 
 def _acceleration(rows: Complexes, *, first: int) -> Floats:
+    """Return the sum of k^2 times the magnitude of harmonic k, the first one of a given order."""
     total = np.zeros(rows.shape[1])
     for k, row in enumerate(rows, start=first):
         total += k * k * (np.abs(row.real) + np.abs(row.imag))
     return total
 
 
-def _swing(harmonics: Complexes, z: Complexes) -> tuple[Floats, Floats, Floats]:
-    """Return displacement about the mean and its first two derivatives by phase (Horner's scheme)."""
+def _phase_derivatives(harmonics: Complexes, z: Complexes) -> tuple[Floats, Floats, Floats]:
+    """Return displacement about the mean and its first two derivatives by phase, by Horner's scheme."""
     value = harmonics[-1].copy()
     slope, bend = np.zeros_like(z), np.zeros_like(z)  # z P' and z^2 P''/2
     for k in range(len(harmonics) - 1, -1, -1):
@@ -106,8 +112,8 @@ def _swing(harmonics: Complexes, z: Complexes) -> tuple[Floats, Floats, Floats]:
     return value.real, -slope.imag, -(slope + 2 * bend).real
 
 
-def _position(harmonics: Complexes, z: Complexes) -> tuple[Floats, Floats]:
-    """Return displacement about the mean and its derivative by phase."""
+def _displacement_and_slope(harmonics: Complexes, z: Complexes) -> tuple[Floats, Floats]:
+    """Return displacement about the mean and its derivative by phase, by Horner's scheme."""
     value, slope = harmonics[-1].copy(), np.zeros_like(z)
     for k in range(len(harmonics) - 1, -1, -1):
         slope += value
@@ -118,109 +124,112 @@ def _position(harmonics: Complexes, z: Complexes) -> tuple[Floats, Floats]:
     return value.real, -slope.imag
 
 
-def _measure_two_turns(
+def _measure_between_extrema(
     gap_law: GapLaw,
     motions: _Motions,
-    above: Complexes,
-    below: Complexes,
-    twice: NDArray[np.bool_],
-    measures: Measures,
+    maximum: Complexes,
+    minimum: Complexes,
+    has_two_extrema: NDArray[np.bool_],
+    measures: ResponseMeasures,
 ) -> None:
-    if not twice.all():
-        own = np.flatnonzero(twice)
-        part = Measures(*(values[own] for values in measures))
-        _measure_two_turns(gap_law, motions.among(own), above[own], below[own], twice[own], part)
-        for values, answers in zip(measures, part, strict=True):
-            values[own] = answers
+    """Write the measures of motions with two extrema, from estimates exp(i phase) of these."""
+    if not has_two_extrema.all():
+        own = np.flatnonzero(has_two_extrema)
+        part = ResponseMeasures(*(values[own] for values in measures))
+        selected = motions.select(own)
+        _measure_between_extrema(gap_law, selected, maximum[own], minimum[own], has_two_extrema[own], part)
+        for values, results in zip(measures, part, strict=True):
+            values[own] = results
         return
-    upper, high = _turn(motions.harmonics, above)
-    lower, low = _turn(motions.harmonics, below)
+    upper, high = _extremum(motions.harmonics, maximum)
+    lower, low = _extremum(motions.harmonics, minimum)
     high, low = motions.mean + high, motions.mean + low
-    measures.turns[:, 0], measures.turns[:, 1] = upper, lower
-    measures.force[:, 0] = gap_law.force(low, motions.load)
-    measures.force[:, 1] = gap_law.force(high, motions.load)
-    measures.amplitude[:] = 0.5 * (high - low)
+    measures.extremum_phases[:, 0], measures.extremum_phases[:, 1] = upper, lower
+    measures.highest_normal_force[:] = gap_law.force(low, motions.load)
+    measures.lowest_normal_force[:] = gap_law.force(high, motions.load)
+    measures.vibration_amplitude[:] = 0.5 * (high - low)
     measures.lowest_displacement[:] = low
-    beyond = gap_law.loss_displacement(motions.load)
-    measures.lost[:] = low >= beyond
-    hops = np.flatnonzero((low < beyond) & (beyond < high))
-    if hops.size:
-        among = motions.among(hops)
-        level = beyond[hops] - among.mean
-        measures.lost[hops] = _share_above(among.harmonics, level, upper[hops], lower[hops])
+    loss = gap_law.loss_displacement(motions.load)
+    measures.contact_loss_fraction[:] = low >= loss
+    partial = np.flatnonzero((low < loss) & (loss < high))
+    if partial.size:
+        own_motions = motions.select(partial)
+        level = loss[partial] - own_motions.mean
+        fraction = _fraction_above(own_motions.harmonics, level, upper[partial], lower[partial])
+        measures.contact_loss_fraction[partial] = fraction
 
 
-def _turn(harmonics: Complexes, near: Complexes) -> tuple[Floats, Floats]:
-    """Return the phase nearby at which the velocity vanishes, and the displacement there about the mean."""
+def _extremum(harmonics: Complexes, near: Complexes) -> tuple[Floats, Floats]:
+    """Return the phase of the extremum near exp(i phase), and the displacement there about the mean."""
     z, displacement = near.copy(), np.empty(near.size)
     left: NDArray[np.intp] | slice = slice(None)
-    for _ in range(_NEWTON):
-        x, rate, bend = _swing(harmonics[:, left], z[left])
-        step = rate / bend
-        # back by 2 arctan(step/2), which stays on the circle
-        z[left] *= _turned(-step)
-        displacement[left] = x - 0.5 * rate * step
-        far = np.abs(step) >= 1e-4  # the displacement is then right to its third power
+    for _ in range(_NEWTON_STEPS):
+        x, slope, bend = _phase_derivatives(harmonics[:, left], z[left])
+        step = slope / bend
+        # back by 2 arctan(step/2), which stays on the unit circle
+        z[left] *= _rotation(-step)
+        displacement[left] = x - 0.5 * slope * step
+        far = np.abs(step) >= 1e-4  # the error of the displacement is then of the third order
         if not far.any():
             break
         left = np.flatnonzero(far) if isinstance(left, slice) else left[far]
     return np.angle(z), displacement
 
 
-def _turned(angle: Floats) -> Complexes:
-    """Return exp(2i arctan(angle/2))."""
+def _rotation(angle: Floats) -> Complexes:
+    """Return exp(2i arctan(angle/2)), a rational approximation of exp(i angle) on the unit circle."""
     square = 0.25 * angle * angle
-    turned = np.empty(angle.shape, dtype=np.complex128)
+    rotation = np.empty(angle.shape, dtype=np.complex128)
     inverse = 1 / (1 + square)
-    turned.real, turned.imag = (1 - square) * inverse, angle * inverse
-    return turned
+    rotation.real, rotation.imag = (1 - square) * inverse, angle * inverse
+    return rotation
 
 
-def _share_above(harmonics: Complexes, level: Floats, upper: Floats, lower: Floats) -> Floats:
-    """Return the share of the period in which motions of two turns lie above a level between them."""
+def _fraction_above(harmonics: Complexes, level: Floats, upper: Floats, lower: Floats) -> Floats:
+    """Return the fraction of the period in which motions with two extrema exceed a level between these."""
     size = np.abs(harmonics[0])
     cosine = np.clip(level / size, -_CLEAR, _CLEAR)
-    turn, aside = np.conj(harmonics[0]) / size, 1j * np.sqrt(1 - cosine * cosine)
-    after, down = _passage(harmonics, level, turn * (cosine + aside))
-    before, up = _passage(harmonics, level, turn * (cosine - aside))
-    share = np.angle(after * np.conj(before)) / (2 * np.pi) % 1.0
+    first, aside = np.conj(harmonics[0]) / size, 1j * np.sqrt(1 - cosine * cosine)
+    after, down = _newton_crossing(harmonics, level, first * (cosine + aside))
+    before, up = _newton_crossing(harmonics, level, first * (cosine - aside))
+    fraction = np.angle(after * np.conj(before)) / (2 * np.pi) % 1.0
     rest = np.flatnonzero(~((down < 0) & (up > 0)))
     if rest.size:
         own = (harmonics[:, rest], level[rest], upper[rest])
-        end = _crossing(*own, np.where(lower > upper, lower, lower + 2 * np.pi)[rest])
-        start = _crossing(*own, np.where(lower < upper, lower, lower - 2 * np.pi)[rest])
-        share[rest] = (end - start) / (2 * np.pi)
-    return np.asarray(share)
+        end = _bracketed_crossing(*own, np.where(lower > upper, lower, lower + 2 * np.pi)[rest])
+        start = _bracketed_crossing(*own, np.where(lower < upper, lower, lower - 2 * np.pi)[rest])
+        fraction[rest] = (end - start) / (2 * np.pi)
+    return np.asarray(fraction)
 
 
-def _passage(harmonics: Complexes, level: Floats, near: Complexes) -> tuple[Complexes, Floats]:
-    """Return exp(i phase) nearby at which a displacement is passed and the rate there, NaN if a few steps miss it."""
-    z, rate = near, np.full(near.size, np.nan)
+def _newton_crossing(harmonics: Complexes, level: Floats, near: Complexes) -> tuple[Complexes, Floats]:
+    """Return exp(i phase) of the crossing of a level near a phase, and the slope there: NaN if not converged."""
+    z, slope_there = near, np.full(near.size, np.nan)
     left: NDArray[np.intp] | slice = slice(None)
-    for _ in range(_PASSES):
-        x, slope = _position(harmonics[:, left], z[left])
+    for _ in range(_CROSSING_STEPS):
+        x, slope = _displacement_and_slope(harmonics[:, left], z[left])
         step = (x - level[left]) / slope
-        z[left] *= _turned(-step)
+        z[left] *= _rotation(-step)
         far = np.abs(step) >= 1e-4
-        rate[left] = np.where(far, np.nan, slope)
+        slope_there[left] = np.where(far, np.nan, slope)
         if not far.any():
             break
         left = np.flatnonzero(far) if isinstance(left, slice) else left[far]
-    return z, rate
+    return z, slope_there
 
 
-def _crossing(harmonics: Complexes, level: Floats, upper: Floats, lower: Floats) -> Floats:
-    """Return the phase between two turns at which a displacement is passed."""
+def _bracketed_crossing(harmonics: Complexes, level: Floats, upper: Floats, lower: Floats) -> Floats:
+    """Return the phase between maximum and minimum at which a level is crossed, by Newton's method with bisection."""
     inside, outside = upper.copy(), lower.copy()
-    phase = upper + (lower - upper) / np.pi * np.arccos(np.clip(level / np.abs(harmonics[0]), -0.99, 0.99))
+    phase = upper + (lower - upper) / np.pi * np.arccos(np.clip(level / np.abs(harmonics[0]), -_CLEAR, _CLEAR))
     left = np.arange(phase.size)
     for _ in range(60):
         now = phase[left]
-        x, rate = _position(harmonics[:, left], np.exp(1j * now))
+        x, slope = _displacement_and_slope(harmonics[:, left], np.exp(1j * now))
         above = x > level[left]
         inside[left[above]], outside[left[~above]] = now[above], now[~above]
         with np.errstate(divide="ignore", invalid="ignore"):
-            step = (x - level[left]) / rate
+            step = (x - level[left]) / slope
         after = now - step
         between = (after - inside[left]) * (after - outside[left]) < 0
         phase[left] = np.where(between, after, 0.5 * (inside[left] + outside[left]))
@@ -230,60 +239,64 @@ def _crossing(harmonics: Complexes, level: Floats, upper: Floats, lower: Floats)
     return np.asarray(phase)
 
 
-def _sampled(motions: _Motions) -> tuple[Floats, Floats]:
-    """Return displacement about the mean and its derivative by phase at even phases, one row to a motion."""
+def _samples(motions: _Motions) -> tuple[Floats, Floats]:
+    """Return displacement about the mean and its derivative by phase at equally spaced phases, one row per motion."""
     most = len(motions.harmonics)
-    count = max(_SCAN * most, _FEWEST)
+    count = max(_SAMPLES_PER_HARMONIC * most, _FEWEST_SAMPLES)
     spectra = np.zeros((2, motions.mean.size, count // 2 + 1), dtype=np.complex128)
     spectra[0, :, 1 : most + 1] = motions.harmonics.T * (count / 2)
     spectra[1] = 1j * np.arange(count // 2 + 1) * spectra[0]
-    x, rate = np.fft.irfft(spectra, count)
-    return x, rate
+    x, slope = np.fft.irfft(spectra, count)
+    return x, slope
 
 
-def _two_turns(motions: _Motions) -> tuple[Complexes, Complexes]:
-    """Return exp(i phase) about where motions turn down and up, NaN if they turn, or nearly do, more than twice."""
-    here = _sampled(motions)[1]
+def _extremum_estimates(motions: _Motions) -> tuple[Complexes, Complexes]:
+    """Return estimates exp(i phase) of maximum and minimum; NaN for motions with more, or nearly more, extrema."""
+    here = _samples(motions)[1]
     before, after = np.roll(here, 1, axis=1), np.roll(here, -1, axis=1)
     slow = _SLOW * np.abs(here).max(axis=1, keepdims=True)
     downward, upward = (before > 0) & (here <= 0), (before <= 0) & (here > 0)
     nearly = (np.abs(here) < slow) & (np.abs(here) <= np.abs(before)) & (np.abs(here) <= np.abs(after))
     nearly &= (here * after > 0) & ~downward & ~upward
-    twice = (downward.sum(axis=1) == 1) & (upward.sum(axis=1) == 1) & ~nearly.any(axis=1)
+    has_two_extrema = (downward.sum(axis=1) == 1) & (upward.sum(axis=1) == 1) & ~nearly.any(axis=1)
     rows, count = np.arange(here.shape[0]), here.shape[1]
-    turns = []
+    estimates = []
     for crossed in (downward, upward):
         j = crossed.argmax(axis=1)
         earlier, later = before[rows, j], here[rows, j]
         with np.errstate(divide="ignore", invalid="ignore"):
             phase = 2 * np.pi / count * (j - 1 + earlier / (earlier - later))
-        turns.append(np.exp(1j * np.where(twice, phase, np.nan)))
-    return turns[0], turns[1]
+        estimates.append(np.exp(1j * np.where(has_two_extrema, phase, np.nan)))
+    return estimates[0], estimates[1]
 
 
-def _scan(
-    gap_law: GapLaw, motions: _Motions, own: NDArray[np.intp], twice: NDArray[np.bool_], measures: Measures
+def _measure_by_samples(
+    gap_law: GapLaw,
+    motions: _Motions,
+    own: NDArray[np.intp],
+    has_two_extrema: NDArray[np.bool_],
+    measures: ResponseMeasures,
 ) -> None:
-    """Measure motions of many turns, or whose force lags, by samples with parabolas through the extremes."""
-    x, rate = _sampled(motions)
+    """Write the measures of motions with many extrema, or with a damped force, by samples and parabolas."""
+    x, slope = _samples(motions)
     x += motions.mean[:, np.newaxis]
-    load, v = motions.load[:, np.newaxis], motions.omega[:, np.newaxis] * rate
-    force = gap_law.force(x, load) * np.maximum(1 - gap_law.force_damping * v, 0.0)
-    here = force - LOST * load
+    load, v = motions.load[:, np.newaxis], motions.omega[:, np.newaxis] * slope
+    force = damped_force(gap_law, x, v, load)
+    here = force - CONTACT_LOSS_THRESHOLD * load
     after = np.roll(here, -1, axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
         crossing = np.maximum(-here, -after) / np.abs(here - after)
-    absent = np.where((here < 0) & (after < 0), 1.0, np.where(here * after < 0, crossing, 0.0))
-    measures.lost[own] = absent.mean(axis=1)
-    measures.force[own, 0] = _highest(force)
-    measures.force[own, 1] = np.maximum(-_highest(-force), 0.0)
-    many = own[~twice]
-    high, low = _highest(x[~twice]), -_highest(-x[~twice])
-    measures.amplitude[many], measures.lowest_displacement[many] = 0.5 * (high - low), low
+    lost = np.where((here < 0) & (after < 0), 1.0, np.where(here * after < 0, crossing, 0.0))
+    measures.contact_loss_fraction[own] = lost.mean(axis=1)
+    measures.highest_normal_force[own] = _parabolic_maximum(force)
+    measures.lowest_normal_force[own] = np.maximum(-_parabolic_maximum(-force), 0.0)
+    many = own[~has_two_extrema]
+    high, low = _parabolic_maximum(x[~has_two_extrema]), -_parabolic_maximum(-x[~has_two_extrema])
+    measures.vibration_amplitude[many], measures.lowest_displacement[many] = 0.5 * (high - low), low
 
 
-def _highest(samples: Floats) -> Floats:
-    """Return the highest of each row of samples of a period."""
+def _parabolic_maximum(samples: Floats) -> Floats:
+    """Return the maximum of each row of periodic samples, by a parabola through the highest three."""
     rows, top = np.arange(samples.shape[0]), samples.argmax(axis=1)
     before, here = samples[rows, top - 1], samples[rows, top]
     after = samples[rows, (top + 1) % samples.shape[1]]

@@ -1,27 +1,39 @@
-"""Whether a periodic vibration is stable: how small disturbances of it grow from period to period."""
+"""Stability of periodic motions: the largest Floquet exponent of each point of a batch."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.checks import Complexes, Floats, Integers
-from sonolube.dynamics.gap_law import GapLaw
-from sonolube.dynamics.harmonic_balance.contact_kernel import equilibrium_displacement, law_of
-from sonolube.dynamics.harmonic_balance.floquet_kernel import SQUARINGS, growth_rates, period_room
-from sonolube.dynamics.harmonic_balance.receptance import ContactPort
+from sonolube.dynamics.gap_laws.protocol import GapLaw
+from sonolube.dynamics.gap_laws.table import kernel_law
+from sonolube.dynamics.harmonic_balance.floquet_kernel import SQUARINGS, monodromy_power_norms, period_workspace
+from sonolube.dynamics.harmonic_balance.receptance import PoleResidueModel
 from sonolube.dynamics.kernels.simd import LANES
 
-GROWTH = 1e-6  # per period, beyond what rounding may feign
-_KICKS = 8  # a radian of the structure's fastest mode
-_MOST_KICKS = 2**22  # a period, which take seconds
+STABILITY_THRESHOLD = 1e-6
+"""Floquet exponent per period above which a motion counts as unstable, beyond rounding. []"""
+_KICKS_PER_RADIAN = 8  # of the structure's fastest mode
+_MOST_KICKS = 2**22  # per period, which take seconds
 
 
-def too_slow(port: ContactPort, omega: Floats) -> NDArray[np.bool_]:
-    """Return at which angular frequencies, in rad/s, a period holds too many swings of the fastest mode to judge."""
-    return np.asarray(_KICKS * _fastest(port) > _MOST_KICKS * omega)
+def stability_undetermined(model: PoleResidueModel, omega: Floats) -> NDArray[np.bool_]:
+    """Return at which angular frequencies a period holds too many cycles of the fastest mode to compute stability.
+
+    Parameters
+    ----------
+    model : PoleResidueModel
+    omega : ndarray, any shape
+        Angular frequency of the drive, in rad/s.
+
+    Returns
+    -------
+    ndarray of bool, shape of `omega`
+    """
+    return np.asarray(_KICKS_PER_RADIAN * _fastest(model) > _MOST_KICKS * omega)
 
 
-def growth(
-    port: ContactPort,
+def floquet_exponents(
+    model: PoleResidueModel,
     gap_law: GapLaw,
     omega: Floats,
     load: Floats,
@@ -30,48 +42,75 @@ def growth(
     count: Integers,
     samples: Integers,
 ) -> Floats:
-    """Return the logarithm of the largest modulus of the multipliers, at least as many kicks a period as samples."""
-    compiled, law = law_of(gap_law)
-    needed = np.where(too_slow(port, omega), 0.0, np.ceil(_KICKS * _fastest(port) / omega))
+    r"""Return the largest Floquet exponent of each motion, per period of the drive.
+
+    Parameters
+    ----------
+    model : PoleResidueModel
+    gap_law : GapLaw
+    omega, load, mean : ndarray, shape (p,)
+        Angular frequency, in rad/s, dead load, in N, and mean displacement, in m.
+    harmonics : ndarray of complex, shape (p, H)
+        Displacement harmonics, in m.
+    count, samples : ndarray of int, shape (p,)
+        Harmonics of each motion, and the least number of kicks per period.
+
+    Returns
+    -------
+    ndarray, shape (p,)
+        Positive for unstable motions; compare with `STABILITY_THRESHOLD`.
+
+    Notes
+    -----
+    With the Floquet multipliers :math:`\mu_i`, the eigenvalues of the monodromy matrix M, the exponent is
+
+    .. math:: \max_i \ln|\mu_i| = \lim_{n\to\infty} \frac1n \left(\ln\|M^{2n}\| - \ln\|M^n\|\right),
+
+    whatever the eigenvectors; here 2n = 2^22. The norm of :math:`M^n` enters to within a factor of two, by the powers
+    of two that scale the squarings.
+    """
+    variant, law = kernel_law(gap_law)
+    needed = np.where(stability_undetermined(model, omega), 0.0, np.ceil(_KICKS_PER_RADIAN * _fastest(model) / omega))
     kicks = np.maximum(samples, needed.astype(np.int64))
     chosen = np.lexsort((count, kicks))
-    first = np.arange(0, chosen.size, LANES)  # of each block of lanes, which all take as many kicks
+    first = np.arange(0, chosen.size, LANES)  # of each block, whose points all take the same number of kicks
     kicks[chosen] = np.repeat(np.maximum.reduceat(kicks[chosen], first), LANES)[: chosen.size]
-    given = np.stack([omega, load, equilibrium_displacement(gap_law, load), mean], axis=1)
-    free = _free_motion(port, 2 * np.pi / (kicks * omega))
-    room, (powers, norms) = period_room(2 * port.trace.size, int(count.max(initial=0))), np.empty((2, omega.size))
-    pairs = _pair_columns(port)
+    settings = np.stack([omega, load, gap_law.equilibrium_coordinate(load), mean], axis=1)
+    drift = _transition_matrices(model, 2 * np.pi / (kicks * omega))
+    work = period_workspace(2 * model.trace.size, int(count.max(initial=0)))
+    pairs = np.hstack([model.contact_input, model.displacement_output, model.velocity_output])
     parts = np.ascontiguousarray(harmonics).view(np.float64)
-    growth_rates(*compiled, law, pairs, given, free, parts, count, kicks, chosen, room, powers, norms)
-    # log |M^(2n)| - log |M^n| is n times the rate wanted, whatever the eigenvectors; the latter's norm is within a
-    # factor of two of the power of two taken out
+    powers, norms = np.empty((2, omega.size))
+    monodromy_power_norms(*variant, law, pairs, settings, drift, parts, count, kicks, chosen, work, powers, norms)
     return np.asarray((powers * np.log(2.0) + 0.5 * np.log(norms)) / 2.0 ** (SQUARINGS - 1))
 
 
-def _fastest(port: ContactPort) -> float:
-    return float(np.sqrt(np.abs(port.determinant).max()))
+def _fastest(model: PoleResidueModel) -> float:
+    """Return the largest natural angular frequency of the structure, in rad/s."""
+    return float(np.sqrt(np.abs(model.determinant).max()))
 
 
-def _pair_columns(port: ContactPort) -> Floats:
-    """Return PUSH, SEE and MOVE of every pair, shape (m, 6)."""
-    return np.hstack([port.push, port.displacement, port.velocity])
+def _transition_matrices(model: PoleResidueModel, duration: Floats) -> Floats:
+    r"""Return the state transition matrices exp(A t) of every pair, shape (p, 4 m), row by row.
 
+    Notes
+    -----
+    With :math:`A = h I + B`, h half the trace, :math:`B^2 = (h^2 - \det A) I =: \delta^2 I`, so that
 
-def _free_motion(port: ContactPort, duration: Floats) -> Floats:
-    """Return exp(A duration) of every pair, shape (p, 4 m), row by row.
+    .. math:: e^{At} = e^{ht} \left(\cosh(\delta t)\, I + \frac{\sinh(\delta t)}{\delta}\, B\right),
 
-    A is half its trace plus a part whose square is a number.
+    with cosine and sine where :math:`\delta^2 < 0`.
     """
-    half = 0.5 * port.trace[:, np.newaxis]
-    square = half * half - port.determinant[:, np.newaxis]
+    half = 0.5 * model.trace[:, np.newaxis]
+    square = half * half - model.determinant[:, np.newaxis]
     angle = np.sqrt(np.abs(square)) * duration
-    fading, growing = np.exp(half * duration), square > 0
-    # where it does not swing, the slower and the faster exponential, neither of which overflows
-    exponent = np.where(growing, angle, 0.0)
+    decay, overdamped = np.exp(half * duration), square > 0
+    # overdamped: the slower and the faster exponential, neither of which overflows
+    exponent = np.where(overdamped, angle, 0.0)
     slow, fast = np.exp(half * duration + exponent), np.exp(half * duration - exponent)
-    even = np.where(growing, 0.5 * (slow + fast), fading * np.cos(angle))
-    odd = np.where(growing, 0.5 * (slow - fast), fading * np.sin(angle))
-    odd = np.where(angle > 1e-9, odd / np.maximum(angle, 1e-9), fading) * duration
-    own = port.generator - half[:, :, np.newaxis] * np.eye(2)
-    moved = even.T[:, :, np.newaxis, np.newaxis] * np.eye(2) + np.einsum("mij,mp->pmij", own, odd)
-    return np.asarray(moved.reshape(duration.size, 4 * port.trace.size))
+    even = np.where(overdamped, 0.5 * (slow + fast), decay * np.cos(angle))
+    odd = np.where(overdamped, 0.5 * (slow - fast), decay * np.sin(angle))
+    odd = np.where(angle > 1e-9, odd / np.maximum(angle, 1e-9), decay) * duration
+    traceless = model.state_matrix - half[:, :, np.newaxis] * np.eye(2)
+    moved = even.T[:, :, np.newaxis, np.newaxis] * np.eye(2) + np.einsum("mij,mp->pmij", traceless, odd)
+    return np.asarray(moved.reshape(duration.size, 4 * model.trace.size))

@@ -1,10 +1,16 @@
-"""Harmonic balance on lanes: Newton's method on the contact's harmonics, many points side by side.
+r"""Harmonic balance of a batch by Newton's method, with alternating frequency-time transforms of the contact force.
 
-The unknowns of a point are the contact's mean displacement and harmonics X_1 to X_H,
-x = mean + Re sum X_k exp(i k theta). They satisfy S_0 (mean - free mean) = mean F_n - F_N and
-X_k = H_k V_k + G_k Phi_k, with Phi_k the harmonics of the contact force. Newton's method takes the mean and the first
-harmonics together, as many as the contact couples noticeably; the harmonics beyond follow by substitution. Alternating
-between time and frequency, a pair of samples theta and -theta share their cosines and sines.
+Displacement and force of the contact are Fourier series, :math:`x = \bar x + \mathrm{Re}\sum_k X_k e^{ik\theta}` and
+:math:`F_n = \bar F_n + \mathrm{Re}\sum_k \Phi_k e^{ik\theta}` with :math:`\theta = \omega t`. The unknowns are the mean
+and the harmonics 1 to H of the displacement; the equations are
+
+.. math::
+    S_0\,(\bar x - \bar x_0) = \bar F_n - F_N, \qquad X_k = H(k\omega)\,V_k + G(k\omega)\,\Phi_k,
+
+with the static stiffness S_0, the static displacement :math:`\bar x_0` and the receptances G and H of the structure.
+Newton's method couples the mean and the first n harmonics; the harmonics n + 1 to H follow by substitution, since the
+contact hardly couples them. In the transforms between time and frequency (AFT), the samples at :math:`\theta` and
+:math:`-\theta` share their cosines and sines.
 """
 
 from typing import NamedTuple
@@ -13,82 +19,90 @@ import numba
 import numpy as np
 
 from sonolube.checks import Floats, Integers
-from sonolube.dynamics.harmonic_balance.contact_kernel import Choice, Law, contact_rows, differentiate, parallel
 from sonolube.dynamics.harmonic_balance.newton_kernel import newton_step
-from sonolube.dynamics.harmonic_balance.receptance import receptances
+from sonolube.dynamics.harmonic_balance.receptance import contact_receptances
+from sonolube.dynamics.kernels.contact_kernel import (
+    CompileTimeInt,
+    LawParameters,
+    contact_force_rows,
+    stiffness_follows_force,
+    velocity_over_omega,
+)
 from sonolube.dynamics.kernels.simd import (
-    INSIDE,
+    INLINED,
+    INNER,
     KERNEL,
     LANES,
-    ONCE,
-    add_size,
-    blend,
-    combine,
+    add_absolute,
+    block_maximum,
     gather,
+    linear_combination,
     subtract_product,
+    weighted_row_sum,
 )
 
-# Rows of what a block of points brings along: angular frequency, dead load, the length over which the contact changes,
-# where it rests, the mean displacement without contact; then sizes of the last step and of the motion.
-OMEGA, LOAD, LENGTH, RESTING, FREE_MEAN, SIZE, SCALE = range(7)
+# Rows of a block: angular frequency, dead load, decay length of the force, equilibrium coordinate and static
+# displacement of each point (the columns of `Iterates.settings`); then the norms of the last step and of the motion.
+OMEGA, LOAD, DECAY_LENGTH, EQUILIBRIUM, STATIC_DISPLACEMENT, STEP_NORM, MOTION_NORM = range(7)
 CONVERGED, DIVERGED, NEEDS_HARMONICS, NEEDS_SAMPLES = 0, 1, 2, 3
-# In tolerances, relative to the amplitude: the harmonics left out, and the last step of Newton's method.
-TAIL, _EXACTLY = 0.3, 0.01
-_LARGEST_STEP = 2.0  # in lengths over which the contact changes
+"""Outcomes of a point. []"""
+# Over the tolerance, relative to the amplitude: the truncated harmonics, and the last step of Newton's method.
+TAIL, _LAST_STEP = 0.3, 0.01
+_LARGEST_STEP = 2.0  # norm of a Newton step, in decay lengths
 
 
-class Points(NamedTuple):
-    """Steady states to find, one row to a point; of harmonics, real and imaginary parts in turns."""
+class Iterates(NamedTuple):
+    """Iterates of a batch, one row per point; of harmonics, real and imaginary parts alternate."""
 
-    given: Floats  # (p, 5): columns OMEGA to FREE_MEAN
-    free: Floats  # (p, 2 K) m, harmonics without contact
-    mean: Floats  # (p, 1) m
-    harmonics: Floats  # (p, 2 room) m, the first guess and then the result
-    force: Floats  # (p, 2 K) N, harmonics of the contact force, written
-
-
-class Resolution(NamedTuple):
-    """How finely each point is to be resolved, one entry of each array to a point."""
-
-    harmonics: Integers
-    coupled: Integers  # of them, those in Newton's matrix
-    samples: Integers
+    settings: Floats  # (p, 5): columns OMEGA to STATIC_DISPLACEMENT
+    free_harmonics: Floats  # (p, 2 K), in m: displacement harmonics without contact force
+    mean: Floats  # (p, 1), in m: initial guess, then the solution
+    harmonics: Floats  # (p, 2 capacity), in m: initial guess, then the solution
+    force_harmonics: Floats  # (p, 2 K), in N: written
 
 
-class Workspace(NamedTuple):
-    """Rows that a block of points is solved in.
+class Truncation(NamedTuple):
+    """Numbers of harmonics and time samples of each point."""
 
-    A motion of H harmonics has 2 H + 1 rows: its mean, and from row 2 k - 1 on real and imaginary part of harmonic k;
-    so have spectra, and sums and differences at instants.
+    harmonics: Integers  # (p,): H, of the displacement
+    coupled: Integers  # (p,): n, of them in Newton's matrix
+    samples: Integers  # (p,): of the contact force per period
+
+
+class HarmonicWorkspace(NamedTuple):
+    """Rows in which a block of points is solved.
+
+    A motion of H harmonics has 2 H + 1 rows: its mean, then from row 2 k - 1 on real and imaginary part of harmonic k;
+    likewise spectra, and the sums and differences of mirrored samples.
     """
 
-    lanes: Floats  # (7, lanes): rows OMEGA to SCALE
-    answers: Floats  # (H + 1, 2, lanes): receptances of the contact
-    motions: Floats  # (4, 2 H + 1, lanes): the motion, the step to take, the motion without contact, velocity/omega
-    waves: Floats  # (2, instants, instants): cosines and sines of j k 2 pi / count
-    tabulated: Integers  # (1,): the count of samples whose waves these are
+    lanes: Floats  # (7, lanes): rows OMEGA to MOTION_NORM
+    receptances: Floats  # (H + 1, 2, lanes): of the contact at each harmonic
+    motions: Floats  # (4, 2 H + 1, lanes): motion, Newton step, free motion, velocity over omega
+    waves: Floats  # (2, instants, instants): cosine and sine of j k 2 pi / samples
+    tabulated: Integers  # (1,): number of samples whose waves these are
     sums: Floats  # (3, 2 instants - 1, lanes): weighted sums and differences of force, stiffness and damping
     spectra: Floats  # (3, 4 H + 1, lanes): of force, stiffness and damping
-    matrix: Floats  # (rows + 2, rows, lanes): Newton's, and two rows to spare
+    matrix: Floats  # (rows + 2, rows, lanes): Newton's matrix and two spare rows
     scratch: Floats  # (12, lanes)
 
 
-def workspace(harmonics: int, coupled: int, samples: int) -> Workspace:
-    """Return room for points of some resolution.
+def harmonic_workspace(harmonics: int, coupled: int, samples: int) -> HarmonicWorkspace:
+    """Allocate the workspace of `newton_solve`.
 
     Parameters
     ----------
     harmonics, coupled, samples : int
-        The largest of `Resolution`.
+        Largest values of the `Truncation` of the points.
 
     Returns
     -------
-    Workspace
+    HarmonicWorkspace
     """
     rows, instants = 2 * coupled + 1, samples // 2 + 1
-    return Workspace(
+    return HarmonicWorkspace(
         lanes=np.empty((7, LANES)),
-        answers=np.empty((harmonics + 1, 2, LANES)),
+        receptances=np.empty((harmonics + 1, 2, LANES)),
         motions=np.zeros((4, 2 * harmonics + 1, LANES)),
         waves=np.empty((2, instants, instants)),
         tabulated=np.zeros(1, dtype=np.int64),
@@ -100,122 +114,128 @@ def workspace(harmonics: int, coupled: int, samples: int) -> Workspace:
 
 
 @numba.njit(**KERNEL)
-def balance(
-    kind: Choice,
-    damped: Choice,
+def newton_solve(
+    kind: CompileTimeInt,
+    damped: CompileTimeInt,
     poles: Floats,
     static_stiffness: float,
-    law: Law,
-    points: Points,
-    resolution: Integers,
+    law: LawParameters,
+    iterates: Iterates,
+    truncation: Integers,
     chosen: Integers,
     tolerance: float,
     iterations: int,
     outcome: Integers,
-    work: Workspace,
+    work: HarmonicWorkspace,
 ) -> None:
-    """Find the steady states of the chosen points.
+    """Solve the equations of harmonic balance of the chosen points by Newton's method.
 
     Parameters
     ----------
     kind, damped : tuple
-        As of `sonolube.dynamics.harmonic_balance.contact_kernel.Compiled`.
+        See `sonolube.dynamics.kernels.contact_kernel.KernelVariant`.
     poles : ndarray, shape (4, m)
-        Of the contact's receptance, as by `ContactPort.poles`.
+        From `PoleResidueModel.contact_poles`.
     static_stiffness : float
         Of the structure at the contact, in N/m.
-    law : Law
-    points : Points
-    resolution : ndarray of int, shape (3, p)
-        Rows as the fields of `Resolution`; the harmonics that were used are written.
+    law : LawParameters
+    iterates : Iterates
+    truncation : ndarray of int, shape (3, p)
+        Rows as the fields of `Truncation`; the numbers of harmonics used are written.
     chosen : ndarray of int
-        Points to solve, like beside like: a block of lanes is resolved as finely as its most demanding point.
+        Points to solve, sorted by truncation: a block is resolved as finely as its most demanding point.
     tolerance : float
         Largest relative error of amplitude and force.
     iterations : int
-        Most iterations.
+        Largest number of Newton steps.
     outcome : ndarray of int, shape (p,)
-        Written at the chosen points: CONVERGED, DIVERGED (nothing else is written), NEEDS_HARMONICS or NEEDS_SAMPLES.
-    work : Workspace
-        For the finest of the chosen points' resolutions.
+        Written at the chosen points: CONVERGED, DIVERGED (then nothing else is written), NEEDS_HARMONICS or
+        NEEDS_SAMPLES.
+    work : HarmonicWorkspace
+        For the finest truncation of the chosen points.
     """
     for start in range(0, chosen.size, LANES):
         block = chosen[start : start + LANES]
-        _balance_block(
-            kind, damped, poles, static_stiffness, law, points, resolution, block, tolerance, iterations, outcome, work
+        _solve_block(
+            kind,
+            damped,
+            poles,
+            static_stiffness,
+            law,
+            iterates,
+            truncation,
+            block,
+            tolerance,
+            iterations,
+            outcome,
+            work,
         )
 
 
-@numba.njit(**ONCE)
-def _balance_block(
-    kind: Choice,
-    damped: Choice,
+@numba.njit(**INLINED)
+def _solve_block(
+    kind: CompileTimeInt,
+    damped: CompileTimeInt,
     poles: Floats,
     static_stiffness: float,
-    law: Law,
-    points: Points,
-    resolution: Integers,
+    law: LawParameters,
+    iterates: Iterates,
+    truncation: Integers,
     block: Integers,
     tolerance: float,
     iterations: int,
     outcome: Integers,
-    work: Workspace,
+    work: HarmonicWorkspace,
 ) -> None:
-    lanes, answers, motions, waves = work.lanes, work.answers, work.motions, work.waves
+    """Solve the points of one block."""
+    lanes, receptances, motions, waves = work.lanes, work.receptances, work.motions, work.waves
     sums, spectra, scratch = work.sums, work.spectra, work.scratch
-    unknown, step, linear, velocity = motions[0], motions[1], motions[2], motions[3]
-    h, n, count = finest(resolution[0], block), finest(resolution[1], block), finest(resolution[2], block)
-    gather(points.given, block, lanes)
-    gather(points.mean, block, unknown[:1])
-    gather(points.harmonics, block, unknown[1 : 2 * h + 1])
-    gather(points.free, block, linear[1 : 2 * h + 1])
+    unknown, step, free, velocity = motions[0], motions[1], motions[2], motions[3]
+    h, n = block_maximum(truncation[0], block), block_maximum(truncation[1], block)
+    count = block_maximum(truncation[2], block)
+    gather(iterates.settings, block, lanes)
+    gather(iterates.mean, block, unknown[:1])
+    gather(iterates.harmonics, block, unknown[1 : 2 * h + 1])
+    gather(iterates.free_harmonics, block, free[1 : 2 * h + 1])
     for k in range(1, h + 1):
-        receptances(poles, lanes[OMEGA], float(k), answers[k])
+        contact_receptances(poles, lanes[OMEGA], float(k), receptances[k])
     if count != work.tabulated[0]:
-        _tabulate(count, waves)
+        _tabulate_waves(count, waves)
         work.tabulated[0] = count
-    quantities = 3 if len(damped) == 1 else (1 if parallel(kind, damped) else 2)
+    quantities = 3 if len(damped) == 1 else (1 if stiffness_follows_force(kind, damped) else 2)
     for _ in range(iterations):
-        differentiate(damped, unknown, h, velocity)
+        velocity_over_omega(damped, unknown, h, velocity)
         for j in range(count // 2 + 1):
             weight = (0.5 if j == 0 or j == count // 2 else 1.0) / count
             _sample_pair(kind, damped, law, lanes, unknown, velocity, waves, h, j, weight, quantities, scratch, sums)
         _transform(waves, sums, count // 2, quantities, 2 * (h + n) + 1, spectra)
         if quantities == 1:
-            _follow_force(law.parameter, 2 * (h + n) + 1, spectra)
-        _residual(static_stiffness, unknown, answers, linear, spectra[0], lanes, h, step)
-        newton_step(damped, static_stiffness, answers, spectra, lanes[OMEGA], h, n, work.matrix, step)
-        if _advance(unknown, step, 2 * h + 1, lanes, scratch[0], _EXACTLY * tolerance):
+            _stiffness_from_force(law.parameter, 2 * (h + n) + 1, spectra)
+        _residual(static_stiffness, unknown, receptances, free, spectra[0], lanes, h, step)
+        newton_step(damped, static_stiffness, receptances, spectra, lanes[OMEGA], h, n, work.matrix, step)
+        if _update(unknown, step, 2 * h + 1, lanes, scratch[0], _LAST_STEP * tolerance):
             break
-    # The samples mistake harmonic count - h for harmonic h. Those of an exponential force fall ever faster, which
-    # bounds it by the highest one that they resolve: a_(count - h) <= a_k^((count - h)/k), a_0 = 1.
+    # Aliasing: the samples add harmonic count - h to harmonic h. The harmonics of an exponential force decay ever
+    # faster, which bounds that one by the highest one that is resolved: a_(count - h) <= a_k^((count - h)/k), a_0 = 1.
     aliased = tolerance ** ((0.5 * count - 1) / (count - h)) if quantities == 1 else tolerance
-    _judge(poles, block, h, count, waves, sums[0], spectra[0, 0], lanes, tolerance, aliased, scratch, outcome)
-    _scatter(points, resolution[0], block, h, unknown, spectra[0], outcome)
+    _assess(poles, block, h, count, waves, sums[0], spectra[0, 0], lanes, tolerance, aliased, scratch, outcome)
+    _scatter(iterates, truncation[0], block, h, unknown, spectra[0], outcome)
 
 
-@numba.njit(**INSIDE)
-def finest(values: Integers, chosen: Integers) -> int:
-    """Return the largest of the chosen points' values."""
-    most = np.int64(0)
-    for point in chosen:
-        most = max(most, values[point])
-    return int(most)
-
-
-@numba.njit(**INSIDE)
-def _tabulate(count: int, waves: Floats) -> None:
+@numba.njit(**INNER)
+def _tabulate_waves(count: int, waves: Floats) -> None:
+    """Write cosines and sines of j k 2 pi / count."""
     for j in range(count // 2 + 1):
         for k in range(count // 2 + 1):
             phase = 2 * np.pi / count * (j * k % count)
             waves[0, j, k], waves[1, j, k] = np.cos(phase), np.sin(phase)
 
 
-@numba.njit(**INSIDE)
+@numba.njit(**INNER)
 def _sample_pair(
-    kind: Choice,
-    damped: Choice,
-    law: Law,
+    kind: CompileTimeInt,
+    damped: CompileTimeInt,
+    law: LawParameters,
     lanes: Floats,
     unknown: Floats,
     velocity: Floats,
@@ -227,92 +247,99 @@ def _sample_pair(
     scratch: Floats,
     sums: Floats,
 ) -> None:
-    """Write weighted sums and differences of force, stiffness and damping at the j-th instant and its mirror image."""
+    """Write weighted sums and differences of force, stiffness and damping at the j-th sample and its mirror image."""
     for part in range(2):
-        combine(scratch[part], waves[part, j], unknown, part, h)
+        weighted_row_sum(scratch[part], waves[part, j], unknown, part, h)
         if len(damped) == 1:
-            combine(scratch[2 + part], waves[part, j], velocity, part, h)
+            weighted_row_sum(scratch[2 + part], waves[part, j], velocity, part, h)
     x, v = scratch[4], scratch[5]
     for side in range(2):
         sign = 2.0 * side - 1.0
-        blend(scratch[0], 1.0, scratch[1], sign, x)
+        linear_combination(scratch[0], 1.0, scratch[1], sign, x)
         if len(damped) == 1:
-            blend(scratch[2], 1.0, scratch[3], sign, v)
+            linear_combination(scratch[2], 1.0, scratch[3], sign, v)
             for lane in range(LANES):
                 v[lane] *= lanes[OMEGA, lane]
-        contact_rows(kind, damped, law, lanes[LOAD], lanes[RESTING], x, v, scratch[6 + 3 * side : 9 + 3 * side])
+        results = scratch[6 + 3 * side : 9 + 3 * side]
+        contact_force_rows(kind, damped, law, lanes[LOAD], lanes[EQUILIBRIUM], x, v, results)
     for quantity in range(quantities):
         here, mirrored = scratch[9 + quantity], scratch[6 + quantity]
         if j > 0:
-            blend(here, weight, mirrored, -weight, sums[quantity, 2 * j])
-        blend(here, weight, mirrored, weight, sums[quantity, max(2 * j - 1, 0)])
+            linear_combination(here, weight, mirrored, -weight, sums[quantity, 2 * j])
+        linear_combination(here, weight, mirrored, weight, sums[quantity, max(2 * j - 1, 0)])
 
 
-@numba.njit(**INSIDE)
+@numba.njit(**INNER)
 def _transform(waves: Floats, sums: Floats, half: int, quantities: int, rows: int, spectra: Floats) -> None:
-    """Write (1/2 pi) int f exp(-i m theta) of force, stiffness and damping, so many rows."""
+    r"""Write the Fourier coefficients of force, stiffness and damping, a number of rows of each.
+
+    Notes
+    -----
+    .. math:: \hat f_m = \frac{1}{2\pi} \int_0^{2\pi} f(\theta)\,e^{-im\theta}\,d\theta
+    """
     for quantity in range(quantities):
         for row in range(rows):
             part = (row + 1) % 2 if row > 0 else 0
-            combine(spectra[quantity, row], waves[part, (row + 1) // 2], sums[quantity], part, half)
+            weighted_row_sum(spectra[quantity, row], waves[part, (row + 1) // 2], sums[quantity], part, half)
 
 
-@numba.njit(**INSIDE)
-def _follow_force(length: float, rows: int, spectra: Floats) -> None:
-    """Write the stiffness that goes with the force."""
+@numba.njit(**INNER)
+def _stiffness_from_force(length: float, rows: int, spectra: Floats) -> None:
+    """Write the spectrum of a stiffness that is the force over a length."""
     for row in range(rows):
         for lane in range(LANES):
             spectra[1, row, lane] = spectra[0, row, lane] / length
 
 
-@numba.njit(**INSIDE)
+@numba.njit(**INNER)
 def _residual(
     static_stiffness: float,
     unknown: Floats,
-    answers: Floats,
-    linear: Floats,
+    receptances: Floats,
+    free: Floats,
     force: Floats,
     lanes: Floats,
     h: int,
-    step: Floats,
+    residual: Floats,
 ) -> None:
-    """Write the residual of every equation."""
+    """Write the residual of every equation of harmonic balance."""
     for lane in range(LANES):
-        pull = static_stiffness * (unknown[0, lane] - lanes[FREE_MEAN, lane])
-        step[0, lane] = pull + lanes[LOAD, lane] - force[0, lane]
+        static = static_stiffness * (unknown[0, lane] - lanes[STATIC_DISPLACEMENT, lane])
+        residual[0, lane] = static + lanes[LOAD, lane] - force[0, lane]
     for k in range(1, h + 1):
         r = 2 * k
         for lane in range(LANES):
-            real, imaginary, re, im = answers[k, 0, lane], answers[k, 1, lane], force[r - 1, lane], force[r, lane]
-            step[r - 1, lane] = unknown[r - 1, lane] - linear[r - 1, lane] - 2 * (real * re - imaginary * im)
-            step[r, lane] = unknown[r, lane] - linear[r, lane] - 2 * (real * im + imaginary * re)
+            g_re, g_im = receptances[k, 0, lane], receptances[k, 1, lane]
+            re, im = force[r - 1, lane], force[r, lane]
+            residual[r - 1, lane] = unknown[r - 1, lane] - free[r - 1, lane] - 2 * (g_re * re - g_im * im)
+            residual[r, lane] = unknown[r, lane] - free[r, lane] - 2 * (g_re * im + g_im * re)
 
 
-@numba.njit(**INSIDE)
-def _advance(unknown: Floats, step: Floats, rows: int, lanes: Floats, share: Floats, allowed: float) -> bool:
-    """Take the step back, shortened where it exceeds the contact's reach; return whether all were as small as allowed.
+@numba.njit(**INNER)
+def _update(unknown: Floats, step: Floats, rows: int, lanes: Floats, factor: Floats, allowed: float) -> bool:
+    """Subtract the Newton step, limited to a few decay lengths; return whether all steps were within the allowed norm.
 
-    The size of a step is relative to the motion's, both sums over the rows, the latter without the mean.
+    Norms are sums of magnitudes over the rows; that of the motion excludes the mean, and a step is compared with it.
     """
-    size, scale = lanes[SIZE], lanes[SCALE]
+    size, scale = lanes[STEP_NORM], lanes[MOTION_NORM]
     for lane in range(LANES):
-        size[lane], scale[lane] = 0.0, 1e-3 * lanes[LENGTH, lane]
+        size[lane], scale[lane] = 0.0, 1e-3 * lanes[DECAY_LENGTH, lane]
     for row in range(rows):
-        add_size(step[row], size)
+        add_absolute(step[row], size)
     for lane in range(LANES):
-        share[lane] = min(1.0, _LARGEST_STEP * lanes[LENGTH, lane] / size[lane])
+        factor[lane] = min(1.0, _LARGEST_STEP * lanes[DECAY_LENGTH, lane] / size[lane])
     for row in range(rows):
-        subtract_product(share, step[row], unknown[row])
+        subtract_product(factor, step[row], unknown[row])
         if row > 0:
-            add_size(unknown[row], scale)
+            add_absolute(unknown[row], scale)
     small = 0
     for lane in range(LANES):
-        small += size[lane] <= allowed * scale[lane]  # which what is not a number is not
+        small += size[lane] <= allowed * scale[lane]  # false for NaN
     return small == LANES
 
 
-@numba.njit(**INSIDE)
-def _judge(
+@numba.njit(**INNER)
+def _assess(
     poles: Floats,
     block: Integers,
     h: int,
@@ -326,37 +353,38 @@ def _judge(
     scratch: Floats,
     outcome: Integers,
 ) -> None:
-    """Say which points converged, and which of them were resolved finely enough."""
-    real, imaginary, square, tail, answer = scratch[0], scratch[1], scratch[2], scratch[3], scratch[4:6]
+    """Write the outcome of each point: convergence, then the error of aliasing, then that of truncation."""
+    real, imaginary, square, tail, receptance = scratch[0], scratch[1], scratch[2], scratch[3], scratch[4:6]
     for lane in range(LANES):
         tail[lane] = 0.0
     for order in range(h + 1, 2 * h + 2):
         m = order if order <= 2 * h else count // 2 - 1  # the last one is the highest that the samples resolve
         for part in range(2):
-            combine(scratch[part], waves[part, m], force, part, count // 2)
+            weighted_row_sum(scratch[part], waves[part, m], force, part, count // 2)
         for lane in range(LANES):
             square[lane] = real[lane] * real[lane] + imaginary[lane] * imaginary[lane]
         if order <= 2 * h:
-            receptances(poles, lanes[OMEGA], float(m), answer)
+            contact_receptances(poles, lanes[OMEGA], float(m), receptance)
             for lane in range(LANES):
-                motion = 4 * square[lane] * (answer[0, lane] * answer[0, lane] + answer[1, lane] * answer[1, lane])
-                tail[lane] = max(tail[lane], motion)
+                g_square = receptance[0, lane] * receptance[0, lane] + receptance[1, lane] * receptance[1, lane]
+                tail[lane] = max(tail[lane], 4 * square[lane] * g_square)
     for lane in range(block.size):
-        verdict, allowed = CONVERGED, tolerance * lanes[SCALE, lane]
-        if not lanes[SIZE, lane] <= _EXACTLY * allowed:
-            verdict = DIVERGED
+        result, allowed = CONVERGED, tolerance * lanes[MOTION_NORM, lane]
+        if not lanes[STEP_NORM, lane] <= _LAST_STEP * allowed:
+            result = DIVERGED
         elif np.sqrt(square[lane]) > aliased * max(mean_force[lane], 1e-3 * lanes[LOAD, lane]):
-            verdict = NEEDS_SAMPLES
+            result = NEEDS_SAMPLES
         elif np.sqrt(tail[lane]) > TAIL * allowed:
-            verdict = NEEDS_HARMONICS
-        outcome[block[lane]] = verdict
+            result = NEEDS_HARMONICS
+        outcome[block[lane]] = result
 
 
-@numba.njit(**INSIDE)
+@numba.njit(**INNER)
 def _scatter(
-    points: Points, used: Integers, block: Integers, h: int, unknown: Floats, spectrum: Floats, outcome: Integers
+    iterates: Iterates, used: Integers, block: Integers, h: int, unknown: Floats, spectrum: Floats, outcome: Integers
 ) -> None:
-    mean, harmonics, force = points.mean, points.harmonics, points.force
+    """Write mean, harmonics and force harmonics of the points of a block that did not diverge."""
+    mean, harmonics, force = iterates.mean, iterates.harmonics, iterates.force_harmonics
     for lane in range(block.size):
         point = block[lane]
         if outcome[point] == DIVERGED:

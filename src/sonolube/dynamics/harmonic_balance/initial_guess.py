@@ -1,4 +1,10 @@
-"""The steady state with a single harmonic: where the search for the full one starts."""
+r"""Initial guess of harmonic balance: the steady states with a single harmonic, all of them.
+
+With a sinusoidal displacement of amplitude a about the mean that balances the static equation, the contact opposes the
+motion with a force of amplitude :math:`\Phi(a)`, and the amplitudes are the roots of
+
+.. math:: |a + G(\omega)\,\Phi(a)| = |H(\omega)\,V_1| .
+"""
 
 from typing import NamedTuple
 
@@ -6,204 +12,231 @@ import numpy as np
 from scipy.special import wrightomega
 
 from sonolube.checks import Complexes, Floats, Integers
-from sonolube.dynamics.gap_law import ExponentialGap, GapLaw, TabulatedGap, length_of_change
-from sonolube.dynamics.harmonic_balance.bessel import bessel_logarithm, bessel_ratio
-from sonolube.dynamics.harmonic_balance.harmonic_kernel import Resolution
-from sonolube.dynamics.harmonic_balance.receptance import ContactPort, receptance
-from sonolube.dynamics.harmonic_balance.truncation import orders_of_a_sine, plain_orders
+from sonolube.dynamics.gap_laws.exponential import ExponentialGap
+from sonolube.dynamics.gap_laws.protocol import GapLaw, force_decay_length
+from sonolube.dynamics.harmonic_balance.bessel import bessel_ratio, log_bessel_i0
+from sonolube.dynamics.harmonic_balance.harmonic_kernel import Truncation
+from sonolube.dynamics.harmonic_balance.receptance import CONTACT_PER_FORCE, PoleResidueModel, receptance
+from sonolube.dynamics.harmonic_balance.truncation import default_truncation, sinusoidal_truncation
 
-WEAK = 0.2  # contact stiffness times receptance up to which substitution finds the only solution
-_ABSCISSAE = np.cos(np.pi * (np.arange(64) + 0.5) / 64)  # of the mean over a period of what depends on cos theta
+WEAK = 0.2
+"""Contact stiffness times receptance below which fixed-point iteration finds the only solution. []"""
+_ABSCISSAE = np.cos(np.pi * (np.arange(64) + 0.5) / 64)  # Gauss-Chebyshev nodes, for means over a period
 _FEWER_ABSCISSAE = np.cos(np.pi * (np.arange(24) + 0.5) / 24)  # for a force without corners
-_GRID, _AT_ONCE = 32, 4096  # steps of amplitude, and how many of all points to take at once
-_SMALL, _NOTHING = 1e-3, 1e-30  # of a length; m, which keeps an amplitude of zero from dividing
-_CLOSE = 1e-6
-_LONG = 1e3  # m, in place of an infinite length
+_GRID, _GRID_CHUNK = 32, 4096  # amplitudes to scan for roots, and how many of all points to evaluate at once
+_SMALL, _TINY = 1e-3, 1e-30  # of a decay length; m, against division by zero
+_MEAN_TOLERANCE = 1e-6
+_LONGEST = 1e3  # m, in place of an infinite decay length
 
 
-class FirstGuess(NamedTuple):
-    """The steady states of points with one harmonic, one entry of each array to a point."""
+class InitialGuess(NamedTuple):
+    """Steady states with a single harmonic, one entry of each array per point."""
 
     mean: Floats  # (p,) m
     harmonic: Complexes  # (p,) m
-    lowest: Floats  # (p,) m: amplitudes that balance
-    highest: Floats
-    resolution: Resolution
+    smallest_amplitude: Floats  # (p,) m: smallest root of the amplitude equation
+    largest_amplitude: Floats  # (p,) m: largest root
+    truncation: Truncation
 
 
-class _Sines(NamedTuple):
-    """Sinusoidal motions to balance."""
+class _SinusoidalMotions(NamedTuple):
+    """Points for which sinusoidal motions are sought."""
 
     gap_law: GapLaw
     static_stiffness: float
-    load: Floats  # (p,)
-    static_displacement: Floats
-    length: Floats  # over which the contact changes
-    receptance: Complexes
-    free: Floats  # amplitude without contact
+    load: Floats  # (p,) N
+    static_displacement: Floats  # (p,) m
+    decay_length: Floats  # (p,) m
+    receptance: Complexes  # (p,) m/N
+    free_amplitude: Floats  # (p,) m, without contact force
 
-    def among(self, chosen: Integers) -> "_Sines":
+    def select(self, chosen: Integers) -> "_SinusoidalMotions":
         return self._replace(**{name: getattr(self, name)[chosen] for name in self._fields[2:]})
 
 
-def first_guess(
-    port: ContactPort,
+def initial_guess(
+    model: PoleResidueModel,
     gap_law: GapLaw,
     omega: Floats,
     load: Floats,
     static_displacement: Floats,
-    free: Complexes,
+    free_harmonics: Complexes,
     *,
     tolerance: float,
-    highest: bool,
-) -> FirstGuess:
-    """Return each point's solutions with one harmonic, and how finely to look for the full one.
+    upper_branch: bool,
+) -> InitialGuess:
+    """Return the steady states of a batch with a single harmonic, and the truncation that the full ones require.
 
     Parameters
     ----------
-    port : ContactPort
+    model : PoleResidueModel
     gap_law : GapLaw
     omega, load, static_displacement : ndarray, shape (p,)
-        Angular frequency, in rad/s, dead load, in N, and mean displacement without contact, in m.
-    free : ndarray of complex, shape (p, K)
-        Harmonics of the displacement without contact, in m.
+        Angular frequency, in rad/s, dead load, in N, and mean displacement without contact force, in m.
+    free_harmonics : ndarray of complex, shape (p, K)
+        Displacement harmonics without contact force, in m.
     tolerance : float
-        Harmonics to leave out, relative to the amplitude.
-    highest : bool
-        Whether mean and harmonic are those of the highest solution rather than the lowest.
+        Largest harmonic to truncate, relative to the amplitude.
+    upper_branch : bool
+        Whether to return mean and harmonic of the solution of largest rather than smallest amplitude.
 
     Returns
     -------
-    FirstGuess
+    InitialGuess
     """
-    length, own = np.minimum(length_of_change(gap_law, load), _LONG), free[:, 0]
-    answer = receptance(port, 0, omega)
-    sines = _Sines(gap_law, port.static_stiffness, load, static_displacement, length, answer, np.abs(own))
-    lower, upper = _balanced_amplitudes(sines)
-    mean, force = _balanced_mean(sines, upper if highest else lower)
-    amplitude = upper if highest else lower
-    harmonic = own * amplitude / (amplitude + answer * force + _NOTHING)
-    smooth = isinstance(gap_law, ExponentialGap | TabulatedGap)
-    if smooth and free.shape[1] == 1:
-        parallel = isinstance(gap_law, ExponentialGap) and gap_law.force_damping == 0.0
-        resolution = orders_of_a_sine(port, omega, load, length, upper, tolerance, parallel)
+    decay_lengths, own = np.minimum(force_decay_length(gap_law, load), _LONGEST), free_harmonics[:, 0]
+    response = receptance(model, CONTACT_PER_FORCE, omega)
+    motions = _SinusoidalMotions(
+        gap_law, model.static_stiffness, load, static_displacement, decay_lengths, response, np.abs(own)
+    )
+    smallest, largest = _amplitudes(motions)
+    amplitude = largest if upper_branch else smallest
+    mean, force = _balanced_mean(motions, amplitude)
+    harmonic = own * amplitude / (amplitude + response * force + _TINY)
+    if not gap_law.has_corner and free_harmonics.shape[1] == 1:
+        follows_force = isinstance(gap_law, ExponentialGap) and gap_law.force_damping == 0.0
+        truncation = sinusoidal_truncation(model, omega, load, decay_lengths, largest, tolerance, follows_force)
     else:
-        resolution = plain_orders(omega.size, free.shape[1])
-    return FirstGuess(mean, harmonic, lower, upper, resolution)
+        truncation = default_truncation(omega.size, free_harmonics.shape[1])
+    return InitialGuess(mean, harmonic, smallest, largest, truncation)
 
 
-def _balanced_amplitudes(sines: _Sines) -> tuple[Floats, Floats]:
-    """Return the lowest and the highest amplitude a with abs(a + receptance force(a)) = free amplitude."""
-    if isinstance(sines.gap_law, ExponentialGap) and sines.static_stiffness == 0.0:
-        strength = np.abs(sines.receptance) * sines.load / sines.length
+def _amplitudes(motions: _SinusoidalMotions) -> tuple[Floats, Floats]:
+    """Return the smallest and the largest root of the amplitude equation, in m.
+
+    Fixed-point iteration where the contact is weak beside the structure, else a search for all roots.
+    """
+    free = motions.free_amplitude
+    if isinstance(motions.gap_law, ExponentialGap) and motions.static_stiffness == 0.0:
+        strength = np.abs(motions.receptance) * motions.load / motions.decay_length
     else:
-        tiny = _SMALL * sines.length
-        steepest = np.maximum(_opposing(sines, tiny) / tiny, _opposing(sines, sines.free) / (sines.free + _NOTHING))
-        strength = np.abs(sines.receptance) * steepest
-    amplitude = sines.free.copy()
+        small = _SMALL * motions.decay_length
+        steepest = np.maximum(
+            _force_amplitude(motions, small) / small, _force_amplitude(motions, free) / (free + _TINY)
+        )
+        strength = np.abs(motions.receptance) * steepest
+    amplitude = free.copy()
     for _ in range(2):
-        share = _opposing(sines, amplitude) / (amplitude + _NOTHING)
-        amplitude = sines.free / np.abs(1 + share * sines.receptance)
-    lowest, highest = amplitude, amplitude
-    strong = np.flatnonzero((strength >= WEAK) & (sines.free > 0))
+        stiffness = _force_amplitude(motions, amplitude) / (amplitude + _TINY)
+        amplitude = free / np.abs(1 + stiffness * motions.receptance)
+    smallest, largest = amplitude, amplitude
+    strong = np.flatnonzero((strength >= WEAK) & (free > 0))
     if strong.size:
-        highest = amplitude.copy()
-        lowest[strong], highest[strong] = _strongly_balanced(sines.among(strong))
-    return lowest, highest
+        largest = amplitude.copy()
+        smallest[strong], largest[strong] = _bracketed_amplitudes(motions.select(strong))
+    return smallest, largest
 
 
-def _strongly_balanced(sines: _Sines) -> tuple[Floats, Floats]:
-    """Return the lowest and the highest of possibly several amplitudes, looked for on a grid."""
+def _bracketed_amplitudes(motions: _SinusoidalMotions) -> tuple[Floats, Floats]:
+    """Return the smallest and the largest of possibly several amplitudes, bracketed on a grid."""
 
-    def excess(amplitude: Floats, own: _Sines = sines) -> Floats:
-        return np.asarray(np.abs(amplitude + own.receptance * _opposing(own, amplitude)) - own.free)
+    def excess(amplitude: Floats, own: _SinusoidalMotions = motions) -> Floats:
+        return np.asarray(np.abs(amplitude + own.receptance * _force_amplitude(own, amplitude)) - own.free_amplitude)
 
-    spread = np.arcsinh(_beyond(sines) / sines.length)
-    edges = sines.length * np.sinh(np.multiply.outer(np.arange(_GRID + 1) / _GRID, spread))
-    heights = np.empty_like(edges)
-    heights[0] = -sines.free
-    together = max(_AT_ONCE // sines.free.size, 1)
-    for start in range(1, _GRID + 1, together):
-        some = edges[start : start + together]
-        own = sines.among(np.tile(np.arange(sines.free.size), len(some)))
-        heights[start : start + together] = excess(some.reshape(-1), own).reshape(some.shape)
-    rising = (heights[:-1] < 0) & (heights[1:] >= 0)
-    first, last = rising.argmax(axis=0), _GRID - 1 - rising[::-1].argmax(axis=0)
-    answers: list[Floats] = []
+    extent = np.arcsinh(_amplitude_bound(motions) / motions.decay_length)
+    edges = motions.decay_length * np.sinh(np.multiply.outer(np.arange(_GRID + 1) / _GRID, extent))
+    values = np.empty_like(edges)
+    values[0] = -motions.free_amplitude
+    count = motions.free_amplitude.size
+    rows_at_once = max(_GRID_CHUNK // count, 1)
+    for start in range(1, _GRID + 1, rows_at_once):
+        rows = edges[start : start + rows_at_once]
+        own = motions.select(np.tile(np.arange(count), len(rows)))
+        values[start : start + rows_at_once] = excess(rows.reshape(-1), own).reshape(rows.shape)
+    crossed = (values[:-1] < 0) & (values[1:] >= 0)
+    first, last = crossed.argmax(axis=0), _GRID - 1 - crossed[::-1].argmax(axis=0)
+    roots: list[Floats] = []
     for cell in (first, last):
-        if answers and np.array_equal(first, last):
+        if roots and np.array_equal(first, last):
             break
         points = np.arange(cell.size)
-        ends = (edges[cell, points], heights[cell, points], edges[cell + 1, points], heights[cell + 1, points])
-        root = _root(excess, *ends, close=1e-4 * sines.free)
-        answers.append(np.where(rising.any(axis=0), root, sines.free))
-    return answers[0], answers[-1]
+        ends = (edges[cell, points], values[cell, points], edges[cell + 1, points], values[cell + 1, points])
+        root = _regula_falsi(excess, *ends, tolerance=1e-4 * motions.free_amplitude)
+        roots.append(np.where(crossed.any(axis=0), root, motions.free_amplitude))
+    return roots[0], roots[-1]
 
 
-def _beyond(sines: _Sines) -> Floats:
-    """Return amplitudes that no solution exceeds."""
-    largest = 1.1 * sines.free + _SMALL * sines.length
+def _amplitude_bound(motions: _SinusoidalMotions) -> Floats:
+    """Return upper bounds of all roots of the amplitude equation, in m."""
+    bound = 1.1 * motions.free_amplitude + _SMALL * motions.decay_length
     for _ in range(60):
-        force = _opposing(sines, largest)
-        above = np.abs(largest + sines.receptance * force) > sines.free
-        short = ~(above & (largest > np.abs(sines.receptance) * force))
+        force = _force_amplitude(motions, bound)
+        above = np.abs(bound + motions.receptance * force) > motions.free_amplitude
+        short = ~(above & (bound > np.abs(motions.receptance) * force))
         if not short.any():
             break
-        largest[short] *= 1.5
-    return largest
+        bound[short] *= 1.5
+    return bound
 
 
-def _root(excess, lower: Floats, short: Floats, upper: Floats, over: Floats, *, close: Floats) -> Floats:  # type: ignore[no-untyped-def]
-    """Return where what is short at the lower end and over at the upper one vanishes (false position, Illinois)."""
+def _regula_falsi(  # type: ignore[no-untyped-def]
+    function, lower: Floats, lower_value: Floats, upper: Floats, upper_value: Floats, *, tolerance: Floats
+) -> Floats:
+    """Return the bracketed roots of a function by false position (Illinois variant)."""
     middle, above = upper, np.zeros(upper.size, dtype=bool)
     for _ in range(12):
-        middle = (lower * over - upper * short) / np.maximum(over - short, _NOTHING)
-        value = excess(middle)
+        middle = (lower * upper_value - upper * lower_value) / np.maximum(upper_value - lower_value, _TINY)
+        value = function(middle)
         high = value > 0
-        halved_short, halved_over = np.where(above, 0.5, 1.0) * short, np.where(above, 1.0, 0.5) * over
-        lower, short = np.where(high, lower, middle), np.where(high, halved_short, value)
-        upper, over = np.where(high, middle, upper), np.where(high, value, halved_over)
+        halved_lower, halved_upper = np.where(above, 0.5, 1.0) * lower_value, np.where(above, 1.0, 0.5) * upper_value
+        lower, lower_value = np.where(high, lower, middle), np.where(high, halved_lower, value)
+        upper, upper_value = np.where(high, middle, upper), np.where(high, value, halved_upper)
         above = high
-        if np.all(np.abs(value) < close):
+        if np.all(np.abs(value) < tolerance):
             break
     return middle
 
 
-def _opposing(sines: _Sines, amplitude: Floats) -> Floats:
-    """Return the amplitude of the contact force that opposes a sinusoidal motion about the mean that balances."""
-    return _balanced_mean(sines, amplitude)[1]
+def _force_amplitude(motions: _SinusoidalMotions, amplitude: Floats) -> Floats:
+    """Return the amplitude of the contact force opposing a sinusoidal motion about the balanced mean, in N."""
+    return _balanced_mean(motions, amplitude)[1]
 
 
-def _balanced_mean(sines: _Sines, amplitude: Floats) -> tuple[Floats, Floats]:
-    """Return the mean that balances a sinusoidal motion, and the amplitude of the contact force opposing it."""
-    if isinstance(sines.gap_law, ExponentialGap):
-        beta = amplitude / sines.length
-        mean, force = sines.length * bessel_logarithm(beta), sines.load
-        if sines.static_stiffness > 0.0:
-            mean, force = _held_mean(sines, mean)
-        return mean, 2 * force * bessel_ratio(beta)
-    return _searched_mean(sines, amplitude)
+def _balanced_mean(motions: _SinusoidalMotions, amplitude: Floats) -> tuple[Floats, Floats]:
+    r"""Return the mean that satisfies the static equation under a sinusoidal motion, and the opposing force amplitude.
 
+    Notes
+    -----
+    For an exponential contact with :math:`\beta = a/l` on a floating structure
 
-def _held_mean(sines: _Sines, floating: Floats) -> tuple[Floats, Floats]:
-    """Return mean and mean force of an exponential contact on a structure that holds it, by where it would float.
+    .. math:: \bar x = l \ln I_0(\beta), \qquad \Phi = 2 F_N \frac{I_1(\beta)}{I_0(\beta)} ;
 
-    The force F_N exp((floating - mean)/l) is that of a spring beyond the place where the spring bears the load alone,
-    which is Wright's omega function.
+    any other law is integrated over the period by Gauss-Chebyshev quadrature.
     """
-    spring = sines.static_stiffness * sines.length
-    unloaded = sines.static_displacement - sines.load / sines.static_stiffness
-    stretch = wrightomega(np.log(sines.load / spring) + (floating - unloaded) / sines.length)
-    return unloaded + sines.length * stretch, spring * stretch
+    if isinstance(motions.gap_law, ExponentialGap):
+        beta = amplitude / motions.decay_length
+        mean, force = motions.decay_length * log_bessel_i0(beta), motions.load
+        if motions.static_stiffness > 0.0:
+            mean, force = _held_mean(motions, mean)
+        return mean, 2 * force * bessel_ratio(beta)
+    return _iterated_mean(motions, amplitude)
 
 
-def _searched_mean(sines: _Sines, amplitude: Floats) -> tuple[Floats, Floats]:
-    """Return what `_balanced_mean` does, by Newton's method in a bracket."""
-    floating = sines.static_stiffness == 0.0
-    lower = np.zeros_like(amplitude) if floating else np.minimum(sines.static_displacement, 0.0)
-    upper = amplitude.copy() if floating else np.maximum(sines.static_displacement, amplitude)
+def _held_mean(motions: _SinusoidalMotions, floating_mean: Floats) -> tuple[Floats, Floats]:
+    r"""Return mean displacement and mean force of an exponential contact on a structure with static stiffness.
+
+    Notes
+    -----
+    With the mean :math:`\bar x_f` of a floating structure, the mean force :math:`F_N e^{(\bar x_f - \bar x)/l}` equals
+    that of the static stiffness beyond the displacement at which the contact is unloaded,
+    :math:`\bar x_u = \bar x_0 - F_N/S_0`. The solution is Wright's omega function,
+
+    .. math::
+        \bar x = \bar x_u + l\,\omega\!\left(\ln\frac{F_N}{S_0 l} + \frac{\bar x_f - \bar x_u}{l}\right) .
+    """
+    spring_force = motions.static_stiffness * motions.decay_length
+    unloaded = motions.static_displacement - motions.load / motions.static_stiffness
+    stretch = wrightomega(np.log(motions.load / spring_force) + (floating_mean - unloaded) / motions.decay_length)
+    return unloaded + motions.decay_length * stretch, spring_force * stretch
+
+
+def _iterated_mean(motions: _SinusoidalMotions, amplitude: Floats) -> tuple[Floats, Floats]:
+    """Return what `_balanced_mean` does for any law, by Newton's method in a bracket."""
+    floating = motions.static_stiffness == 0.0
+    lower = np.zeros_like(amplitude) if floating else np.minimum(motions.static_displacement, 0.0)
+    upper = amplitude.copy() if floating else np.maximum(motions.static_displacement, amplitude)
     mean, opposing = lower.copy(), np.zeros_like(amplitude)
-    left, own = np.arange(mean.size), sines
+    left, own = np.arange(mean.size), motions
     for _ in range(60):
         with np.errstate(over="ignore"):
             force, opposing[left], slope = _force_moments(own, mean[left], amplitude[left])
@@ -212,22 +245,22 @@ def _searched_mean(sines: _Sines, amplitude: Floats) -> tuple[Floats, Floats]:
         lower[left[short]], upper[left[~short]] = mean[left[short]], mean[left[~short]]
         with np.errstate(divide="ignore", invalid="ignore"):
             step = excess / (own.static_stiffness + slope)
-            if floating and isinstance(sines.gap_law, TabulatedGap):
-                step = np.log(own.load / force) * force / slope  # in the logarithm the force is nearly straight
-            step[np.isinf(slope)] = np.nan  # which halves the bracket
+            if floating and not motions.gap_law.has_corner:
+                step = np.log(own.load / force) * force / slope  # the logarithm of the force is nearly linear
+            step[np.isinf(slope)] = np.nan  # which leads to bisection
         after = mean[left] - step
         inside = (lower[left] <= after) & (after <= upper[left])
         mean[left] = np.where(inside, after, 0.5 * (lower[left] + upper[left]))
-        left = left[~(np.abs(step) < _CLOSE * (amplitude[left] + _SMALL * own.length))]
+        left = left[~(np.abs(step) < _MEAN_TOLERANCE * (amplitude[left] + _SMALL * own.decay_length))]
         if not left.size:
             break
-        own = sines.among(left)
+        own = motions.select(left)
     return mean, opposing
 
 
-def _force_moments(sines: _Sines, mean: Floats, amplitude: Floats) -> tuple[Floats, Floats, Floats]:
-    """Return the mean force, its harmonic against a motion amplitude * cos theta, and the mean stiffness."""
-    cosines = _FEWER_ABSCISSAE if isinstance(sines.gap_law, TabulatedGap) else _ABSCISSAE
-    x, load = mean[:, np.newaxis] + np.multiply.outer(amplitude, cosines), sines.load[:, np.newaxis]
-    force, slope = sines.gap_law.force(x, load), sines.gap_law.stiffness(x, load)
+def _force_moments(motions: _SinusoidalMotions, mean: Floats, amplitude: Floats) -> tuple[Floats, Floats, Floats]:
+    """Return mean force, amplitude of the opposing force and mean stiffness under a sinusoidal motion."""
+    cosines = _ABSCISSAE if motions.gap_law.has_corner else _FEWER_ABSCISSAE
+    x, load = mean[:, np.newaxis] + np.multiply.outer(amplitude, cosines), motions.load[:, np.newaxis]
+    force, slope = motions.gap_law.force(x, load), motions.gap_law.stiffness(x, load)
     return force.mean(axis=1), -2 * (force @ cosines) / cosines.size, slope.mean(axis=1)

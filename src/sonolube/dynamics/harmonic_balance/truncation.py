@@ -1,107 +1,120 @@
-"""How finely a steady state must be resolved, from the motion with a single harmonic."""
+"""A-priori truncation: numbers of harmonics and time samples, estimated from the motion with a single harmonic."""
 
 from functools import lru_cache
 
 import numpy as np
 
 from sonolube.checks import Floats, Integers
-from sonolube.dynamics.harmonic_balance.harmonic_kernel import Resolution
-from sonolube.dynamics.harmonic_balance.receptance import ContactPort
+from sonolube.dynamics.harmonic_balance.harmonic_kernel import Truncation
+from sonolube.dynamics.harmonic_balance.receptance import CONTACT_PER_FORCE, PoleResidueModel
 
-_MOST = 64
-_PART = 0.02  # ratio of neighbouring frequencies, less one, at which receptances are bounded
-_COUPLING = 0.02  # force per change of the contact from which harmonics belong into Newton's matrix
+_MOST_HARMONICS = 64
+_FREQUENCY_STEP = 0.02  # ratio of neighbouring frequencies, less one, at which receptances are bounded
+_COUPLING = 0.02  # receptance times contact stiffness above which a harmonic belongs into Newton's matrix
 
 
-def orders_of_a_sine(
-    port: ContactPort, omega: Floats, load: Floats, change: Floats, amplitude: Floats, tolerance: float, parallel: bool
-) -> Resolution:
-    """Return the resolution of points whose force is, or is nearly, exponential, driven by a sine.
+def sinusoidal_truncation(
+    model: PoleResidueModel,
+    omega: Floats,
+    load: Floats,
+    decay_lengths: Floats,
+    amplitude: Floats,
+    tolerance: float,
+    follows_force: bool,
+) -> Truncation:
+    r"""Return the truncation of points with a sinusoidal drive and a smooth, nearly exponential contact force.
 
     Parameters
     ----------
-    port : ContactPort
-    omega, load, change, amplitude : ndarray, shape (p,)
-        Angular frequency, in rad/s, dead load, in N, length over which the contact changes, and amplitude, in m.
+    model : PoleResidueModel
+    omega, load, decay_lengths, amplitude : ndarray, shape (p,)
+        Angular frequency, in rad/s, dead load, in N, decay length of the contact force, and amplitude, in m.
     tolerance : float
-        Harmonics to leave out, relative to the amplitude.
-    parallel : bool
-        Whether the stiffness goes with the force, whose harmonics then fall the faster the higher they are.
+        Largest harmonic to truncate, relative to the amplitude.
+    follows_force : bool
+        Whether the stiffness is proportional to the force, whose harmonics then decay ever faster with the order.
 
     Returns
     -------
-    Resolution
+    Truncation
 
     Notes
     -----
-    Harmonic k of the force of a sine is 2 F_N I_k/I_0, with I_k/I_(k-1) about beta/(k - 1/2 + sqrt((k + 1/2)^2 +
-    beta^2)), a little too much [1]_. Bounding receptances by the highest at any higher frequency lets each criterion
-    fall with the order, so that orders are counted.
+    Under a sinusoidal displacement of :math:`\beta` decay lengths the force harmonics are
+
+    .. math::
+        \Phi_k = 2 F_N \frac{I_k(\beta)}{I_0(\beta)}, \qquad
+        \frac{I_k}{I_{k-1}} \lesssim \frac{\beta}{k - \frac12 + \sqrt{(k + \frac12)^2 + \beta^2}}
+
+    with an upper bound of the ratio [1]_. The receptance at a frequency is bounded by its largest value at any higher
+    frequency, so that each criterion decreases with the order and orders can be counted.
 
     References
     ----------
     .. [1] D. E. Amos, Math. Comp. 28, 239 (1974). doi:10.1090/S0025-5718-1974-0333287-7
     """
-    beta = amplitude / change
-    order = np.searchsorted(_steepness(tolerance), beta)
-    bound = _receptance_bound(port, omega.min(), _MOST * omega.max())
-    place = np.log(omega / omega.min()) / np.log1p(_PART)
-    felt, coupling = 0.25 * tolerance * amplitude / load, 0.5 * _COUPLING * change / load
-    share, least = np.ones_like(beta), np.minimum(felt, coupling)
+    beta = amplitude / decay_lengths
+    force_order = np.searchsorted(_order_thresholds(tolerance), beta)
+    bound = _receptance_bound(model, omega.min(), _MOST_HARMONICS * omega.max())
+    place = np.log(omega / omega.min()) / np.log1p(_FREQUENCY_STEP)
+    truncated, coupling = 0.25 * tolerance * amplitude / load, 0.5 * _COUPLING * decay_lengths / load
+    share, least = np.ones_like(beta), np.minimum(truncated, coupling)
     harmonics, coupled = np.zeros((2, beta.size), dtype=np.uint8)
-    for k in range(1, int(order.max()) + 1):
-        share *= _step(beta, k)
-        answer = share * bound[(place + np.log(k) / np.log1p(_PART)).astype(np.int32)]
-        if not np.any(answer > least):
+    for k in range(1, int(force_order.max()) + 1):
+        share *= _bessel_ratio_bound(beta, k)
+        response = share * bound[(place + np.log(k) / np.log1p(_FREQUENCY_STEP)).astype(np.int32)]
+        if not np.any(response > least):
             break
-        harmonics += (answer > felt).view(np.uint8)
-        coupled += (answer > coupling).view(np.uint8)
-    first = np.clip(coupled.astype(np.int64), 1, np.maximum(order, 1))
-    whole = np.maximum(np.minimum(harmonics.astype(np.int64), order), np.maximum(first, 2))
-    needed = order + whole + 6 if parallel else 2 * (order + 3)
-    return Resolution(whole, first, np.maximum(4 * whole, 2 * (needed // 2)))
+        harmonics += (response > truncated).view(np.uint8)
+        coupled += (response > coupling).view(np.uint8)
+    n = np.clip(coupled.astype(np.int64), 1, np.maximum(force_order, 1))
+    h = np.maximum(np.minimum(harmonics.astype(np.int64), force_order), np.maximum(n, 2))
+    needed = force_order + h + 6 if follows_force else 2 * (force_order + 3)
+    return Truncation(h, n, np.maximum(4 * h, 2 * (needed // 2)))
 
 
 @lru_cache(maxsize=64)
-def _steepness(tolerance: float) -> Floats:
-    """Return the amplitudes over the length of change at which harmonics 1, 2, ... of the force exceed a share."""
+def _order_thresholds(tolerance: float) -> Floats:
+    """Return the amplitudes over the decay length at which force harmonics 1, 2, ... exceed a tolerance."""
     beta = np.geomspace(1e-7, 1e4, 2000)
-    shares = np.cumprod([_step(beta, k) for k in range(1, _MOST)], axis=0)
+    shares = np.cumprod([_bessel_ratio_bound(beta, k) for k in range(1, _MOST_HARMONICS)], axis=0)
     return np.asarray(beta[np.argmax(shares >= tolerance, axis=1)])
 
 
-def _step(beta: Floats, order: int) -> Floats:
+def _bessel_ratio_bound(beta: Floats, order: int) -> Floats:
+    """Return the upper bound of I_k/I_(k-1) by Amos."""
     return np.asarray(beta / (order - 0.5 + np.sqrt((order + 0.5) ** 2 + np.square(beta))))
 
 
-def plain_orders(points: int, given: int) -> Resolution:
-    """Return the resolution to begin with where nothing better is known.
+def default_truncation(points: int, drive_harmonics: int) -> Truncation:
+    """Return the truncation to start with where no estimate exists: non-smooth forces and periodic drives.
 
     Parameters
     ----------
-    points, given : int
+    points, drive_harmonics : int
         Numbers of points and of harmonics of their drive.
 
     Returns
     -------
-    Resolution
+    Truncation
     """
-    harmonics = max(8, given)
+    harmonics = max(8, drive_harmonics)
 
-    def alike(value: int) -> Integers:
+    def uniform(value: int) -> Integers:
         return np.full(points, value, dtype=np.int64)
 
-    return Resolution(alike(harmonics), alike(min(harmonics, 8)), alike(max(64, 4 * harmonics)))
+    return Truncation(uniform(harmonics), uniform(min(harmonics, 8)), uniform(max(64, 4 * harmonics)))
 
 
-def _receptance_bound(port: ContactPort, lowest: float, highest: float) -> Floats:
-    """Return what the contact's receptance stays below from each of a row of angular frequencies on."""
-    count = int(np.log(highest / lowest) / np.log1p(_PART)) + 2
-    w = lowest * np.exp(np.log1p(_PART) * np.arange(count + 1))[:, np.newaxis]
-    above = np.abs(port.constant[0]) + np.abs(port.slope[0]) * w[1:]
-    detuned = port.determinant - np.square(w)
-    nearest = np.minimum(np.abs(detuned[:-1]), np.abs(detuned[1:]))
-    nearest[detuned[:-1] * detuned[1:] < 0] = 0.0
-    below = np.sqrt(np.square(nearest) + np.square(port.trace * w[:-1]))
-    within = np.sum(above / np.maximum(below, np.finfo(np.float64).tiny), axis=1)
+def _receptance_bound(model: PoleResidueModel, lowest: float, highest: float) -> Floats:
+    """Return upper bounds of the contact receptance at and above each of a geometric series of frequencies, in m/N."""
+    count = int(np.log(highest / lowest) / np.log1p(_FREQUENCY_STEP)) + 2
+    w = lowest * np.exp(np.log1p(_FREQUENCY_STEP) * np.arange(count + 1))[:, np.newaxis]
+    constant, slope = model.numerator_constant[CONTACT_PER_FORCE], model.numerator_slope[CONTACT_PER_FORCE]
+    numerator = np.abs(constant) + np.abs(slope) * w[1:]
+    detuning = model.determinant - np.square(w)
+    nearest = np.minimum(np.abs(detuning[:-1]), np.abs(detuning[1:]))
+    nearest[detuning[:-1] * detuning[1:] < 0] = 0.0
+    denominator = np.sqrt(np.square(nearest) + np.square(model.trace * w[:-1]))
+    within = np.sum(numerator / np.maximum(denominator, np.finfo(np.float64).tiny), axis=1)
     return np.asarray(np.maximum.accumulate(within[::-1])[::-1])

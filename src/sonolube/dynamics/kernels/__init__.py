@@ -1,1 +1,1 @@
-"""Compiled building blocks shared by the solvers: SIMD rows, tabulated force laws, peak velocities."""
+"""Compiled kernels shared by the solvers: SIMD rows, contact force laws, tabulated forces, peak velocities."""

@@ -1,27 +1,33 @@
-"""The highest velocity of each of many periodic motions."""
+"""Peak velocity of periodic motions given by their displacement harmonics."""
 
 import numba
 import numpy as np
 
 from sonolube.checks import Complexes, Floats
-from sonolube.dynamics.kernels.simd import INSIDE, KERNEL
+from sonolube.dynamics.kernels.simd import INNER, KERNEL
 
-_PLAIN = 0.5  # share of k^3 X_k in the first harmonic up to which a velocity has one peak each way
-_SCAN = 32  # samples per harmonic otherwise
+_WEAK_HARMONICS = 0.5  # sum of k^3 |X_k|, k > 1, over |X_1| up to which the velocity has one maximum and one minimum
+_SAMPLES_PER_HARMONIC = 32  # for every other motion
 
 
 @numba.njit(**KERNEL)
-def highest_velocities(omega: Floats, harmonics: Complexes, highest: Floats) -> None:
-    """Write the highest magnitude of each velocity.
+def peak_velocities(omega: Floats, harmonics: Complexes, peak: Floats) -> None:
+    r"""Write the largest magnitude of the velocity of each motion.
 
     Parameters
     ----------
     omega : ndarray, shape (p,)
         Angular frequency, in rad/s.
-    harmonics : ndarray of complex, shape (p, room)
-        Of the displacement, in m; NaN for motions that are not known.
-    highest : ndarray, shape (p,)
-        Written, in m/s.
+    harmonics : ndarray of complex, shape (p, H)
+        Displacement harmonics :math:`X_k`, in m; NaN for a point without solution.
+    peak : ndarray, shape (p,)
+        Written, in m/s; NaN where the harmonics are NaN.
+
+    Notes
+    -----
+    The velocity is :math:`v = \omega\,\mathrm{Re}\sum_k i k X_k e^{ik\theta}`. Where
+    :math:`\sum_{k>1} k^3 |X_k| \le |X_1|/2` it has a single maximum and a single minimum, which Newton's method finds
+    from those of the first harmonic. Any other motion is sampled.
     """
     for point in range(omega.size):
         own, higher = harmonics[point], 0.0
@@ -30,37 +36,37 @@ def highest_velocities(omega: Floats, harmonics: Complexes, highest: Floats) -> 
         fastest = 0.0
         if np.isnan(higher) or np.isnan(own[0].real):
             fastest = np.nan
-        elif higher <= _PLAIN * abs(own[0]):
+        elif higher <= _WEAK_HARMONICS * abs(own[0]):
             start = 0.5 * np.pi - np.arctan2(own[0].imag, own[0].real)
-            fastest = max(_peak(own, start), _peak(own, start + np.pi))
+            fastest = max(_extremum(own, start), _extremum(own, start + np.pi))
         else:
-            count = _SCAN * own.size
+            count = _SAMPLES_PER_HARMONIC * own.size
             for j in range(count):
-                fastest = max(fastest, abs(_turning(own, 2 * np.pi * j / count)[0]))
-        highest[point] = omega[point] * fastest
+                fastest = max(fastest, abs(_phase_derivatives(own, 2 * np.pi * j / count)[0]))
+        peak[point] = omega[point] * fastest
 
 
-@numba.njit(**INSIDE)
-def _peak(own: Complexes, phase: float) -> float:
-    """Return the velocity per phase where its slope vanishes nearby."""
-    rate = 0.0
+@numba.njit(**INNER)
+def _extremum(own: Complexes, phase: float) -> float:
+    """Return the magnitude of dx/dtheta at its extremum near a phase, by Newton's method on the second derivative."""
+    first = 0.0
     for _ in range(8):
-        rate, bend, third = _turning(own, phase)
-        if third == 0.0 or abs(bend) < 1e-7 * abs(rate):
+        first, second, third = _phase_derivatives(own, phase)
+        if third == 0.0 or abs(second) < 1e-7 * abs(first):
             break
-        phase -= bend / third
-    return abs(rate)
+        phase -= second / third
+    return abs(first)
 
 
-@numba.njit(**INSIDE)
-def _turning(own: Complexes, phase: float) -> tuple[float, float, float]:
-    """Return the first three derivatives of the displacement by phase."""
+@numba.njit(**INNER)
+def _phase_derivatives(own: Complexes, phase: float) -> tuple[float, float, float]:
+    """Return the first three derivatives of the displacement with respect to the phase."""
     cosine, sine = np.cos(phase), np.sin(phase)
-    c, s, rate, bend, third = 1.0, 0.0, 0.0, 0.0, 0.0
+    c, s, first, second, third = 1.0, 0.0, 0.0, 0.0, 0.0
     for k in range(1, own.size + 1):
         c, s = c * cosine - s * sine, c * sine + s * cosine
         real, imaginary = own[k - 1].real * c - own[k - 1].imag * s, own[k - 1].real * s + own[k - 1].imag * c
-        rate -= k * imaginary
-        bend -= k * k * real
+        first -= k * imaginary
+        second -= k * k * real
         third += k * k * k * imaginary
-    return rate, bend, third
+    return first, second, third

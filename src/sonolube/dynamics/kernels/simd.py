@@ -1,19 +1,25 @@
-"""Arithmetic on lanes: many points side by side in a row, so that the processor's vector units serve all at once.
+"""Arithmetic on SIMD rows: one array entry per operating point, so that loops compile to vector instructions.
 
-Each function here works on rows, one entry to a point, and writes its result where it is told. Rows of a kernel never
+A batch is solved in blocks of `LANES` points. A row holds one number of every point of the block (one point per SIMD
+lane). Every function here works on whole rows and writes its result to an output row. The rows of a kernel never
 overlap, and no operation mixes lanes.
 """
 
 from typing import Any
 
 import numba
+import numpy as np
 
 from sonolube.checks import Floats, Integers
 
 LANES = 128
-# Products and sums do not fuse: which do would depend on what was inlined, so that a kernel compiled just now and the
-# same kernel from the cache would differ in the last bit. Whoever calls a kernel holds its arrays, so that it need not
-# count references to them (numba's `_nrt`), a third of the code to compile; then it can't make any arrays, either.
+"""Points per block. []"""
+
+# Numba options of the kernels that Python calls.
+# - No fused multiply-add: whether products and sums fuse would depend on what was inlined, so that a kernel compiled
+#   just now and the same kernel read from the cache would differ in the last bit.
+# - No reference counting (`_nrt`): the caller holds the arrays, and a third of the compile time is saved; such a kernel
+#   cannot allocate arrays.
 KERNEL: dict[str, Any] = {
     "cache": True,
     "nogil": True,
@@ -22,25 +28,34 @@ KERNEL: dict[str, Any] = {
     "no_cfunc_wrapper": True,
     "_nrt": False,
 }
-ALLOCATING: dict[str, Any] = KERNEL | {"_nrt": True}
-INSIDE: dict[str, Any] = {  # for what only kernels call, which spares it everything that Python would need
+ALLOCATING_KERNEL: dict[str, Any] = KERNEL | {"_nrt": True}
+INNER: dict[str, Any] = {  # functions that only kernels call, compiled without any Python interface
     "fastmath": KERNEL["fastmath"],
     "error_model": "numpy",
     "no_cfunc_wrapper": True,
     "no_cpython_wrapper": True,
     "_nrt": False,
 }
-# For large functions called in one place: what is compiled within its caller is compiled once, and not twice.
-ONCE: dict[str, Any] = INSIDE | {"inline": "always"}
+# Large functions with a single call site: inlined into their caller, they are compiled once instead of twice.
+INLINED: dict[str, Any] = INNER | {"inline": "always"}
 
 _HALVINGS = 10
-_SHARE = 2.0**-_HALVINGS
-_LARGEST = 700.0
+_SCALE = 2.0**-_HALVINGS
+_LARGEST_EXPONENT = 700.0
 
 
-@numba.njit(**INSIDE)
+@numba.njit(**INNER)
+def block_maximum(values: Integers, block: Integers) -> int:
+    """Return the largest of the values at the points of a block."""
+    largest = np.int64(0)
+    for point in block:
+        largest = max(largest, values[point])
+    return int(largest)
+
+
+@numba.njit(**INNER)
 def gather(table: Floats, block: Integers, rows: Floats) -> None:
-    """Write each column of a table at a block's points as a row, zeros beyond the table's width.
+    """Write each column of a table at the points of a block as a row; zeros beyond the table's width.
 
     Lanes beyond the block repeat its last point.
     """
@@ -50,14 +65,18 @@ def gather(table: Floats, block: Integers, rows: Floats) -> None:
             rows[row, lane] = table[point, row] if row < table.shape[1] else 0.0
 
 
-@numba.njit(**INSIDE)
+@numba.njit(**INNER)
 def exponentials(argument: Floats, result: Floats) -> None:
-    """Write exp(argument), held between -700 and 700, to within 4e-13 for arguments below 100.
+    r"""Write exp(argument), the argument clipped to -700 ... 700, with relative error below 4e-13 for arguments < 100.
 
-    The argument is halved ten times, and the series squared as often.
+    Notes
+    -----
+    Scaling and squaring of the Taylor series of degree 9:
+
+    .. math:: e^x = \left(e^{x/2^{10}}\right)^{2^{10}}
     """
     for lane in range(LANES):
-        r = min(max(argument[lane], -_LARGEST), _LARGEST) * _SHARE
+        r = min(max(argument[lane], -_LARGEST_EXPONENT), _LARGEST_EXPONENT) * _SCALE
         series = 1 / 40320 + r / 362880
         series = 1 / 5040 + r * series
         series = 1 / 720 + r * series
@@ -72,11 +91,12 @@ def exponentials(argument: Floats, result: Floats) -> None:
         result[lane] = series
 
 
-@numba.njit(**INSIDE)
-def combine(target: Floats, coefficients: Floats, sources: Floats, part: int, last: int) -> None:
-    """Write the sum for k up to and including `last` of coefficients[k] * sources[2 k - 1 + part], four at a time.
+@numba.njit(**INNER)
+def weighted_row_sum(target: Floats, coefficients: Floats, sources: Floats, part: int, last: int) -> None:
+    """Write the sum over k = 0 ... last of coefficients[k] * sources[2 k - 1 + part], four terms at a time.
 
-    For k = 0 the source is row 0: a motion's or a spectrum's mean, before the two parts of its harmonics in turns.
+    Rows of `sources` are those of a motion or a spectrum: row 0 its mean (the source for k = 0), then real (part 0) and
+    imaginary (part 1) part of each harmonic in turn.
     """
     for lane in range(LANES):
         target[lane] = 0.0
@@ -92,29 +112,29 @@ def combine(target: Floats, coefficients: Floats, sources: Floats, part: int, la
             target[lane] += one + two
 
 
-@numba.njit(**INSIDE)
-def blend(one: Floats, share: float, other: Floats, rest: float, target: Floats) -> None:
-    """Write share * one + rest * other."""
+@numba.njit(**INNER)
+def linear_combination(a: Floats, alpha: float, b: Floats, beta: float, target: Floats) -> None:
+    """Write alpha * a + beta * b."""
     for lane in range(LANES):
-        target[lane] = share * one[lane] + rest * other[lane]
+        target[lane] = alpha * a[lane] + beta * b[lane]
 
 
-@numba.njit(**INSIDE)
-def add_size(source: Floats, target: Floats) -> None:
+@numba.njit(**INNER)
+def add_absolute(source: Floats, target: Floats) -> None:
     """Add the absolute values of one row to another."""
     for lane in range(LANES):
         target[lane] += abs(source[lane])
 
 
-@numba.njit(**INSIDE)
-def add_products(one: Floats, other: Floats, third: Floats, fourth: Floats, target: Floats) -> None:
-    """Add one * other + third * fourth to another row."""
+@numba.njit(**INNER)
+def add_products(a: Floats, b: Floats, c: Floats, d: Floats, target: Floats) -> None:
+    """Add a * b + c * d to another row."""
     for lane in range(LANES):
-        target[lane] += one[lane] * other[lane] + third[lane] * fourth[lane]
+        target[lane] += a[lane] * b[lane] + c[lane] * d[lane]
 
 
-@numba.njit(**INSIDE)
-def subtract_product(one: Floats, other: Floats, target: Floats) -> None:
-    """Subtract the product of two rows from another."""
+@numba.njit(**INNER)
+def subtract_product(a: Floats, b: Floats, target: Floats) -> None:
+    """Subtract a * b from another row."""
     for lane in range(LANES):
-        target[lane] -= one[lane] * other[lane]
+        target[lane] -= a[lane] * b[lane]

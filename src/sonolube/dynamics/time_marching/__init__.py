@@ -1,1 +1,1 @@
-"""Time marching: trajectories of a structure with one nonlinear contact, by an exponential integrator."""
+"""Time marching of batches of trajectories by an exponential integrator with a constant step."""

@@ -1,80 +1,31 @@
-"""Marching of many points side by side: the compiled part.
+"""Time-marching kernel: the exponential integrator on SIMD lanes, one trajectory per lane.
 
-Every point is a lane. What belongs to the lanes stands in one flat array of rows, a row holding one number of each
-lane, so that a step is one loop over lanes that the compiler turns into vector instructions. Numbers that must be known
-at compile time for that, such as how many pairs of states there are, travel as the lengths of tuples.
+All numbers of the lanes are in one flat array of rows, a row holding one number of every lane, so that a step is a
+single loop over lanes that compiles to vector instructions. Integers that must be known at compile time, such as the
+number of pairs of states, are passed as the lengths of tuples.
 """
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numba
 import numpy as np
 
 from sonolube.checks import Floats
+from sonolube.dynamics.kernels.contact_kernel import EXPONENTIAL, HERTZ, LINEAR
 from sonolube.dynamics.kernels.force_table import log_force_at
+from sonolube.dynamics.time_marching.row_layout import LANES, STATISTICS, row_layout
 
-LANES = 32
-STATISTICS = 8  # of the contact: highest, lowest, sum, cosine and sine sum of x; sum, highest and lowest of F_n
-_MATHS = {"nsz"}  # as lanes.KERNEL, and for its reason
+_FASTMATH = {"nsz"}  # no fused multiply-add, for the reason given in `sonolube.dynamics.kernels.simd`
 _LARGEST_EXPONENT = 32.0
-INSTANT = 1e-200  # steps: a ramp without duration has ended when it starts
-SWEEPS = 8  # by which a start without a past converges; each gains the feedback of the force over four steps
+RAMP_EPSILON = 1e-200
+"""Steps added to time and duration of a ramp, so that a ramp of no duration is complete at its start. []"""
+SWEEPS = 8
+"""Fixed-point iterations of a start without history; each reduces the error by the force's own feedback. []"""
 
 
-class Rows(NamedTuple):
-    """Where each group of rows starts in the flat array."""
-
-    propagator: int
-    oldest: int
-    x_seen: int
-    v_seen: int
-    y: int
-    state: int
-    recent: int
-    x_foreseen: int
-    v_foreseen: int
-    forces: int
-    law: int
-    statistics: int
-    x_free: int
-    v_free: int
-    forces_ahead: int
-    x_ahead: int
-    v_ahead: int
-    mark: int
-    end: int
-
-
-@numba.njit(cache=True)
-def rows(pairs: tuple[int, ...]) -> Rows:
-    """Return where each group of rows starts, in the order in which the groups stand."""
-    pair, fixed = 2 * len(pairs) * LANES, 12 * 2 * len(pairs) * LANES
-    return Rows(
-        0,  # propagator of y, row by row of each pair
-        2 * pair,  # what the oldest force adds to y
-        3 * pair,  # displacement of the contact per state
-        4 * pair,  # its velocity per state
-        5 * pair,  # y, the state less what recent forces add
-        6 * pair,  # the state
-        7 * pair,  # what each recent force adds to the state
-        fixed,  # displacement ahead per recent force
-        fixed + 5 * LANES,  # velocity ahead per recent force
-        fixed + 10 * LANES,  # recent forces less the load, newest first
-        fixed + 15 * LANES,  # contact law: load, three constants, damping
-        fixed + 20 * LANES,  # statistics
-        fixed + 28 * LANES,  # displacements now and ahead without contact
-        fixed + 33 * LANES,  # velocities likewise
-        fixed + 38 * LANES,  # forces less the load, now and ahead
-        fixed + 43 * LANES,  # displacements ahead per force
-        fixed + 63 * LANES,  # velocities ahead per force
-        fixed + 83 * LANES,  # one where a lane starts anew
-        fixed + 84 * LANES,
-    )
-
-
-@numba.njit(cache=True, fastmath=_MATHS, error_model="numpy")
+@numba.njit(cache=True, fastmath=_FASTMATH, error_model="numpy")
 def exponential(argument: float) -> float:
-    """Return exp(argument) to 1e-13, the argument held between -32 and 32."""
+    """Return exp(argument) with a relative error of 1e-13, the argument clipped to -32 ... 32."""
     u = min(max(argument, -_LARGEST_EXPONENT), _LARGEST_EXPONENT) / 256
     uu = u * u
     power = (1 / 720 + u * (1 / 5040)) + uu * (1 / 40320 + u * (1 / 362880))
@@ -90,18 +41,18 @@ def exponential(argument: float) -> float:
     return power
 
 
-@numba.njit(cache=True, fastmath=_MATHS, error_model="numpy")
+@numba.njit(cache=True, fastmath=_FASTMATH, error_model="numpy")
 def _contact_force(
     kind: tuple[int, ...], damped: tuple[int, ...], cells: Floats, x: float, v: float, lanes: Floats, law: int
 ) -> Any:
-    """Return F_n of one lane."""
+    """Return the contact force of one lane, in N; the rows of the law are those of `MarchingProblem.law_rows`."""
     load, first, second = lanes[law], lanes[law + LANES], lanes[law + 2 * LANES]
-    if len(kind) == 0:
+    if len(kind) == EXPONENTIAL:
         force = load * exponential(-x * first)
-    elif len(kind) == 1:
+    elif len(kind) == HERTZ:
         approach = max(second - x, 0.0)
         force = first * approach * np.sqrt(approach)
-    elif len(kind) == 2:
+    elif len(kind) == LINEAR:
         force = max(load - first * x, 0.0)
     else:
         force = load * exponential(log_force_at(cells, second + first * x)[0] - lanes[law + 3 * LANES])
@@ -110,7 +61,7 @@ def _contact_force(
     return force
 
 
-@numba.njit(cache=True, fastmath=_MATHS, error_model="numpy")
+@numba.njit(cache=True, fastmath=_FASTMATH, error_model="numpy")
 def _step(
     pairs: tuple[int, ...],
     kind: tuple[int, ...],
@@ -121,7 +72,8 @@ def _step(
     cosine: float,
     sine: float,
 ) -> None:
-    at = rows(pairs)
+    """March all lanes by one step: predict the contact's motion, evaluate its force, update the statistics."""
+    at = row_layout(pairs)
     for lane in range(LANES):
         forces, law, statistics = at.forces + lane, at.law + lane, at.statistics + lane
         newest, second = lanes[forces], lanes[forces + LANES]
@@ -134,16 +86,16 @@ def _step(
             new_b = lanes[e + 2 * LANES] * a + lanes[e + 3 * LANES] * b
             new_b += lanes[at.oldest + two] * oldest + drive[two]
             lanes[at.y + one], lanes[at.y + two] = new_a, new_b
-            x += lanes[at.x_seen + one] * new_a + lanes[at.x_seen + two] * new_b
+            x += lanes[at.x_output + one] * new_a + lanes[at.x_output + two] * new_b
             if len(damped):
-                v += lanes[at.v_seen + one] * new_a + lanes[at.v_seen + two] * new_b
-        p = at.x_foreseen + lane
-        held = lanes[p] * newest + lanes[p + LANES] * second + lanes[p + 2 * LANES] * third
-        x += held + lanes[p + 3 * LANES] * fourth + lanes[p + 4 * LANES] * oldest
+                v += lanes[at.v_output + one] * new_a + lanes[at.v_output + two] * new_b
+        p = at.x_predictor + lane
+        from_forces = lanes[p] * newest + lanes[p + LANES] * second + lanes[p + 2 * LANES] * third
+        x += from_forces + lanes[p + 3 * LANES] * fourth + lanes[p + 4 * LANES] * oldest
         if len(damped):
-            p = at.v_foreseen + lane
-            held = lanes[p] * newest + lanes[p + LANES] * second + lanes[p + 2 * LANES] * third
-            v += held + lanes[p + 3 * LANES] * fourth + lanes[p + 4 * LANES] * oldest
+            p = at.v_predictor + lane
+            from_forces = lanes[p] * newest + lanes[p + LANES] * second + lanes[p + 2 * LANES] * third
+            v += from_forces + lanes[p + 3 * LANES] * fourth + lanes[p + 4 * LANES] * oldest
         force = _contact_force(kind, damped, cells, x, v, lanes, law)
         lanes[forces + 4 * LANES], lanes[forces + 3 * LANES], lanes[forces + 2 * LANES] = fourth, third, second
         lanes[forces + LANES], lanes[forces] = newest, force - lanes[law]
@@ -158,10 +110,10 @@ def _step(
             lanes[statistics + 7 * LANES] = min(lanes[statistics + 7 * LANES], force)
 
 
-@numba.njit(cache=True, fastmath=_MATHS, error_model="numpy")
+@numba.njit(cache=True, fastmath=_FASTMATH, error_model="numpy")
 def _complete_state(pairs: tuple[int, ...], lanes: Floats) -> None:
-    """Make the state of y and the recent forces."""
-    at = rows(pairs)
+    """Write the state from the auxiliary state y and the recent forces."""
+    at = row_layout(pairs)
     for k in range(2 * len(pairs)):
         for lane in range(LANES):
             total = lanes[at.y + k * LANES + lane]
@@ -171,10 +123,10 @@ def _complete_state(pairs: tuple[int, ...], lanes: Floats) -> None:
             lanes[at.state + k * LANES + lane] = total
 
 
-@numba.njit(cache=True, fastmath=_MATHS, error_model="numpy")
-def _move_freely(pairs: tuple[int, ...], lanes: Floats, table: Floats, step: int) -> None:
-    """Write the contact's motion now and at the next four steps without a contact force; uses up the state."""
-    at, row = rows(pairs), 2 * len(pairs) * LANES
+@numba.njit(cache=True, fastmath=_FASTMATH, error_model="numpy")
+def _free_motion(pairs: tuple[int, ...], lanes: Floats, table: Floats, step: int) -> None:
+    """Write the contact's motion now and at the next four steps without contact force; overwrites the state."""
+    at, row = row_layout(pairs), 2 * len(pairs) * LANES
     for ahead in range(5):
         drive = table[(step + ahead) * row : (step + ahead + 1) * row]
         for lane in range(LANES):
@@ -182,20 +134,20 @@ def _move_freely(pairs: tuple[int, ...], lanes: Floats, table: Floats, step: int
             for i in range(len(pairs)):
                 one, two, e = 2 * i * LANES + lane, (2 * i + 1) * LANES + lane, at.propagator + 4 * i * LANES + lane
                 a, b = lanes[at.state + one], lanes[at.state + two]
-                x += lanes[at.x_seen + one] * a + lanes[at.x_seen + two] * b
-                v += lanes[at.v_seen + one] * a + lanes[at.v_seen + two] * b
+                x += lanes[at.x_output + one] * a + lanes[at.x_output + two] * b
+                v += lanes[at.v_output + one] * a + lanes[at.v_output + two] * b
                 if ahead < 4:
                     lanes[at.state + one] = lanes[e] * a + lanes[e + LANES] * b + drive[one]
                     lanes[at.state + two] = lanes[e + 2 * LANES] * a + lanes[e + 3 * LANES] * b + drive[two]
             lanes[at.x_free + ahead * LANES + lane], lanes[at.v_free + ahead * LANES + lane] = x, v
 
 
-@numba.njit(cache=True, fastmath=_MATHS, error_model="numpy")
+@numba.njit(cache=True, fastmath=_FASTMATH, error_model="numpy")
 def _collocate(
     pairs: tuple[int, ...], kind: tuple[int, ...], damped: tuple[int, ...], cells: Floats, lanes: Floats
 ) -> None:
-    """Write the forces now and at the next four steps, each by the motion that all of them bring about."""
-    at = rows(pairs)
+    """Write the forces now and at the next four steps, consistent with the motion under them, by fixed-point sweeps."""
+    at = row_layout(pairs)
     for lane in range(LANES):
         law = at.law + lane
         force = _contact_force(kind, damped, cells, lanes[at.x_free + lane], lanes[at.v_free + lane], lanes, law)
@@ -216,8 +168,8 @@ def _collocate(
                 lanes[at.forces_ahead + ahead] = force - lanes[law]
 
 
-@numba.njit(cache=True, fastmath=_MATHS, error_model="numpy")
-def _start(
+@numba.njit(cache=True, fastmath=_FASTMATH, error_model="numpy")
+def _restart(
     pairs: tuple[int, ...],
     kind: tuple[int, ...],
     damped: tuple[int, ...],
@@ -227,13 +179,13 @@ def _start(
     step: int,
     backward: Floats,
 ) -> None:
-    """Replace the past of marked lanes by one that continues the forces of the next four steps.
+    """Replace the force history of marked lanes by the smooth continuation of the next four steps into the past.
 
-    After a jump of the voltage the forces so far no longer foretell those to come; the state is not touched.
+    After a jump of the voltage the past forces no longer predict those to come. The state is unchanged.
     """
-    at = rows(pairs)
+    at = row_layout(pairs)
     _complete_state(pairs, lanes)
-    _move_freely(pairs, lanes, table, step)
+    _free_motion(pairs, lanes, table, step)
     _collocate(pairs, kind, damped, cells, lanes)
     for j in range(5):
         for lane in range(LANES):
@@ -247,41 +199,43 @@ def _start(
                 lanes[at.y + k * LANES + lane] -= lanes[added] * change
 
 
-@numba.njit(cache=True, fastmath=_MATHS, error_model="numpy")
-def _ramp(share: Floats, time: float, ramp_steps: Floats, cosine_shaped: bool) -> None:
+@numba.njit(cache=True, fastmath=_FASTMATH, error_model="numpy")
+def _ramp_factors(factor: Floats, time: float, ramp_steps: Floats, cosine_shaped: bool) -> None:
+    """Write the ramp factor of every lane at a time in steps."""
     for lane in range(LANES):
-        share[lane] = min((time + INSTANT) / (ramp_steps[lane] + INSTANT), 1.0)
+        factor[lane] = min((time + RAMP_EPSILON) / (ramp_steps[lane] + RAMP_EPSILON), 1.0)
     if cosine_shaped:
         for lane in range(LANES):
-            share[lane] = 0.5 - 0.5 * np.cos(np.pi * share[lane])
+            factor[lane] = 0.5 - 0.5 * np.cos(np.pi * factor[lane])
 
 
-@numba.njit(cache=True, fastmath=_MATHS, error_model="numpy")
-def _combine(
-    table: Floats, steady: Floats, sloping: Floats, bending: Floats, level: Floats, slope: Floats, bend: Floats
+@numba.njit(cache=True, fastmath=_FASTMATH, error_model="numpy")
+def _combine_ramp(
+    table: Floats, constant: Floats, linear: Floats, quadratic: Floats, level: Floats, slope: Floats, bend: Floats
 ) -> None:
+    """Write the drive under a ramp level + slope s + bend s^2 within a step."""
     for lane in range(LANES):
-        table[lane] = level[lane] * steady[lane] + slope[lane] * sloping[lane] + bend[lane] * bending[lane]
+        table[lane] = level[lane] * constant[lane] + slope[lane] * linear[lane] + bend[lane] * quadratic[lane]
 
 
-@numba.njit(cache=True, fastmath=_MATHS, error_model="numpy")
-def _tabulate(
+@numba.njit(cache=True, fastmath=_FASTMATH, error_model="numpy")
+def _tabulate_drive(
     drive: Floats, table: Floats, steps: int, states: int, first: int, ramp_steps: Floats, cosine_shaped: bool
 ) -> None:
-    """Write the drive of a period's steps and of four more, under the ramp, which is a parabola within each step."""
+    """Write the drive of the steps of a period and of four more, the ramp interpolated by a parabola in each step."""
     level, middle, end = np.empty(LANES), np.empty(LANES), np.empty(LANES)
     slope, bend = np.empty(LANES), np.empty(LANES)
     power = steps * states * LANES
     for step in range(steps + 4):
-        _ramp(level, first + step, ramp_steps, cosine_shaped)
-        _ramp(middle, first + step + 0.5, ramp_steps, cosine_shaped)
-        _ramp(end, first + step + 1.0, ramp_steps, cosine_shaped)
+        _ramp_factors(level, first + step, ramp_steps, cosine_shaped)
+        _ramp_factors(middle, first + step + 0.5, ramp_steps, cosine_shaped)
+        _ramp_factors(end, first + step + 1.0, ramp_steps, cosine_shaped)
         for lane in range(LANES):
             slope[lane] = 4 * middle[lane] - 3 * level[lane] - end[lane]
             bend[lane] = 2 * (level[lane] - 2 * middle[lane] + end[lane])
         for k in range(states):
             target, source = (step * states + k) * LANES, (step % steps * states + k) * LANES
-            _combine(
+            _combine_ramp(
                 table[target : target + LANES],
                 drive[source : source + LANES],
                 drive[source + power : source + power + LANES],
@@ -293,21 +247,22 @@ def _tabulate(
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _mark(lanes: Floats, mark: int, now: int, step: int, ramp_steps: Floats, jumps: Any) -> bool:
-    """Mark the lanes that start anew before a step: all at time 0 and at a jump, one where its ramp has ended."""
-    everyone = now == 0
+def _mark_restarts(lanes: Floats, mark: int, now: int, step: int, ramp_steps: Floats, jumps: Any) -> bool:
+    """Mark the lanes that restart before a step: all at time 0 and at a jump, one where its ramp has just ended."""
+    all_lanes = now == 0
     for jump in jumps:
-        everyone = everyone or jump == step
-    someone = everyone
+        all_lanes = all_lanes or jump == step
+    any_lane = all_lanes
     for lane in range(LANES):
-        ended = everyone or now >= ramp_steps[lane] > now - 1
+        ended = all_lanes or now >= ramp_steps[lane] > now - 1
         lanes[mark + lane] = 1.0 if ended else 0.0
-        someone = someone or ended
-    return someone
+        any_lane = any_lane or ended
+    return any_lane
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _forget(lanes: Floats, statistics: int) -> None:
+def _reset_statistics(lanes: Floats, statistics: int) -> None:
+    """Reset the statistics at the start of a window."""
     lanes[statistics : statistics + STATISTICS * LANES] = 0.0
     for highest in (0, 6):
         row = statistics + highest * LANES
@@ -316,6 +271,7 @@ def _forget(lanes: Floats, statistics: int) -> None:
 
 @numba.njit(cache=True)
 def _copy(lanes: Floats, first: int, target: Floats) -> None:
+    """Copy consecutive rows of the lanes in use."""
     for k in range(target.shape[0]):
         for lane in range(target.shape[1]):
             target[k, lane] = lanes[first + k * LANES + lane]
@@ -341,52 +297,52 @@ def march_lanes(
     recorded: Floats,
     strobed: Floats,
 ) -> None:
-    """March all lanes, and write the statistics of each window, the states of the last steps and of the last periods.
+    """March all lanes; write the statistics of each window, and the states of the last steps and of the last periods.
 
     Parameters
     ----------
     pairs, kind, damped : tuple of int
-        Known by their lengths: number of pairs of states; contact law; whether it is damped.
+        Compile-time integers: number of pairs of states; contact law; whether it is damped.
     cells : ndarray, shape (n, 4)
-        Table of a tabulated law, empty for any other.
+        Coefficients of a tabulated law, empty for any other.
     lanes : ndarray
-        Rows of lanes, `rows` says which; on return the state stands among them.
+        Flat array of rows as `row_layout` describes; on return the rows of the state hold the final one.
     drive : ndarray
-        Drive of each step for ramps of 1, s and s^2.
+        Drive of each step of a period under ramps of 1, s and s^2.
     table : ndarray
-        Room for the drive of one period and four steps.
+        Workspace for the drive of one period and four steps.
     ramp_steps : ndarray
         Duration of the ramp of each lane, in steps.
     cosine_shaped : bool
         Shape of the ramp.
     backward : ndarray
-        Past that continues the forces now and at the next four steps.
+        `ExponentialIntegrator.backward`.
     jumps : ndarray of int
         Steps of a period before which the voltage jumps.
     steps, periods, window : int
-        Steps a period, periods to march, periods to a window of the statistics.
+        Steps per period, periods to march, periods per window of the statistics.
     statistics : ndarray, shape (windows, 8, lanes in use)
     recorded : ndarray, shape (steps to record, 2 n + 1, lanes in use)
         States, then the contact force less the load.
     strobed : ndarray, shape (periods to record, 2 n, lanes in use)
     """
-    at = rows(pairs)
-    first_end, last_end = ramp_steps.min(), ramp_steps.max()  # the first and the last end of a ramp
+    at = row_layout(pairs)
+    first_ramp_end, last_ramp_end = ramp_steps.min(), ramp_steps.max()
     unrecorded, unstrobed = periods * steps - recorded.shape[0], periods - strobed.shape[0]
-    row = 2 * len(pairs) * LANES  # of the table: what it holds for one step
+    row = 2 * len(pairs) * LANES  # size of one step in the table
     phases = 2 * np.pi * np.arange(1, steps + 1) / steps
     cosines, sines = np.cos(phases), np.sin(phases)
     for period in range(periods):
         first = period * steps
-        if first <= last_end + steps or period == 0:
-            _tabulate(drive, table, steps, 2 * len(pairs), first, ramp_steps, cosine_shaped)
+        if first <= last_ramp_end + steps or period == 0:
+            _tabulate_drive(drive, table, steps, 2 * len(pairs), first, ramp_steps, cosine_shaped)
         if period % window == 0:
-            _forget(lanes, at.statistics)
+            _reset_statistics(lanes, at.statistics)
         for step in range(steps):
             now = first + step
-            may_start = now == 0 or first_end - 1 <= now <= last_end + 1 or jumps.size > 0
-            if may_start and _mark(lanes, at.mark, now, step, ramp_steps, jumps):
-                _start(pairs, kind, damped, cells, lanes, table, step, backward)
+            may_restart = now == 0 or first_ramp_end - 1 <= now <= last_ramp_end + 1 or jumps.size > 0
+            if may_restart and _mark_restarts(lanes, at.mark, now, step, ramp_steps, jumps):
+                _restart(pairs, kind, damped, cells, lanes, table, step, backward)
             _step(pairs, kind, damped, cells, lanes, table[step * row : (step + 1) * row], cosines[step], sines[step])
             if now >= unrecorded:
                 _complete_state(pairs, lanes)

@@ -1,4 +1,4 @@
-"""Whether the steps of a march resolved the contact, and what to do where they did not."""
+"""Accuracy and stability of the time steps of a march, with advice on the number of steps."""
 
 from dataclasses import dataclass
 
@@ -6,24 +6,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.checks import Floats
-from sonolube.dynamics.gap_law import ExponentialGap, GapLaw
-from sonolube.dynamics.time_marching.batch import Marched
+from sonolube.dynamics.gap_laws.protocol import damped_force
+from sonolube.dynamics.time_marching.batch import MarchingProblem, MarchingSolution
 
-_RUNAWAY = 1e12  # force over load beyond which nothing physical has happened
-_FAR_AWAY = 1.0  # displacement likewise, in m
-_COARSE = 1e-3  # error of a step, over the largest force, beyond which results are not to be trusted
-_FEEDBACK = 0.1  # relative change of the force by its own effect over a step, beyond which steps may be unstable
+_LARGEST_FORCE = 1e12  # over the load, beyond which a solution has diverged
+_LARGEST_DISPLACEMENT = 1.0  # in m, likewise
+_LARGEST_ERROR = 1e-3  # of the force in a step, over the largest force, beyond which steps are coarse
+_LARGEST_FEEDBACK = 0.1  # relative change of the force by its own effect in a step, above which it may be unstable
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Resolution:
-    """How well the steps of each point follow its contact.
+class StepAssessment:
+    """Assessment of the time steps of each point.
 
     Parameters
     ----------
     status : ndarray of str, shape (points,)
         "marched", "coarse" or "diverged".
     advice : ndarray of str, shape (points,)
+        Remedy for a status other than "marched", and limits of the accuracy; often empty.
     step_error : ndarray, shape (points,)
         Estimated error of the contact force over its largest value; infinite where diverged.
     """
@@ -33,80 +34,62 @@ class Resolution:
     step_error: Floats
 
 
-def resolution(marched: Marched, contact_rows: Floats, gap_law: GapLaw, load: Floats, steps: int) -> Resolution:
-    """Judge the steps by two errors of the force in the last period and by the feedback of the force on itself.
+def assess_steps(problem: MarchingProblem, solution: MarchingSolution) -> StepAssessment:
+    """Assess the steps by two errors of the force in the last period and by the feedback of the force on itself.
 
     Parameters
     ----------
-    marched : Marched
-    contact_rows : ndarray, shape (2, n, 2)
-        Displacement and velocity of the contact per state.
-    gap_law : GapLaw
-    load : ndarray, shape (points,)
-        Dead load in N.
-    steps : int
-        Steps a period.
+    problem : MarchingProblem
+    solution : MarchingSolution
 
     Returns
     -------
-    Resolution
+    StepAssessment
 
     Notes
     -----
-    One error is the difference of the force foreseen and the force of the corrected state; the other is what aliasing
-    of harmonics beyond half the steps a period does to the mean, if they fall off like those of a pulse. The feedback
+    One error is the difference of the predicted force and the force of the corrected state; the other is the effect on
+    the mean of aliased harmonics beyond half the steps per period, if these decay like those of a pulse. The feedback
     is the relative change of the force through its own effect over a step, at the stiffest instant of the whole march:
-    above a tenth an explicit step can be unstable, and what it throws off may look like hopping.
+    above a tenth an explicit step can be unstable, with spurious loss of contact.
     """
-    last = marched.recorded[-steps:]
-    x, v = (np.einsum("m,tml->lt", row.ravel(), last[:, :-1]) for row in contact_rows)
-    made_with = last[:, -1].T + load[:, np.newaxis]
-    farthest, closest, strongest, weakest = marched.statistics[:, [0, 1, 6, 7]].transpose(1, 2, 0)
+    gap_law, load, steps = problem.gap_law, problem.normal_load, problem.schedule.steps
+    last = solution.recorded[-steps:]
+    x, v = (np.einsum("m,tml->lt", row.ravel(), last[:, :-1]) for row in problem.contact_output)
+    predicted = last[:, -1].T + load[:, np.newaxis]
+    farthest, closest, strongest, weakest = solution.statistics[:, [0, 1, 6, 7]].transpose(1, 2, 0)
     with np.errstate(over="ignore", invalid="ignore"):
-        kept = (strongest < _RUNAWAY * load[:, np.newaxis]) & (np.maximum(farthest, -closest) < _FAR_AWAY)
-        ran_away = ~(np.all(kept, axis=1) & np.all(np.isfinite(x), axis=1))
-        largest = np.maximum(made_with.max(axis=1), load)
-        corrected = np.abs(force_in_motion(gap_law, x, v, load[:, np.newaxis]) - made_with).max(axis=1) / largest
-        harmonics = np.abs(np.fft.rfft(made_with, axis=1))
+        bounded = strongest < _LARGEST_FORCE * load[:, np.newaxis]
+        bounded &= np.maximum(farthest, -closest) < _LARGEST_DISPLACEMENT
+        diverged = ~(np.all(bounded, axis=1) & np.all(np.isfinite(x), axis=1))
+        largest = np.maximum(predicted.max(axis=1), load)
+        corrected = np.abs(damped_force(gap_law, x, v, load[:, np.newaxis]) - predicted).max(axis=1) / largest
+        harmonics = np.abs(np.fft.rfft(predicted, axis=1))
         aliased = 2 * (harmonics[:, -1] / np.maximum(harmonics[:, 0], 1e-9 * load)) ** 4
-        feedback = gap_law.stiffness(closest.min(axis=1), load) * np.abs(marched.yielded[0])
-        feedback += gap_law.force_damping * strongest.max(axis=1) * np.abs(marched.yielded[1])
-    error = np.where(ran_away, np.inf, np.maximum(corrected, aliased))
-    unstable, coarse = ~(2 * feedback <= _FEEDBACK), error > _COARSE
-    finer = 4 * np.ceil(steps / 4 * np.clip(np.sqrt(4 * feedback / _FEEDBACK), 2.0, 4.0))
-    corner = np.any(weakest == 0, axis=1) & (not isinstance(gap_law, ExponentialGap) or gap_law.force_damping > 0)
+        feedback = gap_law.stiffness(closest.min(axis=1), load) * np.abs(solution.step_response[0])
+        feedback += gap_law.force_damping * strongest.max(axis=1) * np.abs(solution.step_response[1])
+    error = np.where(diverged, np.inf, np.maximum(corrected, aliased))
+    unstable, coarse = ~(2 * feedback <= _LARGEST_FEEDBACK), error > _LARGEST_ERROR
+    finer = 4 * np.ceil(steps / 4 * np.clip(np.sqrt(4 * feedback / _LARGEST_FEEDBACK), 2.0, 4.0))
+    corner = np.any(weakest == 0, axis=1) & (gap_law.has_corner or gap_law.force_damping > 0)
     advice = [""] * load.size
-    for i in np.flatnonzero(ran_away | unstable | coarse | corner):
-        advice[i] = _advice(ran_away[i], unstable[i], coarse[i], corner[i], finer[i], steps)
-    return Resolution(
-        status=np.where(ran_away, "diverged", np.where(unstable | coarse, "coarse", "marched")),
+    for i in np.flatnonzero(diverged | unstable | coarse | corner):
+        advice[i] = _advice(diverged[i], unstable[i], coarse[i], corner[i], finer[i], steps)
+    return StepAssessment(
+        status=np.where(diverged, "diverged", np.where(unstable | coarse, "coarse", "marched")),
         advice=np.array(advice),
         step_error=error,
     )
 
 
-def force_in_motion(gap_law: GapLaw, x: Floats, v: Floats, load: Floats) -> Floats:
-    """Return the contact force of an instant in N, damping included.
-
-    Parameters
-    ----------
-    gap_law : GapLaw
-    x, v : ndarray
-        Displacement and velocity of the contact, in m and m/s.
-    load : ndarray
-        Dead load in N.
-    """
-    with np.errstate(over="ignore", invalid="ignore"):
-        return gap_law.force(x, load) * np.maximum(1 - gap_law.force_damping * v, 0.0)
-
-
-def _advice(ran_away: bool, unstable: bool, coarse: bool, corner: bool, finer: float, steps: int) -> str:
+def _advice(diverged: bool, unstable: bool, coarse: bool, corner: bool, finer: float, steps: int) -> str:
+    """Return the advice for one point: the foremost failure with its remedy, and the order at corners of the force."""
     remedy = f"take {finer:.0f} steps a period, or less voltage" if np.isfinite(finer) else "take less voltage"
     reasons = {
-        f"the contact ran away; {remedy}": ran_away,
-        f"{steps} steps a period are too few to follow the contact at its stiffest; take {finer:.0f}": unstable,
-        f"{steps} steps a period leave more than {_COARSE:g} of error in the force; take {finer:.0f}": coarse,
+        f"the solution grew without bound; {remedy}": diverged,
+        f"{steps} steps a period are too few for the contact at its stiffest; take {finer:.0f}": unstable,
+        f"{steps} steps a period leave an error of the force above {_LARGEST_ERROR:g}; take {finer:.0f}": coarse,
     }
     foremost = [text for text, true in reasons.items() if true][:1]
-    cut = ["the force reaches zero at a corner, where the error falls only with the square of the step"]
-    return "; ".join(foremost + (cut if corner else []))
+    order = ["the force has a corner at the loss of contact, where the error falls only as the square of the step"]
+    return "; ".join(foremost + (order if corner else []))

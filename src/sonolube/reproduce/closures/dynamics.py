@@ -18,7 +18,7 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.contact import GapMotion, decay_length, harmonic_motion, load_balanced_motion
 from sonolube.dynamics import ExponentialGap, Structure, chain_structure, pin_on_disc_chain, steady_state, trajectory
-from sonolube.dynamics.steady_friction import motion as motion_of
+from sonolube.dynamics import contact_motion as motion_of
 from sonolube.friction import FRICTION_MODELS
 from sonolube.reproduce.row import Row, compare
 from sonolube.validation.fit import measured_in

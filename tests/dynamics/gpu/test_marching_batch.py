@@ -1,4 +1,4 @@
-"""Trajectories by the kernel for GPUs beside the processor's: in CUDA's simulator, compiled, and on a GPU if any."""
+"""Trajectories of the GPU kernel against the CPU: in the CUDA simulator, compiled, and on a GPU if there is one."""
 
 import json
 import os
@@ -16,13 +16,13 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from sonolube.dynamics.attractor import describe
+from sonolube.dynamics import ExponentialGap, GapLaw, HertzGap, LinearGap, TabulatedGap
+from sonolube.dynamics.attractor import classify_attractor
 from sonolube.dynamics.backend import device_name
-from sonolube.dynamics.first_order_modes import state_pairs
-from sonolube.dynamics.gap_law import ExponentialGap, GapLaw, HertzGap, LinearGap, TabulatedGap
+from sonolube.dynamics.first_order_modes import first_order_modes
 from sonolube.dynamics.structure import Structure, drive_receptance
-from sonolube.dynamics.time_marching.batch import Schedule
-from sonolube.dynamics.time_marching.records import State, Trajectories
+from sonolube.dynamics.time_marching.batch import MarchingProblem, MarchingSchedule
+from sonolube.dynamics.trajectories import State, Trajectories
 from sonolube.dynamics.transient import march
 from sonolube.dynamics.waveform import WAVEFORMS, StartUpRamp, sampled_waveform
 from sonolube.errors import GpuUnused
@@ -76,11 +76,11 @@ def points(body: Structure, count: int, seed: int = 3) -> dict[str, Any]:
 def moving(body: Structure, count: int) -> State:
     random = np.random.default_rng(5)
     shape = (count, body.coordinates)
-    return State(coordinates=random.normal(size=shape) * 1e-7, rates=random.normal(size=shape) * 1e-2)
+    return State(coordinates=random.normal(size=shape) * 1e-7, velocities=random.normal(size=shape) * 1e-2)
 
 
 def apart(here: Trajectories, there: Trajectories) -> float:
-    """Return the largest difference of any number, over the largest of its kind."""
+    """Return the largest difference of any number over the largest of its kind."""
     assert np.array_equal(here.status, there.status)
     assert np.array_equal(here.advice, there.advice)
     return max(
@@ -108,7 +108,7 @@ def difference(body: Structure, law: GapLaw, given: dict[str, Any], **choices: A
 
 
 def cases(count: int) -> dict[str, float]:
-    """Return how far the kernel's answers lie from the processor's."""
+    """Return the differences of the kernel's results from the CPU's, by case."""
     body = structure()
     given, moves = points(body, count), {"initial_state": moving(body, count)}
     hertz = HertzGap(tip_radius=2e-3, effective_modulus=1e9)
@@ -130,8 +130,8 @@ def cases(count: int) -> dict[str, float]:
     }
 
 
-def running_away() -> list[str]:
-    """Return what becomes of steps far too coarse, whose numbers overflow."""
+def diverging() -> list[str]:
+    """Return the statuses of steps far too coarse, whose numbers overflow."""
     stiff = LinearGap(normal_stiffness=1e15)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)
@@ -145,18 +145,17 @@ def running_away() -> list[str]:
 
 
 def blocks_and_chunks() -> float:
-    """Return by how much answers depend on how points are shared among blocks and chunks of one trajectory and more."""
-    from sonolube.dynamics.gpu import device as threads
-    from sonolube.dynamics.gpu import marching
+    """Return the difference of results with blocks and chunks of two points, the last of them of one."""
+    from sonolube.dynamics.gpu import device, marching_batch
 
     body = structure()
     chosen: dict[str, Any] = {"periods": 2, "steps_per_period": 8, "backend": "gpu"}
     given = points(body, 7)
     whole = march(body, ROUGH, **given, **chosen)
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(marching, "THREADS", 2)
-        patched.setattr(threads, "THREADS", 2)
-        patched.setattr(threads, "_ROOM", 1)  # two points to a chunk, the last of one
+        patched.setattr(marching_batch, "THREADS", 2)
+        patched.setattr(device, "THREADS", 2)
+        patched.setattr(device, "_CAPACITY", 1)  # two points to a chunk, the last of one
         pieces = march(body, ROUGH, **given, **chosen)
     return apart(whole, pieces)
 
@@ -164,16 +163,39 @@ def blocks_and_chunks() -> float:
 def attractors(backend: Any) -> list[Any]:
     given = points(HELD, 2) | {"voltage_peak_to_peak": [20.0, 60.0], "voltage_offset": 0.0}
     start = march(HELD, ROUGH, **given, periods=40).final_state
-    found = describe(HELD, ROUGH, **given, initial_state=start, periods=32, backend=backend)
-    return [found.kind.tolist(), found.order.tolist(), found.exponent.tolist(), found.state.coordinates.tolist()]
+    found = classify_attractor(HELD, ROUGH, **given, initial_state=start, periods=32, backend=backend)
+    return [
+        found.kind.tolist(),
+        found.order.tolist(),
+        found.lyapunov_exponent.tolist(),
+        found.final_state.coordinates.tolist(),
+    ]
 
 
-def unserved() -> list[str]:
-    """Return what is told, once each, of what the kernel leaves to the processor."""
-    from sonolube.dynamics.gpu import unmarched
+def problem(body: Structure, law: GapLaw) -> MarchingProblem:
+    one = np.ones(1)
+    schedule = MarchingSchedule(
+        waveform=WAVEFORMS["sine"], ramp=COSINE_RAMP, steps=8, periods=1, window=1, recorded=1, strobed=1
+    )
+    return MarchingProblem(
+        modes=first_order_modes(body),
+        contact_output=np.zeros((2, body.coordinates, 2)),
+        gap_law=law,
+        schedule=schedule,
+        normal_load=one,
+        frequency=one,
+        voltage_peak_to_peak=one,
+        voltage_offset=one,
+        start=np.zeros((2 * body.coordinates, 1)),
+    )
+
+
+def unsupported() -> list[str]:
+    """Return the reasons, and the warnings, for what the kernel leaves to the CPU."""
+    from sonolube.dynamics.gpu import unsupported_march
 
     class OtherGap:
-        """A law of a user's own."""
+        """Contact law that no kernel evaluates."""
 
     chain = 2e8 * (2 * np.eye(9) - np.eye(9, k=1) - np.eye(9, k=-1))
     many = Structure(
@@ -184,27 +206,26 @@ def unserved() -> list[str]:
         contact_vector=np.eye(9)[8],
         clamped_capacitance=1e-7,
     )
-    sine = Schedule(waveform=WAVEFORMS["sine"], ramp=COSINE_RAMP, steps=8, periods=1, window=1, recorded=1, strobed=1)
     bent: dict[str, Any] = {"waveform": sampled_waveform(np.sin(np.arange(5))), "steps_per_period": 8, "backend": "gpu"}
     given = points(HELD, 1) | bent
     with warnings.catch_warnings(record=True) as raised:
         warnings.simplefilter("always", GpuUnused)
         march(HELD, ROUGH, **given, periods=1)
-        describe(HELD, ROUGH, **given, initial_state=moving(HELD, 1), periods=32)
+        classify_attractor(HELD, ROUGH, **given, initial_state=moving(HELD, 1), periods=32)
     return [
-        unmarched(state_pairs(many), ROUGH, sine),
-        unmarched(state_pairs(HELD), OtherGap(), sine),  # type: ignore[arg-type]
+        unsupported_march(problem(many, ROUGH)),
+        unsupported_march(problem(HELD, OtherGap())),  # type: ignore[arg-type]
         *(str(each.message) for each in raised if issubclass(each.category, GpuUnused)),
     ]
 
 
 @pytest.fixture(scope="module")
 def simulated() -> dict[str, Any]:
-    """What the kernel answers in CUDA's simulator, which must be chosen before numba is imported."""
+    """Results of the kernel in the CUDA simulator, which must be selected before numba is imported."""
     code = (
-        f"import json, sys; sys.path.insert(0, {str(Path(__file__).parent)!r}); import test_marching_on_gpu as t;"
-        "print(json.dumps({'apart': t.cases(3), 'away': t.running_away(), 'shared': t.blocks_and_chunks(),"
-        "'found': t.attractors('gpu'), 'told': t.unserved()}))"
+        f"import json, sys; sys.path.insert(0, {str(Path(__file__).parent)!r}); import test_marching_batch as t;"
+        "print(json.dumps({'apart': t.cases(3), 'diverging': t.diverging(), 'shared': t.blocks_and_chunks(),"
+        "'found': t.attractors('gpu'), 'unsupported': t.unsupported()}))"
     )
     return dict(json.loads(answer_of(code, {"NUMBA_ENABLE_CUDASIM": "1"})))
 
@@ -217,34 +238,34 @@ def answer_of(code: str, environment: dict[str, str]) -> str:
     return run.stdout
 
 
-def test_the_simulated_kernel_marches_as_the_processor_does(simulated: dict[str, Any]) -> None:
-    # the same steps: what is left are sums in another order
+def test_trajectories_of_the_simulated_kernel_agree_with_the_cpu(simulated: dict[str, Any]) -> None:
+    # the steps are the same: the remaining differences are those of sums in another order
     assert {case for case, difference in simulated["apart"].items() if not difference < 1e-11} == set()
 
 
-def test_a_trajectory_that_runs_away_is_told_from_one_that_does_not(simulated: dict[str, Any]) -> None:
-    assert simulated["away"] == ["diverged", "diverged"]
+def test_diverging_trajectories_are_reported_by_the_simulated_kernel(simulated: dict[str, Any]) -> None:
+    assert simulated["diverging"] == ["diverged", "diverged"]
 
 
-def test_answers_do_not_depend_on_blocks_and_chunks(simulated: dict[str, Any]) -> None:
+def test_results_do_not_depend_on_blocks_and_chunks(simulated: dict[str, Any]) -> None:
     assert simulated["shared"] == 0.0
 
 
-def test_the_simulated_kernel_settles_to_the_same_attractors(simulated: dict[str, Any]) -> None:
+def test_the_simulated_kernel_reaches_the_same_attractors(simulated: dict[str, Any]) -> None:
     kind, order, exponent, coordinates = attractors("cpu")
     assert simulated["found"][:2] == [kind, order]
     assert simulated["found"][2] == approx(exponent, abs=1e-6)  # of a disturbance a millionth of the motion
     assert np.array(simulated["found"][3]) == approx(np.array(coordinates), rel=1e-9)
 
 
-def test_what_the_kernel_does_not_march_is_named_once(simulated: dict[str, Any]) -> None:
+def test_what_the_kernel_does_not_support_is_reported_once(simulated: dict[str, Any]) -> None:
     corners = "computed on the CPU: the GPU marches waveforms with corners between steps, not within one of 8"
-    modes, law = "the GPU marches structures of up to 8 modes, not 9", "the GPU marches no OtherGap"
-    assert simulated["told"] == [modes, law, corners, corners]
+    modes, law = "the GPU marches structures with up to 8 modes, not 9", "the GPU marches no OtherGap"
+    assert simulated["unsupported"] == [modes, law, corners, corners]
 
 
 @pytest.mark.skipif(bool(device_name("gpu")), reason="there is a GPU")
-def test_without_a_gpu_the_processor_marches_and_says_so() -> None:
+def test_without_a_gpu_the_cpu_marches_with_a_warning() -> None:
     given = points(HELD, 2) | {"periods": 3}
     with pytest.warns(GpuUnused, match=r"computed on the CPU: .*sonolube\[gpu\]"):
         there = march(HELD, ROUGH, backend="gpu", **given)
@@ -270,7 +291,7 @@ print(code.decode() if isinstance(code, bytes) else code)
 
 @pytest.mark.skipif(numba.cuda.implementation != "NVIDIA", reason="there is no numba-cuda here")
 @pytest.mark.skipif(shutil.which("ptxas") is None, reason="there is no ptxas, NVIDIA's assembler, here")
-def test_three_modes_under_an_exponential_contact_are_marched_in_registers(tmp_path: Path) -> None:
+def test_three_modes_on_an_exponential_contact_are_marched_in_registers(tmp_path: Path) -> None:
     loads = [sys.executable, "-c", "from numba.cuda.cudadrv.nvvm import NVVM; NVVM()"]
     if subprocess.run(loads, capture_output=True, check=False).returncode:
         pytest.skip("there is no NVVM, the compiler that numba-cuda calls, here")
@@ -289,7 +310,7 @@ def test_three_modes_under_an_exponential_contact_are_marched_in_registers(tmp_p
 
 @pytest.mark.gpu
 @pytest.mark.skipif(not device_name("gpu"), reason="there is no NVIDIA GPU with numba-cuda here")
-def test_a_gpu_marches_as_the_processor_does() -> None:
+def test_trajectories_of_a_gpu_agree_with_the_cpu() -> None:
     assert {case for case, difference in cases(500).items() if not difference < 1e-9} == set()
-    assert running_away() == ["diverged", "diverged"]
+    assert diverging() == ["diverged", "diverged"]
     assert blocks_and_chunks() == 0.0

@@ -1,4 +1,4 @@
-"""Steady states by the kernel for GPUs beside the processor's: in CUDA's simulator, and on a GPU where there is one."""
+"""Steady states of the GPU kernel against the CPU: in the CUDA simulator, and on a GPU if there is one."""
 
 import json
 import math
@@ -17,11 +17,11 @@ import pytest
 from numpy.typing import NDArray
 from pytest import approx, raises
 
-from sonolube.dynamics.backend import _tried_gpu, available, device_name
-from sonolube.dynamics.friction_average.elliptic_quadrature import crowded_points
-from sonolube.dynamics.gap_law import ExponentialGap, HertzGap
-from sonolube.dynamics.steady_friction import SlidingMeans, motion, sliding_friction, steady_friction
-from sonolube.dynamics.steady_state import Status, SteadyStates, steady_state
+from sonolube.dynamics import ExponentialGap, HertzGap, Status, SteadyStates, contact_motion, steady_state
+from sonolube.dynamics.backend import _tried_gpu, device_name, usable_backend
+from sonolube.dynamics.friction_average.elliptic_quadrature import elliptic_nodes
+from sonolube.dynamics.harmonic_balance.batch import BatchProblem
+from sonolube.dynamics.kinematic_friction import FrictionAverages, friction_averages, steady_friction
 from sonolube.dynamics.structure import Structure, drive_receptance
 from sonolube.errors import GpuUnused, InvalidInput
 
@@ -63,11 +63,11 @@ def points(count: int, lowest: float, highest: float, seed: int = 3) -> dict[str
 
 
 def compare(body: Structure, given: dict[str, Any]) -> dict[str, float]:
-    """Return how far the kernel's answers lie from the processor's, and what share of the points it did."""
-    there, means, done = with_what_the_gpu_did(body, given)
+    """Return the differences of the kernel's results from the CPU's, and the fraction of points that it solved."""
+    there, means, done = with_gpu_solved_points(body, given)
     here, friction = steady_friction(body, ROUGH, sliding_speed=SPEEDS, **given)
     known = here.status != Status.NOT_CONVERGED
-    ours, theirs = (np.stack([each.kinematic, each.loaded])[:, known, 1:] for each in (means, friction))
+    ours, theirs = (np.stack([each.kinematic, each.force_weighted])[:, known, 1:] for each in (means, friction))
     apart = {name: np.max(np.abs(getattr(there, name) / getattr(here, name) - 1)[known]) for name in NUMBERS}
     apart |= {
         "contact_loss_fraction": np.max(np.abs(there.contact_loss_fraction - here.contact_loss_fraction)[known]),
@@ -80,27 +80,27 @@ def compare(body: Structure, given: dict[str, Any]) -> dict[str, float]:
     return {name: float(value) for name, value in apart.items()}
 
 
-def with_what_the_gpu_did(
+def with_gpu_solved_points(
     body: Structure, given: dict[str, Any]
-) -> tuple[SteadyStates, SlidingMeans, NDArray[np.bool_]]:
+) -> tuple[SteadyStates, FrictionAverages, NDArray[np.bool_]]:
     from sonolube.dynamics import gpu
 
-    solve, did = gpu.solve_on_gpu, []
+    solve, solved = gpu.solve_on_gpu, []
 
-    def watched(*arguments: Any, **choices: Any) -> gpu.Fused:
-        found = solve(*arguments, **choices)
-        did.append(found.done)
-        return found
+    def observed(problem: BatchProblem) -> Any:
+        solution, effort = solve(problem)
+        solved.append(solution.on_gpu.copy())
+        return solution, effort
 
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(gpu, "solve_on_gpu", watched)
+        patched.setattr(gpu, "solve_on_gpu", observed)
         states, means = steady_friction(body, ROUGH, sliding_speed=SPEEDS, backend="gpu", **given)
-    return states, means, did[0]
+    return states, means, solved[0]
 
 
 def compare_all(count: int) -> dict[str, dict[str, float]]:
     return {
-        "afloat": compare(structure(), points(count, 5e3, 1e5)),
+        "floating": compare(structure(), points(count, 5e3, 1e5)),
         "grounded": compare(structure(3e6), points(count, 5e3, 1e5, seed=4)),
         "slow": compare(structure(), points(count, 1e3, 6e3)),
     }
@@ -115,19 +115,20 @@ def check(found: dict[str, dict[str, float]]) -> None:
         assert case["friction"] < 2e-5
         assert case["at rest"] == 0.0
         assert case["statuses apart"] == 0
-    assert found["afloat"]["done"] > 0.9
+    assert found["floating"]["done"] > 0.9
     assert found["grounded"]["done"] > 0.9
-    assert 0.3 < found["slow"]["done"] < 1.0  # the others have several vibrations, or need more harmonics
+    assert 0.3 < found["slow"]["done"] < 1.0  # the others have several vibrations, or require more harmonics
     assert found["slow"]["statuses"] > 1
 
 
 @pytest.fixture(scope="module")
 def simulated() -> dict[str, Any]:
-    """What the kernel answers in CUDA's simulator, which must be chosen before numba is imported."""
+    """Results of the kernel in the CUDA simulator, which must be selected before numba is imported."""
     code = (
-        f"import json, sys; sys.path.insert(0, {str(Path(__file__).parent)!r}); import test_steady_state_on_gpu as t;"
-        "print(json.dumps({'apart': t.compare_all(10), 'errors': t.errors_of_friction(6), 'told': t.unserved(),"
-        "'row': t.row_of_the_slowest(), 'pieces': t.pieces_are_the_whole(), 'welded': t.welded()}))"
+        f"import json, sys; sys.path.insert(0, {str(Path(__file__).parent)!r}); import test_steady_state_batch as t;"
+        "print(json.dumps({'apart': t.compare_all(10), 'errors': t.errors_of_friction(6),"
+        "'unsupported': t.unsupported(), 'row': t.row_of_the_slowest(),"
+        "'pieces': t.pieces_are_the_whole(), 'rigid': t.rigidly_damped()}))"
     )
     run = subprocess.run(
         [sys.executable, "-c", code],
@@ -140,59 +141,62 @@ def simulated() -> dict[str, Any]:
     return dict(json.loads(run.stdout))
 
 
-def test_the_simulated_kernel_gives_the_answers_of_the_processor(simulated: dict[str, Any]) -> None:
+def test_steady_states_of_the_simulated_kernel_agree_with_the_cpu(simulated: dict[str, Any]) -> None:
     check(simulated["apart"])
 
 
-def test_the_simulated_kernels_friction_is_that_of_four_hundred_thousand_samples(simulated: dict[str, Any]) -> None:
+def test_friction_of_the_simulated_kernel_is_that_of_four_hundred_thousand_samples(simulated: dict[str, Any]) -> None:
     kinematic, loaded = simulated["errors"]
     assert kinematic < 2e-6
     assert loaded < 5e-6
 
 
-def test_what_the_kernel_does_not_serve_is_named(simulated: dict[str, Any]) -> None:
-    assert simulated["told"] == [
-        "computed on the CPU: the GPU serves ExponentialGap alone, not HertzGap",
-        "computed on the CPU: the GPU serves contacts without force_damping",
-        "computed on the CPU: the GPU serves up to 12 harmonics, not 20",
+def test_what_the_kernel_does_not_support_is_reported(simulated: dict[str, Any]) -> None:
+    assert simulated["unsupported"] == [
+        "computed on the CPU: the GPU solves steady states of ExponentialGap only, not HertzGap",
+        "computed on the CPU: the GPU solves steady states without force_damping only",
+        "computed on the CPU: the GPU solves steady states with up to 12 harmonics, not 20",
     ]
 
 
 def row_of_the_slowest() -> int:
-    """Return the row of crowded phases for no sliding at all, where the logarithm rounds down."""
-    from sonolube.dynamics.gpu import friction_average as sliding_means
+    """Return the row of nodes for no sliding at all, where the logarithm rounds down."""
+    from sonolube.dynamics.gpu import friction_average
 
     rounded = SimpleNamespace(log10=lambda x: math.nextafter(math.log10(x), -math.inf), ceil=math.ceil)
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(sliding_means, "math", rounded)
-        return int(sliding_means.row_of(0.0))
+        patched.setattr(friction_average, "math", rounded)
+        return int(friction_average.row_of(0.0))
 
 
-def test_the_slowest_sliding_finds_phases_in_the_table_however_its_logarithm_rounds(simulated: dict[str, Any]) -> None:
-    assert simulated["row"] == crowded_points(0).count.size - 1
+def test_the_slowest_sliding_has_a_row_of_nodes_whatever_the_rounding_of_its_logarithm(
+    simulated: dict[str, Any],
+) -> None:
+    assert simulated["row"] == elliptic_nodes(0).count.size - 1
 
 
 def pieces_are_the_whole() -> bool:
-    """Return whether answers are the same where blocks and chunks hold two points, the last of them one."""
-    from sonolube.dynamics.gpu import device as threads
-    from sonolube.dynamics.gpu import launch as launching
+    """Return whether results are equal where blocks and chunks hold two points, and the last of them one."""
+    from sonolube.dynamics.gpu import device, steady_state_batch
 
     given = points(3, 15e3, 30e3)
     whole, means = steady_friction(structure(), ROUGH, sliding_speed=SPEEDS, backend="gpu", **given)
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(launching, "THREADS", 2)
-        patched.setattr(threads, "THREADS", 2)
-        patched.setattr(threads, "_ROOM", 1)
+        patched.setattr(steady_state_batch, "THREADS", 2)
+        patched.setattr(device, "THREADS", 2)
+        patched.setattr(device, "_CAPACITY", 1)
         parts, shares = steady_friction(structure(), ROUGH, sliding_speed=SPEEDS, backend="gpu", **given)
-    return np.array_equal(whole.harmonics, parts.harmonics) and np.array_equal(means.loaded, shares.loaded)
+    return np.array_equal(whole.harmonics, parts.harmonics) and np.array_equal(
+        means.force_weighted, shares.force_weighted
+    )
 
 
-def test_answers_do_not_depend_on_blocks_and_chunks(simulated: dict[str, Any]) -> None:
+def test_results_do_not_depend_on_blocks_and_chunks(simulated: dict[str, Any]) -> None:
     assert simulated["pieces"]
 
 
-def welded(backend: Any = "gpu") -> list[list[int]]:
-    """Return statuses of masses joined by a damper that nothing moves, and of one mass in their place."""
+def rigidly_damped(backend: Any = "gpu") -> list[list[int]]:
+    """Return statuses of masses joined by a nearly rigid damper, and of one mass in their place."""
     stiff = 2e9 * np.outer([-1.0, 1.0], [-1.0, 1.0])
     one = Structure(
         mass_matrix=np.diag([0.15, 0.85]),
@@ -212,16 +216,16 @@ def welded(backend: Any = "gpu") -> list[list[int]]:
     return [steady_state(body, ROUGH, backend=backend, **given).status.tolist() for body in (joined, one)]
 
 
-def test_growth_is_judged_beside_a_damper_that_welds(simulated: dict[str, Any]) -> None:
-    # its motion dies out faster than any exponent of a double
-    for joined, one in (simulated["welded"], welded("cpu")):
+def test_stability_is_determined_beside_a_nearly_rigid_damper(simulated: dict[str, Any]) -> None:
+    # the motion of the damper decays faster than a double can represent
+    for joined, one in (simulated["rigid"], rigidly_damped("cpu")):
         assert joined == one
         assert Status.UNSTABLE in one
         assert Status.PERIODIC in one
 
 
 @pytest.mark.skipif(numba.cuda.implementation != "Built-in", reason="numba-cuda is installed")
-def test_numba_alone_is_not_enough_for_a_gpu(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_numba_without_numba_cuda_is_not_used_on_a_gpu(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(numba.cuda, "is_available", lambda: True)
     assert _tried_gpu() == ("", "numba-cuda is missing: pip install 'sonolube[gpu]'")
 
@@ -231,30 +235,30 @@ def errors_of_friction(count: int) -> tuple[float, float]:
     states, means = steady_friction(structure(), ROUGH, sliding_speed=SPEEDS[1:], backend="gpu", **given)
     errors = []
     for point in range(count):
-        contact = motion(states, point, samples=400_000)
+        contact = contact_motion(states, point, samples=400_000)
         ratio = SPEEDS[1:, np.newaxis] / np.hypot(SPEEDS[1:, np.newaxis], contact.velocity)
         load = given["normal_load"][point]
         errors.append(
             [
                 np.max(np.abs(means.kinematic[point] / ratio.mean(axis=1) - 1)),
-                np.max(np.abs(means.loaded[point] / (ratio * contact.normal_force / load).mean(axis=1) - 1)),
+                np.max(np.abs(means.force_weighted[point] / (ratio * contact.normal_force / load).mean(axis=1) - 1)),
             ]
         )
     kinematic, loaded = np.max(errors, axis=0)
     return float(kinematic), float(loaded)
 
 
-def test_friction_in_one_go_is_friction_of_the_states() -> None:
+def test_steady_friction_is_the_friction_of_the_steady_states() -> None:
     given = points(5, 15e3, 30e3)
     states, means = steady_friction(structure(), ROUGH, sliding_speed=SPEEDS, **given)
-    apart = sliding_friction(steady_state(structure(), ROUGH, **given), sliding_speed=SPEEDS)
+    apart = friction_averages(steady_state(structure(), ROUGH, **given), sliding_speed=SPEEDS)
     assert np.array_equal(means.kinematic, apart.kinematic)
-    assert np.array_equal(means.loaded, apart.loaded)
+    assert np.array_equal(means.force_weighted, apart.force_weighted)
     assert states.harmonics.shape[0] == 5
 
 
 @pytest.mark.skipif(bool(device_name("gpu")), reason="there is a GPU")
-def test_without_a_gpu_the_processor_answers_and_says_so() -> None:
+def test_without_a_gpu_the_cpu_solves_with_a_warning() -> None:
     given = points(3, 15e3, 30e3)
     with pytest.warns(GpuUnused, match=r"computed on the CPU: .*sonolube\[gpu\]"):
         states = steady_state(structure(), ROUGH, backend="gpu", **given)
@@ -263,20 +267,20 @@ def test_without_a_gpu_the_processor_answers_and_says_so() -> None:
 
 def test_another_backend_is_refused() -> None:
     with raises(InvalidInput, match="backend must be cpu or gpu, got 'tpu'"):
-        available("tpu")  # type: ignore[arg-type]
+        usable_backend("tpu")  # type: ignore[arg-type]
 
 
-def unserved() -> list[str]:
+def unsupported() -> list[str]:
     given = points(2, 15e3, 30e3)
     damped = ExponentialGap(decay_length=2e-6, force_damping=0.1)
     with warnings.catch_warnings(record=True) as raised:
         warnings.simplefilter("always", GpuUnused)
         for law, least in ((HertzGap(tip_radius=2e-3, effective_modulus=70e9), 1), (damped, 1), (ROUGH, 20)):
-            steady_state(structure(), law, backend="gpu", least_harmonics=least, stability=False, **given)
+            steady_state(structure(), law, backend="gpu", minimum_harmonics=least, stability=False, **given)
     return [str(each.message) for each in raised if issubclass(each.category, GpuUnused)]
 
 
 @pytest.mark.gpu
 @pytest.mark.skipif(not device_name("gpu"), reason="there is no NVIDIA GPU with numba-cuda here")
-def test_a_gpu_gives_the_answers_of_the_processor() -> None:
+def test_steady_states_of_a_gpu_agree_with_the_cpu() -> None:
     check(compare_all(2000))

@@ -1,4 +1,4 @@
-"""Records of what a structure and its contact did over time."""
+"""Records of motions in time: state of a structure, motion of its contact, envelopes, trajectories."""
 
 from dataclasses import dataclass
 
@@ -11,28 +11,30 @@ from sonolube.errors import InvalidInput
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class State:
-    """Where all coordinates of a structure are and how fast they move.
+    """Coordinates of a structure and their velocities at an instant.
 
     Parameters
     ----------
     coordinates : ndarray, shape (..., n)
-    rates : ndarray, shape (..., n)
+        Generalised coordinates x of the structure.
+    velocities : ndarray, shape (..., n)
+        Their time derivatives.
     """
 
     coordinates: Floats
-    rates: Floats
+    velocities: Floats
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Envelope:
-    """The contact over time, each entry over a window of whole periods; extremes are those of the steps.
+    """Envelope of the contact's motion: statistics of its time steps over windows of whole drive periods.
 
     Parameters
     ----------
     time : ndarray, shape (..., windows)
         End of each window. [s]
     first_harmonic_amplitude : ndarray, shape (..., windows)
-        Of the contact's displacement, in m.
+        Amplitude of the first harmonic of the contact's displacement, in m.
     mean_displacement : ndarray, shape (..., windows)
         Mean displacement of the contact. [m]
     highest_displacement : ndarray, shape (..., windows)
@@ -59,14 +61,14 @@ class Envelope:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class ContactMotion:
-    """The contact at certain times.
+    """Displacement, velocity and force of the contact at a series of instants.
 
     Parameters
     ----------
     displacement : ndarray, shape (..., times)
         Displacement of the contact. [m]
     velocity : ndarray, shape (..., times)
-        Its velocity, in m/s.
+        Velocity of the contact, in m/s.
     normal_force : ndarray, shape (..., times)
         Contact force. [N]
     """
@@ -78,23 +80,24 @@ class ContactMotion:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Trajectories:
-    """What a batch of points did.
+    """Trajectories of a batch of points by time marching.
 
     Parameters
     ----------
     status : ndarray of str, shape (...)
-        "marched"; "coarse" where steps are too long for three digits of the force; "diverged" where numbers ran away.
+        "marched"; "coarse" where the steps are too long for three digits of the force or for stability; "diverged"
+        where the solution ran away.
     advice : ndarray of str, shape (...)
-        What to do about a status other than "marched", and what the numbers cannot show; often empty.
+        Remedy for a status other than "marched", and limits of the accuracy; often empty.
     step_error : ndarray, shape (...)
-        Estimated error of the contact force over its largest value, from the last periods; infinite where diverged.
+        Estimated error of the contact force over its largest value, from the last period; infinite where diverged.
     envelope : Envelope
     last_periods : ContactMotion
-        Each step of the periods recorded, at phases of whole steps, the last one at the end.
+        Every step of the recorded periods, at phases of whole steps, the last one at the end.
     strobed : ContactMotion
-        The end of each of the last periods, oldest first.
+        Stroboscopic (Poincare) samples: the end of each of the last periods, oldest first.
     final_state : State
-        From which to march on.
+        State at the end, from which marching can continue.
     """
 
     status: NDArray[np.str_]
@@ -108,20 +111,19 @@ class Trajectories:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Trajectory:
-    """One point, step by step from the start.
+    """Trajectory of one point, with every time step from the start.
 
     Parameters
     ----------
     time : ndarray, shape (times,)
-        From zero. [s]
+        Time from the start. [s]
     voltage : ndarray, shape (times,)
-        Drive voltage in V; at a jump, what follows it.
+        Drive voltage in V; at a jump, the value after it.
     contact : ContactMotion
+        Motion of the contact, shape (times,).
     states : State
-        Of shape (times, n).
-    status : str
-        As in `Trajectories`.
-    advice : str
+        State of the structure, shape (times, n).
+    status, advice : str
         As in `Trajectories`.
     """
 
@@ -134,28 +136,32 @@ class Trajectory:
 
 
 def displacement_harmonics(motion: ContactMotion, *, steps_per_period: int, count: int) -> tuple[Floats, Complexes]:
-    """Return mean and harmonics of the contact's displacement over the last period of a motion.
+    r"""Return mean and harmonics of the contact's displacement over the last period, by discrete Fourier transform.
 
     Parameters
     ----------
     motion : ContactMotion
-        The recorded periods of a march, which end at phase zero.
+        Recorded periods of `march`, which end at phase zero.
     steps_per_period : int
-        Of that march.
+        Time steps per drive period of that march.
     count : int
-        Highest harmonic, less than half the steps a period.
+        Highest harmonic, less than half the steps per period.
 
     Returns
     -------
     mean : ndarray, shape (...)
-        In m.
+        Mean displacement, in m.
     harmonics : ndarray of complex, shape (..., count)
-        X_k of x = mean + Re sum X_k exp(2 pi i k f t), in m.
+        Complex amplitudes X_k, in m.
 
     Raises
     ------
     InvalidInput
         If the count is not positive or too high.
+
+    Notes
+    -----
+    .. math:: x(t) = \bar x + \mathrm{Re}\sum_{k\ge1} X_k e^{2\pi i k f t}
     """
     if not 1 <= count < steps_per_period / 2:
         raise InvalidInput(f"count must lie between 1 and {(steps_per_period - 1) // 2}, got {count!r}")

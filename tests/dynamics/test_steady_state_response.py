@@ -1,4 +1,4 @@
-"""Steady states beside direct integration, closed forms and conservation of energy."""
+"""Steady states against direct integration, closed forms and conservation of energy."""
 
 from dataclasses import replace
 
@@ -9,9 +9,16 @@ from pytest import approx, raises
 from scipy.integrate import solve_ivp
 from scipy.special import i0
 
-from sonolube.dynamics.gap_law import ExponentialGap, GapLaw, HertzGap, LinearGap
-from sonolube.dynamics.steady_friction import motion
-from sonolube.dynamics.steady_state import Status, SteadyStates, steady_state
+from sonolube.dynamics import (
+    ExponentialGap,
+    GapLaw,
+    HertzGap,
+    LinearGap,
+    Status,
+    SteadyStates,
+    contact_motion,
+    steady_state,
+)
 from sonolube.dynamics.structure import Structure, drive_receptance, with_contact_spring
 from sonolube.errors import InvalidInput
 
@@ -36,9 +43,9 @@ def voltage_for(amplitude: float, frequency: float, structure: Structure = TRIBO
 
 
 def coordinates(states: SteadyStates) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
-    """Harmonics and mean of all coordinates, from the contact force over the period and the structure's matrices."""
+    """Return harmonics and mean of all coordinates from the contact force over the period and the matrices."""
     structure, samples = states.structure, 2048
-    force = np.fft.rfft(motion(states, (), samples=samples).normal_force) / samples
+    force = np.fft.rfft(contact_motion(states, (), samples=samples).normal_force) / samples
     voltage = np.zeros(65, dtype=complex)
     voltage[1 : states.voltage_harmonics.size + 1] = states.voltage_harmonics
     k = np.arange(1, 65)[:, np.newaxis, np.newaxis] * 2 * np.pi * states.frequency
@@ -58,7 +65,7 @@ def coordinates(states: SteadyStates) -> tuple[NDArray[np.complex128], NDArray[n
 
 
 def march_one_period(states: SteadyStates) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The state at the start of a period and, by an integrator that knows nothing of harmonics, at its end."""
+    """Return the state at the start of a period and, by direct integration, at its end."""
     structure, gap_law = states.structure, states.gap_law
     omega, load = 2 * np.pi * float(states.frequency), float(states.normal_load)
     k = np.arange(1, states.voltage_harmonics.size + 1)
@@ -104,7 +111,7 @@ def march_one_period(states: SteadyStates) -> tuple[NDArray[np.float64], NDArray
     ],
 )
 @pytest.mark.parametrize("structure", [TRIBOMETER, HELD], ids=["floating", "held"])
-def test_a_steady_state_repeats_itself_when_integrated_over_a_period(
+def test_a_steady_state_is_periodic_under_direct_integration(
     gap_law: GapLaw, load: float, frequency: float, amplitude: float, structure: Structure
 ) -> None:
     volts = voltage_for(amplitude, frequency)
@@ -116,7 +123,7 @@ def test_a_steady_state_repeats_itself_when_integrated_over_a_period(
     assert np.abs(end - start)[3:].max() < corners * 2 * np.pi * frequency * states.vibration_amplitude
 
 
-def test_a_drive_of_many_harmonics_repeats_itself_when_integrated_over_a_period() -> None:
+def test_the_steady_state_under_a_square_wave_is_periodic_under_direct_integration() -> None:
     k = np.arange(1, 10)
     square = np.where(k % 2 == 1, -4j / (np.pi * k), 0) * 6.0
     states = steady_state(TRIBOMETER, ROUGH, normal_load=20.0, frequency=15e3, voltage_harmonics=square)
@@ -124,11 +131,11 @@ def test_a_drive_of_many_harmonics_repeats_itself_when_integrated_over_a_period(
     assert np.abs(end - start).max() < 1e-6 * np.abs(start).max()
 
 
-def test_amplitude_and_extremes_are_those_of_the_motion() -> None:
+def test_amplitude_and_extreme_forces_are_those_of_the_sampled_motion() -> None:
     states = steady_state(
         TRIBOMETER, ROUGH, normal_load=80.0, frequency=11.2e3, voltage_amplitude=voltage_for(8e-6, 11.2e3)
     )
-    contact = motion(states, (), samples=20_000)
+    contact = contact_motion(states, (), samples=20_000)
     assert states.vibration_amplitude == approx(np.ptp(contact.displacement) / 2, rel=1e-6)
     assert states.highest_normal_force == approx(contact.normal_force.max(), rel=1e-6)
     assert states.lowest_normal_force == approx(contact.normal_force.min(), rel=1e-6)
@@ -136,18 +143,18 @@ def test_amplitude_and_extremes_are_those_of_the_motion() -> None:
     assert states.mean_normal_force == approx(contact.normal_force.mean(), rel=1e-9)
 
 
-def test_motions_of_many_turns_are_measured_as_well() -> None:
+def test_motions_with_more_than_two_extrema_are_measured_by_samples() -> None:
     k = np.array([1, 5])
     drive = np.zeros(5, dtype=complex)
     drive[k - 1] = 1e-6 / drive_receptance(TRIBOMETER, frequency=4e3 * k)
     states = steady_state(TRIBOMETER, ROUGH, normal_load=5.0, frequency=4e3, voltage_harmonics=drive)
-    contact = motion(states, (), samples=20_000)
-    assert np.isnan(states.turns).all()
+    contact = contact_motion(states, (), samples=20_000)
+    assert np.isnan(states.extremum_phases).all()
     assert states.vibration_amplitude == approx(np.ptp(contact.displacement) / 2, rel=1e-6)
     assert states.highest_normal_force == approx(contact.normal_force.max(), rel=1e-6)
 
 
-def test_a_heavy_structure_rides_up_until_its_load_is_carried_again() -> None:
+def test_a_heavy_structure_rises_until_the_mean_force_balances_its_load() -> None:
     heavy = replace(
         TRIBOMETER, mass_matrix=1e6 * TRIBOMETER.mass_matrix, stiffness_matrix=1e6 * TRIBOMETER.stiffness_matrix
     )
@@ -159,7 +166,7 @@ def test_a_heavy_structure_rides_up_until_its_load_is_carried_again() -> None:
     assert states.mean_normal_force == approx(3.0)
 
 
-def test_a_linear_contact_that_never_opens_is_a_spring() -> None:
+def test_a_linear_contact_without_separation_is_a_spring() -> None:
     frequency, volts = np.array([3e3, 15e3, 22e3, 40e3]), 0.1
     states = steady_state(TRIBOMETER, SPRING, normal_load=20.0, frequency=frequency, voltage_amplitude=volts)
     sprung = with_contact_spring(TRIBOMETER, normal_stiffness=5e6)
@@ -167,7 +174,7 @@ def test_a_linear_contact_that_never_opens_is_a_spring() -> None:
     assert states.mean_displacement == approx(np.zeros(4), abs=1e-18)
 
 
-def test_a_constant_voltage_lifts_a_held_structure_against_its_contact() -> None:
+def test_a_constant_voltage_displaces_a_grounded_structure_on_its_contact() -> None:
     states = steady_state(HELD, SPRING, normal_load=20.0, frequency=22e3, voltage_amplitude=0.0, voltage_offset=-10.0)
     sprung = with_contact_spring(HELD, normal_stiffness=5e6)
     rest = np.linalg.solve(sprung.stiffness_matrix, sprung.drive_vector * -10.0)
@@ -176,19 +183,19 @@ def test_a_constant_voltage_lifts_a_held_structure_against_its_contact() -> None
 
 
 @pytest.mark.parametrize("structure", [TRIBOMETER, HELD], ids=["floating", "held"])
-def test_the_drive_gives_what_dampers_and_contact_take(structure: Structure) -> None:
+def test_the_electrical_power_is_dissipated_by_dampers_and_contact(structure: Structure) -> None:
     gap_law = ExponentialGap(decay_length=2e-6, force_damping=0.5)
     states = steady_state(structure, gap_law, normal_load=60.0, frequency=20e3, voltage_amplitude=20.0)
     harmonics, _ = coordinates(states)
     speeds = 2j * np.pi * 20e3 * np.arange(1, 65)[:, np.newaxis] * harmonics
     in_dampers = 0.5 * np.einsum("ki,ij,kj->", speeds.conj(), structure.damping_matrix, speeds).real
-    contact = motion(states, (), samples=2048)
+    contact = contact_motion(states, (), samples=2048)
     in_contact = -np.mean(contact.normal_force * contact.velocity)
     assert in_contact > 0
     assert states.dissipated_power == approx(in_dampers + in_contact, rel=1e-6)
 
 
-def test_without_voltage_nothing_moves() -> None:
+def test_without_voltage_the_structure_is_at_rest() -> None:
     states = steady_state(TRIBOMETER, ROUGH, normal_load=3.0, frequency=22e3, voltage_amplitude=0.0)
     assert states.vibration_amplitude == approx(0.0, abs=1e-20)
     assert states.mean_displacement == approx(0.0, abs=1e-18)
@@ -196,7 +203,7 @@ def test_without_voltage_nothing_moves() -> None:
     assert states.status == Status.PERIODIC
 
 
-def test_a_batch_gives_what_its_points_give_alone() -> None:
+def test_points_of_a_batch_have_the_solutions_that_they_have_alone() -> None:
     random = np.random.default_rng(5)
     loads, frequencies = random.uniform(1, 100, 40), random.uniform(5e3, 1e5, 40)
     volts = np.abs(random.uniform(0.5e-6, 14e-6, 40) / drive_receptance(TRIBOMETER, frequency=frequencies))
@@ -212,7 +219,7 @@ def test_a_batch_gives_what_its_points_give_alone() -> None:
         assert batch.status[i] == alone.status
 
 
-def test_more_harmonics_change_nothing_that_matters() -> None:
+def test_additional_harmonics_change_results_within_the_tolerance() -> None:
     random = np.random.default_rng(6)
     loads, frequencies = random.uniform(1, 100, 300), random.uniform(5e3, 1e5, 300)
     volts = np.abs(random.uniform(0.1e-6, 14e-6, 300) / drive_receptance(TRIBOMETER, frequency=frequencies))
@@ -224,7 +231,7 @@ def test_more_harmonics_change_nothing_that_matters() -> None:
             normal_load=loads,
             frequency=frequencies,
             voltage_amplitude=volts,
-            least_harmonics=least,
+            minimum_harmonics=least,
             stability=False,
         )
 
@@ -234,19 +241,19 @@ def test_more_harmonics_change_nothing_that_matters() -> None:
     assert usual.highest_normal_force == approx(fine.highest_normal_force, rel=1e-5)
 
 
-def test_the_power_needs_the_current_in_phase() -> None:
+def test_the_dissipated_power_is_that_of_voltage_and_current_in_phase() -> None:
     states = steady_state(TRIBOMETER, ROUGH, normal_load=3.0, frequency=22e3, voltage_amplitude=5.0)
     assert states.dissipated_power == approx(0.5 * (states.current_harmonics[0] * 5.0).real)
 
 
-def test_touching_mean_planes_are_reported_where_the_separation_is_given() -> None:
+def test_touching_mean_planes_are_reported_where_a_separation_is_given() -> None:
     states = steady_state(
         TRIBOMETER, ROUGH, normal_load=3.0, frequency=22e3, voltage_amplitude=[1.0, 30.0], separation=2e-6
     )
     assert states.gap_closed.tolist() == [False, True]
 
 
-def test_where_two_vibrations_are_possible_the_way_there_decides() -> None:
+def test_coexisting_vibrations_are_both_found_one_per_branch() -> None:
     floating = Structure(
         mass_matrix=np.diag([0.25, 0.25]),
         damping_matrix=np.diag([100.0, 0.0]),
@@ -256,19 +263,19 @@ def test_where_two_vibrations_are_possible_the_way_there_decides() -> None:
         clamped_capacitance=2e-7,
     )
     up, down = (
-        steady_state(floating, BALL, normal_load=20.0, frequency=690.0, voltage_amplitude=50.0, falling=falling)
-        for falling in (False, True)
+        steady_state(floating, BALL, normal_load=20.0, frequency=690.0, voltage_amplitude=50.0, upper_branch=upper)
+        for upper in (False, True)
     )
     assert up.status == down.status == Status.MULTISTABLE
     assert up.vibration_amplitude < down.vibration_amplitude
     assert up.coexisting_amplitude == approx(down.vibration_amplitude, rel=1e-6)
-    assert "depends on how the voltage got there" in up.reason(())
+    assert "depends on how the voltage was raised or lowered" in up.reason(())
     for states in (up, down):
         start, end = march_one_period(states)
         assert np.abs(end - start)[:2].max() < 1e-5 * np.abs(start[:2]).max()
 
 
-def test_an_undamped_resonance_has_no_steady_state_and_says_so() -> None:
+def test_an_undamped_resonance_has_no_steady_state_and_a_reason() -> None:
     lossless = replace(TRIBOMETER, damping_matrix=np.zeros((3, 3)))
     far = LinearGap(normal_stiffness=0.0)
     from sonolube.dynamics.linear import modes
@@ -289,19 +296,19 @@ def test_an_undamped_resonance_has_no_steady_state_and_says_so() -> None:
         ({"voltage_amplitude": -1.0}, r"voltage_amplitude must not be negative, got -1\.0 V"),
         ({"voltage_offset": np.inf}, r"voltage_offset must be finite, got inf V"),
         ({"voltage_amplitude": None}, "give either voltage_amplitude or voltage_harmonics"),
-        ({"least_harmonics": 65}, "least_harmonics must lie between 1 and 64, got 65"),
+        ({"minimum_harmonics": 65}, "minimum_harmonics must lie between 1 and 64, got 65"),
         ({"workers": 0}, "workers must be at least 1, got 0"),
         ({"voltage_amplitude": []}, r"there are no points to compute: .* have shapes \(\), \(\), \(0,\), \(\), \(\)"),
         ({"voltage_amplitude": [1, 2], "frequency": [1, 2, 3]}, "must have matching shapes"),
     ],
 )
-def test_nonsense_is_refused_by_name(wrong: dict[str, float], message: str) -> None:
+def test_invalid_arguments_are_refused_by_name(wrong: dict[str, float], message: str) -> None:
     good = {"normal_load": 3.0, "frequency": 22e3, "voltage_amplitude": 5.0}
     with raises(InvalidInput, match=message):
         steady_state(TRIBOMETER, ROUGH, **(good | wrong))  # type: ignore[arg-type]
 
 
-def test_a_drive_that_pushes_the_whole_rig_away_is_refused() -> None:
+def test_a_drive_of_a_rigid_body_mode_is_refused() -> None:
     pushed = replace(TRIBOMETER, drive_vector=np.array([1.0, 0.0, 0.0]))
-    with raises(InvalidInput, match="drive_vector pushes a rigid motion"):
+    with raises(InvalidInput, match="drive_vector drives a rigid-body mode"):
         steady_state(pushed, ROUGH, normal_load=3.0, frequency=22e3, voltage_amplitude=5.0)

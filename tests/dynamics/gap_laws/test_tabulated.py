@@ -1,4 +1,4 @@
-"""Contacts by a table of their force: beside the closed form, direct integration and the limits of motion."""
+"""Tabulated contact laws against the closed form, direct integration and limits."""
 
 from typing import Any
 
@@ -16,12 +16,21 @@ from sonolube.contact import (
     normal_stiffness,
     separation,
 )
-from sonolube.dynamics import ExponentialGap, Structure, TabulatedGap, march, steady_state, with_contact_spring
+from sonolube.dynamics import (
+    ExponentialGap,
+    Status,
+    SteadyStates,
+    Structure,
+    TabulatedGap,
+    contact_motion,
+    friction_averages,
+    march,
+    steady_state,
+    with_contact_spring,
+)
 from sonolube.dynamics.continuation import response_curve
-from sonolube.dynamics.sensitivities import gradients
+from sonolube.dynamics.sensitivities import steady_state_sensitivities
 from sonolube.dynamics.stability import floquet_multipliers
-from sonolube.dynamics.steady_friction import motion, sliding_friction
-from sonolube.dynamics.steady_state import Status, SteadyStates
 from sonolube.dynamics.structure import drive_receptance
 from sonolube.errors import InvalidInput
 from sonolube.surfaces import Roughness
@@ -74,7 +83,7 @@ def gaussian() -> TabulatedGap:
 
 
 def batch(law: TabulatedGap | ExponentialGap, structure: Structure) -> SteadyStates:
-    """Loads from grazing to firm, amplitudes to many decay lengths."""
+    """Return steady states at light to heavy loads, with amplitudes up to many decay lengths."""
     loads, frequencies = np.array([0.5, 3.0, 40.0, 100.0]), np.array([[8e3], [15e3], [22e3]])
     swing = 5e-6 / np.abs(drive_receptance(structure, frequency=frequencies.ravel()))[:, np.newaxis]
     return steady_state(structure, law, normal_load=loads, frequency=frequencies, voltage_amplitude=swing)
@@ -82,7 +91,7 @@ def batch(law: TabulatedGap | ExponentialGap, structure: Structure) -> SteadySta
 
 @mark.parametrize("structure", [FLOATING, HELD], ids=["floating", "held"])
 @mark.parametrize("damping", [0.0, 0.2], ids=["elastic", "damped"])
-def test_the_table_of_an_exponential_gives_the_steady_states_of_the_exponential(
+def test_a_tabulated_exponential_has_the_steady_states_of_the_exponential_law(
     structure: Structure, damping: float
 ) -> None:
     closed = batch(ExponentialGap(decay_length=DECAY_LENGTH, force_damping=damping), structure)
@@ -94,20 +103,20 @@ def test_the_table_of_an_exponential_gives_the_steady_states_of_the_exponential(
     assert table.contact_loss_fraction == approx(closed.contact_loss_fraction, abs=1e-7)
 
 
-def test_the_table_of_an_exponential_gives_its_stability_and_friction() -> None:
+def test_a_tabulated_exponential_has_the_stability_and_friction_of_the_exponential_law() -> None:
     closed, table = (
         batch(law, FLOATING) for law in (ExponentialGap(decay_length=DECAY_LENGTH), table_of_an_exponential())
     )
     largest = [np.abs(floquet_multipliers(states, kicks=64)[..., 0]) for states in (closed, table)]
     assert largest[1] == approx(largest[0], rel=1e-7)
     speeds = [1e-3, 0.02, 0.3]
-    friction = [sliding_friction(states, sliding_speed=speeds) for states in (closed, table)]
+    friction = [friction_averages(states, sliding_speed=speeds) for states in (closed, table)]
     assert friction[1].kinematic == approx(friction[0].kinematic, rel=1e-6)
-    assert friction[1].loaded == approx(friction[0].loaded, rel=1e-6)
+    assert friction[1].force_weighted == approx(friction[0].force_weighted, rel=1e-6)
 
 
 @mark.parametrize("damping", [0.0, 0.2], ids=["elastic", "damped"])
-def test_the_table_of_an_exponential_marches_along_its_trajectory(damping: float) -> None:
+def test_a_tabulated_exponential_has_the_trajectory_of_the_exponential_law(damping: float) -> None:
     laws = ExponentialGap(decay_length=DECAY_LENGTH, force_damping=damping), table_of_an_exponential(damping)
     closed, table = (
         march(
@@ -125,18 +134,18 @@ def test_the_table_of_an_exponential_marches_along_its_trajectory(damping: float
     assert table.normal_force == approx(closed.normal_force, rel=1e-6)
 
 
-def test_the_table_of_an_exponential_is_followed_along_its_curve_and_differentiated() -> None:
+def test_a_tabulated_exponential_has_the_response_curve_and_sensitivity_of_the_exponential_law() -> None:
     curves, slopes = [], []
     for law in (ExponentialGap(decay_length=DECAY_LENGTH), table_of_an_exponential()):
         curve = response_curve(HELD, law, normal_load=20.0, voltage_amplitude=(0.5, 12.0), frequency=1.5e3)
         curves.append(curve.vibration_amplitude[-1])
         states = steady_state(HELD, law, normal_load=20.0, frequency=1.5e3, voltage_amplitude=8.0)
-        slopes.append(float(gradients(states).vibration_amplitude["normal_load"]))
+        slopes.append(float(steady_state_sensitivities(states).vibration_amplitude["normal_load"]))
     assert curves[1] == approx(curves[0], rel=1e-7)
     assert slopes[1] == approx(slopes[0], rel=1e-6)
 
 
-def test_the_gradient_by_the_load_is_the_difference_between_loads(gaussian: TabulatedGap) -> None:
+def test_the_sensitivity_to_the_load_is_a_central_difference(gaussian: TabulatedGap) -> None:
     load, step = 20.0, 1e-3
     states = steady_state(
         HELD,
@@ -144,14 +153,14 @@ def test_the_gradient_by_the_load_is_the_difference_between_loads(gaussian: Tabu
         normal_load=[load - step, load, load + step],
         frequency=1.5e3,
         voltage_amplitude=8.0,
-        least_harmonics=24,
+        minimum_harmonics=24,
     )
-    found = gradients(states).mean_displacement["normal_load"][1]
+    found = steady_state_sensitivities(states).mean_displacement["normal_load"][1]
     assert found == approx(np.diff(states.mean_displacement[[0, 2]])[0] / (2 * step), rel=1e-5)
 
 
 def integrate(structure: Structure, load: float, frequency: float, volts: float, periods: int) -> tuple[Array, Array]:
-    """Displacement and force over the last period, by the contact's own force and an integrator."""
+    """Return displacement and force over the last period, by direct integration with the force of the rough contact."""
     d, omega, inverse = (
         separation(CONTACT, normal_load=load),
         2 * np.pi * frequency,
@@ -178,12 +187,14 @@ def integrate(structure: Structure, load: float, frequency: float, volts: float,
 
 
 @mark.parametrize(("load", "volts"), [(3.0, 6.0), (40.0, 12.0)])
-def test_gaussian_heights_vibrate_as_an_integrator_has_it(gaussian: TabulatedGap, load: float, volts: float) -> None:
+def test_the_vibration_on_gaussian_heights_is_that_of_direct_integration(
+    gaussian: TabulatedGap, load: float, volts: float
+) -> None:
     frequency = 2e3
     x, force = integrate(HELD, load, frequency, volts, periods=30)
     states = steady_state(HELD, gaussian, normal_load=load, frequency=frequency, voltage_amplitude=volts)
     assert states.status == Status.PERIODIC
-    own = motion(states, (), samples=256)
+    own = contact_motion(states, (), samples=256)
     assert np.ptp(own.displacement) == approx(np.ptp(x), rel=1e-4)
     assert own.displacement.mean() == approx(x.mean(), abs=1e-4 * np.ptp(x))
     assert states.mean_normal_force == approx(force.mean(), rel=1e-4)
@@ -201,18 +212,18 @@ def test_gaussian_heights_vibrate_as_an_integrator_has_it(gaussian: TabulatedGap
     assert marched.normal_force.mean() == approx(force.mean(), rel=1e-4)
 
 
-def test_under_a_floating_structure_gaussian_heights_carry_the_dead_load_in_the_mean(gaussian: TabulatedGap) -> None:
+def test_gaussian_heights_carry_the_dead_load_of_a_floating_structure_in_the_mean(gaussian: TabulatedGap) -> None:
     states = batch(gaussian, FLOATING)
     assert np.all(states.status != Status.NOT_CONVERGED)
     for index in np.ndindex(states.status.shape):
-        own = motion(states, index, samples=4096)
-        resting = separation(CONTACT, normal_load=states.normal_load[index])
-        assert normal_force(CONTACT, separation=resting + own.displacement).mean() == approx(
+        own = contact_motion(states, index, samples=4096)
+        at_rest = separation(CONTACT, normal_load=states.normal_load[index])
+        assert normal_force(CONTACT, separation=at_rest + own.displacement).mean() == approx(
             states.normal_load[index], rel=1e-5
         )
 
 
-def test_small_amplitudes_meet_the_contacts_own_stiffness(gaussian: TabulatedGap) -> None:
+def test_at_small_amplitudes_the_stiffness_is_that_of_the_rough_contact(gaussian: TabulatedGap) -> None:
     load, frequency, volts = np.array([0.5, 10.0, 80.0]), 15e3, 1e-4
     states = steady_state(FLOATING, gaussian, normal_load=load, frequency=frequency, voltage_amplitude=volts)
     stiffness = normal_stiffness(CONTACT, separation=separation(CONTACT, normal_load=load))
@@ -221,21 +232,21 @@ def test_small_amplitudes_meet_the_contacts_own_stiffness(gaussian: TabulatedGap
         assert amplitude == approx(volts * float(linear), rel=1e-6)
 
 
-def test_between_its_points_the_force_is_that_of_the_contact(gaussian: TabulatedGap) -> None:
+def test_between_the_points_of_the_table_the_force_is_that_of_the_rough_contact(gaussian: TabulatedGap) -> None:
     d = np.random.default_rng(1).uniform(-4e-6, 12e-6, 2000)
     x = d - separation(CONTACT, normal_load=10.0)
     assert gaussian.force(x, 10.0) == approx(normal_force(CONTACT, separation=d), rel=1e-8)
     assert gaussian.stiffness(x, 10.0) == approx(normal_stiffness(CONTACT, separation=d), rel=1e-6)
 
 
-def test_hard_points_do_not_hang_on_what_the_memory_held(gaussian: TabulatedGap) -> None:
+def test_points_with_many_uncoupled_harmonics_do_not_depend_on_uninitialised_memory(gaussian: TabulatedGap) -> None:
     # 56 harmonics of which a few are coupled: a stiff contact lost in every period
     for law in (gaussian, ExponentialGap(decay_length=3.36e-7)):
         states = steady_state(HELD, law, normal_load=[3.0, 10.0, 40.0], frequency=2e3, voltage_amplitude=12.0)
         assert np.all(states.status == Status.PERIODIC)
 
 
-def test_beyond_its_ends_the_force_goes_on_exponentially(gaussian: TabulatedGap) -> None:
+def test_beyond_the_ends_of_the_table_the_force_continues_exponentially(gaussian: TabulatedGap) -> None:
     load = 10.0
     for end, beyond in ((0, -3e-6), (-1, 3e-6)):
         force, k = gaussian.normal_force[end], gaussian.normal_stiffness[end]
@@ -250,18 +261,21 @@ def test_beyond_its_ends_the_force_goes_on_exponentially(gaussian: TabulatedGap)
     [
         (
             {"normal_force": [4.0, 3.0, 3.0, 1.0]},
-            "normal_force must fall from point to point, but .* separation 1e-06 m",
+            "normal_force must decrease from point to point, but .* separation 1e-06 m",
         ),
         ({"normal_force": [4.0, 3.0, np.nan, 1.0]}, "normal_force must be"),
         ({"normal_force": [4.0, 3.0, 2.0, 0.0]}, "normal_force must be positive"),
-        ({"normal_stiffness": [1e6, 1e6, 2e7, 1e6]}, "normal_stiffness must be the fall .* after separation 1e-06 m"),
+        (
+            {"normal_stiffness": [1e6, 1e6, 2e7, 1e6]},
+            "normal_stiffness must be the decrease .* after separation 1e-06 m",
+        ),
         ({"normal_stiffness": [1e6, 1e6, 1e6]}, r"the same four or more points, got shapes \(4,\), \(4,\) and \(3,\)"),
-        ({"separation": [0.0, 1e-6, 2e-6, 4e-6]}, "separation must be evenly spaced and rising"),
+        ({"separation": [0.0, 1e-6, 2e-6, 4e-6]}, "separation must be evenly spaced and increasing"),
         ({"separation": [0.0, 1e-6, np.inf, 3e-6]}, "separation must be finite"),
         ({"force_damping": -1.0}, "force_damping must not be negative"),
     ],
 )
-def test_a_table_that_is_none_is_refused_by_name(change: dict[str, Any], message: str) -> None:
+def test_an_inconsistent_table_is_refused_by_name(change: dict[str, Any], message: str) -> None:
     table: dict[str, Any] = {
         "separation": np.arange(4) * 1e-6,
         "normal_force": np.array([4.0, 3.0, 2.0, 1.0]),
@@ -272,7 +286,7 @@ def test_a_table_that_is_none_is_refused_by_name(change: dict[str, Any], message
         TabulatedGap(**(table | change))
 
 
-def test_three_points_are_too_few() -> None:
+def test_a_table_of_three_points_is_refused() -> None:
     three = table_of_an_exponential()
     with raises(InvalidInput, match="four or more points"):
         TabulatedGap(

@@ -1,47 +1,50 @@
-"""Newton's method on the mean and the harmonics of one exponential contact, by a thread.
+"""Harmonic balance of one exponential contact by Newton's method, by GPU threads.
 
-Unknowns and equations are those of `sonolube.dynamics.harmonic_balance.harmonic_kernel`, one point to a thread:
-every array is the thread's own, and rows hold real and imaginary parts.
+Unknowns and equations are those of `sonolube.dynamics.harmonic_balance.harmonic_kernel`, one point per thread: every
+array is local to the thread, and its two rows hold real and imaginary parts.
 """
 
 import math
 
 from sonolube.checks import Floats
 from sonolube.dynamics.gpu.device import on_device
-from sonolube.dynamics.gpu.structure_rows import driven, forced
+from sonolube.dynamics.gpu.receptance import contact_per_force, contact_per_volt
 from sonolube.dynamics.harmonic_balance.harmonic_kernel import CONVERGED, DIVERGED, NEEDS_HARMONICS, NEEDS_SAMPLES, TAIL
 
 MOST_HARMONICS = 12
-"""Most harmonics of the contact that a thread holds; points that need more are the processor's. []"""
-ROOM = MOST_HARMONICS + 1  # of an array of harmonics, the mean included
-ORDERS = 2 * MOST_HARMONICS + 2  # of a spectrum, the highest that the samples resolve at the end
-MATRIX = (2 * MOST_HARMONICS + 1) * (2 * MOST_HARMONICS + 2)  # entries of Newton's matrix, right-hand side included
+"""Largest number of harmonics of the contact that a thread holds; the CPU solves points that require more. []"""
+CAPACITY = MOST_HARMONICS + 1
+"""Entries of an array of harmonics, the mean included. []"""
+ORDERS = 2 * MOST_HARMONICS + 2
+"""Entries of a spectrum; the last one is the highest that the samples resolve. []"""
+MATRIX = (2 * MOST_HARMONICS + 1) * (2 * MOST_HARMONICS + 2)
+"""Entries of Newton's matrix, right-hand side included. []"""
 
-_LARGEST_STEP = 2.0  # in lengths over which the contact changes
-_EXACTLY = 0.01  # tolerances that the last step may measure
+_LARGEST_STEP = 2.0  # norm of a Newton step, in decay lengths
+_LAST_STEP = 0.01  # norm of the last step over the tolerance
 _LARGEST_EXPONENT = 700.0
 
 
 @on_device
-def write_linear_part(
-    pairs: Floats, voltage: Floats, point: int, omega: float, known: int, h: int, answer: Floats, linear: Floats
+def write_linear_response(
+    pairs: Floats, voltage: Floats, point: int, omega: float, known: int, h: int, receptances: Floats, free: Floats
 ) -> None:
-    """Write the receptances, and the harmonics of the free motion, beyond the known ones."""
+    """Write the receptances and the harmonics of the free motion, beyond the known ones."""
     drives = voltage.shape[0] // 2
     for k in range(known + 1, h + 1):
-        answer[0, k], answer[1, k] = forced(pairs, k * omega)
-        linear[0, k], linear[1, k] = 0.0, 0.0
+        receptances[0, k], receptances[1, k] = contact_per_force(pairs, k * omega)
+        free[0, k], free[1, k] = 0.0, 0.0
         if k <= drives:
-            re, im = driven(pairs, k * omega)
+            re, im = contact_per_volt(pairs, k * omega)
             v_re, v_im = voltage[2 * k - 2, point], voltage[2 * k - 1, point]
-            linear[0, k], linear[1, k] = re * v_re - im * v_im, re * v_im + im * v_re
+            free[0, k], free[1, k] = re * v_re - im * v_im, re * v_im + im * v_re
 
 
 @on_device
 def write_spectrum(
     load: float, length: float, unknown: Floats, h: int, count: int, orders: int, spectrum: Floats
 ) -> None:
-    """Write (1/2 pi) int f exp(-i m theta) for m up to `orders`; last, the highest that the samples resolve."""
+    """Write the Fourier coefficients of the force up to `orders`, and at last the highest that the samples resolve."""
     half, top = count // 2, ORDERS - 1
     for m in range(orders + 1):
         spectrum[0, m], spectrum[1, m] = 0.0, 0.0
@@ -75,32 +78,32 @@ def write_residual(
     static_stiffness: float,
     static_displacement: float,
     unknown: Floats,
-    answer: Floats,
-    linear: Floats,
+    receptances: Floats,
+    free: Floats,
     spectrum: Floats,
     h: int,
     step: Floats,
 ) -> None:
-    """Write minus the residual of every equation."""
+    """Write the negative residual of every equation of harmonic balance."""
     step[0, 0] = spectrum[0, 0] - load - static_stiffness * (unknown[0, 0] - static_displacement)
     step[1, 0] = 0.0
     for k in range(1, h + 1):
-        g_re, g_im, re, im = answer[0, k], answer[1, k], spectrum[0, k], spectrum[1, k]
-        step[0, k] = linear[0, k] - unknown[0, k] + 2 * (g_re * re - g_im * im)
-        step[1, k] = linear[1, k] - unknown[1, k] + 2 * (g_re * im + g_im * re)
+        g_re, g_im, re, im = receptances[0, k], receptances[1, k], spectrum[0, k], spectrum[1, k]
+        step[0, k] = free[0, k] - unknown[0, k] + 2 * (g_re * re - g_im * im)
+        step[1, k] = free[1, k] - unknown[1, k] + 2 * (g_re * im + g_im * re)
 
 
 @on_device
-def coupling(answer: Floats, spectrum: Floats, length: float, k: int, j: int) -> tuple[float, float, float, float]:
-    """Return how the real and the imaginary residual of harmonic k depend on the real and imaginary part of j."""
-    g_re, g_im = answer[0, k] / length, answer[1, k] / length
+def coupling(receptances: Floats, spectrum: Floats, length: float, k: int, j: int) -> tuple[float, float, float, float]:
+    """Return the derivatives of real and imaginary residual of harmonic k by real and imaginary part of harmonic j."""
+    g_re, g_im = receptances[0, k] / length, receptances[1, k] / length
     if j == 0:
         re, im = 2 * spectrum[0, k], 2 * spectrum[1, k]
         return g_re * re - g_im * im, 0.0, g_re * im + g_im * re, 0.0
-    apart, sign = abs(k - j), 1.0 if k >= j else -1.0
+    difference, sign = abs(k - j), 1.0 if k >= j else -1.0
     own = 1.0 if k == j else 0.0
-    # the force's harmonic k falls by P X_j + Q conj(X_j)
-    p_re, p_im = spectrum[0, apart], sign * spectrum[1, apart]
+    # the force harmonic k changes by -(P X_j + Q conj(X_j))
+    p_re, p_im = spectrum[0, difference], sign * spectrum[1, difference]
     q_re, q_im = spectrum[0, k + j], spectrum[1, k + j]
     return (
         own + g_re * (p_re + q_re) - g_im * (p_im + q_im),
@@ -114,14 +117,17 @@ def coupling(answer: Floats, spectrum: Floats, length: float, k: int, j: int) ->
 def write_step(
     static_stiffness: float,
     length: float,
-    answer: Floats,
+    receptances: Floats,
     spectrum: Floats,
     h: int,
     n: int,
     matrix: Floats,
     step: Floats,
 ) -> None:
-    """Turn minus the residuals into a step: n harmonics with the mean by elimination, the rest by substitution."""
+    """Replace the negative residuals by the Newton step.
+
+    The mean and n harmonics are solved for by elimination, the harmonics n + 1 to h by substitution.
+    """
     rows = 2 * n + 1
     stride = rows + 1
     matrix[0], matrix[rows] = static_stiffness + spectrum[0, 0] / length, step[0, 0]
@@ -129,9 +135,9 @@ def write_step(
         matrix[2 * j - 1], matrix[2 * j] = spectrum[0, j] / length, spectrum[1, j] / length
     for k in range(1, n + 1):
         real, imaginary = (2 * k - 1) * stride, 2 * k * stride
-        matrix[real], _, matrix[imaginary], _ = coupling(answer, spectrum, length, k, 0)
+        matrix[real], _, matrix[imaginary], _ = coupling(receptances, spectrum, length, k, 0)
         for j in range(1, n + 1):
-            a, b, c, d = coupling(answer, spectrum, length, k, j)
+            a, b, c, d = coupling(receptances, spectrum, length, k, j)
             matrix[real + 2 * j - 1], matrix[real + 2 * j] = a, b
             matrix[imaginary + 2 * j - 1], matrix[imaginary + 2 * j] = c, d
         matrix[real + rows], matrix[imaginary + rows] = step[0, k], step[1, k]
@@ -141,16 +147,16 @@ def write_step(
         step[0, k], step[1, k] = matrix[(2 * k - 1) * stride + rows], matrix[2 * k * stride + rows]
     for k in range(n + 1, h + 1):
         for j in range(n + 1):
-            a, b, c, d = coupling(answer, spectrum, length, k, j)
+            a, b, c, d = coupling(receptances, spectrum, length, k, j)
             step[0, k] -= a * step[0, j] + b * step[1, j]
             step[1, k] -= c * step[0, j] + d * step[1, j]
 
 
 @on_device
 def eliminate(matrix: Floats, rows: int) -> None:
-    """Solve in place, the right-hand side in the last column.
+    """Solve in place by Gaussian elimination without pivoting, the right-hand side in the last column.
 
-    Without pivots: the mean's stiffness leads, and the others are near one.
+    The static stiffness of the mean comes first, and the other diagonal entries are near one.
     """
     stride = rows + 1
     for p in range(rows):
@@ -167,30 +173,30 @@ def eliminate(matrix: Floats, rows: int) -> None:
 
 
 @on_device
-def advance(unknown: Floats, step: Floats, h: int, length: float) -> tuple[float, float]:
-    """Take the step, shortened where it exceeds what the contact's reach allows; return its size and the motion's."""
+def update(unknown: Floats, step: Floats, h: int, length: float) -> tuple[float, float]:
+    """Add the Newton step, limited to a few decay lengths; return its norm and that of the motion."""
     size, scale = abs(step[0, 0]), 1e-3 * length
     for k in range(1, h + 1):
         size += abs(step[0, k]) + abs(step[1, k])
-    share = 1.0
+    factor = 1.0
     if size > _LARGEST_STEP * length:
-        share = _LARGEST_STEP * length / size
-    unknown[0, 0] += share * step[0, 0]
+        factor = _LARGEST_STEP * length / size
+    unknown[0, 0] += factor * step[0, 0]
     for k in range(1, h + 1):
-        unknown[0, k] += share * step[0, k]
-        unknown[1, k] += share * step[1, k]
+        unknown[0, k] += factor * step[0, k]
+        unknown[1, k] += factor * step[1, k]
         scale += abs(unknown[0, k]) + abs(unknown[1, k])
     return size, scale
 
 
 @on_device
-def balance(
+def newton_solve(
     load: float,
     length: float,
     static_stiffness: float,
     static_displacement: float,
-    answer: Floats,
-    linear: Floats,
+    receptances: Floats,
+    free: Floats,
     h: int,
     n: int,
     count: int,
@@ -201,14 +207,14 @@ def balance(
     spectrum: Floats,
     matrix: Floats,
 ) -> tuple[float, float, int]:
-    """Find a steady state; return the size of the last step, that of the motion, and how many steps it took."""
+    """Solve by Newton's method; return the norms of the last step and of the motion, and the number of steps."""
     size, scale, final, taken = 0.0, 1.0, False, 0
     for iteration in range(iterations):
         final = final or iteration == iterations - 1
         write_spectrum(load, length, unknown, h, count, 2 * h if final else h + n, spectrum)
-        write_residual(load, static_stiffness, static_displacement, unknown, answer, linear, spectrum, h, step)
-        write_step(static_stiffness, length, answer, spectrum, h, n, matrix, step)
-        size, scale = advance(unknown, step, h, length)
+        write_residual(load, static_stiffness, static_displacement, unknown, receptances, free, spectrum, h, step)
+        write_step(static_stiffness, length, receptances, spectrum, h, n, matrix, step)
+        size, scale = update(unknown, step, h, length)
         taken += 1
         if final or not size < math.inf:
             break
@@ -217,7 +223,7 @@ def balance(
 
 
 @on_device
-def verdict(
+def assess(
     pairs: Floats,
     omega: float,
     load: float,
@@ -228,18 +234,18 @@ def verdict(
     scale: float,
     spectrum: Floats,
 ) -> int:
-    """Say whether a point converged, and whether it was resolved finely enough."""
+    """Return the outcome of a point: convergence, then the error of aliasing, then that of truncation."""
     top = ORDERS - 1
-    if not size <= _EXACTLY * tolerance * scale:
+    if not size <= _LAST_STEP * tolerance * scale:
         return DIVERGED
     highest = math.sqrt(spectrum[0, top] ** 2 + spectrum[1, top] ** 2)
-    # the samples mistake harmonic count - h for harmonic h; see `sonolube.dynamics.harmonic_balance.harmonic_kernel`
+    # aliasing of harmonic count - h to harmonic h, see `sonolube.dynamics.harmonic_balance.harmonic_kernel`
     aliased = tolerance ** ((0.5 * count - 1) / (count - h))
     if highest > aliased * max(spectrum[0, 0], 1e-3 * load):
         return NEEDS_SAMPLES
     tail = 0.0
     for k in range(h + 1, 2 * h + 1):
-        g_re, g_im = forced(pairs, k * omega)
+        g_re, g_im = contact_per_force(pairs, k * omega)
         force = spectrum[0, k] ** 2 + spectrum[1, k] ** 2
         tail = max(tail, 4 * (g_re * g_re + g_im * g_im) * force)
     if tail > (TAIL * tolerance * scale) ** 2:
