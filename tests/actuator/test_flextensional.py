@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pytest import approx, raises
 
-from sonolube.actuator import FlextensionalActuator, PiezoStack, amplified, equivalent_stack, free_stroke
+from sonolube.actuator import FlextensionalActuator, PiezoStack, equivalent_stack, free_stroke, lever_amplified_stack
 from sonolube.dynamics.chain import GROUND, LumpedChain, chain_structure
 from sonolube.dynamics.linear import modes
 from sonolube.dynamics.structure import electrical_admittance
@@ -71,7 +71,7 @@ def test_free_at_both_ends_two_equal_masses_take_twice_the_effective_mass_each()
 
 @given(ratio=st.floats(0.1, 30))
 def test_a_lever_changes_neither_the_coupling_nor_the_energies(ratio: float) -> None:
-    out = amplified(STACK, amplification_ratio=ratio)
+    out = lever_amplified_stack(STACK, amplification_ratio=ratio)
     assert out.derived_coupling_factor == approx(STACK.derived_coupling_factor)
     assert out.clamped_capacitance == approx(STACK.clamped_capacitance)
     assert float(free_stroke(out, stack_voltage=1.0)) == approx(ratio * float(free_stroke(STACK, stack_voltage=1.0)))
@@ -91,12 +91,12 @@ def test_a_mass_at_the_levers_end_looks_heavier_to_the_drive_by_the_square_of_th
         return complex(electrical_admittance(chain_structure(chain), frequency=frequency))
 
     direct = admittance(STACK, 0.05 * ratio**2)
-    assert admittance(amplified(STACK, amplification_ratio=ratio), 0.05) == approx(direct, rel=1e-9)
+    assert admittance(lever_amplified_stack(STACK, amplification_ratio=ratio), 0.05) == approx(direct, rel=1e-9)
 
 
 def test_two_levers_in_a_row_multiply() -> None:
-    twice = amplified(amplified(STACK, amplification_ratio=2.0), amplification_ratio=3.0)
-    once = amplified(STACK, amplification_ratio=6.0)
+    twice = lever_amplified_stack(lever_amplified_stack(STACK, amplification_ratio=2.0), amplification_ratio=3.0)
+    once = lever_amplified_stack(STACK, amplification_ratio=6.0)
     assert twice.stack_stiffness == approx(once.stack_stiffness)
     assert twice.stack_mass == approx(once.stack_mass)
 
@@ -123,4 +123,4 @@ def test_a_data_sheet_that_promises_energy_from_nothing_is_refused() -> None:
 
 def test_a_ratio_of_zero_is_refused() -> None:
     with raises(InvalidInput, match=r"amplification_ratio must be positive, got 0\.0"):
-        amplified(STACK, amplification_ratio=0)
+        lever_amplified_stack(STACK, amplification_ratio=0)

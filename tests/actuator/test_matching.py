@@ -8,10 +8,10 @@ from hypothesis import strategies as st
 from pytest import approx, raises
 
 from sonolube.actuator import (
-    Branch,
     ButterworthVanDyke,
     MatchingNetwork,
-    amplifier_need,
+    MotionalBranch,
+    amplifier_requirements,
     circuit_admittance,
     input_admittance,
     l_match,
@@ -25,7 +25,7 @@ from sonolube.errors import InvalidInput, OutsideRange
 
 F = 22e3
 CIRCUIT = ButterworthVanDyke(
-    parallel_capacitance=360e-9, branches=(Branch(resistance=40.0, inductance=10e-3, capacitance=5.4e-9),)
+    parallel_capacitance=360e-9, branches=(MotionalBranch(resistance=40.0, inductance=10e-3, capacitance=5.4e-9),)
 )
 conductances = st.floats(1e-5, 1.0)
 susceptances = st.floats(1e-5, 1.0)
@@ -104,7 +104,9 @@ def test_where_the_motion_makes_the_actuator_inductive_no_inductor_helps() -> No
 
 def test_an_amplifier_on_a_bare_capacitance_gives_current_and_slope_of_the_textbook() -> None:
     c, amplitude = 360e-9, 14.0
-    need = amplifier_need(admittance=2j * np.pi * F * c, voltage_amplitude=amplitude, frequency=F, voltage_offset=14.0)
+    need = amplifier_requirements(
+        admittance=2j * np.pi * F * c, voltage_amplitude=amplitude, frequency=F, voltage_offset=14.0
+    )
     assert need.voltage_maximum == approx(28)
     assert need.peak_current == approx(2 * math.pi * F * c * amplitude)
     assert need.slew_rate == approx(2 * math.pi * F * amplitude)
@@ -116,7 +118,7 @@ def test_an_amplifier_on_a_resistance_gives_a_triangle_its_own_power() -> None:
     orders = 16
     k = np.arange(1, orders + 1)
     triangle = np.where(k % 2 == 1, 8 / (np.pi * k) ** 2, 0.0)
-    need = amplifier_need(admittance=np.full(orders, 0.01), voltage_amplitude=triangle, frequency=F)
+    need = amplifier_requirements(admittance=np.full(orders, 0.01), voltage_amplitude=triangle, frequency=F)
     assert need.power_factor == approx(1)
     assert need.dissipated_power == approx(0.01 / 3, rel=1e-3)  # a triangle of height one has a mean square of a third
     assert need.slew_rate == approx(1.179 * 4 * F, rel=0.01)  # the slope is a square wave, with Gibbs's overshoot

@@ -3,7 +3,7 @@
 import numpy as np
 from pytest import approx, raises
 
-from sonolube.actuator import PiezoStack, PreloadBolt, bolt_load, bolted
+from sonolube.actuator import PiezoStack, PreloadBolt, bolt_stresses, bolted_stack
 from sonolube.errors import InvalidInput
 
 STACK = PiezoStack(
@@ -19,7 +19,7 @@ def test_an_m8_bolt_has_the_stress_area_and_endurance_of_the_tables() -> None:
 
 
 def test_stack_and_bolt_push_and_draw_as_two_springs_side_by_side() -> None:
-    joined = bolted(STACK, BOLT)
+    joined = bolted_stack(STACK, BOLT)
     volts, elongation = 30.0, 50e-9
     alone = STACK.charge_per_elongation * volts - STACK.stack_stiffness * elongation
     force = joined.charge_per_elongation * volts - joined.stack_stiffness * elongation
@@ -31,7 +31,7 @@ def test_stack_and_bolt_push_and_draw_as_two_springs_side_by_side() -> None:
 
 
 def test_a_micrometre_stretches_the_bolt_by_hookes_law() -> None:
-    load = bolt_load(BOLT, elongation_amplitude=[0.0, 1e-6], elongation=2e-6)
+    load = bolt_stresses(BOLT, elongation_amplitude=[0.0, 1e-6], elongation=2e-6)
     strain = np.array([0.0, 1e-6]) / 40e-3
     assert load.bolt_stress_amplitude == approx(205e9 * strain)
     assert load.highest_bolt_stress == approx(10e3 / BOLT.stress_area + 205e9 * (strain + 2e-6 / 40e-3))

@@ -10,9 +10,9 @@ from scipy.optimize import brentq
 
 from sonolube.actuator import (
     PiezoStack,
-    as_published_impedance,
     blocked_admittance,
     blocked_force,
+    dong_2015_impedance,
     free_admittance,
     free_stroke,
     require_allowed_voltage,
@@ -238,12 +238,12 @@ RIG = {
 
 def test_as_published_the_capacitance_below_resonance_is_twice_the_stacks() -> None:
     # above the arm, below the stack: C_T (1 - k^2)^2/(1 - 2 k^2) with k^2 = 0.4186 is 2.08 C_T
-    z = as_published_impedance(STACK, **RIG, normal_stiffness=0.0, normal_load=3.0, frequency=1e3)
+    z = dong_2015_impedance(STACK, **RIG, normal_stiffness=0.0, normal_load=3.0, frequency=1e3)
     assert -1 / (2 * np.pi * 1e3 * z.imag) == approx(2.08 * 360e-9, rel=0.01)
 
 
 def test_as_published_the_rig_resonates_at_ten_and_thirty_one_kilohertz_instead_of_twenty_two() -> None:
     f = np.linspace(5e3, 50e3, 45001)
-    z = np.abs(as_published_impedance(STACK, **RIG, normal_stiffness=0.0, normal_load=3.0, frequency=f)) * f
+    z = np.abs(dong_2015_impedance(STACK, **RIG, normal_stiffness=0.0, normal_load=3.0, frequency=f)) * f
     dips = f[1:-1][(z[1:-1] < z[:-2]) & (z[1:-1] < z[2:])]
     assert dips == approx(np.array([10.45e3, 31.02e3]), rel=1e-3)

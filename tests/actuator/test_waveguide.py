@@ -7,18 +7,18 @@ from hypothesis import strategies as st
 from pytest import approx, raises
 
 from sonolube.actuator import (
-    HalfWaveguide,
+    BarWaveguide,
     axial_displacement,
+    free_bar_frequency,
     in_plane_amplitude,
-    locus,
-    natural_frequency,
     normal_amplitude,
     normal_displacement,
+    surface_trajectory,
 )
 from sonolube.errors import InvalidInput
 
 LENGTH, THICKNESS, NU = 127e-3, 25.4e-3, 0.33
-WELDER = HalfWaveguide(length=LENGTH, thickness=THICKNESS, poisson_ratio=NU, axial_amplitude=8.5e-6, frequency=20e3)
+WELDER = BarWaveguide(length=LENGTH, thickness=THICKNESS, poisson_ratio=NU, axial_amplitude=8.5e-6, frequency=20e3)
 IN_PHASE = replace(WELDER, phase=0.0)
 
 positions = st.floats(-LENGTH / 2, LENGTH / 2)
@@ -63,7 +63,7 @@ def test_poissons_ratio_comes_back_from_the_strains(position: float, time: float
 @given(position=positions.filter(lambda x: 1e-4 < abs(x) < 0.063), mode=modes)
 def test_in_quadrature_points_move_on_ellipses(position: float, mode: int) -> None:
     bar = replace(WELDER, mode=mode)
-    path = locus(bar, position=position, samples=37)
+    path = surface_trajectory(bar, position=position, samples=37)
     across = normal_amplitude(bar, position=position)
     along = in_plane_amplitude(bar, position=position)
     assume(min(across, along) > 1e-12)
@@ -73,13 +73,13 @@ def test_in_quadrature_points_move_on_ellipses(position: float, mode: int) -> No
 
 @given(position=positions)
 def test_without_losses_points_move_on_straight_lines(position: float) -> None:
-    path = locus(IN_PHASE, position=position)
+    path = surface_trajectory(IN_PHASE, position=position)
     product = path.axial_displacement * path.normal_displacement[0]
     assert product == approx(path.normal_displacement * path.axial_displacement[0], abs=1e-24)
 
 
 def test_paths_close_after_one_period() -> None:
-    path = locus(WELDER, position=[[0.01], [0.02]], samples=100)
+    path = surface_trajectory(WELDER, position=[[0.01], [0.02]], samples=100)
     assert path.axial_displacement.shape == (2, 1, 100)
     assert path.normal_displacement[..., -1] == approx(path.normal_displacement[..., 0], abs=1e-18)
 
@@ -92,14 +92,14 @@ def test_the_printed_phase_makes_the_normal_motion_a_sine() -> None:
 
 def test_a_half_wave_of_the_welder_rings_near_its_twenty_kilohertz() -> None:
     # aluminium bar speed sqrt(E/rho) = 5.08 km/s
-    assert natural_frequency(length=LENGTH, wave_speed=5.08e3) == approx(20e3)
-    assert natural_frequency(length=LENGTH, wave_speed=5.08e3, mode=3) == approx(60e3)
+    assert free_bar_frequency(length=LENGTH, wave_speed=5.08e3) == approx(20e3)
+    assert free_bar_frequency(length=LENGTH, wave_speed=5.08e3, mode=3) == approx(60e3)
 
 
 @pytest.mark.parametrize("mode", [2, 4, 2.5])
 def test_an_even_mode_is_refused_with_its_reason(mode: int) -> None:
     with raises(InvalidInput, match=r"mode must be odd, got .*: a bar held at its centre has a node there"):
-        natural_frequency(length=1.0, wave_speed=5e3, mode=mode)
+        free_bar_frequency(length=1.0, wave_speed=5e3, mode=mode)
     with raises(InvalidInput, match=r"mode must be odd"):
         replace(WELDER, mode=mode)
 
@@ -111,4 +111,4 @@ def test_a_place_beyond_the_end_is_refused() -> None:
 
 def test_a_path_of_one_point_is_refused() -> None:
     with raises(InvalidInput, match=r"samples must be at least 2, got 1"):
-        locus(WELDER, position=0.0, samples=1)
+        surface_trajectory(WELDER, position=0.0, samples=1)

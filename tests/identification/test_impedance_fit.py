@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from pytest import approx, fixture, mark, raises, skip
 
-from sonolube.actuator import Branch, ButterworthVanDyke, PiezoStack, circuit_admittance
+from sonolube.actuator import ButterworthVanDyke, MotionalBranch, PiezoStack, circuit_admittance
 from sonolube.dynamics.chain import chain_structure, pin_on_disc_chain
 from sonolube.dynamics.structure import Structure, electrical_admittance
 from sonolube.errors import InvalidInput, UnknownName
@@ -18,9 +18,9 @@ from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 RB5100 = Path(__file__).parents[3] / "shared" / "data" / "impedance" / "RB5100.txt"
 
 
-def branch(frequency: float, quality: float, capacitance: float) -> Branch:
+def branch(frequency: float, quality: float, capacitance: float) -> MotionalBranch:
     omega = 2 * np.pi * frequency
-    return Branch(
+    return MotionalBranch(
         resistance=1 / (omega * capacitance * quality), inductance=1 / (omega**2 * capacitance), capacitance=capacitance
     )
 

@@ -14,7 +14,7 @@ from sonolube.actuator.stack import PiezoStack
 from sonolube.checks import require_finite, require_positive
 from sonolube.errors import InvalidInput, MissingProperty, UnknownName
 
-KINDS = ("stack", "flextensional")
+ACTUATOR_KINDS = ("stack", "flextensional")
 """What an actuator of the catalogue can be."""
 
 
@@ -85,8 +85,8 @@ class CatalogueActuator:
         require_finite(lowest_voltage=low or 0.0, highest_voltage=high or 0.0)
         if low is not None and high is not None and low >= high:
             raise InvalidInput(f"lowest_voltage must lie below highest_voltage, {high!r} V, got {low!r} V")
-        if self.kind not in KINDS:
-            raise UnknownName.among(KINDS, kind="kind of actuator", name=self.kind)
+        if self.kind not in ACTUATOR_KINDS:
+            raise UnknownName.among(ACTUATOR_KINDS, kind="kind of actuator", name=self.kind)
 
     @property
     def complete(self) -> bool:

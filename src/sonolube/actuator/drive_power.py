@@ -8,7 +8,7 @@ from sonolube.checks import Floats, require_finite_complex, require_non_negative
 _POINTS_PER_WAVE = 32  # peaks between points are missed by at most 1 - cos(pi/32), half a percent
 
 
-def driver_power(
+def linear_amplifier_power(
     *, capacitance: ArrayLike, voltage_maximum: ArrayLike, voltage_peak_to_peak: ArrayLike, frequency: ArrayLike
 ) -> Floats:
     """Return the mean power a linear amplifier takes from its supply to drive a capacitance. [W]

@@ -10,7 +10,7 @@ from sonolube.checks import Complexes, Floats, require_non_negative, require_pos
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Branch:
+class MotionalBranch:
     """One mode of vibration: resistance, inductance and capacitance in series.
 
     Parameters
@@ -61,7 +61,7 @@ class ButterworthVanDyke:
     """
 
     parallel_capacitance: float
-    branches: tuple[Branch, ...]
+    branches: tuple[MotionalBranch, ...]
     series_resistance: float = 0.0
 
     def __post_init__(self) -> None:
@@ -70,7 +70,7 @@ class ButterworthVanDyke:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Resonances:
+class CircuitResonances:
     """The modes of a circuit without losses, in order of frequency.
 
     Parameters
@@ -116,7 +116,7 @@ def circuit_admittance(circuit: ButterworthVanDyke, *, frequency: ArrayLike) -> 
     return np.asarray(y / (1 + circuit.series_resistance * y))
 
 
-def resonances(circuit: ButterworthVanDyke) -> Resonances:
+def circuit_resonances(circuit: ButterworthVanDyke) -> CircuitResonances:
     """Return the frequencies, quality factors and coupling factors of the circuit's modes.
 
     Parameters
@@ -138,7 +138,7 @@ def resonances(circuit: ButterworthVanDyke) -> Resonances:
     squares = 1 / (inductance * np.array([branch.capacitance for branch in modes]))
     v = 1 / np.sqrt(inductance * circuit.parallel_capacitance)
     opened = np.linalg.eigvalsh(np.diag(squares) + np.multiply.outer(v, v)) if modes else squares
-    return Resonances(
+    return CircuitResonances(
         series_frequency=np.sqrt(squares) / (2 * np.pi),
         parallel_frequency=np.sqrt(opened) / (2 * np.pi),
         mechanical_quality_factor=np.array([_quality(branch) for branch in modes]),
@@ -146,6 +146,6 @@ def resonances(circuit: ButterworthVanDyke) -> Resonances:
     )
 
 
-def _quality(branch: Branch) -> float:
+def _quality(branch: MotionalBranch) -> float:
     lossless = branch.resistance == 0
     return math.inf if lossless else math.sqrt(branch.inductance / branch.capacitance) / branch.resistance

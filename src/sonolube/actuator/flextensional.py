@@ -105,7 +105,7 @@ def equivalent_stack(actuator: FlextensionalActuator) -> PiezoStack:
     )
 
 
-def amplified(stack: PiezoStack, *, amplification_ratio: float) -> PiezoStack:
+def lever_amplified_stack(stack: PiezoStack, *, amplification_ratio: float) -> PiezoStack:
     """Return the stack as it acts through an ideal lever.
 
     Parameters

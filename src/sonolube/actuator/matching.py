@@ -18,7 +18,7 @@ from sonolube.checks import (
 )
 from sonolube.errors import InvalidInput, OutsideRange
 
-Admittance = Callable[[Floats], NDArray[np.complexfloating[Any, Any]]]
+AdmittanceFunction = Callable[[Floats], NDArray[np.complexfloating[Any, Any]]]
 """Current per voltage of an actuator at frequencies, complex."""
 
 _WIDEST = 0.5  # of the frequency, how far a band is looked for
@@ -232,7 +232,7 @@ def matched_power_factor(network: MatchingNetwork, *, admittance: ArrayLike, fre
 
 
 def matched_band(
-    network: MatchingNetwork, actuator: Admittance, *, frequency: float, least_power_factor: float = 0.9
+    network: MatchingNetwork, actuator: AdmittanceFunction, *, frequency: float, least_power_factor: float = 0.9
 ) -> tuple[float, float]:
     """Return the frequencies between which the power factor stays above a bound, in Hz.
 

@@ -86,7 +86,7 @@ class PreloadBolt:
         return 0.85e6 * (0.15 / self.thread_diameter + 45)  # VDI 2230-1, 5.5.3
 
 
-def bolted(stack: PiezoStack, bolt: PreloadBolt) -> PiezoStack:
+def bolted_stack(stack: PiezoStack, bolt: PreloadBolt) -> PiezoStack:
     """Return the stack and its bolt as one stack between the bodies.
 
     Parameters
@@ -117,7 +117,7 @@ def bolted(stack: PiezoStack, bolt: PreloadBolt) -> PiezoStack:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class BoltLoad:
+class BoltStresses:
     """What a bolt bears, each array of the shape of the elongations.
 
     Parameters
@@ -138,7 +138,7 @@ class BoltLoad:
     yield_safety: Floats
 
 
-def bolt_load(bolt: PreloadBolt, *, elongation_amplitude: ArrayLike, elongation: ArrayLike = 0.0) -> BoltLoad:
+def bolt_stresses(bolt: PreloadBolt, *, elongation_amplitude: ArrayLike, elongation: ArrayLike = 0.0) -> BoltStresses:
     """Return stresses and safeties of a bolt that a stack stretches.
 
     Parameters
@@ -151,7 +151,7 @@ def bolt_load(bolt: PreloadBolt, *, elongation_amplitude: ArrayLike, elongation:
 
     Returns
     -------
-    BoltLoad
+    BoltStresses
 
     Raises
     ------
@@ -172,7 +172,7 @@ def bolt_load(bolt: PreloadBolt, *, elongation_amplitude: ArrayLike, elongation:
     amplitude = per_length * swing
     highest = bolt.preload / bolt.stress_area + per_length * mean + amplitude
     still = amplitude == 0
-    return BoltLoad(
+    return BoltStresses(
         bolt_stress_amplitude=amplitude,
         highest_bolt_stress=highest,
         fatigue_safety=np.where(still, np.inf, bolt.endurance_limit / np.where(still, 1.0, amplitude)),

@@ -18,7 +18,7 @@ from sonolube.checks import (
 )
 from sonolube.errors import InconsistentCoupling, InvalidInput
 
-MOST_COUPLING_ERROR = 0.05
+COUPLING_TOLERANCE = 0.05
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -340,7 +340,7 @@ def _tension_caveat(stack: PiezoStack, pull: float) -> str:
 
 def _coupling_caveat(stack: PiezoStack) -> str:
     stated, derived = stack.coupling_factor, stack.derived_coupling_factor
-    if stated is None or abs(stated - derived) <= MOST_COUPLING_ERROR * derived:
+    if stated is None or abs(stated - derived) <= COUPLING_TOLERANCE * derived:
         return ""
     return (
         f"coupling_factor is stated as {stated:g}, but stroke, stiffness and capacitance imply {derived:.3g},"

@@ -10,7 +10,7 @@ from sonolube.errors import InvalidInput
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class HalfWaveguide:
+class BarWaveguide:
     """A prismatic bar with free ends in an odd longitudinal mode, its centre a node.
 
     Parameters
@@ -67,7 +67,7 @@ class HalfWaveguide:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Locus:
+class SurfaceTrajectory:
     """The path of surface points over one period.
 
     Parameters
@@ -82,12 +82,12 @@ class Locus:
     normal_displacement: Floats
 
 
-def axial_displacement(waveguide: HalfWaveguide, *, position: ArrayLike, time: ArrayLike) -> Floats:
+def axial_displacement(waveguide: BarWaveguide, *, position: ArrayLike, time: ArrayLike) -> Floats:
     """Return the displacement along the bar. [m]
 
     Parameters
     ----------
-    waveguide : HalfWaveguide
+    waveguide : BarWaveguide
     position : array_like
         Position along the bar, from its centre. [m]
     time : array_like, broadcast against `position`
@@ -110,12 +110,12 @@ def axial_displacement(waveguide: HalfWaveguide, *, position: ArrayLike, time: A
     return waveguide.axial_amplitude * np.cos(turn) * np.sin(_wave_phase(waveguide, position))  # D 3.22
 
 
-def normal_displacement(waveguide: HalfWaveguide, *, position: ArrayLike, time: ArrayLike) -> Floats:
+def normal_displacement(waveguide: BarWaveguide, *, position: ArrayLike, time: ArrayLike) -> Floats:
     """Return the displacement of the sliding surface along its normal, positive into the bar. [m]
 
     Parameters
     ----------
-    waveguide : HalfWaveguide
+    waveguide : BarWaveguide
     position : array_like
         Position along the bar, from its centre. [m]
     time : array_like, broadcast against `position`
@@ -144,12 +144,12 @@ def normal_displacement(waveguide: HalfWaveguide, *, position: ArrayLike, time: 
     return _bulge(waveguide) * np.cos(turn) * np.cos(_wave_phase(waveguide, position))  # D 3.25
 
 
-def normal_amplitude(waveguide: HalfWaveguide, *, position: ArrayLike = 0.0) -> Floats:
+def normal_amplitude(waveguide: BarWaveguide, *, position: ArrayLike = 0.0) -> Floats:
     """Return the amplitude of the sliding surface along its normal. [m]
 
     Parameters
     ----------
-    waveguide : HalfWaveguide
+    waveguide : BarWaveguide
     position : array_like, any shape
         Position along the bar, from its centre. [m]
 
@@ -170,12 +170,12 @@ def normal_amplitude(waveguide: HalfWaveguide, *, position: ArrayLike = 0.0) -> 
     return _bulge(waveguide) * np.abs(np.cos(_wave_phase(waveguide, position)))
 
 
-def in_plane_amplitude(waveguide: HalfWaveguide, *, position: ArrayLike) -> Floats:
+def in_plane_amplitude(waveguide: BarWaveguide, *, position: ArrayLike) -> Floats:
     """Return the amplitude of the sliding surface along the bar. [m]
 
     Parameters
     ----------
-    waveguide : HalfWaveguide
+    waveguide : BarWaveguide
     position : array_like, any shape
         Position along the bar, from its centre. [m]
 
@@ -195,12 +195,12 @@ def in_plane_amplitude(waveguide: HalfWaveguide, *, position: ArrayLike) -> Floa
     return waveguide.axial_amplitude * np.abs(np.sin(_wave_phase(waveguide, position)))
 
 
-def locus(waveguide: HalfWaveguide, *, position: ArrayLike, samples: int = 361) -> Locus:
+def surface_trajectory(waveguide: BarWaveguide, *, position: ArrayLike, samples: int = 361) -> SurfaceTrajectory:
     """Return the closed path of surface points over one period.
 
     Parameters
     ----------
-    waveguide : HalfWaveguide
+    waveguide : BarWaveguide
     position : array_like, shape (...)
         Position along the bar, from its centre. [m]
     samples : int
@@ -219,13 +219,13 @@ def locus(waveguide: HalfWaveguide, *, position: ArrayLike, samples: int = 361) 
         raise InvalidInput(f"samples must be at least 2, got {samples!r}")
     places = require_finite(position=position)[..., np.newaxis]
     times = np.linspace(0.0, 1.0, samples) / waveguide.frequency
-    return Locus(
+    return SurfaceTrajectory(
         axial_displacement=axial_displacement(waveguide, position=places, time=times),
         normal_displacement=normal_displacement(waveguide, position=places, time=times),
     )
 
 
-def natural_frequency(*, length: ArrayLike, wave_speed: ArrayLike, mode: int = 1) -> Floats:
+def free_bar_frequency(*, length: ArrayLike, wave_speed: ArrayLike, mode: int = 1) -> Floats:
     """Return the frequency at which a bar with free ends stands in a number of half waves. [Hz]
 
     Parameters
@@ -254,12 +254,12 @@ def natural_frequency(*, length: ArrayLike, wave_speed: ArrayLike, mode: int = 1
     return mode * require_positive(wave_speed=wave_speed) / (2 * require_positive(length=length))
 
 
-def _bulge(waveguide: HalfWaveguide) -> float:
+def _bulge(waveguide: BarWaveguide) -> float:
     strain = waveguide.wave_number * waveguide.axial_amplitude  # D 3.23
     return waveguide.poisson_ratio * strain * waveguide.thickness / 2
 
 
-def _wave_phase(waveguide: HalfWaveguide, position: ArrayLike) -> Floats:
+def _wave_phase(waveguide: BarWaveguide, position: ArrayLike) -> Floats:
     half = waveguide.length / 2
     return waveguide.wave_number * require_within(-half, half, position=position)
 

@@ -6,7 +6,7 @@ from enum import StrEnum
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.fem.solver.assembly import face_weights
+from sonolube.fem.solver.assembly import tributary_areas
 from sonolube.fem.solver.mesh import Mesh
 
 
@@ -19,10 +19,10 @@ class BoreMotion(StrEnum):
 
     BREATHING = "breathing"
     OVAL = "oval"
-    LIFT = "lift"
+    TRANSLATION_ALONG_Y = "translation along y"
     TORSIONAL = "torsional"
-    SKEWED = "skewed"
-    SWAY = "sway"
+    DIAGONAL_OVAL = "diagonal oval"
+    TRANSLATION_ALONG_X = "translation along x"
     OUT_OF_PLANE = "out of plane"
 
 
@@ -56,7 +56,7 @@ def bore_motion(
     sin 2a e_t/2 and e_y, or e_t, sin 2a e_r + cos 2a e_t/2 and e_x, a the angle from x. The ovals are those of a ring
     that bends without stretching.
     """
-    weight = np.sum([face_weights(mesh, face) for face in faces], axis=0)
+    weight = np.sum([tributary_areas(mesh, face) for face in faces], axis=0)
     on = np.flatnonzero(weight)
     weight = weight[on] / weight.sum()
     arm = mesh.nodes[on, :2] - middle
@@ -66,14 +66,14 @@ def bore_motion(
     if odd_across:
         fields = {
             BoreMotion.TORSIONAL: tangential,
-            BoreMotion.SKEWED: np.sin(twice) * radial + np.cos(twice) / 2 * tangential,
-            BoreMotion.SWAY: np.broadcast_to([1.0, 0.0], radial.shape),
+            BoreMotion.DIAGONAL_OVAL: np.sin(twice) * radial + np.cos(twice) / 2 * tangential,
+            BoreMotion.TRANSLATION_ALONG_X: np.broadcast_to([1.0, 0.0], radial.shape),
         }
     else:
         fields = {
             BoreMotion.BREATHING: radial,
             BoreMotion.OVAL: np.cos(twice) * radial - np.sin(twice) / 2 * tangential,
-            BoreMotion.LIFT: np.broadcast_to([0.0, 1.0], radial.shape),
+            BoreMotion.TRANSLATION_ALONG_Y: np.broadcast_to([0.0, 1.0], radial.shape),
         }
     moves = shapes[:, on]
     mean_square = np.einsum("n,knd->k", weight, moves**2)

@@ -13,8 +13,8 @@ import numpy as np
 
 from sonolube.checks import require_positive
 from sonolube.errors import InvalidInput
-from sonolube.fem.solver.cad import MILLIMETRE, cad
-from sonolube.fem.solver.geometry import Geometry, assembled, one_body
+from sonolube.fem.solver.cad import MILLIMETRE, cad_kernel
+from sonolube.fem.solver.geometry import Geometry, bond, single_body
 
 _FAR = 1e3  # in mm, beyond any collar
 _NUMBERS = ("float", float)
@@ -169,7 +169,7 @@ def collar_geometry(collar: Collar, *, open_top: bool = False, whole: bool = Fal
         Regions "frame", "top", "saddle", the quarter of the inner ring under the rod, "ring", its rest, "stack" and
         "bolt", of a second stack "stack2" and "bolt2". Faces of the bore are "saddle.bore" and "ring.bore".
     """
-    occ = cad()
+    occ = cad_kernel()
     kept = occ.Box((-_FAR, -_FAR, -_FAR) if whole else (0, -_FAR, 0), (_FAR, _FAR, _FAR))
     frame, top = _outer_ring(collar)
     saddle, ring = _inner_ring(collar)
@@ -179,15 +179,15 @@ def collar_geometry(collar: Collar, *, open_top: bool = False, whole: bool = Fal
     shapes["stack"], shapes["bolt"] = _stack(collar, foot=collar.base)
     if collar.stacks == 2:
         shapes["stack2"], shapes["bolt2"] = _stack(collar, foot=collar.middle + collar.ring_width / 2)
-    bodies = {name: one_body(shape * kept, name) for name, shape in shapes.items()}
+    bodies = {name: single_body(shape * kept, name) for name, shape in shapes.items()}
     for name in ("saddle", "ring"):
         bodies[name].shape.maxh = (collar.ring_width - collar.bore_diameter) / 2 / MILLIMETRE  # elements like the wall
         _name_bore(bodies[name], collar)
-    return assembled(bodies)
+    return bond(bodies)
 
 
 def _outer_ring(collar: Collar) -> tuple[Any, Any]:
-    occ = cad()
+    occ = cad_kernel()
     x, z, wall = (
         size / MILLIMETRE for size in (collar.frame_width / 2, collar.frame_thickness / 2, collar.pillar_width)
     )
@@ -198,7 +198,7 @@ def _outer_ring(collar: Collar) -> tuple[Any, Any]:
 
 def _inner_ring(collar: Collar) -> tuple[Any, Any]:
     """Return the quarter of the inner ring that faces the base, and the rest."""
-    occ = cad()
+    occ = cad_kernel()
     middle, flat, depth = (size / MILLIMETRE for size in (collar.middle, collar.ring_width / 2, collar.ring_thickness))
     if collar.outline is Outline.HEXAGON:
         outside = _hexagon(2 * flat, middle, depth)
@@ -213,7 +213,7 @@ def _inner_ring(collar: Collar) -> tuple[Any, Any]:
 
 
 def _stack(collar: Collar, *, foot: float) -> tuple[Any, Any]:
-    occ = cad()
+    occ = cad_kernel()
     outer, inner, bolt, length, y = (
         size / MILLIMETRE
         for size in (
@@ -234,12 +234,12 @@ def _hexagon(width: float, middle: float, depth: float) -> Any:
 
 
 def _bar(radius: float, middle: float, depth: float) -> Any:
-    occ = cad()
+    occ = cad_kernel()
     return occ.Cylinder(occ.Pnt(0, middle, -depth / 2), occ.Z, radius, depth)
 
 
 def _extruded(corners: Sequence[tuple[float, float]], depth: float) -> Any:
-    occ = cad()
+    occ = cad_kernel()
     first, *others = ((float(x), float(y)) for x, y in corners)
     outline = occ.WorkPlane(occ.Axes((0, 0, -depth / 2), n=occ.Z, h=occ.X)).MoveTo(*first)
     for corner in others:

@@ -12,7 +12,7 @@ from sonolube.dong2015.collar import Collar, Outline
 
 _INCH = 0.0254
 
-COLLAR_ORIGINS: Mapping[str, str] = MappingProxyType(
+COLLAR_DIMENSION_SOURCES: Mapping[str, str] = MappingProxyType(
     {
         "frame_length": "printed: 3.9 in, D 4.5.2; that this side lies along the stacks is assumed",
         "frame_width": "printed: 3.7 in, D 4.5.2; that this side lies across the stacks is assumed",
@@ -55,7 +55,7 @@ THIN_HEXAGON_COLLAR = replace(FIRST_COLLAR, hole_sides=0, bore_diameter=0.75 * _
 THIN_RING_COLLAR = replace(THIN_HEXAGON_COLLAR, outline=Outline.ROUND)
 """The other revision: a round ring with flats for the stacks, of the same wall."""
 
-GUESSED_COLLAR = replace(THIN_HEXAGON_COLLAR, stacks=1, ring_thickness=0.5 * _INCH)
+NOMINAL_COLLAR = replace(THIN_HEXAGON_COLLAR, stacks=1, ring_thickness=0.5 * _INCH)
 """The final design as one would guess it: one stack and round inches."""
 
 ASSUMED_RANGES: Mapping[str, tuple[float, float]] = MappingProxyType(
@@ -71,7 +71,7 @@ ASSUMED_RANGES: Mapping[str, tuple[float, float]] = MappingProxyType(
 """Within what the assumed dimensions of the final design are sought, in m: what leaves room for stack, rod and bolt."""
 
 FINAL_COLLAR = replace(
-    GUESSED_COLLAR,
+    NOMINAL_COLLAR,
     ring_width=25.49e-3,
     ring_thickness=12.82e-3,
     bolt_diameter=4.11e-3,

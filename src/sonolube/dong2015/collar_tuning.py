@@ -8,12 +8,12 @@ from scipy.optimize import least_squares
 
 from sonolube.checks import Floats
 from sonolube.dong2015.collar import Collar
-from sonolube.dong2015.collar_model import ELEMENT_SIZE, ORDER, collar_response_model
+from sonolube.dong2015.collar_analysis import ELEMENT_SIZE, ORDER, reduced_collar_model
 from sonolube.errors import InvalidInput
 from sonolube.fem.electromechanical_model import coupled_resonances
-from sonolube.fem.solver.harmonic import ReducedModel
+from sonolube.fem.solver.harmonic_analysis import ReducedModel
 
-LOWEST, HIGHEST = 15e3, 40e3
+LOWEST_FREQUENCY, HIGHEST_FREQUENCY = 15e3, 40e3
 """Frequencies between which a resonance may be the main one, in Hz; D tells of none outside."""
 
 _STEP = 0.04  # relative change of a dimension, large enough for the unevenness of free meshes to matter little
@@ -41,7 +41,7 @@ class Resonance:
     coupling_factor: float
 
 
-def seen_resonances(model: ReducedModel, *, least_coupling: float) -> tuple[Resonance, ...]:
+def resonances_in_range(model: ReducedModel, *, least_coupling: float) -> tuple[Resonance, ...]:
     """Return the resonances from 15 to 40 kHz with at least some effective coupling factor, in order of frequency.
 
     Parameters
@@ -58,7 +58,7 @@ def seen_resonances(model: ReducedModel, *, least_coupling: float) -> tuple[Reso
     return tuple(
         Resonance(series_frequency=low, parallel_frequency=high, coupling_factor=k)
         for low, high, k in found
-        if LOWEST < low < HIGHEST and k >= least_coupling
+        if LOWEST_FREQUENCY < low < HIGHEST_FREQUENCY and k >= least_coupling
     )
 
 
@@ -73,10 +73,10 @@ def main_resonance(model: ReducedModel) -> Resonance:
     -------
     Resonance
     """
-    return max(seen_resonances(model, least_coupling=0.0), key=lambda found: found.coupling_factor)
+    return max(resonances_in_range(model, least_coupling=0.0), key=lambda found: found.coupling_factor)
 
 
-def rivalry(model: ReducedModel) -> float:
+def spurious_coupling_ratio(model: ReducedModel) -> float:
     """Return how strong the other resonances from 15 to 40 kHz are beside the main one.
 
     Parameters
@@ -88,11 +88,11 @@ def rivalry(model: ReducedModel) -> float:
     float
         Root of the sum of their squared coupling factors, over the main one's: zero where there is one pair only.
     """
-    squares = sorted(found.coupling_factor**2 for found in seen_resonances(model, least_coupling=0.0))
+    squares = sorted(found.coupling_factor**2 for found in resonances_in_range(model, least_coupling=0.0))
     return float(np.sqrt(sum(squares[:-1]) / squares[-1]))
 
 
-def sensitivities(
+def frequency_sensitivities(
     collar: Collar,
     *,
     dimensions: Sequence[str],
@@ -123,7 +123,7 @@ def sensitivities(
     def frequency(name: str, factor: float) -> float:
         changed = _scaled(collar, {name: factor})
         return main_resonance(
-            collar_response_model(changed, open_top=open_top, element_size=element_size, order=order)
+            reduced_collar_model(changed, open_top=open_top, element_size=element_size, order=order)
         ).series_frequency
 
     return {
@@ -184,12 +184,14 @@ def tuned_collar(
     def residuals(changes: Floats) -> Floats:
         collar = _scaled(guess, dict(zip(names, np.exp(changes).tolist(), strict=True)))
         closed, opened = (
-            collar_response_model(collar, open_top=is_open, element_size=element_size, order=order)
+            reduced_collar_model(collar, open_top=is_open, element_size=element_size, order=order)
             for is_open in (False, True)
         )
         found = np.array([main_resonance(model).series_frequency for model in (closed, opened)])
         wanted = np.array([closed_frequency, open_frequency])
-        return np.concatenate([(found / wanted - 1) / _ACCURACY, [rivalry(closed) / _RIVALRY], changes / _FREEDOM])
+        return np.concatenate(
+            [(found / wanted - 1) / _ACCURACY, [spurious_coupling_ratio(closed) / _RIVALRY], changes / _FREEDOM]
+        )
 
     still = np.zeros(len(names))
     here = residuals(still)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh
 
-from sonolube.actuator import Branch, ButterworthVanDyke, Resonances, resonances
+from sonolube.actuator import ButterworthVanDyke, CircuitResonances, MotionalBranch, circuit_resonances
 from sonolube.checks import Complexes, Floats
 from sonolube.dynamics.structure import Structure
 
@@ -157,7 +157,7 @@ def equivalent_branches(structure: Structure) -> ButterworthVanDyke:
     participation = structure.drive_vector @ natural.shapes
     omega = 2 * np.pi * natural.natural_frequency
     branches = [
-        Branch(
+        MotionalBranch(
             resistance=2 * natural.damping_ratio[i] * omega[i] / participation[i] ** 2,
             inductance=1 / participation[i] ** 2,
             capacitance=participation[i] ** 2 / omega[i] ** 2,
@@ -168,7 +168,7 @@ def equivalent_branches(structure: Structure) -> ButterworthVanDyke:
     return ButterworthVanDyke(parallel_capacitance=structure.clamped_capacitance, branches=tuple(branches))
 
 
-def resonance_frequencies(structure: Structure) -> Resonances:
+def resonance_frequencies(structure: Structure) -> CircuitResonances:
     """Return where the electrical admittance and impedance of the structure peak, the contact free.
 
     Parameters
@@ -177,7 +177,7 @@ def resonance_frequencies(structure: Structure) -> Resonances:
 
     Returns
     -------
-    Resonances
+    CircuitResonances
         Of the modes that the stack drives, without damping; the quality factors have it.
 
     Raises
@@ -185,4 +185,4 @@ def resonance_frequencies(structure: Structure) -> Resonances:
     InvalidInput
         If the clamped capacitance is zero.
     """
-    return resonances(equivalent_branches(structure))
+    return circuit_resonances(equivalent_branches(structure))

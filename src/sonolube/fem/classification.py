@@ -9,7 +9,7 @@ from scipy import sparse
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.fem.solver.assembly import mass_matrix
+from sonolube.fem.solver.assembly import scalar_mass_matrix
 from sonolube.fem.solver.mesh import Mesh
 from sonolube.fem.solver.model import DIRECTIONS, Model
 from sonolube.fem.solver.modes import NaturalModes
@@ -18,7 +18,7 @@ _DEGREE = 8  # of the polynomials along the axis, enough for modes of some three
 _DOMINANT = 0.5
 
 
-class Motion(StrEnum):
+class ModeFamily(StrEnum):
     """Kinds of motion about an axis."""
 
     AXIAL = "axial"
@@ -29,7 +29,7 @@ class Motion(StrEnum):
     RIGID = "rigid"
 
 
-def participation(model: Model, modes: NaturalModes, *, axis: str) -> dict[Motion, Floats]:
+def kinetic_energy_fractions(model: Model, modes: NaturalModes, *, axis: str) -> dict[ModeFamily, Floats]:
     """Return the share of each mode's kinetic energy in axial, breathing, torsional and bending motion.
 
     Parameters
@@ -53,7 +53,7 @@ def participation(model: Model, modes: NaturalModes, *, axis: str) -> dict[Motio
     """
     if axis not in DIRECTIONS or len(axis) != 1:
         raise InvalidInput(f"axis must be x, y or z, got {axis!r}")
-    mass = mass_matrix(model)
+    mass = scalar_mass_matrix(model)
     weight = np.asarray(mass.sum(axis=0))
     flat = modes.shapes.reshape(len(modes.shapes), -1)
     shares = {}
@@ -80,15 +80,15 @@ def mode_names(model: Model, modes: NaturalModes, *, axis: str) -> tuple[str, ..
     tuple of str
         Modes with no more than half their energy in any one kind are called "other".
     """
-    shares = participation(model, modes, axis=axis)
+    shares = kinetic_energy_fractions(model, modes, axis=axis)
     kinds = list(shares)
     stacked = np.array([shares[kind] for kind in kinds])
-    seen: Counter[Motion] = Counter()
+    seen: Counter[ModeFamily] = Counter()
     names = []
     for mode in range(modes.natural_frequency.size):
         best = int(np.argmax(stacked[:, mode]))
-        kind = kinds[best] if stacked[best, mode] > _DOMINANT else Motion.OTHER
-        kind = Motion.RIGID if mode < modes.rigid else kind
+        kind = kinds[best] if stacked[best, mode] > _DOMINANT else ModeFamily.OTHER
+        kind = ModeFamily.RIGID if mode < modes.rigid_body_count else kind
         seen[kind] += 1
         names.append(f"{kind} {seen[kind]}")
     return tuple(names)
@@ -100,7 +100,7 @@ def _loaded(mass: sparse.csc_array, fields: Floats) -> Floats:
     return np.asarray(mass @ by_node.reshape(len(by_node), -1)).reshape(-1, len(fields))
 
 
-def _fields(mesh: Mesh, weight: Floats, axis: int) -> dict[Motion, Floats]:
+def _fields(mesh: Mesh, weight: Floats, axis: int) -> dict[ModeFamily, Floats]:
     """Return fields of each kind, shape (f, 3n)."""
     place = mesh.nodes - np.average(mesh.nodes, axis=0, weights=weight)
     half = np.ptp(place[:, axis]) / 2
@@ -116,8 +116,8 @@ def _fields(mesh: Mesh, weight: Floats, axis: int) -> dict[Motion, Floats]:
     shifts = [spread(np.broadcast_to(unit[t], place.shape)) for t in across]
     tilts = [spread(arm[:, t, np.newaxis] * unit[axis]) for t in across]
     return {
-        Motion.AXIAL: spread(np.broadcast_to(unit[axis], place.shape)),
-        Motion.BREATHING: spread(arm),
-        Motion.TORSIONAL: spread(np.cross(unit[axis], arm)),
-        Motion.BENDING: np.concatenate([*shifts, *tilts]),
+        ModeFamily.AXIAL: spread(np.broadcast_to(unit[axis], place.shape)),
+        ModeFamily.BREATHING: spread(arm),
+        ModeFamily.TORSIONAL: spread(np.cross(unit[axis], arm)),
+        ModeFamily.BENDING: np.concatenate([*shifts, *tilts]),
     }

@@ -9,11 +9,11 @@ import numpy as np
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.fem.classification import mode_names
-from sonolube.fem.solver.harmonic import Output, ReducedModel
-from sonolube.fem.solver.krylov import driven_reduction
+from sonolube.fem.solver.element_order import change_order
+from sonolube.fem.solver.harmonic_analysis import Output, ReducedModel
+from sonolube.fem.solver.krylov import krylov_reduction
 from sonolube.fem.solver.model import Model
 from sonolube.fem.solver.modes import NaturalModes, NotConverged
-from sonolube.fem.solver.orders import of_order
 
 _REFINEMENT = 0.62  # of the element size from mesh to mesh
 _ORDERS = range(2, 6)  # on one mesh; the next is a finer one
@@ -24,7 +24,7 @@ _UNDRIVEN = 1e-3  # square of the coupling factor below which a mode is not pair
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class ElectricalMode:
+class ElectromechanicalMode:
     """A mode between its two frequencies.
 
     Parameters
@@ -46,7 +46,7 @@ class ElectricalMode:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Port:
+class ElectromechanicalModel:
     """A body in few coordinates, and its electrical modes.
 
     Parameters
@@ -54,7 +54,7 @@ class Port:
     model : Model
         On the finest mesh.
     reduction : ReducedModel
-    modes : tuple of ElectricalMode
+    modes : tuple of ElectromechanicalMode
         Modes in the range that the drive moves, by frequency; their names count these alone.
     shapes : ndarray, shape (k, n, 3)
         Displacements of the nodes in each of them, of a modal mass of 1 kg.
@@ -64,12 +64,12 @@ class Port:
 
     model: Model
     reduction: ReducedModel
-    modes: tuple[ElectricalMode, ...]
+    modes: tuple[ElectromechanicalMode, ...]
     shapes: Floats
     frequency_error: float
 
 
-def converged_port(
+def converged_electromechanical_model(
     model_at: Callable[[float], Model],
     *,
     outputs: Mapping[str, Output],
@@ -80,7 +80,7 @@ def converged_port(
     least_coupling: float = 0.05,
     most_nodes: int = 60_000,
     advance: Callable[[str, int, int], None] | None = None,
-) -> Port:
+) -> ElectromechanicalModel:
     """Return a driven body on a mesh that refinement no longer changes by more than a tolerance.
 
     Parameters
@@ -119,14 +119,14 @@ def converged_port(
     before: Floats | None = None
     error = np.inf
     for model in _finer_and_finer(model_at, element_size):
-        if model.mesh.size > most_nodes:
+        if model.mesh.node_count > most_nodes:
             raise NotConverged(
-                f"coupled modes still move by {error:.2g} of their frequency; the next mesh has {model.mesh.size} "
-                "nodes: allow more of them, or a larger change"
+                f"coupled modes still move by {error:.2g} of their frequency; the next mesh has "
+                f"{model.mesh.node_count} nodes: allow more of them, or a larger change"
             )
-        reduction, coordinates = driven_reduction(model, outputs=outputs, highest_frequency=highest_frequency)
+        reduction, coordinates = krylov_reduction(model, outputs=outputs, highest_frequency=highest_frequency)
         if advance:
-            advance(f"{model.mesh.size} nodes", 1, 2)
+            advance(f"{model.mesh.node_count} nodes", 1, 2)
         now = _coupled(reduction, highest_frequency, least_coupling)
         if not now.size:
             raise InvalidInput(f"no mode below {highest_frequency:g} Hz is coupled to the drive; look higher")
@@ -143,7 +143,7 @@ def _finer_and_finer(model_at: Callable[[float], Model], element_size: float) ->
     for refinement in count_up():
         base = model_at(element_size * _REFINEMENT**refinement)
         for order in _ORDERS:
-            yield replace(base, mesh=of_order(base.mesh, order=order))
+            yield replace(base, mesh=change_order(base.mesh, order=order))
 
 
 def coupled_resonances(model: ReducedModel) -> tuple[Floats, Floats, Floats]:
@@ -181,18 +181,20 @@ def _coupled(reduction: ReducedModel, highest_frequency: float, least_coupling: 
 
 def _port(
     model: Model, reduction: ReducedModel, coordinates: Floats, axis: str, highest_frequency: float, error: float
-) -> Port:
+) -> ElectromechanicalModel:
     series, parallel, coupling = coupled_resonances(reduction)
     told = np.flatnonzero((coupling > _LEAST_TOLD) & (series < highest_frequency))
     _, mixtures = np.linalg.eigh(reduction.stiffness.real)
     shapes = np.tensordot(mixtures[:, told].T, coordinates, axes=1)
-    names = mode_names(model, NaturalModes(natural_frequency=series[told], shapes=shapes, rigid=0), axis=axis)
+    names = mode_names(
+        model, NaturalModes(natural_frequency=series[told], shapes=shapes, rigid_body_count=0), axis=axis
+    )
     modes = zip(names, series[told].tolist(), parallel[told].tolist(), coupling[told].tolist(), strict=True)
-    return Port(
+    return ElectromechanicalModel(
         model=model,
         reduction=reduction,
         modes=tuple(
-            ElectricalMode(name=name, series_frequency=fs, parallel_frequency=fp, coupling_factor=k)
+            ElectromechanicalMode(name=name, series_frequency=fs, parallel_frequency=fp, coupling_factor=k)
             for name, fs, fp, k in modes
         ),
         shapes=shapes,

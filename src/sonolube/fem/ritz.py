@@ -19,7 +19,7 @@ from sonolube.fem.solver.medium import Medium
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Section:
+class CrossSection:
     """Points and weights that integrate over the section of a prism.
 
     Parameters
@@ -34,7 +34,7 @@ class Section:
     weights: Floats
 
 
-def rectangle(*, length: float, width: float, order: int) -> Section:
+def rectangular_section(*, length: float, width: float, order: int) -> CrossSection:
     """Return a rectangular section, exact for products of polynomials of that order.
 
     Parameters
@@ -51,10 +51,10 @@ def rectangle(*, length: float, width: float, order: int) -> Section:
     require_positive(length=length, width=width)
     x, w = legendre.leggauss(order + 1)
     points = np.stack(np.meshgrid(length / 2 * x, width / 2 * x, indexing="ij"), axis=-1).reshape(-1, 2)
-    return Section(points=points, weights=np.outer(length / 2 * w, width / 2 * w).ravel())
+    return CrossSection(points=points, weights=np.outer(length / 2 * w, width / 2 * w).ravel())
 
 
-def annulus(*, outer_radius: float, inner_radius: float, order: int) -> Section:
+def annular_section(*, outer_radius: float, inner_radius: float, order: int) -> CrossSection:
     """Return the section of a round bar or tube, exact for products of polynomials of that order.
 
     Parameters
@@ -78,10 +78,10 @@ def annulus(*, outer_radius: float, inner_radius: float, order: int) -> Section:
     turns = 4 * order + 4
     angle = 2 * np.pi * (np.arange(turns) + 0.5) / turns
     points = np.stack([np.outer(r, np.cos(angle)), np.outer(r, np.sin(angle))], axis=-1).reshape(-1, 2)
-    return Section(points=points, weights=np.repeat(w * half * r * 2 * np.pi / turns, turns))
+    return CrossSection(points=points, weights=np.repeat(w * half * r * 2 * np.pi / turns, turns))
 
 
-def ritz_frequencies(section: Section, *, length: float, medium: Medium, order: int) -> Floats:
+def ritz_frequencies(section: CrossSection, *, length: float, medium: Medium, order: int) -> Floats:
     """Return the natural frequencies of a free prism in Hz, in order, its six rigid motions left out.
 
     Parameters
@@ -164,7 +164,7 @@ def _class_squares(
     return np.asarray(eigh(np.block(blocks), eigvals_only=True))
 
 
-def _across(section: Section, order: int) -> tuple[Floats, list[tuple[int, int]]]:
+def _across(section: CrossSection, order: int) -> tuple[Floats, list[tuple[int, int]]]:
     """Return integrals over the section of products of derivatives, [k, m, a, b], and the degrees of the functions.
 
     Derivative 2 is that along z: across the section it leaves the function as it is.

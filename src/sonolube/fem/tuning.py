@@ -9,14 +9,14 @@ from scipy.linalg import eigh
 from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.fem.classification import mode_names
-from sonolube.fem.solver.assembly import face_weights
+from sonolube.fem.solver.assembly import tributary_areas
 from sonolube.fem.solver.convergence import converged_modes
-from sonolube.fem.solver.grading import graded
-from sonolube.fem.solver.harmonic import Output, observers
+from sonolube.fem.solver.element_order import change_order
+from sonolube.fem.solver.grading import grade_reentrant_edges
+from sonolube.fem.solver.harmonic_analysis import Output, output_matrix
 from sonolube.fem.solver.model import DIRECTIONS, Model
-from sonolube.fem.solver.modes import NaturalModes, NotConverged, natural_modes, shift_for
-from sonolube.fem.solver.orders import of_order
-from sonolube.fem.solver.system import Solve, System, shifted, system
+from sonolube.fem.solver.modes import NaturalModes, NotConverged, natural_modes, spectral_shift
+from sonolube.fem.solver.system import LinearSolver, SystemMatrices, assemble_system, shift_invert_solver
 
 Advance = Callable[[str, int, int], None]
 
@@ -206,7 +206,7 @@ def tuned_mode(
 
     def at_order(at: float, order: int) -> float:
         model = model_at(at, element_size)
-        model = replace(model, mesh=of_order(graded(model.mesh, levels=1), order=order))
+        model = replace(model, mesh=change_order(grade_reentrant_edges(model.mesh, levels=1), order=order))
         modes = natural_modes(model, count=count)
         if advance:
             advance(f"{at * 1e3:.2f} mm", 0, 1)
@@ -236,14 +236,14 @@ def tuned_mode(
     raise NotConverged(f"{name} came within {abs(missed):.3g} Hz of {frequency:g} Hz; allow less error of the meshes")
 
 
-def loaded_frequencies(
+def mass_loaded_frequencies(
     modes: NaturalModes,
     model: Model,
     *,
     face: str,
     along: str,
     tool_mass: float,
-    remaining_compliance: float | None = None,
+    residual_compliance: float | None = None,
 ) -> Floats:
     """Return natural frequencies in Hz with a rigid mass on a face that moves with its mean in one direction.
 
@@ -258,8 +258,8 @@ def loaded_frequencies(
         Direction in which it counts, "x", "y" or "z".
     tool_mass : float
         Mass. [kg]
-    remaining_compliance : float, optional
-        What `compliance_above` returns, on a coarser mesh perhaps; found where absent. [m/N]
+    residual_compliance : float, optional
+        What `face_residual_compliance` returns, on a coarser mesh perhaps; found where absent. [m/N]
 
     Returns
     -------
@@ -273,12 +273,12 @@ def loaded_frequencies(
     mass = float(require_non_negative(tool_mass=tool_mass))
     moves = _face_moves(modes, model, face, along)
     squares = (2 * np.pi * modes.natural_frequency) ** 2
-    if remaining_compliance is None:
-        equations = system(model)
-        inverse = shifted(model, equations, shift=shift_for(model))
-        remaining_compliance = compliance_above(modes, model, equations, inverse=inverse, face=face, along=along)
+    if residual_compliance is None:
+        equations = assemble_system(model)
+        inverse = shift_invert_solver(model, equations, shift=spectral_shift(model))
+        residual_compliance = face_residual_compliance(modes, model, equations, inverse=inverse, face=face, along=along)
     above = _FAR * squares.max()
-    squares, moves = np.append(squares, above), np.append(moves, np.sqrt(max(remaining_compliance, 0.0) * above))
+    squares, moves = np.append(squares, above), np.append(moves, np.sqrt(max(residual_compliance, 0.0) * above))
     yielding = moves**2 > _UNMOVED * np.max(moves[:-1] ** 2)  # a mass lowers these without changing their order
     own = moves[yielding]
     squares[yielding] = eigh(
@@ -287,8 +287,8 @@ def loaded_frequencies(
     return np.asarray(np.sqrt(np.maximum(squares[:-1], 0.0)) / (2 * np.pi))
 
 
-def compliance_above(
-    modes: NaturalModes, model: Model, equations: System, *, inverse: Solve, face: str, along: str
+def face_residual_compliance(
+    modes: NaturalModes, model: Model, equations: SystemMatrices, *, inverse: LinearSolver, face: str, along: str
 ) -> float:
     """Return how far a face yields to a force spread over it by all modes above those given.
 
@@ -298,7 +298,7 @@ def compliance_above(
     model : Model
     equations : System
     inverse : callable
-        What `shifted` returns for the shift of `shift_for`.
+        What `shift_invert_solver` returns for the shift of `spectral_shift`.
     face : str
         Where the force acts.
     along : str
@@ -309,15 +309,15 @@ def compliance_above(
     float
         In m/N.
     """
-    pull = observers(model, equations, {"face": Output(face=face, along=along)})[0]
+    pull = output_matrix(model, equations, {"face": Output(face=face, along=along)})[0]
     squares = (2 * np.pi * modes.natural_frequency) ** 2
-    known = np.sum(_face_moves(modes, model, face, along) ** 2 / (squares - shift_for(model)))
+    known = np.sum(_face_moves(modes, model, face, along) ** 2 / (squares - spectral_shift(model)))
     return float(pull @ inverse(pull) - known)
 
 
 def _face_moves(modes: NaturalModes, model: Model, face: str, along: str) -> Floats:
     """Return the mean displacement of a face in each mode."""
-    weights = face_weights(model.mesh, face)
+    weights = tributary_areas(model.mesh, face)
     return np.asarray(modes.shapes[:, :, DIRECTIONS.index(along)] @ weights / weights.sum())
 
 

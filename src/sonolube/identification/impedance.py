@@ -7,7 +7,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.interpolate import AAA
 
-from sonolube.actuator import Branch, ButterworthVanDyke, Resonances, circuit_admittance, resonances
+from sonolube.actuator import (
+    ButterworthVanDyke,
+    CircuitResonances,
+    MotionalBranch,
+    circuit_admittance,
+    circuit_resonances,
+)
 from sonolube.checks import Complexes, Floats, require_non_negative, require_within
 from sonolube.errors import InvalidInput
 from sonolube.identification.spectral_residual import LOG_COMPLEX, residual_named
@@ -38,7 +44,7 @@ class CircuitFit:
     ----------
     circuit : ButterworthVanDyke
         Branches in order of frequency.
-    resonances : Resonances
+    resonances : CircuitResonances
         Frequencies without losses, quality and coupling factors of its branches.
     intervals : mapping of str to Interval
         Of parallel_capacitance, and of each branch's resistance, inductance, capacitance, series_frequency,
@@ -59,7 +65,7 @@ class CircuitFit:
     """
 
     circuit: ButterworthVanDyke
-    resonances: Resonances
+    resonances: CircuitResonances
     intervals: Mapping[str, Interval]
     residual: str
     residual_rms: float
@@ -246,7 +252,7 @@ def _circuit(logarithms: Floats, series_resistance: float) -> ButterworthVanDyke
     """Return the circuit of ln C_0 and, for each branch, ln f_s, ln Q and ln C."""
     values = np.exp(np.clip(logarithms, -300, 300))
     branches = tuple(
-        Branch(
+        MotionalBranch(
             resistance=1 / (2 * np.pi * f_s * quality * capacitance),
             inductance=1 / ((2 * np.pi * f_s) ** 2 * capacitance),
             capacitance=capacitance,
@@ -260,7 +266,7 @@ def _circuit(logarithms: Floats, series_resistance: float) -> ButterworthVanDyke
 
 def _quantities(logarithms: Floats) -> dict[str, float]:
     circuit = _circuit(logarithms, 0.0)
-    found = resonances(circuit)
+    found = circuit_resonances(circuit)
     named = {"parallel_capacitance": circuit.parallel_capacitance}
     for place, branch in enumerate(circuit.branches):
         named |= {
@@ -282,7 +288,7 @@ def _record(
     correlation = problem.correlation(fit)
     return CircuitFit(
         circuit=circuit,
-        resonances=resonances(circuit),
+        resonances=circuit_resonances(circuit),
         intervals=intervals(fit, _quantities, correlation=correlation, confidence_level=confidence_level),
         residual=problem.residual,
         residual_rms=float(np.sqrt(fit.sum_of_squares / problem.frequency.size)),

@@ -10,7 +10,7 @@ import pytest
 from pytest import approx
 
 from sonolube.checks import Floats
-from sonolube.fem import Mesh, Model, box_mesh, isotropic, natural_modes
+from sonolube.fem import Mesh, Model, box_mesh, isotropic_medium, natural_modes
 
 MODES = 10
 MODULUS, RATIO, DENSITY = 200e9, 0.29, 7900.0
@@ -35,6 +35,6 @@ def frequencies_by_calculix(mesh: Mesh, folder: Path) -> Floats:
 def test_calculix_finds_the_same_frequencies_on_the_same_elements(tmp_path: Path) -> None:
     # It integrates stiffness at four points of an element where exactness needs more, hence the tolerance.
     mesh = box_mesh(length=0.127, width=0.06096, thickness=0.0254, divisions=(12, 6, 3))
-    steel = isotropic(youngs_modulus=MODULUS, poisson_ratio=RATIO, density=DENSITY)
+    steel = isotropic_medium(youngs_modulus=MODULUS, poisson_ratio=RATIO, density=DENSITY)
     ours = natural_modes(Model(mesh=mesh, media={"block": steel}), count=MODES).elastic_frequency
     assert frequencies_by_calculix(mesh, tmp_path) == approx(ours, rel=1e-3)

@@ -7,18 +7,18 @@ from pytest import approx, raises
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.fem import (
     Electrodes,
-    Fixed,
+    FixedSupport,
     Medium,
     Model,
     Output,
+    add_face_patch,
     box_mesh,
     edge_nodes,
-    forced_motion,
-    isotropic,
+    forced_response,
+    isotropic_medium,
     natural_modes,
-    poled,
-    reshaped,
-    with_patch,
+    poled_medium,
+    transform_nodes,
 )
 from sonolube.materials import piezo_ceramic
 
@@ -27,18 +27,18 @@ PULL = Output(face="+x", along="x")
 
 
 def steel(elastic_loss: float = 0.0) -> Medium:
-    return isotropic(youngs_modulus=200e9, poisson_ratio=0.29, density=7900.0, elastic_loss=elastic_loss)
+    return isotropic_medium(youngs_modulus=200e9, poisson_ratio=0.29, density=7900.0, elastic_loss=elastic_loss)
 
 
-def rod(medium: Medium, *, cells: int = 20, held: tuple[Fixed, ...] = ()) -> Model:
+def rod(medium: Medium, *, cells: int = 20, held: tuple[FixedSupport, ...] = ()) -> Model:
     """A rod without lateral motion, in which waves are one-dimensional."""
     mesh = box_mesh(length=L, width=W, thickness=W, divisions=(cells, 1, 1))
-    return Model(mesh=mesh, media={"block": medium}, fixed=(Fixed(face=None, along="yz"), *held))
+    return Model(mesh=mesh, media={"block": medium}, fixed=(FixedSupport(face=None, along="yz"), *held))
 
 
 def test_a_steady_pull_stretches_a_rod_by_its_force_over_its_stiffness() -> None:
     medium = steel()
-    pulled = forced_motion(rod(medium, held=(Fixed(face="-x", along="x"),)), load=PULL, frequency=0.0)
+    pulled = forced_response(rod(medium, held=(FixedSupport(face="-x", along="x"),)), load=PULL, frequency=0.0)
     end = pulled[np.isclose(rod(medium).mesh.nodes[:, 0], L / 2), 0]
     assert end == approx(L / (medium.elastic_stiffness[0, 0] * W**2), rel=1e-9)
 
@@ -51,21 +51,23 @@ def test_a_lossy_rod_driven_at_its_end_moves_as_the_wave_equation_says(frequency
     k = 2 * np.pi * frequency * np.sqrt(medium.density / modulus)
     x = model.mesh.nodes[:, 0]
     exact = -np.cos(k * (x + L / 2)) / (k * modulus * W**2 * np.sin(k * L))
-    assert np.abs(forced_motion(model, load=PULL, frequency=frequency)[:, 0] - exact).max() < 2e-3 * np.abs(exact).max()
+    assert (
+        np.abs(forced_response(model, load=PULL, frequency=frequency)[:, 0] - exact).max() < 2e-3 * np.abs(exact).max()
+    )
 
 
 def test_far_below_resonance_a_free_body_answers_with_its_mass() -> None:
     mesh = box_mesh(length=L, width=W, thickness=W, divisions=(4, 2, 2))
-    moves = forced_motion(Model(mesh=mesh, media={"block": steel()}), load=PULL, frequency=10.0)
+    moves = forced_response(Model(mesh=mesh, media={"block": steel()}), load=PULL, frequency=10.0)
     mass = 7900.0 * L * W**2
-    assert moves[:, 0] == approx(np.full(mesh.size, -1 / ((2 * np.pi * 10.0) ** 2 * mass)), rel=1e-3)
+    assert moves[:, 0] == approx(np.full(mesh.node_count, -1 / ((2 * np.pi * 10.0) ** 2 * mass)), rel=1e-3)
 
 
 def test_a_symmetric_drive_of_a_symmetric_block_gives_mirrored_paths() -> None:
     mesh = box_mesh(length=0.127, width=0.06096, thickness=0.0254, divisions=(12, 4, 4))
     model = Model(mesh=mesh, media={"block": steel(elastic_loss=0.01)})
-    stretched = forced_motion(model, load=PULL, frequency=18e3)
-    stretched = stretched - forced_motion(model, load=Output(face="-x", along="x"), frequency=18e3)
+    stretched = forced_response(model, load=PULL, frequency=18e3)
+    stretched = stretched - forced_response(model, load=Output(face="-x", along="x"), frequency=18e3)
     line = np.flatnonzero(np.isclose(mesh.nodes[:, 2], -0.0127) & np.isclose(mesh.nodes[:, 1], 0.0, atol=1e-9))
     line = line[np.argsort(mesh.nodes[line, 0])]
     axial, normal = stretched[line, 0], stretched[line, 2]
@@ -78,10 +80,10 @@ def test_the_bulge_of_a_thin_bar_is_that_of_bar_theory() -> None:
     # B/A = pi nu D/(2 L), D 3.25, in the limit of a thin bar.
     length, thickness = 0.127, 0.004
     quarter = box_mesh(length=length, width=thickness / 2, thickness=thickness / 2, divisions=(24, 2, 2))
-    held = (Fixed(face="-y", along="y"), Fixed(face="+z", along="z"))
+    held = (FixedSupport(face="-y", along="y"), FixedSupport(face="+z", along="z"))
     modes = natural_modes(Model(mesh=quarter, media={"block": steel()}, fixed=held), count=3)
-    axial = np.argmax(np.abs(modes.shapes[modes.rigid :, :, 0]).mean(axis=1))
-    shape = modes.shapes[modes.rigid + axial]
+    axial = np.argmax(np.abs(modes.shapes[modes.rigid_body_count :, :, 0]).mean(axis=1))
+    shape = modes.shapes[modes.rigid_body_count + axial]
     line = edge_nodes(quarter, "-z", "-y", along="x")
     bulge = abs(shape[line[len(line) // 2], 2] / shape[line[-1], 0])
     assert bulge == approx(np.pi * 0.29 * thickness / (2 * length), rel=3e-3)
@@ -90,28 +92,28 @@ def test_the_bulge_of_a_thin_bar_is_that_of_bar_theory() -> None:
 def test_a_steady_force_on_a_free_body_is_refused() -> None:
     mesh = box_mesh(length=L, width=W, thickness=W, divisions=(2, 1, 1))
     with raises(InvalidInput, match="a steady force needs a body that is held; 6 rigid motions are free"):
-        forced_motion(Model(mesh=mesh, media={"block": steel()}), load=PULL, frequency=0.0)
+        forced_response(Model(mesh=mesh, media={"block": steel()}), load=PULL, frequency=0.0)
 
 
 def test_a_piezoelectric_body_is_not_driven_by_force() -> None:
     mesh = box_mesh(length=L, width=W, thickness=W, divisions=(2, 1, 1))
-    ceramic = poled(piezo_ceramic("pzt4"), along=(0.0, 0.0, 1.0))
+    ceramic = poled_medium(piezo_ceramic("pzt4"), along=(0.0, 0.0, 1.0))
     model = Model(mesh=mesh, media={"block": ceramic}, electrodes=Electrodes(driven=("+z",), grounded=("-z",)))
     with raises(InvalidInput, match="drive it by a voltage"):
-        forced_motion(model, load=PULL, frequency=1e3)
+        forced_response(model, load=PULL, frequency=1e3)
 
 
 def test_a_patch_is_part_of_its_face_and_an_empty_one_is_refused() -> None:
     mesh = box_mesh(length=L, width=W, thickness=W, divisions=(4, 2, 2))
-    patched = with_patch(mesh, "right half", of="+z", where=lambda middles: middles[:, 0] > 0)
+    patched = add_face_patch(mesh, "right half", of="+z", where=lambda middles: middles[:, 0] > 0)
     assert set(patched.face_nodes("right half")) < set(patched.face_nodes("+z"))
     with raises(InvalidInput, match=r"no triangle of face \+z belongs to nowhere"):
-        with_patch(mesh, "nowhere", of="+z", where=lambda middles: middles[:, 0] > 1)
+        add_face_patch(mesh, "nowhere", of="+z", where=lambda middles: middles[:, 0] > 1)
 
 
 def test_a_block_stretched_by_its_nodes_is_a_longer_block() -> None:
     short, long = (box_mesh(length=size, width=W, thickness=W, divisions=(3, 1, 1)) for size in (L, 2 * L))
-    stretched = reshaped(short, lambda nodes: nodes * np.array([2.0, 1.0, 1.0]))
+    stretched = transform_nodes(short, lambda nodes: nodes * np.array([2.0, 1.0, 1.0]))
     assert stretched.nodes == approx(long.nodes)
 
 

@@ -10,24 +10,24 @@ from sonolube.dynamics import drive_receptance, electrical_admittance
 from sonolube.errors import InvalidInput
 from sonolube.fem import (
     Electrodes,
-    Fixed,
+    FixedSupport,
     Model,
     Output,
     ReducedModel,
     box_mesh,
+    change_order,
     contact_structure,
     direct_response,
+    generate_mesh,
     harmonic_response,
-    isotropic,
-    mesh_of,
+    isotropic_medium,
     natural_modes,
-    of_order,
-    poled,
-    reduced,
-    resonances_of,
+    poled_medium,
+    reduce_model,
     ring,
+    series_parallel_resonances,
 )
-from sonolube.fem.solver.system import system
+from sonolube.fem.solver.system import assemble_system
 from sonolube.materials import coupling_factors, piezo_ceramic
 
 PZT = piezo_ceramic("pzt4")
@@ -35,15 +35,15 @@ L, W = 0.01, 0.004
 TIP = {"tip": Output(face="+x", along="x")}
 
 
-def bar(*, lossless: bool, along_axis: bool = True, order: int = 2, **held: tuple[Fixed, ...]) -> Model:
-    """A bar along x, poled and driven along x, or poled and driven across."""
+def bar(*, lossless: bool, along_axis: bool = True, order: int = 2, **held: tuple[FixedSupport, ...]) -> Model:
+    """A bar along x, poled_medium and driven along x, or poled_medium and driven across."""
     divisions = (6, 2, 2) if order == 2 else (2, 1, 1)
-    mesh = of_order(box_mesh(length=L, width=W, thickness=W, divisions=divisions), order=order)
+    mesh = change_order(box_mesh(length=L, width=W, thickness=W, divisions=divisions), order=order)
     direction = (1.0, 0.0, 0.0) if along_axis else (0.0, 0.0, 1.0)
     ends = ("-x", "+x") if along_axis else ("-z", "+z")
     return Model(
         mesh=mesh,
-        media={"block": poled(PZT, along=direction, lossless=lossless)},
+        media={"block": poled_medium(PZT, along=direction, lossless=lossless)},
         electrodes=Electrodes(driven=(ends[1],), grounded=(ends[0],)),
         fixed=held.get("fixed", ()),
     )
@@ -51,7 +51,7 @@ def bar(*, lossless: bool, along_axis: bool = True, order: int = 2, **held: tupl
 
 def test_a_plate_without_lateral_motion_has_the_impedance_of_its_thickness_mode() -> None:
     # Z = (1 - k_t^2 tan X/X)/(i omega C), X = omega L/(2 v_D), C = eps_33^S A/L: exact in one dimension.
-    plate = bar(lossless=True, fixed=(Fixed(face=None, along="yz"),))
+    plate = bar(lossless=True, fixed=(FixedSupport(face=None, along="yz"),))
     stiffened = PZT.stiffness_short_circuit[2, 2] + PZT.stress_constants[2, 2] ** 2 / PZT.permittivity_clamped[2]
     speed = np.sqrt(stiffened / PZT.material.value("density"))
     kt = coupling_factors(PZT)["coupling_factor_thickness"]
@@ -60,9 +60,9 @@ def test_a_plate_without_lateral_motion_has_the_impedance_of_its_thickness_mode(
     capacitance = PZT.permittivity_clamped[2] * W**2 / L
     exact = (1 - kt**2 * np.tan(x) / x) / (2j * np.pi * f * capacitance)
     assert 1 / direct_response(plate, frequency=f, outputs=TIP).admittance == approx(exact, rel=2e-3)
-    few = reduced(plate, count=6, outputs=TIP)
+    few = reduce_model(plate, count=6, outputs=TIP)
     assert 1 / harmonic_response(few, frequency=f).admittance == approx(exact, rel=2e-3)
-    series, parallel, coupling = resonances_of(few)
+    series, parallel, coupling = series_parallel_resonances(few)
     driven = int(np.argmax(coupling))
     assert parallel[driven] == approx(speed / (2 * L), rel=1e-3)
     ratio = series[driven] / parallel[driven]
@@ -74,7 +74,7 @@ def test_few_coordinates_answer_as_the_full_equations(along_axis: bool) -> None:
     model = bar(lossless=False, along_axis=along_axis)
     f = np.linspace(20e3, 200e3, 7)
     full = direct_response(model, frequency=f, outputs=TIP)
-    few = harmonic_response(reduced(model, count=12, outputs=TIP), frequency=f)
+    few = harmonic_response(reduce_model(model, count=12, outputs=TIP), frequency=f)
     assert few.admittance == approx(full.admittance, rel=1e-3)
     assert few.displacement_per_volt == approx(
         full.displacement_per_volt, rel=1e-3, abs=1e-3 * np.abs(full.displacement_per_volt).min()
@@ -84,7 +84,7 @@ def test_few_coordinates_answer_as_the_full_equations(along_axis: bool) -> None:
 def test_a_slow_voltage_moves_a_free_bar_by_its_charge_constants_and_charges_it_freely() -> None:
     model = bar(lossless=True, along_axis=False)
     both = {"right": Output(face="+x", along="x"), "left": Output(face="-x", along="x")}
-    slow = harmonic_response(reduced(model, count=4, outputs=both), frequency=[100.0])
+    slow = harmonic_response(reduce_model(model, count=4, outputs=both), frequency=[100.0])
     stretch = slow.displacement_per_volt[0, 0] - slow.displacement_per_volt[1, 0]
     assert stretch == approx(-PZT.charge_constants[2, 0] * L / W, rel=1e-5)  # the field points to the ground
     assert slow.admittance[0] / (2j * np.pi * 100.0) == approx(PZT.permittivity_free[2] * L, rel=1e-5)
@@ -92,8 +92,8 @@ def test_a_slow_voltage_moves_a_free_bar_by_its_charge_constants_and_charges_it_
 
 def test_the_power_taken_is_never_negative_and_vanishes_without_losses() -> None:
     f = np.linspace(5e3, 400e3, 300)
-    lossy = harmonic_response(reduced(bar(lossless=False), count=12, outputs=TIP), frequency=f)
-    ideal = harmonic_response(reduced(bar(lossless=True), count=12, outputs=TIP), frequency=f)
+    lossy = harmonic_response(reduce_model(bar(lossless=False), count=12, outputs=TIP), frequency=f)
+    ideal = harmonic_response(reduce_model(bar(lossless=True), count=12, outputs=TIP), frequency=f)
     assert np.all(lossy.admittance.real > 0)
     assert np.abs(ideal.admittance.real).max() < 1e-9 * np.abs(ideal.admittance).max()
 
@@ -105,7 +105,7 @@ def test_a_bar_open_on_all_sides_is_stiffer_than_short_circuited() -> None:
         media=shorted.media,
         electrodes=Electrodes(floating=("+x",), grounded=("-x",)),
     )
-    series, parallel, coupling = resonances_of(reduced(shorted, count=8, outputs=TIP))
+    series, parallel, coupling = series_parallel_resonances(reduce_model(shorted, count=8, outputs=TIP))
     assert np.all(series[:6] == 0)
     assert np.all(coupling[:6] == 0)
     assert natural_modes(shorted, count=8).natural_frequency == approx(series[:14], rel=1e-6, abs=1.0)
@@ -116,18 +116,18 @@ def test_poling_the_bar_the_other_way_turns_the_motion_and_not_the_impedance() -
     one = bar(lossless=True)
     other = Model(
         mesh=one.mesh,
-        media={"block": poled(PZT, along=(-2.0, 0.0, 0.0), lossless=True)},
+        media={"block": poled_medium(PZT, along=(-2.0, 0.0, 0.0), lossless=True)},
         electrodes=one.electrodes,
     )
     first, second = (
-        harmonic_response(reduced(model, count=8, outputs=TIP), frequency=[50e3, 120e3]) for model in (one, other)
+        harmonic_response(reduce_model(model, count=8, outputs=TIP), frequency=[50e3, 120e3]) for model in (one, other)
     )
     assert second.admittance == approx(first.admittance, rel=1e-6)
     assert second.displacement_per_volt == approx(-first.displacement_per_volt, rel=1e-6)
 
 
 def test_dynamics_sees_the_response_of_the_finite_elements() -> None:
-    few = reduced(bar(lossless=False), count=12, outputs=TIP)
+    few = reduce_model(bar(lossless=False), count=12, outputs=TIP)
     structure = contact_structure(few, contact="tip")
     f = np.array([20e3, 60e3, 100e3])
     expected = harmonic_response(few, frequency=f)
@@ -146,7 +146,7 @@ def charge_per_force(few: ReducedModel, frequency: float) -> complex:
 def test_charge_per_force_is_displacement_per_volt(order: int) -> None:
     # Reciprocity, of the full equations against the reduced ones: a force's charge on the shorted electrode.
     model = bar(lossless=False, order=order)
-    few = reduced(model, count=12, outputs=TIP)
+    few = reduce_model(model, count=12, outputs=TIP)
     for frequency in (30e3, 90e3, 150e3):
         charge = charge_per_force(few, frequency)
         driven = direct_response(model, frequency=[frequency], outputs=TIP).displacement_per_volt[0, 0]
@@ -157,7 +157,7 @@ def test_charge_per_force_is_displacement_per_volt(order: int) -> None:
 def test_the_power_taken_is_the_power_lost(order: int) -> None:
     # Half the loss stiffness times the square of the motion, at omega, and the dielectric loss of the fields.
     model = bar(lossless=False, order=order)
-    equations = system(model)
+    equations = assemble_system(model)
     for frequency in (40e3, 120e3):
         omega = 2 * np.pi * frequency
         elastic = equations.stiffness + 1j * equations.stiffness_loss - omega**2 * equations.mass
@@ -184,11 +184,13 @@ def test_a_wide_ring_breathes_far_below_the_resonance_of_its_one_dimensional_sta
     thin_ring = np.sqrt(1 / (compliance[0, 0] * density)) / (2 * np.pi * 0.01325)
     body = ring(outer_radius=0.019, inner_radius=0.0075, length=0.02)
     model = Model(
-        mesh=mesh_of(body, element_size=0.02, order=3),
-        media={"ring": poled(PZT, along=(0.0, 0.0, 1.0), lossless=True)},
+        mesh=generate_mesh(body, element_size=0.02, order=3),
+        media={"ring": poled_medium(PZT, along=(0.0, 0.0, 1.0), lossless=True)},
         electrodes=Electrodes(driven=("+z",), grounded=("-z",)),
     )
-    series, _, coupling = resonances_of(reduced(model, count=12, outputs={"end": Output(face="+z", along="z")}))
+    series, _, coupling = series_parallel_resonances(
+        reduce_model(model, count=12, outputs={"end": Output(face="+z", along="z")})
+    )
     breathing = series[np.flatnonzero(coupling > 0.3)[0]]
     assert along == approx(74.0e3, rel=0.02)
     assert breathing == approx(40.7e3, rel=0.02)
@@ -196,19 +198,19 @@ def test_a_wide_ring_breathes_far_below_the_resonance_of_its_one_dimensional_sta
 
 
 def test_a_face_that_is_held_stands_still_and_takes_nothing_from_the_rest() -> None:
-    model = bar(lossless=False, fixed=(Fixed(face="-x", along="xyz"),))
+    model = bar(lossless=False, fixed=(FixedSupport(face="-x", along="xyz"),))
     f = [40e3, 120e3]
     both = harmonic_response(
-        reduced(model, count=8, outputs={"root": Output(face="-x", along="x"), **TIP}), frequency=f
+        reduce_model(model, count=8, outputs={"root": Output(face="-x", along="x"), **TIP}), frequency=f
     )
     assert np.all(both.displacement_per_volt[0] == 0)
-    alone = harmonic_response(reduced(model, count=8, outputs=TIP), frequency=f)
+    alone = harmonic_response(reduce_model(model, count=8, outputs=TIP), frequency=f)
     assert both.displacement_per_volt[1] == approx(alone.displacement_per_volt[0], rel=1e-9)
 
 
 def test_the_impedance_alone_needs_no_output() -> None:
     model = bar(lossless=False)
-    few = harmonic_response(reduced(model, count=12, outputs={}), frequency=[90e3])
+    few = harmonic_response(reduce_model(model, count=12, outputs={}), frequency=[90e3])
     full = direct_response(model, frequency=[90e3], outputs={})
     assert few.displacement_per_volt.shape == full.displacement_per_volt.shape == (0, 1)
     assert few.admittance == approx(full.admittance, rel=1e-3)
@@ -216,10 +218,10 @@ def test_the_impedance_alone_needs_no_output() -> None:
 
 def test_what_cannot_be_driven_is_refused() -> None:
     mesh = box_mesh(length=L, width=W, thickness=W, divisions=(1, 1, 1))
-    steel = isotropic(youngs_modulus=200e9, poisson_ratio=0.3, density=7900.0)
+    steel = isotropic_medium(youngs_modulus=200e9, poisson_ratio=0.3, density=7900.0)
     with raises(InvalidInput, match="nothing is driven"):
-        reduced(Model(mesh=mesh, media={"block": steel}), count=1, outputs=TIP)
+        reduce_model(Model(mesh=mesh, media={"block": steel}), count=1, outputs=TIP)
     with raises(InvalidInput, match="needs a driven or grounded electrode"):
-        Model(mesh=mesh, media={"block": poled(PZT, along=(0.0, 0.0, 1.0))})
+        Model(mesh=mesh, media={"block": poled_medium(PZT, along=(0.0, 0.0, 1.0))})
     with raises(InvalidInput, match="must be poled along a direction"):
-        poled(PZT, along=(0.0, 0.0, 0.0))
+        poled_medium(PZT, along=(0.0, 0.0, 0.0))

@@ -14,13 +14,13 @@ from types import MappingProxyType
 
 from sonolube.checks import require_non_negative, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.fem.parts.basic import cylinder, ring
-from sonolube.fem.parts.stack import layered
-from sonolube.fem.solver.geometry import Geometry, assembled, moved
-from sonolube.fem.solver.harmonic import Output
-from sonolube.fem.solver.medium import Medium, medium_of, poled
+from sonolube.fem.parts.bodies import cylinder, ring
+from sonolube.fem.parts.stack_material import homogenised_stack
+from sonolube.fem.solver.geometry import Geometry, bond, translate
+from sonolube.fem.solver.harmonic_analysis import Output
+from sonolube.fem.solver.medium import Medium, medium_from_material, poled_medium
 from sonolube.fem.solver.mesh import Mesh
-from sonolube.fem.solver.model import DIRECTIONS, Electrodes, Fixed, Model
+from sonolube.fem.solver.model import DIRECTIONS, Electrodes, FixedSupport, Model
 from sonolube.materials import material, piezo_ceramic
 
 _RINGS = 8  # even, so that both ends of a stack are grounded; 0.5 % in frequency for a quarter wave
@@ -28,7 +28,7 @@ _METAL_LOSS = 1 / 300  # assumed of bolted joints and metal together; that of th
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Dimension:
+class SourcedDimension:
     """A size of a part that a paper describes, and where it comes from.
 
     Parameters
@@ -69,9 +69,9 @@ class Transducer:
     media: Mapping[str, Medium]
     electrodes: Electrodes
     outputs: Mapping[str, Output]
-    dimensions: tuple[Dimension, ...] = field(default=())
+    dimensions: tuple[SourcedDimension, ...] = field(default=())
 
-    def model(self, mesh: Mesh, *, fixed: tuple[Fixed, ...] = ()) -> Model:
+    def model(self, mesh: Mesh, *, fixed: tuple[FixedSupport, ...] = ()) -> Model:
         """Return it on a mesh, held where asked.
 
         Parameters
@@ -86,7 +86,7 @@ class Transducer:
         return Model(mesh=mesh, media=self.media, electrodes=self.electrodes, fixed=fixed)
 
 
-def stack(
+def stack_transducer(
     *,
     outer_radius: float = 5e-3,
     inner_radius: float = 2.5e-3,
@@ -129,7 +129,7 @@ def stack(
     The default is the size of the ring stack of D Table 4.7. Layers that are shorter than the sound that runs through
     them are all alike: their number sets stroke and capacitance, not resonances.
     """
-    parts = stack_parts(
+    parts = stack_bodies(
         outer_radius=outer_radius,
         inner_radius=inner_radius,
         length=length,
@@ -137,7 +137,7 @@ def stack(
         back_length=back_length,
         front_length=front_length,
     )
-    return wired(parts, stack_layers=stack_layers, ceramic=ceramic, metal=metal)
+    return stack_from_bodies(parts, stack_layers=stack_layers, ceramic=ceramic, metal=metal)
 
 
 def poled_part(geometry: Geometry, *, ceramic: str, along: str, driven: str, grounded: str) -> Transducer:
@@ -169,13 +169,13 @@ def poled_part(geometry: Geometry, *, ceramic: str, along: str, driven: str, gro
     axis = (float(along == "x"), float(along == "y"), float(along == "z"))
     return Transducer(
         geometry=geometry,
-        media={geometry.regions[0]: poled(piezo_ceramic(ceramic), along=axis)},
+        media={geometry.regions[0]: poled_medium(piezo_ceramic(ceramic), along=axis)},
         electrodes=Electrodes(driven=(driven,), grounded=(grounded,)),
         outputs={"tip": Output(face=driven, along=along), "back": Output(face=grounded, along=along)},
     )
 
 
-def stack_parts(
+def stack_bodies(
     *,
     outer_radius: float,
     inner_radius: float,
@@ -227,25 +227,25 @@ def stack_parts(
         if hollow
         else cylinder(radius=outer_radius, length=high)
     )
-    parts = {f"ring{k + 1}": moved(one, by=(0.0, 0.0, k * high)) for k in range(_RINGS)}
+    parts = {f"ring{k + 1}": translate(one, by=(0.0, 0.0, k * high)) for k in range(_RINGS)}
     if rod_radius:
         parts["rod"] = cylinder(radius=rod_radius, length=length)
     for name, size, place in (("back", back_length, -back_length), ("front", front_length, length)):
         if size:
             body = cylinder(radius=outer_radius if washer_radius is None else washer_radius, length=size)
-            parts[name] = moved(body, by=(0.0, 0.0, place))
+            parts[name] = translate(body, by=(0.0, 0.0, place))
     if tip is not None:
-        parts["tip"] = moved(tip, by=(0.0, 0.0, length + front_length))
+        parts["tip"] = translate(tip, by=(0.0, 0.0, length + front_length))
     return parts
 
 
-def wired(parts: Mapping[str, Geometry], *, stack_layers: float, ceramic: str, metal: str) -> Transducer:
+def stack_from_bodies(parts: Mapping[str, Geometry], *, stack_layers: float, ceramic: str, metal: str) -> Transducer:
     """Return the bodies of a stack bonded, each second joint of its rings driven and the others grounded.
 
     Parameters
     ----------
     parts : mapping of str to Geometry
-        Those of `stack_parts`.
+        Those of `stack_bodies`.
     stack_layers : float
         Number of layers. []
     ceramic, metal : str
@@ -255,18 +255,18 @@ def wired(parts: Mapping[str, Geometry], *, stack_layers: float, ceramic: str, m
     -------
     Transducer
     """
-    geometry = assembled(parts)
+    geometry = bond(parts)
     rings = [f"ring{k + 1}" for k in range(_RINGS)]
     joints = [
         _joint(geometry, "back", rings[0], "-z"),
         *[_joint(geometry, below, above, "+z") for below, above in pairwise(rings)],
         _joint(geometry, "front", rings[-1], "+z"),
     ]
-    solid = medium_of(material(metal), elastic_loss=_METAL_LOSS)
+    solid = medium_from_material(material(metal), elastic_loss=_METAL_LOSS)
     media = dict.fromkeys(geometry.regions, solid)
     for k, name in enumerate(rings):
-        one = poled(piezo_ceramic(ceramic), along=(0.0, 0.0, 1.0 if k % 2 == 0 else -1.0))
-        media[name] = layered(one, stack_layers=stack_layers / _RINGS)
+        one = poled_medium(piezo_ceramic(ceramic), along=(0.0, 0.0, 1.0 if k % 2 == 0 else -1.0))
+        media[name] = homogenised_stack(one, stack_layers=stack_layers / _RINGS)
     top = next(name for name in ("tip", "front", rings[-1]) if name in parts)
     bottom = "back" if "back" in parts else rings[0]
     return Transducer(
@@ -284,5 +284,5 @@ def _joint(geometry: Geometry, one: str, other: str, end: str) -> str:
     return "|".join(sorted((one, other), key=geometry.regions.index))
 
 
-TRANSDUCERS: Mapping[str, Callable[..., Transducer]] = MappingProxyType({"stack": stack})
+TRANSDUCERS: Mapping[str, Callable[..., Transducer]] = MappingProxyType({"stack": stack_transducer})
 """The parametric transducers by name."""

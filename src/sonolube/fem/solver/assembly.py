@@ -13,7 +13,7 @@ from sonolube.checks import Floats, Integers
 from sonolube.errors import InvalidInput
 from sonolube.fem.solver.mesh import Mesh
 from sonolube.fem.solver.model import Model
-from sonolube.fem.solver.simplex import lattice, quadrature, shape_functions
+from sonolube.fem.solver.simplex import lagrange_nodes, shape_functions, simplex_quadrature
 
 POTENTIAL_SCALE = 1e10
 """Volts to the unit of potential, so that elastic and dielectric stiffnesses are of one size."""
@@ -23,7 +23,7 @@ _CHUNK = 2**22  # gradients at a time, which bounds the memory taken
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Matrices:
+class GlobalMatrices:
     """Matrices of a body before it is held or wired; unknowns of node n are 3n to 3n+2, its potential is n.
 
     Parameters
@@ -45,7 +45,7 @@ class Matrices:
     dielectric_loss: sparse.csc_array
 
 
-def assemble(model: Model) -> Matrices:
+def assemble_matrices(model: Model) -> GlobalMatrices:
     """Return the matrices of a body, springs included.
 
     Parameters
@@ -85,7 +85,7 @@ def assemble(model: Model) -> Matrices:
                     dielectric_loss.add(cells, medium.loss_tangent * storing)
     for spring in model.springs:
         stiffness.add(mesh.faces[spring.face], _spring(mesh, spring.face, spring.spring_stiffness, spring.along))
-    return Matrices(
+    return GlobalMatrices(
         mass=_in_three_directions(mass.matrix()),
         stiffness=stiffness.matrix(),
         stiffness_loss=stiffness_loss.matrix(),
@@ -95,7 +95,7 @@ def assemble(model: Model) -> Matrices:
     )
 
 
-def mass_matrix(model: Model) -> sparse.csc_array:
+def scalar_mass_matrix(model: Model) -> sparse.csc_array:
     """Return the mass matrix of a body in one direction, shape (n, n).
 
     Parameters
@@ -107,7 +107,7 @@ def mass_matrix(model: Model) -> sparse.csc_array:
     sparse matrix, shape (n, n)
     """
     mesh = model.mesh
-    places, weights = quadrature(2 * mesh.order, corners=4)
+    places, weights = simplex_quadrature(2 * mesh.order, corners=4)
     value, slope = shape_functions(mesh.order, places)
     density = np.array([model.media[region].density for region in mesh.regions])[mesh.region_of_element]
     jacobian = np.einsum("eax,adq->eqdx", mesh.nodes[mesh.elements], slope, optimize=True)
@@ -117,7 +117,7 @@ def mass_matrix(model: Model) -> sparse.csc_array:
     return total.matrix()
 
 
-def face_weights(mesh: Mesh, name: str) -> Floats:
+def tributary_areas(mesh: Mesh, name: str) -> Floats:
     """Return the area each node stands for on a face, which sums to the face's area, in m2, shape (n,).
 
     Raises
@@ -127,7 +127,7 @@ def face_weights(mesh: Mesh, name: str) -> Floats:
     """
     mesh.face_nodes(name)
     triangles = mesh.faces[name]
-    weights = np.zeros(mesh.size)
+    weights = np.zeros(mesh.node_count)
     np.add.at(weights, triangles, _face_masses(mesh, triangles).sum(axis=2))
     return weights
 
@@ -149,8 +149,8 @@ class _Pairs:
 
     @classmethod
     def of(cls, mesh: Mesh) -> "_Pairs":
-        keys = np.sort(_keys(mesh.elements, mesh.size))  # several times as fast as numpy's unique
-        return cls(keys=keys[np.diff(keys, prepend=-1) > 0], size=mesh.size)
+        keys = np.sort(_keys(mesh.elements, mesh.node_count))  # several times as fast as numpy's unique
+        return cls(keys=keys[np.diff(keys, prepend=-1) > 0], size=mesh.node_count)
 
     def of_cells(self, cells: Integers) -> Integers:
         """Return the places of the pairs of nodes of elements or triangles."""
@@ -196,14 +196,14 @@ def _in_three_directions(matrix: sparse.csc_array) -> sparse.csc_array:
 
 
 def _chunks(elements: Integers, order: int) -> list[Integers]:
-    places, _ = quadrature(2 * order, corners=4)
-    nodes = len(lattice(order, corners=4))
+    places, _ = simplex_quadrature(2 * order, corners=4)
+    nodes = len(lagrange_nodes(order, corners=4))
     return np.array_split(elements, 1 + elements.size * nodes * len(places) * 3 // _CHUNK)
 
 
 def _integrals(nodes: Floats, order: int) -> tuple[Floats, Floats]:
     """Return int N_a N_b, shape (e, a, a), and int dN_a/dx_k dN_b/dx_l, shape (e, a, a, 9), of elements."""
-    places, weights = quadrature(2 * order, corners=4)
+    places, weights = simplex_quadrature(2 * order, corners=4)
     value, slope = shape_functions(order, places)
     count, size = nodes.shape[:2]
     jacobian = np.einsum("eax,adq->eqdx", nodes, slope, optimize=True)
@@ -219,7 +219,7 @@ def _integrals(nodes: Floats, order: int) -> tuple[Floats, Floats]:
 
 def _face_masses(mesh: Mesh, triangles: Integers) -> Floats:
     """Return int N_a N_b dA of triangles, shape (t, b, b)."""
-    places, weights = quadrature(2 * mesh.order, corners=3)
+    places, weights = simplex_quadrature(2 * mesh.order, corners=3)
     value, slope = shape_functions(mesh.order, places)
     tangents = np.einsum("tax,adq->tqdx", mesh.nodes[triangles], slope, optimize=True)
     area = np.linalg.norm(np.cross(tangents[:, :, 0], tangents[:, :, 1]), axis=-1) * weights

@@ -19,26 +19,26 @@ _STREAMS = (1, 2)  # standard output and error
 _ONE_AT_A_TIME = RLock()  # the streams belong to the process, not to a thread
 
 
-class MissingPart(SonolubeError, ImportError):
+class MissingPackage(SonolubeError, ImportError):
     """A package that finite elements need and that is not installed."""
 
 
-def cad() -> Any:
+def cad_kernel() -> Any:
     """Return the CAD kernel, `netgen.occ`.
 
     Raises
     ------
-    MissingPart
+    MissingPackage
         If netgen-mesher is not installed.
     """
     try:
         return import_module("netgen.occ")
     except ImportError:
-        raise MissingPart("bodies and their meshes need netgen-mesher: pip install sonolube[fem]") from None
+        raise MissingPackage("bodies and their meshes need netgen-mesher: pip install sonolube[fem]") from None
 
 
 @contextmanager
-def captured() -> Iterator[list[str]]:
+def captured_output() -> Iterator[list[str]]:
     """Keep what the CAD kernel prints on its own off standard output and error while inside.
 
     Yields

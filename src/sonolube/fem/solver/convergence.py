@@ -7,10 +7,10 @@ import numpy as np
 
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.fem.solver.grading import graded
+from sonolube.fem.solver.element_order import change_order
+from sonolube.fem.solver.grading import grade_reentrant_edges
 from sonolube.fem.solver.model import Model
 from sonolube.fem.solver.modes import NaturalModes, NotConverged, natural_modes
-from sonolube.fem.solver.orders import of_order
 
 _ORDERS = range(2, 7)  # on one mesh; the next is a finer one
 _REFINEMENT = 0.62  # of the element size from mesh to mesh: some four times the unknowns
@@ -112,23 +112,23 @@ def converged_modes(
     size, level, reached = element_size, 1, np.inf
     while True:
         base = model_at(size)
-        mesh = graded(base.mesh, levels=level)
+        mesh = grade_reentrant_edges(base.mesh, levels=level)
         for step, order in enumerate(_ORDERS, start=1):
-            model = replace(base, mesh=of_order(mesh, order=order))
-            if nodes and model.mesh.size > most_nodes:
+            model = replace(base, mesh=change_order(mesh, order=order))
+            if nodes and model.mesh.node_count > most_nodes:
                 raise NotConverged(
                     f"the modes are within {reached:.2g} of their frequencies, not within {relative_tolerance:.2g}, "
-                    f"on {nodes[-1]} nodes; the next mesh has {model.mesh.size}: allow more, "
+                    f"on {nodes[-1]} nodes; the next mesh has {model.mesh.node_count}: allow more, "
                     "or ask for fewer modes or less accuracy"
                 )
             modes = natural_modes(model, count=count)
             history.append(modes.natural_frequency)
-            nodes.append(model.mesh.size)
+            nodes.append(model.mesh.node_count)
             if advance:
-                advance(f"{model.mesh.size} nodes", len(nodes), len(nodes) + 1)
+                advance(f"{model.mesh.node_count} nodes", len(nodes), len(nodes) + 1)
             if step < _NEEDED:
                 continue
-            frequency, error = extrapolated(np.array(history[-step:]), singular=mesh is not base.mesh)
+            frequency, error = extrapolate_frequencies(np.array(history[-step:]), singular=mesh is not base.mesh)
             reached = float(error[list(judged(model, modes))].max() if judged else error.max())
             if reached <= relative_tolerance:
                 return ConvergedModes(
@@ -142,7 +142,7 @@ def converged_modes(
         size, level = size * _REFINEMENT, level + 1
 
 
-def extrapolated(history: Floats, *, singular: bool = False) -> tuple[Floats, Floats]:
+def extrapolate_frequencies(history: Floats, *, singular: bool = False) -> tuple[Floats, Floats]:
     """Return frequencies at an order of elements beyond all bounds and their estimated relative errors.
 
     Parameters

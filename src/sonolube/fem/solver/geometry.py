@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from sonolube.errors import InvalidInput
-from sonolube.fem.solver.cad import MILLIMETRE, cad, captured
+from sonolube.fem.solver.cad import MILLIMETRE, cad_kernel, captured_output
 
 _AXES = "xyz"
 _LEAST_FILLED = 1e-9  # of the box around a body
@@ -49,26 +49,28 @@ def read_step(path: Path) -> Geometry:
     """
     if not path.is_file():
         raise InvalidInput(f"{path}: no such file")
-    occ = cad()
+    occ = cad_kernel()
     try:
-        with captured():
+        with captured_output():
             shape = occ.OCCGeometry(str(path)).shape
     except Exception as failure:  # the kernel has no narrower class
         raise InvalidInput(f"{path}: not a STEP file that can be read: {failure}") from None
     solids = list(shape.solids)
     if not solids:
         raise InvalidInput(f"{path}: no closed solid in it; sew its surfaces into one before exporting")
-    parts = {solid.name or f"body{k}": one_body(solid, solid.name or f"body{k}") for k, solid in enumerate(solids, 1)}
-    return assembled(parts) if len(parts) > 1 else next(iter(parts.values()))
+    parts = {
+        solid.name or f"body{k}": single_body(solid, solid.name or f"body{k}") for k, solid in enumerate(solids, 1)
+    }
+    return bond(parts) if len(parts) > 1 else next(iter(parts.values()))
 
 
-def moved(geometry: Geometry, *, by: tuple[float, float, float]) -> Geometry:
-    """Return the geometry moved by a vector in m."""
+def translate(geometry: Geometry, *, by: tuple[float, float, float]) -> Geometry:
+    """Return the geometry translate by a vector in m."""
     shift = tuple(component / MILLIMETRE for component in by)
     return Geometry(shape=geometry.shape.Move(shift), regions=geometry.regions)
 
 
-def assembled(parts: Mapping[str, Geometry]) -> Geometry:
+def bond(parts: Mapping[str, Geometry]) -> Geometry:
     """Return bodies bonded where they touch; their faces are called "part.+z" and, between two parts, "one|other".
 
     Parameters
@@ -85,7 +87,7 @@ def assembled(parts: Mapping[str, Geometry]) -> Geometry:
     InvalidInput
         If bodies overlap, or a part is not one body.
     """
-    occ, shapes = cad(), []
+    occ, shapes = cad_kernel(), []
     for name, part in parts.items():
         if len(part.regions) != 1:
             raise InvalidInput(f"{name} must be one body, got {len(part.regions)}")
@@ -102,7 +104,7 @@ def assembled(parts: Mapping[str, Geometry]) -> Geometry:
     return Geometry(shape=glued, regions=tuple(names))
 
 
-def one_body(shape: Any, name: str) -> Geometry:
+def single_body(shape: Any, name: str) -> Geometry:
     """Return a geometry of one closed body, its end faces named.
 
     Parameters

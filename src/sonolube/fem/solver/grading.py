@@ -10,9 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from sonolube.checks import Floats, Integers
+from sonolube.fem.solver.element_order import change_order, mesh_from_elements
 from sonolube.fem.solver.mesh import Mesh
-from sonolube.fem.solver.orders import numbered, of_order
-from sonolube.fem.solver.simplex import EDGES, lattice, shape_functions
+from sonolube.fem.solver.simplex import EDGES, lagrange_nodes, shape_functions
 
 _RE_ENTRANT = np.radians(200.0)  # angle inside the body from which an edge counts; curved sides are not quite smooth
 _INSIDE = np.radians(350.0)  # from which it is inside
@@ -20,7 +20,7 @@ _CUT = 0.15  # where edges are cut, from the edge that re-enters
 _CORNERS = (0, 1, 2, 3)
 
 
-def graded(mesh: Mesh, *, levels: int) -> Mesh:
+def grade_reentrant_edges(mesh: Mesh, *, levels: int) -> Mesh:
     """Return a mesh of order two with elements drawn towards the edges at which its body re-enters.
 
     Parameters
@@ -175,13 +175,13 @@ def _halves(squares: Integers) -> Integers:
 
 def _meshed(mesh: Mesh, pieces: _Pieces) -> Mesh:
     def curves(order: int) -> Floats:
-        parent = of_order(mesh, order=order)
-        inside = np.einsum("ac,ecd->ead", lattice(order, corners=4) / order, pieces.places)
+        parent = change_order(mesh, order=order)
+        inside = np.einsum("ac,ecd->ead", lagrange_nodes(order, corners=4) / order, pieces.places)
         weights, _ = shape_functions(order, inside.reshape(-1, 4))
         weights = weights.reshape(len(weights), *inside.shape[:2])
         return np.asarray(np.einsum("bea,ebx->eax", weights, parent.nodes[parent.elements][pieces.parents]))
 
-    return numbered(
+    return mesh_from_elements(
         pieces.corners,
         places=curves(2),
         faces=pieces.faces,

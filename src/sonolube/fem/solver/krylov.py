@@ -10,10 +10,10 @@ import numpy as np
 from scipy import sparse
 
 from sonolube.checks import Floats
-from sonolube.fem.solver.harmonic import Output, ReducedModel, inputs, projected
+from sonolube.fem.solver.harmonic_analysis import Output, ReducedModel, input_vectors, project_system
 from sonolube.fem.solver.model import Model
-from sonolube.fem.solver.modes import NotConverged, shift_for
-from sonolube.fem.solver.system import on_nodes, shifted, system
+from sonolube.fem.solver.modes import NotConverged, spectral_shift
+from sonolube.fem.solver.system import assemble_system, nodal_displacements, shift_invert_solver
 
 _RESIDUAL = 1e-2  # of a shape over its eigenvalue; the frequency is right to its square
 _UNMOVED = 2e-3  # square of the coupling factor below which a shape need not converge
@@ -21,7 +21,7 @@ _FEWEST, _MOST = 3, 60  # solves with all inputs
 _NOTHING_NEW = 1e-20  # square of what is new in a vector over its square, below which it is rounding
 
 
-def driven_reduction(
+def krylov_reduction(
     model: Model, *, outputs: Mapping[str, Output], highest_frequency: float
 ) -> tuple[ReducedModel, Floats]:
     """Return a body in coordinates that its drive and outputs move, exact enough up to a frequency.
@@ -57,9 +57,9 @@ def driven_reduction(
     .. [1] R. R. Craig and A. L. Hale, J. Guid. Control Dyn. 11, 562 (1988). doi:10.2514/3.20353
     """
     highest = (2 * np.pi * highest_frequency) ** 2
-    equations, shift = system(model), shift_for(model)
-    inverse = shifted(model, equations, shift=shift)
-    forces, capacitance = inputs(model, equations, outputs)
+    equations, shift = assemble_system(model), spectral_shift(model)
+    inverse = shift_invert_solver(model, equations, shift=shift)
+    forces, capacitance = input_vectors(model, equations, outputs)
     basis = np.zeros((len(forces), 0))
     images = loaded = basis
     fresh = _new_in(inverse(forces), basis, loaded, equations.mass)
@@ -78,8 +78,8 @@ def driven_reduction(
         watched = (squares < highest) & (pulled > _UNMOVED * capacitance * squares)
         fresh = _new_in(rest, basis, loaded, equations.mass)
         if not fresh.shape[1] or (step >= _FEWEST and np.all(missed[watched] < (_RESIDUAL * values[watched]) ** 2)):
-            reduction = projected(model, equations, basis=basis, outputs=outputs)
-            return reduction, on_nodes(model, equations, basis)
+            reduction = project_system(model, equations, basis=basis, outputs=outputs)
+            return reduction, nodal_displacements(model, equations, basis)
     raise NotConverged("the driven modes did not converge; ask for a lower frequency, or check the mesh")
 
 

@@ -62,7 +62,9 @@ class Medium:
         return self.permittivity is not None
 
 
-def isotropic(*, youngs_modulus: float, poisson_ratio: float, density: float, elastic_loss: float = 0.0) -> Medium:
+def isotropic_medium(
+    *, youngs_modulus: float, poisson_ratio: float, density: float, elastic_loss: float = 0.0
+) -> Medium:
     """Return an isotropic medium.
 
     Parameters
@@ -88,7 +90,7 @@ def isotropic(*, youngs_modulus: float, poisson_ratio: float, density: float, el
     return Medium(elastic_stiffness=stiffness, density=density, elastic_loss=elastic_loss)
 
 
-def medium_of(material: Material, *, elastic_loss: float = 0.0) -> Medium:
+def medium_from_material(material: Material, *, elastic_loss: float = 0.0) -> Medium:
     """Return the isotropic medium that a material of the tables is.
 
     Parameters
@@ -106,7 +108,7 @@ def medium_of(material: Material, *, elastic_loss: float = 0.0) -> Medium:
     MissingProperty
         If Young's modulus, Poisson's ratio or density is not known.
     """
-    return isotropic(
+    return isotropic_medium(
         youngs_modulus=material.value("youngs_modulus"),
         poisson_ratio=material.value("poisson_ratio"),
         density=material.value("density"),
@@ -114,7 +116,7 @@ def medium_of(material: Material, *, elastic_loss: float = 0.0) -> Medium:
     )
 
 
-def poled(ceramic: PiezoCeramic, *, along: tuple[float, float, float], lossless: bool = False) -> Medium:
+def poled_medium(ceramic: PiezoCeramic, *, along: tuple[float, float, float], lossless: bool = False) -> Medium:
     """Return a piezoelectric ceramic poled along a direction of the model.
 
     Parameters
@@ -132,7 +134,7 @@ def poled(ceramic: PiezoCeramic, *, along: tuple[float, float, float], lossless:
     Raises
     ------
     InvalidInput
-        If the direction has no length: an unpoled ceramic is not piezoelectric, take `isotropic` for it.
+        If the direction has no length: an unpoled ceramic is not piezoelectric, take `isotropic_medium` for it.
     """
     direction = require_finite(along=along)
     if direction.shape != (3,) or not np.any(direction):

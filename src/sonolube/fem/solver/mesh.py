@@ -8,12 +8,12 @@ import numpy as np
 
 from sonolube.checks import Floats, Integers, require_finite, require_positive
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.fem.solver.simplex import EDGES, lattice
+from sonolube.fem.solver.simplex import EDGES, lagrange_nodes
 
-MOST_ORDER = 8
+HIGHEST_ORDER = 8
 """The highest order of an element; beyond it shape functions on even nodes lose digits."""
 
-_ORDERS = {comb(order + 3, 3): order for order in range(2, MOST_ORDER + 1)}  # by the number of an element's nodes
+_ORDERS = {comb(order + 3, 3): order for order in range(2, HIGHEST_ORDER + 1)}  # by the number of an element's nodes
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -68,7 +68,7 @@ class Mesh:
             )
 
     @property
-    def size(self) -> int:
+    def node_count(self) -> int:
         """Number of nodes, n."""
         return len(self.nodes)
 
@@ -103,7 +103,7 @@ class Mesh:
         return np.unique(self.elements[self.region_of_element == self.regions.index(name)])
 
 
-def flat_triangles(mesh: Mesh, *, face: str) -> Integers:
+def face_triangulation(mesh: Mesh, *, face: str) -> Integers:
     """Return small flat triangles between all nodes of a face, such as a picture or a file of facets takes.
 
     Parameters
@@ -169,9 +169,9 @@ def box_mesh(*, length: float, width: float, thickness: float, divisions: tuple[
 
 def _flat(order: int) -> Integers:
     """Return the triangles between neighbouring nodes of a triangle, turning as it does."""
-    number = {tuple(place): k for k, place in enumerate(lattice(order, corners=3).tolist())}
+    number = {tuple(place): k for k, place in enumerate(lagrange_nodes(order, corners=3).tolist())}
     triangles = []
-    for _, i, j in lattice(order, corners=3).tolist():
+    for _, i, j in lagrange_nodes(order, corners=3).tolist():
         upright, turned = ((i, j), (i + 1, j), (i, j + 1)), ((i + 1, j), (i + 1, j + 1), (i, j + 1))
         for triangle, reach in ((upright, 1), (turned, 2)):
             if i + j + reach <= order:

@@ -7,11 +7,11 @@ import numpy as np
 
 from sonolube.checks import Floats, Integers, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.fem.solver.cad import MILLIMETRE, cad, captured
+from sonolube.fem.solver.cad import MILLIMETRE, cad_kernel, captured_output
+from sonolube.fem.solver.element_order import change_order, untangle_nodes
 from sonolube.fem.solver.geometry import Geometry
 from sonolube.fem.solver.mesh import Mesh
-from sonolube.fem.solver.orders import of_order, unfolded
-from sonolube.fem.solver.simplex import lattice
+from sonolube.fem.solver.simplex import lagrange_nodes
 
 # From the mesher's order of nodes to ours: it turns the other way round, and has its edges in another order.
 _TETRAHEDRON = [0, 2, 1, 3, 5, 7, 4, 6, 9, 8]
@@ -20,7 +20,7 @@ _ELEMENTS_TO_A_RADIUS = 1.5  # with fewer, elements fold as they are curved
 _MOST_LINES = 2  # of what the mesher prints as it fails, which repeats itself
 
 
-def mesh_of(geometry: Geometry, *, element_size: float, order: int = 2) -> Mesh:
+def generate_mesh(geometry: Geometry, *, element_size: float, order: int = 2) -> Mesh:
     """Return a mesh of curved tetrahedra, ten-node ones if not told otherwise.
 
     Parameters
@@ -48,9 +48,9 @@ def mesh_of(geometry: Geometry, *, element_size: float, order: int = 2) -> Mesh:
     fresh = geometry.shape.Move((0.0, 0.0, 0.0))  # a copy, for the kernel begins from triangles that meshing left
     printed: list[str] = []
     try:
-        with captured() as printed:
+        with captured_output() as printed:
             raw = (
-                cad()
+                cad_kernel()
                 .OCCGeometry(fresh)
                 .GenerateMesh(
                     maxh=element_size / MILLIMETRE,
@@ -69,7 +69,7 @@ def mesh_of(geometry: Geometry, *, element_size: float, order: int = 2) -> Mesh:
         raise InvalidInput("the mesher found no volume: the geometry is open or has no thickness")
     tetrahedra = cells["nodes"][:, _TETRAHEDRON].astype(np.int64) - 1
     mesh = Mesh(
-        nodes=unfolded(np.asarray(raw.Coordinates(), dtype=np.float64) * MILLIMETRE, tetrahedra, order=2),
+        nodes=untangle_nodes(np.asarray(raw.Coordinates(), dtype=np.float64) * MILLIMETRE, tetrahedra, order=2),
         elements=tetrahedra,
         region_of_element=cells["index"].astype(np.int64) - 1,
         regions=geometry.regions,
@@ -77,13 +77,13 @@ def mesh_of(geometry: Geometry, *, element_size: float, order: int = 2) -> Mesh:
         curves=lambda degree: _curved(straight, degree),
     )
     _require_filled(mesh, geometry)
-    return of_order(mesh, order=order)
+    return change_order(mesh, order=order)
 
 
 def _curved(straight: Any, order: int) -> Floats:
     """Return where the nodes of each tetrahedron stand once its straight edges follow the body."""
     straight.Curve(order)
-    places = lattice(order, corners=4)[:, [0, 2, 1]] / order  # the mesher's fourth corner is the origin
+    places = lagrange_nodes(order, corners=4)[:, [0, 2, 1]] / order  # the mesher's fourth corner is the origin
     nodes = np.zeros((len(straight.Elements3D()), len(places), 3))
     straight.CalcElementMapping(np.ascontiguousarray(places), nodes)
     return nodes * MILLIMETRE

@@ -14,7 +14,7 @@ DIRECTIONS = "xyz"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Fixed:
+class FixedSupport:
     """Nodes that do not move in some directions.
 
     Parameters
@@ -108,7 +108,7 @@ class Model:
 
     mesh: Mesh
     media: Mapping[str, Medium]
-    fixed: tuple[Fixed, ...] = ()
+    fixed: tuple[FixedSupport, ...] = ()
     springs: tuple[FaceSpring, ...] = ()
     electrodes: Electrodes = field(default_factory=Electrodes)
 

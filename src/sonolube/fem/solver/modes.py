@@ -9,7 +9,13 @@ from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.fem.solver.mesh import Mesh
 from sonolube.fem.solver.model import DIRECTIONS, Model
-from sonolube.fem.solver.system import Solve, System, on_nodes, shifted, system
+from sonolube.fem.solver.system import (
+    LinearSolver,
+    SystemMatrices,
+    assemble_system,
+    nodal_displacements,
+    shift_invert_solver,
+)
 
 _BLOCK = 8  # vectors to a step: modes of one frequency are all found up to as many
 _RESIDUAL = 1e-5  # of a mode over its eigenvalue; the frequency is right to its square
@@ -32,18 +38,18 @@ class NaturalModes:
         Undamped natural frequencies, zero for rigid motions. [Hz]
     shapes : ndarray, shape (k, n, 3)
         Displacements of the nodes, of a modal mass of 1 kg.
-    rigid : int
+    rigid_body_count : int
         How many rigid motions come first.
     """
 
     natural_frequency: Floats
     shapes: Floats
-    rigid: int
+    rigid_body_count: int
 
     @property
     def elastic_frequency(self) -> Floats:
         """Natural frequencies of all but the rigid motions, in Hz."""
-        return self.natural_frequency[self.rigid :]
+        return self.natural_frequency[self.rigid_body_count :]
 
 
 def natural_modes(model: Model, *, count: int) -> NaturalModes:
@@ -79,11 +85,13 @@ def natural_modes(model: Model, *, count: int) -> NaturalModes:
     .. [1] R. G. Grimes, J. G. Lewis and H. D. Simon, SIAM J. Matrix Anal. Appl. 15, 228 (1994).
        doi:10.1137/S0895479888151111
     """
-    equations = system(model)
-    return modes_of(model, equations, inverse=shifted(model, equations, shift=shift_for(model)), count=count)
+    equations = assemble_system(model)
+    return lanczos_modes(
+        model, equations, inverse=shift_invert_solver(model, equations, shift=spectral_shift(model)), count=count
+    )
 
 
-def modes_of(model: Model, equations: System, *, inverse: Solve, count: int) -> NaturalModes:
+def lanczos_modes(model: Model, equations: SystemMatrices, *, inverse: LinearSolver, count: int) -> NaturalModes:
     """Return the modes of equations already assembled and factorised.
 
     Parameters
@@ -91,7 +99,7 @@ def modes_of(model: Model, equations: System, *, inverse: Solve, count: int) -> 
     model : Model
     equations : System
     inverse : callable
-        What `shifted` returns for the shift of `shift_for`.
+        What `shift_invert_solver` returns for the shift of `spectral_shift`.
     count : int
         Number of elastic modes.
 
@@ -99,22 +107,22 @@ def modes_of(model: Model, equations: System, *, inverse: Solve, count: int) -> 
     -------
     NaturalModes
     """
-    rigid = _free_rigid_motions(model).reshape(-1, 3 * model.mesh.size)[:, equations.moving].T
+    rigid = _free_rigid_motions(model).reshape(-1, 3 * model.mesh.node_count)[:, equations.moving].T
     most = len(equations.moving) - rigid.shape[1] - 2
     if not 1 <= count <= most:
         raise InvalidInput(f"count must be from 1 to {most} on this mesh, got {count}")
     still, _ = _orthonormal(rigid, equations.mass, rounding=0.0)
-    squares, moving = _lowest(equations.mass, inverse, shift=shift_for(model), count=count, known=still)
+    squares, moving = _lowest(equations.mass, inverse, shift=spectral_shift(model), count=count, known=still)
     squares = np.concatenate([np.zeros(still.shape[1]), squares])
     return NaturalModes(
         natural_frequency=np.sqrt(np.maximum(squares, 0.0)) / (2 * np.pi),
-        shapes=on_nodes(model, equations, np.hstack([still, moving])),
-        rigid=still.shape[1],
+        shapes=nodal_displacements(model, equations, np.hstack([still, moving])),
+        rigid_body_count=still.shape[1],
     )
 
 
 def _lowest(
-    mass: sparse.csc_array, inverse: Solve, *, shift: float, count: int, known: Floats
+    mass: sparse.csc_array, inverse: LinearSolver, *, shift: float, count: int, known: Floats
 ) -> tuple[Floats, Floats]:
     """Return omega^2 and shapes of the lowest modes besides those known, which are orthonormal."""
     size, first = len(known), known.shape[1]
@@ -152,7 +160,7 @@ def _orthonormal(block: Floats, mass: sparse.csc_array, *, rounding: float) -> t
     return np.asarray(block @ scaled), np.asarray(loaded @ scaled)
 
 
-def shift_for(model: Model) -> float:
+def spectral_shift(model: Model) -> float:
     """Return a negative shift of the size of the body's lowest resonances, in rad2/s2.
 
     Parameters
@@ -170,7 +178,7 @@ def shift_for(model: Model) -> float:
     return -float((np.pi * speed / extent) ** 2)
 
 
-def rigid_motions(model: Model) -> int:
+def rigid_body_mode_count(model: Model) -> int:
     """Return how many of the six rigid motions of a body its supports leave free.
 
     Parameters
@@ -186,10 +194,10 @@ def rigid_motions(model: Model) -> int:
 
 def _free_rigid_motions(model: Model) -> Floats:
     """Return the rigid motions that no support resists, shape (r, n, 3)."""
-    fields = rigid_fields(model.mesh)
+    fields = rigid_body_displacements(model.mesh)
     rows = [np.zeros((1, 6))]
     for support in model.fixed:
-        nodes = np.arange(model.mesh.size) if support.face is None else model.mesh.face_nodes(support.face)
+        nodes = np.arange(model.mesh.node_count) if support.face is None else model.mesh.face_nodes(support.face)
         rows += [fields[:, nodes, DIRECTIONS.index(letter)].T for letter in support.along]
     for spring in model.springs:
         held = np.eye(3) if spring.along is None else np.array([spring.along]) / np.linalg.norm(spring.along)
@@ -199,7 +207,7 @@ def _free_rigid_motions(model: Model) -> Floats:
     return np.asarray(np.einsum("fr,fni->rni", combinations[:, resistance < 1e-12], fields))
 
 
-def rigid_fields(mesh: Mesh) -> Floats:
+def rigid_body_displacements(mesh: Mesh) -> Floats:
     """Return three translations and three rotations, shape (6, n, 3), the latter over the body's extent.
 
     Parameters
@@ -212,5 +220,5 @@ def rigid_fields(mesh: Mesh) -> Floats:
     """
     arm = (mesh.nodes - mesh.nodes.mean(axis=0)) / np.ptp(mesh.nodes, axis=0).max()
     axes = np.eye(3)
-    shifts = np.broadcast_to(axes[:, np.newaxis], (3, mesh.size, 3))
+    shifts = np.broadcast_to(axes[:, np.newaxis], (3, mesh.node_count, 3))
     return np.concatenate([shifts, np.cross(axes[:, np.newaxis], arm[np.newaxis])])

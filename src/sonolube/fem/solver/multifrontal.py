@@ -27,7 +27,7 @@ _SINGULAR = 1e-14  # share of a pivot that elimination leaves where rounding is 
 _Change = tuple[Integers, Floats]
 
 
-def dissected(mesh: Mesh) -> list[Integers]:
+def nested_dissection(mesh: Mesh) -> list[Integers]:
     """Return the nodes of a mesh in groups, each to be eliminated after those it parts.
 
     Parameters
@@ -44,7 +44,7 @@ def dissected(mesh: Mesh) -> list[Integers]:
     .. [1] A. George, SIAM J. Numer. Anal. 10, 345 (1973). doi:10.1137/0710032
     """
     along = mesh.nodes[mesh.elements[:, :4]].mean(axis=1) @ (_CUTS / np.linalg.norm(_CUTS, axis=1, keepdims=True)).T
-    free, groups = np.ones(mesh.size, dtype=bool), []
+    free, groups = np.ones(mesh.node_count, dtype=bool), []
     parts = [np.arange(len(mesh.elements))]
     while parts:  # what is cut last is eliminated first
         part = parts.pop()
@@ -88,7 +88,7 @@ def _cut_across(direction: Floats, local: Integers, free: NDArray[np.bool_]) -> 
     return float(weights[best]), order, count, np.flatnonzero(free & (first < count) & (last >= count))
 
 
-def eliminated(
+def multifrontal_factor(
     matrix: sparse.csc_array, *, groups: Sequence[Integers], signs: Sequence[int]
 ) -> Callable[[Floats], Floats]:
     """Return what solves with a real symmetric matrix whose groups of unknowns can be eliminated without pivoting.

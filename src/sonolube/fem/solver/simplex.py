@@ -17,7 +17,7 @@ EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
 
 
 @cache
-def lattice(order: int, *, corners: int) -> Integers:
+def lagrange_nodes(order: int, *, corners: int) -> Integers:
     """Return the nodes of a simplex, as barycentric coordinates times the order.
 
     Parameters
@@ -65,7 +65,7 @@ def shape_functions(order: int, places: Floats) -> tuple[Floats, Floats]:
         slopes.append(slopes[-1] * step + factors[-1] * order / (n + 1))
         factors.append(factors[-1] * step)
     corners = np.arange(places.shape[1])
-    nodes = lattice(order, corners=len(corners))
+    nodes = lagrange_nodes(order, corners=len(corners))
     factor, slope = (np.array(table)[nodes, :, corners] for table in (factors, slopes))  # (a, corners, q)
     others = [reduce(np.multiply, (factor[:, k] for k in corners if k != corner)) for corner in corners]
     along = slope * np.stack(others, axis=1)
@@ -73,7 +73,7 @@ def shape_functions(order: int, places: Floats) -> tuple[Floats, Floats]:
 
 
 @cache
-def quadrature(degree: int, *, corners: int) -> tuple[Floats, Floats]:
+def simplex_quadrature(degree: int, *, corners: int) -> tuple[Floats, Floats]:
     """Return places and weights that integrate polynomials up to a degree exactly.
 
     Parameters

@@ -17,15 +17,15 @@ from scipy.sparse.linalg import splu
 
 from sonolube.checks import Floats, Integers
 from sonolube.errors import InvalidInput
-from sonolube.fem.solver.assembly import POTENTIAL_SCALE, assemble
+from sonolube.fem.solver.assembly import POTENTIAL_SCALE, assemble_matrices
 from sonolube.fem.solver.model import DIRECTIONS, Model
-from sonolube.fem.solver.multifrontal import dissected, eliminated
+from sonolube.fem.solver.multifrontal import multifrontal_factor, nested_dissection
 
-Solve = Callable[[NDArray[Any]], NDArray[Any]]
+LinearSolver = Callable[[NDArray[Any]], NDArray[Any]]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class System:
+class SystemMatrices:
     """Matrices of a held and wired body.
 
     Parameters
@@ -64,7 +64,7 @@ class System:
         return int(self.dielectric.shape[0])
 
 
-def system(model: Model) -> System:
+def assemble_system(model: Model) -> SystemMatrices:
     """Return the equations of a body.
 
     Parameters
@@ -80,10 +80,10 @@ def system(model: Model) -> System:
     InvalidInput
         If nothing may move.
     """
-    raw = assemble(model)
+    raw = assemble_matrices(model)
     moving = _moving(model)
     potential, drive, potential_nodes = _wiring(model)
-    return System(
+    return SystemMatrices(
         moving=moving,
         mass=_square(raw.mass, moving),
         stiffness=_square(raw.stiffness, moving),
@@ -99,7 +99,7 @@ def system(model: Model) -> System:
     )
 
 
-def factorised(matrix: sparse.csc_array) -> Solve:
+def superlu_factor(matrix: sparse.csc_array) -> LinearSolver:
     """Return what solves with a symmetric matrix that needs no pivoting: definite, or definite in two blocks.
 
     Parameters
@@ -126,7 +126,7 @@ def factorised(matrix: sparse.csc_array) -> Solve:
     return lambda right: np.asarray(factors.solve(right))
 
 
-def shifted(model: Model, equations: System, *, shift: float) -> Solve:
+def shift_invert_solver(model: Model, equations: SystemMatrices, *, shift: float) -> LinearSolver:
     """Return what solves (K + C P^-1 C^T - shift M) u = f, the drive short-circuited.
 
     Parameters
@@ -145,11 +145,11 @@ def shifted(model: Model, equations: System, *, shift: float) -> Solve:
     elastic = sparse.csc_array(equations.stiffness - shift * equations.mass)
     groups, signs = _groups(model, equations)
     if not equations.potentials:
-        return eliminated(elastic, groups=groups, signs=signs)
+        return multifrontal_factor(elastic, groups=groups, signs=signs)
     size = len(equations.moving)
     blocks = [[elastic, equations.coupling], [equations.coupling.T, -equations.dielectric]]
     coupled = sparse.csc_array(sparse.block_array(blocks, format="csc"))
-    solve = eliminated(coupled, groups=groups, signs=signs)
+    solve = multifrontal_factor(coupled, groups=groups, signs=signs)
 
     def condensed(right: NDArray[Any]) -> NDArray[Any]:
         padded = np.zeros((size + equations.potentials, *right.shape[1:]))
@@ -159,27 +159,27 @@ def shifted(model: Model, equations: System, *, shift: float) -> Solve:
     return condensed
 
 
-def _groups(model: Model, equations: System) -> tuple[list[Integers], list[int]]:
+def _groups(model: Model, equations: SystemMatrices) -> tuple[list[Integers], list[int]]:
     """Return the unknowns in the order of elimination, and whether the matrix is positive or negative there."""
-    size, nodes = len(equations.moving), model.mesh.size
+    size, nodes = len(equations.moving), model.mesh.node_count
     moves = np.full(3 * nodes, -1)
     moves[equations.moving] = np.arange(size)
     potentials = np.full(nodes, -1)
     free = equations.potential_nodes >= 0
     potentials[equations.potential_nodes[free]] = size + np.flatnonzero(free)
     pairs = []
-    for group in dissected(model.mesh):
+    for group in nested_dissection(model.mesh):
         pairs += [(moves.reshape(-1, 3)[group].ravel(), 1), (potentials[group], -1)]
     pairs.append((size + np.flatnonzero(~free), -1))
     kept = [(unknowns[unknowns >= 0], sign) for unknowns, sign in pairs if np.any(unknowns >= 0)]
     return [unknowns for unknowns, _ in kept], [sign for _, sign in kept]
 
 
-def on_nodes(model: Model, equations: System, moves: NDArray[Any]) -> NDArray[Any]:
+def nodal_displacements(model: Model, equations: SystemMatrices, moves: NDArray[Any]) -> NDArray[Any]:
     """Return displacements of all nodes, shape (k, n, 3), from those of the unknowns, shape (m, k)."""
-    full = np.zeros((3 * model.mesh.size, moves.shape[1]), dtype=moves.dtype)
+    full = np.zeros((3 * model.mesh.node_count, moves.shape[1]), dtype=moves.dtype)
     full[equations.moving] = moves
-    return np.ascontiguousarray(full.T.reshape(moves.shape[1], model.mesh.size, 3))
+    return np.ascontiguousarray(full.T.reshape(moves.shape[1], model.mesh.node_count, 3))
 
 
 def _square(matrix: sparse.csc_array, kept: Integers) -> sparse.csc_array:
@@ -187,9 +187,9 @@ def _square(matrix: sparse.csc_array, kept: Integers) -> sparse.csc_array:
 
 
 def _moving(model: Model) -> Integers:
-    free = np.ones((model.mesh.size, 3), dtype=bool)
+    free = np.ones((model.mesh.node_count, 3), dtype=bool)
     for support in model.fixed:
-        nodes = np.arange(model.mesh.size) if support.face is None else model.mesh.face_nodes(support.face)
+        nodes = np.arange(model.mesh.node_count) if support.face is None else model.mesh.face_nodes(support.face)
         held = np.array([DIRECTIONS.index(letter) for letter in support.along])
         free[nodes[:, np.newaxis], held] = False
     moving = np.flatnonzero(free)
@@ -204,11 +204,11 @@ def _wiring(model: Model) -> tuple[sparse.csc_array, Floats, Integers]:
     And the nodes of the unknown ones, shape (p,), -1 for floating electrodes.
     """
     mesh, electrodes = model.mesh, model.electrodes
-    unknown = np.full(mesh.size, -1)
+    unknown = np.full(mesh.node_count, -1)
     poled = [region for region in mesh.regions if model.media[region].is_piezoelectric]
     for region in poled:
         unknown[mesh.region_nodes(region)] = 0
-    drive = np.zeros(mesh.size)
+    drive = np.zeros(mesh.node_count)
     for face in electrodes.driven:
         drive[mesh.face_nodes(face)] = 1 / POTENTIAL_SCALE
     for face in (*electrodes.driven, *electrodes.grounded):
@@ -219,6 +219,6 @@ def _wiring(model: Model) -> tuple[sparse.csc_array, Floats, Integers]:
     free = np.flatnonzero(unknown == 0)
     rows = np.concatenate([free, *loose])
     columns = np.concatenate([np.arange(len(free)), *(np.full(len(own), len(free) + k) for k, own in enumerate(loose))])
-    shape = (mesh.size, len(free) + len(loose))
+    shape = (mesh.node_count, len(free) + len(loose))
     known = np.concatenate([free, np.full(len(loose), -1)])
     return sparse.csc_array((np.ones(len(rows)), (rows, columns)), shape=shape), drive, known

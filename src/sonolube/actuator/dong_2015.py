@@ -7,7 +7,7 @@ from sonolube.actuator.stack import PiezoStack
 from sonolube.checks import Complexes, require_non_negative, require_positive
 
 
-def as_published_impedance(
+def dong_2015_impedance(
     stack: PiezoStack,
     *,
     tip_mass: float,

@@ -8,13 +8,13 @@ from sonolube.checks import Floats, require_finite
 from sonolube.errors import InvalidInput
 from sonolube.fem.solver.mesh import Mesh
 from sonolube.fem.solver.model import Model
-from sonolube.fem.solver.simplex import lattice, shape_functions
+from sonolube.fem.solver.simplex import lagrange_nodes, shape_functions
 
 _NEIGHBOURS = 24  # elements near a point among which the one that holds it is sought
 _OUTSIDE = 0.35  # of an element: points this far beyond it count as on the surface
 
 
-def at_points(mesh: Mesh, field: ArrayLike, *, points: ArrayLike) -> Floats:
+def interpolate_at_points(mesh: Mesh, field: ArrayLike, *, points: ArrayLike) -> Floats:
     """Return a field of the nodes at points of the body, such as those a vibrometer scans.
 
     Parameters
@@ -40,7 +40,7 @@ def at_points(mesh: Mesh, field: ArrayLike, *, points: ArrayLike) -> Floats:
     side can be, takes the value the nearest element extends to it.
     """
     values, places = require_finite(field=field), np.atleast_2d(require_finite(points=points))
-    if places.shape[1] != 3 or values.shape[-2:] != (mesh.size, 3):
+    if places.shape[1] != 3 or values.shape[-2:] != (mesh.node_count, 3):
         raise InvalidInput(f"points must have shape (p, 3) and the field that of the nodes, got {places.shape}")
     corner = mesh.nodes[mesh.elements[:, :4]]
     count = min(_NEIGHBOURS, len(corner))
@@ -58,7 +58,7 @@ def at_points(mesh: Mesh, field: ArrayLike, *, points: ArrayLike) -> Floats:
     return np.asarray(np.einsum("ap,...pai->...pi", weights, values[..., holder, :]))
 
 
-def stresses(model: Model, shape: ArrayLike) -> Floats:
+def gauss_point_stress(model: Model, shape: ArrayLike) -> Floats:
     """Return the elastic stress in Pa in the elements, the fields in ceramics left out.
 
     Parameters
@@ -91,7 +91,7 @@ def stresses(model: Model, shape: ArrayLike) -> Floats:
     return np.asarray(np.einsum("eij,eqj->eqi", stiffness[mesh.region_of_element], voigt, optimize=True))
 
 
-def equivalent_stress(stress: ArrayLike) -> Floats:
+def von_mises_stress(stress: ArrayLike) -> Floats:
     """Return the equivalent stress of von Mises.
 
     Parameters
@@ -110,7 +110,7 @@ def equivalent_stress(stress: ArrayLike) -> Floats:
     return np.asarray(np.sqrt(0.5 * np.sum(apart**2, axis=-1) + 3 * np.sum(shear**2, axis=-1)))
 
 
-def on_nodes_mean(mesh: Mesh, at_corners: Floats) -> Floats:
+def nodal_average(mesh: Mesh, at_corners: Floats) -> Floats:
     """Return the mean over all elements that meet in a node of values at their corners, straight between corners.
 
     Parameters
@@ -122,10 +122,10 @@ def on_nodes_mean(mesh: Mesh, at_corners: Floats) -> Floats:
     -------
     ndarray, shape (n,)
     """
-    total, count = np.zeros(mesh.size), np.zeros(mesh.size)
+    total, count = np.zeros(mesh.node_count), np.zeros(mesh.node_count)
     np.add.at(total, mesh.elements[:, :4], at_corners)
     np.add.at(count, mesh.elements[:, :4], 1.0)
     mean = np.divide(total, count, out=np.zeros_like(total), where=count > 0)
-    shares = lattice(mesh.order, corners=4) / mesh.order
+    shares = lagrange_nodes(mesh.order, corners=4) / mesh.order
     mean[mesh.elements] = mean[mesh.elements[:, :4]] @ shares.T
     return mean

@@ -12,7 +12,7 @@ from sonolube.fem.solver.mesh import Mesh
 from sonolube.fem.solver.model import DIRECTIONS
 
 
-def reshaped(mesh: Mesh, to: Callable[[Floats], Floats]) -> Mesh:
+def transform_nodes(mesh: Mesh, to: Callable[[Floats], Floats]) -> Mesh:
     """Return a mesh with its nodes moved: a block made a wedge, or tapered, without a CAD kernel.
 
     Parameters
@@ -28,7 +28,7 @@ def reshaped(mesh: Mesh, to: Callable[[Floats], Floats]) -> Mesh:
     return replace(mesh, nodes=to(mesh.nodes))
 
 
-def with_patch(mesh: Mesh, name: str, *, of: str, where: Callable[[Floats], NDArray[np.bool_]]) -> Mesh:
+def add_face_patch(mesh: Mesh, name: str, *, of: str, where: Callable[[Floats], NDArray[np.bool_]]) -> Mesh:
     """Return a mesh in which part of a face has a name of its own.
 
     Parameters

@@ -11,28 +11,32 @@ import numpy as np
 
 from sonolube.checks import require_positive
 from sonolube.errors import InvalidInput
-from sonolube.fem.parts.basic import hexagon, turned
-from sonolube.fem.parts.transducers import Dimension, Transducer, stack_parts, wired
+from sonolube.fem.parts.bodies import body_of_revolution, hexagon
+from sonolube.fem.parts.transducers import SourcedDimension, Transducer, stack_bodies, stack_from_bodies
 from sonolube.fem.solver.cad import MILLIMETRE
-from sonolube.fem.solver.geometry import Geometry, one_body
+from sonolube.fem.solver.geometry import Geometry, single_body
 
 _ELEMENT_WIDTH = 2.5  # of a disc's thickness
 
-TRIBOMETER_ACTUATOR = (
-    Dimension(
+TRIBOMETER_ACTUATOR_DIMENSIONS = (
+    SourcedDimension(
         name="outer_radius", value=9.5e-3, printed=False, source="360 nF and 62 layers of D Table 3.5 with PIC255"
     ),
-    Dimension(name="inner_radius", value=4e-3, printed=False, source="bore that a rod of 1/4 in passes"),
-    Dimension(name="length", value=38.6e-3, printed=False, source="70 g of D Table 3.5 with PIC255"),
-    Dimension(name="stack_layers", value=62.0, printed=True, source="D Table 3.5"),
-    Dimension(name="rod_radius", value=2.7e-3, printed=False, source="root of a 1/4-20 thread; 3 in long in D A.1.3"),
-    Dimension(name="washer_radius", value=8e-3, printed=False, source="washer for 1/4 in"),
-    Dimension(name="back_length", value=18e-3, printed=False, source="washer, nuts and the end of the gimbal's arm"),
-    Dimension(name="front_length", value=7.2e-3, printed=False, source="washer and nut of 1/4 in"),
-    Dimension(name="width", value=11.1e-3, printed=False, source="acorn nut of 1/4 in, 7/16 in across flats"),
-    Dimension(name="nut_length", value=6.6e-3, printed=False, source="hexagon of an acorn nut of 1/4 in"),
-    Dimension(name="tip_radius", value=5e-3, printed=False, source="dome of an acorn nut of 1/4 in"),
-    Dimension(name="contact_radius", value=0.8e-3, printed=False, source="worn flat of 2 mm2 in D 2.4.3"),
+    SourcedDimension(name="inner_radius", value=4e-3, printed=False, source="bore that a rod of 1/4 in passes"),
+    SourcedDimension(name="length", value=38.6e-3, printed=False, source="70 g of D Table 3.5 with PIC255"),
+    SourcedDimension(name="stack_layers", value=62.0, printed=True, source="D Table 3.5"),
+    SourcedDimension(
+        name="rod_radius", value=2.7e-3, printed=False, source="root of a 1/4-20 thread; 3 in long in D A.1.3"
+    ),
+    SourcedDimension(name="washer_radius", value=8e-3, printed=False, source="washer for 1/4 in"),
+    SourcedDimension(
+        name="back_length", value=18e-3, printed=False, source="washer, nuts and the end of the gimbal's arm"
+    ),
+    SourcedDimension(name="front_length", value=7.2e-3, printed=False, source="washer and nut of 1/4 in"),
+    SourcedDimension(name="width", value=11.1e-3, printed=False, source="acorn nut of 1/4 in, 7/16 in across flats"),
+    SourcedDimension(name="nut_length", value=6.6e-3, printed=False, source="hexagon of an acorn nut of 1/4 in"),
+    SourcedDimension(name="tip_radius", value=5e-3, printed=False, source="dome of an acorn nut of 1/4 in"),
+    SourcedDimension(name="contact_radius", value=0.8e-3, printed=False, source="worn flat of 2 mm2 in D 2.4.3"),
 )
 """Sizes of the tribometer's actuator, D 2.3.1 and appendix A, of which the text prints few."""
 
@@ -92,14 +96,15 @@ def tribometer_actuator(
 
     Notes
     -----
-    `TRIBOMETER_ACTUATOR` says which sizes are printed. The gimbal's arm is left out, but for the mass bolted to it.
+    `TRIBOMETER_ACTUATOR_DIMENSIONS` lists which sizes are printed. The gimbal's arm is left out, but for the mass bolted
+    to it.
 
     References
     ----------
     .. [1] D 2.3.1, Table 3.5, A.1.3.
     """
     nut = acorn_nut(width=width, length=nut_length, tip_radius=tip_radius, contact_radius=contact_radius)
-    parts = stack_parts(
+    parts = stack_bodies(
         outer_radius=outer_radius,
         inner_radius=inner_radius,
         length=length,
@@ -109,18 +114,22 @@ def tribometer_actuator(
         washer_radius=washer_radius,
         tip=nut,
     )
-    made = wired(parts, stack_layers=stack_layers, ceramic=ceramic, metal=metal)
-    return replace(made, dimensions=TRIBOMETER_ACTUATOR)
+    made = stack_from_bodies(parts, stack_layers=stack_layers, ceramic=ceramic, metal=metal)
+    return replace(made, dimensions=TRIBOMETER_ACTUATOR_DIMENSIONS)
 
 
-CUTTER_HEAD = (
-    *TRIBOMETER_ACTUATOR[:6],  # D 4.4.2: the stack is that of the tribometer
-    TRIBOMETER_ACTUATOR[7],
-    Dimension(name="back_length", value=32e-3, printed=False, source="puts the resonance at 20 kHz, D Table 4.6"),
-    Dimension(name="hub_radius", value=4.5e-3, printed=False, source="weld nut of 1/4 in"),
-    Dimension(name="hub_length", value=6e-3, printed=False, source="weld nut of 1/4 in"),
-    Dimension(name="disc_radius", value=15e-3, printed=False, source="its rim moves against its centre, D 4.4.4"),
-    Dimension(name="thickness", value=0.8e-3, printed=False, source="its rim moves against its centre, D 4.4.4"),
+CUTTER_HEAD_DIMENSIONS = (
+    *TRIBOMETER_ACTUATOR_DIMENSIONS[:6],  # D 4.4.2: the stack is that of the tribometer
+    TRIBOMETER_ACTUATOR_DIMENSIONS[7],
+    SourcedDimension(
+        name="back_length", value=32e-3, printed=False, source="puts the resonance at 20 kHz, D Table 4.6"
+    ),
+    SourcedDimension(name="hub_radius", value=4.5e-3, printed=False, source="weld nut of 1/4 in"),
+    SourcedDimension(name="hub_length", value=6e-3, printed=False, source="weld nut of 1/4 in"),
+    SourcedDimension(
+        name="disc_radius", value=15e-3, printed=False, source="its rim moves against its centre, D 4.4.4"
+    ),
+    SourcedDimension(name="thickness", value=0.8e-3, printed=False, source="its rim moves against its centre, D 4.4.4"),
 )
 """Sizes of the cutter head, D 4.4, of which the text prints none."""
 
@@ -180,14 +189,14 @@ def cutter_head(
 
     Notes
     -----
-    `CUTTER_HEAD` says that no size is printed. The disc is plain: the slots that cut are left out.
+    `CUTTER_HEAD_DIMENSIONS` says that no size is printed. The disc is plain: the slots that cut are left out.
 
     References
     ----------
     .. [1] D 4.4.2 to 4.4.4.
     """
-    head = cutter_disc(hub_radius=hub_radius, hub_length=hub_length, disc_radius=disc_radius, thickness=thickness)
-    parts = stack_parts(
+    head = hub_disc(hub_radius=hub_radius, hub_length=hub_length, disc_radius=disc_radius, thickness=thickness)
+    parts = stack_bodies(
         outer_radius=outer_radius,
         inner_radius=inner_radius,
         length=length,
@@ -197,8 +206,8 @@ def cutter_head(
         washer_radius=washer_radius,
         tip=head,
     )
-    made = wired(parts, stack_layers=stack_layers, ceramic=ceramic, metal=metal)
-    return replace(made, dimensions=CUTTER_HEAD)
+    made = stack_from_bodies(parts, stack_layers=stack_layers, ceramic=ceramic, metal=metal)
+    return replace(made, dimensions=CUTTER_HEAD_DIMENSIONS)
 
 
 def acorn_nut(*, width: float, length: float, tip_radius: float, contact_radius: float) -> Geometry:
@@ -232,11 +241,11 @@ def acorn_nut(*, width: float, length: float, tip_radius: float, contact_radius:
         )
     angle = np.linspace(np.arcsin(contact_radius / tip_radius), np.pi / 2, 9)[::-1]
     sphere = [(length + tip_radius * float(np.cos(a)), tip_radius * float(np.sin(a))) for a in angle]
-    dome = turned([(0.0, tip_radius), *sphere], "dome", smooth=(2, 2 + angle.size))
-    return one_body(hexagon(width=width, length=length).shape + dome.shape, "nut")
+    dome = body_of_revolution([(0.0, tip_radius), *sphere], "dome", smooth=(2, 2 + angle.size))
+    return single_body(hexagon(width=width, length=length).shape + dome.shape, "nut")
 
 
-def cutter_disc(*, hub_radius: float, hub_length: float, disc_radius: float, thickness: float) -> Geometry:
+def hub_disc(*, hub_radius: float, hub_length: float, disc_radius: float, thickness: float) -> Geometry:
     """Return a disc on a hub along z, from the foot of the hub at z = 0.
 
     Parameters
@@ -264,7 +273,7 @@ def cutter_disc(*, hub_radius: float, hub_length: float, disc_radius: float, thi
         raise InvalidInput(f"hub_radius must be below disc_radius {disc_radius!r} m, got {hub_radius!r} m")
     top = hub_length + thickness
     outline = [(0.0, hub_radius), (hub_length, hub_radius), (hub_length, disc_radius), (top, disc_radius)]
-    head = turned(outline, "head")
+    head = body_of_revolution(outline, "head")
     for part in (*head.shape.solids, *head.shape.faces):  # it bends, which wide elements would resist
         part.maxh = _ELEMENT_WIDTH * thickness / MILLIMETRE
     return head

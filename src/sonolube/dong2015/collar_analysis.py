@@ -14,14 +14,14 @@ from sonolube.checks import Floats
 from sonolube.dong2015.bore import BoreMotion, bore_motion
 from sonolube.dong2015.collar import Collar, collar_geometry
 from sonolube.errors import InvalidInput
-from sonolube.fem.parts.stack import layered, stack_ceramic
-from sonolube.fem.solver.harmonic import Output, ReducedModel, reduced
-from sonolube.fem.solver.medium import Medium, medium_of, poled
+from sonolube.fem.parts.stack_material import homogenised_stack, stack_ceramic
+from sonolube.fem.solver.harmonic_analysis import Output, ReducedModel, reduce_model
+from sonolube.fem.solver.medium import Medium, medium_from_material, poled_medium
 from sonolube.fem.solver.mesh import Mesh
-from sonolube.fem.solver.meshing import mesh_of
-from sonolube.fem.solver.model import Electrodes, Fixed, Model
+from sonolube.fem.solver.meshing import generate_mesh
+from sonolube.fem.solver.model import Electrodes, FixedSupport, Model
 from sonolube.fem.solver.modes import natural_modes
-from sonolube.fem.solver.simplex import quadrature, shape_functions
+from sonolube.fem.solver.simplex import shape_functions, simplex_quadrature
 from sonolube.materials import material
 
 _QUARTERS = 4
@@ -78,7 +78,7 @@ class CollarModes:
         kinds = list(self.shares)
         return tuple(kinds[best] for best in np.argmax([self.shares[kind] for kind in kinds], axis=0))
 
-    def main(self, kind: BoreMotion) -> float:
+    def dominant_frequency(self, kind: BoreMotion) -> float:
         """Return the frequency of the mode of a kind in which the bore moves most beside the rest, in Hz.
 
         Raises
@@ -117,9 +117,12 @@ def collar_media(collar: Collar) -> Mapping[str, Medium]:
         shear_modulus=_SHEAR_MODULUS,
     )
     frame, ring = (
-        medium_of(material(name), elastic_loss=METAL_LOSS) for name in (collar.frame_material, collar.ring_material)
+        medium_from_material(material(name), elastic_loss=METAL_LOSS)
+        for name in (collar.frame_material, collar.ring_material)
     )
-    lower, upper = (layered(poled(ceramic, along=(0.0, up, 0.0)), stack_layers=STACK_LAYERS) for up in (1.0, -1.0))
+    lower, upper = (
+        homogenised_stack(poled_medium(ceramic, along=(0.0, up, 0.0)), stack_layers=STACK_LAYERS) for up in (1.0, -1.0)
+    )
     return {
         "frame": frame,
         "top": frame,
@@ -164,9 +167,9 @@ def collar_model(
     parity = parity or Parity()
     mesh = _mesh(collar, open_top, element_size, order)
     planes = (("-x", "x", "yz", parity.odd_across), ("-z", "z", "xy", parity.odd_along))
-    fixed = [Fixed(face="frame.-y")] if clamped else []
+    fixed = [FixedSupport(face="frame.-y")] if clamped else []
     fixed += [
-        Fixed(face=f"{region}.{plane}", along=odd if is_odd else even)
+        FixedSupport(face=f"{region}.{plane}", along=odd if is_odd else even)
         for plane, even, odd, is_odd in planes
         for region in mesh.regions
     ]
@@ -223,7 +226,7 @@ def collar_modes(
     found = natural_modes(model, count=count)
     shares, mean_square = bore_motion(
         model.mesh,
-        found.shapes[found.rigid :],
+        found.shapes[found.rigid_body_count :],
         faces=("saddle.bore", "ring.bore"),
         middle=(0.0, collar.middle),
         odd_across=parity.odd_across,
@@ -235,7 +238,7 @@ def collar_modes(
     )
 
 
-def collar_response_model(
+def reduced_collar_model(
     collar: Collar,
     *,
     clamped: bool = False,
@@ -270,7 +273,9 @@ def collar_response_model(
     if collar.stacks == 2:
         del faces["crown"]
     model = collar_model(collar, clamped=clamped, open_top=open_top, element_size=element_size, order=order)
-    quarter = reduced(model, count=count, outputs={name: Output(face=face, along="y") for name, face in faces.items()})
+    quarter = reduce_model(
+        model, count=count, outputs={name: Output(face=face, along="y") for name, face in faces.items()}
+    )
     # the whole takes the charge and has the mass of all quarters at the displacement of one
     return replace(
         quarter,
@@ -282,12 +287,12 @@ def collar_response_model(
 
 @lru_cache(maxsize=16)
 def _mesh(collar: Collar, open_top: bool, element_size: float, order: int) -> Mesh:
-    return mesh_of(collar_geometry(collar, open_top=open_top), element_size=element_size, order=order)
+    return generate_mesh(collar_geometry(collar, open_top=open_top), element_size=element_size, order=order)
 
 
 def _mass(model: Model) -> float:
     mesh = model.mesh
-    places, weights = quadrature(2 * mesh.order, corners=4)
+    places, weights = simplex_quadrature(2 * mesh.order, corners=4)
     _, slopes = shape_functions(mesh.order, places)
     volume = np.linalg.det(np.einsum("eax,adq->eqdx", mesh.nodes[mesh.elements], slopes, optimize=True)) @ weights
     density = np.array([model.media[region].density for region in mesh.regions])

@@ -9,8 +9,8 @@ import numpy as np
 
 from sonolube.checks import require_non_negative, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.fem.solver.cad import MILLIMETRE, cad
-from sonolube.fem.solver.geometry import Geometry, one_body
+from sonolube.fem.solver.cad import MILLIMETRE, cad_kernel
+from sonolube.fem.solver.geometry import Geometry, single_body
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -72,7 +72,7 @@ def block(
     if 2 * edge_radius >= min(length, width, end, thickness):
         raise InvalidInput(f"edge_radius must be below half the smallest size, got {edge_radius!r} m")
     x, half, end_half, z = (size / MILLIMETRE / 2 for size in (length, width, end, thickness))
-    occ = cad()
+    occ = cad_kernel()
     outline = occ.WorkPlane(occ.Axes((0, 0, -z), n=occ.Z, h=occ.X)).MoveTo(-x, -half)
     shape = outline.LineTo(x, -end_half).LineTo(x, end_half).LineTo(-x, half).Close().Face().Extrude(2 * z)
     if edge_radius:
@@ -81,7 +81,7 @@ def block(
         a, b = (size / MILLIMETRE / 2 for size in (slot.length, slot.width))
         cx, cy = (place / MILLIMETRE for place in slot.centre)
         shape = shape - occ.Box((cx - a, cy - b, -2 * z), (cx + a, cy + b, 2 * z))
-    return one_body(shape, "block")
+    return single_body(shape, "block")
 
 
 def cylinder(*, radius: float, length: float) -> Geometry:
@@ -99,7 +99,7 @@ def cylinder(*, radius: float, length: float) -> Geometry:
     Geometry
     """
     require_positive(radius=radius, length=length)
-    return turned([(0.0, radius), (length, radius)], "cylinder")
+    return body_of_revolution([(0.0, radius), (length, radius)], "cylinder")
 
 
 def ring(*, outer_radius: float, inner_radius: float, length: float) -> Geometry:
@@ -125,7 +125,7 @@ def ring(*, outer_radius: float, inner_radius: float, length: float) -> Geometry
     if inner_radius >= outer_radius:
         raise InvalidInput(f"the wall has no thickness: inner_radius {inner_radius!r} m, outer {outer_radius!r} m")
     solid = cylinder(radius=outer_radius, length=length).shape
-    return one_body(solid - cylinder(radius=inner_radius, length=length).shape, "ring")
+    return single_body(solid - cylinder(radius=inner_radius, length=length).shape, "ring")
 
 
 def hexagon(*, width: float, length: float, inner_radius: float = 0.0) -> Geometry:
@@ -155,7 +155,7 @@ def hexagon(*, width: float, length: float, inner_radius: float = 0.0) -> Geomet
         raise InvalidInput(
             f"the wall has no thickness: inner_radius {inner_radius!r} m, width {width!r} m across flats"
         )
-    occ, corner = cad(), width / MILLIMETRE / np.sqrt(3)
+    occ, corner = cad_kernel(), width / MILLIMETRE / np.sqrt(3)
     angles = np.arange(6) * np.pi / 3
     outline = occ.WorkPlane().MoveTo(corner, 0.0)
     for angle in angles[1:]:
@@ -163,7 +163,7 @@ def hexagon(*, width: float, length: float, inner_radius: float = 0.0) -> Geomet
     shape = outline.Close().Face().Extrude(length / MILLIMETRE)
     if inner_radius:
         shape = shape - cylinder(radius=inner_radius, length=length).shape
-    return one_body(shape, "hexagon")
+    return single_body(shape, "hexagon")
 
 
 def stepped_horn(
@@ -198,12 +198,12 @@ def stepped_horn(
     total = length + end_length
     step = [(0.0, radius), (length, radius), (length, end_radius + edge_radius)]
     if not edge_radius:
-        return turned([*step, (total, end_radius)], "horn")
+        return body_of_revolution([*step, (total, end_radius)], "horn")
     angle = np.linspace(0.0, np.pi / 2, 9)[1:]
     fillet = zip(
         length + edge_radius * (1 - np.cos(angle)), end_radius + edge_radius * (1 - np.sin(angle)), strict=True
     )
-    return turned([*step, *fillet, (total, end_radius)], "horn", smooth=(3, 4 + angle.size))
+    return body_of_revolution([*step, *fillet, (total, end_radius)], "horn", smooth=(3, 4 + angle.size))
 
 
 def conical_horn(*, radius: float, end_radius: float, length: float) -> Geometry:
@@ -221,7 +221,7 @@ def conical_horn(*, radius: float, end_radius: float, length: float) -> Geometry
     Geometry
     """
     require_positive(radius=radius, end_radius=end_radius, length=length)
-    return turned([(0.0, radius), (length, end_radius)], "horn")
+    return body_of_revolution([(0.0, radius), (length, end_radius)], "horn")
 
 
 def exponential_horn(*, radius: float, end_radius: float, length: float) -> Geometry:
@@ -241,7 +241,7 @@ def exponential_horn(*, radius: float, end_radius: float, length: float) -> Geom
     require_positive(radius=radius, end_radius=end_radius, length=length)
     place = np.linspace(0.0, length, 17)
     radii = radius * (end_radius / radius) ** (place / length)
-    return turned(list(zip(place, radii, strict=True)), "horn", smooth=(1, 1 + place.size))
+    return body_of_revolution(list(zip(place, radii, strict=True)), "horn", smooth=(1, 1 + place.size))
 
 
 def booster(
@@ -275,7 +275,7 @@ def booster(
         raise InvalidInput(f"flange_radius must exceed both radii, got {flange_radius!r} m")
     behind = length + flange_thickness
     outline = [(0.0, radius), (length, radius), (length, flange_radius), (behind, flange_radius)]
-    return turned([*outline, (behind, end_radius), (behind + end_length, end_radius)], "booster")
+    return body_of_revolution([*outline, (behind, end_radius), (behind + end_length, end_radius)], "booster")
 
 
 PARTS: Mapping[str, Callable[..., Geometry]] = {
@@ -291,7 +291,7 @@ PARTS: Mapping[str, Callable[..., Geometry]] = {
 """The parametric bodies by name."""
 
 
-def turned(outline: list[tuple[float, float]], name: str, smooth: tuple[int, int] = (0, 0)) -> Geometry:
+def body_of_revolution(outline: list[tuple[float, float]], name: str, smooth: tuple[int, int] = (0, 0)) -> Geometry:
     """Return the body of revolution about z of an outline.
 
     Parameters
@@ -307,7 +307,7 @@ def turned(outline: list[tuple[float, float]], name: str, smooth: tuple[int, int
     -------
     Geometry
     """
-    occ = cad()
+    occ = cad_kernel()
     points = [occ.Pnt(float(r) / MILLIMETRE, 0.0, float(z) / MILLIMETRE) for z, r in outline]
     corners = [occ.Pnt(0, 0, points[0].z), *points, occ.Pnt(0, 0, points[-1].z)]
     begin, end = smooth  # numbers of the spline's points among the corners
@@ -316,7 +316,7 @@ def turned(outline: list[tuple[float, float]], name: str, smooth: tuple[int, int
         edges += [occ.SplineInterpolation(corners[begin:end])]
         edges += [occ.Segment(one, other) for one, other in pairwise(corners[end - 1 :])]
     wire = occ.Wire([*edges, occ.Segment(corners[-1], corners[0])])
-    return one_body(occ.Face(wire).Revolve(occ.Axis((0, 0, 0), occ.Z), 360), name)
+    return single_body(occ.Face(wire).Revolve(occ.Axis((0, 0, 0), occ.Z), 360), name)
 
 
 def _rounded(shape: Any, edges: Any, radius: float) -> Any:

@@ -13,7 +13,7 @@ from sonolube.fem.solver.medium import Medium
 from sonolube.materials import Material, PiezoCeramic, piezo_ceramic_from_strain_charge
 
 
-def layered(medium: Medium, *, stack_layers: float) -> Medium:
+def homogenised_stack(medium: Medium, *, stack_layers: float) -> Medium:
     """Return a poled medium as a stack of many layers in parallel, for electrodes at its two ends only.
 
     Parameters

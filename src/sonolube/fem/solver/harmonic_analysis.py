@@ -14,10 +14,16 @@ from scipy import sparse
 
 from sonolube.checks import Complexes, Floats, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.fem.solver.assembly import face_weights
+from sonolube.fem.solver.assembly import tributary_areas
 from sonolube.fem.solver.model import DIRECTIONS, Model
-from sonolube.fem.solver.modes import NaturalModes, modes_of, shift_for
-from sonolube.fem.solver.system import Solve, System, factorised, shifted, system
+from sonolube.fem.solver.modes import NaturalModes, lanczos_modes, spectral_shift
+from sonolube.fem.solver.system import (
+    LinearSolver,
+    SystemMatrices,
+    assemble_system,
+    shift_invert_solver,
+    superlu_factor,
+)
 
 _KRYLOV = 2  # vectors for each input: its response far below resonance and the first correction to it
 _RIGID = 1e-9  # square of frequency over the largest, below which a motion is rigid
@@ -87,7 +93,7 @@ class HarmonicResponse:
     displacement_per_volt: Complexes
 
 
-def reduced(model: Model, *, count: int, outputs: Mapping[str, Output]) -> ReducedModel:
+def reduce_model(model: Model, *, count: int, outputs: Mapping[str, Output]) -> ReducedModel:
     """Return a body in the coordinates of its lowest modes and of the static share of all others.
 
     Parameters
@@ -108,23 +114,28 @@ def reduced(model: Model, *, count: int, outputs: Mapping[str, Output]) -> Reduc
     InvalidInput
         If nothing is driven.
     """
-    equations = system(model)
-    inverse = shifted(model, equations, shift=shift_for(model))
-    modes = modes_of(model, equations, inverse=inverse, count=count)
-    return reduction_of(model, equations, inverse=inverse, modes=modes, outputs=outputs)
+    equations = assemble_system(model)
+    inverse = shift_invert_solver(model, equations, shift=spectral_shift(model))
+    modes = lanczos_modes(model, equations, inverse=inverse, count=count)
+    return reduce_system(model, equations, inverse=inverse, modes=modes, outputs=outputs)
 
 
-def reduction_of(
-    model: Model, equations: System, *, inverse: Solve, modes: NaturalModes, outputs: Mapping[str, Output]
+def reduce_system(
+    model: Model,
+    equations: SystemMatrices,
+    *,
+    inverse: LinearSolver,
+    modes: NaturalModes,
+    outputs: Mapping[str, Output],
 ) -> ReducedModel:
-    """Return what `reduced` does, of equations already assembled and factorised and of modes already known.
+    """Return what `reduce_model` does, of equations already assembled and factorised and of modes already known.
 
     Parameters
     ----------
     model : Model
     equations : System
     inverse : callable
-        What `shifted` returns for the shift of `shift_for`.
+        What `shift_invert_solver` returns for the shift of `spectral_shift`.
     modes : NaturalModes
     outputs : mapping of str to Output
         What to observe, and where forces act.
@@ -139,16 +150,16 @@ def reduction_of(
         If nothing is driven.
     """
     shapes = modes.shapes.reshape(len(modes.shapes), -1)[:, equations.moving].T
-    vectors, _ = inputs(model, equations, outputs)
+    vectors, _ = input_vectors(model, equations, outputs)
     basis = shapes
     for _ in range(_KRYLOV):
         vectors = inverse(vectors)
         basis = _extended(basis, vectors, equations.mass)
         vectors = equations.mass @ vectors
-    return projected(model, equations, basis=basis, outputs=outputs)
+    return project_system(model, equations, basis=basis, outputs=outputs)
 
 
-def inputs(model: Model, equations: System, outputs: Mapping[str, Output]) -> tuple[Floats, float]:
+def input_vectors(model: Model, equations: SystemMatrices, outputs: Mapping[str, Output]) -> tuple[Floats, float]:
     """Return forces per volt of the drive and per newton on each output, and the capacitance with all motion held.
 
     Parameters
@@ -170,10 +181,12 @@ def inputs(model: Model, equations: System, outputs: Mapping[str, Output]) -> tu
     if not model.is_piezoelectric or not model.electrodes.driven:
         raise InvalidInput("nothing is driven: a piezoelectric region with a driven electrode is needed")
     force, capacitance = _drive(equations, _electric(equations, lossless=True), lossless=True)
-    return np.column_stack([force.real, observers(model, equations, outputs).T]), capacitance.real
+    return np.column_stack([force.real, output_matrix(model, equations, outputs).T]), capacitance.real
 
 
-def projected(model: Model, equations: System, *, basis: Floats, outputs: Mapping[str, Output]) -> ReducedModel:
+def project_system(
+    model: Model, equations: SystemMatrices, *, basis: Floats, outputs: Mapping[str, Output]
+) -> ReducedModel:
     """Return a body in the coordinates of some shapes, losses and all.
 
     Parameters
@@ -198,7 +211,7 @@ def projected(model: Model, equations: System, *, basis: Floats, outputs: Mappin
         stiffness=np.asarray((stiffness + stiffness.T) / 2, dtype=np.complex128),
         drive=np.asarray(basis.T @ force, dtype=np.complex128),
         clamped_capacitance=capacitance,
-        participation=observers(model, equations, outputs) @ basis,
+        participation=output_matrix(model, equations, outputs) @ basis,
         outputs=tuple(outputs),
     )
 
@@ -244,15 +257,15 @@ def direct_response(model: Model, *, frequency: ArrayLike, outputs: Mapping[str,
     HarmonicResponse
     """
     f = np.atleast_1d(require_positive(frequency=frequency))
-    equations = system(model)
-    observed = observers(model, equations, outputs)
+    equations = assemble_system(model)
+    observed = output_matrix(model, equations, outputs)
     size = len(equations.moving)
     charges, moves = [], []
     dielectric, (right, charge) = _dielectric(equations), _driven(equations)
     for omega in 2 * np.pi * f:
         elastic = equations.stiffness + 1j * equations.stiffness_loss - omega**2 * equations.mass
         blocks = [[elastic, equations.coupling], [equations.coupling.T, -dielectric]]
-        solution = factorised(sparse.csc_array(sparse.block_array(blocks, format="csc")))(right)
+        solution = superlu_factor(sparse.csc_array(sparse.block_array(blocks, format="csc")))(right)
         moved, potential = solution[:size], solution[size:]
         charges.append(equations.drive_capacitance + charge @ potential - equations.drive_coupling @ moved)
         moves.append(observed @ moved)
@@ -263,7 +276,7 @@ def direct_response(model: Model, *, frequency: ArrayLike, outputs: Mapping[str,
     )
 
 
-def resonances_of(model: ReducedModel) -> tuple[Floats, Floats, Floats]:
+def series_parallel_resonances(model: ReducedModel) -> tuple[Floats, Floats, Floats]:
     """Return series and parallel resonances in Hz and the effective coupling factor of each, losses left out.
 
     Parameters
@@ -291,7 +304,7 @@ def resonances_of(model: ReducedModel) -> tuple[Floats, Floats, Floats]:
     return np.sqrt(shorted) / (2 * np.pi), np.sqrt(opened) / (2 * np.pi), coupling
 
 
-def observers(model: Model, equations: System, outputs: Mapping[str, Output]) -> Floats:
+def output_matrix(model: Model, equations: SystemMatrices, outputs: Mapping[str, Output]) -> Floats:
     """Return what turns displacements of the unknowns into outputs, shape (o, m).
 
     Parameters
@@ -304,33 +317,33 @@ def observers(model: Model, equations: System, outputs: Mapping[str, Output]) ->
     -------
     ndarray, shape (o, m)
     """
-    rows = np.zeros((len(outputs), model.mesh.size, 3))
+    rows = np.zeros((len(outputs), model.mesh.node_count, 3))
     for row, output in zip(rows, outputs.values(), strict=True):
-        weights = face_weights(model.mesh, output.face)
+        weights = tributary_areas(model.mesh, output.face)
         row[:, DIRECTIONS.index(output.along)] = weights / weights.sum()
-    return np.asarray(rows.reshape(len(outputs), 3 * model.mesh.size)[:, equations.moving])
+    return np.asarray(rows.reshape(len(outputs), 3 * model.mesh.node_count)[:, equations.moving])
 
 
-def _dielectric(equations: System) -> sparse.csc_array:
+def _dielectric(equations: SystemMatrices) -> sparse.csc_array:
     """Return the permittivity of the unknown potentials, losses and all."""
     return sparse.csc_array(equations.dielectric - 1.0j * equations.dielectric_loss)
 
 
-def _driven(equations: System, *, lossless: bool = False) -> tuple[Complexes, Complexes]:
+def _driven(equations: SystemMatrices, *, lossless: bool = False) -> tuple[Complexes, Complexes]:
     """Return the right side per volt of the coupled equations, and its dielectric part."""
     loss = 0.0 if lossless else equations.drive_dielectric_loss
     charge = np.asarray(equations.drive_dielectric - 1j * loss, dtype=np.complex128)
     return np.concatenate([-equations.drive_coupling, charge]).astype(np.complex128), charge
 
 
-def _electric(equations: System, *, lossless: bool) -> Solve | None:
+def _electric(equations: SystemMatrices, *, lossless: bool) -> LinearSolver | None:
     """Return what solves for potentials inside, None where there are none."""
     if not equations.potentials:
         return None
-    return factorised(equations.dielectric if lossless else _dielectric(equations))
+    return superlu_factor(equations.dielectric if lossless else _dielectric(equations))
 
 
-def _drive(equations: System, inner: Solve | None, *, lossless: bool) -> tuple[Complexes, complex]:
+def _drive(equations: SystemMatrices, inner: LinearSolver | None, *, lossless: bool) -> tuple[Complexes, complex]:
     """Return force per volt, the potentials inside following it, and the capacitance with all motion held."""
     _, charge = _driven(equations, lossless=lossless)
     whole = equations.drive_capacitance.real if lossless else equations.drive_capacitance

@@ -6,15 +6,15 @@ import numpy as np
 
 from sonolube.checks import Floats, Integers
 from sonolube.errors import InvalidInput
-from sonolube.fem.solver.mesh import MOST_ORDER, Mesh
-from sonolube.fem.solver.simplex import lattice, quadrature, shape_functions
+from sonolube.fem.solver.mesh import HIGHEST_ORDER, Mesh
+from sonolube.fem.solver.simplex import lagrange_nodes, shape_functions, simplex_quadrature
 
 _FOLDED = 1e-3  # smallest over mean volume per unit of an element that is taken as it is
 _STRAIGHTENED = 0.8  # what is left of the curves of a folded element, step by step
 _STEPS = 400  # straightening one element can fold the next, but nodes only ever come closer to straight
 
 
-def of_order(mesh: Mesh, *, order: int) -> Mesh:
+def change_order(mesh: Mesh, *, order: int) -> Mesh:
     """Return the same tetrahedra with the nodes of another order.
 
     Parameters
@@ -33,11 +33,11 @@ def of_order(mesh: Mesh, *, order: int) -> Mesh:
     InvalidInput
         If the order is out of range.
     """
-    if not 2 <= order <= MOST_ORDER:
-        raise InvalidInput(f"order must be from 2 to {MOST_ORDER}, got {order}")
+    if not 2 <= order <= HIGHEST_ORDER:
+        raise InvalidInput(f"order must be from 2 to {HIGHEST_ORDER}, got {order}")
     if order == mesh.order:
         return mesh
-    return numbered(
+    return mesh_from_elements(
         mesh.elements[:, :4],
         places=_places(mesh, order),
         faces={name: triangles[:, :3] for name, triangles in mesh.faces.items()},
@@ -48,7 +48,7 @@ def of_order(mesh: Mesh, *, order: int) -> Mesh:
     )
 
 
-def numbered(
+def mesh_from_elements(
     corners: Integers,
     *,
     places: Floats,
@@ -79,15 +79,15 @@ def numbered(
     # A node is known by the corners it lies between and its coordinates: their products with a number drawn for each
     # corner sum to a key, modulo 2^64, which two nodes share as good as never.
     drawn = np.random.default_rng(order).integers(1, 2**62, size=int(corners.max()) + 1)
-    keys = drawn[corners] @ lattice(order, corners=4).T
+    keys = drawn[corners] @ lagrange_nodes(order, corners=4).T
     known, first, numbers = np.unique(keys, return_index=True, return_inverse=True)
     rank = np.argsort(np.argsort(first))
     elements = rank[numbers].reshape(keys.shape)
     nodes = np.empty((len(known), 3))
     nodes[elements] = places
-    on_sides = {name: drawn[triangles] @ lattice(order, corners=3).T for name, triangles in faces.items()}
+    on_sides = {name: drawn[triangles] @ lagrange_nodes(order, corners=3).T for name, triangles in faces.items()}
     return Mesh(
-        nodes=unfolded(nodes, elements, order=order),
+        nodes=untangle_nodes(nodes, elements, order=order),
         elements=elements,
         region_of_element=region_of_element,
         regions=regions,
@@ -96,7 +96,7 @@ def numbered(
     )
 
 
-def carried(field: Floats, *, source: Mesh, target: Mesh) -> Floats:
+def transfer_field(field: Floats, *, source: Mesh, target: Mesh) -> Floats:
     """Return a field of one mesh on the nodes of another order of it.
 
     Parameters
@@ -112,14 +112,14 @@ def carried(field: Floats, *, source: Mesh, target: Mesh) -> Floats:
     """
     if len(source.elements) != len(target.elements):
         raise InvalidInput("a field can be carried only to a mesh of the same tetrahedra")
-    weights, _ = shape_functions(source.order, lattice(target.order, corners=4) / target.order)
+    weights, _ = shape_functions(source.order, lagrange_nodes(target.order, corners=4) / target.order)
     values = np.einsum("...eai,ab->...ebi", field[..., source.elements, :], weights, optimize=True)
-    moved = np.empty((*field.shape[:-2], target.size, field.shape[-1]), dtype=values.dtype)
+    moved = np.empty((*field.shape[:-2], target.node_count, field.shape[-1]), dtype=values.dtype)
     moved[..., target.elements, :] = values
     return moved
 
 
-def unfolded(nodes: Floats, elements: Integers, *, order: int) -> Floats:
+def untangle_nodes(nodes: Floats, elements: Integers, *, order: int) -> Floats:
     """Return the nodes with elements less curved where curving them has folded the element.
 
     Parameters
@@ -133,9 +133,9 @@ def unfolded(nodes: Floats, elements: Integers, *, order: int) -> Floats:
     -------
     ndarray, shape (n, 3)
     """
-    places, _ = quadrature(2 * order, corners=4)
+    places, _ = simplex_quadrature(2 * order, corners=4)
     _, slopes = shape_functions(order, places)
-    straight = lattice(order, corners=4) / order
+    straight = lagrange_nodes(order, corners=4) / order
     kept = nodes.copy()
     for _ in range(_STEPS):
         volume = np.linalg.det(np.einsum("eax,adq->eqdx", kept[elements], slopes, optimize=True))
@@ -153,5 +153,5 @@ def _places(mesh: Mesh, order: int) -> Floats:
         known = mesh.curves(mesh.order)[:, :4]
         if np.allclose(known, mesh.nodes[mesh.elements[:, :4]], rtol=0.0, atol=1e-9 * np.ptp(mesh.nodes)):
             return mesh.curves(order)  # the mesh was not moved since
-    weights, _ = shape_functions(mesh.order, lattice(order, corners=4) / order)
+    weights, _ = shape_functions(mesh.order, lagrange_nodes(order, corners=4) / order)
     return np.asarray(np.einsum("ab,eax->ebx", weights, mesh.nodes[mesh.elements], optimize=True))

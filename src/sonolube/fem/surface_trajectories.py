@@ -9,7 +9,7 @@ from sonolube.checks import Floats, require_finite_complex
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class LocusEllipse:
+class TrajectoryEllipse:
     """Ellipses on which points move.
 
     Parameters
@@ -31,7 +31,7 @@ class LocusEllipse:
     phase: Floats
 
 
-def locus_ellipse(*, axial_displacement: ArrayLike, normal_displacement: ArrayLike) -> LocusEllipse:
+def trajectory_ellipse(*, axial_displacement: ArrayLike, normal_displacement: ArrayLike) -> TrajectoryEllipse:
     """Return the ellipses of points whose displacements are Re[u exp(i omega t)] and Re[v exp(i omega t)].
 
     Parameters
@@ -43,7 +43,7 @@ def locus_ellipse(*, axial_displacement: ArrayLike, normal_displacement: ArrayLi
 
     Returns
     -------
-    LocusEllipse
+    TrajectoryEllipse
 
     Raises
     ------
@@ -61,7 +61,7 @@ def locus_ellipse(*, axial_displacement: ArrayLike, normal_displacement: ArrayLi
     )
     forward, backward = (u + 1j * v) / 2, (u - 1j * v) / 2  # of exp(i omega t), and the conjugate of the other's
     tilt = (np.angle(forward) - np.angle(backward)) / 2
-    return LocusEllipse(
+    return TrajectoryEllipse(
         major_semi_axis=np.abs(forward) + np.abs(backward),
         minor_semi_axis=np.abs(forward) - np.abs(backward),
         inclination=np.asarray((tilt + np.pi / 2) % np.pi - np.pi / 2),

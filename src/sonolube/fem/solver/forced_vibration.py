@@ -5,13 +5,13 @@ from scipy import sparse
 
 from sonolube.checks import Complexes, require_non_negative
 from sonolube.errors import InvalidInput
-from sonolube.fem.solver.harmonic import Output, observers
+from sonolube.fem.solver.harmonic_analysis import Output, output_matrix
 from sonolube.fem.solver.model import Model
-from sonolube.fem.solver.modes import rigid_motions
-from sonolube.fem.solver.system import factorised, on_nodes, system
+from sonolube.fem.solver.modes import rigid_body_mode_count
+from sonolube.fem.solver.system import assemble_system, nodal_displacements, superlu_factor
 
 
-def forced_motion(model: Model, *, load: Output, frequency: float) -> Complexes:
+def forced_response(model: Model, *, load: Output, frequency: float) -> Complexes:
     """Return the displacements of all nodes per newton of a force spread evenly over a face.
 
     Parameters
@@ -40,11 +40,11 @@ def forced_motion(model: Model, *, load: Output, frequency: float) -> Complexes:
     require_non_negative(frequency=frequency)
     if model.is_piezoelectric:
         raise InvalidInput("the body is piezoelectric; drive it by a voltage instead of a force")
-    free = rigid_motions(model)
+    free = rigid_body_mode_count(model)
     if frequency == 0 and free:
         raise InvalidInput(f"a steady force needs a body that is held; {free} rigid motions are free")
-    equations = system(model)
-    force = observers(model, equations, {"load": load})[0]
+    equations = assemble_system(model)
+    force = output_matrix(model, equations, {"load": load})[0]
     dynamic = equations.stiffness + 1j * equations.stiffness_loss - (2 * np.pi * frequency) ** 2 * equations.mass
-    moves = factorised(sparse.csc_array(dynamic))(force.astype(np.complex128))
-    return np.asarray(on_nodes(model, equations, moves[:, np.newaxis])[0], dtype=np.complex128)
+    moves = superlu_factor(sparse.csc_array(dynamic))(force.astype(np.complex128))
+    return np.asarray(nodal_displacements(model, equations, moves[:, np.newaxis])[0], dtype=np.complex128)

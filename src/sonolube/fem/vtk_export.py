@@ -8,14 +8,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
+from sonolube.fem.solver.element_order import change_order, transfer_field
 from sonolube.fem.solver.mesh import Mesh
-from sonolube.fem.solver.orders import carried, of_order
 
 _QUADRATIC_TETRA = 24  # VTK's number; its nodes come in the order of ours
 _TYPES = {"f": "Float64", "i": "Int64", "u": "UInt8"}
 
 
-def vtu(mesh: Mesh, *, fields: Mapping[str, ArrayLike]) -> str:
+def vtu_text(mesh: Mesh, *, fields: Mapping[str, ArrayLike]) -> str:
     """Return a mesh and its fields as the text of a .vtu file.
 
     Parameters
@@ -44,7 +44,7 @@ def vtu(mesh: Mesh, *, fields: Mapping[str, ArrayLike]) -> str:
     """
     cells = len(mesh.elements)
     points = "".join(_array(name, values) for name, values in _on_ten_nodes(mesh, _checked(mesh, fields)).items())
-    mesh = of_order(mesh, order=2)
+    mesh = change_order(mesh, order=2)
     layout: dict[str, NDArray[np.generic]] = {
         "connectivity": mesh.elements.ravel(),
         "offsets": 10 * np.arange(1, cells + 1),
@@ -53,7 +53,7 @@ def vtu(mesh: Mesh, *, fields: Mapping[str, ArrayLike]) -> str:
     return (
         '<?xml version="1.0"?>\n'
         '<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">\n'
-        f'<UnstructuredGrid><Piece NumberOfPoints="{mesh.size}" NumberOfCells="{cells}">\n'
+        f'<UnstructuredGrid><Piece NumberOfPoints="{mesh.node_count}" NumberOfCells="{cells}">\n'
         f"<Points>\n{_array('Points', mesh.nodes)}</Points>\n"
         f"<Cells>\n{''.join(_array(name, values) for name, values in layout.items())}</Cells>\n"
         f"<PointData>\n{points}</PointData>\n"
@@ -63,19 +63,19 @@ def vtu(mesh: Mesh, *, fields: Mapping[str, ArrayLike]) -> str:
 
 
 def _on_ten_nodes(mesh: Mesh, fields: Mapping[str, Floats]) -> dict[str, Floats]:
-    target = of_order(mesh, order=2)
+    target = change_order(mesh, order=2)
     if target is mesh:
         return dict(fields)
     vectors = {name: values if values.ndim == 2 else values[:, np.newaxis] for name, values in fields.items()}
-    moved = {name: carried(values, source=mesh, target=target) for name, values in vectors.items()}
-    return {name: values.reshape(target.size, *fields[name].shape[1:]) for name, values in moved.items()}
+    moved = {name: transfer_field(values, source=mesh, target=target) for name, values in vectors.items()}
+    return {name: values.reshape(target.node_count, *fields[name].shape[1:]) for name, values in moved.items()}
 
 
 def _checked(mesh: Mesh, fields: Mapping[str, ArrayLike]) -> dict[str, Floats]:
     checked: dict[str, Floats] = {}
     for name, given in fields.items():
         values = np.asarray(given)
-        if values.shape not in {(mesh.size,), (mesh.size, 3)}:
+        if values.shape not in {(mesh.node_count,), (mesh.node_count, 3)}:
             raise InvalidInput(f"the field {name!r} must have one value or vector a node, got shape {values.shape}")
         if np.iscomplexobj(values):
             checked |= {f"{name} real": values.real, f"{name} imaginary": values.imag}

@@ -3,14 +3,14 @@
 from typing import Any
 
 from sonolube.errors import InvalidInput
-from sonolube.fem.solver.cad import MILLIMETRE, cad
-from sonolube.fem.solver.geometry import Geometry, one_body
+from sonolube.fem.solver.cad import MILLIMETRE, cad_kernel
+from sonolube.fem.solver.geometry import Geometry, single_body
 from sonolube.fem.solver.model import DIRECTIONS
 
 _ALIKE = 1e-6  # mm
 
 
-def trimmed(geometry: Geometry, *, axis: str, length: float) -> Geometry:
+def adjust_length(geometry: Geometry, *, axis: str, length: float) -> Geometry:
     """Return one body cut at its far end, or its far face drawn out, until it has a length along an axis.
 
     Parameters
@@ -38,7 +38,7 @@ def trimmed(geometry: Geometry, *, axis: str, length: float) -> Geometry:
     change = (length - (high - low)) / MILLIMETRE
     if length <= 0:
         raise InvalidInput(f"length must be positive, got {length!r} m")
-    occ, shape = cad(), geometry.shape.solids[0]
+    occ, shape = cad_kernel(), geometry.shape.solids[0]
     name = geometry.regions[0]
     if abs(change) < _ALIKE:
         return geometry
@@ -48,11 +48,11 @@ def trimmed(geometry: Geometry, *, axis: str, length: float) -> Geometry:
             raise InvalidInput(f"{name} has no flat end at its greatest {axis}; there is nothing to draw out")
         for face in ends:
             shape = shape + face.Extrude(change)
-        return one_body(shape, name)
+        return single_body(shape, name)
     corner, opposite = ([_coordinate(bound, k) for k in range(3)] for bound in shape.bounding_box)
     corner, opposite = [value - 1.0 for value in corner], [value + 1.0 for value in opposite]
     corner[direction] = (low + length) / MILLIMETRE
-    return one_body(shape - occ.Box(tuple(corner), tuple(opposite)), name)
+    return single_body(shape - occ.Box(tuple(corner), tuple(opposite)), name)
 
 
 def extent_along(geometry: Geometry, *, axis: str) -> tuple[float, float]:

@@ -5,7 +5,7 @@ import numpy as np
 from sonolube.checks import Floats, require_positive
 from sonolube.dynamics import Structure, modal_structure
 from sonolube.errors import UnknownName
-from sonolube.fem.solver.harmonic import ReducedModel
+from sonolube.fem.solver.harmonic_analysis import ReducedModel
 
 
 def contact_structure(model: ReducedModel, *, contact: str, outwards: float = 1.0) -> Structure:
@@ -48,7 +48,7 @@ def contact_structure(model: ReducedModel, *, contact: str, outwards: float = 1.
     )
 
 
-def under_free_body(structure: Structure, *, body_mass: float) -> Structure:
+def with_free_body(structure: Structure, *, body_mass: float) -> Structure:
     """Return a structure together with a rigid body that rests on its contact and is held by nothing else.
 
     Parameters

@@ -12,7 +12,7 @@ _POINTS_PER_WAVE = 32
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class AmplifierNeed:
+class AmplifierRequirements:
     """What an amplifier has to deliver.
 
     Parameters
@@ -21,7 +21,7 @@ class AmplifierNeed:
         Highest voltage against ground, either way. [V]
     peak_current : float
         Highest current, either way. [A]
-    effective_current : float
+    rms_current : float
         Root mean square of the current. [A]
     apparent_power : float
         Effective voltage about its mean times effective current. [W]
@@ -35,16 +35,16 @@ class AmplifierNeed:
 
     voltage_maximum: float
     peak_current: float
-    effective_current: float
+    rms_current: float
     apparent_power: float
     dissipated_power: float
     power_factor: float
     slew_rate: float
 
 
-def amplifier_need(
+def amplifier_requirements(
     *, admittance: ArrayLike, voltage_amplitude: ArrayLike, frequency: float, voltage_offset: float = 0.0
-) -> AmplifierNeed:
+) -> AmplifierRequirements:
     """Return what an amplifier has to deliver to drive an actuator with a periodic voltage.
 
     Parameters
@@ -60,7 +60,7 @@ def amplifier_need(
 
     Returns
     -------
-    AmplifierNeed
+    AmplifierRequirements
 
     Raises
     ------
@@ -78,10 +78,10 @@ def amplifier_need(
     lowest, highest = (-swing.max(), swing.max()) if one else ((volts @ waves).real.min(), (volts @ waves).real.max())
     rate = 2j * np.pi * f * orders * volts
     current = float(np.sqrt(0.5 * np.sum(np.abs(y * volts) ** 2)))
-    return AmplifierNeed(
+    return AmplifierRequirements(
         voltage_maximum=float(max(abs(offset + lowest), abs(offset + highest))),
         peak_current=float(peak_current(admittance=y, voltage_amplitude=volts)),
-        effective_current=current,
+        rms_current=current,
         apparent_power=current * float(np.sqrt(0.5 * np.sum(np.abs(volts) ** 2))),
         dissipated_power=float(dissipated_power(admittance=y, voltage_amplitude=volts).sum()),
         power_factor=float(power_factor(admittance=y, voltage_amplitude=volts)),
