@@ -1,3 +1,5 @@
+"""Butterworth-Van Dyke circuits against textbook formulae and circuit laws."""
+
 from itertools import pairwise
 
 import numpy as np
@@ -31,7 +33,7 @@ circuits = st.builds(
 )
 
 
-def test_one_branch_resonates_where_the_text_book_says() -> None:
+def test_one_branch_has_the_resonances_of_the_textbook() -> None:
     found = circuit_resonances(CRYSTAL)
     f_s = 1 / (2 * np.pi * np.sqrt(0.1 * 0.02e-12))
     assert found.series_frequency == approx(f_s)
@@ -45,7 +47,7 @@ def test_far_below_resonance_all_capacitances_add() -> None:
     assert y.imag / (2 * np.pi) == approx(5.02e-12, rel=1e-9)
 
 
-def test_on_resonance_the_branch_is_its_resistance() -> None:
+def test_at_resonance_the_branch_is_its_resistance() -> None:
     f_s = float(circuit_resonances(CRYSTAL).series_frequency[0])
     assert circuit_admittance(CRYSTAL, frequency=f_s) == approx(1 / 50 + 2j * np.pi * f_s * 5e-12, rel=1e-9)
 
@@ -57,7 +59,7 @@ def test_the_width_at_half_power_is_the_frequency_over_the_quality_factor() -> N
     assert circuit_admittance(CRYSTAL, frequency=edges).real == approx(np.full(2, 0.5 / 50), rel=1e-4)
 
 
-def test_leads_stand_in_series() -> None:
+def test_the_resistance_of_the_leads_is_in_series() -> None:
     bare = ButterworthVanDyke(parallel_capacitance=1e-9, branches=CRYSTAL.branches)
     leads = ButterworthVanDyke(parallel_capacitance=1e-9, branches=CRYSTAL.branches, series_resistance=7.0)
     f = np.geomspace(1e3, 1e7, 50)
@@ -66,7 +68,7 @@ def test_leads_stand_in_series() -> None:
 
 
 @given(circuit=circuits, frequency=st.floats(1, 1e7))
-def test_no_circuit_gives_power(circuit: ButterworthVanDyke, frequency: float) -> None:
+def test_the_conductance_of_a_circuit_is_never_negative(circuit: ButterworthVanDyke, frequency: float) -> None:
     assert circuit_admittance(circuit, frequency=frequency).real >= 0
 
 
@@ -74,7 +76,7 @@ def test_no_circuit_gives_power(circuit: ButterworthVanDyke, frequency: float) -
     frequencies=st.lists(st.floats(1e3, 1e5), min_size=1, max_size=4, unique=True),
     shares=st.lists(st.floats(0.01, 2), min_size=4, max_size=4),
 )
-def test_each_parallel_resonance_is_a_zero_of_the_reactance_before_the_next_series_one(
+def test_each_parallel_resonance_is_a_zero_of_the_capacitance_below_the_next_series_one(
     frequencies: list[float], shares: list[float]
 ) -> None:
     frequencies = sorted(frequencies)
@@ -93,7 +95,7 @@ def test_each_parallel_resonance_is_a_zero_of_the_reactance_before_the_next_seri
         assert f_p == approx(root, rel=1e-9)
 
 
-def test_a_branch_without_resistance_has_no_bound_to_its_quality() -> None:
+def test_a_branch_without_resistance_has_an_infinite_quality_factor() -> None:
     circuit = ButterworthVanDyke(
         parallel_capacitance=1e-9, branches=(MotionalBranch(resistance=0.0, inductance=1e-3, capacitance=1e-9),)
     )
@@ -113,6 +115,6 @@ def test_a_bare_capacitance_has_no_resonance() -> None:
         ({"capacitance": np.inf}, r"capacitance must be finite, got inf F"),
     ],
 )
-def test_parts_that_cannot_be_are_refused(values: dict[str, float], message: str) -> None:
+def test_impossible_elements_are_refused(values: dict[str, float], message: str) -> None:
     with raises(InvalidInput, match=message):
         MotionalBranch(**({"resistance": 1.0, "inductance": 1.0, "capacitance": 1.0} | values))

@@ -1,4 +1,4 @@
-"""Actuators: what drives the vibration, and what carries it to the contact."""
+"""Piezoelectric actuators: stacks, their drive and electrical matching, horns and waveguides, and a catalogue."""
 
 from sonolube.actuator.amplifier import AmplifierRequirements, amplifier_requirements
 from sonolube.actuator.catalogue import (
@@ -10,6 +10,7 @@ from sonolube.actuator.catalogue import (
     read_catalogue,
 )
 from sonolube.actuator.dong_2015 import dong_2015_impedance
+from sonolube.actuator.drive import Drive
 from sonolube.actuator.drive_power import dissipated_power, linear_amplifier_power, peak_current, power_factor
 from sonolube.actuator.equivalent_circuit import (
     ButterworthVanDyke,
@@ -62,6 +63,7 @@ __all__ = [
     "ButterworthVanDyke",
     "CatalogueActuator",
     "CircuitResonances",
+    "Drive",
     "FlextensionalActuator",
     "MatchingNetwork",
     "MotionalBranch",

@@ -1,4 +1,4 @@
-"""What an amplifier must give an actuator: voltage, current, apparent power, slope."""
+"""Requirements on the amplifier of an actuator: voltage, current, power and slew rate."""
 
 from dataclasses import dataclass
 
@@ -8,29 +8,29 @@ from numpy.typing import ArrayLike
 from sonolube.actuator.drive_power import dissipated_power, peak_current, power_factor
 from sonolube.checks import require_finite, require_finite_complex, require_positive
 
-_POINTS_PER_WAVE = 32
+_POINTS_PER_WAVE = 32  # of the highest harmonic, at which a periodic voltage is evaluated
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class AmplifierRequirements:
-    """What an amplifier has to deliver.
+    """Requirements on an amplifier under a periodic voltage.
 
     Parameters
     ----------
     voltage_maximum : float
-        Highest voltage against ground, either way. [V]
+        Greatest magnitude of the voltage to ground, its offset included. [V]
     peak_current : float
-        Highest current, either way. [A]
+        Greatest magnitude of the current. [A]
     rms_current : float
-        Root mean square of the current. [A]
+        Root-mean-square current. [A]
     apparent_power : float
-        Effective voltage about its mean times effective current. [W]
+        Root-mean-square alternating voltage times root-mean-square current. [W]
     dissipated_power : float
-        Mean power taken by the actuator and what it drives. [W]
+        Mean real power drawn by the actuator and what it drives. [W]
     power_factor : float
-        The one over the other. []
+        Dissipated over apparent power. []
     slew_rate : float
-        Fastest change of the voltage. [V/s]
+        Greatest rate of change of the voltage. [V/s]
     """
 
     voltage_maximum: float
@@ -45,18 +45,18 @@ class AmplifierRequirements:
 def amplifier_requirements(
     *, admittance: ArrayLike, voltage_amplitude: ArrayLike, frequency: float, voltage_offset: float = 0.0
 ) -> AmplifierRequirements:
-    """Return what an amplifier has to deliver to drive an actuator with a periodic voltage.
+    r"""Voltage, current, power and slew rate that an amplifier has to supply for a periodic drive of an actuator.
 
     Parameters
     ----------
     admittance : array_like, shape (n,)
         Complex admittance at the harmonics 1 to n of the drive. [S]
     voltage_amplitude : array_like, shape (n,)
-        Complex amplitude of those harmonics of the voltage, zero to peak. [V]
+        Complex amplitude of these harmonics of the voltage, zero to peak. [V]
     frequency : float
         Frequency of the drive. [Hz]
     voltage_offset : float
-        Mean of the drive. [V]
+        Mean voltage. [V]
 
     Returns
     -------
@@ -66,24 +66,41 @@ def amplifier_requirements(
     ------
     InvalidInput
         If a value is not finite, or the frequency not positive.
+
+    Notes
+    -----
+    With the admittance :math:`Y_n` and the voltage amplitude :math:`U_n` of the harmonics
+
+    .. math::
+
+        I_\mathrm{rms}^2 = \tfrac12 \sum_n |Y_n U_n|^2, \qquad
+        S = I_\mathrm{rms} \sqrt{\tfrac12 \sum_n |U_n|^2}, \qquad
+        P = \tfrac12 \sum_n \mathrm{Re}\, Y_n\, |U_n|^2
+
+    Extrema over the period are those at 32 points per period of the highest harmonic; of a sine they are exact.
+
+    See Also
+    --------
+    sonolube.actuator.matching : Networks that reduce the current.
     """
     y = np.atleast_1d(require_finite_complex(admittance=admittance))
     volts = np.atleast_1d(require_finite_complex(voltage_amplitude=voltage_amplitude))
     f, offset = float(require_positive(frequency=frequency)), float(require_finite(voltage_offset=voltage_offset))
-    orders = np.arange(1, volts.shape[-1] + 1)
-    phase = np.linspace(0, 2 * np.pi, _POINTS_PER_WAVE * orders.size, endpoint=False)
-    waves = np.exp(1j * np.multiply.outer(orders, phase))
-    one = orders.size == 1
-    swing = np.abs(volts) if one else np.abs((volts @ waves).real)
-    lowest, highest = (-swing.max(), swing.max()) if one else ((volts @ waves).real.min(), (volts @ waves).real.max())
-    rate = 2j * np.pi * f * orders * volts
-    current = float(np.sqrt(0.5 * np.sum(np.abs(y * volts) ** 2)))
+    harmonics = np.arange(1, volts.shape[-1] + 1)
+    phase = np.linspace(0, 2 * np.pi, _POINTS_PER_WAVE * harmonics.size, endpoint=False)
+    waves = np.exp(1j * np.multiply.outer(harmonics, phase))
+    is_sine = harmonics.size == 1
+    amplitude = np.abs(volts).max()
+    history = (volts @ waves).real
+    lowest, highest = (-amplitude, amplitude) if is_sine else (history.min(), history.max())
+    rate = 2j * np.pi * f * harmonics * volts
+    rms_current = float(np.sqrt(0.5 * np.sum(np.abs(y * volts) ** 2)))
     return AmplifierRequirements(
         voltage_maximum=float(max(abs(offset + lowest), abs(offset + highest))),
         peak_current=float(peak_current(admittance=y, voltage_amplitude=volts)),
-        rms_current=current,
-        apparent_power=current * float(np.sqrt(0.5 * np.sum(np.abs(volts) ** 2))),
+        rms_current=rms_current,
+        apparent_power=rms_current * float(np.sqrt(0.5 * np.sum(np.abs(volts) ** 2))),
         dissipated_power=float(dissipated_power(admittance=y, voltage_amplitude=volts).sum()),
         power_factor=float(power_factor(admittance=y, voltage_amplitude=volts)),
-        slew_rate=float(np.abs(rate).max() if one else np.abs((rate @ waves).real).max()),
+        slew_rate=float(np.abs(rate).max() if is_sine else np.abs((rate @ waves).real).max()),
     )

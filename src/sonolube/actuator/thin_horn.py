@@ -1,6 +1,8 @@
-"""Horns as thin bars: the half-wave length that rings at a frequency, the gain and the node, in closed form.
+r"""Thin half-wave horns in closed form: resonant length, displacement gain and node.
 
-With plane sections and no lateral inertia, (S u')' + k^2 S u = 0, k = 2 pi f/c_0, and free ends, u' = 0.
+With plane cross-sections of area S and without lateral inertia the displacement u follows Webster's equation
+
+.. math:: (S u')' + k^2 S u = 0, \qquad k = \frac{2\pi f}{c_0}, \qquad u' = 0 \text{ at free ends}
 """
 
 from dataclasses import dataclass
@@ -14,16 +16,16 @@ from sonolube.errors import InvalidInput
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ThinHorn:
-    """A half-wave horn.
+    """Resonant half-wave horn: length, displacement gain and node.
 
     Parameters
     ----------
     length : float
-        Length of the horn, or of its thick part where it is stepped. [m]
+        Length of the horn, or of the thick part of a stepped one. [m]
     displacement_gain : float
-        Displacement of the thin end over that of the thick one. []
+        Displacement of the thin end over that of the thick end. []
     node_position : float
-        Place of the node, from the thick end. [m]
+        Distance of the displacement node from the thick end. [m]
     """
 
     length: float
@@ -32,24 +34,31 @@ class ThinHorn:
 
 
 def thin_exponential_horn(*, radius: float, end_radius: float, frequency: float, wave_speed: float) -> ThinHorn:
-    """Return the exponential horn, or the plain bar where both radii are one.
+    r"""Resonant exponential horn, or uniform bar where both radii are equal.
 
     Parameters
     ----------
     radius, end_radius : float
-        Radii at its beginning and end. [m]
+        Radii of the thick and the thin end. [m]
     frequency : float
-        Frequency at which it shall ring. [Hz]
+        Resonance. [Hz]
     wave_speed : float
-        Of its material. [m/s]
+        Speed of axial waves in its material. [m/s]
 
     Returns
     -------
     ThinHorn
 
+    Raises
+    ------
+    InvalidInput
+        If a value is not positive or the end not the thinner.
+
     Notes
     -----
-    f = c_0/(2 L) sqrt(1 + (ln N/pi)^2) and gain N, the ratio of the radii.
+    With the ratio N of the radii, which is also the gain,
+
+    .. math:: f = \frac{c_0}{2L} \sqrt{1 + \left(\frac{\ln N}{\pi}\right)^2}
 
     References
     ----------
@@ -66,24 +75,34 @@ def thin_exponential_horn(*, radius: float, end_radius: float, frequency: float,
 
 
 def thin_conical_horn(*, radius: float, end_radius: float, frequency: float, wave_speed: float) -> ThinHorn:
-    """Return the conical horn.
+    r"""Resonant conical horn.
 
     Parameters
     ----------
     radius, end_radius : float
-        Radii at its beginning and end. [m]
+        Radii of the thick and the thin end. [m]
     frequency : float
-        Frequency at which it shall ring. [Hz]
+        Resonance. [Hz]
     wave_speed : float
-        Of its material. [m/s]
+        Speed of axial waves in its material. [m/s]
 
     Returns
     -------
     ThinHorn
 
+    Raises
+    ------
+    InvalidInput
+        If a value is not positive or the end not the thinner.
+
     Notes
     -----
-    tan kL = kL/(1 + (kL)^2 N/(N - 1)^2), N the ratio of the radii.
+    With the ratio N of the radii
+
+    .. math::
+
+        \tan kL = \frac{kL}{1 + (kL)^2 N/(N - 1)^2}, \qquad
+        G = N \left|\cos kL - \frac{N - 1}{N kL} \sin kL\right|
 
     References
     ----------
@@ -95,10 +114,10 @@ def thin_conical_horn(*, radius: float, end_radius: float, frequency: float, wav
         return ThinHorn(length=float(np.pi / k), displacement_gain=1.0, node_position=float(np.pi / (2 * k)))
     shape = n / (n - 1) ** 2
 
-    def mismatch(x: float) -> float:
+    def frequency_equation(x: float) -> float:
         return float(np.sin(x) * (1 + shape * x**2) - x * np.cos(x))
 
-    x = brentq(mismatch, np.pi, 1.5 * np.pi, xtol=1e-14)
+    x = brentq(frequency_equation, np.pi, 1.5 * np.pi, xtol=1e-14)
     taper = (1 - 1 / n) / x  # (N - 1)/(N kL)
     gain = n * abs(np.cos(x) - taper * np.sin(x))
     return ThinHorn(length=float(x / k), displacement_gain=float(gain), node_position=float(np.arctan2(1.0, taper) / k))
@@ -107,18 +126,18 @@ def thin_conical_horn(*, radius: float, end_radius: float, frequency: float, wav
 def thin_stepped_horn(
     *, radius: float, end_radius: float, end_length: float, frequency: float, wave_speed: float
 ) -> ThinHorn:
-    """Return the stepped horn whose thin part has a given length.
+    r"""Resonant stepped horn with a given length of its thin part.
 
     Parameters
     ----------
     radius, end_radius : float
         Radii of the thick and the thin part. [m]
     end_length : float
-        Length of the thin part, below half a wave. [m]
+        Length of the thin part, below half a wavelength. [m]
     frequency : float
-        Frequency at which it shall ring. [Hz]
+        Resonance. [Hz]
     wave_speed : float
-        Of its material. [m/s]
+        Speed of axial waves in its material. [m/s]
 
     Returns
     -------
@@ -127,11 +146,15 @@ def thin_stepped_horn(
     Raises
     ------
     InvalidInput
-        If the thin part is half a wave or longer.
+        If the thin part is half a wavelength or longer, a value is not positive or the end not the thinner.
 
     Notes
     -----
-    S tan kL + S_1 tan kL_1 = 0; with quarter waves on both sides the gain is that of the areas, N^2.
+    With the areas S and lengths L of the thick part and :math:`S_1, L_1` of the thin one, :math:`N^2 = S/S_1`,
+
+    .. math:: S \tan kL + S_1 \tan kL_1 = 0, \qquad G = N^2\, \frac{\sin kL}{\sin kL_1}
+
+    For two quarter-wave parts the gain is N squared.
 
     References
     ----------
@@ -141,7 +164,7 @@ def thin_stepped_horn(
     k = _wavenumber(frequency, wave_speed)
     thin = k * float(require_positive(end_length=end_length))
     if thin >= np.pi:
-        raise InvalidInput(f"end_length must be below half a wave, {np.pi / k:.4g} m, got {end_length!r} m")
+        raise InvalidInput(f"end_length must be below half a wavelength, {np.pi / k:.4g} m, got {end_length!r} m")
     thick = np.pi - np.arctan2(np.sin(thin), n**2 * np.cos(thin))
     gain = n**2 * np.sin(thick) / np.sin(thin)
     node = np.pi / 2 if thick >= np.pi / 2 else thick + thin - np.pi / 2
@@ -149,10 +172,12 @@ def thin_stepped_horn(
 
 
 def _ratio(radius: float, end_radius: float) -> float:
+    """Ratio N of the radii, checked to be at least one."""
     require_positive(radius=radius)
     require_within(0.0, radius, end_radius=require_positive(end_radius=end_radius))
     return radius / end_radius
 
 
 def _wavenumber(frequency: float, wave_speed: float) -> float:
+    """Wavenumber k in rad/m."""
     return float(2 * np.pi * require_positive(frequency=frequency) / require_positive(wave_speed=wave_speed))

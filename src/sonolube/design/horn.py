@@ -8,14 +8,23 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.design.horn_shapes import Body
 from sonolube.errors import InvalidInput
-from sonolube.fem import Medium, Model, NamedMode, TunedMode, generate_mesh, mode_names, tuned_mode
+from sonolube.fem import (
+    Medium,
+    Model,
+    NamedMode,
+    TunedMode,
+    face_residual_compliance,
+    generate_mesh,
+    mass_loaded_frequencies,
+    mode_names,
+    tuned_mode,
+)
 from sonolube.fem.solver.element_order import change_order
 from sonolube.fem.solver.model import DIRECTIONS
 from sonolube.fem.solver.modes import lanczos_modes, spectral_shift
 from sonolube.fem.solver.postprocessing import gauss_point_stress, nodal_average, von_mises_stress
 from sonolube.fem.solver.simplex import shape_functions, simplex_quadrature
 from sonolube.fem.solver.system import assemble_system, shift_invert_solver
-from sonolube.fem.tuning import face_residual_compliance, mass_loaded_frequencies
 from sonolube.materials import Material
 
 _ELEMENTS_ACROSS = 2.5  # of a horn as thick as a cube of its volume would be, in the first mesh

@@ -1,7 +1,7 @@
-"""The collar as finite elements: a quarter of it, since it is alike on both sides of two planes.
+"""Finite-element analysis of the collar element by symmetry: model of a quarter, modes, motion of the bore, response.
 
-Each mode of such a body is even or odd about either plane, so that quarters with four sets of conditions on the planes
-have all modes between them, and a voltage moves those that are even about both.
+A collar is symmetric about two planes. Each mode is even or odd about either of them, so that a quarter with four sets
+of boundary conditions on the planes of symmetry has all modes. A voltage excites those that are even about both.
 """
 
 from collections.abc import Mapping
@@ -15,38 +15,44 @@ from sonolube.dong2015.bore import BoreMotion, bore_motion
 from sonolube.dong2015.collar import Collar, collar_geometry
 from sonolube.errors import InvalidInput
 from sonolube.fem.parts.stack_material import homogenised_stack, stack_ceramic
-from sonolube.fem.solver.harmonic_analysis import Output, ReducedModel, reduce_model
 from sonolube.fem.solver.medium import Medium, medium_from_material, poled_medium
 from sonolube.fem.solver.mesh import Mesh
 from sonolube.fem.solver.meshing import generate_mesh
 from sonolube.fem.solver.model import Electrodes, FixedSupport, Model
 from sonolube.fem.solver.modes import natural_modes
+from sonolube.fem.solver.reduction import Output, ReducedModel, reduce_model
 from sonolube.fem.solver.simplex import shape_functions, simplex_quadrature
 from sonolube.materials import material
 
 _QUARTERS = 4
 ELEMENT_SIZE = 40e-3
-"""Largest edge of an element outside the inner ring, in m: edges are as long as the parts allow."""
+"""Largest element edge outside the inner ring, in m: elements are as large as the bodies allow."""
 
 ORDER = 3
-"""Degree of the polynomials in an element, with which resonances are 0.2 percent too high."""
+"""Element order, with which resonances are 0.2 percent too high."""
 
-STACK_STIFFNESS = 140e6  # N/m, Table 4.7
-STACK_LAYERS = 20  # the number that with the permittivity of Table 4.7 gives its capacitance
-METAL_LOSS = 5e-3  # assumed: of bolted joints, above that of the metals alone
-_CHARGE_CONSTANT_15, _SHEAR_MODULUS = 550e-12, 23.5e9  # of PIC255, a like ceramic of the same maker
+STACK_STIFFNESS = 140e6
+"""Stiffness of the stack in N/m, D Table 4.7."""
+
+STACK_LAYERS = 20
+"""Number of layers of the stack: that which has the capacitance of D Table 4.7 with the permittivity there."""
+
+METAL_LOSS = 5e-3
+"""Loss tangent of the metal with bolted joints, assumed; that of the metals alone is lower."""
+
+_CHARGE_CONSTANT_15, _SHEAR_MODULUS = 550e-12, 23.5e9  # of PIC255, a similar ceramic of the same maker
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Parity:
-    """How a motion behaves about the planes in which a collar is alike.
+    """Symmetry class of a motion about the two planes of symmetry of a collar.
 
     Parameters
     ----------
     odd_across : bool
-        About the plane of stacks and rod: odd where the inner ring turns or sways.
+        Odd about the plane of stacks and rod: the inner ring rotates or moves across the stacks.
     odd_along : bool
-        About the plane across the rod: odd where it leaves the rings' plane.
+        Odd about the plane across the rod: the rings move out of their plane.
     """
 
     odd_across: bool = False
@@ -55,45 +61,56 @@ class Parity:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class CollarModes:
-    """Modes of one parity.
+    """Elastic modes of one symmetry class and the motion of the bore in them.
 
     Parameters
     ----------
     natural_frequency : ndarray, shape (k,)
-        Natural frequencies of the elastic modes, short-circuited. [Hz]
-    shares : mapping of BoreMotion to ndarray, shape (k,)
-        Share of the bore's mean square motion of each kind; what is left is none of them.
-    prominence : ndarray, shape (k,)
-        Root mean square motion of the bore over that of the whole collar by mass: above one where the inner ring moves
-        more than the outer.
+        Short-circuited natural frequencies. [Hz]
+    motion_fractions : mapping of BoreMotion to ndarray, shape (k,)
+        Fraction of the mean square displacement of the bore that is motion of each kind, by `bore_motion`.
+    bore_motion_ratio : ndarray, shape (k,)
+        Root mean square displacement of the bore over the mass-weighted one of the whole collar: above one where the
+        inner ring moves more than the outer.
     """
 
     natural_frequency: Floats
-    shares: Mapping[BoreMotion, Floats]
-    prominence: Floats
+    motion_fractions: Mapping[BoreMotion, Floats]
+    bore_motion_ratio: Floats
 
     @property
-    def names(self) -> tuple[BoreMotion, ...]:
-        """Kind of motion with the largest share in each mode."""
-        kinds = list(self.shares)
-        return tuple(kinds[best] for best in np.argmax([self.shares[kind] for kind in kinds], axis=0))
+    def dominant_motion(self) -> tuple[BoreMotion, ...]:
+        """Kind of motion of the bore with the largest fraction, for each mode."""
+        kinds = list(self.motion_fractions)
+        return tuple(kinds[best] for best in np.argmax([self.motion_fractions[kind] for kind in kinds], axis=0))
 
     def dominant_frequency(self, kind: BoreMotion) -> float:
-        """Return the frequency of the mode of a kind in which the bore moves most beside the rest, in Hz.
+        """Natural frequency of the mode of a kind with the largest motion of the bore relative to the collar, in Hz.
+
+        Parameters
+        ----------
+        kind : BoreMotion
+
+        Returns
+        -------
+        float
 
         Raises
         ------
         InvalidInput
             If none of the modes is of this kind.
         """
-        prominence = [rms if name is kind else 0.0 for name, rms in zip(self.names, self.prominence, strict=True)]
-        if not any(prominence):
-            raise InvalidInput(f"none of the {len(prominence)} modes is {kind}; ask for more, or for the other parity")
-        return float(self.natural_frequency[int(np.argmax(prominence))])
+        ratios = zip(self.dominant_motion, self.bore_motion_ratio, strict=True)
+        of_kind = [ratio if dominant is kind else 0.0 for dominant, ratio in ratios]
+        if not any(of_kind):
+            raise InvalidInput(
+                f"none of the {len(of_kind)} modes is {kind}; compute more modes, or those of the other parity"
+            )
+        return float(self.natural_frequency[int(np.argmax(of_kind))])
 
 
 def collar_media(collar: Collar) -> Mapping[str, Medium]:
-    """Return what the parts of a collar are made of, by the names of their regions.
+    """Media of the regions of a collar by name.
 
     Parameters
     ----------
@@ -102,12 +119,12 @@ def collar_media(collar: Collar) -> Mapping[str, Medium]:
     Returns
     -------
     mapping of str to Medium
-        The stacks poled towards the inner ring.
+        The stacks are poled towards the inner ring.
 
     Notes
     -----
-    The stack is PIC151, whose constants Table 4.7 prints, softened to the printed stiffness; its quality factor and
-    loss tangent are those of the maker's table.
+    The stack is PIC151, whose constants are printed in D Table 4.7, softened to the stiffness printed there; its
+    quality factor and loss tangent are those of the maker's data.
     """
     section = np.pi / 4 * (collar.stack_outer_diameter**2 - collar.stack_inner_diameter**2)
     ceramic = stack_ceramic(
@@ -144,21 +161,21 @@ def collar_model(
     element_size: float = ELEMENT_SIZE,
     order: int = ORDER,
 ) -> Model:
-    """Return a quarter of a collar with the conditions of a parity on the planes that cut it.
+    """Finite-element model of a quarter of a collar with the boundary conditions of one symmetry class.
 
     Parameters
     ----------
     collar : Collar
     parity : Parity, optional
-        Even about both planes where absent, as under a voltage.
+        Symmetry class; even about both planes, as under a voltage, where absent.
     clamped : bool
-        Hold the lower face of the base.
+        Fix the lower face of the base.
     open_top : bool
-        Take off the top.
+        Without the removable top.
     element_size : float
-        Largest edge of an element. [m]
+        Largest element edge. [m]
     order : int
-        Degree of the polynomials in an element, from 2 to 8.
+        Element order, from 2 to 8.
 
     Returns
     -------
@@ -182,7 +199,7 @@ def collar_model(
         mesh=mesh,
         media={region: medium for region, medium in collar_media(collar).items() if region in mesh.regions},
         fixed=tuple(fixed),
-        # an odd motion makes an odd potential, which vanishes on the plane and on both electrodes
+        # an odd motion has an odd potential, which is zero on the plane and on both electrodes
         electrodes=Electrodes(grounded=(*outer, *inner, *cut)) if cut else Electrodes(driven=outer, grounded=inner),
     )
 
@@ -197,7 +214,7 @@ def collar_modes(
     element_size: float = ELEMENT_SIZE,
     order: int = ORDER,
 ) -> CollarModes:
-    """Return the lowest elastic modes of a parity, and how the bore moves in each.
+    """Lowest elastic modes of one symmetry class of a collar, and the motion of the bore in each.
 
     Parameters
     ----------
@@ -205,15 +222,15 @@ def collar_modes(
     count : int
         Number of elastic modes.
     parity : Parity, optional
-        Even about both planes where absent.
+        Symmetry class; even about both planes where absent.
     clamped : bool
-        Hold the lower face of the base.
+        Fix the lower face of the base.
     open_top : bool
-        Take off the top.
+        Without the removable top.
     element_size : float
-        Largest edge of an element. [m]
+        Largest element edge. [m]
     order : int
-        Degree of the polynomials in an element, from 2 to 8.
+        Element order, from 2 to 8.
 
     Returns
     -------
@@ -224,17 +241,17 @@ def collar_modes(
         collar, parity=parity, clamped=clamped, open_top=open_top, element_size=element_size, order=order
     )
     found = natural_modes(model, count=count)
-    shares, mean_square = bore_motion(
+    fractions, mean_square = bore_motion(
         model.mesh,
         found.shapes[found.rigid_body_count :],
         faces=("saddle.bore", "ring.bore"),
-        middle=(0.0, collar.middle),
+        centre=(0.0, collar.bore_height),
         odd_across=parity.odd_across,
     )
     return CollarModes(
         natural_frequency=found.elastic_frequency,
-        shares=shares,
-        prominence=np.sqrt(mean_square * _mass(model)),  # of unit modal mass, the whole moves by 1/sqrt(mass)
+        motion_fractions=fractions,
+        bore_motion_ratio=np.sqrt(mean_square * _mass(model)),  # at unit modal mass the whole has 1/sqrt(mass)
     )
 
 
@@ -247,26 +264,26 @@ def reduced_collar_model(
     order: int = ORDER,
     count: int = 12,
 ) -> ReducedModel:
-    """Return a collar under voltage in few coordinates, as a whole.
+    """Reduced model of a whole collar under voltage, from that of a quarter.
 
     Parameters
     ----------
     collar : Collar
     clamped : bool
-        Hold the lower face of the base.
+        Fix the lower face of the base.
     open_top : bool
-        Take off the top.
+        Without the removable top.
     element_size : float
-        Largest edge of an element. [m]
+        Largest element edge. [m]
     order : int
-        Degree of the polynomials in an element, from 2 to 8.
+        Element order, from 2 to 8.
     count : int
         Number of elastic modes.
 
     Returns
     -------
     ReducedModel
-        Outputs along y: "crown", the flat of the inner ring that faces the top; "saddle", the quarter of the bore on
+        Outputs along y: "crown", the flat of the inner ring that faces the top; "saddle", the sector of the bore on
         which a rod rests; "base", the wall under the stack. With two stacks there is no crown.
     """
     faces = {"crown": "ring.+y", "saddle": "saddle.bore", "base": "frame|stack"}
@@ -276,7 +293,7 @@ def reduced_collar_model(
     quarter = reduce_model(
         model, count=count, outputs={name: Output(face=face, along="y") for name, face in faces.items()}
     )
-    # the whole takes the charge and has the mass of all quarters at the displacement of one
+    # the whole has the charge and the mass of four quarters at the displacement of one
     return replace(
         quarter,
         drive=np.sqrt(_QUARTERS) * quarter.drive,
@@ -287,13 +304,15 @@ def reduced_collar_model(
 
 @lru_cache(maxsize=16)
 def _mesh(collar: Collar, open_top: bool, element_size: float, order: int) -> Mesh:
+    """Mesh of a quarter of a collar."""
     return generate_mesh(collar_geometry(collar, open_top=open_top), element_size=element_size, order=order)
 
 
 def _mass(model: Model) -> float:
+    """Mass of a body in kg."""
     mesh = model.mesh
-    places, weights = simplex_quadrature(2 * mesh.order, corners=4)
-    _, slopes = shape_functions(mesh.order, places)
-    volume = np.linalg.det(np.einsum("eax,adq->eqdx", mesh.nodes[mesh.elements], slopes, optimize=True)) @ weights
+    points, weights = simplex_quadrature(2 * mesh.order, corners=4)
+    _, gradients = shape_functions(mesh.order, points)
+    volume = np.linalg.det(np.einsum("eax,adq->eqdx", mesh.nodes[mesh.elements], gradients, optimize=True)) @ weights
     density = np.array([model.media[region].density for region in mesh.regions])
     return float(density[mesh.region_of_element] @ volume)

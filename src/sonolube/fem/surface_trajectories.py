@@ -1,4 +1,4 @@
-"""Paths of surface points in harmonic motion: ellipses, their axes, their tilt and the sense in which they turn."""
+"""Elliptical trajectories of surface points in harmonic vibration: semi-axes, inclination, sense and phase."""
 
 from dataclasses import dataclass
 
@@ -10,19 +10,19 @@ from sonolube.checks import Floats, require_finite_complex
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class TrajectoryEllipse:
-    """Ellipses on which points move.
+    """Elliptical trajectories of points, of any number.
 
     Parameters
     ----------
     major_semi_axis : ndarray, shape (...)
-        Longer half axis. [m]
+        Major semi-axis. [m]
     minor_semi_axis : ndarray, shape (...)
-        Shorter half axis, positive where the point turns from the axial towards the normal direction, negative where
-        it turns the other way, zero on a straight line. [m]
+        Minor semi-axis, positive where the point rotates from the axial towards the normal direction, negative in the
+        opposite sense, zero on a straight line. [m]
     inclination : ndarray, shape (...)
-        Angle from the axial direction to the long axis, within a quarter turn to either side. [rad]
+        Angle from the axial direction to the major axis, between -pi/2 and pi/2. [rad]
     phase : ndarray, shape (...)
-        Lag of the normal displacement behind the axial one, within half a turn to either side. [rad]
+        Phase lag of the normal displacement behind the axial one, between -pi and pi. [rad]
     """
 
     major_semi_axis: Floats
@@ -32,14 +32,14 @@ class TrajectoryEllipse:
 
 
 def trajectory_ellipse(*, axial_displacement: ArrayLike, normal_displacement: ArrayLike) -> TrajectoryEllipse:
-    """Return the ellipses of points whose displacements are Re[u exp(i omega t)] and Re[v exp(i omega t)].
+    r"""Ellipses described by points with the displacements Re[u exp(i omega t)] and Re[v exp(i omega t)].
 
     Parameters
     ----------
     axial_displacement : array_like of complex
-        Amplitude u along the surface. [m]
+        Complex amplitude u along the surface. [m]
     normal_displacement : array_like of complex, broadcast against `axial_displacement`
-        Amplitude v along its normal. [m]
+        Complex amplitude v along its normal. [m]
 
     Returns
     -------
@@ -52,18 +52,21 @@ def trajectory_ellipse(*, axial_displacement: ArrayLike, normal_displacement: Ar
 
     Notes
     -----
-    The motion is the sum of two circular ones, of radii abs(u + i v)/2 and abs(u - i v)/2, that turn against each
-    other: the half axes are their sum and difference.
+    The motion is the sum of two circular motions of opposite sense, whose radii give the semi-axes
+
+    .. math:: a, b = \tfrac12 |u + i v| \pm \tfrac12 |u - i v|
+
+    and whose phases give the inclination :math:`\psi = \tfrac12 [\arg(u + i v) - \arg(u - i v)]`.
     """
     u, v = np.broadcast_arrays(
         require_finite_complex(axial_displacement=axial_displacement),
         require_finite_complex(normal_displacement=normal_displacement),
     )
-    forward, backward = (u + 1j * v) / 2, (u - 1j * v) / 2  # of exp(i omega t), and the conjugate of the other's
-    tilt = (np.angle(forward) - np.angle(backward)) / 2
+    forward, backward = (u + 1j * v) / 2, (u - 1j * v) / 2
+    angle = (np.angle(forward) - np.angle(backward)) / 2
     return TrajectoryEllipse(
         major_semi_axis=np.abs(forward) + np.abs(backward),
         minor_semi_axis=np.abs(forward) - np.abs(backward),
-        inclination=np.asarray((tilt + np.pi / 2) % np.pi - np.pi / 2),
+        inclination=np.asarray((angle + np.pi / 2) % np.pi - np.pi / 2),
         phase=np.asarray(np.angle(u * v.conj())),
     )

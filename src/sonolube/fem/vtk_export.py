@@ -1,4 +1,4 @@
-"""Meshes with their fields as VTK unstructured grids, for ParaView and its like."""
+"""Export of meshes and nodal fields as VTK unstructured grids (.vtu), for ParaView and other viewers."""
 
 import base64
 from collections.abc import Mapping
@@ -11,18 +11,18 @@ from sonolube.errors import InvalidInput
 from sonolube.fem.solver.element_order import change_order, transfer_field
 from sonolube.fem.solver.mesh import Mesh
 
-_QUADRATIC_TETRA = 24  # VTK's number; its nodes come in the order of ours
+_QUADRATIC_TETRA = 24  # VTK's cell type, with the same node numbering as `Mesh`
 _TYPES = {"f": "Float64", "i": "Int64", "u": "UInt8"}
 
 
 def vtu_text(mesh: Mesh, *, fields: Mapping[str, ArrayLike]) -> str:
-    """Return a mesh and its fields as the text of a .vtu file.
+    """Text of a .vtu file of a mesh and its nodal fields, in ten-node tetrahedra.
 
     Parameters
     ----------
     mesh : Mesh
     fields : mapping of str to array_like, shape (n,) or (n, 3)
-        Values at the nodes, by name; complex ones become two, "name real" and "name imaginary".
+        Nodal values by name; complex ones become two fields, "name real" and "name imaginary".
 
     Returns
     -------
@@ -31,19 +31,20 @@ def vtu_text(mesh: Mesh, *, fields: Mapping[str, ArrayLike]) -> str:
     Raises
     ------
     InvalidInput
-        If a field has not one value or vector a node.
+        If a field does not have one value or vector for each node.
 
     Notes
     -----
-    Elements of a higher order are written as ten-node ones with the values at their corners and edges' middles. Arrays
-    are binary in base 64, little-endian, not compressed. Elements carry the number of their region.
+    Elements of higher order are written as ten-node ones with the values at their corners and midpoints of edges.
+    Arrays are binary in base 64, little-endian, uncompressed. The cell field "region" is the index of the region.
 
     References
     ----------
     .. [1] VTK File Formats, XML formats, section UnstructuredGrid.
     """
     cells = len(mesh.elements)
-    points = "".join(_array(name, values) for name, values in _on_ten_nodes(mesh, _checked(mesh, fields)).items())
+    nodal = _at_order_two(mesh, _real_fields(mesh, fields))
+    points = "".join(_array(name, values) for name, values in nodal.items())
     mesh = change_order(mesh, order=2)
     layout: dict[str, NDArray[np.generic]] = {
         "connectivity": mesh.elements.ravel(),
@@ -62,29 +63,32 @@ def vtu_text(mesh: Mesh, *, fields: Mapping[str, ArrayLike]) -> str:
     )
 
 
-def _on_ten_nodes(mesh: Mesh, fields: Mapping[str, Floats]) -> dict[str, Floats]:
+def _at_order_two(mesh: Mesh, fields: Mapping[str, Floats]) -> dict[str, Floats]:
+    """Nodal fields interpolated to elements of order two."""
     target = change_order(mesh, order=2)
     if target is mesh:
         return dict(fields)
     vectors = {name: values if values.ndim == 2 else values[:, np.newaxis] for name, values in fields.items()}
-    moved = {name: transfer_field(values, source=mesh, target=target) for name, values in vectors.items()}
-    return {name: values.reshape(target.node_count, *fields[name].shape[1:]) for name, values in moved.items()}
+    transferred = {name: transfer_field(values, source=mesh, target=target) for name, values in vectors.items()}
+    return {name: values.reshape(target.node_count, *fields[name].shape[1:]) for name, values in transferred.items()}
 
 
-def _checked(mesh: Mesh, fields: Mapping[str, ArrayLike]) -> dict[str, Floats]:
-    checked: dict[str, Floats] = {}
+def _real_fields(mesh: Mesh, fields: Mapping[str, ArrayLike]) -> dict[str, Floats]:
+    """Fields checked for their shape, complex ones split into real and imaginary part."""
+    real: dict[str, Floats] = {}
     for name, given in fields.items():
         values = np.asarray(given)
         if values.shape not in {(mesh.node_count,), (mesh.node_count, 3)}:
-            raise InvalidInput(f"the field {name!r} must have one value or vector a node, got shape {values.shape}")
+            raise InvalidInput(f"the field {name!r} must have one value or vector per node, got shape {values.shape}")
         if np.iscomplexobj(values):
-            checked |= {f"{name} real": values.real, f"{name} imaginary": values.imag}
+            real |= {f"{name} real": values.real, f"{name} imaginary": values.imag}
         else:
-            checked[name] = values
-    return checked
+            real[name] = values
+    return real
 
 
 def _array(name: str, values: NDArray[np.generic]) -> str:
+    """XML element of an array of two dimensions or one, in VTK's binary encoding."""
     wide = values if values.dtype.kind == "u" else values.astype("<f8" if values.dtype.kind == "f" else "<i8")
     data = wide.tobytes()
     code = base64.b64encode(np.array([len(data)], dtype="<u8").tobytes() + data).decode()

@@ -82,7 +82,7 @@ def test_a_grid_reads_back_as_it_was() -> None:
     assert set(arrays["types"].ravel()) == {24}
     assert np.array_equal(arrays["axial & <1>"], wave)
     assert np.array_equal(arrays["phasor imaginary"].ravel(), wave[:, 1])
-    with raises(InvalidInput, match="one value or vector a node"):
+    with raises(InvalidInput, match="one value or vector per node"):
         vtu_text(MESH, fields={"wrong": np.zeros(3)})
 
 

@@ -91,7 +91,7 @@ def test_the_bulge_of_a_thin_bar_is_that_of_bar_theory() -> None:
 
 def test_a_steady_force_on_a_free_body_is_refused() -> None:
     mesh = box_mesh(length=L, width=W, thickness=W, divisions=(2, 1, 1))
-    with raises(InvalidInput, match="a steady force needs a body that is held; 6 rigid motions are free"):
+    with raises(InvalidInput, match="a static force needs a fully supported body; 6 rigid-body modes are free"):
         forced_response(Model(mesh=mesh, media={"block": steel()}), load=PULL, frequency=0.0)
 
 
@@ -121,7 +121,7 @@ def test_faces_that_do_not_meet_share_no_edge() -> None:
     mesh = box_mesh(length=L, width=W, thickness=W, divisions=(2, 1, 1))
     edge = edge_nodes(mesh, "-y", "-z", along="x")
     assert np.all(np.diff(mesh.nodes[edge, 0]) > 0)
-    with raises(InvalidInput, match=r"the faces -x and \+x do not meet"):
+    with raises(InvalidInput, match=r"the faces -x and \+x have no common edge"):
         edge_nodes(mesh, "-x", "+x", along="x")
     with raises(UnknownName, match="unknown direction 'w'"):
         edge_nodes(mesh, "-y", "-z", along="w")

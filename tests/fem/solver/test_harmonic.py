@@ -166,7 +166,7 @@ def test_the_power_taken_is_the_power_lost(order: int) -> None:
         charge = equations.drive_dielectric - 1j * equations.drive_dielectric_loss
         right = np.concatenate([-equations.drive_coupling, charge])
         solution = splu(block_array(blocks, format="csc")).solve(right)
-        u, p = solution[: len(equations.moving)], solution[len(equations.moving) :]
+        u, p = solution[: len(equations.free_dofs)], solution[len(equations.free_dofs) :]
         lost = (u.conj() @ (equations.stiffness_loss @ u)).real
         lost += (p.conj() @ (equations.dielectric_loss @ p)).real
         lost += 2 * (p.conj() @ equations.drive_dielectric_loss).real - equations.drive_capacitance.imag

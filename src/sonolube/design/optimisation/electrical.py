@@ -112,7 +112,7 @@ def electrical(task: Task, point: Point, *, source_resistance: float | None = No
     task : Task
     point : Point
     source_resistance : float or None
-        Resistance that suits the amplifier, for a network of two elements. [ohm]
+        Input resistance of the matched network, for a network of two elements. [ohm]
 
     Returns
     -------

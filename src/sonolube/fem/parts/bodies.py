@@ -1,4 +1,4 @@
-"""Parametric bodies of transducers and horns."""
+"""Parametric bodies: blocks, bars, rings, hexagons, horns and boosters, as solids of the CAD kernel."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -15,16 +15,21 @@ from sonolube.fem.solver.geometry import Geometry, single_body
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Slot:
-    """A rectangular opening through the thickness of a block.
+    """Rectangular slot through the thickness of a block.
 
     Parameters
     ----------
     centre : tuple of two float
-        Its middle on the x-y plane, from the block's middle, in m.
+        Its centre in the x-y plane relative to that of the block, in m.
     length : float
-        Its extent along x. [m]
+        Extent along x. [m]
     width : float
-        Its extent along y. [m]
+        Extent along y. [m]
+
+    Raises
+    ------
+    InvalidInput
+        If a length or width is not positive.
     """
 
     centre: tuple[float, float] = (0.0, 0.0)
@@ -44,18 +49,18 @@ def block(
     edge_radius: float = 0.0,
     slots: Sequence[Slot] = (),
 ) -> Geometry:
-    """Return a block centred on the origin, tapered, slotted and rounded as asked.
+    """Rectangular block centred on the origin, optionally tapered in width, slotted and with rounded edges.
 
     Parameters
     ----------
     length, width, thickness : float
         Extent along x, y and z. [m]
     end_width : float, optional
-        Width at +x, to which the width at -x tapers in a straight line; without it there is no taper. [m]
+        Width at +x, to which the width at -x tapers linearly; no taper where absent. [m]
     edge_radius : float
         Radius of all outer edges. [m]
     slots : sequence of Slot
-        Openings through the thickness.
+        Slots through the thickness.
 
     Returns
     -------
@@ -64,7 +69,7 @@ def block(
     Raises
     ------
     InvalidInput
-        If a size is not positive, the radius too large, or the slots cut the block apart.
+        If a size is not positive, the radius too large, or the slots divide the block.
     """
     end = width if end_width is None else end_width
     require_positive(length=length, width=width, thickness=thickness, end_width=end)
@@ -76,16 +81,16 @@ def block(
     outline = occ.WorkPlane(occ.Axes((0, 0, -z), n=occ.Z, h=occ.X)).MoveTo(-x, -half)
     shape = outline.LineTo(x, -end_half).LineTo(x, end_half).LineTo(-x, half).Close().Face().Extrude(2 * z)
     if edge_radius:
-        shape = _rounded(shape, shape.edges, edge_radius)
+        shape = _filleted(shape, shape.edges, edge_radius)
     for slot in slots:
         a, b = (size / MILLIMETRE / 2 for size in (slot.length, slot.width))
-        cx, cy = (place / MILLIMETRE for place in slot.centre)
+        cx, cy = (coordinate / MILLIMETRE for coordinate in slot.centre)
         shape = shape - occ.Box((cx - a, cy - b, -2 * z), (cx + a, cy + b, 2 * z))
     return single_body(shape, "block")
 
 
 def cylinder(*, radius: float, length: float) -> Geometry:
-    """Return a round bar along z from z = 0.
+    """Circular cylinder along z from z = 0.
 
     Parameters
     ----------
@@ -103,12 +108,12 @@ def cylinder(*, radius: float, length: float) -> Geometry:
 
 
 def ring(*, outer_radius: float, inner_radius: float, length: float) -> Geometry:
-    """Return a ring or tube along z from z = 0.
+    """Ring or tube along z from z = 0.
 
     Parameters
     ----------
     outer_radius, inner_radius : float
-        Radii. [m]
+        Outer and inner radius. [m]
     length : float
         Extent along z. [m]
 
@@ -129,12 +134,12 @@ def ring(*, outer_radius: float, inner_radius: float, length: float) -> Geometry
 
 
 def hexagon(*, width: float, length: float, inner_radius: float = 0.0) -> Geometry:
-    """Return a hexagonal bar along z from z = 0, with a round hole where asked.
+    """Hexagonal bar along z from z = 0, optionally with a circular hole.
 
     Parameters
     ----------
     width : float
-        Distance across flats, which look along y among others. [m]
+        Width across flats, one pair of which is normal to y. [m]
     length : float
         Extent along z. [m]
     inner_radius : float
@@ -169,7 +174,7 @@ def hexagon(*, width: float, length: float, inner_radius: float = 0.0) -> Geomet
 def stepped_horn(
     *, radius: float, end_radius: float, length: float, end_length: float, edge_radius: float = 0.0
 ) -> Geometry:
-    """Return a stepped horn along z: two round bars, the thick one from z = 0.
+    """Stepped horn along z: two coaxial cylinders, the thick one from z = 0.
 
     Parameters
     ----------
@@ -178,7 +183,7 @@ def stepped_horn(
     length, end_length : float
         Lengths of the thick and the thin part. [m]
     edge_radius : float
-        Radius of the fillet between them; zero for a sharp corner, where stress is without bound. [m]
+        Radius of the fillet between them; zero for a sharp corner, at which the stress is singular. [m]
 
     Returns
     -------
@@ -207,12 +212,12 @@ def stepped_horn(
 
 
 def conical_horn(*, radius: float, end_radius: float, length: float) -> Geometry:
-    """Return a conical horn along z from z = 0.
+    """Conical horn along z from z = 0.
 
     Parameters
     ----------
     radius, end_radius : float
-        Radii at its beginning and end. [m]
+        Radii at z = 0 and at the end. [m]
     length : float
         Extent along z. [m]
 
@@ -225,12 +230,12 @@ def conical_horn(*, radius: float, end_radius: float, length: float) -> Geometry
 
 
 def exponential_horn(*, radius: float, end_radius: float, length: float) -> Geometry:
-    """Return an exponential horn along z from z = 0.
+    """Exponential horn along z from z = 0, interpolated by a spline through 17 points.
 
     Parameters
     ----------
     radius, end_radius : float
-        Radii at its beginning and end. [m]
+        Radii at z = 0 and at the end. [m]
     length : float
         Extent along z. [m]
 
@@ -239,22 +244,22 @@ def exponential_horn(*, radius: float, end_radius: float, length: float) -> Geom
     Geometry
     """
     require_positive(radius=radius, end_radius=end_radius, length=length)
-    place = np.linspace(0.0, length, 17)
-    radii = radius * (end_radius / radius) ** (place / length)
-    return body_of_revolution(list(zip(place, radii, strict=True)), "horn", smooth=(1, 1 + place.size))
+    z = np.linspace(0.0, length, 17)
+    radii = radius * (end_radius / radius) ** (z / length)
+    return body_of_revolution(list(zip(z, radii, strict=True)), "horn", smooth=(1, 1 + z.size))
 
 
 def booster(
     *, radius: float, end_radius: float, length: float, end_length: float, flange_radius: float, flange_thickness: float
 ) -> Geometry:
-    """Return a booster along z: a stepped bar with a flange at its step, by which it is held.
+    """Booster along z: a stepped bar with a mounting flange at its step.
 
     Parameters
     ----------
     radius, end_radius : float
-        Radii before and behind the flange. [m]
+        Radii below and above the flange. [m]
     length, end_length : float
-        Lengths before and behind the flange. [m]
+        Lengths below and above the flange. [m]
     flange_radius : float
         Radius of the flange. [m]
     flange_thickness : float
@@ -273,9 +278,9 @@ def booster(
     require_positive(flange_radius=flange_radius, flange_thickness=flange_thickness)
     if flange_radius <= max(radius, end_radius):
         raise InvalidInput(f"flange_radius must exceed both radii, got {flange_radius!r} m")
-    behind = length + flange_thickness
-    outline = [(0.0, radius), (length, radius), (length, flange_radius), (behind, flange_radius)]
-    return body_of_revolution([*outline, (behind, end_radius), (behind + end_length, end_radius)], "booster")
+    top = length + flange_thickness
+    outline = [(0.0, radius), (length, radius), (length, flange_radius), (top, flange_radius)]
+    return body_of_revolution([*outline, (top, end_radius), (top + end_length, end_radius)], "booster")
 
 
 PARTS: Mapping[str, Callable[..., Geometry]] = {
@@ -292,16 +297,16 @@ PARTS: Mapping[str, Callable[..., Geometry]] = {
 
 
 def body_of_revolution(outline: list[tuple[float, float]], name: str, smooth: tuple[int, int] = (0, 0)) -> Geometry:
-    """Return the body of revolution about z of an outline.
+    """Solid of revolution about z of an outline of straight segments and one spline.
 
     Parameters
     ----------
     outline : list of tuple of two float
-        Place along z and radius of each corner, in m.
+        Coordinate z and radius of each vertex, in m.
     name : str
-        What to call it.
+        Name of the region.
     smooth : tuple of two int
-        The corners, counted from 1, from the first to before the second, that lie on a spline.
+        Range of the vertices on a spline, counted from 1, the end excluded; no spline for equal ends.
 
     Returns
     -------
@@ -310,7 +315,7 @@ def body_of_revolution(outline: list[tuple[float, float]], name: str, smooth: tu
     occ = cad_kernel()
     points = [occ.Pnt(float(r) / MILLIMETRE, 0.0, float(z) / MILLIMETRE) for z, r in outline]
     corners = [occ.Pnt(0, 0, points[0].z), *points, occ.Pnt(0, 0, points[-1].z)]
-    begin, end = smooth  # numbers of the spline's points among the corners
+    begin, end = smooth
     edges = [occ.Segment(one, other) for one, other in pairwise(corners[: begin + 1] if end else corners)]
     if end:
         edges += [occ.SplineInterpolation(corners[begin:end])]
@@ -319,8 +324,9 @@ def body_of_revolution(outline: list[tuple[float, float]], name: str, smooth: tu
     return single_body(occ.Face(wire).Revolve(occ.Axis((0, 0, 0), occ.Z), 360), name)
 
 
-def _rounded(shape: Any, edges: Any, radius: float) -> Any:
+def _filleted(shape: Any, edges: Any, radius: float) -> Any:
+    """Shape with fillets of a radius in m on edges."""
     try:
         return shape.MakeFillet(list(edges), radius / MILLIMETRE)
-    except Exception:  # the kernel has no narrower class
+    except Exception:  # the kernel raises no narrower class
         raise InvalidInput(f"edge_radius {radius!r} m does not fit this body") from None

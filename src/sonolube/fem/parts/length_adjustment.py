@@ -1,4 +1,4 @@
-"""A body of any shape made shorter or longer at one end."""
+"""Adjustment of the length of a body of any shape at its far end, as in trimming a horn."""
 
 from typing import Any
 
@@ -7,20 +7,20 @@ from sonolube.fem.solver.cad import MILLIMETRE, cad_kernel
 from sonolube.fem.solver.geometry import Geometry, single_body
 from sonolube.fem.solver.model import DIRECTIONS
 
-_ALIKE = 1e-6  # mm
+_NO_CHANGE = 1e-6  # mm
 
 
 def adjust_length(geometry: Geometry, *, axis: str, length: float) -> Geometry:
-    """Return one body cut at its far end, or its far face drawn out, until it has a length along an axis.
+    """Body cut off at its far end, or with its far face extruded, to a given length along an axis.
 
     Parameters
     ----------
     geometry : Geometry
         One body with a flat far end.
     axis : str
-        "x", "y" or "z"; the far end is the one of the greatest coordinate.
+        "x", "y" or "z"; the far end is that of the greatest coordinate.
     length : float
-        Extent wanted along the axis. [m]
+        Required extent along the axis. [m]
 
     Returns
     -------
@@ -29,10 +29,10 @@ def adjust_length(geometry: Geometry, *, axis: str, length: float) -> Geometry:
     Raises
     ------
     InvalidInput
-        If the body is not one, has no flat far end, or would be cut away.
+        If the geometry is not one body, has no flat far end, or the length is not positive.
     """
     if len(geometry.regions) != 1:
-        raise InvalidInput(f"only one body can be trimmed, got {', '.join(geometry.regions)}")
+        raise InvalidInput(f"the length of a single body can be adjusted, got {', '.join(geometry.regions)}")
     direction = DIRECTIONS.index(axis)
     low, high = extent_along(geometry, axis=axis)
     change = (length - (high - low)) / MILLIMETRE
@@ -40,12 +40,12 @@ def adjust_length(geometry: Geometry, *, axis: str, length: float) -> Geometry:
         raise InvalidInput(f"length must be positive, got {length!r} m")
     occ, shape = cad_kernel(), geometry.shape.solids[0]
     name = geometry.regions[0]
-    if abs(change) < _ALIKE:
+    if abs(change) < _NO_CHANGE:
         return geometry
     if change > 0:
         ends = [face for face in shape.faces if face.name == f"+{axis}"]
         if not ends:
-            raise InvalidInput(f"{name} has no flat end at its greatest {axis}; there is nothing to draw out")
+            raise InvalidInput(f"{name} has no flat end face at its greatest {axis} to be extended; shorten it instead")
         for face in ends:
             shape = shape + face.Extrude(change)
         return single_body(shape, name)
@@ -56,7 +56,7 @@ def adjust_length(geometry: Geometry, *, axis: str, length: float) -> Geometry:
 
 
 def extent_along(geometry: Geometry, *, axis: str) -> tuple[float, float]:
-    """Return the least and the greatest coordinate in m of a body's corners and flat ends along an axis.
+    """Least and greatest coordinate of a body along an axis, in m.
 
     Parameters
     ----------
@@ -67,15 +67,17 @@ def extent_along(geometry: Geometry, *, axis: str) -> tuple[float, float]:
     Returns
     -------
     tuple of two float
+        From its flat end faces where it has them, else from its bounding box.
     """
     direction = DIRECTIONS.index(axis)
     ends = {
         sign: [_coordinate(face.center, direction) for face in geometry.shape.faces if face.name == f"{sign}{axis}"]
         for sign in "-+"
     }
-    low, high = (_coordinate(bound, direction) for bound in geometry.shape.bounding_box)  # padded by the kernel
+    low, high = (_coordinate(bound, direction) for bound in geometry.shape.bounding_box)  # enlarged by the kernel
     return min(ends["-"], default=low) * MILLIMETRE, max(ends["+"], default=high) * MILLIMETRE
 
 
 def _coordinate(point: Any, direction: int) -> float:
+    """Component of a point of the CAD kernel."""
     return float((point.x, point.y, point.z)[direction])

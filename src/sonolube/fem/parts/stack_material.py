@@ -1,9 +1,4 @@
-"""A stack of poled layers as one poled block: its stiffness, stroke and capacitance without its layers.
-
-A layer is far thinner than the waves in it, so that n layers of field n V/L each act as one block in the field V/L with
-stress constants n times and permittivities n^2 times as large: driven by the stack's own voltage it takes the stack's
-own charge and exerts its force.
-"""
+"""Effective material of a multilayer piezoelectric stack: homogenised layers, and a ceramic softened by its joints."""
 
 from dataclasses import replace
 
@@ -14,12 +9,12 @@ from sonolube.materials import Material, PiezoCeramic, piezo_ceramic_from_strain
 
 
 def homogenised_stack(medium: Medium, *, stack_layers: float) -> Medium:
-    """Return a poled medium as a stack of many layers in parallel, for electrodes at its two ends only.
+    r"""Homogenised medium of a stack of thin layers in parallel, for electrodes at its two ends only.
 
     Parameters
     ----------
     medium : Medium
-        Of one layer.
+        Poled medium of one layer.
     stack_layers : float
         Number of layers between the two electrodes. []
 
@@ -31,6 +26,13 @@ def homogenised_stack(medium: Medium, *, stack_layers: float) -> Medium:
     ------
     InvalidInput
         If the medium is not piezoelectric or the number not positive.
+
+    Notes
+    -----
+    Layers much thinner than the acoustic wavelength hold the field at n V/L in a stack of n layers and length L. A
+    block in the field V/L has the same force and charge at the voltage V with
+
+    .. math:: e_\mathrm{eff} = n\, e, \qquad \varepsilon^S_\mathrm{eff} = n^2 \varepsilon^S
     """
     n = float(require_positive(stack_layers=stack_layers))
     if medium.stress_constants is None or medium.permittivity is None:
@@ -41,18 +43,18 @@ def homogenised_stack(medium: Medium, *, stack_layers: float) -> Medium:
 def stack_ceramic(
     material: Material, *, youngs_modulus: float, charge_constant_15: float, shear_modulus: float
 ) -> PiezoCeramic:
-    """Return the ceramic of a stack from what its maker prints, softened along the poling by the joints of its layers.
+    r"""Ceramic constants of a stack from data-sheet scalars, with the compliance of the joints between its layers.
 
     Parameters
     ----------
     material : Material
         Compliances s11 and s33, charge constants d31 and d33, permittivities and Poisson's ratio of the ceramic.
     youngs_modulus : float
-        Stiffness of the stack times length over cross section, joints included. [Pa]
+        Stiffness of the stack times length over cross-section, joints included. [Pa]
     charge_constant_15 : float
-        Shear charge constant, which makers seldom print. [m/V]
+        Shear charge constant, which data sheets seldom list. [m/V]
     shear_modulus : float
-        Modulus for shear along the poling at constant field, likewise. [Pa]
+        Shear modulus along the poling at constant field, likewise. [Pa]
 
     Returns
     -------
@@ -61,13 +63,19 @@ def stack_ceramic(
     Raises
     ------
     InvalidInput
-        If the stack would be stiffer than its ceramic.
+        If the stack would be stiffer than the ceramic.
     MissingProperty
-        If the material lacks one of the constants named.
+        If the material lacks one of these constants.
 
     Notes
     -----
-    The joints give way along the axis and in shear, as layers of the same Poisson's ratio in series would.
+    The compliance of the joints is in series with that of the ceramic, along the poling and in shear, with the same
+    Poisson's ratio:
+
+    .. math::
+
+        s_j = \frac{1}{E} - s_{33}^E, \qquad s_{33}' = s_{33}^E + s_j, \qquad
+        s_{44}' = \frac{1}{G} + 2 (1 + \nu) s_j, \qquad s_{12} = -\nu s_{11}^E, \qquad s_{13} = -\nu s_{33}^E
     """
     require_positive(youngs_modulus=youngs_modulus, charge_constant_15=charge_constant_15, shear_modulus=shear_modulus)
     s11, s33, nu = (material.value(name) for name in ("compliance_11", "compliance_33", "poisson_ratio"))

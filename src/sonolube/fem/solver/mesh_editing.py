@@ -1,4 +1,4 @@
-"""Meshes made from meshes: nodes moved, patches of faces named, edges found."""
+"""Mesh editing without a CAD kernel: coordinate transformation, named face patches, nodes of edges."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -12,34 +12,34 @@ from sonolube.fem.solver.mesh import Mesh
 from sonolube.fem.solver.model import DIRECTIONS
 
 
-def transform_nodes(mesh: Mesh, to: Callable[[Floats], Floats]) -> Mesh:
-    """Return a mesh with its nodes moved: a block made a wedge, or tapered, without a CAD kernel.
+def transform_nodes(mesh: Mesh, mapping: Callable[[Floats], Floats]) -> Mesh:
+    """Mesh with its nodes moved by a mapping of coordinates, such as from a block to a wedge or a tapered bar.
 
     Parameters
     ----------
     mesh : Mesh
-    to : callable
-        From coordinates in m, shape (n, 3), to those of the new body. Where it has a kink, let elements meet.
+    mapping : callable
+        From coordinates in m, shape (n, 3), to the transformed ones. Element boundaries should follow its kinks.
 
     Returns
     -------
     Mesh
     """
-    return replace(mesh, nodes=to(mesh.nodes))
+    return replace(mesh, nodes=mapping(mesh.nodes))
 
 
 def add_face_patch(mesh: Mesh, name: str, *, of: str, where: Callable[[Floats], NDArray[np.bool_]]) -> Mesh:
-    """Return a mesh in which part of a face has a name of its own.
+    """Mesh with an additional named face: a patch of an existing one.
 
     Parameters
     ----------
     mesh : Mesh
     name : str
-        What to call the part.
+        Name of the patch.
     of : str
-        Name of the face, which stays whole.
+        Name of the existing face, which is kept as a whole.
     where : callable
-        From the middles of triangles in m, shape (t, 3), to whether they belong to the part, shape (t,).
+        From the centroids of triangles in m, shape (t, 3), to whether they belong to the patch, shape (t,).
 
     Returns
     -------
@@ -48,7 +48,7 @@ def add_face_patch(mesh: Mesh, name: str, *, of: str, where: Callable[[Floats], 
     Raises
     ------
     InvalidInput
-        If no triangle belongs to the part.
+        If no triangle belongs to the patch.
     """
     mesh.face_nodes(of)
     triangles = mesh.faces[of]
@@ -59,7 +59,7 @@ def add_face_patch(mesh: Mesh, name: str, *, of: str, where: Callable[[Floats], 
 
 
 def edge_nodes(mesh: Mesh, one: str, other: str, *, along: str) -> Integers:
-    """Return the nodes on the edge between two faces, in order of a coordinate.
+    """Nodes on the common edge of two faces, sorted by a coordinate.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def edge_nodes(mesh: Mesh, one: str, other: str, *, along: str) -> Integers:
     one, other : str
         Names of the faces.
     along : str
-        "x", "y" or "z".
+        Coordinate to sort by: "x", "y" or "z".
 
     Returns
     -------
@@ -76,7 +76,7 @@ def edge_nodes(mesh: Mesh, one: str, other: str, *, along: str) -> Integers:
     Raises
     ------
     InvalidInput
-        If the faces do not meet.
+        If the faces have no common node.
     UnknownName
         If there is no such face or direction.
     """
@@ -84,5 +84,5 @@ def edge_nodes(mesh: Mesh, one: str, other: str, *, along: str) -> Integers:
         raise UnknownName.among(DIRECTIONS, kind="direction", name=along)
     shared = np.intersect1d(mesh.face_nodes(one), mesh.face_nodes(other))
     if not shared.size:
-        raise InvalidInput(f"the faces {one} and {other} do not meet")
+        raise InvalidInput(f"the faces {one} and {other} have no common edge; name two faces that meet")
     return np.asarray(shared[np.argsort(mesh.nodes[shared, DIRECTIONS.index(along)])])

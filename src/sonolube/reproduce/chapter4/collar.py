@@ -13,8 +13,7 @@ from sonolube.dong2015.collar_analysis import Parity, collar_modes, reduced_coll
 from sonolube.dong2015.collar_designs import FINAL_COLLAR
 from sonolube.dong2015.collar_tuning import main_resonance
 from sonolube.dynamics import ExponentialGap, steady_state
-from sonolube.fem.solver.harmonic_analysis import ReducedModel
-from sonolube.fem.solver.structure_conversion import contact_structure, with_free_body
+from sonolube.fem import ReducedModel, contact_structure, with_free_body
 from sonolube.friction.models.asperity_stick_slip import stick_slip
 from sonolube.materials import material
 from sonolube.published import statement

@@ -6,7 +6,7 @@ import numpy as np
 
 from sonolube.dong2015.collar_designs import FINAL_COLLAR
 from sonolube.dong2015.collar_tuning import HIGHEST_FREQUENCY, LOWEST_FREQUENCY, main_resonance
-from sonolube.fem.solver.harmonic_analysis import ReducedModel, harmonic_response
+from sonolube.fem import ReducedModel, harmonic_response
 from sonolube.figure import COLOURS, LINES, ReportFigure
 from sonolube.reproduce.chapter4.collar import LOAD_AT_ENDS, PULL_SPEED, pull, response_model
 from sonolube.reproduce.chapter4.collar_rows import finite_elements_missing

@@ -1,4 +1,4 @@
-"""Closed forms of thin horns against each other, and against the equation of the bar marched on its own."""
+"""Closed forms of thin horns against each other and against numerical integration of the equation of the bar."""
 
 from collections.abc import Callable
 
@@ -15,7 +15,7 @@ K = 2 * np.pi * F / C
 R, R1 = 0.02, 0.008
 
 
-def marched(radius: Callable[[float], float], length: float) -> tuple[float, float, float]:
+def integrated(radius: Callable[[float], float], length: float) -> tuple[float, float, float]:
     """Return strain at the far end over k u there, gain and node of (S u')' + k^2 S u = 0 from a free end."""
 
     def slope(x: float, state: np.ndarray) -> list[float]:
@@ -46,14 +46,14 @@ def marched(radius: Callable[[float], float], length: float) -> tuple[float, flo
 def test_tapered_horns_solve_the_equation_of_the_bar(
     horn: ThinHorn, radius: Callable[[float], Callable[[float], float]]
 ) -> None:
-    strain, gain, node = marched(radius(horn.length), horn.length)
+    strain, gain, node = integrated(radius(horn.length), horn.length)
     assert strain == approx(0.0, abs=1e-6)
     assert horn.displacement_gain == approx(gain, rel=1e-6)
     assert horn.node_position == approx(node, rel=1e-6)
 
 
 @pytest.mark.parametrize("end_length", [0.04, 0.0625, 0.09])
-def test_a_stepped_horn_solves_the_equation_of_the_bar_whatever_the_length_of_its_end(end_length: float) -> None:
+def test_a_stepped_horn_solves_the_equation_of_the_bar_for_any_length_of_its_thin_part(end_length: float) -> None:
     horn = thin_stepped_horn(radius=R, end_radius=R1, end_length=end_length, frequency=F, wave_speed=C)
     u, force = np.cos(K * horn.length), -K * R**2 * np.sin(K * horn.length)
     far = u * np.cos(K * end_length) + force / (K * R1**2) * np.sin(K * end_length)
@@ -66,22 +66,22 @@ def test_a_stepped_horn_solves_the_equation_of_the_bar_whatever_the_length_of_it
     assert motion == approx(0.0, abs=1e-9)
 
 
-def test_two_quarter_waves_gain_the_ratio_of_areas() -> None:
+def test_the_gain_of_two_quarter_waves_is_the_ratio_of_areas() -> None:
     horn = thin_stepped_horn(radius=R, end_radius=R1, end_length=C / F / 4, frequency=F, wave_speed=C)
     assert horn.length == approx(C / F / 4)
     assert horn.displacement_gain == approx((R / R1) ** 2)
 
 
 @pytest.mark.parametrize("horn", [thin_conical_horn, thin_exponential_horn])
-def test_a_horn_that_does_not_taper_is_a_bar_of_half_a_wave(horn: Callable[..., ThinHorn]) -> None:
+def test_a_horn_of_equal_radii_is_a_half_wave_bar(horn: Callable[..., ThinHorn]) -> None:
     bar = horn(radius=R, end_radius=R, frequency=F, wave_speed=C)
     assert bar.length == approx(C / (2 * F))
     assert bar.displacement_gain == approx(1.0)
     assert bar.node_position == approx(bar.length / 2)
 
 
-def test_what_is_no_horn_is_refused() -> None:
+def test_impossible_horns_are_refused() -> None:
     with raises(InvalidInput, match="end_radius"):
         thin_conical_horn(radius=R1, end_radius=R, frequency=F, wave_speed=C)
-    with raises(InvalidInput, match="end_length must be below half a wave"):
+    with raises(InvalidInput, match="end_length must be below half a wavelength"):
         thin_stepped_horn(radius=R, end_radius=R1, end_length=0.2, frequency=F, wave_speed=C)
