@@ -1,4 +1,4 @@
-"""The tolerance asked for and the error told, for every mode, against Ritz's frequencies of the same bodies."""
+"""Requested tolerance and estimated error of every mode against Rayleigh-Ritz frequencies."""
 
 from collections.abc import Callable
 
@@ -30,8 +30,11 @@ from sonolube.fem import (
 from sonolube.fem.solver.grading import grade_reentrant_edges
 
 STEEL = isotropic_medium(youngs_modulus=200e9, poisson_ratio=0.29, density=7900.0)
+
 LENGTH, WIDTH, THICKNESS = 0.127, 0.06096, 0.0254
+
 MODES = 20
+
 RITZ_ERROR = 5e-6  # left in Ritz's frequencies at these orders
 
 
@@ -73,7 +76,7 @@ def test_twenty_modes_of_the_horns_block_are_within_a_thousandth(
 
 
 @pytest.mark.slow
-def test_the_error_told_bounds_the_true_one_of_nearly_every_mode_and_is_of_its_size() -> None:
+def test_the_estimated_error_bounds_that_of_nearly_every_mode_and_is_of_its_size() -> None:
     bodies = [
         (
             block(length=LENGTH, width=WIDTH, thickness=THICKNESS),
@@ -102,7 +105,7 @@ def test_the_error_told_bounds_the_true_one_of_nearly_every_mode_and_is_of_its_s
 
 
 @pytest.mark.slow
-def test_the_error_told_bounds_that_of_every_mode_where_edges_re_enter() -> None:
+def test_the_estimated_error_bounds_that_of_every_mode_with_re_entrant_edges() -> None:
     # Exact to 1e-4: elements of order six, cut once more towards the edges, whose frequencies are bounds from above.
     body = block(length=0.06, width=0.05, thickness=0.012, slots=(Slot(length=0.04, width=0.034),))
     base = generate_mesh(body, element_size=0.014)
@@ -119,7 +122,7 @@ def test_the_error_told_bounds_that_of_every_mode_where_edges_re_enter() -> None
         assert error.max() < 0.012
 
 
-def test_a_body_of_regular_elements_reaches_its_tolerance_without_a_mesher() -> None:
+def test_a_structured_mesh_reaches_its_tolerance_without_a_mesh_generator() -> None:
     def model_at(size: float) -> Model:
         n = [max(1, round(extent / size)) for extent in (0.03, 0.02, 0.024)]
         mesh = box_mesh(length=0.03, width=0.02, thickness=0.024, divisions=(n[0], n[1], n[2]))
@@ -133,3 +136,10 @@ def test_a_body_of_regular_elements_reaches_its_tolerance_without_a_mesher() -> 
         converged_modes(model_at, count=6, element_size=0.03, relative_tolerance=1e-12)
     with raises(NotConverged, match="allow more"):
         converged_modes(model_at, count=6, element_size=0.03, relative_tolerance=1e-8, most_nodes=300)
+
+
+def test_a_geometric_sequence_is_extrapolated_to_its_limit() -> None:
+    history = 100.0 + np.array([[8.0], [2.0], [0.5]])
+    frequency, error = extrapolate_frequencies(history)
+    assert frequency == approx(100.0, rel=1e-12)
+    assert error[0] == approx(0.5 / 100.0)

@@ -1,4 +1,4 @@
-"""Piezoelectric response against the exact plate, the full equations, and conservation."""
+"""Response to a voltage against an exact plate, the full equations, reciprocity and power balance."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,6 @@ from pytest import approx, raises
 from scipy.sparse import block_array
 from scipy.sparse.linalg import splu
 
-from sonolube.dynamics import drive_receptance, electrical_admittance
 from sonolube.errors import InvalidInput
 from sonolube.fem import (
     Electrodes,
@@ -16,12 +15,10 @@ from sonolube.fem import (
     ReducedModel,
     box_mesh,
     change_order,
-    contact_structure,
     direct_response,
     generate_mesh,
     harmonic_response,
     isotropic_medium,
-    natural_modes,
     poled_medium,
     reduce_model,
     ring,
@@ -31,7 +28,9 @@ from sonolube.fem.solver.system import assemble_system
 from sonolube.materials import coupling_factors, piezo_ceramic
 
 PZT = piezo_ceramic("pzt4")
+
 L, W = 0.01, 0.004
+
 TIP = {"tip": Output(face="+x", along="x")}
 
 
@@ -47,6 +46,13 @@ def bar(*, lossless: bool, along_axis: bool = True, order: int = 2, **held: tupl
         electrodes=Electrodes(driven=(ends[1],), grounded=(ends[0],)),
         fixed=held.get("fixed", ()),
     )
+
+
+def charge_per_force(few: ReducedModel, frequency: float) -> complex:
+    """Charge on the grounded electrode per newton on the first output."""
+    dynamic = few.stiffness - (2 * np.pi * frequency) ** 2 * np.eye(len(few.drive))
+    moved = np.linalg.solve(dynamic, few.participation[0].astype(np.complex128))
+    return complex(few.drive @ moved)
 
 
 def test_a_plate_without_lateral_motion_has_the_impedance_of_its_thickness_mode() -> None:
@@ -70,7 +76,7 @@ def test_a_plate_without_lateral_motion_has_the_impedance_of_its_thickness_mode(
 
 
 @pytest.mark.parametrize("along_axis", [True, False])
-def test_few_coordinates_answer_as_the_full_equations(along_axis: bool) -> None:
+def test_the_reduced_model_has_the_response_of_the_full_equations(along_axis: bool) -> None:
     model = bar(lossless=False, along_axis=along_axis)
     f = np.linspace(20e3, 200e3, 7)
     full = direct_response(model, frequency=f, outputs=TIP)
@@ -81,7 +87,7 @@ def test_few_coordinates_answer_as_the_full_equations(along_axis: bool) -> None:
     )
 
 
-def test_a_slow_voltage_moves_a_free_bar_by_its_charge_constants_and_charges_it_freely() -> None:
+def test_at_low_frequency_a_free_bar_has_the_strain_of_its_charge_constants_and_its_free_capacitance() -> None:
     model = bar(lossless=True, along_axis=False)
     both = {"right": Output(face="+x", along="x"), "left": Output(face="-x", along="x")}
     slow = harmonic_response(reduce_model(model, count=4, outputs=both), frequency=[100.0])
@@ -90,7 +96,7 @@ def test_a_slow_voltage_moves_a_free_bar_by_its_charge_constants_and_charges_it_
     assert slow.admittance[0] / (2j * np.pi * 100.0) == approx(PZT.permittivity_free[2] * L, rel=1e-5)
 
 
-def test_the_power_taken_is_never_negative_and_vanishes_without_losses() -> None:
+def test_the_dissipated_power_is_positive_and_vanishes_without_losses() -> None:
     f = np.linspace(5e3, 400e3, 300)
     lossy = harmonic_response(reduce_model(bar(lossless=False), count=12, outputs=TIP), frequency=f)
     ideal = harmonic_response(reduce_model(bar(lossless=True), count=12, outputs=TIP), frequency=f)
@@ -98,21 +104,7 @@ def test_the_power_taken_is_never_negative_and_vanishes_without_losses() -> None
     assert np.abs(ideal.admittance.real).max() < 1e-9 * np.abs(ideal.admittance).max()
 
 
-def test_a_bar_open_on_all_sides_is_stiffer_than_short_circuited() -> None:
-    shorted = bar(lossless=True)
-    opened = Model(
-        mesh=shorted.mesh,
-        media=shorted.media,
-        electrodes=Electrodes(floating=("+x",), grounded=("-x",)),
-    )
-    series, parallel, coupling = series_parallel_resonances(reduce_model(shorted, count=8, outputs=TIP))
-    assert np.all(series[:6] == 0)
-    assert np.all(coupling[:6] == 0)
-    assert natural_modes(shorted, count=8).natural_frequency == approx(series[:14], rel=1e-6, abs=1.0)
-    assert natural_modes(opened, count=8).natural_frequency == approx(parallel[:14], rel=2e-4, abs=1.0)
-
-
-def test_poling_the_bar_the_other_way_turns_the_motion_and_not_the_impedance() -> None:
+def test_reversed_poling_reverses_the_motion_and_leaves_the_impedance() -> None:
     one = bar(lossless=True)
     other = Model(
         mesh=one.mesh,
@@ -126,24 +118,8 @@ def test_poling_the_bar_the_other_way_turns_the_motion_and_not_the_impedance() -
     assert second.displacement_per_volt == approx(-first.displacement_per_volt, rel=1e-6)
 
 
-def test_dynamics_sees_the_response_of_the_finite_elements() -> None:
-    few = reduce_model(bar(lossless=False), count=12, outputs=TIP)
-    structure = contact_structure(few, contact="tip")
-    f = np.array([20e3, 60e3, 100e3])
-    expected = harmonic_response(few, frequency=f)
-    assert drive_receptance(structure, frequency=f) == approx(expected.displacement_per_volt[0], rel=0.03)
-    assert electrical_admittance(structure, frequency=f).imag == approx(expected.admittance.imag, rel=5e-3)
-
-
-def charge_per_force(few: ReducedModel, frequency: float) -> complex:
-    """Charge on the grounded electrode per newton on the first output."""
-    dynamic = few.stiffness - (2 * np.pi * frequency) ** 2 * np.eye(len(few.drive))
-    moved = np.linalg.solve(dynamic, few.participation[0].astype(np.complex128))
-    return complex(few.drive @ moved)
-
-
 @pytest.mark.parametrize("order", [2, 4])
-def test_charge_per_force_is_displacement_per_volt(order: int) -> None:
+def test_charge_per_force_equals_displacement_per_volt_by_reciprocity(order: int) -> None:
     # Reciprocity, of the full equations against the reduced ones: a force's charge on the shorted electrode.
     model = bar(lossless=False, order=order)
     few = reduce_model(model, count=12, outputs=TIP)
@@ -154,7 +130,7 @@ def test_charge_per_force_is_displacement_per_volt(order: int) -> None:
 
 
 @pytest.mark.parametrize("order", [2, 4])
-def test_the_power_taken_is_the_power_lost(order: int) -> None:
+def test_the_electrical_power_equals_the_dissipated_power(order: int) -> None:
     # Half the loss stiffness times the square of the motion, at omega, and the dielectric loss of the fields.
     model = bar(lossless=False, order=order)
     equations = assemble_system(model)
@@ -174,7 +150,7 @@ def test_the_power_taken_is_the_power_lost(order: int) -> None:
         assert taken == approx(omega * lost / 2, rel=1e-6)
 
 
-def test_a_wide_ring_breathes_far_below_the_resonance_of_its_one_dimensional_stack() -> None:
+def test_a_wide_ring_has_a_breathing_mode_far_below_its_thickness_resonance() -> None:
     # 38 mm across, a hole of 15 mm, 20 mm long. One dimension: half a wave along it, 1/(2 L) sqrt(1/(s33 rho)).
     # A thin ring breathes at sqrt(1/(s11 rho))/(2 pi R) of its mean radius. Computed elsewhere: 74.0 and 40.7 kHz.
     pytest.importorskip("netgen.occ", reason="netgen-mesher is not installed")
@@ -197,7 +173,7 @@ def test_a_wide_ring_breathes_far_below_the_resonance_of_its_one_dimensional_sta
     assert breathing == approx(thin_ring, rel=0.05)
 
 
-def test_a_face_that_is_held_stands_still_and_takes_nothing_from_the_rest() -> None:
+def test_an_output_on_a_supported_face_is_zero_and_leaves_the_others_unchanged() -> None:
     model = bar(lossless=False, fixed=(FixedSupport(face="-x", along="xyz"),))
     f = [40e3, 120e3]
     both = harmonic_response(
@@ -216,7 +192,7 @@ def test_the_impedance_alone_needs_no_output() -> None:
     assert few.admittance == approx(full.admittance, rel=1e-3)
 
 
-def test_what_cannot_be_driven_is_refused() -> None:
+def test_bodies_that_cannot_be_driven_are_refused() -> None:
     mesh = box_mesh(length=L, width=W, thickness=W, divisions=(1, 1, 1))
     steel = isotropic_medium(youngs_modulus=200e9, poisson_ratio=0.3, density=7900.0)
     with raises(InvalidInput, match="nothing is driven"):
