@@ -1,4 +1,4 @@
-"""Twenty modes of a body by scikit-fem, or by CalculiX, each as its own manual has it, on a mesh given to it."""
+"""Twenty natural modes of a body by scikit-fem or by CalculiX, with the settings of their manuals, on a given mesh."""
 
 import json
 import os
@@ -16,13 +16,13 @@ RIGID = 6
 
 
 def write_input(path: Path, mesh: dict[str, np.ndarray], constants: np.ndarray, modes: int) -> None:
-    """Write a CalculiX input of C3D10 elements, one material to a region: rows of modulus, ratio and density."""
+    """Write a CalculiX input of C3D10 elements; one row of modulus, Poisson's ratio and density per region."""
     lines = ["*NODE, NSET=ALL"]
     lines += [f"{k},{x:.12g},{y:.12g},{z:.12g}" for k, (x, y, z) in enumerate(mesh["nodes"], 1)]
     for region in range(len(constants)):
         lines.append(f"*ELEMENT, TYPE=C3D10, ELSET=R{region}")
-        own = np.flatnonzero(mesh["regions"] == region)
-        lines += [f"{k + 1}," + ",".join(str(node + 1) for node in mesh["elements"][k]) for k in own]
+        cells = np.flatnonzero(mesh["regions"] == region)
+        lines += [f"{k + 1}," + ",".join(str(node + 1) for node in mesh["elements"][k]) for k in cells]
     for region, (modulus, ratio, density) in enumerate(constants):
         lines += [f"*MATERIAL, NAME=M{region}", "*ELASTIC", f"{modulus:g},{ratio:g}", "*DENSITY", f"{density:g}"]
         lines.append(f"*SOLID SECTION, ELSET=R{region}, MATERIAL=M{region}")
@@ -31,7 +31,7 @@ def write_input(path: Path, mesh: dict[str, np.ndarray], constants: np.ndarray, 
 
 
 def calculix(mesh: dict[str, np.ndarray], constants: np.ndarray, modes: int) -> np.ndarray:
-    """Return the elastic frequencies in Hz that CalculiX prints."""
+    """Elastic natural frequencies in Hz by CalculiX with SPOOLES."""
     with tempfile.TemporaryDirectory() as folder:
         write_input(Path(folder) / "body.inp", mesh, constants, modes)
         environment = {**os.environ, "OMP_NUM_THREADS": "1"}
@@ -42,7 +42,7 @@ def calculix(mesh: dict[str, np.ndarray], constants: np.ndarray, modes: int) -> 
 
 
 def scikit_fem(mesh: dict[str, np.ndarray], constants: np.ndarray, modes: int) -> np.ndarray:
-    """Return the elastic frequencies in Hz: ten-node elements, SuperLU as scipy sets it, ARPACK about a shift."""
+    """Elastic natural frequencies in Hz by scikit-fem: ten-node elements, shift-invert ARPACK with SuperLU."""
     from scipy.sparse.linalg import eigsh
     from scipy.spatial import KDTree
     from skfem import Basis, BilinearForm, ElementTetP2, ElementVector, MeshTet, MeshTet2
@@ -52,10 +52,10 @@ def scikit_fem(mesh: dict[str, np.ndarray], constants: np.ndarray, modes: int) -
     straight = MeshTet(mesh["nodes"][corners].T.copy(), renumbered.reshape(-1, 4).T.copy())
     curved = MeshTet2.from_mesh(straight)
     ends = mesh["elements"][:, np.array([[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]])]
-    _, own = KDTree(curved.doflocs.T).query(mesh["nodes"][ends].mean(axis=2).reshape(-1, 3))
-    places = curved.doflocs.copy()
-    places[:, own] = mesh["nodes"][mesh["elements"][:, 4:]].reshape(-1, 3).T
-    basis = Basis(MeshTet2(places, curved.t), ElementVector(ElementTetP2()), intorder=4)
+    _, midpoints = KDTree(curved.doflocs.T).query(mesh["nodes"][ends].mean(axis=2).reshape(-1, 3))
+    locations = curved.doflocs.copy()
+    locations[:, midpoints] = mesh["nodes"][mesh["elements"][:, 4:]].reshape(-1, 3).T
+    basis = Basis(MeshTet2(locations, curved.t), ElementVector(ElementTetP2()), intorder=4)
     modulus, ratio, density = (constants[mesh["regions"], k][:, np.newaxis] for k in range(3))
     mu, lam = modulus / (2 * (1 + ratio)), modulus * ratio / ((1 + ratio) * (1 - 2 * ratio))
 
@@ -77,12 +77,13 @@ def scikit_fem(mesh: dict[str, np.ndarray], constants: np.ndarray, modes: int) -
 if __name__ == "__main__":
     name, path = sys.argv[1:]
     with np.load(path) as arrays:
-        given = dict(arrays)
-    body, materials, count = given, given["constants"], int(given["modes"])
-    began, spent = time.perf_counter(), time.process_time()
-    found = (calculix if name == "calculix" else scikit_fem)(body, materials, count)
-    who = resource.RUSAGE_CHILDREN if name == "calculix" else resource.RUSAGE_SELF
-    used = resource.getrusage(who)
-    processor = used.ru_utime + used.ru_stime if name == "calculix" else time.process_time() - spent
-    wall = time.perf_counter() - began
-    print(json.dumps({"wall": wall, "processor": processor, "peak": 1024 * used.ru_maxrss, "found": found.tolist()}))  # noqa: T201
+        body = dict(arrays)
+    materials, count = body["constants"], int(body["modes"])
+    wall_start, processor_start = time.perf_counter(), time.process_time()
+    frequencies = (calculix if name == "calculix" else scikit_fem)(body, materials, count)
+    used = resource.getrusage(resource.RUSAGE_CHILDREN if name == "calculix" else resource.RUSAGE_SELF)
+    processor = used.ru_utime + used.ru_stime if name == "calculix" else time.process_time() - processor_start
+    wall = time.perf_counter() - wall_start
+    peak = 1024 * used.ru_maxrss
+    result = {"wall": wall, "processor": processor, "peak": peak, "frequencies": frequencies.tolist()}
+    print(json.dumps(result))  # noqa: T201
