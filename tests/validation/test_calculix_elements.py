@@ -1,4 +1,4 @@
-"""The same ten-node elements in CalculiX, a program of its own that runs as a process of its own."""
+"""Natural frequencies of ten-node elements against CalculiX, run as a separate program."""
 
 import re
 import shutil
@@ -17,7 +17,7 @@ MODULUS, RATIO, DENSITY = 200e9, 0.29, 7900.0
 
 
 def frequencies_by_calculix(mesh: Mesh, folder: Path) -> Floats:
-    """Return the elastic frequencies in Hz of a free body of one material."""
+    """Elastic natural frequencies in Hz of a free body of one material."""
     nodes = [f"{k},{x:.12g},{y:.12g},{z:.12g}" for k, (x, y, z) in enumerate(mesh.nodes, 1)]
     elements = [",".join(map(str, [k, *(cell + 1)])) for k, cell in enumerate(mesh.elements, 1)]
     material = ["*MATERIAL, NAME=M", "*ELASTIC", f"{MODULUS},{RATIO}", "*DENSITY", f"{DENSITY}"]
@@ -32,8 +32,8 @@ def frequencies_by_calculix(mesh: Mesh, folder: Path) -> Floats:
 
 @pytest.mark.external
 @pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX is not installed: apt-get install calculix-ccx")
-def test_calculix_finds_the_same_frequencies_on_the_same_elements(tmp_path: Path) -> None:
-    # It integrates stiffness at four points of an element where exactness needs more, hence the tolerance.
+def test_natural_frequencies_are_those_of_calculix_on_the_same_elements(tmp_path: Path) -> None:
+    # CalculiX integrates the stiffness at four points of an element, fewer than exact integration needs.
     mesh = box_mesh(length=0.127, width=0.06096, thickness=0.0254, divisions=(12, 6, 3))
     steel = isotropic_medium(youngs_modulus=MODULUS, poisson_ratio=RATIO, density=DENSITY)
     ours = natural_modes(Model(mesh=mesh, media={"block": steel}), count=MODES).elastic_frequency

@@ -351,15 +351,15 @@ def stack_caveats(
     return tuple(caveat for caveat in caveats if caveat)
 
 
-def _tension_caveat(stack: PiezoStack, pull: float) -> str:
+def _tension_caveat(stack: PiezoStack, tension: float) -> str:
     """Caveat of a dynamic tension beyond the preload; empty where there is none."""
-    if stack.preload is None:
-        return f"the vibration pulls on the stack with up to {pull:.3g} N and no preload is stated" if pull > 0 else ""
-    if pull <= stack.preload:
+    if tension <= (stack.preload or 0.0):
         return ""
+    if stack.preload is None:
+        return f"the vibration causes a tension in the stack of up to {tension:.3g} N and no preload is stated"
     return (
-        f"tension in the stack: the vibration pulls with up to {pull:.3g} N on a preload of {stack.preload:g} N;"
-        " ceramics crack in tension: preload more or drive less"
+        f"tension in the stack: the vibration causes a tension of up to {tension:.3g} N on a preload of"
+        f" {stack.preload:g} N; ceramics crack in tension: preload more or drive less"
     )
 
 

@@ -221,7 +221,7 @@ def rigid_body_mode_count(model: Model) -> int:
 
 def _rigid_body_modes(model: Model) -> Floats:
     """Rigid-body displacements that no support or foundation resists, shape (r, n, 3)."""
-    fields = rigid_body_displacements(model.mesh)
+    fields = _rigid_body_displacements(model.mesh)
     rows = [np.zeros((1, 6))]
     for support in model.fixed:
         nodes = np.arange(model.mesh.node_count) if support.face is None else model.mesh.face_nodes(support.face)
@@ -234,7 +234,7 @@ def _rigid_body_modes(model: Model) -> Floats:
     return np.asarray(np.einsum("fr,fni->rni", combinations[:, resistance < 1e-12], fields))
 
 
-def rigid_body_displacements(mesh: Mesh) -> Floats:
+def _rigid_body_displacements(mesh: Mesh) -> Floats:
     """Nodal displacements of three unit translations and three rotations scaled by the extent of the body.
 
     Parameters
