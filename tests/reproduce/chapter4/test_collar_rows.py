@@ -42,7 +42,7 @@ def test_without_finite_elements_the_rows_say_what_to_install(monkeypatch: pytes
     def lacking() -> SonolubeError:
         raise MissingPackage("finite elements need netgen-mesher; install it with: pip install sonolube[fem]")
 
-    monkeypatch.setattr(chapter4_collar, "cad", lacking)
+    monkeypatch.setattr(chapter4_collar, "cad_kernel", lacking)
     rows = list(collar_rows())
     assert {row.verdict for row in rows} == {Verdict.UNDETERMINED}
     assert all("pip install sonolube[fem]" in row.note for row in rows)

@@ -160,9 +160,9 @@ def extrapolate_frequencies(history: Floats, *, singular: bool = False) -> tuple
     Returns
     -------
     frequency : ndarray, shape (k,)
-        In Hz.
+        Extrapolated natural frequencies. [Hz]
     error : ndarray, shape (k,)
-        Relative.
+        Estimated relative errors.
 
     Raises
     ------

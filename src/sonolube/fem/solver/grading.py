@@ -37,7 +37,7 @@ def grade_reentrant_edges(mesh: Mesh, *, levels: int) -> Mesh:
 
     Notes
     -----
-    After n levels the elements next to a re-entrant edge are 0.15^n times as thin across it as before. An edge is
+    After n levels the elements next to a re-entrant edge have 0.15^n of their original width across it. An edge is
     re-entrant where the dihedral angles of its elements sum to between 200 and 350 degrees.
 
     References

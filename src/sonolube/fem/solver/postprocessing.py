@@ -58,13 +58,13 @@ def interpolate_at_points(mesh: Mesh, field: ArrayLike, *, points: ArrayLike) ->
     return np.asarray(np.einsum("ap,...pai->...pi", weights, values[..., element, :]))
 
 
-def gauss_point_stress(model: Model, displacement: ArrayLike) -> Floats:
+def gauss_point_stress(model: Model, nodal_displacements: ArrayLike) -> Floats:
     r"""Elastic stress at four Gauss points of each element, without the stress of electric fields.
 
     Parameters
     ----------
     model : Model
-    displacement : array_like, shape (n, 3)
+    nodal_displacements : array_like, shape (n, 3)
         Displacements of the nodes in m.
 
     Returns
@@ -81,7 +81,7 @@ def gauss_point_stress(model: Model, displacement: ArrayLike) -> Floats:
 
     Strains of quadratic elements are most accurate at these points; at the corners of curved elements they scatter.
     """
-    mesh, nodal = model.mesh, require_finite(displacement=displacement)
+    mesh, nodal = model.mesh, require_finite(nodal_displacements=nodal_displacements)
     points = np.full((4, 4), (5 - np.sqrt(5)) / 20)
     np.fill_diagonal(points, (5 + 3 * np.sqrt(5)) / 20)
     _, local_gradient = shape_functions(mesh.order, points)  # (a, d, q)

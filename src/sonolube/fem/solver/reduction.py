@@ -135,7 +135,7 @@ def input_vectors(model: Model, equations: SystemMatrices, outputs: Mapping[str,
     -------
     forces : ndarray, shape (m, 1 + o)
     capacitance : float
-        Charge per volt with all displacements held, in F.
+        Charge per volt with all displacements held. [F]
 
     Raises
     ------
