@@ -28,7 +28,7 @@ from sonolube.dong2015.collar_tuning import (
     tuned_collar,
 )
 from sonolube.dong2015.cutter import CUTTER_HEAD_DIMENSIONS, cutter_head
-from sonolube.dong2015.transducers import DONG_2015_TRANSDUCERS, ring_stack
+from sonolube.dong2015.transducers import DONG_2015_TRANSDUCERS
 from sonolube.dong2015.tribometer import TRIBOMETER_ACTUATOR_DIMENSIONS, tribometer_actuator
 
 __all__ = [
@@ -59,7 +59,6 @@ __all__ = [
     "main_resonance",
     "reduced_collar_model",
     "resonances_in_range",
-    "ring_stack",
     "spurious_coupling_ratio",
     "tribometer_actuator",
     "tuned_collar",

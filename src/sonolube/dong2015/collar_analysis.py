@@ -15,13 +15,13 @@ from sonolube.dong2015.bore import BoreMotion, bore_motion
 from sonolube.dong2015.collar import Collar, collar_geometry
 from sonolube.errors import InvalidInput
 from sonolube.fem.parts.stack_material import homogenised_stack, stack_ceramic
+from sonolube.fem.solver.assembly import scalar_mass_matrix
 from sonolube.fem.solver.medium import Medium, medium_from_material, poled_medium
 from sonolube.fem.solver.mesh import Mesh
 from sonolube.fem.solver.meshing import generate_mesh
 from sonolube.fem.solver.model import Electrodes, FixedSupport, Model
 from sonolube.fem.solver.modes import natural_modes
 from sonolube.fem.solver.reduction import Output, ReducedModel, reduce_model
-from sonolube.fem.solver.simplex import shape_functions, simplex_quadrature
 from sonolube.materials import material
 
 _QUARTERS = 4
@@ -251,7 +251,9 @@ def collar_modes(
     return CollarModes(
         natural_frequency=found.elastic_frequency,
         motion_fractions=fractions,
-        bore_motion_ratio=np.sqrt(mean_square * _mass(model)),  # at unit modal mass the whole has 1/sqrt(mass)
+        bore_motion_ratio=np.sqrt(
+            mean_square * scalar_mass_matrix(model).sum()
+        ),  # at unit modal mass the whole has 1/sqrt(mass)
     )
 
 
@@ -306,13 +308,3 @@ def reduced_collar_model(
 def _mesh(collar: Collar, open_top: bool, element_size: float, order: int) -> Mesh:
     """Mesh of a quarter of a collar."""
     return generate_mesh(collar_geometry(collar, open_top=open_top), element_size=element_size, order=order)
-
-
-def _mass(model: Model) -> float:
-    """Mass of a body in kg."""
-    mesh = model.mesh
-    points, weights = simplex_quadrature(2 * mesh.order, corners=4)
-    _, gradients = shape_functions(mesh.order, points)
-    volume = np.linalg.det(np.einsum("eax,adq->eqdx", mesh.nodes[mesh.elements], gradients, optimize=True)) @ weights
-    density = np.array([model.media[region].density for region in mesh.regions])
-    return float(density[mesh.region_of_element] @ volume)
