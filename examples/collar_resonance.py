@@ -5,8 +5,8 @@ Run: python examples/collar_resonance.py (needs sonolube[fem])
 
 from dataclasses import replace
 
-from sonolube.dong2015.collar_designs import COLLAR_ORIGINS, FINAL_COLLAR
-from sonolube.dong2015.collar_model import collar_response_model
+from sonolube.dong2015.collar_analysis import reduced_collar_model
+from sonolube.dong2015.collar_designs import COLLAR_DIMENSION_SOURCES, FINAL_COLLAR
 from sonolube.dong2015.collar_tuning import main_resonance
 from sonolube.fem import harmonic_response
 
@@ -15,7 +15,7 @@ for case, changes in (
     ("top open", {"open_top": True}),
     ("base clamped", {"clamped": True}),
 ):
-    model = collar_response_model(FINAL_COLLAR, **changes)
+    model = reduced_collar_model(FINAL_COLLAR, **changes)
     found = main_resonance(model)
     peak = harmonic_response(model, frequency=found.series_frequency)
     crown = abs(peak.displacement_per_volt[model.outputs.index("crown"), 0])
@@ -24,5 +24,5 @@ for case, changes in (
         f"inner ring {crown * 1e9:4.0f} nm/V"
     )
 
-thin = main_resonance(collar_response_model(replace(FINAL_COLLAR, bolt_diameter=3e-3)))
-print(f"bolt of 3 mm  {thin.series_frequency * 1e-3:6.2f} kHz   ({COLLAR_ORIGINS['bolt_diameter']})")
+thin = main_resonance(reduced_collar_model(replace(FINAL_COLLAR, bolt_diameter=3e-3)))
+print(f"bolt of 3 mm  {thin.series_frequency * 1e-3:6.2f} kHz   ({COLLAR_DIMENSION_SOURCES['bolt_diameter']})")

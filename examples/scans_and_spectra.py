@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from sonolube.actuator import Branch, ButterworthVanDyke, circuit_admittance
+from sonolube.actuator import ButterworthVanDyke, MotionalBranch, circuit_admittance
 from sonolube.surfaces import SelfAffineSpectrum, gaussian_surface
 
 folder, rng = Path(sys.argv[1] if len(sys.argv) > 1 else "measured"), np.random.default_rng(1)
@@ -30,7 +30,7 @@ plate = gaussian_surface(
 plate[rng.random(plate.shape) < 0.01] = np.nan
 np.save(folder / "plate.npy", plate)
 print(folder / "plate.npy")
-branch = Branch(resistance=22.0, inductance=1.67e-3, capacitance=636e-12)
+branch = MotionalBranch(resistance=22.0, inductance=1.67e-3, capacitance=636e-12)
 f = np.linspace(120e3, 220e3, 401)
 z = 1 / circuit_admittance(ButterworthVanDyke(parallel_capacitance=1.6e-9, branches=(branch,)), frequency=f)
 z *= np.exp(0.005 * rng.standard_normal(f.size))

@@ -1,4 +1,4 @@
-"""The catalogue of actuators: numbers with sources, stacks that conserve energy, files of one's own."""
+"""Catalogue of actuators: sources of the data, coupling factors below one, and users' catalogue files."""
 
 import math
 from pathlib import Path
@@ -18,7 +18,7 @@ from sonolube.errors import InvalidInput, MissingProperty, UnknownName
 
 
 @pytest.mark.parametrize("name", catalogue_names())
-def test_every_actuator_has_its_source_and_gives_no_more_energy_than_it_takes(name: str) -> None:
+def test_every_actuator_has_a_source_and_a_coupling_factor_below_one(name: str) -> None:
     actuator = catalogue_actuator(name)
     assert actuator.source.startswith(("Dissertation", "Micromechatronics", "PiezoDrive", "Mechano", "Noliac"))
     if actuator.complete:
@@ -30,7 +30,7 @@ def test_every_actuator_has_its_source_and_gives_no_more_energy_than_it_takes(na
 
 
 @pytest.mark.parametrize("name", [name for name in catalogue_names() if name.startswith("sa0")])
-def test_a_bar_of_the_printed_mass_and_stiffness_resonates_about_where_the_sheet_says(name: str) -> None:
+def test_a_bar_of_the_printed_mass_and_stiffness_has_about_the_printed_resonance(name: str) -> None:
     # a uniform bar with free ends: f = sqrt(k/m)/2; force over range is softer than small signals
     actuator = catalogue_actuator(name)
     assert actuator.actuator_mass is not None
@@ -38,14 +38,14 @@ def test_a_bar_of_the_printed_mass_and_stiffness_resonates_about_where_the_sheet
     assert 0.45 < implied / actuator.resonance_frequency < 1.1
 
 
-def test_damping_takes_the_share_of_energy_that_the_quality_factor_says() -> None:
+def test_the_loss_factor_at_the_frequency_is_the_inverse_of_the_quality_factor() -> None:
     stack = catalogue_stack(catalogue_actuator("sa050510"), frequency=20e3, mechanical_quality_factor=80.0)
     assert stack.stack_damping * 2 * math.pi * 20e3 / stack.stack_stiffness == approx(1 / 80)
     assert stack.stack_stiffness == approx(900 / 14e-6)
     assert stack.free_stroke_per_volt == approx(14e-6 / 180)
 
 
-def test_a_file_of_ones_own_makes_a_flextensional_actuator_usable(tmp_path: Path) -> None:
+def test_a_users_catalogue_file_makes_a_flextensional_actuator_usable(tmp_path: Path) -> None:
     path = tmp_path / "own.toml"
     path.write_text(
         '[sources]\nsheet = "a sheet"\n[amplified]\ntitle = "x"\nkind = "flextensional"\nsource = "sheet"\n'
@@ -69,7 +69,7 @@ def test_a_file_of_ones_own_makes_a_flextensional_actuator_usable(tmp_path: Path
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         ("x = 3", "x: must be a table"),
         ('[x]\ntitle = "x"\nkind = "stack"\nsource = "s"\nstroke = 1.0', "x.stroke_voltage: missing"),
@@ -77,15 +77,15 @@ def test_a_file_of_ones_own_makes_a_flextensional_actuator_usable(tmp_path: Path
         ("not toml", "own.toml"),
     ],
 )
-def test_a_file_that_makes_no_catalogue_is_refused_by_entry(text: str, said: str, tmp_path: Path) -> None:
+def test_an_invalid_catalogue_file_is_refused_with_the_entry(text: str, message: str, tmp_path: Path) -> None:
     path = tmp_path / "own.toml"
     path.write_text(text)
-    with raises(InvalidInput, match=said):
+    with raises(InvalidInput, match=message):
         read_catalogue(path)
 
 
-def test_more_preload_than_the_sheet_allows_is_refused() -> None:
-    with raises(InvalidInput, match="must not exceed 450 N, which sa050510 bears"):
+def test_a_preload_above_the_limit_of_the_data_sheet_is_refused() -> None:
+    with raises(InvalidInput, match="must not exceed 450 N, the limit of sa050510"):
         catalogue_stack(catalogue_actuator("sa050510"), frequency=2e4, mechanical_quality_factor=80, preload=500.0)
     with raises(UnknownName, match="did you mean sa050510"):
         catalogue_actuator("sa05051")

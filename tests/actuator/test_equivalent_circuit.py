@@ -1,3 +1,5 @@
+"""Butterworth-Van Dyke circuits against textbook formulae and circuit laws."""
+
 from itertools import pairwise
 
 import numpy as np
@@ -7,19 +9,19 @@ from hypothesis import strategies as st
 from pytest import approx, raises
 from scipy.optimize import brentq
 
-from sonolube.actuator import Branch, ButterworthVanDyke, circuit_admittance, resonances
+from sonolube.actuator import ButterworthVanDyke, MotionalBranch, circuit_admittance, circuit_resonances
 from sonolube.errors import InvalidInput
 
 # a quartz-like crystal and a piezo actuator with two modes
 CRYSTAL = ButterworthVanDyke(
-    parallel_capacitance=5e-12, branches=(Branch(resistance=50.0, inductance=0.1, capacitance=0.02e-12),)
+    parallel_capacitance=5e-12, branches=(MotionalBranch(resistance=50.0, inductance=0.1, capacitance=0.02e-12),)
 )
 
 
-def branch(frequency: float, capacitance: float, quality: float) -> Branch:
+def branch(frequency: float, capacitance: float, quality: float) -> MotionalBranch:
     omega = 2 * np.pi * frequency
     inductance = 1 / (omega**2 * capacitance)
-    return Branch(resistance=omega * inductance / quality, inductance=inductance, capacitance=capacitance)
+    return MotionalBranch(resistance=omega * inductance / quality, inductance=inductance, capacitance=capacitance)
 
 
 branches = st.builds(branch, st.floats(1e3, 1e6), st.floats(1e-12, 1e-7), st.floats(1, 1e5))
@@ -31,8 +33,8 @@ circuits = st.builds(
 )
 
 
-def test_one_branch_resonates_where_the_text_book_says() -> None:
-    found = resonances(CRYSTAL)
+def test_one_branch_has_the_resonances_of_the_textbook() -> None:
+    found = circuit_resonances(CRYSTAL)
     f_s = 1 / (2 * np.pi * np.sqrt(0.1 * 0.02e-12))
     assert found.series_frequency == approx(f_s)
     assert found.parallel_frequency == approx(f_s * np.sqrt(1 + 0.02 / 5))
@@ -45,19 +47,19 @@ def test_far_below_resonance_all_capacitances_add() -> None:
     assert y.imag / (2 * np.pi) == approx(5.02e-12, rel=1e-9)
 
 
-def test_on_resonance_the_branch_is_its_resistance() -> None:
-    f_s = float(resonances(CRYSTAL).series_frequency[0])
+def test_at_resonance_the_branch_is_its_resistance() -> None:
+    f_s = float(circuit_resonances(CRYSTAL).series_frequency[0])
     assert circuit_admittance(CRYSTAL, frequency=f_s) == approx(1 / 50 + 2j * np.pi * f_s * 5e-12, rel=1e-9)
 
 
 def test_the_width_at_half_power_is_the_frequency_over_the_quality_factor() -> None:
-    found = resonances(CRYSTAL)
+    found = circuit_resonances(CRYSTAL)
     f_s, quality = float(found.series_frequency[0]), float(found.mechanical_quality_factor[0])
     edges = f_s * (1 + np.array([-0.5, 0.5]) / quality)
     assert circuit_admittance(CRYSTAL, frequency=edges).real == approx(np.full(2, 0.5 / 50), rel=1e-4)
 
 
-def test_leads_stand_in_series() -> None:
+def test_the_resistance_of_the_leads_is_in_series() -> None:
     bare = ButterworthVanDyke(parallel_capacitance=1e-9, branches=CRYSTAL.branches)
     leads = ButterworthVanDyke(parallel_capacitance=1e-9, branches=CRYSTAL.branches, series_resistance=7.0)
     f = np.geomspace(1e3, 1e7, 50)
@@ -66,7 +68,7 @@ def test_leads_stand_in_series() -> None:
 
 
 @given(circuit=circuits, frequency=st.floats(1, 1e7))
-def test_no_circuit_gives_power(circuit: ButterworthVanDyke, frequency: float) -> None:
+def test_the_conductance_of_a_circuit_is_never_negative(circuit: ButterworthVanDyke, frequency: float) -> None:
     assert circuit_admittance(circuit, frequency=frequency).real >= 0
 
 
@@ -74,14 +76,14 @@ def test_no_circuit_gives_power(circuit: ButterworthVanDyke, frequency: float) -
     frequencies=st.lists(st.floats(1e3, 1e5), min_size=1, max_size=4, unique=True),
     shares=st.lists(st.floats(0.01, 2), min_size=4, max_size=4),
 )
-def test_each_parallel_resonance_is_a_zero_of_the_reactance_before_the_next_series_one(
+def test_each_parallel_resonance_is_a_zero_of_the_capacitance_below_the_next_series_one(
     frequencies: list[float], shares: list[float]
 ) -> None:
     frequencies = sorted(frequencies)
     assume(all(b > 1.01 * a for a, b in pairwise(frequencies)))
     parts = tuple(branch(f, share * 1e-9, 1e12) for f, share in zip(frequencies, shares, strict=False))
     circuit = ButterworthVanDyke(parallel_capacitance=1e-9, branches=parts[::-1])
-    found = resonances(circuit)
+    found = circuit_resonances(circuit)
     assert found.series_frequency == approx(np.array(frequencies))
 
     def capacitance(f: float) -> float:
@@ -93,15 +95,15 @@ def test_each_parallel_resonance_is_a_zero_of_the_reactance_before_the_next_seri
         assert f_p == approx(root, rel=1e-9)
 
 
-def test_a_branch_without_resistance_has_no_bound_to_its_quality() -> None:
+def test_a_branch_without_resistance_has_an_infinite_quality_factor() -> None:
     circuit = ButterworthVanDyke(
-        parallel_capacitance=1e-9, branches=(Branch(resistance=0.0, inductance=1e-3, capacitance=1e-9),)
+        parallel_capacitance=1e-9, branches=(MotionalBranch(resistance=0.0, inductance=1e-3, capacitance=1e-9),)
     )
-    assert resonances(circuit).mechanical_quality_factor == approx(np.inf)
+    assert circuit_resonances(circuit).mechanical_quality_factor == approx(np.inf)
 
 
 def test_a_bare_capacitance_has_no_resonance() -> None:
-    found = resonances(ButterworthVanDyke(parallel_capacitance=1e-9, branches=()))
+    found = circuit_resonances(ButterworthVanDyke(parallel_capacitance=1e-9, branches=()))
     assert found.series_frequency.size == found.parallel_frequency.size == found.coupling_factor.size == 0
 
 
@@ -113,6 +115,6 @@ def test_a_bare_capacitance_has_no_resonance() -> None:
         ({"capacitance": np.inf}, r"capacitance must be finite, got inf F"),
     ],
 )
-def test_parts_that_cannot_be_are_refused(values: dict[str, float], message: str) -> None:
+def test_impossible_elements_are_refused(values: dict[str, float], message: str) -> None:
     with raises(InvalidInput, match=message):
-        Branch(**({"resistance": 1.0, "inductance": 1.0, "capacitance": 1.0} | values))
+        MotionalBranch(**({"resistance": 1.0, "inductance": 1.0, "capacitance": 1.0} | values))

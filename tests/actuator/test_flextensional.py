@@ -1,3 +1,5 @@
+"""Flextensional actuators and levers against lumped chains and energy conservation."""
+
 from dataclasses import replace
 
 import numpy as np
@@ -6,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pytest import approx, raises
 
-from sonolube.actuator import FlextensionalActuator, PiezoStack, amplified, equivalent_stack, free_stroke
+from sonolube.actuator import FlextensionalActuator, PiezoStack, equivalent_stack, free_stroke, lever_amplified_stack
 from sonolube.dynamics.chain import GROUND, LumpedChain, chain_structure
 from sonolube.dynamics.linear import modes
 from sonolube.dynamics.structure import electrical_admittance
@@ -32,14 +34,14 @@ STACK = PiezoStack(
 )
 
 
-def test_four_volts_peak_to_peak_move_the_ends_by_1_4_micrometres() -> None:
+def test_four_volts_peak_to_peak_give_a_stroke_of_1_4_micrometres() -> None:
     # E35: half of it at 16 kHz is the vibration velocity of 70 mm/s, where D has 150
     stroke = float(free_stroke(equivalent_stack(APA), stack_voltage=4.0))
     assert stroke == approx(1.39e-6, rel=0.005)
     assert np.pi * 16e3 * stroke == approx(0.070, rel=0.01)
 
 
-def test_the_equivalent_stack_on_its_effective_mass_rings_as_the_data_sheet_says() -> None:
+def test_the_equivalent_stack_on_its_effective_mass_has_the_resonance_of_the_data_sheet() -> None:
     held = chain_structure(
         LumpedChain(
             masses={"end": APA.effective_mass},
@@ -55,7 +57,7 @@ def test_the_equivalent_stack_on_its_effective_mass_rings_as_the_data_sheet_says
     assert found.damping_ratio == approx(1 / 200)
 
 
-def test_free_at_both_ends_two_equal_masses_take_twice_the_effective_mass_each() -> None:
+def test_with_both_ends_free_each_end_has_twice_the_effective_mass() -> None:
     free = chain_structure(
         LumpedChain(
             masses={"near": 2 * APA.effective_mass, "far": 2 * APA.effective_mass},
@@ -70,8 +72,8 @@ def test_free_at_both_ends_two_equal_masses_take_twice_the_effective_mass_each()
 
 
 @given(ratio=st.floats(0.1, 30))
-def test_a_lever_changes_neither_the_coupling_nor_the_energies(ratio: float) -> None:
-    out = amplified(STACK, amplification_ratio=ratio)
+def test_a_lever_changes_neither_coupling_factor_nor_energy(ratio: float) -> None:
+    out = lever_amplified_stack(STACK, amplification_ratio=ratio)
     assert out.derived_coupling_factor == approx(STACK.derived_coupling_factor)
     assert out.clamped_capacitance == approx(STACK.clamped_capacitance)
     assert float(free_stroke(out, stack_voltage=1.0)) == approx(ratio * float(free_stroke(STACK, stack_voltage=1.0)))
@@ -81,7 +83,7 @@ def test_a_lever_changes_neither_the_coupling_nor_the_energies(ratio: float) -> 
 
 
 @given(ratio=st.floats(0.1, 30), frequency=st.floats(10, 1e5))
-def test_a_mass_at_the_levers_end_looks_heavier_to_the_drive_by_the_square_of_the_ratio(
+def test_a_mass_at_the_output_of_a_lever_counts_electrically_with_the_square_of_the_ratio(
     ratio: float, frequency: float
 ) -> None:
     def admittance(stack: PiezoStack, mass: float) -> complex:
@@ -91,12 +93,12 @@ def test_a_mass_at_the_levers_end_looks_heavier_to_the_drive_by_the_square_of_th
         return complex(electrical_admittance(chain_structure(chain), frequency=frequency))
 
     direct = admittance(STACK, 0.05 * ratio**2)
-    assert admittance(amplified(STACK, amplification_ratio=ratio), 0.05) == approx(direct, rel=1e-9)
+    assert admittance(lever_amplified_stack(STACK, amplification_ratio=ratio), 0.05) == approx(direct, rel=1e-9)
 
 
-def test_two_levers_in_a_row_multiply() -> None:
-    twice = amplified(amplified(STACK, amplification_ratio=2.0), amplification_ratio=3.0)
-    once = amplified(STACK, amplification_ratio=6.0)
+def test_the_ratios_of_two_levers_in_series_multiply() -> None:
+    twice = lever_amplified_stack(lever_amplified_stack(STACK, amplification_ratio=2.0), amplification_ratio=3.0)
+    once = lever_amplified_stack(STACK, amplification_ratio=6.0)
     assert twice.stack_stiffness == approx(once.stack_stiffness)
     assert twice.stack_mass == approx(once.stack_mass)
 
@@ -111,16 +113,16 @@ def test_two_levers_in_a_row_multiply() -> None:
         ),
     ],
 )
-def test_a_data_sheet_that_cannot_be_is_refused(changes: dict[str, float], message: str) -> None:
+def test_an_impossible_data_sheet_is_refused(changes: dict[str, float], message: str) -> None:
     with raises(InvalidInput, match=message):
         replace(APA, **changes)
 
 
-def test_a_data_sheet_that_promises_energy_from_nothing_is_refused() -> None:
+def test_a_data_sheet_with_a_coupling_factor_above_one_is_refused() -> None:
     with raises(InvalidInput, match="the coupling factor would exceed 1"):
         equivalent_stack(replace(APA, blocked_force=700.0))
 
 
 def test_a_ratio_of_zero_is_refused() -> None:
     with raises(InvalidInput, match=r"amplification_ratio must be positive, got 0\.0"):
-        amplified(STACK, amplification_ratio=0)
+        lever_amplified_stack(STACK, amplification_ratio=0)

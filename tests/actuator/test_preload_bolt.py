@@ -1,9 +1,9 @@
-"""The preload bolt: a spring beside the stack, and its fatigue by hand."""
+"""Preload bolt: parallel stiffness, stresses and fatigue against hand calculation."""
 
 import numpy as np
 from pytest import approx, raises
 
-from sonolube.actuator import PiezoStack, PreloadBolt, bolt_load, bolted
+from sonolube.actuator import PiezoStack, PreloadBolt, bolt_stresses, bolted_stack
 from sonolube.errors import InvalidInput
 
 STACK = PiezoStack(
@@ -12,14 +12,14 @@ STACK = PiezoStack(
 BOLT = PreloadBolt(thread_diameter=8e-3, length=40e-3, youngs_modulus=205e9, yield_strength=640e6, preload=10e3)
 
 
-def test_an_m8_bolt_has_the_stress_area_and_endurance_of_the_tables() -> None:
+def test_an_m8_bolt_has_the_stress_area_and_endurance_limit_of_the_standards() -> None:
     assert BOLT.stress_area == approx(36.6e-6, abs=0.05e-6)  # ISO 898-1
     assert BOLT.endurance_limit == approx(54.2e6, rel=1e-3)  # 0.85 (150/8 + 45) MPa
     assert BOLT.stiffness == approx(205e9 * 36.6e-6 / 40e-3, rel=1e-3)
 
 
-def test_stack_and_bolt_push_and_draw_as_two_springs_side_by_side() -> None:
-    joined = bolted(STACK, BOLT)
+def test_force_and_charge_of_a_bolted_stack_are_those_of_stack_and_bolt_in_parallel() -> None:
+    joined = bolted_stack(STACK, BOLT)
     volts, elongation = 30.0, 50e-9
     alone = STACK.charge_per_elongation * volts - STACK.stack_stiffness * elongation
     force = joined.charge_per_elongation * volts - joined.stack_stiffness * elongation
@@ -30,8 +30,8 @@ def test_stack_and_bolt_push_and_draw_as_two_springs_side_by_side() -> None:
     assert joined.preload == 10e3
 
 
-def test_a_micrometre_stretches_the_bolt_by_hookes_law() -> None:
-    load = bolt_load(BOLT, elongation_amplitude=[0.0, 1e-6], elongation=2e-6)
+def test_the_stress_of_the_bolt_follows_hookes_law() -> None:
+    load = bolt_stresses(BOLT, elongation_amplitude=[0.0, 1e-6], elongation=2e-6)
     strain = np.array([0.0, 1e-6]) / 40e-3
     assert load.bolt_stress_amplitude == approx(205e9 * strain)
     assert load.highest_bolt_stress == approx(10e3 / BOLT.stress_area + 205e9 * (strain + 2e-6 / 40e-3))
@@ -40,6 +40,6 @@ def test_a_micrometre_stretches_the_bolt_by_hookes_law() -> None:
     assert load.yield_safety == approx(640e6 / load.highest_bolt_stress)
 
 
-def test_a_thread_without_a_coarse_pitch_is_refused() -> None:
+def test_a_thread_without_a_tabulated_pitch_is_refused() -> None:
     with raises(InvalidInput, match="thread_diameter must be one of"):
         PreloadBolt(thread_diameter=7e-3, length=0.04, youngs_modulus=2e11, yield_strength=6e8, preload=1.0)

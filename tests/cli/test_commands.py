@@ -177,7 +177,7 @@ def test_a_study_keeps_a_reason_for_what_the_stack_does_not_bear(tmp_path: Path)
     limit = ["--set", "stack.highest_voltage=50V", "--points", "5"]
     run = sonolube("study", str(RIGS / "tribometer.toml"), "--of", "voltage", *limit, "--out", str(tmp_path))
     assert run.returncode == 0, run.stderr
-    assert "the stack bears no more than 50 V" in run.stdout
+    assert "the highest admissible voltage is 50 V" in run.stdout
     assert "least friction       ratio 0.154 at 50 V" in run.stdout
 
 

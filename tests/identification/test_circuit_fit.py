@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from pytest import approx, fixture, mark, raises, skip
 
-from sonolube.actuator import Branch, ButterworthVanDyke, circuit_admittance
+from sonolube.actuator import ButterworthVanDyke, MotionalBranch, circuit_admittance
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.identification.circuit_fit import fit_circuit
 from sonolube.measurement.impedance.reader import read_impedance
@@ -15,9 +15,9 @@ from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 RB5100 = Path(__file__).parents[3] / "shared" / "data" / "impedance" / "RB5100.txt"
 
 
-def branch(frequency: float, quality: float, capacitance: float) -> Branch:
+def branch(frequency: float, quality: float, capacitance: float) -> MotionalBranch:
     omega = 2 * np.pi * frequency
-    return Branch(
+    return MotionalBranch(
         resistance=1 / (omega * capacitance * quality), inductance=1 / (omega**2 * capacitance), capacitance=capacitance
     )
 

@@ -98,7 +98,7 @@ def test_one_impossible_point_does_not_spoil_the_others() -> None:
     points = operating_points(weak, voltage_peak_to_peak=[28.0, 400.0], normal_load=[[3.0], [1e9]])
     assert points.status.tolist() == [["periodic", "refused"], ["refused", "refused"]]
     assert points.failed.tolist() == [[False, True], [True, True]]
-    assert points.reason[0, 1] == "the drive goes up to 214 V; the stack bears no more than 100 V"
+    assert points.reason[0, 1] == "the drive goes up to 214 V; the highest admissible voltage is 100 V"
     assert "leaves no separation" in points.reason[1, 0]
 
 

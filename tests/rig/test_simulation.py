@@ -90,7 +90,7 @@ def test_tension_in_a_stack_without_stated_preload_is_told() -> None:
 
 
 def test_a_voltage_beyond_the_stack_is_refused() -> None:
-    with pytest.raises(InvalidInput, match="the drive goes up to 28 V; the stack bears no more than 20 V"):
+    with pytest.raises(InvalidInput, match="the drive goes up to 28 V; the highest admissible voltage is 20 V"):
         tribometer("stack.highest_voltage=20V")
 
 

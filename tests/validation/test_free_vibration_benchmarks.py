@@ -13,13 +13,13 @@ from pytest import approx
 
 from sonolube.fem import (
     FaceSpring,
-    Fixed,
+    FixedSupport,
     Medium,
     Model,
     box_mesh,
-    isotropic,
+    isotropic_medium,
     natural_modes,
-    rectangle,
+    rectangular_section,
     ritz_frequencies,
 )
 
@@ -37,13 +37,13 @@ def aluminium_of_ogi() -> Medium:
     c11, c44 = 109.26e9, 26.72e9
     c12 = c11 - 2 * c44
     nu = c12 / (c11 + c12)
-    return isotropic(youngs_modulus=2 * c44 * (1 + nu), poisson_ratio=nu, density=2788.0)
+    return isotropic_medium(youngs_modulus=2 * c44 * (1 + nu), poisson_ratio=nu, density=2788.0)
 
 
 def test_ritz_finds_the_resonances_of_ogis_parallelepiped() -> None:
     length, width, thickness = OGI_SIZES
     found = ritz_frequencies(
-        rectangle(length=length, width=width, order=12), length=thickness, medium=aluminium_of_ogi(), order=12
+        rectangular_section(length=length, width=width, order=12), length=thickness, medium=aluminium_of_ogi(), order=12
     )[:12]
     assert found == approx(OGI_COMPUTED, rel=2e-3)
     assert found == approx(OGI_MEASURED, rel=6e-3)
@@ -64,14 +64,14 @@ def test_the_free_cylinder_of_nafems_has_its_axisymmetric_frequencies() -> None:
     angle = np.radians(5.0) * (flat.nodes[:, 1] + 0.5)
     radius = 2.0 + flat.nodes[:, 0]
     mesh = replace(flat, nodes=np.stack([radius * np.cos(angle), radius * np.sin(angle), flat.nodes[:, 2]], axis=1))
-    steel = isotropic(youngs_modulus=200e9, poisson_ratio=0.3, density=8000.0)
+    steel = isotropic_medium(youngs_modulus=200e9, poisson_ratio=0.3, density=8000.0)
     normal = (-np.sin(np.radians(5.0)), np.cos(np.radians(5.0)), 0.0)
     model = Model(
         mesh=mesh,
         media={"block": steel},
-        fixed=(Fixed(face="-y", along="y"),),
+        fixed=(FixedSupport(face="-y", along="y"),),
         springs=(FaceSpring(face="+y", spring_stiffness=1e3 * 200e9 * 4.0 / 0.17, along=normal),),
     )
     modes = natural_modes(model, count=5)
-    assert modes.rigid == 1
+    assert modes.rigid_body_count == 1
     assert modes.elastic_frequency == approx(FV41, rel=2e-3)

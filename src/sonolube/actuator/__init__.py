@@ -1,21 +1,27 @@
-"""Actuators: what drives the vibration, and what carries it to the contact."""
+"""Piezoelectric actuators: stacks, their drive and electrical matching, horns and waveguides, and a catalogue."""
 
-from sonolube.actuator.amplifier_need import AmplifierNeed, amplifier_need
-from sonolube.actuator.as_published import as_published_impedance
+from sonolube.actuator.amplifier import AmplifierRequirements, amplifier_requirements
 from sonolube.actuator.catalogue import (
-    KINDS,
+    ACTUATOR_KINDS,
     CatalogueActuator,
     catalogue_actuator,
     catalogue_names,
     catalogue_stack,
     read_catalogue,
 )
-from sonolube.actuator.drive_power import dissipated_power, driver_power, peak_current, power_factor
-from sonolube.actuator.equivalent_circuit import Branch, ButterworthVanDyke, Resonances, circuit_admittance, resonances
-from sonolube.actuator.flextensional import FlextensionalActuator, amplified, equivalent_stack
-from sonolube.actuator.horn import ThinHorn, thin_conical_horn, thin_exponential_horn, thin_stepped_horn
+from sonolube.actuator.dong_2015 import dong_2015_impedance
+from sonolube.actuator.drive import Drive
+from sonolube.actuator.drive_power import dissipated_power, linear_amplifier_power, peak_current, power_factor
+from sonolube.actuator.equivalent_circuit import (
+    ButterworthVanDyke,
+    CircuitResonances,
+    MotionalBranch,
+    circuit_admittance,
+    circuit_resonances,
+)
+from sonolube.actuator.flextensional import FlextensionalActuator, equivalent_stack, lever_amplified_stack
 from sonolube.actuator.matching import (
-    Admittance,
+    AdmittanceFunction,
     MatchingNetwork,
     input_admittance,
     l_match,
@@ -25,7 +31,7 @@ from sonolube.actuator.matching import (
     series_inductor,
     voltage_gain,
 )
-from sonolube.actuator.preload_bolt import BoltLoad, PreloadBolt, bolt_load, bolted
+from sonolube.actuator.preload_bolt import BoltStresses, PreloadBolt, bolt_stresses, bolted_stack
 from sonolube.actuator.stack import (
     PiezoStack,
     blocked_admittance,
@@ -36,57 +42,59 @@ from sonolube.actuator.stack import (
     stack_caveats,
     stack_force,
 )
+from sonolube.actuator.thin_horn import ThinHorn, thin_conical_horn, thin_exponential_horn, thin_stepped_horn
 from sonolube.actuator.waveguide import (
-    HalfWaveguide,
-    Locus,
+    BarWaveguide,
+    SurfaceTrajectory,
     axial_displacement,
+    free_bar_frequency,
     in_plane_amplitude,
-    locus,
-    natural_frequency,
     normal_amplitude,
     normal_displacement,
+    surface_trajectory,
 )
 
 __all__ = [
-    "KINDS",
-    "Admittance",
-    "AmplifierNeed",
-    "BoltLoad",
-    "Branch",
+    "ACTUATOR_KINDS",
+    "AdmittanceFunction",
+    "AmplifierRequirements",
+    "BarWaveguide",
+    "BoltStresses",
     "ButterworthVanDyke",
     "CatalogueActuator",
+    "CircuitResonances",
+    "Drive",
     "FlextensionalActuator",
-    "HalfWaveguide",
-    "Locus",
     "MatchingNetwork",
+    "MotionalBranch",
     "PiezoStack",
     "PreloadBolt",
-    "Resonances",
+    "SurfaceTrajectory",
     "ThinHorn",
-    "amplified",
-    "amplifier_need",
-    "as_published_impedance",
+    "amplifier_requirements",
     "axial_displacement",
     "blocked_admittance",
     "blocked_force",
-    "bolt_load",
-    "bolted",
+    "bolt_stresses",
+    "bolted_stack",
     "catalogue_actuator",
     "catalogue_names",
     "catalogue_stack",
     "circuit_admittance",
+    "circuit_resonances",
     "dissipated_power",
-    "driver_power",
+    "dong_2015_impedance",
     "equivalent_stack",
     "free_admittance",
+    "free_bar_frequency",
     "free_stroke",
     "in_plane_amplitude",
     "input_admittance",
     "l_match",
-    "locus",
+    "lever_amplified_stack",
+    "linear_amplifier_power",
     "matched_band",
     "matched_power_factor",
-    "natural_frequency",
     "normal_amplitude",
     "normal_displacement",
     "parallel_inductor",
@@ -94,10 +102,10 @@ __all__ = [
     "power_factor",
     "read_catalogue",
     "require_allowed_voltage",
-    "resonances",
     "series_inductor",
     "stack_caveats",
     "stack_force",
+    "surface_trajectory",
     "thin_conical_horn",
     "thin_exponential_horn",
     "thin_stepped_horn",

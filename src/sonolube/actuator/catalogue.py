@@ -1,4 +1,4 @@
-"""Actuators one can buy, as their data sheets describe them, and the stacks they make in a rig."""
+"""Catalogue of commercial actuators by their data sheets, and their equivalent stacks."""
 
 import math
 import tomllib
@@ -14,51 +14,53 @@ from sonolube.actuator.stack import PiezoStack
 from sonolube.checks import require_finite, require_positive
 from sonolube.errors import InvalidInput, MissingProperty, UnknownName
 
-KINDS = ("stack", "flextensional")
-"""What an actuator of the catalogue can be."""
+ACTUATOR_KINDS = ("stack", "flextensional")
+"""Kinds of actuators in the catalogue."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class CatalogueActuator:
-    """One actuator as its data sheet prints it; what the sheet does not print is None.
+    """Commercial actuator by its data sheet; None stands for values missing there.
 
     Parameters
     ----------
     name : str
-        Its name in commands and rig files, such as "sa050510".
+        Name in commands and rig files, such as "sa050510".
     title : str
-        Maker, type and size.
+        Manufacturer, type and size.
     kind : str
         "stack" or "flextensional".
     source : str
-        Where the numbers were read.
+        Source of the data.
     stroke : float
         Stroke with both ends free, well below resonance. [m]
     stroke_voltage : float
-        Change of voltage that gives it. [V]
+        Change of voltage for that stroke. [V]
     free_capacitance : float
-        Capacitance with both ends free, at small signals. [F]
+        Small-signal capacitance with both ends free. [F]
     resonance_frequency : float
         Lowest resonance with both ends free. [Hz]
     blocked_force : float or None
-        Force on held ends for the same change of voltage. [N]
+        Force on blocked ends for the same change of voltage. [N]
     actuator_mass : float or None
-        Mass of the whole. [kg]
+        Total mass. [kg]
     lowest_voltage : float or None
-        Lowest voltage it bears. [V]
+        Lowest admissible voltage. [V]
     highest_voltage : float or None
-        Highest voltage it bears. [V]
+        Highest admissible voltage. [V]
     tension_limit : float or None
-        Most it may be pulled without preload. [N]
+        Largest admissible tension without preload. [N]
     preload_limit : float or None
-        Most it may be pressed at rest. [N]
+        Largest admissible preload. [N]
     note : str
-        What else to know of it, such as numbers of the sheet that disagree.
+        Remarks, such as inconsistent numbers of the data sheet.
 
     Raises
     ------
     InvalidInput
-        If a number is not positive, the limits of the voltage are in the wrong order, or the kind is unknown.
+        If a number is not positive, or the voltage limits are in the wrong order.
+    UnknownName
+        If the kind is unknown.
     """
 
     name: str
@@ -85,12 +87,12 @@ class CatalogueActuator:
         require_finite(lowest_voltage=low or 0.0, highest_voltage=high or 0.0)
         if low is not None and high is not None and low >= high:
             raise InvalidInput(f"lowest_voltage must lie below highest_voltage, {high!r} V, got {low!r} V")
-        if self.kind not in KINDS:
-            raise UnknownName.among(KINDS, kind="kind of actuator", name=self.kind)
+        if self.kind not in ACTUATOR_KINDS:
+            raise UnknownName.among(ACTUATOR_KINDS, kind="kind of actuator", name=self.kind)
 
     @property
     def complete(self) -> bool:
-        """Whether the sheet says enough to compute with."""
+        """Whether the data sheet has everything that a computation needs."""
         return self.blocked_force is not None
 
     @property
@@ -100,7 +102,7 @@ class CatalogueActuator:
         Raises
         ------
         MissingProperty
-            If the sheet prints no blocked force.
+            If the data sheet has no blocked force.
         """
         if self.blocked_force is None:
             raise MissingProperty(
@@ -110,43 +112,56 @@ class CatalogueActuator:
 
     @property
     def moving_mass(self) -> float:
-        """Mass as printed, or else as the resonance and the stiffness imply it, in kg.
+        r"""Mass of the data sheet, or else the one that resonance and stiffness imply, in kg.
 
-        A bar with free ends resonates at half the root of stiffness over mass; an amplified one, whose ends move and
-        whose frame bends, has at its ends what the stiffness carries at the resonance.
+        A stack is taken as a uniform bar with free ends, f = sqrt(k/m)/2; a flextensional actuator as its effective
+        mass on its stiffness, f = sqrt(k/m)/(2 pi).
         """
         if self.actuator_mass is not None:
             return self.actuator_mass
-        turn = 2 if self.kind == "stack" else 2 * math.pi
-        return self.stiffness / (turn * self.resonance_frequency) ** 2
+        factor = 2 if self.kind == "stack" else 2 * math.pi
+        return self.stiffness / (factor * self.resonance_frequency) ** 2
 
 
 def catalogue_names() -> tuple[str, ...]:
-    """Return the names of all actuators of the house's own catalogue, in order of the alphabet."""
-    return tuple(sorted(_own()))
+    """Names of all actuators of the built-in catalogue, in alphabetical order.
+
+    Returns
+    -------
+    tuple of str
+    """
+    return tuple(sorted(_built_in()))
 
 
 def catalogue_actuator(name: str) -> CatalogueActuator:
-    """Return the actuator of this name.
+    """Actuator of the built-in catalogue by name.
+
+    Parameters
+    ----------
+    name : str
+
+    Returns
+    -------
+    CatalogueActuator
 
     Raises
     ------
     UnknownName
-        If there is none.
+        If there is no such actuator.
     """
     try:
-        return _own()[name]
+        return _built_in()[name]
     except KeyError:
-        raise UnknownName.among(_own(), kind="actuator", name=name) from None
+        raise UnknownName.among(_built_in(), kind="actuator", name=name) from None
 
 
 def read_catalogue(path: str | Path) -> Mapping[str, CatalogueActuator]:
-    """Return the actuators of a file laid out as the house's own: a table to an actuator, numbers in SI.
+    """Actuators of a catalogue file in the format of the built-in one: one table per actuator, numbers in SI.
 
     Parameters
     ----------
     path : str or Path
-        TOML, with a table `sources` of citations by the words that the entries' `source` uses.
+        TOML file, with a table `sources` of citations by the keys used in the entries' `source`.
 
     Returns
     -------
@@ -155,7 +170,7 @@ def read_catalogue(path: str | Path) -> Mapping[str, CatalogueActuator]:
     Raises
     ------
     InvalidInput
-        In one line that names the file and the entry.
+        If the file cannot be read or an entry is not valid; the message names file and entry.
     """
     try:
         found = _actuators(Path(path).read_text(encoding="utf-8-sig"))
@@ -164,7 +179,7 @@ def read_catalogue(path: str | Path) -> Mapping[str, CatalogueActuator]:
     except (tomllib.TOMLDecodeError, InvalidInput, UnknownName) as failure:
         raise InvalidInput(f"{path}: {failure}") from None
     if not found:
-        raise InvalidInput(f"{path}: holds no actuator")
+        raise InvalidInput(f"{path}: holds no actuator; give each one a table of its own")
     return found
 
 
@@ -175,42 +190,44 @@ def catalogue_stack(
     mechanical_quality_factor: float,
     preload: float | None = None,
 ) -> PiezoStack:
-    """Return the stack that acts between its ends as the actuator does.
+    r"""Equivalent stack of a commercial actuator.
 
     Parameters
     ----------
     actuator : CatalogueActuator
     frequency : float
-        Frequency at which the stack is to lose what its quality factor says. [Hz]
+        Frequency at which the damping corresponds to the quality factor. [Hz]
     mechanical_quality_factor : float
-        Quality factor of its material; sheets do not print it, data of ceramics do. []
+        Quality factor of its material, from the data of the ceramic. []
     preload : float or None
         Compression at rest. [N]
 
     Returns
     -------
     PiezoStack
-        Its whole mass is counted with the body behind it.
+        Its whole mass is attributed to the body at its back.
 
     Raises
     ------
     InvalidInput
-        If frequency or quality factor is not positive, the preload more than the sheet allows, or the sheet's numbers
-        imply more energy out than in.
+        If frequency or quality factor is not positive, the preload above the limit of the data sheet, or its numbers
+        imply a coupling factor above one.
     MissingProperty
-        If the sheet prints no blocked force.
+        If the data sheet has no blocked force.
 
     Notes
     -----
-    Stroke, force and capacitance are those of the sheet, though the first two belong to large signals and the last to
-    small ones: within a third of what a drive of some volts finds. Damping is k_p/(2 pi f Q), as of a material whose
-    loss does not depend on frequency.
+    Stroke and force of data sheets are large-signal values and the capacitance is a small-signal one, so that they are
+    within a third of the values at a drive of some volts. The damping is that of a loss factor independent of
+    frequency,
+
+    .. math:: c_p = \frac{k_p}{2\pi f Q}
     """
     quality = float(require_positive(mechanical_quality_factor=mechanical_quality_factor))
     f = float(require_positive(frequency=frequency))
     if preload is not None and actuator.preload_limit is not None and preload > actuator.preload_limit:
         raise InvalidInput(
-            f"preload must not exceed {actuator.preload_limit:g} N, which {actuator.name} bears, got {preload:g} N"
+            f"preload must not exceed {actuator.preload_limit:g} N, the limit of {actuator.name}, got {preload:g} N"
         )
     return PiezoStack(
         free_capacitance=actuator.free_capacitance,
@@ -225,27 +242,30 @@ def catalogue_stack(
 
 
 @cache
-def _own() -> Mapping[str, CatalogueActuator]:
+def _built_in() -> Mapping[str, CatalogueActuator]:
+    """Actuators of the built-in catalogue."""
     return _actuators(files("sonolube.actuator").joinpath("catalogue.toml").read_text(encoding="utf-8"))
 
 
 def _actuators(text: str) -> Mapping[str, CatalogueActuator]:
+    """Actuators of the text of a catalogue file."""
     content = tomllib.loads(text)
     sources = content.pop("sources", {})
     return MappingProxyType({name: _actuator(name, entry, sources) for name, entry in content.items()})
 
 
 def _actuator(name: str, entry: Any, sources: Mapping[str, str]) -> CatalogueActuator:
+    """Actuator of one table, with its source spelled out."""
     if not isinstance(entry, dict):
         raise InvalidInput(f"{name}: must be a table")
-    known = set(CatalogueActuator.__dataclass_fields__) - {"name"}
-    if unknown := sorted(set(entry) - known):
-        raise UnknownName.among(known, kind=f"entry of {name}", name=unknown[0])
+    keys = set(CatalogueActuator.__dataclass_fields__) - {"name"}
+    if unknown := sorted(set(entry) - keys):
+        raise UnknownName.among(keys, kind=f"entry of {name}", name=unknown[0])
     needed = ("title", "kind", "source", "stroke", "stroke_voltage", "free_capacitance", "resonance_frequency")
     if missing := [key for key in needed if key not in entry]:
         raise InvalidInput(f"{name}.{missing[0]}: missing")
     try:
-        found = CatalogueActuator(name=name, **entry)
+        actuator = CatalogueActuator(name=name, **entry)
     except (InvalidInput, UnknownName) as refusal:
         raise InvalidInput(f"{name}: {refusal}") from None
-    return replace(found, source=sources.get(found.source, found.source))
+    return replace(actuator, source=sources.get(actuator.source, actuator.source))

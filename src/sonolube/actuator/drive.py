@@ -1,4 +1,4 @@
-"""The electrical drive of an actuator."""
+"""Electrical drive of an actuator: voltage, frequency, waveform and ramp."""
 
 from dataclasses import dataclass
 
@@ -8,30 +8,30 @@ from sonolube.errors import InvalidInput
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Drive:
-    """A periodic drive voltage, and how it is switched on.
+    """Periodic drive voltage and its ramp at switch-on.
 
     Parameters
     ----------
     voltage_peak_to_peak : float or None
-        Difference of the highest and the lowest voltage; None where the supply does not tell. [V]
+        Difference of the highest and the lowest voltage; None where it is unknown. [V]
     voltage_offset : float
         Mean voltage. [V]
     frequency : float
         Repetition frequency. [Hz]
     waveform : str
-        Shape of one period, such as "sine"; "sampled" for the one that the samples tell.
+        Shape of one period, such as "sine"; "sampled" for that of `waveform_samples`.
     waveform_samples : sequence of float or None
-        Equally spaced samples of one period in any unit; their mean and height do not matter.
+        Equally spaced samples of one period in any unit; offset and scale are irrelevant.
     ramp_duration : float
-        Time over which voltage and offset come up from nothing; zero for a switch. [s]
+        Time over which voltage and offset rise from zero; zero for a step. [s]
     ramp_shape : str
-        How they come up, such as "linear".
+        Shape of the rise, such as "linear".
 
     Raises
     ------
     InvalidInput
-        If a value is not finite, a voltage swing or duration negative, the frequency not positive, or samples are given
-        for another waveform than "sampled", or none for that.
+        If a value is not finite, a peak-to-peak voltage or duration negative, the frequency not positive, or samples
+        are given for a waveform other than "sampled", or missing for that one.
     """
 
     frequency: float

@@ -1,4 +1,4 @@
-"""Electrical power and current that a capacitive actuator draws from its amplifier."""
+"""Electrical power and current of a capacitive actuator: amplifier power, dissipation, power factor, peak current."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -8,17 +8,17 @@ from sonolube.checks import Floats, require_finite_complex, require_non_negative
 _POINTS_PER_WAVE = 32  # peaks between points are missed by at most 1 - cos(pi/32), half a percent
 
 
-def driver_power(
+def linear_amplifier_power(
     *, capacitance: ArrayLike, voltage_maximum: ArrayLike, voltage_peak_to_peak: ArrayLike, frequency: ArrayLike
 ) -> Floats:
-    """Return the mean power a linear amplifier takes from its supply to drive a capacitance. [W]
+    r"""Mean power that a linear amplifier draws from its supply to drive a capacitance. [W]
 
     Parameters
     ----------
     capacitance : array_like
         Capacitance of the actuator. [F]
     voltage_maximum : array_like
-        Highest voltage that the drive reaches, the offset included. [V]
+        Highest voltage of the drive, its offset included. [V]
     voltage_peak_to_peak : array_like
         Peak-to-peak voltage of the drive. [V]
     frequency : array_like
@@ -35,9 +35,10 @@ def driver_power(
 
     Notes
     -----
-    The charge C U_pp, drawn f times a second from a supply at U_max and returned to ground. The actuator gives this
-    reactive power back and the amplifier turns it to heat; what the actuator itself dissipates is half the real part of
-    voltage times conjugate current.
+    .. math:: P_a = C\, U_{max}\, U_{pp}\, f \quad\text{(D 1.9)}
+
+    The charge C U_pp is drawn f times a second from a supply at U_max and returned to ground. The actuator returns this
+    reactive energy and the amplifier dissipates it; the actuator itself dissipates `dissipated_power`.
 
     References
     ----------
@@ -50,7 +51,7 @@ def driver_power(
 
 
 def dissipated_power(*, admittance: ArrayLike, voltage_amplitude: ArrayLike) -> Floats:
-    """Return the mean power that the actuator and what it drives turn to heat or pass on. [W]
+    r"""Mean real power drawn by an actuator: dissipated in it or transmitted to what it drives. [W]
 
     Parameters
     ----------
@@ -70,7 +71,9 @@ def dissipated_power(*, admittance: ArrayLike, voltage_amplitude: ArrayLike) -> 
 
     Notes
     -----
-    Re(V I*)/2. The powers of the harmonics of a periodic drive add.
+    .. math:: P = \tfrac12\, \mathrm{Re}(V I^*) = \tfrac12\, \mathrm{Re}\, Y\, |V|^2
+
+    The powers of the harmonics of a periodic drive add.
     """
     y = require_finite_complex(admittance=admittance)
     volts = require_finite_complex(voltage_amplitude=voltage_amplitude)
@@ -78,7 +81,7 @@ def dissipated_power(*, admittance: ArrayLike, voltage_amplitude: ArrayLike) -> 
 
 
 def power_factor(*, admittance: ArrayLike, voltage_amplitude: ArrayLike) -> Floats:
-    """Return dissipated power over the product of effective voltage and current. []
+    r"""Power factor: dissipated power over the product of root-mean-square voltage and current. []
 
     Parameters
     ----------
@@ -96,6 +99,12 @@ def power_factor(*, admittance: ArrayLike, voltage_amplitude: ArrayLike) -> Floa
     ------
     InvalidInput
         If a value is not finite.
+
+    Notes
+    -----
+    .. math::
+
+        \lambda = \frac{\sum_n \mathrm{Re}\, Y_n |V_n|^2}{\sqrt{\sum_n |V_n|^2 \sum_n |Y_n V_n|^2}}
     """
     y = np.atleast_1d(require_finite_complex(admittance=admittance))
     volts = np.atleast_1d(require_finite_complex(voltage_amplitude=voltage_amplitude))
@@ -106,7 +115,7 @@ def power_factor(*, admittance: ArrayLike, voltage_amplitude: ArrayLike) -> Floa
 
 
 def peak_current(*, admittance: ArrayLike, voltage_amplitude: ArrayLike) -> Floats:
-    """Return the highest current that the amplifier has to deliver, either way. [A]
+    """Greatest magnitude of the current over a period of a periodic voltage. [A]
 
     Parameters
     ----------
@@ -118,7 +127,7 @@ def peak_current(*, admittance: ArrayLike, voltage_amplitude: ArrayLike) -> Floa
     Returns
     -------
     ndarray, shape (...)
-        From below within half a percent; exact for n = 1.
+        A lower bound within half a percent; exact for n = 1.
 
     Raises
     ------
@@ -127,8 +136,8 @@ def peak_current(*, admittance: ArrayLike, voltage_amplitude: ArrayLike) -> Floa
 
     Notes
     -----
-    A square or sawtooth voltage asks a capacitance for a current that grows with every harmonic counted: there the
-    amplifier's own limits decide.
+    For a square or sawtooth voltage on a capacitance it grows with the number of harmonics, and is limited in practice
+    by the amplifier.
     """
     y = require_finite_complex(admittance=admittance)
     current = np.atleast_1d(y * require_finite_complex(voltage_amplitude=voltage_amplitude))

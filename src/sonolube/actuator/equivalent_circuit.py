@@ -1,4 +1,4 @@
-"""Butterworth-Van Dyke circuits: a vibrating actuator as its amplifier sees it."""
+"""Butterworth-Van Dyke equivalent circuit of a vibrating actuator: admittance and resonances."""
 
 import math
 from dataclasses import dataclass
@@ -10,17 +10,17 @@ from sonolube.checks import Complexes, Floats, require_non_negative, require_pos
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Branch:
-    """One mode of vibration: resistance, inductance and capacitance in series.
+class MotionalBranch:
+    """Motional branch of one mode: resistance, inductance and capacitance in series.
 
     Parameters
     ----------
     resistance : float
-        Damping of the mode, seen electrically. [ohm]
+        Motional resistance, equivalent to the damping of the mode. [ohm]
     inductance : float
-        Mass of the mode, seen electrically. [H]
+        Motional inductance, equivalent to the modal mass. [H]
     capacitance : float
-        Compliance of the mode, seen electrically. [F]
+        Motional capacitance, equivalent to the modal compliance. [F]
 
     Raises
     ------
@@ -39,16 +39,16 @@ class Branch:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ButterworthVanDyke:
-    """A capacitance with one branch beside it for each mode, behind the resistance of the leads.
+    """Butterworth-Van Dyke circuit: capacitance, motional branches in parallel with it, and a series resistance.
 
     Parameters
     ----------
     parallel_capacitance : float
-        Capacitance with all modes held still. [F]
-    branches : tuple of Branch
-        The modes; their order does not matter.
+        Capacitance with all modes blocked. [F]
+    branches : tuple of MotionalBranch
+        Motional branches, in any order.
     series_resistance : float
-        Resistance of leads and electrodes. [ohm]
+        Resistance of leads and electrodes in series with the rest. [ohm]
 
     Raises
     ------
@@ -61,7 +61,7 @@ class ButterworthVanDyke:
     """
 
     parallel_capacitance: float
-    branches: tuple[Branch, ...]
+    branches: tuple[MotionalBranch, ...]
     series_resistance: float = 0.0
 
     def __post_init__(self) -> None:
@@ -70,17 +70,17 @@ class ButterworthVanDyke:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Resonances:
-    """The modes of a circuit without losses, in order of frequency.
+class CircuitResonances:
+    """Resonances of a lossless circuit, in order of frequency.
 
     Parameters
     ----------
     series_frequency : ndarray, shape (n,)
-        Where the admittance peaks: the mode short-circuited. [Hz]
+        Frequency of the admittance peak: short-circuit natural frequency. [Hz]
     parallel_frequency : ndarray, shape (n,)
-        Where the impedance peaks next: the mode open-circuited. [Hz]
+        Frequency of the next impedance peak: open-circuit natural frequency. [Hz]
     mechanical_quality_factor : ndarray, shape (n,)
-        Quality factor of the branch; infinite without resistance. []
+        Quality factor of the motional branch; infinite without resistance. []
     coupling_factor : ndarray, shape (n,)
         Effective coupling factor, sqrt(1 - (f_s/f_p)^2). []
     """
@@ -92,7 +92,7 @@ class Resonances:
 
 
 def circuit_admittance(circuit: ButterworthVanDyke, *, frequency: ArrayLike) -> Complexes:
-    """Return current per voltage, complex. [S]
+    r"""Complex admittance of a Butterworth-Van Dyke circuit. [S]
 
     Parameters
     ----------
@@ -108,6 +108,14 @@ def circuit_admittance(circuit: ButterworthVanDyke, *, frequency: ArrayLike) -> 
     ------
     InvalidInput
         If a frequency is not positive.
+
+    Notes
+    -----
+    With :math:`s = i\omega`, the parallel capacitance :math:`C_0` and the series resistance :math:`R_s`
+
+    .. math::
+
+        Y_0 = s C_0 + \sum_i \frac{s C_i}{1 + s C_i (R_i + s L_i)}, \qquad Y = \frac{Y_0}{1 + R_s Y_0}
     """
     s = 2j * np.pi * require_positive(frequency=frequency)
     y = s * circuit.parallel_capacitance
@@ -116,8 +124,8 @@ def circuit_admittance(circuit: ButterworthVanDyke, *, frequency: ArrayLike) -> 
     return np.asarray(y / (1 + circuit.series_resistance * y))
 
 
-def resonances(circuit: ButterworthVanDyke) -> Resonances:
-    """Return the frequencies, quality factors and coupling factors of the circuit's modes.
+def circuit_resonances(circuit: ButterworthVanDyke) -> CircuitResonances:
+    r"""Series and parallel resonances, quality factors and effective coupling factors of a circuit.
 
     Parameters
     ----------
@@ -125,27 +133,33 @@ def resonances(circuit: ButterworthVanDyke) -> Resonances:
 
     Returns
     -------
-    Resonances
+    CircuitResonances
 
     Notes
     -----
-    Frequencies are those without losses. Between each series resonance and the next lies one parallel one, to which
-    every branch and the parallel capacitance contribute: together they are the roots of
-    C_0 + sum C_i/(1 - (f/f_i)^2), found as eigenvalues of diag(omega_i^2) + v v^T/C_0 with v_i^2 = 1/L_i.
+    Without losses. One parallel resonance lies between each series resonance and the next; all of them are the roots of
+
+    .. math:: C_0 + \sum_i \frac{C_i}{1 - (f/f_i)^2} = 0
+
+    and the eigenvalues of :math:`\mathrm{diag}(\omega_i^2) + v v^\mathsf{T}/C_0` with :math:`v_i^2 = 1/L_i`. With
+    these
+
+    .. math:: Q_i = \frac{1}{R_i}\sqrt{\frac{L_i}{C_i}}, \qquad k_i = \sqrt{1 - (f_s/f_p)^2}
     """
     modes = sorted(circuit.branches, key=lambda branch: -branch.inductance * branch.capacitance)
     inductance = np.array([branch.inductance for branch in modes])
     squares = 1 / (inductance * np.array([branch.capacitance for branch in modes]))
     v = 1 / np.sqrt(inductance * circuit.parallel_capacitance)
     opened = np.linalg.eigvalsh(np.diag(squares) + np.multiply.outer(v, v)) if modes else squares
-    return Resonances(
+    return CircuitResonances(
         series_frequency=np.sqrt(squares) / (2 * np.pi),
         parallel_frequency=np.sqrt(opened) / (2 * np.pi),
-        mechanical_quality_factor=np.array([_quality(branch) for branch in modes]),
+        mechanical_quality_factor=np.array([_quality_factor(branch) for branch in modes]),
         coupling_factor=np.sqrt(np.maximum(1 - squares / opened, 0.0)),
     )
 
 
-def _quality(branch: Branch) -> float:
+def _quality_factor(branch: MotionalBranch) -> float:
+    """Quality factor of a motional branch."""
     lossless = branch.resistance == 0
     return math.inf if lossless else math.sqrt(branch.inductance / branch.capacitance) / branch.resistance

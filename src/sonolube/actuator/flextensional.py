@@ -1,4 +1,4 @@
-"""Amplified actuators: a stack in a frame that trades force for stroke, as its data sheet describes it."""
+"""Flextensional actuators by their data sheet, and stacks behind an ideal displacement amplifier."""
 
 import math
 from dataclasses import dataclass
@@ -10,33 +10,35 @@ from sonolube.errors import InvalidInput
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class FlextensionalActuator:
-    """A flextensional actuator by its data sheet.
+    r"""Flextensional (amplified) actuator by its data sheet.
 
     Parameters
     ----------
     stroke : float
         Stroke with both ends free, well below resonance. [m]
     stroke_voltage : float
-        Change of voltage that gives it. [V]
+        Change of voltage for that stroke. [V]
     blocked_force : float
-        Force on held ends for the same change of voltage: stroke times stiffness. [N]
+        Force on blocked ends for the same change of voltage: stroke times stiffness. [N]
     resonance_frequency : float
-        Lowest resonance, mounted as the effective mass is wanted: with one end held, or with both free. [Hz]
+        Lowest resonance in the mounting of interest: one end fixed, or both free. [Hz]
     free_capacitance : float
         Capacitance with both ends free. [F]
     actuator_mass : float
-        Mass of the whole. [kg]
+        Total mass. [kg]
     mechanical_quality_factor : float
         Quality factor of that resonance. []
 
     Raises
     ------
     InvalidInput
-        If a value is not positive, or the resonance so low that more than the whole mass would have to move.
+        If a value is not positive, or the effective mass would exceed the total mass.
 
     Notes
     -----
-    For frequencies up to the first resonance, which alone the data sheet describes.
+    Valid up to the first resonance, the only one in a data sheet. With blocked force F, stroke d and resonance f
+
+    .. math:: k = \frac{F}{d}, \qquad m_\mathrm{eff} = \frac{k}{(2\pi f)^2}
     """
 
     stroke: float
@@ -71,16 +73,16 @@ class FlextensionalActuator:
 
     @property
     def effective_mass(self) -> float:
-        """Mass which that stiffness carries at the resonance, in kg.
+        """Effective mass of the resonance at that stiffness, in kg.
 
-        For a resonance with one end held, the mass at the other; for one with both ends free their reduced mass, so
-        that each of two equal ends has twice as much.
+        With one end fixed it is the mass at the other end; with both free it is the reduced mass of the two, so that
+        each of two equal ends has twice as much.
         """
         return self.stiffness / (2 * math.pi * self.resonance_frequency) ** 2
 
 
 def equivalent_stack(actuator: FlextensionalActuator) -> PiezoStack:
-    """Return the stack without mass that acts as the actuator does between its ends.
+    r"""Massless stack with the stroke, stiffness, damping and capacitance of a flextensional actuator.
 
     Parameters
     ----------
@@ -89,12 +91,16 @@ def equivalent_stack(actuator: FlextensionalActuator) -> PiezoStack:
     Returns
     -------
     PiezoStack
-        Goes with `effective_mass`, which the chain has to carry at the ends.
+        To be used with the effective mass at the ends.
 
     Raises
     ------
     InvalidInput
-        If stroke, force and capacitance would give more energy than the drive puts in.
+        If stroke, force and capacitance imply a coupling factor above one.
+
+    Notes
+    -----
+    The damping is that of the quality factor Q, :math:`c = \sqrt{k\, m_\mathrm{eff}}/Q`.
     """
     impedance = math.sqrt(actuator.stiffness * actuator.effective_mass)
     return PiezoStack(
@@ -105,20 +111,20 @@ def equivalent_stack(actuator: FlextensionalActuator) -> PiezoStack:
     )
 
 
-def amplified(stack: PiezoStack, *, amplification_ratio: float) -> PiezoStack:
-    """Return the stack as it acts through an ideal lever.
+def lever_amplified_stack(stack: PiezoStack, *, amplification_ratio: float) -> PiezoStack:
+    """Equivalent stack at the output of an ideal displacement amplifier (lever).
 
     Parameters
     ----------
     stack : PiezoStack
     amplification_ratio : float
-        Stroke at the lever's end over that of the stack, n. []
+        Output stroke over that of the stack, n. []
 
     Returns
     -------
     PiezoStack
-        Stroke times n, forces over n; stiffness, damping and mass over n squared; capacitance and voltages as they
-        are.
+        Stroke multiplied by n, forces divided by n, stiffness, damping and mass by n squared; capacitance and voltages
+        are unchanged.
 
     Raises
     ------
@@ -127,8 +133,8 @@ def amplified(stack: PiezoStack, *, amplification_ratio: float) -> PiezoStack:
 
     Notes
     -----
-    A lever neither stores nor loses energy, so the coupling factor stays. Real frames bend: their own stiffness lowers
-    the coupling factor, and data sheets tell by how much.
+    An ideal lever neither stores nor dissipates energy, so that the coupling factor is unchanged. The compliance of
+    real frames lowers it.
     """
     n = float(require_positive(amplification_ratio=amplification_ratio))
     return PiezoStack(

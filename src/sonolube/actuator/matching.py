@@ -1,4 +1,4 @@
-"""Networks between amplifier and actuator, which spare the amplifier the reactive part of the current."""
+"""Impedance matching between amplifier and actuator: reactive networks of one or two elements."""
 
 import math
 from collections.abc import Callable
@@ -18,33 +18,33 @@ from sonolube.checks import (
 )
 from sonolube.errors import InvalidInput, OutsideRange
 
-Admittance = Callable[[Floats], NDArray[np.complexfloating[Any, Any]]]
-"""Current per voltage of an actuator at frequencies, complex."""
+AdmittanceFunction = Callable[[Floats], NDArray[np.complexfloating[Any, Any]]]
+"""Function from frequencies in Hz to the complex admittance of an actuator in S."""
 
-_WIDEST = 0.5  # of the frequency, how far a band is looked for
+_WIDEST = 0.5  # of the frequency, to either side, up to which a band edge is searched
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class MatchingNetwork:
-    """One or two reactive elements between amplifier and actuator; what is not there is None.
+    """Matching network of up to two reactive elements between amplifier and actuator; None for absent elements.
 
     Parameters
     ----------
     series_inductance : float or None
-        Inductor in the line. [H]
+        Inductor in series. [H]
     series_capacitance : float or None
-        Capacitor in the line, instead. [F]
+        Capacitor in series, instead. [F]
     shunt_inductance : float or None
-        Inductor across the line. [H]
+        Inductor in parallel. [H]
     shunt_capacitance : float or None
-        Capacitor across the line, instead. [F]
+        Capacitor in parallel, instead. [F]
     shunt_at_source : bool
-        Whether that across the line lies on the amplifier's side of the other.
+        Whether the shunt element is on the amplifier's side of the series one.
 
     Raises
     ------
     InvalidInput
-        If a value is not positive, or a place holds both kinds.
+        If a value is not positive, or both a capacitor and an inductor are in the same place.
     """
 
     series_inductance: float | None = None
@@ -60,16 +60,16 @@ class MatchingNetwork:
             require_positive(**given)
         for place in ("series", "shunt"):
             if f"{place}_inductance" in given and f"{place}_capacitance" in given:
-                raise InvalidInput(f"{place}_inductance and {place}_capacitance are one place: give one of them")
+                raise InvalidInput(f"{place}_inductance and {place}_capacitance are alternatives: give one of them")
 
 
 def parallel_inductor(*, admittance: complex, frequency: float) -> MatchingNetwork:
-    """Return the inductor across the actuator with which it draws real power only, at one frequency.
+    r"""Shunt inductor that compensates the capacitance of an actuator at one frequency: unity power factor.
 
     Parameters
     ----------
     admittance : complex
-        Of the actuator there, with what it drives. [S]
+        Admittance of the loaded actuator at that frequency. [S]
     frequency : float
         Frequency of the drive. [Hz]
 
@@ -80,62 +80,79 @@ def parallel_inductor(*, admittance: complex, frequency: float) -> MatchingNetwo
     Raises
     ------
     InvalidInput
-        If the actuator is not capacitive there.
+        If the actuator is not capacitive at that frequency.
+
+    Notes
+    -----
+    .. math:: L_p = \frac{1}{\omega\, \mathrm{Im}\, Y}
     """
     y, omega = _capacitive(admittance, frequency)
     return MatchingNetwork(**_shunt(-y.imag, omega))
 
 
 def series_inductor(*, admittance: complex, frequency: float) -> MatchingNetwork:
-    """Return the inductor in the line with which the actuator draws real power only, at one frequency.
+    r"""Series inductor that compensates the reactance of an actuator at one frequency: unity power factor.
 
     Parameters
     ----------
     admittance : complex
-        Of the actuator there, with what it drives. [S]
+        Admittance of the loaded actuator at that frequency. [S]
     frequency : float
         Frequency of the drive. [Hz]
 
     Returns
     -------
     MatchingNetwork
-        The actuator's voltage is then the amplifier's, times `voltage_gain`.
+        The voltage on the actuator is that of the amplifier times `voltage_gain`.
 
     Raises
     ------
     InvalidInput
-        If the actuator is not capacitive there.
+        If the actuator is not capacitive at that frequency.
+
+    Notes
+    -----
+    .. math:: L_s = -\frac{\mathrm{Im}(1/Y)}{\omega}
     """
     y, omega = _capacitive(admittance, frequency)
     return MatchingNetwork(**_series(-(1 / y).imag, omega))
 
 
 def l_match(*, admittance: complex, frequency: float, source_resistance: float) -> MatchingNetwork:
-    """Return two elements with which the actuator looks like a resistance, at one frequency.
+    r"""L-section of two elements that transforms an actuator's admittance to a resistance at one frequency.
 
     Parameters
     ----------
     admittance : complex
-        Of the actuator there, with what it drives. [S]
+        Admittance of the loaded actuator at that frequency. [S]
     frequency : float
         Frequency of the drive. [Hz]
     source_resistance : float
-        Resistance to look like. [ohm]
+        Input resistance of the matched network. [ohm]
 
     Returns
     -------
     MatchingNetwork
-        With an inductor in the line, of the two networks that there are.
+        Of the two solutions, the one with an inductor in series.
 
     Raises
     ------
     InvalidInput
-        If a value is not positive, or the actuator takes no power there.
+        If a value is not positive, or the actuator draws no real power at that frequency.
 
     Notes
     -----
-    Where the resistance wanted is below that of the actuator seen as elements in parallel, 1/G, one element across it
-    lowers it, and one in the line takes out what reactance is left. Else one in the line raises it first.
+    For an input resistance R below the parallel resistance 1/G of the actuator, a shunt element at the actuator lowers
+    the resistance to R and a series element cancels the remaining reactance:
+
+    .. math:: \mathrm{Re}\frac{1}{G + iB} = R, \qquad B = \sqrt{G/R - G^2}
+
+    Otherwise the series element comes first, with the reactance X that makes :math:`\mathrm{Re}\,1/(R_a + iX) = 1/R`
+    for the series resistance :math:`R_a` of the actuator, and the shunt element is at the amplifier.
+
+    References
+    ----------
+    .. [1] D. M. Pozar, Microwave Engineering, 4th ed., Wiley (2012), section 5.1.
     """
     y = complex(require_finite_complex(admittance=admittance))
     r = float(require_positive(source_resistance=source_resistance))
@@ -143,24 +160,24 @@ def l_match(*, admittance: complex, frequency: float, source_resistance: float) 
     if y.real <= 0:
         raise InvalidInput(f"admittance must have a positive real part to be matched, got {y:.4g} S")
     if y.real * r <= 1:
-        # Re 1/(G + jB) = R_s; the positive root leaves a capacitive rest, which an inductor in the line takes out
+        # the positive root leaves a capacitive reactance, which a series inductor cancels
         susceptance = math.sqrt(y.real / r - y.real**2)
         rest = 1 / complex(y.real, susceptance)
         return MatchingNetwork(**_series(-rest.imag, omega), **_shunt(susceptance - y.imag, omega))
     z = 1 / y
-    reactance = math.sqrt(z.real * r - z.real**2)  # Re 1/(R + jX) = 1/R_s; positive, so that an inductor does it
+    reactance = math.sqrt(z.real * r - z.real**2)  # the positive root, of a series inductor
     across = -(1 / complex(z.real, reactance)).imag
     return MatchingNetwork(**_series(reactance - z.imag, omega), **_shunt(across, omega), shunt_at_source=True)
 
 
 def input_admittance(network: MatchingNetwork, *, admittance: ArrayLike, frequency: ArrayLike) -> Complexes:
-    """Return what the amplifier sees, complex. [S]
+    """Complex input admittance of a matching network with an actuator. [S]
 
     Parameters
     ----------
     network : MatchingNetwork
     admittance : array_like
-        Of the actuator. [S]
+        Admittance of the actuator. [S]
     frequency : array_like, broadcast against `admittance`
         Frequency of the drive. [Hz]
 
@@ -182,13 +199,13 @@ def input_admittance(network: MatchingNetwork, *, admittance: ArrayLike, frequen
 
 
 def voltage_gain(network: MatchingNetwork, *, admittance: ArrayLike, frequency: ArrayLike) -> Complexes:
-    """Return voltage of the actuator over that of the amplifier, complex. []
+    """Complex ratio of the voltage on the actuator to that of the amplifier. []
 
     Parameters
     ----------
     network : MatchingNetwork
     admittance : array_like
-        Of the actuator. [S]
+        Admittance of the actuator. [S]
     frequency : array_like, broadcast against `admittance`
         Frequency of the drive. [Hz]
 
@@ -208,13 +225,13 @@ def voltage_gain(network: MatchingNetwork, *, admittance: ArrayLike, frequency: 
 
 
 def matched_power_factor(network: MatchingNetwork, *, admittance: ArrayLike, frequency: ArrayLike) -> Floats:
-    """Return the power factor that the amplifier sees under a sine. []
+    """Power factor at the input of a matching network under a sinusoidal voltage. []
 
     Parameters
     ----------
     network : MatchingNetwork
     admittance : array_like
-        Of the actuator. [S]
+        Admittance of the actuator. [S]
     frequency : array_like, broadcast against `admittance`
         Frequency of the drive. [Hz]
 
@@ -227,29 +244,29 @@ def matched_power_factor(network: MatchingNetwork, *, admittance: ArrayLike, fre
     InvalidInput
         If a value is not finite, or a frequency not positive.
     """
-    seen = input_admittance(network, admittance=admittance, frequency=frequency)
-    return np.asarray(seen.real / np.abs(seen))
+    total = input_admittance(network, admittance=admittance, frequency=frequency)
+    return np.asarray(total.real / np.abs(total))
 
 
 def matched_band(
-    network: MatchingNetwork, actuator: Admittance, *, frequency: float, least_power_factor: float = 0.9
+    network: MatchingNetwork, actuator: AdmittanceFunction, *, frequency: float, least_power_factor: float = 0.9
 ) -> tuple[float, float]:
-    """Return the frequencies between which the power factor stays above a bound, in Hz.
+    """Frequency band around the matched frequency in which the power factor stays above a bound, in Hz.
 
     Parameters
     ----------
     network : MatchingNetwork
     actuator : callable
-        Returns its admittance, complex, at an array of frequencies in Hz.
+        Function from an array of frequencies in Hz to complex admittances.
     frequency : float
-        Frequency at which the network matches. [Hz]
+        Frequency at which the network is matched. [Hz]
     least_power_factor : float
-        That bound. []
+        Lower bound of the power factor. []
 
     Returns
     -------
-    pair of float
-        Not beyond half and one and a half of the frequency.
+    low, high : float
+        Between half and one and a half of the matched frequency.
 
     Raises
     ------
@@ -261,39 +278,44 @@ def matched_band(
     f = float(require_positive(frequency=frequency))
     bound = float(require_within(0.0, 1.0, least_power_factor=least_power_factor))
 
-    def above(at: float) -> float:
-        here = np.atleast_1d(at)
-        return float(matched_power_factor(network, admittance=actuator(here), frequency=here)[0]) - bound
+    def excess(at: float) -> float:
+        frequencies = np.atleast_1d(at)
+        factor = matched_power_factor(network, admittance=actuator(frequencies), frequency=frequencies)
+        return float(factor[0]) - bound
 
-    if above(f) <= 0:
-        raise OutsideRange(f"the power factor at {f:g} Hz is {above(f) + bound:.3g}, not above {bound:g}")
-    return _edge(above, f, -1), _edge(above, f, 1)
+    if excess(f) <= 0:
+        raise OutsideRange(
+            f"the power factor at {f:g} Hz is {excess(f) + bound:.3g}, not above {bound:g}; match there first, or "
+            "lower least_power_factor"
+        )
+    return _band_edge(excess, f, -1), _band_edge(excess, f, 1)
 
 
-def _edge(above: Callable[[float], float], f: float, side: int) -> float:
-    """Return where a function first falls below nought, stepping out with ever wider strides."""
-    near, stride = f, 1e-4
-    while stride < _WIDEST:
-        far = f * (1 + side * stride)
-        if above(far) < 0:
-            return float(brentq(above, near, far, xtol=1e-9 * f))
-        near, stride = far, 1.1 * stride
+def _band_edge(excess: Callable[[float], float], f: float, side: int) -> float:
+    """First zero of a function on one side of a frequency, by steps that grow geometrically and Brent's method."""
+    near, step = f, 1e-4
+    while step < _WIDEST:
+        far = f * (1 + side * step)
+        if excess(far) < 0:
+            return float(brentq(excess, near, far, xtol=1e-9 * f))
+        near, step = far, 1.1 * step
     return f * (1 + side * _WIDEST)
 
 
 def _capacitive(admittance: complex, frequency: float) -> tuple[complex, float]:
+    """Admittance and angular frequency, checked to be capacitive."""
     y = complex(require_finite_complex(admittance=admittance))
     omega = 2 * math.pi * float(require_positive(frequency=frequency))
     if y.imag <= 0:
         raise InvalidInput(
             f"admittance must be capacitive for an inductor to compensate it, got {y:.4g} S: near a resonance the"
-            " motion can make it inductive; a capacitor does it there"
+            " motion can make it inductive; use a capacitor there"
         )
     return y, omega
 
 
 def _elements(network: MatchingNetwork, frequency: ArrayLike) -> tuple[Complexes, Complexes]:
-    """Return impedance in the line and admittance across it."""
+    """Impedance of the series element and admittance of the shunt element."""
     s = 2j * np.pi * require_positive(frequency=frequency)
     series, shunt = np.zeros_like(s), np.zeros_like(s)
     if network.series_inductance is not None:
@@ -308,6 +330,7 @@ def _elements(network: MatchingNetwork, frequency: ArrayLike) -> tuple[Complexes
 
 
 def _series(reactance: float, omega: float) -> dict[str, Any]:
+    """Series element of a reactance, as a keyword of the network."""
     if reactance == 0:
         return {}
     if reactance > 0:
@@ -316,6 +339,7 @@ def _series(reactance: float, omega: float) -> dict[str, Any]:
 
 
 def _shunt(susceptance: float, omega: float) -> dict[str, Any]:
+    """Shunt element of a susceptance, as a keyword of the network."""
     if susceptance == 0:
         return {}
     if susceptance > 0:

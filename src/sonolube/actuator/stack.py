@@ -1,4 +1,4 @@
-"""The piezoelectric stack: layers that act as one spring, whose rest length a voltage sets."""
+"""Quasi-static model of a piezoelectric stack: constitutive law, admittance, force, and limits of its drive."""
 
 import math
 import warnings
@@ -18,54 +18,60 @@ from sonolube.checks import (
 )
 from sonolube.errors import InconsistentCoupling, InvalidInput
 
-MOST_COUPLING_ERROR = 0.05
+_COUPLING_TOLERANCE = 0.05  # relative difference between the stated and the derived coupling factor that is accepted
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PiezoStack:
-    """A stack of poled layers, short against the waves in it.
-
-    With voltage V, elongation e, compressive force P on its ends and charge q,
-
-        P = k_p (N d33 V - e) - c_p de/dt          q = C_S V + N d33 k_p e
+    r"""Multilayer piezoelectric stack, short compared with the wavelength.
 
     Parameters
     ----------
     free_capacitance : float
         Capacitance C_T with the ends free, well below resonance. [F]
     free_stroke_per_volt : float
-        Elongation per volt with the ends free: layers times charge constant, N d33. [m/V]
+        Elongation per volt with the ends free: number of layers times charge constant, N d33. [m/V]
     stack_stiffness : float
-        Stiffness k_p between the ends, short-circuited. [N/m]
+        Short-circuit stiffness k_p between the ends. [N/m]
     stack_damping : float
         Damping c_p between the ends. [N s/m]
     stack_mass : float
-        Effective mass m_0, counted with the body behind the stack. [kg]
+        Effective mass m_0, attributed to the body at the back of the stack. [kg]
     lowest_voltage : float or None
-        Lowest voltage before the layers depole; None where it is not stated. [V]
+        Lowest admissible voltage, below which the layers depole; None where not stated. [V]
     highest_voltage : float or None
-        Highest voltage that the layers bear; None where it is not stated. [V]
+        Highest admissible voltage; None where not stated. [V]
     preload : float or None
-        Compression at rest, which must outweigh any tension; None where it is not stated. [N]
+        Compression at rest, which must exceed any dynamic tension; None where not stated. [N]
     coupling_factor : float or None
-        Coupling factor as stated, to be compared with the derived one; None where none is stated. []
+        Stated coupling factor, to be compared with the derived one; None where not stated. []
 
     Raises
     ------
     InvalidInput
         If a capacitance, stroke or stiffness is not positive, a damping, mass or preload negative, a stated coupling
-        factor outside 0 to 1, the limits in the wrong order, or the stack would give more energy than it is given:
+        factor outside 0 to 1, the voltage limits in the wrong order, or the derived coupling factor not below one:
         (N d33)^2 k_p must be less than C_T.
 
     Warns
     -----
     InconsistentCoupling
-        If the stated coupling factor disagrees with the derived one by more than 5 %.
+        If the stated coupling factor differs from the derived one by more than 5 %.
+
+    Notes
+    -----
+    With the voltage V, elongation e, compressive force P on the ends and charge q
+
+    .. math:: P = k_p (N d_{33} V - e) - c_p \dot e, \qquad q = C_S V + N d_{33} k_p e
+
+    and the coupling factor and clamped capacitance
+
+    .. math:: k^2 = \frac{(N d_{33})^2 k_p}{C_T}, \qquad C_S = C_T (1 - k^2)
 
     References
     ----------
-    .. [1] D 3.32, 3.33 and 3.42, taken from one layer to N. Table 3.5 lists stroke, stiffness, capacitance and a
-       coupling factor of 0.431; the first three imply 0.65, or 0.54 if its capacitance is the clamped one.
+    .. [1] D 3.32, 3.33 and 3.42, generalised from one layer to N. D Table 3.5 lists stroke, stiffness, capacitance and
+       a coupling factor of 0.431; the first three imply 0.65, or 0.54 if its capacitance is the clamped one.
     """
 
     free_capacitance: float
@@ -91,16 +97,18 @@ class PiezoStack:
         self._check_coupling()
 
     def _check_limits(self) -> None:
+        """Refuse voltage limits in the wrong order."""
         low, high = self.lowest_voltage, self.highest_voltage
         require_finite(lowest_voltage=low or 0.0, highest_voltage=high or 0.0)
         if low is not None and high is not None and low >= high:
             raise InvalidInput(f"lowest_voltage must lie below highest_voltage, {high!r} V, got {low!r} V")
 
     def _check_coupling(self) -> None:
-        moved = self.charge_per_elongation * self.free_stroke_per_volt
-        if moved >= self.free_capacitance:
+        """Refuse a derived coupling factor above one, and warn of a stated one that differs."""
+        motional = self.charge_per_elongation * self.free_stroke_per_volt
+        if motional >= self.free_capacitance:
             raise InvalidInput(
-                f"free_capacitance must exceed free_stroke_per_volt^2 stack_stiffness, {moved:.4g} F,"
+                f"free_capacitance must exceed free_stroke_per_volt^2 stack_stiffness, {motional:.4g} F,"
                 f" got {self.free_capacitance!r} F: the coupling factor would exceed 1"
             )
         if self.coupling_factor is not None:
@@ -110,22 +118,22 @@ class PiezoStack:
 
     @property
     def charge_per_elongation(self) -> float:
-        """Charge per elongation at constant voltage, which is also blocked force per volt, N d33 k_p, in N/V."""
+        """Charge per elongation at constant voltage, equal to blocked force per volt: N d33 k_p, in N/V."""
         return self.free_stroke_per_volt * self.stack_stiffness
 
     @property
     def derived_coupling_factor(self) -> float:
-        """Coupling factor that stroke, stiffness and capacitance imply: k^2 = (N d33)^2 k_p/C_T."""
+        """Coupling factor derived from stroke, stiffness and capacitance: k^2 = (N d33)^2 k_p/C_T."""
         return math.sqrt(self.charge_per_elongation * self.free_stroke_per_volt / self.free_capacitance)
 
     @property
     def clamped_capacitance(self) -> float:
-        """Capacitance with the ends held, C_S = C_T (1 - k^2), in F."""
+        """Capacitance with the ends blocked, C_S = C_T (1 - k^2), in F."""
         return self.free_capacitance - self.charge_per_elongation * self.free_stroke_per_volt
 
 
 def free_stroke(stack: PiezoStack, *, stack_voltage: ArrayLike) -> Floats:
-    """Return the static elongation with free ends. [m]
+    r"""Static elongation of a stack with free ends. [m]
 
     Parameters
     ----------
@@ -140,13 +148,17 @@ def free_stroke(stack: PiezoStack, *, stack_voltage: ArrayLike) -> Floats:
     Raises
     ------
     InvalidInput
-        If a voltage is not finite, or beyond the stack's limits.
+        If a voltage is not finite, or beyond the limits of the stack.
+
+    Notes
+    -----
+    .. math:: e = N d_{33} V
     """
     return stack.free_stroke_per_volt * require_allowed_voltage(stack, stack_voltage=stack_voltage)
 
 
 def blocked_force(stack: PiezoStack, *, stack_voltage: ArrayLike) -> Floats:
-    """Return the compressive force on held ends. [N]
+    r"""Compressive force of a stack on blocked ends. [N]
 
     Parameters
     ----------
@@ -161,7 +173,11 @@ def blocked_force(stack: PiezoStack, *, stack_voltage: ArrayLike) -> Floats:
     Raises
     ------
     InvalidInput
-        If a voltage is not finite, or beyond the stack's limits.
+        If a voltage is not finite, or beyond the limits of the stack.
+
+    Notes
+    -----
+    .. math:: P = N d_{33} k_p V \quad\text{(D 3.42)}
 
     References
     ----------
@@ -171,28 +187,7 @@ def blocked_force(stack: PiezoStack, *, stack_voltage: ArrayLike) -> Floats:
 
 
 def blocked_admittance(stack: PiezoStack, *, frequency: ArrayLike) -> Complexes:
-    """Return current per voltage with held ends, complex. [S]
-
-    Parameters
-    ----------
-    stack : PiezoStack
-    frequency : array_like, any shape
-        Frequency of the voltage. [Hz]
-
-    Returns
-    -------
-    ndarray, shape of `frequency`
-
-    Raises
-    ------
-    InvalidInput
-        If a frequency is not positive.
-    """
-    return np.asarray(2j * np.pi * require_positive(frequency=frequency) * stack.clamped_capacitance)
-
-
-def free_admittance(stack: PiezoStack, *, frequency: ArrayLike) -> Complexes:
-    """Return current per voltage with ends that nothing holds or loads, complex. [S]
+    r"""Complex admittance of a stack with blocked ends. [S]
 
     Parameters
     ----------
@@ -211,8 +206,34 @@ def free_admittance(stack: PiezoStack, *, frequency: ArrayLike) -> Complexes:
 
     Notes
     -----
-    The stack's own mass is left out: one end would carry all of it and the other none. For ends with masses put the
-    stack into a chain and take the admittance of the structure.
+    .. math:: Y = i\omega C_S
+    """
+    return np.asarray(2j * np.pi * require_positive(frequency=frequency) * stack.clamped_capacitance)
+
+
+def free_admittance(stack: PiezoStack, *, frequency: ArrayLike) -> Complexes:
+    r"""Complex admittance of a stack with free, unloaded ends. [S]
+
+    Parameters
+    ----------
+    stack : PiezoStack
+    frequency : array_like, any shape
+        Frequency of the voltage. [Hz]
+
+    Returns
+    -------
+    ndarray, shape of `frequency`
+
+    Raises
+    ------
+    InvalidInput
+        If a frequency is not positive.
+
+    Notes
+    -----
+    .. math:: Y = i\omega \left(C_S + \frac{(N d_{33} k_p)^2}{k_p + i\omega c_p}\right)
+
+    The mass of the stack is neglected. For ends with masses use a `LumpedChain` and the admittance of its structure.
     """
     s = 2j * np.pi * require_positive(frequency=frequency)
     motional = stack.charge_per_elongation**2 / (stack.stack_stiffness + s * stack.stack_damping)
@@ -222,7 +243,7 @@ def free_admittance(stack: PiezoStack, *, frequency: ArrayLike) -> Complexes:
 def stack_force(
     stack: PiezoStack, *, voltage_amplitude: ArrayLike, elongation: ArrayLike, frequency: ArrayLike
 ) -> Complexes:
-    """Return the complex amplitude of the compressive force on the ends in steady sinusoidal motion. [N]
+    r"""Complex amplitude of the compressive force on the ends of a stack in harmonic motion. [N]
 
     Parameters
     ----------
@@ -232,7 +253,7 @@ def stack_force(
     elongation : array_like, broadcast against `voltage_amplitude`
         Amplitude of the elongation about its mean, complex where its phase matters. [m]
     frequency : array_like, broadcast against `voltage_amplitude`
-        Frequency of both. [Hz]
+        Frequency of the motion. [Hz]
 
     Returns
     -------
@@ -242,21 +263,25 @@ def stack_force(
     ------
     InvalidInput
         If an amplitude is not finite or a frequency not positive.
+
+    Notes
+    -----
+    .. math:: P = N d_{33} k_p V - (k_p + i\omega c_p)\, e
     """
     s = 2j * np.pi * require_positive(frequency=frequency)
     e = require_finite_complex(elongation=elongation)
-    push = stack.charge_per_elongation * require_finite_complex(voltage_amplitude=voltage_amplitude)
-    return np.asarray(push - (stack.stack_stiffness + s * stack.stack_damping) * e)
+    blocked = stack.charge_per_elongation * require_finite_complex(voltage_amplitude=voltage_amplitude)
+    return np.asarray(blocked - (stack.stack_stiffness + s * stack.stack_damping) * e)
 
 
 def require_allowed_voltage(stack: PiezoStack, *, stack_voltage: ArrayLike) -> Floats:
-    """Return voltages as an array; refuse any that the stack does not bear. [V]
+    """Voltages as an array, refused where they are beyond the limits of the stack. [V]
 
     Parameters
     ----------
     stack : PiezoStack
     stack_voltage : array_like, any shape
-        Voltages that the drive reaches. [V]
+        Voltages of the drive. [V]
 
     Returns
     -------
@@ -265,17 +290,17 @@ def require_allowed_voltage(stack: PiezoStack, *, stack_voltage: ArrayLike) -> F
     Raises
     ------
     InvalidInput
-        If a voltage is not finite, or beyond the stack's limits.
+        If a voltage is not finite, or beyond the limits of the stack.
     """
     volts = require_finite(stack_voltage=stack_voltage)
     lowest, highest = float(np.min(volts, initial=np.inf)), float(np.max(volts, initial=-np.inf))
     if stack.lowest_voltage is not None and lowest < stack.lowest_voltage:
         raise InvalidInput(
-            f"the drive goes down to {lowest:g} V; the stack bears no less than {stack.lowest_voltage:g} V"
+            f"the drive goes down to {lowest:g} V; the lowest admissible voltage is {stack.lowest_voltage:g} V"
         )
     if stack.highest_voltage is not None and highest > stack.highest_voltage:
         raise InvalidInput(
-            f"the drive goes up to {highest:g} V; the stack bears no more than {stack.highest_voltage:g} V"
+            f"the drive goes up to {highest:g} V; the highest admissible voltage is {stack.highest_voltage:g} V"
         )
     return volts
 
@@ -288,7 +313,7 @@ def stack_caveats(
     elongation: ArrayLike,
     frequency: ArrayLike,
 ) -> tuple[str, ...]:
-    """Return what speaks against driving the stack so, one line each, with advice.
+    """Caveats of a drive: tension beyond the preload and an inconsistent coupling factor, one line each with advice.
 
     Parameters
     ----------
@@ -305,44 +330,45 @@ def stack_caveats(
     Returns
     -------
     tuple of str
-        Empty where nothing is known to speak against it.
+        Empty where there is none.
 
     Raises
     ------
     InvalidInput
-        If a voltage goes beyond the stack's limits, a peak-to-peak voltage is negative, a frequency not positive, or a
+        If a voltage is beyond the limits of the stack, a peak-to-peak voltage negative, a frequency not positive, or a
         value not finite.
 
     Notes
     -----
-    Takes the mean compression to be the preload, as it is where the structure floats: there the ends yield to the
-    offset.
+    The mean compression is taken as the preload, as in a structure whose ends follow the offset of the voltage freely.
     """
-    centre = require_finite(voltage_offset=voltage_offset)
-    swing = require_non_negative(voltage_peak_to_peak=voltage_peak_to_peak) / 2
-    for volts in (centre - swing, centre + swing):
+    offset = require_finite(voltage_offset=voltage_offset)
+    amplitude = require_non_negative(voltage_peak_to_peak=voltage_peak_to_peak) / 2
+    for volts in (offset - amplitude, offset + amplitude):
         require_allowed_voltage(stack, stack_voltage=volts)
-    force = stack_force(stack, voltage_amplitude=swing, elongation=elongation, frequency=frequency)
+    force = stack_force(stack, voltage_amplitude=amplitude, elongation=elongation, frequency=frequency)
     caveats = (_tension_caveat(stack, float(np.max(np.abs(force), initial=0.0))), _coupling_caveat(stack))
     return tuple(caveat for caveat in caveats if caveat)
 
 
-def _tension_caveat(stack: PiezoStack, pull: float) -> str:
-    if stack.preload is None:
-        return f"the vibration pulls on the stack with up to {pull:.3g} N and no preload is stated" if pull > 0 else ""
-    if pull <= stack.preload:
+def _tension_caveat(stack: PiezoStack, tension: float) -> str:
+    """Caveat of a dynamic tension beyond the preload; empty where there is none."""
+    if tension <= (stack.preload or 0.0):
         return ""
+    if stack.preload is None:
+        return f"the vibration causes a tension in the stack of up to {tension:.3g} N and no preload is stated"
     return (
-        f"tension in the stack: the vibration pulls with up to {pull:.3g} N on a preload of {stack.preload:g} N;"
-        " ceramics crack in tension: preload more or drive less"
+        f"tension in the stack: the vibration causes a tension of up to {tension:.3g} N on a preload of"
+        f" {stack.preload:g} N; ceramics crack in tension: preload more or drive less"
     )
 
 
 def _coupling_caveat(stack: PiezoStack) -> str:
+    """Caveat of a stated coupling factor that differs from the derived one; empty where they agree."""
     stated, derived = stack.coupling_factor, stack.derived_coupling_factor
-    if stated is None or abs(stated - derived) <= MOST_COUPLING_ERROR * derived:
+    if stated is None or abs(stated - derived) <= _COUPLING_TOLERANCE * derived:
         return ""
     return (
         f"coupling_factor is stated as {stated:g}, but stroke, stiffness and capacitance imply {derived:.3g},"
-        " which is taken; is the capacitance the free one?"
+        " which is used; is the capacitance the free one?"
     )

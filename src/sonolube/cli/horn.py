@@ -49,7 +49,7 @@ def design(
     from sonolube.cli.modal_part import horn_of
     from sonolube.cli.progress import progress
     from sonolube.design.horn import designed_horn
-    from sonolube.fem import medium_of
+    from sonolube.fem import medium_from_material
     from sonolube.materials import material as material_of
     from sonolube.units import to_si
 
@@ -59,7 +59,12 @@ def design(
     body = horn_of(shape, sizes or [], frequency=wanted, material=made_of, tune=tune, axis=axis)
     with progress("tuning") as advance:
         found = designed_horn(
-            body, medium=medium_of(made_of), frequency=wanted, mode=mode, relative_tolerance=tolerance, advance=advance
+            body,
+            medium=medium_from_material(made_of),
+            frequency=wanted,
+            mode=mode,
+            relative_tolerance=tolerance,
+            advance=advance,
         )
         written = write_horn(found, folder=out, name=f"horn-{Path(shape).stem}")
     if json:

@@ -16,7 +16,7 @@ from sonolube.design.horn import (
     nodal_stress,
     section_motion,
 )
-from sonolube.fem import flat_triangles
+from sonolube.fem import face_triangulation
 from sonolube.fem.solver.model import DIRECTIONS
 from sonolube.figure import COLOURS, publication_style, write_figure
 from sonolube.materials import Material
@@ -58,7 +58,7 @@ def horn_object(design: HornDesign, material: Material, tool: float, written: Se
             }
             for name, at in design.neighbours
         ],
-        "nodes": design.tuned.mode.model.mesh.size,
+        "nodes": design.tuned.mode.model.mesh.node_count,
         "caveats": _caveats(design),
         "files": [str(path) for path in written],
     }
@@ -175,7 +175,7 @@ def _highest(along: Floats, level: Floats) -> tuple[Floats, Floats]:
 def _profile(design: HornDesign) -> tuple[Floats, Floats]:
     """Return places along the axis and half the greatest width there, where planes cut the surface."""
     mesh, axis = design.tuned.mode.model.mesh, DIRECTIONS.index(design.body.axis)
-    triangles = np.concatenate([flat_triangles(mesh, face=name) for name in mesh.faces])
+    triangles = np.concatenate([face_triangulation(mesh, face=name) for name in mesh.faces])
     centred = mesh.nodes - (mesh.nodes.max(axis=0) + mesh.nodes.min(axis=0)) / 2
     first, last = np.moveaxis(centred[np.sort(triangles[:, [[0, 1], [1, 2], [0, 2]]]).reshape(-1, 2)], 1, 0)
     rise = last[:, axis] - first[:, axis]

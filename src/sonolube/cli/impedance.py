@@ -63,8 +63,8 @@ def compute(
     from sonolube.cli.modal_part import longest_axis, starting_size, transducer_of
     from sonolube.cli.progress import progress
     from sonolube.errors import InvalidInput
-    from sonolube.fem import Fixed, Mesh, Model, harmonic_response, mesh_of
-    from sonolube.fem.electromechanical_model import converged_port
+    from sonolube.fem import FixedSupport, Mesh, Model, generate_mesh, harmonic_response
+    from sonolube.fem.electromechanical_model import converged_electromechanical_model
     from sonolube.measurement.impedance.reader import read_impedance
     from sonolube.units import to_si
 
@@ -74,21 +74,21 @@ def compute(
     frequency = np.linspace(float(require_positive(frequency=low)), high, count)
     seen = None if measured is None else read_impedance(measured)
     transducer = transducer_of(part, sizes or [], ceramic=ceramic, along=poled, driven=drive, grounded=ground)
-    supports = {"free": (), **({"clamped": tuple(Fixed(face=face) for face in clamp)} if clamp else {})}
+    supports = {"free": (), **({"clamped": tuple(FixedSupport(face=face) for face in clamp)} if clamp else {})}
     size, spectra = starting_size(transducer.geometry), {}
 
     @lru_cache
     def mesh_at(element_size: float) -> Mesh:
-        return mesh_of(transducer.geometry, element_size=element_size)
+        return generate_mesh(transducer.geometry, element_size=element_size)
 
     with progress("meshing and solving") as advance:
         for name, fixed in supports.items():
 
-            def model_at(element_size: float, fixed: tuple[Fixed, ...] = fixed) -> Model:
+            def model_at(element_size: float, fixed: tuple[FixedSupport, ...] = fixed) -> Model:
                 return transducer.model(mesh_at(element_size), fixed=fixed)
 
             watched = {key: output for key, output in transducer.outputs.items() if output.face not in (clamp or ())}
-            port = converged_port(
+            port = converged_electromechanical_model(
                 model_at,
                 outputs=watched if fixed else transducer.outputs,
                 axis=longest_axis(mesh_at(size)),

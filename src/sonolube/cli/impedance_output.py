@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sonolube.checks import Complexes, Floats
-from sonolube.fem import HarmonicResponse, Transducer, vtu
-from sonolube.fem.electromechanical_model import ElectricalMode, Port
+from sonolube.fem import HarmonicResponse, Transducer, vtu_text
+from sonolube.fem.electromechanical_model import ElectromechanicalMode, ElectromechanicalModel
 from sonolube.figure import COLOURS, LINES, publication_style, write_figure
 from sonolube.files import write_whole
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
@@ -27,7 +27,7 @@ _COUPLED = 0.05  # effective coupling factor from which a mode is told
 class Spectrum:
     """A body under one support, and its response to one volt."""
 
-    port: Port
+    port: ElectromechanicalModel
     response: HarmonicResponse
 
     @property
@@ -36,7 +36,7 @@ class Spectrum:
         return np.asarray(1 / self.response.admittance)
 
     @property
-    def coupled(self) -> tuple[ElectricalMode, ...]:
+    def coupled(self) -> tuple[ElectromechanicalMode, ...]:
         """The modes that the voltage drives."""
         return tuple(mode for mode in self.port.modes if mode.coupling_factor > _COUPLED)
 
@@ -89,7 +89,7 @@ def impedance_lines(
         capacitance = float(low.admittance[0].imag / (2 * np.pi * low.frequency[0]))
         lines.append(
             f"  {name}: {engineering(capacitance, 'F')} at {engineering(float(low.frequency[0]), 'Hz')}, "
-            f"{port.model.mesh.size} nodes, resonances +-{port.frequency_error:.1g}"
+            f"{port.model.mesh.node_count} nodes, resonances +-{port.frequency_error:.1g}"
         )
         lines += [
             f"    {mode.name:<12}  f_s {mode.series_frequency:>8.0f} Hz  f_p {mode.parallel_frequency:>8.0f} Hz  "
@@ -169,7 +169,7 @@ def _within(frequency: Floats, spectra: Mapping[str, Spectrum]) -> Any:
 
 def _told(spectrum: Spectrum) -> dict[str, Any]:
     return {
-        "nodes": spectrum.port.model.mesh.size,
+        "nodes": spectrum.port.model.mesh.node_count,
         "frequency_error": {"value": spectrum.port.frequency_error, "unit": ""},
         "clamped_capacitance": {"value": spectrum.port.reduction.clamped_capacitance.real, "unit": "F"},
         "modes": [
@@ -203,4 +203,4 @@ def _modes_grid(spectrum: Spectrum) -> str:
         for mode, shape in zip(port.modes, port.shapes, strict=True)
         if mode.coupling_factor > _COUPLED
     }
-    return vtu(port.model.mesh, fields=fields)
+    return vtu_text(port.model.mesh, fields=fields)

@@ -54,17 +54,17 @@ def modes(
         transducer_of,
     )
     from sonolube.cli.progress import progress
-    from sonolube.fem import Electrodes, Fixed, Model, converged_modes, mesh_of, mode_names
+    from sonolube.fem import Electrodes, FixedSupport, Model, converged_modes, generate_mesh, mode_names
 
     require_axis(axis=axis, toward=toward)
     geometry = named_part(part, sizes or [])
     media = named_media(part, sizes or [], material)
     electrodes = transducer_of(part, sizes or []).electrodes if part in ALL_TRANSDUCERS else Electrodes()
-    fixed = tuple(Fixed(face=face) for face in clamp or ())
+    fixed = tuple(FixedSupport(face=face) for face in clamp or ())
     scanned = None if points is None else points_of(points)
 
     def model_at(element_size: float) -> Model:
-        mesh = mesh_of(geometry, element_size=element_size)
+        mesh = generate_mesh(geometry, element_size=element_size)
         return Model(mesh=mesh, media=media, fixed=fixed, electrodes=electrodes)
 
     with progress("meshing and solving") as advance:

@@ -9,7 +9,7 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.cli.modal_output import MODE_COLOURS, mode_figure
 from sonolube.errors import InvalidInput
-from sonolube.fem import ConvergedModes, at_points, vtu
+from sonolube.fem import ConvergedModes, interpolate_at_points, vtu_text
 from sonolube.fem.solver.model import DIRECTIONS
 from sonolube.figure import publication_style
 from sonolube.files import write_whole
@@ -24,7 +24,7 @@ def write_vtu(found: ConvergedModes, names: Sequence[str], *, folder: Path, part
     fields = {
         f"{names[row]}, {found.natural_frequency[row]:.0f} Hz": found.modes.shapes[row] for row in _elastic(found)
     }
-    return [write_whole(folder / f"{part}-modes.vtu", vtu(found.model.mesh, fields=fields))]
+    return [write_whole(folder / f"{part}-modes.vtu", vtu_text(found.model.mesh, fields=fields))]
 
 
 def write_shapes(
@@ -34,7 +34,9 @@ def write_shapes(
     if toward not in DIRECTIONS or len(toward) != 1:
         raise InvalidInput(f"--toward must be x, y or z, got {toward!r}")
     rows = _elastic(found)
-    shapes = at_points(found.model.mesh, found.modes.shapes[rows], points=points)[..., DIRECTIONS.index(toward)]
+    shapes = interpolate_at_points(found.model.mesh, found.modes.shapes[rows], points=points)[
+        ..., DIRECTIONS.index(toward)
+    ]
     text = io.StringIO()
     heading = ", ".join(f"{names[row]} at {found.natural_frequency[row]:.1f} Hz" for row in rows)
     np.savetxt(text, (shapes / np.abs(shapes).max(axis=1, keepdims=True)).T, fmt="%.6g", delimiter=",", header=heading)
@@ -88,4 +90,4 @@ def _palette() -> list[int]:
 
 def _elastic(found: ConvergedModes) -> list[int]:
     """Return the rows of the elastic modes."""
-    return list(range(found.modes.rigid, len(found.natural_frequency)))
+    return list(range(found.modes.rigid_body_count, len(found.natural_frequency)))

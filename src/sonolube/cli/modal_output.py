@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.fem import ConvergedModes, Mesh, carried, flat_triangles, of_order
-from sonolube.fem.solver.mesh import MOST_ORDER
+from sonolube.fem import ConvergedModes, Mesh, change_order, face_triangulation, transfer_field
+from sonolube.fem.solver.mesh import HIGHEST_ORDER
 from sonolube.figure import publication_style, write_figure
 
 if TYPE_CHECKING:
@@ -25,9 +25,9 @@ def modes_lines(
     part: str, material: str, found: ConvergedModes, names: Sequence[str], written: Sequence[Path]
 ) -> list[str]:
     """Return what a user reads of modes."""
-    rows = range(found.modes.rigid, len(names))
+    rows = range(found.modes.rigid_body_count, len(names))
     width = max(len(names[row]) for row in rows)
-    free = f"{found.modes.rigid} rigid motions, " if found.modes.rigid else "held, "
+    free = f"{found.modes.rigid_body_count} rigid motions, " if found.modes.rigid_body_count else "held, "
     return [
         f"{part} of {material}: {free}{found.nodes[-1]} nodes in the last of {len(found.nodes)} meshes",
         *[
@@ -42,11 +42,11 @@ def modes_object(
     part: str, material: str, found: ConvergedModes, names: Sequence[str], written: Sequence[Path]
 ) -> dict[str, Any]:
     """Return modes as one JSON object, all quantities in SI."""
-    rows = range(found.modes.rigid, len(names))
+    rows = range(found.modes.rigid_body_count, len(names))
     return {
         "part": part,
         "material": material,
-        "rigid_motions": found.modes.rigid,
+        "rigid_motions": found.modes.rigid_body_count,
         "nodes": list(found.nodes),
         "modes": [
             {
@@ -63,10 +63,10 @@ def modes_object(
 def write_modes(found: ConvergedModes, names: Sequence[str], *, folder: Path, part: str) -> list[Path]:
     """Draw each elastic mode into a file of its own and return the files."""
     files = []
-    for row in range(found.modes.rigid, len(names)):
+    for row in range(found.modes.rigid_body_count, len(names)):
         title = f"{names[row]}, {found.natural_frequency[row]:.0f} Hz"
         figure = mode_figure(found.model.mesh, found.modes.shapes[row], title=title)
-        name = f"{part}-{row - found.modes.rigid + 1}-{names[row].replace(' ', '-')}"
+        name = f"{part}-{row - found.modes.rigid_body_count + 1}-{names[row].replace(' ', '-')}"
         files += write_figure(figure, folder=folder, name=name, forms=("png",))
     return files
 
@@ -79,7 +79,7 @@ def mode_figure(mesh: Mesh, shape: Floats, *, title: str, share: float = 1.0) ->
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
     mesh, shape = _smooth(mesh, shape)
-    patches = np.concatenate([flat_triangles(mesh, face=name) for name in mesh.faces if "|" not in name])
+    patches = np.concatenate([face_triangulation(mesh, face=name) for name in mesh.faces if "|" not in name])
     size = np.linalg.norm(shape, axis=1)
     extent = np.ptp(mesh.nodes, axis=0)
     millimetres = 1e3 * (mesh.nodes + share * shape * _EXAGGERATION * extent.max() / size.max())
@@ -110,6 +110,6 @@ def mode_figure(mesh: Mesh, shape: Floats, *, title: str, share: float = 1.0) ->
 def _smooth(mesh: Mesh, shape: Floats) -> tuple[Mesh, Floats]:
     """Return the mesh with elements of an order that a picture shows as smooth, and the shape on its nodes."""
     triangles = sum(len(faces) for name, faces in mesh.faces.items() if "|" not in name)
-    order = int(np.clip(np.sqrt(_MOST_TRIANGLES / triangles), 2, MOST_ORDER))
-    finer = of_order(mesh, order=order)
-    return finer, carried(shape, source=mesh, target=finer)
+    order = int(np.clip(np.sqrt(_MOST_TRIANGLES / triangles), 2, HIGHEST_ORDER))
+    finer = change_order(mesh, order=order)
+    return finer, transfer_field(shape, source=mesh, target=finer)

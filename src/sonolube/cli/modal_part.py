@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.dong2015.actuators import DONG_2015_TRANSDUCERS
+from sonolube.dong2015.transducers import DONG_2015_TRANSDUCERS
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.fem import (
     PARTS,
@@ -17,8 +17,8 @@ from sonolube.fem import (
     Medium,
     Mesh,
     Transducer,
-    medium_of,
-    mesh_of,
+    generate_mesh,
+    medium_from_material,
     poled_part,
     read_step,
 )
@@ -96,7 +96,7 @@ def named_media(part: str, sizes: Sequence[str], material: str) -> dict[str, Med
             f"--material {material}: a piezoelectric ceramic needs its poling and electrodes; take `sonolube impedance "
             f"compute {part} --ceramic {material}`, whose resonances are its modes, or a metal here"
         )
-    return dict.fromkeys(named_part(part, sizes).regions, medium_of(material_of(material)))
+    return dict.fromkeys(named_part(part, sizes).regions, medium_from_material(material_of(material)))
 
 
 def transducer_of(part: str, sizes: Sequence[str], **wired: str) -> Transducer:
@@ -148,7 +148,7 @@ def horn_of(
 
     if _is_step(shape):
         geometry = _own(shape, sizes)
-        return own_body(geometry, axis=axis or longest_axis(mesh_of(geometry, element_size=_COARSE)))
+        return own_body(geometry, axis=axis or longest_axis(generate_mesh(geometry, element_size=_COARSE)))
     given = {}
     for entry in sizes:
         name, _, value = entry.partition("=")

@@ -45,7 +45,7 @@ _NUMBERS = (
     "temperature_rise",
     "horn_stress",
 )
-_NEED = ("voltage_maximum", "peak_current", "effective_current", "apparent_power", "dissipated_power", "slew_rate")
+_NEED = ("voltage_maximum", "peak_current", "rms_current", "apparent_power", "dissipated_power", "slew_rate")
 _ELEMENTS = ("series_inductance", "series_capacitance", "shunt_inductance", "shunt_capacitance")
 _NO_LIMIT = "none set"
 _NEAR_END = 0.002  # of a range, in ratio: there a better design may lie beyond

@@ -8,14 +8,23 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.design.horn_shapes import Body
 from sonolube.errors import InvalidInput
-from sonolube.fem import Medium, Model, NamedMode, TunedMode, mesh_of, mode_names, tuned_mode
-from sonolube.fem.solver.fields import equivalent_stress, on_nodes_mean, stresses
+from sonolube.fem import (
+    Medium,
+    Model,
+    NamedMode,
+    TunedMode,
+    face_residual_compliance,
+    generate_mesh,
+    mass_loaded_frequencies,
+    mode_names,
+    tuned_mode,
+)
+from sonolube.fem.solver.element_order import change_order
 from sonolube.fem.solver.model import DIRECTIONS
-from sonolube.fem.solver.modes import modes_of, shift_for
-from sonolube.fem.solver.orders import of_order
-from sonolube.fem.solver.simplex import quadrature, shape_functions
-from sonolube.fem.solver.system import shifted, system
-from sonolube.fem.tuning import compliance_above, loaded_frequencies
+from sonolube.fem.solver.modes import lanczos_modes, spectral_shift
+from sonolube.fem.solver.postprocessing import gauss_point_stress, nodal_average, von_mises_stress
+from sonolube.fem.solver.simplex import shape_functions, simplex_quadrature
+from sonolube.fem.solver.system import assemble_system, shift_invert_solver
 from sonolube.materials import Material
 
 _ELEMENTS_ACROSS = 2.5  # of a horn as thick as a cube of its volume would be, in the first mesh
@@ -43,7 +52,7 @@ class HornDesign:
         Greatest equivalent stress per displacement of the working face. [Pa/m]
     stress_change : float
         Relative change of it from elements of one order less: large where corners are sharp, and then it has no limit.
-    remaining_compliance : float
+    residual_compliance : float
         Displacement per force of the working face by modes above those found. [m/N]
     neighbours : tuple of (str, float)
         Name and frequency in Hz of the elastic modes found, the tuned one left out, by distance.
@@ -57,7 +66,7 @@ class HornDesign:
     node_position: float
     stress_per_displacement: float
     stress_change: float
-    remaining_compliance: float
+    residual_compliance: float
     neighbours: tuple[tuple[str, float], ...] = field(default=())
 
     @property
@@ -105,7 +114,7 @@ def designed_horn(
 
     def model_at(length: float, element_size: float) -> Model:
         geometry = body.at(length)
-        return Model(mesh=mesh_of(geometry, element_size=element_size), media={geometry.regions[0]: medium})
+        return Model(mesh=generate_mesh(geometry, element_size=element_size), media={geometry.regions[0]: medium})
 
     tuned = tuned_mode(
         model_at,
@@ -132,7 +141,7 @@ def designed_horn(
         node_position=_node(found, body.axis),
         stress_per_displacement=peak,
         stress_change=change,
-        remaining_compliance=compliance,
+        residual_compliance=compliance,
         neighbours=_neighbours(found),
     )
 
@@ -171,13 +180,13 @@ def loaded_frequency(design: HornDesign, *, tool_mass: float) -> float:
     float
     """
     found = design.tuned.mode
-    loaded = loaded_frequencies(
+    loaded = mass_loaded_frequencies(
         found.modes,
         found.model,
         face=design.working_face,
         along=design.body.axis,
         tool_mass=tool_mass,
-        remaining_compliance=design.remaining_compliance,
+        residual_compliance=design.residual_compliance,
     )
     own = found.modes.natural_frequency[found.row]
     return float(loaded[found.row] / own * found.frequency)  # with the error of the mesh taken out
@@ -213,9 +222,9 @@ def nodal_stress(model: Model, shape: Floats) -> Floats:
     ndarray, shape (n,)
         In Pa for displacements in m.
     """
-    at_corners = stresses(model, shape)
-    return equivalent_stress(
-        np.stack([on_nodes_mean(model.mesh, at_corners[:, :, component]) for component in range(6)], axis=-1)
+    at_corners = gauss_point_stress(model, shape)
+    return von_mises_stress(
+        np.stack([nodal_average(model.mesh, at_corners[:, :, component]) for component in range(6)], axis=-1)
     )
 
 
@@ -225,11 +234,11 @@ def _peak_stress(model: Model, shape: Floats, axis: str) -> float:
 
 def _of_one_order_less(found: NamedMode, name: str, axis: str, peak: float) -> tuple[float, float]:
     """Return by how much the peak stress differs on elements of one order less, and what modes above yield there."""
-    model = replace(found.model, mesh=of_order(found.model.mesh, order=found.model.mesh.order - 1))
-    equations = system(model)
-    inverse = shifted(model, equations, shift=shift_for(model))
-    modes = modes_of(model, equations, inverse=inverse, count=len(found.names) - found.modes.rigid)
-    compliance = compliance_above(modes, model, equations, inverse=inverse, face=f"+{axis}", along=axis)
+    model = replace(found.model, mesh=change_order(found.model.mesh, order=found.model.mesh.order - 1))
+    equations = assemble_system(model)
+    inverse = shift_invert_solver(model, equations, shift=spectral_shift(model))
+    modes = lanczos_modes(model, equations, inverse=inverse, count=len(found.names) - found.modes.rigid_body_count)
+    compliance = face_residual_compliance(modes, model, equations, inverse=inverse, face=f"+{axis}", along=axis)
     names = mode_names(model, modes, axis=axis)
     if name not in names:
         return np.inf, compliance
@@ -274,7 +283,7 @@ def section_motion(found: NamedMode, axis: str) -> tuple[Floats, Floats]:
         Means over the volume of each slice.
     """
     mesh, along = found.model.mesh, DIRECTIONS.index(axis)
-    points, weights = quadrature(2 * mesh.order, corners=4)
+    points, weights = simplex_quadrature(2 * mesh.order, corners=4)
     value, slope = shape_functions(mesh.order, points)
     volume = np.linalg.det(np.einsum("eax,adq->eqdx", mesh.nodes[mesh.elements], slope, optimize=True)) * weights
     place, moves = (own[mesh.elements, along] @ value for own in (mesh.nodes, found.displacement))
@@ -286,6 +295,6 @@ def section_motion(found: NamedMode, axis: str) -> tuple[Floats, Floats]:
 
 
 def _neighbours(found: NamedMode) -> tuple[tuple[str, float], ...]:
-    elastic = range(found.modes.rigid, len(found.names))
+    elastic = range(found.modes.rigid_body_count, len(found.names))
     others = [(found.names[k], float(found.modes.natural_frequency[k])) for k in elastic if k != found.row]
     return tuple(sorted(others, key=lambda mode: abs(mode[1] - found.frequency)))

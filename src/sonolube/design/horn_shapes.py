@@ -8,8 +8,8 @@ from functools import partial
 from sonolube.actuator import ThinHorn, thin_conical_horn, thin_exponential_horn, thin_stepped_horn
 from sonolube.checks import require_positive
 from sonolube.errors import UnknownName
-from sonolube.fem import PARTS, Geometry, trimmed
-from sonolube.fem.parts.trimming import extent_along
+from sonolube.fem import PARTS, Geometry, adjust_length
+from sonolube.fem.parts.length_adjustment import extent_along
 
 _WIDE = 0.08  # radius over wavelength where none is given: a quarter of it is too thick for plane sections
 _POISSON_HORN = {"width": 60.96e-3, "thickness": 25.4e-3}  # D 2.1.3
@@ -115,7 +115,7 @@ def own_body(geometry: Geometry, *, axis: str) -> Body:
 
 
 def _trimmed_to(geometry: Geometry, axis: str, length: float) -> Geometry:
-    return trimmed(geometry, axis=axis, length=length)
+    return adjust_length(geometry, axis=axis, length=length)
 
 
 def _thin(shape: str, sizes: Mapping[str, float], *, frequency: float, wave_speed: float) -> ThinHorn:

@@ -1,4 +1,4 @@
-"""How a hole moves in a mode: widening, turning oval, moving as a whole, or turning about its axis."""
+"""Decomposition of the motion of a bore in a mode into breathing, ovalling, translation and rotation."""
 
 from collections.abc import Mapping, Sequence
 from enum import StrEnum
@@ -6,81 +6,93 @@ from enum import StrEnum
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.fem.solver.assembly import face_weights
+from sonolube.fem.solver.assembly import tributary_areas
 from sonolube.fem.solver.mesh import Mesh
 
 
 class BoreMotion(StrEnum):
-    """Kinds of motion of a hole along z, in a body that is alike on both sides of x = 0.
+    """Kinds of motion of a bore along z, in a body symmetric about the plane x = 0.
 
-    Even about that plane it widens, turns oval along y or moves along y; odd about it, it turns about its axis, turns
-    oval along the diagonals or moves along x. Either way it can leave the x-y plane.
+    In modes even about that plane the bore breathes, becomes oval along x and y or is displaced along y. In odd modes
+    it rotates about its axis, becomes oval along the diagonals or is displaced along x. Both can have motion out of the
+    x-y plane.
     """
 
     BREATHING = "breathing"
     OVAL = "oval"
-    LIFT = "lift"
+    TRANSLATION_ALONG_Y = "translation along y"
     TORSIONAL = "torsional"
-    SKEWED = "skewed"
-    SWAY = "sway"
+    DIAGONAL_OVAL = "diagonal oval"
+    TRANSLATION_ALONG_X = "translation along x"
     OUT_OF_PLANE = "out of plane"
 
 
 def bore_motion(
-    mesh: Mesh, shapes: Floats, *, faces: Sequence[str], middle: tuple[float, float], odd_across: bool
+    mesh: Mesh, shapes: Floats, *, faces: Sequence[str], centre: tuple[float, float], odd_across: bool
 ) -> tuple[Mapping[BoreMotion, Floats], Floats]:
-    """Return how much of a bore's mean square motion is of each kind, and that mean square.
+    r"""Fraction of the mean square displacement of a bore that is motion of each kind, and that mean square.
 
     Parameters
     ----------
     mesh : Mesh
-        A whole body, or its part of positive x.
+        The whole body, or its half of positive x.
     shapes : ndarray, shape (k, n, 3)
-        Displacements of the nodes in each mode.
+        Mode shapes: displacements of the nodes.
     faces : sequence of str
-        Names of the faces that make the bore.
-    middle : tuple of two float
-        Where its axis crosses the x-y plane, in m.
+        Names of the faces that form the bore.
+    centre : tuple of two float
+        Coordinates x and y of its axis, in m.
     odd_across : bool
         Whether the modes are odd about x = 0.
 
     Returns
     -------
-    shares : mapping of BoreMotion to ndarray, shape (k,)
-        They sum to one but for waves of three and more to the circumference, and motions that vary along the bore.
+    fractions : mapping of BoreMotion to ndarray, shape (k,)
+        They sum to one except for three and more waves around the circumference, and motion that varies along the bore.
     mean_square : ndarray, shape (k,)
+        In the square of the unit of the shapes.
 
     Notes
     -----
-    A share is the square of the mean product with a field over the field's own mean square: e_r, cos 2a e_r -
-    sin 2a e_t/2 and e_y, or e_t, sin 2a e_r + cos 2a e_t/2 and e_x, a the angle from x. The ovals are those of a ring
-    that bends without stretching.
+    With the mean :math:`\langle\cdot\rangle` over the area of the bore, the fraction of a kind with the displacement
+    field w in the motion u is
+
+    .. math:: \frac{\langle u \cdot w \rangle^2}{\langle w^2 \rangle \langle u^2 \rangle}
+
+    With the angle a from x, the fields of even modes are :math:`e_r` (breathing),
+    :math:`\cos 2a\, e_r - \tfrac12 \sin 2a\, e_t` (oval) and :math:`e_y` (translation); those of odd modes
+    :math:`e_t` (torsional), :math:`\sin 2a\, e_r + \tfrac12 \cos 2a\, e_t` (diagonal oval) and :math:`e_x`. The ovals
+    are inextensional bending of a ring with two waves around its circumference.
+
+    References
+    ----------
+    .. [1] W. Soedel, Vibrations of Shells and Plates, 3rd ed., Marcel Dekker (2004).
     """
-    weight = np.sum([face_weights(mesh, face) for face in faces], axis=0)
-    on = np.flatnonzero(weight)
-    weight = weight[on] / weight.sum()
-    arm = mesh.nodes[on, :2] - middle
+    areas = np.sum([tributary_areas(mesh, face) for face in faces], axis=0)
+    nodes = np.flatnonzero(areas)
+    weight = areas[nodes] / areas.sum()
+    arm = mesh.nodes[nodes, :2] - centre
     radial = arm / np.linalg.norm(arm, axis=1, keepdims=True)
     tangential = np.column_stack([-radial[:, 1], radial[:, 0]])
     twice = 2 * np.arctan2(arm[:, 1], arm[:, 0])[:, np.newaxis]
     if odd_across:
         fields = {
             BoreMotion.TORSIONAL: tangential,
-            BoreMotion.SKEWED: np.sin(twice) * radial + np.cos(twice) / 2 * tangential,
-            BoreMotion.SWAY: np.broadcast_to([1.0, 0.0], radial.shape),
+            BoreMotion.DIAGONAL_OVAL: np.sin(twice) * radial + np.cos(twice) / 2 * tangential,
+            BoreMotion.TRANSLATION_ALONG_X: np.broadcast_to([1.0, 0.0], radial.shape),
         }
     else:
         fields = {
             BoreMotion.BREATHING: radial,
             BoreMotion.OVAL: np.cos(twice) * radial - np.sin(twice) / 2 * tangential,
-            BoreMotion.LIFT: np.broadcast_to([0.0, 1.0], radial.shape),
+            BoreMotion.TRANSLATION_ALONG_Y: np.broadcast_to([0.0, 1.0], radial.shape),
         }
-    moves = shapes[:, on]
-    mean_square = np.einsum("n,knd->k", weight, moves**2)
-    shares = {
-        kind: np.einsum("n,knd,nd->k", weight, moves[..., :2], field) ** 2
+    displacement = shapes[:, nodes]
+    mean_square = np.einsum("n,knd->k", weight, displacement**2)
+    fractions = {
+        kind: np.einsum("n,knd,nd->k", weight, displacement[..., :2], field) ** 2
         / (np.einsum("n,nd->", weight, field**2) * mean_square)
         for kind, field in fields.items()
     }
-    shares[BoreMotion.OUT_OF_PLANE] = np.einsum("n,kn->k", weight, moves[..., 2] ** 2) / mean_square
-    return shares, mean_square
+    fractions[BoreMotion.OUT_OF_PLANE] = np.einsum("n,kn->k", weight, displacement[..., 2] ** 2) / mean_square
+    return fractions, mean_square

@@ -1,7 +1,8 @@
-"""The collar with variable friction, D 4.5: an inner ring on one or two piezoelectric stacks in an outer ring.
+"""Geometry of the collar element of D 4.5: an inner ring on one or two piezoelectric stacks in an outer ring.
 
-The stacks lie along y, the rod that slides through the inner ring along z. Drawings of the parts (D, appendix C) came
-along as captions only, so that each dimension is either printed in the text or assumed: `COLLAR_ORIGINS` says which.
+The stacks lie along y, the rod that slides through the inner ring along z. Of the drawings of the parts (D, appendix C)
+only the captions are available, so that each dimension is either printed in the text or assumed;
+`COLLAR_DIMENSION_SOURCES` lists which.
 """
 
 from collections.abc import Sequence
@@ -13,15 +14,16 @@ import numpy as np
 
 from sonolube.checks import require_positive
 from sonolube.errors import InvalidInput
-from sonolube.fem.solver.cad import MILLIMETRE, cad
-from sonolube.fem.solver.geometry import Geometry, assembled, one_body
+from sonolube.fem.solver.cad import MILLIMETRE, cad_kernel
+from sonolube.fem.solver.geometry import Geometry, bond, single_body
 
 _FAR = 1e3  # in mm, beyond any collar
+_FLAT_HALF_WIDTH = 5.5e-3  # of the flats of a round inner ring, in m, assumed
 _NUMBERS = ("float", float)
 
 
 class Outline(StrEnum):
-    """Outside of an inner ring: a hexagon with two flats on the stacks, or a circle with two flats cut for them."""
+    """Outer contour of the inner ring: a hexagon with two flats on the stacks, or a circle with two such flats."""
 
     HEXAGON = "hexagon"
     ROUND = "round"
@@ -29,37 +31,36 @@ class Outline(StrEnum):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Collar:
-    """Dimensions of a collar.
+    """Dimensions of a collar element.
 
     Parameters
     ----------
     outline : Outline
-        Outside of the inner ring.
+        Outer contour of the inner ring.
     hole_sides : int
-        Sides of the hole: 6, or 0 for a round one.
+        Number of sides of the bore: 6, or 0 for a circular one.
     stacks : int
-        1, or 2 for one on either side of the inner ring.
+        Number of stacks: 1, or 2 on opposite sides of the inner ring.
     frame_length, frame_width, frame_thickness : float
-        Outer ring: extent along the stacks, across them, and along the rod. [m]
+        Extent of the outer ring along the stacks, across them, and along the rod. [m]
     base_thickness : float
-        Wall of the outer ring that the stack stands on; of a collar with two stacks both are what the length leaves.
-        [m]
+        Wall of the outer ring under the stack; with two stacks both walls follow from the other lengths instead. [m]
     top_thickness : float
-        The opposite wall, which can be taken off. [m]
+        Opposite wall of the outer ring, which is removable. [m]
     pillar_width : float
-        The two walls beside the inner ring. [m]
+        Width of the two walls beside the inner ring. [m]
     ring_width : float
-        Inner ring across the flats on which the stacks stand. [m]
+        Width of the inner ring across the flats on which the stacks stand. [m]
     ring_thickness : float
-        Inner ring along the rod. [m]
+        Thickness of the inner ring along the rod. [m]
     bore_diameter : float
-        Hole of the inner ring, across flats where it has sides. [m]
+        Diameter of the bore of the inner ring, across flats where it is a hexagon. [m]
     bolt_diameter : float
-        Bolt through the stack, which stands for the stiffness of the whole bolt between its ends. [m]
+        Diameter of the bolt through the stack that has the stiffness of the whole bolt between its ends. [m]
     stack_length, stack_outer_diameter, stack_inner_diameter : float
-        The ring-shaped stack. [m]
+        Length and diameters of the annular stack. [m]
     frame_material, ring_material : str
-        Names of metals; the bolts are of the frame's.
+        Names of the metals; the bolts are of the metal of the outer ring.
 
     Raises
     ------
@@ -105,26 +106,26 @@ class Collar:
                 raise InvalidInput(f"{smaller} must not exceed {larger}, {limit:.4g} m, got {value!r} m")
         if self.base <= 0 or self.clearance < 0:
             raise InvalidInput("stacks and inner ring do not fit into the outer ring's length")
-        if self.frame_width - 2 * self.pillar_width <= 2 * self.ring_reach:
+        if self.frame_width - 2 * self.pillar_width <= 2 * self.ring_circumradius:
             raise InvalidInput("the inner ring does not fit between the pillars")
 
     @property
     def seat_width(self) -> float:
-        """Width of the flat a stack stands on, in m."""
+        """Width of the flat on which a stack stands, in m."""
         if self.outline is Outline.HEXAGON:
             return self.ring_width / float(np.sqrt(3.0))
-        return 2 * float(np.sqrt(self.ring_reach**2 - self.ring_width**2 / 4))
+        return 2 * float(np.sqrt(self.ring_circumradius**2 - self.ring_width**2 / 4))
 
     @property
-    def ring_reach(self) -> float:
-        """Largest distance of the inner ring's outside from its middle, in m; flats of round rings are 11 mm wide."""
+    def ring_circumradius(self) -> float:
+        """Largest distance of the outer contour of the inner ring from its axis, in m."""
         if self.outline is Outline.HEXAGON:
             return self.ring_width / float(np.sqrt(3.0))
-        return float(np.hypot(self.ring_width / 2, 5.5e-3))
+        return float(np.hypot(self.ring_width / 2, _FLAT_HALF_WIDTH))
 
     @property
     def base(self) -> float:
-        """Thickness of the wall under the stack, in m."""
+        """Thickness of the wall of the outer ring under the stack, in m."""
         if self.stacks == 1:
             return self.base_thickness
         return (self.frame_length - 2 * self.stack_length - self.ring_width) / 2
@@ -136,40 +137,45 @@ class Collar:
 
     @property
     def clearance(self) -> float:
-        """Distance between inner ring and top, in m; zero where a stack fills it."""
+        """Gap between the inner ring and the top, in m; zero where a second stack fills it."""
         if self.stacks == 2:
             return 0.0
         return self.frame_length - self.base - self.top - self.stack_length - self.ring_width
 
     @property
-    def middle(self) -> float:
-        """Height of the bore's axis above the base's lower face, in m."""
+    def bore_height(self) -> float:
+        """Height of the axis of the bore above the lower face of the base, in m."""
         return self.base + self.stack_length + self.ring_width / 2
 
 
 def dimension_names() -> tuple[str, ...]:
-    """Return the names of a collar's lengths."""
+    """Names of the lengths among the dimensions of a collar.
+
+    Returns
+    -------
+    tuple of str
+    """
     return tuple(field.name for field in fields(Collar) if field.type in _NUMBERS)
 
 
 def collar_geometry(collar: Collar, *, open_top: bool = False, whole: bool = False) -> Geometry:
-    """Return the bonded parts of a collar, the lower face of its base at y = 0.
+    """Bonded bodies of a collar, with the lower face of its base at y = 0.
 
     Parameters
     ----------
     collar : Collar
     open_top : bool
-        Without its top.
+        Without the removable top.
     whole : bool
-        All of it; else the quarter of positive x and z.
+        The whole collar instead of the quarter of positive x and z.
 
     Returns
     -------
     Geometry
-        Regions "frame", "top", "saddle", the quarter of the inner ring under the rod, "ring", its rest, "stack" and
-        "bolt", of a second stack "stack2" and "bolt2". Faces of the bore are "saddle.bore" and "ring.bore".
+        Regions "frame", "top", "saddle" (the sector of the inner ring under the rod), "ring" (the rest of it), "stack"
+        and "bolt", and of a second stack "stack2" and "bolt2". The faces of the bore are "saddle.bore" and "ring.bore".
     """
-    occ = cad()
+    occ = cad_kernel()
     kept = occ.Box((-_FAR, -_FAR, -_FAR) if whole else (0, -_FAR, 0), (_FAR, _FAR, _FAR))
     frame, top = _outer_ring(collar)
     saddle, ring = _inner_ring(collar)
@@ -178,16 +184,17 @@ def collar_geometry(collar: Collar, *, open_top: bool = False, whole: bool = Fal
         del shapes["top"]
     shapes["stack"], shapes["bolt"] = _stack(collar, foot=collar.base)
     if collar.stacks == 2:
-        shapes["stack2"], shapes["bolt2"] = _stack(collar, foot=collar.middle + collar.ring_width / 2)
-    bodies = {name: one_body(shape * kept, name) for name, shape in shapes.items()}
+        shapes["stack2"], shapes["bolt2"] = _stack(collar, foot=collar.bore_height + collar.ring_width / 2)
+    bodies = {name: single_body(shape * kept, name) for name, shape in shapes.items()}
     for name in ("saddle", "ring"):
-        bodies[name].shape.maxh = (collar.ring_width - collar.bore_diameter) / 2 / MILLIMETRE  # elements like the wall
+        bodies[name].shape.maxh = (collar.ring_width - collar.bore_diameter) / 2 / MILLIMETRE  # of the wall of the ring
         _name_bore(bodies[name], collar)
-    return assembled(bodies)
+    return bond(bodies)
 
 
 def _outer_ring(collar: Collar) -> tuple[Any, Any]:
-    occ = cad()
+    """Outer ring without its top, and the top."""
+    occ = cad_kernel()
     x, z, wall = (
         size / MILLIMETRE for size in (collar.frame_width / 2, collar.frame_thickness / 2, collar.pillar_width)
     )
@@ -197,23 +204,30 @@ def _outer_ring(collar: Collar) -> tuple[Any, Any]:
 
 
 def _inner_ring(collar: Collar) -> tuple[Any, Any]:
-    """Return the quarter of the inner ring that faces the base, and the rest."""
-    occ = cad()
-    middle, flat, depth = (size / MILLIMETRE for size in (collar.middle, collar.ring_width / 2, collar.ring_thickness))
+    """Sector of the inner ring that faces the base, and the rest of it."""
+    occ = cad_kernel()
+    axis, flat, depth = (
+        size / MILLIMETRE for size in (collar.bore_height, collar.ring_width / 2, collar.ring_thickness)
+    )
     if collar.outline is Outline.HEXAGON:
-        outside = _hexagon(2 * flat, middle, depth)
+        outside = _hexagonal_prism(2 * flat, axis, depth)
     else:
-        outside = _bar(collar.ring_reach / MILLIMETRE, middle, depth)
-        outside = outside * occ.Box((-_FAR, middle - flat, -_FAR), (_FAR, middle + flat, _FAR))
+        outside = _circular_cylinder(collar.ring_circumradius / MILLIMETRE, axis, depth)
+        outside = outside * occ.Box((-_FAR, axis - flat, -_FAR), (_FAR, axis + flat, _FAR))
     bore = collar.bore_diameter / MILLIMETRE
-    body = outside - (_hexagon(bore, middle, 2 * depth) if collar.hole_sides else _bar(bore / 2, middle, 2 * depth))
+    if collar.hole_sides:
+        hole = _hexagonal_prism(bore, axis, 2 * depth)
+    else:
+        hole = _circular_cylinder(bore / 2, axis, 2 * depth)
+    body = outside - hole
     reach = 2 * flat
-    wedge = _extruded([(0.0, middle), (-reach, middle - reach), (reach, middle - reach)], 2 * depth)
+    wedge = _extruded([(0.0, axis), (-reach, axis - reach), (reach, axis - reach)], 2 * depth)
     return body * wedge, body - wedge
 
 
 def _stack(collar: Collar, *, foot: float) -> tuple[Any, Any]:
-    occ = cad()
+    """Annular stack and its bolt, from a height of the foot."""
+    occ = cad_kernel()
     outer, inner, bolt, length, y = (
         size / MILLIMETRE
         for size in (
@@ -228,18 +242,21 @@ def _stack(collar: Collar, *, foot: float) -> tuple[Any, Any]:
     return whole - hole, core
 
 
-def _hexagon(width: float, middle: float, depth: float) -> Any:
+def _hexagonal_prism(width: float, axis: float, depth: float) -> Any:
+    """Hexagonal prism along z of a width across flats, with its axis at a height y; all in mm."""
     corner, angles = width / np.sqrt(3.0), np.arange(6) * np.pi / 3
-    return _extruded([(corner * np.cos(a), middle + corner * np.sin(a)) for a in angles], depth)
+    return _extruded([(corner * np.cos(a), axis + corner * np.sin(a)) for a in angles], depth)
 
 
-def _bar(radius: float, middle: float, depth: float) -> Any:
-    occ = cad()
-    return occ.Cylinder(occ.Pnt(0, middle, -depth / 2), occ.Z, radius, depth)
+def _circular_cylinder(radius: float, axis: float, depth: float) -> Any:
+    """Circular cylinder along z with its axis at a height y; all in mm."""
+    occ = cad_kernel()
+    return occ.Cylinder(occ.Pnt(0, axis, -depth / 2), occ.Z, radius, depth)
 
 
 def _extruded(corners: Sequence[tuple[float, float]], depth: float) -> Any:
-    occ = cad()
+    """Prism along z with a polygonal cross-section, centred on z = 0; all in mm."""
+    occ = cad_kernel()
     first, *others = ((float(x), float(y)) for x, y in corners)
     outline = occ.WorkPlane(occ.Axes((0, 0, -depth / 2), n=occ.Z, h=occ.X)).MoveTo(*first)
     for corner in others:
@@ -248,10 +265,10 @@ def _extruded(corners: Sequence[tuple[float, float]], depth: float) -> Any:
 
 
 def _name_bore(body: Geometry, collar: Collar) -> None:
-    """Call the faces of the hole "bore": those which reach no further than halfway into the wall."""
+    """Name the faces of the hole "bore": those within half the wall of the ring."""
     limit = (collar.bore_diameter + collar.ring_width) / 4 / MILLIMETRE
-    middle = collar.middle / MILLIMETRE
+    axis = collar.bore_height / MILLIMETRE
     for face in body.shape.faces:
         low, high = face.bounding_box
-        if max(high.x, -low.x, high.y - middle, middle - low.y) < limit:
+        if max(high.x, -low.x, high.y - axis, axis - low.y) < limit:
             face.name = "bore"

@@ -1,7 +1,7 @@
-"""The collars of D 4.5 with each dimension printed or assumed.
+"""Designs of the collar element of D 4.5, with the source of each dimension.
 
-The first design and its two revisions have stacks above and below the inner ring, the final one has one stack and an
-inner ring that is free on top.
+The first design and its two revisions have stacks above and below the inner ring; the final design has one stack and an
+inner ring that is free at the top.
 """
 
 from collections.abc import Mapping
@@ -12,13 +12,13 @@ from sonolube.dong2015.collar import Collar, Outline
 
 _INCH = 0.0254
 
-COLLAR_ORIGINS: Mapping[str, str] = MappingProxyType(
+COLLAR_DIMENSION_SOURCES: Mapping[str, str] = MappingProxyType(
     {
         "frame_length": "printed: 3.9 in, D 4.5.2; that this side lies along the stacks is assumed",
         "frame_width": "printed: 3.7 in, D 4.5.2; that this side lies across the stacks is assumed",
         "frame_thickness": "printed: 1 in, D 4.5.2",
-        "base_thickness": "assumed; with two stacks what the other lengths leave",
-        "top_thickness": "assumed; with two stacks as the base",
+        "base_thickness": "assumed; with two stacks it follows from the other lengths",
+        "top_thickness": "assumed; with two stacks equal to the base",
         "pillar_width": "assumed",
         "ring_width": "printed for the first design: 1 in, D 4.5.2, taken across flats; assumed for the others",
         "ring_thickness": "assumed",
@@ -30,7 +30,7 @@ COLLAR_ORIGINS: Mapping[str, str] = MappingProxyType(
         "stack_inner_diameter": "printed: Table 4.7",
     }
 )
-"""Where each dimension of the designs comes from: `printed` with its place in D, or `assumed`."""
+"""Source of each dimension of the designs: `printed` with its place in D, or `assumed`."""
 
 FIRST_COLLAR = Collar(
     outline=Outline.HEXAGON,
@@ -47,16 +47,16 @@ FIRST_COLLAR = Collar(
     bore_diameter=0.5 * _INCH,
     bolt_diameter=4e-3,
 )
-"""The first design: two stacks on a hexagonal ring with a hexagonal hole."""
+"""First design: two stacks on a hexagonal inner ring with a hexagonal bore."""
 
 THIN_HEXAGON_COLLAR = replace(FIRST_COLLAR, hole_sides=0, bore_diameter=0.75 * _INCH)
-"""A revision: the first ring with a round hole that takes the rod of the tests."""
+"""Revision of the first design: the same ring with a circular bore for the rod of the tests."""
 
 THIN_RING_COLLAR = replace(THIN_HEXAGON_COLLAR, outline=Outline.ROUND)
-"""The other revision: a round ring with flats for the stacks, of the same wall."""
+"""Other revision: a round inner ring with flats for the stacks, of the same wall."""
 
-GUESSED_COLLAR = replace(THIN_HEXAGON_COLLAR, stacks=1, ring_thickness=0.5 * _INCH)
-"""The final design as one would guess it: one stack and round inches."""
+NOMINAL_COLLAR = replace(THIN_HEXAGON_COLLAR, stacks=1, ring_thickness=0.5 * _INCH)
+"""Final design with nominal dimensions: one stack, and round inches for what D does not print."""
 
 ASSUMED_RANGES: Mapping[str, tuple[float, float]] = MappingProxyType(
     {
@@ -68,10 +68,10 @@ ASSUMED_RANGES: Mapping[str, tuple[float, float]] = MappingProxyType(
         "pillar_width": (10e-3, 25e-3),
     }
 )
-"""Within what the assumed dimensions of the final design are sought, in m: what leaves room for stack, rod and bolt."""
+"""Bounds of the assumed dimensions of the final design in m, which leave room for stack, rod and bolt."""
 
 FINAL_COLLAR = replace(
-    GUESSED_COLLAR,
+    NOMINAL_COLLAR,
     ring_width=25.49e-3,
     ring_thickness=12.82e-3,
     bolt_diameter=4.11e-3,
@@ -79,4 +79,4 @@ FINAL_COLLAR = replace(
     top_thickness=25.11e-3,
     pillar_width=13.76e-3,
 )
-"""The final design: what `tuned_collar` finds from the guess in these ranges for 25 kHz closed and 24.4 kHz open."""
+"""Final design: result of `tuned_collar` from the nominal one within these bounds, for 25 kHz closed, 24.4 kHz open."""

@@ -1,4 +1,4 @@
-"""Which dimensions of a collar set its resonance, and the set nearest to a first guess that brings it where it was."""
+"""Model updating of the collar: sensitivities of its resonance to dimensions, and dimensions fitted to resonances."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -8,30 +8,30 @@ from scipy.optimize import least_squares
 
 from sonolube.checks import Floats
 from sonolube.dong2015.collar import Collar
-from sonolube.dong2015.collar_model import ELEMENT_SIZE, ORDER, collar_response_model
+from sonolube.dong2015.collar_analysis import ELEMENT_SIZE, ORDER, reduced_collar_model
 from sonolube.errors import InvalidInput
-from sonolube.fem.electromechanical_model import coupled_resonances
-from sonolube.fem.solver.harmonic import ReducedModel
+from sonolube.fem.solver.reduction import ReducedModel
+from sonolube.fem.solver.resonances import coupled_resonances
 
-LOWEST, HIGHEST = 15e3, 40e3
-"""Frequencies between which a resonance may be the main one, in Hz; D tells of none outside."""
+LOWEST_FREQUENCY, HIGHEST_FREQUENCY = 15e3, 40e3
+"""Frequency range of the main resonance in Hz; D reports none outside it."""
 
-_STEP = 0.04  # relative change of a dimension, large enough for the unevenness of free meshes to matter little
-_ACCURACY = 0.002  # relative deviation of a frequency that weighs as much as a dimension's change by its freedom
-_FREEDOM = 0.1
-_RIVALRY = 0.5
+_STEP = 0.04  # relative change of a dimension in a difference quotient, large against the scatter between meshes
+_FREQUENCY_SCALE = 0.002  # relative deviation of a frequency of unit weight in the fit
+_DIMENSION_SCALE = 0.1  # relative change of a dimension of unit weight
+_SPURIOUS_SCALE = 0.5  # spurious coupling ratio of unit weight
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Resonance:
-    """One resonance seen in the impedance.
+    """Resonance in the impedance of a collar.
 
     Parameters
     ----------
     series_frequency : float
-        Where the impedance is lowest. [Hz]
+        Frequency of least impedance. [Hz]
     parallel_frequency : float
-        Where it is highest. [Hz]
+        Frequency of greatest impedance. [Hz]
     coupling_factor : float
         Effective coupling factor. []
     """
@@ -41,8 +41,8 @@ class Resonance:
     coupling_factor: float
 
 
-def seen_resonances(model: ReducedModel, *, least_coupling: float) -> tuple[Resonance, ...]:
-    """Return the resonances from 15 to 40 kHz with at least some effective coupling factor, in order of frequency.
+def resonances_in_range(model: ReducedModel, *, least_coupling: float) -> tuple[Resonance, ...]:
+    """Resonances from 15 to 40 kHz with at least a given effective coupling factor, in order of frequency.
 
     Parameters
     ----------
@@ -58,12 +58,12 @@ def seen_resonances(model: ReducedModel, *, least_coupling: float) -> tuple[Reso
     return tuple(
         Resonance(series_frequency=low, parallel_frequency=high, coupling_factor=k)
         for low, high, k in found
-        if LOWEST < low < HIGHEST and k >= least_coupling
+        if LOWEST_FREQUENCY < low < HIGHEST_FREQUENCY and k >= least_coupling
     )
 
 
 def main_resonance(model: ReducedModel) -> Resonance:
-    """Return the resonance from 15 to 40 kHz with the largest effective coupling factor, which impedance shows best.
+    """Resonance from 15 to 40 kHz with the largest effective coupling factor, the most prominent in the impedance.
 
     Parameters
     ----------
@@ -73,11 +73,11 @@ def main_resonance(model: ReducedModel) -> Resonance:
     -------
     Resonance
     """
-    return max(seen_resonances(model, least_coupling=0.0), key=lambda found: found.coupling_factor)
+    return max(resonances_in_range(model, least_coupling=0.0), key=lambda found: found.coupling_factor)
 
 
-def rivalry(model: ReducedModel) -> float:
-    """Return how strong the other resonances from 15 to 40 kHz are beside the main one.
+def spurious_coupling_ratio(model: ReducedModel) -> float:
+    r"""Strength of the spurious resonances from 15 to 40 kHz relative to the main one.
 
     Parameters
     ----------
@@ -86,13 +86,19 @@ def rivalry(model: ReducedModel) -> float:
     Returns
     -------
     float
-        Root of the sum of their squared coupling factors, over the main one's: zero where there is one pair only.
+        Zero where the main resonance is the only one.
+
+    Notes
+    -----
+    With the effective coupling factor k of the main resonance and those of the others
+
+    .. math:: \frac{1}{k} \sqrt{\sum_i k_i^2}
     """
-    squares = sorted(found.coupling_factor**2 for found in seen_resonances(model, least_coupling=0.0))
+    squares = sorted(found.coupling_factor**2 for found in resonances_in_range(model, least_coupling=0.0))
     return float(np.sqrt(sum(squares[:-1]) / squares[-1]))
 
 
-def sensitivities(
+def frequency_sensitivities(
     collar: Collar,
     *,
     dimensions: Sequence[str],
@@ -100,15 +106,15 @@ def sensitivities(
     element_size: float = ELEMENT_SIZE,
     order: int = ORDER,
 ) -> dict[str, float]:
-    """Return by how many percent the main resonance rises for each percent that a dimension grows.
+    r"""Logarithmic sensitivities of the main resonance to dimensions, by central differences.
 
     Parameters
     ----------
     collar : Collar
     dimensions : sequence of str
-        Their names.
+        Names of the dimensions.
     open_top : bool
-        Without the top.
+        Without the removable top.
     element_size : float
         Largest edge of an element. [m]
     order : int
@@ -117,13 +123,14 @@ def sensitivities(
     Returns
     -------
     dict of str to float
-        Central differences over eight percent, certain to some 0.01 where the change is even over them.
+        :math:`\partial \ln f/\partial \ln x`, from differences over eight percent; accurate to some 0.01 where the
+        change is uniform over them.
     """
 
     def frequency(name: str, factor: float) -> float:
         changed = _scaled(collar, {name: factor})
         return main_resonance(
-            collar_response_model(changed, open_top=open_top, element_size=element_size, order=order)
+            reduced_collar_model(changed, open_top=open_top, element_size=element_size, order=order)
         ).series_frequency
 
     return {
@@ -141,16 +148,16 @@ def tuned_collar(
     element_size: float = ELEMENT_SIZE,
     order: int = ORDER,
 ) -> Collar:
-    """Return the collar nearest to a guess whose main resonance is at one frequency closed, at another without its top.
+    r"""Collar nearest to an initial one with given main resonances closed and open, by regularised least squares.
 
     Parameters
     ----------
     guess : Collar
-        What the dimensions are supposed to be.
+        Initial dimensions.
     closed_frequency, open_frequency : float
         Main resonance with the top and without it, in Hz.
     bounds : mapping of str to tuple of two float
-        The dimensions that may change, each with its least and greatest value in m.
+        Least and greatest value in m of each dimension to be fitted.
     element_size : float
         Largest edge of an element. [m]
     order : int
@@ -163,41 +170,54 @@ def tuned_collar(
     Raises
     ------
     InvalidInput
-        If nothing may change, or a guess lies outside its bounds.
+        If no dimension is to be fitted, or an initial one lies outside its bounds.
 
     Notes
     -----
-    Two frequencies cannot determine more than two dimensions: the sum of squares minimised holds both relative
-    deviations of frequency over 0.2 %, the rivalry of other resonances of the closed collar over a half, since D saw
-    one, and all relative changes of dimensions over 10 %. Of many sets that meet the frequencies it finds the one
-    nearest to the guess; nothing says that it is the real one. Slopes are those at the guess all the way, since it
-    changes by a few percent.
+    Two frequencies cannot determine more than two dimensions, so that their changes are penalised. Minimised is
+
+    .. math::
+
+        \sum_{c} \left(\frac{f_c/f_c^* - 1}{0.002}\right)^2 + \left(\frac{s}{0.5}\right)^2
+        + \sum_i \left(\frac{\ln x_i/x_i^0}{0.1}\right)^2
+
+    over the cases c with and without the top, with the spurious coupling ratio s of the closed collar, as D observed
+    one resonance. Of the many sets of dimensions that have these resonances the result is the nearest to the initial
+    one, not necessarily the real one. The Jacobian is that at the initial dimensions throughout, as these change by a
+    few percent only.
     """
     names = tuple(bounds)
     if not names:
-        raise InvalidInput("nothing may change: bounds name no dimension")
+        raise InvalidInput("no dimension to fit: bounds name no dimension")
     start = np.array([getattr(guess, name) for name in names])
     low, high = np.log(np.array([bounds[name] for name in names]).T / start)
     if np.any(low >= 0) or np.any(high <= 0):
-        raise InvalidInput("each dimension of the guess must lie within its bounds")
+        raise InvalidInput("each initial dimension must lie within its bounds")
 
     def residuals(changes: Floats) -> Floats:
         collar = _scaled(guess, dict(zip(names, np.exp(changes).tolist(), strict=True)))
         closed, opened = (
-            collar_response_model(collar, open_top=is_open, element_size=element_size, order=order)
+            reduced_collar_model(collar, open_top=is_open, element_size=element_size, order=order)
             for is_open in (False, True)
         )
         found = np.array([main_resonance(model).series_frequency for model in (closed, opened)])
-        wanted = np.array([closed_frequency, open_frequency])
-        return np.concatenate([(found / wanted - 1) / _ACCURACY, [rivalry(closed) / _RIVALRY], changes / _FREEDOM])
+        target = np.array([closed_frequency, open_frequency])
+        return np.concatenate(
+            [
+                (found / target - 1) / _FREQUENCY_SCALE,
+                [spurious_coupling_ratio(closed) / _SPURIOUS_SCALE],
+                changes / _DIMENSION_SCALE,
+            ]
+        )
 
-    still = np.zeros(len(names))
-    here = residuals(still)
+    initial = np.zeros(len(names))
+    at_initial = residuals(initial)
     steps = np.diag(np.where(high > _STEP, _STEP, -_STEP))
-    slopes = np.column_stack([(residuals(step) - here) / step.sum() for step in steps])
-    solution = least_squares(residuals, still, jac=lambda _: slopes, bounds=(low, high), xtol=1e-2, ftol=1e-2)
+    jacobian = np.column_stack([(residuals(step) - at_initial) / step.sum() for step in steps])
+    solution = least_squares(residuals, initial, jac=lambda _: jacobian, bounds=(low, high), xtol=1e-2, ftol=1e-2)
     return _scaled(guess, dict(zip(names, np.exp(solution.x).tolist(), strict=True)))
 
 
 def _scaled(collar: Collar, factors: Mapping[str, float]) -> Collar:
+    """Collar with some dimensions multiplied by factors."""
     return replace(collar, **{name: getattr(collar, name) * factor for name, factor in factors.items()})

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh
 
-from sonolube.actuator import Branch, ButterworthVanDyke, Resonances, resonances
+from sonolube.actuator import ButterworthVanDyke, CircuitResonances, MotionalBranch, circuit_resonances
 from sonolube.checks import Complexes, Floats
 from sonolube.dynamics.structure import Structure
 
@@ -177,7 +177,7 @@ def equivalent_circuit(structure: Structure) -> ButterworthVanDyke:
     participation = structure.drive_vector @ natural.shapes
     omega = 2 * np.pi * natural.natural_frequency
     branches = [
-        Branch(
+        MotionalBranch(
             resistance=2 * natural.damping_ratio[i] * omega[i] / participation[i] ** 2,
             inductance=1 / participation[i] ** 2,
             capacitance=participation[i] ** 2 / omega[i] ** 2,
@@ -188,7 +188,7 @@ def equivalent_circuit(structure: Structure) -> ButterworthVanDyke:
     return ButterworthVanDyke(parallel_capacitance=structure.clamped_capacitance, branches=tuple(branches))
 
 
-def resonance_frequencies(structure: Structure) -> Resonances:
+def resonance_frequencies(structure: Structure) -> CircuitResonances:
     """Return the series and parallel resonance frequencies of the electrical admittance with the contact free.
 
     Parameters
@@ -197,7 +197,7 @@ def resonance_frequencies(structure: Structure) -> Resonances:
 
     Returns
     -------
-    Resonances
+    CircuitResonances
         Of the modes that the stack drives; frequencies without damping, which enters the quality factors.
 
     Raises
@@ -205,4 +205,4 @@ def resonance_frequencies(structure: Structure) -> Resonances:
     InvalidInput
         If the clamped capacitance is zero.
     """
-    return resonances(equivalent_circuit(structure))
+    return circuit_resonances(equivalent_circuit(structure))

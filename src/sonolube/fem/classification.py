@@ -1,4 +1,4 @@
-"""What kind of motion a mode is, and its name."""
+"""Classification of modes into families about an axis by their kinetic energy, and names such as "axial 1"."""
 
 from collections import Counter
 from enum import StrEnum
@@ -9,17 +9,17 @@ from scipy import sparse
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.fem.solver.assembly import mass_matrix
+from sonolube.fem.solver.assembly import scalar_mass_matrix
 from sonolube.fem.solver.mesh import Mesh
 from sonolube.fem.solver.model import DIRECTIONS, Model
 from sonolube.fem.solver.modes import NaturalModes
 
-_DEGREE = 8  # of the polynomials along the axis, enough for modes of some three wavelengths
-_DOMINANT = 0.5
+_DEGREE = 8  # of the Legendre polynomials along the axis, sufficient for modes of some three wavelengths
+_DOMINANT = 0.5  # fraction of the kinetic energy above which a family names the mode
 
 
-class Motion(StrEnum):
-    """Kinds of motion about an axis."""
+class ModeFamily(StrEnum):
+    """Families of modes of a body about an axis."""
 
     AXIAL = "axial"
     BREATHING = "breathing"
@@ -29,95 +29,110 @@ class Motion(StrEnum):
     RIGID = "rigid"
 
 
-def participation(model: Model, modes: NaturalModes, *, axis: str) -> dict[Motion, Floats]:
-    """Return the share of each mode's kinetic energy in axial, breathing, torsional and bending motion.
+def kinetic_energy_fractions(model: Model, modes: NaturalModes, *, axis: str) -> dict[ModeFamily, Floats]:
+    r"""Fractions of each mode's kinetic energy in axial, breathing, torsional and bending motion.
 
     Parameters
     ----------
     model : Model
     modes : NaturalModes
     axis : str
-        The body's axis: "x", "y" or "z".
+        Axis of the body: "x", "y" or "z".
 
     Returns
     -------
-    dict of Motion to ndarray, shape (k,)
-        Shares from 0 to 1. They need not sum to one: what is left is warping and deformation of sections.
+    dict of ModeFamily to ndarray, shape (k,)
+        Between 0 and 1. They need not sum to one: the remainder is warping and in-plane deformation of cross-sections.
+
+    Raises
+    ------
+    InvalidInput
+        If the axis is none of x, y and z.
 
     Notes
     -----
-    Sections stay plane in all four kinds, but for breathing, in which they swell about the axis alike all round.
-    A share is the kinetic energy of the mode's projection, in the metric of mass, onto fields that follow Legendre
-    polynomials P(s) along the axis: axial P e_s; breathing P r; torsional P e_s x r; bending P e_t for both directions
-    t across, with the tilt P t e_s of the sections. The axis passes through the centre of mass.
+    The fraction of a family with the displacement fields F (columns) is the kinetic energy of the mode's projection
+    onto them, orthogonal with respect to the mass matrix M; mode shapes :math:`\phi` have unit modal mass:
+
+    .. math:: \eta = \phi^\mathsf{T} M F \left(F^\mathsf{T} M F\right)^{-1} F^\mathsf{T} M \phi
+
+    The fields vary along the axis s, which passes through the centre of mass, as Legendre polynomials P(s). With the
+    position r from the axis and the two directions t across it they are: axial :math:`P e_s`; breathing :math:`P r`, a
+    uniform swelling of the cross-sections; torsional :math:`P\, e_s \times r`; bending :math:`P e_t` and the tilt
+    :math:`P\, t\, e_s` of the cross-sections.
     """
     if axis not in DIRECTIONS or len(axis) != 1:
         raise InvalidInput(f"axis must be x, y or z, got {axis!r}")
-    mass = mass_matrix(model)
-    weight = np.asarray(mass.sum(axis=0))
-    flat = modes.shapes.reshape(len(modes.shapes), -1)
-    shares = {}
-    for kind, fields in _fields(model.mesh, weight, DIRECTIONS.index(axis)).items():
-        loaded = _loaded(mass, fields)
-        gram, projected = fields @ loaded, flat @ loaded
-        energy = np.einsum("kf,kf->k", projected, np.linalg.lstsq(gram, projected.T, rcond=1e-10)[0].T)
-        shares[kind] = np.clip(energy, 0.0, 1.0)  # the shapes have unit modal mass
-    return shares
+    mass = scalar_mass_matrix(model)
+    nodal_mass = np.asarray(mass.sum(axis=0))
+    shapes = modes.shapes.reshape(len(modes.shapes), -1)
+    fractions = {}
+    for family, fields in _family_fields(model.mesh, nodal_mass, DIRECTIONS.index(axis)).items():
+        mass_fields = _mass_times_fields(mass, fields)
+        gram, projection = fields @ mass_fields, shapes @ mass_fields
+        energy = np.einsum("kf,kf->k", projection, np.linalg.lstsq(gram, projection.T, rcond=1e-10)[0].T)
+        fractions[family] = np.clip(energy, 0.0, 1.0)
+    return fractions
 
 
 def mode_names(model: Model, modes: NaturalModes, *, axis: str) -> tuple[str, ...]:
-    """Return a name for each mode, such as "axial 1", numbered by frequency within its kind.
+    """Name of each mode: its family and its number by frequency within it, such as "axial 1".
 
     Parameters
     ----------
     model : Model
     modes : NaturalModes
     axis : str
-        The body's axis: "x", "y" or "z".
+        Axis of the body: "x", "y" or "z".
 
     Returns
     -------
     tuple of str
-        Modes with no more than half their energy in any one kind are called "other".
+        Modes without a family of more than half their kinetic energy are named "other", rigid-body modes "rigid".
+
+    Raises
+    ------
+    InvalidInput
+        If the axis is none of x, y and z.
     """
-    shares = participation(model, modes, axis=axis)
-    kinds = list(shares)
-    stacked = np.array([shares[kind] for kind in kinds])
-    seen: Counter[Motion] = Counter()
+    by_family = kinetic_energy_fractions(model, modes, axis=axis)
+    families = list(by_family)
+    fractions = np.array([by_family[family] for family in families])
+    numbers: Counter[ModeFamily] = Counter()
     names = []
     for mode in range(modes.natural_frequency.size):
-        best = int(np.argmax(stacked[:, mode]))
-        kind = kinds[best] if stacked[best, mode] > _DOMINANT else Motion.OTHER
-        kind = Motion.RIGID if mode < modes.rigid else kind
-        seen[kind] += 1
-        names.append(f"{kind} {seen[kind]}")
+        largest = int(np.argmax(fractions[:, mode]))
+        family = families[largest] if fractions[largest, mode] > _DOMINANT else ModeFamily.OTHER
+        family = ModeFamily.RIGID if mode < modes.rigid_body_count else family
+        numbers[family] += 1
+        names.append(f"{family} {numbers[family]}")
     return tuple(names)
 
 
-def _loaded(mass: sparse.csc_array, fields: Floats) -> Floats:
-    """Return mass times fields of three directions, shape (3n, f)."""
+def _mass_times_fields(mass: sparse.csc_array, fields: Floats) -> Floats:
+    """Mass matrix times displacement fields, shape (3n, f)."""
     by_node = fields.reshape(len(fields), -1, 3).transpose(1, 2, 0)
     return np.asarray(mass @ by_node.reshape(len(by_node), -1)).reshape(-1, len(fields))
 
 
-def _fields(mesh: Mesh, weight: Floats, axis: int) -> dict[Motion, Floats]:
-    """Return fields of each kind, shape (f, 3n)."""
-    place = mesh.nodes - np.average(mesh.nodes, axis=0, weights=weight)
-    half = np.ptp(place[:, axis]) / 2
-    along = (mesh.nodes[:, axis] - mesh.nodes[:, axis].min()) / half - 1
-    waves = legendre.legvander(along, _DEGREE).T  # (f, n)
+def _family_fields(mesh: Mesh, nodal_mass: Floats, axis: int) -> dict[ModeFamily, Floats]:
+    """Displacement fields of each family, shape (f, 3n)."""
+    position = mesh.nodes - np.average(mesh.nodes, axis=0, weights=nodal_mass)
+    half_length = np.ptp(position[:, axis]) / 2
+    s = (mesh.nodes[:, axis] - mesh.nodes[:, axis].min()) / half_length - 1
+    polynomials = legendre.legvander(s, _DEGREE).T  # (f, n)
     unit = np.eye(3)
     across = [direction for direction in range(3) if direction != axis]
-    arm = place * (1 - unit[axis]) / half
+    arm = position * (1 - unit[axis]) / half_length
 
-    def spread(direction: Floats) -> Floats:
-        return (waves[:, :, np.newaxis] * direction).reshape(len(waves), -1)
+    def along_axis(vector: Floats) -> Floats:
+        return (polynomials[:, :, np.newaxis] * vector).reshape(len(polynomials), -1)
 
-    shifts = [spread(np.broadcast_to(unit[t], place.shape)) for t in across]
-    tilts = [spread(arm[:, t, np.newaxis] * unit[axis]) for t in across]
+    deflections = [along_axis(np.broadcast_to(unit[t], position.shape)) for t in across]
+    tilts = [along_axis(arm[:, t, np.newaxis] * unit[axis]) for t in across]
     return {
-        Motion.AXIAL: spread(np.broadcast_to(unit[axis], place.shape)),
-        Motion.BREATHING: spread(arm),
-        Motion.TORSIONAL: spread(np.cross(unit[axis], arm)),
-        Motion.BENDING: np.concatenate([*shifts, *tilts]),
+        ModeFamily.AXIAL: along_axis(np.broadcast_to(unit[axis], position.shape)),
+        ModeFamily.BREATHING: along_axis(arm),
+        ModeFamily.TORSIONAL: along_axis(np.cross(unit[axis], arm)),
+        ModeFamily.BENDING: np.concatenate([*deflections, *tilts]),
     }

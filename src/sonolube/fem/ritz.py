@@ -1,8 +1,8 @@
-"""Free blocks, bars and tubes by Rayleigh and Ritz: polynomials in place of meshes, an independent check of both.
+"""Rayleigh-Ritz method for free prisms: blocks, bars and tubes in polynomials, without a mesh.
 
-A prism of constant section along z, symmetric about the planes x = 0 and y = 0, of a medium that is symmetric about
-all three: displacements are sums of polynomials, orthonormal over the section, times Legendre polynomials along z.
-Symmetry splits them into eight classes that do not mix.
+The prism has a constant cross-section along z that is symmetric about the planes x = 0 and y = 0, and a medium that is
+symmetric about all three coordinate planes. Displacements are sums of products of polynomials orthonormal over the
+cross-section and Legendre polynomials along z. They fall into eight uncoupled symmetry classes.
 """
 
 from collections.abc import Mapping
@@ -19,23 +19,23 @@ from sonolube.fem.solver.medium import Medium
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Section:
-    """Points and weights that integrate over the section of a prism.
+class CrossSection:
+    """Cross-section of a prism, as a quadrature rule over it.
 
     Parameters
     ----------
     points : ndarray, shape (q, 2)
-        Coordinates across, in m.
+        Quadrature points x and y, in m.
     weights : ndarray, shape (q,)
-        Areas, in m2.
+        Quadrature weights, in m2.
     """
 
     points: Floats
     weights: Floats
 
 
-def rectangle(*, length: float, width: float, order: int) -> Section:
-    """Return a rectangular section, exact for products of polynomials of that order.
+def rectangular_section(*, length: float, width: float, order: int) -> CrossSection:
+    """Rectangular cross-section, with quadrature exact for products of two polynomials of an order.
 
     Parameters
     ----------
@@ -46,64 +46,84 @@ def rectangle(*, length: float, width: float, order: int) -> Section:
 
     Returns
     -------
-    Section
+    CrossSection
     """
     require_positive(length=length, width=width)
     x, w = legendre.leggauss(order + 1)
     points = np.stack(np.meshgrid(length / 2 * x, width / 2 * x, indexing="ij"), axis=-1).reshape(-1, 2)
-    return Section(points=points, weights=np.outer(length / 2 * w, width / 2 * w).ravel())
+    return CrossSection(points=points, weights=np.outer(length / 2 * w, width / 2 * w).ravel())
 
 
-def annulus(*, outer_radius: float, inner_radius: float, order: int) -> Section:
-    """Return the section of a round bar or tube, exact for products of polynomials of that order.
+def annular_section(*, outer_radius: float, inner_radius: float, order: int) -> CrossSection:
+    """Circular or annular cross-section, with quadrature exact for products of two polynomials of an order.
 
     Parameters
     ----------
     outer_radius, inner_radius : float
-        Radii, the inner zero for a bar. [m]
+        Radii, the inner zero for a solid bar. [m]
     order : int
         Highest total degree of the polynomials.
 
     Returns
     -------
-    Section
+    CrossSection
+
+    Raises
+    ------
+    InvalidInput
+        If a radius is negative or the inner one not the smaller.
     """
     require_positive(outer_radius=outer_radius)
     require_non_negative(inner_radius=inner_radius)
     if inner_radius >= outer_radius:
         raise InvalidInput(f"the wall has no thickness: inner_radius {inner_radius!r} m, outer {outer_radius!r} m")
     x, w = legendre.leggauss(order + 2)
-    half = (outer_radius - inner_radius) / 2
-    r = inner_radius + half * (1 + x)
-    turns = 4 * order + 4
-    angle = 2 * np.pi * (np.arange(turns) + 0.5) / turns
+    half_wall = (outer_radius - inner_radius) / 2
+    r = inner_radius + half_wall * (1 + x)
+    angles = 4 * order + 4
+    angle = 2 * np.pi * (np.arange(angles) + 0.5) / angles
     points = np.stack([np.outer(r, np.cos(angle)), np.outer(r, np.sin(angle))], axis=-1).reshape(-1, 2)
-    return Section(points=points, weights=np.repeat(w * half * r * 2 * np.pi / turns, turns))
+    return CrossSection(points=points, weights=np.repeat(w * half_wall * r * 2 * np.pi / angles, angles))
 
 
-def ritz_frequencies(section: Section, *, length: float, medium: Medium, order: int) -> Floats:
-    """Return the natural frequencies of a free prism in Hz, in order, its six rigid motions left out.
+def ritz_frequencies(section: CrossSection, *, length: float, medium: Medium, order: int) -> Floats:
+    r"""Natural frequencies of a free elastic prism by the Rayleigh-Ritz method, without its six rigid-body modes.
 
     Parameters
     ----------
-    section : Section
-        Made for this order.
+    section : CrossSection
+        With quadrature for this order.
     length : float
         Extent of the prism along z. [m]
     medium : Medium
-        Its piezoelectric constants are not used; its planes of symmetry must be those of the axes.
+        Its piezoelectric constants are ignored; it must be symmetric about the coordinate planes.
     order : int
         Highest total degree of the polynomials.
 
     Returns
     -------
     ndarray
-        Each lies above the true one and falls to it as the order grows; about the lower tenth is good.
+        In Hz, in ascending order. Each is an upper bound that converges from above as the order rises; about the lowest
+        tenth of them is accurate.
 
     Raises
     ------
     InvalidInput
-        If the medium or section has not the symmetry, or the order is below 2.
+        If the medium or cross-section lacks the symmetry, or the order is below 2.
+
+    Notes
+    -----
+    With basis functions f that are orthonormal over the prism the mass matrix is the density times the identity, and
+    the frequencies follow from
+
+    .. math::
+
+        \det\left(\int c_{ikjm}\, \partial_k f_a\, \partial_m f_b\, dV
+        - \rho \omega^2 \delta_{ij}\delta_{ab}\right) = 0
+
+    See Also
+    --------
+    sonolube.fem.solver.modes.natural_modes : Bodies of any shape, by finite elements.
 
     References
     ----------
@@ -119,34 +139,34 @@ def ritz_frequencies(section: Section, *, length: float, medium: Medium, order: 
     centre = section.weights @ section.points / section.weights.sum()
     if np.abs(centre).max() > 1e-9 * np.abs(section.points).max():
         raise InvalidInput("the section is not symmetric about x = 0 and y = 0")
-    across, degrees = _across(section, order)
-    along = _along(length, order)
+    across, degrees = _cross_section_integrals(section, order)
+    along = _axial_integrals(length, order)
     pairs = [(a, k) for a in range(len(degrees)) for k in range(order + 1 - sum(degrees[a]))]
     parity = {pair: (degrees[pair[0]][0] % 2, degrees[pair[0]][1] % 2, pair[1] % 2) for pair in pairs}
-    squares = [_class_squares(across, along, pairs, parity, odd, c) for odd in product((0, 1), repeat=3)]
+    squares = [_class_eigenvalues(across, along, pairs, parity, odd, c) for odd in product((0, 1), repeat=3)]
     omega = np.sqrt(np.maximum(np.sort(np.concatenate(squares)) / medium.density, 0.0))
     return np.asarray(omega[6:] / (2 * np.pi))
 
 
-Pairs = list[tuple[int, int]]
-_SHEAR = {(1, 2): 3, (0, 2): 4, (0, 1): 5}  # rows of Voigt's notation
+_BasisIndices = list[tuple[int, int]]  # of the functions over the cross-section and along z
+_SHEAR = {(1, 2): 3, (0, 2): 4, (0, 1): 5}  # rows in Voigt notation
 
 
-def _class_squares(
+def _class_eigenvalues(
     across: Floats,
     along: Floats,
-    pairs: Pairs,
+    pairs: _BasisIndices,
     parity: Mapping[tuple[int, int], tuple[int, ...]],
     odd: tuple[int, ...],
     c: Floats,
 ) -> Floats:
-    """Return omega^2 times density of one class of symmetry; component i is odd along j where odd_j + [i = j] is."""
+    """Eigenvalues rho omega^2 of one symmetry class, in which component i is odd along j where odd_j + [i = j] is."""
     own = [[p for p in pairs if all(parity[p][j] == (odd[j] + (i == j)) % 2 for j in range(3))] for i in range(3)]
     section = [np.array([a for a, _ in component], dtype=int) for component in own]
     axial = [np.array([k for _, k in component], dtype=int) for component in own]
 
     def product_of(i: int, k: int, j: int, m: int) -> Floats:
-        """Return int d_k u_i d_m u_j over the functions of components i and j."""
+        """Integrals of d_k u_i d_m u_j over the functions of components i and j."""
         return np.asarray(
             across[k, m][np.ix_(section[i], section[j])] * along[int(k == 2), int(m == 2)][np.ix_(axial[i], axial[j])]
         )
@@ -164,10 +184,10 @@ def _class_squares(
     return np.asarray(eigh(np.block(blocks), eigvals_only=True))
 
 
-def _across(section: Section, order: int) -> tuple[Floats, list[tuple[int, int]]]:
-    """Return integrals over the section of products of derivatives, [k, m, a, b], and the degrees of the functions.
+def _cross_section_integrals(section: CrossSection, order: int) -> tuple[Floats, list[tuple[int, int]]]:
+    """Integrals over the cross-section of products of derivatives, [k, m, a, b], and the degrees of the functions.
 
-    Derivative 2 is that along z: across the section it leaves the function as it is.
+    Derivative 2 is that along z, which over the cross-section is the function itself.
     """
     scale = np.abs(section.points).max(axis=0)
     degrees = [(i, j) for total in range(order + 1) for i in range(total, -1, -1) for j in [total - i]]
@@ -181,8 +201,8 @@ def _across(section: Section, order: int) -> tuple[Floats, list[tuple[int, int]]
     return np.einsum("kaq,mbq->kmab", orthonormal, orthonormal, optimize=True), degrees
 
 
-def _along(length: float, order: int) -> Floats:
-    """Return integrals along z of products of orthonormal Legendre polynomials or their derivatives, [d, e, k, m]."""
+def _axial_integrals(length: float, order: int) -> Floats:
+    """Integrals along z of products of orthonormal Legendre polynomials or their derivatives, [d, e, k, m]."""
     x, w = legendre.leggauss(order + 1)
     values, slopes = _legendre(x, order)
     norm = np.sqrt((2 * np.arange(order + 1) + 1) / length)[:, np.newaxis]
@@ -191,6 +211,7 @@ def _along(length: float, order: int) -> Floats:
 
 
 def _legendre(x: Floats, order: int) -> tuple[Floats, Floats]:
+    """Legendre polynomials up to an order and their derivatives, shapes (order + 1, q)."""
     unit = np.eye(order + 1)
     values: Floats = legendre.legvander(x, order).T.astype(np.float64)
     return values, np.array([legendre.legval(x, legendre.legder(row)) for row in unit])

@@ -1,54 +1,49 @@
-"""A length tuned until a named mode rings at a frequency, and what a mass on a face does to it."""
+"""Resonance tuning: a named mode on converged meshes, and the length of a body at which it has a target frequency."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import eigh
 
-from sonolube.checks import Floats, require_non_negative, require_positive
+from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.fem.classification import mode_names
-from sonolube.fem.solver.assembly import face_weights
 from sonolube.fem.solver.convergence import converged_modes
-from sonolube.fem.solver.grading import graded
-from sonolube.fem.solver.harmonic import Output, observers
-from sonolube.fem.solver.model import DIRECTIONS, Model
-from sonolube.fem.solver.modes import NaturalModes, NotConverged, natural_modes, shift_for
-from sonolube.fem.solver.orders import of_order
-from sonolube.fem.solver.system import Solve, System, shifted, system
+from sonolube.fem.solver.element_order import change_order
+from sonolube.fem.solver.grading import grade_reentrant_edges
+from sonolube.fem.solver.model import Model
+from sonolube.fem.solver.modes import NaturalModes, NotConverged, natural_modes
 
 Advance = Callable[[str, int, int], None]
+"""Progress callback: description, number of completed steps, expected number of steps."""
 
-_COARSE_ORDER, _BETTER_ORDER = 2, 3
-_COARSE = 3e-3  # of the frequency: as far as free meshes of one size agree at the lower order
-_ON_TARGET = 5e-4
-_STEPS = 12
-_FIRST_STEP, _LARGEST_STEP = 0.05, 0.2  # of the length; the first must stand out from the meshes' scatter
-_APART = 0.06  # of the length, at which lengths on both sides tell the slope in spite of the scatter
-_CORRECTIONS = 5
-_UNMOVED = 0.05  # square of the face's motion over the greatest, below which a mode is mixed at most
-_FAR = 1e3  # square of the frequency that stands for all modes above, over the last's
+_COARSE_ORDER, _FINE_ORDER = 2, 3  # element orders of the search and of its first correction
+_COARSE_TOLERANCE = 3e-3  # of the frequency: reproducibility of free meshes of one element size at the coarse order
+_TOLERANCE = 5e-4  # of the frequency, of the result
+_MOST_STEPS = 12
+_FIRST_STEP, _LARGEST_STEP = 0.05, 0.2  # of the length; the first must exceed the scatter between meshes
+_DIFFERENCE = 0.06  # of the length, to either side for the slope, large against the scatter between meshes
+_MOST_CORRECTIONS = 5
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class NamedMode:
-    """A mode of a name, followed over meshes until its frequency is known.
+    """Natural mode identified by its name, with the frequency converged over meshes.
 
     Parameters
     ----------
     model : Model
-        On the finest mesh.
+        Finite-element model on the last mesh.
     modes : NaturalModes
-        On the finest mesh.
+        Natural modes on the last mesh.
     names : tuple of str
         Their names.
     row : int
-        Which of them it is.
+        Index of the named mode among them.
     frequency : float
-        Its frequency, extrapolated to elements of any order. [Hz]
+        Its frequency, extrapolated to infinite element order. [Hz]
     frequency_error : float
-        Estimated error of that over itself. []
+        Estimated relative error of this. []
     """
 
     model: Model
@@ -60,13 +55,13 @@ class NamedMode:
 
     @property
     def displacement(self) -> Floats:
-        """Displacements of the nodes in the mode, shape (n, 3), of a modal mass of 1 kg."""
+        """Mode shape: displacements of the nodes, shape (n, 3), normalised to a modal mass of 1 kg."""
         return np.asarray(self.modes.shapes[self.row])
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class TunedMode:
-    """A length at which a mode rings at a wanted frequency.
+    """Length at which a named mode has the target frequency.
 
     Parameters
     ----------
@@ -75,7 +70,7 @@ class TunedMode:
     mode : NamedMode
         The mode at that length.
     frequency_per_length : float
-        Change of its frequency with the length. [Hz/m]
+        Derivative of its frequency with respect to the length. [Hz/m]
     """
 
     length: float
@@ -94,26 +89,26 @@ def named_mode(
     most_nodes: int = 60_000,
     advance: Advance | None = None,
 ) -> NamedMode:
-    """Return the mode of a name as well known as asked; other modes may be less well known.
+    """Natural mode of a given name with its frequency within a tolerance, by hp-refinement.
 
     Parameters
     ----------
     model_at : callable
-        From the largest edge of an element in m to the model on such a mesh.
+        From the largest element edge in m to the finite-element model on such a mesh.
     name : str
-        Such as "axial 1".
+        Name of the mode, such as "axial 1".
     axis : str
-        The body's axis.
+        Axis of the body, "x", "y" or "z".
     element_size : float
-        Largest edge of an element in the first mesh. [m]
+        Largest element edge of the first mesh. [m]
     count : int
-        Number of elastic modes to look at.
+        Number of elastic modes to compute and name.
     relative_tolerance : float
-        Largest estimated relative error of the frequency.
+        Largest estimated relative error of the frequency; other modes may be less accurate.
     most_nodes : int
-        Meshes with more nodes than this are not tried.
+        Largest admissible number of nodes.
     advance : callable, optional
-        Told what is being done, how many meshes are done and of how many, as far as one knows.
+        Progress callback, called with a description, the number of completed steps and the expected number.
 
     Returns
     -------
@@ -122,13 +117,18 @@ def named_mode(
     Raises
     ------
     InvalidInput
-        If there is no mode of this name.
+        If no mode computed has this name.
     NotConverged
         If the next mesh would have more than `most_nodes` nodes.
+
+    See Also
+    --------
+    sonolube.fem.solver.convergence.converged_modes : All modes within a tolerance.
+    sonolube.fem.classification.mode_names : The names.
     """
 
-    def row(model: Model, modes: NaturalModes) -> int:
-        return _row(mode_names(model, modes, axis=axis), name)
+    def index(model: Model, modes: NaturalModes) -> int:
+        return _mode_index(mode_names(model, modes, axis=axis), name)
 
     found = converged_modes(
         model_at,
@@ -136,17 +136,17 @@ def named_mode(
         element_size=element_size,
         relative_tolerance=relative_tolerance,
         most_nodes=most_nodes,
-        judged=lambda model, modes: (row(model, modes),),
+        required_modes=lambda model, modes: (index(model, modes),),
         advance=advance,
     )
-    own = row(found.model, found.modes)
+    row = index(found.model, found.modes)
     return NamedMode(
         model=found.model,
         modes=found.modes,
         names=mode_names(found.model, found.modes, axis=axis),
-        row=own,
-        frequency=float(found.natural_frequency[own]),
-        frequency_error=float(found.frequency_error[own]),
+        row=row,
+        frequency=float(found.natural_frequency[row]),
+        frequency_error=float(found.frequency_error[row]),
     )
 
 
@@ -162,66 +162,67 @@ def tuned_mode(
     relative_tolerance: float = 3e-3,
     advance: Advance | None = None,
 ) -> TunedMode:
-    """Return the length at which the mode of a name has a frequency.
+    """Length at which the mode of a given name has a target frequency, by a bracketed secant method.
 
     Parameters
     ----------
     model_at : callable
-        From the length and the largest edge of an element, both in m, to the model.
+        From the length and the largest element edge, both in m, to the finite-element model.
     name : str
-        Such as "axial 1".
+        Name of the mode, such as "axial 1".
     axis : str
-        The body's axis.
+        Axis of the body, "x", "y" or "z".
     frequency : float
-        Frequency wanted. [Hz]
+        Target frequency. [Hz]
     length : float
-        Length to start from. [m]
+        Initial length. [m]
     element_size : float
-        Largest edge of an element in the first mesh. [m]
+        Largest element edge of the first mesh. [m]
     count : int
-        Number of elastic modes to look at.
+        Number of elastic modes to compute and name.
     relative_tolerance : float
         Largest estimated relative error of the frequency.
     advance : callable, optional
-        Told what is being done, how many steps are done and of how many, as far as one knows.
+        Progress callback, called with a description, the number of completed steps and the expected number.
 
     Returns
     -------
     TunedMode
-        Its frequency is within 5e-4 of the one wanted, or within its error.
+        Its frequency differs from the target by at most 5e-4 of it, or by its estimated error.
 
     Raises
     ------
     InvalidInput
-        If there is no mode of this name.
+        If no mode computed has this name.
     NotConverged
-        If no length near the start gives the frequency.
+        If no length near the initial one has the target frequency.
 
     Notes
     -----
-    The secant method, kept in the bracket once there is one, with elements of order two. Order three tells by how much
-    these are off, and the length is corrected for that and last for what the refined mesh says.
+    The secant search uses elements of order two. Its result is corrected by Newton steps with the slope found: first
+    for the difference to order three on the same mesh, then for that to the converged frequency.
     """
     require_positive(frequency=frequency, length=length, element_size=element_size)
 
-    def at_order(at: float, order: int) -> float:
-        model = model_at(at, element_size)
-        model = replace(model, mesh=of_order(graded(model.mesh, levels=1), order=order))
+    def frequency_at(length: float, order: int) -> float:
+        model = model_at(length, element_size)
+        model = replace(model, mesh=change_order(grade_reentrant_edges(model.mesh, levels=1), order=order))
         modes = natural_modes(model, count=count)
         if advance:
-            advance(f"{at * 1e3:.2f} mm", 0, 1)
-        return float(modes.natural_frequency[_row(mode_names(model, modes, axis=axis), name)])
+            advance(f"{length * 1e3:.2f} mm", 0, 1)
+        return float(modes.natural_frequency[_mode_index(mode_names(model, modes, axis=axis), name)])
 
-    def coarse(at: float) -> float:
-        return at_order(at, _COARSE_ORDER)
+    def coarse_frequency(length: float) -> float:
+        return frequency_at(length, _COARSE_ORDER)
 
-    place = _secant(coarse, frequency, length)
-    shorter, longer = place * (1 - _APART), place * (1 + _APART)
-    slope = float(np.log(coarse(longer) / coarse(shorter)) / np.log(longer / shorter)) * frequency / place
-    place -= (at_order(place, _BETTER_ORDER) - frequency) / slope
-    for _ in range(_CORRECTIONS):
+    found = _secant_length(coarse_frequency, frequency, length)
+    shorter, longer = found * (1 - _DIFFERENCE), found * (1 + _DIFFERENCE)
+    exponent = float(np.log(coarse_frequency(longer) / coarse_frequency(shorter)) / np.log(longer / shorter))
+    slope = exponent * frequency / found
+    found -= (frequency_at(found, _FINE_ORDER) - frequency) / slope
+    for _ in range(_MOST_CORRECTIONS):
         mode = named_mode(
-            lambda size, at=place: model_at(at, size),  # type: ignore[misc]
+            lambda size, at=found: model_at(at, size),  # type: ignore[misc]
             name=name,
             axis=axis,
             count=count,
@@ -229,119 +230,39 @@ def tuned_mode(
             relative_tolerance=relative_tolerance,
             advance=advance,
         )
-        missed = mode.frequency - frequency
-        if abs(missed) <= max(_ON_TARGET, mode.frequency_error) * frequency:
-            return TunedMode(length=place, mode=mode, frequency_per_length=slope)
-        place -= missed / slope
-    raise NotConverged(f"{name} came within {abs(missed):.3g} Hz of {frequency:g} Hz; allow less error of the meshes")
-
-
-def loaded_frequencies(
-    modes: NaturalModes,
-    model: Model,
-    *,
-    face: str,
-    along: str,
-    tool_mass: float,
-    remaining_compliance: float | None = None,
-) -> Floats:
-    """Return natural frequencies in Hz with a rigid mass on a face that moves with its mean in one direction.
-
-    Parameters
-    ----------
-    modes : NaturalModes
-    model : Model
-        Whose modes they are.
-    face : str
-        Where the mass sits.
-    along : str
-        Direction in which it counts, "x", "y" or "z".
-    tool_mass : float
-        Mass. [kg]
-    remaining_compliance : float, optional
-        What `compliance_above` returns, on a coarser mesh perhaps; found where absent. [m/N]
-
-    Returns
-    -------
-    ndarray, shape (k,)
-        In the order of the modes.
-
-    Notes
-    -----
-    What the modes above those given yield to the mass is one static solution, taken as one more mode far above.
-    """
-    mass = float(require_non_negative(tool_mass=tool_mass))
-    moves = _face_moves(modes, model, face, along)
-    squares = (2 * np.pi * modes.natural_frequency) ** 2
-    if remaining_compliance is None:
-        equations = system(model)
-        inverse = shifted(model, equations, shift=shift_for(model))
-        remaining_compliance = compliance_above(modes, model, equations, inverse=inverse, face=face, along=along)
-    above = _FAR * squares.max()
-    squares, moves = np.append(squares, above), np.append(moves, np.sqrt(max(remaining_compliance, 0.0) * above))
-    yielding = moves**2 > _UNMOVED * np.max(moves[:-1] ** 2)  # a mass lowers these without changing their order
-    own = moves[yielding]
-    squares[yielding] = eigh(
-        np.diag(squares[yielding]), np.eye(len(own)) + mass * np.outer(own, own), eigvals_only=True
+        difference = mode.frequency - frequency
+        if abs(difference) <= max(_TOLERANCE, mode.frequency_error) * frequency:
+            return TunedMode(length=found, mode=mode, frequency_per_length=slope)
+        found -= difference / slope
+    raise NotConverged(
+        f"{name} came within {abs(difference):.3g} Hz of {frequency:g} Hz; request a smaller relative_tolerance"
     )
-    return np.asarray(np.sqrt(np.maximum(squares[:-1], 0.0)) / (2 * np.pi))
 
 
-def compliance_above(
-    modes: NaturalModes, model: Model, equations: System, *, inverse: Solve, face: str, along: str
-) -> float:
-    """Return how far a face yields to a force spread over it by all modes above those given.
-
-    Parameters
-    ----------
-    modes : NaturalModes
-    model : Model
-    equations : System
-    inverse : callable
-        What `shifted` returns for the shift of `shift_for`.
-    face : str
-        Where the force acts.
-    along : str
-        Its direction, "x", "y" or "z".
-
-    Returns
-    -------
-    float
-        In m/N.
-    """
-    pull = observers(model, equations, {"face": Output(face=face, along=along)})[0]
-    squares = (2 * np.pi * modes.natural_frequency) ** 2
-    known = np.sum(_face_moves(modes, model, face, along) ** 2 / (squares - shift_for(model)))
-    return float(pull @ inverse(pull) - known)
-
-
-def _face_moves(modes: NaturalModes, model: Model, face: str, along: str) -> Floats:
-    """Return the mean displacement of a face in each mode."""
-    weights = face_weights(model.mesh, face)
-    return np.asarray(modes.shapes[:, :, DIRECTIONS.index(along)] @ weights / weights.sum())
-
-
-def _row(names: tuple[str, ...], mode: str) -> int:
-    if mode not in names:
+def _mode_index(names: tuple[str, ...], name: str) -> int:
+    """Index of a name among those of modes."""
+    if name not in names:
         elastic = [name for name in names if not name.startswith("rigid")]
-        raise InvalidInput(f"no mode called {mode!r} among the first {len(elastic)}: {', '.join(elastic)}")
-    return names.index(mode)
+        raise InvalidInput(f"no mode called {name!r} among the first {len(elastic)}: {', '.join(elastic)}")
+    return names.index(name)
 
 
-def _secant(frequency_at: Callable[[float], float], wanted: float, start: float) -> float:
-    """Return a length at which the frequency is the one wanted; frequencies fall as the length grows."""
-    place, missed = start, frequency_at(start) / wanted - 1
-    other = place * (1 + float(np.sign(missed) * np.clip(abs(missed), _FIRST_STEP, _LARGEST_STEP)))
-    below, above = 0.0, np.inf  # lengths known to be too short and too long
-    for _ in range(_STEPS):
-        if abs(missed) < _COARSE:
-            return place
-        below, above = (max(below, place), above) if missed > 0 else (below, min(above, place))
-        last, last_missed = place, missed
-        place, missed = other, frequency_at(other) / wanted - 1
-        slope = (missed - last_missed) / (place - last) if place != last else -1 / place
-        step = -missed / slope if slope < 0 else missed * place
-        other = place + float(np.clip(step, -_LARGEST_STEP * place, _LARGEST_STEP * place))
-        low, high = (max(below, place), above) if missed > 0 else (below, min(above, place))
-        other = other if low < other < high else (low + min(high, 2 * place)) / 2
-    raise NotConverged(f"no length near {start:.4g} m rings at {wanted:g} Hz; start nearer, or change another size")
+def _secant_length(frequency_at: Callable[[float], float], target: float, start: float) -> float:
+    """Length of a target frequency by the secant method within a bracket; the frequency falls with the length."""
+    length, difference = start, frequency_at(start) / target - 1
+    candidate = length * (1 + float(np.sign(difference) * np.clip(abs(difference), _FIRST_STEP, _LARGEST_STEP)))
+    lower, upper = 0.0, np.inf  # lengths known to be too short and too long
+    for _ in range(_MOST_STEPS):
+        if abs(difference) < _COARSE_TOLERANCE:
+            return length
+        lower, upper = (max(lower, length), upper) if difference > 0 else (lower, min(upper, length))
+        last_length, last_difference = length, difference
+        length, difference = candidate, frequency_at(candidate) / target - 1
+        slope = (difference - last_difference) / (length - last_length) if length != last_length else -1 / length
+        step = -difference / slope if slope < 0 else difference * length
+        candidate = length + float(np.clip(step, -_LARGEST_STEP * length, _LARGEST_STEP * length))
+        low, high = (max(lower, length), upper) if difference > 0 else (lower, min(upper, length))
+        candidate = candidate if low < candidate < high else (low + min(high, 2 * length)) / 2
+    raise NotConverged(
+        f"no length near {start:.4g} m gives {target:g} Hz; start nearer to the solution, or change another size"
+    )

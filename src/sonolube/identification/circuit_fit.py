@@ -7,7 +7,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.interpolate import AAA
 
-from sonolube.actuator import Branch, ButterworthVanDyke, Resonances, circuit_admittance, resonances
+from sonolube.actuator import (
+    ButterworthVanDyke,
+    CircuitResonances,
+    MotionalBranch,
+    circuit_admittance,
+    circuit_resonances,
+)
 from sonolube.checks import Complexes, Floats, require_non_negative, require_within
 from sonolube.errors import InvalidInput
 from sonolube.identification.spectral_residual import LOG_COMPLEX, residual_named
@@ -38,7 +44,7 @@ class CircuitFit:
     ----------
     circuit : ButterworthVanDyke
         Fitted circuit, branches in order of frequency.
-    resonances : Resonances
+    resonances : CircuitResonances
         Series and parallel frequencies without losses, quality and coupling factors of its branches.
     intervals : mapping of str to ConfidenceInterval
         Confidence intervals of parallel_capacitance, and of each branch's resistance, inductance, capacitance,
@@ -60,7 +66,7 @@ class CircuitFit:
     """
 
     circuit: ButterworthVanDyke
-    resonances: Resonances
+    resonances: CircuitResonances
     intervals: Mapping[str, ConfidenceInterval]
     residual: str
     residual_rms: float
@@ -265,7 +271,7 @@ def _circuit(logarithms: Floats, series_resistance: float) -> ButterworthVanDyke
     """Circuit of the logarithms of C_0 and, for each branch, of f_s, Q and C."""
     values = np.exp(np.clip(logarithms, -300, 300))
     branches = tuple(
-        Branch(
+        MotionalBranch(
             resistance=1 / (2 * np.pi * f_s * quality * capacitance),
             inductance=1 / ((2 * np.pi * f_s) ** 2 * capacitance),
             capacitance=capacitance,
@@ -280,7 +286,7 @@ def _circuit(logarithms: Floats, series_resistance: float) -> ButterworthVanDyke
 def _quantities(logarithms: Floats) -> dict[str, float]:
     """Quantities of a circuit whose confidence intervals are reported."""
     circuit = _circuit(logarithms, 0.0)
-    found = resonances(circuit)
+    found = circuit_resonances(circuit)
     named = {"parallel_capacitance": circuit.parallel_capacitance}
     for index, branch in enumerate(circuit.branches):
         named |= {
@@ -307,7 +313,7 @@ def _circuit_fit(
     correlation = spectrum.correlation(fit)
     return CircuitFit(
         circuit=circuit,
-        resonances=resonances(circuit),
+        resonances=circuit_resonances(circuit),
         intervals=confidence_intervals(fit, _quantities, correlation=correlation, confidence_level=confidence_level),
         residual=spectrum.residual,
         residual_rms=float(np.sqrt(fit.sum_of_squares / spectrum.frequency.size)),

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.actuator.drive import Drive
-from sonolube.actuator.drive_power import driver_power
+from sonolube.actuator.drive_power import linear_amplifier_power
 from sonolube.checks import Complexes, Floats, require_non_negative
 from sonolube.dynamics import (
     WAVEFORMS,
@@ -114,7 +114,7 @@ def amplifier_power(
     .. [1] D 1.9.
     """
     lowest, highest = voltage_range(drive, voltage_peak_to_peak=voltage_peak_to_peak, voltage_offset=voltage_offset)
-    return driver_power(
+    return linear_amplifier_power(
         capacitance=capacitance,
         voltage_maximum=np.maximum(np.abs(lowest), np.abs(highest)),
         voltage_peak_to_peak=_swing(drive, voltage_peak_to_peak),

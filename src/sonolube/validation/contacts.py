@@ -3,7 +3,7 @@
 from dataclasses import replace
 from typing import Literal
 
-from sonolube.actuator import HalfWaveguide, normal_amplitude
+from sonolube.actuator import BarWaveguide, normal_amplitude
 from sonolube.checks import Floats
 from sonolube.contact import (
     ASPERITY_LAWS,
@@ -97,7 +97,7 @@ def poisson_friction_ratio(
     -------
     ndarray, shape of `normal_load`
     """
-    waveguide = HalfWaveguide(
+    waveguide = BarWaveguide(
         length=statement("2.1.2-waveguide-length").number.value,
         thickness=statement("2.1.2-waveguide-thickness").number.value,
         poisson_ratio=_value("3.1", f"poisson_ratio_{horn}"),

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sonolube.actuator import driver_power
+from sonolube.actuator import linear_amplifier_power
 from sonolube.checks import Floats
 from sonolube.friction import dong_2015_half_period_ratio
 from sonolube.metrics import (
@@ -60,7 +60,7 @@ def actuator_power(*, voltage_peak_to_peak: ArrayLike) -> Floats:
     -------
     ndarray, shape of `voltage_peak_to_peak`
     """
-    return driver_power(
+    return linear_amplifier_power(
         capacitance=printed("4.1", "capacitance")[0].value,
         voltage_maximum=voltage_peak_to_peak,
         voltage_peak_to_peak=voltage_peak_to_peak,

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from pytest import approx
 
 from sonolube.checks import Floats
-from sonolube.fem import Model, block, isotropic, locus_ellipse, mesh_of, natural_modes
+from sonolube.fem import Model, block, generate_mesh, isotropic_medium, natural_modes, trajectory_ellipse
 from sonolube.figure import publication_style
 from sonolube.friction import elliptical_traction_ratio
 from sonolube.reproduce import Verdict
@@ -90,7 +90,7 @@ def test_losses_turn_all_points_of_the_face_one_way(elastic_loss: float) -> None
     # Energy flows from the driven end to where it is lost: the face carries a travelling wave beside the standing one.
     motion = driven_face("steel", frequency=20.0e3, elastic_loss=elastic_loss)
     axial, normal = motion.at(np.linspace(-FACE_END, FACE_END, 41))
-    path = locus_ellipse(axial_displacement=axial, normal_displacement=normal)
+    path = trajectory_ellipse(axial_displacement=axial, normal_displacement=normal)
     assert np.all(path.minor_semi_axis > 0)
     assert np.all(path.minor_semi_axis < 12 * elastic_loss * path.major_semi_axis)
 
@@ -183,8 +183,8 @@ def test_every_figure_can_be_drawn() -> None:
 
 def test_rounded_edges_act_as_the_theory_page_says() -> None:
     pytest.importorskip("netgen", reason="netgen-mesher is not installed")
-    steel = isotropic(youngs_modulus=200e9, poisson_ratio=0.29, density=7900.0)
+    steel = isotropic_medium(youngs_modulus=200e9, poisson_ratio=0.29, density=7900.0)
     body = block(length=0.127, width=0.06096, thickness=0.0254, edge_radius=0.010)
-    mesh = mesh_of(body, element_size=0.012)
+    mesh = generate_mesh(body, element_size=0.012)
     rounded = natural_modes(Model(mesh=mesh, media={"block": steel}), count=6).elastic_frequency[5]
     assert rounded / 19585.35 - 1 == approx(0.034, abs=0.002)

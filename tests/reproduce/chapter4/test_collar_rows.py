@@ -7,7 +7,7 @@ from pytest import approx
 pytest.importorskip("netgen.occ", reason="netgen-mesher is not installed")
 
 from sonolube.errors import SonolubeError
-from sonolube.fem.solver.cad import MissingPart
+from sonolube.fem.solver.cad import MissingPackage
 from sonolube.friction import sine_stick_slip_ratio
 from sonolube.reproduce import Verdict
 from sonolube.reproduce.chapter4 import collar_rows as chapter4_collar
@@ -40,9 +40,9 @@ def test_the_middle_of_the_rod_gains_most_and_the_work_lies_between() -> None:
 
 def test_without_finite_elements_the_rows_say_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     def lacking() -> SonolubeError:
-        raise MissingPart("finite elements need netgen-mesher; install it with: pip install sonolube[fem]")
+        raise MissingPackage("finite elements need netgen-mesher; install it with: pip install sonolube[fem]")
 
-    monkeypatch.setattr(chapter4_collar, "cad", lacking)
+    monkeypatch.setattr(chapter4_collar, "cad_kernel", lacking)
     rows = list(collar_rows())
     assert {row.verdict for row in rows} == {Verdict.UNDETERMINED}
     assert all("pip install sonolube[fem]" in row.note for row in rows)

@@ -17,7 +17,7 @@ class Amplifier:
     current_maximum : float
         Largest current, either way; no limit where it is infinite. [A]
     slew_rate_maximum : float
-        Fastest change of the voltage; no limit where it is infinite. [V/s]
+        Greatest rate of change of the voltage; no limit where it is infinite. [V/s]
 
     Raises
     ------

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sonolube.actuator import PreloadBolt, bolt_load
+from sonolube.actuator import PreloadBolt, bolt_stresses
 from sonolube.actuator.stack import PiezoStack
 from sonolube.checks import Complexes, Floats
 from sonolube.contact import separation
@@ -113,7 +113,7 @@ def assess(
     sound = (states.status == Status.PERIODIC) & ~states.gap_closed
     usage["sound"] = np.where(sound, 0.0, np.inf)
     if bolt is not None:
-        turned = bolt_load(
+        turned = bolt_stresses(
             bolt,
             elongation_amplitude=np.nan_to_num(numbers["elongation"]),
             elongation=stack.free_stroke_per_volt * offset,

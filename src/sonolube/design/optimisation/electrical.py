@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sonolube.actuator import (
-    AmplifierNeed,
+    AmplifierRequirements,
     MatchingNetwork,
-    amplifier_need,
+    amplifier_requirements,
     l_match,
     matched_band,
     matched_power_factor,
@@ -58,13 +58,13 @@ class Electrical:
 
     Parameters
     ----------
-    need : AmplifierNeed
+    need : AmplifierRequirements
         Without a network.
     matched : tuple of Matched
         Networks that draw no reactive power; empty where the motion makes the actuator inductive.
     """
 
-    need: AmplifierNeed
+    need: AmplifierRequirements
     matched: tuple[Matched, ...]
 
 
@@ -111,7 +111,7 @@ def electrical(task: Task, point: Point, *, source_resistance: float | None = No
     task : Task
     point : Point
     source_resistance : float or None
-        Resistance that suits the amplifier, for a network of two elements. [ohm]
+        Input resistance of the matched network, for a network of two elements. [ohm]
 
     Returns
     -------
@@ -127,7 +127,7 @@ def electrical(task: Task, point: Point, *, source_resistance: float | None = No
     volts, current = states.voltage_harmonics[0], states.current_harmonics[0]
     there = np.abs(volts) > 1e-9 * np.abs(volts).max()
     y = np.divide(current, volts, out=np.zeros_like(current), where=there)
-    need = amplifier_need(
+    need = amplifier_requirements(
         admittance=y,
         voltage_amplitude=np.where(there, volts, 0),
         frequency=point.frequency,

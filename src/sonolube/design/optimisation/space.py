@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
 
-from sonolube.actuator import CatalogueActuator, PiezoStack, PreloadBolt, bolted, catalogue_stack
+from sonolube.actuator import CatalogueActuator, PiezoStack, PreloadBolt, bolted_stack, catalogue_stack
 from sonolube.checks import require_positive
 from sonolube.design.optimisation.tolerance import NOMINAL, Deviation
 from sonolube.dynamics import Structure, chain_structure, pin_on_disc_chain
@@ -127,7 +127,7 @@ def stack_of(space: DesignSpace, actuator: str) -> PiezoStack:
             mechanical_quality_factor=space.mechanical_quality_factor,
             preload=None if space.bolt is None else space.bolt.preload,
         )
-    return stack if space.bolt is None else bolted(stack, space.bolt)
+    return stack if space.bolt is None else bolted_stack(stack, space.bolt)
 
 
 def structure_of(

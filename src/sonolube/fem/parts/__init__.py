@@ -1,1 +1,1 @@
-"""Geometries of parts and transducers."""
+"""Parametric bodies and transducers: horns, rings, bolted piezoelectric stacks and single poled parts."""

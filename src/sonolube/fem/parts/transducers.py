@@ -1,10 +1,9 @@
-"""Piezoelectric bodies ready to be driven: stacks of layers, bare or bolted, and single poled parts.
+"""Piezoelectric transducers: bare or bolted multilayer stacks, and single poled parts.
 
-Stacks stand along z, the working end up. A stack of N layers is meshed as few rings that alternate in poling and lie
-between electrodes wired in parallel, each ring standing for its share of n layers: field and charge are n-fold, so
-that stress constants are n and permittivity n^2 times those of the ceramic. The bolt is a solid rod through the bore,
-free of its wall and bonded to the bodies at both ends: a spring beside the stack that has mass. Its thread, its preload
-and the softness of the joints are left out.
+Stacks stand along z with the working end up. A stack of N layers is meshed as a few rings of alternating poling between
+electrodes connected in parallel. Each ring stands for its share of the layers and has the homogenised medium of
+`homogenised_stack`. The bolt is a solid rod through the bore, free of its wall and bonded to the bodies at both ends: a
+spring with mass in parallel with the stack. Its thread, its preload and the compliance of the joints are neglected.
 """
 
 from collections.abc import Callable, Mapping
@@ -14,33 +13,33 @@ from types import MappingProxyType
 
 from sonolube.checks import require_non_negative, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.fem.parts.basic import cylinder, ring
-from sonolube.fem.parts.stack import layered
-from sonolube.fem.solver.geometry import Geometry, assembled, moved
-from sonolube.fem.solver.harmonic import Output
-from sonolube.fem.solver.medium import Medium, medium_of, poled
+from sonolube.fem.parts.bodies import cylinder, ring
+from sonolube.fem.parts.stack_material import homogenised_stack
+from sonolube.fem.solver.geometry import Geometry, bond, translate
+from sonolube.fem.solver.medium import Medium, medium_from_material, poled_medium
 from sonolube.fem.solver.mesh import Mesh
-from sonolube.fem.solver.model import DIRECTIONS, Electrodes, Fixed, Model
+from sonolube.fem.solver.model import DIRECTIONS, Electrodes, FixedSupport, Model
+from sonolube.fem.solver.reduction import Output
 from sonolube.materials import material, piezo_ceramic
 
 _RINGS = 8  # even, so that both ends of a stack are grounded; 0.5 % in frequency for a quarter wave
-_METAL_LOSS = 1 / 300  # assumed of bolted joints and metal together; that of the metals alone is far less
+_METAL_LOSS = 1 / 300  # loss tangent assumed for metal with bolted joints; that of metals alone is far lower
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Dimension:
-    """A size of a part that a paper describes, and where it comes from.
+class SourcedDimension:
+    """Dimension of a transducer described in the literature, with its source.
 
     Parameters
     ----------
     name : str
-        Parameter of the part's function.
+        Parameter of the function that builds the transducer.
     value : float
-        In SI.
+        Value in SI units.
     printed : bool
-        Whether it is printed; assumed where not.
+        Whether the value is printed in the source; assumed where not.
     source : str
-        Where it is printed, or from what it is assumed.
+        Where it is printed, or from what it is inferred.
     """
 
     name: str
@@ -51,33 +50,36 @@ class Dimension:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Transducer:
-    """Bodies, what they are made of, and where they are wired and watched.
+    """Piezoelectric transducer: bodies, their media, electrodes and outputs.
 
     Parameters
     ----------
     geometry : Geometry
+        The bonded bodies.
     media : mapping of str to Medium
-        Of each region.
+        Medium of each region.
     electrodes : Electrodes
+        Driven and grounded faces.
     outputs : mapping of str to Output
-        "tip", the working end, and "back".
-    dimensions : tuple of Dimension
-        Where the default sizes come from; empty for parts that no paper describes.
+        Displacements of interest: "tip", the working end, and "back".
+    dimensions : tuple of SourcedDimension
+        Sources of the default dimensions; empty for transducers without a published description.
     """
 
     geometry: Geometry
     media: Mapping[str, Medium]
     electrodes: Electrodes
     outputs: Mapping[str, Output]
-    dimensions: tuple[Dimension, ...] = field(default=())
+    dimensions: tuple[SourcedDimension, ...] = field(default=())
 
-    def model(self, mesh: Mesh, *, fixed: tuple[Fixed, ...] = ()) -> Model:
-        """Return it on a mesh, held where asked.
+    def model(self, mesh: Mesh, *, fixed: tuple[FixedSupport, ...] = ()) -> Model:
+        """Finite-element model of the transducer on a mesh of its geometry.
 
         Parameters
         ----------
         mesh : Mesh
-        fixed : tuple of Fixed
+        fixed : tuple of FixedSupport
+            Displacement boundary conditions.
 
         Returns
         -------
@@ -86,26 +88,26 @@ class Transducer:
         return Model(mesh=mesh, media=self.media, electrodes=self.electrodes, fixed=fixed)
 
 
-def stack(
+def stack_transducer(
     *,
-    outer_radius: float = 5e-3,
-    inner_radius: float = 2.5e-3,
-    length: float = 12e-3,
+    outer_radius: float,
+    inner_radius: float = 0.0,
+    length: float,
     stack_layers: float = 1.0,
     rod_radius: float = 0.0,
     back_length: float = 0.0,
     front_length: float = 0.0,
-    ceramic: str = "pic255",
-    metal: str = "stainless_steel_304",
+    ceramic: str,
+    metal: str,
 ) -> Transducer:
-    """Return a stack of ring layers, bare or bolted between two end masses.
+    """Multilayer stack of rings or discs, bare or bolted between two end masses.
 
     Parameters
     ----------
     outer_radius, inner_radius : float
         Radii of the layers; the inner is zero for discs. [m]
     length : float
-        Length of all layers together. [m]
+        Total length of the layers. [m]
     stack_layers : float
         Number of layers. []
     rod_radius : float
@@ -126,10 +128,15 @@ def stack(
 
     Notes
     -----
-    The default is the size of the ring stack of D Table 4.7. Layers that are shorter than the sound that runs through
-    them are all alike: their number sets stroke and capacitance, not resonances.
+    Layers shorter than the acoustic wavelength are equivalent: their number determines stroke and capacitance, not the
+    resonances.
+
+    See Also
+    --------
+    stack_bodies : The bodies alone, with washers and a tip.
+    stack_from_bodies : The transducer of given bodies.
     """
-    parts = stack_parts(
+    bodies = stack_bodies(
         outer_radius=outer_radius,
         inner_radius=inner_radius,
         length=length,
@@ -137,11 +144,11 @@ def stack(
         back_length=back_length,
         front_length=front_length,
     )
-    return wired(parts, stack_layers=stack_layers, ceramic=ceramic, metal=metal)
+    return stack_from_bodies(bodies, stack_layers=stack_layers, ceramic=ceramic, metal=metal)
 
 
 def poled_part(geometry: Geometry, *, ceramic: str, along: str, driven: str, grounded: str) -> Transducer:
-    """Return a body of one ceramic between two of its faces.
+    """Single body of piezoelectric ceramic with electrodes on two of its faces.
 
     Parameters
     ----------
@@ -150,32 +157,32 @@ def poled_part(geometry: Geometry, *, ceramic: str, along: str, driven: str, gro
     ceramic : str
         Name of the ceramic.
     along : str
-        Axis of poling: "x", "y" or "z".
+        Direction of poling: "x", "y" or "z".
     driven, grounded : str
-        Names of the faces that are electrodes.
+        Names of the faces with electrodes.
 
     Returns
     -------
     Transducer
-        Its outputs are the mean motions of both electrodes along the poling: "tip", the driven one, and "back".
+        Its outputs are the mean displacements of both electrodes along the poling: "tip", the driven one, and "back".
 
     Raises
     ------
     InvalidInput
-        If the axis is none or the body is not one.
+        If the direction is none of x, y and z, or the geometry not one body.
     """
     if along not in DIRECTIONS or len(along) != 1 or len(geometry.regions) != 1:
         raise InvalidInput(f"one body poled along x, y or z is needed, got {len(geometry.regions)} along {along!r}")
     axis = (float(along == "x"), float(along == "y"), float(along == "z"))
     return Transducer(
         geometry=geometry,
-        media={geometry.regions[0]: poled(piezo_ceramic(ceramic), along=axis)},
+        media={geometry.regions[0]: poled_medium(piezo_ceramic(ceramic), along=axis)},
         electrodes=Electrodes(driven=(driven,), grounded=(grounded,)),
         outputs={"tip": Output(face=driven, along=along), "back": Output(face=grounded, along=along)},
     )
 
 
-def stack_parts(
+def stack_bodies(
     *,
     outer_radius: float,
     inner_radius: float,
@@ -186,14 +193,14 @@ def stack_parts(
     washer_radius: float | None = None,
     tip: Geometry | None = None,
 ) -> dict[str, Geometry]:
-    """Return the bodies of a stack: rings from z = 0 to its length, a rod in them, masses at its ends, a tip on them.
+    """Bodies of a stack by name: rings from z = 0 to its length, the rod, the end masses and a tip.
 
     Parameters
     ----------
     outer_radius, inner_radius : float
         Radii of the layers. [m]
     length : float
-        Length of all layers together. [m]
+        Total length of the layers. [m]
     rod_radius : float
         Radius of the rod, zero for none. [m]
     back_length, front_length : float
@@ -201,11 +208,12 @@ def stack_parts(
     washer_radius : float, optional
         Radius of the end masses; that of the stack where absent. [m]
     tip : Geometry, optional
-        What stands on the front mass, its foot at z = 0.
+        Body on the front mass, with its foot at z = 0.
 
     Returns
     -------
     dict of str to Geometry
+        Names "ring1" to "ring8", "rod", "back", "front" and "tip".
 
     Raises
     ------
@@ -220,32 +228,31 @@ def stack_parts(
         raise InvalidInput("a rod is bonded to both end masses: give back_length and front_length")
     if rod_radius and rod_radius >= inner_radius:
         raise InvalidInput(f"the rod must pass the bore: rod_radius {rod_radius!r} m, inner_radius {inner_radius!r} m")
-    high = length / _RINGS
-    hollow = inner_radius > 0
-    one = (
-        ring(outer_radius=outer_radius, inner_radius=inner_radius, length=high)
-        if hollow
-        else cylinder(radius=outer_radius, length=high)
+    height = length / _RINGS
+    layer = (
+        ring(outer_radius=outer_radius, inner_radius=inner_radius, length=height)
+        if inner_radius > 0
+        else cylinder(radius=outer_radius, length=height)
     )
-    parts = {f"ring{k + 1}": moved(one, by=(0.0, 0.0, k * high)) for k in range(_RINGS)}
+    bodies = {f"ring{k + 1}": translate(layer, by=(0.0, 0.0, k * height)) for k in range(_RINGS)}
     if rod_radius:
-        parts["rod"] = cylinder(radius=rod_radius, length=length)
-    for name, size, place in (("back", back_length, -back_length), ("front", front_length, length)):
+        bodies["rod"] = cylinder(radius=rod_radius, length=length)
+    for name, size, foot in (("back", back_length, -back_length), ("front", front_length, length)):
         if size:
-            body = cylinder(radius=outer_radius if washer_radius is None else washer_radius, length=size)
-            parts[name] = moved(body, by=(0.0, 0.0, place))
+            mass = cylinder(radius=outer_radius if washer_radius is None else washer_radius, length=size)
+            bodies[name] = translate(mass, by=(0.0, 0.0, foot))
     if tip is not None:
-        parts["tip"] = moved(tip, by=(0.0, 0.0, length + front_length))
-    return parts
+        bodies["tip"] = translate(tip, by=(0.0, 0.0, length + front_length))
+    return bodies
 
 
-def wired(parts: Mapping[str, Geometry], *, stack_layers: float, ceramic: str, metal: str) -> Transducer:
-    """Return the bodies of a stack bonded, each second joint of its rings driven and the others grounded.
+def stack_from_bodies(bodies: Mapping[str, Geometry], *, stack_layers: float, ceramic: str, metal: str) -> Transducer:
+    """Transducer of the bonded bodies of a stack, with alternately grounded and driven joints between its rings.
 
     Parameters
     ----------
-    parts : mapping of str to Geometry
-        Those of `stack_parts`.
+    bodies : mapping of str to Geometry
+        Result of `stack_bodies`.
     stack_layers : float
         Number of layers. []
     ceramic, metal : str
@@ -255,20 +262,20 @@ def wired(parts: Mapping[str, Geometry], *, stack_layers: float, ceramic: str, m
     -------
     Transducer
     """
-    geometry = assembled(parts)
+    geometry = bond(bodies)
     rings = [f"ring{k + 1}" for k in range(_RINGS)]
     joints = [
         _joint(geometry, "back", rings[0], "-z"),
         *[_joint(geometry, below, above, "+z") for below, above in pairwise(rings)],
         _joint(geometry, "front", rings[-1], "+z"),
     ]
-    solid = medium_of(material(metal), elastic_loss=_METAL_LOSS)
+    solid = medium_from_material(material(metal), elastic_loss=_METAL_LOSS)
     media = dict.fromkeys(geometry.regions, solid)
     for k, name in enumerate(rings):
-        one = poled(piezo_ceramic(ceramic), along=(0.0, 0.0, 1.0 if k % 2 == 0 else -1.0))
-        media[name] = layered(one, stack_layers=stack_layers / _RINGS)
-    top = next(name for name in ("tip", "front", rings[-1]) if name in parts)
-    bottom = "back" if "back" in parts else rings[0]
+        layer = poled_medium(piezo_ceramic(ceramic), along=(0.0, 0.0, 1.0 if k % 2 == 0 else -1.0))
+        media[name] = homogenised_stack(layer, stack_layers=stack_layers / _RINGS)
+    top = next(name for name in ("tip", "front", rings[-1]) if name in bodies)
+    bottom = "back" if "back" in bodies else rings[0]
     return Transducer(
         geometry=geometry,
         media=media,
@@ -278,11 +285,11 @@ def wired(parts: Mapping[str, Geometry], *, stack_layers: float, ceramic: str, m
 
 
 def _joint(geometry: Geometry, one: str, other: str, end: str) -> str:
-    """Return the name of the face between two bodies, or of the free end of the second where there is no first."""
+    """Name of the face between two bodies, or of the free end of the second where there is no first."""
     if one not in geometry.regions:
         return f"{other}.{end}"
     return "|".join(sorted((one, other), key=geometry.regions.index))
 
 
-TRANSDUCERS: Mapping[str, Callable[..., Transducer]] = MappingProxyType({"stack": stack})
-"""The parametric transducers by name."""
+TRANSDUCERS: Mapping[str, Callable[..., Transducer]] = MappingProxyType({"stack": stack_transducer})
+"""Parametric transducers by name; `sonolube.dong2015` has those of the dissertation."""

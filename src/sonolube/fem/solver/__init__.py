@@ -1,1 +1,1 @@
-"""Meshes, assembly, eigenvalue and harmonic solvers for elastic and piezoelectric bodies."""
+"""Finite-element method of linear piezoelectricity: meshes, matrices, factorisation, natural modes and response."""

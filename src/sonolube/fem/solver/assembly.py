@@ -1,7 +1,17 @@
-"""Matrices of tetrahedra: mass, stiffness, piezoelectric coupling and permittivity.
+r"""Assembly of the global matrices: mass, stiffness, piezoelectric coupling and permittivity.
 
-All stiffnesses contract one array, the integrals of products of gradients, G_akbl = int dN_a/dx_k dN_b/dx_l dV, with
-the tensor of the medium: c_ikjl for displacements, e_lik for the coupling, eps_kl for potentials.
+With shape functions :math:`N_a` and the integrals of products of their gradients
+
+.. math:: G_{akbl} = \int \frac{\partial N_a}{\partial x_k} \frac{\partial N_b}{\partial x_l}\, dV
+
+the element matrices of nodes a and b and displacement components i and j are
+
+.. math::
+
+    M_{aibj} = \delta_{ij} \int \rho N_a N_b\, dV, \quad
+    K_{aibj} = c^E_{ikjl} G_{akbl}, \quad
+    C_{aib} = e_{lik} G_{akbl}, \quad
+    P_{ab} = \varepsilon^S_{kl} G_{akbl}
 """
 
 from dataclasses import dataclass
@@ -12,29 +22,29 @@ from scipy import sparse
 from sonolube.checks import Floats, Integers
 from sonolube.errors import InvalidInput
 from sonolube.fem.solver.mesh import Mesh
-from sonolube.fem.solver.model import Model
-from sonolube.fem.solver.simplex import lattice, quadrature, shape_functions
+from sonolube.fem.solver.model import FaceSpring, Model
+from sonolube.fem.solver.simplex import lagrange_nodes, shape_functions, simplex_quadrature
 
 POTENTIAL_SCALE = 1e10
-"""Volts to the unit of potential, so that elastic and dielectric stiffnesses are of one size."""
+"""Volts per unit of the scaled potential, which makes elastic and dielectric matrices of comparable size."""
 
-_VOIGT = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])
-_CHUNK = 2**22  # gradients at a time, which bounds the memory taken
+_VOIGT = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])  # row in Voigt notation of a pair of indices
+_CHUNK = 2**22  # gradients evaluated at a time, which bounds the memory
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Matrices:
-    """Matrices of a body before it is held or wired; unknowns of node n are 3n to 3n+2, its potential is n.
+class GlobalMatrices:
+    """Global matrices without boundary conditions; node n has the displacement unknowns 3n to 3n+2 and potential n.
 
     Parameters
     ----------
     mass : sparse matrix, shape (3n, 3n)
     stiffness, stiffness_loss : sparse matrix, shape (3n, 3n)
-        Real and imaginary part at constant field.
+        Real and imaginary part at constant electric field.
     coupling : sparse matrix, shape (3n, n)
-        Force per unit of potential.
+        Force per unit of the scaled potential.
     dielectric, dielectric_loss : sparse matrix, shape (n, n)
-        Charge per potential at constant strain, real part and negated imaginary part, in units of the scaled potential.
+        Charge per potential at constant strain, real part and negated imaginary part, in the scaled potential.
     """
 
     mass: sparse.csc_array
@@ -45,8 +55,8 @@ class Matrices:
     dielectric_loss: sparse.csc_array
 
 
-def assemble(model: Model) -> Matrices:
-    """Return the matrices of a body, springs included.
+def assemble_matrices(model: Model) -> GlobalMatrices:
+    """Global matrices of a model, its elastic foundations included.
 
     Parameters
     ----------
@@ -54,39 +64,44 @@ def assemble(model: Model) -> Matrices:
 
     Returns
     -------
-    Matrices
+    GlobalMatrices
 
     Raises
     ------
     InvalidInput
-        If a curved element is turned inside out.
+        If the Jacobian determinant of a curved element is not positive.
+
+    See Also
+    --------
+    sonolube.fem.solver.system.assemble_system : The same with boundary conditions applied.
     """
     mesh = model.mesh
-    pairs = _Pairs.of(mesh)
-    mass, dielectric, dielectric_loss = (_Sum(pairs, (1, 1)) for _ in range(3))
-    stiffness, stiffness_loss, coupling = _Sum(pairs, (3, 3)), _Sum(pairs, (3, 3)), _Sum(pairs, (3, 1))
+    pattern = _SparsityPattern.of(mesh)
+    mass, dielectric, dielectric_loss = (_Accumulator(pattern, (1, 1)) for _ in range(3))
+    stiffness, stiffness_loss = (_Accumulator(pattern, (3, 3)) for _ in range(2))
+    coupling = _Accumulator(pattern, (3, 1))
     for index, region in enumerate(mesh.regions):
         medium = model.media[region]
         c = medium.elastic_stiffness[_VOIGT[:, :, np.newaxis, np.newaxis], _VOIGT]  # c_ikjl
         for own in _chunks(np.flatnonzero(mesh.region_of_element == index), mesh.order):
-            cells = mesh.elements[own]
-            masses, products = _integrals(mesh.nodes[cells], mesh.order)
-            elastic = products @ c.transpose(1, 3, 0, 2).reshape(9, 9)
-            mass.add(cells, medium.density * masses)  # alike in all directions
-            stiffness.add(cells, elastic)
+            elements = mesh.elements[own]
+            masses, gradient_products = _integrals(mesh.nodes[elements], mesh.order)
+            elastic = gradient_products @ c.transpose(1, 3, 0, 2).reshape(9, 9)
+            mass.add(elements, medium.density * masses)  # of one direction
+            stiffness.add(elements, elastic)
             if medium.elastic_loss:
-                stiffness_loss.add(cells, medium.elastic_loss * elastic)
+                stiffness_loss.add(elements, medium.elastic_loss * elastic)
             if medium.stress_constants is not None and medium.permittivity is not None:
                 e = POTENTIAL_SCALE * medium.stress_constants[:, _VOIGT]  # e_lik
-                coupling.add(cells, products @ e.transpose(2, 0, 1).reshape(9, 3))
-                storing = products @ (POTENTIAL_SCALE**2 * medium.permittivity.ravel())
-                dielectric.add(cells, storing)
+                coupling.add(elements, gradient_products @ e.transpose(2, 0, 1).reshape(9, 3))
+                capacitance = gradient_products @ (POTENTIAL_SCALE**2 * medium.permittivity.ravel())
+                dielectric.add(elements, capacitance)
                 if medium.loss_tangent:
-                    dielectric_loss.add(cells, medium.loss_tangent * storing)
+                    dielectric_loss.add(elements, medium.loss_tangent * capacitance)
     for spring in model.springs:
-        stiffness.add(mesh.faces[spring.face], _spring(mesh, spring.face, spring.spring_stiffness, spring.along))
-    return Matrices(
-        mass=_in_three_directions(mass.matrix()),
+        stiffness.add(mesh.faces[spring.face], _foundation_matrices(mesh, spring))
+    return GlobalMatrices(
+        mass=_repeated_in_three_directions(mass.matrix()),
         stiffness=stiffness.matrix(),
         stiffness_loss=stiffness_loss.matrix(),
         coupling=coupling.matrix(),
@@ -95,8 +110,8 @@ def assemble(model: Model) -> Matrices:
     )
 
 
-def mass_matrix(model: Model) -> sparse.csc_array:
-    """Return the mass matrix of a body in one direction, shape (n, n).
+def scalar_mass_matrix(model: Model) -> sparse.csc_array:
+    """Mass matrix of one displacement component, the same for all three.
 
     Parameters
     ----------
@@ -107,34 +122,52 @@ def mass_matrix(model: Model) -> sparse.csc_array:
     sparse matrix, shape (n, n)
     """
     mesh = model.mesh
-    places, weights = quadrature(2 * mesh.order, corners=4)
-    value, slope = shape_functions(mesh.order, places)
+    points, weights = simplex_quadrature(2 * mesh.order, corners=4)
+    value, gradient = shape_functions(mesh.order, points)
     density = np.array([model.media[region].density for region in mesh.regions])[mesh.region_of_element]
-    jacobian = np.einsum("eax,adq->eqdx", mesh.nodes[mesh.elements], slope, optimize=True)
+    jacobian = np.einsum("eax,adq->eqdx", mesh.nodes[mesh.elements], gradient, optimize=True)
     mass = np.linalg.det(jacobian) * weights * density[:, np.newaxis]
-    total = _Sum(_Pairs.of(mesh), (1, 1))
+    total = _Accumulator(_SparsityPattern.of(mesh), (1, 1))
     total.add(mesh.elements, (value * mass[:, np.newaxis]) @ value.T)
     return total.matrix()
 
 
-def face_weights(mesh: Mesh, name: str) -> Floats:
-    """Return the area each node stands for on a face, which sums to the face's area, in m2, shape (n,).
+def tributary_areas(mesh: Mesh, face: str) -> Floats:
+    r"""Tributary area of each node on a face: integrals of the shape functions over the face.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    face : str
+        Name of the face.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        In m2, zero off the face; they sum to the area of the face.
 
     Raises
     ------
     UnknownName
         If no face has this name.
+
+    Notes
+    -----
+    .. math:: A_a = \int N_a\, dA
+
+    Divided by their sum they are the weights of the mean of a nodal field over the face, and the nodal forces of a unit
+    force distributed evenly over it.
     """
-    mesh.face_nodes(name)
-    triangles = mesh.faces[name]
-    weights = np.zeros(mesh.size)
+    mesh.face_nodes(face)
+    triangles = mesh.faces[face]
+    weights = np.zeros(mesh.node_count)
     np.add.at(weights, triangles, _face_masses(mesh, triangles).sum(axis=2))
     return weights
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class _Pairs:
-    """Pairs of nodes that share an element, as keys in order.
+class _SparsityPattern:
+    """Pairs of nodes that share an element, as sorted integer keys.
 
     Parameters
     ----------
@@ -148,86 +181,91 @@ class _Pairs:
     size: int
 
     @classmethod
-    def of(cls, mesh: Mesh) -> "_Pairs":
-        keys = np.sort(_keys(mesh.elements, mesh.size))  # several times as fast as numpy's unique
-        return cls(keys=keys[np.diff(keys, prepend=-1) > 0], size=mesh.size)
+    def of(cls, mesh: Mesh) -> "_SparsityPattern":
+        """Pattern of the matrices of a mesh."""
+        keys = np.sort(_pair_keys(mesh.elements, mesh.node_count))  # several times as fast as numpy.unique
+        return cls(keys=keys[np.diff(keys, prepend=-1) > 0], size=mesh.node_count)
 
-    def of_cells(self, cells: Integers) -> Integers:
-        """Return the places of the pairs of nodes of elements or triangles."""
-        return np.searchsorted(self.keys, _keys(cells, self.size))
+    def positions(self, cells: Integers) -> Integers:
+        """Positions in `keys` of the pairs of nodes of elements or triangles."""
+        return np.searchsorted(self.keys, _pair_keys(cells, self.size))
 
 
-def _keys(cells: Integers, size: int) -> Integers:
+def _pair_keys(cells: Integers, size: int) -> Integers:
+    """Key of each ordered pair of nodes of each element or triangle."""
     return (cells[:, :, np.newaxis] * size + cells[:, np.newaxis]).ravel()
 
 
-class _Sum:
-    """Element matrices on their way into one sparse matrix."""
+class _Accumulator:
+    """Sum of element matrices in one sparse matrix of blocks of components."""
 
-    def __init__(self, pairs: _Pairs, components: tuple[int, int]) -> None:
-        self.pairs, self.components = pairs, components
+    def __init__(self, pattern: _SparsityPattern, components: tuple[int, int]) -> None:
+        self.pattern, self.components = pattern, components
         self.blocks: Floats | None = None
 
     def add(self, cells: Integers, values: Floats) -> None:
-        """Add matrices of elements, shape (e, a, a, left * right), or of one component (e, a, a)."""
-        places = self.pairs.of_cells(cells)
-        columns = values.reshape(places.size, -1).T
+        """Add element matrices of shape (e, a, a, rows * columns), or (e, a, a) of one component."""
+        positions = self.pattern.positions(cells)
+        entries = values.reshape(positions.size, -1).T
         if self.blocks is None:
-            self.blocks = np.zeros((len(columns), len(self.pairs.keys)))
-        for block, column in zip(self.blocks, columns, strict=True):
-            block += np.bincount(places, weights=column, minlength=block.size)
+            self.blocks = np.zeros((len(entries), len(self.pattern.keys)))
+        for block, entry in zip(self.blocks, entries, strict=True):
+            block += np.bincount(positions, weights=entry, minlength=block.size)
 
     def matrix(self) -> sparse.csc_array:
-        size, (left, right) = self.pairs.size, self.components
+        """Assembled sparse matrix."""
+        size, (left, right) = self.pattern.size, self.components
         shape = (left * size, right * size)
         if self.blocks is None:
             return sparse.csc_array(shape)
-        starts = np.searchsorted(self.pairs.keys, size * np.arange(size + 1))
+        starts = np.searchsorted(self.pattern.keys, size * np.arange(size + 1))
         blocks = np.ascontiguousarray(self.blocks.T).reshape(-1, left, right)
-        rows = sparse.bsr_array((blocks, self.pairs.keys % size, starts), shape=shape).tocsr()
+        rows = sparse.bsr_array((blocks, self.pattern.keys % size, starts), shape=shape).tocsr()
         if left != right:
             return sparse.csc_array(rows.tocsc())
         return sparse.csc_array((rows.data, rows.indices, rows.indptr), shape=shape)  # symmetric
 
 
-def _in_three_directions(matrix: sparse.csc_array) -> sparse.csc_array:
-    """Return the matrix of all displacements from that of one direction."""
+def _repeated_in_three_directions(matrix: sparse.csc_array) -> sparse.csc_array:
+    """Matrix of all displacement components from that of one component."""
     return sparse.csc_array(sparse.kron(matrix, sparse.eye_array(3)))
 
 
 def _chunks(elements: Integers, order: int) -> list[Integers]:
-    places, _ = quadrature(2 * order, corners=4)
-    nodes = len(lattice(order, corners=4))
-    return np.array_split(elements, 1 + elements.size * nodes * len(places) * 3 // _CHUNK)
+    """Element numbers in chunks of bounded memory."""
+    points, _ = simplex_quadrature(2 * order, corners=4)
+    nodes = len(lagrange_nodes(order, corners=4))
+    return np.array_split(elements, 1 + elements.size * nodes * len(points) * 3 // _CHUNK)
 
 
 def _integrals(nodes: Floats, order: int) -> tuple[Floats, Floats]:
-    """Return int N_a N_b, shape (e, a, a), and int dN_a/dx_k dN_b/dx_l, shape (e, a, a, 9), of elements."""
-    places, weights = quadrature(2 * order, corners=4)
-    value, slope = shape_functions(order, places)
+    """Element integrals of N_a N_b, shape (e, a, a), and of dN_a/dx_k dN_b/dx_l, shape (e, a, a, 9)."""
+    points, weights = simplex_quadrature(2 * order, corners=4)
+    value, local_gradient = shape_functions(order, points)
     count, size = nodes.shape[:2]
-    jacobian = np.einsum("eax,adq->eqdx", nodes, slope, optimize=True)
+    jacobian = np.einsum("eax,adq->eqdx", nodes, local_gradient, optimize=True)
     volume = np.linalg.det(jacobian) * weights
     if not np.all(volume > 0):
         raise InvalidInput("a curved element is turned inside out; mesh the body with smaller elements")
     masses = (value * volume[:, np.newaxis]) @ value.T
     inverse = np.linalg.inv(jacobian) * np.sqrt(volume)[:, :, np.newaxis, np.newaxis]
-    gradient = (inverse @ slope.transpose(2, 1, 0)).reshape(count, len(weights), 3 * size)  # (e, q, ka)
+    gradient = (inverse @ local_gradient.transpose(2, 1, 0)).reshape(count, len(weights), 3 * size)  # (e, q, ka)
     products = (gradient.transpose(0, 2, 1) @ gradient).reshape(count, 3, size, 3, size)
     return masses, products.transpose(0, 2, 4, 1, 3).reshape(count, size, size, 9)
 
 
 def _face_masses(mesh: Mesh, triangles: Integers) -> Floats:
-    """Return int N_a N_b dA of triangles, shape (t, b, b)."""
-    places, weights = quadrature(2 * mesh.order, corners=3)
-    value, slope = shape_functions(mesh.order, places)
-    tangents = np.einsum("tax,adq->tqdx", mesh.nodes[triangles], slope, optimize=True)
+    """Integrals of N_a N_b over triangles, shape (t, b, b)."""
+    points, weights = simplex_quadrature(2 * mesh.order, corners=3)
+    value, gradient = shape_functions(mesh.order, points)
+    tangents = np.einsum("tax,adq->tqdx", mesh.nodes[triangles], gradient, optimize=True)
     area = np.linalg.norm(np.cross(tangents[:, :, 0], tangents[:, :, 1]), axis=-1) * weights
     return np.asarray((value * area[:, np.newaxis]) @ value.T)
 
 
-def _spring(mesh: Mesh, face: str, stiffness: float, along: tuple[float, float, float] | None) -> Floats:
-    """Return the stiffness of the triangles of a face, shape (t, b, b, 9)."""
-    masses = _face_masses(mesh, mesh.faces[face])
-    direction = np.eye(3) if along is None else np.outer(along, along) / np.dot(along, along)
-    return np.asarray(stiffness / masses.sum() * masses[..., np.newaxis] * direction.ravel())
+def _foundation_matrices(mesh: Mesh, spring: FaceSpring) -> Floats:
+    """Stiffness matrices of the triangles of an elastic foundation, shape (t, b, b, 9)."""
+    masses = _face_masses(mesh, mesh.faces[spring.face])
+    n = spring.along
+    direction = np.eye(3) if n is None else np.outer(n, n) / np.dot(n, n)
+    return np.asarray(spring.spring_stiffness / masses.sum() * masses[..., np.newaxis] * direction.ravel())

@@ -1,4 +1,4 @@
-"""The CAD kernel, an optional part, imported when first needed."""
+"""Optional CAD kernel (OpenCASCADE through netgen-mesher): import on first use, and capture of its printed output."""
 
 import ctypes
 import os
@@ -13,60 +13,64 @@ from typing import Any
 from sonolube.errors import SonolubeError
 
 MILLIMETRE = 1e-3
-"""The CAD kernel's unit, in m."""
+"""Length unit of the CAD kernel, in m."""
 
-_STREAMS = (1, 2)  # standard output and error
-_ONE_AT_A_TIME = RLock()  # the streams belong to the process, not to a thread
-
-
-class MissingPart(SonolubeError, ImportError):
-    """A package that finite elements need and that is not installed."""
+_STREAMS = (1, 2)  # file descriptors of standard output and error
+_REDIRECTION = RLock()  # file descriptors belong to the process, not to a thread
 
 
-def cad() -> Any:
-    """Return the CAD kernel, `netgen.occ`.
+class MissingPackage(SonolubeError, ImportError):
+    """An optional package needed for finite elements is not installed."""
+
+
+def cad_kernel() -> Any:
+    """Module `netgen.occ`, the CAD kernel.
+
+    Returns
+    -------
+    module
 
     Raises
     ------
-    MissingPart
+    MissingPackage
         If netgen-mesher is not installed.
     """
     try:
         return import_module("netgen.occ")
     except ImportError:
-        raise MissingPart("bodies and their meshes need netgen-mesher: pip install sonolube[fem]") from None
+        raise MissingPackage("bodies and their meshes need netgen-mesher: pip install sonolube[fem]") from None
 
 
 @contextmanager
-def captured() -> Iterator[list[str]]:
-    """Keep what the CAD kernel prints on its own off standard output and error while inside.
+def captured_output() -> Iterator[list[str]]:
+    """Context in which text printed by the CAD kernel is captured instead of reaching standard output and error.
 
     Yields
     ------
     list of str
-        The lines it printed, each once, filled on leaving.
+        The distinct lines printed, filled on leaving the context.
     """
     lines: list[str] = []
-    with _ONE_AT_A_TIME, TemporaryFile() as file:
+    with _REDIRECTION, TemporaryFile() as file:
         _flush()
-        own = [os.dup(stream) for stream in _STREAMS]
+        saved = [os.dup(stream) for stream in _STREAMS]
         try:
             for stream in _STREAMS:
                 os.dup2(file.fileno(), stream)
             yield lines
         finally:
             _flush()
-            for stream, kept in zip(_STREAMS, own, strict=True):
-                os.dup2(kept, stream)
-                os.close(kept)
+            for stream, original in zip(_STREAMS, saved, strict=True):
+                os.dup2(original, stream)
+                os.close(original)
             file.seek(0)
             printed = file.read().decode(errors="replace").splitlines()
             lines += dict.fromkeys(line.strip() for line in printed if line.strip())
 
 
 def _flush() -> None:
-    """Write out what Python and C hold back, or it would appear on the wrong side."""
+    """Flush the buffers of Python and of the C library, so that text stays on its side of the redirection."""
     sys.stdout.flush()
     sys.stderr.flush()
-    with suppress(AttributeError, OSError, TypeError):  # where C has no library under this name
+    with suppress(AttributeError, OSError, TypeError):  # platforms without a C library of this name
         ctypes.CDLL(None).fflush(None)

@@ -1,4 +1,4 @@
-"""Modes to a stated accuracy: orders of elements raised, then meshes refined, until the error is small enough."""
+"""Natural modes to a requested accuracy by hp-refinement: rising element orders, then finer graded meshes."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -7,38 +7,38 @@ import numpy as np
 
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.fem.solver.grading import graded
+from sonolube.fem.solver.element_order import change_order
+from sonolube.fem.solver.grading import grade_reentrant_edges
 from sonolube.fem.solver.model import Model
 from sonolube.fem.solver.modes import NaturalModes, NotConverged, natural_modes
-from sonolube.fem.solver.orders import of_order
 
-_ORDERS = range(2, 7)  # on one mesh; the next is a finer one
-_REFINEMENT = 0.62  # of the element size from mesh to mesh: some four times the unknowns
-_LEAST_TOLERANCE = 1e-8  # below it rounding, and what the eigenvalue iteration leaves, would be all that changes
-_NEEDED = 3  # orders on a mesh before its error can be told
-_RATIOS = (0.25, 0.6)  # between which errors are taken to fall from order to order, for the estimate of the error
-_SINGULAR = 1 / 3  # least such factor where edges re-enter, whatever the last changes promise
-_UNEVEN = 0.1  # of the change before, of which a change that happens to be small is taken to be
+_ORDERS = range(2, 7)  # of the elements on one mesh, before it is refined
+_REFINEMENT = 0.62  # ratio of the element sizes of successive meshes: some four times the unknowns
+_LEAST_TOLERANCE = 1e-8  # below it, changes are rounding and the residual of the eigenvalue iteration
+_NEEDED_ORDERS = 3  # on a mesh, before its error can be estimated
+_RATIOS = (0.25, 0.6)  # least and greatest factor between successive changes assumed in the error estimate
+_SINGULAR_RATIO = 1 / 3  # least such factor on bodies with re-entrant edges
+_LEAST_CHANGE = 0.1  # of the change before, as which an accidentally small last change counts
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class ConvergedModes:
-    """Modes of the last mesh with frequencies extrapolated to elements of any order.
+    """Natural modes on the last mesh, with frequencies extrapolated to infinite element order.
 
     Parameters
     ----------
     model : Model
-        On the last mesh, of the highest order.
+        Finite-element model on the last mesh, with the highest element order.
     modes : NaturalModes
-        On the last mesh.
+        Its natural modes.
     natural_frequency : ndarray, shape (k,)
-        Extrapolated natural frequencies, zero for rigid motions. [Hz]
+        Extrapolated natural frequencies, zero for rigid-body modes. [Hz]
     frequency_error : ndarray, shape (k,)
-        Estimated error of the extrapolated frequencies over themselves. []
+        Estimated relative error of the extrapolated frequencies. []
     nodes : tuple of int
-        Number of nodes of each mesh.
+        Number of nodes of each mesh, in order of computation.
     history : ndarray, shape (meshes, k)
-        Natural frequencies in Hz on each mesh, in order of computation.
+        Natural frequencies in Hz on each mesh, likewise.
     """
 
     model: Model
@@ -56,27 +56,27 @@ def converged_modes(
     element_size: float,
     relative_tolerance: float = 1e-3,
     most_nodes: int = 60_000,
-    judged: Callable[[Model, NaturalModes], Sequence[int]] | None = None,
+    required_modes: Callable[[Model, NaturalModes], Sequence[int]] | None = None,
     advance: Callable[[str, int, int], None] | None = None,
 ) -> ConvergedModes:
-    """Return modes whose estimated relative error in frequency is within a tolerance.
+    """Natural modes whose estimated relative error of the frequency is within a tolerance, by hp-refinement.
 
     Parameters
     ----------
     model_at : callable
-        From the largest edge of an element in m to the model on such a mesh, of any order.
+        From the largest element edge in m to the finite-element model on such a mesh, of any order.
     count : int
         Number of elastic modes.
     element_size : float
-        Largest edge of an element in the first mesh; coarse ones, as long as the body is thick, are the fastest. [m]
+        Largest element edge of the first mesh; as large as the body is thick is the fastest. [m]
     relative_tolerance : float
         Largest estimated relative error of any frequency.
     most_nodes : int
-        Meshes with more nodes than this are not tried.
-    judged : callable, optional
-        Which rows of the modes must be known so well; all where absent.
+        Largest admissible number of nodes.
+    required_modes : callable, optional
+        From model and modes to the indices of the modes that must be within the tolerance; all where absent.
     advance : callable, optional
-        Told what is being done, how many meshes are done and of how many, as far as one knows.
+        Progress callback, called with a description, the number of completed steps and the expected number.
 
     Returns
     -------
@@ -87,15 +87,19 @@ def converged_modes(
     InvalidInput
         If the tolerance is below 1e-8.
     NotConverged
-        If the next mesh would have more than `most_nodes` nodes; the message says what was reached.
+        If the next mesh would have more than `most_nodes` nodes; the message states the error reached.
 
     Notes
     -----
-    On one mesh the order of its elements rises from two to six. In smooth bodies errors then fall by one factor after
-    the other of five to ten, and more slowly at corners that re-enter and where bodies are bonded. Elements of each
-    order follow the body's curves to that order, so that their error in shape falls along. Next to edges that
-    re-enter elements are cut to be thin across them. Where order six is not enough the mesh is refined, and cut once
-    more.
+    On one mesh the element order rises from two to six. In smooth bodies each order reduces the error by a factor of
+    five to ten, and by less at re-entrant corners and where bodies are bonded. Elements of each order approximate the
+    curved geometry to that order, so that the geometrical error falls likewise. Elements next to re-entrant edges are
+    graded to be thin across them. If order six is not sufficient, the mesh is refined and graded once more.
+
+    See Also
+    --------
+    extrapolate_frequencies : The error estimate.
+    sonolube.fem.solver.modes.natural_modes : Modes on one given mesh.
 
     References
     ----------
@@ -104,33 +108,34 @@ def converged_modes(
     require_positive(element_size=element_size, relative_tolerance=relative_tolerance)
     if not relative_tolerance >= _LEAST_TOLERANCE:
         raise InvalidInput(
-            f"relative_tolerance must be at least {_LEAST_TOLERANCE:g}, got {relative_tolerance:g}: rounding hides "
-            "less; 1e-6 is finer than any material is known"
+            f"relative_tolerance must be at least {_LEAST_TOLERANCE:g}, got {relative_tolerance:g}: smaller errors are "
+            "hidden by rounding; no material's constants are known to better than 1e-6"
         )
     history: list[Floats] = []
     nodes: list[int] = []
-    size, level, reached = element_size, 1, np.inf
+    size, level, largest_error = element_size, 1, np.inf
     while True:
         base = model_at(size)
-        mesh = graded(base.mesh, levels=level)
+        mesh = grade_reentrant_edges(base.mesh, levels=level)
         for step, order in enumerate(_ORDERS, start=1):
-            model = replace(base, mesh=of_order(mesh, order=order))
-            if nodes and model.mesh.size > most_nodes:
+            model = replace(base, mesh=change_order(mesh, order=order))
+            if nodes and model.mesh.node_count > most_nodes:
                 raise NotConverged(
-                    f"the modes are within {reached:.2g} of their frequencies, not within {relative_tolerance:.2g}, "
-                    f"on {nodes[-1]} nodes; the next mesh has {model.mesh.size}: allow more, "
-                    "or ask for fewer modes or less accuracy"
+                    f"the estimated error of the frequencies is {largest_error:.2g}, not {relative_tolerance:.2g}, "
+                    f"on {nodes[-1]} nodes; the next mesh has {model.mesh.node_count}: allow more, "
+                    "or request fewer modes or a larger tolerance"
                 )
             modes = natural_modes(model, count=count)
             history.append(modes.natural_frequency)
-            nodes.append(model.mesh.size)
+            nodes.append(model.mesh.node_count)
             if advance:
-                advance(f"{model.mesh.size} nodes", len(nodes), len(nodes) + 1)
-            if step < _NEEDED:
+                advance(f"{model.mesh.node_count} nodes", len(nodes), len(nodes) + 1)
+            if step < _NEEDED_ORDERS:
                 continue
-            frequency, error = extrapolated(np.array(history[-step:]), singular=mesh is not base.mesh)
-            reached = float(error[list(judged(model, modes))].max() if judged else error.max())
-            if reached <= relative_tolerance:
+            frequency, error = extrapolate_frequencies(np.array(history[-step:]), singular=mesh is not base.mesh)
+            required = error[list(required_modes(model, modes))] if required_modes else error
+            largest_error = float(required.max())
+            if largest_error <= relative_tolerance:
                 return ConvergedModes(
                     model=model,
                     modes=modes,
@@ -142,33 +147,48 @@ def converged_modes(
         size, level = size * _REFINEMENT, level + 1
 
 
-def extrapolated(history: Floats, *, singular: bool = False) -> tuple[Floats, Floats]:
-    """Return frequencies at an order of elements beyond all bounds and their estimated relative errors.
+def extrapolate_frequencies(history: Floats, *, singular: bool = False) -> tuple[Floats, Floats]:
+    r"""Natural frequencies extrapolated to infinite element order, and their estimated relative errors.
 
     Parameters
     ----------
     history : ndarray, shape (orders, k)
-        Natural frequencies in Hz for three successive orders or more.
+        Natural frequencies in Hz at three or more successive element orders.
     singular : bool
-        Whether the body has edges that re-enter.
+        Whether the body has re-entrant edges.
 
     Returns
     -------
-    tuple of two ndarray, shape (k,)
+    frequency : ndarray, shape (k,)
+        Extrapolated natural frequencies. [Hz]
+    error : ndarray, shape (k,)
+        Estimated relative errors.
+
+    Raises
+    ------
+    InvalidInput
+        If there are fewer than three orders.
 
     Notes
     -----
-    The changes still to come are taken to fall as the last two did, by a constant factor; the error is their sum with
-    a factor of a quarter at least, and more where the last change is smaller than a tenth of the one before. Edges that
-    re-enter come to rule after a few orders: between orders five and six of a collar changes fell by factors of 0.21 to
-    0.31, when those between four and five had promised 0.07 to 0.28. There no factor below a third is taken.
+    With the last two changes, :math:`\Delta_n = f_{n-1} - f_n` and the one before, and the ratio
+    :math:`r = |\Delta_n/\Delta_{n-1}|`, the changes to come are assumed to form a geometric series:
+
+    .. math::
+
+        f_\infty = f_n - \Delta_n \frac{r}{1 - r}, \qquad
+        \epsilon = \frac{\max(|\Delta_n|,\, 0.1\, |\Delta_{n-1}|)}{f_\infty} \frac{r'}{1 - r'}
+
+    In the error the ratio r' is at least a quarter. Near re-entrant edges, whose singularity dominates after a few
+    orders, both ratios are at least a third: between orders five and six of a collar the changes fell by factors of
+    0.21 to 0.31, whereas between four and five they had been 0.07 to 0.28. No ratio is taken above 0.6.
     """
-    if len(history) < _NEEDED:
+    if len(history) < _NEEDED_ORDERS:
         raise InvalidInput(f"extrapolation needs three orders or more, got {len(history)}")
-    before, last = np.abs(np.diff(history[-_NEEDED:], axis=0))
+    before, last = np.abs(np.diff(history[-_NEEDED_ORDERS:], axis=0))
     ratio = np.divide(last, before, out=np.zeros_like(last), where=before > 0)
-    least, cautious_least = (_SINGULAR, _SINGULAR) if singular else (0.0, _RATIOS[0])
-    falling, cautious = np.clip(ratio, least, _RATIOS[1]), np.clip(ratio, cautious_least, _RATIOS[1])
-    frequency = history[-1] - (history[-2] - history[-1]) * falling / (1 - falling)
-    error = np.maximum(last, _UNEVEN * before) * cautious / (1 - cautious)
+    least, conservative_least = (_SINGULAR_RATIO, _SINGULAR_RATIO) if singular else (0.0, _RATIOS[0])
+    expected, conservative = np.clip(ratio, least, _RATIOS[1]), np.clip(ratio, conservative_least, _RATIOS[1])
+    frequency = history[-1] - (history[-2] - history[-1]) * expected / (1 - expected)
+    error = np.maximum(last, _LEAST_CHANGE * before) * conservative / (1 - conservative)
     return frequency, np.divide(error, frequency, out=np.zeros_like(error), where=frequency > 0)

@@ -1,7 +1,7 @@
-"""Bodies as the CAD kernel holds them: bonded together, moved, read from STEP files.
+"""Solid geometry in the CAD kernel: named single bodies, translation, bonded assemblies and STEP files.
 
-The CAD kernel works in mm, as its tolerances expect; all else is in m. Faces that close a body along an axis are named
-"-x", "+x", "-y", "+y", "-z" and "+z", all others "side".
+The CAD kernel works in mm, for which its tolerances are set; everything else is in m. Plane faces at the ends of a body
+along an axis are named "-x", "+x", "-y", "+y", "-z" and "+z", all others "side".
 """
 
 from collections.abc import Mapping
@@ -12,22 +12,22 @@ from typing import Any
 import numpy as np
 
 from sonolube.errors import InvalidInput
-from sonolube.fem.solver.cad import MILLIMETRE, cad, captured
+from sonolube.fem.solver.cad import MILLIMETRE, cad_kernel, captured_output
 
 _AXES = "xyz"
-_LEAST_FILLED = 1e-9  # of the box around a body
+_LEAST_VOLUME = 1e-9  # of the bounding box, below which a body counts as having no thickness
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Geometry:
-    """Solid bodies that share the faces at which they touch.
+    """Solid bodies with conforming shared faces where they touch.
 
     Parameters
     ----------
     shape : netgen.occ.TopoDS_Shape
-        The bodies, in mm.
+        Solids with lengths in mm.
     regions : tuple of str
-        Their names, in the order of the shape's solids.
+        Names of the bodies, in the order of the shape's solids.
     """
 
     shape: Any
@@ -35,57 +35,81 @@ class Geometry:
 
     @property
     def volume(self) -> float:
-        """Volume of all bodies, in m3."""
+        """Total volume of the bodies, in m3."""
         return float(sum(solid.mass for solid in self.shape.solids)) * MILLIMETRE**3
 
 
 def read_step(path: Path) -> Geometry:
-    """Return the solids of a STEP file, called by their names in it where they have one.
-
-    Raises
-    ------
-    InvalidInput
-        If the file cannot be read, or holds no closed solid.
-    """
-    if not path.is_file():
-        raise InvalidInput(f"{path}: no such file")
-    occ = cad()
-    try:
-        with captured():
-            shape = occ.OCCGeometry(str(path)).shape
-    except Exception as failure:  # the kernel has no narrower class
-        raise InvalidInput(f"{path}: not a STEP file that can be read: {failure}") from None
-    solids = list(shape.solids)
-    if not solids:
-        raise InvalidInput(f"{path}: no closed solid in it; sew its surfaces into one before exporting")
-    parts = {solid.name or f"body{k}": one_body(solid, solid.name or f"body{k}") for k, solid in enumerate(solids, 1)}
-    return assembled(parts) if len(parts) > 1 else next(iter(parts.values()))
-
-
-def moved(geometry: Geometry, *, by: tuple[float, float, float]) -> Geometry:
-    """Return the geometry moved by a vector in m."""
-    shift = tuple(component / MILLIMETRE for component in by)
-    return Geometry(shape=geometry.shape.Move(shift), regions=geometry.regions)
-
-
-def assembled(parts: Mapping[str, Geometry]) -> Geometry:
-    """Return bodies bonded where they touch; their faces are called "part.+z" and, between two parts, "one|other".
+    """Solids of a STEP file as a geometry, bonded where they touch.
 
     Parameters
     ----------
-    parts : mapping of str to Geometry
-        One body each, by the name its region gets.
+    path : Path
+        The STEP file.
 
     Returns
     -------
     Geometry
+        Regions carry the names of the solids in the file, "body1", "body2", ... where these have none.
+
+    Raises
+    ------
+    InvalidInput
+        If the file cannot be read, contains no closed solid, or its solids overlap.
+    """
+    if not path.is_file():
+        raise InvalidInput(f"{path}: no such file")
+    occ = cad_kernel()
+    try:
+        with captured_output():
+            shape = occ.OCCGeometry(str(path)).shape
+    except Exception as failure:  # the kernel raises no narrower class
+        raise InvalidInput(f"{path}: not a STEP file that can be read: {failure}") from None
+    solids = list(shape.solids)
+    if not solids:
+        raise InvalidInput(f"{path}: no closed solid in it; sew its surfaces into one before exporting")
+    parts = {
+        solid.name or f"body{k}": single_body(solid, solid.name or f"body{k}") for k, solid in enumerate(solids, 1)
+    }
+    return bond(parts) if len(parts) > 1 else next(iter(parts.values()))
+
+
+def translate(geometry: Geometry, *, by: tuple[float, float, float]) -> Geometry:
+    """Geometry translated by a vector.
+
+    Parameters
+    ----------
+    geometry : Geometry
+    by : tuple of three float
+        Translation vector, in m.
+
+    Returns
+    -------
+    Geometry
+    """
+    shift = tuple(component / MILLIMETRE for component in by)
+    return Geometry(shape=geometry.shape.Move(shift), regions=geometry.regions)
+
+
+def bond(parts: Mapping[str, Geometry]) -> Geometry:
+    """Assembly of bodies perfectly bonded where they touch: their contact faces become shared.
+
+    Parameters
+    ----------
+    parts : mapping of str to Geometry
+        One body each, by the name of its region in the assembly.
+
+    Returns
+    -------
+    Geometry
+        Free faces are named "part.+z", "part.side" and so on, shared ones "one|other".
 
     Raises
     ------
     InvalidInput
         If bodies overlap, or a part is not one body.
     """
-    occ, shapes = cad(), []
+    occ, shapes = cad_kernel(), []
     for name, part in parts.items():
         if len(part.regions) != 1:
             raise InvalidInput(f"{name} must be one body, got {len(part.regions)}")
@@ -95,22 +119,22 @@ def assembled(parts: Mapping[str, Geometry]) -> Geometry:
         shapes.append(solid.mat(name))
     glued = occ.Glue(shapes)
     names = [solid.name for solid in glued.solids]
-    separate = sum(shape.mass for shape in shapes)
-    together = sum(solid.mass for solid in glued.solids)
-    if sorted(names) != sorted(parts) or abs(together - separate) > 1e-6 * separate:
+    sum_of_parts = sum(shape.mass for shape in shapes)  # the kernel's mass is the volume
+    total = sum(solid.mass for solid in glued.solids)
+    if sorted(names) != sorted(parts) or abs(total - sum_of_parts) > 1e-6 * sum_of_parts:
         raise InvalidInput(f"the bodies {', '.join(parts)} overlap; move them apart until they only touch")
     return Geometry(shape=glued, regions=tuple(names))
 
 
-def one_body(shape: Any, name: str) -> Geometry:
-    """Return a geometry of one closed body, its end faces named.
+def single_body(shape: Any, name: str) -> Geometry:
+    """Geometry of one closed body, with its end faces named.
 
     Parameters
     ----------
     shape : netgen.occ.TopoDS_Shape
-        The body, in mm.
+        The body, with lengths in mm.
     name : str
-        What to call it.
+        Name of its region.
 
     Returns
     -------
@@ -126,15 +150,16 @@ def one_body(shape: Any, name: str) -> Geometry:
         raise InvalidInput(f"{name} must be one closed body with a volume, got {len(solids)} solids")
     solid = solids[0]
     low, high = (np.array([corner.x, corner.y, corner.z]) for corner in solid.bounding_box)
-    if not solid.mass > _LEAST_FILLED * np.prod(high - low):
+    if not solid.mass > _LEAST_VOLUME * np.prod(high - low):
         raise InvalidInput(f"{name} must be one closed body with a volume: it has no thickness, or its faces cut it")
     for face in solid.faces:
         centre = np.array([face.center.x, face.center.y, face.center.z])
-        ends = [(axis, end) for axis in range(3) for end in (low, high) if _at(centre, end, high - low, axis)]
+        ends = [(axis, end) for axis in range(3) for end in (low, high) if _is_at(centre, end, high - low, axis)]
         face.name = ("+" if ends[0][1] is high else "-") + _AXES[ends[0][0]] if ends else "side"
     return Geometry(shape=solid.mat(name), regions=(name,))
 
 
-def _at(centre: Any, end: Any, extent: Any, axis: int) -> bool:
-    # The kernel pads the box around curved bodies by a few thousandths of its size.
+def _is_at(centre: Any, end: Any, extent: Any, axis: int) -> bool:
+    """Whether a face's centre lies at one end of the bounding box along an axis."""
+    # The kernel enlarges the bounding box of curved bodies by a few thousandths of its size.
     return bool(abs(centre[axis] - end[axis]) < 0.008 * extent[axis])

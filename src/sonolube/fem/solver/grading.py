@@ -1,8 +1,9 @@
-"""Elements drawn towards the edges at which a body re-enters, where stress has no bound.
+"""Anisotropic geometric mesh grading towards re-entrant edges, at which the stress is singular.
 
-Each edge between a node on such an edge and one off it is cut near the former, again and again, so that elements
-become thin across and stay long along. Cut tetrahedra fall into tetrahedra and prisms, and prisms into tetrahedra along
-diagonals from their nodes of lowest number, on which neighbours agree.
+Each edge between a node on a re-entrant edge and one off it is divided close to the former, repeatedly, so that
+elements become thin across the re-entrant edge and stay long along it. Divided tetrahedra consist of tetrahedra and
+prisms, and prisms are divided into tetrahedra along diagonals from their nodes of lowest number, which makes neighbours
+conform.
 """
 
 from dataclasses import dataclass
@@ -10,189 +11,216 @@ from dataclasses import dataclass
 import numpy as np
 
 from sonolube.checks import Floats, Integers
+from sonolube.fem.solver.element_order import change_order, mesh_from_elements
 from sonolube.fem.solver.mesh import Mesh
-from sonolube.fem.solver.orders import numbered, of_order
-from sonolube.fem.solver.simplex import EDGES, lattice, shape_functions
+from sonolube.fem.solver.simplex import EDGES, lagrange_nodes, shape_functions
 
-_RE_ENTRANT = np.radians(200.0)  # angle inside the body from which an edge counts; curved sides are not quite smooth
-_INSIDE = np.radians(350.0)  # from which it is inside
-_CUT = 0.15  # where edges are cut, from the edge that re-enters
+_REENTRANT_ANGLE = np.radians(200.0)  # dihedral angle of an edge that counts; above 180, as meshed curves have kinks
+_INTERIOR_ANGLE = np.radians(350.0)  # dihedral angle from which an edge is interior
+_RATIO = 0.15  # of an edge's length, at which it is divided, from its end on the re-entrant edge
 _CORNERS = (0, 1, 2, 3)
 
 
-def graded(mesh: Mesh, *, levels: int) -> Mesh:
-    """Return a mesh of order two with elements drawn towards the edges at which its body re-enters.
+def grade_reentrant_edges(mesh: Mesh, *, levels: int) -> Mesh:
+    """Mesh of order two graded geometrically towards the re-entrant edges of its body.
 
     Parameters
     ----------
     mesh : Mesh
     levels : int
-        How often the elements next to them are cut.
+        Number of divisions of the elements next to the re-entrant edges.
 
     Returns
     -------
     Mesh
-        The mesh itself if there are no such edges.
+        The given mesh itself if there are no such edges, or no levels.
+
+    Notes
+    -----
+    After n levels the elements next to a re-entrant edge have 0.15^n of their original width across it. An edge is
+    re-entrant where the dihedral angles of its elements sum to between 200 and 350 degrees.
+
+    References
+    ----------
+    .. [1] J. Dompierre, P. Labbé, M.-G. Vallet and R. Camarero, 8th International Meshing Roundtable, 195 (1999).
+    .. [2] T. Apel, Anisotropic Finite Elements: Local Estimates and Applications, Teubner (1999).
     """
-    singular = _re_entrant_nodes(mesh)
+    singular = _reentrant_nodes(mesh)
     if not singular.size or not levels:
         return mesh
-    pieces = _Pieces.of(mesh)
+    subdivision = _Subdivision.of(mesh)
     for _ in range(levels):
-        pieces = _cut(pieces, singular)
-    return _meshed(mesh, pieces)
+        subdivision = _divided(subdivision, singular)
+    return _mesh_of_subdivision(mesh, subdivision)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class _Pieces:
-    """Tetrahedra cut out of those of a mesh: corners, shape (e, 4), their places in the parents, (e, 4, 4), parents."""
+class _Subdivision:
+    """Tetrahedra that subdivide those of a mesh.
+
+    Parameters
+    ----------
+    corners : ndarray of int, shape (e, 4)
+        Labels of their corners.
+    barycentric : ndarray, shape (e, 4, 4)
+        Barycentric coordinates of their corners in the parent element.
+    parents : ndarray of int, shape (e,)
+        Index of the parent element.
+    faces : dict of str to ndarray of int, shape (k, 3)
+        Corners of the triangles of each face.
+    """
 
     corners: Integers
-    places: Floats
+    barycentric: Floats
     parents: Integers
     faces: dict[str, Integers]
 
     @classmethod
-    def of(cls, mesh: Mesh) -> "_Pieces":
+    def of(cls, mesh: Mesh) -> "_Subdivision":
+        """Undivided tetrahedra of a mesh."""
         return cls(
             corners=mesh.elements[:, :4],
-            places=np.broadcast_to(np.eye(4), (len(mesh.elements), 4, 4)),
+            barycentric=np.broadcast_to(np.eye(4), (len(mesh.elements), 4, 4)),
             parents=np.arange(len(mesh.elements)),
             faces={name: triangles[:, :3] for name, triangles in mesh.faces.items()},
         )
 
 
-def _re_entrant_nodes(mesh: Mesh) -> Integers:
-    """Return the corners on edges where the curved elements around take up more than half a turn, and not a whole."""
+def _reentrant_nodes(mesh: Mesh) -> Integers:
+    """Corners on re-entrant edges, from the sum of the dihedral angles of the curved elements at each edge's middle."""
     nodes = mesh.nodes[mesh.elements]
     angles = np.empty((len(nodes), len(EDGES)))
     for k, (a, b) in enumerate(EDGES):
         c, d = (corner for corner in _CORNERS if corner not in (a, b))
         middle = np.zeros((1, 4))
         middle[0, [a, b]] = 0.5
-        _, slopes = shape_functions(mesh.order, middle)
-        axes = np.einsum("eax,ad->edx", nodes, slopes[:, :, 0])  # along corners 1, 2 and 3; none along 0
-        axes = np.concatenate([np.zeros_like(axes[:, :1]), axes], axis=1)
-        along = axes[:, b] - axes[:, a]
-        one, other = (np.cross(along, axes[:, corner] - axes[:, a]) for corner in (c, d))
-        across = np.einsum("ex,ex->e", one, other)
-        angles[:, k] = np.arctan2(np.linalg.norm(np.cross(one, other), axis=1), across)
+        _, gradients = shape_functions(mesh.order, middle)
+        tangents = np.einsum("eax,ad->edx", nodes, gradients[:, :, 0])  # along coordinates 1, 2 and 3; zero along 0
+        tangents = np.concatenate([np.zeros_like(tangents[:, :1]), tangents], axis=1)
+        edge = tangents[:, b] - tangents[:, a]
+        one, other = (np.cross(edge, tangents[:, corner] - tangents[:, a]) for corner in (c, d))
+        cosine = np.einsum("ex,ex->e", one, other)
+        angles[:, k] = np.arctan2(np.linalg.norm(np.cross(one, other), axis=1), cosine)
     ends = np.sort(mesh.elements[:, np.array(EDGES)], axis=2)
-    edges, which = np.unique(ends.reshape(-1, 2), axis=0, return_inverse=True)
-    turn = np.bincount(which.ravel(), weights=angles.ravel())
-    return np.unique(edges[(turn > _RE_ENTRANT) & (turn < _INSIDE)])
+    edges, index = np.unique(ends.reshape(-1, 2), axis=0, return_inverse=True)
+    dihedral = np.bincount(index.ravel(), weights=angles.ravel())
+    return np.unique(edges[(dihedral > _REENTRANT_ANGLE) & (dihedral < _INTERIOR_ANGLE)])
 
 
-def _cut(pieces: _Pieces, singular: Integers) -> _Pieces:
-    """Return the pieces with all edges between a singular node and another cut."""
-    on = np.isin(pieces.corners, singular)
-    order = np.argsort(~on, axis=1, kind="stable")  # singular corners first
-    corners = np.take_along_axis(pieces.corners, order, axis=1)
-    places = np.take_along_axis(pieces.places, order[:, :, np.newaxis], axis=1)
-    cut = _Cuts.of(corners, on.sum(axis=1))
-    points = np.column_stack([corners, *(cut.numbers(corners[:, edge]) for edge in EDGES)])
-    between = np.stack([(1 - _CUT) * places[:, a] + _CUT * places[:, b] for a, b in EDGES], axis=1)
-    where = np.concatenate([places, between], axis=1)
-    parents, chosen = [], []
+def _divided(subdivision: _Subdivision, singular: Integers) -> _Subdivision:
+    """Subdivision in which every edge between a singular node and another node is divided once more."""
+    is_singular = np.isin(subdivision.corners, singular)
+    singular_count = is_singular.sum(axis=1)
+    order = np.argsort(~is_singular, axis=1, kind="stable")  # singular corners first
+    corners = np.take_along_axis(subdivision.corners, order, axis=1)
+    barycentric = np.take_along_axis(subdivision.barycentric, order[:, :, np.newaxis], axis=1)
+    division = _EdgeDivision.of(corners, singular_count)
+    labels = np.column_stack([corners, *(division.labels(corners[:, edge]) for edge in EDGES)])
+    on_edges = np.stack([(1 - _RATIO) * barycentric[:, a] + _RATIO * barycentric[:, b] for a, b in EDGES], axis=1)
+    points = np.concatenate([barycentric, on_edges], axis=1)
+    parents, children = [], []
     for count in range(5):
-        own = np.flatnonzero(on.sum(axis=1) == count)
-        pieces_of = [np.broadcast_to(piece, (len(own), 1, 4)) for piece in _TETRAHEDRA[count]]
-        pieces_of += [np.array(prism)[_split(points[own][:, prism])] for prism in _PRISMS[count]]
-        local = np.concatenate(pieces_of, axis=1)
+        own = np.flatnonzero(singular_count == count)
+        tetrahedra = [np.broadcast_to(child, (len(own), 1, 4)) for child in _TETRAHEDRA[count]]
+        tetrahedra += [np.array(prism)[_split_prisms(labels[own][:, prism])] for prism in _PRISMS[count]]
+        local = np.concatenate(tetrahedra, axis=1)
         parents.append(np.repeat(own, local.shape[1]))
-        chosen.append(local.reshape(-1, 4))
-    parent, local = np.concatenate(parents), np.concatenate(chosen)
-    turned = np.linalg.det(where[parent[:, np.newaxis], local]) < 0  # the parents of the first level turn right
-    local[turned] = local[turned][:, [0, 2, 1, 3]]
-    return _Pieces(
-        corners=points[parent[:, np.newaxis], local],
-        places=where[parent[:, np.newaxis], local],
-        parents=pieces.parents[parent],
-        faces={name: _cut_face(face, singular, cut) for name, face in pieces.faces.items()},
+        children.append(local.reshape(-1, 4))
+    parent, local = np.concatenate(parents), np.concatenate(children)
+    inverted = np.linalg.det(points[parent[:, np.newaxis], local]) < 0  # elements of the mesh have positive volume
+    local[inverted] = local[inverted][:, [0, 2, 1, 3]]
+    return _Subdivision(
+        corners=labels[parent[:, np.newaxis], local],
+        barycentric=points[parent[:, np.newaxis], local],
+        parents=subdivision.parents[parent],
+        faces={name: _divided_face(face, singular, division) for name, face in subdivision.faces.items()},
     )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class _Cuts:
-    """The nodes on cut edges: keys of the edges in order, and the number of the first node."""
+class _EdgeDivision:
+    """Labels of the new nodes on divided edges: sorted keys of the edges, and the label of the first new node."""
 
     keys: Integers
     first: int
 
     @classmethod
-    def of(cls, corners: Integers, count: Integers) -> "_Cuts":
-        """Return the cuts of tetrahedra whose first `count` corners are singular."""
+    def of(cls, corners: Integers, count: Integers) -> "_EdgeDivision":
+        """Divided edges of tetrahedra whose first `count` corners are singular."""
         first = int(corners.max()) + 1
         ends = [corners[(count > a) & (count <= b)][:, [a, b]] for a, b in EDGES]
-        return cls(keys=np.unique(_keys(np.concatenate(ends), first)), first=first)
+        return cls(keys=np.unique(_edge_keys(np.concatenate(ends), first)), first=first)
 
-    def numbers(self, ends: Integers) -> Integers:
-        """Return the nodes on edges, of no meaning where the edge is not cut."""
-        return self.first + np.searchsorted(self.keys, _keys(ends, self.first))
+    def labels(self, ends: Integers) -> Integers:
+        """Labels of the new nodes on edges given by their ends; meaningless for edges that are not divided."""
+        return self.first + np.searchsorted(self.keys, _edge_keys(ends, self.first))
 
 
-def _keys(ends: Integers, base: int) -> Integers:
+def _edge_keys(ends: Integers, base: int) -> Integers:
+    """Unique integer of each edge, whatever the sequence of its ends."""
     return np.asarray(ends.min(axis=1) * base + ends.max(axis=1))
 
 
-def _split(prisms: Integers) -> Integers:
-    """Return the corners of three tetrahedra of each prism, shape (p, 3, 4), by their place in the prism.
-
-    After J. Dompierre, P. Labbé, M.-G. Vallet and R. Camarero, 8th International Meshing Roundtable, 195 (1999).
-    """
-    turns = _TURNS[np.argmin(prisms, axis=1)]
-    turned = np.take_along_axis(prisms, turns, axis=1)
-    rising = np.minimum(turned[:, 1], turned[:, 5]) < np.minimum(turned[:, 2], turned[:, 4])
-    tetrahedra = np.where(rising[:, np.newaxis, np.newaxis], _RISING, _FALLING)
-    return np.take_along_axis(turns, tetrahedra.reshape(-1, 12), axis=1).reshape(-1, 3, 4)
+def _split_prisms(prisms: Integers) -> Integers:
+    """Corners of the three tetrahedra of each prism (Dompierre 1999) by position in the prism, shape (p, 3, 4)."""
+    permutations = _PERMUTATIONS[np.argmin(prisms, axis=1)]
+    permuted = np.take_along_axis(prisms, permutations, axis=1)
+    first_diagonal = np.minimum(permuted[:, 1], permuted[:, 5]) < np.minimum(permuted[:, 2], permuted[:, 4])
+    tetrahedra = np.where(first_diagonal[:, np.newaxis, np.newaxis], _SPLIT_BY_15, _SPLIT_BY_24)
+    return np.take_along_axis(permutations, tetrahedra.reshape(-1, 12), axis=1).reshape(-1, 3, 4)
 
 
-def _cut_face(triangles: Integers, singular: Integers, cut: _Cuts) -> Integers:
-    """Return what triangles fall into, turning as they do."""
-    on = np.isin(triangles, singular)
-    count = on.sum(axis=1)
+def _divided_face(triangles: Integers, singular: Integers, division: _EdgeDivision) -> Integers:
+    """Triangles that subdivide those of a face, of the same orientation."""
+    is_singular = np.isin(triangles, singular)
+    count = is_singular.sum(axis=1)
     one, two = triangles[count == 1], triangles[count == 2]
-    one = np.take_along_axis(one, (np.argmax(on[count == 1], axis=1)[:, np.newaxis] + np.arange(3)) % 3, axis=1)
-    two = np.take_along_axis(two, (np.argmin(on[count == 2], axis=1)[:, np.newaxis] + np.arange(1, 4)) % 3, axis=1)
-    near, far = cut.numbers(one[:, [0, 1]]), cut.numbers(one[:, [0, 2]])
-    left, right = cut.numbers(two[:, [0, 2]]), cut.numbers(two[:, [1, 2]])
+    first = np.argmax(is_singular[count == 1], axis=1)[:, np.newaxis]
+    regular = np.argmin(is_singular[count == 2], axis=1)[:, np.newaxis]
+    one = np.take_along_axis(one, (first + np.arange(3)) % 3, axis=1)  # singular corner first
+    two = np.take_along_axis(two, (regular + np.arange(1, 4)) % 3, axis=1)  # singular corners first
+    one_01, one_02 = division.labels(one[:, [0, 1]]), division.labels(one[:, [0, 2]])
+    two_02, two_12 = division.labels(two[:, [0, 2]]), division.labels(two[:, [1, 2]])
     return np.concatenate(
         [
             triangles[(count == 0) | (count == 3)],
-            np.column_stack([one[:, 0], near, far]),
-            _halves(np.column_stack([near, one[:, 1], one[:, 2], far])),
-            np.column_stack([left, right, two[:, 2]]),
-            _halves(np.column_stack([two[:, 0], two[:, 1], right, left])),
+            np.column_stack([one[:, 0], one_01, one_02]),
+            _split_quadrilaterals(np.column_stack([one_01, one[:, 1], one[:, 2], one_02])),
+            np.column_stack([two_02, two_12, two[:, 2]]),
+            _split_quadrilaterals(np.column_stack([two[:, 0], two[:, 1], two_12, two_02])),
         ]
     )
 
 
-def _halves(squares: Integers) -> Integers:
-    """Return two triangles of each four-sided figure, cut from its node of lowest number."""
-    turned = np.take_along_axis(squares, (np.argmin(squares, axis=1)[:, np.newaxis] + np.arange(4)) % 4, axis=1)
-    return np.concatenate([turned[:, [0, 1, 2]], turned[:, [0, 2, 3]]])
+def _split_quadrilaterals(quadrilaterals: Integers) -> Integers:
+    """Two triangles of each quadrilateral, along the diagonal from its node of lowest number."""
+    shift = np.argmin(quadrilaterals, axis=1)[:, np.newaxis]
+    rotated = np.take_along_axis(quadrilaterals, (shift + np.arange(4)) % 4, axis=1)
+    return np.concatenate([rotated[:, [0, 1, 2]], rotated[:, [0, 2, 3]]])
 
 
-def _meshed(mesh: Mesh, pieces: _Pieces) -> Mesh:
-    def curves(order: int) -> Floats:
-        parent = of_order(mesh, order=order)
-        inside = np.einsum("ac,ecd->ead", lattice(order, corners=4) / order, pieces.places)
-        weights, _ = shape_functions(order, inside.reshape(-1, 4))
-        weights = weights.reshape(len(weights), *inside.shape[:2])
-        return np.asarray(np.einsum("bea,ebx->eax", weights, parent.nodes[parent.elements][pieces.parents]))
+def _mesh_of_subdivision(mesh: Mesh, subdivision: _Subdivision) -> Mesh:
+    """Mesh of order two of the subdivided tetrahedra, with nodes on the curved geometry of their parents."""
 
-    return numbered(
-        pieces.corners,
-        places=curves(2),
-        faces=pieces.faces,
+    def curved_nodes(order: int) -> Floats:
+        parent = change_order(mesh, order=order)
+        points = np.einsum("ac,ecd->ead", lagrange_nodes(order, corners=4) / order, subdivision.barycentric)
+        weights, _ = shape_functions(order, points.reshape(-1, 4))
+        weights = weights.reshape(len(weights), *points.shape[:2])
+        return np.asarray(np.einsum("bea,ebx->eax", weights, parent.nodes[parent.elements][subdivision.parents]))
+
+    return mesh_from_elements(
+        subdivision.corners,
+        coordinates=curved_nodes(2),
+        faces=subdivision.faces,
         order=2,
-        region_of_element=mesh.region_of_element[pieces.parents],
+        region_of_element=mesh.region_of_element[subdivision.parents],
         regions=mesh.regions,
-        curves=curves,
+        curved_nodes=curved_nodes,
     )
 
 
-_C = {edge: 4 + k for k, edge in enumerate(EDGES)}  # cut edges of a tetrahedron, numbered after its corners
+_C = {edge: 4 + k for k, edge in enumerate(EDGES)}  # points on divided edges of a tetrahedron, after its corners
 _TETRAHEDRA: tuple[tuple[tuple[int, ...], ...], ...] = (
     (_CORNERS,),
     ((0, _C[0, 1], _C[0, 2], _C[0, 3]),),
@@ -200,7 +228,7 @@ _TETRAHEDRA: tuple[tuple[tuple[int, ...], ...], ...] = (
     ((_C[0, 3], _C[1, 3], _C[2, 3], 3),),
     (_CORNERS,),
 )
-"""Tetrahedra that one falls into, by the number of its singular corners, which come first."""
+"""Tetrahedra in the subdivision of one, by the number of its singular corners, which come first."""
 
 _PRISMS: tuple[tuple[tuple[int, ...], ...], ...] = (
     (),
@@ -209,9 +237,9 @@ _PRISMS: tuple[tuple[tuple[int, ...], ...], ...] = (
     ((0, 1, 2, _C[0, 3], _C[1, 3], _C[2, 3]),),
     (),
 )
-"""And prisms: one triangle, then the other."""
+"""Prisms in the subdivision of a tetrahedron, likewise: the corners of one triangle, then those of the other."""
 
-_TURNS = np.array(
+_PERMUTATIONS = np.array(
     [
         [0, 1, 2, 3, 4, 5],
         [1, 2, 0, 4, 5, 3],
@@ -221,7 +249,7 @@ _TURNS = np.array(
         [5, 4, 3, 2, 1, 0],
     ]
 )
-"""Turns of a prism that bring each of its corners to the first place."""
+"""Rotations of a prism that bring each of its corners to the first position."""
 
-_RISING = np.array([[0, 1, 2, 5], [0, 1, 5, 4], [0, 4, 5, 3]])
-_FALLING = np.array([[0, 1, 2, 4], [0, 4, 2, 5], [0, 4, 5, 3]])
+_SPLIT_BY_15 = np.array([[0, 1, 2, 5], [0, 1, 5, 4], [0, 4, 5, 3]])
+_SPLIT_BY_24 = np.array([[0, 1, 2, 4], [0, 4, 2, 5], [0, 4, 5, 3]])

@@ -1,4 +1,4 @@
-"""What a region is made of: elastic, and where it is poled piezoelectric, in the axes of the model."""
+"""Linear constitutive law of a region: elastic, piezoelectric and dielectric constants in the axes of the model."""
 
 from dataclasses import dataclass
 
@@ -8,14 +8,12 @@ from sonolube.checks import Floats, require_finite, require_non_negative, requir
 from sonolube.errors import InvalidInput
 from sonolube.materials import Material, PiezoCeramic
 
-_VOIGT = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
+_VOIGT = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))  # index pairs of the rows in Voigt notation
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Medium:
-    """Elastic, piezoelectric and dielectric constants in the axes of the model.
-
-    Stresses and strains are ordered xx, yy, zz, yz, xz, xy, the last three strains being twice the tensor's.
+    r"""Elastic, piezoelectric and dielectric constants in the axes of the model, in stress-charge form.
 
     Parameters
     ----------
@@ -24,18 +22,31 @@ class Medium:
     density : float
         Mass density. [kg/m3]
     stress_constants : ndarray, shape (3, 6), or None
-        Charge density per strain, which is stress per field; None for what is not piezoelectric. [C/m2]
+        Charge density per strain, equal to negative stress per field; None if not piezoelectric. [C/m2]
     permittivity : ndarray, shape (3, 3), or None
-        Permittivity at constant strain; None for conductors, in which no potential is sought. [F/m]
+        Permittivity at constant strain; None for conductors, which have no potential unknowns. [F/m]
     elastic_loss : float
-        Loss tangent of the stiffness, one over the mechanical quality factor. []
+        Loss tangent of the stiffness, the inverse of the mechanical quality factor. []
     loss_tangent : float
-        Loss tangent of the permittivity. []
+        Dielectric loss tangent of the permittivity. []
 
     Raises
     ------
     InvalidInput
-        If a tensor is missing, has the wrong shape, or stores no positive energy.
+        If a tensor is missing, has the wrong shape, or is not positive definite.
+
+    Notes
+    -----
+    In Voigt notation, stresses and strains in the order xx, yy, zz, yz, xz, xy and shear strains twice those of the
+    tensor, for harmonic fields proportional to exp(i omega t):
+
+    .. math::
+
+        T = c^E (1 + i\eta) S - e^\mathsf{T} E, \qquad D = e S + \varepsilon^S (1 - i \tan\delta) E
+
+    References
+    ----------
+    .. [1] IEEE Standard on Piezoelectricity, ANSI/IEEE Std 176-1987, section 2.3.
     """
 
     elastic_stiffness: Floats
@@ -48,22 +59,24 @@ class Medium:
     def __post_init__(self) -> None:
         require_positive(density=self.density)
         require_non_negative(elastic_loss=self.elastic_loss, loss_tangent=self.loss_tangent)
-        _require_energy("elastic_stiffness", self.elastic_stiffness, 6)
+        _require_positive_definite("elastic_stiffness", self.elastic_stiffness, 6)
         if (self.stress_constants is None) != (self.permittivity is None):
             raise InvalidInput("a piezoelectric medium needs both stress_constants and permittivity; one is missing")
         if self.stress_constants is not None and self.permittivity is not None:
             if np.shape(require_finite(stress_constants=self.stress_constants)) != (3, 6):
                 raise InvalidInput(f"stress_constants must have shape (3, 6), got {np.shape(self.stress_constants)}")
-            _require_energy("permittivity", self.permittivity, 3)
+            _require_positive_definite("permittivity", self.permittivity, 3)
 
     @property
     def is_piezoelectric(self) -> bool:
-        """Whether a potential is sought in it."""
+        """Whether the electric potential is an unknown in the medium."""
         return self.permittivity is not None
 
 
-def isotropic(*, youngs_modulus: float, poisson_ratio: float, density: float, elastic_loss: float = 0.0) -> Medium:
-    """Return an isotropic medium.
+def isotropic_medium(
+    *, youngs_modulus: float, poisson_ratio: float, density: float, elastic_loss: float = 0.0
+) -> Medium:
+    r"""Isotropic elastic medium from its engineering constants.
 
     Parameters
     ----------
@@ -79,6 +92,23 @@ def isotropic(*, youngs_modulus: float, poisson_ratio: float, density: float, el
     Returns
     -------
     Medium
+
+    Raises
+    ------
+    InvalidInput
+        If the modulus or density is not positive, or Poisson's ratio outside its range.
+
+    Notes
+    -----
+    With Lamé's constants
+
+    .. math:: \mu = \frac{E}{2(1 + \nu)}, \qquad \lambda = \frac{2 \mu \nu}{1 - 2\nu}
+
+    the stiffness is
+
+    .. math::
+
+        c_{ijkl} = \lambda \delta_{ij}\delta_{kl} + \mu(\delta_{ik}\delta_{jl} + \delta_{il}\delta_{jk})
     """
     require_positive(youngs_modulus=youngs_modulus)
     nu = float(require_within(-0.99, 0.4999, poisson_ratio=poisson_ratio))
@@ -88,8 +118,8 @@ def isotropic(*, youngs_modulus: float, poisson_ratio: float, density: float, el
     return Medium(elastic_stiffness=stiffness, density=density, elastic_loss=elastic_loss)
 
 
-def medium_of(material: Material, *, elastic_loss: float = 0.0) -> Medium:
-    """Return the isotropic medium that a material of the tables is.
+def medium_from_material(material: Material, *, elastic_loss: float = 0.0) -> Medium:
+    """Isotropic elastic medium from a material of the data tables.
 
     Parameters
     ----------
@@ -106,7 +136,7 @@ def medium_of(material: Material, *, elastic_loss: float = 0.0) -> Medium:
     MissingProperty
         If Young's modulus, Poisson's ratio or density is not known.
     """
-    return isotropic(
+    return isotropic_medium(
         youngs_modulus=material.value("youngs_modulus"),
         poisson_ratio=material.value("poisson_ratio"),
         density=material.value("density"),
@@ -114,8 +144,8 @@ def medium_of(material: Material, *, elastic_loss: float = 0.0) -> Medium:
     )
 
 
-def poled(ceramic: PiezoCeramic, *, along: tuple[float, float, float], lossless: bool = False) -> Medium:
-    """Return a piezoelectric ceramic poled along a direction of the model.
+def poled_medium(ceramic: PiezoCeramic, *, along: tuple[float, float, float], lossless: bool = False) -> Medium:
+    r"""Piezoelectric medium of a ceramic poled along a direction of the model.
 
     Parameters
     ----------
@@ -123,7 +153,7 @@ def poled(ceramic: PiezoCeramic, *, along: tuple[float, float, float], lossless:
     along : tuple of three float
         Direction of poling; its length does not matter.
     lossless : bool
-        Leave out the losses that the ceramic's quality factor and loss tangent say, where its tables have them.
+        Neglect the losses given by the ceramic's quality factor and loss tangent, where its data have them.
 
     Returns
     -------
@@ -132,46 +162,57 @@ def poled(ceramic: PiezoCeramic, *, along: tuple[float, float, float], lossless:
     Raises
     ------
     InvalidInput
-        If the direction has no length: an unpoled ceramic is not piezoelectric, take `isotropic` for it.
+        If the direction is the zero vector: an unpoled ceramic is not piezoelectric, use `isotropic_medium` for it.
+
+    Notes
+    -----
+    With the crystal axes as rows of the rotation matrix :math:`a` and Bond's stress transformation matrix :math:`M`,
+
+    .. math::
+
+        c' = M c^E M^\mathsf{T}, \qquad e' = a^\mathsf{T} e M^\mathsf{T}, \qquad
+        \varepsilon' = a^\mathsf{T} \varepsilon^S a
+
+    References
+    ----------
+    .. [1] W. L. Bond, Bell Syst. Tech. J. 22, 1 (1943).
     """
     direction = require_finite(along=along)
     if direction.shape != (3,) or not np.any(direction):
         raise InvalidInput(f"a piezoelectric ceramic must be poled along a direction, got {along!r}")
-    a = _axes(direction / np.linalg.norm(direction))
-    known = {} if lossless else ceramic.material.properties
-    quality = known["mechanical_quality_factor"].value if "mechanical_quality_factor" in known else np.inf
-    stress = _bond(a)
+    axes = _crystal_axes(direction / np.linalg.norm(direction))
+    properties = {} if lossless else ceramic.material.properties
+    quality = properties["mechanical_quality_factor"].value if "mechanical_quality_factor" in properties else np.inf
+    bond = _bond_matrix(axes)
     return Medium(
-        elastic_stiffness=stress @ ceramic.stiffness_short_circuit @ stress.T,
+        elastic_stiffness=bond @ ceramic.stiffness_short_circuit @ bond.T,
         density=ceramic.material.value("density"),
-        stress_constants=a.T @ ceramic.stress_constants @ stress.T,
-        permittivity=a.T @ np.diag(ceramic.permittivity_clamped) @ a,
+        stress_constants=axes.T @ ceramic.stress_constants @ bond.T,
+        permittivity=axes.T @ np.diag(ceramic.permittivity_clamped) @ axes,
         elastic_loss=float(1 / quality),
-        loss_tangent=known["loss_tangent"].value if "loss_tangent" in known else 0.0,
+        loss_tangent=properties["loss_tangent"].value if "loss_tangent" in properties else 0.0,
     )
 
 
-def _axes(third: Floats) -> Floats:
-    """Return a right-handed set of axes as rows, the last as given."""
+def _crystal_axes(third: Floats) -> Floats:
+    """Right-handed orthonormal axes as rows, the third one given."""
     seed = np.eye(3)[np.argmin(np.abs(third))]
     first = np.cross(seed, third)
     first /= np.linalg.norm(first)
     return np.array([first, np.cross(third, first), third])
 
 
-def _bond(a: Floats) -> Floats:
-    """Return what turns stresses in the crystal's axes, the rows of `a`, into those in the model's.
-
-    After W. L. Bond, Bell Syst. Tech. J. 22, 1 (1943).
-    """
+def _bond_matrix(a: Floats) -> Floats:
+    """Bond's matrix M: stresses in the model's axes from those in the crystal's, which are the rows of `a`."""
     return np.array(
         [[a[k, i] * a[m, j] + (a[m, i] * a[k, j] if k != m else 0.0) for k, m in _VOIGT] for i, j in _VOIGT]
     )
 
 
-def _require_energy(name: str, tensor: Floats, n: int) -> None:
+def _require_positive_definite(name: str, tensor: Floats, n: int) -> None:
+    """Refuse a matrix that is not symmetric and positive definite of size n."""
     matrix = require_finite(**{name: tensor})
     if matrix.shape != (n, n) or not np.allclose(matrix, matrix.T, rtol=1e-9, atol=1e-12 * np.abs(matrix).max()):
         raise InvalidInput(f"{name} must be symmetric of shape ({n}, {n}), got shape {matrix.shape}")
     if np.linalg.eigvalsh(matrix)[0] <= 0:
-        raise InvalidInput(f"{name} stores no positive energy: it must be positive definite")
+        raise InvalidInput(f"{name} must be positive definite: some state of the medium would store negative energy")

@@ -1,4 +1,4 @@
-"""A body to be computed: its mesh, what it is made of, how it is held and where its electrodes are."""
+"""Boundary-value problem of a piezoelectric body: mesh, media, displacement supports, springs and electrodes."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -11,18 +11,24 @@ from sonolube.fem.solver.medium import Medium
 from sonolube.fem.solver.mesh import Mesh
 
 DIRECTIONS = "xyz"
+"""Names of the coordinate directions, in the order of the components of a vector."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Fixed:
-    """Nodes that do not move in some directions.
+class FixedSupport:
+    """Homogeneous displacement boundary condition: zero displacement components on a face.
 
     Parameters
     ----------
     face : str or None
-        Name of the face they lie on; None for all nodes of the body.
+        Name of the face; None for all nodes of the body.
     along : str
-        The directions held, letters of "xyz".
+        Directions in which the displacement is zero, letters of "xyz".
+
+    Raises
+    ------
+    InvalidInput
+        If a direction is none of x, y and z.
     """
 
     face: str | None
@@ -35,16 +41,21 @@ class Fixed:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class FaceSpring:
-    """A spring to the ground, spread evenly over a face.
+    """Elastic foundation (Winkler): a spring to the ground, distributed evenly over a face.
 
     Parameters
     ----------
     face : str
         Name of the face.
     spring_stiffness : float
-        Stiffness of the whole face moved as one. [N/m]
+        Stiffness of the whole face against a rigid translation. [N/m]
     along : tuple of three float, optional
-        The one direction in which it acts; in all three alike where absent.
+        Direction in which the spring acts; all directions alike where absent.
+
+    Raises
+    ------
+    InvalidInput
+        If the stiffness is not positive, or the direction the zero vector.
     """
 
     face: str
@@ -59,16 +70,21 @@ class FaceSpring:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Electrodes:
-    """Faces that are equipotentials.
+    """Equipotential faces, by the condition on their potential or charge.
 
     Parameters
     ----------
     driven : tuple of str
-        Faces at the drive voltage, wired together.
+        Faces at the drive voltage, connected to each other.
     grounded : tuple of str
-        Faces at zero volts.
+        Faces at zero potential.
     floating : tuple of str
-        Faces of no wire: each at the one potential at which its charge vanishes.
+        Unconnected faces, each at the uniform potential at which its net charge is zero (open circuit).
+
+    Raises
+    ------
+    InvalidInput
+        If a face is listed twice.
     """
 
     driven: tuple[str, ...] = ()
@@ -84,19 +100,19 @@ class Electrodes:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Model:
-    """A body to be computed.
+    """Finite-element model: mesh, media of its regions, supports and electrodes.
 
     Parameters
     ----------
     mesh : Mesh
     media : mapping of str to Medium
-        What each region of the mesh is made of.
-    fixed : tuple of Fixed
-        Where it is held.
+        Medium of each region of the mesh, by the region's name.
+    fixed : tuple of FixedSupport
+        Displacement boundary conditions; a body without any is free.
     springs : tuple of FaceSpring
-        Where it rests on springs.
+        Elastic foundations.
     electrodes : Electrodes
-        Needed where a region is piezoelectric.
+        Electrical boundary conditions; needed where a region is piezoelectric.
 
     Raises
     ------
@@ -108,7 +124,7 @@ class Model:
 
     mesh: Mesh
     media: Mapping[str, Medium]
-    fixed: tuple[Fixed, ...] = ()
+    fixed: tuple[FixedSupport, ...] = ()
     springs: tuple[FaceSpring, ...] = ()
     electrodes: Electrodes = field(default_factory=Electrodes)
 
@@ -119,14 +135,14 @@ class Model:
         for region in self.media:
             if region not in self.mesh.regions:
                 raise UnknownName.among(self.mesh.regions, kind="region", name=region)
-        wired = (*self.electrodes.driven, *self.electrodes.grounded)
-        held = [support.face for support in self.fixed if support.face is not None]
-        held += [spring.face for spring in self.springs]
-        for face in (*held, *wired, *self.electrodes.floating):
+        known_potential = (*self.electrodes.driven, *self.electrodes.grounded)
+        supported = [support.face for support in self.fixed if support.face is not None]
+        supported += [spring.face for spring in self.springs]
+        for face in (*supported, *known_potential, *self.electrodes.floating):
             self.mesh.face_nodes(face)
-        if self.is_piezoelectric and not wired:
+        if self.is_piezoelectric and not known_potential:
             raise InvalidInput(
-                "a piezoelectric body needs a driven or grounded electrode; potentials float without one"
+                "a piezoelectric body needs a driven or grounded electrode; without one its potential is undetermined"
             )
 
     @property

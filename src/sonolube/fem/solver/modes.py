@@ -1,4 +1,4 @@
-"""Natural frequencies and mode shapes."""
+"""Natural frequencies and mode shapes by block Lanczos iteration with a shift-inverted operator."""
 
 from dataclasses import dataclass
 
@@ -9,50 +9,56 @@ from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.fem.solver.mesh import Mesh
 from sonolube.fem.solver.model import DIRECTIONS, Model
-from sonolube.fem.solver.system import Solve, System, on_nodes, shifted, system
+from sonolube.fem.solver.system import (
+    LinearSolver,
+    SystemMatrices,
+    assemble_system,
+    nodal_displacements,
+    shift_invert_solver,
+)
 
-_BLOCK = 8  # vectors to a step: modes of one frequency are all found up to as many
-_RESIDUAL = 1e-5  # of a mode over its eigenvalue; the frequency is right to its square
+_BLOCK_SIZE = 8  # vectors in a block: highest multiplicity of an eigenvalue that is certain to be resolved
+_RESIDUAL = 1e-5  # norm of a residual over the eigenvalue; the relative error of a frequency is of its square
 _MOST_STEPS = 60
-_SAME = 1e-14  # square of the smallest over the largest length that can be told apart in a block
-_ROUNDING = 1e-26  # square of what rounding leaves of a vector
+_RANK_TOLERANCE = 1e-14  # square of the smallest over the largest length of independent vectors in a block
+_ROUNDING = 1e-26  # square of the length of a unit vector that remains as rounding of zero
 
 
 class NotConverged(SonolubeError, ArithmeticError):
-    """An iteration that did not reach its tolerance."""
+    """An iteration did not reach its tolerance."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class NaturalModes:
-    """Modes of a body with its drive short-circuited, in order of frequency.
+    """Natural modes of a body with short-circuited drive, in order of frequency.
 
     Parameters
     ----------
     natural_frequency : ndarray, shape (k,)
-        Undamped natural frequencies, zero for rigid motions. [Hz]
+        Undamped natural frequencies, zero for rigid-body modes. [Hz]
     shapes : ndarray, shape (k, n, 3)
-        Displacements of the nodes, of a modal mass of 1 kg.
-    rigid : int
-        How many rigid motions come first.
+        Mode shapes: displacements of the nodes, normalised to a modal mass of 1 kg.
+    rigid_body_count : int
+        Number of rigid-body modes, which come first.
     """
 
     natural_frequency: Floats
     shapes: Floats
-    rigid: int
+    rigid_body_count: int
 
     @property
     def elastic_frequency(self) -> Floats:
-        """Natural frequencies of all but the rigid motions, in Hz."""
-        return self.natural_frequency[self.rigid :]
+        """Natural frequencies without those of the rigid-body modes, in Hz."""
+        return self.natural_frequency[self.rigid_body_count :]
 
 
 def natural_modes(model: Model, *, count: int) -> NaturalModes:
-    """Return the rigid motions and the lowest elastic modes of a body.
+    r"""Rigid-body modes and lowest elastic modes of a body, by block Lanczos iteration.
 
     Parameters
     ----------
     model : Model
-        Driven electrodes are short-circuited; make them floating for the open circuit.
+        Driven electrodes are short-circuited; declare them floating for the open circuit.
     count : int
         Number of elastic modes.
 
@@ -63,97 +69,119 @@ def natural_modes(model: Model, *, count: int) -> NaturalModes:
     Raises
     ------
     InvalidInput
-        If more modes are asked for than the mesh can have.
+        If the number is not positive, or above that of the degrees of freedom.
     NotConverged
         If the eigenvalue iteration does not converge.
 
     Notes
     -----
-    Block Lanczos iteration about a negative shift, which keeps the factorised matrix definite though a free body has
-    six zero frequencies; rigid motions are known and taken out beforehand. Eight vectors drawn at random begin it, so
-    that no mode is passed over where up to eight frequencies coincide. It is fastest with OPENBLAS_NUM_THREADS=1 in
-    the environment: its products are small.
+    Solves the generalised eigenvalue problem
+
+    .. math:: \left(K + C P^{-1} C^\mathsf{T}\right) u = \omega^2 M u
+
+    through the largest eigenvalues :math:`1/(\omega^2 - \sigma)` of the operator shifted by :math:`\sigma` and
+    inverted. The shift is negative, which keeps the factorised matrix definite although a free body has six zero
+    frequencies. Rigid-body modes are known in closed form and projected out. The initial block has eight random
+    vectors, so that modes of up to eight coincident frequencies are all found. It is fastest with
+    OPENBLAS_NUM_THREADS=1 in the environment, as its matrix products are small.
+
+    See Also
+    --------
+    sonolube.fem.solver.convergence.converged_modes : The same to a requested accuracy.
 
     References
     ----------
     .. [1] R. G. Grimes, J. G. Lewis and H. D. Simon, SIAM J. Matrix Anal. Appl. 15, 228 (1994).
        doi:10.1137/S0895479888151111
     """
-    equations = system(model)
-    return modes_of(model, equations, inverse=shifted(model, equations, shift=shift_for(model)), count=count)
+    equations = assemble_system(model)
+    return lanczos_modes(
+        model, equations, inverse=shift_invert_solver(model, equations, shift=spectral_shift(model)), count=count
+    )
 
 
-def modes_of(model: Model, equations: System, *, inverse: Solve, count: int) -> NaturalModes:
-    """Return the modes of equations already assembled and factorised.
+def lanczos_modes(model: Model, equations: SystemMatrices, *, inverse: LinearSolver, count: int) -> NaturalModes:
+    """Natural modes from system matrices already assembled and factorised; see `natural_modes`.
 
     Parameters
     ----------
     model : Model
-    equations : System
+    equations : SystemMatrices
     inverse : callable
-        What `shifted` returns for the shift of `shift_for`.
+        Result of `shift_invert_solver` for the shift of `spectral_shift`.
     count : int
         Number of elastic modes.
 
     Returns
     -------
     NaturalModes
+
+    Raises
+    ------
+    InvalidInput
+        If the number is not positive, or above that of the degrees of freedom.
+    NotConverged
+        If the eigenvalue iteration does not converge.
     """
-    rigid = _free_rigid_motions(model).reshape(-1, 3 * model.mesh.size)[:, equations.moving].T
-    most = len(equations.moving) - rigid.shape[1] - 2
+    rigid = _rigid_body_modes(model).reshape(-1, 3 * model.mesh.node_count)[:, equations.free_dofs].T
+    most = len(equations.free_dofs) - rigid.shape[1] - 2
     if not 1 <= count <= most:
         raise InvalidInput(f"count must be from 1 to {most} on this mesh, got {count}")
-    still, _ = _orthonormal(rigid, equations.mass, rounding=0.0)
-    squares, moving = _lowest(equations.mass, inverse, shift=shift_for(model), count=count, known=still)
-    squares = np.concatenate([np.zeros(still.shape[1]), squares])
+    rigid, _ = _mass_orthonormal(rigid, equations.mass, rounding=0.0)
+    squares, elastic = _block_lanczos(equations.mass, inverse, shift=spectral_shift(model), count=count, deflated=rigid)
+    squares = np.concatenate([np.zeros(rigid.shape[1]), squares])
     return NaturalModes(
         natural_frequency=np.sqrt(np.maximum(squares, 0.0)) / (2 * np.pi),
-        shapes=on_nodes(model, equations, np.hstack([still, moving])),
-        rigid=still.shape[1],
+        shapes=nodal_displacements(model, equations, np.hstack([rigid, elastic])),
+        rigid_body_count=rigid.shape[1],
     )
 
 
-def _lowest(
-    mass: sparse.csc_array, inverse: Solve, *, shift: float, count: int, known: Floats
+def _block_lanczos(
+    mass: sparse.csc_array, inverse: LinearSolver, *, shift: float, count: int, deflated: Floats
 ) -> tuple[Floats, Floats]:
-    """Return omega^2 and shapes of the lowest modes besides those known, which are orthonormal."""
-    size, first = len(known), known.shape[1]
+    """Squared angular frequencies and mass-orthonormal shapes of the lowest modes besides the deflated ones."""
+    size, first = len(deflated), deflated.shape[1]
     random = np.random.default_rng(1)
-    basis, projected = known, np.zeros((0, 0))  # the latter the inverse times mass, on the basis
-    fresh = loaded = np.zeros((size, 0))
+    basis, projection = deflated, np.zeros((0, 0))  # the latter of the inverse times the mass matrix
+    block = mass_block = np.zeros((size, 0))
     for _ in range(_MOST_STEPS + count):
-        if not fresh.shape[1]:  # at first, or where a space of its own is found whole
-            drawn = inverse(mass @ random.standard_normal((size, _BLOCK)))
-            fresh, loaded = _beside(basis, drawn, mass)
-        basis = np.hstack([basis, fresh])
-        block = inverse(loaded)
-        columns, added = basis.T @ (mass @ block), fresh.shape[1]
-        fresh, loaded = _beside(basis, block - basis @ columns, mass, rounding=_ROUNDING * np.sum(columns**2))
-        columns, beyond = columns[first:], loaded.T @ block
-        projected = np.block([[projected, columns[:-added]], [columns[:-added].T, columns[-added:]]])
-        values, mixtures = (part[..., : -count - 1 : -1] for part in np.linalg.eigh((projected + projected.T) / 2))
-        residual = np.linalg.norm(beyond @ mixtures[-added:], axis=0)
+        if not block.shape[1]:  # at the start, or after an invariant subspace
+            start = inverse(mass @ random.standard_normal((size, _BLOCK_SIZE)))
+            block, mass_block = _orthonormal_beside(basis, start, mass)
+        basis = np.hstack([basis, block])
+        image = inverse(mass_block)
+        columns, added = basis.T @ (mass @ image), block.shape[1]
+        remainder = image - basis @ columns
+        block, mass_block = _orthonormal_beside(basis, remainder, mass, rounding=_ROUNDING * np.sum(columns**2))
+        columns, coupling = columns[first:], mass_block.T @ image
+        projection = np.block([[projection, columns[:-added]], [columns[:-added].T, columns[-added:]]])
+        values, vectors = (part[..., : -count - 1 : -1] for part in np.linalg.eigh((projection + projection.T) / 2))
+        residual = np.linalg.norm(coupling @ vectors[-added:], axis=0)
         if basis.shape[1] == size or (len(values) == count and np.all(residual < _RESIDUAL * values)):
-            return shift + 1 / values, basis[:, first:] @ mixtures
+            return shift + 1 / values, basis[:, first:] @ vectors
     raise NotConverged("the modes did not converge; ask for fewer, or check the mesh")
 
 
-def _beside(basis: Floats, block: Floats, mass: sparse.csc_array, *, rounding: float = 0.0) -> tuple[Floats, Floats]:
-    """Return what is new in a block beside a basis, orthonormal in the metric of mass, and its product with mass."""
-    fresh, loaded = _orthonormal(block, mass, rounding=rounding)
-    return _orthonormal(fresh - basis @ (basis.T @ loaded), mass, rounding=0.0)  # once more against rounding
+def _orthonormal_beside(
+    basis: Floats, block: Floats, mass: sparse.csc_array, *, rounding: float = 0.0
+) -> tuple[Floats, Floats]:
+    """Mass-orthonormal basis of a block's component orthogonal to a given basis, and its product with mass."""
+    vectors, mass_vectors = _mass_orthonormal(block, mass, rounding=rounding)
+    return _mass_orthonormal(vectors - basis @ (basis.T @ mass_vectors), mass, rounding=0.0)  # twice is enough
 
 
-def _orthonormal(block: Floats, mass: sparse.csc_array, *, rounding: float) -> tuple[Floats, Floats]:
-    loaded = mass @ block
-    squares, turns = np.linalg.eigh(block.T @ loaded)
-    told = squares > max(_SAME * squares.max(initial=0.0), rounding)
-    scaled = turns[:, told] / np.sqrt(squares[told])
-    return np.asarray(block @ scaled), np.asarray(loaded @ scaled)
+def _mass_orthonormal(block: Floats, mass: sparse.csc_array, *, rounding: float) -> tuple[Floats, Floats]:
+    """Mass-orthonormal basis of the numerically independent span of a block, and its product with mass."""
+    mass_block = mass @ block
+    squares, rotation = np.linalg.eigh(block.T @ mass_block)
+    independent = squares > max(_RANK_TOLERANCE * squares.max(initial=0.0), rounding)
+    scaled = rotation[:, independent] / np.sqrt(squares[independent])
+    return np.asarray(block @ scaled), np.asarray(mass_block @ scaled)
 
 
-def shift_for(model: Model) -> float:
-    """Return a negative shift of the size of the body's lowest resonances, in rad2/s2.
+def spectral_shift(model: Model) -> float:
+    r"""Negative spectral shift of the magnitude of the lowest squared angular frequencies.
 
     Parameters
     ----------
@@ -162,6 +190,13 @@ def shift_for(model: Model) -> float:
     Returns
     -------
     float
+        In rad2/s2.
+
+    Notes
+    -----
+    With the diagonal d of the bounding box and the lowest shear-wave speed :math:`c_s` of the media
+
+    .. math:: \sigma = -\left(\frac{\pi c_s}{d}\right)^2
     """
     extent = float(np.linalg.norm(np.ptp(model.mesh.nodes, axis=0)))
     speed = min(
@@ -170,8 +205,8 @@ def shift_for(model: Model) -> float:
     return -float((np.pi * speed / extent) ** 2)
 
 
-def rigid_motions(model: Model) -> int:
-    """Return how many of the six rigid motions of a body its supports leave free.
+def rigid_body_mode_count(model: Model) -> int:
+    """Number of rigid-body modes, out of six, that supports and foundations leave free.
 
     Parameters
     ----------
@@ -181,26 +216,26 @@ def rigid_motions(model: Model) -> int:
     -------
     int
     """
-    return len(_free_rigid_motions(model))
+    return len(_rigid_body_modes(model))
 
 
-def _free_rigid_motions(model: Model) -> Floats:
-    """Return the rigid motions that no support resists, shape (r, n, 3)."""
-    fields = rigid_fields(model.mesh)
+def _rigid_body_modes(model: Model) -> Floats:
+    """Rigid-body displacements that no support or foundation resists, shape (r, n, 3)."""
+    fields = _rigid_body_displacements(model.mesh)
     rows = [np.zeros((1, 6))]
     for support in model.fixed:
-        nodes = np.arange(model.mesh.size) if support.face is None else model.mesh.face_nodes(support.face)
+        nodes = np.arange(model.mesh.node_count) if support.face is None else model.mesh.face_nodes(support.face)
         rows += [fields[:, nodes, DIRECTIONS.index(letter)].T for letter in support.along]
     for spring in model.springs:
-        held = np.eye(3) if spring.along is None else np.array([spring.along]) / np.linalg.norm(spring.along)
-        rows += [(fields[:, model.mesh.face_nodes(spring.face)] @ direction).T for direction in held]
+        directions = np.eye(3) if spring.along is None else np.array([spring.along]) / np.linalg.norm(spring.along)
+        rows += [(fields[:, model.mesh.face_nodes(spring.face)] @ direction).T for direction in directions]
     stacked = np.concatenate(rows)
     resistance, combinations = np.linalg.eigh(stacked.T @ stacked / len(stacked))
     return np.asarray(np.einsum("fr,fni->rni", combinations[:, resistance < 1e-12], fields))
 
 
-def rigid_fields(mesh: Mesh) -> Floats:
-    """Return three translations and three rotations, shape (6, n, 3), the latter over the body's extent.
+def _rigid_body_displacements(mesh: Mesh) -> Floats:
+    """Nodal displacements of three unit translations and three rotations scaled by the extent of the body.
 
     Parameters
     ----------
@@ -212,5 +247,5 @@ def rigid_fields(mesh: Mesh) -> Floats:
     """
     arm = (mesh.nodes - mesh.nodes.mean(axis=0)) / np.ptp(mesh.nodes, axis=0).max()
     axes = np.eye(3)
-    shifts = np.broadcast_to(axes[:, np.newaxis], (3, mesh.size, 3))
-    return np.concatenate([shifts, np.cross(axes[:, np.newaxis], arm[np.newaxis])])
+    translations = np.broadcast_to(axes[:, np.newaxis], (3, mesh.node_count, 3))
+    return np.concatenate([translations, np.cross(axes[:, np.newaxis], arm[np.newaxis])])

@@ -1,7 +1,8 @@
-"""Factors of symmetric matrices of meshes, front by front.
+"""Multifrontal factorisation of symmetric quasi-definite mesh matrices in nested-dissection order.
 
-A mesh is halved, and its halves again, down to a few elements. Nodes that two halves share are eliminated after both,
-so that what is dense stays small and the work is that of dense blocks, half as much as without symmetry.
+The mesh is bisected recursively down to a few elements. The nodes that two halves share, their separator, are
+eliminated after both, which keeps the dense frontal matrices small. The work is that of dense BLAS operations on these,
+half of what it is without symmetry.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -17,18 +18,20 @@ from sonolube.checks import Floats, Integers
 from sonolube.errors import InvalidInput
 from sonolube.fem.solver.mesh import Mesh
 
-_LEAF = 5  # elements that are not halved any more
-_LEAST_HALF = 0.2  # share of the elements in the smaller half
-_UNEVEN = 1.0  # share by which a cut into nothing and all counts as larger than one into halves
-_CUTS = np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0], [1, -1, 0], [1, 0, 1], [1, 0, -1], [0, 1, 1], [0, 1, -1]])
-"""Directions across which a mesh is cut."""
+_LEAF = 5  # elements of a part that is not bisected further
+_LEAST_PART = 0.2  # of the elements, in the smaller part of a bisection
+_IMBALANCE_PENALTY = 1.0  # relative increase of the weight of a separator from equal parts to an empty one
+_NORMALS = np.array(
+    [[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0], [1, -1, 0], [1, 0, 1], [1, 0, -1], [0, 1, 1], [0, 1, -1]]
+)
+"""Normals of the planes that are tried as cuts."""
 
-_SINGULAR = 1e-14  # share of a pivot that elimination leaves where rounding is all there is
-_Change = tuple[Integers, Floats]
+_SINGULAR_PIVOT = 1e-14  # of the diagonal before elimination, up to which a pivot counts as rounding of zero
+_Update = tuple[Integers, Floats]
 
 
-def dissected(mesh: Mesh) -> list[Integers]:
-    """Return the nodes of a mesh in groups, each to be eliminated after those it parts.
+def nested_dissection(mesh: Mesh) -> list[Integers]:
+    """Nested-dissection ordering of the nodes of a mesh: separators of recursive geometric bisection.
 
     Parameters
     ----------
@@ -37,26 +40,33 @@ def dissected(mesh: Mesh) -> list[Integers]:
     Returns
     -------
     list of ndarray of int
-        Every node is in one group.
+        Groups of nodes in the order of elimination: the interiors of the smallest parts, and each separator after both
+        parts that it separates. Every node is in one group.
+
+    Notes
+    -----
+    Elements are sorted by their centroids along nine directions. Of all cuts that leave a fifth of them or more on
+    either side the one with the fewest nodes in its separator is taken, with a penalty on unequal parts.
 
     References
     ----------
     .. [1] A. George, SIAM J. Numer. Anal. 10, 345 (1973). doi:10.1137/0710032
     """
-    along = mesh.nodes[mesh.elements[:, :4]].mean(axis=1) @ (_CUTS / np.linalg.norm(_CUTS, axis=1, keepdims=True)).T
-    free, groups = np.ones(mesh.size, dtype=bool), []
+    normals = _NORMALS / np.linalg.norm(_NORMALS, axis=1, keepdims=True)
+    projections = mesh.nodes[mesh.elements[:, :4]].mean(axis=1) @ normals.T
+    free, groups = np.ones(mesh.node_count, dtype=bool), []
     parts = [np.arange(len(mesh.elements))]
-    while parts:  # what is cut last is eliminated first
+    while parts:  # the part bisected last is eliminated first
         part = parts.pop()
         nodes = mesh.elements[part]
-        known, local = np.unique(nodes, return_inverse=True)
+        own, local = np.unique(nodes, return_inverse=True)
         local = local.reshape(nodes.shape)
-        open_ = free[known]
+        is_free = free[own]  # not in a separator yet
         if len(part) <= _LEAF:
-            group = known[open_]
+            group = own[is_free]
         else:
-            order, count, shared = _cut(along[part], local, open_)
-            group = known[shared]
+            order, count, separator = _bisection(projections[part], local, is_free)
+            group = own[separator]
             parts += [part[order[:count]], part[order[count:]]]
         if group.size:
             groups.append(group)
@@ -64,34 +74,34 @@ def dissected(mesh: Mesh) -> list[Integers]:
     return groups[::-1]
 
 
-def _cut(along: Floats, local: Integers, free: NDArray[np.bool_]) -> tuple[Integers, int, Integers]:
-    """Return elements in the order of the best direction, how many come before the cut, and the free nodes on it."""
-    cuts = [_cut_across(direction, local, free) for direction in along.T]
-    _, order, count, shared = min(cuts, key=lambda cut: cut[0])
-    return order, count, shared
+def _bisection(projections: Floats, local: Integers, free: NDArray[np.bool_]) -> tuple[Integers, int, Integers]:
+    """Elements sorted along the best direction, the number of them before the cut, and the nodes of its separator."""
+    cuts = [_best_cut(projection, local, free) for projection in projections.T]
+    _, order, count, separator = min(cuts, key=lambda cut: cut[0])
+    return order, count, separator
 
 
-def _cut_across(direction: Floats, local: Integers, free: NDArray[np.bool_]) -> tuple[float, Integers, int, Integers]:
-    """Return the weight of the best cut across one direction, and of it what `_cut` returns."""
+def _best_cut(projection: Floats, local: Integers, free: NDArray[np.bool_]) -> tuple[float, Integers, int, Integers]:
+    """Weight of the best cut across one direction, followed by the three items of `_bisection`."""
     elements = len(local)
-    order = np.argsort(direction, kind="stable")
-    nodes, place = local[order].ravel(), np.repeat(np.arange(elements), local.shape[1])
+    order = np.argsort(projection, kind="stable")
+    nodes, rank = local[order].ravel(), np.repeat(np.arange(elements), local.shape[1])
     first, last = np.empty(len(free), dtype=np.int64), np.empty(len(free), dtype=np.int64)
-    last[nodes] = place  # of what is written twice the latter stays
-    first[nodes[::-1]] = place[::-1]
+    last[nodes] = rank  # the last of repeated assignments holds
+    first[nodes[::-1]] = rank[::-1]
     begun, ended = (np.bincount(ends[free] + 1, minlength=elements + 1) for ends in (first, last))
-    least = max(1, round(_LEAST_HALF * elements))
+    least = max(1, round(_LEAST_PART * elements))
     counts = np.arange(least, elements - least + 1)
-    weights = np.cumsum(begun - ended)[counts] * (1 + _UNEVEN * (2 * counts / elements - 1) ** 2)
+    weights = np.cumsum(begun - ended)[counts] * (1 + _IMBALANCE_PENALTY * (2 * counts / elements - 1) ** 2)
     best = int(np.argmin(weights))
     count = int(counts[best])
     return float(weights[best]), order, count, np.flatnonzero(free & (first < count) & (last >= count))
 
 
-def eliminated(
+def multifrontal_factor(
     matrix: sparse.csc_array, *, groups: Sequence[Integers], signs: Sequence[int]
 ) -> Callable[[Floats], Floats]:
-    """Return what solves with a real symmetric matrix whose groups of unknowns can be eliminated without pivoting.
+    r"""Multifrontal factorisation of a real symmetric matrix in a given elimination order, without pivoting.
 
     Parameters
     ----------
@@ -99,133 +109,153 @@ def eliminated(
     groups : sequence of ndarray of int
         Unknowns in the order of elimination, each in one group.
     signs : sequence of int
-        1 where what is left of the matrix is positive definite in a group once those before are eliminated, -1 where
-        it is negative definite.
+        Sign of the pivots of each group: 1 where its Schur complement after elimination of the groups before is
+        positive definite, -1 where it is negative definite.
 
     Returns
     -------
     callable
-        From the right side, shape (n,) or (n, k), to the solution.
+        Solver, from the right-hand side, shape (n,) or (n, k), to the solution.
 
     Raises
     ------
     InvalidInput
         If the matrix is singular.
 
+    Notes
+    -----
+    With the permutation Q of the elimination order and the diagonal matrix S of the signs
+
+    .. math:: Q A Q^\mathsf{T} = L S L^\mathsf{T}
+
+    Each group has one dense frontal matrix, of its own unknowns and the later ones that they are coupled to. The
+    Cholesky factor of its first block is a diagonal block of L, and the Schur complement of the second block is added
+    to the fronts of later groups.
+
+    See Also
+    --------
+    nested_dissection : The groups for the nodes of a mesh.
+    sonolube.fem.solver.system.superlu_factor : General-purpose factorisation, of complex matrices too.
+
     References
     ----------
-    .. [1] J. W. H. Liu, SIAM Rev. 34, 82 (1992). doi:10.1137/1034004
+    .. [1] I. S. Duff and J. K. Reid, ACM Trans. Math. Softw. 9, 302 (1983). doi:10.1145/356044.356047
+    .. [2] J. W. H. Liu, SIAM Rev. 34, 82 (1992). doi:10.1137/1034004
     """
     order = np.concatenate(groups)
-    place = np.empty_like(order)
-    place[order] = np.arange(len(order))
-    fronts = list(_fronts(matrix[:, order], place, [len(group) for group in groups], signs))
+    position = np.empty_like(order)
+    position[order] = np.arange(len(order))
+    fronts = list(_fronts(matrix[:, order], position, [len(group) for group in groups], signs))
 
     def solve(right: Floats) -> Floats:
         columns = np.ascontiguousarray(right[order].reshape(len(order), -1))
         for front in fronts:
             own = columns[front.own]
-            dtrsm(1.0, front.head, own.T, side=1, lower=1, trans_a=1, overwrite_b=1)
-            columns[front.beyond] -= front.tail @ own
+            dtrsm(1.0, front.diagonal, own.T, side=1, lower=1, trans_a=1, overwrite_b=1)
+            columns[front.later] -= front.below @ own
         for front in reversed(fronts):
             own = columns[front.own]
             own *= front.sign
-            own -= front.tail.T @ columns[front.beyond]
-            dtrsm(1.0, front.head, own.T, side=1, lower=1, overwrite_b=1)
-        return columns[place].reshape(right.shape)
+            own -= front.below.T @ columns[front.later]
+            dtrsm(1.0, front.diagonal, own.T, side=1, lower=1, overwrite_b=1)
+        return columns[position].reshape(right.shape)
 
     return solve
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class _Front:
-    """Unknowns eliminated together, and their columns of the factor L of L S L^T, where S holds signs.
+    """Columns of the factor L for the unknowns eliminated together.
 
     Parameters
     ----------
     own : slice
-        Places of the unknowns in the order of elimination.
-    beyond : ndarray of int, shape (b,)
-        Places of the later unknowns that they touch.
+        Positions of the unknowns in the order of elimination.
+    later : ndarray of int, shape (b,)
+        Sorted positions of the later unknowns that they are coupled to.
     sign : int
-    head : ndarray, shape (a, a)
-        Rows of their own; what stands above the diagonal has no meaning.
-    tail : ndarray, shape (b, a)
-        Rows of the later ones.
+        Sign of the pivots.
+    diagonal : ndarray, shape (a, a)
+        Triangular diagonal block of L; entries above the diagonal are undefined.
+    below : ndarray, shape (b, a)
+        Rows of L of the later unknowns.
     """
 
     own: slice
-    beyond: Integers
+    later: Integers
     sign: int
-    head: Floats
-    tail: Floats
+    diagonal: Floats
+    below: Floats
 
 
-def _fronts(columns: sparse.csc_array, place: Integers, sizes: Sequence[int], signs: Sequence[int]) -> Iterator[_Front]:
-    """Yield the fronts of columns already in the order of elimination, whose rows have their `place` in it."""
-    later = _Later(len(place))
-    changes: list[list[_Change]] = [[] for _ in sizes]  # of each group by those eliminated before
+def _fronts(
+    columns: sparse.csc_array, position: Integers, sizes: Sequence[int], signs: Sequence[int]
+) -> Iterator[_Front]:
+    """Fronts of a matrix with columns already in the order of elimination, and the position of each row in it."""
+    index = _FrontIndex(len(position))
+    updates: list[list[_Update]] = [[] for _ in sizes]  # Schur complements to be added to each front
     group_at = np.repeat(np.arange(len(sizes)), sizes)
     stop = 0
-    for size, sign, onto in zip(sizes, signs, changes, strict=True):
+    for size, sign, received in zip(sizes, signs, updates, strict=True):
         start, stop = stop, stop + size
         entries = slice(columns.indptr[start], columns.indptr[stop])
-        rows, values = place[columns.indices[entries]], columns.data[entries]
-        owners = np.repeat(np.arange(size), np.diff(columns.indptr[start : stop + 1]))
-        beyond = later.met(rows, *(touched for touched, _ in onto), after=stop)
-        within = later.numbered(start, stop, beyond)
-        head, tail, rest = (np.zeros(shape, order="F") for shape in _shapes(size, len(beyond)))
-        inside, outside = (rows >= start) & (rows < stop), rows >= stop
-        head[within[rows[inside]], owners[inside]] = values[inside]
-        tail[within[rows[outside]], owners[outside]] = values[outside]
-        for touched, change in onto:
-            count = int(np.searchsorted(touched, stop))
-            here, there = within[touched[:count]], within[touched[count:]]
+        rows, values = position[columns.indices[entries]], columns.data[entries]
+        column = np.repeat(np.arange(size), np.diff(columns.indptr[start : stop + 1]))
+        later = index.union(rows, *(positions for positions, _ in received), after=stop)
+        local = index.local(start, stop, later)
+        diagonal, below, schur = (np.zeros(shape, order="F") for shape in _block_shapes(size, len(later)))
+        is_own, is_later = (rows >= start) & (rows < stop), rows >= stop
+        diagonal[local[rows[is_own]], column[is_own]] = values[is_own]
+        below[local[rows[is_later]], column[is_later]] = values[is_later]
+        for positions, update in received:
+            count = int(np.searchsorted(positions, stop))
+            i, j = local[positions[:count]], local[positions[count:]]
             # Transposed, so that the order in memory is that of the indices.
-            head.T[here[:, np.newaxis], here] += change.T[:count, :count]
-            tail.T[here[:, np.newaxis], there] += change.T[:count, count:]
-            rest.T[there[:, np.newaxis], there] += change.T[count:, count:]
-        onto.clear()
-        head = _triangle(head, sign)
-        if beyond.size:
-            tail = dtrsm(sign, head, tail, side=1, lower=1, trans_a=1, overwrite_b=1)
-            rest = dsyrk(-sign, tail, beta=1.0, c=rest, lower=1, overwrite_c=1)
-            changes[group_at[beyond[0]]].append((beyond, rest))
-        yield _Front(own=slice(start, stop), beyond=beyond, sign=sign, head=head, tail=tail)
+            diagonal.T[i[:, np.newaxis], i] += update.T[:count, :count]
+            below.T[i[:, np.newaxis], j] += update.T[:count, count:]
+            schur.T[j[:, np.newaxis], j] += update.T[count:, count:]
+        received.clear()
+        diagonal = _cholesky(diagonal, sign)
+        if later.size:
+            below = dtrsm(sign, diagonal, below, side=1, lower=1, trans_a=1, overwrite_b=1)
+            schur = dsyrk(-sign, below, beta=1.0, c=schur, lower=1, overwrite_c=1)
+            updates[group_at[later[0]]].append((later, schur))
+        yield _Front(own=slice(start, stop), later=later, sign=sign, diagonal=diagonal, below=below)
 
 
-class _Later:
-    """Which unknowns a group touches, and where they stand among them: tables that groups use in turn."""
+class _FrontIndex:
+    """Positions of the unknowns of a front and their local numbers, in work arrays shared by all fronts."""
 
     def __init__(self, size: int) -> None:
         self.marks = np.zeros(size, dtype=bool)
         self.numbers = np.empty(size, dtype=np.int64)
 
-    def met(self, *places: Integers, after: int) -> Integers:
-        """Return the places from `after` on, in order, each once."""
-        for some in places:
+    def union(self, *positions: Integers, after: int) -> Integers:
+        """Sorted union of positions, of those from `after` on."""
+        for some in positions:
             self.marks[some] = True
         found = after + np.flatnonzero(self.marks[after:])
-        for some in places:
+        for some in positions:
             self.marks[some] = False
         return found
 
-    def numbered(self, start: int, stop: int, beyond: Integers) -> Integers:
-        """Return a table of where places stand: own ones from zero on, and those beyond from zero on."""
+    def local(self, start: int, stop: int, later: Integers) -> Integers:
+        """Table from positions to local numbers: own unknowns count from zero, and later ones from zero again."""
         self.numbers[start:stop] = np.arange(stop - start)
-        self.numbers[beyond] = np.arange(len(beyond))
+        self.numbers[later] = np.arange(len(later))
         return self.numbers
 
 
-def _shapes(own: int, beyond: int) -> tuple[tuple[int, int], ...]:
-    return (own, own), (beyond, own), (beyond, beyond)
+def _block_shapes(own: int, later: int) -> tuple[tuple[int, int], ...]:
+    """Shapes of the three blocks of the lower half of a symmetric frontal matrix."""
+    return (own, own), (later, own), (later, later)
 
 
-def _triangle(block: Floats, sign: int) -> Floats:
-    """Return the lower triangular factor of a definite block, of which the lower half is given."""
+def _cholesky(block: Floats, sign: int) -> Floats:
+    """Cholesky factor of a definite block times its sign, from its lower half; singular blocks are refused."""
     before = np.abs(block.diagonal())
     factor, failed = dpotrf(sign * block, lower=1, clean=0, overwrite_a=1)
-    if failed or np.any(factor.diagonal() ** 2 <= _SINGULAR * before):
+    if failed or np.any(factor.diagonal() ** 2 <= _SINGULAR_PIVOT * before):
         raise InvalidInput(
             "the equations have no unique solution; hold the body, or ground an electrode of every piezoelectric part"
         )

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from sonolube.actuator import HalfWaveguide, locus
+from sonolube.actuator import BarWaveguide, surface_trajectory
 from sonolube.checks import Floats
 from sonolube.figure import COLOURS, LINES, MARKERS, ReportFigure
 from sonolube.friction import dong_2015_half_period_ratio
@@ -90,7 +90,7 @@ def _loci() -> "Figure":
     for axes, place, title in zip(panels, (-inch, 0.0, inch), ("point -1", "point 0", "point +1"), strict=True):
         for index, horn in enumerate(("aluminium", "steel")):
             for line, (phase, lag) in zip(LINES, _LAGS.items(), strict=False):
-                path = locus(_waveguide(horn, phase=phase), position=place)
+                path = surface_trajectory(_waveguide(horn), position=place, phase=phase)
                 u, v = 1e6 * path.axial_displacement, 1e6 * path.normal_displacement
                 axes.plot(u, v, linestyle=line, color=COLOURS[index], label=f"{horn} horn, {lag}")
                 if index == 0 and phase and place:
@@ -102,14 +102,13 @@ def _loci() -> "Figure":
     return figure
 
 
-def _waveguide(horn: str, *, phase: float) -> HalfWaveguide:
-    return HalfWaveguide(
+def _waveguide(horn: str) -> BarWaveguide:
+    return BarWaveguide(
         length=said("2.1.2-waveguide-length").value,
         thickness=said("2.1.2-waveguide-thickness").value,
         poisson_ratio=in_table("3.1", f"poisson_ratio_{horn}").value,
         axial_amplitude=said("2.1.2-welder-amplitude").value,
         frequency=said("2.1.2-welder-frequency").value,
-        phase=phase,
     )
 
 

@@ -11,7 +11,7 @@ from math import pi
 
 from scipy.optimize import brentq
 
-from sonolube.actuator import driver_power
+from sonolube.actuator import linear_amplifier_power
 from sonolube.contact import decay_length, separation
 from sonolube.friction import sine_stick_slip_ratio
 from sonolube.friction.models.asperity_stick_slip_sine import EMPIRICAL_MEMORY_LENGTH
@@ -67,7 +67,7 @@ def _pull() -> Iterator[Row]:
 
 def _power() -> Iterator[Row]:
     for level in (1, 2, 3):
-        power = driver_power(
+        power = linear_amplifier_power(
             capacitance=said("2.2.2-capacitance").value,
             voltage_maximum=said(f"2.2.3-voltage-maximum-{level}").value,
             voltage_peak_to_peak=said("2.2.5-voltage-peak-to-peak").value,

@@ -12,7 +12,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.checks import Floats
-from sonolube.fem import FaceSpring, Fixed, Model, Output, box_mesh, forced_motion, isotropic, with_patch
+from sonolube.fem import (
+    FaceSpring,
+    FixedSupport,
+    Model,
+    Output,
+    add_face_patch,
+    box_mesh,
+    forced_response,
+    isotropic_medium,
+)
 from sonolube.reproduce.chapter2.poisson_horn import HornShape, HornSolid
 
 PAD_DISTANCE: Final = 4 * 0.0254
@@ -72,16 +81,18 @@ def sag(shape: HornShape, solid: HornSolid, *, normal_load: float) -> Sag:
         ("right pad", "+z", PAD_DISTANCE / 2, _PAD_LENGTH / 2),
         ("contact", "-z", 0.0, _CELL),
     ):
-        mesh = with_patch(mesh, name, of=face, where=partial(_within, middle=middle, half=half))
-    medium = isotropic(youngs_modulus=solid.youngs_modulus, poisson_ratio=solid.poisson_ratio, density=solid.density)
+        mesh = add_face_patch(mesh, name, of=face, where=partial(_within, middle=middle, half=half))
+    medium = isotropic_medium(
+        youngs_modulus=solid.youngs_modulus, poisson_ratio=solid.poisson_ratio, density=solid.density
+    )
     pads = tuple(
         # half of each pad, for half of the horn
         FaceSpring(face=f"{side} pad", spring_stiffness=PAD_STIFFNESS / 2, along=(0.0, 0.0, 1.0))
         for side in ("left", "right")
     )
-    held = (Fixed(face="-y", along="y"), Fixed(face="left pad", along="x"))
+    held = (FixedSupport(face="-y", along="y"), FixedSupport(face="left pad", along="x"))
     model = Model(mesh=mesh, media={"block": medium}, fixed=held, springs=pads)
-    moves = forced_motion(model, load=Output(face="contact", along="z"), frequency=0.0).real * normal_load / 2
+    moves = forced_response(model, load=Output(face="contact", along="z"), frequency=0.0).real * normal_load / 2
     line = np.flatnonzero(np.isclose(mesh.nodes[:, 1], -shape.width / 4) & np.isclose(mesh.nodes[:, 2], 0.0, atol=1e-9))
     line = line[np.argsort(mesh.nodes[line, 0])]
     x, z = mesh.nodes[line, 0], moves[line, 2]

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.fem import LocusEllipse, locus_ellipse
+from sonolube.fem import TrajectoryEllipse, trajectory_ellipse
 from sonolube.figure import COLOURS, LINES, MARKERS, ReportFigure
 from sonolube.reproduce.chapter2.horn_regions import FACE_END, driven_face, friction_on_face
 from sonolube.reproduce.chapter2.horn_sensitivity import frequency_changes, node_shifts
@@ -189,6 +189,6 @@ def _motion(horn: Horn) -> FaceMotion:
     return driven_face(horn, frequency=said("2.1.2-welder-frequency").value)
 
 
-def _paths(horn: Horn, places: Floats) -> LocusEllipse:
+def _paths(horn: Horn, places: Floats) -> TrajectoryEllipse:
     axial, normal = _motion(horn).at(places)
-    return locus_ellipse(axial_displacement=axial, normal_displacement=normal)
+    return trajectory_ellipse(axial_displacement=axial, normal_displacement=normal)

@@ -16,16 +16,16 @@ from scipy.interpolate import CubicSpline
 
 from sonolube.checks import Complexes, Floats
 from sonolube.fem import (
-    Fixed,
+    FixedSupport,
     Mesh,
     Model,
     Output,
     box_mesh,
     edge_nodes,
-    forced_motion,
-    isotropic,
+    forced_response,
+    isotropic_medium,
     natural_modes,
-    reshaped,
+    transform_nodes,
 )
 from sonolube.materials import material
 from sonolube.validation.inputs import in_table, said
@@ -34,7 +34,7 @@ Horn = Literal["aluminium", "steel"]
 HORNS: Final[tuple[Horn, ...]] = ("aluminium", "steel")
 
 _ALLOYS: Final = {"aluminium": "aluminium_2024", "steel": "stainless_steel_316"}
-_SYMMETRY: Final = (Fixed(face="-y", along="y"), Fixed(face="+z", along="z"))
+_SYMMETRY: Final = (FixedSupport(face="-y", along="y"), FixedSupport(face="+z", along="z"))
 _TAPER_CELLS: Final = 2  # of the cells along either taper
 _DIVISIONS: Final = (10, 2, 2)
 _SEARCHED: Final = 5  # elastic modes of this symmetry, of which the first axial one is among the lowest three
@@ -182,7 +182,7 @@ def horn_model(
     Model
         Its sliding face is "-z", the middle line of that its edge with "-y".
     """
-    medium = isotropic(
+    medium = isotropic_medium(
         youngs_modulus=solid.youngs_modulus,
         poisson_ratio=solid.poisson_ratio,
         density=solid.density,
@@ -214,7 +214,7 @@ def axial_mode_of(model: Model) -> AxialMode:
     modes = natural_modes(model, count=_SEARCHED)
     x = model.mesh.nodes[:, 0]
     stretch = np.sign(x - x.mean())
-    elastic = modes.shapes[modes.rigid :]
+    elastic = modes.shapes[modes.rigid_body_count :]
     shares = np.abs((elastic[:, :, 0] * stretch).mean(axis=1)) / np.sqrt((elastic**2).sum(axis=2).mean(axis=1))
     best = int(np.argmax(shares))
     line = edge_nodes(model.mesh, "-z", "-y", along="x")
@@ -254,7 +254,7 @@ def face_motion(
     FaceMotion
     """
     model = horn_model(shape, solid, elastic_loss=elastic_loss)
-    moves = forced_motion(model, load=Output(face="+x", along="x"), frequency=frequency)
+    moves = forced_response(model, load=Output(face="+x", along="x"), frequency=frequency)
     end = moves[model.mesh.face_nodes("+x"), 0].mean()
     line = edge_nodes(model.mesh, "-z", "-y", along="x")
     scaled = moves[line] * axial_amplitude / end
@@ -292,4 +292,4 @@ def _quarter(shape: HornShape, divisions: tuple[int, int, int]) -> Mesh:
         return np.column_stack([x, y, z])
 
     block = box_mesh(length=shape.length, width=shape.width / 2, thickness=shape.thickness / 2, divisions=divisions)
-    return reshaped(block, tapered)
+    return transform_nodes(block, tapered)

@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from sonolube.actuator import natural_frequency
+from sonolube.actuator import free_bar_frequency
 from sonolube.figure import ReportFigure
 from sonolube.materials import material
 from sonolube.published.values import Published, over_rounding, stated
@@ -61,7 +61,7 @@ def _poisson_modes() -> Iterator[Row]:
 
 
 def _half_wave(youngs_modulus: float, length: float, *, density: float) -> float:
-    return float(natural_frequency(length=length, wave_speed=sqrt(youngs_modulus / density)))
+    return float(free_bar_frequency(length=length, wave_speed=sqrt(youngs_modulus / density)))
 
 
 def _poisson_reductions() -> Iterator[Row]:

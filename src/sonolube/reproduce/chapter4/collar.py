@@ -9,12 +9,11 @@ from sonolube.checks import Floats
 from sonolube.contact import decay_length
 from sonolube.dong2015.bore import BoreMotion
 from sonolube.dong2015.collar import Collar
+from sonolube.dong2015.collar_analysis import Parity, collar_modes, reduced_collar_model
 from sonolube.dong2015.collar_designs import FINAL_COLLAR
-from sonolube.dong2015.collar_model import Parity, collar_modes, collar_response_model
 from sonolube.dong2015.collar_tuning import main_resonance
 from sonolube.dynamics import ExponentialGap, steady_state
-from sonolube.fem.solver.harmonic import ReducedModel
-from sonolube.fem.solver.reduction import contact_structure, under_free_body
+from sonolube.fem import ReducedModel, contact_structure, with_free_body
 from sonolube.friction import AsperityStickSlip
 from sonolube.materials import material
 from sonolube.published import statement
@@ -64,14 +63,14 @@ class Pull:
 @cache
 def response_model(collar: Collar, *, clamped: bool = False, open_top: bool = False) -> ReducedModel:
     """Return a collar under voltage."""
-    return collar_response_model(collar, clamped=clamped, open_top=open_top)
+    return reduced_collar_model(collar, clamped=clamped, open_top=open_top)
 
 
 @cache
 def mode_frequency(collar: Collar, kind: BoreMotion) -> float:
     """Return the frequency of the mode of a kind in which the inner ring moves most. [Hz]"""
-    odd = kind in (BoreMotion.TORSIONAL, BoreMotion.SKEWED, BoreMotion.SWAY)
-    return collar_modes(collar, count=_MODES, parity=Parity(odd_across=odd)).main(kind)
+    odd = kind in (BoreMotion.TORSIONAL, BoreMotion.DIAGONAL_OVAL, BoreMotion.TRANSLATION_ALONG_X)
+    return collar_modes(collar, count=_MODES, parity=Parity(odd_across=odd)).dominant_frequency(kind)
 
 
 @cache
@@ -84,7 +83,7 @@ def pull() -> Pull:
     contact = steel_on_steel_contact(nominal_area=NOMINAL_AREA)
     model = response_model(FINAL_COLLAR)
     states = steady_state(
-        under_free_body(contact_structure(model, contact="saddle", outwards=-1.0), body_mass=rod_mass),
+        with_free_body(contact_structure(model, contact="saddle", outwards=-1.0), body_mass=rod_mass),
         ExponentialGap(decay_length=float(decay_length(contact))),
         normal_load=load,
         frequency=main_resonance(model).series_frequency,

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sonolube.dong2015.collar_designs import FINAL_COLLAR
-from sonolube.dong2015.collar_tuning import HIGHEST, LOWEST, main_resonance
-from sonolube.fem.solver.harmonic import ReducedModel, harmonic_response
+from sonolube.dong2015.collar_tuning import HIGHEST_FREQUENCY, LOWEST_FREQUENCY, main_resonance
+from sonolube.fem import ReducedModel, harmonic_response
 from sonolube.figure import COLOURS, LINES, ReportFigure
 from sonolube.reproduce.chapter4.collar import LOAD_AT_ENDS, PULL_SPEED, pull, response_model
 from sonolube.reproduce.chapter4.collar_rows import finite_elements_missing
@@ -70,14 +70,16 @@ def _impedances() -> "Figure":
         for index, (label, model) in enumerate(cases.items()):
             _impedance(axes, model, label, index)
         axes.set(
-            xlabel="Frequency [kHz]", ylabel="Magnitude of the impedance [Ω]", xlim=(LOWEST * 1e-3, HIGHEST * 1e-3)
+            xlabel="Frequency [kHz]",
+            ylabel="Magnitude of the impedance [Ω]",
+            xlim=(LOWEST_FREQUENCY * 1e-3, HIGHEST_FREQUENCY * 1e-3),
         )
         axes.legend()
     return figure
 
 
 def _impedance(axes: "Axes", model: ReducedModel, label: str, index: int) -> None:
-    frequency = np.linspace(LOWEST, HIGHEST, _POINTS)
+    frequency = np.linspace(LOWEST_FREQUENCY, HIGHEST_FREQUENCY, _POINTS)
     admittance = harmonic_response(model, frequency=frequency).admittance
     axes.semilogy(1e-3 * frequency, 1 / np.abs(admittance), linestyle=LINES[index], color=COLOURS[index], label=label)
 

@@ -9,12 +9,12 @@ from sonolube.dong2015.bore import BoreMotion
 from sonolube.dong2015.collar_designs import (
     FINAL_COLLAR,
     FIRST_COLLAR,
-    GUESSED_COLLAR,
+    NOMINAL_COLLAR,
     THIN_HEXAGON_COLLAR,
     THIN_RING_COLLAR,
 )
 from sonolube.dong2015.collar_tuning import main_resonance
-from sonolube.fem.solver.cad import MissingPart, cad
+from sonolube.fem.solver.cad import MissingPackage, cad_kernel
 from sonolube.published.values import Computed, stated
 from sonolube.reproduce.chapter4.collar import (
     LOAD_AT_ENDS,
@@ -50,8 +50,8 @@ _PULLED = (
 def finite_elements_missing() -> str:
     """Return which package finite elements lack; empty where they can be computed."""
     try:
-        cad()
-    except MissingPart as failure:
+        cad_kernel()
+    except MissingPackage as failure:
         return str(failure)
     return ""
 
@@ -84,7 +84,7 @@ def _first_design() -> Iterator[Row]:
     )
     yield compare(
         stated("4.5.2-torsional-mode-first"),
-        _on_mesh(mode_frequency(FIRST_COLLAR, BoreMotion.SKEWED)),
+        _on_mesh(mode_frequency(FIRST_COLLAR, BoreMotion.DIAGONAL_OVAL)),
         "Mode odd about the stacks in which the inner ring moves most: its hole turns oval along the diagonals and its "
         f"sides turn; {_ASSUMED}. In a collar alike on both sides no voltage excites it: that it was seen in impedance "
         "takes stacks or bolts that differ",
@@ -93,7 +93,7 @@ def _first_design() -> Iterator[Row]:
 
 def _revised_designs() -> Iterator[Row]:
     for shape, collar in _REVISED.items():
-        for mode, kind in (("breathing", BoreMotion.OVAL), ("torsional", BoreMotion.SKEWED)):
+        for mode, kind in (("breathing", BoreMotion.OVAL), ("torsional", BoreMotion.DIAGONAL_OVAL)):
             yield compare(
                 named(stated(f"4.5.2-{mode}-mode-revised"), shape),
                 _on_mesh(mode_frequency(collar, kind)),
@@ -106,7 +106,7 @@ def _final_design() -> Iterator[Row]:
     for statement_id, open_top in (("4.5.3-mode-closed-top", False), ("4.5.3-mode-open-top", True)):
         for suffix, collar, note in (
             ("tuned", FINAL_COLLAR, "assumed dimensions fitted to this and the other frequency, none by more than 9 %"),
-            ("guess", GUESSED_COLLAR, "round inches for what D does not print, nothing fitted"),
+            ("guess", NOMINAL_COLLAR, "round inches for what D does not print, nothing fitted"),
         ):
             found = main_resonance(response_model(collar, open_top=open_top))
             yield compare(

@@ -11,7 +11,7 @@ from pydantic import ValidationError
 
 from sonolube.actuator import PiezoStack
 from sonolube.actuator.drive import Drive
-from sonolube.actuator.waveguide import HalfWaveguide, normal_amplitude
+from sonolube.actuator.waveguide import BarWaveguide, normal_amplitude
 from sonolube.contact import (
     ASPERITY_LAWS,
     HEIGHT_DISTRIBUTIONS,
@@ -336,7 +336,7 @@ def _vibration_amplitude(file: RigFile, drive: Drive | None) -> float:
     if file.waveguide is not None and drive is not None:
         with _prefixed("waveguide"):
             section = file.waveguide
-            waveguide = HalfWaveguide(**section.model_dump(exclude={"position"}), frequency=drive.frequency)
+            waveguide = BarWaveguide(**section.model_dump(exclude={"position"}), frequency=drive.frequency)
             return float(normal_amplitude(waveguide, position=section.position))
     assert drive is not None  # the file's own check
     assert file.actuator is not None

@@ -1,0 +1,107 @@
+"""Cutter head of D 4.4: a disc on the bolted stack of the tribometer's actuator.
+
+Its sizes are not printed. With the assumed ones the mode in which the rim of the disc moves against its centre is at
+20 kHz.
+"""
+
+from dataclasses import replace
+
+from sonolube.dong2015.tribometer import TRIBOMETER_ACTUATOR_DIMENSIONS
+from sonolube.fem.parts.tips import hub_disc
+from sonolube.fem.parts.transducers import SourcedDimension, Transducer, stack_bodies, stack_from_bodies
+
+CUTTER_HEAD_DIMENSIONS = (
+    *TRIBOMETER_ACTUATOR_DIMENSIONS[:6],  # D 4.4.2: the stack is that of the tribometer
+    TRIBOMETER_ACTUATOR_DIMENSIONS[7],
+    SourcedDimension(
+        name="back_length", value=32e-3, printed=False, source="chosen for a resonance at 20 kHz, D Table 4.6"
+    ),
+    SourcedDimension(name="hub_radius", value=4.5e-3, printed=False, source="weld nut of 1/4 in"),
+    SourcedDimension(name="hub_length", value=6e-3, printed=False, source="weld nut of 1/4 in"),
+    SourcedDimension(
+        name="disc_radius",
+        value=15e-3,
+        printed=False,
+        source="its rim is to move against its centre, D 4.4.4",
+    ),
+    SourcedDimension(
+        name="thickness", value=0.8e-3, printed=False, source="its rim is to move against its centre, D 4.4.4"
+    ),
+)
+"""Dimensions of the cutter head (D 4.4) and their sources; the text prints none but the number of layers."""
+
+
+def cutter_head(
+    *,
+    outer_radius: float = 9.5e-3,
+    inner_radius: float = 4e-3,
+    length: float = 38.6e-3,
+    stack_layers: float = 62.0,
+    rod_radius: float = 2.7e-3,
+    washer_radius: float = 8e-3,
+    back_length: float = 32e-3,
+    front_length: float = 7.2e-3,
+    hub_radius: float = 4.5e-3,
+    hub_length: float = 6e-3,
+    disc_radius: float = 15e-3,
+    thickness: float = 0.8e-3,
+    ceramic: str = "pic255",
+    metal: str = "stainless_steel_304",
+) -> Transducer:
+    """Cutter head of D 4.4: a disc glued to the nut of the stack of the tribometer's actuator.
+
+    Parameters
+    ----------
+    outer_radius, inner_radius : float
+        Radii of the layers. [m]
+    length : float
+        Total length of the layers. [m]
+    stack_layers : float
+        Number of layers. []
+    rod_radius : float
+        Radius of the rod through the stack. [m]
+    washer_radius : float
+        Radius of the end masses, each of washer and nut in one. [m]
+    back_length, front_length : float
+        Lengths of the end masses. [m]
+    hub_radius : float
+        Radius of the weld nut. [m]
+    hub_length : float
+        Length of the weld nut. [m]
+    disc_radius : float
+        Radius of the cutter disc. [m]
+    thickness : float
+        Thickness of the cutter disc. [m]
+    ceramic, metal : str
+        Names of the materials.
+
+    Returns
+    -------
+    Transducer
+
+    Raises
+    ------
+    InvalidInput
+        If a size does not fit.
+
+    Notes
+    -----
+    `CUTTER_HEAD_DIMENSIONS` lists what the sizes are inferred from. The disc is plain: its cutting slots are neglected.
+
+    References
+    ----------
+    .. [1] D 4.4.2 to 4.4.4.
+    """
+    disc = hub_disc(hub_radius=hub_radius, hub_length=hub_length, disc_radius=disc_radius, thickness=thickness)
+    bodies = stack_bodies(
+        outer_radius=outer_radius,
+        inner_radius=inner_radius,
+        length=length,
+        rod_radius=rod_radius,
+        back_length=back_length,
+        front_length=front_length,
+        washer_radius=washer_radius,
+        tip=disc,
+    )
+    transducer = stack_from_bodies(bodies, stack_layers=stack_layers, ceramic=ceramic, metal=metal)
+    return replace(transducer, dimensions=CUTTER_HEAD_DIMENSIONS)

@@ -1,0 +1,25 @@
+"""Table of the dissertation's transducers by name; its stack has the size of the ring stack of D Table 4.7."""
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from types import MappingProxyType
+
+from sonolube.dong2015.cutter import cutter_head
+from sonolube.dong2015.tribometer import tribometer_actuator
+from sonolube.fem.parts.transducers import Transducer, stack_transducer
+
+DONG_2015_TRANSDUCERS: Mapping[str, Callable[..., Transducer]] = MappingProxyType(
+    {
+        "cutter_head": cutter_head,
+        "stack": partial(
+            stack_transducer,
+            outer_radius=5e-3,  # D Table 4.7
+            inner_radius=2.5e-3,
+            length=12e-3,
+            ceramic="pic255",
+            metal="stainless_steel_304",
+        ),
+        "tribometer_actuator": tribometer_actuator,
+    }
+)
+"""The dissertation's transducers by name, each with default sizes; `sonolube.fem.TRANSDUCERS` has the general ones."""
