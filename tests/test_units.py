@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from pytest import approx
 
 from sonolube.errors import InvalidInput
-from sonolube.units import convert, engineering, rise_to_si, to_si
+from sonolube.units import convert, format_si, temperature_difference_to_si, to_si
 
 
 @pytest.mark.parametrize(
@@ -88,15 +88,15 @@ def test_conversion_there_and_back_changes_nothing(value: float) -> None:
     ],
 )
 def test_numbers_are_written_as_people_write_them(value: float, unit: str, text: str) -> None:
-    assert engineering(value, unit) == text
+    assert format_si(value, unit) == text
 
 
 def test_a_rise_of_temperature_is_no_temperature() -> None:
-    assert rise_to_si("40 K", name="--warming") == 40.0
-    assert rise_to_si("72 delta_degF", name="--warming") == approx(40.0)
+    assert temperature_difference_to_si("40 K", name="--warming") == 40.0
+    assert temperature_difference_to_si("72 delta_degF", name="--warming") == approx(40.0)
     for text in ("40 degC", "40 degF"):
         with pytest.raises(InvalidInput, match=f"^--warming {text} is a temperature; wanted a rise of it, such as 40K"):
-            rise_to_si(text, name="--warming")
+            temperature_difference_to_si(text, name="--warming")
 
 
 def test_a_share_is_no_angle() -> None:

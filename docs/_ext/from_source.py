@@ -25,7 +25,7 @@ from sonolube.materials import Material, SourcedValue, material, material_names
 from sonolube.published import errata
 from sonolube.rig import read_rig, rig_schema
 from sonolube.rig.file.json_schema import tables_of
-from sonolube.units import engineering, kind_of
+from sonolube.units import format_si, unit_description
 from sonolube.vocabulary import quantities
 
 DOCS = Path(__file__).parents[1]
@@ -48,9 +48,9 @@ def example_rigs() -> str:
                 f"`{name}`",
                 _plain(rig.title),
                 _plain(rig.source),
-                engineering(rig.normal_load, "N"),
-                engineering(rig.sliding_speed, "m/s"),
-                engineering(rig.vibration_amplitude, "m"),
+                format_si(rig.normal_load, "N"),
+                format_si(rig.sliding_speed, "m/s"),
+                format_si(rig.vibration_amplitude, "m"),
                 f"{len(rig.assumptions)}",
             ]
             for name, rig in rigs.items()
@@ -170,7 +170,7 @@ def _rig_table(name: str, table: Mapping[str, Any], schema: Mapping[str, Any]) -
 def _key(key: str, entry: Mapping[str, Any]) -> tuple[str, str, str]:
     if "x-si-unit" in entry:
         unit = entry["x-si-unit"]
-        return _plain(entry["title"]), unit or "none", _plain(kind_of(unit))
+        return _plain(entry["title"]), unit or "none", _plain(unit_description(unit))
     if entry.get("description") or entry.get("const"):
         return (
             _plain(entry.get("description") or key.capitalize()),
@@ -195,7 +195,7 @@ def _need(key: str, entry: Mapping[str, Any], required: Sequence[str]) -> str:
 
 def _material(shown: Material) -> str:
     rows = [
-        [key.replace("_", " "), engineering(known.value, known.unit, digits=4), _source(known)]
+        [key.replace("_", " "), format_si(known.value, known.unit, digits=4), _source(known)]
         for key, known in shown.properties.items()
     ]
     if shown.crystal_structure:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sonolube.files import write_whole
+from sonolube.files import write_atomically
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -74,7 +74,7 @@ def publication_style() -> Iterator[None]:
         yield
 
 
-def rendered(figure: "Figure", form: str) -> bytes:
+def render_figure(figure: "Figure", form: str) -> bytes:
     """Return the figure as a file's content; `form` is "png", "svg" or "pdf". The same figure gives the same bytes.
 
     It is laid out by the first file; others have the same layout, and much sooner.
@@ -95,4 +95,4 @@ def write_figure(figure: "Figure", *, folder: Path, name: str, forms: tuple[str,
     InvalidInput
         If the folder cannot be written to.
     """
-    return [write_whole(folder / f"{name}.{form}", rendered(figure, form)) for form in forms]
+    return [write_atomically(folder / f"{name}.{form}", render_figure(figure, form)) for form in forms]

@@ -7,7 +7,7 @@ from pathlib import Path
 from sonolube.errors import InvalidInput
 
 
-def write_whole(path: Path, content: bytes | str) -> Path:
+def write_atomically(path: Path, content: bytes | str) -> Path:
     """Write `content` to `path` in one step: a reader sees the old file or the new one, never a part.
 
     Parameters

@@ -64,17 +64,17 @@ def to_si(text: str, *, unit: str, name: str) -> float:
     """
     match = _NUMBER_AND_UNIT.fullmatch(text)
     if match is None:
-        raise InvalidInput(f"{name} {text!r} is not a number with a unit; wanted {kind_of(unit)}")
+        raise InvalidInput(f"{name} {text!r} is not a number with a unit; wanted {unit_description(unit)}")
     number, written_unit = float(match[1]), match[2]
     if not written_unit and unit:
-        raise InvalidInput(f"{name} {text} has no unit; wanted {kind_of(unit)}")
+        raise InvalidInput(f"{name} {text} has no unit; wanted {unit_description(unit)}")
     value = _converted(number, written_unit, unit, name=name, text=text)
     if not math.isfinite(value):
         raise InvalidInput(f"{name} {text} is not finite")
     return value
 
 
-def rise_to_si(text: str, *, name: str) -> float:
+def temperature_difference_to_si(text: str, *, name: str) -> float:
     """Return the rise of temperature in K that `text` stands for.
 
     Parameters
@@ -111,12 +111,12 @@ def convert(value: float, *, from_unit: str, to_unit: str) -> float:
     return _converted(value, from_unit, to_unit, name="value", text=f"{value} {from_unit}")
 
 
-def kind_of(unit: str) -> str:
+def unit_description(unit: str) -> str:
     """Return what a value with this SI unit is, with an example, such as "a force, such as 40N"."""
     return _KINDS.get(unit, f"a value in {unit}")
 
 
-def engineering(value: float, unit: str, *, digits: int = 3) -> str:
+def format_si(value: float, unit: str, *, digits: int = 3) -> str:
     """Return the value as people write it, such as "2.5 um" for 2.5e-6 m.
 
     Parameters
@@ -133,7 +133,7 @@ def engineering(value: float, unit: str, *, digits: int = 3) -> str:
     str
     """
     if unit == "kg" and 0 < abs(value) < 1:
-        return engineering(1e3 * value, "g", digits=digits)
+        return format_si(1e3 * value, "g", digits=digits)
     if not unit or value == 0 or not math.isfinite(value):
         return f"{value:.{digits}g} {unit}".rstrip()
     power = {"m2": 2, "m3": 3}.get(unit, 1)
@@ -160,12 +160,12 @@ def _converted(number: float, written_unit: str, unit: str, *, name: str, text: 
     try:
         written = _unit(written_unit)
     except Exception:  # pint lets its tokenizer's and parser's errors of many kinds through
-        raise InvalidInput(f"{name} {text}: unknown unit {written_unit!r}; wanted {kind_of(unit)}") from None
+        raise InvalidInput(f"{name} {text}: unknown unit {written_unit!r}; wanted {unit_description(unit)}") from None
     wanted = _unit(unit)
     try:
         value = float(registry.Quantity(number, written).to(wanted).magnitude)
     except pint.DimensionalityError:
-        raise InvalidInput(f"{name} {text} is {_kind_of_dimension(written)}; wanted {kind_of(unit)}") from None
+        raise InvalidInput(f"{name} {text} is {_kind_of_dimension(written)}; wanted {unit_description(unit)}") from None
     if wanted.dimensionality != {"[time]": -1}:
         return value
     return value * (2 * math.pi) ** (_has_angle(wanted) - _has_angle(written))

@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 from pytest import approx, raises
 from scipy.integrate import quad
 
-from sonolube.contact import ElasticBody
-from sonolube.contact.coated import CoatedBody, coated_modulus, layer_compliance_ratio
+from sonolube.contact import CoatedBody, ElasticBody, equivalent_plane_strain_modulus, layer_compliance_ratio
 from sonolube.errors import OutsideRange
 
 STEEL = ElasticBody(youngs_modulus=200e9, poisson_ratio=0.29)
@@ -74,7 +73,7 @@ def test_the_kernel_solves_the_equations_of_plane_strain(layer: ElasticBody, sub
 
 
 def test_a_contact_far_smaller_or_larger_than_the_layer_feels_one_body() -> None:
-    small, large = coated_modulus(PAINTED, contact_radius=[60e-6 * 1e-4, 60e-6 * 150])
+    small, large = equivalent_plane_strain_modulus(PAINTED, contact_radius=[60e-6 * 1e-4, 60e-6 * 150])
     assert small == approx(plane_modulus(POWDER), rel=1e-3)
     # a soft layer of unhindered bulk still yields by its thickness over its constrained modulus
     assert 0.8 * plane_modulus(STEEL) < large < plane_modulus(STEEL)
@@ -82,7 +81,9 @@ def test_a_contact_far_smaller_or_larger_than_the_layer_feels_one_body() -> None
 
 def test_a_layer_of_the_same_material_is_not_there() -> None:
     same = CoatedBody(layer=STEEL, substrate=STEEL, thickness=1e-4)
-    assert coated_modulus(same, contact_radius=[1e-6, 1e-4, 1e-2]) == approx(plane_modulus(STEEL), rel=1e-12)
+    assert equivalent_plane_strain_modulus(same, contact_radius=[1e-6, 1e-4, 1e-2]) == approx(
+        plane_modulus(STEEL), rel=1e-12
+    )
 
 
 @pytest.mark.parametrize("thickness_ratio", [0.1, 0.5, 1.0, 3.0])
@@ -94,7 +95,9 @@ def test_a_layer_little_different_weighs_as_first_order_theory_has_it(thickness_
     )
     substrate = ElasticBody(youngs_modulus=100e9, poisson_ratio=nu)
     layer = ElasticBody(youngs_modulus=100e9 * (1 + step), poisson_ratio=nu)
-    found = coated_modulus(CoatedBody(layer=layer, substrate=substrate, thickness=xi), contact_radius=1.0)
+    found = equivalent_plane_strain_modulus(
+        CoatedBody(layer=layer, substrate=substrate, thickness=xi), contact_radius=1.0
+    )
     assert found / plane_modulus(substrate) - 1 == approx(weight * step, rel=1e-3)
 
 
@@ -107,17 +110,19 @@ def test_the_pressure_of_a_uniform_body_bounds_the_stiffness_from_below(a: float
 
     energy = quad(excess, 1e-9, 30, limit=400)[0]
     bound = 1 / (1 + 2 * a / math.pi * energy)
-    found = float(coated_modulus(PAINTED, contact_radius=a * PAINTED.thickness)) / plane_modulus(POWDER)
+    found = float(equivalent_plane_strain_modulus(PAINTED, contact_radius=a * PAINTED.thickness)) / plane_modulus(
+        POWDER
+    )
     assert 0.7 * found < bound <= found * (1 + 1e-9)
 
 
 def test_sixty_micrometres_of_powder_make_steel_ten_times_softer_to_a_worn_pin() -> None:
     # D 4.1.3: 0.126 mm2 of nominal area is a circle of 0.2 mm radius; 3 GPa is assumed for the powder
-    found = float(coated_modulus(PAINTED, contact_radius=0.2e-3))
+    found = float(equivalent_plane_strain_modulus(PAINTED, contact_radius=0.2e-3))
     assert 6 * plane_modulus(POWDER) < found < 8 * plane_modulus(POWDER)
     assert 8.5 < plane_modulus(STEEL) / found < 10.5
 
 
 def test_a_contact_far_wider_than_the_layer_is_refused() -> None:
     with raises(OutsideRange, match="take the substrate alone"):
-        coated_modulus(PAINTED, contact_radius=1.0)
+        equivalent_plane_strain_modulus(PAINTED, contact_radius=1.0)

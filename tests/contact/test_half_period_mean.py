@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pytest import approx, raises
 
-from sonolube.contact.half_period_mean import separating_half_period_mean
+from sonolube.contact.separating_half_period import separating_half_period_mean
 from sonolube.errors import InvalidInput
 
 

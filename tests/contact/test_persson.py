@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from pytest import approx, raises
 from scipy.integrate import quad
 
-from sonolube.contact.persson import (
+from sonolube.contact import (
     PerssonContact,
     persson_area,
     persson_area_fraction,

@@ -70,7 +70,7 @@ def brute_force(contact: RoughContact, h: float, law: Callable[..., Floats]) -> 
     Rq, Rs = roughness.rms_height, roughness.summit_radius
     w_c = critical_interference(contact.asperity, contact.pair, summit_radius=Rs) / Rq
     bounds = {0.0, 0.05, 0.3, 1.0, 2.0, 4.0, 12.0}
-    bounds |= {joint * w_c for joint in contact.asperity.joints if joint * w_c < 12}
+    bounds |= {joint * w_c for joint in contact.asperity.breakpoints if joint * w_c < 12}
 
     def integrand(w: float) -> float:
         one = law(contact.asperity, contact.pair, summit_radius=Rs, interference=w * Rq)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from pytest import approx, raises
 
-from sonolube.contact.squeeze_film import levitation_gap, squeeze_film_pressure, squeeze_number
+from sonolube.contact import levitation_gap, squeeze_film_pressure, squeeze_number
 from sonolube.errors import InvalidInput, ModelRangeWarning, OutsideRange
 
 DISC = {"face_radius": 10e-3, "frequency": 20e3}

@@ -14,7 +14,7 @@ from sonolube.contact import (
     GaussianHeights,
     RoughContact,
     contact_caveats,
-    exponential_window,
+    exponential_validity_range,
     normal_force,
     separation,
 )
@@ -43,7 +43,7 @@ def with_roughness_parameter(beta: float) -> RoughContact:
 @given(beta=st.floats(0.04, 0.6), factor=st.floats(1.1, 4), share=st.floats(0, 1))
 def test_within_the_window_both_height_laws_give_like_loads(beta: float, factor: float, share: float) -> None:
     contact = with_roughness_parameter(beta)
-    window = exponential_window(contact, factor=factor)
+    window = exponential_validity_range(contact, factor=factor)
     if window is None:
         return
     d = (window[0] + share * (window[1] - window[0])) * 0.5e-6
@@ -55,7 +55,7 @@ def test_within_the_window_both_height_laws_give_like_loads(beta: float, factor:
 @mark.parametrize("beta", [0.05, 0.1, 0.48])
 def test_the_window_ends_where_the_loads_differ_by_the_factor(beta: float) -> None:
     contact = with_roughness_parameter(beta)
-    window = exponential_window(contact)
+    window = exponential_validity_range(contact)
     assert window is not None
     gaussian = replace(contact, heights=GaussianHeights.from_roughness_parameter(roughness_parameter=beta))
     d = np.array(window) * 0.5e-6
@@ -64,7 +64,7 @@ def test_the_window_ends_where_the_loads_differ_by_the_factor(beta: float) -> No
 
 
 def test_the_exponential_law_serves_rougher_surfaces_over_a_wider_window() -> None:
-    windows = [exponential_window(with_roughness_parameter(beta)) for beta in (0.04, 0.05, 0.1)]
+    windows = [exponential_validity_range(with_roughness_parameter(beta)) for beta in (0.04, 0.05, 0.1)]
     widths = [window[1] - window[0] for window in windows if window]
     assert len(widths) == 3
     assert widths == sorted(widths)
@@ -72,16 +72,16 @@ def test_the_exponential_law_serves_rougher_surfaces_over_a_wider_window() -> No
 
 @mark.parametrize("beta", [0.015, 0.03])
 def test_smooth_surfaces_have_no_window(beta: float) -> None:
-    assert exponential_window(with_roughness_parameter(beta)) is None
+    assert exponential_validity_range(with_roughness_parameter(beta)) is None
 
 
 def test_a_contact_with_gaussian_heights_is_asked_about_the_default_exponential_law() -> None:
-    assert exponential_window(replace(USUAL, heights=GaussianHeights())) == exponential_window(USUAL)
+    assert exponential_validity_range(replace(USUAL, heights=GaussianHeights())) == exponential_validity_range(USUAL)
 
 
 def test_a_window_of_no_width_is_refused() -> None:
     with raises(InvalidInput, match=r"factor must exceed 1, got 1\.0"):
-        exponential_window(USUAL, factor=1.0)
+        exponential_validity_range(USUAL, factor=1.0)
 
 
 def test_nothing_speaks_against_a_usual_surface_under_a_usual_load() -> None:
@@ -122,7 +122,7 @@ def test_too_few_summits_for_a_mean_are_seen() -> None:
 
 def test_a_steeper_exponential_law_is_judged_by_its_own_window() -> None:
     steep = replace(PUBLISHED, heights=ExponentialHeights(amplitude=1e3, decay=5.0))
-    window, usual = exponential_window(steep), exponential_window(PUBLISHED)
+    window, usual = exponential_validity_range(steep), exponential_validity_range(PUBLISHED)
     assert window is not None
     assert usual is not None
     assert window[0] > usual[0]

@@ -7,11 +7,11 @@ from scipy.integrate import solve_ivp
 from sonolube.errors import InvalidInput
 from sonolube.friction import (
     DahlFriction,
-    DrivenSlide,
+    DriveForce,
     Holder,
     LuGreFriction,
-    driven_slide,
     parallel_vibration_ratio,
+    spring_driven_slider_force,
     transverse_vibration_ratio,
 )
 
@@ -33,7 +33,7 @@ def test_a_heavy_slider_on_stiff_bristles_feels_coulombs_friction(v: float) -> N
     velocity, frequency = 0.5, 1000.0  # a stroke of 80 um against a deformation of 0.2 um
 
     def pulled(direction: float) -> float:
-        slide = driven_slide(
+        slide = spring_driven_slider_force(
             STIFF,
             HEAVY,
             sliding_speed=v * velocity,
@@ -43,7 +43,7 @@ def test_a_heavy_slider_on_stiff_bristles_feels_coulombs_friction(v: float) -> N
             settling_time=0.1,
             duration=0.03,
         )
-        return slide.drive_force / 2.0
+        return slide.mean_drive_force / 2.0
 
     kinematic = {"sliding_speed": v, "vibration_velocity": 1.0}
     assert pulled(0.0) == approx(float(parallel_vibration_ratio(**kinematic)), abs=0.01)
@@ -68,7 +68,7 @@ def test_the_march_is_that_of_an_adaptive_integrator() -> None:
     settled = solve_ivp(rates, (0, 0.05), [0, speed, 0, 0, 0], method="LSODA", rtol=1e-8, atol=1e-12)
     start = np.append(settled.y[:4, -1], 0.0)
     taken = solve_ivp(rates, (0.05, 0.07), start, method="LSODA", rtol=1e-8, atol=1e-12, max_step=2e-5)
-    slide = driven_slide(
+    slide = spring_driven_slider_force(
         STRIBECK,
         Holder(holder_stiffness=1e4, holder_mass=0.05, holder_damping=30.0),
         sliding_speed=speed,
@@ -79,12 +79,12 @@ def test_the_march_is_that_of_an_adaptive_integrator() -> None:
         settling_time=0.05,
         duration=0.02,
     )
-    assert slide.drive_force == approx(taken.y[4, -1] / 0.02, rel=2e-3)
-    assert slide.drive_force_swing == approx(1e4 * np.ptp(taken.y[0]), rel=0.02)
+    assert slide.mean_drive_force == approx(taken.y[4, -1] / 0.02, rel=2e-3)
+    assert slide.drive_force_range == approx(1e4 * np.ptp(taken.y[0]), rel=0.02)
 
 
-def belt(amplitude: float) -> DrivenSlide:
-    return driven_slide(
+def belt(amplitude: float) -> DriveForce:
+    return spring_driven_slider_force(
         STRIBECK,
         SOFT,
         sliding_speed=2e-3,
@@ -98,18 +98,18 @@ def belt(amplitude: float) -> DrivenSlide:
 def test_vibration_faster_than_the_sliding_stops_stick_slip() -> None:
     # the falling Stribeck curve drives the slider to and fro by the whole force; peak velocity 6.3 mm/s against 2
     silent, vibrated = belt(0.0), belt(1e-6)
-    assert silent.drive_force_swing > 1.0
-    assert vibrated.drive_force_swing < 1e-3
-    assert vibrated.drive_force < 0.6 * silent.drive_force
+    assert silent.drive_force_range > 1.0
+    assert vibrated.drive_force_range < 1e-3
+    assert vibrated.mean_drive_force < 0.6 * silent.mean_drive_force
 
 
 def test_vibration_slower_than_the_sliding_leaves_stick_slip() -> None:
-    assert belt(1e-7).drive_force_swing > 1.0
+    assert belt(1e-7).drive_force_range > 1.0
 
 
 def test_a_stroke_within_the_bristles_reach_leaves_friction() -> None:
     # 1 nm against a deformation of F_c/K = 0.2 um: Dahl's bristles follow it, and sliding on at mean(v)/mean(|v|)
-    slide = driven_slide(
+    slide = spring_driven_slider_force(
         STIFF,
         HEAVY,
         sliding_speed=1e-3,
@@ -118,12 +118,12 @@ def test_a_stroke_within_the_bristles_reach_leaves_friction() -> None:
         settling_time=0.1,
         duration=0.03,
     )
-    assert slide.drive_force == approx(2.0, rel=1e-3)
+    assert slide.mean_drive_force == approx(2.0, rel=1e-3)
 
 
 def test_a_drive_without_mass_is_refused() -> None:
     with raises(InvalidInput, match="holder_mass must be positive"):
-        driven_slide(
+        spring_driven_slider_force(
             STIFF,
             Holder(),
             sliding_speed=1e-3,

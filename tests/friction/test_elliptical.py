@@ -7,7 +7,7 @@ from pytest import approx, raises
 from scipy.optimize import brentq
 
 from sonolube.errors import InvalidInput
-from sonolube.friction import contact_fraction, elliptical_traction_ratio, parallel_vibration_ratio
+from sonolube.friction import contact_time_fraction, elliptical_traction_ratio, parallel_vibration_ratio
 
 FREQUENCY, STIFFNESS, AMPLITUDE = 20e3, 1e6, 1e-6  # of 1 N the force swings by 1 N
 OMEGA = 2 * np.pi * FREQUENCY
@@ -56,7 +56,7 @@ def test_traction_is_the_mean_of_the_instants_friction(
     if abs(abs(in_plane) - abs(velocity)) > 1e-6:
         assert computed == approx(counted, abs=1e-3)
     assert np.mean(forces > 0) == approx(
-        float(contact_fraction(normal_load=load, normal_stiffness=STIFFNESS, normal_amplitude=AMPLITUDE)), abs=1e-4
+        float(contact_time_fraction(normal_load=load, normal_stiffness=STIFFNESS, normal_amplitude=AMPLITUDE)), abs=1e-4
     )
 
 

@@ -10,8 +10,8 @@ from sonolube.errors import InvalidInput
 from sonolube.friction import (
     ZINC_STRESS_RATIO,
     acoustic_intensity,
-    intensity_for_stress_ratio,
-    softened_stress_ratio,
+    acoustic_softening_ratio,
+    reference_intensity_from_test,
     superposed_mean_stress,
 )
 from sonolube.published import statement
@@ -41,10 +41,10 @@ def test_the_intensity_is_that_of_a_travelling_wave() -> None:
 
 
 def test_one_test_fixes_the_softening_and_gives_itself_back() -> None:
-    reference = intensity_for_stress_ratio(stress_ratio=0.6, acoustic_intensity=1e4)
-    assert softened_stress_ratio(acoustic_intensity=1e4, reference_intensity=reference) == approx(0.6)
-    assert softened_stress_ratio(acoustic_intensity=4e4, reference_intensity=reference) == approx(0.2)
-    assert softened_stress_ratio(acoustic_intensity=1e9, reference_intensity=reference) == 0
+    reference = reference_intensity_from_test(stress_ratio=0.6, acoustic_intensity=1e4)
+    assert acoustic_softening_ratio(acoustic_intensity=1e4, reference_intensity=reference) == approx(0.6)
+    assert acoustic_softening_ratio(acoustic_intensity=4e4, reference_intensity=reference) == approx(0.2)
+    assert acoustic_softening_ratio(acoustic_intensity=1e9, reference_intensity=reference) == 0
 
 
 def test_zinc_lost_what_blaha_and_langenecker_are_cited_for() -> None:
@@ -53,4 +53,4 @@ def test_zinc_lost_what_blaha_and_langenecker_are_cited_for() -> None:
 
 def test_a_test_that_softened_nothing_fixes_nothing() -> None:
     with raises(InvalidInput, match="stress_ratio must be positive"):
-        intensity_for_stress_ratio(stress_ratio=1.0, acoustic_intensity=1e4)
+        reference_intensity_from_test(stress_ratio=1.0, acoustic_intensity=1e4)

@@ -8,11 +8,11 @@ from scipy.optimize import brentq
 from scipy.special import i0, i0e, modstruve
 
 from sonolube.errors import InvalidInput
-from sonolube.friction.soft_counterface import FaceMode, linear_layer_ratio, stiffening_layer_ratio
+from sonolube.friction import FaceVibrationMode, exponential_layer_ratio, linear_layer_ratio
 
-WHOLE_ON_RIGID = FaceMode(rim_displacement_ratio=1.0, following=0.0)
-WHOLE_ON_SOFT = FaceMode(rim_displacement_ratio=1.0, following=1.0)
-OPPOSED = FaceMode()
+WHOLE_ON_RIGID = FaceVibrationMode(rim_displacement_ratio=1.0, following_fraction=0.0)
+WHOLE_ON_SOFT = FaceVibrationMode(rim_displacement_ratio=1.0, following_fraction=1.0)
+OPPOSED = FaceVibrationMode()
 amplitudes = st.floats(0.01, 8)
 
 
@@ -43,7 +43,7 @@ def test_patches_dragged_slowly_give_the_least_friction_of_the_period() -> None:
 
     pressure = np.exp(-gap)
     by_hand = dragged(pressure / pressure.mean(), 1e-5)
-    assert stiffening_layer_ratio(OPPOSED, vibration_amplitude=0.7, decay_length=1.0) == approx(by_hand, abs=3e-3)
+    assert exponential_layer_ratio(OPPOSED, vibration_amplitude=0.7, decay_length=1.0) == approx(by_hand, abs=3e-3)
 
 
 def test_a_linear_layer_loses_half_its_amplitude_over_indentation_before_it_parts() -> None:
@@ -63,32 +63,32 @@ def test_a_parting_face_is_balanced_by_its_load() -> None:
 
 @given(a=amplitudes)
 def test_a_stiffening_layer_has_the_closed_forms_of_bessel_and_struve(a: float) -> None:
-    whole = stiffening_layer_ratio(WHOLE_ON_RIGID, vibration_amplitude=a, decay_length=1.0)
+    whole = exponential_layer_ratio(WHOLE_ON_RIGID, vibration_amplitude=a, decay_length=1.0)
     assert whole == approx(np.exp(-2 * a) / i0e(a))
     # the integral of I0 from 0 to x, DLMF 10.43.2 with L the modified Struve function
     from scipy.special import i1
 
     whole_bessel = a * (i0(a) + np.pi / 2 * (modstruve(1, a) * i0(a) - modstruve(0, a) * i1(a)))
-    opposed = stiffening_layer_ratio(OPPOSED, vibration_amplitude=a, decay_length=1.0)
+    opposed = exponential_layer_ratio(OPPOSED, vibration_amplitude=a, decay_length=1.0)
     assert opposed == approx((1 - np.exp(-a)) / whole_bessel, rel=1e-9)
 
 
 @given(a=amplitudes)
 def test_a_soft_body_follows_a_face_that_moves_as_a_whole_and_nothing_is_gained(a: float) -> None:
     assert linear_layer_ratio(WHOLE_ON_SOFT, vibration_amplitude=a, static_indentation=1.0) == approx(1)
-    assert stiffening_layer_ratio(WHOLE_ON_SOFT, vibration_amplitude=a, decay_length=1.0) == approx(1)
+    assert exponential_layer_ratio(WHOLE_ON_SOFT, vibration_amplitude=a, decay_length=1.0) == approx(1)
 
 
-@given(a=amplitudes, following=st.floats(0, 1))
-def test_no_body_can_follow_a_mode_that_is_zero_on_average(a: float, following: float) -> None:
-    mode = FaceMode(rim_displacement_ratio=-1.0, following=following)
-    same = stiffening_layer_ratio(OPPOSED, vibration_amplitude=a, decay_length=1.0)
-    assert stiffening_layer_ratio(mode, vibration_amplitude=a, decay_length=1.0) == approx(same)
+@given(a=amplitudes, following_fraction=st.floats(0, 1))
+def test_no_body_can_follow_a_mode_that_is_zero_on_average(a: float, following_fraction: float) -> None:
+    mode = FaceVibrationMode(rim_displacement_ratio=-1.0, following_fraction=following_fraction)
+    same = exponential_layer_ratio(OPPOSED, vibration_amplitude=a, decay_length=1.0)
+    assert exponential_layer_ratio(mode, vibration_amplitude=a, decay_length=1.0) == approx(same)
 
 
 def test_large_amplitudes_stay_finite() -> None:
     for ratio in (
-        stiffening_layer_ratio(OPPOSED, vibration_amplitude=1e3, decay_length=1.0),
+        exponential_layer_ratio(OPPOSED, vibration_amplitude=1e3, decay_length=1.0),
         linear_layer_ratio(OPPOSED, vibration_amplitude=1e3, static_indentation=1.0),
     ):
         assert 0 <= ratio < 1e-3
@@ -96,4 +96,4 @@ def test_large_amplitudes_stay_finite() -> None:
 
 def test_a_rim_faster_than_the_centre_is_refused() -> None:
     with raises(InvalidInput, match="rim_displacement_ratio must lie between -1 and 1"):
-        FaceMode(rim_displacement_ratio=-2.0)
+        FaceVibrationMode(rim_displacement_ratio=-2.0)

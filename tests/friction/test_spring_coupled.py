@@ -10,13 +10,13 @@ from pytest import approx, mark, raises, warns
 from sonolube.errors import InvalidInput, ModelRangeWarning, OutsideRange
 from sonolube.friction import (
     SpringContact,
-    approximate_oscillation_ratio,
-    balanced_approach,
+    approximate_normal_ratio,
     critical_speed,
+    load_balanced_approach,
     longitudinal_oscillation_ratio,
     normal_oscillation_ratio,
+    normal_static_ratio,
     parallel_vibration_ratio,
-    static_plateau,
 )
 
 FLAT = SpringContact(friction_coefficient=0.4, mindlin_ratio=0.8)
@@ -108,7 +108,7 @@ def test_slow_sliding_leaves_what_the_widest_gap_holds(contact: SpringContact, a
     theta = (np.arange(20000) + 0.5) * 2 * np.pi / 20000
     power = 1.0 if contact is FLAT else 1.5
     forces = np.maximum(1 - amplitude * np.cos(theta), 0) ** power
-    plateau = static_plateau(contact, approach=DEPTH, normal_amplitude=amplitude * DEPTH)
+    plateau = normal_static_ratio(contact, approach=DEPTH, normal_amplitude=amplitude * DEPTH)
     assert float(plateau) == approx(forces.min() / forces.mean(), abs=1e-6)
     assert under_load(contact, depth=DEPTH, amplitude=amplitude * DEPTH, v=1e-8) == approx(float(plateau), abs=1e-3)
 
@@ -150,7 +150,7 @@ def test_a_sphere_held_while_it_oscillates_follows_cattaneo_and_mindlin() -> Non
 @BOTH
 @mark.parametrize("amplitude", [0.0, 0.4, 1.0, 3.0])
 def test_a_balanced_approach_carries_the_load_of_rest(contact: SpringContact, amplitude: float) -> None:
-    mean = float(balanced_approach(contact, approach=DEPTH, normal_amplitude=amplitude * DEPTH)) / DEPTH
+    mean = float(load_balanced_approach(contact, approach=DEPTH, normal_amplitude=amplitude * DEPTH)) / DEPTH
     theta = (np.arange(40000) + 0.5) * 2 * np.pi / 40000
     power = 1.0 if contact is FLAT else 1.5
     assert np.mean(np.maximum(mean - amplitude * np.cos(theta), 0) ** power) == approx(1, abs=1e-6)
@@ -166,14 +166,14 @@ def test_the_published_approximation_is_as_good_as_it_says(contact: SpringContac
         frequency=FREQUENCY,
         sliding_speed=v * critical_speed(contact, frequency=FREQUENCY, normal_amplitude=amplitude),
     )
-    error = approximate_oscillation_ratio(contact, approach=DEPTH, normal_amplitude=amplitude, velocity_ratio=v) - exact
+    error = approximate_normal_ratio(contact, approach=DEPTH, normal_amplitude=amplitude, velocity_ratio=v) - exact
     assert error.min() == approx(-below, abs=2e-4)
     assert error.max() == approx(above, abs=2e-4)
 
 
 def test_the_approximation_warns_where_contact_is_lost() -> None:
     with warns(ModelRangeWarning, match="contact is lost"):
-        approximate_oscillation_ratio(FLAT, approach=1e-6, normal_amplitude=2e-6, velocity_ratio=0.5)
+        approximate_normal_ratio(FLAT, approach=1e-6, normal_amplitude=2e-6, velocity_ratio=0.5)
 
 
 def test_what_the_drive_spends_is_what_slipping_turns_to_heat() -> None:
@@ -201,7 +201,7 @@ def test_without_oscillation_nothing_changes() -> None:
 
 def test_bodies_that_never_touch_are_refused() -> None:
     with raises(OutsideRange, match="never touch"):
-        static_plateau(FLAT, approach=-2e-6, normal_amplitude=1e-6)
+        normal_static_ratio(FLAT, approach=-2e-6, normal_amplitude=1e-6)
 
 
 def test_an_unknown_profile_is_refused() -> None:

@@ -9,13 +9,13 @@ from sonolube.errors import InvalidInput
 from sonolube.friction import (
     Holder,
     SpringContact,
+    combined_oscillation_ratio,
     critical_speed,
     elliptical_traction_ratio,
     guided_critical_speed,
     guided_oscillation_ratio,
     longitudinal_oscillation_ratio,
     normal_oscillation_ratio,
-    oscillation_ratio,
     transverse_vibration_ratio,
 )
 
@@ -37,7 +37,9 @@ def test_along_the_normal_alone_the_marched_spring_is_the_exact_one(
         "frequency": FREQUENCY,
         "sliding_speed": v * critical_speed(contact, frequency=FREQUENCY, normal_amplitude=amplitude * DEPTH),
     }
-    assert oscillation_ratio(contact, **motion) == approx(normal_oscillation_ratio(contact, **motion), abs=2e-4)
+    assert combined_oscillation_ratio(contact, **motion) == approx(
+        normal_oscillation_ratio(contact, **motion), abs=2e-4
+    )
 
 
 @BOTH
@@ -51,12 +53,14 @@ def test_along_the_sliding_alone_the_marched_spring_is_the_exact_one(
         "frequency": FREQUENCY,
         "sliding_speed": v * OMEGA * amplitude * DEPTH,
     }
-    assert oscillation_ratio(contact, **motion) == approx(longitudinal_oscillation_ratio(contact, **motion), abs=1e-4)
+    assert combined_oscillation_ratio(contact, **motion) == approx(
+        longitudinal_oscillation_ratio(contact, **motion), abs=1e-4
+    )
 
 
 def across(amplitude: float, v: float, steps: int = 1024) -> float:
     return float(
-        oscillation_ratio(
+        combined_oscillation_ratio(
             FLAT,
             approach=DEPTH,
             transverse_amplitude=amplitude,
@@ -104,7 +108,7 @@ def test_the_error_falls_with_the_square_of_the_step() -> None:
         "transverse_amplitude": 0.7e-6,
     }
     both = motion | {"normal_amplitude": 0.5e-6, "in_plane_amplitude": 0.3e-6, "in_plane_phase": 1.0}
-    coarse, fine, finest = (float(oscillation_ratio(FLAT, **both, steps=n)) for n in (128, 256, 2048))
+    coarse, fine, finest = (float(combined_oscillation_ratio(FLAT, **both, steps=n)) for n in (128, 256, 2048))
     assert abs(fine - finest) < 0.4 * abs(coarse - finest) < 1e-2
 
 
@@ -114,7 +118,7 @@ def test_stiff_springs_under_an_ellipse_are_those_of_a_motor(lag: float) -> None
     speed, amplitude, depth = 0.05, 1e-6, 0.4e-6
     theta = (np.arange(20000) + 0.5) * 2 * np.pi / 20000
     mean = np.mean(np.maximum(depth - amplitude * np.cos(theta), 0))
-    springs = oscillation_ratio(
+    springs = combined_oscillation_ratio(
         stiff,
         approach=depth,
         normal_amplitude=amplitude,
@@ -158,7 +162,7 @@ def test_pushed_back_while_its_limit_falls_a_spring_keeps_its_side(
     depth: float, along: float, lag: float, v: float
 ) -> None:
     found = [
-        oscillation_ratio(
+        combined_oscillation_ratio(
             FLAT,
             approach=depth * DEPTH,
             normal_amplitude=0.9 * DEPTH,

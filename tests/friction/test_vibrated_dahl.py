@@ -6,7 +6,14 @@ from pytest import approx, raises
 from scipy.integrate import quad, solve_ivp
 from scipy.special import i0
 
-from sonolube.contact import ASPERITY_LAWS, ContactPair, RoughContact, normal_force, separation, tangential_stiffness
+from sonolube.contact import (
+    ASPERITY_LAWS,
+    ContactPair,
+    RoughContact,
+    cube_tangential_stiffness,
+    normal_force,
+    separation,
+)
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.friction import dahl_under_vibration
 from sonolube.surfaces import Roughness
@@ -97,7 +104,7 @@ def test_a_steady_period_follows_the_integrated_differential_equation(
         return AT_REST + normal_amplitude * math.sin(turn - phase)
 
     def rate(turn: float, state: np.ndarray) -> list[float]:
-        k = tangential_stiffness(CONTACT, separation=gap(turn))
+        k = cube_tangential_stiffness(CONTACT, separation=gap(turn))
         limit = MU * normal_force(CONTACT, separation=gap(turn))
         v = sliding_speed / OMEGA + in_plane_amplitude * np.cos(turn)
         return [v * (1 - k * state[0] / limit * np.sign(v)), k * state[0]]

@@ -54,7 +54,7 @@ def test_the_periodic_mean_is_where_a_blind_integrator_ends(fraction: float, pha
     ).y
     mean = np.diff(marched[1])[0] * FREQUENCY
     without = 1.2 + 0.6 * np.exp(-((speed / 0.1) ** 2)) + 0.5 * speed
-    ratio = lugre_under_vibration(LAW, sine(a), sliding_speed=speed, in_plane_fraction=fraction, phase=phase)
+    ratio = lugre_under_vibration(LAW, sine(a), sliding_speed=speed, in_plane_fraction=fraction, in_plane_phase=phase)
     assert ratio == approx(mean / without, abs=5e-4)
 
 

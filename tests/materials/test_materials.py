@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from pytest import approx, raises
 
-from sonolube.contact.pair import ElasticBody, contact_pair
+from sonolube.contact import ElasticBody, contact_pair
 from sonolube.errors import InvalidInput, MissingProperty, UnknownName
 from sonolube.materials import (
     PiezoCeramic,

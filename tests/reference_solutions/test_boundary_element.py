@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from pytest import MonkeyPatch, approx, raises
 
-from sonolube.contact.hertz import SphereOnFlat, approach, contact_radius, peak_pressure
+from sonolube.contact import SphereOnFlat, hertz_approach, hertz_contact_radius, hertz_peak_pressure
 from sonolube.errors import InvalidInput
 from sonolube.reference_solutions import compare_laws, comparison_table, deviation, mirrored, press, where_laws_hold
 from sonolube.surfaces import HeightMap, SingleScaleSpectrum, gaussian_surface
@@ -34,9 +34,11 @@ def test_a_sphere_is_pressed_as_by_hertz() -> None:
     pressed = press(sphere_map(10e-3), normal_load=load, effective_modulus=E_STAR, periodic=False)
     assert pressed.reason == ("",)
     # the zero of heights is the pole, so the flat comes below it by the approach
-    assert -pressed.separation[0] == approx(float(approach(sphere, normal_load=load)), rel=2e-3)
-    assert pressed.real_contact_area[0] == approx(math.pi * contact_radius(sphere, normal_load=load) ** 2, rel=0.01)
-    assert pressed.peak_pressure[0] == approx(float(peak_pressure(sphere, normal_load=load)), rel=5e-3)
+    assert -pressed.separation[0] == approx(float(hertz_approach(sphere, normal_load=load)), rel=2e-3)
+    assert pressed.real_contact_area[0] == approx(
+        math.pi * hertz_contact_radius(sphere, normal_load=load) ** 2, rel=0.01
+    )
+    assert pressed.peak_pressure[0] == approx(float(hertz_peak_pressure(sphere, normal_load=load)), rel=5e-3)
 
 
 @pytest.mark.usefixtures("_library")

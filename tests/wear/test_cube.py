@@ -9,7 +9,7 @@ from scipy.special import i0, i1, modstruve
 from sonolube.contact import ASPERITY_LAWS, ContactPair, RoughContact, real_contact_area, separation
 from sonolube.errors import InvalidInput
 from sonolube.surfaces import Roughness
-from sonolube.wear.cube import (
+from sonolube.wear import (
     ArchardWear,
     archard_wear_rate,
     cube_wear_rate,

@@ -3,9 +3,9 @@ import pytest
 from pytest import approx
 from scipy.special import i0, i1
 
-from sonolube.contact import ASPERITY_LAWS, ContactPair, GapMotion, RoughContact, harmonic_motion, separation
+from sonolube.contact import ASPERITY_LAWS, ContactPair, GapMotion, RoughContact, separation, sinusoidal_motion
 from sonolube.surfaces import Roughness
-from sonolube.wear.cube import WEAR_MODELS, cube_wear_rate, vibrating_cube_wear_rate
+from sonolube.wear import WEAR_MODELS, cube_wear_rate, vibrating_cube_wear_rate
 
 ACORN_NUT_ON_DISC = RoughContact(  # D Table 3.2
     roughness=Roughness(rms_height=6e-6, summit_radius=1.5e-6, summit_density=4.7e10),
@@ -17,7 +17,7 @@ DECAY_LENGTH = 6e-6 / 3  # Rq/lambda
 
 
 def sine(amplitude: float) -> GapMotion:
-    return harmonic_motion(ACORN_NUT_ON_DISC, normal_load=3.0, vibration_amplitude=amplitude, frequency=22e3)
+    return sinusoidal_motion(ACORN_NUT_ON_DISC, normal_load=3.0, vibration_amplitude=amplitude, frequency=22e3)
 
 
 def ratio(name: str, amplitude: float) -> float:

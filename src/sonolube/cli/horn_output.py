@@ -20,7 +20,7 @@ from sonolube.fem import flat_triangles
 from sonolube.fem.solver.model import DIRECTIONS
 from sonolube.figure import COLOURS, publication_style, write_figure
 from sonolube.materials import Material
-from sonolube.units import engineering
+from sonolube.units import format_si
 from sonolube.vocabulary import quantities
 
 if TYPE_CHECKING:
@@ -71,7 +71,7 @@ def horn_lines(design: HornDesign, material: Material, tool: float, written: Seq
     theory = "" if thin is None else f"  (thin bar {1e3 * thin.length:.2f} mm)"
     thin_gain = "" if thin is None else f"  (thin bar {thin.displacement_gain:.2f})"
     shift = loaded_frequency(design, tool_mass=tool) - mode.frequency
-    sizes = ", ".join(f"{name} {engineering(value, 'm')}" for name, value in design.body.sizes.items())
+    sizes = ", ".join(f"{name} {format_si(value, 'm')}" for name, value in design.body.sizes.items())
     limits = amplitude_limits(design, material=material)
     near = [f"{name} {at / mode.frequency - 1:+.1%}" for name, at in design.neighbours[:_NEAR]]
     rows = {

@@ -14,7 +14,7 @@ from sonolube.rig.friction_and_wear import friction_ratio, wear_model_of, wear_r
 from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.record import Rig
 from sonolube.rig.steady_vibration import SteadyMotion, steady_motion
-from sonolube.wear.cube import cube_wear_rate
+from sonolube.wear import cube_wear_rate
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -16,7 +16,7 @@ from sonolube.rig.driven_rig import DrivenRig, driven_rig
 from sonolube.rig.excitation import ramp_of, voltage_harmonics, waveform_of
 from sonolube.rig.linear_response import gap_law_of
 from sonolube.rig.record import Rig
-from sonolube.units import engineering
+from sonolube.units import format_si
 
 _SAMPLES = 1024
 _STRETCHES = 16  # of a motion whose beat is too fast or too slow to cut by
@@ -116,11 +116,9 @@ def steady_motion(rig: Rig) -> SteadyMotion:
     if balanced.status == Status.MULTISTABLE and found.order == 1:
         for states in (balanced, _balanced(rig, falling=True)):
             if _same(states, attained):
-                appears = engineering(float(states.vibration_amplitude), "m")
+                appears = format_si(float(states.vibration_amplitude), "m")
                 return _of_balance(rig, states, f"{told} that of {appears} appears{states.hopping(())}")
-    early = (
-        "" if attained.settled else f"; followed for {engineering(attained.marched_time, 's')}, before all is settled"
-    )
+    early = "" if attained.settled else f"; followed for {format_si(attained.marched_time, 's')}, before all is settled"
     return _of_march(rig, attained, balanced, f"{told} the tip ends up otherwise: {found.description}{early}")
 
 
@@ -180,7 +178,7 @@ def _marched(rig: DrivenRig) -> Attained:
 
 
 def _why_marched(states: SteadyStates) -> str:
-    this, other = (engineering(float(each), "m") for each in (states.vibration_amplitude, states.coexisting_amplitude))
+    this, other = (format_si(float(each), "m") for each in (states.vibration_amplitude, states.coexisting_amplitude))
     if states.status == Status.UNSTABLE:
         return f"unstable: of the vibration of {this} that repeats with the drive the smallest disturbance grows"
     if states.status == Status.MULTISTABLE:
@@ -191,7 +189,7 @@ def _why_marched(states: SteadyStates) -> str:
 def _from_rest(drive: Drive) -> str:
     if drive.ramp_duration == 0:
         return "switched on at once,"
-    return f"with the voltage brought up by a {drive.ramp_shape} ramp of {engineering(drive.ramp_duration, 's')},"
+    return f"with the voltage brought up by a {drive.ramp_shape} ramp of {format_si(drive.ramp_duration, 's')},"
 
 
 def _same(states: SteadyStates, attained: Attained) -> bool:

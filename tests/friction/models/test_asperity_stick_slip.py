@@ -10,10 +10,10 @@ from sonolube.contact import (
     ContactPair,
     GapMotion,
     RoughContact,
-    harmonic_motion,
     load_balanced_motion,
     normal_force,
     separation,
+    sinusoidal_motion,
 )
 from sonolube.errors import InvalidInput
 from sonolube.friction import AsperityStickSlip, mindlin_memory_length, sine_stick_slip_ratio
@@ -102,7 +102,7 @@ def test_without_vibration_the_ratio_is_one() -> None:
 def test_a_sampled_sine_gives_the_closed_form(amplitude: float) -> None:
     speeds = np.geomspace(1e-3, 2, 12)
     motion = load_balanced_motion(
-        CONTACT, harmonic_motion(CONTACT, normal_load=LOAD, vibration_amplitude=amplitude, frequency=FREQUENCY)
+        CONTACT, sinusoidal_motion(CONTACT, normal_load=LOAD, vibration_amplitude=amplitude, frequency=FREQUENCY)
     )
     closed = sine_stick_slip_ratio(
         decay_length=DECAY_LENGTH, vibration_amplitude=amplitude, frequency=FREQUENCY, sliding_speed=speeds
@@ -135,7 +135,7 @@ def test_any_motion_gives_what_elements_stepped_one_by_one_give(fraction: float,
 
 
 def test_fast_sliding_about_an_unmoved_mean_feels_the_mean_normal_force() -> None:
-    motion = harmonic_motion(CONTACT, normal_load=LOAD, vibration_amplitude=2.5e-6, frequency=FREQUENCY)
+    motion = sinusoidal_motion(CONTACT, normal_load=LOAD, vibration_amplitude=2.5e-6, frequency=FREQUENCY)
     assert AsperityStickSlip().ratio(CONTACT, motion, sliding_speed=10.0) == approx(i0(1.25), rel=1e-5)
 
 

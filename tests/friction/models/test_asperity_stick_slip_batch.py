@@ -13,7 +13,7 @@ from sonolube.contact import (
     ASPERITY_LAWS,
     ContactPair,
     GapMotion,
-    HarmonicMotions,
+    GapMotionBatch,
     RoughContact,
     load_balanced_motion,
     normal_force,
@@ -39,9 +39,9 @@ def balanced_mean(harmonics: np.ndarray) -> float:
     return float(DECAY_LENGTH * np.log(np.mean(np.exp(-(turning @ harmonics).real / DECAY_LENGTH))))
 
 
-def motions(means: list[float], harmonics: list[Any]) -> HarmonicMotions:
+def motions(means: list[float], harmonics: list[Any]) -> GapMotionBatch:
     frequency = np.full(len(means), FREQUENCY)
-    return HarmonicMotions(mean_displacement=np.array(means), harmonics=np.array(harmonics), frequency=frequency)
+    return GapMotionBatch(mean_displacement=np.array(means), harmonics=np.array(harmonics), frequency=frequency)
 
 
 def ratios(harmonics: np.ndarray, speeds: np.ndarray) -> np.ndarray:
@@ -132,4 +132,4 @@ def test_what_does_not_fit_together_is_refused_by_name() -> None:
     with raises(InvalidInput, match="sliding_speed and motion must have one shape"):
         batched_stick_slip_ratio(one, decay_length=2e-6, sliding_speed=[0.1, 0.2], motion=[0])
     with raises(InvalidInput, match="must have one row to a motion"):
-        HarmonicMotions(mean_displacement=np.zeros(1), harmonics=np.ones((1, 1), dtype=complex), frequency=np.ones(2))
+        GapMotionBatch(mean_displacement=np.zeros(1), harmonics=np.ones((1, 1), dtype=complex), frequency=np.ones(2))

@@ -6,7 +6,14 @@ import pytest
 from pytest import approx, raises
 from scipy.special import i0
 
-from sonolube.contact import ASPERITY_LAWS, ContactPair, GapMotion, RoughContact, harmonic_motion, load_balanced_motion
+from sonolube.contact import (
+    ASPERITY_LAWS,
+    ContactPair,
+    GapMotion,
+    RoughContact,
+    load_balanced_motion,
+    sinusoidal_motion,
+)
 from sonolube.errors import InvalidInput
 from sonolube.friction import BristleWithHolder, Holder
 from sonolube.surfaces import Roughness
@@ -24,7 +31,7 @@ HOLDER = Holder(holder_stiffness=2e6, holder_mass=1e-4, holder_damping=3.0)
 
 def balanced(amplitude: float = AMPLITUDE) -> GapMotion:
     return load_balanced_motion(
-        CONTACT, harmonic_motion(CONTACT, normal_load=LOAD, vibration_amplitude=amplitude, frequency=FREQUENCY)
+        CONTACT, sinusoidal_motion(CONTACT, normal_load=LOAD, vibration_amplitude=amplitude, frequency=FREQUENCY)
     )
 
 

@@ -14,8 +14,8 @@ from sonolube.contact import (
     GaussianHeights,
     RoughContact,
     contact_pair,
+    cube_tangential_stiffness,
     separation,
-    tangential_stiffness,
 )
 from sonolube.errors import InvalidInput, ModelRangeWarning
 from sonolube.friction import dong_2015_deformation_ratio, dong_2015_half_period_ratio, steady_deformation
@@ -65,7 +65,7 @@ def test_gaussian_heights_are_averaged_as_well() -> None:
     d = float(separation(contact, normal_load=1.0))
 
     def stiffness(theta: float) -> float:
-        return float(tangential_stiffness(contact, separation=d + 0.5e-6 * np.sin(theta)))
+        return float(cube_tangential_stiffness(contact, separation=d + 0.5e-6 * np.sin(theta)))
 
     by_hand = quad(stiffness, 0, np.pi / 2, epsrel=1e-9)[0] / (np.pi / 2) / stiffness(0.0)
     assert dong_2015_half_period_ratio(contact, normal_load=1.0, vibration_amplitude=0.5e-6) == approx(
@@ -132,7 +132,7 @@ def test_the_printed_form_is_the_mean_of_stiffness_times_deformation(phase: floa
     load, b, u, delta = 40.0, 0.88e-6, 0.3e-9, 0.5e-9
     theta = np.linspace(0, np.pi, 20001)
     d = float(separation(ALUMINIUM_ON_STEEL, normal_load=load))
-    k = tangential_stiffness(ALUMINIUM_ON_STEEL, separation=d + b * np.sin(theta))
+    k = cube_tangential_stiffness(ALUMINIUM_ON_STEEL, separation=d + b * np.sin(theta))
     by_hand = half_period_mean(k / k[0] * (delta + u * np.sin(theta + phase)) / delta)
     ratio = dong_2015_deformation_ratio(
         ALUMINIUM_ON_STEEL,

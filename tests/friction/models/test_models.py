@@ -10,11 +10,11 @@ from sonolube.contact import (
     GapMotion,
     GaussianHeights,
     RoughContact,
-    harmonic_motion,
+    cube_tangential_stiffness,
     load_balanced_motion,
     normal_force,
     separation,
-    tangential_stiffness,
+    sinusoidal_motion,
 )
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.friction import (
@@ -40,7 +40,7 @@ SPEEDS = np.array([20.3e-3, 40.6e-3, 87e-3])  # of D Table 2.3
 
 
 def sine(amplitude: float, *, samples: int = 256) -> GapMotion:
-    return harmonic_motion(
+    return sinusoidal_motion(
         CONTACT, normal_load=LOAD, vibration_amplitude=amplitude, frequency=FREQUENCY, samples=samples
     )
 
@@ -73,14 +73,14 @@ def test_the_direction_alone_at_a_third_of_the_amplitude_comes_near_the_measured
 @pytest.mark.parametrize("samples", [64, 256, 1000])
 def test_the_means_are_those_of_adaptive_quadrature(amplitude: float, samples: int) -> None:
     motion, speeds = sine(amplitude, samples=samples), np.array([1e-4, 5e-3, 0.1, 2.0])
-    at_rest = tangential_stiffness(CONTACT, separation=AT_REST)
+    at_rest = cube_tangential_stiffness(CONTACT, separation=AT_REST)
 
     def cosine(theta: float, v: float) -> float:
         return float(v / np.hypot(v, OMEGA * amplitude * np.sin(theta)))
 
     def weighted(theta: float, v: float) -> float:
         gap = AT_REST + amplitude * np.cos(theta)
-        return cosine(theta, v) * float(tangential_stiffness(CONTACT, separation=gap) / at_rest)
+        return cosine(theta, v) * float(cube_tangential_stiffness(CONTACT, separation=gap) / at_rest)
 
     for model, integrand in ((Kinematic(), cosine), (Dong2015FullPeriod(), weighted)):
         crowded = [v / (OMEGA * amplitude) for v in speeds]
@@ -123,7 +123,7 @@ def test_gaussian_heights_are_balanced_too() -> None:
         heights=GaussianHeights(),
         asperity=ASPERITY_LAWS["dong_2015"],
     )
-    motion = harmonic_motion(contact, normal_load=LOAD, vibration_amplitude=2.5e-6, frequency=FREQUENCY)
+    motion = sinusoidal_motion(contact, normal_load=LOAD, vibration_amplitude=2.5e-6, frequency=FREQUENCY)
     balanced = load_balanced_motion(contact, motion)
     gaps = separation(contact, normal_load=LOAD) + balanced.displacement
     assert np.mean(normal_force(contact, separation=gaps)) == approx(LOAD, rel=1e-10)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from sonolube.errors import InvalidInput
-from sonolube.files import write_whole
+from sonolube.files import write_atomically
 from sonolube.measurement.recordings import delimited, matlab, tdms
 from sonolube.measurement.recordings import hdf5 as hierarchical
 from sonolube.measurement.recordings import lvm as labview_text
@@ -140,7 +140,7 @@ def write_recording(recording: "xr.Dataset", *, path: Path) -> Path:
     InvalidInput
         If the place cannot be written to.
     """
-    return write_whole(path, bytes(recording.to_netcdf(engine="h5netcdf")))
+    return write_atomically(path, bytes(recording.to_netcdf(engine="h5netcdf")))
 
 
 def format_of(path: Path) -> str:

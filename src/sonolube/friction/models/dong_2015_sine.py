@@ -1,4 +1,4 @@
-"""Friction of the cube model: a contact stiffness that falls while vibration holds the surfaces apart."""
+"""Friction ratio of the cube model of Dong (2015) under a sine about the separation at rest, and its deformation."""
 
 import warnings
 
@@ -6,16 +6,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
-from sonolube.contact.cube import tangential_stiffness
-from sonolube.contact.half_period_mean import separating_half_period_mean, separating_half_period_rule
+from sonolube.contact.cube import cube_tangential_stiffness
 from sonolube.contact.rough import RoughContact, separation
+from sonolube.contact.separating_half_period import separating_half_period_mean, separating_half_period_quadrature
 from sonolube.errors import ModelRangeWarning, OutsideRange
 
 
 def dong_2015_half_period_ratio(
     contact: RoughContact, *, normal_load: ArrayLike, vibration_amplitude: ArrayLike
 ) -> Floats:
-    """Return friction with normal vibration over friction without. []
+    r"""Return the friction ratio under sinusoidal normal vibration by the cube over the separating half period. []
 
     Parameters
     ----------
@@ -28,31 +28,39 @@ def dong_2015_half_period_ratio(
     Returns
     -------
     ndarray, shape of the broadcast arguments
-        From 1 at no vibration downward.
+        1 without vibration, less with it.
 
     Raises
     ------
     InvalidInput
         If a load is not positive, or an amplitude negative.
     OutsideRange
-        If no separation of the height law's range carries a load, or no asperity.
+        If no separation in the range of the height distribution carries a load, or no asperity is in contact.
 
     Notes
     -----
-    The tangential stiffness averaged over the half period in which the displacement is positive, over that at rest; the
-    deformation of the contact stays and cancels. Through the other half the surfaces are taken to stick. Neither speed
-    nor frequency matters in this model, and the load hardly.
+    .. math::
+
+        \frac{F_1}{F_0} = \frac1\pi \int_0^\pi \frac{k_t(d + a \sin\theta)}{k_t(d)}\, \mathrm{d}\theta \tag{D 3.15}
+
+    The average of the tangential stiffness over the half period in which the displacement is positive, over that at
+    rest; the tangential deformation is constant and cancels. In the other half period the surfaces are assumed to
+    stick. Speed and frequency have no effect in this model, and the load little.
+
+    See Also
+    --------
+    Dong2015HalfPeriod : The same for any motion of the gap.
 
     References
     ----------
     .. [1] D 3.15 with u = 0.
     """
     d = separation(contact, normal_load=normal_load)
-    at_rest = tangential_stiffness(contact, separation=d)
+    at_rest = cube_tangential_stiffness(contact, separation=d)
     if np.any(at_rest == 0.0):
-        raise OutsideRange(f"normal_load of {np.min(normal_load):.3g} N is too small: no asperity carries it")
+        raise OutsideRange(f"normal_load of {np.min(normal_load):.3g} N is too small: no asperity is in contact")
     mean = separating_half_period_mean(
-        lambda gap: tangential_stiffness(contact, separation=gap),
+        lambda gap: cube_tangential_stiffness(contact, separation=gap),
         separation=d,
         vibration_amplitude=vibration_amplitude,
     )
@@ -60,7 +68,7 @@ def dong_2015_half_period_ratio(
 
 
 def steady_deformation(contact: RoughContact, *, normal_load: ArrayLike, friction_force: ArrayLike) -> Floats:
-    """Return the deformation at which the contact carries a friction force. [m]
+    r"""Return the tangential deformation of the cube in steady sliding. [m]
 
     Parameters
     ----------
@@ -73,19 +81,23 @@ def steady_deformation(contact: RoughContact, *, normal_load: ArrayLike, frictio
     Returns
     -------
     ndarray, shape of the broadcast arguments
-        About half a nanometre for D's contacts at 40 N.
+        About half a nanometre for the contacts of D at 40 N.
 
     Raises
     ------
     InvalidInput
         If a load is not positive, or a force not finite.
 
+    Notes
+    -----
+    .. math:: \delta = \frac{F_t}{k_t} \tag{D 3.11}
+
     References
     ----------
     .. [1] D 3.10 at rest, and 3.11.
     """
     d = separation(contact, normal_load=normal_load)
-    return require_finite(friction_force=friction_force) / tangential_stiffness(contact, separation=d)  # D 3.11
+    return require_finite(friction_force=friction_force) / cube_tangential_stiffness(contact, separation=d)  # D 3.11
 
 
 def dong_2015_deformation_ratio(
@@ -97,7 +109,7 @@ def dong_2015_deformation_ratio(
     deformation: ArrayLike,
     phase: ArrayLike = np.pi / 2,
 ) -> Floats:
-    """Return friction with vibration over friction without, in-plane motion added to the deformation as printed. []
+    r"""Return the friction ratio by the cube with the in-plane motion added to the deformation, as D prints it. []
 
     Parameters
     ----------
@@ -109,9 +121,9 @@ def dong_2015_deformation_ratio(
     in_plane_amplitude : array_like
         Amplitude of the vibration along the sliding direction. [m]
     deformation : array_like
-        Deformation of the contact in steady sliding, `steady_deformation`. [m]
+        Tangential deformation of the contact in steady sliding, as by `steady_deformation`. [m]
     phase : array_like
-        Lag of the normal motion behind the in-plane one; a quarter turn as D prints it. [rad]
+        Lag of the normal motion behind the in-plane one; pi/2 as D prints it. [rad]
 
     Returns
     -------
@@ -122,17 +134,19 @@ def dong_2015_deformation_ratio(
     InvalidInput
         If a load or deformation is not positive, an amplitude negative, or a value not finite.
     OutsideRange
-        If no separation of the height law's range carries a load.
+        If no separation in the range of the height distribution carries a load.
 
     Warns
     -----
     ModelRangeWarning
-        If an in-plane amplitude exceeds the deformation it is added to: a contact so deformed would slide.
+        If an in-plane amplitude exceeds the deformation, beyond which the contact slides.
 
     Notes
     -----
-    With the printed phase the in-plane motion is forward in one quarter and backward in the next, and leaves the mean
-    as it is. To let in-plane vibration act, take it into the relative velocity: `dahl_under_vibration`.
+    .. math:: \frac{F_1}{F_0} = \frac2T \int_{T/2} \frac{k_t(d + v)}{k_t(d)}\, \frac{\delta + u}{\delta}\, \mathrm{d}t
+
+    With the printed phase the contributions of the in-plane motion u in the two quarters of the half period cancel.
+    In-plane vibration that enters the relative velocity has an effect: `dahl_under_vibration`.
 
     References
     ----------
@@ -144,7 +158,7 @@ def dong_2015_deformation_ratio(
     if np.any(u_peak > delta):
         warnings.warn(
             f"in_plane_amplitude of up to {np.max(u_peak):.3g} m is added to a deformation of {np.min(delta):.3g} m,"
-            " more than the contact can carry without sliding; dahl_under_vibration lets it slide",
+            " beyond which the contact slides; use dahl_under_vibration",
             ModelRangeWarning,
             stacklevel=2,
         )
@@ -152,8 +166,9 @@ def dong_2015_deformation_ratio(
         require_positive(separation=separation(contact, normal_load=normal_load)),
         require_non_negative(normal_amplitude=normal_amplitude),
     )
-    sines, weights = separating_half_period_rule()
+    sines, weights = separating_half_period_quadrature()
     d, v_peak, strain = (array[..., np.newaxis] for array in (d, v_peak, u_peak * np.cos(lag) / delta))
-    k_ratio = tangential_stiffness(contact, separation=d + v_peak * sines) / tangential_stiffness(contact, separation=d)
+    at_rest = cube_tangential_stiffness(contact, separation=d)
+    k_ratio = cube_tangential_stiffness(contact, separation=d + v_peak * sines) / at_rest
     # of u/delta = (u_peak/delta) sin(theta + phase) the part with cos(theta) is odd about the peak and averages out
     return k_ratio * (1 + strain * sines) @ weights  # D 3.15

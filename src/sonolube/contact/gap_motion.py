@@ -1,4 +1,7 @@
-"""How the gap of a contact moves over one period of vibration."""
+"""Periodic motions of the gap of a contact: one sampled period, batches of Fourier coefficients, and period averages.
+
+The record in which `sonolube.dynamics` hands over a vibration and which the models of friction and wear take.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -17,23 +20,23 @@ from sonolube.checks import (
 from sonolube.contact.rough import RoughContact, normal_force, normal_stiffness, separation
 from sonolube.errors import InvalidInput, OutsideRange
 
-_COARSEST, _FINEST = 256, 65536  # samples a period between which a mean is refined
+_MINIMUM_SAMPLES, _MAXIMUM_SAMPLES = 256, 65536  # per period, between which a period average is refined
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class GapMotion:
-    """One period of a steady motion along the surface normal.
+    """One period of a steady-state motion of the gap along the surface normal, at uniform phases.
 
     Parameters
     ----------
     displacement : ndarray, shape (n,)
-        Displacement from rest under the load, positive for wider gaps, at n uniform phases from 0. [m]
+        Displacement from the position at rest under the load, positive for wider gaps, at n uniform phases from 0. [m]
     normal_force : ndarray, shape (n,)
         Normal contact force at these phases. [N]
     frequency : float
         Frequency of the vibration. [Hz]
     normal_load : float
-        Dead load, the normal force at rest. [N]
+        Dead load, which is the normal force at rest. [N]
 
     Raises
     ------
@@ -62,7 +65,7 @@ class GapMotion:
 
     @property
     def velocity(self) -> Floats:
-        """Velocity along the surface normal, positive for opening gaps. [m/s]"""
+        """Velocity along the surface normal by spectral differentiation, positive for opening gaps. [m/s]"""
         n = self.displacement.size
         harmonics = np.fft.rfft(self.displacement) * (2j * np.pi * self.frequency) * np.arange(n // 2 + 1)
         if n % 2 == 0:
@@ -70,7 +73,17 @@ class GapMotion:
         return np.fft.irfft(harmonics, n)
 
     def resampled(self, samples: int) -> "GapMotion":
-        """Return the same motion at another number of phases, its harmonics kept."""
+        """Return the same motion at another number of phases, by its harmonics.
+
+        Parameters
+        ----------
+        samples : int
+            Number of uniform phases.
+
+        Returns
+        -------
+        GapMotion
+        """
         return GapMotion(
             displacement=_resampled(self.displacement, samples),
             normal_force=np.maximum(_resampled(self.normal_force, samples), 0.0),
@@ -80,13 +93,13 @@ class GapMotion:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class HarmonicMotions:
-    r"""Steady motions of the gap by their harmonics, one row to a motion.
+class GapMotionBatch:
+    r"""Fourier coefficients of many steady-state motions of the gap, one row per motion.
 
     Parameters
     ----------
     mean_displacement : ndarray, shape (m,)
-        Mean displacement from rest under the load. [m]
+        Mean displacement from the position at rest under the load. [m]
     harmonics : ndarray of complex, shape (m, K)
         Complex amplitudes X_k of the displacement, in m.
     frequency : ndarray, shape (m,)
@@ -108,26 +121,26 @@ class HarmonicMotions:
 
     def __post_init__(self) -> None:
         mean = np.atleast_1d(require_finite(mean_displacement=self.mean_displacement))
-        swing = np.atleast_2d(require_finite_complex(harmonics=self.harmonics))
+        coefficients = np.atleast_2d(require_finite_complex(harmonics=self.harmonics))
         f = np.atleast_1d(require_positive(frequency=self.frequency))
-        if not mean.size == f.size == swing.shape[0] or mean.ndim != 1 or swing.ndim != 2:
+        if not mean.size == f.size == coefficients.shape[0] or mean.ndim != 1 or coefficients.ndim != 2:
             raise InvalidInput(
-                "mean_displacement, frequency and harmonics must have one row to a motion, got shapes"
-                f" {mean.shape}, {f.shape} and {swing.shape}"
+                "mean_displacement, frequency and harmonics must have one row per motion, got shapes"
+                f" {mean.shape}, {f.shape} and {coefficients.shape}"
             )
-        for name, value in (("mean_displacement", mean), ("harmonics", swing), ("frequency", f)):
+        for name, value in (("mean_displacement", mean), ("harmonics", coefficients), ("frequency", f)):
             object.__setattr__(self, name, value)
 
 
-def harmonic_motion(
+def sinusoidal_motion(
     contact: RoughContact,
     *,
     normal_load: ArrayLike,
     vibration_amplitude: ArrayLike,
     frequency: ArrayLike,
-    samples: int = _COARSEST,
+    samples: int = _MINIMUM_SAMPLES,
 ) -> GapMotion:
-    """Return a prescribed sine about rest, its mean not moved by the vibration.
+    r"""Return a sinusoidal motion of prescribed amplitude about the separation at rest.
 
     Parameters
     ----------
@@ -139,7 +152,7 @@ def harmonic_motion(
     frequency : float
         Frequency of the vibration. [Hz]
     samples : int
-        Phases at which the motion is kept, widest gap first.
+        Number of phases, the widest gap first.
 
     Returns
     -------
@@ -150,12 +163,18 @@ def harmonic_motion(
     InvalidInput
         If the load or frequency is not positive, or the amplitude negative.
     OutsideRange
-        If no separation carries the load, or the amplitude leaves the height law's range.
+        If no separation carries the load, or the motion leaves the range of the height distribution.
 
     Notes
     -----
-    Only a stiff mount holds the mean: the mean normal force then exceeds the load. Under a dead load the mean rises,
-    `load_balanced_motion`.
+    .. math:: x(t) = a \cos 2 \pi f t, \qquad F_n(t) = F_n(d + x)
+
+    The mean gap stays that at rest, so that the mean normal force exceeds the load: only a stiff mount holds the gap in
+    this way. Under a dead load the mean gap rises, see `load_balanced_motion`.
+
+    See Also
+    --------
+    load_balanced_motion : The same vibration with a mean normal force equal to the load.
     """
     load, a = require_positive(normal_load=normal_load), require_non_negative(vibration_amplitude=vibration_amplitude)
     x = a * np.cos(2 * np.pi * np.arange(samples) / samples)
@@ -168,7 +187,7 @@ def harmonic_motion(
 
 
 def load_balanced_motion(contact: RoughContact, motion: GapMotion) -> GapMotion:
-    """Return the same vibration about the mean gap at which the mean contact force is the load.
+    r"""Return the same vibration about the mean gap at which the mean normal force equals the load.
 
     Parameters
     ----------
@@ -183,14 +202,21 @@ def load_balanced_motion(contact: RoughContact, motion: GapMotion) -> GapMotion:
     Raises
     ------
     OutsideRange
-        If the balance lies outside the height law's range.
+        If the balanced gap lies outside the range of the height distribution.
 
     Notes
     -----
-    A sine of amplitude a in a contact of decay length l rises by l ln I0(a/l).
+    .. math:: \frac1T \int_0^T F_n(d + \bar x + \tilde x(t))\, \mathrm{d}t = F_N
+
+    is solved for the mean displacement by Newton's method. With exponential heights a sine of amplitude a rises by
+    :math:`\bar x = l \ln I_0(a/l)`, l being the decay length of the contact force.
+
+    See Also
+    --------
+    sinusoidal_motion : A sine about the separation at rest.
     """
     d, x = separation(contact, normal_load=motion.normal_load), motion.displacement
-    x = x + max(0.0, -float(np.min(x)))  # to start where every gap carries something sensible
+    x = x + max(0.0, -float(np.min(x)))  # start with no gap narrower than at rest, within range of the forces
     for _ in range(50):
         forces, slopes = normal_force(contact, separation=d + x), normal_stiffness(contact, separation=d + x)
         # Newton on the logarithm of the mean force, exact in one step for exponential heights
@@ -199,7 +225,9 @@ def load_balanced_motion(contact: RoughContact, motion: GapMotion) -> GapMotion:
         if abs(excess) < 1e-13:
             break
     else:
-        raise OutsideRange(f"normal_load of {motion.normal_load:.3g} N is not balanced at any gap of this motion")
+        raise OutsideRange(
+            f"normal_load of {motion.normal_load:.3g} N is balanced by no mean gap of this motion; reduce the amplitude"
+        )
     return GapMotion(
         displacement=x,
         normal_force=normal_force(contact, separation=d + x),
@@ -208,8 +236,8 @@ def load_balanced_motion(contact: RoughContact, motion: GapMotion) -> GapMotion:
     )
 
 
-def open_separation(contact: RoughContact, motion: GapMotion) -> Floats:
-    """Return the separation at rest about which a motion takes place, if it never closes the gap. [m]
+def require_open_gap(contact: RoughContact, motion: GapMotion) -> Floats:
+    """Return the separation at rest of a motion, and refuse a motion that closes the gap. [m]
 
     Parameters
     ----------
@@ -226,25 +254,27 @@ def open_separation(contact: RoughContact, motion: GapMotion) -> Floats:
         If the mean planes meet at some phase, or no separation carries the load.
     """
     d = separation(contact, normal_load=motion.normal_load)
-    nearest = float(d + np.min(motion.displacement))
-    if nearest <= 0:
+    smallest = float(d + np.min(motion.displacement))
+    if smallest <= 0:
         raise OutsideRange(
-            f"the motion closes the gap: from a separation of {float(d):.3g} m at rest it comes to {nearest:.3g} m."
-            " A smaller amplitude, or a mean gap that balances the load, keeps it open"
+            f"the motion closes the gap: its smallest separation is {smallest:.3g} m, from {float(d):.3g} m at rest."
+            " Reduce the amplitude, or use the load-balanced mean gap"
         )
     return d
 
 
-def converged_mean(mean: Callable[[GapMotion], Floats], motion: GapMotion, *, tolerance: float = 1e-5) -> Floats:
-    """Return a mean over the period, taken at ever more phases until it stands.
+def richardson_period_mean(
+    mean: Callable[[GapMotion], Floats], motion: GapMotion, *, tolerance: float = 1e-5
+) -> Floats:
+    r"""Return an average over the period by doubling the samples and Richardson's extrapolation.
 
     Parameters
     ----------
     mean : callable
-        Gives the mean, or several, for a motion; its error must fall with the square of the phases' distance.
+        Returns the average, or several, for a sampled motion, with an error of second order in the phase step.
     motion : GapMotion
     tolerance : float
-        Largest error left, relative to the larger of the mean and one.
+        Largest error of the result, relative to the larger of the average and one.
 
     Returns
     -------
@@ -253,30 +283,35 @@ def converged_mean(mean: Callable[[GapMotion], Floats], motion: GapMotion, *, to
     Raises
     ------
     OutsideRange
-        If 65536 phases do not suffice.
+        If the average does not converge with 65536 phases.
+
+    Notes
+    -----
+    With the averages m_n at n phases the result is :math:`m_{2n} + (m_{2n} - m_n)/3`, once the correction is within the
+    tolerance.
     """
-    samples = max(_COARSEST, motion.displacement.size)
+    samples = max(_MINIMUM_SAMPLES, motion.displacement.size)
     coarse = mean(motion.resampled(samples))
-    while samples < _FINEST:
+    while samples < _MAXIMUM_SAMPLES:
         samples *= 2
         fine = mean(motion.resampled(samples))
         change = fine - coarse
-        # a third of the change is the error that Richardson's extrapolation then removes to the next order
+        # a third of the change is the error, which Richardson's extrapolation removes to the next order
         if np.all(np.abs(change) / 3 < tolerance * np.maximum(np.abs(fine), 1.0)):
             return fine + change / 3
         coarse = fine
-    raise OutsideRange(f"the mean over a period does not settle with {samples} samples of this motion")
+    raise OutsideRange(f"the average over a period does not converge with {samples} samples of this motion")
 
 
-def shifted(values: Floats, *, phase: float) -> Floats:
-    """Return the varying part of a sampled period, later by a phase.
+def delayed_oscillation(values: Floats, *, phase: float) -> Floats:
+    """Return the oscillating part of a sampled period, delayed by a phase.
 
     Parameters
     ----------
     values : ndarray, shape (n,)
         Samples at uniform phases.
     phase : float
-        How much later. [rad]
+        Phase lag of the fundamental. [rad]
 
     Returns
     -------
@@ -288,10 +323,11 @@ def shifted(values: Floats, *, phase: float) -> Floats:
 
 
 def _resampled(values: Floats, samples: int) -> Floats:
+    """Return a sampled period at another number of uniform phases, by its harmonics."""
     n = values.size
     if samples == n:
         return values
     harmonics = np.fft.rfft(values)
     if n % 2 == 0 and samples > n:
-        harmonics[-1] /= 2  # shared between both signs of the highest frequency, which now stand apart
+        harmonics[-1] /= 2  # one of the two signs of the highest frequency, which are now separate
     return np.fft.irfft(harmonics, samples) * (samples / n)

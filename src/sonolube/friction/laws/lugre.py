@@ -1,4 +1,4 @@
-"""The LuGre law: bristles that bend, slip at a speed-dependent limit, and drag."""
+"""LuGre friction: elastic bristles with a Stribeck curve as slip limit, bristle damping and viscous friction."""
 
 from dataclasses import dataclass
 
@@ -8,32 +8,47 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.friction.history import along_rows, require_increasing
+from sonolube.friction.laws.sampled_motion import integrate_rows, require_increasing
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class LuGreFriction:
-    """The LuGre law for one contact at one load.
+    r"""LuGre law of friction for one contact at a constant normal load.
 
     Parameters
     ----------
     coulomb_friction_force : float
-        Friction of fast dry sliding, F_c. [N]
+        Friction force of fast sliding without viscous friction, F_c. [N]
     static_friction_force : float
-        Friction of slow sliding, F_s, at least F_c. [N]
+        Friction force of slow sliding, F_s, at least F_c. [N]
     stribeck_velocity : float
-        Velocity over which the one passes into the other, v_s. [m/s]
+        Velocity of the transition between both, v_s. [m/s]
     bristle_stiffness : float
-        Stiffness of the bristles together. [N/m]
+        Stiffness of all bristles, sigma_0. [N/m]
     bristle_damping : float
-        Damping of the bristles' bending. [N s/m]
+        Damping of the bristle deflection, sigma_1. [N s/m]
     viscous_coefficient : float
-        Viscous drag beside them. [N s/m]
+        Coefficient of viscous friction, sigma_2. [N s/m]
 
     Raises
     ------
     InvalidInput
         If a force, velocity or stiffness is not positive, a damping negative, or F_s below F_c.
+
+    Notes
+    -----
+    .. math::
+
+        \frac{\mathrm{d}z}{\mathrm{d}t} &= v - \frac{|v|}{g(v)}\, z, \qquad
+        \sigma_0\, g(v) = F_c + (F_s - F_c)\, e^{-(v/v_s)^2} \tag{D 1.4} \\
+        F &= \sigma_0 z + \sigma_1 \frac{\mathrm{d}z}{\mathrm{d}t} + \sigma_2 v \tag{D 1.5}
+
+    with the mean bristle deflection z and the sliding velocity v, whose modulus D 1.4 omits. Without damping, viscous
+    friction and Stribeck effect this is Dahl's law.
+
+    See Also
+    --------
+    DahlFriction : The law without Stribeck effect and damping.
 
     References
     ----------
@@ -65,7 +80,7 @@ class LuGreFriction:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class LuGreHistory:
-    """What the bristles did along a motion.
+    """Bristle deflection and friction force along sampled motions.
 
     Parameters
     ----------
@@ -80,7 +95,7 @@ class LuGreHistory:
 
 
 def lugre_steady_friction(law: LuGreFriction, *, relative_velocity: ArrayLike) -> Floats:
-    """Return the friction force of steady sliding. [N]
+    r"""Return the friction force of steady sliding by the LuGre law. [N]
 
     Parameters
     ----------
@@ -99,11 +114,13 @@ def lugre_steady_friction(law: LuGreFriction, *, relative_velocity: ArrayLike) -
 
     Notes
     -----
-    Zero at zero velocity, where any deflection up to F_s over the stiffness is steady.
+    .. math:: F = \left[ F_c + (F_s - F_c)\, e^{-(v/v_s)^2} \right] \mathrm{sgn}\, v + \sigma_2 v
+
+    Zero is returned at zero velocity, where any deflection up to F_s over the stiffness is steady.
 
     References
     ----------
-    .. [1] D 1.4 and 1.5 with the modulus of v that D omits.
+    .. [1] D 1.4 and 1.5, with the modulus of v that D omits.
     """
     v = require_finite(relative_velocity=relative_velocity)
     return law.bristle_stiffness * _steady_deflection(law, v) * np.sign(v) + law.viscous_coefficient * v
@@ -112,7 +129,7 @@ def lugre_steady_friction(law: LuGreFriction, *, relative_velocity: ArrayLike) -
 def lugre_friction_history(
     law: LuGreFriction, *, time: ArrayLike, relative_velocity: ArrayLike, bristle_deflection: ArrayLike = 0.0
 ) -> LuGreHistory:
-    """Return deflection and friction force along any sampled motion.
+    """Return the bristle deflection and the friction force along sampled motions by the LuGre law.
 
     Parameters
     ----------
@@ -120,7 +137,7 @@ def lugre_friction_history(
     time : array_like, shape (n,)
         Increasing times of the samples. [s]
     relative_velocity : array_like, shape (..., n)
-        Sliding velocity at those times. [m/s]
+        Sliding velocity at these times. [m/s]
     bristle_deflection : array_like, shape (...)
         Mean deflection of the bristles at the first sample. [m]
 
@@ -135,18 +152,22 @@ def lugre_friction_history(
 
     Notes
     -----
-    Each step takes the mean of its two velocities and follows the deflection exactly, so that no step is too long for
-    the stiffness: a deflection within F_s over the stiffness stays within it. The error is second order in the step.
+    Each step integrates the deflection exactly at the mean of its two velocities, so that no step is too long for the
+    stiffness: a deflection within F_s over the stiffness remains within it. The error is second order in the step.
+
+    See Also
+    --------
+    lugre_under_vibration : Mean friction over the steady period of a vibration.
 
     References
     ----------
-    .. [1] D 1.4 and 1.5 with the modulus of v that D omits.
+    .. [1] D 1.4 and 1.5, with the modulus of v that D omits.
     """
     times = require_increasing(time=time)
     v = require_finite(relative_velocity=relative_velocity)
     start = require_finite(bristle_deflection=bristle_deflection)
-    z = along_rows(
-        _march,
+    z = integrate_rows(
+        _deflection_history,
         times,
         v,
         start,
@@ -160,12 +181,13 @@ def lugre_friction_history(
 
 
 def _steady_deflection(law: LuGreFriction, v: Floats) -> Floats:
+    """Return the deflection g(v) of steady sliding. [m]"""
     F_c, F_s = law.coulomb_friction_force, law.static_friction_force
     return (F_c + (F_s - F_c) * np.exp(-((v / law.stribeck_velocity) ** 2))) / law.bristle_stiffness
 
 
 @numba.njit(cache=True)
-def _march(
+def _deflection_history(
     times: Floats,
     velocities: Floats,
     start: float,
@@ -173,12 +195,13 @@ def _march(
     sticking_limit: float,
     stribeck_velocity: float,
 ) -> Floats:
+    """Return the deflection along one sampled motion; the limits are the forces F_c and F_s over the stiffness."""
     deflection = np.empty_like(velocities)
     deflection[0] = z = start
     for k in range(times.size - 1):
         v = 0.5 * (velocities[k] + velocities[k + 1])
         g = sliding_limit + (sticking_limit - sliding_limit) * np.exp(-((v / stribeck_velocity) ** 2))
-        settled = np.expm1(-abs(v) * (times[k + 1] - times[k]) / g)
-        z += settled * (z - np.sign(v) * g)
+        relaxation = np.expm1(-abs(v) * (times[k + 1] - times[k]) / g)
+        z += relaxation * (z - np.sign(v) * g)
         deflection[k + 1] = z
     return deflection

@@ -1,4 +1,4 @@
-"""Means over the half of a vibration's period in which the surfaces stand wider apart than at rest."""
+"""Averages over the separating half period, in which the gap is wider than at rest (D 3.15)."""
 
 from collections.abc import Callable
 from functools import cache
@@ -15,12 +15,12 @@ _BLOCK = 4096  # points whose samples together still fit a processor's cache
 def separating_half_period_mean(
     value: Callable[[Floats], Floats], *, separation: ArrayLike, vibration_amplitude: ArrayLike
 ) -> Floats:
-    """Return the mean of a quantity of the gap over the half period in which the displacement is positive.
+    r"""Return the average of a function of the gap over the separating half period of a sine.
 
     Parameters
     ----------
     value : callable
-        Gives the quantity, elementwise, for an array of separations.
+        Returns the quantity g, elementwise, for an array of separations.
     separation : array_like
         Separation about which the surfaces vibrate. [m]
     vibration_amplitude : array_like, broadcast against `separation`
@@ -38,13 +38,23 @@ def separating_half_period_mean(
 
     Notes
     -----
-    The separating half never closes the gap, whatever the amplitude; the other half does where the amplitude reaches
-    the separation, unless the mean separation rises under vibration. The mean is taken about the separation given.
+    .. math:: \bar g = \frac1\pi \int_0^\pi g(d + a \sin\theta)\, \mathrm{d}\theta
+
+    by Gauss-Legendre quadrature in the phase. The separating half period does not close the gap at any amplitude; the
+    other half does where the amplitude reaches the separation, unless the mean gap rises under vibration.
+
+    See Also
+    --------
+    sampled_separating_mean : The same for a sampled motion.
+
+    References
+    ----------
+    .. [1] D 3.15 and 3.28.
     """
     d, a = np.broadcast_arrays(
         require_positive(separation=separation), require_non_negative(vibration_amplitude=vibration_amplitude)
     )
-    sines, weights = separating_half_period_rule()
+    sines, weights = separating_half_period_quadrature()
     gaps, amplitudes, means = d.ravel(), a.ravel(), np.empty(d.size)
     for start in range(0, d.size, _BLOCK):
         block = slice(start, start + _BLOCK)
@@ -52,15 +62,15 @@ def separating_half_period_mean(
     return means.reshape(d.shape)
 
 
-def separating_mean(value: Callable[[Floats], Floats], *, displacement: ArrayLike) -> Floats:
-    """Return the mean of a quantity over the part of a sampled period in which the displacement is positive.
+def sampled_separating_mean(value: Callable[[Floats], Floats], *, displacement: ArrayLike) -> Floats:
+    """Return the average of a function of the displacement over the part of a sampled period in which it is positive.
 
     Parameters
     ----------
     value : callable
-        Gives the quantity, elementwise, for an array of displacements.
+        Returns the quantity, elementwise, for an array of displacements.
     displacement : array_like, shape (n,)
-        Displacement from rest at uniform phases of one period. [m]
+        Displacement from the position at rest, at uniform phases of one period. [m]
 
     Returns
     -------
@@ -74,29 +84,33 @@ def separating_mean(value: Callable[[Floats], Floats], *, displacement: ArrayLik
 
     Notes
     -----
-    Displacement and quantity are taken as linear between samples, so that the error falls with the square of their
-    distance.
+    Displacement and quantity are interpolated linearly between samples: second order in the phase step.
+
+    See Also
+    --------
+    separating_half_period_mean : The same for a sine.
     """
     x = require_finite(displacement=displacement)
     before, values = np.roll(x, 1), value(np.maximum(x, 0.0))  # the rest of the period does not count
     values_before = np.roll(values, 1)
     rise = np.maximum(x, before) - np.minimum(x, before)
-    share = np.clip(np.maximum(x, before) / np.where(rise > 0, rise, 1.0), 0.0, 1.0)  # of the step spent above rest
-    share = np.where(rise > 0, share, np.where(x > 0, 1.0, 0.0))
+    fraction = np.clip(np.maximum(x, before) / np.where(rise > 0, rise, 1.0), 0.0, 1.0)  # of the step with x > 0
+    fraction = np.where(rise > 0, fraction, np.where(x > 0, 1.0, 0.0))
     above, below = np.where(x > before, values, values_before), np.where(x > before, values_before, values)
-    means = above + (below - above) * share / 2
-    time = np.sum(share)
-    return np.asarray(np.sum(share * means) / time if time > 0 else value(np.zeros(1))[0])
+    means = above + (below - above) * fraction / 2
+    time = np.sum(fraction)
+    return np.asarray(np.sum(fraction * means) / time if time > 0 else value(np.zeros(1))[0])
 
 
 @cache
-def separating_half_period_rule() -> tuple[Floats, Floats]:
-    """Return displacements over amplitude, and the weights with which to average over the separating half period.
+def separating_half_period_quadrature() -> tuple[Floats, Floats]:
+    """Return the nodes and weights of a Gauss-Legendre rule for averages over the separating half period of a sine.
 
     Returns
     -------
     sines, weights : ndarray
-        Gauss-Legendre in the phase from rest to the peak, which the way back mirrors; the weights sum to 1.
+        Displacements over the amplitude at phases from rest to the peak, whose mirror images are the way back, and
+        weights that sum to 1.
     """
     nodes, weights = np.polynomial.legendre.leggauss(_NODES)
     sines, weights = np.sin((nodes + 1) * np.pi / 4), weights / 2

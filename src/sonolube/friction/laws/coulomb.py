@@ -1,4 +1,4 @@
-"""Coulomb's law: friction that knows the load and the direction of sliding, and nothing else."""
+"""Coulomb friction: a force in proportion to the normal load, opposed to the sliding velocity."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ from sonolube.checks import Floats, require_finite, require_non_negative, requir
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class CoulombFriction:
-    """Coulomb's law for one pair of surfaces.
+    """Coulomb's law of friction for one pair of surfaces.
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ class CoulombFriction:
 
 
 def coulomb_friction(law: CoulombFriction, *, normal_load: ArrayLike, relative_velocity: ArrayLike) -> Floats:
-    """Return the friction force that opposes a sliding motion. [N]
+    r"""Return the friction force by Coulomb's law. [N]
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def coulomb_friction(law: CoulombFriction, *, normal_load: ArrayLike, relative_v
     Returns
     -------
     ndarray, shape of the broadcast arguments
-        Positive for positive velocity: the force on the counterpart.
+        Force on the counterpart, positive for positive velocity.
 
     Raises
     ------
@@ -52,7 +52,9 @@ def coulomb_friction(law: CoulombFriction, *, normal_load: ArrayLike, relative_v
 
     Notes
     -----
-    Zero at zero velocity, where the law leaves the force between minus and plus the limit open.
+    .. math:: F = \mu F_N\, \mathrm{sgn}\, v \tag{D 1.2}
+
+    Zero is returned at zero velocity, where the law admits any force up to the limit.
 
     References
     ----------
@@ -64,7 +66,7 @@ def coulomb_friction(law: CoulombFriction, *, normal_load: ArrayLike, relative_v
 
 
 def friction_coefficient(*, friction_force: ArrayLike, normal_load: ArrayLike) -> Floats:
-    """Return friction force over normal load. []
+    """Return the coefficient of friction, friction force over normal load. []
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Metal forming under vibration: estimates of how much less stress a metal flows at."""
+"""Metal forming under vibration: estimates of the reduction of flow stress by superposition and acoustic softening."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -8,21 +8,22 @@ from sonolube.checks import Floats, require_non_negative, require_positive
 ZINC_STRESS_RATIO = 0.6
 """Flow stress of a zinc single crystal under ultrasound over that without. []
 
-The 40 % less force of F. Blaha, B. Langenecker, Naturwissenschaften 42, 556 (1955). doi:10.1007/BF00623773; in D 2.4.1.
-The crystal, not metals at large: no constant of `softened_stress_ratio` follows without the intensity in it."""
+The force reduction of 40 % of F. Blaha, B. Langenecker, Naturwissenschaften 42, 556 (1955). doi:10.1007/BF00623773,
+cited in D 2.4.1. It holds for the single crystal, not for metals in general, and without the intensity in the crystal
+no constant of `acoustic_softening_ratio` follows from it."""
 
 
 def acoustic_intensity(
     *, density: ArrayLike, wave_speed: ArrayLike, frequency: ArrayLike, vibration_amplitude: ArrayLike
 ) -> Floats:
-    """Return the power per area of a travelling wave, rho c (2 pi f a)^2/2. [W/m2]
+    r"""Return the acoustic intensity of a travelling wave. [W/m2]
 
     Parameters
     ----------
     density : array_like
         Mass density of the metal. [kg/m3]
     wave_speed : array_like, broadcast against `density`
-        Speed of axial waves in it. [m/s]
+        Speed of axial waves in the metal. [m/s]
     frequency : array_like, broadcast against them
         Frequency of the vibration. [Hz]
     vibration_amplitude : array_like, broadcast against them
@@ -36,6 +37,10 @@ def acoustic_intensity(
     ------
     InvalidInput
         If an amplitude is negative, another value not positive, or a value not finite.
+
+    Notes
+    -----
+    .. math:: I = \tfrac12\, \rho c\, (2 \pi f a)^2
     """
     impedance = require_positive(density=density) * require_positive(wave_speed=wave_speed)
     velocity = 2 * np.pi * require_positive(frequency=frequency)
@@ -45,16 +50,16 @@ def acoustic_intensity(
 def superposed_mean_stress(
     *, yield_strength: ArrayLike, youngs_modulus: ArrayLike, strain_amplitude: ArrayLike
 ) -> Floats:
-    """Return the mean stress of a metal that flows under an oscillating strain: an estimate. [Pa]
+    r"""Return an estimate of the mean flow stress of a metal under an oscillating strain, by stress superposition. [Pa]
 
     Parameters
     ----------
     yield_strength : array_like
-        Stress at which it flows without vibration. [Pa]
+        Flow stress without vibration. [Pa]
     youngs_modulus : array_like, broadcast against `yield_strength`
         Young's modulus. [Pa]
     strain_amplitude : array_like, broadcast against them
-        Amplitude of the strain that the vibration imposes, over the length deformed. []
+        Amplitude of the strain by the vibration, over the deformed length. []
 
     Returns
     -------
@@ -67,9 +72,15 @@ def superposed_mean_stress(
 
     Notes
     -----
-    Estimate of the superposition effect alone: the metal neither softens nor hardens. Once a period it flows, otherwise
-    it unloads elastically by up to 2 E eps; the tool leaves it rather than pull. While it stays in touch the mean lies
-    E eps below yield. Forming between two periods is taken for slow.
+    .. math:: \bar\sigma = \sigma_y - E \varepsilon_a \quad (2 E \varepsilon_a \le \sigma_y)
+
+    Superposition alone, without softening or hardening: the metal flows once a period and unloads elastically by up to
+    2 E eps_a in between. Beyond that the tool loses contact for part of the period, and the mean is that of the
+    remaining compression. The deformation within one period is assumed small.
+
+    See Also
+    --------
+    acoustic_softening_ratio : The other effect.
 
     References
     ----------
@@ -77,22 +88,23 @@ def superposed_mean_stress(
     .. [2] D 2.4.1.
     """
     strength = require_positive(yield_strength=yield_strength)
-    swing = require_positive(youngs_modulus=youngs_modulus) * require_non_negative(strain_amplitude=strain_amplitude)
-    depth = strength / np.maximum(swing, np.finfo(np.float64).tiny * strength)
-    touching_until = np.arccos(1 - np.minimum(depth, 2.0))
-    partly = swing * ((depth - 1) * touching_until + np.sin(touching_until)) / np.pi
-    return np.where(depth >= 2, strength - swing, partly)
+    E = require_positive(youngs_modulus=youngs_modulus)
+    stress_amplitude = E * require_non_negative(strain_amplitude=strain_amplitude)
+    depth = strength / np.maximum(stress_amplitude, np.finfo(np.float64).tiny * strength)
+    contact_phase = np.arccos(1 - np.minimum(depth, 2.0))
+    partial = stress_amplitude * ((depth - 1) * contact_phase + np.sin(contact_phase)) / np.pi
+    return np.where(depth >= 2, strength - stress_amplitude, partial)
 
 
-def softened_stress_ratio(*, acoustic_intensity: ArrayLike, reference_intensity: ArrayLike) -> Floats:
-    """Return flow stress under ultrasound over that without, by acoustic softening: an estimate. []
+def acoustic_softening_ratio(*, acoustic_intensity: ArrayLike, reference_intensity: ArrayLike) -> Floats:
+    r"""Return an estimate of the flow stress under ultrasound over that without, by acoustic softening. []
 
     Parameters
     ----------
     acoustic_intensity : array_like
-        Power of the wave per area. [W/m2]
+        Acoustic intensity in the metal. [W/m2]
     reference_intensity : array_like, broadcast against `acoustic_intensity`
-        Intensity at which the metal would flow without load; from a test on that metal. [W/m2]
+        Intensity at which the metal flows without load, from a test on that metal. [W/m2]
 
     Returns
     -------
@@ -105,9 +117,14 @@ def softened_stress_ratio(*, acoustic_intensity: ArrayLike, reference_intensity:
 
     Notes
     -----
-    Estimate: the fall is taken in proportion to the amplitude, the square root of the intensity, as compression tests
-    found it, at any frequency (D 2.4.1: 15 kHz to 1.5 MHz). No mechanism is agreed upon, and tests that took the
-    superposition out found less.
+    .. math:: \frac{\bar\sigma}{\sigma} = \max\left( 1 - \sqrt{I/I_1},\, 0 \right)
+
+    A reduction in proportion to the amplitude, as in compression tests, independent of the frequency (D 2.4.1: 15 kHz
+    to 1.5 MHz). The mechanism is disputed, and tests that excluded superposition found a smaller effect.
+
+    See Also
+    --------
+    reference_intensity_from_test : The intensity I_1.
 
     References
     ----------
@@ -119,8 +136,8 @@ def softened_stress_ratio(*, acoustic_intensity: ArrayLike, reference_intensity:
     return np.asarray(np.maximum(1 - np.sqrt(relative), 0.0))
 
 
-def intensity_for_stress_ratio(*, stress_ratio: ArrayLike, acoustic_intensity: ArrayLike) -> Floats:
-    """Return the reference intensity that one test on a metal gives. [W/m2]
+def reference_intensity_from_test(*, stress_ratio: ArrayLike, acoustic_intensity: ArrayLike) -> Floats:
+    r"""Return the reference intensity of acoustic softening from one test on a metal. [W/m2]
 
     Parameters
     ----------
@@ -137,7 +154,11 @@ def intensity_for_stress_ratio(*, stress_ratio: ArrayLike, acoustic_intensity: A
     ------
     InvalidInput
         If a ratio does not lie below one, or a value is not positive and finite.
+
+    Notes
+    -----
+    .. math:: I_1 = \frac{I}{(1 - \bar\sigma/\sigma)^2}
     """
     ratio = require_positive(stress_ratio=stress_ratio)
-    fallen = require_positive(stress_ratio=1 - ratio)
-    return require_positive(acoustic_intensity=acoustic_intensity) / fallen**2
+    reduction = require_positive(stress_ratio=1 - ratio)
+    return require_positive(acoustic_intensity=acoustic_intensity) / reduction**2

@@ -1,4 +1,4 @@
-"""Sampled motions: their checks, and the marching of a scalar law along each of many."""
+"""Sampled motions: checks of the sample times, and the integration of a scalar friction law along many motions."""
 
 from collections.abc import Callable
 
@@ -10,12 +10,16 @@ from sonolube.errors import InvalidInput
 
 
 def require_increasing(*, time: ArrayLike) -> Floats:
-    """Return sample times as an array; refuse any that do not increase.
+    """Return sample times as an array; refuse times that do not increase.
 
     Parameters
     ----------
     time : array_like, shape (n,)
         Times of the samples. [s]
+
+    Returns
+    -------
+    ndarray, shape (n,)
 
     Raises
     ------
@@ -24,29 +28,29 @@ def require_increasing(*, time: ArrayLike) -> Floats:
     """
     times = require_finite(time=time)
     if times.ndim != 1 or times.size < 2:
-        raise InvalidInput(f"time must be one row of at least two samples, got shape {times.shape}")
+        raise InvalidInput(f"time must be one-dimensional with at least two samples, got shape {times.shape}")
     steps = np.diff(times)
     if not np.all(steps > 0):
-        late = int(np.argmin(steps > 0))
-        raise InvalidInput(f"time must increase, got {times[late + 1]!s} s after {times[late]!s} s")
+        first = int(np.argmin(steps > 0))
+        raise InvalidInput(f"time must increase, got {times[first + 1]!s} s after {times[first]!s} s")
     return times
 
 
-def along_rows(
-    march: Callable[..., Floats], times: Floats, velocities: Floats, start: Floats, *constants: float
+def integrate_rows(
+    integrate: Callable[..., Floats], times: Floats, velocities: Floats, start: Floats, *constants: float
 ) -> Floats:
-    """Return what `march(times, row, start, *constants)` gives for each row of velocities, in their shape.
+    """Return the state of a friction law along each row of sampled velocities.
 
     Parameters
     ----------
-    march : callable
-        Gives the n values along one motion.
+    integrate : callable
+        Returns the n values of the state along one motion, from times, velocities, first value and constants.
     times : ndarray, shape (n,)
     velocities : ndarray, shape (..., n)
     start : ndarray, shape (...)
-        First value of each motion.
+        First value of the state of each motion.
     *constants : float
-        What the law needs besides.
+        Constants of the law.
 
     Returns
     -------
@@ -55,7 +59,7 @@ def along_rows(
     Raises
     ------
     InvalidInput
-        If a row has not as many samples as there are times, or the starts do not match the rows.
+        If the rows and the times differ in length, or the first values do not broadcast against the rows.
     """
     if velocities.ndim == 0 or velocities.shape[-1] != times.size:
         raise InvalidInput(
@@ -68,7 +72,7 @@ def along_rows(
         raise InvalidInput(f"{start.shape} starting values do not match {velocities.shape[:-1]} motions") from None
     motions = np.broadcast_to(velocities, (*rows, times.size)).reshape(-1, times.size)
     starts = np.broadcast_to(start, rows).ravel()
-    marched = np.empty(motions.shape)
+    states = np.empty(motions.shape)
     for row, motion in enumerate(motions):
-        marched[row] = march(times, motion, starts[row], *constants)
-    return marched.reshape(*rows, times.size)
+        states[row] = integrate(times, motion, starts[row], *constants)
+    return states.reshape(*rows, times.size)

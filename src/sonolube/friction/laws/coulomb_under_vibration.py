@@ -1,4 +1,8 @@
-"""Coulomb friction under vibration within the plane of contact: friction turns with the velocity and keeps its size."""
+"""Coulomb friction under vibration within the plane of contact: mean friction ratio of rigid contacts.
+
+The friction force has constant magnitude and the direction of the relative velocity. Contacts with a tangential
+stiffness are in `dahl_under_vibration` and `sonolube.friction.oscillating_contact`.
+"""
 
 import numba
 import numpy as np
@@ -8,12 +12,12 @@ from sonolube.checks import Floats, require_finite, require_non_negative, requir
 
 
 def parallel_vibration_ratio(*, sliding_speed: ArrayLike, vibration_velocity: ArrayLike) -> Floats:
-    """Return friction with vibration along the sliding over friction without. []
+    r"""Return the mean friction ratio under vibration along the sliding direction by Coulomb's law. []
 
     Parameters
     ----------
     sliding_speed : array_like
-        Mean speed of the sliding. [m/s]
+        Mean sliding speed. [m/s]
     vibration_velocity : array_like, broadcast against `sliding_speed`
         Peak velocity of a harmonic vibration, zero for none. [m/s]
 
@@ -28,8 +32,15 @@ def parallel_vibration_ratio(*, sliding_speed: ArrayLike, vibration_velocity: Ar
 
     Notes
     -----
-    One where the vibration never turns the velocity round; below that the share of the period in which it does counts
-    against the sliding. Contacts are rigid: `dahl_under_vibration` gives them a tangential stiffness.
+    .. math:: \frac{F_1}{F_0} = \frac2\pi \arcsin \frac{v_r}{v_1} \quad (v_r < v_1), \qquad
+              \frac{F_1}{F_0} = 1 \quad (v_r \ge v_1)
+
+    Friction is reduced only where the vibration reverses the relative velocity for part of the period.
+
+    See Also
+    --------
+    transverse_vibration_ratio : Vibration across the sliding direction.
+    longitudinal_oscillation_ratio : The same with the springs of an elastic contact.
 
     References
     ----------
@@ -41,12 +52,12 @@ def parallel_vibration_ratio(*, sliding_speed: ArrayLike, vibration_velocity: Ar
 
 
 def transverse_vibration_ratio(*, sliding_speed: ArrayLike, vibration_velocity: ArrayLike) -> Floats:
-    """Return friction with vibration across the sliding over friction without. []
+    r"""Return the mean friction ratio under vibration across the sliding direction by Coulomb's law. []
 
     Parameters
     ----------
     sliding_speed : array_like
-        Mean speed of the sliding. [m/s]
+        Mean sliding speed. [m/s]
     vibration_velocity : array_like, broadcast against `sliding_speed`
         Peak velocity of a harmonic vibration, zero for none. [m/s]
 
@@ -61,8 +72,15 @@ def transverse_vibration_ratio(*, sliding_speed: ArrayLike, vibration_velocity: 
 
     Notes
     -----
-    The mean cosine of the angle between velocity and sliding, 2/pi K(m) sqrt(1 - m) with m = v^2/(v^2 + v_r^2) and the
-    complete elliptic integral K; always above the ratio of a vibration along the sliding where that reduces friction.
+    .. math:: \frac{F_1}{F_0} = \left\langle \frac{v_r}{\sqrt{v_r^2 + v_1^2 \cos^2\omega t}} \right\rangle
+              = \frac2\pi \sqrt{1 - m}\, K(m), \qquad m = \frac{v_1^2}{v_1^2 + v_r^2}
+
+    the mean cosine of the angle between relative velocity and sliding direction, with the complete elliptic integral K
+    of parameter m. It exceeds the ratio of a vibration along the sliding direction where that reduces friction.
+
+    See Also
+    --------
+    oblique_vibration_ratio : Vibration at any angle to the sliding direction.
 
     References
     ----------
@@ -76,12 +94,12 @@ def transverse_vibration_ratio(*, sliding_speed: ArrayLike, vibration_velocity: 
 def oblique_vibration_ratio(
     *, sliding_speed: ArrayLike, vibration_velocity: ArrayLike, vibration_direction: ArrayLike
 ) -> Floats:
-    """Return friction along the sliding with vibration at any angle to it, over friction without. []
+    r"""Return the mean friction ratio under vibration at any angle to the sliding direction by Coulomb's law. []
 
     Parameters
     ----------
     sliding_speed : array_like
-        Mean speed of the sliding. [m/s]
+        Mean sliding speed. [m/s]
     vibration_velocity : array_like
         Peak velocity of a harmonic vibration, zero for none. [m/s]
     vibration_direction : array_like
@@ -98,9 +116,14 @@ def oblique_vibration_ratio(
 
     Notes
     -----
-    A substitution that keeps the ends of the stroke and removes the odd term below the root leaves one complete
-    elliptic integral of Bulirsch's general form, good to 1e-12; the closed forms along and across are its limits.
-    Friction also gains a mean sideways part, which is not given.
+    With the angle psi between vibration and sliding, and :math:`\zeta = v_r/v_1`,
+
+    .. math:: \frac{F_1}{F_0} = \left\langle \frac{\zeta + \cos\psi \cos\omega t}
+              {\sqrt{\zeta^2 + 2 \zeta \cos\psi \cos\omega t + \cos^2\omega t}} \right\rangle
+
+    A substitution that keeps the ends of the stroke and removes the odd term below the root reduces it to one complete
+    elliptic integral of Bulirsch's general form, to 1e-12. The closed forms along and across are its limits. The mean
+    lateral component of the friction force is not returned.
 
     References
     ----------
@@ -113,6 +136,7 @@ def oblique_vibration_ratio(
 
 
 def _speeds(sliding_speed: ArrayLike, vibration_velocity: ArrayLike) -> tuple[Floats, Floats]:
+    """Return the checked sliding speed and peak vibration velocity. [m/s]"""
     return (
         require_positive(sliding_speed=sliding_speed),
         require_non_negative(vibration_velocity=vibration_velocity),
@@ -121,7 +145,7 @@ def _speeds(sliding_speed: ArrayLike, vibration_velocity: ArrayLike) -> tuple[Fl
 
 @numba.njit(cache=True)
 def _oblique(v_r: Floats, v_1: Floats, cosine: Floats, sine: Floats) -> Floats:
-    """Return the mean over a period of the velocity's cosine to the sliding, the speeds' ratio being zeta."""
+    """Return the mean cosine of the angle between relative velocity and sliding direction over a period."""
     ratios = np.ones(v_r.size)
     for i in range(v_r.size):
         if v_1[i] <= 1e-9 * v_r[i]:
@@ -145,7 +169,10 @@ def _oblique(v_r: Floats, v_1: Floats, cosine: Floats, sine: Floats) -> Floats:
 
 @numba.njit(cache=True)
 def _complete_integral(k_c: float, p: float, a: float, b: float) -> float:
-    """Integrate (a cos^2 + b sin^2)/(cos^2 + p sin^2)/sqrt(cos^2 + k_c^2 sin^2) over a quarter turn, for p > 0."""
+    """Return Bulirsch's integral cel(k_c, p, a, b) for p > 0 by his arithmetic-geometric mean.
+
+    The integral of (a cos^2 + b sin^2)/(cos^2 + p sin^2)/sqrt(cos^2 + k_c^2 sin^2) from 0 to pi/2.
+    """
     mean, product, root = 1.0, k_c, np.sqrt(p)
     b = b / root
     while True:
@@ -154,7 +181,7 @@ def _complete_integral(k_c: float, p: float, a: float, b: float) -> float:
         b = 2 * (b + before * ratio)
         root += ratio
         mean, last = mean + k_c, mean
-        if abs(last - k_c) <= 1e-8 * last:  # squares at every turn
+        if abs(last - k_c) <= 1e-8 * last:  # the error is squared in every pass
             return float(np.pi / 2 * (a * mean + b) / (mean * (mean + root)))
         k_c = 2 * np.sqrt(product)
         product = k_c * mean

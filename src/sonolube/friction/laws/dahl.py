@@ -1,4 +1,4 @@
-"""Dahl's law: friction as a spring that yields, blind to the rate of sliding."""
+"""Dahl friction: an elastoplastic bristle whose force depends on the sliding distance and not on the rate."""
 
 import math
 from dataclasses import dataclass
@@ -8,24 +8,35 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_positive
-from sonolube.friction.history import along_rows, require_increasing
+from sonolube.friction.laws.sampled_motion import integrate_rows, require_increasing
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class DahlFriction:
-    """Dahl's law for one contact at one load.
+    r"""Dahl's law of friction for one contact at a constant normal load.
 
     Parameters
     ----------
     contact_stiffness : float
         Tangential stiffness of the contact at rest, K. [N/m]
     coulomb_friction_force : float
-        Friction of long steady sliding. [N]
+        Friction force of steady sliding, F_c. [N]
 
     Raises
     ------
     InvalidInput
         If a value is not positive and finite.
+
+    Notes
+    -----
+    .. math:: \frac{\mathrm{d}\delta}{\mathrm{d}t} = v \left( 1 - \frac{K \delta}{F_c}\, \mathrm{sgn}\, v \right),
+              \qquad F = K \delta \tag{D 1.3}
+
+    with the tangential deformation delta and the sliding velocity v.
+
+    See Also
+    --------
+    LuGreFriction : The law with Stribeck effect, bristle damping and viscous friction.
 
     References
     ----------
@@ -40,18 +51,18 @@ class DahlFriction:
 
     @property
     def steady_deformation(self) -> float:
-        """Deformation of long steady sliding, F_c/K. [m]"""
+        """Deformation of steady sliding, F_c/K. [m]"""
         return self.coulomb_friction_force / self.contact_stiffness
 
 
 def dahl_friction(law: DahlFriction, *, displacement: ArrayLike, deformation: ArrayLike = 0.0) -> Floats:
-    """Return the friction force after sliding one way. [N]
+    r"""Return the friction force after a monotonic slide by Dahl's law. [N]
 
     Parameters
     ----------
     law : DahlFriction
     displacement : array_like
-        Distance slid without turning back, negative for the other way. [m]
+        Distance of a slide in one direction, negative for the other direction. [m]
     deformation : array_like, broadcast against `displacement`
         Tangential deformation of the contact at the start. [m]
 
@@ -66,23 +77,26 @@ def dahl_friction(law: DahlFriction, *, displacement: ArrayLike, deformation: Ar
 
     Notes
     -----
-    From rest F = F_c [1 - exp(-K x/F_c)]. A deformation beyond F_c/K, as after a drop of the load, decays to it.
+    .. math:: F = K \delta_0\, e^{-K |x|/F_c} + F_c\, \mathrm{sgn}(x) \left( 1 - e^{-K |x|/F_c} \right)
+
+    D 1.3 integrated over the distance x from the deformation delta_0. A deformation beyond F_c/K, as after a reduction
+    of the load, decays to that value.
 
     References
     ----------
     .. [1] D 1.3.
     """
-    slid = require_finite(displacement=displacement)
+    distance = require_finite(displacement=displacement)
     start = require_finite(deformation=deformation)
     K, F_c = law.contact_stiffness, law.coulomb_friction_force
-    decay = -K * np.abs(slid) / F_c
-    return K * start * np.exp(decay) - F_c * np.sign(slid) * np.expm1(decay)  # D 1.3 integrated for one sign of v
+    decay = -K * np.abs(distance) / F_c
+    return K * start * np.exp(decay) - F_c * np.sign(distance) * np.expm1(decay)  # D 1.3 integrated for one sign of v
 
 
 def dahl_friction_history(
     law: DahlFriction, *, time: ArrayLike, relative_velocity: ArrayLike, deformation: ArrayLike = 0.0
 ) -> Floats:
-    """Return the friction force along any sampled motion. [N]
+    """Return the friction force along sampled motions by Dahl's law. [N]
 
     Parameters
     ----------
@@ -90,7 +104,7 @@ def dahl_friction_history(
     time : array_like, shape (n,)
         Increasing times of the samples. [s]
     relative_velocity : array_like, shape (..., n)
-        Sliding velocity at those times, taken as linear between them. [m/s]
+        Sliding velocity at these times, interpolated linearly between them. [m/s]
     deformation : array_like, shape (...)
         Tangential deformation of the contact at the first sample. [m]
 
@@ -105,8 +119,13 @@ def dahl_friction_history(
 
     Notes
     -----
-    Exact for velocities linear between samples, at any step: the law depends on distance alone, and a step in which the
-    motion turns is divided at the turning point. The error is that of the sampling, second order in the step.
+    Exact for velocities that are linear between samples, at any step: the law depends on the distance alone, and a step
+    in which the velocity changes sign is divided there. The error is that of the sampling, second order in the step.
+
+    See Also
+    --------
+    dahl_friction : Closed form for a slide in one direction.
+    dahl_under_vibration : Mean force over the steady period of a vibration.
 
     References
     ----------
@@ -116,26 +135,28 @@ def dahl_friction_history(
     velocities = require_finite(relative_velocity=relative_velocity)
     start = require_finite(deformation=deformation)
     K, F_c = law.contact_stiffness, law.coulomb_friction_force
-    return K * along_rows(_march, times, velocities, start, K / F_c)
+    return K * integrate_rows(_deformation_history, times, velocities, start, K / F_c)
 
 
 @numba.njit(cache=True)
-def _march(times: Floats, velocities: Floats, start: float, rate: float) -> Floats:
-    deflection = np.empty_like(velocities)
-    deflection[0] = delta = start
+def _deformation_history(times: Floats, velocities: Floats, start: float, rate: float) -> Floats:
+    """Return the deformation along one sampled motion; `rate` is K/F_c."""
+    deformation = np.empty_like(velocities)
+    deformation[0] = delta = start
     for k in range(times.size - 1):
         step, v0, v1 = times[k + 1] - times[k], velocities[k], velocities[k + 1]
         if v0 * v1 < 0:
-            turn = step * v0 / (v0 - v1)
-            delta = _slide(delta, 0.5 * v0 * turn, rate)
-            delta = _slide(delta, 0.5 * v1 * (step - turn), rate)
+            reversal = step * v0 / (v0 - v1)
+            delta = _deformation_after_slide(delta, 0.5 * v0 * reversal, rate)
+            delta = _deformation_after_slide(delta, 0.5 * v1 * (step - reversal), rate)
         else:
-            delta = _slide(delta, 0.5 * (v0 + v1) * step, rate)
-        deflection[k + 1] = delta
-    return deflection
+            delta = _deformation_after_slide(delta, 0.5 * (v0 + v1) * step, rate)
+        deformation[k + 1] = delta
+    return deformation
 
 
 @numba.njit(cache=True)
-def _slide(delta: float, distance: float, rate: float) -> float:
+def _deformation_after_slide(delta: float, distance: float, rate: float) -> float:
+    """Return the deformation after a slide in one direction."""
     decay = -rate * abs(distance)
     return delta * math.exp(decay) + math.copysign(math.expm1(decay) / rate, distance)

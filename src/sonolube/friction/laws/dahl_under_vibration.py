@@ -1,17 +1,16 @@
-"""Dahl's law in a contact that vibrates both along its normal and along the sliding direction."""
+"""Mean friction force of a vibrated rough contact by Dahl's law with stiffness and limit that follow the separation."""
 
-import numba
 import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
-from sonolube.contact.cube import tangential_stiffness
+from sonolube.contact.cube import cube_tangential_stiffness
 from sonolube.contact.rough import RoughContact, normal_force
 from sonolube.errors import InvalidInput, OutsideRange
+from sonolube.friction.laws.steady_period_kernel import steady_period_mean_force
 from sonolube.metrics import peak_vibration_velocity
 
-__all__ = ["dahl_under_vibration"]  # the rest is of use in this room only
-_BLOCK = 512  # points marched together, to bound the memory of their samples
+_BLOCK = 512  # points computed together, to bound the memory of their samples
 
 
 def dahl_under_vibration(
@@ -26,7 +25,7 @@ def dahl_under_vibration(
     phase: ArrayLike = np.pi / 2,
     steps: int = 512,
 ) -> Floats:
-    """Return the mean friction force over a steady period of vibration. [N]
+    r"""Return the mean friction force over the steady period of a vibration by Dahl's law. [N]
 
     Parameters
     ----------
@@ -34,9 +33,9 @@ def dahl_under_vibration(
     separation : array_like
         Mean separation; at rest that of `sonolube.contact.separation` at the load. [m]
     friction_coefficient : array_like
-        Coefficient of steady sliding, which limits friction at every instant's normal force. []
+        Coefficient of friction of steady sliding, which limits the force at every instantaneous normal force. []
     sliding_speed : array_like
-        Mean speed of the sliding. [m/s]
+        Mean sliding speed. [m/s]
     frequency : array_like
         Frequency of the vibration. [Hz]
     in_plane_amplitude : array_like
@@ -46,7 +45,7 @@ def dahl_under_vibration(
     phase : array_like
         Lag of the normal motion behind the in-plane one; a quarter turn as D prints it. [rad]
     steps : int
-        Steps into which each one-way slide of a period is divided.
+        Number of steps into which each slide in one direction is divided.
 
     Returns
     -------
@@ -61,15 +60,23 @@ def dahl_under_vibration(
 
     Notes
     -----
-    The relative velocity is v_r + v_1 cos(omega t), the separation d + a sin(omega t - phase); stiffness k_t and limit
-    mu F_n follow the separation. The law is linear in the deformation while the motion keeps its way, so each step is
-    an exact exponential, the period a linear map, and the steady period its fixed point: nothing is marched to a
-    steady state. Steps crowd towards the turning points, where friction reverses within a very short slide. The error
-    comes from holding k_t, F_n and v over a step. It falls with the square of the step, and at 512 steps is below 1e-4
-    for normal amplitudes up to five decay lengths of the normal force.
+    .. math::
 
-    Vibration about an unmoved mean raises the mean normal force; where the load is dead weight, give the wider
-    separation that restores it.
+        \frac{\mathrm{d}\delta}{\mathrm{d}t} = v \left( 1 - \frac{k_t \delta}{\mu F_n}\, \mathrm{sgn}\, v \right),
+        \qquad v = v_r + v_1 \cos\omega t
+
+    where the stiffness k_t of the cube and the normal force F_n follow the separation d + a sin(omega t - phase). The
+    law is linear in the deformation while the sign of v is constant, so that each step is an exact exponential, the
+    period a linear map, and the steady period its fixed point. Steps are graded towards the reversals, where friction
+    changes sign within a very short slide. The error comes from constant k_t, F_n and v within a step; it is second
+    order in the step, and below 1e-4 at 512 steps for normal amplitudes up to five decay lengths of the contact force.
+
+    Vibration about the separation at rest raises the mean normal force; for a dead load, give the larger separation
+    that restores it (`load_balanced_motion`).
+
+    See Also
+    --------
+    lugre_under_vibration : Bristles of constant stiffness, with the Stribeck effect.
 
     References
     ----------
@@ -102,6 +109,7 @@ def dahl_under_vibration(
 
 
 def _require_open_gap(d: Floats, a: Floats) -> None:
+    """Refuse the first amplitude that reaches its separation."""
     closed = a >= d
     if np.any(closed):
         raise OutsideRange(
@@ -122,42 +130,19 @@ def _mean_over_period(
     *,
     steps: int,
 ) -> Floats:
+    """Return the mean force of each row of arguments, columns of shape (n, 1). [N]"""
     edges = _step_edges(v_r, v_1, steps)
     gap = d + a * np.sin((edges[:, 1:] + edges[:, :-1]) / 2 - phase)
     slides = np.diff(v_r * edges + v_1 * np.sin(edges), axis=1) / omega
-    shares = np.diff(edges, axis=1) / (2 * np.pi)
-    k_t, limit = tangential_stiffness(contact, separation=gap), mu * normal_force(contact, separation=gap)
-    return periodic_mean(k_t, limit, slides, shares)
+    durations = np.diff(edges, axis=1) / (2 * np.pi)
+    k_t, limit = cube_tangential_stiffness(contact, separation=gap), mu * normal_force(contact, separation=gap)
+    return steady_period_mean_force(k_t, limit, slides, durations)
 
 
 def _step_edges(v_r: Floats, v_1: Floats, steps: int) -> Floats:
-    """Return the phases that divide one period, crowding where the relative velocity changes its sign."""
-    crowded = (1 - np.cos(np.linspace(0, np.pi, steps + 1))) / 2
-    turn = np.where(v_1 > v_r, np.arccos(-v_r / np.maximum(v_1, v_r)), np.pi / 2)
-    forward = turn * (2 * crowded - 1)
-    backward = turn + 2 * (np.pi - turn) * crowded[1:]
+    """Return the phases between the steps of one period, graded towards the reversals of the relative velocity."""
+    graded = (1 - np.cos(np.linspace(0, np.pi, steps + 1))) / 2
+    reversal = np.where(v_1 > v_r, np.arccos(-v_r / np.maximum(v_1, v_r)), np.pi / 2)
+    forward = reversal * (2 * graded - 1)
+    backward = reversal + 2 * (np.pi - reversal) * graded[1:]
     return np.concatenate([forward, backward], axis=1)
-
-
-@numba.njit(cache=True)
-def periodic_mean(stiffness: Floats, limit: Floats, slides: Floats, shares: Floats) -> Floats:
-    """Return the mean force of each row of steps over its steady period, `shares` of which they last."""
-    means = np.empty(stiffness.shape[0])
-    for point in range(means.size):
-        # after every step the deformation is kept * (that at the start) + gained; so is the running mean of the force
-        kept, gained, log_kept, mean_kept, mean_gained = 1.0, 0.0, 0.0, 0.0, 0.0
-        for step in range(stiffness.shape[1]):
-            k, most, slide = stiffness[point, step], limit[point, step], slides[point, step]
-            decay = k * abs(slide) / most
-            if decay == 0.0:
-                continue
-            settled = np.sign(slide) * most / k
-            leaving = -np.expm1(-decay)
-            weight, held = shares[point, step] * k, leaving / decay
-            mean_kept += weight * held * kept
-            mean_gained += weight * (settled + held * (gained - settled))
-            gained += leaving * (settled - gained)
-            log_kept -= decay
-            kept = np.exp(log_kept)
-        means[point] = mean_gained - mean_kept * gained / np.expm1(log_kept)
-    return means
