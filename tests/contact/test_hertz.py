@@ -42,7 +42,7 @@ def pair_of(pin: str, disc: str) -> ContactPair:
 
 
 @given(load=LOADS)
-def test_the_pressure_over_the_circle_carries_the_load(load: float) -> None:
+def test_the_pressure_integrated_over_the_circle_is_the_load(load: float) -> None:
     radius = float(hertz_contact_radius(ACORN_NUT, normal_load=load))
     p0 = float(hertz_peak_pressure(ACORN_NUT, normal_load=load))
     carried, _ = quad(lambda r: 2 * np.pi * r * p0 * np.sqrt(1 - (r / radius) ** 2), 0, radius)
@@ -56,7 +56,7 @@ def test_the_peak_is_one_and_a_half_times_the_load_over_the_circle(load: float) 
     assert hertz_peak_pressure(ACORN_NUT, normal_load=load) == approx(1.5 * over_circle)
 
 
-def test_point_loads_summed_over_the_circle_push_the_flat_into_the_shape_of_the_sphere() -> None:
+def test_point_loads_integrated_over_the_circle_deform_the_flat_to_the_shape_of_the_sphere() -> None:
     # Boussinesq: a pressure p at distance s sinks the surface by p dA/(pi E* s). Summed about the middle in polar
     # coordinates, s dA = dr dphi; about the edge, along chords through it.
     load = 3.0
@@ -77,7 +77,7 @@ def test_point_loads_summed_over_the_circle_push_the_flat_into_the_shape_of_the_
     assert in_the_middle - at_the_edge == approx(a**2 / (2 * ACORN_NUT.tip_radius), rel=1e-5)
 
 
-def test_stresses_on_the_axis_are_those_of_point_loads_summed_over_the_circle() -> None:
+def test_stresses_on_the_axis_are_those_of_point_loads_integrated_over_the_circle() -> None:
     # Boussinesq's point load on a half-space in cylindrical components (Johnson 3.19), tension positive.
     load, nu = 3.0, 0.3
     a = float(hertz_contact_radius(ACORN_NUT, normal_load=load))
@@ -102,7 +102,7 @@ def test_stresses_on_the_axis_are_those_of_point_loads_summed_over_the_circle() 
         assert sigma_r == approx(quad(lambda r: across(r) * ring(r), 0, a, epsabs=0)[0], rel=1e-6)
 
 
-def test_in_the_middle_of_the_surface_the_stress_across_is_half_plus_poissons_ratio_of_the_peak() -> None:
+def test_at_the_centre_of_the_surface_the_radial_stress_is_half_plus_poissons_ratio_of_the_peak() -> None:
     # Johnson, section 3.4: sigma_r = -(1 + 2 nu) p0/2, sigma_z = -p0.
     p0 = hertz_peak_pressure(ACORN_NUT, normal_load=3.0)
     sigma_z, sigma_r = hertz_axial_stresses(ACORN_NUT, normal_load=3.0, depth=0.0, poisson_ratio=0.3)
@@ -148,14 +148,14 @@ def test_stiffness_is_the_slope_of_load_over_approach(load: float) -> None:
 
 
 @given(load=LOADS, factor=st.floats(0.1, 10))
-def test_a_larger_tip_has_less_pressure_by_two_thirds_power(load: float, factor: float) -> None:
+def test_pressure_falls_with_the_tip_radius_to_the_power_two_thirds(load: float, factor: float) -> None:
     larger = SphereOnFlat(tip_radius=factor * ACORN_NUT.tip_radius, effective_modulus=ACORN_NUT.effective_modulus)
     ratio = hertz_peak_pressure(larger, normal_load=load) / hertz_peak_pressure(ACORN_NUT, normal_load=load)
     assert ratio == approx(factor ** (-2 / 3))
 
 
 @given(load=LOADS)
-def test_the_tip_radius_comes_back_from_its_pressure(load: float) -> None:
+def test_the_tip_radius_is_recovered_from_its_pressure(load: float) -> None:
     pressure = hertz_mean_pressure(ACORN_NUT, normal_load=load)
     radius = tip_radius_for_pressure(
         mean_pressure=pressure, normal_load=load, effective_modulus=ACORN_NUT.effective_modulus
@@ -163,7 +163,7 @@ def test_the_tip_radius_comes_back_from_its_pressure(load: float) -> None:
     assert radius == approx(ACORN_NUT.tip_radius)
 
 
-def test_three_hundred_megapascal_at_three_newton_ask_for_a_tip_of_a_centimetre() -> None:
+def test_three_hundred_megapascal_at_three_newton_require_a_tip_radius_of_a_centimetre() -> None:
     # D Table 2.13. 3 N/300 MPa = 0.01 mm2: a = sqrt(0.01/pi) = 0.0564 mm. R = 4 E* a^3/(3 F), a^3 = 1.796e-4 mm3:
     # M50 on M50, E* = 214/(2 (1 - 0.29^2)) = 116.8 GPa: 4 x 116.8e3 x 1.796e-4/9 = 9.32 mm.
     # Alumina on M50, 1/E* = (1 - 0.22^2)/370 + (1 - 0.29^2)/214, E* = 145.9 GPa: 11.65 mm.
@@ -185,7 +185,7 @@ def test_the_nominal_area_of_the_dissertation_is_a_circle_of_four_tenths_of_a_mi
     )
 
 
-def test_no_load_makes_no_circle() -> None:
+def test_a_load_of_zero_has_no_contact_circle() -> None:
     assert hertz_contact_radius(ACORN_NUT, normal_load=0.0) == 0
     assert hertz_peak_pressure(ACORN_NUT, normal_load=0.0) == 0
     assert hertz_stiffness(ACORN_NUT, normal_load=0.0) == 0

@@ -102,7 +102,7 @@ def write_horn(design: HornDesign, *, folder: Path, name: str) -> list[Path]:
     picture = mode_figure(mode.model.mesh, mode.displacement, title=title)
     return [
         *write_figure(axis_figure(design), folder=folder, name=f"{name}-axis"),
-        *write_figure(picture, folder=folder, name=f"{name}-mode", forms=("png",)),
+        *write_figure(picture, folder=folder, name=f"{name}-mode", file_formats=("png",)),
     ]
 
 

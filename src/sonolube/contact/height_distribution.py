@@ -1,7 +1,7 @@
 """Distributions of summit heights by name: the exponential fit to the Gaussian tail, and the Gaussian itself.
 
 Heights are measured from the mean of the summit heights in units of the rms height R_q. A new distribution takes one
-file with its class, and one line of `HEIGHT_DISTRIBUTIONS`.
+file `contact/height_distributions/NAME.py` with its class, and one line of `HEIGHT_DISTRIBUTIONS`.
 """
 
 import math

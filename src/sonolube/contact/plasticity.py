@@ -34,7 +34,7 @@ def elastic_area(contact: RoughContact, *, separation: ArrayLike) -> Floats:
     ----------
     .. [1] D 3.7, with exp(-lambda w_c/Rq) where exp(+lambda w_c/Rq) is printed.
     """
-    integrals, h = integrals_at(contact, separation)
+    integrals, h = integrals_at(contact, separation=separation)
     return integrals.area.value(h) * integrals.elastic_area_fraction.value(h)
 
 
@@ -62,7 +62,7 @@ def plastic_area(contact: RoughContact, *, separation: ArrayLike) -> Floats:
     ----------
     .. [1] D 3.8
     """
-    integrals, h = integrals_at(contact, separation)
+    integrals, h = integrals_at(contact, separation=separation)
     return integrals.area.value(h) * np.maximum(1 - integrals.elastic_area_fraction.value(h), 0.0)
 
 
@@ -90,7 +90,7 @@ def elastic_load_fraction(contact: RoughContact, *, separation: ArrayLike) -> Fl
     ----------
     .. [1] D 3.4 over 3.3
     """
-    integrals, h = integrals_at(contact, separation)
+    integrals, h = integrals_at(contact, separation=separation)
     return np.minimum(integrals.elastic_load_fraction.value(h), 1.0)
 
 

@@ -156,13 +156,13 @@ def normal_force(contact: RoughContact, *, separation: ArrayLike) -> Floats:
 
     See Also
     --------
-    separation : The inverse.
+    sonolube.contact.separation : The inverse.
 
     References
     ----------
     .. [1] D 3.3 to 3.5
     """
-    integrals, h = integrals_at(contact, separation)
+    integrals, h = integrals_at(contact, separation=separation)
     return integrals.force.value(h)
 
 
@@ -199,7 +199,7 @@ def real_contact_area(contact: RoughContact, *, separation: ArrayLike) -> Floats
     ----------
     .. [1] D 3.6
     """
-    integrals, h = integrals_at(contact, separation)
+    integrals, h = integrals_at(contact, separation=separation)
     return integrals.area.value(h)
 
 
@@ -223,7 +223,7 @@ def contact_count(contact: RoughContact, *, separation: ArrayLike) -> Floats:
     OutsideRange
         If a separation lies outside the range of the height distribution.
     """
-    integrals, h = integrals_at(contact, separation)
+    integrals, h = integrals_at(contact, separation=separation)
     return integrals.count.value(h)
 
 
@@ -255,10 +255,10 @@ def normal_stiffness(contact: RoughContact, *, separation: ArrayLike) -> Floats:
 
     See Also
     --------
-    decay_length : Force over stiffness.
-    mindlin_tangential_stiffness : Tangential stiffness in proportion to this one.
+    sonolube.contact.decay_length : Force over stiffness.
+    sonolube.contact.mindlin_tangential_stiffness : Tangential stiffness in proportion to this one.
     """
-    integrals, h = integrals_at(contact, separation)
+    integrals, h = integrals_at(contact, separation=separation)
     return integrals.force.value(h) * integrals.force.decay_rate(h) / contact.roughness.rms_height
 
 
@@ -293,7 +293,7 @@ def decay_length(contact: RoughContact, *, separation: ArrayLike | None = None) 
         if not isinstance(contact.heights, ExponentialHeights):
             raise InvalidInput(f"decay_length of {contact.heights.name} heights varies: give a separation")
         separation = 0.0
-    integrals, h = integrals_at(contact, separation)
+    integrals, h = integrals_at(contact, separation=separation)
     return contact.roughness.rms_height / integrals.force.decay_rate(h)
 
 
@@ -309,8 +309,28 @@ def _integrals(contact: RoughContact) -> GreenwoodWilliamsonIntegrals:
     )
 
 
-def integrals_at(contact: RoughContact, separation: ArrayLike) -> tuple[GreenwoodWilliamsonIntegrals, Floats]:
-    """Return the integrals over all asperities and the checked separations over R_q."""
+def integrals_at(contact: RoughContact, *, separation: ArrayLike) -> tuple[GreenwoodWilliamsonIntegrals, Floats]:
+    """Return the integrals over all asperities of a contact, and the separations over R_q.
+
+    Parameters
+    ----------
+    contact : RoughContact
+    separation : array_like, any shape
+        Separation of the mean planes. [m]
+
+    Returns
+    -------
+    integrals : GreenwoodWilliamsonIntegrals
+    h : ndarray, shape of `separation`
+        Normalized separation.
+
+    Raises
+    ------
+    InvalidInput
+        If a separation is not finite.
+    OutsideRange
+        If a separation lies outside the range of the height distribution.
+    """
     d = require_finite(separation=separation)
     _require_range(contact, *separation_range(contact), "separation", "m", d)
     return _integrals(contact), d / contact.roughness.rms_height

@@ -151,18 +151,23 @@ def _oblique(v_r: Floats, v_1: Floats, cosine: Floats, sine: Floats) -> Floats:
         if v_1[i] <= 1e-9 * v_r[i]:
             continue
         zeta, c, s = v_r[i] / v_1[i], abs(cosine[i]), abs(sine[i])
-        if s < 1e-12:
+        if s < 1e-30:
             ratios[i] = 2 / np.pi * np.arcsin(min(zeta, 1.0))
             continue
-        # mean of (zeta + c x)/sqrt(zeta^2 + 2 zeta c x + x^2) over x = cos(theta); x = (u + r)/(1 + r u) removes the
-        # odd term of the root, (P u^2 + Q)/(1 + r u)^2, and with it the odd part of the fraction
-        half_gap = np.hypot(1 - zeta * zeta, 2 * zeta * s)  # sqrt((1 + zeta^2)^2 - 4 zeta^2 c^2) without cancellation
-        r = -2 * zeta * c / (1 + zeta * zeta + half_gap)
-        one_less = half_gap * 2 / (1 + zeta * zeta + half_gap)  # 1 - r^2, likewise
-        P = (zeta * r + c) ** 2 + s * s
-        Q = (r + zeta * c) ** 2 + (zeta * s) ** 2
+        # mean of (zeta + c x)/sqrt(zeta^2 + 2 zeta c x + x^2) over x = cos(theta); x = (u + r)/(1 + r u) with
+        # r = -2 zeta c/total removes the odd term of the root, (P u^2 + Q)/(1 + r u)^2, and of the fraction
+        root = np.hypot(1 - zeta * zeta, 2 * zeta * s)  # sqrt((1 + zeta^2)^2 - 4 zeta^2 c^2) without cancellation
+        total = 1 + zeta * zeta + root
+        # root + 1 - zeta^2 and root - 1 + zeta^2 without cancellation, from their product
+        larger = abs(1 - zeta * zeta) + root
+        smaller = (2 * zeta * s) ** 2 / larger
+        plus, minus = (larger, smaller) if zeta <= 1 else (smaller, larger)
+        one_less = 2 * root / total  # 1 - r^2
+        P = (c * plus / total) ** 2 + s * s
+        Q = (zeta * c * minus / total) ** 2 + (zeta * s) ** 2
         p = 1 / one_less
-        integral = _complete_integral(np.sqrt(Q / (P + Q)), p, zeta, p * (zeta + r * c))
+        b = p * zeta * (minus + 2 * s * s) / total  # p (zeta + r c)
+        integral = _complete_integral(np.sqrt(Q / (P + Q)), p, zeta, b)
         ratios[i] = min(2 / np.pi * np.sqrt(one_less / (P + Q)) * integral, 1.0)
     return ratios
 

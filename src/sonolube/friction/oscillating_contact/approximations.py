@@ -212,7 +212,7 @@ def approximate_longitudinal_ratio(
     .. [2] M. Popov, V. L. Popov and N. V. Popov, Friction 5, 45 (2017). doi:10.1007/s40544-016-0136-4
     """
     a = require_non_negative(in_plane_amplitude=in_plane_amplitude)
-    if np.any(slip_length_fraction(contact, approach, a) > _MAXIMUM_STROKE[contact.profile]):
+    if np.any(slip_length_fraction(contact, approach=approach, amplitude=a) > _MAXIMUM_STROKE[contact.profile]):
         warnings.warn(
             "in_plane_amplitude reverses the slip of springs, which the approximation does not cover;"
             " use longitudinal_oscillation_ratio",

@@ -70,7 +70,7 @@ def normal_oscillation_ratio(
     .. [1] M. Popov, V. L. Popov and N. V. Popov, Friction 5, 45 (2017), who give the system.
        doi:10.1007/s40544-016-0136-4
     """
-    u, a = require_contact(approach, normal_amplitude)
+    u, a = require_contact(approach=approach, normal_amplitude=normal_amplitude)
     omega = 2 * np.pi * require_positive(frequency=frequency)
     v_r = require_positive(sliding_speed=sliding_speed)
     u, a, omega, v_r = np.broadcast_arrays(u, a, omega, v_r)

@@ -154,8 +154,28 @@ def load_balanced_approach(contact: SpringContact, *, approach: ArrayLike, norma
     return np.asarray((low + high) / 2)
 
 
-def require_contact(approach: ArrayLike, normal_amplitude: ArrayLike) -> tuple[Floats, Floats]:
-    """Return mean approach and amplitude; refuse the first of which contact is lost throughout the period."""
+def require_contact(*, approach: ArrayLike, normal_amplitude: ArrayLike) -> tuple[Floats, Floats]:
+    """Return mean approach and amplitude, broadcast; refuse values with which contact is lost throughout the period.
+
+    Parameters
+    ----------
+    approach : array_like
+        Mean approach. [m]
+    normal_amplitude : array_like, broadcast against `approach`
+        Amplitude along the surface normal. [m]
+
+    Returns
+    -------
+    approach, normal_amplitude : ndarray, shape of the broadcast arguments
+        The arguments. [m]
+
+    Raises
+    ------
+    InvalidInput
+        If a value is not finite, or the amplitude negative.
+    OutsideRange
+        If contact is lost throughout the period.
+    """
     u, a = np.broadcast_arrays(
         require_finite(approach=approach), require_non_negative(normal_amplitude=normal_amplitude)
     )

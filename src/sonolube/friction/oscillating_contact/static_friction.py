@@ -48,7 +48,7 @@ def normal_static_ratio(contact: SpringContact, *, approach: ArrayLike, normal_a
     ----------
     .. [1] R. Teidelt, J. Starcevic and V. L. Popov, Tribol. Lett. 48, 51 (2012). doi:10.1007/s11249-012-9937-4
     """
-    u, a = require_contact(approach, normal_amplitude)
+    u, a = require_contact(approach=approach, normal_amplitude=normal_amplitude)
     ratio: Floats = mean_normal_forces(contact, u - a, np.zeros_like(a)) / mean_normal_forces(contact, u, a)
     return ratio
 
@@ -90,7 +90,7 @@ def longitudinal_static_ratio(contact: SpringContact, *, approach: ArrayLike, in
     .. [2] N. Milahin and J. Starcevic, Phys. Mesomech. 18, 197 (2015); Fiz. Mezomekh. 17 (3), 84 (2014).
     """
     a = require_non_negative(in_plane_amplitude=in_plane_amplitude)
-    remaining = np.maximum(1 - slip_length_fraction(contact, approach, a), 0.0)
+    remaining = np.maximum(1 - slip_length_fraction(contact, approach=approach, amplitude=a), 0.0)
     return remaining if contact.profile == "flat" else remaining**1.5
 
 
@@ -129,7 +129,9 @@ def transverse_static_ratio(contact: SpringContact, *, approach: ArrayLike, tran
     .. [2] Friction Influenced by Vibrations: A Refined Contact-Mechanics View on Lateral and Rotational Oscillations,
        Front. Mech. Eng. 6 (2020). doi:10.3389/fmech.2020.566440
     """
-    s = slip_length_fraction(contact, approach, require_non_negative(transverse_amplitude=transverse_amplitude))
+    s = slip_length_fraction(
+        contact, approach=approach, amplitude=require_non_negative(transverse_amplitude=transverse_amplitude)
+    )
     s = np.minimum(s, 1.0)
     if contact.profile == "flat":
         return np.sqrt((1 - s) * (1 + s))
@@ -140,6 +142,23 @@ def transverse_static_ratio(contact: SpringContact, *, approach: ArrayLike, tran
     return 1.5 * (1 - s) * sticking
 
 
-def slip_length_fraction(contact: SpringContact, approach: ArrayLike, amplitude: Floats) -> Floats:
-    """Return an amplitude over the slip length of the deepest spring, s."""
+def slip_length_fraction(contact: SpringContact, *, approach: ArrayLike, amplitude: Floats) -> Floats:
+    r"""Return an amplitude within the plane over the slip length of the deepest spring. []
+
+    Parameters
+    ----------
+    contact : SpringContact
+    approach : array_like
+        Approach. [m]
+    amplitude : ndarray, broadcast against `approach`
+        Amplitude, in m.
+
+    Returns
+    -------
+    ndarray, shape of the broadcast arguments
+
+    Notes
+    -----
+    .. math:: s = \frac{k_x a}{\mu k_z u}
+    """
     return amplitude / (contact.slip_per_approach * require_positive(approach=approach))

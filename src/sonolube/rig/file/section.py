@@ -105,7 +105,7 @@ def quantity_in_si(value: object, *, unit: str) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise ValueError(f"{value!r} is not {unit_description(unit)}")
     if unit:
-        raise ValueError(f"{value!r} has no unit; wanted {unit_description(unit)}")
+        raise ValueError(f"{value!r} has no unit; expected {unit_description(unit)}")
     return require_plausible(value, unit=unit, text=f"{value}")
 
 

@@ -1,3 +1,5 @@
+"""Dahl's law under vibration against kinematic limits, closed forms and an integrator."""
+
 import math
 
 import numpy as np
@@ -59,13 +61,13 @@ def test_without_vibration_friction_is_coulombs(sliding_speed: float) -> None:
     assert ratio(sliding_speed=sliding_speed) == approx(1, rel=1e-12)
 
 
-def test_in_plane_vibration_slower_than_the_sliding_changes_nothing() -> None:
+def test_in_plane_vibration_slower_than_the_sliding_does_not_reduce_friction() -> None:
     assert ratio(sliding_speed=0.2, in_plane_amplitude=0.9 * 0.2 / OMEGA) == approx(1, rel=1e-12)
 
 
 @pytest.mark.parametrize("velocity_ratio", [0.02, 0.2, 0.5, 0.9])
 def test_a_long_in_plane_stroke_gives_the_kinematic_ratio(velocity_ratio: float) -> None:
-    # with Coulomb friction the ratio is the share of time slid forward less that slid back
+    # with Coulomb friction the ratio is the fraction of time slid forward less that slid back
     stroke = 1e-4  # against a deformation of 2 nm
     kinematic = 2 / np.pi * np.arcsin(velocity_ratio)
     assert ratio(sliding_speed=velocity_ratio * OMEGA * stroke, in_plane_amplitude=stroke) == approx(
@@ -74,21 +76,21 @@ def test_a_long_in_plane_stroke_gives_the_kinematic_ratio(velocity_ratio: float)
 
 
 @pytest.mark.parametrize("velocity_ratio", [0.02, 0.2, 0.5, 0.9])
-def test_a_stroke_far_below_the_deformation_gives_sliding_speed_over_mean_rubbing_speed(velocity_ratio: float) -> None:
-    # the deformation stays: its growth v (1 - K delta/F_c sgn v) averages to zero at F/F_c = mean(v)/mean(|v|)
+def test_a_stroke_far_below_the_deformation_gives_sliding_speed_over_mean_relative_speed(velocity_ratio: float) -> None:
+    # constant deformation: its growth v (1 - K delta/F_c sgn v) averages to zero at F/F_c = mean(v)/mean(|v|)
     stroke = 1e-14
-    rubbing = 2 / np.pi * (np.sqrt(1 - velocity_ratio**2) + velocity_ratio * np.arcsin(velocity_ratio))
+    relative_speed = 2 / np.pi * (np.sqrt(1 - velocity_ratio**2) + velocity_ratio * np.arcsin(velocity_ratio))
     computed = ratio(sliding_speed=velocity_ratio * OMEGA * stroke, in_plane_amplitude=stroke)
-    assert computed == approx(velocity_ratio / rubbing, rel=1e-4)
+    assert computed == approx(velocity_ratio / relative_speed, rel=1e-4)
 
 
 @pytest.mark.parametrize("amplitude", [0.5e-6, 2.5e-6, 6e-6])
-def test_fast_sliding_feels_the_mean_of_the_normal_force(amplitude: float) -> None:
+def test_fast_sliding_has_the_friction_of_the_mean_normal_force(amplitude: float) -> None:
     # the mean of exp(-a sin(theta)/l) is the modified Bessel function I0(a/l)
     assert ratio(sliding_speed=50.0, normal_amplitude=amplitude) == approx(i0(amplitude / DECAY_LENGTH), rel=1e-4)
 
 
-def test_the_separation_that_restores_the_mean_load_restores_fast_friction() -> None:
+def test_the_load_balanced_separation_restores_the_friction_of_fast_sliding() -> None:
     raised = AT_REST + DECAY_LENGTH * np.log(i0(2.5e-6 / DECAY_LENGTH))
     assert ratio(sliding_speed=50.0, normal_amplitude=2.5e-6, mean_separation=raised) == approx(1, rel=1e-4)
 
@@ -126,7 +128,7 @@ def test_a_steady_period_follows_the_integrated_differential_equation(
 @pytest.mark.parametrize("sliding_speed", [1e-4, 0.02, 0.2])
 @pytest.mark.parametrize("in_plane_amplitude", [0.0, 1e-8, 1e-6])
 @pytest.mark.parametrize("normal_amplitude", [0.0, 2.5e-6, 1e-5])
-def test_the_default_steps_are_fine_to_one_in_ten_thousand(
+def test_the_error_of_the_default_steps_is_below_1e_4(
     sliding_speed: float, in_plane_amplitude: float, normal_amplitude: float
 ) -> None:
     def refined(steps: int) -> float:
@@ -140,7 +142,7 @@ def test_the_default_steps_are_fine_to_one_in_ten_thousand(
     assert refined(512) == approx(refined(4096), rel=1e-4)
 
 
-def test_pressing_on_the_way_forward_raises_friction_and_on_the_way_back_lowers_it() -> None:
+def test_a_higher_load_on_the_forward_stroke_raises_friction_and_on_the_return_lowers_it() -> None:
     # a lag of a quarter turn brings the surfaces closest in the middle of the forward stroke
     forward, backward = (
         ratio(sliding_speed=0.02, in_plane_amplitude=1e-6, normal_amplitude=1e-6, phase=phase)
@@ -150,7 +152,7 @@ def test_pressing_on_the_way_forward_raises_friction_and_on_the_way_back_lowers_
     assert backward < neutral < forward
 
 
-def test_with_long_strokes_the_phase_favours_the_way_on_which_the_load_is_higher() -> None:
+def test_with_long_strokes_friction_is_higher_in_phase_with_the_load() -> None:
     # Coulomb with the normal force of the moment: the mean of sgn(v) F_n over a period
     stroke, a, v_r = 1e-4, 2e-6, 3.0
     for phase in (0.0, np.pi / 2, -np.pi / 2):
@@ -183,7 +185,7 @@ def test_points_broadcast_beyond_a_block() -> None:
     )
 
 
-def test_what_cannot_vibrate_is_refused() -> None:
+def test_invalid_vibration_arguments_are_refused() -> None:
     with raises(OutsideRange, match=r"normal_amplitude must be smaller than the separation"):
         ratio(sliding_speed=0.02, normal_amplitude=20e-6)
     with raises(InvalidInput, match=r"sliding_speed must be positive, got 0\.0 m/s"):

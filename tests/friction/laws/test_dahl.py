@@ -1,3 +1,5 @@
+"""Dahl's law against closed forms, an integrator, and the work of closed loops."""
+
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
@@ -20,20 +22,20 @@ def test_from_rest_friction_approaches_the_coulomb_force_exponentially() -> None
     assert dahl_friction(LAW, displacement=x) == approx(F_C * (1 - np.exp(-K * x / F_C)), rel=1e-9, abs=1e-15)
 
 
-def test_at_first_the_contact_is_a_spring() -> None:
+def test_the_force_of_a_small_slide_is_elastic() -> None:
     assert dahl_friction(LAW, displacement=1e-15) == approx(K * 1e-15, rel=1e-8)
 
 
-def test_far_away_the_law_is_coulombs_whatever_the_start() -> None:
+def test_after_a_long_slide_friction_is_coulombs_for_any_start() -> None:
     force = dahl_friction(LAW, displacement=[[1.0], [-1.0]], deformation=[-DEFORMATION, 0, DEFORMATION])
     assert force == approx(np.array([[F_C] * 3, [-F_C] * 3]))
 
 
 @given(first=st.floats(0, 1e-5), second=st.floats(0, 1e-5), start=st.floats(-1, 1))
-def test_two_slides_the_same_way_are_one(first: float, second: float, start: float) -> None:
-    halfway = dahl_friction(LAW, displacement=first, deformation=start * DEFORMATION)
-    onward = dahl_friction(LAW, displacement=second, deformation=halfway / K)
-    assert onward == approx(
+def test_two_slides_in_one_direction_are_equivalent_to_their_sum(first: float, second: float, start: float) -> None:
+    first_force = dahl_friction(LAW, displacement=first, deformation=start * DEFORMATION)
+    second_force = dahl_friction(LAW, displacement=second, deformation=first_force / K)
+    assert second_force == approx(
         float(dahl_friction(LAW, displacement=first + second, deformation=start * DEFORMATION)), abs=1e-12
     )
 
@@ -52,7 +54,7 @@ def test_a_history_at_one_speed_follows_the_closed_form_at_any_step() -> None:
         assert history == approx(F_C * (1 - np.exp(-K * 2e-3 * t / F_C)), rel=1e-9)
 
 
-def test_a_step_in_which_the_motion_turns_is_exact_too() -> None:
+def test_a_step_with_a_reversal_is_exact() -> None:
     # from 1 mm/s to -3 mm/s in 4 ms: 0.5 um forward in the first 1 ms, 4.5 um back in the other three
     history = dahl_friction_history(LAW, time=[0, 4e-3], relative_velocity=[1e-3, -3e-3])
     forward = F_C * (1 - np.exp(-K * 0.5e-6 / F_C))
@@ -73,9 +75,9 @@ def test_a_vibrating_contact_follows_the_integrated_differential_equation() -> N
     assert history == approx(expected, abs=2e-6 * F_C)
 
 
-@given(amplitude=st.floats(1e-9, 1e-4), turns=st.integers(1, 4))
-def test_a_closed_cycle_dissipates_work(amplitude: float, turns: int) -> None:
-    t = np.linspace(0, turns, 400 * turns + 1)
+@given(amplitude=st.floats(1e-9, 1e-4), cycles=st.integers(1, 4))
+def test_a_closed_cycle_dissipates_work(amplitude: float, cycles: int) -> None:
+    t = np.linspace(0, cycles, 400 * cycles + 1)
     v = 2 * np.pi * amplitude * np.cos(2 * np.pi * t)
     force = dahl_friction_history(LAW, time=t, relative_velocity=v)
     steady = slice(-401, None)
@@ -99,7 +101,7 @@ def test_friction_never_exceeds_the_coulomb_force(velocities: list[float], start
     assert np.all(np.abs(history) <= F_C * (1 + 1e-12))
 
 
-def test_many_motions_are_followed_at_once() -> None:
+def test_many_motions_are_integrated_at_once() -> None:
     t = np.linspace(0, 1e-3, 50)
     speeds = np.array([1e-3, 2e-3, 5e-3])
     together = dahl_friction_history(LAW, time=t, relative_velocity=speeds[:, np.newaxis] * np.ones(50))
@@ -107,14 +109,14 @@ def test_many_motions_are_followed_at_once() -> None:
     assert together == approx(dahl_friction(LAW, displacement=speeds[:, np.newaxis] * t), rel=1e-9)
 
 
-def test_times_that_stand_still_are_refused() -> None:
+def test_times_that_do_not_increase_are_refused() -> None:
     with raises(InvalidInput, match=r"time must increase, got 1\.0 s after 1\.0 s"):
         dahl_friction_history(LAW, time=[0, 1, 1], relative_velocity=[1, 1, 1])
     with raises(InvalidInput, match=r"at least two samples"):
         dahl_friction_history(LAW, time=[0], relative_velocity=[1])
 
 
-def test_a_motion_of_another_length_than_its_times_is_refused() -> None:
+def test_a_motion_and_times_of_different_length_are_refused() -> None:
     with raises(InvalidInput, match=r"one value for each of 3 times along its last axis, got shape \(2,\)"):
         dahl_friction_history(LAW, time=[0, 1, 2], relative_velocity=[1, 1])
     with raises(InvalidInput, match=r"\(2,\) starting values do not match \(3,\) motions"):

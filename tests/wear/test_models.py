@@ -1,3 +1,5 @@
+"""Wear models by name: ratios under a sine against closed forms and the tables of D."""
+
 import numpy as np
 import pytest
 from pytest import approx
@@ -24,28 +26,28 @@ def ratio(name: str, amplitude: float) -> float:
     return float(WEAR_MODELS[name](ACORN_NUT_ON_DISC, sine(amplitude)))
 
 
-def test_over_the_whole_period_vibration_would_raise_the_wear() -> None:
+def test_over_the_full_period_vibration_raises_the_wear() -> None:
     assert ratio("dong_2015_full_period", 2.5e-6) == approx(1.31, abs=5e-3)
 
 
 @pytest.mark.parametrize("amplitude", [0.1e-6, 2.5e-6, 14e-6])
-def test_the_separating_half_is_that_of_the_vibrating_cube(amplitude: float) -> None:
+def test_the_half_period_ratio_is_that_of_the_vibrating_cube(amplitude: float) -> None:
     vibrating = vibrating_cube_wear_rate(ACORN_NUT_ON_DISC, normal_load=3.0, vibration_amplitude=amplitude)
-    still = cube_wear_rate(ACORN_NUT_ON_DISC, normal_load=3.0)
-    assert ratio("dong_2015_half_period", amplitude) == approx(vibrating / still, rel=3e-5)
+    at_rest = cube_wear_rate(ACORN_NUT_ON_DISC, normal_load=3.0)
+    assert ratio("dong_2015_half_period", amplitude) == approx(vibrating / at_rest, rel=3e-5)
 
 
-def test_the_separating_half_gives_the_ratio_of_table_3_4() -> None:
+def test_the_half_period_ratio_is_that_of_table_3_4() -> None:
     assert ratio("dong_2015_half_period", 2.5e-6) == approx(1.355 / 2.566, rel=1e-3)
 
 
 @pytest.mark.parametrize("amplitude", [0.1e-6, 2.5e-6, 14e-6])
-def test_with_the_load_balanced_the_height_alone_lowers_the_wear(amplitude: float) -> None:
+def test_about_the_load_balanced_mean_only_the_height_reduces_the_wear(amplitude: float) -> None:
     beta, d = amplitude / DECAY_LENGTH, float(separation(ACORN_NUT_ON_DISC, normal_load=3.0))
     expected = 1 + (DECAY_LENGTH * np.log(i0(beta)) - amplitude * i1(beta) / i0(beta)) / d
     assert ratio("dong_2015_load_balanced", amplitude) == approx(expected, rel=2e-5)
 
 
 @pytest.mark.parametrize("name", WEAR_MODELS)
-def test_without_vibration_wear_stays(name: str) -> None:
+def test_without_vibration_every_model_gives_a_ratio_of_one(name: str) -> None:
     assert ratio(name, 0.0) == approx(1, rel=1e-12)

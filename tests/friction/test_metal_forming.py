@@ -1,4 +1,4 @@
-"""Estimates of forming under vibration against a stress followed through its period."""
+"""Estimates of flow stress under vibration against a stress integrated over its period."""
 
 import numpy as np
 import pytest
@@ -18,8 +18,8 @@ from sonolube.published import statement
 
 
 @pytest.mark.parametrize("strain", [0.0, 1e-4, 1e-3, 1.3e-3, 5e-3, 0.1])
-def test_the_mean_is_that_of_a_stress_that_touches_yield_once_a_period(strain: float) -> None:
-    # elastic-perfectly plastic, a tool that pushes only, 70 GPa and 100 MPa
+def test_the_mean_stress_is_that_of_a_stress_with_yielding_once_a_period(strain: float) -> None:
+    # elastic-perfectly plastic, a tool in compression only, 70 GPa and 100 MPa
     theta = (np.arange(200_000) + 0.5) * 2 * np.pi / 200_000
     stress = np.maximum(100e6 - 70e9 * strain * (1 - np.cos(theta)), 0)
     found = superposed_mean_stress(yield_strength=100e6, youngs_modulus=70e9, strain_amplitude=strain)
@@ -27,7 +27,7 @@ def test_the_mean_is_that_of_a_stress_that_touches_yield_once_a_period(strain: f
 
 
 @given(strain=st.floats(1e-6, 0.1))
-def test_more_vibration_never_takes_more_stress(strain: float) -> None:
+def test_the_mean_stress_falls_with_the_amplitude(strain: float) -> None:
     small, large = superposed_mean_stress(
         yield_strength=100e6, youngs_modulus=70e9, strain_amplitude=[strain, 1.1 * strain]
     )
@@ -40,17 +40,17 @@ def test_the_intensity_is_that_of_a_travelling_wave() -> None:
     assert found == approx(2.665e6, rel=1e-3)
 
 
-def test_one_test_fixes_the_softening_and_gives_itself_back() -> None:
+def test_the_reference_intensity_of_a_test_reproduces_the_test() -> None:
     reference = reference_intensity_from_test(stress_ratio=0.6, acoustic_intensity=1e4)
     assert acoustic_softening_ratio(acoustic_intensity=1e4, reference_intensity=reference) == approx(0.6)
     assert acoustic_softening_ratio(acoustic_intensity=4e4, reference_intensity=reference) == approx(0.2)
     assert acoustic_softening_ratio(acoustic_intensity=1e9, reference_intensity=reference) == 0
 
 
-def test_zinc_lost_what_blaha_and_langenecker_are_cited_for() -> None:
+def test_the_stress_ratio_of_zinc_is_that_cited_from_blaha_and_langenecker() -> None:
     assert approx(1 - statement("2.4.1-blaha-force-reduction").number.value) == ZINC_STRESS_RATIO
 
 
-def test_a_test_that_softened_nothing_fixes_nothing() -> None:
+def test_a_stress_ratio_of_one_gives_no_reference_intensity() -> None:
     with raises(InvalidInput, match="stress_ratio must be positive"):
         reference_intensity_from_test(stress_ratio=1.0, acoustic_intensity=1e4)

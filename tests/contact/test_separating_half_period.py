@@ -1,3 +1,5 @@
+"""Averages over the separating half period against closed forms."""
+
 import mpmath
 import numpy as np
 import pytest
@@ -25,20 +27,20 @@ def test_an_exponential_averages_to_bessel_less_struve(decays: float) -> None:
     assert mean == approx(exact, rel=1e-12)
 
 
-@given(share=st.floats(0, 0.999))
-def test_the_inverse_gap_averages_to_its_closed_form(share: float) -> None:
+@given(ratio=st.floats(0, 0.999))
+def test_the_inverse_gap_averages_to_its_closed_form(ratio: float) -> None:
     # (1/pi) times the integral of 1/(1 + s sin theta) from 0 to pi is (2/pi) arccos(s)/sqrt(1 - s^2)
-    mean = separating_half_period_mean(lambda d: 1 / d, separation=1.0, vibration_amplitude=share)
-    assert mean == approx(2 / np.pi * np.arccos(share) / np.sqrt(1 - share**2), rel=1e-12)
+    mean = separating_half_period_mean(lambda d: 1 / d, separation=1.0, vibration_amplitude=ratio)
+    assert mean == approx(2 / np.pi * np.arccos(ratio) / np.sqrt(1 - ratio**2), rel=1e-12)
 
 
-def test_no_points_have_no_means() -> None:
+def test_empty_arguments_give_empty_results() -> None:
     assert separating_half_period_mean(lambda d: d, separation=np.empty((0, 3)), vibration_amplitude=1.0).shape == (
         0,
         3,
     )
 
 
-def test_a_gap_that_is_none_is_refused() -> None:
+def test_a_separation_that_is_not_positive_is_refused() -> None:
     with raises(InvalidInput, match=r"separation must be positive, got 0\.0 m"):
         separating_half_period_mean(lambda d: d, separation=0.0, vibration_amplitude=0.0)

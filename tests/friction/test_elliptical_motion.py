@@ -1,4 +1,4 @@
-"""A surface whose points move on ellipses drives a slider, or slows it, as friction of the instant has it."""
+"""Traction of an elliptically vibrating surface against the mean of its instantaneous friction."""
 
 import numpy as np
 from hypothesis import given, settings
@@ -28,14 +28,14 @@ def ratio(load: float, *, in_plane: float = 1e-6, velocity: float = 0.0, lag: fl
     )
 
 
-def pressed(load: float, lag: float) -> np.ndarray:
+def normal_force_over_period(load: float, lag: float) -> np.ndarray:
     """Return the normal force over a period, the slider lifted until its mean is the load."""
     surface = AMPLITUDE * np.cos(THETA - lag)
 
-    def excess(height: float) -> float:
+    def surplus_force(height: float) -> float:
         return float(np.mean(STIFFNESS * np.maximum(surface - height, 0)) - load)
 
-    height = float(brentq(excess, -5e-6, AMPLITUDE, xtol=1e-18))
+    height = float(brentq(surplus_force, -5e-6, AMPLITUDE, xtol=1e-18))
     return np.asarray(STIFFNESS * np.maximum(surface - height, 0))
 
 
@@ -46,15 +46,15 @@ def pressed(load: float, lag: float) -> np.ndarray:
     velocity=st.floats(-1.5, 1.5),
     lag=st.floats(-7, 7),
 )
-def test_traction_is_the_mean_of_the_instants_friction(
+def test_the_traction_is_the_mean_of_the_instantaneous_friction(
     load: float, in_plane: float, velocity: float, lag: float
 ) -> None:
-    forces = pressed(load, lag)
-    ahead = -in_plane * np.sin(THETA) - velocity
-    counted = float(np.mean(forces * np.sign(ahead))) / load
+    forces = normal_force_over_period(load, lag)
+    relative_velocity = -in_plane * np.sin(THETA) - velocity
+    mean = float(np.mean(forces * np.sign(relative_velocity))) / load
     computed = ratio(load, in_plane=in_plane * 1e-6, velocity=velocity * OMEGA * 1e-6, lag=lag)
     if abs(abs(in_plane) - abs(velocity)) > 1e-6:
-        assert computed == approx(counted, abs=1e-3)
+        assert computed == approx(mean, abs=1e-3)
     assert np.mean(forces > 0) == approx(
         float(contact_time_fraction(normal_load=load, normal_stiffness=STIFFNESS, normal_amplitude=AMPLITUDE)), abs=1e-4
     )
@@ -67,29 +67,29 @@ def test_the_motor_force_is_linear_in_the_load_while_contact_is_short() -> None:
     assert -1 < ratio(1.2 / np.pi) < -0.9
 
 
-def test_the_motor_force_reverses_across_the_node_and_drives_towards_it() -> None:
+def test_the_motor_force_reverses_across_the_node_and_points_towards_it() -> None:
     # u = A cos(wt) sin(pi x/L), v = B sin(wt) cos(pi x/L) (D 3.24, 3.25), the node of u at x = 0: D 2.1.4
     right, left = ratio(0.5, in_plane=1e-6), ratio(0.5, in_plane=-1e-6)
     assert right == approx(-left)
     assert right < 0
 
 
-def test_of_a_slider_moving_along_friction_is_reduced_by_more_than_its_whole() -> None:
+def test_the_reduction_exceeds_100_percent_for_a_slider_driven_forward() -> None:
     reduction = 1 + ratio(0.05, in_plane=-1e-6, velocity=0.05)
     assert reduction == approx(2)
 
 
-def test_in_phase_the_two_ways_cancel() -> None:
+def test_in_phase_both_directions_cancel() -> None:
     assert ratio(0.4, lag=0.0) == approx(0, abs=1e-12)
 
 
-def test_a_surface_that_never_leaves_drives_with_the_swing_of_its_force() -> None:
+def test_without_contact_loss_the_motor_force_is_that_of_the_force_amplitude() -> None:
     # mean of sgn(cos) (1 + k a/F_N cos) = 2/pi k a/F_N
     assert ratio(4.0) == approx(-2 / np.pi / 4)
 
 
-def test_without_motion_along_the_normal_it_is_the_arcsine() -> None:
-    still = elliptical_traction_ratio(
+def test_without_normal_motion_the_ratio_is_the_arcsine() -> None:
+    without = elliptical_traction_ratio(
         normal_load=1.0,
         normal_stiffness=STIFFNESS,
         normal_amplitude=0.0,
@@ -98,10 +98,10 @@ def test_without_motion_along_the_normal_it_is_the_arcsine() -> None:
         relative_velocity=0.05,
     )
     rigid = parallel_vibration_ratio(sliding_speed=0.05, vibration_velocity=OMEGA * 1e-6)
-    assert float(still) == approx(-float(rigid))
+    assert float(without) == approx(-float(rigid))
 
 
-def test_a_slider_faster_than_the_surface_feels_full_friction() -> None:
+def test_a_slider_faster_than_the_surface_has_full_friction() -> None:
     assert ratio(0.5, velocity=0.2) == -1
     assert ratio(0.5, velocity=-0.2) == 1
 

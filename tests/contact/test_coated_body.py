@@ -1,4 +1,4 @@
-"""A layer on a thick body against the plane-strain equations solved anew, and against first-order theory."""
+"""A layer on a half-space against an independent solution of the plane-strain equations and first-order theory."""
 
 import math
 
@@ -72,14 +72,14 @@ def test_the_kernel_solves_the_equations_of_plane_strain(layer: ElasticBody, sub
     )
 
 
-def test_a_contact_far_smaller_or_larger_than_the_layer_feels_one_body() -> None:
+def test_contacts_much_smaller_or_larger_than_the_layer_have_the_modulus_of_one_body() -> None:
     small, large = equivalent_plane_strain_modulus(PAINTED, contact_radius=[60e-6 * 1e-4, 60e-6 * 150])
     assert small == approx(plane_modulus(POWDER), rel=1e-3)
     # a soft layer of unhindered bulk still yields by its thickness over its constrained modulus
     assert 0.8 * plane_modulus(STEEL) < large < plane_modulus(STEEL)
 
 
-def test_a_layer_of_the_same_material_is_not_there() -> None:
+def test_a_layer_of_the_substrate_material_has_no_effect() -> None:
     same = CoatedBody(layer=STEEL, substrate=STEEL, thickness=1e-4)
     assert equivalent_plane_strain_modulus(same, contact_radius=[1e-6, 1e-4, 1e-2]) == approx(
         plane_modulus(STEEL), rel=1e-12
@@ -87,7 +87,7 @@ def test_a_layer_of_the_same_material_is_not_there() -> None:
 
 
 @pytest.mark.parametrize("thickness_ratio", [0.1, 0.5, 1.0, 3.0])
-def test_a_layer_little_different_weighs_as_first_order_theory_has_it(thickness_ratio: float) -> None:
+def test_a_slightly_different_layer_has_the_modulus_of_first_order_theory(thickness_ratio: float) -> None:
     # Gao, Chiu and Lee (1992), I_0 for one Poisson's ratio: exact to first order in the difference of moduli
     nu, xi, step = 0.3, thickness_ratio, 1e-4
     weight = 2 / math.pi * math.atan(xi) + ((1 - 2 * nu) * xi * math.log((1 + xi**2) / xi**2) - xi / (1 + xi**2)) / (
@@ -95,10 +95,10 @@ def test_a_layer_little_different_weighs_as_first_order_theory_has_it(thickness_
     )
     substrate = ElasticBody(youngs_modulus=100e9, poisson_ratio=nu)
     layer = ElasticBody(youngs_modulus=100e9 * (1 + step), poisson_ratio=nu)
-    found = equivalent_plane_strain_modulus(
+    modulus = equivalent_plane_strain_modulus(
         CoatedBody(layer=layer, substrate=substrate, thickness=xi), contact_radius=1.0
     )
-    assert found / plane_modulus(substrate) - 1 == approx(weight * step, rel=1e-3)
+    assert modulus / plane_modulus(substrate) - 1 == approx(weight * step, rel=1e-3)
 
 
 @pytest.mark.parametrize("a", [1 / 3, 1.0, 10 / 3])
@@ -110,19 +110,19 @@ def test_the_pressure_of_a_uniform_body_bounds_the_stiffness_from_below(a: float
 
     energy = quad(excess, 1e-9, 30, limit=400)[0]
     bound = 1 / (1 + 2 * a / math.pi * energy)
-    found = float(equivalent_plane_strain_modulus(PAINTED, contact_radius=a * PAINTED.thickness)) / plane_modulus(
+    modulus = float(equivalent_plane_strain_modulus(PAINTED, contact_radius=a * PAINTED.thickness)) / plane_modulus(
         POWDER
     )
-    assert 0.7 * found < bound <= found * (1 + 1e-9)
+    assert 0.7 * modulus < bound <= modulus * (1 + 1e-9)
 
 
-def test_sixty_micrometres_of_powder_make_steel_ten_times_softer_to_a_worn_pin() -> None:
+def test_sixty_micrometres_of_powder_reduce_the_modulus_of_steel_tenfold_for_a_worn_pin() -> None:
     # D 4.1.3: 0.126 mm2 of nominal area is a circle of 0.2 mm radius; 3 GPa is assumed for the powder
-    found = float(equivalent_plane_strain_modulus(PAINTED, contact_radius=0.2e-3))
-    assert 6 * plane_modulus(POWDER) < found < 8 * plane_modulus(POWDER)
-    assert 8.5 < plane_modulus(STEEL) / found < 10.5
+    modulus = float(equivalent_plane_strain_modulus(PAINTED, contact_radius=0.2e-3))
+    assert 6 * plane_modulus(POWDER) < modulus < 8 * plane_modulus(POWDER)
+    assert 8.5 < plane_modulus(STEEL) / modulus < 10.5
 
 
-def test_a_contact_far_wider_than_the_layer_is_refused() -> None:
-    with raises(OutsideRange, match="take the substrate alone"):
+def test_a_contact_much_wider_than_the_layer_is_refused() -> None:
+    with raises(OutsideRange, match="use the modulus of the substrate alone"):
         equivalent_plane_strain_modulus(PAINTED, contact_radius=1.0)

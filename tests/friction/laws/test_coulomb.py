@@ -1,3 +1,5 @@
+"""Coulomb's law: sign, proportionality to the load, and refused arguments."""
+
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
@@ -9,13 +11,13 @@ from sonolube.friction import CoulombFriction, coulomb_friction, friction_coeffi
 STEEL_ON_ALUMINIUM = CoulombFriction(friction_coefficient=0.54)
 
 
-def test_friction_opposes_sliding_either_way_and_rests_with_the_body() -> None:
+def test_friction_opposes_sliding_in_both_directions_and_vanishes_at_rest() -> None:
     force = coulomb_friction(STEEL_ON_ALUMINIUM, normal_load=100.0, relative_velocity=[0.01, 0.0, -3.0])
     assert force == approx(np.array([54.0, 0.0, -54.0]))
 
 
 @given(load=st.floats(0, 1e6), velocity=st.floats(-10, 10))
-def test_the_speed_of_sliding_does_not_matter(load: float, velocity: float) -> None:
+def test_the_sliding_speed_has_no_effect(load: float, velocity: float) -> None:
     slow, fast = (
         coulomb_friction(STEEL_ON_ALUMINIUM, normal_load=load, relative_velocity=v)
         for v in (velocity, 2 * velocity + np.sign(velocity))
@@ -24,7 +26,7 @@ def test_the_speed_of_sliding_does_not_matter(load: float, velocity: float) -> N
 
 
 @given(load=st.floats(1e-3, 1e6), mu=st.floats(0, 2))
-def test_the_coefficient_comes_back_from_the_force(load: float, mu: float) -> None:
+def test_the_coefficient_is_recovered_from_the_force(load: float, mu: float) -> None:
     force = coulomb_friction(CoulombFriction(friction_coefficient=mu), normal_load=load, relative_velocity=1.0)
     assert friction_coefficient(friction_force=force, normal_load=load) == approx(mu)
 
@@ -34,7 +36,7 @@ def test_loads_and_velocities_broadcast() -> None:
     assert force.shape == (3, 5)
 
 
-def test_a_pulled_apart_contact_is_refused_by_name() -> None:
+def test_loads_and_coefficients_out_of_range_are_refused_by_name() -> None:
     with raises(InvalidInput, match=r"normal_load must not be negative, got -3\.0 N"):
         coulomb_friction(STEEL_ON_ALUMINIUM, normal_load=-3.0, relative_velocity=1.0)
     with raises(InvalidInput, match=r"normal_load must be positive, got 0\.0 N"):

@@ -1,3 +1,5 @@
+"""The LuGre law against its Stribeck curve, an integrator and the limit of Dahl."""
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -37,7 +39,7 @@ def test_steady_friction_is_that_of_the_stribeck_curve(velocity: float, force: f
 
 
 @pytest.mark.parametrize("velocity", [2e-4, 0.001, 0.05, -2e-4, -0.05])
-def test_any_start_settles_to_steady_friction_either_way(velocity: float) -> None:
+def test_any_start_converges_to_steady_friction_in_both_directions(velocity: float) -> None:
     t = np.linspace(0, 1e-3 / abs(velocity), 2000)
     history = lugre_friction_history(
         LAW, time=t, relative_velocity=np.full((3, 2000), velocity), bristle_deflection=[-1e-5, 0, 1.5e-5]
@@ -90,7 +92,7 @@ def test_deflections_stay_within_the_static_force_over_the_stiffness(
     assert np.all(np.abs(history.bristle_deflection) <= F_S / S_0 * (1 + 1e-12))
 
 
-def test_without_stribeck_damping_or_drag_the_law_is_dahls() -> None:
+def test_without_stribeck_effect_damping_and_viscous_friction_the_law_is_dahls() -> None:
     law = LuGreFriction(
         coulomb_friction_force=F_C,
         static_friction_force=F_C,
