@@ -5,7 +5,7 @@ import numpy as np
 
 from sonolube.checks import Floats
 
-__all__ = ["steady_period_mean_force"]
+__all__: list[str] = []  # kernel of this room
 
 
 @numba.njit(cache=True)
