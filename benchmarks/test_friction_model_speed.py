@@ -4,7 +4,14 @@ import numpy as np
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from sonolube.contact import ASPERITY_LAWS, ContactPair, GapMotion, RoughContact, harmonic_motion, load_balanced_motion
+from sonolube.contact import (
+    ASPERITY_LAWS,
+    ContactPair,
+    GapMotion,
+    RoughContact,
+    load_balanced_motion,
+    sinusoidal_motion,
+)
 from sonolube.friction import FRICTION_MODELS, AsperityStickSlip, sine_stick_slip_ratio
 from sonolube.surfaces import Roughness
 
@@ -20,7 +27,7 @@ POINTS = 10_000
 
 def motion(amplitude: float = 2.5e-6) -> GapMotion:
     return load_balanced_motion(
-        CONTACT, harmonic_motion(CONTACT, normal_load=3.0, vibration_amplitude=amplitude, frequency=22e3)
+        CONTACT, sinusoidal_motion(CONTACT, normal_load=3.0, vibration_amplitude=amplitude, frequency=22e3)
     )
 
 

@@ -17,7 +17,7 @@ from sonolube.friction import (
     lugre_friction_history,
 )
 from sonolube.surfaces import Roughness
-from sonolube.wear.cube import vibrating_cube_wear_rate
+from sonolube.wear import vibrating_cube_wear_rate
 
 POINTS = 1_000_000
 CONTACT = RoughContact(

@@ -9,9 +9,9 @@ from pytest_benchmark.fixture import BenchmarkFixture
 from sonolube.friction import (
     BoundaryLubricant,
     StribeckCurve,
-    best_method,
-    method_coefficients,
-    softened_stress_ratio,
+    acoustic_softening_ratio,
+    best_lubrication_method,
+    lubrication_coefficients,
     stribeck_coefficient,
     superposed_mean_stress,
 )
@@ -51,13 +51,13 @@ FORMS: dict[str, Callable[[], object]] = {
         friction_force=SHARE, sliding_speed=SPEED, vibration_velocity=SHARE
     ),
     "stribeck_coefficient": lambda: stribeck_coefficient(CURVE, hersey_number=1e-8 * SHARE),
-    "method_coefficients": lambda: method_coefficients(
+    "lubrication_coefficients": lambda: lubrication_coefficients(
         LUBRICANT, friction_coefficient=0.2, friction_ratio=SHARE, nominal_pressure=1e8 * SPEED
     ),
     "superposed_mean_stress": lambda: superposed_mean_stress(
         yield_strength=1e8, youngs_modulus=70e9, strain_amplitude=1e-2 * SHARE
     ),
-    "softened_stress_ratio": lambda: softened_stress_ratio(acoustic_intensity=HEAT, reference_intensity=1e6),
+    "acoustic_softening_ratio": lambda: acoustic_softening_ratio(acoustic_intensity=HEAT, reference_intensity=1e6),
 }
 
 
@@ -67,7 +67,7 @@ def test_a_million_points_of_a_closed_form(benchmark: BenchmarkFixture, name: st
 
 
 def test_a_hundred_thousand_choices_of_a_method(benchmark: BenchmarkFixture) -> None:
-    found = method_coefficients(
+    found = lubrication_coefficients(
         LUBRICANT, friction_coefficient=0.2, friction_ratio=SHARE[:100_000], nominal_pressure=1e8 * SPEED[:100_000]
     )
-    assert benchmark(best_method, found, smallest_gain=0.04).shape == (100_000,)
+    assert benchmark(best_lubrication_method, found, smallest_gain=0.04).shape == (100_000,)

@@ -13,7 +13,7 @@ from sonolube.contact import (
     separation,
 )
 from sonolube.surfaces import Roughness
-from sonolube.units import engineering
+from sonolube.units import format_si
 
 steel = ElasticBody(youngs_modulus=200e9, poisson_ratio=0.29)
 aluminium = ElasticBody(youngs_modulus=73e9, poisson_ratio=0.33)
@@ -26,5 +26,5 @@ for law in ASPERITY_LAWS.values():
         contact = RoughContact(roughness=roughness, pair=pair, nominal_area=1e-4, heights=heights, asperity=law)
         gap = float(separation(contact, normal_load=10.0))
         area = float(real_contact_area(contact, separation=gap))
-        lines.append(f"{law.name:<14}{heights.name:<14}{engineering(gap, 'm'):<14}{engineering(area, 'm2')}")
+        lines.append(f"{law.name:<14}{heights.name:<14}{format_si(gap, 'm'):<14}{format_si(area, 'm2')}")
 print("\n".join(lines))

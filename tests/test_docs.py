@@ -143,11 +143,17 @@ def test_every_verdict_is_explained() -> None:
     assert all(f"\n`{verdict.value}`\n: " in page for verdict in Verdict)
 
 
-def test_every_choice_of_a_rig_file_is_explained_in_the_theory() -> None:
-    from sonolube.contact import ASPERITY_LAWS
+def test_the_theory_lists_every_choice_of_a_rig_file_from_its_record() -> None:
+    from sonolube.contact import ASPERITY_LAWS, HEIGHT_DISTRIBUTIONS
+    from sonolube.friction import FRICTION_MODELS
 
-    page = text_of(DOCS / "theory" / "contact.md")
-    assert all(f"| `{name}` |" in page for name in ASPERITY_LAWS)
+    contact, friction = (text_of(DOCS / "theory" / page) for page in ("contact.md", "friction.md"))
+    assert "\n<!-- table: asperity_laws -->\n" in contact
+    assert "\n<!-- table: height_distributions -->\n" in contact
+    assert "\n<!-- table: friction_models -->\n" in friction
+    assert all(law.__doc__ and law.citation for law in ASPERITY_LAWS.values())
+    assert all(heights.__doc__ and heights.citation for heights in HEIGHT_DISTRIBUTIONS.values())
+    assert all(model.__doc__ and model.citation for model in FRICTION_MODELS.values())
 
 
 def test_pages_load_nothing_from_elsewhere() -> None:

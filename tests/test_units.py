@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from pytest import approx
 
 from sonolube.errors import InvalidInput
-from sonolube.units import convert, engineering, rise_to_si, to_si
+from sonolube.units import convert, format_si, temperature_difference_to_si, to_si
 
 
 @pytest.mark.parametrize(
@@ -41,12 +41,12 @@ def test_text_with_a_unit_becomes_si(text: str, unit: str, value: float) -> None
 @pytest.mark.parametrize(
     ("text", "complaint"),
     [
-        ("40mm", "--load 40mm is a length; wanted a force, such as 40N"),
-        ("40", "--load 40 has no unit; wanted a force, such as 40N"),
-        ("heavy", "--load 'heavy' is not a number with a unit; wanted a force, such as 40N"),
-        ("40 Nn", "--load 40 Nn: unknown unit 'Nn'; wanted a force, such as 40N"),
+        ("40mm", "--load 40mm is a length; expected a force, such as 40N"),
+        ("40", "--load 40 has no unit; expected a force, such as 40N"),
+        ("heavy", "--load 'heavy' is not a number with a unit; expected a force, such as 40N"),
+        ("40 Nn", "--load 40 Nn: unknown unit 'Nn'; expected a force, such as 40N"),
         ("1e999 N", "--load 1e999 N is not finite"),
-        ("nan N", "--load 'nan N' is not a number with a unit; wanted a force, such as 40N"),
+        ("nan N", "--load 'nan N' is not a number with a unit; expected a force, such as 40N"),
     ],
 )
 def test_what_is_not_a_force_is_refused_with_the_remedy(text: str, complaint: str) -> None:
@@ -88,17 +88,19 @@ def test_conversion_there_and_back_changes_nothing(value: float) -> None:
     ],
 )
 def test_numbers_are_written_as_people_write_them(value: float, unit: str, text: str) -> None:
-    assert engineering(value, unit) == text
+    assert format_si(value, unit) == text
 
 
 def test_a_rise_of_temperature_is_no_temperature() -> None:
-    assert rise_to_si("40 K", name="--warming") == 40.0
-    assert rise_to_si("72 delta_degF", name="--warming") == approx(40.0)
+    assert temperature_difference_to_si("40 K", name="--warming") == 40.0
+    assert temperature_difference_to_si("72 delta_degF", name="--warming") == approx(40.0)
     for text in ("40 degC", "40 degF"):
-        with pytest.raises(InvalidInput, match=f"^--warming {text} is a temperature; wanted a rise of it, such as 40K"):
-            rise_to_si(text, name="--warming")
+        with pytest.raises(
+            InvalidInput, match=f"^--warming {text} is a temperature; expected a temperature difference, such as 40K"
+        ):
+            temperature_difference_to_si(text, name="--warming")
 
 
 def test_a_share_is_no_angle() -> None:
-    with pytest.raises(InvalidInput, match="40 % is a pure number; wanted a speed"):
+    with pytest.raises(InvalidInput, match="40 % is a pure number; expected a speed"):
         to_si("40 %", unit="m/s", name="speed")

@@ -21,6 +21,8 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 from sonolube.cli import main
+from sonolube.contact import ASPERITY_LAWS, HEIGHT_DISTRIBUTIONS
+from sonolube.friction import FRICTION_MODELS
 from sonolube.materials import Material, SourcedValue, material, material_names
 from sonolube.measurement.file_format import FileFormat
 from sonolube.measurement.impedance.formats import IMPEDANCE_FORMATS
@@ -29,8 +31,9 @@ from sonolube.measurement.surface_files.formats import SURFACE_FORMATS
 from sonolube.published import errata
 from sonolube.rig import read_rig, rig_schema
 from sonolube.rig.file.json_schema import tables_of
-from sonolube.units import engineering, kind_of
+from sonolube.units import format_si, unit_description
 from sonolube.vocabulary import quantities
+from sonolube.wear import WEAR_MODELS
 
 DOCS = Path(__file__).parents[1]
 RIGS = DOCS.parent / "examples" / "rigs"
@@ -52,9 +55,9 @@ def example_rigs() -> str:
                 f"`{name}`",
                 _plain(rig.title),
                 _plain(rig.source),
-                engineering(rig.normal_load, "N"),
-                engineering(rig.sliding_speed, "m/s"),
-                engineering(rig.vibration_amplitude, "m"),
+                format_si(rig.normal_load, "N"),
+                format_si(rig.sliding_speed, "m/s"),
+                format_si(rig.vibration_amplitude, "m"),
                 f"{len(rig.assumptions)}",
             ]
             for name, rig in rigs.items()
@@ -98,6 +101,31 @@ def surface_formats() -> str:
     return _formats(SURFACE_FORMATS.values())
 
 
+def asperity_laws() -> str:
+    """Return every asperity law with its first docstring line and its source."""
+    return _variants("`asperity_law`", "Law", {name: (type(law), law.citation) for name, law in ASPERITY_LAWS.items()})
+
+
+def height_distributions() -> str:
+    """Return every height distribution with its first docstring line and its source."""
+    known = {name: (type(heights), heights.citation) for name, heights in HEIGHT_DISTRIBUTIONS.items()}
+    return _variants("`height_distribution`", "Distribution", known)
+
+
+def friction_models() -> str:
+    """Return every friction model with its first docstring line, its parameters and its source."""
+    rows = []
+    for name, model in FRICTION_MODELS.items():
+        parameters = [f"`{each.name}` [{each.unit or '-'}]" for each in model.parameters()]
+        rows.append([f"`{name}`", _plain(_summary(model)), ", ".join(parameters), _plain(model.citation)])
+    return _grid(["`model`", "Model", "Parameters", "Source"], rows)
+
+
+def wear_models() -> str:
+    """Return every wear model with its first docstring line."""
+    return _grid(["Name", "Model"], [[f"`{name}`", _plain(_summary(model))] for name, model in WEAR_MODELS.items()])
+
+
 TABLES: Mapping[str, Callable[[], str]] = {
     table.__name__: table
     for table in (
@@ -109,6 +137,10 @@ TABLES: Mapping[str, Callable[[], str]] = {
         recording_formats,
         impedance_formats,
         surface_formats,
+        asperity_laws,
+        height_distributions,
+        friction_models,
+        wear_models,
     )
 }
 
@@ -199,7 +231,7 @@ def _rig_table(name: str, table: Mapping[str, Any], schema: Mapping[str, Any]) -
 def _key(key: str, entry: Mapping[str, Any]) -> tuple[str, str, str]:
     if "x-si-unit" in entry:
         unit = entry["x-si-unit"]
-        return _plain(entry["title"]), unit or "none", _plain(kind_of(unit))
+        return _plain(entry["title"]), unit or "none", _plain(unit_description(unit))
     if entry.get("description") or entry.get("const"):
         return (
             _plain(entry.get("description") or key.capitalize()),
@@ -236,7 +268,7 @@ def _formats(formats: Iterable[FileFormat]) -> str:
 
 def _material(shown: Material) -> str:
     rows = [
-        [key.replace("_", " "), engineering(known.value, known.unit, digits=4), _source(known)]
+        [key.replace("_", " "), format_si(known.value, known.unit, digits=4), _source(known)]
         for key, known in shown.properties.items()
     ]
     if shown.crystal_structure:
@@ -247,6 +279,17 @@ def _material(shown: Material) -> str:
 
 def _source(known: SourcedValue) -> str:
     return _plain("; ".join(filter(None, (known.source, known.condition, known.note))))
+
+
+def _variants(key: str, kind: str, known: Mapping[str, tuple[Any, str]]) -> str:
+    """Return a table of named variants from their records and citations."""
+    rows = [[f"`{name}`", _plain(_summary(record)), _plain(citation)] for name, (record, citation) in known.items()]
+    return _grid([key, kind, "Source"], rows)
+
+
+def _summary(record: Any) -> str:
+    """Return the first line of a docstring, without its full stop and its unit."""
+    return re.sub(r"\s*\[\]$", "", (record.__doc__ or "").strip().splitlines()[0]).removesuffix(".")
 
 
 def _grid(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:

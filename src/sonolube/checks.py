@@ -1,4 +1,4 @@
-"""Checks of physical arguments, which name the argument, the value and its unit."""
+"""Checks of physical arguments; the errors name the argument, the value and its unit."""
 
 from collections.abc import Callable, Mapping
 from math import isfinite
@@ -76,10 +76,9 @@ def require_within(lower: float, upper: float, /, **values: ArrayLike) -> Floats
 
 
 def _require(accepts: Callable[[Any], Any], demand: str, values: Mapping[str, Any]) -> Floats:
+    """Return the first value as a float array; refuse any value that is not finite or not accepted."""
     for name, value in values.items():
-        if (
-            isinstance(value, float) and isfinite(value) and accepts(value)
-        ):  # by far the commonest, in a tenth of the time
+        if isinstance(value, float) and isfinite(value) and accepts(value):  # the common case, in a tenth of the time
             continue
         array = _floats(name, value)
         _refuse_unless(np.isfinite(array), array, name, "must be finite")
@@ -88,12 +87,14 @@ def _require(accepts: Callable[[Any], Any], demand: str, values: Mapping[str, An
 
 
 def _refuse_unless(accepted: NDArray[np.bool_], array: Floats, name: str, demand: str) -> None:
+    """Raise InvalidInput for the first element that is not accepted."""
     if not accepted.all():
         offender = float(array[~accepted].flat[0]) if array.ndim else float(array)
         raise InvalidInput(f"{name} {demand}, got {offender!r} {unit_of(name)}".rstrip())
 
 
 def _floats(name: str, value: ArrayLike) -> Floats:
+    """Return a value as a float array; refuse what is not a number or an array of numbers."""
     try:
         array = np.asarray(value)
     except ValueError:
@@ -104,6 +105,7 @@ def _floats(name: str, value: ArrayLike) -> Floats:
 
 
 def _parts(value: ArrayLike) -> tuple[ArrayLike, ...]:
+    """Return the real and imaginary part of a complex value, or the value itself."""
     try:
         array = np.asarray(value)
     except ValueError:

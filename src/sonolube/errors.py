@@ -1,44 +1,44 @@
-"""What can go wrong, each with one clear line for the user."""
+"""Errors and warnings of sonolube, each with one line that names the cause and the remedy."""
 
 from collections.abc import Iterable
 from difflib import get_close_matches
 
 
 class SonolubeError(Exception):
-    """Anything sonolube refuses or cannot do; its text is one line that names the cause and the remedy."""
+    """Base of all errors that sonolube raises; the text is one line that names the cause and the remedy."""
 
 
 class InvalidInput(SonolubeError, ValueError):
-    """A value that has no meaning where it was given."""
+    """A value without meaning for its argument."""
 
 
 class OutsideRange(InvalidInput):
-    """A meaningful value at which the model asked for does not hold."""
+    """A meaningful value outside the range of the requested model."""
 
 
 class MissingProperty(SonolubeError, LookupError):
-    """A property for which no source is known, and so no value is given."""
+    """A property without a known source, for which no value is given."""
 
 
 class NoGroove(SonolubeError):
-    """A scan in which nothing stands out as a wear groove or scar; what was seen instead is in its text."""
+    """A scan without a detectable wear groove or scar; the text gives what was detected instead."""
 
 
 class UnknownName(SonolubeError, LookupError):
-    """A name that stands in none of the tables."""
+    """A name that is in no table."""
 
     @classmethod
     def among(cls, known: Iterable[str], *, kind: str, name: str) -> "UnknownName":
-        """Say which name is unknown and which known one comes closest.
+        """Return the error for an unknown name, with the closest known name as a suggestion.
 
         Parameters
         ----------
         known : iterable of str
-            The names that would have been accepted.
+            Accepted names.
         kind : str
-            What the name should have named, such as "material".
+            Kind of thing that the name denotes, such as "material".
         name : str
-            The name as given.
+            The unknown name.
 
         Returns
         -------
@@ -49,18 +49,18 @@ class UnknownName(SonolubeError, LookupError):
 
 
 class ModelRangeWarning(UserWarning):
-    """A result stands, but outside the range in which its model was shown to hold."""
+    """A result outside the range in which its model was verified."""
 
 
 class InconsistentCoupling(ModelRangeWarning):
-    """A stated coupling factor disagrees with the one that stroke, stiffness and capacitance imply."""
+    """A stated coupling factor that disagrees with the one from stroke, stiffness and capacitance."""
 
 
 class GpuUnused(UserWarning):
-    """A GPU was asked for, but the processor computed; the answers are the same, only later."""
+    """A GPU was requested but the processor was used; the results are the same, the computation slower."""
 
 
 def suggestion(name: str, known: Iterable[str]) -> str:
-    """Return "did you mean ...?" where a known name comes close, else an empty text."""
+    """Return "did you mean ...?" with the closest known name, or an empty text if none is close."""
     close = get_close_matches(name.lower(), list(known), n=1, cutoff=0.6)
     return f"did you mean {close[0]}?" if close else ""

@@ -1,4 +1,4 @@
-"""Figures as journals print them: units on every axis, legible, safe for colour-blind eyes and for grey print."""
+"""Style and output of figures: a colour-blind-safe palette that is legible in grey print, and atomic file writing."""
 
 import io
 from collections.abc import Callable, Iterator
@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sonolube.files import write_whole
+from sonolube.files import write_atomically
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-# The colours of Okabe and Ito, ordered so that neighbours differ in lightness too; each comes with its own marker.
+# The palette of Okabe and Ito, ordered so that neighbours also differ in lightness; each colour has a marker.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 LINES = ("-", "--", "-.", ":", (0, (5, 1)), (0, (3, 1, 1, 1)), (0, (1, 1)))
@@ -41,20 +41,20 @@ _STYLE = {
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ReportFigure:
-    """A figure of the report.
+    """A figure of the reproduction report.
 
     Parameters
     ----------
     name : str
-        Its file's name, without ending.
+        File name without suffix.
     chapter : int
-        Chapter of the source it belongs to.
+        Chapter of the source to which it belongs.
     title : str
-        What it shows.
+        Title.
     caption : str
-        What to see in it, and where every point comes from.
+        Caption, with the source of every data point.
     draw : callable
-        Draws it.
+        Returns the figure.
     """
 
     name: str
@@ -66,7 +66,7 @@ class ReportFigure:
 
 @contextmanager
 def publication_style() -> Iterator[None]:
-    """Draw figures inside this context to give them the house's style."""
+    """Apply the style of sonolube to figures drawn in this context."""
     import matplotlib as mpl
     from cycler import cycler
 
@@ -74,25 +74,50 @@ def publication_style() -> Iterator[None]:
         yield
 
 
-def rendered(figure: "Figure", form: str) -> bytes:
-    """Return the figure as a file's content; `form` is "png", "svg" or "pdf". The same figure gives the same bytes.
+def render_figure(figure: "Figure", file_format: str) -> bytes:
+    """Return a figure as the content of a file, reproducible byte for byte.
 
-    It is laid out by the first file; others have the same layout, and much sooner.
+    Parameters
+    ----------
+    figure : Figure
+    file_format : {"png", "svg", "pdf"}
+
+    Returns
+    -------
+    bytes
+
+    Notes
+    -----
+    The first call computes the layout; later calls reuse it, and are much faster.
     """
     buffer = io.BytesIO()
-    metadata = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(form)
+    metadata = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(file_format)
     with publication_style():
-        figure.savefig(buffer, format=form, metadata=metadata)
+        figure.savefig(buffer, format=file_format, metadata=metadata)
         figure.set_layout_engine("none")
     return buffer.getvalue()
 
 
-def write_figure(figure: "Figure", *, folder: Path, name: str, forms: tuple[str, ...] = ("png", "svg")) -> list[Path]:
-    """Write the figure once in each form and return the files.
+def write_figure(
+    figure: "Figure", *, folder: Path, name: str, file_formats: tuple[str, ...] = ("png", "svg")
+) -> list[Path]:
+    """Write a figure once in each file format and return the paths.
+
+    Parameters
+    ----------
+    figure : Figure
+    folder : Path
+    name : str
+        File name without suffix.
+    file_formats : tuple of str
+
+    Returns
+    -------
+    list of Path
 
     Raises
     ------
     InvalidInput
         If the folder cannot be written to.
     """
-    return [write_whole(folder / f"{name}.{form}", rendered(figure, form)) for form in forms]
+    return [write_atomically(folder / f"{name}.{each}", render_figure(figure, each)) for each in file_formats]

@@ -1,4 +1,4 @@
-"""Files that appear whole or not at all."""
+"""Atomic writing of files."""
 
 import os
 import tempfile
@@ -7,15 +7,15 @@ from pathlib import Path
 from sonolube.errors import InvalidInput
 
 
-def write_whole(path: Path, content: bytes | str) -> Path:
-    """Write `content` to `path` in one step: a reader sees the old file or the new one, never a part.
+def write_atomically(path: Path, content: bytes | str) -> Path:
+    """Write a file atomically: readers get either the old content or the new one, never a part of it.
 
     Parameters
     ----------
     path : Path
-        Where to; the folder is made where it is missing.
+        Path of the file; a missing folder is created.
     content : bytes or str
-        What to write; text is encoded as UTF-8.
+        Content; text is encoded as UTF-8.
 
     Returns
     -------
@@ -25,7 +25,7 @@ def write_whole(path: Path, content: bytes | str) -> Path:
     Raises
     ------
     InvalidInput
-        If the place cannot be written to.
+        If the file cannot be written.
     """
     data = content.encode() if isinstance(content, str) else content
     try:

@@ -1,4 +1,4 @@
-"""Text with a unit, such as "8 um", to a number in SI and back; only for the edges: files, commands and pages."""
+"""Conversion of text with a unit, such as "8 um", to SI numbers and back, for files, commands and pages."""
 
 import math
 import re
@@ -10,7 +10,7 @@ from sonolube.errors import InvalidInput
 
 _PLAIN_POWER = re.compile(r"(?<=[A-Za-zµμ])(-?\d+)")
 _ANGLES = ("radian", "degree", "revolution", "turn", "cycle")
-_LEAST_MM3 = 1e-14  # m3; below, um3 reads better
+_MINIMUM_MM3 = 1e-14  # m3; smaller volumes are written in um3
 _NUMBER_AND_UNIT = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
 
 _KINDS = {
@@ -38,16 +38,16 @@ _KINDS = {
 
 
 def to_si(text: str, *, unit: str, name: str) -> float:
-    """Return the number in SI that `text` stands for.
+    """Return the value of a text with a unit, in SI.
 
     Parameters
     ----------
     text : str
         A number and its unit, such as "8 um" or "4.7e10/m2".
     unit : str
-        The SI unit in which the result is wanted; empty for a pure number.
+        SI unit of the result; empty for a pure number.
     name : str
-        What to call the value in an error: the key of the file or the option of the command.
+        Name of the value in errors: the key of the file or the option of the command.
 
     Returns
     -------
@@ -56,33 +56,33 @@ def to_si(text: str, *, unit: str, name: str) -> float:
     Raises
     ------
     InvalidInput
-        If the text is no finite number with a unit, or a unit of another kind.
+        If the text is not a finite number with a unit, or its unit is of another kind.
 
     Notes
     -----
-    A rate in 1/s counts turns: 60 rpm and 360 deg/s are 1/s.
+    Rates in 1/s are in turns per second: 60 rpm and 360 deg/s are 1/s.
     """
     match = _NUMBER_AND_UNIT.fullmatch(text)
     if match is None:
-        raise InvalidInput(f"{name} {text!r} is not a number with a unit; wanted {kind_of(unit)}")
+        raise InvalidInput(f"{name} {text!r} is not a number with a unit; expected {unit_description(unit)}")
     number, written_unit = float(match[1]), match[2]
     if not written_unit and unit:
-        raise InvalidInput(f"{name} {text} has no unit; wanted {kind_of(unit)}")
+        raise InvalidInput(f"{name} {text} has no unit; expected {unit_description(unit)}")
     value = _converted(number, written_unit, unit, name=name, text=text)
     if not math.isfinite(value):
         raise InvalidInput(f"{name} {text} is not finite")
     return value
 
 
-def rise_to_si(text: str, *, name: str) -> float:
-    """Return the rise of temperature in K that `text` stands for.
+def temperature_difference_to_si(text: str, *, name: str) -> float:
+    """Return the temperature difference of a text with a unit, in K.
 
     Parameters
     ----------
     text : str
         A number and its unit, such as "40 K".
     name : str
-        What to call the value in an error.
+        Name of the value in errors.
 
     Returns
     -------
@@ -91,17 +91,17 @@ def rise_to_si(text: str, *, name: str) -> float:
     Raises
     ------
     InvalidInput
-        As `to_si`, or if the unit is of a scale with a zero of its own, such as degC.
+        As `to_si`, or if the unit belongs to a scale with an offset, such as degC.
     """
     value = to_si(text, unit="K", name=name)
     match = _NUMBER_AND_UNIT.fullmatch(text)
     if match is not None and _converted(0.0, match[2], "K", name=name, text=text) != 0:
-        raise InvalidInput(f"{name} {text} is a temperature; wanted a rise of it, such as 40K")
+        raise InvalidInput(f"{name} {text} is a temperature; expected a temperature difference, such as 40K")
     return value
 
 
 def convert(value: float, *, from_unit: str, to_unit: str) -> float:
-    """Return `value` in another unit of the same kind, such as mm/s for m/s.
+    """Return a value in another unit of the same kind, such as mm/s for m/s.
 
     Raises
     ------
@@ -111,40 +111,40 @@ def convert(value: float, *, from_unit: str, to_unit: str) -> float:
     return _converted(value, from_unit, to_unit, name="value", text=f"{value} {from_unit}")
 
 
-def kind_of(unit: str) -> str:
-    """Return what a value with this SI unit is, with an example, such as "a force, such as 40N"."""
+def unit_description(unit: str) -> str:
+    """Return the kind of quantity of an SI unit with an example, such as "a force, such as 40N"."""
     return _KINDS.get(unit, f"a value in {unit}")
 
 
-def engineering(value: float, unit: str, *, digits: int = 3) -> str:
-    """Return the value as people write it, such as "2.5 um" for 2.5e-6 m.
+def format_si(value: float, unit: str, *, digits: int = 3) -> str:
+    """Return an SI value as text with a prefixed unit, such as "2.5 um" for 2.5e-6 m.
 
     Parameters
     ----------
     value : float
-        In SI.
+        Value in SI.
     unit : str
-        Its SI unit.
+        SI unit.
     digits : int
-        Significant digits kept.
+        Number of significant digits.
 
     Returns
     -------
     str
     """
     if unit == "kg" and 0 < abs(value) < 1:
-        return engineering(1e3 * value, "g", digits=digits)
+        return format_si(1e3 * value, "g", digits=digits)
     if not unit or value == 0 or not math.isfinite(value):
         return f"{value:.{digits}g} {unit}".rstrip()
     power = {"m2": 2, "m3": 3}.get(unit, 1)
     if unit == "kg" or (not unit.isalpha() and unit not in ("m2", "m3", "m/s", "m/V", "N/m")):
         return f"{value:.{digits}g} {unit}"
-    # areas and volumes step by millions and billions: better 0.95 um2 than 953000 nm2
-    leeway = 0 if power == 1 else power
-    step = math.floor((math.log10(abs(value)) + leeway) / (3 * power) + 1e-12)
+    # prefixes of areas and volumes differ by 1e6 and 1e9: 0.95 um2 rather than 953000 nm2
+    margin = 0 if power == 1 else power
+    step = math.floor((math.log10(abs(value)) + margin) / (3 * power) + 1e-12)
     step = max(-5, min(4, step))
-    if unit == "m3" and step == -2 and abs(value) >= _LEAST_MM3:
-        step = -1  # wear is told in mm3
+    if unit == "m3" and step == -2 and abs(value) >= _MINIMUM_MM3:
+        step = -1  # wear volumes are given in mm3
     prefix = {-5: "f", -4: "p", -3: "n", -2: "u", -1: "m", 0: "", 1: "k", 2: "M", 3: "G", 4: "T"}[step]
     if unit in ("m", "m2", "m3", "m/s", "s") and step > 0:
         prefix, step = "", 0
@@ -154,29 +154,32 @@ def engineering(value: float, unit: str, *, digits: int = 3) -> str:
 
 
 def _converted(number: float, written_unit: str, unit: str, *, name: str, text: str) -> float:
+    """Return a number in another unit; the errors quote the name and the text of the value."""
     import pint
 
     registry = _registry()
     try:
         written = _unit(written_unit)
-    except Exception:  # pint lets its tokenizer's and parser's errors of many kinds through
-        raise InvalidInput(f"{name} {text}: unknown unit {written_unit!r}; wanted {kind_of(unit)}") from None
-    wanted = _unit(unit)
+    except Exception:  # pint raises errors of its tokenizer and parser of many kinds
+        raise InvalidInput(f"{name} {text}: unknown unit {written_unit!r}; expected {unit_description(unit)}") from None
+    target = _unit(unit)
     try:
-        value = float(registry.Quantity(number, written).to(wanted).magnitude)
+        value = float(registry.Quantity(number, written).to(target).magnitude)
     except pint.DimensionalityError:
-        raise InvalidInput(f"{name} {text} is {_kind_of_dimension(written)}; wanted {kind_of(unit)}") from None
-    if wanted.dimensionality != {"[time]": -1}:
+        kind = _kind_of_dimension(written)
+        raise InvalidInput(f"{name} {text} is {kind}; expected {unit_description(unit)}") from None
+    if target.dimensionality != {"[time]": -1}:
         return value
-    return value * (2 * math.pi) ** (_has_angle(wanted) - _has_angle(written))
+    return value * (2 * math.pi) ** (_has_angle(target) - _has_angle(written))
 
 
 def _has_angle(unit: Any) -> bool:
-    """Return whether an angle is in a unit, which pint, to whom it is a pure number, takes for radians."""
+    """Return whether a unit contains an angle, which pint treats as a pure number in radians."""
     return any(angle in name for name in map(str, unit._units) for angle in _ANGLES)
 
 
 def _kind_of_dimension(written: Any) -> str:
+    """Return the kind of quantity of a unit, such as "a length"."""
     if written.dimensionless:
         return "an angle" if _has_angle(written) else "a pure number"
     for unit, kind in _KINDS.items():
@@ -187,6 +190,7 @@ def _kind_of_dimension(written: Any) -> str:
 
 @cache
 def _registry() -> Any:
+    """Return the registry of pint, made once."""
     import pint
 
     return pint.UnitRegistry(cache_folder=None)
@@ -194,10 +198,12 @@ def _registry() -> Any:
 
 @lru_cache(1024)
 def _unit(written: str) -> Any:
+    """Return the unit of pint for a unit as users write it."""
     return _registry().Unit(_pint_spelling(written))
 
 
 def _pint_spelling(unit: str) -> str:
+    """Return a unit in the spelling of pint, with ** before exponents."""
     spelled = unit.strip()
     if spelled.startswith("/"):
         spelled = "1" + spelled

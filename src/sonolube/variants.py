@@ -10,7 +10,7 @@ Variant = TypeVar("Variant")
 
 
 class VariantTable(Mapping[str, Variant], Generic[Variant]):
-    """Variants of one kind by name.
+    """Table of the variants of one kind by name, imported on first access.
 
     A table maps names to places such as ``"sonolube.friction.models.kinematic:Kinematic"``; adding a variant takes its
     file and one line of the table. Iterating over the names imports nothing.
@@ -18,11 +18,11 @@ class VariantTable(Mapping[str, Variant], Generic[Variant]):
     Parameters
     ----------
     kind : str
-        What the variants are, for messages, such as "friction model".
+        Kind of the variants in messages, such as "friction model".
     places : mapping of str to str
         Module and attribute of each variant, by name.
     made : callable, optional
-        Turns the attribute into the variant; the attribute itself is the variant where absent.
+        Makes the variant from the attribute; by default the attribute itself is the variant.
     """
 
     def __init__(self, kind: str, places: Mapping[str, str], *, made: Callable[[Any], Variant] | None = None) -> None:
@@ -61,7 +61,7 @@ class VariantTable(Mapping[str, Variant], Generic[Variant]):
         Raises
         ------
         UnknownName
-            If the table has no such name; the closest one is suggested.
+            If the name is not in the table; the closest one is suggested.
         """
         if name not in self:
             raise UnknownName.among(self, kind=self.kind, name=name)

@@ -1,7 +1,7 @@
-"""The one list of quantities: what each name means, its symbol and its SI unit.
+"""The vocabulary of physical quantities: name, meaning, TeX symbol and SI unit of each.
 
-The list itself is `vocabulary.toml` beside this module. Function arguments, results, rig files and published
-tables use its names, and a test holds their docstrings to it.
+The list is `vocabulary.toml` beside this module. Function arguments, results, rig files and published tables use its
+names; tests compare the units in their docstrings with it.
 """
 
 import tomllib
@@ -16,18 +16,18 @@ from sonolube.errors import UnknownName
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Quantity:
-    """One physical quantity.
+    """A physical quantity of the vocabulary.
 
     Parameters
     ----------
     name : str
-        Its name in code, files and results.
+        Name in code, files and results.
     symbol : str
-        Its symbol in equations, in TeX.
+        Symbol in equations, in TeX.
     unit : str
-        Its SI unit; empty for pure numbers.
+        SI unit; empty for pure numbers.
     meaning : str
-        What it is, in a few words of the field, fit for an axis.
+        Technical term for the quantity, as written along an axis.
     """
 
     name: str
@@ -37,19 +37,27 @@ class Quantity:
 
     @property
     def axis_label(self) -> str:
-        """Meaning and unit as written along an axis."""
+        """Label of an axis: meaning and unit."""
         return f"{self.meaning} [{self.unit}]" if self.unit else self.meaning
 
 
 @cache
 def quantities() -> Mapping[str, Quantity]:
-    """Return every quantity of the vocabulary by name."""
+    """Return all quantities of the vocabulary by name."""
     text = files("sonolube").joinpath("vocabulary.toml").read_text(encoding="utf-8")
     return MappingProxyType({name: Quantity(name=name, **entry) for name, entry in tomllib.loads(text).items()})
 
 
 def quantity(name: str) -> Quantity:
-    """Return the quantity called `name`.
+    """Return the quantity of a name.
+
+    Parameters
+    ----------
+    name : str
+
+    Returns
+    -------
+    Quantity
 
     Raises
     ------
@@ -63,6 +71,6 @@ def quantity(name: str) -> Quantity:
 
 
 def unit_of(name: str) -> str:
-    """Return the SI unit of the quantity called `name`; empty for pure numbers and for names that are no quantity."""
+    """Return the SI unit of a name; empty for pure numbers and for names that are not in the vocabulary."""
     known = quantities().get(name)
     return known.unit if known else ""

@@ -74,9 +74,9 @@ def test_friction_force_and_coefficient_belong_together() -> None:
     [
         (
             ["contact", "RIG", "--load", "40mm"],
-            "sonolube contact: --load 40mm is a length; wanted a force, such as 40N",
+            "sonolube contact: --load 40mm is a length; expected a force, such as 40N",
         ),
-        (["contact", "RIG", "--load", "40"], "sonolube contact: --load 40 has no unit; wanted a force, such as 40N"),
+        (["contact", "RIG", "--load", "40"], "sonolube contact: --load 40 has no unit; expected a force, such as 40N"),
         (["contact", "RIG", "--load", "-3N"], "normal_load must be positive, got -3.0 N"),
         (["contact", "RIG", "--load", "1e9N"], "leaves no separation"),
         (["friction", "RIG", "--set", "drive.frequenzy=1kHz"], "drive.frequenzy: unknown key; did you mean frequency?"),
@@ -85,7 +85,7 @@ def test_friction_force_and_coefficient_belong_together() -> None:
         (["materials", "unobtainium"], "sonolube materials: unknown material 'unobtainium'"),
         (["published", "9.9"], "sonolube published: unknown table '9.9'"),
         (["reproduce", "--chapter", "7"], "sonolube reproduce:"),
-        (["study", "RIG", "--of", "voltage", "--to", "3kHz"], "--to 3kHz is a frequency; wanted a voltage"),
+        (["study", "RIG", "--of", "voltage", "--to", "3kHz"], "--to 3kHz is a frequency; expected a voltage"),
         (["study", "RIG", "--of", "load", "--from", "0N"], "--from 0N must lie above 0 N and must lie below --to 9N"),
         (
             ["study", "RIG", "--of", "speed", "--from", "2m/s"],

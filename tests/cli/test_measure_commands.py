@@ -65,7 +65,7 @@ def test_an_empty_folder_is_refused(tmp_path: Path, capsys: pytest.CaptureFixtur
 
 def test_a_length_in_newton_is_refused_by_its_option(plates: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run("measure", "surface", plates, "--spacing", "1N") == 2
-    assert "--spacing 1N is a force; wanted a length" in capsys.readouterr().err
+    assert "--spacing 1N is a force; expected a length" in capsys.readouterr().err
 
 
 def test_the_hall_probe_of_a_steady_disc_gives_its_speed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

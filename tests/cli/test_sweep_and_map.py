@@ -62,7 +62,7 @@ def test_drawn_points_are_as_many_as_asked_for(tmp_path: Path, capsys: CaptureFi
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("--over", f"{VOLTS}=2mm:28V:3"), "2mm is a length; wanted a voltage"),
+        (("--over", f"{VOLTS}=2mm:28V:3"), "2mm is a length; expected a voltage"),
         (("--over", f"{VOLTS}=2V:28V"), "must look like drive.voltage_peak_to_peak=first:last:count"),
         (("--over", f"{VOLTS}=28V:2V:5"), "at least 2 values that rise"),
         (("--over", f"{VOLTS}=0V:2V:5:log"), "the first above 0"),

@@ -1,4 +1,4 @@
-"""One asperity: Hertz below the onset of yielding, and what each law does beyond it."""
+"""One asperity: Hertz below the onset of yielding, and each law beyond it."""
 
 import math
 
@@ -43,8 +43,8 @@ def area(law: AsperityLaw, ratio: float, bodies: ContactPair = STEEL) -> float:
     return float(asperity_area(law, bodies, summit_radius=RADIUS, interference=interference))
 
 
-def jumps(law: AsperityLaw, joint: float, bodies: ContactPair = STEEL) -> tuple[float, float]:
-    below, above = joint * (1 - 1e-10), joint * (1 + 1e-10)
+def jumps(law: AsperityLaw, transition: float, bodies: ContactPair = STEEL) -> tuple[float, float]:
+    below, above = transition * (1 - 1e-10), transition * (1 + 1e-10)
     return (
         force(law, above, bodies) / force(law, below, bodies) - 1,
         area(law, above, bodies) / area(law, below, bodies) - 1,
@@ -59,12 +59,12 @@ def test_below_the_onset_of_yielding_every_law_is_that_of_hertz(law: AsperityLaw
     assert area(law, ratio) == approx(math.pi * RADIUS * w, rel=1e-12, abs=0)
 
 
-def test_the_critical_interference_of_the_corrected_law_is_the_hand_computed_one() -> None:
+def test_the_critical_interference_of_chang_etsion_and_bogy_is_the_hand_computed_one() -> None:
     # C_nu = 1.234 + 1.256 * 0.3 = 1.6108; (pi * 1.6108 * 400 MPa / 220 GPa)^2 * 10 um = 0.84651 nm
     assert onset(ASPERITY_LAWS["chang_etsion_bogy"]) == approx(0.84651e-9, rel=1e-4, abs=0)
 
 
-def test_the_published_law_counts_the_poisson_factor_twice() -> None:
+def test_the_law_of_dong_2015_counts_the_poisson_factor_twice() -> None:
     published, corrected = ASPERITY_LAWS["dong_2015"], ASPERITY_LAWS["chang_etsion_bogy"]
     assert onset(published) == approx((1 - 0.3**2) ** 2 * onset(corrected), rel=1e-9, abs=0)
     assert published.yield_pressure(STEEL) == approx((1 - 0.3**2) * corrected.yield_pressure(STEEL))
@@ -94,9 +94,11 @@ def test_a_yielded_asperity_of_constant_volume_spreads_to_twice_the_geometric_se
     assert area(law, 1e6) == approx(2 * math.pi * RADIUS * w, rel=1e-6, abs=0)
 
 
-@mark.parametrize(("joint", "in_force", "in_area"), [(1, 0.030, -0.070), (6, 0.017, 0.029), (110, 0.079, 0.071)])
-def test_the_fits_of_kogut_and_etsion_jump_where_they_should_meet(joint: int, in_force: float, in_area: float) -> None:
-    assert jumps(ASPERITY_LAWS["kogut_etsion"], joint) == approx((in_force, in_area), abs=5e-4)
+@mark.parametrize(("transition", "in_force", "in_area"), [(1, 0.030, -0.070), (6, 0.017, 0.029), (110, 0.079, 0.071)])
+def test_the_fits_of_kogut_and_etsion_are_discontinuous_at_their_breakpoints(
+    transition: int, in_force: float, in_area: float
+) -> None:
+    assert jumps(ASPERITY_LAWS["kogut_etsion"], transition) == approx((in_force, in_area), abs=5e-4)
 
 
 def test_kogut_and_etsion_end_in_full_plasticity_at_a_hardness_of_2_8_yield_strengths() -> None:
@@ -106,7 +108,7 @@ def test_kogut_and_etsion_end_in_full_plasticity_at_a_hardness_of_2_8_yield_stre
 
 
 @mark.parametrize(("poisson_ratio", "in_force"), [(0.2, 0.026), (0.3, 0.005), (0.45, -0.025)])
-def test_the_fit_of_jackson_and_green_nearly_meets_hertz(poisson_ratio: float, in_force: float) -> None:
+def test_the_fit_of_jackson_and_green_is_nearly_continuous_with_hertz(poisson_ratio: float, in_force: float) -> None:
     law = ASPERITY_LAWS["jackson_green"]
     assert jumps(law, 1.9, pair(poisson_ratio=poisson_ratio)) == approx((in_force, 0.0), abs=5e-4)
 
@@ -127,7 +129,7 @@ def test_jackson_green_and_kogut_etsion_agree_within_a_tenth_where_both_were_fit
 
 
 @mark.parametrize("law", LAWS, ids=lambda law: law.name)
-def test_bodies_that_never_yield_follow_hertz_at_any_interference(law: AsperityLaw) -> None:
+def test_bodies_without_yielding_follow_hertz_at_any_interference(law: AsperityLaw) -> None:
     bodies = pair(poisson_ratio=0.3, yield_strength=math.inf)
     w = np.array([0.0, 1e-9, 1e-3])
     assert critical_interference(law, bodies, summit_radius=RADIUS) == math.inf
@@ -144,16 +146,16 @@ def test_the_table_names_each_law_by_its_own_name(name: str) -> None:
     assert ASPERITY_LAWS[name].name == name
 
 
-def test_a_summit_that_does_not_reach_the_surface_is_refused() -> None:
+def test_a_negative_interference_is_refused() -> None:
     with raises(InvalidInput, match=r"interference must not be negative, got -1e-09 m"):
         asperity_force(ASPERITY_LAWS["elastic"], STEEL, summit_radius=RADIUS, interference=-1e-9)
 
 
-def test_a_summit_without_radius_is_refused() -> None:
+def test_a_summit_radius_of_zero_is_refused() -> None:
     with raises(InvalidInput, match=r"summit_radius must be positive, got 0\.0 m"):
         critical_interference(ASPERITY_LAWS["chang_etsion_bogy"], STEEL, summit_radius=0.0)
 
 
-def test_jackson_green_refuses_bodies_as_soft_as_rubber() -> None:
+def test_jackson_green_refuses_yield_strengths_above_0_05_of_the_modulus() -> None:
     with raises(OutsideRange, match=r"up to 0\.05 E\*, got 0\.0909 E\*"):
         force(ASPERITY_LAWS["jackson_green"], 10.0, pair(poisson_ratio=0.3, yield_strength=10e9))

@@ -1,4 +1,4 @@
-"""Height laws: normalization, the tail they share, and what is refused."""
+"""Height distributions: normalization, the common tail, and refused parameters."""
 
 import numpy as np
 from hypothesis import given
@@ -24,7 +24,7 @@ def test_the_published_exponential_law_is_17_exp_minus_3_z() -> None:
     )
 
 
-def test_the_exponential_law_holds_more_summits_above_the_mean_than_there_are() -> None:
+def test_the_exponential_density_is_not_normalized() -> None:
     above = quad(lambda z: float(height_density(ExponentialHeights(), normalized_height=z)), 0, 20)[0]
     assert above == approx(17 / 3)
 
@@ -39,7 +39,7 @@ def test_the_published_law_follows_the_gaussian_tail_far_better_than_the_simple_
     assert np.abs(np.log(simple / gaussian)).max() > np.log(100)
 
 
-def test_summits_scatter_less_than_the_surface_they_stand_on() -> None:
+def test_summit_heights_have_a_smaller_deviation_than_the_surface() -> None:
     # McCool at 0.04: sigma_s^2/sigma^2 = 1 - 3.717e-4/1.6e-3 = 0.7676875
     heights = GaussianHeights.from_roughness_parameter(roughness_parameter=0.04)
     assert heights.summit_deviation_ratio**2 == approx(0.7676875)
@@ -50,12 +50,12 @@ def test_a_surface_too_smooth_to_be_gaussian_is_refused() -> None:
         GaussianHeights.from_roughness_parameter(roughness_parameter=0.01)
 
 
-def test_summits_that_scatter_more_than_their_surface_are_refused() -> None:
+def test_a_deviation_of_summits_above_that_of_the_surface_is_refused() -> None:
     with raises(InvalidInput, match=r"summit_deviation_ratio must lie between 0 and 1, got 1\.5"):
         GaussianHeights(summit_deviation_ratio=1.5)
 
 
-def test_a_law_that_does_not_decay_is_refused() -> None:
+def test_an_exponential_distribution_without_decay_is_refused() -> None:
     with raises(InvalidInput, match=r"decay must be positive, got 0"):
         ExponentialHeights(decay=0)
 

@@ -6,22 +6,24 @@ from hypothesis import strategies as st
 from pytest import approx, raises
 from scipy.integrate import quad
 
-from sonolube.contact.hertz import (
+from sonolube.contact import (
+    ContactPair,
+    ElasticBody,
     SphereOnFlat,
-    approach,
-    axial_shear_stress,
-    axial_stresses,
-    contact_radius,
+    contact_pair,
+    hertz_approach,
+    hertz_axial_shear_stress,
+    hertz_axial_stresses,
+    hertz_contact_radius,
+    hertz_mean_pressure,
+    hertz_peak_pressure,
     hertz_stiffness,
-    largest_axial_shear,
-    load_at_first_yield,
-    mean_pressure,
+    maximum_axial_shear,
     nominal_area_from_groove,
-    peak_pressure,
     tip_radius_for_pressure,
     worn_flat_pressure,
+    yield_onset_load,
 )
-from sonolube.contact.pair import ContactPair, ElasticBody, contact_pair
 from sonolube.errors import InvalidInput
 from sonolube.materials import material
 
@@ -40,29 +42,29 @@ def pair_of(pin: str, disc: str) -> ContactPair:
 
 
 @given(load=LOADS)
-def test_the_pressure_over_the_circle_carries_the_load(load: float) -> None:
-    radius = float(contact_radius(ACORN_NUT, normal_load=load))
-    p0 = float(peak_pressure(ACORN_NUT, normal_load=load))
+def test_the_pressure_integrated_over_the_circle_is_the_load(load: float) -> None:
+    radius = float(hertz_contact_radius(ACORN_NUT, normal_load=load))
+    p0 = float(hertz_peak_pressure(ACORN_NUT, normal_load=load))
     carried, _ = quad(lambda r: 2 * np.pi * r * p0 * np.sqrt(1 - (r / radius) ** 2), 0, radius)
     assert carried == approx(load, rel=1e-6)
 
 
 @given(load=LOADS)
 def test_the_peak_is_one_and_a_half_times_the_load_over_the_circle(load: float) -> None:
-    over_circle = load / (np.pi * contact_radius(ACORN_NUT, normal_load=load) ** 2)
-    assert mean_pressure(ACORN_NUT, normal_load=load) == approx(over_circle)
-    assert peak_pressure(ACORN_NUT, normal_load=load) == approx(1.5 * over_circle)
+    over_circle = load / (np.pi * hertz_contact_radius(ACORN_NUT, normal_load=load) ** 2)
+    assert hertz_mean_pressure(ACORN_NUT, normal_load=load) == approx(over_circle)
+    assert hertz_peak_pressure(ACORN_NUT, normal_load=load) == approx(1.5 * over_circle)
 
 
-def test_point_loads_summed_over_the_circle_push_the_flat_into_the_shape_of_the_sphere() -> None:
+def test_point_loads_integrated_over_the_circle_deform_the_flat_to_the_shape_of_the_sphere() -> None:
     # Boussinesq: a pressure p at distance s sinks the surface by p dA/(pi E* s). Summed about the middle in polar
     # coordinates, s dA = dr dphi; about the edge, along chords through it.
     load = 3.0
-    a = float(contact_radius(ACORN_NUT, normal_load=load))
-    p0 = float(peak_pressure(ACORN_NUT, normal_load=load))
+    a = float(hertz_contact_radius(ACORN_NUT, normal_load=load))
+    p0 = float(hertz_peak_pressure(ACORN_NUT, normal_load=load))
     modulus = ACORN_NUT.effective_modulus
     in_the_middle = 2 / modulus * quad(lambda r: p0 * np.sqrt(1 - (r / a) ** 2), 0, a)[0]
-    assert approach(ACORN_NUT, normal_load=load) == approx(in_the_middle, rel=1e-7)
+    assert hertz_approach(ACORN_NUT, normal_load=load) == approx(in_the_middle, rel=1e-7)
 
     def along_chord(phi: float) -> float:
         def pressure(s: float) -> float:
@@ -75,11 +77,11 @@ def test_point_loads_summed_over_the_circle_push_the_flat_into_the_shape_of_the_
     assert in_the_middle - at_the_edge == approx(a**2 / (2 * ACORN_NUT.tip_radius), rel=1e-5)
 
 
-def test_stresses_on_the_axis_are_those_of_point_loads_summed_over_the_circle() -> None:
+def test_stresses_on_the_axis_are_those_of_point_loads_integrated_over_the_circle() -> None:
     # Boussinesq's point load on a half-space in cylindrical components (Johnson 3.19), tension positive.
     load, nu = 3.0, 0.3
-    a = float(contact_radius(ACORN_NUT, normal_load=load))
-    p0 = float(peak_pressure(ACORN_NUT, normal_load=load))
+    a = float(hertz_contact_radius(ACORN_NUT, normal_load=load))
+    p0 = float(hertz_peak_pressure(ACORN_NUT, normal_load=load))
 
     def ring(r: float) -> float:
         return 2 * np.pi * r * p0 * float(np.sqrt(1 - (r / a) ** 2))
@@ -95,32 +97,34 @@ def test_stresses_on_the_axis_are_those_of_point_loads_summed_over_the_circle() 
             hoop = (1 - 2 * nu) * (z / R**3 - 1 / (R * (R + z))) / (2 * np.pi)
             return float(radial + hoop) / 2  # on the axis, a ring's radial and hoop stresses share evenly
 
-        sigma_z, sigma_r = axial_stresses(ACORN_NUT, normal_load=load, depth=z, poisson_ratio=nu)
+        sigma_z, sigma_r = hertz_axial_stresses(ACORN_NUT, normal_load=load, depth=z, poisson_ratio=nu)
         assert sigma_z == approx(quad(lambda r: along(r) * ring(r), 0, a, epsabs=0)[0], rel=1e-7)
         assert sigma_r == approx(quad(lambda r: across(r) * ring(r), 0, a, epsabs=0)[0], rel=1e-6)
 
 
-def test_in_the_middle_of_the_surface_the_stress_across_is_half_plus_poissons_ratio_of_the_peak() -> None:
+def test_at_the_centre_of_the_surface_the_radial_stress_is_half_plus_poissons_ratio_of_the_peak() -> None:
     # Johnson, section 3.4: sigma_r = -(1 + 2 nu) p0/2, sigma_z = -p0.
-    p0 = peak_pressure(ACORN_NUT, normal_load=3.0)
-    sigma_z, sigma_r = axial_stresses(ACORN_NUT, normal_load=3.0, depth=0.0, poisson_ratio=0.3)
+    p0 = hertz_peak_pressure(ACORN_NUT, normal_load=3.0)
+    sigma_z, sigma_r = hertz_axial_stresses(ACORN_NUT, normal_load=3.0, depth=0.0, poisson_ratio=0.3)
     assert sigma_z == approx(-p0)
     assert sigma_r == approx(-0.8 * p0)
 
 
 def test_shear_is_largest_at_half_the_contact_radius_with_a_third_of_the_peak() -> None:
     # Johnson, section 4.2: 0.31 p0 at 0.48 a for nu = 0.3.
-    shear, depth = largest_axial_shear(poisson_ratio=0.3)
+    shear, depth = maximum_axial_shear(poisson_ratio=0.3)
     assert shear == approx(0.31, abs=0.0005)
     assert depth == approx(0.48, abs=0.002)
 
 
 @given(nu=st.floats(0, 0.5))
 def test_no_depth_on_a_fine_grid_has_more_shear_than_the_largest(nu: float) -> None:
-    a = contact_radius(ACORN_NUT, normal_load=1.0)
-    p0 = peak_pressure(ACORN_NUT, normal_load=1.0)
-    shear, depth = largest_axial_shear(poisson_ratio=nu)
-    on_grid = axial_shear_stress(ACORN_NUT, normal_load=1.0, depth=np.linspace(0, 2, 2001) * a, poisson_ratio=nu) / p0
+    a = hertz_contact_radius(ACORN_NUT, normal_load=1.0)
+    p0 = hertz_peak_pressure(ACORN_NUT, normal_load=1.0)
+    shear, depth = maximum_axial_shear(poisson_ratio=nu)
+    on_grid = (
+        hertz_axial_shear_stress(ACORN_NUT, normal_load=1.0, depth=np.linspace(0, 2, 2001) * a, poisson_ratio=nu) / p0
+    )
     assert on_grid.max() == approx(shear, rel=1e-5)
     assert on_grid.max() <= shear * (1 + 1e-12)
     assert np.argmax(on_grid) / 1000 == approx(depth, abs=2e-3)
@@ -128,34 +132,38 @@ def test_no_depth_on_a_fine_grid_has_more_shear_than_the_largest(nu: float) -> N
 
 def test_yield_begins_at_one_point_six_times_the_yield_strength() -> None:
     # Johnson, section 6.1: p0 = 1.60 Y for nu = 0.3.
-    load = load_at_first_yield(ACORN_NUT, yield_strength=410e6, poisson_ratio=0.3)
-    assert peak_pressure(ACORN_NUT, normal_load=load) == approx(1.61 * 410e6, rel=0.005)
+    load = yield_onset_load(ACORN_NUT, yield_strength=410e6, poisson_ratio=0.3)
+    assert hertz_peak_pressure(ACORN_NUT, normal_load=load) == approx(1.61 * 410e6, rel=0.005)
 
 
 @given(load=LOADS)
 def test_stiffness_is_the_slope_of_load_over_approach(load: float) -> None:
     step = 1e-4 * load
-    slope = 2 * step / (approach(ACORN_NUT, normal_load=load + step) - approach(ACORN_NUT, normal_load=load - step))
+    slope = (
+        2
+        * step
+        / (hertz_approach(ACORN_NUT, normal_load=load + step) - hertz_approach(ACORN_NUT, normal_load=load - step))
+    )
     assert hertz_stiffness(ACORN_NUT, normal_load=load) == approx(slope, rel=1e-5)
 
 
 @given(load=LOADS, factor=st.floats(0.1, 10))
-def test_a_larger_tip_has_less_pressure_by_two_thirds_power(load: float, factor: float) -> None:
+def test_pressure_falls_with_the_tip_radius_to_the_power_two_thirds(load: float, factor: float) -> None:
     larger = SphereOnFlat(tip_radius=factor * ACORN_NUT.tip_radius, effective_modulus=ACORN_NUT.effective_modulus)
-    ratio = peak_pressure(larger, normal_load=load) / peak_pressure(ACORN_NUT, normal_load=load)
+    ratio = hertz_peak_pressure(larger, normal_load=load) / hertz_peak_pressure(ACORN_NUT, normal_load=load)
     assert ratio == approx(factor ** (-2 / 3))
 
 
 @given(load=LOADS)
-def test_the_tip_radius_comes_back_from_its_pressure(load: float) -> None:
-    pressure = mean_pressure(ACORN_NUT, normal_load=load)
+def test_the_tip_radius_is_recovered_from_its_pressure(load: float) -> None:
+    pressure = hertz_mean_pressure(ACORN_NUT, normal_load=load)
     radius = tip_radius_for_pressure(
         mean_pressure=pressure, normal_load=load, effective_modulus=ACORN_NUT.effective_modulus
     )
     assert radius == approx(ACORN_NUT.tip_radius)
 
 
-def test_three_hundred_megapascal_at_three_newton_ask_for_a_tip_of_a_centimetre() -> None:
+def test_three_hundred_megapascal_at_three_newton_require_a_tip_radius_of_a_centimetre() -> None:
     # D Table 2.13. 3 N/300 MPa = 0.01 mm2: a = sqrt(0.01/pi) = 0.0564 mm. R = 4 E* a^3/(3 F), a^3 = 1.796e-4 mm3:
     # M50 on M50, E* = 214/(2 (1 - 0.29^2)) = 116.8 GPa: 4 x 116.8e3 x 1.796e-4/9 = 9.32 mm.
     # Alumina on M50, 1/E* = (1 - 0.22^2)/370 + (1 - 0.29^2)/214, E* = 145.9 GPa: 11.65 mm.
@@ -165,8 +173,8 @@ def test_three_hundred_megapascal_at_three_newton_ask_for_a_tip_of_a_centimetre(
             radius, rel=1e-3
         )
         tip = SphereOnFlat(tip_radius=radius, effective_modulus=modulus)
-        assert np.pi * contact_radius(tip, normal_load=3.0) ** 2 == approx(0.01e-6, rel=1e-3)
-        assert peak_pressure(tip, normal_load=3.0) == approx(450e6, rel=1e-3)
+        assert np.pi * hertz_contact_radius(tip, normal_load=3.0) ** 2 == approx(0.01e-6, rel=1e-3)
+        assert hertz_peak_pressure(tip, normal_load=3.0) == approx(450e6, rel=1e-3)
 
 
 def test_the_nominal_area_of_the_dissertation_is_a_circle_of_four_tenths_of_a_millimetre() -> None:
@@ -177,27 +185,27 @@ def test_the_nominal_area_of_the_dissertation_is_a_circle_of_four_tenths_of_a_mi
     )
 
 
-def test_no_load_makes_no_circle() -> None:
-    assert contact_radius(ACORN_NUT, normal_load=0.0) == 0
-    assert peak_pressure(ACORN_NUT, normal_load=0.0) == 0
+def test_a_load_of_zero_has_no_contact_circle() -> None:
+    assert hertz_contact_radius(ACORN_NUT, normal_load=0.0) == 0
+    assert hertz_peak_pressure(ACORN_NUT, normal_load=0.0) == 0
     assert hertz_stiffness(ACORN_NUT, normal_load=0.0) == 0
 
 
 def test_results_take_the_shape_of_the_arguments() -> None:
     loads = np.array([[1.0], [2.0]])
     depths = np.array([1e-6, 2e-6, 3e-6])
-    assert axial_shear_stress(ACORN_NUT, normal_load=loads, depth=depths, poisson_ratio=0.3).shape == (2, 3)
-    assert load_at_first_yield(ACORN_NUT, yield_strength=[1e8, 2e8], poisson_ratio=0.3).shape == (2,)
+    assert hertz_axial_shear_stress(ACORN_NUT, normal_load=loads, depth=depths, poisson_ratio=0.3).shape == (2, 3)
+    assert yield_onset_load(ACORN_NUT, yield_strength=[1e8, 2e8], poisson_ratio=0.3).shape == (2,)
 
 
 def test_meaningless_arguments_are_refused_by_name() -> None:
     with raises(InvalidInput, match=r"tip_radius must be positive, got 0\.0 m"):
         SphereOnFlat(tip_radius=0.0, effective_modulus=1e9)
     with raises(InvalidInput, match=r"normal_load must not be negative, got -3\.0 N"):
-        contact_radius(ACORN_NUT, normal_load=-3.0)
+        hertz_contact_radius(ACORN_NUT, normal_load=-3.0)
     with raises(InvalidInput, match=r"depth must not be negative"):
-        axial_shear_stress(ACORN_NUT, normal_load=1.0, depth=-1e-6, poisson_ratio=0.3)
+        hertz_axial_shear_stress(ACORN_NUT, normal_load=1.0, depth=-1e-6, poisson_ratio=0.3)
     with raises(InvalidInput, match=r"poisson_ratio must lie between 0 and 0\.5, got 0\.6"):
-        largest_axial_shear(poisson_ratio=0.6)
+        maximum_axial_shear(poisson_ratio=0.6)
     with raises(InvalidInput, match="groove_width must be positive"):
         nominal_area_from_groove(groove_width=0.0)

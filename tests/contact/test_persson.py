@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from pytest import approx, raises
 from scipy.integrate import quad
 
-from sonolube.contact.persson import (
+from sonolube.contact import (
     PerssonContact,
     persson_area,
     persson_area_fraction,
@@ -78,7 +78,7 @@ def test_the_slope_is_that_of_the_closed_moments() -> None:
     assert CONTACT.rms_gradient == approx(math.sqrt(2 * moments.slope_variance), rel=1e-4)
 
 
-def test_the_area_starts_as_the_root_of_8_over_pi_and_ends_full() -> None:
+def test_the_area_has_its_limits_of_low_and_high_pressure() -> None:
     low = persson_area_fraction(nominal_pressure=1e5, effective_modulus=E_STAR, rms_gradient=0.1)
     assert low == approx(math.sqrt(8 / math.pi) * 1e5 / (E_STAR * 0.1), rel=1e-9)
     assert persson_area(CONTACT, normal_load=1e9) == approx(AREA)
@@ -125,7 +125,7 @@ def test_the_load_at_a_gap_is_the_inverse_of_the_gap_at_a_load(load: float) -> N
     assert persson_load(CONTACT, separation=gap) == approx(load, rel=1e-8)
 
 
-def test_a_rougher_spectrum_in_disorder_is_refused() -> None:
+def test_a_spectrum_with_unsorted_wavenumbers_is_refused() -> None:
     with raises(InvalidInput, match="rising order"):
         PerssonContact(
             spectrum=RadialSpectrum(wavenumber=np.array([2.0, 1.0]), areal_spectral_density=np.ones(2)),
@@ -134,6 +134,6 @@ def test_a_rougher_spectrum_in_disorder_is_refused() -> None:
         )
 
 
-def test_a_load_that_closes_the_gap_has_no_stiffness() -> None:
+def test_a_load_that_closes_the_gap_completely_is_refused() -> None:
     with raises(OutsideRange, match="closes the gap"):
         persson_stiffness(CONTACT, normal_load=1e9)

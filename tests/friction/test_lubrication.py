@@ -1,4 +1,4 @@
-"""Lubricated friction: the shape of the Stribeck curve, and what load sharing implies."""
+"""Lubricated friction: limits of the Stribeck curve, and consequences of load sharing."""
 
 import numpy as np
 import pytest
@@ -10,14 +10,14 @@ from scipy.optimize import minimize_scalar
 from sonolube.errors import InvalidInput
 from sonolube.friction import (
     BoundaryLubricant,
-    Method,
-    Regime,
+    LubricationMethod,
+    LubricationRegime,
     StribeckCurve,
     asperity_load_fraction,
-    best_method,
+    best_lubrication_method,
     hersey_number,
+    lubrication_coefficients,
     lubrication_regime,
-    method_coefficients,
     stribeck_coefficient,
 )
 
@@ -27,7 +27,7 @@ ratios = st.floats(0.01, 1.0)
 pressures = st.floats(1e6, 199e6)
 
 
-def test_the_curve_runs_from_boundary_friction_to_that_of_a_film() -> None:
+def test_the_stribeck_curve_has_the_limits_of_boundary_and_film_friction() -> None:
     assert stribeck_coefficient(CURVE, hersey_number=0.0) == approx(0.12)
     assert stribeck_coefficient(CURVE, hersey_number=1e-7) == approx(1e6 * 1e-7)
 
@@ -36,18 +36,18 @@ def test_the_film_is_full_where_friction_is_lowest() -> None:
     found = minimize_scalar(
         lambda number: float(stribeck_coefficient(CURVE, hersey_number=1e-9 * number)), bounds=(0, 50), method="bounded"
     )
-    assert CURVE.lowest_friction_at == approx(1e-9 * found.x, rel=1e-4)
+    assert CURVE.hersey_number_at_minimum == approx(1e-9 * found.x, rel=1e-4)
 
 
-def test_regimes_follow_each_other_along_the_curve() -> None:
+def test_regimes_succeed_each_other_along_the_curve() -> None:
     numbers = np.geomspace(1e-11, 1e-7, 200)
     regimes = lubrication_regime(CURVE, hersey_number=numbers)
     changes = [str(name) for index, name in enumerate(regimes) if index == 0 or regimes[index - 1] != name]
-    assert changes == [Regime.BOUNDARY, Regime.MIXED, Regime.HYDRODYNAMIC]
-    assert np.all(np.diff(stribeck_coefficient(CURVE, hersey_number=numbers[regimes == Regime.MIXED])) < 0)
+    assert changes == [LubricationRegime.BOUNDARY, LubricationRegime.MIXED, LubricationRegime.HYDRODYNAMIC]
+    assert np.all(np.diff(stribeck_coefficient(CURVE, hersey_number=numbers[regimes == LubricationRegime.MIXED])) < 0)
 
 
-def test_the_hersey_number_by_hand() -> None:
+def test_the_hersey_number_is_hand_computed() -> None:
     assert hersey_number(dynamic_viscosity=0.1, sliding_speed=0.02, nominal_pressure=1e6) == approx(2e-9)
 
 
@@ -57,25 +57,29 @@ def test_a_curve_without_a_minimum_is_refused() -> None:
 
 
 @given(ratio=ratios, pressure=pressures)
-def test_vibration_alone_is_best_where_it_rubs_less_than_the_film_at_every_pressure(
+def test_vibration_alone_is_best_where_its_friction_is_below_that_of_the_film_at_every_pressure(
     ratio: float, pressure: float
 ) -> None:
-    found = method_coefficients(LUBRICANT, friction_coefficient=0.2, friction_ratio=ratio, nominal_pressure=pressure)
+    found = lubrication_coefficients(
+        LUBRICANT, friction_coefficient=0.2, friction_ratio=ratio, nominal_pressure=pressure
+    )
     if abs(ratio * 0.2 - 0.1) > 1e-9:
-        assert (best_method(found) == Method.ULTRASONIC) == (ratio * 0.2 < 0.1)
+        assert (best_lubrication_method(found) == LubricationMethod.ULTRASONIC) == (ratio * 0.2 < 0.1)
 
 
 @given(ratio=ratios, pressure=pressures)
 def test_vibration_never_makes_a_lubricated_contact_worse(ratio: float, pressure: float) -> None:
-    found = method_coefficients(LUBRICANT, friction_coefficient=0.2, friction_ratio=ratio, nominal_pressure=pressure)
+    found = lubrication_coefficients(
+        LUBRICANT, friction_coefficient=0.2, friction_ratio=ratio, nominal_pressure=pressure
+    )
     assert found.combined <= found.lubricant * (1 + 1e-12)
     assert found.ultrasonic <= found.dry
 
 
-def test_a_lubricant_depends_on_stress_and_vibration_on_what_its_closure_does() -> None:
-    # D 4.2.4: the lubricant's reduction falls with the stress and knows no speed, that of vibration the other way round
+def test_friction_with_a_lubricant_depends_on_the_stress_and_dry_friction_does_not() -> None:
+    # D 4.2.4: the reduction by the lubricant falls with the stress and not with the speed, that by vibration vice versa
     low, high = (
-        method_coefficients(LUBRICANT, friction_coefficient=0.2, friction_ratio=[0.5, 0.8], nominal_pressure=p)
+        lubrication_coefficients(LUBRICANT, friction_coefficient=0.2, friction_ratio=[0.5, 0.8], nominal_pressure=p)
         for p in (24e6, 71e6)
     )
     assert np.all(high.lubricant > low.lubricant)
@@ -87,18 +91,24 @@ def test_a_lubricant_depends_on_stress_and_vibration_on_what_its_closure_does() 
 
 @pytest.mark.parametrize(
     ("pressure", "gain", "method"),
-    [(5e6, 0.02, Method.LUBRICANT), (100e6, 0.02, Method.COMBINED), (100e6, 0.5, Method.LUBRICANT)],
+    [
+        (5e6, 0.02, LubricationMethod.LUBRICANT),
+        (100e6, 0.02, LubricationMethod.COMBINED),
+        (100e6, 0.5, LubricationMethod.LUBRICANT),
+    ],
 )
-def test_vibration_beside_a_lubricant_must_be_worth_its_power(pressure: float, gain: float, method: Method) -> None:
-    found = method_coefficients(LUBRICANT, friction_coefficient=0.2, friction_ratio=0.8, nominal_pressure=pressure)
-    assert best_method(found, smallest_gain=gain) == method
+def test_vibration_beside_a_lubricant_must_exceed_the_smallest_gain(
+    pressure: float, gain: float, method: LubricationMethod
+) -> None:
+    found = lubrication_coefficients(LUBRICANT, friction_coefficient=0.2, friction_ratio=0.8, nominal_pressure=pressure)
+    assert best_lubrication_method(found, smallest_gain=gain) == method
 
 
-def test_a_lubricant_that_rubs_more_than_the_dry_contact_is_left_away() -> None:
-    sticky = BoundaryLubricant(film_coefficient=0.3, full_asperity_pressure=200e6)
-    found = method_coefficients(sticky, friction_coefficient=0.2, friction_ratio=1.0, nominal_pressure=1e6)
-    assert best_method(found) == Method.DRY
+def test_a_lubricant_with_more_friction_than_the_dry_contact_is_not_chosen() -> None:
+    poor = BoundaryLubricant(film_coefficient=0.3, full_asperity_pressure=200e6)
+    found = lubrication_coefficients(poor, friction_coefficient=0.2, friction_ratio=1.0, nominal_pressure=1e6)
+    assert best_lubrication_method(found) == LubricationMethod.DRY
 
 
-def test_asperities_carry_no_more_than_the_load() -> None:
+def test_asperities_carry_at_most_the_load() -> None:
     assert asperity_load_fraction(LUBRICANT, nominal_pressure=[50e6, 900e6]) == approx([0.25, 1.0])

@@ -121,7 +121,7 @@ def test_elastic_constants_without_an_inverse_are_refused() -> None:
 
 
 def strain_rotation_about_3(angle: float) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
-    """Return what turns a column of engineering strains, from the rotated tensor itself."""
+    """Return what turns a column of format_si strains, from the rotated tensor itself."""
     turn = np.array([[np.cos(angle), np.sin(angle), 0], [-np.sin(angle), np.cos(angle), 0], [0, 0, 1]])
     pairs = [(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)]
     columns = []

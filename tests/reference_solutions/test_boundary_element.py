@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from pytest import MonkeyPatch, approx, raises
 
-from sonolube.contact.hertz import SphereOnFlat, approach, contact_radius, peak_pressure
+from sonolube.contact import SphereOnFlat, hertz_approach, hertz_contact_radius, hertz_peak_pressure
 from sonolube.errors import InvalidInput
 from sonolube.reference_solutions import boundary_element_contact, mirror_extension
 from sonolube.surfaces import GaussianCorrelationSpectrum, HeightMap, gaussian_surface
@@ -34,9 +34,11 @@ def test_the_contact_of_a_sphere_is_that_of_hertz() -> None:
     contact = boundary_element_contact(sphere_map(10e-3), normal_load=load, effective_modulus=E_STAR, periodic=False)
     assert contact.reason == ("",)
     # the zero of heights is the pole, so the flat comes below it by the approach
-    assert -contact.separation[0] == approx(float(approach(sphere, normal_load=load)), rel=2e-3)
-    assert contact.real_contact_area[0] == approx(math.pi * contact_radius(sphere, normal_load=load) ** 2, rel=0.01)
-    assert contact.peak_pressure[0] == approx(float(peak_pressure(sphere, normal_load=load)), rel=5e-3)
+    assert -contact.separation[0] == approx(float(hertz_approach(sphere, normal_load=load)), rel=2e-3)
+    assert contact.real_contact_area[0] == approx(
+        math.pi * hertz_contact_radius(sphere, normal_load=load) ** 2, rel=0.01
+    )
+    assert contact.peak_pressure[0] == approx(float(hertz_peak_pressure(sphere, normal_load=load)), rel=5e-3)
 
 
 @pytest.mark.usefixtures("_library")

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.files import write_whole
+from sonolube.files import write_atomically
 from sonolube.report import summary, validation_object, write_report
 from sonolube.reproduce import Verdict, reproduction
 
@@ -121,13 +121,13 @@ def test_a_folder_that_cannot_be_made_is_refused_and_leaves_nothing(tmp_path: Pa
 
 
 def test_a_failed_write_leaves_the_old_file_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    path = write_whole(tmp_path / "kept.txt", "old")
+    path = write_atomically(tmp_path / "kept.txt", "old")
 
     def fail(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(Path, "replace", fail)
     with pytest.raises(InvalidInput, match="No space left on device"):
-        write_whole(path, "new")
+        write_atomically(path, "new")
     assert path.read_text() == "old"
     assert [entry.name for entry in tmp_path.iterdir()] == ["kept.txt"]

@@ -10,7 +10,7 @@ from scipy.special import i0
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.friction import dong_2015_half_period_ratio, sine_stick_slip_ratio
 from sonolube.rig import Rig, friction_point, read_rig, simulate
-from sonolube.wear.cube import cube_wear_rate
+from sonolube.wear import cube_wear_rate
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"
 

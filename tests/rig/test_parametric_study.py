@@ -10,7 +10,7 @@ from pytest import approx
 from scipy.special import i0
 
 from sonolube.errors import InvalidInput
-from sonolube.figure import publication_style, rendered
+from sonolube.figure import publication_style, render_figure
 from sonolube.rig import (
     STUDY_FIGURES,
     Rig,
@@ -58,7 +58,7 @@ def test_every_variable_says_its_unit_and_what_it_is(of: str) -> None:
 @pytest.mark.parametrize("of", STUDIES)
 def test_a_study_is_drawn_and_comes_back_from_its_file(of: str, tmp_path: Path) -> None:
     with publication_style():
-        assert len(rendered(STUDY_FIGURES[of](STUDIES[of]), "svg")) > 10_000
+        assert len(render_figure(STUDY_FIGURES[of](STUDIES[of]), "svg")) > 10_000
     path = write_netcdf(STUDIES[of], path=tmp_path / "study.nc")
     with xr.open_dataset(path, engine="h5netcdf") as read:
         xr.testing.assert_identical(read.load(), STUDIES[of])

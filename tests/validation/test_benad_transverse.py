@@ -15,7 +15,7 @@ from sonolube.errors import ModelRangeWarning
 from sonolube.friction import (
     SpringContact,
     approximate_transverse_ratio,
-    oscillation_ratio,
+    combined_oscillation_ratio,
     transverse_static_ratio,
     transverse_vibration_ratio,
 )
@@ -62,7 +62,7 @@ def test_it_is_nearer_the_faster_the_sliding(contact: SpringContact, least: floa
         "transverse_amplitude": strokes,
         "sliding_speed": np.array([least, 1.5 * least, 1.5]) * 2 * np.pi * FREQUENCY * strokes,
     }
-    error = approximate_transverse_ratio(contact, **told) - oscillation_ratio(contact, steps=512, **told)
+    error = approximate_transverse_ratio(contact, **told) - combined_oscillation_ratio(contact, steps=512, **told)
     assert error.min() > -0.004
     assert 0.4 * most < error.max() < most
 
@@ -89,7 +89,7 @@ def test_at_rest_the_force_across_leaves_the_other_side_of_the_triangle(stroke: 
 @pytest.mark.parametrize("stroke", [0.3, 0.7])
 def test_slow_sliding_comes_down_to_it(contact: SpringContact, stroke: float) -> None:
     amplitude = stroke * SLIP
-    slow = oscillation_ratio(
+    slow = combined_oscillation_ratio(
         contact,
         approach=DEPTH,
         frequency=FREQUENCY,
@@ -112,7 +112,7 @@ VELOCITIES = np.array([0.1, 0.4, 0.9])  # over the peak velocity across
 
 def exact(contact: SpringContact, stroke: float, *, depth: float = DEPTH, frequency: float = FREQUENCY) -> np.ndarray:
     amplitude = stroke * contact.slip_per_approach * depth
-    return oscillation_ratio(
+    return combined_oscillation_ratio(
         contact,
         approach=depth,
         transverse_amplitude=amplitude,

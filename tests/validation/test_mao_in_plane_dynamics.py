@@ -15,7 +15,7 @@ from sonolube.friction import (
     Holder,
     SpringContact,
     approximate_guided_ratio,
-    approximate_oscillation_ratio,
+    approximate_normal_ratio,
     guided_critical_speed,
     guided_oscillation_ratio,
     normal_oscillation_ratio,
@@ -53,7 +53,7 @@ def test_a_rigid_guide_is_that_of_the_first_part() -> None:
     rigid = Holder()
     speed = 0.3 * guided_critical_speed(FLAT, rigid, **CONTACT)
     found = approximate_guided_ratio(FLAT, rigid, approach=1e-6, sliding_speed=speed, **CONTACT)
-    first = approximate_oscillation_ratio(FLAT, approach=1e-6, normal_amplitude=0.5e-6, velocity_ratio=0.3)
+    first = approximate_normal_ratio(FLAT, approach=1e-6, normal_amplitude=0.5e-6, velocity_ratio=0.3)
     assert found == approx(first)
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from sonolube.friction import SpringContact, oscillation_ratio, transverse_static_ratio
+from sonolube.friction import SpringContact, combined_oscillation_ratio, transverse_static_ratio
 
 SPHERE = SpringContact(friction_coefficient=0.4, mindlin_ratio=0.8, profile="parabolic")
 DEPTH, SLIP, FREQUENCY = 1e-6, 0.5e-6, 20e3
@@ -16,7 +16,7 @@ DEPTH, SLIP, FREQUENCY = 1e-6, 0.5e-6, 20e3
 @pytest.mark.parametrize(("stroke", "off"), [(0.3, 0.07), (0.5, 0.17), (0.7, 0.24)])
 def test_slow_sliding_follows_partial_slip_and_not_one_spring(stroke: float, off: float) -> None:
     slow = float(
-        oscillation_ratio(
+        combined_oscillation_ratio(
             SPHERE,
             approach=DEPTH,
             transverse_amplitude=stroke * SLIP,

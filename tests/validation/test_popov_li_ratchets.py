@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from sonolube.friction import SpringContact, oscillation_ratio
+from sonolube.friction import SpringContact, combined_oscillation_ratio
 
 SPEEDS = np.array([0.002, 0.05, 0.3, 1.0])  # over slip length times angular frequency
 
@@ -27,7 +27,7 @@ def both_ways(
     contact = SpringContact(friction_coefficient=coefficient, mindlin_ratio=ratio)
     slip = coefficient / ratio * depth
     forwards, backwards = (
-        oscillation_ratio(
+        combined_oscillation_ratio(
             contact,
             approach=depth,
             normal_amplitude=apart * depth,

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from sonolube.friction import SpringContact, approximate_oscillation_ratio, critical_speed, normal_oscillation_ratio
+from sonolube.friction import SpringContact, approximate_normal_ratio, critical_speed, normal_oscillation_ratio
 
 FLAT = SpringContact(friction_coefficient=0.4, mindlin_ratio=0.8)
 DEPTH = 1e-6
@@ -79,7 +79,7 @@ def marched(share: float, speed: float) -> float:
 
 @pytest.mark.parametrize(("share", "speed"), [(0.4, 0.1), (0.4, 0.6), (0.9, 0.02), (0.9, 0.3)])
 def test_the_fit_is_within_its_stated_error_of_springs_marched(share: float, speed: float) -> None:
-    fit = approximate_oscillation_ratio(FLAT, approach=DEPTH, normal_amplitude=share * DEPTH, velocity_ratio=speed)
+    fit = approximate_normal_ratio(FLAT, approach=DEPTH, normal_amplitude=share * DEPTH, velocity_ratio=speed)
     assert -0.0144 * share - 2e-4 < fit - marched(share, speed) < 2e-4
 
 
@@ -95,5 +95,5 @@ def test_the_exact_ratio_is_that_of_springs_marched(share: float) -> None:
 
 
 def test_from_the_critical_speed_on_friction_is_whole() -> None:
-    whole = approximate_oscillation_ratio(FLAT, approach=DEPTH, normal_amplitude=0.5e-6, velocity_ratio=[1, 3])
+    whole = approximate_normal_ratio(FLAT, approach=DEPTH, normal_amplitude=0.5e-6, velocity_ratio=[1, 3])
     assert whole == approx([1, 1])

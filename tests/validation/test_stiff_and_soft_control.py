@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from sonolube.friction import SpringContact, critical_speed, normal_oscillation_ratio, oscillation_ratio
+from sonolube.friction import SpringContact, combined_oscillation_ratio, critical_speed, normal_oscillation_ratio
 
 FLAT = SpringContact(friction_coefficient=0.4, mindlin_ratio=0.8)
 DEPTH, SLIP, FREQUENCY = 1e-6, 0.5e-6, 20e3
@@ -76,7 +76,7 @@ def test_sideways_a_contact_that_slides_on_has_less_friction_too() -> None:
 
 def exact(stroke: float, speed: float) -> float:
     return float(
-        oscillation_ratio(
+        combined_oscillation_ratio(
             FLAT,
             approach=DEPTH,
             transverse_amplitude=stroke * SLIP,

@@ -1,4 +1,4 @@
-"""The rule of wear against the six pairs it was drawn from, and what it must not claim."""
+"""The rule of wear mechanisms against the six pairs of its evidence, and the limits of its range."""
 
 from itertools import pairwise
 
@@ -7,13 +7,13 @@ import pytest
 from sonolube.materials import material
 from sonolube.published import table
 from sonolube.rig import wear_of_materials
-from sonolube.wear.mechanism import (
+from sonolube.wear import (
     CrystalStructure,
     VibrationEffect,
-    WearAssessment,
-    WearingBody,
-    WearKind,
-    assess_wear,
+    WearMechanism,
+    WearMechanismAssessment,
+    WearPairBody,
+    assess_wear_mechanism,
 )
 
 NAMES = {
@@ -27,21 +27,21 @@ PAIRS = table("2.14").columns
 
 
 @pytest.mark.parametrize("row", range(6))
-def test_the_rule_sorts_the_six_pairs_as_table_2_14_does(row: int) -> None:
+def test_the_rule_classifies_the_six_pairs_as_table_2_14(row: int) -> None:
     pin, disc = (material(NAMES[PAIRS[body].printed[row]]) for body in ("pin", "disc"))
     assessed = wear_of_materials(pin, disc)
-    assert assessed.kind == PAIRS["wear_type"].printed[row]
+    assert assessed.mechanism == PAIRS["wear_type"].printed[row]
     reduced = PAIRS["wear_outcome"].printed[row] == "reduction"
-    assert assessed.effect is (VibrationEffect.LESS_WEAR if reduced else VibrationEffect.MORE_WEAR)
+    assert assessed.vibration_effect is (VibrationEffect.LESS_WEAR if reduced else VibrationEffect.MORE_WEAR)
 
 
-def test_titanium_wears_more_under_vibration_whatever_it_meets() -> None:
+def test_titanium_wears_more_under_vibration_in_any_pair() -> None:
     titanium = material("titanium_6al4v")
     for name in NAMES.values():
-        assert wear_of_materials(material(name), titanium).effect is VibrationEffect.MORE_WEAR
+        assert wear_of_materials(material(name), titanium).vibration_effect is VibrationEffect.MORE_WEAR
 
 
-def test_the_order_of_the_bodies_does_not_matter() -> None:
+def test_the_order_of_the_bodies_has_no_effect() -> None:
     names = list(NAMES.values())
     for first, second in pairwise(names):
         assert wear_of_materials(material(first), material(second)) == wear_of_materials(
@@ -49,19 +49,19 @@ def test_the_order_of_the_bodies_does_not_matter() -> None:
         )
 
 
-def test_an_assessment_is_reasons_and_evidence_and_no_number() -> None:
+def test_an_assessment_gives_reasons_and_evidence_and_no_number() -> None:
     assessed = wear_of_materials(material("m50"), material("alumina"))
-    fields = [getattr(assessed, name) for name in WearAssessment.__slots__]
+    fields = [getattr(assessed, name) for name in WearMechanismAssessment.__slots__]
     assert not any(isinstance(value, int | float) for value in fields)
     assert assessed.reasons
     assert any("six pairs" in line for line in assessed.evidence)
 
 
-def test_two_ceramics_lie_outside_what_was_tested() -> None:
-    body = WearingBody(name="alumina", hardness=15e9, structure=CrystalStructure.NOT_A_METAL)
-    assert any("says nothing" in line for line in assess_wear(body, body).evidence)
+def test_a_pair_of_ceramics_is_outside_the_evidence() -> None:
+    body = WearPairBody(name="alumina", hardness=15e9, structure=CrystalStructure.NOT_A_METAL)
+    assert any("does not cover" in line for line in assess_wear_mechanism(body, body).evidence)
 
 
-def test_a_soft_body_under_one_as_soft_is_not_ploughed() -> None:
-    soft = WearingBody(name="aluminium", hardness=1.3e9, structure=CrystalStructure.FACE_CENTRED_CUBIC)
-    assert assess_wear(soft, soft).kind is WearKind.ADHESIVE
+def test_a_soft_body_paired_with_one_as_soft_is_not_ploughed() -> None:
+    soft = WearPairBody(name="aluminium", hardness=1.3e9, structure=CrystalStructure.FACE_CENTRED_CUBIC)
+    assert assess_wear_mechanism(soft, soft).mechanism is WearMechanism.ADHESIVE

@@ -4,7 +4,7 @@ from dataclasses import fields
 from typing import Any
 
 from sonolube.actuator import CatalogueActuator, catalogue_actuator, catalogue_names
-from sonolube.units import engineering
+from sonolube.units import format_si
 from sonolube.vocabulary import quantities
 
 _TOLD = ("stroke", "stroke_voltage", "blocked_force", "free_capacitance", "resonance_frequency")
@@ -30,7 +30,7 @@ def actuator_lines(name: str | None) -> list[str]:
     return [
         f"{shown.name}: {shown.title}, {shown.kind}",
         *[
-            f"  {quantities()[key].meaning:<{width}}  {engineering(value, quantities()[key].unit, digits=4)}"
+            f"  {quantities()[key].meaning:<{width}}  {format_si(value, quantities()[key].unit, digits=4)}"
             for key, value in known.items()
         ],
         f"  source: {shown.source}",
@@ -40,7 +40,7 @@ def actuator_lines(name: str | None) -> list[str]:
 
 def _row(shown: CatalogueActuator) -> list[str]:
     known = _quantities(shown)
-    cells = [engineering(known[key], quantities()[key].unit) if key in known else "not printed" for key in _TOLD]
+    cells = [format_si(known[key], quantities()[key].unit) if key in known else "not printed" for key in _TOLD]
     return [shown.name, *cells, shown.title]
 
 

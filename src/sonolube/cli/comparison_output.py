@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from sonolube.figure import publication_style, write_figure
-from sonolube.files import write_whole
+from sonolube.files import write_atomically
 from sonolube.rig import Rig, write_netcdf
-from sonolube.units import engineering
+from sonolube.units import format_si
 from sonolube.validation.compare import (
     DATA_SETS,
     ONLY_PREDICTED,
@@ -71,7 +71,7 @@ def write_comparison(
             plt.close(figure)
     return [
         *files,
-        write_whole(folder / "models.csv", comparison_csv(fits)),
+        write_atomically(folder / "models.csv", comparison_csv(fits)),
         write_netcdf(comparison_dataset(fits), path=folder / "models.nc"),
     ]
 
@@ -102,15 +102,15 @@ def _refusals(one: ComparedFit) -> Iterator[str]:
 
 def _rig_lines(rig: Rig, predictions: tuple[RigPrediction, ...], width: int) -> Iterator[str]:
     yield (
-        f"{rig.title}, {engineering(rig.normal_load, 'N')}, {engineering(rig.sliding_speed, 'm/s')}, "
-        f"{engineering(rig.vibration_amplitude, 'm')}"
+        f"{rig.title}, {format_si(rig.normal_load, 'N')}, {format_si(rig.sliding_speed, 'm/s')}, "
+        f"{format_si(rig.vibration_amplitude, 'm')}"
     )
     steady = rig.friction_coefficient * rig.normal_load
     for one in predictions:
         if one.friction_ratio is None:
             continue
         error = ", error not known," if one.uncertainty is None else f" +- {one.uncertainty:.2f}"
-        force = engineering(one.friction_ratio * steady, "N")
+        force = format_si(one.friction_ratio * steady, "N")
         yield f"  {one.model.name:<{width}}  ratio {one.friction_ratio:.3f}{error}  friction {force}"
     for one in predictions:
         if one.refusal:

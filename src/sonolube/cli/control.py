@@ -69,7 +69,7 @@ def control(
     from sonolube.design.control import Amplifier, ControlSettings, Disturbance, Drift, control_study
     from sonolube.errors import InvalidInput
     from sonolube.rig import read_rig
-    from sonolube.units import rise_to_si, to_si
+    from sonolube.units import temperature_difference_to_si, to_si
 
     def si(text: str | None, unit: str, name: str, otherwise: float) -> float:
         return otherwise if text is None else to_si(text, unit=unit, name=name)
@@ -99,7 +99,7 @@ def control(
             friction_factor=factor, friction_force_deviation=to_si(noise, unit="N", name="--noise")
         ),
         drift=Drift(
-            final_temperature_rise=rise_to_si(warming, name="--warming"),
+            final_temperature_rise=temperature_difference_to_si(warming, name="--warming"),
             warming_time=si(warmed_in, "s", "--warming-time", duration / 4),
         ),
     )

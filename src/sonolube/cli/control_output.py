@@ -23,10 +23,10 @@ from sonolube.design.control import (
     voltage_for,
 )
 from sonolube.figure import publication_style
-from sonolube.files import write_whole
+from sonolube.files import write_atomically
 from sonolube.report import Finding, FindingTable, write_findings
 from sonolube.rig import Rig, dataset, write_netcdf
-from sonolube.units import engineering
+from sonolube.units import format_si
 from sonolube.vocabulary import quantity
 
 _HOLDER_MASS, _HOLDER_STIFFNESS, _DAMPING_RATIO = 0.05, 2e4, 0.01  # kg, N/m
@@ -35,7 +35,7 @@ _PERIODS = 80
 _SAFE_GAIN_MARGIN = 1.7  # the least that textbooks allow
 
 HOLDER = (
-    f"a holder of {engineering(_HOLDER_STIFFNESS, 'N/m')} and {1e3 * _HOLDER_MASS:g} g, damping ratio"
+    f"a holder of {format_si(_HOLDER_STIFFNESS, 'N/m')} and {1e3 * _HOLDER_MASS:g} g, damping ratio"
     f" {_DAMPING_RATIO:g}; static friction {_STATIC_FACTOR:g} times that of sliding, falling over the sliding speed"
 )
 
@@ -138,7 +138,7 @@ def control_lines(
 ) -> list[str]:
     """Return the controller and its run as lines."""
     return [
-        f"{rig.title}, {engineering(rig.normal_load, 'N')}, {engineering(rig.sliding_speed, 'm/s')}, "
+        f"{rig.title}, {format_si(rig.normal_load, 'N')}, {format_si(rig.sliding_speed, 'm/s')}, "
         f"friction model {rig.friction_model.name}",
         *[f"  {name:<20} {value}" for name, value in _facts(settings, study, belt)],
         *closing_lines(written, assumptions=_assumed(rig, belt, supposed), caveats=_caveats(study)),
@@ -203,8 +203,8 @@ def write_control(
     return [
         *page,
         write_netcdf(labelled, path=folder / f"{name}.nc"),
-        write_whole(folder / f"{name}.c", source),
-        write_whole(folder / f"{name}.csv", lookup_table(study.controller)),
+        write_atomically(folder / f"{name}.c", source),
+        write_atomically(folder / f"{name}.csv", lookup_table(study.controller)),
     ]
 
 
@@ -216,7 +216,7 @@ def _lookup(study: ControlStudy) -> FindingTable:
     return FindingTable(
         title=f"Friction by the rig's model, at {places.size} of the map's {plant.friction_force.size} voltages",
         heads=("drive, peak to peak", "friction"),
-        rows=tuple((engineering(float(volts), "V"), engineering(float(force), "N")) for volts, force in rows),
+        rows=tuple((format_si(float(volts), "V"), format_si(float(force), "N")) for volts, force in rows),
     )
 
 
@@ -230,8 +230,8 @@ def _lost_resonance(study: ControlStudy) -> tuple[str, ...]:
         return ()
     edge = capture_edge(study.mode) - study.mode.frequency
     return (
-        f"the drive ends at {engineering(last, 'Hz', digits=4)}, the end of its band, and has lost the resonance: it"
-        f" finds back from up to {engineering(edge, 'Hz')} above it; warm slower or keep the drive on",
+        f"the drive ends at {format_si(last, 'Hz', digits=4)}, the end of its band, and has lost the resonance: it"
+        f" finds back from up to {format_si(edge, 'Hz')} above it; warm slower or keep the drive on",
     )
 
 
@@ -251,29 +251,29 @@ def _facts(settings: ControlSettings, study: ControlStudy, belt: Suppression | N
     process, gains, margins = study.controller.process, study.controller.gains, study.margins
     response, energy = study.response, study.energy
     late = process.delayed_samples * process.sample_interval
-    amplifier = "" if energy.amplifier_energy is None else f"{engineering(energy.amplifier_energy, 'J')} (D 1.9), "
+    amplifier = "" if energy.amplifier_energy is None else f"{format_si(energy.amplifier_energy, 'J')} (D 1.9), "
     facts = [
         (
             "friction wanted",
-            f"{engineering(study.friction_force, 'N')} of {study.plant.highest_force:.3g} N; "
+            f"{format_si(study.friction_force, 'N')} of {study.plant.highest_force:.3g} N; "
             f"least within reach {study.plant.lowest_force:.3g} N",
         ),
         ("drive", f"up to {study.voltage_maximum:.4g} V peak to peak, by the amplifier's {study.limit}"),
         (
             "process",
-            f"vibration {engineering(study.mode.time_constant, 's')}, delay {engineering(late, 's')}, "
-            f"interval {engineering(process.sample_interval, 's')}",
+            f"vibration {format_si(study.mode.time_constant, 's')}, delay {format_si(late, 's')}, "
+            f"interval {format_si(process.sample_interval, 's')}",
         ),
         (
             "controller",
-            f"K_c {gains.proportional_gain:.3g}, tau_I {engineering(gains.integral_time, 's')} (SIMC), "
+            f"K_c {gains.proportional_gain:.3g}, tau_I {format_si(gains.integral_time, 's')} (SIMC), "
             f"feed-forward {settings.feed_forward}",
         ),
         (
             "margins",
             f"gain {margins.gain_margin:.2f} where real friction changes {study.loop_gain:.2f} times as expected, "
             f"phase {np.degrees(margins.phase_margin):.1f} deg, "
-            f"delay {engineering(margins.delay_margin, 's')}, "
+            f"delay {format_si(margins.delay_margin, 's')}, "
             f"Ms {margins.sensitivity_peak:.2f}",
         ),
         (
@@ -281,11 +281,11 @@ def _facts(settings: ControlSettings, study: ControlStudy, belt: Suppression | N
             f"rise {_time(response.rise_time)}, within 5 % after {_time(response.settling_time)}, "
             f"overshoot {100 * response.overshoot:.2g} %",
         ),
-        ("tracking error", f"{engineering(response.tracking_error, 'N')} rms once settled"),
+        ("tracking error", f"{format_si(response.tracking_error, 'N')} rms once settled"),
         (
             "energy",
-            f"amplifier {amplifier}motion {engineering(energy.electrical_energy, 'J')}, "
-            f"work of friction saved {engineering(energy.saved_work, 'J')}",
+            f"amplifier {amplifier}motion {format_si(energy.electrical_energy, 'J')}, "
+            f"work of friction saved {format_si(energy.saved_work, 'J')}",
         ),
     ]
     if study.untracked is not None:
@@ -294,7 +294,7 @@ def _facts(settings: ControlSettings, study: ControlStudy, belt: Suppression | N
         facts += [
             (
                 f"stick-slip {name}",
-                f"{engineering(motion.stick_slip_amplitude, 'N')}, sticks "
+                f"{format_si(motion.stick_slip_amplitude, 'N')}, sticks "
                 f"{100 * motion.stick_fraction:.0f} % of the time, damping of sliding {damping:.3g} N s/m",
             )
             for name, motion, damping in zip(
@@ -314,10 +314,10 @@ def _tracked(study: ControlStudy) -> str:
     fell = study.run.resonance_frequency[-1] - study.run.resonance_frequency[0]
     volts = study.run.voltage_peak_to_peak[last].mean(), study.untracked.voltage_peak_to_peak[last].mean()
     return (
-        f"moves by {engineering(float(fell), 'Hz')}; tracked {volts[0]:.3g} V and {engineering(with_it, 'N')} rms, "
-        f"at a fixed frequency {volts[1]:.3g} V and {engineering(without, 'N')} rms"
+        f"moves by {format_si(float(fell), 'Hz')}; tracked {volts[0]:.3g} V and {format_si(with_it, 'N')} rms, "
+        f"at a fixed frequency {volts[1]:.3g} V and {format_si(without, 'N')} rms"
     )
 
 
 def _time(seconds: float | None) -> str:
-    return "never" if seconds is None else engineering(seconds, "s")
+    return "never" if seconds is None else format_si(seconds, "s")

@@ -7,7 +7,7 @@ import typer
 
 from sonolube.report import FindingTable
 from sonolube.rig import Rig
-from sonolube.units import engineering
+from sonolube.units import format_si
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -47,7 +47,7 @@ def asked_of(context: typer.Context, *, title: str, source: str = "") -> list[tu
 def settings_of(rig: Rig) -> list[tuple[str, str]]:
     """Return at what load and speed a rig runs, with which friction model."""
     return [
-        ("load and speed", f"{engineering(rig.normal_load, 'N')}, {engineering(rig.sliding_speed, 'm/s')}"),
+        ("load and speed", f"{format_si(rig.normal_load, 'N')}, {format_si(rig.sliding_speed, 'm/s')}"),
         ("without vibration", f"coefficient of friction {rig.friction_coefficient:.3g}"),
         ("friction model", rig.friction_model.name),
     ]

@@ -23,7 +23,7 @@ from sonolube.metrics import (
 )
 from sonolube.report import Finding, write_findings
 from sonolube.rig import Rig, dataset, write_netcdf
-from sonolube.units import engineering
+from sonolube.units import format_si
 from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:
@@ -256,15 +256,15 @@ def _facts(found: Calibration) -> list[tuple[str, str]]:
             f" {_PRINTED * fit.intercept_uncertainty:.2g}), in mW mm2/(N W) with v in m/s",
         ),
         ("scatter of runs", f"{_PRINTED * fit.efficiency_deviation:.2g} mW mm2/(N W)"),
-        ("speeds covered", f"{engineering(fit.lowest_speed, 'm/s')} to {engineering(fit.highest_speed, 'm/s')}"),
+        ("speeds covered", f"{format_si(fit.lowest_speed, 'm/s')} to {format_si(fit.highest_speed, 'm/s')}"),
     ]
     if found.estimate is None or found.friction_force is None or found.wanted_speed is None:
         return facts
     low, high = found.estimate.lowest_power, found.estimate.highest_power
-    upper = "no bound" if high is None else engineering(high, "W")
+    upper = "no bound" if high is None else format_si(high, "W")
     told = (
-        f"{engineering(found.estimate.actuator_power, 'W')} for {engineering(found.friction_force, 'N')} at"
-        f" {engineering(found.wanted_speed, 'm/s')}; {engineering(low, 'W')} to {upper} with"
+        f"{format_si(found.estimate.actuator_power, 'W')} for {format_si(found.friction_force, 'N')} at"
+        f" {format_si(found.wanted_speed, 'm/s')}; {format_si(low, 'W')} to {upper} with"
         f" {100 * found.confidence_level:g} %"
     )
     return [*facts, ("power", told)]

@@ -20,7 +20,7 @@ from sonolube.fem import face_triangulation
 from sonolube.fem.solver.model import DIRECTIONS
 from sonolube.figure import COLOURS, publication_style, write_figure
 from sonolube.materials import Material
-from sonolube.units import engineering
+from sonolube.units import format_si
 from sonolube.vocabulary import quantities
 
 if TYPE_CHECKING:
@@ -71,7 +71,7 @@ def horn_lines(design: HornDesign, material: Material, tool: float, written: Seq
     theory = "" if thin is None else f"  (thin bar {1e3 * thin.length:.2f} mm)"
     thin_gain = "" if thin is None else f"  (thin bar {thin.displacement_gain:.2f})"
     shift = loaded_frequency(design, tool_mass=tool) - mode.frequency
-    sizes = ", ".join(f"{name} {engineering(value, 'm')}" for name, value in design.body.sizes.items())
+    sizes = ", ".join(f"{name} {format_si(value, 'm')}" for name, value in design.body.sizes.items())
     limits = amplitude_limits(design, material=material)
     near = [f"{name} {at / mode.frequency - 1:+.1%}" for name, at in design.neighbours[:_NEAR]]
     rows = {
@@ -102,7 +102,7 @@ def write_horn(design: HornDesign, *, folder: Path, name: str) -> list[Path]:
     picture = mode_figure(mode.model.mesh, mode.displacement, title=title)
     return [
         *write_figure(axis_figure(design), folder=folder, name=f"{name}-axis"),
-        *write_figure(picture, folder=folder, name=f"{name}-mode", forms=("png",)),
+        *write_figure(picture, folder=folder, name=f"{name}-mode", file_formats=("png",)),
     ]
 
 

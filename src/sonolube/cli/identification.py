@@ -21,7 +21,7 @@ def identify_rig(
     Example: sonolube identify rig examples/rigs/tribometer.toml --out my-tribometer.toml
     """
     from sonolube.cli.progress import progress
-    from sonolube.files import write_whole
+    from sonolube.files import write_atomically
     from sonolube.identification import rig_tables
     from sonolube.rig import read_rig, with_tables
     from sonolube.validation.tribometer import tribometer_identification, tribometer_stack
@@ -34,4 +34,4 @@ def identify_rig(
     if out is None:
         typer.echo(text, nl=False)
     else:
-        typer.echo(str(write_whole(out, text)))
+        typer.echo(str(write_atomically(out, text)))

@@ -12,10 +12,10 @@ from sonolube.checks import Complexes, Floats
 from sonolube.fem import HarmonicResponse, Transducer, vtu_text
 from sonolube.fem.electromechanical_model import ElectromechanicalMode, ElectromechanicalModel
 from sonolube.figure import COLOURS, LINES, publication_style, write_figure
-from sonolube.files import write_whole
+from sonolube.files import write_atomically
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 from sonolube.rig import dataset, write_netcdf
-from sonolube.units import engineering
+from sonolube.units import format_si
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -88,19 +88,19 @@ def impedance_lines(
         port, low = spectrum.port, spectrum.response
         capacitance = float(low.admittance[0].imag / (2 * np.pi * low.frequency[0]))
         lines.append(
-            f"  {name}: {engineering(capacitance, 'F')} at {engineering(float(low.frequency[0]), 'Hz')}, "
+            f"  {name}: {format_si(capacitance, 'F')} at {format_si(float(low.frequency[0]), 'Hz')}, "
             f"{port.model.mesh.node_count} nodes, resonances +-{port.frequency_error:.1g}"
         )
         lines += [
             f"    {mode.name:<12}  f_s {mode.series_frequency:>8.0f} Hz  f_p {mode.parallel_frequency:>8.0f} Hz  "
-            f"k_eff {mode.coupling_factor:.3f}  tip {engineering(spectrum.tip_at(mode.series_frequency), 'm')} per volt"
+            f"k_eff {mode.coupling_factor:.3f}  tip {format_si(spectrum.tip_at(mode.series_frequency), 'm')} per volt"
             for mode in spectrum.coupled
         ]
     if measured is not None:
         low_z = int(np.argmin(np.abs(measured.impedance)))
         lines.append(
-            f"  measured: least impedance {engineering(float(abs(measured.impedance[low_z])), 'ohm')} at "
-            f"{engineering(float(measured.frequency[low_z]), 'Hz', digits=4)} in {measured.file_name}"
+            f"  measured: least impedance {format_si(float(abs(measured.impedance[low_z])), 'ohm')} at "
+            f"{format_si(float(measured.frequency[low_z]), 'Hz', digits=4)} in {measured.file_name}"
         )
     assumed = [size.name for size in transducer.dimensions if not size.printed]
     if assumed:
@@ -128,10 +128,10 @@ def write_impedance(
             "displacement_per_volt": np.abs(spectrum.response.displacement_per_volt[0]),
         }
         labelled = dataset(values, along="frequency", title=f"Impedance of {title}, {name}")
-        files.append(write_whole(folder / f"{stem}.csv", _table(spectrum)))
+        files.append(write_atomically(folder / f"{stem}.csv", _table(spectrum)))
         files.append(write_netcdf(labelled, path=folder / f"{stem}.nc"))
         if with_modes:
-            files.append(write_whole(folder / f"{part}-modes-{name}.vtu", _modes_grid(spectrum)))
+            files.append(write_atomically(folder / f"{part}-modes-{name}.vtu", _modes_grid(spectrum)))
     return files
 
 

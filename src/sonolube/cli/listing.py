@@ -5,7 +5,7 @@ from typing import Any
 
 from sonolube.materials import Material, material, material_names
 from sonolube.published import Column, Table, table, table_ids
-from sonolube.units import engineering
+from sonolube.units import format_si
 
 
 def material_object(name: str | None) -> dict[str, Any]:
@@ -25,7 +25,7 @@ def material_lines(name: str | None) -> list[str]:
     return [
         f"{shown.name}: {shown.title}",
         *[
-            f"  {key:<{width}}  {engineering(known.value, known.unit, digits=4):<14}  {known.source}"
+            f"  {key:<{width}}  {format_si(known.value, known.unit, digits=4):<14}  {known.source}"
             + "".join(f"; {remark}" for remark in (known.condition, known.note) if remark)
             for key, known in shown.properties.items()
         ],

@@ -109,9 +109,9 @@ def _own(mine: "MapPoint") -> dict[str, Any]:
 
 
 def _own_line(mine: "MapPoint | None") -> list[str]:
-    from sonolube.units import engineering
+    from sonolube.units import format_si
 
     if mine is None or mine.sliding_speed is None or mine.nominal_pressure is None:
         return []
-    place = f"{engineering(mine.sliding_speed[0], 'm/s')}, {engineering(mine.nominal_pressure, 'Pa')}"
+    place = f"{format_si(mine.sliding_speed[0], 'm/s')}, {format_si(mine.nominal_pressure, 'Pa')}"
     return [f"{mine.label}: {place}, computed friction reduction {100 * mine.friction_reduction:.0f} %"]

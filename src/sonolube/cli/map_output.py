@@ -10,10 +10,10 @@ from sonolube.cli.output import closing_lines
 from sonolube.design import PLACES, map_figure, map_page, measured_figure, measured_map
 from sonolube.errors import InvalidInput
 from sonolube.figure import publication_style
-from sonolube.files import write_whole
+from sonolube.files import write_atomically
 from sonolube.report import Finding, FindingTable, write_findings
 from sonolube.rig import Rig, write_netcdf
-from sonolube.units import engineering
+from sonolube.units import format_si
 from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ def write_map(
         forms=[form for form in forms if form != "html"],
     )
     if page is not None:
-        written.append(write_whole(folder / f"{name}.html", page))
+        written.append(write_atomically(folder / f"{name}.html", page))
     if between is not None:
         written.append(write_netcdf(between, path=folder / f"{name}-measured.nc"))
     return [*written, write_netcdf(mapped, path=folder / f"{name}.nc")]
@@ -130,7 +130,7 @@ def map_lines(rig: Rig, mapped: "xr.Dataset", written: list[Path]) -> list[str]:
 
 def _facts(mapped: "xr.Dataset") -> list[tuple[str, str]]:
     facts = []
-    best = [engineering(value, quantity(name).unit) for name, value in _best(mapped).items()]
+    best = [format_si(value, quantity(name).unit) for name, value in _best(mapped).items()]
     if best:
         facts.append(("most reduction", f"{best[0]} at {', '.join(best[1:])}"))
     ridge = _ridge(mapped)
@@ -157,8 +157,8 @@ def _panel_table(mapped: "xr.Dataset", panel: str | None) -> list[FindingTable]:
     rows = []
     for index in range(mapped.sizes[panel]):
         part = mapped.isel({panel: index})
-        at = {name: engineering(value, quantity(name).unit) for name, value in _best(part).items()}
-        value = engineering(float(part[panel]), quantity(panel).unit)
+        at = {name: format_si(value, quantity(name).unit) for name, value in _best(part).items()}
+        value = format_si(float(part[panel]), quantity(panel).unit)
         rows.append((value, *(at.get(name, "") for name in _COLUMNS), _ridge(part)))
     heads = (quantity(panel).meaning, *(quantity(name).meaning for name in _COLUMNS), "Ridge")
     with_ridge = any(row[-1] for row in rows)
@@ -172,7 +172,7 @@ def _ridge(mapped: "xr.Dataset") -> str:
     ridge = mapped["sufficient_power"].values if "sufficient_power" in mapped else np.array([])
     if not np.isfinite(ridge).any():
         return ""
-    low, high = (engineering(float(pick(ridge)), "W") for pick in (np.nanmin, np.nanmax))
+    low, high = (format_si(float(pick(ridge)), "W") for pick in (np.nanmin, np.nanmax))
     return f"{low} to {high}"
 
 

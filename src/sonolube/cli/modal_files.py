@@ -12,7 +12,7 @@ from sonolube.errors import InvalidInput
 from sonolube.fem import ConvergedModes, interpolate_at_points, vtu_text
 from sonolube.fem.solver.model import DIRECTIONS
 from sonolube.figure import publication_style
-from sonolube.files import write_whole
+from sonolube.files import write_atomically
 
 _FRAMES = 16  # of one period
 _FRAME_DURATION = 60  # ms
@@ -24,7 +24,7 @@ def write_vtu(found: ConvergedModes, names: Sequence[str], *, folder: Path, part
     fields = {
         f"{names[row]}, {found.natural_frequency[row]:.0f} Hz": found.modes.shapes[row] for row in _elastic(found)
     }
-    return [write_whole(folder / f"{part}-modes.vtu", vtu_text(found.model.mesh, fields=fields))]
+    return [write_atomically(folder / f"{part}-modes.vtu", vtu_text(found.model.mesh, fields=fields))]
 
 
 def write_shapes(
@@ -40,7 +40,7 @@ def write_shapes(
     text = io.StringIO()
     heading = ", ".join(f"{names[row]} at {found.natural_frequency[row]:.1f} Hz" for row in rows)
     np.savetxt(text, (shapes / np.abs(shapes).max(axis=1, keepdims=True)).T, fmt="%.6g", delimiter=",", header=heading)
-    return [write_whole(folder / f"{part}-shapes.csv", text.getvalue())]
+    return [write_atomically(folder / f"{part}-shapes.csv", text.getvalue())]
 
 
 def write_animations(
@@ -58,7 +58,7 @@ def write_animations(
             advance(f"animating {names[row]}", done, len(rows))
         title = f"{names[row]}, {found.natural_frequency[row]:.0f} Hz"
         name = f"{part}-{done + 1}-{names[row].replace(' ', '-')}.gif"
-        files.append(write_whole(folder / name, animated(found, found.modes.shapes[row], title=title)))
+        files.append(write_atomically(folder / name, animated(found, found.modes.shapes[row], title=title)))
     return files
 
 

@@ -67,7 +67,7 @@ def write_modes(found: ConvergedModes, names: Sequence[str], *, folder: Path, pa
         title = f"{names[row]}, {found.natural_frequency[row]:.0f} Hz"
         figure = mode_figure(found.model.mesh, found.modes.shapes[row], title=title)
         name = f"{part}-{row - found.modes.rigid_body_count + 1}-{names[row].replace(' ', '-')}"
-        files += write_figure(figure, folder=folder, name=name, forms=("png",))
+        files += write_figure(figure, folder=folder, name=name, file_formats=("png",))
     return files
 
 

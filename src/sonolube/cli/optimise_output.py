@@ -26,10 +26,10 @@ from sonolube.design.optimisation import (
     design_text,
 )
 from sonolube.figure import publication_style
-from sonolube.files import write_whole
+from sonolube.files import write_atomically
 from sonolube.report import Finding, FindingTable, write_findings
 from sonolube.rig import write_netcdf
-from sonolube.units import engineering
+from sonolube.units import format_si
 from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:
@@ -79,7 +79,7 @@ def optimum_lines(found: Optimum, electric: Electrical, written: list[Path]) -> 
     """Return what was found as lines."""
     rig = found.task.space.rig
     return [
-        f"{rig.title}, {engineering(rig.normal_load, 'N')}, {engineering(rig.sliding_speed, 'm/s')},"
+        f"{rig.title}, {format_si(rig.normal_load, 'N')}, {format_si(rig.sliding_speed, 'm/s')},"
         f" friction model {rig.friction_model.name}",
         *[f"  {name:<20} {value}" for name, value in _facts(found, electric)],
         *_table_lines(_table(found.front or found.designs)),
@@ -128,7 +128,7 @@ def write_optimum(
         name="optimise",
     )
     written.append(write_netcdf(_dataset(found), path=folder / f"{name}.nc"))
-    return [*written, write_whole(folder / f"{name}.toml", text)]
+    return [*written, write_atomically(folder / f"{name}.toml", text)]
 
 
 def _limits(found: Optimum, name: str) -> Finding:
@@ -150,21 +150,21 @@ def _facts(found: Optimum, electric: Electrical) -> list[tuple[str, str]]:
         ("actuator", _title(found, best)),
         (
             "drive",
-            f"{engineering(best.voltage_peak_to_peak, 'V', digits=4)} peak to peak,"
-            f" {engineering(best.frequency, 'Hz', digits=5)}, {best.choice.waveform}",
+            f"{format_si(best.voltage_peak_to_peak, 'V', digits=4)} peak to peak,"
+            f" {format_si(best.frequency, 'Hz', digits=5)}, {best.choice.waveform}",
         ),
         *[
-            (key.replace("_", " "), engineering(value, "kg" if key.endswith("mass") else quantity(key).unit, digits=4))
+            (key.replace("_", " "), format_si(value, "kg" if key.endswith("mass") else quantity(key).unit, digits=4))
             for key, value in best.choice.entries.items()
         ],
-        ("amplitude", engineering(numbers["vibration_amplitude"], "m")),
-        ("power of amplifier", f"{engineering(best.objective('power'), 'W')} (D 1.9)"),
-        ("heat in actuator", engineering(best.objective("heat"), "W")),
+        ("amplitude", format_si(numbers["vibration_amplitude"], "m")),
+        ("power of amplifier", f"{format_si(best.objective('power'), 'W')} (D 1.9)"),
+        ("heat in actuator", format_si(best.objective("heat"), "W")),
         ("tightest limit", _tightest(best)),
         (
             "amplifier",
-            f"{engineering(need.voltage_maximum, 'V')}, {engineering(need.peak_current, 'A')} peak,"
-            f" {engineering(need.apparent_power, 'W').replace('W', 'VA')}, {need.slew_rate * 1e-6:.3g} V/us,"
+            f"{format_si(need.voltage_maximum, 'V')}, {format_si(need.peak_current, 'A')} peak,"
+            f" {format_si(need.apparent_power, 'W').replace('W', 'VA')}, {need.slew_rate * 1e-6:.3g} V/us,"
             f" power factor {need.power_factor:.3g}",
         ),
         *[(matched.name, _network_text(matched)) for matched in electric.matched],
@@ -249,7 +249,7 @@ def _elements(network: MatchingNetwork) -> str:
     for name in _ELEMENTS:
         value = getattr(network, name)
         if value is not None:
-            told.append(f"{engineering(value, quantity(name).unit)} {places[name.partition('_')[0]]}")
+            told.append(f"{format_si(value, quantity(name).unit)} {places[name.partition('_')[0]]}")
     return ", ".join(told)
 
 

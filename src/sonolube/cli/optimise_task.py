@@ -12,7 +12,7 @@ from sonolube.errors import InvalidInput, UnknownName
 from sonolube.materials import material
 from sonolube.rig import Rig, structure_entries
 from sonolube.rig.driven_rig import driven_rig
-from sonolube.units import rise_to_si, to_si
+from sonolube.units import temperature_difference_to_si, to_si
 
 _WAVEFORMS = ("sine", "square", "triangle", "sawtooth")
 _THREAD = re.compile(r"M(\d+(?:\.\d+)?)x(.+)")
@@ -59,7 +59,7 @@ def limits_of(
         current_maximum=_si(current, "A", "--current-limit"),
         slew_rate_maximum=_si(slew, "V/s", "--slew-limit"),
         nominal_pressure=_si(pressure, "Pa", "--stress-limit"),
-        temperature_rise=None if warming is None else rise_to_si(warming, name="--temperature-limit"),
+        temperature_rise=None if warming is None else temperature_difference_to_si(warming, name="--temperature-limit"),
         thermal_conductance=_si(conductance, "W/K", "--conductance"),
         horn=bar,
     )

@@ -9,7 +9,7 @@ from typing import Any
 import typer
 
 from sonolube.rig import Rig
-from sonolube.units import engineering
+from sonolube.units import format_si
 from sonolube.vocabulary import quantities
 
 
@@ -60,9 +60,9 @@ def _object(quantified: dict[str, float], told: dict[str, str], rig: Rig, caveat
 def _lines(quantified: dict[str, float], told: dict[str, str], rig: Rig) -> list[str]:
     width = max(len(quantities()[name].meaning) for name in quantified)
     return [
-        f"{rig.title}, {engineering(rig.normal_load, 'N')}",
+        f"{rig.title}, {format_si(rig.normal_load, 'N')}",
         *[
-            f"  {quantities()[name].meaning:<{width}}  {engineering(value, quantities()[name].unit)}"
+            f"  {quantities()[name].meaning:<{width}}  {format_si(value, quantities()[name].unit)}"
             for name, value in quantified.items()
         ],
         *[f"  {name:<{width}}  {text}" for name, text in told.items() if name != "status"],

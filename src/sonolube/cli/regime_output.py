@@ -7,10 +7,10 @@ import numpy as np
 
 from sonolube.cli.output import closing_lines
 from sonolube.figure import publication_style, write_figure
-from sonolube.friction import Method
+from sonolube.friction import LubricationMethod
 from sonolube.rig import LubricationMap, LubricationPoint, Rig
-from sonolube.units import engineering
-from sonolube.wear.mechanism import WearAssessment
+from sonolube.units import format_si
+from sonolube.wear.mechanism import WearMechanismAssessment
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -19,7 +19,7 @@ _SHADES = {"dry": "0.75", "ultrasonic": "#9ecae1", "lubricant": "#fdd0a2", "comb
 
 
 def regime_object(
-    rig: Rig, result: LubricationPoint, wear: WearAssessment | None, written: list[Path]
+    rig: Rig, result: LubricationPoint, wear: WearMechanismAssessment | None, written: list[Path]
 ) -> dict[str, Any]:
     """Return the ways of lubrication as they go into JSON."""
     assessed = {} if wear is None else {"wear": _wear_object(wear)}
@@ -40,11 +40,13 @@ def regime_object(
     }
 
 
-def regime_lines(rig: Rig, result: LubricationPoint, wear: WearAssessment | None, written: list[Path]) -> list[str]:
+def regime_lines(
+    rig: Rig, result: LubricationPoint, wear: WearMechanismAssessment | None, written: list[Path]
+) -> list[str]:
     """Return the ways of lubrication as lines, the best of them marked."""
     coefficients = result.coefficients._asdict()
     return [
-        f"{rig.title}, {engineering(result.nominal_pressure, 'Pa')}, {engineering(result.sliding_speed, 'm/s')}",
+        f"{rig.title}, {format_si(result.nominal_pressure, 'Pa')}, {format_si(result.sliding_speed, 'm/s')}",
         "  coefficient of friction",
         *[f"    {name:<10}  {float(value):.3g}{_marked(name, result)}" for name, value in coefficients.items()],
         f"  on asperities  {100 * result.asperity_load_fraction:.3g} % of the load through the lubricant",
@@ -64,18 +66,18 @@ def _marked(name: str, result: LubricationPoint) -> str:
     return "  best" if name == result.best else ""
 
 
-def _wear_lines(wear: WearAssessment) -> list[str]:
+def _wear_lines(wear: WearMechanismAssessment) -> list[str]:
     return [
-        f"  wear           {wear.kind}; vibration: {wear.effect} in pairs like this (a rule, not a law)",
+        f"  wear           {wear.mechanism}; vibration: {wear.vibration_effect} in pairs like this (a rule, not a law)",
         *[f"    because {reason}" for reason in wear.reasons],
         *[f"    evidence: {line}" for line in wear.evidence],
     ]
 
 
-def _wear_object(wear: WearAssessment) -> dict[str, Any]:
+def _wear_object(wear: WearMechanismAssessment) -> dict[str, Any]:
     return {
-        "kind": str(wear.kind),
-        "effect": str(wear.effect),
+        "kind": str(wear.mechanism),
+        "effect": str(wear.vibration_effect),
         "reasons": list(wear.reasons),
         "evidence": list(wear.evidence),
     }
@@ -86,7 +88,7 @@ def _figure(rig: Rig, result: LubricationPoint, about: LubricationMap) -> "Figur
     from matplotlib.figure import Figure
     from matplotlib.patches import Patch
 
-    names = [str(method) for method in Method]
+    names = [str(method) for method in LubricationMethod]
     figure = Figure(figsize=(5.2, 4.0))
     axes = figure.subplots()
     axes.pcolormesh(

@@ -9,7 +9,7 @@ from sonolube.cli.output import closing_lines
 from sonolube.dynamics import modes
 from sonolube.figure import COLOURS, publication_style, write_figure
 from sonolube.rig import FrequencyResponse, Rig, dataset, structure_in_contact, write_netcdf
-from sonolube.units import engineering
+from sonolube.units import format_si
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -31,12 +31,12 @@ def response_object(rig: Rig, result: FrequencyResponse, written: list[Path]) ->
 def response_lines(rig: Rig, result: FrequencyResponse, written: list[Path]) -> list[str]:
     """Return the resonances and the largest response as lines."""
     best = int(np.argmax(result.amplitude_per_volt))
-    resonances = ", ".join(engineering(f, "Hz", digits=4) for f in _resonances(rig)) or "none"
+    resonances = ", ".join(format_si(f, "Hz", digits=4) for f in _resonances(rig)) or "none"
     return [
-        f"{rig.title}, {engineering(rig.normal_load, 'N')}, small motions",
+        f"{rig.title}, {format_si(rig.normal_load, 'N')}, small motions",
         f"  natural frequencies  {resonances}",
-        f"  largest amplitude    {engineering(float(result.amplitude_per_volt[best]), 'm')} per volt peak to peak "
-        f"at {engineering(float(result.frequency[best]), 'Hz', digits=4)}",
+        f"  largest amplitude    {format_si(float(result.amplitude_per_volt[best]), 'm')} per volt peak to peak "
+        f"at {format_si(float(result.frequency[best]), 'Hz', digits=4)}",
         *closing_lines(written, assumptions=rig.assumptions),
     ]
 

@@ -10,7 +10,7 @@ from sonolube.cli.output import closing_lines
 from sonolube.errors import InvalidInput
 from sonolube.figure import publication_style, write_figure
 from sonolube.rig import STUDY_FIGURES, Rig, write_netcdf
-from sonolube.units import engineering
+from sonolube.units import format_si
 from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ def study_object(rig: Rig, of: str, study: "xr.Dataset", written: list[Path]) ->
 def study_lines(rig: Rig, of: str, study: "xr.Dataset", written: list[Path]) -> list[str]:
     """Return what a study shows as lines."""
     return [
-        f"{rig.title}, {engineering(rig.normal_load, 'N')}, {study['status'].size} points, {rig.friction_model.name}",
+        f"{rig.title}, {format_si(rig.normal_load, 'N')}, {study['status'].size} points, {rig.friction_model.name}",
         *[f"  {line}" for line in _LINES[of](study)],
         *[f"  without result: {count} of {study['status'].size}: {reason}" for reason, count in _failures(study)],
         *closing_lines(written, assumptions=rig.assumptions),
@@ -60,8 +60,8 @@ def _voltage_lines(study: "xr.Dataset") -> Iterator[str]:
     for best in _best_points(study):
         yield f"least friction       ratio {_told(best, 'friction_ratio')} at {_told(best, 'voltage_peak_to_peak')}"
     lost = study["voltage_peak_to_peak"].values[study["contact_loss_fraction"].values > 0]
-    begin = f"from {engineering(float(lost.min()), 'V')}" if lost.size else "nowhere"
-    most = engineering(float(study["actuator_power"].max()), "W")
+    begin = f"from {format_si(float(lost.min()), 'V')}" if lost.size else "nowhere"
+    most = format_si(float(study["actuator_power"].max()), "W")
     yield f"contact is lost      {begin}"
     yield f"amplifier            up to {most}, D 1.9"
 
@@ -103,7 +103,7 @@ def _waveform_lines(study: "xr.Dataset") -> Iterator[str]:
 def _load_lines(study: "xr.Dataset") -> Iterator[str]:
     ratios, arm = study["friction_ratio"].values, study["natural_frequency"].values
     yield f"friction ratio       {np.nanmin(ratios):.4g} to {np.nanmax(ratios):.4g}"
-    yield f"arm's frequency      {engineering(float(arm.min()), 'Hz')} to {engineering(float(arm.max()), 'Hz')}"
+    yield f"arm's frequency      {format_si(float(arm.min()), 'Hz')} to {format_si(float(arm.max()), 'Hz')}"
 
 
 _LINES: dict[str, Callable[["xr.Dataset"], Iterator[str]]] = {
@@ -144,4 +144,4 @@ def _valued(point: "xr.Dataset", name: str) -> Any:
 
 
 def _told(point: "xr.Dataset", name: str, *, digits: int = 3) -> str:
-    return engineering(float(point[name]), quantity(name).unit, digits=digits)
+    return format_si(float(point[name]), quantity(name).unit, digits=digits)

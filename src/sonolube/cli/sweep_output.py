@@ -10,7 +10,7 @@ from sonolube.cli.design_page import asked_of, notes_of, status_counts, status_t
 from sonolube.design import SweepPlan, sweep_figure, swept_names
 from sonolube.figure import publication_style
 from sonolube.report import Finding, write_findings
-from sonolube.units import engineering
+from sonolube.units import format_si
 from sonolube.vocabulary import quantities, quantity
 
 if TYPE_CHECKING:
@@ -108,12 +108,12 @@ def _settings(told: dict[str, Any]) -> list[tuple[str, str]]:
     texts = []
     for key, value in told["least_friction"].items():
         if isinstance(value, dict):
-            text = engineering(value["value"], value["unit"])
+            text = format_si(value["value"], value["unit"])
         elif isinstance(value, str):
             text = value
         else:
             known = quantities().get(key.rpartition(".")[2])
-            text = engineering(value, known.unit if known else "")
+            text = format_si(value, known.unit if known else "")
         texts.append((key, text))
     return texts
 

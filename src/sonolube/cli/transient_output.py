@@ -9,7 +9,7 @@ from sonolube.cli.output import closing_lines
 from sonolube.dynamics.trajectories import Trajectory
 from sonolube.figure import COLOURS, publication_style, write_figure
 from sonolube.rig import Rig, StartUp, dataset, write_netcdf
-from sonolube.units import engineering
+from sonolube.units import format_si
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -35,11 +35,11 @@ def start_up_object(rig: Rig, result: StartUp, written: list[Path]) -> dict[str,
 def start_up_lines(rig: Rig, result: StartUp, written: list[Path]) -> list[str]:
     """Return how the rig settled as lines."""
     return [
-        f"{rig.title}, {engineering(rig.normal_load, 'N')}, from rest",
-        f"  amplitude settles    within 2 % after {engineering(result.settling_time, 's')}",
-        f"  amplitude            {engineering(result.vibration_amplitude, 'm')}",
-        f"  mean displacement    {engineering(result.mean_displacement, 'm')}",
-        f"  slow oscillation     {engineering(result.beat_frequency, 'Hz')}",
+        f"{rig.title}, {format_si(rig.normal_load, 'N')}, from rest",
+        f"  amplitude settles    within 2 % after {format_si(result.settling_time, 's')}",
+        f"  amplitude            {format_si(result.vibration_amplitude, 'm')}",
+        f"  mean displacement    {format_si(result.mean_displacement, 'm')}",
+        f"  slow oscillation     {format_si(result.beat_frequency, 'Hz')}",
         f"  status               {result.status}" + (f": {result.reason}" if result.reason else ""),
         *closing_lines(written, assumptions=rig.assumptions),
     ]

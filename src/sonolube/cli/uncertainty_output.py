@@ -23,7 +23,7 @@ from sonolube.figure import publication_style
 from sonolube.identification import Posterior, SingularDirection
 from sonolube.report import Finding, FindingTable, write_findings
 from sonolube.rig import Rig, write_netcdf
-from sonolube.units import engineering
+from sonolube.units import format_si
 from sonolube.vocabulary import quantities, quantity
 
 if TYPE_CHECKING:
@@ -244,7 +244,7 @@ def _uncertain_table(told: dict[str, Any]) -> list[FindingTable]:
 
 def _sobol_table(told: dict[str, Any], unit: str) -> list[FindingTable]:
     rows = tuple(
-        (row["key"], _percent(row["first"]), _percent(row["total"]), engineering(row["deviation_if_known"], unit))
+        (row["key"], _percent(row["first"]), _percent(row["total"]), format_si(row["deviation_if_known"], unit))
         for row in told.get("sobol", ())
     )
     heads = ("entry", "share of the variance alone", "with the others", "deviation were it known")
@@ -286,7 +286,7 @@ def _spread_lines(told: dict[str, Any], unit: str) -> list[str]:
 
 
 def _with_interval(each: dict[str, float], unit: str) -> str:
-    value, low, high = (engineering(each[name], unit) for name in ("value", "lower", "upper"))
+    value, low, high = (format_si(each[name], unit) for name in ("value", "lower", "upper"))
     return f"{value:<10} ({low} to {high})"
 
 
@@ -295,7 +295,7 @@ def _band_facts(told: dict[str, Any], unit: str) -> list[tuple[str, str]]:
     for word in ("narrowest", "widest"):
         row = told["band"].get(word)
         if row is not None:
-            low, median, high = (engineering(row[name], unit) for name in ("lower", "median", "upper"))
+            low, median, high = (format_si(row[name], unit) for name in ("lower", "median", "upper"))
             facts.append((word, f"{median}, 90 % within {low} to {high}, at {_place(row['at'])}"))
     return facts
 
@@ -308,7 +308,7 @@ def _place(at: dict[str, Any]) -> str:
     told = []
     for key, value in at.items():
         known = quantities().get(key.rpartition(".")[2])
-        told.append(value if isinstance(value, str) else engineering(value, known.unit if known else ""))
+        told.append(value if isinstance(value, str) else format_si(value, known.unit if known else ""))
     return ", ".join(told)
 
 
@@ -334,9 +334,9 @@ def _identified_rows(told: dict[str, Any]) -> list[tuple[str, str]]:
     found = told.get("identified", {"quantiles": {}})
     for key, (low, median, high) in found["quantiles"].items():
         unit = quantity(key.rpartition(".")[2]).unit
-        ends = f"{engineering(low, unit)} to {engineering(high, unit)}"
+        ends = f"{format_si(low, unit)} to {format_si(high, unit)}"
         free = "; no fact settles it" if key in found["free"] else ""
-        rows.append((key, f"{engineering(median, unit)}, 90 % within {ends}{free}"))
+        rows.append((key, f"{format_si(median, unit)}, 90 % within {ends}{free}"))
     return rows
 
 
@@ -362,7 +362,7 @@ def _sobol_lines(told: dict[str, Any], unit: str) -> list[str]:
     lines = ["  which to measure better: share of the variance alone, with the others; deviation were it known"]
     for row in told["sobol"]:
         alone, whole = (_percent(row[kind]) for kind in ("first", "total"))
-        lines.append(f"    {row['key']:<34} {alone:<20} {whole:<20} {engineering(row['deviation_if_known'], unit)}")
+        lines.append(f"    {row['key']:<34} {alone:<20} {whole:<20} {format_si(row['deviation_if_known'], unit)}")
     return lines
 
 

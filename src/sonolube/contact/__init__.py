@@ -1,4 +1,4 @@
-"""Contact: from the bodies and their roughness to separation, real area and stiffness."""
+"""Contact of rough and smooth bodies: separation, real area, stiffness, and periodic motions of the gap."""
 
 from sonolube.contact.asperity import (
     ASPERITY_LAWS,
@@ -8,11 +8,10 @@ from sonolube.contact.asperity import (
     ElasticAsperity,
     JacksonGreen,
     KogutEtsion,
-    asperity_area,
-    asperity_force,
-    critical_interference,
 )
-from sonolube.contact.cube import axial_stiffness, mindlin_stiffness, tangential_stiffness
+from sonolube.contact.coated_body import CoatedBody, equivalent_plane_strain_modulus, layer_compliance_ratio
+from sonolube.contact.cube import cube_axial_stiffness, cube_tangential_stiffness
+from sonolube.contact.gap_motion import GapMotion, GapMotionBatch, load_balanced_motion, sinusoidal_motion
 from sonolube.contact.height_distribution import (
     HEIGHT_DISTRIBUTIONS,
     ExponentialHeights,
@@ -20,63 +19,110 @@ from sonolube.contact.height_distribution import (
     HeightDistribution,
     height_density,
 )
-from sonolube.contact.motion import GapMotion, HarmonicMotions, harmonic_motion, load_balanced_motion
-from sonolube.contact.pair import ContactPair, ElasticBody, contact_pair, like_bodies_mindlin_ratio
+from sonolube.contact.hertz import (
+    SphereOnFlat,
+    hertz_approach,
+    hertz_axial_shear_stress,
+    hertz_axial_stresses,
+    hertz_contact_radius,
+    hertz_mean_pressure,
+    hertz_peak_pressure,
+    hertz_stiffness,
+    maximum_axial_shear,
+    nominal_area_from_groove,
+    tip_radius_for_pressure,
+    worn_flat_pressure,
+    yield_onset_load,
+)
+from sonolube.contact.mindlin import mindlin_tangential_stiffness
+from sonolube.contact.pair import ContactPair, ElasticBody, contact_pair, identical_materials_mindlin_ratio
+from sonolube.contact.persson import (
+    PerssonContact,
+    persson_area,
+    persson_area_fraction,
+    persson_load,
+    persson_separation,
+    persson_stiffness,
+)
+from sonolube.contact.plasticity import elastic_area, elastic_load_fraction, plastic_area, plasticity_index
 from sonolube.contact.rough import (
     RoughContact,
     contact_count,
     decay_length,
-    elastic_area,
-    elastic_load_fraction,
     normal_force,
     normal_stiffness,
-    plastic_area,
-    plasticity_index,
     real_contact_area,
     separation,
     separation_range,
 )
-from sonolube.contact.validity import contact_caveats, exponential_window
+from sonolube.contact.single_asperity import asperity_area, asperity_force, critical_interference
+from sonolube.contact.squeeze_film import levitation_gap, squeeze_film_pressure, squeeze_number
+from sonolube.contact.validity_range import contact_caveats, exponential_validity_range
 
 __all__ = [
     "ASPERITY_LAWS",
     "HEIGHT_DISTRIBUTIONS",
     "AsperityLaw",
     "ChangEtsionBogy",
+    "CoatedBody",
     "ContactPair",
     "Dong2015Asperity",
     "ElasticAsperity",
     "ElasticBody",
     "ExponentialHeights",
     "GapMotion",
+    "GapMotionBatch",
     "GaussianHeights",
-    "HarmonicMotions",
     "HeightDistribution",
     "JacksonGreen",
     "KogutEtsion",
+    "PerssonContact",
     "RoughContact",
+    "SphereOnFlat",
     "asperity_area",
     "asperity_force",
-    "axial_stiffness",
     "contact_caveats",
     "contact_count",
     "contact_pair",
     "critical_interference",
+    "cube_axial_stiffness",
+    "cube_tangential_stiffness",
     "decay_length",
     "elastic_area",
     "elastic_load_fraction",
-    "exponential_window",
-    "harmonic_motion",
+    "equivalent_plane_strain_modulus",
+    "exponential_validity_range",
     "height_density",
-    "like_bodies_mindlin_ratio",
+    "hertz_approach",
+    "hertz_axial_shear_stress",
+    "hertz_axial_stresses",
+    "hertz_contact_radius",
+    "hertz_mean_pressure",
+    "hertz_peak_pressure",
+    "hertz_stiffness",
+    "identical_materials_mindlin_ratio",
+    "layer_compliance_ratio",
+    "levitation_gap",
     "load_balanced_motion",
-    "mindlin_stiffness",
+    "maximum_axial_shear",
+    "mindlin_tangential_stiffness",
+    "nominal_area_from_groove",
     "normal_force",
     "normal_stiffness",
+    "persson_area",
+    "persson_area_fraction",
+    "persson_load",
+    "persson_separation",
+    "persson_stiffness",
     "plastic_area",
     "plasticity_index",
     "real_contact_area",
     "separation",
     "separation_range",
-    "tangential_stiffness",
+    "sinusoidal_motion",
+    "squeeze_film_pressure",
+    "squeeze_number",
+    "tip_radius_for_pressure",
+    "worn_flat_pressure",
+    "yield_onset_load",
 ]

@@ -1,7 +1,9 @@
-"""One asperity under load: Hertz's sphere, and how each law of yielding departs from it.
+"""Laws of elastic-plastic asperities by name: force and contact area of one asperity relative to Hertz's sphere.
 
-Every law is written as a departure from Hertz: at the interference w, which is w/w_c in units of the interference at
-which yielding begins, the force is that of Hertz times `force_ratio`, and the area that of Hertz times `area_ratio`.
+Every law gives two ratios as functions of the interference w over the critical interference w_c, at which yielding
+begins: the force over that of an elastic sphere of the same radius (`force_ratio`), and the contact area over that of
+the sphere (`area_ratio`). `sonolube.contact.single_asperity` evaluates force and area with them. A new law takes one
+file `contact/asperity_laws/NAME.py` with its class, and one line of `ASPERITY_LAWS`; nothing else names a law.
 """
 
 import math
@@ -10,32 +12,35 @@ from dataclasses import dataclass
 from typing import ClassVar, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from sonolube.checks import Floats, require_non_negative, require_positive
+from sonolube.checks import Floats
 from sonolube.contact.pair import ContactPair
 from sonolube.errors import OutsideRange
 from sonolube.variants import VariantTable
 
-Stage = float | Callable[[Floats], Floats]
+Piece = float | Callable[[Floats], Floats]
 
 
 class AsperityLaw(Protocol):
-    """How an asperity yields.
+    """Force and contact area of an asperity over those of Hertz's elastic sphere, as functions of the interference.
 
     Attributes
     ----------
     name : str
-        Its name in `ASPERITY_LAWS`.
-    joints : tuple of float
-        Interferences, in units of the critical one, where the law passes from one expression to the next.
+        Name in `ASPERITY_LAWS`, and value of `asperity_law` in rig files.
+    citation : str
+        Source of the law.
+    breakpoints : tuple of float
+        Interferences over the critical one at which the law passes from one expression to the next; the integrals over
+        the heights place panel ends there.
     """
 
     name: ClassVar[str]
-    joints: ClassVar[tuple[float, ...]]
+    citation: ClassVar[str]
+    breakpoints: ClassVar[tuple[float, ...]]
 
     def yield_pressure(self, pair: ContactPair) -> float:
-        """Return the peak pressure at which the asperity begins to yield. [Pa]
+        """Return the peak contact pressure at the onset of yielding. [Pa]
 
         Parameters
         ----------
@@ -47,7 +52,7 @@ class AsperityLaw(Protocol):
         """
 
     def force_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
-        """Return the force over that of an elastic asperity. []
+        """Return the force over that of an elastic asperity at the same interference. []
 
         Parameters
         ----------
@@ -61,7 +66,7 @@ class AsperityLaw(Protocol):
         """
 
     def area_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
-        """Return the contact area over that of an elastic asperity. []
+        """Return the contact area over that of an elastic asperity at the same interference. []
 
         Parameters
         ----------
@@ -75,90 +80,13 @@ class AsperityLaw(Protocol):
         """
 
 
-def critical_interference(law: AsperityLaw, pair: ContactPair, *, summit_radius: float) -> float:
-    """Return the interference at which an asperity begins to yield; infinite for one that never does. [m]
-
-    Parameters
-    ----------
-    law : AsperityLaw
-    pair : ContactPair
-    summit_radius : float
-        Radius of the asperity's summit. [m]
-
-    Returns
-    -------
-    float
-
-    Raises
-    ------
-    InvalidInput
-        If the radius is not positive.
-
-    References
-    ----------
-    .. [1] D 3.1
-    """
-    require_positive(summit_radius=summit_radius)
-    strain = math.pi * law.yield_pressure(pair) / (2 * pair.effective_modulus)
-    return strain * strain * summit_radius
-
-
-def asperity_force(law: AsperityLaw, pair: ContactPair, *, summit_radius: float, interference: ArrayLike) -> Floats:
-    """Return the force on one asperity. [N]
-
-    Parameters
-    ----------
-    law : AsperityLaw
-    pair : ContactPair
-    summit_radius : float
-        Radius of the asperity's summit. [m]
-    interference : array_like, any shape
-        How far the summit would reach into the other surface. [m]
-
-    Returns
-    -------
-    ndarray, shape of `interference`
-
-    Raises
-    ------
-    InvalidInput
-        If the radius is not positive, or an interference is negative or not finite.
-    """
-    w = require_non_negative(interference=interference)
-    ratio = w / critical_interference(law, pair, summit_radius=summit_radius)
-    hertz = 4 / 3 * pair.effective_modulus * math.sqrt(summit_radius) * w**1.5
-    return hertz * law.force_ratio(pair, ratio)
-
-
-def asperity_area(law: AsperityLaw, pair: ContactPair, *, summit_radius: float, interference: ArrayLike) -> Floats:
-    """Return the contact area of one asperity. [m2]
-
-    Parameters
-    ----------
-    law : AsperityLaw
-    pair : ContactPair
-    summit_radius : float
-        Radius of the asperity's summit. [m]
-    interference : array_like, any shape
-        How far the summit would reach into the other surface. [m]
-
-    Returns
-    -------
-    ndarray, shape of `interference`
-
-    Raises
-    ------
-    InvalidInput
-        If the radius is not positive, or an interference is negative or not finite.
-    """
-    w = require_non_negative(interference=interference)
-    ratio = w / critical_interference(law, pair, summit_radius=summit_radius)
-    return math.pi * summit_radius * w * law.area_ratio(pair, ratio)
-
-
 @dataclass(frozen=True, slots=True)
 class ElasticAsperity:
-    """Hertz's sphere, which never yields: with it the rough contact is that of Greenwood and Williamson.
+    """Hertz's elastic sphere without yielding; with Gaussian heights, the contact of Greenwood and Williamson.
+
+    Notes
+    -----
+    Both ratios are 1, and the pressure at the onset of yielding is infinite.
 
     References
     ----------
@@ -166,10 +94,11 @@ class ElasticAsperity:
     """
 
     name: ClassVar[str] = "elastic"
-    joints: ClassVar[tuple[float, ...]] = ()
+    citation: ClassVar[str] = "J. A. Greenwood and J. B. P. Williamson, Proc. R. Soc. A 295, 300 (1966)"
+    breakpoints: ClassVar[tuple[float, ...]] = ()
 
     def yield_pressure(self, pair: ContactPair) -> float:
-        """Return the pressure that sets the onset of yielding: infinite. [Pa]"""
+        """Return the peak contact pressure at the onset of yielding: infinite. [Pa]"""
         return math.inf
 
     def force_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
@@ -183,12 +112,15 @@ class ElasticAsperity:
 
 @dataclass(frozen=True, slots=True)
 class Dong2015Asperity:
-    """The law of Chang, Etsion and Bogy as the dissertation prints it: the factor 1 - nu^2 counted twice.
+    r"""Law of Chang, Etsion and Bogy as Dong (2015) prints it, with the factor 1 - nu^2 counted twice.
 
     Notes
     -----
-    Otherwise as `ChangEtsionBogy`, jump included. The factor weakens the softer body by 11 % at nu = 0.33; it is kept
-    because the published wear rates follow from it to four digits.
+    .. math:: p_Y = C_\nu (1 - \nu^2)\, Y_0, \qquad C_\nu = 1.234 + 1.256\,\nu
+
+    Otherwise as `ChangEtsionBogy`, including the jump of the force. The factor 1 - nu^2 is already part of E*; counted
+    again it weakens the softer body by 11 % at nu = 0.33. It is kept because the published wear rates follow from it to
+    four digits.
 
     References
     ----------
@@ -196,10 +128,11 @@ class Dong2015Asperity:
     """
 
     name: ClassVar[str] = "dong_2015"
-    joints: ClassVar[tuple[float, ...]] = (1.0,)
+    citation: ClassVar[str] = "D 3.1 to 3.8 as printed, after Chang, Etsion and Bogy"
+    breakpoints: ClassVar[tuple[float, ...]] = (1.0,)
 
     def yield_pressure(self, pair: ContactPair) -> float:
-        """Return the pressure of a yielding asperity, C_nu (1 - nu^2) Y0. [Pa]"""
+        """Return the peak contact pressure at the onset of yielding, C_nu (1 - nu^2) Y_0. [Pa]"""
         return _hardness_coefficient(pair) * (1 - pair.poisson_ratio**2) * pair.yield_strength
 
     def force_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
@@ -213,12 +146,17 @@ class Dong2015Asperity:
 
 @dataclass(frozen=True, slots=True)
 class ChangEtsionBogy:
-    """Elastic up to the onset of yielding, then at one pressure over an area that conserves the asperity's volume.
+    r"""Law of Chang, Etsion and Bogy: beyond the onset of yielding a constant pressure and conserved asperity volume.
 
     Notes
     -----
-    The area is continuous at the onset of yielding; the mean pressure jumps from 2/3 of C_nu Y0 to all of it, and so
-    the force by a half.
+    .. math::
+
+        p_Y = C_\nu Y_0, \quad C_\nu = 1.234 + 1.256\,\nu, \qquad
+        a = \pi R_s (2 w - w_c), \quad f = p_Y\, a \quad \text{for } w \ge w_c
+
+    The area is continuous at the onset of yielding. The mean pressure jumps there from 2/3 of C_nu Y_0 to C_nu Y_0, and
+    with it the force by a half.
 
     References
     ----------
@@ -226,10 +164,11 @@ class ChangEtsionBogy:
     """
 
     name: ClassVar[str] = "chang_etsion_bogy"
-    joints: ClassVar[tuple[float, ...]] = (1.0,)
+    citation: ClassVar[str] = "W. R. Chang, I. Etsion and D. B. Bogy, J. Tribol. 109, 257 (1987)"
+    breakpoints: ClassVar[tuple[float, ...]] = (1.0,)
 
     def yield_pressure(self, pair: ContactPair) -> float:
-        """Return the pressure of a yielding asperity, C_nu Y0. [Pa]"""
+        """Return the peak contact pressure at the onset of yielding, C_nu Y_0. [Pa]"""
         return _hardness_coefficient(pair) * pair.yield_strength
 
     def force_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
@@ -242,25 +181,37 @@ class ChangEtsionBogy:
 
 
 def _hardness_coefficient(pair: ContactPair) -> float:
+    """Return C_nu, the peak pressure at the onset of yielding over the yield strength. []"""
     return 1.234 + 1.256 * pair.poisson_ratio  # D 3.1
 
 
 def _constant_volume_force_ratio(r: Floats) -> Floats:
+    """Return the force at constant pressure and volume over that of Hertz, for interferences over the critical one."""
     return np.piecewise(r, [r >= 0, r >= 1], [1.0, lambda r: 1.5 * (2 * r - 1) / r**1.5])
 
 
 def _constant_volume_area_ratio(r: Floats) -> Floats:
+    """Return the area at constant volume over that of Hertz, for interferences over the critical one."""
     return np.piecewise(r, [r >= 0, r >= 1], [1.0, lambda r: 2 - 1 / r])
 
 
 @dataclass(frozen=True, slots=True)
 class KogutEtsion:
-    """Power laws fitted to finite elements, up to full plasticity at 110 times the onset of yielding.
+    r"""Law of Kogut and Etsion: power laws fitted to finite elements, fully plastic from 110 critical interferences on.
 
     Notes
     -----
-    The published fits do not meet. Passing w/w_c = 1, 6 and 110 the force jumps by +3.0, +1.7 and, for nu = 0.3,
-    +7.9 %, the area by -7.0, +2.9 and +7.1 %. Beyond 110 the hardness is 2.8 Y0, whatever the size of the contact.
+    With r = w/w_c and the force f_c and area a_c of Hertz at w_c,
+
+    .. math::
+
+        p_Y &= (0.454 + 0.41\,\nu)\, 2.8\, Y_0 \\
+        f/f_c &= 1.03\, r^{1.425}, \quad a/a_c = 0.93\, r^{1.136} \quad (1 \le r < 6) \\
+        f/f_c &= 1.40\, r^{1.263}, \quad a/a_c = 0.94\, r^{1.146} \quad (6 \le r < 110) \\
+        a &= 2 \pi R_s w, \quad f = 2.8\, Y_0\, a \quad (110 \le r)
+
+    The published fits are discontinuous. At r = 1, 6 and 110 the force jumps by +3.0, +1.7 and, for nu = 0.3, +7.9 %,
+    the area by -7.0, +2.9 and +7.1 %. Beyond 110 the hardness is 2.8 Y_0 for contacts of any size.
 
     References
     ----------
@@ -268,16 +219,17 @@ class KogutEtsion:
     """
 
     name: ClassVar[str] = "kogut_etsion"
-    joints: ClassVar[tuple[float, ...]] = (1.0, 6.0, 110.0)
+    citation: ClassVar[str] = "L. Kogut and I. Etsion, J. Appl. Mech. 69, 657 (2002)"
+    breakpoints: ClassVar[tuple[float, ...]] = (1.0, 6.0, 110.0)
 
     def yield_pressure(self, pair: ContactPair) -> float:
-        """Return the peak pressure at the onset of yielding, K H with the hardness H = 2.8 Y0. [Pa]"""
+        """Return the peak contact pressure at the onset of yielding, K H with the hardness H = 2.8 Y_0. [Pa]"""
         return self._pressure_coefficient(pair) * 2.8 * pair.yield_strength
 
     def force_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
         """Return the force over that of an elastic asperity. []"""
         plastic = 3 / self._pressure_coefficient(pair)  # 2 pi R w H over the force at the onset, 2/3 K H pi R w_c
-        return self._by_stage(
+        return self._piecewise(
             interference_ratio,
             lambda r: 1.03 * r ** (1.425 - 1.5),
             lambda r: 1.40 * r ** (1.263 - 1.5),
@@ -286,24 +238,35 @@ class KogutEtsion:
 
     def area_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
         """Return the contact area over that of an elastic asperity. []"""
-        return self._by_stage(interference_ratio, lambda r: 0.93 * r**0.136, lambda r: 0.94 * r**0.146, 2.0)
+        return self._piecewise(interference_ratio, lambda r: 0.93 * r**0.136, lambda r: 0.94 * r**0.146, 2.0)
 
-    def _by_stage(self, r: Floats, *yielded: Stage) -> Floats:
-        return np.piecewise(r, [r >= 0, *(r >= joint for joint in self.joints)], [1.0, *yielded])
+    def _piecewise(self, r: Floats, *yielded: Piece) -> Floats:
+        """Return 1 below the onset of yielding and one expression from each breakpoint on."""
+        return np.piecewise(r, [r >= 0, *(r >= each for each in self.breakpoints)], [1.0, *yielded])
 
     def _pressure_coefficient(self, pair: ContactPair) -> float:
+        """Return K, the peak pressure at the onset of yielding over the hardness. []"""
         return 0.454 + 0.41 * pair.poisson_ratio
 
 
 @dataclass(frozen=True, slots=True)
 class JacksonGreen:
-    """A fit to finite elements in which the hardness falls as the contact grows.
+    r"""Law of Jackson and Green: fit to finite elements with a hardness that falls as the contact grows.
 
     Notes
     -----
-    Yielding begins below the surface at w/w_c = 1 and is felt from 1.9 on. There the area is continuous; the force
-    jumps by +2.6 % at nu = 0.2, +0.5 % at 0.3 and -2.5 % at 0.45, whatever the strength. The growth of the area with
-    Y0/E* is exponential, and beyond the steels it was fitted to it soon becomes absurd: refused above 0.05.
+    With r = w/w_c >= 1.9, the contact radius b and the force f_c of Hertz at w_c,
+
+    .. math::
+
+        p_Y &= C Y_0, \qquad C = 1.295\, e^{0.736\,\nu} \\
+        \frac{a}{\pi R_s w} &= \left( \frac{r}{1.9} \right)^B, \qquad B = 0.14\, e^{23\, Y_0/E^*} \\
+        \frac{H}{Y_0} &= 2.84 \left[ 1 - \exp\left( -0.82 \left( \frac{b}{R_s} \right)^{-0.7} \right) \right] \\
+        \frac{f}{f_c} &= r^{3/2} e^{-r^{5/12}/4} + \frac{4 H}{C Y_0}\, r \left[ 1 - e^{-r^{5/9}/25} \right]
+
+    Yielding begins below the surface at r = 1 and changes force and area from r = 1.9 on. There the area is continuous;
+    the force jumps by +2.6 % at nu = 0.2, +0.5 % at 0.3 and -2.5 % at 0.45 for any yield strength. The area exponent
+    was fitted to steels and grows exponentially with Y_0/E*; values above 0.05 are refused.
 
     References
     ----------
@@ -311,10 +274,11 @@ class JacksonGreen:
     """
 
     name: ClassVar[str] = "jackson_green"
-    joints: ClassVar[tuple[float, ...]] = (1.0, 1.9)
+    citation: ClassVar[str] = "R. L. Jackson and I. Green, J. Tribol. 127, 343 (2005)"
+    breakpoints: ClassVar[tuple[float, ...]] = (1.0, 1.9)
 
     def yield_pressure(self, pair: ContactPair) -> float:
-        """Return the peak pressure at the onset of yielding, C Y0. [Pa]"""
+        """Return the peak contact pressure at the onset of yielding, C Y_0. [Pa]"""
         return self._pressure_coefficient(pair) * pair.yield_strength
 
     def force_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
@@ -323,7 +287,7 @@ class JacksonGreen:
         yield_strain = pair.yield_strength / pair.effective_modulus
 
         def yielded(r: Floats) -> Floats:
-            # contact radius over summit radius, and hardness over Y0
+            # contact radius over summit radius, and hardness over Y_0
             radius: Floats = math.pi * C * yield_strain / 2 * np.sqrt(r * self._area_growth(pair, r))
             hardness: Floats = 2.84 * (1 - np.exp(-0.82 * radius**-0.7))
             plastic: Floats = 4 * hardness / C * (1 - np.exp(-(r ** (5 / 9)) / 25)) / np.sqrt(r)
@@ -340,17 +304,19 @@ class JacksonGreen:
         )
 
     def _area_growth(self, pair: ContactPair, r: Floats) -> Floats:
+        """Return the contact area over that of Hertz beyond 1.9 critical interferences. []"""
         yield_strain = pair.yield_strength / pair.effective_modulus
         if yield_strain > 0.05:
             raise OutsideRange(
                 f"the law of Jackson and Green holds for yield strengths up to 0.05 E*, got {yield_strain:.3g} E*: "
-                "take the elastic law"
+                "use the elastic law"
             )
         exponent = 0.14 * math.exp(23 * yield_strain)
         growth: Floats = (r / 1.9) ** exponent
         return growth
 
     def _pressure_coefficient(self, pair: ContactPair) -> float:
+        """Return C, the peak pressure at the onset of yielding over the yield strength. []"""
         return 1.295 * math.exp(0.736 * pair.poisson_ratio)
 
 
@@ -365,4 +331,4 @@ ASPERITY_LAWS: VariantTable[AsperityLaw] = VariantTable(
     },
     made=lambda law: law(),
 )
-"""The asperity laws by name; a new law takes its file and one line here."""
+"""Asperity laws by name; a new law takes its file and one line here."""

@@ -1,4 +1,8 @@
-"""How the heights of asperity summits are distributed about their mean."""
+"""Distributions of summit heights by name: the exponential fit to the Gaussian tail, and the Gaussian itself.
+
+Heights are measured from the mean of the summit heights in units of the rms height R_q. A new distribution takes one
+file `contact/height_distributions/NAME.py` with its class, and one line of `HEIGHT_DISTRIBUTIONS`.
+"""
 
 import math
 from dataclasses import dataclass
@@ -11,38 +15,70 @@ from sonolube.checks import Floats, require_finite, require_positive, require_wi
 from sonolube.errors import OutsideRange
 from sonolube.variants import VariantTable
 
-LEAST_ROUGHNESS_PARAMETER = math.sqrt(3.717e-4)
-"""Roughness parameter below which no Gaussian surface has real summits. []"""
+MINIMUM_ROUGHNESS_PARAMETER = math.sqrt(3.717e-4)
+"""Smallest roughness parameter of an isotropic Gaussian surface, at which its summit heights have no scatter. []"""
 
 
 class HeightDistribution(Protocol):
-    """A law of summit heights, in units of the standard deviation Rq of the surface."""
+    """Probability density of summit heights over R_q.
+
+    Attributes
+    ----------
+    name : str
+        Name in `HEIGHT_DISTRIBUTIONS`, and value of `height_distribution` in rig files.
+    citation : str
+        Source of the distribution.
+    """
 
     name: ClassVar[str]
+    citation: ClassVar[str]
 
     @property
-    def spread(self) -> float:
-        """Height over which the density changes by about a factor of e. []"""
+    def standard_deviation(self) -> float:
+        """Standard deviation of the summit heights over R_q; it sets the range and the step of quadrature. []"""
 
     def log_density(self, normalized_height: Floats) -> Floats:
-        """Return the natural logarithm of the density, finite also where the density itself underflows."""
+        """Return the natural logarithm of the density, finite also where the density itself underflows. []
+
+        Parameters
+        ----------
+        normalized_height : ndarray, any shape
+            Height above the mean of the summit heights, over R_q. []
+
+        Returns
+        -------
+        ndarray, shape of `normalized_height`
+        """
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ExponentialHeights:
-    """The exponential law c exp(-lambda z), which stands in for the upper tail of a Gaussian one.
+    r"""Exponential distribution of summit heights, a fit to the upper tail of the Gaussian.
 
     Parameters
     ----------
     amplitude : float
         Density at the mean height, c, a pure number.
     decay : float
-        Decay of the density per standard deviation, lambda, a pure number.
+        Decay constant lambda of the density per R_q, a pure number.
+
+    Raises
+    ------
+    InvalidInput
+        If a value is not positive and finite.
 
     Notes
     -----
-    The density is no normalized one: with the default values it integrates to 17/3 over positive heights, and it means
-    something only where summits touch. `sonolube.contact.exponential_window` says for which separations that is so.
+    .. math:: \phi(z) = c\, e^{-\lambda z} \tag{D 3.2}
+
+    The density is not normalized: with the default values it integrates to 17/3 over positive heights. It approximates
+    the Gaussian only for summits in the upper tail; `sonolube.contact.exponential_validity_range` returns the range of
+    separations in which both give the same load within a factor. Surfaces with exponential heights never separate: the
+    load falls by a factor of e over every R_q/lambda.
+
+    See Also
+    --------
+    GaussianHeights : The distribution whose tail this one fits.
 
     References
     ----------
@@ -51,6 +87,7 @@ class ExponentialHeights:
     """
 
     name: ClassVar[str] = "exponential"
+    citation: ClassVar[str] = "A. A. Polycarpou and I. Etsion, J. Tribol. 121, 234 (1999); D 3.2"
 
     amplitude: float = 17.0
     decay: float = 3.0
@@ -59,23 +96,36 @@ class ExponentialHeights:
         require_positive(amplitude=self.amplitude, decay=self.decay)
 
     @property
-    def spread(self) -> float:
-        """Height over which the density falls by a factor of e, 1/lambda. []"""
+    def standard_deviation(self) -> float:
+        """Standard deviation of the exponential tail over R_q, 1/lambda. []"""
         return 1 / self.decay
 
     def log_density(self, normalized_height: Floats) -> Floats:
-        """Return the natural logarithm of the density."""
+        """Return the natural logarithm of the density. []"""
         return math.log(self.amplitude) - self.decay * normalized_height  # D 3.2
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GaussianHeights:
-    """The normal law.
+    r"""Gaussian distribution of summit heights.
 
     Parameters
     ----------
     summit_deviation_ratio : float
-        Standard deviation of summit heights over that of the surface, from above 0 to 1. []
+        Standard deviation of summit heights over that of the surface, s, from above 0 to 1. []
+
+    Raises
+    ------
+    InvalidInput
+        If the ratio does not lie above 0 and up to 1.
+
+    Notes
+    -----
+    .. math:: \phi(z) = \frac{1}{s \sqrt{2 \pi}}\, e^{-z^2 / 2 s^2}
+
+    See Also
+    --------
+    ExponentialHeights : Fit to the upper tail, with closed forms for every asperity law.
 
     References
     ----------
@@ -83,6 +133,7 @@ class GaussianHeights:
     """
 
     name: ClassVar[str] = "gaussian"
+    citation: ClassVar[str] = "J. A. Greenwood and J. B. P. Williamson, Proc. R. Soc. A 295, 300 (1966)"
 
     summit_deviation_ratio: float = 1.0
 
@@ -92,12 +143,12 @@ class GaussianHeights:
 
     @classmethod
     def from_roughness_parameter(cls, *, roughness_parameter: float) -> "GaussianHeights":
-        """Return the summit heights of an isotropic Gaussian surface.
+        r"""Return the distribution of summit heights of an isotropic Gaussian surface after McCool.
 
         Parameters
         ----------
         roughness_parameter : float
-            Summit density times deviation times summit radius. []
+            Summit density times rms height times summit radius, beta. []
 
         Returns
         -------
@@ -106,27 +157,31 @@ class GaussianHeights:
         Raises
         ------
         OutsideRange
-            If the roughness parameter is so small that no such surface exists.
+            If the roughness parameter is too small for a Gaussian surface.
+
+        Notes
+        -----
+        .. math:: s^2 = 1 - \frac{3.717 \cdot 10^{-4}}{\beta^2}
 
         References
         ----------
         .. [1] J. I. McCool, Wear 107, 37 (1986). doi:10.1016/0043-1648(86)90045-1
         """
         require_positive(roughness_parameter=roughness_parameter)
-        if roughness_parameter <= LEAST_ROUGHNESS_PARAMETER:
+        if roughness_parameter <= MINIMUM_ROUGHNESS_PARAMETER:
             raise OutsideRange(
-                f"roughness_parameter must exceed {LEAST_ROUGHNESS_PARAMETER:.4f} for a Gaussian surface, "
+                f"roughness_parameter must exceed {MINIMUM_ROUGHNESS_PARAMETER:.4f} for a Gaussian surface, "
                 f"got {roughness_parameter!r}"
             )
-        return cls(summit_deviation_ratio=math.sqrt(1 - (LEAST_ROUGHNESS_PARAMETER / roughness_parameter) ** 2))
+        return cls(summit_deviation_ratio=math.sqrt(1 - (MINIMUM_ROUGHNESS_PARAMETER / roughness_parameter) ** 2))
 
     @property
-    def spread(self) -> float:
-        """Standard deviation of summit heights, in units of Rq. []"""
+    def standard_deviation(self) -> float:
+        """Standard deviation of summit heights over R_q. []"""
         return self.summit_deviation_ratio
 
     def log_density(self, normalized_height: Floats) -> Floats:
-        """Return the natural logarithm of the density."""
+        """Return the natural logarithm of the density. []"""
         s = self.summit_deviation_ratio
         return -0.5 * np.square(normalized_height / s) - math.log(s * math.sqrt(2 * math.pi))
 
@@ -138,7 +193,7 @@ def height_density(heights: HeightDistribution, *, normalized_height: ArrayLike)
     ----------
     heights : HeightDistribution
     normalized_height : array_like, any shape
-        Height above the mean of summit heights, over Rq. []
+        Height above the mean of summit heights, over R_q. []
 
     Returns
     -------
@@ -160,4 +215,4 @@ HEIGHT_DISTRIBUTIONS: VariantTable[HeightDistribution] = VariantTable(
     },
     made=lambda law: law(),
 )
-"""The height laws by name, with their default parameters; a new law takes its file and one line here."""
+"""Height distributions by name, with their default parameters; a new one takes its file and one line here."""

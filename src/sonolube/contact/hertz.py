@@ -1,29 +1,33 @@
-"""Macro-contact of the pin on the disc: a smooth sphere on a flat before wear, a worn flat after it."""
+"""Hertzian contact of a pin on a disc: a smooth sphere on a flat before wear, and the worn flat afterwards."""
 
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from sonolube.checks import require_non_negative, require_positive, require_within
-
-Floats = NDArray[np.float64]
+from sonolube.checks import Floats, require_non_negative, require_positive, require_within
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SphereOnFlat:
-    """A smooth elastic sphere on a smooth elastic flat, without friction or adhesion.
+    """Smooth elastic sphere on a smooth elastic flat, without friction or adhesion.
 
     Parameters
     ----------
     tip_radius : float
         Radius of the sphere. [m]
     effective_modulus : float
-        1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2, as `ContactPair` has it. [Pa]
+        Effective contact modulus, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2, as in `ContactPair`. [Pa]
+
+    Raises
+    ------
+    InvalidInput
+        If a value is not positive and finite.
 
     Notes
     -----
-    Hertz's theory: the contact circle is small beside the tip radius, and roughness small beside the approach.
+    Hertz's theory holds for a contact circle much smaller than the tip radius, and a roughness much smaller than the
+    approach.
 
     References
     ----------
@@ -37,51 +41,8 @@ class SphereOnFlat:
         require_positive(tip_radius=self.tip_radius, effective_modulus=self.effective_modulus)
 
 
-def contact_radius(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Floats:
-    """Return the radius of the contact circle. [m]
-
-    Parameters
-    ----------
-    sphere : SphereOnFlat
-    normal_load : array_like, any shape
-        Force pressing the bodies together. [N]
-
-    Returns
-    -------
-    ndarray, shape of `normal_load`
-
-    Raises
-    ------
-    InvalidInput
-        If a load is negative or not finite.
-    """
-    load = require_non_negative(normal_load=normal_load)
-    return np.cbrt(3 * load * sphere.tip_radius / (4 * sphere.effective_modulus))  # Johnson 4.22
-
-
-def approach(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Floats:
-    """Return how far distant points of the two bodies approach. [m]
-
-    Parameters
-    ----------
-    sphere : SphereOnFlat
-    normal_load : array_like, any shape
-        Force pressing the bodies together. [N]
-
-    Returns
-    -------
-    ndarray, shape of `normal_load`
-
-    Raises
-    ------
-    InvalidInput
-        If a load is negative or not finite.
-    """
-    return contact_radius(sphere, normal_load=normal_load) ** 2 / sphere.tip_radius  # Johnson 4.23
-
-
-def peak_pressure(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Floats:
-    """Return the pressure in the middle of the contact circle. [Pa]
+def hertz_contact_radius(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Floats:
+    r"""Return the radius of the contact circle. [m]
 
     Parameters
     ----------
@@ -100,16 +61,69 @@ def peak_pressure(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Floats:
 
     Notes
     -----
-    It is 1.5 times the mean. D 2.4.2 has twice the nominal stress in the middle of the round tip, "according to FEA":
-    more than any elastic sphere gives on its own contact circle, so the nominal area there is larger than that circle.
+    .. math:: a = \left( \frac{3 F_N R}{4 E^*} \right)^{1/3}
+    """
+    load = require_non_negative(normal_load=normal_load)
+    return np.cbrt(3 * load * sphere.tip_radius / (4 * sphere.effective_modulus))  # Johnson 4.22
+
+
+def hertz_approach(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Floats:
+    r"""Return the approach of distant points of the two bodies. [m]
+
+    Parameters
+    ----------
+    sphere : SphereOnFlat
+    normal_load : array_like, any shape
+        Force pressing the bodies together. [N]
+
+    Returns
+    -------
+    ndarray, shape of `normal_load`
+
+    Raises
+    ------
+    InvalidInput
+        If a load is negative or not finite.
+
+    Notes
+    -----
+    .. math:: \delta = \frac{a^2}{R}
+    """
+    return hertz_contact_radius(sphere, normal_load=normal_load) ** 2 / sphere.tip_radius  # Johnson 4.23
+
+
+def hertz_peak_pressure(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Floats:
+    r"""Return the peak contact pressure, at the centre of the contact circle. [Pa]
+
+    Parameters
+    ----------
+    sphere : SphereOnFlat
+    normal_load : array_like, any shape
+        Force pressing the bodies together. [N]
+
+    Returns
+    -------
+    ndarray, shape of `normal_load`
+
+    Raises
+    ------
+    InvalidInput
+        If a load is negative or not finite.
+
+    Notes
+    -----
+    .. math:: p_0 = \left( \frac{6 F_N E^{*2}}{\pi^3 R^2} \right)^{1/3}
+
+    1.5 times the mean pressure. D 2.4.2 states twice the nominal stress at the centre of the round tip, by finite
+    elements: more than an elastic sphere gives on its own contact circle; the nominal area there must be larger.
     """
     load = require_non_negative(normal_load=normal_load)
     R, E = sphere.tip_radius, sphere.effective_modulus
     return np.cbrt(6 * load * E**2 / (np.pi**3 * R**2))  # Johnson 4.24
 
 
-def mean_pressure(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Floats:
-    """Return the load over the area of the contact circle. [Pa]
+def hertz_mean_pressure(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Floats:
+    r"""Return the mean contact pressure, load over area of the contact circle. [Pa]
 
     Parameters
     ----------
@@ -125,12 +139,16 @@ def mean_pressure(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Floats:
     ------
     InvalidInput
         If a load is negative or not finite.
+
+    Notes
+    -----
+    .. math:: p_m = \tfrac23 p_0
     """
-    return peak_pressure(sphere, normal_load=normal_load) / 1.5
+    return hertz_peak_pressure(sphere, normal_load=normal_load) / 1.5
 
 
 def hertz_stiffness(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Floats:
-    """Return the normal stiffness of the macro-contact, change of load over change of approach. [N/m]
+    r"""Return the normal stiffness of the contact. [N/m]
 
     Parameters
     ----------
@@ -146,14 +164,18 @@ def hertz_stiffness(sphere: SphereOnFlat, *, normal_load: ArrayLike) -> Floats:
     ------
     InvalidInput
         If a load is negative or not finite.
+
+    Notes
+    -----
+    .. math:: \frac{\mathrm{d} F_N}{\mathrm{d} \delta} = 2 E^* a
     """
-    return 2 * sphere.effective_modulus * contact_radius(sphere, normal_load=normal_load)
+    return 2 * sphere.effective_modulus * hertz_contact_radius(sphere, normal_load=normal_load)
 
 
-def axial_stresses(
+def hertz_axial_stresses(
     sphere: SphereOnFlat, *, normal_load: ArrayLike, depth: ArrayLike, poisson_ratio: ArrayLike
 ) -> tuple[Floats, Floats]:
-    """Return the stresses along and across the axis of the contact, tension positive. [Pa]
+    r"""Return the normal stresses along and across the axis of the contact, tension positive. [Pa]
 
     Parameters
     ----------
@@ -163,7 +185,7 @@ def axial_stresses(
     depth : array_like, broadcastable to `normal_load`
         Depth below the surface, on the axis. [m]
     poisson_ratio : array_like, broadcastable to `normal_load`
-        Poisson's ratio of the body looked into. []
+        Poisson's ratio of the body in which the stress is computed. []
 
     Returns
     -------
@@ -174,20 +196,29 @@ def axial_stresses(
     ------
     InvalidInput
         If a load is not positive, a depth negative, or Poisson's ratio outside 0 to 0.5.
+
+    Notes
+    -----
+    With the depth over the contact radius, :math:`\zeta = z/a`,
+
+    .. math::
+
+        \frac{\sigma_z}{p_0} = -\frac{1}{1 + \zeta^2}, \qquad
+        \frac{\sigma_r}{p_0} = -(1 + \nu) \left( 1 - \zeta \arctan\frac1\zeta \right) + \frac{1}{2 (1 + \zeta^2)}
     """
     load = require_positive(normal_load=normal_load)
     nu = require_within(0.0, 0.5, poisson_ratio=poisson_ratio)
-    zeta = require_non_negative(depth=depth) / contact_radius(sphere, normal_load=load)
-    p0 = peak_pressure(sphere, normal_load=load)
+    zeta = require_non_negative(depth=depth) / hertz_contact_radius(sphere, normal_load=load)
+    p0 = hertz_peak_pressure(sphere, normal_load=load)
     along = -p0 / (1 + zeta**2)  # Johnson 3.45b
     across = -p0 * (1 + nu) * (1 - zeta * np.arctan2(1.0, zeta)) - along / 2  # Johnson 3.45a
     return along, across
 
 
-def axial_shear_stress(
+def hertz_axial_shear_stress(
     sphere: SphereOnFlat, *, normal_load: ArrayLike, depth: ArrayLike, poisson_ratio: ArrayLike
 ) -> Floats:
-    """Return the principal shear stress on the axis of the contact. [Pa]
+    r"""Return the maximum shear stress at a point of the axis of the contact. [Pa]
 
     Parameters
     ----------
@@ -197,7 +228,7 @@ def axial_shear_stress(
     depth : array_like, broadcastable to `normal_load`
         Depth below the surface, on the axis. [m]
     poisson_ratio : array_like, broadcastable to `normal_load`
-        Poisson's ratio of the body looked into. []
+        Poisson's ratio of the body in which the stress is computed. []
 
     Returns
     -------
@@ -207,18 +238,22 @@ def axial_shear_stress(
     ------
     InvalidInput
         If a load is not positive, a depth negative, or Poisson's ratio outside 0 to 0.5.
+
+    Notes
+    -----
+    .. math:: \tau = \tfrac12 |\sigma_z - \sigma_r|
     """
-    along, across = axial_stresses(sphere, normal_load=normal_load, depth=depth, poisson_ratio=poisson_ratio)
+    along, across = hertz_axial_stresses(sphere, normal_load=normal_load, depth=depth, poisson_ratio=poisson_ratio)
     return np.abs(along - across) / 2
 
 
-def largest_axial_shear(*, poisson_ratio: ArrayLike) -> tuple[Floats, Floats]:
+def maximum_axial_shear(*, poisson_ratio: ArrayLike) -> tuple[Floats, Floats]:
     """Return the largest shear stress on the axis over the peak pressure, and its depth over the contact radius. []
 
     Parameters
     ----------
     poisson_ratio : array_like, any shape
-        Poisson's ratio of the body looked into. []
+        Poisson's ratio of the body in which the stress is computed. []
 
     Returns
     -------
@@ -232,7 +267,7 @@ def largest_axial_shear(*, poisson_ratio: ArrayLike) -> tuple[Floats, Floats]:
     """
     nu = require_within(0.0, 0.5, poisson_ratio=poisson_ratio)
     zeta = np.full(nu.shape, 0.48)
-    for _ in range(6):  # Newton's steps on the slope of Johnson's 3.45; the root lies between 0.38 and 0.55
+    for _ in range(6):  # Newton's method on the slope of Johnson 3.45; the root lies between 0.38 and 0.55
         one = 1 + zeta**2
         slope = (1 + nu) * (np.arctan2(1.0, zeta) - zeta / one) - 3 * zeta / one**2
         curvature = -2 * (1 + nu) / one**2 - 3 * (1 - 3 * zeta**2) / one**3
@@ -240,8 +275,8 @@ def largest_axial_shear(*, poisson_ratio: ArrayLike) -> tuple[Floats, Floats]:
     return np.asarray(0.75 / (1 + zeta**2) - (1 + nu) * (1 - zeta * np.arctan2(1.0, zeta)) / 2), zeta
 
 
-def load_at_first_yield(sphere: SphereOnFlat, *, yield_strength: ArrayLike, poisson_ratio: ArrayLike) -> Floats:
-    """Return the load at which a body first yields, below the middle of the contact. [N]
+def yield_onset_load(sphere: SphereOnFlat, *, yield_strength: ArrayLike, poisson_ratio: ArrayLike) -> Floats:
+    r"""Return the load at the onset of yielding, below the centre of the contact. [N]
 
     Parameters
     ----------
@@ -262,10 +297,13 @@ def load_at_first_yield(sphere: SphereOnFlat, *, yield_strength: ArrayLike, pois
 
     Notes
     -----
-    Tresca and von Mises agree on the axis, where two principal stresses are equal: the shear there reaches Y/2.
+    .. math:: F_Y = \frac{\pi^3 R^2 p_0^3}{6 E^{*2}}, \qquad p_0 = \frac{Y}{2\, (\tau/p_0)_{\max}}
+
+    with `maximum_axial_shear`. The criteria of Tresca and von Mises agree on the axis, where two principal stresses are
+    equal: the shear stress there reaches Y/2.
     """
     Y = require_positive(yield_strength=yield_strength)
-    largest, _ = largest_axial_shear(poisson_ratio=poisson_ratio)
+    largest, _ = maximum_axial_shear(poisson_ratio=poisson_ratio)
     p0: Floats = Y / (2 * largest)
     R, E = sphere.tip_radius, sphere.effective_modulus
     return np.pi**3 * R**2 * p0**3 / (6 * E**2)  # Johnson 6.9
@@ -274,16 +312,16 @@ def load_at_first_yield(sphere: SphereOnFlat, *, yield_strength: ArrayLike, pois
 def tip_radius_for_pressure(
     *, mean_pressure: ArrayLike, normal_load: ArrayLike, effective_modulus: ArrayLike
 ) -> Floats:
-    """Return the tip radius that gives this mean pressure under this load. [m]
+    r"""Return the tip radius for a mean contact pressure under a load. [m]
 
     Parameters
     ----------
     mean_pressure : array_like, any shape
         Load over the area of the contact circle, the pressure called nominal. [Pa]
-    normal_load : array_like, broadcastable to `mean_pressure`
+    normal_load : array_like, broadcastable to `hertz_mean_pressure`
         Force pressing the bodies together. [N]
-    effective_modulus : array_like, broadcastable to `mean_pressure`
-        Combined modulus of both bodies. [Pa]
+    effective_modulus : array_like, broadcastable to `hertz_mean_pressure`
+        Effective contact modulus of both bodies. [Pa]
 
     Returns
     -------
@@ -296,6 +334,8 @@ def tip_radius_for_pressure(
 
     Notes
     -----
+    .. math:: R = \frac{4 E^* a^3}{3 F_N}, \qquad a = \sqrt{\frac{F_N}{\pi p_m}}
+
     The 300 MPa of D's Table 2.13 at 3 N is a circle of 0.01 mm2, of 0.113 mm diameter. An M50 pin on M50 would need a
     tip of about 9 mm radius for it, an alumina pin about 12 mm.
     """
@@ -306,7 +346,7 @@ def tip_radius_for_pressure(
 
 
 def nominal_area_from_groove(*, groove_width: ArrayLike) -> Floats:
-    """Return the area of the circle that is as wide as the wear groove, pi w^2/4. [m2]
+    r"""Return the nominal contact area as a circle of the width of the wear groove. [m2]
 
     Parameters
     ----------
@@ -324,6 +364,8 @@ def nominal_area_from_groove(*, groove_width: ArrayLike) -> Floats:
 
     Notes
     -----
+    .. math:: A_n = \frac{\pi w^2}{4}
+
     D 4.1.1 and Table 4.1 take the nominal area from the width of the groove: 0.126 mm2 is a circle of 0.40 mm.
     """
     return np.pi * require_positive(groove_width=groove_width) ** 2 / 4

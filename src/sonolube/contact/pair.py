@@ -1,4 +1,4 @@
-"""The two bodies of a contact, as the asperity models see them."""
+"""Material constants of a contact pair: effective modulus, yield strength and Mindlin's stiffness ratio."""
 
 from dataclasses import dataclass
 
@@ -8,7 +8,7 @@ from sonolube.errors import InvalidInput
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ElasticBody:
-    """One linearly elastic, isotropic body.
+    """Elastic constants of one linearly elastic, isotropic body.
 
     Parameters
     ----------
@@ -16,6 +16,11 @@ class ElasticBody:
         Young's modulus. [Pa]
     poisson_ratio : float
         Poisson's ratio, from 0 to 0.5. []
+
+    Raises
+    ------
+    InvalidInput
+        If the modulus is not positive, or Poisson's ratio outside 0 to 0.5.
     """
 
     youngs_modulus: float
@@ -27,24 +32,41 @@ class ElasticBody:
 
     @property
     def shear_modulus(self) -> float:
-        """Shear modulus. [Pa]"""
+        """Shear modulus, E/(2 (1 + nu)). [Pa]"""
         return self.youngs_modulus / (2 * (1 + self.poisson_ratio))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ContactPair:
-    """Two bodies in contact, of which the softer yields first.
+    r"""Combined elastic constants of two bodies in contact, and the plastic constants of the softer one.
 
     Parameters
     ----------
     effective_modulus : float
-        1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2. [Pa]
+        Effective contact modulus E*. [Pa]
     poisson_ratio : float
         Poisson's ratio of the softer body. []
     yield_strength : float
-        Yield strength of the softer body; infinite for bodies that never yield. [Pa]
+        Yield strength of the softer body; infinite for bodies without yielding. [Pa]
     mindlin_ratio : float
-        Tangential over normal stiffness of a sticking elastic contact, 4 G*/E*, 1/G* = (2 - nu1)/G1 + (2 - nu2)/G2. []
+        Tangential over normal stiffness of a sticking elastic contact, 4 G*/E*. []
+
+    Raises
+    ------
+    InvalidInput
+        If a modulus, strength or ratio is not positive, or Poisson's ratio outside 0 to 0.5.
+
+    Notes
+    -----
+    .. math::
+
+        \frac1{E^*} = \frac{1 - \nu_1^2}{E_1} + \frac{1 - \nu_2^2}{E_2}, \qquad
+        \frac1{G^*} = \frac{2 - \nu_1}{G_1} + \frac{2 - \nu_2}{G_2}, \qquad
+        \frac{k_t}{k_n} = \frac{4 G^*}{E^*}
+
+    See Also
+    --------
+    contact_pair : The pair of two bodies.
 
     References
     ----------
@@ -63,17 +85,26 @@ class ContactPair:
             raise InvalidInput(f"yield_strength must be positive, got {self.yield_strength!r} Pa")
 
 
-def like_bodies_mindlin_ratio(*, poisson_ratio: float) -> float:
-    """Return tangential over normal stiffness of two bodies of one material, 2 (1 - nu)/(2 - nu). []
+def identical_materials_mindlin_ratio(*, poisson_ratio: float) -> float:
+    r"""Return Mindlin's ratio of tangential to normal contact stiffness for two bodies of one material. []
 
     Parameters
     ----------
     poisson_ratio : float
-        Poisson's ratio of both. []
+        Poisson's ratio of both bodies, from 0 to 0.5. []
 
     Returns
     -------
     float
+
+    Raises
+    ------
+    InvalidInput
+        If Poisson's ratio is outside 0 to 0.5.
+
+    Notes
+    -----
+    .. math:: \frac{k_t}{k_n} = \frac{2 (1 - \nu)}{2 - \nu}
 
     References
     ----------
@@ -84,7 +115,7 @@ def like_bodies_mindlin_ratio(*, poisson_ratio: float) -> float:
 
 
 def contact_pair(*, softer: ElasticBody, harder: ElasticBody, yield_strength: float) -> ContactPair:
-    """Return the pair that two bodies form.
+    """Return the combined constants of two bodies in contact.
 
     Parameters
     ----------
@@ -95,12 +126,17 @@ def contact_pair(*, softer: ElasticBody, harder: ElasticBody, yield_strength: fl
     Returns
     -------
     ContactPair
+
+    Raises
+    ------
+    InvalidInput
+        If the yield strength is not positive.
     """
-    combined = 1 / sum((1 - body.poisson_ratio**2) / body.youngs_modulus for body in (softer, harder))
-    combined_shear = 1 / sum((2 - body.poisson_ratio) / body.shear_modulus for body in (softer, harder))
+    effective_modulus = 1 / sum((1 - body.poisson_ratio**2) / body.youngs_modulus for body in (softer, harder))
+    effective_shear_modulus = 1 / sum((2 - body.poisson_ratio) / body.shear_modulus for body in (softer, harder))
     return ContactPair(
-        effective_modulus=combined,
+        effective_modulus=effective_modulus,
         poisson_ratio=softer.poisson_ratio,
         yield_strength=yield_strength,
-        mindlin_ratio=4 * combined_shear / combined,
+        mindlin_ratio=4 * effective_shear_modulus / effective_modulus,
     )

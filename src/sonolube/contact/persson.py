@@ -1,4 +1,4 @@
-"""Persson's theory of elastic contact: from the spectrum of a surface to area, gap and stiffness, no asperities."""
+"""Persson's theory of elastic contact: real area, mean gap and stiffness from the power spectrum of a rough surface."""
 
 import math
 from dataclasses import dataclass, field
@@ -14,23 +14,23 @@ from sonolube.checks import Floats, require_positive, require_within
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.surfaces import RadialSpectrum
 
-ENERGY_SHARE = 0.45
-"""Elastic energy of the part in contact over that of full contact there, as found by molecular dynamics. []"""
+ENERGY_FRACTION = 0.45
+"""Default of `PerssonContact.energy_fraction`, from molecular dynamics of elastic contact. []"""
 
 _CELLS = 800
-_ROOTS = np.linspace(0.0, 6.0, 1201)  # beyond 6, exp(-s^2) is nothing
+_ABSCISSAE = np.linspace(0.0, 6.0, 1201)  # of the tabulated integral; exp(-s^2) is negligible beyond 6
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class PerssonContact:
-    """A rough elastic half-space on a rigid flat, or two with one combined modulus, without friction or adhesion.
+    """Rough elastic half-space on a rigid flat, or two with their effective modulus, without friction or adhesion.
 
     Parameters
     ----------
     spectrum : RadialSpectrum
-        Of the heights of both surfaces together; their densities add up.
+        Power spectrum of the heights of both surfaces together, the sum of their spectral densities.
     effective_modulus : float
-        Combined modulus of both bodies. [Pa]
+        Effective contact modulus of both bodies. [Pa]
     nominal_area : float
         Area over which the bodies face each other. [m2]
     energy_fraction : float
@@ -43,9 +43,13 @@ class PerssonContact:
 
     Notes
     -----
-    Isotropic Gaussian surfaces with slopes well below one. Exact in full contact. Against boundary elements the area
-    is a quarter to a third low while it is small; the gap is right within a tenth of the rms height once a few per cent
-    touch, and too wide below, where it hangs on the few highest summits.
+    Isotropic Gaussian surfaces with slopes well below one. Exact in full contact. Compared with boundary elements a
+    small area is a quarter to a third too low; the gap agrees within a tenth of the rms height once a few per cent of
+    the nominal area touch, and is too wide below, where it depends on the few highest summits.
+
+    See Also
+    --------
+    sonolube.contact.RoughContact : Statistical contact of asperities.
 
     References
     ----------
@@ -56,7 +60,7 @@ class PerssonContact:
     spectrum: RadialSpectrum
     effective_modulus: float
     nominal_area: float
-    energy_fraction: float = ENERGY_SHARE
+    energy_fraction: float = ENERGY_FRACTION
     _bands: tuple[Floats, Floats] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -75,7 +79,7 @@ class PerssonContact:
 
     @property
     def rms_gradient(self) -> float:
-        """Root mean square of the gradient. []"""
+        """Root mean square of the surface gradient. []"""
         inverse_width = self._bands[1]
         return math.sqrt(2 / inverse_width[-1] ** 2)
 
@@ -83,16 +87,16 @@ class PerssonContact:
 def persson_area_fraction(
     *, nominal_pressure: ArrayLike, effective_modulus: ArrayLike, rms_gradient: ArrayLike
 ) -> Floats:
-    """Return the real area over the nominal one. []
+    r"""Return the real contact area over the nominal one by Persson's theory. []
 
     Parameters
     ----------
     nominal_pressure : array_like, any shape
         Load over the nominal area. [Pa]
     effective_modulus : array_like, broadcastable to `nominal_pressure`
-        Combined modulus of both bodies. [Pa]
+        Effective contact modulus of both bodies. [Pa]
     rms_gradient : array_like, broadcastable to `nominal_pressure`
-        Root mean square of the gradient: sqrt(2 m2) for an isotropic surface. []
+        Root mean square of the surface gradient, h'; sqrt(2 m2) for an isotropic surface. []
 
     Returns
     -------
@@ -104,6 +108,10 @@ def persson_area_fraction(
     InvalidInput
         If an argument is not positive.
 
+    Notes
+    -----
+    .. math:: \frac{A_r}{A_n} = \operatorname{erf}\!\left( \frac{\sqrt2\, p}{E^* h'} \right)
+
     References
     ----------
     .. [1] B. N. J. Persson, J. Chem. Phys. 115, 3840 (2001). doi:10.1063/1.1388626
@@ -114,7 +122,7 @@ def persson_area_fraction(
 
 
 def persson_area(contact: PerssonContact, *, normal_load: ArrayLike) -> Floats:
-    """Return the real contact area. [m2]
+    """Return the real contact area under a load by Persson's theory. [m2]
 
     Parameters
     ----------
@@ -132,14 +140,14 @@ def persson_area(contact: PerssonContact, *, normal_load: ArrayLike) -> Floats:
         If a load is not positive and finite.
     """
     p = require_positive(normal_load=normal_load) / contact.nominal_area
-    share = persson_area_fraction(
+    fraction = persson_area_fraction(
         nominal_pressure=p, effective_modulus=contact.effective_modulus, rms_gradient=contact.rms_gradient
     )
-    return contact.nominal_area * share
+    return contact.nominal_area * fraction
 
 
 def persson_separation(contact: PerssonContact, *, normal_load: ArrayLike) -> Floats:
-    """Return the mean gap between the deformed surfaces. [m]
+    r"""Return the mean gap between the deformed surfaces under a load by Persson's theory. [m]
 
     Parameters
     ----------
@@ -158,8 +166,17 @@ def persson_separation(contact: PerssonContact, *, normal_load: ArrayLike) -> Fl
 
     Notes
     -----
-    The work of the load as the gap closes is the elastic energy stored in the waves of the surface. For low loads the
-    gap falls with the logarithm of the load; it is zero in full contact.
+    The work of the load while the gap closes equals the elastic energy stored in the surface waves. With the power
+    spectrum C(q), the width w(q) of the pressure distribution at the magnification of q, and the energy fraction gamma,
+
+    .. math::
+
+        \bar u = \sqrt\pi \int q^2 C(q)\, w(q) \int_p^\infty
+                 \left[ \gamma + 3 (1 - \gamma) \operatorname{erf}^2\!\left( \frac{w p'}{E^*} \right) \right]
+                 e^{-(w p'/E^*)^2}\, \frac{\mathrm{d}p'}{p'}\, \mathrm{d}q, \qquad
+        w(q) = \left[ \pi \int_{q_0}^q q'^3 C(q')\, \mathrm{d}q' \right]^{-1/2}
+
+    For low loads the gap falls with the logarithm of the load; it is zero in full contact.
 
     References
     ----------
@@ -170,11 +187,13 @@ def persson_separation(contact: PerssonContact, *, normal_load: ArrayLike) -> Fl
     s = np.multiply.outer(load / contact.nominal_area / contact.effective_modulus, inverse_width)
     gamma = contact.energy_fraction
     # integral over the pressure from p to infinity, of (gamma + 3 (1 - gamma) erf^2) exp(-s^2)/s
-    return np.asarray((gamma * exp1(s**2) / 2 + 3 * (1 - gamma) * _crowded()(np.minimum(s, _ROOTS[-1]))) @ lengths)
+    return np.asarray(
+        (gamma * exp1(s**2) / 2 + 3 * (1 - gamma) * _tail_integral()(np.minimum(s, _ABSCISSAE[-1]))) @ lengths
+    )
 
 
 def persson_stiffness(contact: PerssonContact, *, normal_load: ArrayLike) -> Floats:
-    """Return the normal stiffness, -dF/du of the mean gap. [N/m]
+    """Return the normal stiffness under a load by Persson's theory, -dF/du of the mean gap u. [N/m]
 
     Parameters
     ----------
@@ -192,7 +211,7 @@ def persson_stiffness(contact: PerssonContact, *, normal_load: ArrayLike) -> Flo
     InvalidInput
         If a load is not positive and finite.
     OutsideRange
-        If the load brings so full a contact that the gap no longer changes.
+        If contact is so nearly full that the gap no longer changes with the load.
     """
     load = require_positive(normal_load=normal_load)
     lengths, inverse_width = contact._bands
@@ -200,12 +219,12 @@ def persson_stiffness(contact: PerssonContact, *, normal_load: ArrayLike) -> Flo
     gamma = contact.energy_fraction
     decay = ((gamma + 3 * (1 - gamma) * erf(s) ** 2) * np.exp(-(s**2))) @ lengths  # -du/d ln p
     if not np.all(decay > 0):
-        raise OutsideRange(f"normal_load {load.max():.4g} N closes the gap altogether: lower it")
+        raise OutsideRange(f"normal_load {load.max():.4g} N closes the gap completely: reduce it")
     return np.asarray(load / decay)
 
 
 def persson_load(contact: PerssonContact, *, separation: ArrayLike) -> Floats:
-    """Return the load that holds the surfaces at a mean gap. [N]
+    """Return the load at a mean gap by Persson's theory, the inverse of `persson_separation`. [N]
 
     Parameters
     ----------
@@ -222,26 +241,26 @@ def persson_load(contact: PerssonContact, *, separation: ArrayLike) -> Floats:
     InvalidInput
         If a gap is not positive and finite.
     OutsideRange
-        If a gap is so wide that its load underflows, or so narrow that contact is full.
+        If a gap is so wide that its load underflows, or so narrow that contact is complete.
     """
     gaps = require_positive(separation=separation)
     unit = contact.nominal_area * contact.effective_modulus * contact.rms_gradient
     low, high = math.log(unit) - 300.0, math.log(4 * unit)
 
-    def surplus(log_load: float, gap: float) -> float:
+    def excess_gap(log_load: float, gap: float) -> float:
         return float(persson_separation(contact, normal_load=math.exp(log_load))) - gap
 
-    widest, narrowest = surplus(low, 0.0), surplus(high, 0.0)
+    widest, narrowest = excess_gap(low, 0.0), excess_gap(high, 0.0)
     if not np.all((gaps <= widest) & (gaps >= narrowest)):
         raise OutsideRange(f"separation must lie between {narrowest:.4g} and {widest:.4g} m for this spectrum")
-    loads = [math.exp(brentq(surplus, low, high, args=(gap,), xtol=1e-13)) for gap in gaps.ravel()]
+    loads = [math.exp(brentq(excess_gap, low, high, args=(gap,), xtol=1e-13)) for gap in gaps.ravel()]
     return np.reshape(loads, gaps.shape)
 
 
 def _bands(spectrum: RadialSpectrum) -> tuple[Floats, Floats]:
-    """Return for bands of the spectrum sqrt(pi) q^2 C w dq, a length, and w, one over the width of the pressures by E*.
+    """Return sqrt(pi) q^2 C w dq, a length, and w, for bands of the spectrum between neighbouring wavenumbers.
 
-    The last element belongs to the end of the spectrum, of zero length, so that its w is that of the whole surface.
+    w is E* over the width of the pressure distribution. The last band has zero length, and the w of the whole surface.
     """
     k = spectrum.wavenumber
     edges = np.unique(np.concatenate([k, np.geomspace(k[0], k[-1], _CELLS)]))
@@ -250,17 +269,17 @@ def _bands(spectrum: RadialSpectrum) -> tuple[Floats, Floats]:
     C = np.interp(middle, k, spectrum.areal_spectral_density) / (2 * math.pi) ** 2  # over angular wavenumbers
     slopes = q**3 * C * dq
     before = np.concatenate([[0.0], np.cumsum(slopes)])
-    held = C > 0
-    w = 1 / np.sqrt(math.pi * (before[:-1] + slopes / 2)[held])
-    lengths = math.sqrt(math.pi) * (q**2 * C * dq)[held] * w
+    nonzero = C > 0
+    w = 1 / np.sqrt(math.pi * (before[:-1] + slopes / 2)[nonzero])
+    lengths = math.sqrt(math.pi) * (q**2 * C * dq)[nonzero] * w
     return np.append(lengths, 0.0), np.append(w, 1 / math.sqrt(math.pi * before[-1]))
 
 
 @lru_cache(maxsize=1)
-def _crowded() -> CubicSpline:
+def _tail_integral() -> CubicSpline:
     """Return the integral from s to infinity of erf^2(s) exp(-s^2)/s as a function of s up to 6."""
     node, weight = np.polynomial.legendre.leggauss(8)
-    half = np.diff(_ROOTS)[:, None] / 2
-    s = _ROOTS[:-1, None] + half * (1 + node)
+    half = np.diff(_ABSCISSAE)[:, None] / 2
+    s = _ABSCISSAE[:-1, None] + half * (1 + node)
     pieces = (half * weight * erf(s) ** 2 * np.exp(-(s**2)) / s).sum(axis=1)
-    return CubicSpline(_ROOTS, np.append(np.cumsum(pieces[::-1])[::-1], 0.0))
+    return CubicSpline(_ABSCISSAE, np.append(np.cumsum(pieces[::-1])[::-1], 0.0))

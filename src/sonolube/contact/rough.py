@@ -1,6 +1,5 @@
-"""Statistical contact of rough surfaces: what a load does to the separation, the real area and the stiffness."""
+"""Statistical contact of rough surfaces after Greenwood and Williamson: separation, real area and normal stiffness."""
 
-import math
 from dataclasses import dataclass, field
 from functools import lru_cache
 
@@ -8,17 +7,28 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_positive
-from sonolube.contact.asperity import AsperityLaw, ChangEtsionBogy, critical_interference
-from sonolube.contact.asperity_sums import AsperitySums, asperity_sums
+from sonolube.contact.asperity import AsperityLaw, ChangEtsionBogy
+from sonolube.contact.greenwood_williamson import GreenwoodWilliamsonIntegrals, greenwood_williamson_integrals
 from sonolube.contact.height_distribution import ExponentialHeights, HeightDistribution
 from sonolube.contact.pair import ContactPair
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.surfaces import Roughness
 
+__all__ = [  # `integrals_at` serves this room only
+    "RoughContact",
+    "contact_count",
+    "decay_length",
+    "normal_force",
+    "normal_stiffness",
+    "real_contact_area",
+    "separation",
+    "separation_range",
+]
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RoughContact:
-    """Two rough surfaces in contact.
+    """Contact of two rough surfaces: roughness, materials, nominal area, height distribution and asperity law.
 
     Parameters
     ----------
@@ -28,8 +38,9 @@ class RoughContact:
     nominal_area : float
         Area over which the bodies face each other. [m2]
     heights : HeightDistribution
+        Exponential by default.
     asperity : AsperityLaw
-        That of Chang, Etsion and Bogy where absent.
+        That of Chang, Etsion and Bogy by default.
 
     Raises
     ------
@@ -38,8 +49,14 @@ class RoughContact:
 
     Notes
     -----
-    Asperities are spheres of one radius that do not feel each other: real area far below the nominal one. Separations
-    run from the mean of the summit heights. `contact_caveats` says what speaks against a contact.
+    The pair is replaced by one surface with the roughness of both against a smooth flat. Its asperities are spheres of
+    one radius that do not interact, so the real area must stay far below the nominal one. Separations are measured from
+    the mean of the summit heights. `contact_caveats` returns the reasons against applying the model to a contact.
+
+    See Also
+    --------
+    sonolube.contact.greenwood_williamson : The integrals over all asperities behind the functions of this module.
+    sonolube.contact.PerssonContact : Contact from the power spectrum, without asperities.
 
     References
     ----------
@@ -58,7 +75,7 @@ class RoughContact:
 
 
 def separation(contact: RoughContact, *, normal_load: ArrayLike) -> Floats:
-    """Return the separation at which the asperities carry a load. [m]
+    r"""Return the separation of the mean planes at which the asperities carry a load. [m]
 
     Parameters
     ----------
@@ -75,10 +92,15 @@ def separation(contact: RoughContact, *, normal_load: ArrayLike) -> Floats:
     InvalidInput
         If a load is not positive and finite.
     OutsideRange
-        If no separation of the height law's range carries a load.
+        If no separation in the range of the height distribution carries a load.
 
     Notes
     -----
+    The inverse of `normal_force`. For exponential heights of decay constant lambda, with the force F_0 at zero
+    separation,
+
+    .. math:: d = \frac{R_q}{\lambda} \ln \frac{F_0}{F_n}
+
     Not positive where the load is so high that the mean planes meet: see `contact_caveats`.
 
     References
@@ -86,14 +108,14 @@ def separation(contact: RoughContact, *, normal_load: ArrayLike) -> Floats:
     .. [1] D 3.3
     """
     load = require_positive(normal_load=normal_load)
-    sums = _sums(contact)
-    least, most = sums.force.value(np.array([sums.highest, sums.lowest])).tolist()
-    _require_range(contact, least, most, "normal_load", "N", load)
-    return sums.force.inverse(load) * contact.roughness.rms_height
+    integrals = _integrals(contact)
+    lowest, highest = integrals.force.value(np.array([integrals.highest, integrals.lowest])).tolist()
+    _require_range(contact, lowest, highest, "normal_load", "N", load)
+    return integrals.force.inverse(load) * contact.roughness.rms_height
 
 
 def separation_range(contact: RoughContact) -> tuple[float, float]:
-    """Return the least and the greatest separation for which the height law is evaluated. [m]
+    """Return the smallest and the largest separation for which the height distribution is evaluated. [m]
 
     Parameters
     ----------
@@ -102,14 +124,14 @@ def separation_range(contact: RoughContact) -> tuple[float, float]:
     Returns
     -------
     tuple of float
-        The greatest is infinite for exponential heights.
+        The largest is infinite for exponential heights.
     """
-    sums, Rq = _sums(contact), contact.roughness.rms_height
-    return sums.lowest * Rq, sums.highest * Rq
+    integrals, Rq = _integrals(contact), contact.roughness.rms_height
+    return integrals.lowest * Rq, integrals.highest * Rq
 
 
 def normal_force(contact: RoughContact, *, separation: ArrayLike) -> Floats:
-    """Return the normal force of all asperities. [N]
+    r"""Return the normal force on all asperities. [N]
 
     Parameters
     ----------
@@ -126,18 +148,26 @@ def normal_force(contact: RoughContact, *, separation: ArrayLike) -> Floats:
     InvalidInput
         If a separation is not finite.
     OutsideRange
-        If a separation lies outside the height law's range.
+        If a separation lies outside the range of the height distribution.
+
+    Notes
+    -----
+    .. math:: F_n = \eta A_n \int_0^\infty f(w)\, \phi\!\left( \frac{d + w}{R_q} \right) \frac{\mathrm{d}w}{R_q}
+
+    See Also
+    --------
+    sonolube.contact.separation : The inverse.
 
     References
     ----------
     .. [1] D 3.3 to 3.5
     """
-    sums, h = _sums_and_separation(contact, separation)
-    return sums.force.value(h)
+    integrals, h = integrals_at(contact, separation=separation)
+    return integrals.force.value(h)
 
 
 def real_contact_area(contact: RoughContact, *, separation: ArrayLike) -> Floats:
-    """Return the real contact area. [m2]
+    r"""Return the real contact area of all asperities. [m2]
 
     Parameters
     ----------
@@ -154,98 +184,23 @@ def real_contact_area(contact: RoughContact, *, separation: ArrayLike) -> Floats
     InvalidInput
         If a separation is not finite.
     OutsideRange
-        If a separation lies outside the height law's range.
+        If a separation lies outside the range of the height distribution.
+
+    Notes
+    -----
+    .. math:: A_r = \eta A_n \int_0^\infty a(w)\, \phi\!\left( \frac{d + w}{R_q} \right) \frac{\mathrm{d}w}{R_q}
+
+    See Also
+    --------
+    sonolube.contact.elastic_area : Part on asperities that have not yielded.
+    sonolube.contact.plastic_area : Part on asperities that have.
 
     References
     ----------
     .. [1] D 3.6
     """
-    sums, h = _sums_and_separation(contact, separation)
-    return sums.area.value(h)
-
-
-def elastic_area(contact: RoughContact, *, separation: ArrayLike) -> Floats:
-    """Return the real contact area of the asperities that have not begun to yield. [m2]
-
-    Parameters
-    ----------
-    contact : RoughContact
-    separation : array_like, any shape
-        Separation of the mean planes. [m]
-
-    Returns
-    -------
-    ndarray, shape of `separation`
-
-    Raises
-    ------
-    InvalidInput
-        If a separation is not finite.
-    OutsideRange
-        If a separation lies outside the height law's range.
-
-    References
-    ----------
-    .. [1] D 3.7, with exp(-lambda w_c/Rq) where exp(+lambda w_c/Rq) is printed.
-    """
-    sums, h = _sums_and_separation(contact, separation)
-    return sums.area.value(h) * sums.elastic_area_fraction.value(h)
-
-
-def plastic_area(contact: RoughContact, *, separation: ArrayLike) -> Floats:
-    """Return the real contact area of the asperities that have begun to yield. [m2]
-
-    Parameters
-    ----------
-    contact : RoughContact
-    separation : array_like, any shape
-        Separation of the mean planes. [m]
-
-    Returns
-    -------
-    ndarray, shape of `separation`
-
-    Raises
-    ------
-    InvalidInput
-        If a separation is not finite.
-    OutsideRange
-        If a separation lies outside the height law's range.
-
-    References
-    ----------
-    .. [1] D 3.8
-    """
-    sums, h = _sums_and_separation(contact, separation)
-    return sums.area.value(h) * np.maximum(1 - sums.elastic_area_fraction.value(h), 0.0)
-
-
-def elastic_load_fraction(contact: RoughContact, *, separation: ArrayLike) -> Floats:
-    """Return the share of the normal force on asperities that have not begun to yield. []
-
-    Parameters
-    ----------
-    contact : RoughContact
-    separation : array_like, any shape
-        Separation of the mean planes. [m]
-
-    Returns
-    -------
-    ndarray, shape of `separation`
-
-    Raises
-    ------
-    InvalidInput
-        If a separation is not finite.
-    OutsideRange
-        If a separation lies outside the height law's range.
-
-    References
-    ----------
-    .. [1] D 3.4 over 3.3
-    """
-    sums, h = _sums_and_separation(contact, separation)
-    return np.minimum(sums.elastic_load_fraction.value(h), 1.0)
+    integrals, h = integrals_at(contact, separation=separation)
+    return integrals.area.value(h)
 
 
 def contact_count(contact: RoughContact, *, separation: ArrayLike) -> Floats:
@@ -266,14 +221,14 @@ def contact_count(contact: RoughContact, *, separation: ArrayLike) -> Floats:
     InvalidInput
         If a separation is not finite.
     OutsideRange
-        If a separation lies outside the height law's range.
+        If a separation lies outside the range of the height distribution.
     """
-    sums, h = _sums_and_separation(contact, separation)
-    return sums.count.value(h)
+    integrals, h = integrals_at(contact, separation=separation)
+    return integrals.count.value(h)
 
 
 def normal_stiffness(contact: RoughContact, *, separation: ArrayLike) -> Floats:
-    """Return the normal stiffness, -dF/dd. [N/m]
+    r"""Return the normal contact stiffness. [N/m]
 
     Parameters
     ----------
@@ -290,25 +245,32 @@ def normal_stiffness(contact: RoughContact, *, separation: ArrayLike) -> Floats:
     InvalidInput
         If a separation is not finite.
     OutsideRange
-        If a separation lies outside the height law's range.
+        If a separation lies outside the range of the height distribution.
 
     Notes
     -----
-    The slope of the loading curve. Yielded asperities unload more stiffly than they were loaded.
+    .. math:: k_n = -\frac{\mathrm{d} F_n}{\mathrm{d} d}
+
+    The slope of the loading curve. Yielded asperities unload with a higher stiffness than they were loaded with.
+
+    See Also
+    --------
+    sonolube.contact.decay_length : Force over stiffness.
+    sonolube.contact.mindlin_tangential_stiffness : Tangential stiffness in proportion to this one.
     """
-    sums, h = _sums_and_separation(contact, separation)
-    return sums.force.value(h) * sums.force.decay(h) / contact.roughness.rms_height
+    integrals, h = integrals_at(contact, separation=separation)
+    return integrals.force.value(h) * integrals.force.decay_rate(h) / contact.roughness.rms_height
 
 
 def decay_length(contact: RoughContact, *, separation: ArrayLike | None = None) -> Floats:
-    """Return the length over which the normal force falls by a factor of e: force over stiffness. [m]
+    r"""Return the decay length of the contact force: normal force over normal stiffness. [m]
 
     Parameters
     ----------
     contact : RoughContact
     separation : array_like, any shape, optional
-        Separation of the mean planes; needed by every height law but the exponential one, whose decay length is
-        Rq/lambda everywhere. [m]
+        Separation of the mean planes; required by every height distribution but the exponential one, whose decay
+        length is R_q/lambda at any separation. [m]
 
     Returns
     -------
@@ -317,42 +279,28 @@ def decay_length(contact: RoughContact, *, separation: ArrayLike | None = None) 
     Raises
     ------
     InvalidInput
-        If a separation is not finite, or is missing where it is needed.
+        If a separation is not finite, or is missing where it is required.
     OutsideRange
-        If a separation lies outside the height law's range.
+        If a separation lies outside the range of the height distribution.
+
+    Notes
+    -----
+    .. math:: l = \frac{F_n}{k_n}
+
+    Over this increase of the separation the normal force falls by a factor of e.
     """
     if separation is None:
         if not isinstance(contact.heights, ExponentialHeights):
-            raise InvalidInput(f"decay_length of {contact.heights.name} heights varies: separation must be given")
+            raise InvalidInput(f"decay_length of {contact.heights.name} heights varies: give a separation")
         separation = 0.0
-    sums, h = _sums_and_separation(contact, separation)
-    return contact.roughness.rms_height / sums.force.decay(h)
-
-
-def plasticity_index(contact: RoughContact) -> float:
-    """Return the plasticity index sqrt(Rq/w_c): elastic contact well below 1, plastic contact well above. []
-
-    Parameters
-    ----------
-    contact : RoughContact
-
-    Returns
-    -------
-    float
-        Zero for asperities that never yield.
-
-    References
-    ----------
-    .. [1] W. R. Chang, I. Etsion and D. B. Bogy, J. Tribol. 109, 257 (1987). doi:10.1115/1.3261348
-    """
-    roughness = contact.roughness
-    w_c = critical_interference(contact.asperity, contact.pair, summit_radius=roughness.summit_radius)
-    return math.sqrt(roughness.rms_height / w_c)
+    integrals, h = integrals_at(contact, separation=separation)
+    return contact.roughness.rms_height / integrals.force.decay_rate(h)
 
 
 @lru_cache(maxsize=512)
-def _sums(contact: RoughContact) -> AsperitySums:
-    return asperity_sums(
+def _integrals(contact: RoughContact) -> GreenwoodWilliamsonIntegrals:
+    """Return the integrals over all asperities of a contact, computed once."""
+    return greenwood_williamson_integrals(
         roughness=contact.roughness,
         pair=contact.pair,
         nominal_area=contact.nominal_area,
@@ -361,13 +309,35 @@ def _sums(contact: RoughContact) -> AsperitySums:
     )
 
 
-def _sums_and_separation(contact: RoughContact, separation: ArrayLike) -> tuple[AsperitySums, Floats]:
+def integrals_at(contact: RoughContact, *, separation: ArrayLike) -> tuple[GreenwoodWilliamsonIntegrals, Floats]:
+    """Return the integrals over all asperities of a contact, and the separations over R_q.
+
+    Parameters
+    ----------
+    contact : RoughContact
+    separation : array_like, any shape
+        Separation of the mean planes. [m]
+
+    Returns
+    -------
+    integrals : GreenwoodWilliamsonIntegrals
+    h : ndarray, shape of `separation`
+        Normalized separation.
+
+    Raises
+    ------
+    InvalidInput
+        If a separation is not finite.
+    OutsideRange
+        If a separation lies outside the range of the height distribution.
+    """
     d = require_finite(separation=separation)
     _require_range(contact, *separation_range(contact), "separation", "m", d)
-    return _sums(contact), d / contact.roughness.rms_height
+    return _integrals(contact), d / contact.roughness.rms_height
 
 
 def _require_range(contact: RoughContact, low: float, high: float, name: str, unit: str, values: Floats) -> None:
+    """Refuse the first value outside a range."""
     inside = (values >= low) & (values <= high)
     if not inside.all():
         raise OutsideRange(

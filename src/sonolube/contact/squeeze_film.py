@@ -1,4 +1,4 @@
-"""Squeeze-film levitation: the mean pressure of a gas film between a flat and a vibrating flat."""
+"""Squeeze-film levitation: mean pressure and gap of a gas film between parallel faces of which one vibrates."""
 
 import math
 import warnings
@@ -10,13 +10,13 @@ from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.errors import InvalidInput, ModelRangeWarning, OutsideRange
 
 AIR_VISCOSITY = 1.82e-5
-"""Of air at 20 degC. [Pa s]"""
+"""Dynamic viscosity of air at 20 degC. [Pa s]"""
 
-ATMOSPHERE = 101325.0
+STANDARD_ATMOSPHERE = 101325.0
 """Standard atmospheric pressure. [Pa]"""
 
-LEAST_SQUEEZE_NUMBER = 100.0
-"""Squeeze number below which gas escaping at the rim costs an eighth of the load or more. []"""
+MINIMUM_SQUEEZE_NUMBER = 100.0
+"""Squeeze number below which leakage at the rim reduces the load by an eighth or more. []"""
 
 
 def squeeze_number(
@@ -25,16 +25,16 @@ def squeeze_number(
     film_thickness: ArrayLike,
     frequency: ArrayLike,
     viscosity: ArrayLike = AIR_VISCOSITY,
-    ambient_pressure: ArrayLike = ATMOSPHERE,
+    ambient_pressure: ArrayLike = STANDARD_ATMOSPHERE,
 ) -> Floats:
-    """Return the squeeze number 12 mu omega R^2/(p_a h^2) of a circular face. []
+    r"""Return the squeeze number of a gas film under a circular face. []
 
     Parameters
     ----------
     face_radius : array_like, any shape
         Radius of the face. [m]
     film_thickness : array_like, broadcastable to `face_radius`
-        Mean distance of the faces. [m]
+        Mean thickness of the film. [m]
     frequency : array_like, broadcastable to `face_radius`
         Frequency of the vibration. [Hz]
     viscosity : array_like, broadcastable to `face_radius`
@@ -45,12 +45,16 @@ def squeeze_number(
     Returns
     -------
     ndarray, the broadcast shape
-        High where the gas has no time to leave within a period.
+        High where leakage within a period is negligible.
 
     Raises
     ------
     InvalidInput
         If an argument is not positive.
+
+    Notes
+    -----
+    .. math:: \sigma = \frac{12 \mu \omega R^2}{p_a h^2}
     """
     R, h = require_positive(face_radius=face_radius), require_positive(film_thickness=film_thickness)
     omega = 2 * math.pi * require_positive(frequency=frequency)
@@ -61,14 +65,14 @@ def squeeze_number(
 def squeeze_film_pressure(
     *, vibration_amplitude: ArrayLike, film_thickness: ArrayLike, ambient_pressure: ArrayLike
 ) -> Floats:
-    """Return the mean excess pressure of a film that has no time to leave. [Pa]
+    r"""Return the mean excess pressure of a gas film at high squeeze number. [Pa]
 
     Parameters
     ----------
     vibration_amplitude : array_like, any shape
-        Amplitude of the vibration along the normal, alike over the face. [m]
+        Amplitude of the vibration along the normal, uniform over the face. [m]
     film_thickness : array_like, broadcastable to `vibration_amplitude`
-        Mean distance of the faces. [m]
+        Mean thickness of the film. [m]
     ambient_pressure : array_like, broadcastable to `vibration_amplitude`
         Pressure around the face. [Pa]
 
@@ -80,13 +84,19 @@ def squeeze_film_pressure(
     Raises
     ------
     InvalidInput
-        If a gap or pressure is not positive, or an amplitude negative or as large as the gap.
+        If a thickness or pressure is not positive, or an amplitude negative or as large as the thickness.
 
     Notes
     -----
-    Isothermal gas, smooth parallel faces much wider than the gap, and the limit of high squeeze number. Inside, p h
-    keeps one value over the period; the rim, where p is the ambient pressure, makes its square the mean of h^3 over
-    the mean of h.
+    .. math:: \bar p - p_a = p_a \left[ \sqrt{\frac{1 + \frac32 (a/h)^2}{1 - (a/h)^2}} - 1 \right]
+
+    Isothermal gas, smooth parallel faces much wider than the gap, and the limit of high squeeze number. In the interior
+    p h is constant over the period; the condition at the rim, where p is the ambient pressure, makes its square the
+    mean of h^3 over the mean of h.
+
+    See Also
+    --------
+    levitation_gap : The gap at which this pressure carries a load.
 
     References
     ----------
@@ -98,7 +108,7 @@ def squeeze_film_pressure(
         require_positive(film_thickness=film_thickness),
     )
     if np.any(a >= h):
-        raise InvalidInput("vibration_amplitude must be smaller than the gap: the faces would touch")
+        raise InvalidInput("vibration_amplitude must be smaller than film_thickness, or the faces touch")
     excursion = np.square(a / h)
     p_a = require_positive(ambient_pressure=ambient_pressure)
     return np.asarray(p_a * (np.sqrt((1 + 1.5 * excursion) / (1 - excursion)) - 1))
@@ -111,16 +121,16 @@ def levitation_gap(
     face_radius: ArrayLike,
     frequency: ArrayLike,
     viscosity: ArrayLike = AIR_VISCOSITY,
-    ambient_pressure: ArrayLike = ATMOSPHERE,
+    ambient_pressure: ArrayLike = STANDARD_ATMOSPHERE,
 ) -> Floats:
-    """Return the mean gap at which a gas film carries a load on a circular face. [m]
+    r"""Return the mean film thickness at which a gas film carries a load on a circular face. [m]
 
     Parameters
     ----------
     normal_load : array_like, any shape
         Force pressing the bodies together. [N]
     vibration_amplitude : array_like, broadcastable to `normal_load`
-        Amplitude of the vibration along the normal, alike over the face. [m]
+        Amplitude of the vibration along the normal, uniform over the face. [m]
     face_radius : array_like, broadcastable to `normal_load`
         Radius of the face. [m]
     frequency : array_like, broadcastable to `normal_load`
@@ -133,19 +143,25 @@ def levitation_gap(
     Returns
     -------
     ndarray, the broadcast shape
-        Above the amplitude, whatever the load; whether so thin a film exists is for the roughness to say.
+        Above the amplitude for any load; the film exists only where it is thicker than the roughness.
 
     Raises
     ------
     InvalidInput
         If an argument is not positive.
     OutsideRange
-        If the load is so low that the gap would be wider than a tenth of the face's radius.
+        If the load is so low that the film would be thicker than a tenth of the radius of the face.
 
     Warns
     -----
     ModelRangeWarning
-        Where the squeeze number is below `LEAST_SQUEEZE_NUMBER`: the rim leaks, and the film carries less.
+        Where the squeeze number is below `MINIMUM_SQUEEZE_NUMBER`: leakage at the rim reduces the load.
+
+    Notes
+    -----
+    The inverse of `squeeze_film_pressure`: with :math:`s = 1 + F_N/(\pi R^2 p_a)`,
+
+    .. math:: h = a \sqrt{\frac{\frac32 + s^2}{s^2 - 1}}
 
     References
     ----------
@@ -156,14 +172,16 @@ def levitation_gap(
     square = np.square(1 + load / (math.pi * R**2 * p_a))
     h = a * np.sqrt((1.5 + square) / (square - 1))
     if np.any(h > 0.1 * R):
-        raise OutsideRange(f"normal_load {np.min(load):.3g} N is too low: the film would exceed a tenth of face_radius")
+        raise OutsideRange(
+            f"normal_load {np.min(load):.3g} N is too low: the film would be thicker than a tenth of face_radius"
+        )
     sigma = squeeze_number(
         face_radius=R, film_thickness=h, frequency=frequency, viscosity=viscosity, ambient_pressure=p_a
     )
-    if np.any(sigma < LEAST_SQUEEZE_NUMBER):
+    if np.any(sigma < MINIMUM_SQUEEZE_NUMBER):
         warnings.warn(
-            f"squeeze number {sigma.min():.3g} is below {LEAST_SQUEEZE_NUMBER:g}: gas escapes at the rim, and the film "
-            "is thinner than this",
+            f"squeeze number {sigma.min():.3g} is below {MINIMUM_SQUEEZE_NUMBER:g}: gas leaks at the rim, and the film "
+            "is thinner than computed",
             ModelRangeWarning,
             stacklevel=2,
         )

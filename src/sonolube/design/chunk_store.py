@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from sonolube.errors import InvalidInput
-from sonolube.files import write_whole
+from sonolube.files import write_atomically
 from sonolube.rig import NUMBERS, PointBatch
 
 _MANIFEST = "sweep.json"
@@ -53,7 +53,7 @@ class ChunkStore:
                     " name another folder, or remove this one"
                 )
         else:
-            write_whole(manifest, json.dumps(own))
+            write_atomically(manifest, json.dumps(own))
 
     def read(self, chunk: int) -> PointBatch | None:
         """Return a chunk, or nothing if it is missing or not what was written; what was damaged is removed."""
@@ -75,7 +75,7 @@ class ChunkStore:
             If the folder cannot be written to.
         """
         content = _content(batch)
-        write_whole(self.folder / _name(chunk, content), content)
+        write_atomically(self.folder / _name(chunk, content), content)
 
 
 def _name(chunk: int, content: bytes) -> str:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.units import engineering
+from sonolube.units import format_si
 from sonolube.vocabulary import quantities
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ def scaled_label(name: str, values: Floats) -> tuple[float, str]:
     known, largest = quantities()[name], float(np.nanmax(np.abs(values)))
     if not known.unit or largest == 0:
         return 1.0, f"{known.meaning} [{known.unit}]" if known.unit else known.meaning
-    number, _, unit = engineering(largest, known.unit, digits=9).partition(" ")
+    number, _, unit = format_si(largest, known.unit, digits=9).partition(" ")
     if unit.startswith("u"):
         unit = unit.replace("u", "µ", 1)
     return 10.0 ** round(np.log10(float(number) / largest)), f"{known.meaning} [{unit}]"

@@ -7,7 +7,7 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.design.maps import PLACES
 from sonolube.errors import InvalidInput
-from sonolube.units import engineering
+from sonolube.units import format_si
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -231,8 +231,8 @@ def _surface(part: "xr.Dataset", across: str, up: str) -> tuple[Floats, Floats, 
 def _told(part: "xr.Dataset", panel: str) -> str:
     if panel == "voltage_peak_to_peak":
         volts, watts = float(part[panel]), float(part["actuator_power"])
-        return f"{engineering(volts, 'V')}, {engineering(watts, 'W')}"
-    return f"{engineering(float(part[panel]), 'N')}, {engineering(float(part['nominal_pressure']), 'Pa')}"
+        return f"{format_si(volts, 'V')}, {format_si(watts, 'W')}"
+    return f"{format_si(float(part[panel]), 'N')}, {format_si(float(part['nominal_pressure']), 'Pa')}"
 
 
 def _legend(grid: Any) -> tuple[list[Any], list[str]]:

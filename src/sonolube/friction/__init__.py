@@ -1,37 +1,38 @@
-"""Friction laws, and friction under vibration by prescribed motions, spring-coupled contacts and friction models."""
+"""Friction laws, friction under vibration, and friction models of vibrated rough contacts."""
 
 from sonolube.friction.bristle import RIGID, Holder
-from sonolube.friction.coulomb import CoulombFriction, coulomb_friction, friction_coefficient
-from sonolube.friction.dahl import DahlFriction, dahl_friction, dahl_friction_history
-from sonolube.friction.dong_2015_sine import (
-    dong_2015_deformation_ratio,
-    dong_2015_half_period_ratio,
-    steady_deformation,
+from sonolube.friction.elliptical_motion import contact_time_fraction, elliptical_traction_ratio
+from sonolube.friction.laws.coulomb import CoulombFriction, coulomb_friction, friction_coefficient
+from sonolube.friction.laws.coulomb_under_vibration import (
+    oblique_vibration_ratio,
+    parallel_vibration_ratio,
+    transverse_vibration_ratio,
 )
-from sonolube.friction.driven import DrivenSlide, driven_slide
-from sonolube.friction.elliptical import contact_fraction, elliptical_traction_ratio
-from sonolube.friction.forming import (
-    ZINC_STRESS_RATIO,
-    acoustic_intensity,
-    intensity_for_stress_ratio,
-    softened_stress_ratio,
-    superposed_mean_stress,
-)
-from sonolube.friction.in_plane import oblique_vibration_ratio, parallel_vibration_ratio, transverse_vibration_ratio
+from sonolube.friction.laws.dahl import DahlFriction, dahl_friction, dahl_friction_history
+from sonolube.friction.laws.dahl_under_vibration import dahl_under_vibration
+from sonolube.friction.laws.lugre import LuGreFriction, LuGreHistory, lugre_friction_history, lugre_steady_friction
+from sonolube.friction.laws.lugre_under_vibration import lugre_under_vibration
+from sonolube.friction.laws.spring_driven_slider import DriveForce, spring_driven_slider_force
 from sonolube.friction.lubrication import (
     BoundaryLubricant,
-    Method,
-    MethodCoefficients,
-    Regime,
+    LubricationCoefficients,
+    LubricationMethod,
+    LubricationRegime,
     StribeckCurve,
     asperity_load_fraction,
-    best_method,
+    best_lubrication_method,
     hersey_number,
+    lubrication_coefficients,
     lubrication_regime,
-    method_coefficients,
     stribeck_coefficient,
 )
-from sonolube.friction.lugre import LuGreFriction, LuGreHistory, lugre_friction_history, lugre_steady_friction
+from sonolube.friction.metal_forming import (
+    ZINC_STRESS_RATIO,
+    acoustic_intensity,
+    acoustic_softening_ratio,
+    reference_intensity_from_test,
+    superposed_mean_stress,
+)
 from sonolube.friction.models import FRICTION_MODELS, FrictionModel, MeanGap, ModelParameter, parameter
 from sonolube.friction.models.asperity_stick_slip import AsperityStickSlip
 from sonolube.friction.models.asperity_stick_slip_batch import SINE_TOLERANCE, batched_stick_slip_ratio
@@ -42,26 +43,28 @@ from sonolube.friction.models.asperity_stick_slip_sine import (
 )
 from sonolube.friction.models.bristle_with_holder import BristleWithHolder
 from sonolube.friction.models.dong_2015 import Dong2015FullPeriod, Dong2015HalfPeriod, Dong2015LoadBalanced
+from sonolube.friction.models.dong_2015_sine import (
+    dong_2015_deformation_ratio,
+    dong_2015_half_period_ratio,
+    steady_deformation,
+)
 from sonolube.friction.models.kinematic import Kinematic
-from sonolube.friction.published_approximations import (
+from sonolube.friction.oscillating_contact.approximations import (
     approximate_guided_ratio,
     approximate_longitudinal_ratio,
-    approximate_oscillation_ratio,
+    approximate_normal_ratio,
     approximate_transverse_ratio,
+)
+from sonolube.friction.oscillating_contact.combined_oscillation import combined_oscillation_ratio
+from sonolube.friction.oscillating_contact.compliant_guide import guided_critical_speed, guided_oscillation_ratio
+from sonolube.friction.oscillating_contact.rigid_guide import longitudinal_oscillation_ratio, normal_oscillation_ratio
+from sonolube.friction.oscillating_contact.spring_contact import SpringContact, critical_speed, load_balanced_approach
+from sonolube.friction.oscillating_contact.static_friction import (
     longitudinal_static_ratio,
+    normal_static_ratio,
     transverse_static_ratio,
 )
-from sonolube.friction.spring_coupled import (
-    SpringContact,
-    balanced_approach,
-    critical_speed,
-    longitudinal_oscillation_ratio,
-    normal_oscillation_ratio,
-    static_plateau,
-)
-from sonolube.friction.spring_motion import guided_critical_speed, guided_oscillation_ratio, oscillation_ratio
-from sonolube.friction.vibrated_dahl import dahl_under_vibration
-from sonolube.friction.vibrated_lugre import lugre_under_vibration
+from sonolube.friction.soft_counterface import FaceVibrationMode, exponential_layer_ratio, linear_layer_ratio
 
 __all__ = [
     "EMPIRICAL_MEMORY_LENGTH",
@@ -77,29 +80,31 @@ __all__ = [
     "Dong2015FullPeriod",
     "Dong2015HalfPeriod",
     "Dong2015LoadBalanced",
-    "DrivenSlide",
+    "DriveForce",
+    "FaceVibrationMode",
     "FrictionModel",
     "Holder",
     "Kinematic",
     "LuGreFriction",
     "LuGreHistory",
+    "LubricationCoefficients",
+    "LubricationMethod",
+    "LubricationRegime",
     "MeanGap",
-    "Method",
-    "MethodCoefficients",
     "ModelParameter",
-    "Regime",
     "SpringContact",
     "StribeckCurve",
     "acoustic_intensity",
+    "acoustic_softening_ratio",
     "approximate_guided_ratio",
     "approximate_longitudinal_ratio",
-    "approximate_oscillation_ratio",
+    "approximate_normal_ratio",
     "approximate_transverse_ratio",
     "asperity_load_fraction",
-    "balanced_approach",
     "batched_stick_slip_ratio",
-    "best_method",
-    "contact_fraction",
+    "best_lubrication_method",
+    "combined_oscillation_ratio",
+    "contact_time_fraction",
     "coulomb_friction",
     "critical_speed",
     "dahl_friction",
@@ -107,29 +112,30 @@ __all__ = [
     "dahl_under_vibration",
     "dong_2015_deformation_ratio",
     "dong_2015_half_period_ratio",
-    "driven_slide",
     "elliptical_traction_ratio",
+    "exponential_layer_ratio",
     "friction_coefficient",
     "guided_critical_speed",
     "guided_oscillation_ratio",
     "hersey_number",
-    "intensity_for_stress_ratio",
+    "linear_layer_ratio",
+    "load_balanced_approach",
     "longitudinal_oscillation_ratio",
     "longitudinal_static_ratio",
+    "lubrication_coefficients",
     "lubrication_regime",
     "lugre_friction_history",
     "lugre_steady_friction",
     "lugre_under_vibration",
-    "method_coefficients",
     "mindlin_memory_length",
     "normal_oscillation_ratio",
+    "normal_static_ratio",
     "oblique_vibration_ratio",
-    "oscillation_ratio",
     "parallel_vibration_ratio",
     "parameter",
+    "reference_intensity_from_test",
     "sine_stick_slip_ratio",
-    "softened_stress_ratio",
-    "static_plateau",
+    "spring_driven_slider_force",
     "steady_deformation",
     "stribeck_coefficient",
     "superposed_mean_stress",

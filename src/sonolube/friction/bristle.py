@@ -1,4 +1,13 @@
-"""One bristle under a varying normal force: the holder behind it, and the mean force over its steady period."""
+r"""Mean force of one elastoplastic bristle over the steady period of a vibration, on a rigid or an elastic holder.
+
+The force F of a bristle of stiffness k_t under the normal force F_n follows
+
+.. math:: \frac{\mathrm{d}F}{\mathrm{d}t} = k_t(t)\, v \left( 1 - \mathrm{sgn}(v)\, \frac{F}{\mu F_n} \right)^i, \qquad
+          |F| \le \mu F_n(t)
+
+with the exponent i of Dahl, 0 (elastic up to the limit) or 1 (gradual). The slider is held by a spring without mass, or
+by a spring, mass and damper, whose displacement adds to the relative velocity v.
+"""
 
 import math
 from dataclasses import dataclass
@@ -10,16 +19,16 @@ from scipy.linalg import expm
 from sonolube.checks import Floats, require_non_negative
 from sonolube.errors import InvalidInput
 
-__all__ = ["RIGID", "Holder"]  # the kernels are for the models of this room
-MOST_PERIODS = 4000
-"""Periods after which a steady period is no longer expected."""
+__all__ = ["RIGID", "Holder"]  # the kernels serve this room only
+MAXIMUM_PERIODS = 4000
+"""Largest number of periods integrated towards a steady period."""
 
-_NEWTON = 60
+_MAXIMUM_ITERATIONS = 60  # of Newton's method
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Holder:
-    """Spring, mass and damper that hold the slider along the sliding direction.
+    """Spring, mass and damper that hold a slider along the sliding direction.
 
     Parameters
     ----------
@@ -28,7 +37,7 @@ class Holder:
     holder_mass : float
         Mass that moves with the slider; zero for a spring alone. [kg]
     holder_damping : float
-        Damping between slider and ground; only of a holder with mass. [N s/m]
+        Damping between slider and ground; requires a mass. [N s/m]
 
     Raises
     ------
@@ -46,93 +55,154 @@ class Holder:
             raise InvalidInput(f"holder_stiffness must be positive, got {self.holder_stiffness!r} N/m")
         require_non_negative(holder_mass=self.holder_mass, holder_damping=self.holder_damping)
         if self.holder_mass == 0 and self.holder_damping > 0:
-            raise InvalidInput(f"holder_damping needs a holder_mass, got {self.holder_damping!r} N s/m without")
+            raise InvalidInput(f"holder_damping requires a holder_mass, got {self.holder_damping!r} N s/m without one")
         if self.holder_mass > 0 and math.isinf(self.holder_stiffness):
-            raise InvalidInput(f"holder_mass of {self.holder_mass!r} kg cannot move on an infinite holder_stiffness")
+            raise InvalidInput(f"holder_mass of {self.holder_mass!r} kg requires a finite holder_stiffness")
 
 
 RIGID = Holder()
-"""A holder that does not yield."""
+"""Rigid holder: infinite stiffness, without mass and damping."""
 
 
 def holder_propagators(holder: Holder, step: float) -> tuple[Floats, Floats, Floats]:
-    """Return the matrices of one time step of the holder: of its state (y, dy/dt), and of the force at both ends."""
+    r"""Return the matrices of one exact time step of a holder with mass under a force linear in time.
+
+    Parameters
+    ----------
+    holder : Holder
+    step : float
+        Time step, in s.
+
+    Returns
+    -------
+    transition : ndarray, shape (2, 2)
+        Matrix of the state (y, dy/dt).
+    by_first, by_last : ndarray, shape (2,)
+        Response of the state to the force at the start and at the end of the step.
+
+    Notes
+    -----
+    .. math:: m \ddot y + c \dot y + K y = F(t)
+
+    by the exponential of the augmented matrix of state, force and rate of the force.
+    """
     m, c, K = holder.holder_mass, holder.holder_damping, holder.holder_stiffness
     rates = np.zeros((4, 4))
     rates[:2] = np.array([[0, 1, 0, 0], [-K / m, -c / m, 1 / m, 0]])
     rates[2, 3] = 1 / step
-    moved = expm(rates * step)
-    return np.ascontiguousarray(moved[:2, :2]), moved[:2, 2] - moved[:2, 3], np.ascontiguousarray(moved[:2, 3])
+    propagator = expm(rates * step)
+    return (
+        np.ascontiguousarray(propagator[:2, :2]),
+        propagator[:2, 2] - propagator[:2, 3],
+        np.ascontiguousarray(propagator[:2, 3]),
+    )
 
 
 @numba.njit(cache=True)
-def _grown(force: float, k: float, limit: float, slide: float, exponent: float) -> float:
-    """Return the force after a slide at one stiffness and limit, before it is cut at the next limit."""
+def _force_after_slide(force: float, k: float, limit: float, slide: float, exponent: float) -> float:
+    """Return the force after a slide at constant stiffness and limit, before the clipping to the next limit."""
     if exponent == 0.0 or slide == 0.0:
         return force + k * slide
     if limit <= 0.0:
         return 0.0
-    goal = math.copysign(limit, slide)
-    return goal + (force - goal) * math.exp(-k * abs(slide) / limit)
+    asymptote = math.copysign(limit, slide)
+    return asymptote + (force - asymptote) * math.exp(-k * abs(slide) / limit)
 
 
 @numba.njit(cache=True)
-def bristle_on_spring(k: Floats, limit: Floats, slides: Floats, steady: Floats, exponent: float) -> Floats:
-    """Return the mean force of a bristle on a holder without mass, at each of the steady slides a step."""
+def mean_force_massless_holder(k: Floats, limit: Floats, slides: Floats, steady: Floats, exponent: float) -> Floats:
+    """Return the mean force of a bristle on a holder without mass over its steady period, for each sliding speed.
+
+    Parameters
+    ----------
+    k, limit : ndarray, shape (n,)
+        Stiffness [N/m] and friction limit [N] at n uniform phases.
+    slides : ndarray, shape (n,)
+        In-plane vibration displacement within each step [m].
+    steady : ndarray, shape (m,)
+        Displacement by sliding within a step [m].
+    exponent : float
+        Exponent of Dahl, 0 or 1.
+
+    Returns
+    -------
+    ndarray, shape (m,)
+    """
     n = k.size
     means = np.empty(steady.size)
     for i in range(steady.size):
-        force = limit[0]  # it slips where the load is least, unless the in-plane motion turns it back
-        for _ in range(MOST_PERIODS):
-            begun, total = force, 0.0
+        force = limit[0]  # slip at the smallest load, unless the in-plane motion reverses it
+        for _ in range(MAXIMUM_PERIODS):
+            start, total = force, 0.0
             for j in range(n):
                 following = j + 1 if j + 1 < n else 0
                 mid_limit = (limit[j] + limit[following]) / 2
-                force = _grown(force, (k[j] + k[following]) / 2, mid_limit, slides[j] + steady[i], exponent)
+                force = _force_after_slide(force, (k[j] + k[following]) / 2, mid_limit, slides[j] + steady[i], exponent)
                 force = min(max(force, -limit[following]), limit[following])
                 total += force
-            if abs(force - begun) <= 1e-12 * limit.max():
+            if abs(force - start) <= 1e-12 * limit.max():
                 break
         means[i] = total / n
     return means
 
 
 @numba.njit(cache=True)
-def bristle_on_mass(
+def mean_force_inertial_holder(
     k: Floats,
     limit: Floats,
     slides: Floats,
     steady: Floats,
     step: float,
     exponent: float,
-    free: Floats,
+    transition: Floats,
     by_first: Floats,
     by_last: Floats,
-    pulled: Floats,
+    deflection: Floats,
 ) -> tuple[Floats, bool]:
-    """Return the mean force at the steady period, by Newton's method on the map of one period, else by marching."""
+    """Return the mean force of a bristle on a holder with mass over its steady period, for each sliding speed.
+
+    Parameters
+    ----------
+    k, limit, slides, steady, exponent
+        As for `mean_force_massless_holder`.
+    step : float
+        Time step [s].
+    transition, by_first, by_last : ndarray
+        Matrices of `holder_propagators`.
+    deflection : ndarray, shape (m,)
+        First estimate of the displacement of the slider [m].
+
+    Returns
+    -------
+    means : ndarray, shape (m,)
+    settled : bool
+        False where Newton's method on the map of one period did not converge; the mean is then that of the last
+        periods of a time integration.
+    """
     means = np.empty(steady.size)
     settled = True
     for i in range(steady.size):
-        state = np.array([limit[0], pulled[i], 0.0])  # force, y, dy/dt
-        found = False
-        for _ in range(_NEWTON):
-            end, slope, mean = _period(state, k, limit, slides, steady[i], exponent, free, by_first, by_last)
-            miss = end - state
-            # a stiff holder's velocity may be mere rounding beside the sliding speed, which is what it adds to
+        state = np.array([limit[0], deflection[i], 0.0])  # force, y, dy/dt
+        converged = False
+        for _ in range(_MAXIMUM_ITERATIONS):
+            end, jacobian, mean = _period(state, k, limit, slides, steady[i], exponent, transition, by_first, by_last)
+            residual = end - state
+            # the velocity of a stiff holder may be rounding error beside the sliding speed, to which it adds
             scale = np.abs(end) + np.array([limit.max(), 1e-12, 1e-3 * steady[i] / step])
-            if np.all(np.abs(miss) <= 1e-10 * scale):
-                means[i], found = mean, True
+            if np.all(np.abs(residual) <= 1e-10 * scale):
+                means[i], converged = mean, True
                 break
-            state = state + np.linalg.solve(np.eye(3) - slope, miss)
+            state = state + np.linalg.solve(np.eye(3) - jacobian, residual)
             state[0] = min(max(state[0], -limit[0]), limit[0])
-        if not found:
-            total, kept = 0.0, MOST_PERIODS // 4
-            for period in range(MOST_PERIODS):
-                state, slope, mean = _period(state, k, limit, slides, steady[i], exponent, free, by_first, by_last)
-                if period >= MOST_PERIODS - kept:
+        if not converged:
+            total, averaged = 0.0, MAXIMUM_PERIODS // 4
+            for period in range(MAXIMUM_PERIODS):
+                state, jacobian, mean = _period(
+                    state, k, limit, slides, steady[i], exponent, transition, by_first, by_last
+                )
+                if period >= MAXIMUM_PERIODS - averaged:
                     total += mean
-            means[i], settled = total / kept, False
+            means[i], settled = total / averaged, False
     return means, settled
 
 
@@ -144,33 +214,35 @@ def _period(
     slides: Floats,
     steady: float,
     exponent: float,
-    free: Floats,
+    transition: Floats,
     by_first: Floats,
     by_last: Floats,
 ) -> tuple[Floats, Floats, float]:
-    """Return the state after a period, its derivative by the state before, and the mean force."""
+    """Return the state after one period, its derivative with respect to the state before, and the mean force."""
     n = k.size
     force, y, w = state
-    slope = np.eye(3)
+    jacobian = np.eye(3)
     total = 0.0
     for j in range(n):
-        following = j + 1 if j + 1 < n else 0
-        stiff, mid_limit, next_limit = (k[j] + k[following]) / 2, (limit[j] + limit[following]) / 2, limit[following]
-        y_free = free[0, 0] * y + free[0, 1] * w + by_first[0] * force
-        w_free = free[1, 0] * y + free[1, 1] * w + by_first[1] * force
-        by_state = free[:, :1] * slope[1] + free[:, 1:] * slope[2] + by_first.reshape(2, 1) * slope[0]
-        # the part of the slide that does not depend on the force at the step's end
+        after = j + 1 if j + 1 < n else 0
+        stiff, mid_limit, next_limit = (k[j] + k[after]) / 2, (limit[j] + limit[after]) / 2, limit[after]
+        y_free = transition[0, 0] * y + transition[0, 1] * w + by_first[0] * force
+        w_free = transition[1, 0] * y + transition[1, 1] * w + by_first[1] * force
+        by_state = (
+            transition[:, :1] * jacobian[1] + transition[:, 1:] * jacobian[2] + by_first.reshape(2, 1) * jacobian[0]
+        )
+        # part of the slide that is independent of the force at the end of the step
         slide = slides[j] + steady - (y_free - y)
         if exponent == 1.0 and mid_limit > 0:
             stiff *= max(1.0 - math.copysign(force, force * slide) / mid_limit, 0.0)
         last = (force + stiff * slide) / (1 + stiff * by_last[0])
         if abs(last) <= next_limit:
-            slope[0] = (slope[0] - stiff * (by_state[0] - slope[1])) / (1 + stiff * by_last[0])
+            jacobian[0] = (jacobian[0] - stiff * (by_state[0] - jacobian[1])) / (1 + stiff * by_last[0])
         else:
             last = math.copysign(next_limit, last)
-            slope[0] = 0.0
+            jacobian[0] = 0.0
         y, w, force = y_free + by_last[0] * last, w_free + by_last[1] * last, last
-        slope[1] = by_state[0] + by_last[0] * slope[0]
-        slope[2] = by_state[1] + by_last[1] * slope[0]
+        jacobian[1] = by_state[0] + by_last[0] * jacobian[0]
+        jacobian[2] = by_state[1] + by_last[1] * jacobian[0]
         total += force
-    return np.array([force, y, w]), slope, total / n
+    return np.array([force, y, w]), jacobian, total / n

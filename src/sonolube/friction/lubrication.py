@@ -1,4 +1,4 @@
-"""Lubricated friction: the Stribeck curve, and what vibration and a boundary lubricant do alone and together."""
+"""Lubricated friction: the Stribeck curve, and friction with vibration, a boundary lubricant, and both combined."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -10,19 +10,19 @@ from numpy.typing import ArrayLike, NDArray
 from sonolube.checks import Floats, require_non_negative, require_positive, require_within
 from sonolube.errors import InvalidInput
 
-_FILMS_BEGIN_TO_CARRY = 0.1  # share of the load on films where boundary lubrication ends
+_BOUNDARY_FILM_FRACTION = 0.1  # fraction of the load on films at the end of boundary lubrication
 
 
-class Regime(StrEnum):
-    """What carries the load of a lubricated contact."""
+class LubricationRegime(StrEnum):
+    """Lubrication regime of a contact."""
 
     BOUNDARY = "boundary"
     MIXED = "mixed"
     HYDRODYNAMIC = "hydrodynamic"
 
 
-class Method(StrEnum):
-    """How a contact is lubricated."""
+class LubricationMethod(StrEnum):
+    """Lubrication method of a contact: none, vibration, a lubricant, or both."""
 
     DRY = "dry"
     ULTRASONIC = "ultrasonic"
@@ -32,16 +32,16 @@ class Method(StrEnum):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class StribeckCurve:
-    """Friction of a lubricated contact from boundary lubrication to a full film.
+    r"""Stribeck curve: coefficient of friction over the Hersey number, from boundary to hydrodynamic lubrication.
 
     Parameters
     ----------
     boundary_coefficient : float
-        Coefficient of friction where asperities carry all the load. []
+        Coefficient of friction where asperities carry the whole load, mu_b. []
     transition_hersey_number : float
-        Hersey number at which films carry all but 1/e of it. [m]
+        Hersey number at which asperities carry 1/e of the load, He_t. [m]
     film_slope : float
-        Coefficient of friction of a full film per Hersey number. [1/m]
+        Coefficient of friction of a full film per Hersey number, c. [1/m]
 
     Raises
     ------
@@ -50,7 +50,9 @@ class StribeckCurve:
 
     Notes
     -----
-    mu = mu_b exp(-He/He_t) + c He: asperities give way to films, whose friction is viscous. Empirical.
+    .. math:: \mu = \mu_b\, e^{-He/He_t} + c\, He
+
+    Empirical: the load passes from the asperities to films with viscous friction.
 
     References
     ----------
@@ -69,24 +71,24 @@ class StribeckCurve:
             film_slope=self.film_slope,
         )
         if self.film_slope * self.transition_hersey_number >= self.boundary_coefficient:
-            raise InvalidInput("film_slope times transition_hersey_number must lie below boundary_coefficient")
+            raise InvalidInput("film_slope times transition_hersey_number must be smaller than boundary_coefficient")
 
     @property
-    def lowest_friction_at(self) -> float:
-        """Hersey number of the lowest friction, where the film becomes full, in m."""
+    def hersey_number_at_minimum(self) -> float:
+        """Hersey number of the minimum of the curve, where the film becomes full, in m."""
         ratio = self.boundary_coefficient / (self.film_slope * self.transition_hersey_number)
         return float(self.transition_hersey_number * np.log(ratio))
 
 
 def hersey_number(*, dynamic_viscosity: ArrayLike, sliding_speed: ArrayLike, nominal_pressure: ArrayLike) -> Floats:
-    """Return viscosity times speed over pressure. [m]
+    r"""Return the Hersey number: viscosity times speed over pressure. [m]
 
     Parameters
     ----------
     dynamic_viscosity : array_like
         Viscosity of the lubricant. [Pa s]
     sliding_speed : array_like, broadcast against `dynamic_viscosity`
-        Speed of the sliding. [m/s]
+        Sliding speed. [m/s]
     nominal_pressure : array_like, broadcast against them
         Load over nominal area. [Pa]
 
@@ -98,6 +100,10 @@ def hersey_number(*, dynamic_viscosity: ArrayLike, sliding_speed: ArrayLike, nom
     ------
     InvalidInput
         If a speed is negative, another value not positive, or a value not finite.
+
+    Notes
+    -----
+    .. math:: He = \frac{\eta v}{p}
     """
     eta = require_positive(dynamic_viscosity=dynamic_viscosity)
     return eta * require_non_negative(sliding_speed=sliding_speed) / require_positive(nominal_pressure=nominal_pressure)
@@ -127,7 +133,7 @@ def stribeck_coefficient(curve: StribeckCurve, *, hersey_number: ArrayLike) -> F
 
 
 def lubrication_regime(curve: StribeckCurve, *, hersey_number: ArrayLike) -> NDArray[np.str_]:
-    """Return the regime, by the words of `Regime`.
+    """Return the lubrication regime on a Stribeck curve, as values of `LubricationRegime`.
 
     Parameters
     ----------
@@ -146,25 +152,26 @@ def lubrication_regime(curve: StribeckCurve, *, hersey_number: ArrayLike) -> NDA
 
     Notes
     -----
-    Boundary until films carry a tenth of the load, hydrodynamic from the lowest friction on; a convention, for nothing
-    marks the change.
+    By convention boundary lubrication ends where films carry a tenth of the load, and hydrodynamic lubrication begins
+    at the minimum of the curve.
     """
     he = require_non_negative(hersey_number=hersey_number)
-    begins = -np.log1p(-_FILMS_BEGIN_TO_CARRY) * curve.transition_hersey_number
-    below, full = he < begins, he >= curve.lowest_friction_at
-    return np.where(full, str(Regime.HYDRODYNAMIC), np.where(below, str(Regime.BOUNDARY), str(Regime.MIXED)))
+    mixed_from = -np.log1p(-_BOUNDARY_FILM_FRACTION) * curve.transition_hersey_number
+    below, full = he < mixed_from, he >= curve.hersey_number_at_minimum
+    partial = np.where(below, str(LubricationRegime.BOUNDARY), str(LubricationRegime.MIXED))
+    return np.where(full, str(LubricationRegime.HYDRODYNAMIC), partial)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class BoundaryLubricant:
-    """A lubricant that shares the load with the asperities, more of which touch at a higher pressure.
+    r"""Boundary lubricant that shares the load with asperities in proportion to the pressure.
 
     Parameters
     ----------
     film_coefficient : float
-        Coefficient of friction where only the film carries. []
+        Coefficient of friction of the lubricant film, mu_f. []
     full_asperity_pressure : float
-        Nominal pressure at which the asperities carry all the load. [Pa]
+        Nominal pressure at which the asperities carry the whole load, p_1. [Pa]
 
     Raises
     ------
@@ -173,7 +180,9 @@ class BoundaryLubricant:
 
     Notes
     -----
-    The mechanism of D Fig. 4.28, made the simplest law it allows: a share in proportion to the pressure.
+    .. math:: \alpha = \min(p/p_1,\, 1), \qquad \mu = \alpha \mu_0 + (1 - \alpha)\, \mu_f
+
+    with the dry coefficient mu_0: the mechanism of D Fig. 4.28 as its simplest law.
 
     References
     ----------
@@ -187,13 +196,13 @@ class BoundaryLubricant:
         require_positive(film_coefficient=self.film_coefficient, full_asperity_pressure=self.full_asperity_pressure)
 
 
-class MethodCoefficients(NamedTuple):
-    """Coefficients of friction of four ways of lubrication.
+class LubricationCoefficients(NamedTuple):
+    """Coefficients of friction of the four lubrication methods.
 
     Parameters
     ----------
     dry, ultrasonic, lubricant, combined : ndarray
-        Without anything, with vibration, with a lubricant, with both.
+        Dry, with vibration, with a lubricant, with both.
     """
 
     dry: Floats
@@ -203,7 +212,7 @@ class MethodCoefficients(NamedTuple):
 
 
 def asperity_load_fraction(lubricant: BoundaryLubricant, *, nominal_pressure: ArrayLike) -> Floats:
-    """Return the share of the load that asperities carry through a lubricant. []
+    r"""Return the fraction of the load on asperities that penetrate a lubricant film. []
 
     Parameters
     ----------
@@ -219,18 +228,22 @@ def asperity_load_fraction(lubricant: BoundaryLubricant, *, nominal_pressure: Ar
     ------
     InvalidInput
         If a pressure is not positive and finite.
+
+    Notes
+    -----
+    .. math:: \alpha = \min(p/p_1,\, 1)
     """
     return np.minimum(require_positive(nominal_pressure=nominal_pressure) / lubricant.full_asperity_pressure, 1.0)
 
 
-def method_coefficients(
+def lubrication_coefficients(
     lubricant: BoundaryLubricant,
     *,
     friction_coefficient: ArrayLike,
     friction_ratio: ArrayLike,
     nominal_pressure: ArrayLike,
-) -> MethodCoefficients:
-    """Return the friction of each way of lubrication.
+) -> LubricationCoefficients:
+    r"""Return the coefficients of friction of the four lubrication methods.
 
     Parameters
     ----------
@@ -238,13 +251,13 @@ def method_coefficients(
     friction_coefficient : array_like
         Coefficient of dry friction. []
     friction_ratio : array_like, broadcast against `friction_coefficient`
-        What vibration leaves of dry friction, by any closure. []
+        Dry friction with vibration over that without, by any friction model. []
     nominal_pressure : array_like, broadcast against them
         Load over nominal area. [Pa]
 
     Returns
     -------
-    MethodCoefficients
+    LubricationCoefficients
 
     Raises
     ------
@@ -253,25 +266,36 @@ def method_coefficients(
 
     Notes
     -----
-    Vibration acts on the asperities alone, so that both together leave alpha R mu + (1 - alpha) mu_f. From this
-    follows, whatever the closure, that vibration alone is best where R mu < mu_f, at every pressure.
+    .. math::
+
+        \mu_\text{lubricant} = \alpha \mu + (1 - \alpha)\, \mu_f, \qquad
+        \mu_\text{combined} = \alpha R \mu + (1 - \alpha)\, \mu_f
+
+    with the friction ratio R, since vibration acts on the asperities only. For any friction model vibration alone is
+    therefore best where R mu < mu_f, at every pressure.
+
+    See Also
+    --------
+    best_lubrication_method : The method with the lowest coefficient.
     """
     mu = require_positive(friction_coefficient=friction_coefficient)
     ratio = require_non_negative(friction_ratio=friction_ratio)
-    share = asperity_load_fraction(lubricant, nominal_pressure=nominal_pressure)
-    film = (1 - share) * lubricant.film_coefficient
-    dry, ultrasonic, alone, both = np.broadcast_arrays(mu, ratio * mu, share * mu + film, share * ratio * mu + film)
-    return MethodCoefficients(dry, ultrasonic, alone, both)
+    fraction = asperity_load_fraction(lubricant, nominal_pressure=nominal_pressure)
+    film = (1 - fraction) * lubricant.film_coefficient
+    dry, ultrasonic, lubricated, combined = np.broadcast_arrays(
+        mu, ratio * mu, fraction * mu + film, fraction * ratio * mu + film
+    )
+    return LubricationCoefficients(dry, ultrasonic, lubricated, combined)
 
 
-def best_method(coefficients: MethodCoefficients, *, smallest_gain: float = 0.0) -> NDArray[np.str_]:
-    """Return the way of lubrication to choose, by the words of `Method`.
+def best_lubrication_method(coefficients: LubricationCoefficients, *, smallest_gain: float = 0.0) -> NDArray[np.str_]:
+    """Return the lubrication method with the lowest friction, as values of `LubricationMethod`.
 
     Parameters
     ----------
-    coefficients : MethodCoefficients
+    coefficients : LubricationCoefficients
     smallest_gain : float
-        Share by which vibration must lower the friction of a lubricated contact to be worth its power.
+        Smallest relative reduction of the friction of a lubricated contact that justifies vibration, from 0 to 1.
 
     Returns
     -------
@@ -281,12 +305,15 @@ def best_method(coefficients: MethodCoefficients, *, smallest_gain: float = 0.0)
     ------
     InvalidInput
         If the gain does not lie between 0 and 1.
+
+    Notes
+    -----
+    Of two equal methods the one without a lubricant is chosen.
     """
-    worth = 1 - float(require_within(0.0, 1.0, smallest_gain=smallest_gain))
+    threshold = 1 - float(require_within(0.0, 1.0, smallest_gain=smallest_gain))
     dry, ultrasonic, lubricant, combined = coefficients
-    still = np.where(dry <= lubricant, str(Method.DRY), str(Method.LUBRICANT))
-    wet = np.where(combined < worth * np.minimum(dry, lubricant), str(Method.COMBINED), still)
-    alone = (ultrasonic <= combined) & (
-        ultrasonic < np.minimum(dry, lubricant)
-    )  # of equals, the one without a lubricant
-    return np.where(alone, str(Method.ULTRASONIC), wet)
+    without_vibration = np.minimum(dry, lubricant)
+    best = np.where(dry <= lubricant, str(LubricationMethod.DRY), str(LubricationMethod.LUBRICANT))
+    best = np.where(combined < threshold * without_vibration, str(LubricationMethod.COMBINED), best)
+    vibration_alone = (ultrasonic <= combined) & (ultrasonic < without_vibration)
+    return np.where(vibration_alone, str(LubricationMethod.ULTRASONIC), best)

@@ -14,12 +14,15 @@ from sonolube.contact import (
     ExponentialHeights,
     GaussianHeights,
     HeightDistribution,
+    PerssonContact,
     RoughContact,
     normal_stiffness,
+    persson_area,
+    persson_separation,
+    persson_stiffness,
     real_contact_area,
     separation,
 )
-from sonolube.contact.persson import PerssonContact, persson_area, persson_separation, persson_stiffness
 from sonolube.errors import InvalidInput
 from sonolube.reference_solutions.boundary_element import boundary_element_contact
 from sonolube.surfaces import (

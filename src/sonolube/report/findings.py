@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from sonolube import __version__
-from sonolube.figure import rendered
-from sonolube.files import write_whole
+from sonolube.figure import render_figure
+from sonolube.files import write_atomically
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -101,10 +101,10 @@ def write_findings(
     files: list[Path] = []
     pictures = []
     for finding in figures:
-        png = rendered(finding.figure, "png")
+        png = render_figure(finding.figure, "png")
         for form in forms:
-            content = png if form == "png" else rendered(finding.figure, form)
-            files.append(write_whole(folder / f"{finding.name}.{form}", content))
+            content = png if form == "png" else render_figure(finding.figure, form)
+            files.append(write_atomically(folder / f"{finding.name}.{form}", content))
         pictures.append((finding, base64.b64encode(png).decode()))
     environment = Environment(
         loader=PackageLoader("sonolube.report"), autoescape=True, undefined=StrictUndefined, trim_blocks=True
@@ -112,7 +112,7 @@ def write_findings(
     page = environment.get_template("findings.html").render(
         title=title, asked=asked, facts=facts, tables=tables, pictures=pictures, notes=notes, versions=_versions()
     )
-    return [write_whole(folder / f"{name}.html", page), *files]
+    return [write_atomically(folder / f"{name}.html", page), *files]
 
 
 def _versions() -> str:

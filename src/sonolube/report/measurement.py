@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from sonolube import __version__
-from sonolube.figure import publication_style, rendered
-from sonolube.files import write_whole
+from sonolube.figure import publication_style, render_figure
+from sonolube.files import write_atomically
 from sonolube.report.measured.sheet import Sheet, SheetFigure, SheetTable, Value
 from sonolube.report.pin_on_disc_sheet import TestSheet, test_sheet_table
 
@@ -80,7 +80,7 @@ def write_measurement_report(
         pictures=pictures,
         test=None if report.test is None else test_sheet_table(report.test, report.sheets),
     )
-    return write_whole(path, page)
+    return write_atomically(path, page)
 
 
 def measurement_object(report: MeasurementReport) -> dict[str, Any]:
@@ -112,7 +112,7 @@ def _png(figure: SheetFigure) -> bytes:
     with publication_style():
         drawn = figure.draw()
         try:
-            return rendered(drawn, "png")
+            return render_figure(drawn, "png")
         finally:
             plt.close(drawn)
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from sonolube.errors import InvalidInput, suggestion
 from sonolube.report.measured.sheet import Sheet, Value
-from sonolube.units import engineering, to_si
+from sonolube.units import format_si, to_si
 from sonolube.vocabulary import quantities
 
 _ABSENT = "not stated"
@@ -146,7 +146,7 @@ def _coefficients(test: TestSheet, sheets: Sequence[Sheet]) -> list[tuple[str, s
     if not load:
         return []
     return [
-        (f"Coefficient of friction at {engineering(load, 'N')}, {sheet.title}", _over(value, load, "").text)
+        (f"Coefficient of friction at {format_si(load, 'N')}, {sheet.title}", _over(value, load, "").text)
         for sheet in sheets
         for value in sheet.values
         if value.name in ("friction_force", "steady_friction_force")

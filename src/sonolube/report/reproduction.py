@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from sonolube import __version__
-from sonolube.figure import publication_style, rendered
-from sonolube.files import write_whole
+from sonolube.figure import publication_style, render_figure
+from sonolube.files import write_atomically
 from sonolube.published import errata
 from sonolube.reproduce import ReportFigure, Reproduction, Row, Verdict
 
@@ -41,15 +41,15 @@ def write_report(
     InvalidInput
         If the folder cannot be written to.
     """
-    files = [write_whole(folder / "validation.json", json.dumps(validation_object(result), indent=2) + "\n")]
+    files = [write_atomically(folder / "validation.json", json.dumps(validation_object(result), indent=2) + "\n")]
     pictures: dict[str, str] = {}
     for done, figure in enumerate(result.figures, start=1):
         png, svg = _draw(figure)
-        files.append(write_whole(folder / "figures" / f"{figure.name}.png", png))
-        files.append(write_whole(folder / "figures" / f"{figure.name}.svg", svg))
+        files.append(write_atomically(folder / "figures" / f"{figure.name}.png", png))
+        files.append(write_atomically(folder / "figures" / f"{figure.name}.svg", svg))
         pictures[figure.name] = base64.b64encode(png).decode()
         advance(figure.title, done, len(result.figures))
-    return [write_whole(folder / "reproduction.html", _page(result, pictures)), *files]
+    return [write_atomically(folder / "reproduction.html", _page(result, pictures)), *files]
 
 
 def validation_object(result: Reproduction) -> dict[str, Any]:
@@ -97,7 +97,7 @@ def _draw(figure: ReportFigure) -> tuple[bytes, bytes]:
     with publication_style():
         drawn = figure.draw()
         try:
-            return rendered(drawn, "png"), rendered(drawn, "svg")
+            return render_figure(drawn, "png"), render_figure(drawn, "svg")
         finally:
             plt.close(drawn)
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from sonolube import __version__
 from sonolube.checks import Floats
-from sonolube.files import write_whole
+from sonolube.files import write_atomically
 from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:
@@ -103,4 +103,4 @@ def write_netcdf(results: "xr.Dataset", *, path: Path) -> Path:
     InvalidInput
         If the place cannot be written to.
     """
-    return write_whole(path, bytes(results.to_netcdf(engine="h5netcdf")))
+    return write_atomically(path, bytes(results.to_netcdf(engine="h5netcdf")))

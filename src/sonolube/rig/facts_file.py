@@ -32,7 +32,7 @@ from sonolube.rig.file.reader import rig_content, rig_from
 from sonolube.rig.file.section import Section
 from sonolube.rig.file.sections import RigFile, Text
 from sonolube.rig.file.structures import PinOnDiscSection
-from sonolube.units import kind_of, to_si
+from sonolube.units import to_si, unit_description
 from sonolube.vocabulary import unit_of
 
 _LARGEST_FILE = 1_000_000  # bytes
@@ -246,7 +246,7 @@ def _quantity(key: str, value: str | float, unit: str) -> float:
     """Number in SI from text with a unit; pure numbers, such as quality factors, may stand without quotes."""
     if unit:
         if not isinstance(value, str):
-            raise InvalidInput(f"{key} {value!r} has no unit; wanted {kind_of(unit)}, in quotes")
+            raise InvalidInput(f"{key} {value!r} has no unit; wanted {unit_description(unit)}, in quotes")
         return plausible_si(value, unit=unit, name=key)
     number = to_si(value, unit="", name=key) if isinstance(value, str) else value
     if not _LEAST_NUMBER <= number <= _LARGEST_NUMBER:

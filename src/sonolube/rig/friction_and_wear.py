@@ -4,11 +4,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats
-from sonolube.contact import GapMotion, harmonic_motion, load_balanced_motion
+from sonolube.contact import GapMotion, load_balanced_motion, sinusoidal_motion
 from sonolube.errors import InvalidInput
 from sonolube.friction.models import MeanGap
 from sonolube.rig.record import Rig
-from sonolube.wear.cube import DEFAULT_WEAR_MODEL, WEAR_MODELS
+from sonolube.wear import DEFAULT_WEAR_MODEL, WEAR_MODELS
 
 _ANY_FREQUENCY = 1.0  # Hz; of models that are not rate-dependent
 
@@ -80,7 +80,7 @@ def prescribed_sine(rig: Rig) -> GapMotion:
     model = rig.friction_model
     if rig.drive is None and model.rate_dependent:
         raise InvalidInput(f"{rig.title}: drive.frequency is missing; friction model {model.name} needs it")
-    motion = harmonic_motion(
+    motion = sinusoidal_motion(
         rig.contact,
         normal_load=rig.normal_load,
         vibration_amplitude=rig.vibration_amplitude,

@@ -9,16 +9,16 @@ from sonolube.checks import Floats, require_positive
 from sonolube.errors import MissingProperty, UnknownName
 from sonolube.friction import (
     BoundaryLubricant,
-    MethodCoefficients,
+    LubricationCoefficients,
     asperity_load_fraction,
-    best_method,
-    method_coefficients,
+    best_lubrication_method,
+    lubrication_coefficients,
 )
 from sonolube.materials import Material
 from sonolube.rig.friction_and_wear import friction_ratios, prescribed_sine
 from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.record import Rig
-from sonolube.wear.mechanism import CrystalStructure, WearAssessment, WearingBody, assess_wear
+from sonolube.wear import CrystalStructure, WearMechanismAssessment, WearPairBody, assess_wear_mechanism
 
 _SPAN = 10.0  # how far the map reaches to either side of the rig's point, as a factor
 _RESOLUTION = 121
@@ -38,7 +38,7 @@ class LubricationPoint:
         Coefficient of dry friction. []
     asperity_load_fraction : float
         Share of the load that asperities carry through the lubricant. []
-    coefficients : MethodCoefficients
+    coefficients : LubricationCoefficients
         Coefficients of the four ways.
     best : str
         Method with the least friction.
@@ -52,7 +52,7 @@ class LubricationPoint:
     nominal_pressure: float
     friction_coefficient: float
     asperity_load_fraction: float
-    coefficients: MethodCoefficients
+    coefficients: LubricationCoefficients
     best: str
     friction_model: str
     caveats: tuple[str, ...]
@@ -105,7 +105,7 @@ def lubrication_point(rig: Rig, *, lubricant: BoundaryLubricant, smallest_gain: 
         friction_coefficient=rig.friction_coefficient,
         asperity_load_fraction=float(asperity_load_fraction(lubricant, nominal_pressure=pressure)),
         coefficients=found,
-        best=str(best_method(found, smallest_gain=smallest_gain)),
+        best=str(best_lubrication_method(found, smallest_gain=smallest_gain)),
         friction_model=rig.friction_model.name,
         caveats=("load sharing in proportion to the pressure: the simplest law that D Fig. 4.28 allows",),
     )
@@ -139,11 +139,13 @@ def lubrication_map(rig: Rig, *, lubricant: BoundaryLubricant, smallest_gain: fl
     speeds, pressures = rig.sliding_speed * factors, rig.normal_load / rig.contact.nominal_area * factors
     found = _coefficients(rig, lubricant, sliding_speed=speeds, nominal_pressure=pressures[:, np.newaxis])
     return LubricationMap(
-        sliding_speed=speeds, nominal_pressure=pressures, best=best_method(found, smallest_gain=smallest_gain)
+        sliding_speed=speeds,
+        nominal_pressure=pressures,
+        best=best_lubrication_method(found, smallest_gain=smallest_gain),
     )
 
 
-def wear_of_materials(first: Material, second: Material) -> WearAssessment:
+def wear_of_materials(first: Material, second: Material) -> WearMechanismAssessment:
     """Return the wear mechanism and the effect of vibration for two materials of the catalogue, by rule.
 
     Raises
@@ -153,23 +155,23 @@ def wear_of_materials(first: Material, second: Material) -> WearAssessment:
     UnknownName
         If the rule does not know a crystal structure.
     """
-    return assess_wear(_wearing(first), _wearing(second))
+    return assess_wear_mechanism(_wearing(first), _wearing(second))
 
 
-def _wearing(body: Material) -> WearingBody:
+def _wearing(body: Material) -> WearPairBody:
     if body.crystal_structure is None:
         raise MissingProperty(f"{body.name} has no crystal_structure: no source is known, and the rule needs it")
     name = body.crystal_structure.text.replace("close packed", "close-packed")
     if name not in list(CrystalStructure):
         raise UnknownName.among(list(CrystalStructure), kind="crystal structure", name=name)
-    return WearingBody(name=body.title, hardness=body.value("hardness"), structure=CrystalStructure(name))
+    return WearPairBody(name=body.title, hardness=body.value("hardness"), structure=CrystalStructure(name))
 
 
 def _coefficients(
     rig: Rig, lubricant: BoundaryLubricant, *, sliding_speed: ArrayLike, nominal_pressure: ArrayLike
-) -> MethodCoefficients:
+) -> LubricationCoefficients:
     require_positive(sliding_speed=sliding_speed)
-    return method_coefficients(
+    return lubrication_coefficients(
         lubricant,
         friction_coefficient=rig.friction_coefficient,
         friction_ratio=friction_ratios(rig, prescribed_sine(rig), sliding_speed=sliding_speed),

@@ -5,17 +5,17 @@ from dataclasses import dataclass, replace
 from sonolube.contact import (
     contact_caveats,
     contact_count,
-    harmonic_motion,
+    cube_tangential_stiffness,
     normal_stiffness,
     real_contact_area,
-    tangential_stiffness,
+    sinusoidal_motion,
 )
 from sonolube.friction.models import FRICTION_MODELS, FrictionModel
 from sonolube.rig.excitation import amplifier_power
 from sonolube.rig.friction_and_wear import friction_ratio, prescribed_sine
 from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.record import Rig
-from sonolube.wear.cube import DEFAULT_WEAR_MODEL, WEAR_MODELS, cube_wear_rate, vibrating_cube_wear_rate
+from sonolube.wear import DEFAULT_WEAR_MODEL, WEAR_MODELS, cube_wear_rate, vibrating_cube_wear_rate
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -138,7 +138,7 @@ def contact_point(rig: Rig) -> ContactPoint:
         real_contact_area=float(real_contact_area(rig.contact, separation=gap)),
         contact_count=float(contact_count(rig.contact, separation=gap)),
         normal_stiffness=float(normal_stiffness(rig.contact, separation=gap)),
-        tangential_stiffness=float(tangential_stiffness(rig.contact, separation=gap)),
+        tangential_stiffness=float(cube_tangential_stiffness(rig.contact, separation=gap)),
         mindlin_ratio=rig.contact.pair.mindlin_ratio,
         caveats=contact_caveats(rig.contact, separation=gap),
     )
@@ -290,7 +290,7 @@ def _wear_ratio(rig: Rig, model: str) -> float:
         still = cube_wear_rate(rig.contact, normal_load=load)
         return float(vibrating_cube_wear_rate(rig.contact, normal_load=load, vibration_amplitude=amplitude) / still)
     frequency = 1.0 if rig.drive is None else rig.drive.frequency  # without effect on wear models
-    sine = harmonic_motion(rig.contact, normal_load=load, vibration_amplitude=amplitude, frequency=frequency)
+    sine = sinusoidal_motion(rig.contact, normal_load=load, vibration_amplitude=amplitude, frequency=frequency)
     return float(WEAR_MODELS.named(model)(rig.contact, sine))
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats
-from sonolube.contact import HarmonicMotions, separation
+from sonolube.contact import GapMotionBatch, separation
 from sonolube.dynamics import Status, SteadyStates
 from sonolube.dynamics.backend import Backend
 from sonolube.dynamics.kernels.peak_velocity import peak_velocities
@@ -231,7 +231,7 @@ def _friction(rig: Rig, states: SteadyStates, place: NDArray[np.intp], speeds: F
     moving = open_points[speeds[open_points] > 0]
     known = states.status != Status.NOT_CONVERGED
     if moving.size:
-        motions = HarmonicMotions(
+        motions = GapMotionBatch(
             mean_displacement=states.mean_displacement[known],
             harmonics=states.harmonics[known],
             frequency=states.frequency[known],

@@ -8,7 +8,7 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.figure import COLOURS, LINES, MARKERS
-from sonolube.units import engineering
+from sonolube.units import format_si
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -25,7 +25,7 @@ def voltage_figure(study: "xr.Dataset") -> "Figure":
     volts = study["voltage_peak_to_peak"].values
     shown = np.unique(np.linspace(0, volts.size - 1, _PERIODS + 1).astype(int)[1:])
     for index, point in enumerate(shown):
-        label = engineering(float(volts[point]), "V")
+        label = format_si(float(volts[point]), "V")
         turns, x = _whole_period(study["displacement"].values[point])
         _, f = _whole_period(study["normal_force"].values[point])
         period.plot(turns, 1e6 * x, linestyle=LINES[index], color=COLOURS[index])
@@ -155,7 +155,7 @@ def _style(index: int) -> dict[str, Any]:
 
 
 def _label(curve: "xr.Dataset") -> str:
-    return engineering(float(curve["voltage_peak_to_peak"]), "V")
+    return format_si(float(curve["voltage_peak_to_peak"]), "V")
 
 
 def _whole_period(values: Floats) -> tuple[Floats, Floats]:

@@ -15,7 +15,7 @@ from sonolube.rig.driven_rig import DrivenRig, driven_rig
 from sonolube.rig.excitation import start_up_ramp, voltage_harmonics, waveform_of
 from sonolube.rig.linear_response import gap_law_of
 from sonolube.rig.record import Rig
-from sonolube.units import engineering
+from sonolube.units import format_si
 
 _SAMPLES = 1024
 _SEGMENTS = 16  # of a motion whose beat is too fast or too slow to cut at
@@ -115,11 +115,9 @@ def steady_vibration(rig: Rig) -> SteadyVibration:
     if balanced.status == Status.MULTISTABLE and found.order == 1:
         for states in (balanced, _balanced(rig, upper_branch=True)):
             if _same(states, attained):
-                appears = engineering(float(states.vibration_amplitude), "m")
+                appears = format_si(float(states.vibration_amplitude), "m")
                 return _of_balance(rig, states, f"{route} that of {appears} appears{states.contact_loss_note(())}")
-    early = (
-        "" if attained.settled else f"; followed for {engineering(attained.marched_time, 's')}, before it has settled"
-    )
+    early = "" if attained.settled else f"; followed for {format_si(attained.marched_time, 's')}, before it has settled"
     return _of_march(rig, attained, balanced, f"{route} another motion appears: {found.description}{early}")
 
 
@@ -179,7 +177,7 @@ def _marched(rig: DrivenRig) -> LongTimeResponse:
 
 
 def _why_marched(states: SteadyStates) -> str:
-    this, other = (engineering(float(each), "m") for each in (states.vibration_amplitude, states.coexisting_amplitude))
+    this, other = (format_si(float(each), "m") for each in (states.vibration_amplitude, states.coexisting_amplitude))
     if states.status == Status.UNSTABLE:
         return f"unstable: small disturbances of the vibration of {this} at the period of the drive grow"
     if states.status == Status.MULTISTABLE:
@@ -192,7 +190,7 @@ def _why_marched(states: SteadyStates) -> str:
 def _from_rest(drive: Drive) -> str:
     if drive.ramp_duration == 0:
         return "switched on at once,"
-    return f"with the voltage brought up by a {drive.ramp_shape} ramp of {engineering(drive.ramp_duration, 's')},"
+    return f"with the voltage brought up by a {drive.ramp_shape} ramp of {format_si(drive.ramp_duration, 's')},"
 
 
 def _same(states: SteadyStates, attained: LongTimeResponse) -> bool:

@@ -9,9 +9,9 @@ from sonolube.contact import (
     GapMotion,
     RoughContact,
     decay_length,
-    harmonic_motion,
     load_balanced_motion,
     separation,
+    sinusoidal_motion,
 )
 from sonolube.errors import OutsideRange
 from sonolube.friction import (
@@ -99,7 +99,7 @@ def _sine(test: FrictionTest, nominal_area_factor: float = 1.0) -> tuple[RoughCo
 def _cached_sine(
     contact: RoughContact, load: float, amplitude: float, frequency: float
 ) -> tuple[RoughContact, GapMotion]:
-    motion = harmonic_motion(contact, normal_load=load, vibration_amplitude=amplitude, frequency=frequency)
+    motion = sinusoidal_motion(contact, normal_load=load, vibration_amplitude=amplitude, frequency=frequency)
     return contact, motion
 
 

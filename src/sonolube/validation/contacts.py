@@ -11,7 +11,7 @@ from sonolube.contact import (
     ElasticBody,
     RoughContact,
     contact_pair,
-    like_bodies_mindlin_ratio,
+    identical_materials_mindlin_ratio,
 )
 from sonolube.friction import dong_2015_half_period_ratio
 from sonolube.published import statement, table
@@ -56,7 +56,7 @@ def wear_contact() -> RoughContact:
             effective_modulus=_value("3.2", "effective_modulus"),
             poisson_ratio=poisson_ratio,
             yield_strength=_value("3.2", "yield_strength"),
-            mindlin_ratio=like_bodies_mindlin_ratio(poisson_ratio=poisson_ratio),
+            mindlin_ratio=identical_materials_mindlin_ratio(poisson_ratio=poisson_ratio),
         ),
         nominal_area=_value("3.2", "nominal_area"),
     )

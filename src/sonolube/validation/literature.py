@@ -17,10 +17,10 @@ import numpy as np
 from sonolube.contact import (
     GapMotion,
     RoughContact,
-    harmonic_motion,
     load_balanced_motion,
     normal_stiffness,
     separation,
+    sinusoidal_motion,
 )
 from sonolube.errors import ModelRangeWarning, OutsideRange
 from sonolube.friction import (
@@ -28,18 +28,18 @@ from sonolube.friction import (
     Holder,
     LuGreFriction,
     SpringContact,
-    approximate_oscillation_ratio,
-    balanced_approach,
+    approximate_normal_ratio,
+    combined_oscillation_ratio,
     critical_speed,
     dahl_under_vibration,
-    driven_slide,
     elliptical_traction_ratio,
+    load_balanced_approach,
     longitudinal_oscillation_ratio,
     lugre_under_vibration,
     normal_oscillation_ratio,
     oblique_vibration_ratio,
-    oscillation_ratio,
     parallel_vibration_ratio,
+    spring_driven_slider_force,
 )
 from sonolube.validation.closures import ClosureVariant
 from sonolube.validation.earlier_tests import InPlaneTest
@@ -144,7 +144,7 @@ def _under_normal_oscillation(test: FrictionTest, springs: SpringContact, at_res
     return float(
         normal_oscillation_ratio(
             springs,
-            approach=balanced_approach(springs, approach=at_rest, normal_amplitude=a),
+            approach=load_balanced_approach(springs, approach=at_rest, normal_amplitude=a),
             normal_amplitude=a,
             frequency=test.frequency,
             sliding_speed=test.sliding_speed,
@@ -157,7 +157,7 @@ def _spring_approximate(test: FrictionTest) -> float:
     critical = critical_speed(springs, frequency=test.frequency, normal_amplitude=a)
     with _range_warnings_as_refusals():
         return float(
-            approximate_oscillation_ratio(
+            approximate_normal_ratio(
                 springs,
                 approach=_load_over_stiffness(test),
                 normal_amplitude=a,
@@ -174,9 +174,9 @@ def _spring_in_plane(
     springs, a = _springs(test, mindlin_ratio), test.vibration_amplitude
     with _range_warnings_as_refusals():
         return float(
-            oscillation_ratio(
+            combined_oscillation_ratio(
                 springs,
-                approach=balanced_approach(springs, approach=_load_over_stiffness(test), normal_amplitude=a),
+                approach=load_balanced_approach(springs, approach=_load_over_stiffness(test), normal_amplitude=a),
                 frequency=test.frequency,
                 sliding_speed=test.sliding_speed,
                 normal_amplitude=a,
@@ -251,7 +251,9 @@ def _lugre(
     motion = _balanced_sine(test.contact, test.normal_load, test.vibration_amplitude, test.frequency)
     speed = test.sliding_speed
     return float(
-        lugre_under_vibration(law, motion, sliding_speed=speed, in_plane_fraction=in_plane_fraction, phase=phase)
+        lugre_under_vibration(
+            law, motion, sliding_speed=speed, in_plane_fraction=in_plane_fraction, in_plane_phase=phase
+        )
     )
 
 
@@ -264,7 +266,7 @@ def _dahl_driven(rig: VibratedRig) -> float:
     stiffness = rig.contact.pair.mindlin_ratio * rig.normal_load / _load_over_stiffness(rig)
     own = sqrt(rig.holder_stiffness / rig.holder_mass)
     damping = 2 * _DAMPING * rig.holder_mass * own
-    slide = driven_slide(
+    slide = spring_driven_slider_force(
         DahlFriction(coulomb_friction_force=steady, contact_stiffness=stiffness),
         Holder(holder_stiffness=rig.holder_stiffness, holder_damping=damping, holder_mass=rig.holder_mass),
         sliding_speed=rig.sliding_speed,
@@ -273,7 +275,7 @@ def _dahl_driven(rig: VibratedRig) -> float:
         settling_time=_SETTLING * 2 * pi / own,
         duration=2 * pi / own,
     )
-    return slide.drive_force / steady
+    return slide.mean_drive_force / steady
 
 
 @contextmanager
@@ -316,7 +318,7 @@ def _balanced_separation(contact: RoughContact, load: float, amplitude: float, f
 
 @cache
 def _balanced_sine(contact: RoughContact, load: float, amplitude: float, frequency: float) -> GapMotion:
-    sine = harmonic_motion(contact, normal_load=load, vibration_amplitude=amplitude, frequency=frequency)
+    sine = sinusoidal_motion(contact, normal_load=load, vibration_amplitude=amplitude, frequency=frequency)
     return load_balanced_motion(contact, sine)
 
 

@@ -1,78 +1,16 @@
-"""Wear rates by Archard's law and by the cube model of Dong (2015), with and without normal vibration."""
-
-from collections.abc import Callable
-from dataclasses import dataclass
+"""Wear rates by the cube model of Dong (2015), with and without normal vibration."""
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sonolube.checks import Floats, require_non_negative, require_positive
-from sonolube.contact.half_period_mean import separating_half_period_mean, separating_mean
-from sonolube.contact.motion import GapMotion, converged_mean, load_balanced_motion
+from sonolube.checks import Floats, require_positive
+from sonolube.contact.gap_motion import GapMotion, load_balanced_motion, richardson_period_mean
 from sonolube.contact.rough import RoughContact, real_contact_area, separation
-from sonolube.variants import VariantTable
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class ArchardWear:
-    """Archard's law for one pair of materials.
-
-    Parameters
-    ----------
-    wear_coefficient : float
-        Share of contacts that shed a particle, K. []
-    hardness : float
-        Indentation hardness of the softer body. [Pa]
-
-    Raises
-    ------
-    InvalidInput
-        If a value is not positive and finite.
-
-    Notes
-    -----
-    For steady wear in one regime: K changes by orders of magnitude where mild wear turns severe. [1]_
-
-    References
-    ----------
-    .. [1] J. F. Archard, J. Appl. Phys. 24, 981 (1953). doi:10.1063/1.1721448
-    """
-
-    wear_coefficient: float
-    hardness: float
-
-    def __post_init__(self) -> None:
-        require_positive(wear_coefficient=self.wear_coefficient, hardness=self.hardness)
-
-
-def archard_wear_rate(law: ArchardWear, *, normal_load: ArrayLike) -> Floats:
-    """Return the volume lost per sliding distance after Archard. [m2]
-
-    Parameters
-    ----------
-    law : ArchardWear
-    normal_load : array_like, any shape
-        Force pressing the bodies together. [N]
-
-    Returns
-    -------
-    ndarray, shape of `normal_load`
-
-    Raises
-    ------
-    InvalidInput
-        If a load is negative or not finite.
-
-    References
-    ----------
-    .. [1] D 1.6.
-    """
-    load = require_non_negative(normal_load=normal_load)
-    return law.wear_coefficient * load / law.hardness  # D 1.6
+from sonolube.contact.separating_half_period import sampled_separating_mean, separating_half_period_mean
 
 
 def cube_wear_rate(contact: RoughContact, *, normal_load: ArrayLike) -> Floats:
-    """Return the volume lost per sliding distance in the cube model. [m2]
+    r"""Return the volume lost per sliding distance by the cube model of Dong (2015). [m2]
 
     Parameters
     ----------
@@ -91,8 +29,15 @@ def cube_wear_rate(contact: RoughContact, *, normal_load: ArrayLike) -> Floats:
 
     Notes
     -----
-    Half the cube, A_r d, breaks off each time the bodies slide once along the nominal contact. D 3.27 prints
-    4 sqrt(A_n)/pi for that distance; the wear rates of D Table 3.4 are those of sqrt(A_n).
+    .. math:: W = \frac{A_r\, d}{2 D}, \qquad D = \sqrt{A_n} \tag{D 3.26}
+
+    Half the volume of the cube, the real contact area A_r times the separation d, is lost whenever the bodies slide by
+    the length D of the nominal contact. D 3.27 prints 4 sqrt(A_n)/pi for that distance; the wear rates of D Table 3.4
+    are those of sqrt(A_n).
+
+    See Also
+    --------
+    vibrating_cube_wear_rate : The same under normal vibration.
 
     References
     ----------
@@ -105,7 +50,7 @@ def cube_wear_rate(contact: RoughContact, *, normal_load: ArrayLike) -> Floats:
 def vibrating_cube_wear_rate(
     contact: RoughContact, *, normal_load: ArrayLike, vibration_amplitude: ArrayLike
 ) -> Floats:
-    """Return the volume lost per sliding distance in the cube model under normal vibration. [m2]
+    r"""Return the volume lost per sliding distance by the cube model under a sinusoidal normal vibration. [m2]
 
     Parameters
     ----------
@@ -124,12 +69,19 @@ def vibrating_cube_wear_rate(
     InvalidInput
         If a load is not positive, or an amplitude negative.
     OutsideRange
-        If no separation of the height law's range carries a load.
+        If no separation in the range of the height distribution carries a load.
 
     Notes
     -----
-    `cube_wear_rate` averaged over the half period in which the displacement is positive, as the friction of the model
-    is. D 3.28 prints the mean over the whole period, by which vibration would raise the wear; its tables hold this one.
+    .. math:: W' = \frac1\pi \int_0^\pi \frac{A_r(d')\, d'}{2 D}\, \mathrm{d}\theta, \qquad d' = d + a \sin\theta
+
+    The average of `cube_wear_rate` over the half period in which the displacement is positive, as for the friction of
+    the model. D 3.28 prints the average over the full period, which gives an increase of wear by vibration; the tables
+    of D follow from this one.
+
+    See Also
+    --------
+    half_period_wear_ratio : Ratio to the wear without vibration, for any motion of the gap.
 
     References
     ----------
@@ -143,7 +95,7 @@ def vibrating_cube_wear_rate(
 
 
 def full_period_wear_ratio(contact: RoughContact, motion: GapMotion) -> Floats:
-    """Return the ratio of wear with and without vibration by the cube model averaged over the full period. []
+    r"""Return the ratio of wear rates with and without vibration by the cube model over the full period. []
 
     Parameters
     ----------
@@ -157,24 +109,31 @@ def full_period_wear_ratio(contact: RoughContact, motion: GapMotion) -> Floats:
     Raises
     ------
     OutsideRange
-        If the motion leaves the height law's range.
+        If the motion leaves the range of the height distribution.
 
     Notes
     -----
-    About an unmoved mean the ratio exceeds 1: vibration would raise the wear.
+    .. math:: \frac{W'}{W} = \frac1T \int_0^T \frac{A_r(d + x)\, (d + x)}{A_r(d)\, d}\, \mathrm{d}t
+
+    About the mean gap at rest the ratio exceeds 1.
+
+    See Also
+    --------
+    half_period_wear_ratio : Average over the separating half period, by which the tables of D were computed.
+    load_balanced_wear_ratio : The same average about the mean gap at which the mean force equals the load.
 
     References
     ----------
     .. [1] D 3.28.
     """
     d, at_rest = _separation_and_rate(contact, motion)
-    return converged_mean(
+    return richardson_period_mean(
         lambda sampled: np.asarray(np.mean(_wear_rate(contact, d + sampled.displacement) / at_rest)), motion
     )
 
 
 def half_period_wear_ratio(contact: RoughContact, motion: GapMotion) -> Floats:
-    """Return the ratio of wear with and without vibration by the cube model over the separating half period. []
+    r"""Return the ratio of wear rates with and without vibration by the cube model over the separating half period. []
 
     Parameters
     ----------
@@ -188,19 +147,25 @@ def half_period_wear_ratio(contact: RoughContact, motion: GapMotion) -> Floats:
     Raises
     ------
     OutsideRange
-        If the motion leaves the height law's range.
+        If the motion leaves the range of the height distribution.
 
     Notes
     -----
-    By this mean D computed its tables. `vibrating_cube_wear_rate` gives the same for a sine about an unmoved mean.
+    .. math:: \frac{W'}{W} = \frac2T \int_{x > 0} \frac{A_r(d + x)\, (d + x)}{A_r(d)\, d}\, \mathrm{d}t
+
+    for a sine; of other motions the average over the time with x > 0. The tables of D follow from this average.
+
+    See Also
+    --------
+    vibrating_cube_wear_rate : The wear rate under a sine about the separation at rest, whose ratio is this one.
 
     References
     ----------
     .. [1] D 3.15 for friction, and Table 3.4.
     """
     d, at_rest = _separation_and_rate(contact, motion)
-    return converged_mean(
-        lambda sampled: separating_mean(
+    return richardson_period_mean(
+        lambda sampled: sampled_separating_mean(
             lambda x: _wear_rate(contact, d + x) / at_rest, displacement=sampled.displacement
         ),
         motion,
@@ -208,13 +173,13 @@ def half_period_wear_ratio(contact: RoughContact, motion: GapMotion) -> Floats:
 
 
 def load_balanced_wear_ratio(contact: RoughContact, motion: GapMotion) -> Floats:
-    """Return the ratio of wear with and without vibration by the cube model about the load-balanced mean gap. []
+    r"""Return the ratio of wear rates with and without vibration by the cube model about the load-balanced mean gap. []
 
     Parameters
     ----------
     contact : RoughContact
     motion : GapMotion
-        Its own mean does not matter.
+        The mean of the motion has no effect.
 
     Returns
     -------
@@ -223,101 +188,26 @@ def load_balanced_wear_ratio(contact: RoughContact, motion: GapMotion) -> Floats
     Raises
     ------
     OutsideRange
-        If the motion leaves the height law's range.
+        If the motion leaves the range of the height distribution.
 
     Notes
     -----
-    With the area in proportion to the force, its mean stays that at rest, and the ratio differs from 1 only by how
-    much lower the cube is while it carries: 1 + [l ln I0(a/l) - a I1(a/l)/I0(a/l)]/d.
+    The average of `full_period_wear_ratio` under `load_balanced_motion`. With exponential heights the area is
+    proportional to the force, so that its mean remains that at rest; for a sine of amplitude a and the decay length l
+
+    .. math:: \frac{W'}{W} = 1 + \frac1d \left[ l \ln I_0\!\left( \frac al \right)
+              - a\, \frac{I_1(a/l)}{I_0(a/l)} \right]
     """
     return full_period_wear_ratio(contact, load_balanced_motion(contact, motion))
 
 
-WEAR_MODELS: VariantTable[Callable[[RoughContact, GapMotion], Floats]] = VariantTable(
-    "wear model",
-    {
-        "dong_2015_full_period": "sonolube.wear.cube:full_period_wear_ratio",
-        "dong_2015_half_period": "sonolube.wear.cube:half_period_wear_ratio",
-        "dong_2015_load_balanced": "sonolube.wear.cube:load_balanced_wear_ratio",
-    },
-)
-"""Models of the wear ratio under a given motion of the gap, by name; a new model takes its file and one line here."""
-
-DEFAULT_WEAR_MODEL = "dong_2015_half_period"
-"""Model by which the wear tables of the dissertation were computed."""
-
-
-def specific_wear_rate(*, wear_rate: ArrayLike, normal_load: ArrayLike) -> Floats:
-    """Return the volume lost per sliding distance and load. [m2/N]
-
-    Parameters
-    ----------
-    wear_rate : array_like
-        Volume lost per sliding distance. [m2]
-    normal_load : array_like, broadcast against `wear_rate`
-        Force pressing the bodies together. [N]
-
-    Returns
-    -------
-    ndarray, shape of the broadcast arguments
-
-    Raises
-    ------
-    InvalidInput
-        If a rate is negative, a load not positive, or a value not finite.
-    """
-    return require_non_negative(wear_rate=wear_rate) / require_positive(normal_load=normal_load)
-
-
-def mass_loss(*, wear_volume: ArrayLike, density: ArrayLike) -> Floats:
-    """Return the mass of a worn volume. [kg]
-
-    Parameters
-    ----------
-    wear_volume : array_like
-        Volume worn away. [m3]
-    density : array_like, broadcast against `wear_volume`
-        Mass density of the body that lost it. [kg/m3]
-
-    Returns
-    -------
-    ndarray, shape of the broadcast arguments
-
-    Raises
-    ------
-    InvalidInput
-        If a volume is negative, a density not positive, or a value not finite.
-    """
-    return require_non_negative(wear_volume=wear_volume) * require_positive(density=density)
-
-
-def vibration_contact_count(*, frequency: ArrayLike, duration: ArrayLike) -> Floats:
-    """Return how often a vibration brings the surfaces together. []
-
-    Parameters
-    ----------
-    frequency : array_like
-        Frequency of the vibration. [Hz]
-    duration : array_like, broadcast against `frequency`
-        Time for which it lasts. [s]
-
-    Returns
-    -------
-    ndarray, shape of the broadcast arguments
-
-    Raises
-    ------
-    InvalidInput
-        If a frequency is not positive, a duration negative, or a value not finite.
-    """
-    return require_positive(frequency=frequency) * require_non_negative(duration=duration)
-
-
 def _separation_and_rate(contact: RoughContact, motion: GapMotion) -> tuple[Floats, Floats]:
+    """Return the separation [m] and the wear rate [m2] at rest."""
     d = separation(contact, normal_load=motion.normal_load)
     return d, _wear_rate(contact, require_positive(separation=d))
 
 
 def _wear_rate(contact: RoughContact, d: Floats) -> Floats:
+    """Return half the volume of the cube over the length of the nominal contact. [m2]"""
     rate: Floats = real_contact_area(contact, separation=d) * d / (2 * np.sqrt(contact.nominal_area))  # D 3.26, 3.27
     return rate

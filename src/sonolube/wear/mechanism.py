@@ -1,4 +1,4 @@
-"""Which kind of wear a pair of materials runs into, and what vibration did to pairs like it: a rule, not a law."""
+"""Wear mechanism of a material pair, and the effect of vibration on its wear, by an empirical rule from six pairs."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -6,18 +6,19 @@ from enum import StrEnum
 from sonolube.checks import require_positive
 
 _PLOUGHED_BELOW = 2e9
-"""Hardness below which the softer body is ploughed away, in Pa.
+"""Hardness below which the softer body wears by ploughing, in Pa.
 
-Aluminium 2024 with 1.34 GPa was, stainless steel with 2.13 GPa was not (D Tables 2.14 and 2.15)."""
+Between aluminium 2024 with 1.34 GPa, which did, and stainless steel with 2.13 GPa, which did not (D Tables 2.14 and
+2.15)."""
 
 _PLOUGHING_RATIO = 1.5
-"""Hardness of a body that ploughs over that of the other. 1.58 to 1.91 (steel on aluminium) did."""
+"""Smallest ratio of the hardnesses for ploughing; 1.58 to 1.91 (steel on aluminium) were observed."""
 
 _EVIDENCE = "D 2.5: six pairs, one test each, of which one wore mainly by abrasion and two have titanium."
 
 
 class CrystalStructure(StrEnum):
-    """How the atoms of a body are stacked."""
+    """Crystal structure of a body."""
 
     FACE_CENTRED_CUBIC = "face-centred cubic"
     BODY_CENTRED_CUBIC = "body-centred cubic"
@@ -25,32 +26,32 @@ class CrystalStructure(StrEnum):
     NOT_A_METAL = "not a metal"
 
 
-class WearKind(StrEnum):
-    """What wears a contact in the main; the other kind is there too."""
+class WearMechanism(StrEnum):
+    """Dominant wear mechanism of a contact; the other one occurs beside it."""
 
     ABRASIVE = "abrasive"
     ADHESIVE = "adhesive"
 
 
 class VibrationEffect(StrEnum):
-    """What vibration did to the wear of pairs like the one asked for."""
+    """Effect of vibration on the wear of comparable pairs."""
 
     LESS_WEAR = "less wear"
     MORE_WEAR = "more wear"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class WearingBody:
-    """One body of a pair, as the rule sees it.
+class WearPairBody:
+    """Properties of one body of a wear pair that the rule uses.
 
     Parameters
     ----------
     name : str
-        Its name in reasons.
+        Name of the body in the reasons.
     hardness : float
         Indentation hardness. [Pa]
     structure : CrystalStructure
-        How its atoms are stacked.
+        Crystal structure.
 
     Raises
     ------
@@ -67,82 +68,90 @@ class WearingBody:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class WearAssessment:
-    """What the rule says of a pair, and why.
+class WearMechanismAssessment:
+    """Wear mechanism and effect of vibration for a pair, with reasons and evidence.
 
     Parameters
     ----------
-    kind : WearKind
-        The kind of wear to expect in the main.
-    effect : VibrationEffect
-        What vibration did to pairs like it.
+    mechanism : WearMechanism
+        Dominant wear mechanism to expect.
+    vibration_effect : VibrationEffect
+        Effect of vibration on the wear of comparable pairs.
     reasons : tuple of str
-        Why, each in one line.
+        Reasons of both, each in one line.
     evidence : tuple of str
-        What the reasons rest on, and what they do not cover.
+        Observations behind the reasons, and the limits of their range.
     """
 
-    kind: WearKind
-    effect: VibrationEffect
+    mechanism: WearMechanism
+    vibration_effect: VibrationEffect
     reasons: tuple[str, ...]
     evidence: tuple[str, ...]
 
 
-def assess_wear(first: WearingBody, second: WearingBody) -> WearAssessment:
-    """Return the kind of wear to expect between two bodies, and what vibration did to pairs like them.
+def assess_wear_mechanism(first: WearPairBody, second: WearPairBody) -> WearMechanismAssessment:
+    """Return the wear mechanism of two bodies and the effect of vibration, by the rule of D 2.5.
 
     Parameters
     ----------
-    first, second : WearingBody
+    first, second : WearPairBody
         The bodies, in either order.
 
     Returns
     -------
-    WearAssessment
+    WearMechanismAssessment
 
     Notes
     -----
-    A rule drawn from six pairs, which it sorts as D Table 2.14 does: no law, and no number follows from it. Hardness
-    alone does not sort them: alumina on M50 steel has the ratio of steel on aluminium, and adheres. Titanium is the one
-    hexagonal metal among them, so that its structure, its ductility and its chemistry cannot be told apart.
+    The rule classifies six pairs as D Table 2.14 does; it is not a law and gives no number. A softer body below 2 GPa
+    is ploughed by a body at least 1.5 times as hard: abrasive wear. All other pairs wear by adhesion. The hardness
+    ratio alone does not separate them: alumina on M50 steel has the ratio of steel on aluminium, and wears by adhesion.
+    Wear increased under vibration for the pairs with titanium, the only hexagonal metal among them, so that the effects
+    of structure, ductility and chemistry cannot be separated.
 
     References
     ----------
     .. [1] D 2.5.6, Tables 2.14 and 2.15.
     """
     softer, harder = sorted((first, second), key=lambda body: body.hardness)
-    kind, why_kind = _kind(softer, harder)
-    effect, why_effect = _effect(first, second)
-    return WearAssessment(
-        kind=kind, effect=effect, reasons=(why_kind, why_effect), evidence=(_EVIDENCE, *_outside(first, second))
+    mechanism, mechanism_reason = _mechanism(softer, harder)
+    effect, effect_reason = _vibration_effect(first, second)
+    return WearMechanismAssessment(
+        mechanism=mechanism,
+        vibration_effect=effect,
+        reasons=(mechanism_reason, effect_reason),
+        evidence=(_EVIDENCE, *_untested(first, second)),
     )
 
 
-def _kind(softer: WearingBody, harder: WearingBody) -> tuple[WearKind, str]:
+def _mechanism(softer: WearPairBody, harder: WearPairBody) -> tuple[WearMechanism, str]:
+    """Return the wear mechanism by the hardnesses, and the reason."""
     ratio = harder.hardness / softer.hardness
     compared = f"{harder.name} is {ratio:.2f} times as hard as {softer.name}"
     if softer.hardness >= _PLOUGHED_BELOW:
-        return WearKind.ADHESIVE, f"{compared}, which is too hard to be ploughed: material is exchanged instead"
+        return WearMechanism.ADHESIVE, f"{compared}, which is too hard to be ploughed: material is transferred instead"
     if ratio < _PLOUGHING_RATIO:
-        return WearKind.ADHESIVE, f"{compared}: too little to plough it, so that material is exchanged"
-    return WearKind.ABRASIVE, f"{compared}, which is soft enough to be ploughed away"
+        return WearMechanism.ADHESIVE, f"{compared}: too little for ploughing, so that material is transferred"
+    return WearMechanism.ABRASIVE, f"{compared}, which is soft enough to be ploughed"
 
 
-def _effect(first: WearingBody, second: WearingBody) -> tuple[VibrationEffect, str]:
+def _vibration_effect(first: WearPairBody, second: WearPairBody) -> tuple[VibrationEffect, str]:
+    """Return the effect of vibration by the crystal structures, and the reason."""
     hexagonal = [body.name for body in (first, second) if body.structure is CrystalStructure.HEXAGONAL]
     if hexagonal:
         return (
             VibrationEffect.MORE_WEAR,
-            f"{hexagonal[0]} is hexagonal close-packed: hard and ductile at once, titanium stretched rather than "
-            "broke, and vibration did not part it from the other body",
+            f"{hexagonal[0]} is hexagonal close-packed: titanium, hard and ductile, deformed instead of breaking, and "
+            "vibration did not separate it from the other body",
         )
     return (
         VibrationEffect.LESS_WEAR,
-        "neither body is hexagonal close-packed: in all such pairs contact that was broken by vibration wore less",
+        "neither body is hexagonal close-packed: all such pairs wore less when vibration interrupted the contact",
     )
 
 
-def _outside(first: WearingBody, second: WearingBody) -> tuple[str, ...]:
+def _untested(first: WearPairBody, second: WearPairBody) -> tuple[str, ...]:
+    """Return the limit of the evidence that a pair exceeds, if any."""
     if first.structure is second.structure is CrystalStructure.NOT_A_METAL:
-        return ("No pair without a metal was tested: the rule says nothing of such pairs.",)
+        return ("No pair without a metal was tested: the rule does not cover such pairs.",)
     return ()

@@ -1,3 +1,5 @@
+"""Asperity stick-slip against elements integrated in time, closed forms and limits."""
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -10,10 +12,10 @@ from sonolube.contact import (
     ContactPair,
     GapMotion,
     RoughContact,
-    harmonic_motion,
     load_balanced_motion,
     normal_force,
     separation,
+    sinusoidal_motion,
 )
 from sonolube.errors import InvalidInput
 from sonolube.friction import AsperityStickSlip, mindlin_memory_length, sine_stick_slip_ratio
@@ -42,42 +44,42 @@ def ratio(beta: float, v: float) -> float:
     )
 
 
-def stepped(gap: np.ndarray, stretch: np.ndarray, *, elements: int = 1500, periods: int = 3) -> float:
-    """Friction over mean limit of very many elements stepped through; gap and stretch a step in decay lengths."""
-    touch = np.linspace(gap.min(), gap.max() + 25, elements)
-    number = np.exp(-(touch - gap.min()))
+def integrated(gap: np.ndarray, slides: np.ndarray, *, elements: int = 1500, periods: int = 3) -> float:
+    """Return friction over mean limit of many elements by time integration; gap and slide per step in decay lengths."""
+    contact_gap = np.linspace(gap.min(), gap.max() + 25, elements)
+    density = np.exp(-(contact_gap - gap.min()))
     friction, limits = np.zeros(elements), np.zeros(elements)
     force = np.maximum(
-        touch - gap.max(), 0
-    )  # the steadily sliding ones begin on their limit, from rest they would take long
+        contact_gap - gap.max(), 0
+    )  # permanently loaded elements start at their limit; from rest they would take long
     for period in range(periods):
-        for x, grown in zip(gap, stretch, strict=True):
-            limit = np.maximum(touch - x, 0)
-            force = np.clip(force + grown, -limit, limit)
+        for x, slide in zip(gap, slides, strict=True):
+            limit = np.maximum(contact_gap - x, 0)
+            force = np.clip(force + slide, -limit, limit)
             if period == periods - 1:
                 friction += force
                 limits += limit
-    return float(np.trapezoid(number * friction, touch) / np.trapezoid(number * limits, touch))
+    return float(np.trapezoid(density * friction, contact_gap) / np.trapezoid(density * limits, contact_gap))
 
 
 @pytest.mark.parametrize(
-    ("beta", "v", "known"), [(1.25, 0.3, 0.663), (5, 0.1, 0.3235), (20, 0.3, 0.93655), (40, 0.05, 0.41473)]
+    ("beta", "v", "expected"), [(1.25, 0.3, 0.663), (5, 0.1, 0.3235), (20, 0.3, 0.93655), (40, 0.05, 0.41473)]
 )
-def test_the_ratio_is_that_of_brute_force(beta: float, v: float, known: float) -> None:
-    assert ratio(beta, v) == approx(known, abs=5e-4 if beta < 10 else 1e-5)
+def test_the_ratio_is_that_of_a_time_integration(beta: float, v: float, expected: float) -> None:
+    assert ratio(beta, v) == approx(expected, abs=5e-4 if beta < 10 else 1e-5)
 
 
 @pytest.mark.parametrize(("beta", "v"), [(0.3, 0.5), (1.25, 0.3), (1.25, 0.9), (5, 0.1)])
-def test_the_ratio_is_that_of_elements_stepped_one_by_one(beta: float, v: float) -> None:
+def test_the_ratio_is_that_of_elements_integrated_one_by_one(beta: float, v: float) -> None:
     steps = 4000
     theta = 2 * np.pi * np.arange(steps) / steps
     assert ratio(beta, v) == approx(
-        stepped(beta * np.cos(theta), np.full(steps, v * beta * 2 * np.pi / steps)), abs=2e-3
+        integrated(beta * np.cos(theta), np.full(steps, v * beta * 2 * np.pi / steps)), abs=2e-3
     )
 
 
 @pytest.mark.parametrize("beta", [0.1, 1.25, 7.0, 100.0])
-def test_slow_sliding_leaves_what_the_widest_gap_carries(beta: float) -> None:
+def test_slow_sliding_has_the_friction_of_the_smallest_normal_force(beta: float) -> None:
     assert ratio(beta, 1e-9) == approx(np.exp(-2 * beta) / i0e(beta), abs=1e-6)
 
 
@@ -87,9 +89,9 @@ def test_beyond_the_critical_speed_friction_is_exactly_that_without_vibration(be
 
 
 @given(beta=st.floats(1e-3, 60), v=st.floats(1e-4, 0.999), faster=st.floats(1.01, 3))
-def test_friction_grows_with_speed_from_the_plateau_to_one(beta: float, v: float, faster: float) -> None:
-    plateau = np.exp(-2 * beta) / i0e(beta)
-    assert plateau - 1e-9 <= ratio(beta, v) <= ratio(beta, v * faster) + 1e-9 <= 1 + 2e-9
+def test_friction_grows_with_speed_from_the_static_ratio_to_one(beta: float, v: float, faster: float) -> None:
+    static = np.exp(-2 * beta) / i0e(beta)
+    assert static - 1e-9 <= ratio(beta, v) <= ratio(beta, v * faster) + 1e-9 <= 1 + 2e-9
 
 
 def test_without_vibration_the_ratio_is_one() -> None:
@@ -102,7 +104,7 @@ def test_without_vibration_the_ratio_is_one() -> None:
 def test_a_sampled_sine_gives_the_closed_form(amplitude: float) -> None:
     speeds = np.geomspace(1e-3, 2, 12)
     motion = load_balanced_motion(
-        CONTACT, harmonic_motion(CONTACT, normal_load=LOAD, vibration_amplitude=amplitude, frequency=FREQUENCY)
+        CONTACT, sinusoidal_motion(CONTACT, normal_load=LOAD, vibration_amplitude=amplitude, frequency=FREQUENCY)
     )
     closed = sine_stick_slip_ratio(
         decay_length=DECAY_LENGTH, vibration_amplitude=amplitude, frequency=FREQUENCY, sliding_speed=speeds
@@ -120,7 +122,7 @@ def two_harmonics(samples: int = 256) -> GapMotion:
 
 
 @pytest.mark.parametrize(("fraction", "lag"), [(0.0, 0.0), (0.3, 1.0), (0.8, -0.5)])
-def test_any_motion_gives_what_elements_stepped_one_by_one_give(fraction: float, lag: float) -> None:
+def test_any_motion_has_the_ratio_of_elements_integrated_one_by_one(fraction: float, lag: float) -> None:
     speed, steps = 0.05, 4000
     theta = 2 * np.pi * np.arange(steps) / steps
     motion = two_harmonics()
@@ -131,11 +133,11 @@ def test_any_motion_gives_what_elements_stepped_one_by_one_give(fraction: float,
     computed = AsperityStickSlip(in_plane_fraction=fraction, in_plane_phase=lag, memory_length=MEMORY_LENGTH).ratio(
         CONTACT, motion, sliding_speed=speed
     )
-    assert computed == approx(stepped(gap / DECAY_LENGTH, slides / MEMORY_LENGTH), abs=2e-3)
+    assert computed == approx(integrated(gap / DECAY_LENGTH, slides / MEMORY_LENGTH), abs=2e-3)
 
 
-def test_fast_sliding_about_an_unmoved_mean_feels_the_mean_normal_force() -> None:
-    motion = harmonic_motion(CONTACT, normal_load=LOAD, vibration_amplitude=2.5e-6, frequency=FREQUENCY)
+def test_fast_sliding_about_the_separation_at_rest_has_the_mean_normal_force() -> None:
+    motion = sinusoidal_motion(CONTACT, normal_load=LOAD, vibration_amplitude=2.5e-6, frequency=FREQUENCY)
     assert AsperityStickSlip().ratio(CONTACT, motion, sliding_speed=10.0) == approx(i0(1.25), rel=1e-5)
 
 
@@ -150,5 +152,5 @@ def test_a_memory_length_of_zero_is_refused_by_name() -> None:
 
 
 @given(beta=st.floats(1e-3, 40), short=st.floats(0, 1e-9))
-def test_sliding_a_rounding_error_slower_than_all_slipping_changes_nothing(beta: float, short: float) -> None:
+def test_a_speed_below_the_critical_one_by_rounding_error_gives_a_ratio_of_one(beta: float, short: float) -> None:
     assert ratio(beta, 1 - short) == approx(1, abs=1e-12)

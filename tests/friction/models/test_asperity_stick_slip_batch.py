@@ -1,4 +1,4 @@
-"""Stick-slip of very many vibrations at once: what single sines, single motions and bounds say of it."""
+"""Batched stick-slip ratios against single sines, single motions and bounds."""
 
 from typing import Any
 
@@ -13,7 +13,7 @@ from sonolube.contact import (
     ASPERITY_LAWS,
     ContactPair,
     GapMotion,
-    HarmonicMotions,
+    GapMotionBatch,
     RoughContact,
     load_balanced_motion,
     normal_force,
@@ -34,14 +34,14 @@ OMEGA = 2 * np.pi * FREQUENCY
 
 
 def balanced_mean(harmonics: np.ndarray) -> float:
-    """Rise at which exponential heights carry the load under a motion, by 4096 phases."""
-    turning = np.exp(2j * np.pi * np.multiply.outer(np.arange(4096) / 4096, np.arange(1, harmonics.size + 1)))
-    return float(DECAY_LENGTH * np.log(np.mean(np.exp(-(turning @ harmonics).real / DECAY_LENGTH))))
+    """Return the load-balanced mean displacement of exponential heights under a motion, by 4096 phases."""
+    rotations = np.exp(2j * np.pi * np.multiply.outer(np.arange(4096) / 4096, np.arange(1, harmonics.size + 1)))
+    return float(DECAY_LENGTH * np.log(np.mean(np.exp(-(rotations @ harmonics).real / DECAY_LENGTH))))
 
 
-def motions(means: list[float], harmonics: list[Any]) -> HarmonicMotions:
+def motions(means: list[float], harmonics: list[Any]) -> GapMotionBatch:
     frequency = np.full(len(means), FREQUENCY)
-    return HarmonicMotions(mean_displacement=np.array(means), harmonics=np.array(harmonics), frequency=frequency)
+    return GapMotionBatch(mean_displacement=np.array(means), harmonics=np.array(harmonics), frequency=frequency)
 
 
 def ratios(harmonics: np.ndarray, speeds: np.ndarray) -> np.ndarray:
@@ -56,25 +56,25 @@ def ratios(harmonics: np.ndarray, speeds: np.ndarray) -> np.ndarray:
 
 @settings(max_examples=60, deadline=None)
 @given(log_beta=st.floats(-7, 5), log_v=st.floats(-12, 1))
-def test_a_sine_has_the_ratio_of_sines(log_beta: float, log_v: float) -> None:
+def test_a_sine_has_the_closed_form_ratio(log_beta: float, log_v: float) -> None:
     amplitude = np.exp(log_beta) * DECAY_LENGTH
     speed = np.exp(log_v) * OMEGA * amplitude * MEMORY_LENGTH / DECAY_LENGTH
     beta = np.exp(log_beta)
-    found = batched_stick_slip_ratio(
+    batched = batched_stick_slip_ratio(
         motions([DECAY_LENGTH * (np.log(i0e(beta)) + beta)], [[amplitude + 0j]]),
         decay_length=DECAY_LENGTH,
         sliding_speed=[speed],
         motion=[0],
         memory_length=MEMORY_LENGTH,
     )
-    known = sine_stick_slip_ratio(
+    expected = sine_stick_slip_ratio(
         decay_length=DECAY_LENGTH,
         vibration_amplitude=amplitude,
         frequency=FREQUENCY,
         sliding_speed=speed,
         memory_length=MEMORY_LENGTH,
     )
-    assert found[0] == approx(float(known), abs=5e-6)
+    assert batched[0] == approx(float(expected), abs=5e-6)
 
 
 @pytest.mark.parametrize(
@@ -86,24 +86,26 @@ def test_a_sine_has_the_ratio_of_sines(log_beta: float, log_v: float) -> None:
         [1e-5 * np.exp(-2j), 3e-7, 5e-8 * np.exp(1j)],
     ],
 )
-def test_a_motion_with_harmonics_has_the_ratio_of_elements_followed_in_time(harmonics: list[complex]) -> None:
-    own = np.array(harmonics, dtype=complex)
-    turning = np.exp(2j * np.pi * np.multiply.outer(np.arange(2048) / 2048, np.arange(1, own.size + 1)))
-    x = (turning @ own).real
+def test_a_motion_with_harmonics_has_the_ratio_of_elements_integrated_in_time(harmonics: list[complex]) -> None:
+    amplitudes = np.array(harmonics, dtype=complex)
+    rotations = np.exp(2j * np.pi * np.multiply.outer(np.arange(2048) / 2048, np.arange(1, amplitudes.size + 1)))
+    x = (rotations @ amplitudes).real
     force = normal_force(CONTACT, separation=separation(CONTACT, normal_load=LOAD) + x)
     motion = load_balanced_motion(
         CONTACT, GapMotion(displacement=x, normal_force=force, frequency=FREQUENCY, normal_load=LOAD)
     )
     speeds = np.array([5e-3, 40e-3, 0.2, 0.5])
-    followed = AsperityStickSlip(memory_length=MEMORY_LENGTH).ratio(CONTACT, motion, sliding_speed=speeds)
-    assert ratios(own, speeds) == approx(followed, abs=3e-5 + SINE_TOLERANCE * (abs(own[1]) < 1e-9))
+    expected = AsperityStickSlip(memory_length=MEMORY_LENGTH).ratio(CONTACT, motion, sliding_speed=speeds)
+    assert ratios(amplitudes, speeds) == approx(expected, abs=3e-5 + SINE_TOLERANCE * (abs(amplitudes[1]) < 1e-9))
 
 
 @settings(max_examples=40, deadline=None)
-@given(share=st.floats(1e-5, 0.03), lag=st.floats(-np.pi, np.pi), speed=st.floats(2e-3, 0.6))
-def test_harmonics_change_friction_by_no_more_than_they_change_the_gap(share: float, lag: float, speed: float) -> None:
+@given(fraction=st.floats(1e-5, 0.03), lag=st.floats(-np.pi, np.pi), speed=st.floats(2e-3, 0.6))
+def test_harmonics_change_friction_by_no_more_than_they_change_the_gap(
+    fraction: float, lag: float, speed: float
+) -> None:
     amplitude = 3e-6
-    own = np.array([amplitude, share * amplitude * np.exp(1j * lag)])
+    amplitudes = np.array([amplitude, fraction * amplitude * np.exp(1j * lag)])
     beta = amplitude / DECAY_LENGTH
     sine = float(
         sine_stick_slip_ratio(
@@ -114,22 +116,22 @@ def test_harmonics_change_friction_by_no_more_than_they_change_the_gap(share: fl
             memory_length=MEMORY_LENGTH,
         )
     )
-    about_the_same_mean = sine * i0e(beta) * np.exp(beta - balanced_mean(own) / DECAY_LENGTH)
-    change = np.log(ratios(own, np.array([speed]))[0] / about_the_same_mean)
-    assert abs(change) <= share * beta + 1e-5
+    about_the_same_mean = sine * i0e(beta) * np.exp(beta - balanced_mean(amplitudes) / DECAY_LENGTH)
+    change = np.log(ratios(amplitudes, np.array([speed]))[0] / about_the_same_mean)
+    assert abs(change) <= fraction * beta + 1e-5
 
 
-def test_a_motion_that_closes_twice_in_a_period_is_left_to_others() -> None:
+def test_a_motion_that_closes_twice_in_a_period_gives_nan() -> None:
     assert np.isnan(ratios(np.array([1e-6, 2e-6]), np.array([0.05])))
 
 
-def test_what_does_not_fit_together_is_refused_by_name() -> None:
+def test_inconsistent_arguments_are_refused_by_name() -> None:
     one = motions([0.0], [[1e-6]])
     with raises(InvalidInput, match="motion must lie between 0 and 0, got 1 to 1"):
         batched_stick_slip_ratio(one, decay_length=2e-6, sliding_speed=[0.1], motion=[1])
     with raises(InvalidInput, match="sliding_speed must be positive"):
         batched_stick_slip_ratio(one, decay_length=2e-6, sliding_speed=[0.0], motion=[0])
-    with raises(InvalidInput, match="sliding_speed and motion must have one shape"):
+    with raises(InvalidInput, match="sliding_speed and motion must have the same shape"):
         batched_stick_slip_ratio(one, decay_length=2e-6, sliding_speed=[0.1, 0.2], motion=[0])
-    with raises(InvalidInput, match="must have one row to a motion"):
-        HarmonicMotions(mean_displacement=np.zeros(1), harmonics=np.ones((1, 1), dtype=complex), frequency=np.ones(2))
+    with raises(InvalidInput, match="must have one row per motion"):
+        GapMotionBatch(mean_displacement=np.zeros(1), harmonics=np.ones((1, 1), dtype=complex), frequency=np.ones(2))

@@ -1,3 +1,5 @@
+"""One bristle on a holder against explicit time integration, limits and the balance of energy."""
+
 from dataclasses import asdict
 from typing import Literal
 
@@ -6,7 +8,14 @@ import pytest
 from pytest import approx, raises
 from scipy.special import i0
 
-from sonolube.contact import ASPERITY_LAWS, ContactPair, GapMotion, RoughContact, harmonic_motion, load_balanced_motion
+from sonolube.contact import (
+    ASPERITY_LAWS,
+    ContactPair,
+    GapMotion,
+    RoughContact,
+    load_balanced_motion,
+    sinusoidal_motion,
+)
 from sonolube.errors import InvalidInput
 from sonolube.friction import BristleWithHolder, Holder
 from sonolube.surfaces import Roughness
@@ -24,7 +33,7 @@ HOLDER = Holder(holder_stiffness=2e6, holder_mass=1e-4, holder_damping=3.0)
 
 def balanced(amplitude: float = AMPLITUDE) -> GapMotion:
     return load_balanced_motion(
-        CONTACT, harmonic_motion(CONTACT, normal_load=LOAD, vibration_amplitude=amplitude, frequency=FREQUENCY)
+        CONTACT, sinusoidal_motion(CONTACT, normal_load=LOAD, vibration_amplitude=amplitude, frequency=FREQUENCY)
     )
 
 
@@ -37,7 +46,7 @@ def normal_force_at(theta: float | np.ndarray) -> np.ndarray:
     return np.asarray(LOAD / i0(beta) * np.exp(-beta * np.cos(theta)))
 
 
-def stepped(
+def integrated(
     *,
     speed: float,
     holder: Holder | None = None,
@@ -46,7 +55,7 @@ def stepped(
     steps: int = 20_000,
     periods: int = 4,
 ) -> dict[str, float]:
-    """Mean friction ratio and powers of bristle and holder, stepped forward in small explicit steps."""
+    """Return the mean friction ratio and the powers of bristle and holder by explicit time integration."""
     step = 1 / FREQUENCY / steps
     theta = 2 * np.pi * np.arange(steps + 1) / steps
     forces = normal_force_at(theta)
@@ -60,8 +69,8 @@ def stepped(
     for period in range(periods):
         for j in range(steps):
             v = speed + in_plane_speed[j] - w
-            share = 1 - np.sign(v) * F / limits[j] if exponent else 1.0
-            new = min(max(F + k[j] * v * share * step, -limits[j + 1]), limits[j + 1])
+            factor = 1 - np.sign(v) * F / limits[j] if exponent else 1.0
+            new = min(max(F + k[j] * v * factor * step, -limits[j + 1]), limits[j + 1])
             if period == periods - 1:
                 sums["force"] += F / steps
                 sums["bristle"] += F * v / steps
@@ -83,14 +92,14 @@ def test_from_the_critical_speed_on_the_ratio_is_exactly_one() -> None:
         ) == approx([1, 1, 1], rel=1e-6)
 
 
-def test_just_below_the_critical_speed_it_is_not() -> None:
+def test_just_below_the_critical_speed_friction_is_reduced() -> None:
     speed = 0.9 * critical_speed()
     assert BristleWithHolder().ratio(CONTACT, balanced(), sliding_speed=speed, friction_coefficient=MU) < 0.999
 
 
 @pytest.mark.parametrize("exponent", [0, 1])
 @pytest.mark.parametrize("holder", [Holder(), Holder(holder_stiffness=1e6)])
-def test_slow_sliding_reaches_the_static_plateau(exponent: Literal[0, 1], holder: Holder) -> None:
+def test_slow_sliding_reaches_the_static_friction_ratio(exponent: Literal[0, 1], holder: Holder) -> None:
     # friction cannot exceed what the widest gap allows, and slow sliding does not win it back before the next
     for amplitude in (0.1e-6, AMPLITUDE):
         beta = amplitude / DECAY_LENGTH
@@ -100,7 +109,7 @@ def test_slow_sliding_reaches_the_static_plateau(exponent: Literal[0, 1], holder
         assert slow == approx(np.exp(-beta) / i0(beta), rel=1e-3)
 
 
-def test_a_yielding_holder_lowers_friction_and_a_stiff_one_does_not_matter() -> None:
+def test_a_compliant_holder_reduces_friction_and_a_stiff_one_has_no_effect() -> None:
     speeds = critical_speed() * np.array([0.1, 0.5, 1.0])
     rigid, stiff, soft = (
         BristleWithHolder(**asdict(holder)).ratio(CONTACT, balanced(), sliding_speed=speeds, friction_coefficient=MU)
@@ -112,18 +121,18 @@ def test_a_yielding_holder_lowers_friction_and_a_stiff_one_does_not_matter() -> 
 
 @pytest.mark.parametrize("exponent", [0, 1])
 @pytest.mark.parametrize("in_plane", [(0.0, 0.0), (0.3, 0.7)])
-def test_the_bristle_gives_what_small_steps_give(exponent: Literal[0, 1], in_plane: tuple[float, float]) -> None:
+def test_the_bristle_has_the_ratio_of_small_time_steps(exponent: Literal[0, 1], in_plane: tuple[float, float]) -> None:
     speed = 0.3 * critical_speed()
     computed = BristleWithHolder(
         in_plane_fraction=in_plane[0], in_plane_phase=in_plane[1], dahl_exponent=exponent
     ).ratio(CONTACT, balanced(), sliding_speed=speed, friction_coefficient=MU)
-    small = stepped(speed=speed, in_plane=in_plane, exponent=exponent)["force"] / (MU * LOAD)
+    small = integrated(speed=speed, in_plane=in_plane, exponent=exponent)["force"] / (MU * LOAD)
     assert computed == approx(small, abs=5e-4)
 
 
-def test_a_heavy_holder_gives_what_small_steps_give_and_keeps_the_energy() -> None:
+def test_a_holder_with_mass_matches_small_time_steps_and_balances_the_energy() -> None:
     speed = 0.3 * critical_speed()
-    small = stepped(speed=speed, holder=HOLDER, periods=40, steps=4000)
+    small = integrated(speed=speed, holder=HOLDER, periods=40, steps=4000)
     computed = BristleWithHolder(**asdict(HOLDER)).ratio(
         CONTACT, balanced(), sliding_speed=speed, friction_coefficient=MU
     )
@@ -157,8 +166,8 @@ def test_in_plane_motion_faster_than_the_sliding_can_drive_the_slider() -> None:
     [
         ({"holder_stiffness": 0.0}, r"holder_stiffness must be positive, got 0\.0 N/m"),
         ({"holder_mass": -1.0, "holder_stiffness": 1.0}, r"holder_mass must not be negative, got -1\.0 kg"),
-        ({"holder_damping": 1.0}, "holder_damping needs a holder_mass"),
-        ({"holder_mass": 1.0}, "cannot move on an infinite holder_stiffness"),
+        ({"holder_damping": 1.0}, "holder_damping requires a holder_mass"),
+        ({"holder_mass": 1.0}, "requires a finite holder_stiffness"),
     ],
 )
 def test_impossible_holders_are_refused(values: dict[str, float], message: str) -> None:

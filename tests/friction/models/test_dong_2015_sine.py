@@ -1,3 +1,5 @@
+"""The cube model under a sine against quadrature, and the printed form with in-plane motion."""
+
 import mpmath
 import numpy as np
 import pytest
@@ -14,8 +16,8 @@ from sonolube.contact import (
     GaussianHeights,
     RoughContact,
     contact_pair,
+    cube_tangential_stiffness,
     separation,
-    tangential_stiffness,
 )
 from sonolube.errors import InvalidInput, ModelRangeWarning
 from sonolube.friction import dong_2015_deformation_ratio, dong_2015_half_period_ratio, steady_deformation
@@ -36,7 +38,7 @@ LOADS = np.arange(40.0, 241.0, 20.0)
 
 
 def ratio_by_hand(d: float, a: float) -> float:
-    """The half-period mean of exp(-2 lambda x/Rq) (d/(d + x))^3, lambda = 3: k_t goes with A_r^2/d^3."""
+    """Return the half-period mean of k_t, in proportion to exp(-2 lambda x/Rq) (d/(d + x))^3 with lambda = 3."""
 
     def stiffness(theta: mpmath.mpf) -> mpmath.mpf:
         x = a * mpmath.sin(theta)
@@ -46,11 +48,11 @@ def ratio_by_hand(d: float, a: float) -> float:
 
 
 @pytest.mark.parametrize("load", [1e-3, 3.0, 40.0, 240.0])
-@pytest.mark.parametrize("share", [0.0, 0.01, 0.3, 0.999])
-def test_the_ratio_is_the_mean_of_the_stiffness_over_the_separating_half(load: float, share: float) -> None:
+@pytest.mark.parametrize("fraction", [0.0, 0.01, 0.3, 0.999])
+def test_the_ratio_is_the_mean_of_the_stiffness_over_the_separating_half(load: float, fraction: float) -> None:
     d = float(separation(ALUMINIUM_ON_STEEL, normal_load=load))
-    ratio = dong_2015_half_period_ratio(ALUMINIUM_ON_STEEL, normal_load=load, vibration_amplitude=share * d)
-    assert ratio == approx(ratio_by_hand(d, share * d), rel=1e-10)
+    ratio = dong_2015_half_period_ratio(ALUMINIUM_ON_STEEL, normal_load=load, vibration_amplitude=fraction * d)
+    assert ratio == approx(ratio_by_hand(d, fraction * d), rel=1e-10)
 
 
 def test_gaussian_heights_are_averaged_as_well() -> None:
@@ -65,7 +67,7 @@ def test_gaussian_heights_are_averaged_as_well() -> None:
     d = float(separation(contact, normal_load=1.0))
 
     def stiffness(theta: float) -> float:
-        return float(tangential_stiffness(contact, separation=d + 0.5e-6 * np.sin(theta)))
+        return float(cube_tangential_stiffness(contact, separation=d + 0.5e-6 * np.sin(theta)))
 
     by_hand = quad(stiffness, 0, np.pi / 2, epsrel=1e-9)[0] / (np.pi / 2) / stiffness(0.0)
     assert dong_2015_half_period_ratio(contact, normal_load=1.0, vibration_amplitude=0.5e-6) == approx(
@@ -82,7 +84,7 @@ def test_gaussian_heights_are_averaged_as_well() -> None:
         (STEEL_ON_STEEL, 11.24e-6, 0.29, 0.495, 0.515),
     ],
 )
-def test_the_poisson_rig_loses_about_half_its_friction(
+def test_vibration_halves_the_friction_of_the_poisson_rig(
     contact: RoughContact, axial_amplitude: float, poisson_ratio: float, lowest: float, highest: float
 ) -> None:
     # D 3.1.4 measured 30 to 50 and 50 to 56 %
@@ -93,7 +95,7 @@ def test_the_poisson_rig_loses_about_half_its_friction(
 
 @settings(max_examples=50)
 @given(load=st.floats(1, 300), amplitude=st.floats(0, 5e-6), more=st.floats(1e-9, 5e-6))
-def test_stronger_vibration_leaves_less_friction(load: float, amplitude: float, more: float) -> None:
+def test_friction_falls_with_the_amplitude(load: float, amplitude: float, more: float) -> None:
     weak, strong = dong_2015_half_period_ratio(
         ALUMINIUM_ON_STEEL, normal_load=load, vibration_amplitude=[amplitude, amplitude + more]
     )
@@ -110,7 +112,7 @@ def test_loads_and_amplitudes_broadcast_over_more_points_than_a_block() -> None:
     assert ratios[7, 700] == approx(float(one), rel=1e-14)
 
 
-def test_ever_larger_amplitudes_leave_ever_less_friction_even_beyond_the_separation() -> None:
+def test_friction_falls_with_the_amplitude_even_beyond_the_separation() -> None:
     amplitudes = np.linspace(0, 60e-6, 100)  # the separation is 18.1 um
     ratios = dong_2015_half_period_ratio(ALUMINIUM_ON_STEEL, normal_load=40.0, vibration_amplitude=amplitudes)
     assert ratios[0] == approx(1.0)
@@ -132,7 +134,7 @@ def test_the_printed_form_is_the_mean_of_stiffness_times_deformation(phase: floa
     load, b, u, delta = 40.0, 0.88e-6, 0.3e-9, 0.5e-9
     theta = np.linspace(0, np.pi, 20001)
     d = float(separation(ALUMINIUM_ON_STEEL, normal_load=load))
-    k = tangential_stiffness(ALUMINIUM_ON_STEEL, separation=d + b * np.sin(theta))
+    k = cube_tangential_stiffness(ALUMINIUM_ON_STEEL, separation=d + b * np.sin(theta))
     by_hand = half_period_mean(k / k[0] * (delta + u * np.sin(theta + phase)) / delta)
     ratio = dong_2015_deformation_ratio(
         ALUMINIUM_ON_STEEL,
@@ -145,7 +147,7 @@ def test_the_printed_form_is_the_mean_of_stiffness_times_deformation(phase: floa
     assert ratio == approx(by_hand, rel=1e-7)
 
 
-def test_without_in_plane_motion_the_printed_form_is_the_plain_one() -> None:
+def test_without_in_plane_motion_the_printed_form_is_the_half_period_ratio() -> None:
     printed = dong_2015_deformation_ratio(
         ALUMINIUM_ON_STEEL, normal_load=LOADS, normal_amplitude=1e-6, in_plane_amplitude=0.0, deformation=5e-10
     )
@@ -159,7 +161,7 @@ def test_the_deformation_of_the_poisson_rig_is_half_a_nanometre() -> None:
     assert delta == approx(0.5e-9, rel=0.05)
 
 
-def test_in_plane_motion_beyond_the_deformation_is_warned_of() -> None:
+def test_an_in_plane_amplitude_beyond_the_deformation_warns() -> None:
     # 2 mm off the node of D's waveguide the surface moves 0.42 um along
     with pytest.warns(
         ModelRangeWarning, match=r"in_plane_amplitude of up to 4\.2e-07 m is added to a deformation of 5e-10"

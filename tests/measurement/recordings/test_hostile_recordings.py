@@ -169,7 +169,7 @@ def test_an_open_quote_is_refused_where_it_opens(tmp_path: Path) -> None:
 
 
 def test_a_unit_of_another_dimension_is_refused(tmp_path: Path) -> None:
-    refuse(tmp_path, "unit.csv", b"time [s],friction_force [mm]\n0,1\n1,2\n", "is a length; wanted a force")
+    refuse(tmp_path, "unit.csv", b"time [s],friction_force [mm]\n0,1\n1,2\n", "is a length; expected a force")
 
 
 def test_hostile_lengths_are_refused_with_the_byte() -> None:

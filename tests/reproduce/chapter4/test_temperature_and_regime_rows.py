@@ -5,7 +5,7 @@ import pytest
 from pytest import approx
 
 from sonolube.figure import publication_style
-from sonolube.friction import Method, best_method
+from sonolube.friction import LubricationMethod, best_lubrication_method
 from sonolube.reproduce.chapter4.regimes import coefficients, regime_figures, regime_rows
 from sonolube.reproduce.chapter4.temperature_tests import (
     TemperatureTest,
@@ -100,17 +100,17 @@ def test_the_measured_peak_lies_between_a_conducting_and_an_insulated_thermocoup
 @pytest.mark.parametrize(
     ("speed", "pressure", "method"),
     [
-        *[(0.085, pressure, Method.ULTRASONIC) for pressure in (24e6, 48e6, 71e6)],
-        (0.095, 71e6, Method.COMBINED),
-        (0.105, 48e6, Method.COMBINED),
-        (0.105, 15e6, Method.LUBRICANT),
-        (0.130, 71e6, Method.COMBINED),
-        (0.130, 24e6, Method.LUBRICANT),
+        *[(0.085, pressure, LubricationMethod.ULTRASONIC) for pressure in (24e6, 48e6, 71e6)],
+        (0.095, 71e6, LubricationMethod.COMBINED),
+        (0.105, 48e6, LubricationMethod.COMBINED),
+        (0.105, 15e6, LubricationMethod.LUBRICANT),
+        (0.130, 71e6, LubricationMethod.COMBINED),
+        (0.130, 24e6, LubricationMethod.LUBRICANT),
     ],
 )
-def test_the_map_is_divided_as_section_4_2_4_says(speed: float, pressure: float, method: Method) -> None:
+def test_the_map_is_divided_as_section_4_2_4_says(speed: float, pressure: float, method: LubricationMethod) -> None:
     found = coefficients(sliding_speed=speed, nominal_pressure=pressure)
-    assert best_method(found, smallest_gain=0.04) == method
+    assert best_lubrication_method(found, smallest_gain=0.04) == method
 
 
 def test_the_limit_of_vibration_is_the_same_at_every_stress_and_below_110_mm_s() -> None:

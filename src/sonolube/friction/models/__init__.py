@@ -16,4 +16,4 @@ FRICTION_MODELS: VariantTable[type[FrictionModel]] = VariantTable(
         "dong_2015_load_balanced": "sonolube.friction.models.dong_2015:Dong2015LoadBalanced",
     },
 )
-"""The friction models by name; a new model takes its file and one line here."""
+"""Friction models by name; a new model takes its file and one line here."""

@@ -9,27 +9,27 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, Integers, require_positive
+from sonolube.contact.gap_motion import GapMotion, GapMotionBatch, delayed_oscillation, richardson_period_mean
 from sonolube.contact.height_distribution import ExponentialHeights
-from sonolube.contact.motion import GapMotion, HarmonicMotions, converged_mean, shifted
 from sonolube.contact.rough import RoughContact, decay_length, separation
 from sonolube.friction.models.asperity_stick_slip_batch import batched_stick_slip_ratio
 from sonolube.friction.models.asperity_stick_slip_sine import EMPIRICAL_MEMORY_LENGTH
 from sonolube.friction.models.model import FrictionModel, parameter
 
 _HEIGHTS = np.polynomial.legendre.leggauss(64)
-_NEGLIGIBLE = 40.0  # exponents beyond which elements carry nothing
+_NEGLIGIBLE = 40.0  # exponent beyond which the load of elements is negligible
 
 
 @final
 @dataclass(frozen=True, kw_only=True, slots=True)
 class AsperityStickSlip(FrictionModel):
-    r"""Stick-slip of independent asperities, each of which sticks anew at every touch.
+    r"""Stick-slip of independent asperities, whose tangential force restarts from zero at every contact.
 
     Parameters
     ----------
     memory_length : float
-        Sliding distance D_c in which an asperity pressed by one decay length reaches its friction limit; of the
-        default, which is empirical, see `EMPIRICAL_MEMORY_LENGTH`, and with nothing fitted `mindlin_memory_length`. [m]
+        Sliding distance D_c in which an asperity pressed by one decay length reaches its friction limit. The default
+        is the fitted `EMPIRICAL_MEMORY_LENGTH`; without fit use `mindlin_memory_length`. [m]
     in_plane_fraction : float
         Amplitude along the sliding direction over that along the normal. []
     in_plane_phase : float
@@ -42,27 +42,27 @@ class AsperityStickSlip(FrictionModel):
 
     Notes
     -----
-    The exponential contact law is a population of linear elements that touch at different gaps y. Each carries a
-    tangential spring that the sliding stretches, slips at its own limit, and is reset on separation. With the gap x(t)
-    and the stretch s(t), both in decay lengths l, the force of one element in units of its normal stiffness times l is
+    The exponential contact law is a population of linear elements that come into contact at different gaps y. Each has
+    a tangential spring, which sliding stretches, slips at its own limit, and is reset on separation. With the gap x(t)
+    and the slide s(t), both in decay lengths l, the force of one element in units of its normal stiffness times l is
 
     .. math::
 
         \dot\tau = \frac{l}{D_c} \dot s \ \text{ while } |\tau| < y - x, \qquad |\tau| \le \max(y - x, 0),
 
-    and the friction ratio the mean over a period of all elements, weighted with the density exp(-y):
+    and the friction ratio is the mean over a period of all elements, weighted with the density exp(-y):
 
     .. math:: \frac{F_1}{F_0} = \frac{\int e^{-y} \langle\tau\rangle \, dy}{\langle e^{-x} \rangle}
               \frac{\langle F_n \rangle}{F_N}.
 
-    The motion is taken as it is: one about an unmoved mean presses harder than the load, and so rubs harder. For other
-    than exponential heights the decay length at rest is taken for the friction ratio at the mean normal force, and the
-    actual mean normal force for the rest. `sine_stick_slip_ratio` is the same for a sine of balanced load in closed
-    form.
+    The motion is used as given: about the separation at rest its mean normal force exceeds the load, and friction is
+    higher accordingly. For other than exponential heights the ratio at the mean normal force is computed with the decay
+    length at rest, and multiplied by the actual mean normal force over the load. `sine_stick_slip_ratio` is the same
+    for a load-balanced sine in closed form.
 
     See Also
     --------
-    sonolube.friction.models.bristle_with_holder.BristleWithHolder : One bristle that keeps its force through a period.
+    sonolube.friction.models.bristle_with_holder.BristleWithHolder : One bristle, continuous through the period.
     sonolube.friction.models.kinematic.Kinematic : Direction of the relative velocity alone.
 
     References
@@ -112,29 +112,29 @@ class AsperityStickSlip(FrictionModel):
 
         def mean_over_limit(sampled: GapMotion) -> Floats:
             widest_first = np.roll(sampled.displacement, -int(np.argmax(sampled.displacement)))
-            in_plane = self.in_plane_fraction * shifted(widest_first, phase=self.in_plane_phase)
-            stretch = length / self.memory_length * (np.roll(in_plane, -1) - in_plane)
+            in_plane = self.in_plane_fraction * delayed_oscillation(widest_first, phase=self.in_plane_phase)
+            slides = length / self.memory_length * (np.roll(in_plane, -1) - in_plane)
             steady = length / self.memory_length * v_r.ravel() / (motion.frequency * widest_first.size)
-            return _sampled_ratio(widest_first / length, stretch / length, steady / length, *_HEIGHTS)
+            return _sampled_ratio(widest_first / length, slides / length, steady / length, *_HEIGHTS)
 
         mean_force_ratio = float(np.mean(motion.normal_force)) / motion.normal_load
-        return mean_force_ratio * converged_mean(mean_over_limit, motion).reshape(v_r.shape)
+        return mean_force_ratio * richardson_period_mean(mean_over_limit, motion).reshape(v_r.shape)
 
     def batched_ratio(
         self,
         contact: RoughContact,
-        motions: HarmonicMotions,
+        motions: GapMotionBatch,
         *,
         sliding_speed: Floats,
         motion: Integers,
         friction_coefficient: float,
     ) -> Floats:
-        """Return the friction ratio of many pairs of motion and speed at once; NaN where `ratio` must be used. []
+        """Return the friction ratios of many pairs of motion and speed at once; NaN where `ratio` must be used. []
 
         Parameters
         ----------
         contact : RoughContact
-        motions : HarmonicMotions
+        motions : GapMotionBatch
         sliding_speed : ndarray, shape (n,)
             Mean sliding speed of each point, positive. [m/s]
         motion : ndarray of int, shape (n,)
@@ -159,41 +159,43 @@ class AsperityStickSlip(FrictionModel):
 
 
 @numba.njit(cache=True)
-def _sampled_ratio(x: Floats, stretch: Floats, steady: Floats, nodes: Floats, weights: Floats) -> Floats:
-    """Return the mean friction over the mean limit, for gaps, in-plane stretch and its steady part in decay lengths."""
+def _sampled_ratio(x: Floats, slides: Floats, steady: Floats, nodes: Floats, weights: Floats) -> Floats:
+    """Return the mean friction over the mean limit, for gaps, vibration slides and steady slides in decay lengths."""
     lowest, highest = x.min(), x.max()
     mean_limit = np.mean(np.exp(lowest - x))
     ratio = np.empty(steady.size)
     force = np.empty(x.size)
     for i in range(steady.size):
-        # elements that never part all follow one course: their force is their height less a common envelope
-        above = highest + 2 * (highest - lowest) + 2 * np.sum(np.abs(stretch))
-        envelope = above - _follow(x, stretch, steady[i], above, force)
+        # the force of elements in permanent contact is their height less a common envelope
+        above = highest + 2 * (highest - lowest) + 2 * np.sum(np.abs(slides))
+        envelope = above - _element_force(x, slides, steady[i], above, force)
         start = highest
         for k in range(x.size):
-            start = max(start, (above - force[k] + x[k]) / 2)  # above it none slides backwards
+            start = max(start, (above - force[k] + x[k]) / 2)  # above it no element slips backwards
         total = exp(lowest - start) * (start - envelope + 1)
         span = min(highest - lowest, _NEGLIGIBLE)
         for j in range(nodes.size):
             node, weight = nodes[j], weights[j]
             angle = pi * (1 + node) / 2
-            y = lowest + span * (1 - cos(angle)) / 2  # crowding at both ends, where elements touch briefly or part so
-            total += weight * pi * span * sin(angle) / 4 * exp(lowest - y) * _follow(x, stretch, steady[i], y, force)
+            y = lowest + span * (1 - cos(angle)) / 2  # graded towards both ends
+            total += (
+                weight * pi * span * sin(angle) / 4 * exp(lowest - y) * _element_force(x, slides, steady[i], y, force)
+            )
             if start > highest:
                 y = highest + (start - highest) * (1 + node) / 2
-                share = exp(lowest - y) * _follow(x, stretch, steady[i], y, force)
-                total += weight * (start - highest) / 2 * share
+                contribution = exp(lowest - y) * _element_force(x, slides, steady[i], y, force)
+                total += weight * (start - highest) / 2 * contribution
         ratio[i] = total / mean_limit
     return ratio
 
 
 @numba.njit(cache=True)
-def _follow(x: Floats, stretch: Floats, steady: float, y: float, force: Floats) -> float:
-    """Return the mean force of the element that touches at gap y, and its force at every phase; widest gap first."""
+def _element_force(x: Floats, slides: Floats, steady: float, y: float, force: Floats) -> float:
+    """Return the mean force of the element in contact below gap y, and write it at every phase, widest gap first."""
     n = x.size
     tau = max(y - x[0], 0.0)
     for _ in range(100):
-        begun = tau
+        start = tau
         total = 0.0
         for k in range(n):
             force[k] = tau
@@ -203,10 +205,10 @@ def _follow(x: Floats, stretch: Floats, steady: float, y: float, force: Floats) 
             if limit <= 0:
                 tau = 0.0
                 continue
-            step = stretch[k] + steady
+            step = slides[k] + steady
             if before > y:
-                step *= limit / (before - after)  # touched within this step
+                step *= limit / (before - after)  # came into contact within this step
             tau = min(max(tau + step, -limit), limit)
-        if abs(tau - begun) <= 1e-12 * (1 + abs(begun)):
+        if abs(tau - start) <= 1e-12 * (1 + abs(start)):
             break
     return total / n

@@ -1,4 +1,4 @@
-"""Friction ratios of many motions at once by asperity stick-slip: tabulated for sines, exact quadrature otherwise."""
+"""Friction ratios of asperity stick-slip for many motions at once: a table for sines, quadrature for other motions."""
 
 from functools import cache
 from math import atan2, cos, exp, log, pi, sin, sqrt
@@ -10,24 +10,24 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.special import i0e
 
 from sonolube.checks import Complexes, Floats, require_positive
-from sonolube.contact.motion import HarmonicMotions
+from sonolube.contact.gap_motion import GapMotionBatch
 from sonolube.errors import InvalidInput
 from sonolube.friction.models.asperity_stick_slip_sine import EMPIRICAL_MEMORY_LENGTH, sine_stick_slip_ratio
 
 SINE_TOLERANCE = 8e-5
-"""Largest error of a friction ratio for which a vibration may pass for a sine. []"""
+"""Largest error of a friction ratio by neglecting the higher harmonics of a vibration. []"""
 
-_BETA, _SPEED = (-6.0, 4.1), (-11.0, 0.0)  # logarithms between which sines are tabulated
+_LOG_BETA, _LOG_SPEED = (-6.0, 4.1), (-11.0, 0.0)  # ranges of the table of sines
 _ROWS, _COLUMNS = 300, 330
 _NODES = np.polynomial.legendre.leggauss(32)
-_STEEPEST = 40.0  # decay lengths of amplitude up to which the nodes suffice
-_PLAIN = 0.5  # share of k^3 X_k in the first harmonic up to which a motion closes and opens once in a period
-_SMALLEST = 1e-9  # harmonic, in decay lengths, that counts
-_SLOWEST = 1e-4  # of sliding to the speed at which nothing grips, for the nodes
+_MAXIMUM_BETA = 40.0  # amplitude over decay length up to which the quadrature is accurate
+_MAXIMUM_CUBIC_SUM = 0.5  # sum of k^3 |X_k| over |X_1| up to which a motion closes and opens once in a period
+_NEGLIGIBLE_HARMONIC = 1e-9  # in decay lengths
+_MINIMUM_SPEED = 1e-4  # sliding speed over that at which no element sticks, for the quadrature
 
 
 class _Table(NamedTuple):
-    """Friction ratios under sines, over logarithms of beta and of v, evenly spaced."""
+    """Friction ratios under load-balanced sines on a uniform grid of ln beta and ln v."""
 
     ratio: Floats
     beta_start: float
@@ -37,19 +37,19 @@ class _Table(NamedTuple):
 
 
 def batched_stick_slip_ratio(
-    motions: HarmonicMotions,
+    motions: GapMotionBatch,
     *,
     decay_length: ArrayLike,
     sliding_speed: ArrayLike,
     motion: ArrayLike,
     memory_length: ArrayLike = EMPIRICAL_MEMORY_LENGTH,
 ) -> Floats:
-    """Return friction ratios by asperity stick-slip under motions of balanced load, for very many sliding speeds. []
+    r"""Return friction ratios by asperity stick-slip under load-balanced motions, for very many points. []
 
     Parameters
     ----------
-    motions : HarmonicMotions
-        Motions of the gap, each about the mean that balances the load.
+    motions : GapMotionBatch
+        Motions of the gap, each about its load-balanced mean.
     decay_length : float
         Length over which the normal force falls by a factor of e. [m]
     sliding_speed : array_like, shape (n,)
@@ -62,8 +62,8 @@ def batched_stick_slip_ratio(
     Returns
     -------
     ndarray, shape (n,)
-        NaN for motions outside the range of this method: of more than 40 decay lengths, or of harmonics so strong that
-        the gap may close more than once in a period; `AsperityStickSlip.ratio` computes these.
+        NaN outside the range of this method: for amplitudes above 40 decay lengths, or harmonics so strong that the gap
+        may close more than once in a period; use `AsperityStickSlip.ratio` for these.
 
     Raises
     ------
@@ -72,41 +72,50 @@ def batched_stick_slip_ratio(
 
     Notes
     -----
-    The force of an element is the least, over the past, of its limit then and the slide since. So it changes by no more
-    than the gap does, and higher harmonics of together e change the friction of a sine about the same mean by a factor
-    between exp(-e/l) and exp(e/l): where this is less than 8e-5 of the friction without vibration they are left out,
-    and the ratio comes from a table for sines, interpolated by cubics to 3e-6.
+    The force of an element is the minimum, over the past, of its limit at that time plus the slide since. It changes by
+    no more than the gap, so that higher harmonics of the sum e change the friction of a sine about the same mean by a
+    factor between exp(-e/l) and exp(e/l). Where this is below 8e-5 of the friction without vibration they are
+    neglected, and the ratio is interpolated in a table for sines by cubics, to 3e-6.
 
-    Elsewhere the force is followed exactly. With the height g = x + s theta of the gap over the sliding,
-    s = v_r/(2 pi f D_c) decay lengths a radian, an element that touches in a valley of g grips across it, so that the
-    friction lacking is the integral of exp(-x) (width of the valley) (-dg) over its closing side, all in decay
-    lengths; 32 nodes give it to 1e-6.
+    Otherwise the force is integrated exactly. With the height :math:`g = x + s \theta` of the gap above the slide,
+    :math:`s = v_r/(2 \pi f D_c)` decay lengths per radian, an element that comes into contact in a valley of g sticks
+    across it, and the friction deficit is
+
+    .. math:: \Delta = -\frac{1}{2\pi} \int e^{-x}\, w(g)\, \mathrm{d}g
+
+    over the closing side of the valley, with its width w, all in decay lengths; 32 nodes give it to 1e-6.
+
+    See Also
+    --------
+    sine_stick_slip_ratio : Closed form for sines.
     """
     length = float(require_positive(decay_length=decay_length))
     memory = float(require_positive(memory_length=memory_length))
-    mean, swing, f = motions.mean_displacement / length, motions.harmonics / length, motions.frequency
+    mean, harmonics, f = motions.mean_displacement / length, motions.harmonics / length, motions.frequency
     v_r, which = (
         np.atleast_1d(require_positive(sliding_speed=sliding_speed)),
         np.atleast_1d(np.asarray(motion, np.int64)),
     )
     if which.shape != v_r.shape:
-        raise InvalidInput(f"sliding_speed and motion must have one shape, got {v_r.shape} and {which.shape}")
+        raise InvalidInput(f"sliding_speed and motion must have the same shape, got {v_r.shape} and {which.shape}")
     if which.size and not 0 <= which.min() <= which.max() < mean.size:
         raise InvalidInput(f"motion must lie between 0 and {mean.size - 1}, got {which.min()} to {which.max()}")
-    beta = np.abs(swing[:, 0])
-    higher = np.abs(swing[:, 1:]).sum(axis=1)
-    cubes = np.arange(2, swing.shape[1] + 1) ** 3
-    closes_once = np.abs(swing[:, 1:]) @ cubes <= _PLAIN * beta
-    # what the same sine would carry about this mean instead of its own
-    pressing = i0e(beta) * np.exp(beta - mean)
+    beta = np.abs(harmonics[:, 0])
+    higher = np.abs(harmonics[:, 1:]).sum(axis=1)
+    cubes = np.arange(2, harmonics.shape[1] + 1) ** 3
+    closes_once = np.abs(harmonics[:, 1:]) @ cubes <= _MAXIMUM_CUBIC_SUM * beta
+    # mean normal force of the sine about this mean, over the load
+    load_ratio = i0e(beta) * np.exp(beta - mean)
     slide = 1 / (2 * np.pi * f * memory)
     ratio = np.empty(v_r.shape)
     nodes, weights = _NODES
-    _every_ratio(_table(), swing, mean, beta, higher, closes_once, pressing, slide, v_r, which, nodes, weights, ratio)
+    _write_ratios(
+        _table(), harmonics, mean, beta, higher, closes_once, load_ratio, slide, v_r, which, nodes, weights, ratio
+    )
     beyond = np.flatnonzero(np.isinf(ratio))
     if beyond.size:  # sines outside the table
         own = which[beyond]
-        ratio[beyond] = pressing[own] * sine_stick_slip_ratio(
+        ratio[beyond] = load_ratio[own] * sine_stick_slip_ratio(
             decay_length=1.0,
             vibration_amplitude=beta[own],
             frequency=f[own],
@@ -118,7 +127,8 @@ def batched_stick_slip_ratio(
 
 @cache
 def _table() -> _Table:
-    beta, speed = np.linspace(*_BETA, _ROWS), np.linspace(*_SPEED, _COLUMNS)
+    """Return the table of friction ratios under load-balanced sines, computed once."""
+    beta, speed = np.linspace(*_LOG_BETA, _ROWS), np.linspace(*_LOG_SPEED, _COLUMNS)
     ratio = sine_stick_slip_ratio(
         decay_length=1.0,
         vibration_amplitude=np.exp(beta)[:, np.newaxis],
@@ -130,14 +140,14 @@ def _table() -> _Table:
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
-def _every_ratio(
+def _write_ratios(
     table: _Table,
-    swing: Complexes,
+    harmonics: Complexes,
     mean: Floats,
     beta: Floats,
     higher: Floats,
     closes_once: NDArray[np.bool_],
-    pressing: Floats,
+    load_ratio: Floats,
     slide: Floats,
     v_r: Floats,
     which: NDArray[np.int64],
@@ -145,23 +155,23 @@ def _every_ratio(
     weights: Floats,
     ratio: Floats,
 ) -> None:
-    """Write every ratio; infinity where a sine lies outside the table, NaN where the motion is none of these."""
+    """Write the ratio of every point; infinity for sines outside the table, NaN for motions outside the range."""
     for i in range(v_r.size):
         j = which[i]
         s = v_r[i] * slide[j]
-        sine = _tabulated(table, beta[j], s)
-        if min(sine * pressing[j], 1.0) * higher[j] <= SINE_TOLERANCE:
-            outside = sine == np.inf
-            ratio[i] = sine if outside or sine == 1.0 else min(sine * pressing[j], 1.0)  # nothing grips where it is 1
-        elif not closes_once[j] or beta[j] > _STEEPEST or s < _SLOWEST * beta[j]:
+        sine = _interpolated(table, beta[j], s)
+        if min(sine * load_ratio[j], 1.0) * higher[j] <= SINE_TOLERANCE:
+            outside = sine == np.inf  # no element sticks where the ratio is 1
+            ratio[i] = sine if outside or sine == 1.0 else min(sine * load_ratio[j], 1.0)
+        elif not closes_once[j] or beta[j] > _MAXIMUM_BETA or s < _MINIMUM_SPEED * beta[j]:
             ratio[i] = np.nan
         else:
-            ratio[i] = 1 - _lacking(swing[j], mean[j], s, nodes, weights)
+            ratio[i] = 1 - _deficit(harmonics[j], mean[j], s, nodes, weights)
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
-def _tabulated(table: _Table, beta: float, s: float) -> float:
-    """Return the ratio under a sine by cubics through four values each way, infinity outside the table."""
+def _interpolated(table: _Table, beta: float, s: float) -> float:
+    """Return the ratio under a sine by bicubic interpolation in the table, infinity outside of it."""
     if s >= beta:
         return 1.0
     p, q = (log(beta) - table.beta_start) / table.beta_step, (log(s / beta) - table.speed_start) / table.speed_step
@@ -169,82 +179,83 @@ def _tabulated(table: _Table, beta: float, s: float) -> float:
     if p < 0 or p > rows - 1 or q < 0:
         return np.inf
     row, column = min(max(int(p) - 1, 0), rows - 4), min(max(int(q) - 1, 0), columns - 4)
-    a, b, c, d = _cubic(p - row)
-    e, f, g, h = _cubic(q - column)
+    a, b, c, d = _cubic_weights(p - row)
+    e, f, g, h = _cubic_weights(q - column)
     total = 0.0
     for k, weight in enumerate((a, b, c, d)):
-        near = table.ratio[row + k]
-        total += weight * (e * near[column] + f * near[column + 1] + g * near[column + 2] + h * near[column + 3])
+        line = table.ratio[row + k]
+        total += weight * (e * line[column] + f * line[column + 1] + g * line[column + 2] + h * line[column + 3])
     return total
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
-def _cubic(t: float) -> tuple[float, float, float, float]:
-    """Return the weights of values at 0, 1, 2 and 3 for the cubic through them at t."""
+def _cubic_weights(t: float) -> tuple[float, float, float, float]:
+    """Return the weights at t of the cubic Lagrange polynomial through values at 0, 1, 2 and 3."""
     a, b, c, d = t, t - 1, t - 2, t - 3
     return -b * c * d / 6, a * c * d / 2, -a * b * d / 2, a * b * c / 6
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
-def _lacking(own: Complexes, mean: float, s: float, nodes: Floats, weights: Floats) -> float:
-    """Return the friction that gripping elements lack, over the load, for a motion that closes once in a period."""
-    count = own.size
-    while count > 1 and abs(own[count - 1]) < _SMALLEST:
+def _deficit(harmonics: Complexes, mean: float, s: float, nodes: Floats, weights: Floats) -> float:
+    """Return the friction deficit of sticking elements over the load, for a motion that closes once in a period."""
+    count = harmonics.size
+    while count > 1 and abs(harmonics[count - 1]) < _NEGLIGIBLE_HARMONIC:
         count -= 1
-    fastest = pi / 2 - atan2(own[0].imag, own[0].real)
+    fastest = pi / 2 - atan2(harmonics[0].imag, harmonics[0].real)
     for _ in range(8):
-        _, _, bend, third = _swing(own, count, fastest)
-        step = bend / third
+        _, _, second, third = _displacement_derivatives(harmonics, count, fastest)
+        step = second / third
         fastest -= step
         if abs(step) < 1e-8:
             break
-    if _swing(own, count, fastest)[1] + s >= 0:
+    if _displacement_derivatives(harmonics, count, fastest)[1] + s >= 0:
         return 0.0
-    begin, end = _closing_at(own, count, s, fastest, -1.0), _closing_at(own, count, s, fastest, 1.0)
-    total, far = 0.0, end
-    for j in range(nodes.size):  # from the bottom of the valley up, crowding where slow sliding makes it steep
+    start, end = _closing_phase(harmonics, count, s, fastest, -1.0), _closing_phase(harmonics, count, s, fastest, 1.0)
+    total, opening = 0.0, end
+    for j in range(nodes.size):  # from the bottom of the valley up, graded to where slow sliding makes it steep
         up = (1 - nodes[j]) / 2
-        near = begin + (end - begin) * up * up
-        x, rate, _, _ = _swing(own, count, near)
-        far = _far_side(own, count, s, x + s * near, far, begin + 2 * pi)
-        total -= weights[j] * up * (end - begin) * exp(-mean - x) * (far - near) * (rate + s)
+        closing = start + (end - start) * up * up
+        x, rate, _, _ = _displacement_derivatives(harmonics, count, closing)
+        opening = _opening_phase(harmonics, count, s, x + s * closing, opening, start + 2 * pi)
+        total -= weights[j] * up * (end - start) * exp(-mean - x) * (opening - closing) * (rate + s)
     return total / (2 * pi)
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
-def _closing_at(own: Complexes, count: int, s: float, fastest: float, side: float) -> float:
-    """Return the phase before (-1) or after (1) that of fastest closing at which the gap closes with speed s."""
+def _closing_phase(harmonics: Complexes, count: int, s: float, fastest: float, side: float) -> float:
+    """Return the phase before (-1) or after (1) that of fastest closing at which the gap closes at the rate s."""
     inside, outside = fastest, fastest + side * pi
     phase = fastest + side * pi / 3
     for _ in range(60):
-        _, rate, bend, _ = _swing(own, count, phase)
+        _, rate, second, _ = _displacement_derivatives(harmonics, count, phase)
         if rate + s < 0:
             inside = phase
         else:
             outside = phase
-        step = (rate + s) / bend
+        step = (rate + s) / second
         phase -= step
         if (phase - inside) * (phase - outside) >= 0:
             phase = (inside + outside) / 2
-        elif abs(step) < _SMALLEST:
+        elif abs(step) < _NEGLIGIBLE_HARMONIC:
             break
     return phase
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
-def _far_side(own: Complexes, count: int, s: float, level: float, low: float, high: float) -> float:
-    """Return the phase between two at which the height of the gap over the sliding has risen to a level."""
+def _opening_phase(harmonics: Complexes, count: int, s: float, level: float, low: float, high: float) -> float:
+    """Return the phase between two at which the height of the gap above the slide has risen to a level."""
     phase: float = low
-    x, rate, bend, _ = _swing(own, count, phase)
-    lacking = level - x - s * phase
-    if lacking <= 0:
+    x, rate, second, _ = _displacement_derivatives(harmonics, count, phase)
+    missing = level - x - s * phase
+    if missing <= 0:
         return phase
     slope = rate + s
-    phase += 2 * lacking / (slope + sqrt(max(slope * slope + 2 * bend * lacking, slope * slope)))  # by a parabola
+    # first estimate by a parabola
+    phase += 2 * missing / (slope + sqrt(max(slope * slope + 2 * second * missing, slope * slope)))
     for _ in range(60):
         if not low < phase < high:
             phase = (low + high) / 2
-        x, rate, _, _ = _swing(own, count, phase)
+        x, rate, _, _ = _displacement_derivatives(harmonics, count, phase)
         over = x + s * phase - level
         if over > 0:
             high = phase
@@ -258,15 +269,16 @@ def _far_side(own: Complexes, count: int, s: float, level: float, low: float, hi
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
-def _swing(own: Complexes, count: int, phase: float) -> tuple[float, float, float, float]:
-    """Return displacement about the mean and its first three derivatives by phase."""
+def _displacement_derivatives(harmonics: Complexes, count: int, phase: float) -> tuple[float, float, float, float]:
+    """Return the displacement about the mean and its first three derivatives with respect to the phase."""
     cosine, sine = cos(phase), sin(phase)
-    c, s, x, rate, bend, third = 1.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    c, s, x, rate, second, third = 1.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for k in range(1, count + 1):
         c, s = c * cosine - s * sine, c * sine + s * cosine
-        real, imaginary = own[k - 1].real * c - own[k - 1].imag * s, own[k - 1].real * s + own[k - 1].imag * c
+        X = harmonics[k - 1]
+        real, imaginary = X.real * c - X.imag * s, X.real * s + X.imag * c
         x += real
         rate -= k * imaginary
-        bend -= k * k * real
+        second -= k * k * real
         third += k * k * k * imaginary
-    return x, rate, bend, third
+    return x, rate, second, third

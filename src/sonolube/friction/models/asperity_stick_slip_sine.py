@@ -1,4 +1,4 @@
-"""Friction ratio under a sine of balanced load by asperity stick-slip in closed form, and its memory length."""
+"""Friction ratio of asperity stick-slip under a load-balanced sine in closed form, and memory length of asperities."""
 
 from math import acos, asin, cos, exp, pi, sin, sqrt
 
@@ -9,26 +9,26 @@ from scipy.special import i0e
 
 from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.contact.rough import RoughContact, decay_length, separation
-from sonolube.friction.spring_element import half_grip
+from sonolube.friction.oscillating_contact.stick_slip_phases import half_stick_phase
 
 EMPIRICAL_MEMORY_LENGTH = 1.5e-6
-"""Memory length of an asperity: sliding distance in which its force adapts to the sliding. [m]
+"""Memory length of an asperity: sliding distance in which its tangential force reaches the friction limit. [m]
 
-Empirical: fitted, with a decay length of 2 um, to D Table 2.3 and sections 2.4 and 2.5, of whose friction ratios it
-misses 0.09 rms and 0.15 at worst. Not valid for rigs like that of D Table 4.2."""
+Empirical: fitted, with a decay length of 2 um, to D Table 2.3 and sections 2.4 and 2.5, whose friction ratios it gives
+with an error of 0.09 rms and 0.15 at most. Not valid for rigs such as that of D Table 4.2."""
 
 _PHASES = np.polynomial.legendre.leggauss(32)
-_NEGLIGIBLE = 40.0  # exponents beyond which elements carry nothing
+_NEGLIGIBLE = 40.0  # exponent beyond which the load of elements is negligible
 
 
 def mindlin_memory_length(contact: RoughContact, *, friction_coefficient: ArrayLike, normal_load: ArrayLike) -> Floats:
-    """Return the sliding distance in which an asperity pressed by one decay length reaches its friction. [m]
+    r"""Return the memory length of an asperity by Mindlin's tangential stiffness. [m]
 
     Parameters
     ----------
     contact : RoughContact
     friction_coefficient : array_like
-        Coefficient of steady sliding. []
+        Coefficient of friction of steady sliding. []
     normal_load : array_like, broadcast against `friction_coefficient`
         Force pressing the bodies together. [N]
 
@@ -43,8 +43,15 @@ def mindlin_memory_length(contact: RoughContact, *, friction_coefficient: ArrayL
 
     Notes
     -----
-    D_c = mu C l, C the normal over the tangential stiffness of sticking asperities, (2 - nu)/(2 (1 - nu)) for like
-    bodies: nothing is fitted.
+    .. math:: D_c = \mu\, \frac{k_n}{k_t}\, l
+
+    with the decay length l of the contact force; for bodies of one material k_n/k_t is (2 - nu)/(2 (1 - nu)). The
+    sliding distance in which the tangential force of an asperity pressed by one decay length reaches its friction
+    limit, without a fitted parameter.
+
+    See Also
+    --------
+    EMPIRICAL_MEMORY_LENGTH : The fitted default.
 
     References
     ----------
@@ -63,7 +70,7 @@ def sine_stick_slip_ratio(
     sliding_speed: ArrayLike,
     memory_length: ArrayLike = EMPIRICAL_MEMORY_LENGTH,
 ) -> Floats:
-    """Return friction under a sine of balanced load over friction without. []
+    r"""Return the friction ratio under a load-balanced sine by asperity stick-slip. []
 
     Parameters
     ----------
@@ -74,14 +81,14 @@ def sine_stick_slip_ratio(
     frequency : array_like, broadcast against them
         Frequency of the vibration. [Hz]
     sliding_speed : array_like, broadcast against them
-        Mean speed of the sliding. [m/s]
+        Mean sliding speed. [m/s]
     memory_length : array_like, broadcast against them
-        Sliding distance D_c in which an asperity pressed by one decay length reaches its friction. [m]
+        Sliding distance D_c in which an asperity pressed by one decay length reaches its friction limit. [m]
 
     Returns
     -------
     ndarray, shape of the broadcast arguments
-        From exp(-beta)/I0(beta), beta = a/l, of slow sliding to exactly 1 from v_r = omega a D_c/l on.
+        From exp(-beta)/I0(beta), beta = a/l, for slow sliding to exactly 1 from v_r = omega a D_c/l on.
 
     Raises
     ------
@@ -90,14 +97,20 @@ def sine_stick_slip_ratio(
 
     Notes
     -----
-    Asperities are linear springs that touch at different gaps, so many at each gap that the normal force falls as
-    exp(-x/l); each carries a tangential spring that the sliding stretches, slips at its own limit mu n(t), and starts
-    anew at every touch. The mean gap rises so that the mean normal force stays the load.
+    The model of `AsperityStickSlip` with the mean gap at which the mean normal force equals the load.
 
-    An element slips until the gap closes faster than its spring stretches, and grips from its touch, or from that
-    phase, until its limit has fallen to its force. With h half the phase it grips and m the middle of that phase, this
-    asks for sin m = v h/sin h, v = v_r l/(omega a D_c); the force it then lacks is 2 abs(cos m) (sin h - h cos h) in a
-    period, and the sum over all elements one integral over h, here to 1e-12.
+    An element slips until the gap closes faster than its spring deforms, and sticks from its contact, or from that
+    phase, until its limit has fallen to its force. With half the phase of sticking h and the middle m of that phase
+
+    .. math:: \sin m = \frac{v h}{\sin h}, \qquad v = \frac{v_r l}{\omega a D_c}
+
+    and the friction deficit of the element is 2 abs(cos m) (sin h - h cos h) in a period. The sum over all elements is
+    one integral over h, computed to 1e-12.
+
+    See Also
+    --------
+    AsperityStickSlip : The same for any motion of the gap.
+    batched_stick_slip_ratio : Tabulated, for very many points.
     """
     length, a, f, v_r, D_c = np.broadcast_arrays(
         require_positive(decay_length=decay_length),
@@ -107,28 +120,29 @@ def sine_stick_slip_ratio(
         require_positive(memory_length=memory_length),
     )
     beta = a / length
-    reach = v_r * length / D_c  # v times omega a, which may be 0
-    v = np.minimum(reach / np.maximum(2 * pi * f * a, reach), 1.0)
+    scaled_speed = v_r * length / D_c  # v times omega a, which may be 0
+    v = np.minimum(scaled_speed / np.maximum(2 * pi * f * a, scaled_speed), 1.0)
     return _harmonic_ratio(beta.ravel(), v.ravel(), i0e(beta).ravel(), *_PHASES).reshape(beta.shape)
 
 
 @numba.njit(cache=True)
 def _harmonic_ratio(beta: Floats, v: Floats, i0e_beta: Floats, nodes: Floats, weights: Floats) -> Floats:
+    """Return the friction ratio for each amplitude over decay length and each reduced speed."""
     ratio = np.ones(beta.size)
     for i in range(beta.size):
         b, speed = beta[i], v[i]
-        if speed >= 1.0 - 1e-12 or b == 0.0:  # what still grips there lacks less than 1e-23
+        if speed >= 1.0 - 1e-12 or b == 0.0:  # the deficit there is below 1e-23
             continue
-        # elements that touch at phase theta_0 = m - h: from pi - arcsin v, where none grips, to arcsin v, where all do
+        # elements in contact from theta_0 = m - h on: from pi - arcsin v, where none sticks, to arcsin v, where all do
         last = sqrt(1 - speed * speed)
-        longest = half_grip(speed, max(asin(speed), acos(min(1.0, _NEGLIGIBLE / b - last))))
-        lacking = 0.0
+        longest = half_stick_phase(speed, max(asin(speed), acos(min(1.0, _NEGLIGIBLE / b - last))))
+        deficit = 0.0
         for j in range(nodes.size):
-            left = (1 - nodes[j]) / 2
-            h = longest * (1 - left * left)  # crowding where slow sliding makes the integrand steep
+            distance = (1 - nodes[j]) / 2
+            h = longest * (1 - distance * distance)  # graded to where slow sliding makes the integrand steep
             s = sin(h)
             rise, c = s - h * cos(h), sqrt(1 - (speed * h / s) ** 2)
             density = exp(-b * (1 - c * cos(h) + speed * h)) * h * (c * s - (speed * rise) ** 2 / (c * s**3))
-            lacking += weights[j] * left * longest * density
-        ratio[i] = 1 - b * lacking / (pi * i0e_beta[i])
+            deficit += weights[j] * distance * longest * density
+        ratio[i] = 1 - b * deficit / (pi * i0e_beta[i])
     return ratio

@@ -1,4 +1,4 @@
-"""Mean friction ratio of a vibrated contact by one bristle, coupled to the normal motion, the holder and the plane."""
+"""Mean friction ratio of a vibrated contact by one bristle on an elastic holder, with normal and in-plane vibration."""
 
 import math
 import warnings
@@ -9,18 +9,24 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_positive
-from sonolube.contact.cube import mindlin_stiffness
-from sonolube.contact.motion import GapMotion, converged_mean, open_separation, shifted
+from sonolube.contact.gap_motion import GapMotion, delayed_oscillation, require_open_gap, richardson_period_mean
+from sonolube.contact.mindlin import mindlin_tangential_stiffness
 from sonolube.contact.rough import RoughContact
 from sonolube.errors import InvalidInput, ModelRangeWarning
-from sonolube.friction.bristle import MOST_PERIODS, Holder, bristle_on_mass, bristle_on_spring, holder_propagators
+from sonolube.friction.bristle import (
+    MAXIMUM_PERIODS,
+    Holder,
+    holder_propagators,
+    mean_force_inertial_holder,
+    mean_force_massless_holder,
+)
 from sonolube.friction.models.model import FrictionModel, parameter
 
 
 @final
 @dataclass(frozen=True, kw_only=True, slots=True)
 class BristleWithHolder(FrictionModel):
-    r"""One bristle with Mindlin's stiffness that keeps its force through the period, on a holder that may yield.
+    r"""One bristle with Mindlin's tangential stiffness, continuous through the period, on a rigid or elastic holder.
 
     Parameters
     ----------
@@ -29,7 +35,7 @@ class BristleWithHolder(FrictionModel):
     holder_mass : float
         Mass that moves with the slider; zero for a spring alone. [kg]
     holder_damping : float
-        Damping between slider and ground; only of a holder with mass. [N s/m]
+        Damping between slider and ground; requires a mass. [N s/m]
     in_plane_fraction : float
         Amplitude along the sliding direction over that along the normal. []
     in_plane_phase : float
@@ -48,21 +54,21 @@ class BristleWithHolder(FrictionModel):
     .. math:: \frac{dF}{dt} = k_t(t) \, v \left(1 - \mathrm{sgn}(v) \frac{F}{\mu F_n}\right)^i,
               \qquad |F| \le \mu F_n(t)
 
-    with the relative velocity :math:`v = v_r + \dot u - \dot y`, u the in-plane motion and y that of the holder,
-    :math:`m \ddot y + c \dot y + K y = F`. Friction grows by the stretch of the bristle; a stiffness that only
-    multiplies the stretch, F = k_t(t) delta, would leave friction as it is where k_t is in proportion to F_n.
+    with the relative velocity :math:`v = v_r + \dot u - \dot y`, the in-plane motion u and that of the holder y,
+    :math:`m \ddot y + c \dot y + K y = F`. The force grows with the increment of the deformation; a stiffness that
+    multiplies the whole deformation, F = k_t(t) delta, would not reduce friction where k_t is in proportion to F_n.
 
-    With a rigid holder, exponent 0, Mindlin's stiffness and a balanced sine the ratio is exactly 1 from
-    v_r = mu omega a k_n/k_t on, and exp(-beta)/I0(beta) in the limit of slow sliding: no vibration along the normal
-    alone can push it below that plateau. A yielding holder without mass stands in series with the bristle.
+    With a rigid holder, exponent 0 and a load-balanced sine the ratio is exactly 1 from v_r = mu omega a k_n/k_t on,
+    and exp(-beta)/I0(beta) in the limit of slow sliding, with beta = a/l: the smallest ratio by vibration along the
+    normal alone. An elastic holder without mass is a spring in series with the bristle.
 
-    One bristle keeps its force while parts of the contact open and close. With in-plane motion in step with the normal
-    one a stiffness that varies therefore pumps force into it; in `AsperityStickSlip`, where every asperity starts anew,
-    it does not.
+    The bristle is continuous while parts of the contact open and close. With in-plane motion in phase with the normal
+    one its varying stiffness therefore increases the force; in `AsperityStickSlip`, where the force of every asperity
+    restarts at each contact, it does not.
 
     See Also
     --------
-    sonolube.friction.models.asperity_stick_slip.AsperityStickSlip : A population of asperities that start anew.
+    sonolube.friction.models.asperity_stick_slip.AsperityStickSlip : A population of asperities with loss of contact.
 
     References
     ----------
@@ -88,7 +94,7 @@ class BristleWithHolder(FrictionModel):
 
     @property
     def holder(self) -> Holder:
-        """Holder of the slider."""
+        """Holder of the slider along the sliding direction."""
         return Holder(
             holder_stiffness=self.holder_stiffness, holder_mass=self.holder_mass, holder_damping=self.holder_damping
         )
@@ -110,7 +116,7 @@ class BristleWithHolder(FrictionModel):
         sliding_speed : array_like, any shape
             Mean sliding speed. [m/s]
         friction_coefficient : float, optional
-            Coefficient of steady sliding, which limits friction at every instant's normal force. []
+            Coefficient of friction of steady sliding, which limits the force at every instantaneous normal force. []
 
         Returns
         -------
@@ -126,31 +132,31 @@ class BristleWithHolder(FrictionModel):
         Warns
         -----
         ModelRangeWarning
-            If slider and holder reach no steady period; the mean over the last of many periods is given.
+            If slider and holder reach no steady period; the mean over the last of many periods is returned.
         """
         v_r = require_positive(sliding_speed=sliding_speed)
         if friction_coefficient is None:
-            raise InvalidInput(f"{self.name} needs friction_coefficient, which limits the force of the bristle")
+            raise InvalidInput(f"{self.name} requires a friction_coefficient, which limits the force of the bristle")
         mu = float(require_positive(friction_coefficient=friction_coefficient))
-        d = open_separation(contact, motion)
+        d = require_open_gap(contact, motion)
         settled = True
 
         def normalized_friction(sampled: GapMotion) -> Floats:
             nonlocal settled
             order = np.roll(np.arange(sampled.displacement.size), -int(np.argmin(sampled.normal_force)))
             limit = mu * sampled.normal_force[order]
-            k = mindlin_stiffness(contact, separation=d + sampled.displacement[order])
-            u = self.in_plane_fraction * shifted(sampled.displacement, phase=self.in_plane_phase)[order]
+            k = mindlin_tangential_stiffness(contact, separation=d + sampled.displacement[order])
+            u = self.in_plane_fraction * delayed_oscillation(sampled.displacement, phase=self.in_plane_phase)[order]
             step = 1 / (motion.frequency * order.size)
             slides = np.roll(u, -1) - u, v_r.ravel() * step
             forces, settled = self._mean_force(k, limit, slides, step)
             return forces / (mu * motion.normal_load)
 
-        ratio = converged_mean(normalized_friction, motion)
+        ratio = richardson_period_mean(normalized_friction, motion)
         if not settled:
             warnings.warn(
-                f"slider and holder reach no steady period in {MOST_PERIODS}; the mean over the last of them is given."
-                " More holder_damping lets them settle",
+                f"slider and holder reach no steady period within {MAXIMUM_PERIODS}; the mean over the last ones is"
+                " returned. Increase holder_damping",
                 ModelRangeWarning,
                 stacklevel=2,
             )
@@ -160,8 +166,8 @@ class BristleWithHolder(FrictionModel):
         """Return the mean force at each sliding speed, in N, and whether a steady period was reached."""
         exponent, stiffness = float(self.dahl_exponent), self.holder_stiffness
         if self.holder_mass == 0:
-            return bristle_on_spring(k / (1 + k / stiffness), limit, *slides, exponent), True
-        pulled = bristle_on_spring(k, limit, *slides, exponent) / stiffness
+            return mean_force_massless_holder(k / (1 + k / stiffness), limit, *slides, exponent), True
+        deflection = mean_force_massless_holder(k, limit, *slides, exponent) / stiffness
         matrices = holder_propagators(self.holder, step)
-        forces, settled = bristle_on_mass(k, limit, *slides, step, exponent, *matrices, pulled)
+        forces, settled = mean_force_inertial_holder(k, limit, *slides, step, exponent, *matrices, deflection)
         return forces, bool(settled)

@@ -7,11 +7,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_positive
-from sonolube.contact.cube import tangential_stiffness
-from sonolube.contact.half_period_mean import separating_mean
-from sonolube.contact.motion import GapMotion, converged_mean, load_balanced_motion, open_separation
+from sonolube.contact.cube import cube_tangential_stiffness
+from sonolube.contact.gap_motion import GapMotion, load_balanced_motion, require_open_gap, richardson_period_mean
 from sonolube.contact.rough import RoughContact, separation
-from sonolube.friction.models.kinematic import directed_mean
+from sonolube.contact.separating_half_period import sampled_separating_mean
+from sonolube.friction.models.kinematic import kinematic_mean
 from sonolube.friction.models.model import FrictionModel, MeanGap
 
 
@@ -24,8 +24,9 @@ class Dong2015FullPeriod(FrictionModel):
     -----
     .. math:: \frac{F_1}{F_0} = \left\langle \frac{k_t(d + x)}{k_t(d)} \frac{v_r}{\sqrt{v_r^2 + v_1^2}} \right\rangle
 
-    The deformation stays that of rest, and of the friction counts the component along the sliding. The stiffness of
-    the cube goes with the square of the area, so that about an unmoved mean vibration raises friction.
+    The tangential deformation is that at rest, and the component of friction along the sliding direction is averaged.
+    The stiffness of the cube is proportional to the square of the area, so that vibration about the separation at rest
+    increases friction.
 
     See Also
     --------
@@ -69,7 +70,7 @@ class Dong2015FullPeriod(FrictionModel):
         InvalidInput
             If a speed is not positive.
         OutsideRange
-            If the motion closes the gap or leaves the height law's range.
+            If the motion closes the gap or leaves the range of the height distribution.
         """
         return _full_period(contact, motion, sliding_speed)
 
@@ -83,8 +84,8 @@ class Dong2015HalfPeriod(FrictionModel):
     -----
     .. math:: \frac{F_1}{F_0} = \frac{2}{T} \int_{x > 0} \frac{k_t(d + x)}{k_t(d)} \, dt
 
-    Through the rest of the period the surfaces are taken to stick. Neither speed nor frequency enters.
-    `sonolube.friction.dong_2015_sine.half_period_ratio` gives the same for a sine about an unmoved mean.
+    In the other half of the period the surfaces are assumed to stick. Speed and frequency have no effect.
+    `dong_2015_half_period_ratio` returns the same for a sine about the separation at rest.
 
     See Also
     --------
@@ -128,14 +129,15 @@ class Dong2015HalfPeriod(FrictionModel):
         InvalidInput
             If a speed is not positive.
         OutsideRange
-            If the motion leaves the height law's range.
+            If the motion leaves the range of the height distribution.
         """
         v_r = require_positive(sliding_speed=sliding_speed)
         d = separation(contact, normal_load=motion.normal_load)
-        at_rest = tangential_stiffness(contact, separation=d)
-        ratio = converged_mean(
-            lambda sampled: separating_mean(
-                lambda x: tangential_stiffness(contact, separation=d + x) / at_rest, displacement=sampled.displacement
+        at_rest = cube_tangential_stiffness(contact, separation=d)
+        ratio = richardson_period_mean(
+            lambda sampled: sampled_separating_mean(
+                lambda x: cube_tangential_stiffness(contact, separation=d + x) / at_rest,
+                displacement=sampled.displacement,
             ),
             motion,
         )
@@ -150,7 +152,7 @@ class Dong2015LoadBalanced(FrictionModel):
     Notes
     -----
     The mean of `Dong2015FullPeriod` under `sonolube.contact.load_balanced_motion`; the mean of the motion itself has no
-    effect. The mean of the cube's stiffness, which goes with the square of the area, still lies above that at rest.
+    effect. The mean stiffness of the cube, proportional to the square of the area, is still larger than at rest.
 
     See Also
     --------
@@ -192,14 +194,15 @@ class Dong2015LoadBalanced(FrictionModel):
         InvalidInput
             If a speed is not positive.
         OutsideRange
-            If the motion closes the gap or leaves the height law's range.
+            If the motion closes the gap or leaves the range of the height distribution.
         """
         return _full_period(contact, load_balanced_motion(contact, motion), sliding_speed)
 
 
 def _full_period(contact: RoughContact, motion: GapMotion, sliding_speed: ArrayLike) -> Floats:
-    d = open_separation(contact, motion)
-    at_rest = tangential_stiffness(contact, separation=d)
-    return directed_mean(
-        lambda x: tangential_stiffness(contact, separation=d + x) / at_rest, motion, sliding_speed=sliding_speed
+    """Return the mean of the stiffness ratio of the cube times the kinematic factor over the full period. []"""
+    d = require_open_gap(contact, motion)
+    at_rest = cube_tangential_stiffness(contact, separation=d)
+    return kinematic_mean(
+        lambda x: cube_tangential_stiffness(contact, separation=d + x) / at_rest, motion, sliding_speed=sliding_speed
     )

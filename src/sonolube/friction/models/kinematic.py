@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_positive
-from sonolube.contact.motion import GapMotion, converged_mean
+from sonolube.contact.gap_motion import GapMotion, richardson_period_mean
 from sonolube.contact.rough import RoughContact
 from sonolube.friction.models.model import FrictionModel, parameter
 
-__all__ = ["Kinematic"]  # the period average is for the models of this room
+__all__ = ["Kinematic"]  # the period average serves the models of this room
 
 
 @final
@@ -81,12 +81,12 @@ class Kinematic(FrictionModel):
         InvalidInput
             If a speed is not positive.
         """
-        return directed_mean(
+        return kinematic_mean(
             np.ones_like, motion, sliding_speed=sliding_speed, amplitude_fraction=self.amplitude_fraction
         )
 
 
-def directed_mean(
+def kinematic_mean(
     weight: Callable[[Floats], Floats], motion: GapMotion, *, sliding_speed: ArrayLike, amplitude_fraction: float = 1.0
 ) -> Floats:
     r"""Return the period average of a weight times the kinematic factor. []
@@ -94,7 +94,7 @@ def directed_mean(
     Parameters
     ----------
     weight : callable
-        Gives the weight for an array of displacements.
+        Returns the weight for an array of displacements.
     motion : GapMotion
     sliding_speed : array_like, any shape
         Mean sliding speed. [m/s]
@@ -115,7 +115,7 @@ def directed_mean(
     .. math:: \langle w(x) \cos\theta \rangle, \qquad \cos\theta = \frac{v_r}{\sqrt{v_r^2 + v_1^2}}
     """
     v_r = require_positive(sliding_speed=sliding_speed)
-    return converged_mean(
+    return richardson_period_mean(
         lambda sampled: _weighted_cosine(
             weight(sampled.displacement), amplitude_fraction * sampled.velocity, v_r.ravel()
         ),
@@ -125,7 +125,7 @@ def directed_mean(
 
 @numba.njit(cache=True)
 def _weighted_cosine(weights: Floats, velocity: Floats, speeds: Floats) -> Floats:
-    """Return the mean of weight times v_r/sqrt(v_r^2 + v^2), both linear between samples: exact however small v_r."""
+    """Return the mean of weight times v_r/sqrt(v_r^2 + v^2), both linear between samples, exactly for any v_r."""
     n = weights.size
     means = np.empty(speeds.size)
     for i in range(speeds.size):

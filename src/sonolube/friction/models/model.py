@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, Integers
-from sonolube.contact.motion import GapMotion, HarmonicMotions
+from sonolube.contact.gap_motion import GapMotion, GapMotionBatch
 from sonolube.contact.rough import RoughContact
 from sonolube.errors import InvalidInput
 from sonolube.vocabulary import quantities
@@ -196,7 +196,7 @@ class FrictionModel(ABC):
     def batched_ratio(
         self,
         contact: RoughContact,
-        motions: HarmonicMotions,
+        motions: GapMotionBatch,
         *,
         sliding_speed: Floats,
         motion: Integers,
@@ -207,7 +207,7 @@ class FrictionModel(ABC):
         Parameters
         ----------
         contact : RoughContact
-        motions : HarmonicMotions
+        motions : GapMotionBatch
             Motions of the gap by their harmonics.
         sliding_speed : ndarray, shape (n,)
             Mean sliding speed of each point, positive. [m/s]

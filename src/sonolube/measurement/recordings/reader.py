@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sonolube.errors import InvalidInput
-from sonolube.files import write_whole
+from sonolube.files import write_atomically
 from sonolube.measurement.recordings.dataset import recording_dataset, require_increasing_axis
 from sonolube.measurement.recordings.formats import StreamedRecordingFormat, recording_format
 from sonolube.measurement.recordings.mapping import RecordingMapping, read_mapping
@@ -121,7 +121,7 @@ def write_recording(recording: "xr.Dataset", *, path: Path) -> Path:
     InvalidInput
         If the destination cannot be written to.
     """
-    return write_whole(path, bytes(recording.to_netcdf(engine="h5netcdf")))
+    return write_atomically(path, bytes(recording.to_netcdf(engine="h5netcdf")))
 
 
 def recording_format_name(path: Path) -> str:

@@ -40,7 +40,7 @@ from sonolube.report.measured.sheet import (
     known,
     sheet_of,
 )
-from sonolube.units import engineering
+from sonolube.units import format_si
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -121,7 +121,7 @@ def recording_source(recording: "xr.Dataset") -> dict[str, str]:
         "format": str(attributes.get("file_format", "")),
         "title": str(attributes.get("title", "")),
         "samples": f"{next(iter(recording.sizes.values()))}",
-        "sample rate": engineering(float(rate), "Hz") if rate else "",
+        "sample rate": format_si(float(rate), "Hz") if rate else "",
         "dropped samples": f"{dropped}" if dropped else "",
         "sha256": str(attributes.get("sha256", "")),
     }
@@ -176,7 +176,7 @@ def _windows(recording: "xr.Dataset", windows: WindowStatistics, steady: SteadyS
 
 
 def _fluctuation(windows: WindowStatistics) -> Value:
-    span = engineering(windows.window_duration, "s")
+    span = format_si(windows.window_duration, "s")
     known = np.isfinite(windows.fluctuation)  # of windows with a sample
     squares, weights = windows.fluctuation[known] ** 2, windows.samples[known]
     return Value(
@@ -188,7 +188,7 @@ def _fluctuation(windows: WindowStatistics) -> Value:
 
 
 def _trace_figure(windows: WindowStatistics, draw: Callable[[], "Figure"]) -> SheetFigure:
-    span = engineering(windows.window_duration, "s")
+    span = format_si(windows.window_duration, "s")
     return SheetFigure(
         name="trace",
         title="Trace with windows",

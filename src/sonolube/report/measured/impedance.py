@@ -15,7 +15,7 @@ from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 from sonolube.measurement.statistics.log_parameter_fit import ConfidenceInterval
 from sonolube.report.measured import impedance_figures as figures
 from sonolube.report.measured.sheet import Part, Sheet, SheetFigure, Value, known, sheet_of
-from sonolube.units import engineering
+from sonolube.units import format_si
 from sonolube.vocabulary import quantities
 
 
@@ -73,7 +73,7 @@ def impedance_sheet(path: Path, *, settings: ImpedanceSettings) -> Sheet:
     spectrum = read_impedance(path, sweep=settings.sweep)
     part = _circuit(spectrum, settings) if settings.stack is None else _stack(spectrum, settings, settings.stack)
     f = spectrum.frequency
-    ends = " to ".join(engineering(float(end), "Hz", digits=6) for end in (f[0], f[-1]))
+    ends = " to ".join(format_si(float(end), "Hz", digits=6) for end in (f[0], f[-1]))
     source = {
         "format": spectrum.file_format,
         "sweep": spectrum.sweep,

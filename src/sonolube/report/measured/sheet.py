@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from sonolube.errors import InvalidInput
-from sonolube.units import engineering
+from sonolube.units import format_si
 from sonolube.vocabulary import quantities
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ class Value:
         """The value as people write it, with how well it is known."""
         if not math.isfinite(self.value):
             return "not known"
-        told = engineering(self.value, self.unit, digits=self._digits)
+        told = format_si(self.value, self.unit, digits=self._digits)
         number, _, unit = told.partition(" ")
         scale = 10.0 ** round(math.log10(self.value / float(number))) if float(number) else 1.0
         if self.uncertainty is not None:
@@ -78,7 +78,7 @@ class Column:
         """Return a cell as people write it; empty where there is nothing."""
         if cell is None or (isinstance(cell, float) and not math.isfinite(cell)):
             return ""
-        return cell if isinstance(cell, str) else engineering(cell, self.unit, digits=4)
+        return cell if isinstance(cell, str) else format_si(cell, self.unit, digits=4)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -42,7 +42,7 @@ from sonolube.surfaces import (
     spectral_moments,
     summit_statistics,
 )
-from sonolube.units import engineering
+from sonolube.units import format_si
 
 _SYMBOLS: Mapping[str, str] = MappingProxyType(
     {
@@ -185,8 +185,8 @@ def surface_source(file: SurfaceFile) -> dict[str, str]:
         "title": file.title,
         "instrument": file.instrument,
         "measured": f"{file.measured_at:%Y-%m-%d %H:%M}" if file.measured_at else "",
-        "pixels": f"{columns} x {rows}, {engineering(step_x, 'm', digits=4)} x {engineering(step_y, 'm', digits=4)}",
-        "field": f"{engineering(columns * step_x, 'm', digits=4)} x {engineering(rows * step_y, 'm', digits=4)}",
+        "pixels": f"{columns} x {rows}, {format_si(step_x, 'm', digits=4)} x {format_si(step_y, 'm', digits=4)}",
+        "field": f"{format_si(columns * step_x, 'm', digits=4)} x {format_si(rows * step_y, 'm', digits=4)}",
         "not measured": f"{file.height_map.missing_fraction:.2%}",
         "sha256": file.sha256,
     }

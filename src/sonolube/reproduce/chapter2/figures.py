@@ -13,7 +13,7 @@ from sonolube.published import PrintedNumber, table
 from sonolube.reproduce.chapter2.tribometer import drops_of, wear_reductions
 from sonolube.validation.contacts import wear_contact
 from sonolube.validation.inputs import in_table, said, wear_drop
-from sonolube.wear.cube import cube_wear_rate, vibrating_cube_wear_rate
+from sonolube.wear import cube_wear_rate, vibrating_cube_wear_rate
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -13,8 +13,7 @@ from scipy.optimize import brentq
 
 from sonolube.actuator import linear_amplifier_power
 from sonolube.contact import decay_length, separation
-from sonolube.friction import sine_stick_slip_ratio
-from sonolube.friction.models.asperity_stick_slip_sine import EMPIRICAL_MEMORY_LENGTH
+from sonolube.friction import EMPIRICAL_MEMORY_LENGTH, sine_stick_slip_ratio
 from sonolube.metrics import peak_vibration_velocity
 from sonolube.published.values import stated
 from sonolube.reproduce.row import Row, compare, undetermined

@@ -13,7 +13,7 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.contact import decay_length
-from sonolube.friction import SpringContact, oscillation_ratio
+from sonolube.friction import SpringContact, combined_oscillation_ratio
 from sonolube.reproduce.chapter2.poisson_horn import (
     ASSUMED_SOLIDS,
     ELASTIC_LOSS,
@@ -127,7 +127,7 @@ def friction_along(motion: FaceMotion, contact: SpringContact, *, approach: floa
     places = np.concatenate(sides)
     axial, normal = motion.at(places)
     towards = np.repeat([1, -1], [len(side) for side in sides])
-    ratio = oscillation_ratio(
+    ratio = combined_oscillation_ratio(
         contact,
         approach=approach,
         frequency=motion.frequency,

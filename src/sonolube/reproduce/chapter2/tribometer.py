@@ -24,7 +24,7 @@ from sonolube.validation.inputs import (
     wear_drop,
     worn_per_metre,
 )
-from sonolube.wear.cube import vibration_contact_count
+from sonolube.wear import vibration_contact_count
 
 _SPEEDS: Final = ("20.3", "40.6", "87")  # row by row in Tables 2.2 and 2.5, in pairs of rows in Tables 2.3 and 2.4
 _ROTATIONS: Final = ("A.3.1.6-rotation-20.3", "A.3.1.10-rotation-40.6", "A.3.1.10-rotation-87")

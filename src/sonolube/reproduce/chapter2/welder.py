@@ -5,7 +5,7 @@ from itertools import chain
 from operator import sub, truediv
 from typing import Final
 
-from sonolube.contact.hertz import SphereOnFlat, mean_pressure, peak_pressure, tip_radius_for_pressure
+from sonolube.contact import SphereOnFlat, hertz_mean_pressure, hertz_peak_pressure, tip_radius_for_pressure
 from sonolube.metrics import linear_speed, sliding_distance
 from sonolube.published.values import Computed, cell, over_rounding, stated
 from sonolube.reproduce.row import Row, compare, undetermined
@@ -69,7 +69,7 @@ def _stress_at_the_centre() -> Iterator[Row]:
     sphere = SphereOnFlat(tip_radius=float(radius), effective_modulus=modulus)
     yield compare(
         stated("2.4.2-round-stress-centre"),
-        float(peak_pressure(sphere, normal_load=load) / mean_pressure(sphere, normal_load=load)),
+        float(hertz_peak_pressure(sphere, normal_load=load) / hertz_mean_pressure(sphere, normal_load=load)),
         "Hertz, peak over mean of any elastic sphere: the least that rounds to the print; that is from an FEA.",
     )
 

@@ -8,7 +8,7 @@ import numpy as np
 from sonolube.contact import (
     ASPERITY_LAWS,
     GaussianHeights,
-    exponential_window,
+    exponential_validity_range,
     normal_force,
     real_contact_area,
     separation,
@@ -169,7 +169,7 @@ def _height_laws() -> "Figure":
             force = normal_force(replace(contact, asperity=ASPERITY_LAWS[law]), separation=gaps)
             name = "elastic-plastic" if law == "dong_2015" else law
             axes.plot(gaps / Rq, force, line, color=COLOURS[index], label=f"{label} heights, {name}")
-    window = exponential_window(exponential)
+    window = exponential_validity_range(exponential)
     if window is not None:
         axes.axvspan(*window, color="0.9", zorder=0, label="within a factor of 2")
     axes.axhspan(40, 240, color=COLOURS[4], alpha=0.25, zorder=0, label="loads of the tests")
@@ -181,7 +181,7 @@ def _height_laws() -> "Figure":
 def _wear_rates() -> "Figure":
     from matplotlib import pyplot as plt
 
-    from sonolube.wear.cube import cube_wear_rate, vibrating_cube_wear_rate
+    from sonolube.wear import cube_wear_rate, vibrating_cube_wear_rate
 
     figure, panels = plt.subplots(1, 2, figsize=(7.2, 3.3), sharey=True)
     contact, load = wear_contact(), float(table("3.2").columns["normal_load"].values[0])

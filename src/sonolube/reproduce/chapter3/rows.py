@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.contact import decay_length, normal_force, real_contact_area, separation, tangential_stiffness
+from sonolube.contact import cube_tangential_stiffness, decay_length, normal_force, real_contact_area, separation
 from sonolube.figure import ReportFigure
 from sonolube.published import statement, table
 from sonolube.published.values import cell, over_rounding, stated
@@ -23,7 +23,7 @@ from sonolube.validation.contacts import (
     poisson_friction_ratio,
     wear_contact,
 )
-from sonolube.wear.cube import cube_wear_rate, vibrating_cube_wear_rate
+from sonolube.wear import cube_wear_rate, vibrating_cube_wear_rate
 
 __all__ = ["figures", "rows"]
 
@@ -170,7 +170,9 @@ def _hopping_row() -> Row:
     printed = stated("3.3.5-hopping-displacement")
     gap = d + printed.number.value
     force = float(normal_force(contact, separation=gap) / load)
-    stiffness = float(tangential_stiffness(contact, separation=gap) / tangential_stiffness(contact, separation=d))
+    stiffness = float(
+        cube_tangential_stiffness(contact, separation=gap) / cube_tangential_stiffness(contact, separation=d)
+    )
     return compare(
         printed,
         lost,

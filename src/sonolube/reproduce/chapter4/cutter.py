@@ -8,14 +8,14 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from sonolube.checks import Floats
-from sonolube.friction.soft_counterface import FaceMode, linear_layer_ratio, stiffening_layer_ratio
+from sonolube.friction import FaceVibrationMode, exponential_layer_ratio, linear_layer_ratio
 from sonolube.published.values import stated
 from sonolube.reproduce.row import Row, compare
 from sonolube.validation.inputs import said
 from sonolube.validation.power_map import printed
 
 # nobody printed the mode: D 4.4.4 has only that centre and rim move against each other
-ASSUMED_MODE = FaceMode(rim_displacement_ratio=-1.0, following=1.0)
+ASSUMED_MODE = FaceVibrationMode(rim_displacement_ratio=-1.0, following_fraction=1.0)
 """Rim as far as the centre the other way, which leaves no mean motion for the soft body to follow."""
 
 _ASSUMED = (
@@ -58,7 +58,7 @@ def soft_layer_fits() -> tuple[SoftLayerFit, ...]:
     measured = np.array([_force("on", load.text) / _force("off", load.text) for load in cells])
 
     def stiffening(reach: float) -> Floats:
-        ratio = stiffening_layer_ratio(ASSUMED_MODE, vibration_amplitude=reach, decay_length=1.0)
+        ratio = exponential_layer_ratio(ASSUMED_MODE, vibration_amplitude=reach, decay_length=1.0)
         return np.full(loads.shape, ratio)
 
     def linear(reach: float) -> Floats:

@@ -12,10 +12,10 @@ from sonolube.checks import Floats
 from sonolube.figure import COLOURS, LINES, ReportFigure
 from sonolube.friction import (
     BoundaryLubricant,
-    Method,
-    MethodCoefficients,
-    best_method,
-    method_coefficients,
+    LubricationCoefficients,
+    LubricationMethod,
+    best_lubrication_method,
+    lubrication_coefficients,
     sine_stick_slip_ratio,
 )
 from sonolube.published.values import stated
@@ -102,7 +102,7 @@ def molykote() -> BoundaryLubricant:
     return BoundaryLubricant(film_coefficient=at_limit * _DRY, full_asperity_pressure=_FULL_ASPERITY_PRESSURE)
 
 
-def coefficients(*, sliding_speed: ArrayLike, nominal_pressure: ArrayLike) -> MethodCoefficients:
+def coefficients(*, sliding_speed: ArrayLike, nominal_pressure: ArrayLike) -> LubricationCoefficients:
     """Return friction of the four ways over that of the dry contact.
 
     Parameters
@@ -114,9 +114,9 @@ def coefficients(*, sliding_speed: ArrayLike, nominal_pressure: ArrayLike) -> Me
 
     Returns
     -------
-    MethodCoefficients
+    LubricationCoefficients
     """
-    return method_coefficients(
+    return lubrication_coefficients(
         molykote(),
         friction_coefficient=_DRY,
         friction_ratio=vibrated_ratio(sliding_speed=sliding_speed),
@@ -153,11 +153,11 @@ def _regime_map() -> "Figure":
     left.set(xlabel="Sliding speed [mm/s]", ylabel="Friction over dry friction [1]", ylim=(0.4, 1.05))
     left.legend(loc="lower right")
     stresses = np.linspace(5e6, 80e6, 151)
-    best = best_method(
+    best = best_lubrication_method(
         coefficients(sliding_speed=speeds[np.newaxis, :], nominal_pressure=stresses[:, np.newaxis]),
         smallest_gain=_SMALLEST_GAIN,
     )
-    names = [str(method) for method in Method]
+    names = [str(method) for method in LubricationMethod]
     numbers = np.vectorize(names.index)(best)
     right.pcolormesh(
         1e3 * speeds,

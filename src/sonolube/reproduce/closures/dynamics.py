@@ -16,7 +16,7 @@ from typing import Final
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.contact import GapMotion, decay_length, harmonic_motion, load_balanced_motion
+from sonolube.contact import GapMotion, decay_length, load_balanced_motion, sinusoidal_motion
 from sonolube.dynamics import ExponentialGap, Structure, chain_structure, pin_on_disc_chain, steady_state, trajectory
 from sonolube.dynamics import contact_motion as motion_of
 from sonolube.friction import FRICTION_MODELS
@@ -118,7 +118,7 @@ def slow_arm_motion(test: FrictionTest, moving: GapMotion, *, swing: float, cycl
 
 
 def _motions(test: FrictionTest) -> Iterator[tuple[str, GapMotion]]:
-    about_rest = harmonic_motion(
+    about_rest = sinusoidal_motion(
         test.contact,
         normal_load=test.normal_load,
         vibration_amplitude=test.vibration_amplitude,

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from sonolube.contact import harmonic_motion, load_balanced_motion
+from sonolube.contact import load_balanced_motion, sinusoidal_motion
 from sonolube.figure import COLOURS, LINES, MARKERS, ReportFigure
 from sonolube.friction import (
     AsperityStickSlip,
@@ -90,7 +90,7 @@ def _against_speed() -> "Figure":
 def _curves(speeds: "Floats") -> Iterator[tuple[str, "Floats"]]:
     test = measured_in("A")[0]
     contact, mu = test.contact, np.mean([one.friction_coefficient for one in measured_in("A")])
-    about_rest = harmonic_motion(
+    about_rest = sinusoidal_motion(
         contact,
         normal_load=test.normal_load,
         vibration_amplitude=test.vibration_amplitude,

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from sonolube.errors import InvalidInput
-from sonolube.units import engineering, to_si
+from sonolube.units import format_si, to_si
 
 LIMITS: Mapping[str, tuple[float, float]] = MappingProxyType(
     {
@@ -81,6 +81,6 @@ def require_plausible(value: float, *, unit: str, text: str) -> float:
     """
     least, largest = LIMITS.get(unit, _ANY_UNIT)
     if value and (abs(value) < least or abs(value) > largest):  # what is no number is for others as well
-        bounds = " to ".join(engineering(bound, unit) for bound in (least, largest))
+        bounds = " to ".join(format_si(bound, unit) for bound in (least, largest))
         raise InvalidInput(f"{text} lies beyond any rig: wanted {bounds}")
     return float(value)

@@ -19,7 +19,7 @@ from sonolube.contact import (
     ElasticBody,
     RoughContact,
     contact_pair,
-    like_bodies_mindlin_ratio,
+    identical_materials_mindlin_ratio,
 )
 from sonolube.dynamics import Structure
 from sonolube.errors import InvalidInput, MissingProperty, SonolubeError, suggestion
@@ -303,7 +303,7 @@ def _contact(section: ContactSection) -> RoughContact:
 def _pair(section: ContactSection) -> ContactPair:
     if section.pair is not None:
         with _prefixed("contact.pair"):
-            ratio = like_bodies_mindlin_ratio(poisson_ratio=section.pair.poisson_ratio)
+            ratio = identical_materials_mindlin_ratio(poisson_ratio=section.pair.poisson_ratio)
             return ContactPair(**section.pair.model_dump(), mindlin_ratio=ratio)
     assert section.softer is not None  # the file's own check
     assert section.harder is not None

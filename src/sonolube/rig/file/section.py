@@ -15,7 +15,7 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
 from sonolube.rig.file.plausible import require_plausible
-from sonolube.units import kind_of, to_si
+from sonolube.units import to_si, unit_description
 from sonolube.variants import VariantTable
 from sonolube.vocabulary import Quantity, quantities
 
@@ -103,9 +103,9 @@ def quantity_in_si(value: object, *, unit: str) -> float:
     if isinstance(value, str):
         return require_plausible(to_si(value, unit=unit, name=""), unit=unit, text=value)
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise ValueError(f"{value!r} is not {kind_of(unit)}")
+        raise ValueError(f"{value!r} is not {unit_description(unit)}")
     if unit:
-        raise ValueError(f"{value!r} has no unit; wanted {kind_of(unit)}")
+        raise ValueError(f"{value!r} has no unit; expected {unit_description(unit)}")
     return require_plausible(value, unit=unit, text=f"{value}")
 
 
@@ -113,6 +113,6 @@ def _schema_of(known: Quantity) -> dict[str, Any]:
     return {
         "type": "string" if known.unit else ["number", "string"],
         "title": known.meaning,
-        "description": f"{known.meaning}; {kind_of(known.unit)}",
+        "description": f"{known.meaning}; {unit_description(known.unit)}",
         "x-si-unit": known.unit,
     }

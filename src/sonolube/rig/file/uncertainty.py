@@ -11,7 +11,7 @@ from sonolube.errors import InvalidInput, SonolubeError, suggestion
 from sonolube.rig.distribution import Distribution, Law, LogNormal, Normal, Uniform
 from sonolube.rig.file.section import Section
 from sonolube.rig.file.sections import RigFile
-from sonolube.units import engineering, to_si
+from sonolube.units import format_si, to_si
 from sonolube.vocabulary import Quantity
 
 EXAMPLES = (
@@ -144,9 +144,9 @@ def _width(kind: str, rest: str, unit: str, value: float) -> float:
 def _text(law: Law, unit: str) -> str:
     match law:
         case Normal():
-            return f"normal, {engineering(law.middle, unit)} +- {engineering(law.deviation, unit)}"
+            return f"normal, {format_si(law.middle, unit)} +- {format_si(law.deviation, unit)}"
         case LogNormal():
-            return f"lognormal, {engineering(law.median, unit)} within a factor of {law.factor:.3g}"
+            return f"lognormal, {format_si(law.median, unit)} within a factor of {law.factor:.3g}"
         case Uniform():
-            return f"uniform, {engineering(law.low, unit)} to {engineering(law.high, unit)}"
+            return f"uniform, {format_si(law.low, unit)} to {format_si(law.high, unit)}"
     raise AssertionError(law)

@@ -1,0 +1,333 @@
+"""Periodic motions of the gap of a contact: one sampled period, batches of Fourier coefficients, and period averages.
+
+The record in which `sonolube.dynamics` hands over a vibration and which the models of friction and wear take.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sonolube.checks import (
+    Complexes,
+    Floats,
+    require_finite,
+    require_finite_complex,
+    require_non_negative,
+    require_positive,
+)
+from sonolube.contact.rough import RoughContact, normal_force, normal_stiffness, separation
+from sonolube.errors import InvalidInput, OutsideRange
+
+_MINIMUM_SAMPLES, _MAXIMUM_SAMPLES = 256, 65536  # per period, between which a period average is refined
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class GapMotion:
+    """One period of a steady-state motion of the gap along the surface normal, at uniform phases.
+
+    Parameters
+    ----------
+    displacement : ndarray, shape (n,)
+        Displacement from the position at rest under the load, positive for wider gaps, at n uniform phases from 0. [m]
+    normal_force : ndarray, shape (n,)
+        Normal contact force at these phases. [N]
+    frequency : float
+        Frequency of the vibration. [Hz]
+    normal_load : float
+        Dead load, which is the normal force at rest. [N]
+
+    Raises
+    ------
+    InvalidInput
+        If the shapes differ, there are fewer than eight samples, a force is negative, the frequency or load not
+        positive, or a value not finite.
+    """
+
+    displacement: Floats
+    normal_force: Floats
+    frequency: float
+    normal_load: float
+
+    def __post_init__(self) -> None:
+        x = require_finite(displacement=self.displacement)
+        F_n = require_non_negative(normal_force=self.normal_force)
+        require_positive(frequency=self.frequency)
+        require_positive(normal_load=self.normal_load)
+        if x.ndim != 1 or x.size < 8 or x.shape != F_n.shape:
+            raise InvalidInput(
+                "displacement and normal_force must be rows of the same eight or more phases,"
+                f" got shapes {x.shape} and {F_n.shape}"
+            )
+        object.__setattr__(self, "displacement", x)
+        object.__setattr__(self, "normal_force", F_n)
+
+    @property
+    def velocity(self) -> Floats:
+        """Velocity along the surface normal by spectral differentiation, positive for opening gaps. [m/s]"""
+        n = self.displacement.size
+        harmonics = np.fft.rfft(self.displacement) * (2j * np.pi * self.frequency) * np.arange(n // 2 + 1)
+        if n % 2 == 0:
+            harmonics[-1] = 0.0  # the highest harmonic of an even count has no derivative at the samples
+        return np.fft.irfft(harmonics, n)
+
+    def resampled(self, samples: int) -> "GapMotion":
+        """Return the same motion at another number of phases, by its harmonics.
+
+        Parameters
+        ----------
+        samples : int
+            Number of uniform phases.
+
+        Returns
+        -------
+        GapMotion
+        """
+        return GapMotion(
+            displacement=_resampled(self.displacement, samples),
+            normal_force=np.maximum(_resampled(self.normal_force, samples), 0.0),
+            frequency=self.frequency,
+            normal_load=self.normal_load,
+        )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class GapMotionBatch:
+    r"""Fourier coefficients of many steady-state motions of the gap, one row per motion.
+
+    Parameters
+    ----------
+    mean_displacement : ndarray, shape (m,)
+        Mean displacement from the position at rest under the load. [m]
+    harmonics : ndarray of complex, shape (m, K)
+        Complex amplitudes X_k of the displacement, in m.
+    frequency : ndarray, shape (m,)
+        Fundamental frequency. [Hz]
+
+    Raises
+    ------
+    InvalidInput
+        If the shapes do not match, a frequency is not positive or a value not finite.
+
+    Notes
+    -----
+    .. math:: x(t) = \bar x + \mathrm{Re} \sum_{k=1}^{K} X_k e^{2 \pi i k f t}
+    """
+
+    mean_displacement: Floats
+    harmonics: Complexes
+    frequency: Floats
+
+    def __post_init__(self) -> None:
+        mean = np.atleast_1d(require_finite(mean_displacement=self.mean_displacement))
+        coefficients = np.atleast_2d(require_finite_complex(harmonics=self.harmonics))
+        f = np.atleast_1d(require_positive(frequency=self.frequency))
+        if not mean.size == f.size == coefficients.shape[0] or mean.ndim != 1 or coefficients.ndim != 2:
+            raise InvalidInput(
+                "mean_displacement, frequency and harmonics must have one row per motion, got shapes"
+                f" {mean.shape}, {f.shape} and {coefficients.shape}"
+            )
+        for name, value in (("mean_displacement", mean), ("harmonics", coefficients), ("frequency", f)):
+            object.__setattr__(self, name, value)
+
+
+def sinusoidal_motion(
+    contact: RoughContact,
+    *,
+    normal_load: ArrayLike,
+    vibration_amplitude: ArrayLike,
+    frequency: ArrayLike,
+    samples: int = _MINIMUM_SAMPLES,
+) -> GapMotion:
+    r"""Return a sinusoidal motion of prescribed amplitude about the separation at rest.
+
+    Parameters
+    ----------
+    contact : RoughContact
+    normal_load : float
+        Force pressing the bodies together at rest. [N]
+    vibration_amplitude : float
+        Amplitude of the vibration along the surface normal. [m]
+    frequency : float
+        Frequency of the vibration. [Hz]
+    samples : int
+        Number of phases, the widest gap first.
+
+    Returns
+    -------
+    GapMotion
+
+    Raises
+    ------
+    InvalidInput
+        If the load or frequency is not positive, or the amplitude negative.
+    OutsideRange
+        If no separation carries the load, or the motion leaves the range of the height distribution.
+
+    Notes
+    -----
+    .. math:: x(t) = a \cos 2 \pi f t, \qquad F_n(t) = F_n(d + x)
+
+    The mean gap stays that at rest, so that the mean normal force exceeds the load: only a stiff mount holds the gap in
+    this way. Under a dead load the mean gap rises, see `load_balanced_motion`.
+
+    See Also
+    --------
+    load_balanced_motion : The same vibration with a mean normal force equal to the load.
+    """
+    load, a = require_positive(normal_load=normal_load), require_non_negative(vibration_amplitude=vibration_amplitude)
+    x = a * np.cos(2 * np.pi * np.arange(samples) / samples)
+    return GapMotion(
+        displacement=x,
+        normal_force=normal_force(contact, separation=separation(contact, normal_load=load) + x),
+        frequency=float(require_positive(frequency=frequency)),
+        normal_load=float(load),
+    )
+
+
+def load_balanced_motion(contact: RoughContact, motion: GapMotion) -> GapMotion:
+    r"""Return the same vibration about the mean gap at which the mean normal force equals the load.
+
+    Parameters
+    ----------
+    contact : RoughContact
+    motion : GapMotion
+
+    Returns
+    -------
+    GapMotion
+        Its normal force is that of the contact at the new gaps.
+
+    Raises
+    ------
+    OutsideRange
+        If the balanced gap lies outside the range of the height distribution.
+
+    Notes
+    -----
+    .. math:: \frac1T \int_0^T F_n(d + \bar x + \tilde x(t))\, \mathrm{d}t = F_N
+
+    is solved for the mean displacement by Newton's method. With exponential heights a sine of amplitude a rises by
+    :math:`\bar x = l \ln I_0(a/l)`, l being the decay length of the contact force.
+
+    See Also
+    --------
+    sinusoidal_motion : A sine about the separation at rest.
+    """
+    d, x = separation(contact, normal_load=motion.normal_load), motion.displacement
+    x = x + max(0.0, -float(np.min(x)))  # start with no gap narrower than at rest, within range of the forces
+    for _ in range(50):
+        forces, slopes = normal_force(contact, separation=d + x), normal_stiffness(contact, separation=d + x)
+        # Newton on the logarithm of the mean force, exact in one step for exponential heights
+        excess = np.log(np.mean(forces) / motion.normal_load)
+        x = x + excess * np.mean(forces) / np.mean(slopes)
+        if abs(excess) < 1e-13:
+            break
+    else:
+        raise OutsideRange(
+            f"normal_load of {motion.normal_load:.3g} N is balanced by no mean gap of this motion; reduce the amplitude"
+        )
+    return GapMotion(
+        displacement=x,
+        normal_force=normal_force(contact, separation=d + x),
+        frequency=motion.frequency,
+        normal_load=motion.normal_load,
+    )
+
+
+def require_open_gap(contact: RoughContact, motion: GapMotion) -> Floats:
+    """Return the separation at rest of a motion, and refuse a motion that closes the gap. [m]
+
+    Parameters
+    ----------
+    contact : RoughContact
+    motion : GapMotion
+
+    Returns
+    -------
+    ndarray, shape ()
+
+    Raises
+    ------
+    OutsideRange
+        If the mean planes meet at some phase, or no separation carries the load.
+    """
+    d = separation(contact, normal_load=motion.normal_load)
+    smallest = float(d + np.min(motion.displacement))
+    if smallest <= 0:
+        raise OutsideRange(
+            f"the motion closes the gap: its smallest separation is {smallest:.3g} m, from {float(d):.3g} m at rest."
+            " Reduce the amplitude, or use the load-balanced mean gap"
+        )
+    return d
+
+
+def richardson_period_mean(
+    mean: Callable[[GapMotion], Floats], motion: GapMotion, *, tolerance: float = 1e-5
+) -> Floats:
+    r"""Return an average over the period by doubling the samples and Richardson's extrapolation.
+
+    Parameters
+    ----------
+    mean : callable
+        Returns the average, or several, for a sampled motion, with an error of second order in the phase step.
+    motion : GapMotion
+    tolerance : float
+        Largest error of the result, relative to the larger of the average and one.
+
+    Returns
+    -------
+    ndarray, shape of what `mean` returns
+
+    Raises
+    ------
+    OutsideRange
+        If the average does not converge with 65536 phases.
+
+    Notes
+    -----
+    With the averages m_n at n phases the result is :math:`m_{2n} + (m_{2n} - m_n)/3`, once the correction is within the
+    tolerance.
+    """
+    samples = max(_MINIMUM_SAMPLES, motion.displacement.size)
+    coarse = mean(motion.resampled(samples))
+    while samples < _MAXIMUM_SAMPLES:
+        samples *= 2
+        fine = mean(motion.resampled(samples))
+        change = fine - coarse
+        # a third of the change is the error, which Richardson's extrapolation removes to the next order
+        if np.all(np.abs(change) / 3 < tolerance * np.maximum(np.abs(fine), 1.0)):
+            return fine + change / 3
+        coarse = fine
+    raise OutsideRange(f"the average over a period does not converge with {samples} samples of this motion")
+
+
+def delayed_oscillation(values: Floats, *, phase: float) -> Floats:
+    """Return the oscillating part of a sampled period, delayed by a phase.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        Samples at uniform phases.
+    phase : float
+        Phase lag of the fundamental. [rad]
+
+    Returns
+    -------
+    ndarray, shape (n,)
+    """
+    harmonics = np.fft.rfft(values) * np.exp(-1j * phase * np.arange(values.size // 2 + 1))
+    harmonics[0] = 0.0
+    return np.fft.irfft(harmonics, values.size)
+
+
+def _resampled(values: Floats, samples: int) -> Floats:
+    """Return a sampled period at another number of uniform phases, by its harmonics."""
+    n = values.size
+    if samples == n:
+        return values
+    harmonics = np.fft.rfft(values)
+    if n % 2 == 0 and samples > n:
+        harmonics[-1] /= 2  # one of the two signs of the highest frequency, which are now separate
+    return np.fft.irfft(harmonics, samples) * (samples / n)

@@ -1,0 +1,51 @@
+"""Mean force over the steady period of a bristle law that is linear in the deformation between reversals (kernel)."""
+
+import numba
+import numpy as np
+
+from sonolube.checks import Floats
+
+__all__: list[str] = []  # kernel of this room
+
+
+@numba.njit(cache=True)
+def steady_period_mean_force(stiffness: Floats, limit: Floats, slides: Floats, durations: Floats) -> Floats:
+    """Return the mean force of each row of steps over its steady period.
+
+    Parameters
+    ----------
+    stiffness, limit : ndarray, shape (m, n)
+        Tangential stiffness [N/m] and friction limit [N], constant within each of n steps.
+    slides : ndarray, shape (m, n)
+        Relative displacement within each step [m].
+    durations : ndarray, shape (m, n)
+        Duration of each step over the period; each row sums to 1.
+
+    Returns
+    -------
+    ndarray, shape (m,)
+
+    Notes
+    -----
+    After every step the deformation is a linear function of that at the start of the period, and so is the time
+    integral of the force. The steady period is the fixed point of the map of one period.
+    """
+    means = np.empty(stiffness.shape[0])
+    for point in range(means.size):
+        # deformation after each step: kept * (that at the start) + gained; likewise the time integral of the force
+        kept, gained, log_kept, mean_kept, mean_gained = 1.0, 0.0, 0.0, 0.0, 0.0
+        for step in range(stiffness.shape[1]):
+            k, largest, slide = stiffness[point, step], limit[point, step], slides[point, step]
+            decay = k * abs(slide) / largest
+            if decay == 0.0:
+                continue
+            steady = np.sign(slide) * largest / k
+            relaxed = -np.expm1(-decay)
+            weight, held = durations[point, step] * k, relaxed / decay
+            mean_kept += weight * held * kept
+            mean_gained += weight * (steady + held * (gained - steady))
+            gained += relaxed * (steady - gained)
+            log_kept -= decay
+            kept = np.exp(log_kept)
+        means[point] = mean_gained - mean_kept * gained / np.expm1(log_kept)
+    return means

@@ -1,0 +1,75 @@
+"""Measures of wear: specific wear rate, mass loss, and number of contacts made by a vibration."""
+
+from numpy.typing import ArrayLike
+
+from sonolube.checks import Floats, require_non_negative, require_positive
+
+
+def specific_wear_rate(*, wear_rate: ArrayLike, normal_load: ArrayLike) -> Floats:
+    r"""Return the specific wear rate: volume lost per sliding distance and load. [m2/N]
+
+    Parameters
+    ----------
+    wear_rate : array_like
+        Volume lost per sliding distance. [m2]
+    normal_load : array_like, broadcast against `wear_rate`
+        Force pressing the bodies together. [N]
+
+    Returns
+    -------
+    ndarray, shape of the broadcast arguments
+
+    Raises
+    ------
+    InvalidInput
+        If a rate is negative, a load not positive, or a value not finite.
+
+    Notes
+    -----
+    .. math:: k = \frac{W}{F_N}
+    """
+    return require_non_negative(wear_rate=wear_rate) / require_positive(normal_load=normal_load)
+
+
+def mass_loss(*, wear_volume: ArrayLike, density: ArrayLike) -> Floats:
+    """Return the mass of a worn volume. [kg]
+
+    Parameters
+    ----------
+    wear_volume : array_like
+        Volume worn away. [m3]
+    density : array_like, broadcast against `wear_volume`
+        Mass density of the body that lost it. [kg/m3]
+
+    Returns
+    -------
+    ndarray, shape of the broadcast arguments
+
+    Raises
+    ------
+    InvalidInput
+        If a volume is negative, a density not positive, or a value not finite.
+    """
+    return require_non_negative(wear_volume=wear_volume) * require_positive(density=density)
+
+
+def vibration_contact_count(*, frequency: ArrayLike, duration: ArrayLike) -> Floats:
+    """Return the number of contacts made by a vibration, one per period. []
+
+    Parameters
+    ----------
+    frequency : array_like
+        Frequency of the vibration. [Hz]
+    duration : array_like, broadcast against `frequency`
+        Duration of the vibration. [s]
+
+    Returns
+    -------
+    ndarray, shape of the broadcast arguments
+
+    Raises
+    ------
+    InvalidInput
+        If a frequency is not positive, a duration negative, or a value not finite.
+    """
+    return require_positive(frequency=frequency) * require_non_negative(duration=duration)

@@ -1,0 +1,70 @@
+"""Motions of the gap: load balance, derivatives and resampling of sines, and inconsistent samples."""
+
+import numpy as np
+import pytest
+from pytest import approx, raises
+from scipy.special import i0
+
+from sonolube.contact import (
+    ASPERITY_LAWS,
+    ContactPair,
+    GapMotion,
+    GaussianHeights,
+    RoughContact,
+    load_balanced_motion,
+    normal_force,
+    separation,
+    sinusoidal_motion,
+)
+from sonolube.errors import InvalidInput
+from sonolube.surfaces import Roughness
+
+CONTACT = RoughContact(  # D Table 3.2
+    roughness=Roughness(rms_height=6e-6, summit_radius=1.5e-6, summit_density=4.7e10),
+    pair=ContactPair(effective_modulus=59.6e9, poisson_ratio=0.33, yield_strength=410e6, mindlin_ratio=0.8),
+    nominal_area=2.25e-6,
+    asperity=ASPERITY_LAWS["dong_2015"],
+)
+LOAD, FREQUENCY, DECAY_LENGTH = 3.0, 22e3, 2e-6
+OMEGA = 2 * np.pi * FREQUENCY
+
+
+def sine(amplitude: float, *, samples: int = 256) -> GapMotion:
+    return sinusoidal_motion(
+        CONTACT, normal_load=LOAD, vibration_amplitude=amplitude, frequency=FREQUENCY, samples=samples
+    )
+
+
+@pytest.mark.parametrize("amplitude", [0.1e-6, 2.5e-6, 14e-6])
+def test_the_load_balanced_mean_of_a_sine_rises_by_the_logarithm_of_a_bessel_function(amplitude: float) -> None:
+    balanced = load_balanced_motion(CONTACT, sine(amplitude))
+    assert np.mean(balanced.displacement) == approx(DECAY_LENGTH * np.log(i0(amplitude / DECAY_LENGTH)), rel=1e-9)
+    assert np.mean(balanced.normal_force) == approx(LOAD, rel=1e-12)
+
+
+def test_gaussian_heights_are_load_balanced_too() -> None:
+    contact = RoughContact(
+        roughness=CONTACT.roughness,
+        pair=CONTACT.pair,
+        nominal_area=2.25e-6,
+        heights=GaussianHeights(),
+        asperity=ASPERITY_LAWS["dong_2015"],
+    )
+    motion = sinusoidal_motion(contact, normal_load=LOAD, vibration_amplitude=2.5e-6, frequency=FREQUENCY)
+    balanced = load_balanced_motion(contact, motion)
+    gaps = separation(contact, normal_load=LOAD) + balanced.displacement
+    assert np.mean(normal_force(contact, separation=gaps)) == approx(LOAD, rel=1e-10)
+
+
+def test_velocities_are_those_of_the_sine() -> None:
+    theta = 2 * np.pi * np.arange(64) / 64
+    assert sine(2.5e-6, samples=64).velocity == approx(-2.5e-6 * OMEGA * np.sin(theta), abs=1e-12)
+
+
+def test_a_resampled_motion_lies_on_the_same_sine() -> None:
+    assert sine(2.5e-6, samples=16).resampled(48).displacement == approx(sine(2.5e-6, samples=48).displacement)
+
+
+def test_forces_and_displacements_of_different_length_are_refused() -> None:
+    with raises(InvalidInput, match=r"got shapes \(8,\) and \(9,\)"):
+        GapMotion(displacement=np.zeros(8), normal_force=np.ones(9), frequency=1.0, normal_load=1.0)

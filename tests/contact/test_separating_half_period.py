@@ -1,0 +1,46 @@
+"""Averages over the separating half period against closed forms."""
+
+import mpmath
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from pytest import approx, raises
+
+from sonolube.contact.separating_half_period import separating_half_period_mean
+from sonolube.errors import InvalidInput
+
+
+def test_the_mean_displacement_of_the_separating_half_is_two_over_pi_of_the_amplitude() -> None:
+    gap = separating_half_period_mean(lambda d: d, separation=10e-6, vibration_amplitude=3e-6)
+    assert gap == approx(10e-6 + 2 / np.pi * 3e-6, rel=1e-14)
+
+
+@pytest.mark.parametrize("decays", [0.01, 1.25, 10.0, 100.0])
+def test_an_exponential_averages_to_bessel_less_struve(decays: float) -> None:
+    # (1/pi) times the integral of exp(-z sin theta) from 0 to pi is I0(z) - L0(z)
+    with mpmath.workdps(80):  # both grow as exp(z)
+        exact = float(mpmath.besseli(0, decays) - mpmath.struvel(0, decays))
+    mean = separating_half_period_mean(
+        lambda d: np.exp(-(d - 1.0) * decays / 0.5), separation=1.0, vibration_amplitude=0.5
+    )
+    assert mean == approx(exact, rel=1e-12)
+
+
+@given(ratio=st.floats(0, 0.999))
+def test_the_inverse_gap_averages_to_its_closed_form(ratio: float) -> None:
+    # (1/pi) times the integral of 1/(1 + s sin theta) from 0 to pi is (2/pi) arccos(s)/sqrt(1 - s^2)
+    mean = separating_half_period_mean(lambda d: 1 / d, separation=1.0, vibration_amplitude=ratio)
+    assert mean == approx(2 / np.pi * np.arccos(ratio) / np.sqrt(1 - ratio**2), rel=1e-12)
+
+
+def test_empty_arguments_give_empty_results() -> None:
+    assert separating_half_period_mean(lambda d: d, separation=np.empty((0, 3)), vibration_amplitude=1.0).shape == (
+        0,
+        3,
+    )
+
+
+def test_a_separation_that_is_not_positive_is_refused() -> None:
+    with raises(InvalidInput, match=r"separation must be positive, got 0\.0 m"):
+        separating_half_period_mean(lambda d: d, separation=0.0, vibration_amplitude=0.0)
