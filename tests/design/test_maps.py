@@ -10,10 +10,10 @@ from scipy.special import i0e
 
 from sonolube.design import (
     frequency_voltage_map,
+    gaussian_process_map,
     map_figure,
     map_page,
-    measured_map,
-    sufficient_power,
+    saturation_power,
     velocity_power_map,
     velocity_stress_map,
 )
@@ -66,14 +66,14 @@ def test_the_ridge_of_slow_sliding_lies_where_its_closed_form_says() -> None:
 
     known = brentq(lambda beta: float(reduction(np.sqrt(2) * beta) - reduction(beta)) - 0.05, 0.5, 4)
     beta = np.linspace(0, 8, 4001)
-    ridge = sufficient_power(friction_reduction=reduction(beta), actuator_power=beta**2)
+    ridge = saturation_power(friction_reduction=reduction(beta), actuator_power=beta**2)
     assert np.sqrt(ridge) == approx(known, rel=1e-3)
 
 
 def test_a_ridge_beyond_the_map_or_of_nothing_known_is_not_told() -> None:
     power = np.linspace(0, 10, 101)
     rows = np.stack([power / 10, np.full(101, np.nan), np.minimum(power / 4, 0.5)])
-    ridge = sufficient_power(friction_reduction=rows, actuator_power=power)
+    ridge = saturation_power(friction_reduction=rows, actuator_power=power)
     assert np.isnan(ridge).tolist() == [True, True, False]
     assert ridge[2] == approx(1.8)  # where 0.45 of the 0.5 are had
 
@@ -120,7 +120,7 @@ def surface(places: np.ndarray) -> np.ndarray:
 def test_a_measured_map_tells_its_own_uncertainty() -> None:
     places, reduction = scattered(0.03)
     asked = np.random.default_rng(6).uniform([0.06, 0.5], [0.19, 5.0], (400, 2))
-    found = measured_map(runs=places, friction_reduction=reduction, places=asked)
+    found = gaussian_process_map(runs=places, friction_reduction=reduction, points=asked)
     off = np.abs(found.friction_reduction - surface(asked)) / found.friction_reduction_uncertainty
     assert 0.85 < np.mean(off < 2) <= 1.0  # 0.95 of a Gaussian's
     assert found.scatter == approx(0.03, rel=0.3)
@@ -129,10 +129,10 @@ def test_a_measured_map_tells_its_own_uncertainty() -> None:
 
 def test_the_leave_one_out_error_is_that_of_runs_left_out_one_by_one() -> None:
     places, reduction = scattered(0.02, runs=25)
-    found = measured_map(runs=places, friction_reduction=reduction, places=places)
+    found = gaussian_process_map(runs=places, friction_reduction=reduction, points=places)
     missed = [
-        measured_map(
-            runs=np.delete(places, i, axis=0), friction_reduction=np.delete(reduction, i), places=places[i]
+        gaussian_process_map(
+            runs=np.delete(places, i, axis=0), friction_reduction=np.delete(reduction, i), points=places[i]
         ).friction_reduction
         - reduction[i]
         for i in range(25)
@@ -142,7 +142,7 @@ def test_the_leave_one_out_error_is_that_of_runs_left_out_one_by_one() -> None:
 
 def test_far_from_all_runs_a_measured_map_knows_little() -> None:
     places, reduction = scattered(0.01)
-    found = measured_map(runs=places, friction_reduction=reduction, places=[[0.1, 2.5], [5.0, 500.0]])
+    found = gaussian_process_map(runs=places, friction_reduction=reduction, points=[[0.1, 2.5], [5.0, 500.0]])
     near, far = found.friction_reduction_uncertainty
     assert far > 5 * near
 
@@ -157,4 +157,4 @@ def test_far_from_all_runs_a_measured_map_knows_little() -> None:
 )
 def test_runs_that_make_no_map_are_refused(runs: np.ndarray, reduction: np.ndarray, said: str) -> None:
     with raises(InvalidInput, match=said):
-        measured_map(runs=runs, friction_reduction=reduction, places=[[0.0, 0.0]])
+        gaussian_process_map(runs=runs, friction_reduction=reduction, points=[[0.0, 0.0]])

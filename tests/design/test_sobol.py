@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from pytest import approx, raises
 from scipy.special import ndtri
 
-from sonolube.design import SobolIndices, saltelli_points, sobol_indices, sobol_points
+from sonolube.design import SobolIndices, saltelli_sample, sobol_indices, sobol_sample
 from sonolube.errors import InvalidInput
 
 ROWS = 4096
@@ -22,7 +22,7 @@ def linear(shares: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def indices_of_ishigami(seed: int, rows: int = ROWS) -> SobolIndices:
-    return sobol_indices(ishigami(saltelli_points(3, samples=rows, seed=seed)[0]), seed=seed)
+    return sobol_indices(ishigami(saltelli_sample(3, samples=rows, seed=seed)[0]), seed=seed)
 
 
 # variances of T. Ishigami and T. Homma, ISUMA 1990, with a = 7 and b = 0.1
@@ -33,7 +33,7 @@ VARIANCE = ALONE.sum() + TOGETHER[0]
 
 def test_an_outcome_that_never_varies_has_no_indices() -> None:
     found = sobol_indices(np.full((5, 64), 0.1))
-    assert np.all(found.total_interval == 0)
+    assert np.all(found.total_order_interval == 0)
     assert found.standard_deviation == 0
 
 
@@ -41,15 +41,15 @@ def test_an_outcome_that_varies_in_one_row_has_finite_intervals() -> None:
     outcomes = np.zeros((5, 64))
     outcomes[[0, 2, 4], 3] = 1.0  # of the second input alone; most resamples miss the row
     found = sobol_indices(outcomes)
-    assert found.total[[0, 2]] == approx(0.0)
-    assert found.total[1] > 0.4
-    assert np.all(np.isfinite([found.first_interval, found.total_interval]))
+    assert found.total_order[[0, 2]] == approx(0.0)
+    assert found.total_order[1] > 0.4
+    assert np.all(np.isfinite([found.first_order_interval, found.total_order_interval]))
 
 
 def test_the_function_of_ishigami_has_its_closed_indices() -> None:
     found = indices_of_ishigami(0)
-    assert found.first == approx(ALONE / VARIANCE, abs=5e-3)
-    assert found.total == approx((ALONE + TOGETHER) / VARIANCE, abs=5e-3)
+    assert found.first_order == approx(ALONE / VARIANCE, abs=5e-3)
+    assert found.total_order == approx((ALONE + TOGETHER) / VARIANCE, abs=5e-3)
     assert found.standard_deviation == approx(np.sqrt(VARIANCE), rel=1e-3)
 
 
@@ -58,53 +58,53 @@ def test_intervals_hold_the_closed_indices() -> None:
     for seed in range(10):
         found = indices_of_ishigami(seed, 512)
         for interval, exact in (
-            (found.first_interval, ALONE / VARIANCE),
-            (found.total_interval, (ALONE + TOGETHER) / VARIANCE),
+            (found.first_order_interval, ALONE / VARIANCE),
+            (found.total_order_interval, (ALONE + TOGETHER) / VARIANCE),
         ):
             held.append((interval[:, 0] <= exact) & (exact <= interval[:, 1]))
     assert np.mean(held) >= 0.95
 
 
 def test_a_linear_model_divides_its_variance_by_the_squares_of_its_slopes() -> None:
-    found = sobol_indices(linear(saltelli_points(4, samples=ROWS)[0]))
-    assert found.first == approx(np.array([9, 4, 1, 0]) / 14, abs=0.01)
-    assert found.total == approx(np.array([9, 4, 1, 0]) / 14, abs=0.01)
+    found = sobol_indices(linear(saltelli_sample(4, samples=ROWS)[0]))
+    assert found.first_order == approx(np.array([9, 4, 1, 0]) / 14, abs=0.01)
+    assert found.total_order == approx(np.array([9, 4, 1, 0]) / 14, abs=0.01)
     assert found.standard_deviation == approx(np.sqrt(14), rel=0.01)
 
 
 def test_of_a_product_the_total_indices_count_the_interaction_twice() -> None:
     # X Y, means 1, variances a2 and b2: Var = a2 + b2 + a2 b2
-    points, _ = saltelli_points(2, samples=ROWS)
+    points, _ = saltelli_sample(2, samples=ROWS)
     x = 1 + np.array([0.5, 0.8]) * ndtri(points)
     found = sobol_indices(x[..., 0] * x[..., 1])
     a2, b2 = 0.25, 0.64
     whole = a2 + b2 + a2 * b2
-    assert found.first == approx(np.array([a2, b2]) / whole, abs=0.01)
-    assert found.total == approx(np.array([a2 * (1 + b2), b2 * (1 + a2)]) / whole, abs=0.01)
+    assert found.first_order == approx(np.array([a2, b2]) / whole, abs=0.01)
+    assert found.total_order == approx(np.array([a2 * (1 + b2), b2 * (1 + a2)]) / whole, abs=0.01)
 
 
 def test_neither_a_constant_nor_a_scale_of_the_outcome_matters() -> None:
-    outcomes = ishigami(saltelli_points(3, samples=256)[0])
-    assert sobol_indices(1e6 - 1e-3 * outcomes).first == approx(sobol_indices(outcomes).first, abs=1e-6)
+    outcomes = ishigami(saltelli_sample(3, samples=256)[0])
+    assert sobol_indices(1e6 - 1e-3 * outcomes).first_order == approx(sobol_indices(outcomes).first_order, abs=1e-6)
 
 
 def test_an_outcome_that_never_varies_owes_nothing_to_anything() -> None:
     found = sobol_indices(np.full((5, 64), 0.35))
-    assert not found.first.any()
-    assert not found.total.any()
+    assert not found.first_order.any()
+    assert not found.total_order.any()
     assert found.standard_deviation == 0
 
 
 def test_rows_with_a_failure_are_left_out() -> None:
-    outcomes = linear(saltelli_points(4, samples=ROWS)[0])
+    outcomes = linear(saltelli_sample(4, samples=ROWS)[0])
     outcomes[3, ::10] = np.nan
     found = sobol_indices(outcomes)
     assert found.rows == ROWS - len(range(0, ROWS, 10))
-    assert found.first == approx(np.array([9, 4, 1, 0]) / 14, abs=0.05)
+    assert found.first_order == approx(np.array([9, 4, 1, 0]) / 14, abs=0.05)
 
 
 def test_each_block_takes_one_column_from_the_second() -> None:
-    points, _ = saltelli_points(3, samples=64)
+    points, _ = saltelli_sample(3, samples=64)
     first, second = points[:2]
     for each in range(3):
         differs = (points[2 + each] != first).any(axis=0)
@@ -114,11 +114,11 @@ def test_each_block_takes_one_column_from_the_second() -> None:
 
 @pytest.mark.parametrize("inputs", [1, 7])
 def test_every_stretch_of_points_fills_the_cube(inputs: int) -> None:
-    points, stretch = sobol_points(inputs, samples=1000)
+    points, subsequence = sobol_sample(inputs, samples=1000)
     assert points.shape == (1024, inputs)
     assert 0 < points.min() < points.max() < 1
     for each in range(16):
-        part = points[stretch == each]
+        part = points[subsequence == each]
         assert part.mean(axis=0) == approx(np.full(inputs, 0.5), abs=0.02)
     whole = np.sort(points, axis=0)
     assert np.all(np.abs(whole - (np.arange(1024)[:, np.newaxis] + 0.5) / 1024) < 1 / 1024)  # one in each 1024th
@@ -126,8 +126,8 @@ def test_every_stretch_of_points_fills_the_cube(inputs: int) -> None:
 
 def test_too_few_points_are_refused() -> None:
     with raises(InvalidInput, match=r"samples must be at least 32, got 8"):
-        sobol_points(2, samples=8)
+        sobol_sample(2, samples=8)
     with raises(InvalidInput, match=r"inputs must be at least 1"):
-        sobol_points(0, samples=64)
+        sobol_sample(0, samples=64)
     with raises(InvalidInput, match=r"at least 32 rows with a result, got 0"):
         sobol_indices(np.full((4, 64), np.nan))

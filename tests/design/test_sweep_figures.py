@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from sonolube.design import grid_plan, latin_hypercube_plan, sweep, sweep_figure, swept_names
+from sonolube.design import grid_plan, latin_hypercube_plan, sweep, sweep_figure, swept_variables
 
 TRIBOMETER = Path(__file__).parents[2] / "examples" / "rigs" / "tribometer.toml"
 VOLTS, SPEED, MODEL = "drive.voltage_peak_to_peak", "sliding.sliding_speed", "friction.model"
@@ -48,7 +48,7 @@ def test_points_drawn_make_a_cloud_over_each_key(kept: bool, tmp_path: Path) -> 
     over = {VOLTS: (5.0, 28.0), SPEED: (0.005, 0.1), "drive.frequency": (21e3, 23e3)}
     plan = latin_hypercube_plan(TRIBOMETER, over=over, points=80)
     swept = sweep(plan, folder=tmp_path if kept else None)
-    assert len(swept_names(swept)) == 3
+    assert len(swept_variables(swept)) == 3
     drawn = sweep_figure(swept)
     assert {axes.get_xlabel() for axes in drawn.axes} == {
         "Drive voltage, peak to peak [V]",

@@ -10,23 +10,23 @@ from scipy.optimize import brentq
 
 from sonolube.contact import normal_stiffness, separation
 from sonolube.design.control import (
-    Drift,
+    FrictionCharacteristic,
     FrictionLoop,
-    FrictionMap,
     Process,
+    ThermalDrift,
     VibrationMode,
-    capture_edge,
-    closed_loop,
-    designed_controller,
-    designed_tracker,
-    driven_mode,
-    efficiency_map,
+    assumed_mode,
+    capture_limit,
+    computed_characteristic,
+    efficiency_characteristic,
     impedance_phase,
     mode_admittance,
-    modelled_map,
+    mode_at_drive,
     next_envelope,
     next_frequency,
-    supposed_mode,
+    simulate_closed_loop,
+    tuned_controller,
+    tuned_tracker,
 )
 from sonolube.dynamics import LinearGap, electrical_admittance, march
 from sonolube.errors import InvalidInput
@@ -36,11 +36,11 @@ from sonolube.rig.excitation import amplifier_power
 
 RIGS = Path(__file__).parents[3] / "examples" / "rigs"
 TRIBOMETER, COLLAR = read_rig(RIGS / "tribometer.toml"), read_rig(RIGS / "collar.toml")
-DRIVEN = driven_mode(TRIBOMETER)
+DRIVEN = mode_at_drive(TRIBOMETER)
 SHARP = VibrationMode(
     natural_frequency=25e3, damping_ratio=1e-4, motional_conductance=0.1, parallel_capacitance=1e-7, frequency=25e3
 )
-MAP = FrictionMap(voltage_peak_to_peak=np.array([0.0, 50.0]), friction_force=np.array([2.0, 0.5]))
+MAP = FrictionCharacteristic(voltage_peak_to_peak=np.array([0.0, 50.0]), friction_force=np.array([2.0, 0.5]))
 
 
 def test_near_the_drive_one_mode_has_the_admittance_of_the_structure() -> None:
@@ -103,20 +103,20 @@ def test_steady_power_is_that_of_the_conductance() -> None:
     loop = FrictionLoop(
         plant=MAP,
         mode=DRIVEN,
-        controller=designed_controller(
+        controller=tuned_controller(
             MAP, Process(time_constant=3e-4, dead_time=0.0, sample_interval=2e-4), voltage_maximum=50.0
         ),
         tracker=None,
         voltage_maximum=50.0,
     )
-    run = closed_loop(loop, reference=np.full(200, 1.25))  # 25 V
+    run = simulate_closed_loop(loop, setpoint=np.full(200, 1.25))  # 25 V
     power = (run.electrical_energy[-1] - run.electrical_energy[-2]) / 2e-4
     volts = run.voltage_peak_to_peak[-1]
     assert power == approx(0.5 * mode_admittance(DRIVEN, frequency=22e3).real * (volts / 2) ** 2, rel=1e-9)
 
 
 def test_a_supposed_mode_has_its_coupling_between_series_and_parallel_resonance() -> None:
-    mode = supposed_mode(COLLAR, quality_factor=5000.0, coupling_factor=0.1)
+    mode = assumed_mode(COLLAR, quality_factor=5000.0, coupling_factor=0.1)
 
     def reactance(f: float) -> float:
         return mode_admittance(mode, frequency=f).imag
@@ -128,7 +128,7 @@ def test_a_supposed_mode_has_its_coupling_between_series_and_parallel_resonance(
 
 @pytest.mark.parametrize("mode", [DRIVEN, SHARP], ids=["tribometer", "sharp"])
 def test_capture_ends_where_the_phase_comes_back(mode: VibrationMode) -> None:
-    wanted, edge = impedance_phase(mode, frequency=mode.frequency), capture_edge(mode)
+    wanted, edge = impedance_phase(mode, frequency=mode.frequency), capture_limit(mode)
     beyond = edge - mode.frequency
     f = mode.frequency + beyond * np.linspace(0.05, 1.5, 3000)
     miss = np.array([impedance_phase(mode, frequency=float(each)) for each in f]) - wanted
@@ -139,8 +139,8 @@ def test_capture_ends_where_the_phase_comes_back(mode: VibrationMode) -> None:
 
 @pytest.mark.parametrize(("start", "home"), [(-5.0, True), (0.9, True), (1.1, False)])
 def test_a_tracker_comes_home_from_below_the_edge_and_not_from_above(start: float, home: bool) -> None:
-    tracker = designed_tracker(SHARP, sample_interval=1e-4, closed_loop_time=5e-3)
-    f = SHARP.frequency + start * (capture_edge(SHARP) - SHARP.frequency)
+    tracker = tuned_tracker(SHARP, sample_interval=1e-4, closed_loop_time=5e-3)
+    f = SHARP.frequency + start * (capture_limit(SHARP) - SHARP.frequency)
     free = type(tracker)(
         phase=tracker.phase,
         frequency=tracker.frequency,
@@ -154,7 +154,7 @@ def test_a_tracker_comes_home_from_below_the_edge_and_not_from_above(start: floa
 
 
 def test_near_lock_the_phase_error_decays_with_the_time_asked_for() -> None:
-    tracker = designed_tracker(SHARP, sample_interval=1e-3, closed_loop_time=0.1)
+    tracker = tuned_tracker(SHARP, sample_interval=1e-3, closed_loop_time=0.1)
     f = SHARP.frequency * (1 + 1e-7)
     for _ in range(100):
         f = next_frequency(tracker, frequency=f, phase=impedance_phase(SHARP, frequency=f))
@@ -166,13 +166,13 @@ def test_a_tracked_drive_follows_the_drifting_resonance_and_keeps_its_voltage() 
     parts = {
         "plant": MAP,
         "mode": DRIVEN,
-        "controller": designed_controller(MAP, process, voltage_maximum=50.0),
+        "controller": tuned_controller(MAP, process, voltage_maximum=50.0),
         "voltage_maximum": 50.0,
     }
-    drift = Drift(final_temperature_rise=100.0, warming_time=0.05)
-    tracker = designed_tracker(DRIVEN, sample_interval=2e-4)
-    tracked = closed_loop(FrictionLoop(**parts, tracker=tracker), reference=np.full(3000, 1.0), drift=drift)  # type: ignore[arg-type]
-    fixed = closed_loop(FrictionLoop(**parts, tracker=None), reference=np.full(3000, 1.0), drift=drift)  # type: ignore[arg-type]
+    drift = ThermalDrift(final_temperature_rise=100.0, warming_time=0.05)
+    tracker = tuned_tracker(DRIVEN, sample_interval=2e-4)
+    tracked = simulate_closed_loop(FrictionLoop(**parts, tracker=tracker), setpoint=np.full(3000, 1.0), drift=drift)  # type: ignore[arg-type]
+    fixed = simulate_closed_loop(FrictionLoop(**parts, tracker=None), setpoint=np.full(3000, 1.0), drift=drift)  # type: ignore[arg-type]
     fell = DRIVEN.natural_frequency * 2e-4 * 100 * (1 - np.exp(-0.6 / 0.05))
     assert tracked.frequency[-1] == approx(22e3 - fell, abs=5)
     assert tracked.voltage_peak_to_peak[-1] == approx(MAP.voltage_peak_to_peak[1] * 1.0 / 1.5, rel=1e-3)
@@ -185,11 +185,11 @@ def test_a_drive_where_the_phase_falls_cannot_be_tracked() -> None:
         natural_frequency=25e3, damping_ratio=0.02, motional_conductance=0.1, parallel_capacitance=1e-7, frequency=30e3
     )
     with raises(InvalidInput, match="the phase of the impedance falls with frequency"):
-        designed_tracker(above, sample_interval=1e-4)
+        tuned_tracker(above, sample_interval=1e-4)
 
 
 def test_the_map_of_a_rig_without_structure_goes_through_its_own_operating_point() -> None:
-    known = modelled_map(COLLAR, voltage_maximum=56.0, points=3)
+    known = computed_characteristic(COLLAR, voltage_maximum=56.0, points=3)
     own = friction_point(COLLAR).friction_force
     assert known.voltage_peak_to_peak[1] == 28.0
     assert known.friction_force[1] == approx(own)
@@ -198,7 +198,7 @@ def test_the_map_of_a_rig_without_structure_goes_through_its_own_operating_point
 
 def test_every_point_of_an_efficiency_map_has_the_efficiency_of_the_line() -> None:
     line = EfficiencyLine(slope=0.0, intercept=2e-9)
-    known = efficiency_map(TRIBOMETER, line, voltage_maximum=20.0, points=5)
+    known = efficiency_characteristic(TRIBOMETER, line, voltage_maximum=20.0, points=5)
     assert TRIBOMETER.drive is not None
     volts = known.voltage_peak_to_peak[1:]
     power = amplifier_power(
