@@ -1,4 +1,4 @@
-"""Design: what a designer makes of a rig: sweeps over its parameters, maps, uncertainty, friction control."""
+"""Design of experiments and devices: parameter sweeps, maps, uncertainty propagation and Sobol indices of a rig."""
 
 from sonolube.design.gaussian_process import GaussianProcessMap, gaussian_process_map
 from sonolube.design.map_figures import map_figure, map_page, measured_map_figure

@@ -1,6 +1,7 @@
 """Maps of friction reduction over sliding speed and stress, sliding speed and power, or drive frequency and voltage."""
 
 from collections.abc import Callable, Mapping
+from itertools import pairwise
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -233,7 +234,7 @@ def _computed_map(rig: DrivenRig, kind: str, backend: Backend, **axes: ArrayLike
     for name, array in values.items():
         if array.ndim != 1:
             raise InvalidInput(f"{name} must have one axis, got shape {array.shape}")
-        for lower, upper in zip(array[:-1], array[1:], strict=True):
+        for lower, upper in pairwise(array):
             if upper <= lower:
                 raise InvalidInput(f"{name} must increase from value to value, got {lower:g} before {upper:g}")
     shape = tuple(array.size for array in values.values())

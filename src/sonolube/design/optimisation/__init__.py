@@ -1,4 +1,4 @@
-"""Optimisation: which actuator, frequency, waveform and masses give a friction for the least power, heat or voltage."""
+"""Optimisation of a rig: actuator, frequency, waveform and structure for a target friction at minimum power or heat."""
 
 from sonolube.design.optimisation.drive_electronics import (
     CAPACITANCE_TOLERANCE,
