@@ -126,23 +126,22 @@ def tuned_horn(
         relative_tolerance=relative_tolerance,
         advance=advance,
     )
-    found = tuned.mode
-    peak = _peak_stress(found.model, found.displacement, body.axis)
-    change, compliance = _lower_order_results(found, mode, body.axis, peak)
+    named = tuned.mode
+    working = face_motion(named.model, named.displacement, f"+{body.axis}", body.axis)
+    driven = face_motion(named.model, named.displacement, f"-{body.axis}", body.axis)
+    peak = _peak_stress(named.model, named.displacement, body.axis)
+    change, compliance = _lower_order_results(named, mode, body.axis, peak)
     return HornDesign(
         body=body,
         tuned=tuned,
-        displacement_gain=abs(
-            float(face_motion(found.model, found.displacement, f"+{body.axis}", body.axis).mean())
-            / float(face_motion(found.model, found.displacement, f"-{body.axis}", body.axis).mean())
-        ),
-        face_uniformity=_uniformity(face_motion(found.model, found.displacement, f"+{body.axis}", body.axis)),
-        face_asymmetry=_asymmetry(found, body.axis),
-        node_position=_node(found, body.axis),
+        displacement_gain=abs(float(working.mean()) / float(driven.mean())),
+        face_uniformity=_uniformity(working),
+        face_asymmetry=_asymmetry(named, body.axis),
+        node_position=_node(named, body.axis),
         stress_per_displacement=peak,
         stress_change=change,
         remaining_compliance=compliance,
-        neighbours=_neighbours(found),
+        neighbours=_neighbours(named),
     )
 
 
@@ -185,17 +184,17 @@ def loaded_frequency(design: HornDesign, *, tool_mass: float) -> float:
     -------
     float
     """
-    found = design.tuned.mode
+    mode = design.tuned.mode
     loaded = loaded_frequencies(
-        found.modes,
-        found.model,
+        mode.modes,
+        mode.model,
         face=design.working_face,
         along=design.body.axis,
         tool_mass=tool_mass,
         remaining_compliance=design.remaining_compliance,
     )
-    own = found.modes.natural_frequency[found.row]
-    return float(loaded[found.row] / own * found.frequency)  # the ratio cancels the discretisation error
+    own = mode.modes.natural_frequency[mode.row]
+    return float(loaded[mode.row] / own * mode.frequency)  # the ratio cancels the discretisation error
 
 
 def face_motion(model: Model, shape: Floats, face: str, axis: str) -> Floats:
@@ -243,12 +242,12 @@ def _peak_stress(model: Model, shape: Floats, axis: str) -> float:
     return float(nodal_stress(model, shape).max() / abs(face_motion(model, shape, f"+{axis}", axis).mean()))
 
 
-def _lower_order_results(found: NamedMode, name: str, axis: str, peak: float) -> tuple[float, float]:
+def _lower_order_results(mode: NamedMode, name: str, axis: str, peak: float) -> tuple[float, float]:
     """Relative change of the peak stress and residual compliance, on elements of one order less."""
-    model = replace(found.model, mesh=of_order(found.model.mesh, order=found.model.mesh.order - 1))
+    model = replace(mode.model, mesh=of_order(mode.model.mesh, order=mode.model.mesh.order - 1))
     equations = system(model)
     inverse = shifted(model, equations, shift=shift_for(model))
-    modes = modes_of(model, equations, inverse=inverse, count=len(found.names) - found.modes.rigid)
+    modes = modes_of(model, equations, inverse=inverse, count=len(mode.names) - mode.modes.rigid)
     compliance = compliance_above(modes, model, equations, inverse=inverse, face=f"+{axis}", along=axis)
     names = mode_names(model, modes, axis=axis)
     if name not in names:
@@ -262,32 +261,32 @@ def _uniformity(displacements: Floats) -> float:
     return float(signed.min() / signed.max())
 
 
-def _asymmetry(found: NamedMode, axis: str) -> float:
+def _asymmetry(mode: NamedMode, axis: str) -> float:
     """Range over the working face of the least-squares plane of the axial displacement, over its mean."""
-    nodes = found.model.mesh.face_nodes(f"+{axis}")
-    across = found.model.mesh.nodes[nodes][:, [k for k in range(3) if k != DIRECTIONS.index(axis)]]
+    nodes = mode.model.mesh.face_nodes(f"+{axis}")
+    across = mode.model.mesh.nodes[nodes][:, [k for k in range(3) if k != DIRECTIONS.index(axis)]]
     columns = np.column_stack([np.ones(len(nodes)), across - across.mean(axis=0)])
-    plane = np.linalg.lstsq(columns, found.displacement[nodes, DIRECTIONS.index(axis)], rcond=None)[0]
+    plane = np.linalg.lstsq(columns, mode.displacement[nodes, DIRECTIONS.index(axis)], rcond=None)[0]
     return float(np.ptp(columns[:, 1:] @ plane[1:]) / abs(plane[0]))
 
 
-def _node(found: NamedMode, axis: str) -> float:
+def _node(mode: NamedMode, axis: str) -> float:
     """Distance from the driven face to the first sign change of the mean axial displacement of sections."""
-    z, u = section_motion(found, axis)
+    z, u = section_motion(mode, axis)
     sign_changes = np.flatnonzero(np.diff(np.sign(u)))
     if not sign_changes.size:
         raise InvalidInput("this mode has no displacement node along the axis: tune an axial mode, such as axial 1")
     k = int(sign_changes[0])
-    start = float(found.model.mesh.nodes[:, DIRECTIONS.index(axis)].min())
+    start = float(mode.model.mesh.nodes[:, DIRECTIONS.index(axis)].min())
     return float(z[k] - u[k] * (z[k + 1] - z[k]) / (u[k + 1] - u[k])) - start
 
 
-def section_motion(found: NamedMode, axis: str) -> tuple[Floats, Floats]:
+def section_motion(mode: NamedMode, axis: str) -> tuple[Floats, Floats]:
     """Mean axial displacement of the cross-sections along an axis.
 
     Parameters
     ----------
-    found : NamedMode
+    mode : NamedMode
     axis : str
 
     Returns
@@ -295,11 +294,11 @@ def section_motion(found: NamedMode, axis: str) -> tuple[Floats, Floats]:
     tuple of two ndarray
         Positions along the axis in m, and displacements there; both means over the volume of a thin slice.
     """
-    mesh, along = found.model.mesh, DIRECTIONS.index(axis)
+    mesh, along = mode.model.mesh, DIRECTIONS.index(axis)
     points, weights = quadrature(2 * mesh.order, corners=4)
     value, gradient = shape_functions(mesh.order, points)
     volume = np.linalg.det(np.einsum("eax,adq->eqdx", mesh.nodes[mesh.elements], gradient, optimize=True)) * weights
-    position, displacement = (field[mesh.elements, along] @ value for field in (mesh.nodes, found.displacement))
+    position, displacement = (field[mesh.elements, along] @ value for field in (mesh.nodes, mode.displacement))
     edges = np.linspace(position.min(), position.max(), _SLICES + 1)
     slices = np.clip(np.digitize(position, edges) - 1, 0, _SLICES - 1).ravel()
     slice_volume = np.bincount(slices, volume.ravel(), minlength=_SLICES)
@@ -310,8 +309,8 @@ def section_motion(found: NamedMode, axis: str) -> tuple[Floats, Floats]:
     return moments[0] / slice_volume[filled], moments[1] / slice_volume[filled]
 
 
-def _neighbours(found: NamedMode) -> tuple[tuple[str, float], ...]:
+def _neighbours(mode: NamedMode) -> tuple[tuple[str, float], ...]:
     """Name and frequency of the other elastic modes, by distance from the tuned frequency."""
-    elastic = range(found.modes.rigid, len(found.names))
-    others = [(found.names[k], float(found.modes.natural_frequency[k])) for k in elastic if k != found.row]
-    return tuple(sorted(others, key=lambda mode: abs(mode[1] - found.frequency)))
+    elastic = range(mode.modes.rigid, len(mode.names))
+    others = [(mode.names[k], float(mode.modes.natural_frequency[k])) for k in elastic if k != mode.row]
+    return tuple(sorted(others, key=lambda other: abs(other[1] - mode.frequency)))
