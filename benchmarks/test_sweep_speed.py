@@ -19,7 +19,7 @@ from pytest_benchmark.fixture import BenchmarkFixture
 from scipy.integrate import solve_ivp
 
 from sonolube.contact import decay_length
-from sonolube.design import latin_hypercube_plan, points_of, sweep
+from sonolube.design import compute_points, latin_hypercube_plan, sweep
 from sonolube.dynamics.structure import contact_receptance, drive_receptance
 from sonolube.rig import read_rig
 
@@ -57,7 +57,7 @@ def marching_seconds(point: tuple[float, float, float]) -> float:
 @pytest.mark.parametrize("points", [int(os.environ.get("SONOLUBE_SWEEP_POINTS", "200000"))])
 def test_a_map_beside_marching_on_every_core(benchmark: BenchmarkFixture, points: int) -> None:
     plan = latin_hypercube_plan(RIG_FILE, over=OVER, points=points)
-    points_of(plan, 0, 64)  # compiles
+    compute_points(plan, 0, 64)  # compiles
     spent = time.process_time()
     found = benchmark.pedantic(sweep, args=(plan,), kwargs={"workers": 2}, rounds=1)  # type: ignore[no-untyped-call]
     spent = time.process_time() - spent
@@ -111,9 +111,9 @@ def test_a_map_beside_jax_vmapped(benchmark: BenchmarkFixture) -> None:
     spent = time.process_time()
     u = np.asarray(batched(yielding, free, load).block_until_ready())
     theirs = (time.process_time() - spent) / points
-    points_of(plan, 0, 64)
+    compute_points(plan, 0, 64)
     spent = time.process_time()
-    ours = benchmark.pedantic(points_of, args=(plan, 0, points), rounds=1)  # type: ignore[no-untyped-call]
+    ours = benchmark.pedantic(compute_points, args=(plan, 0, points), rounds=1)  # type: ignore[no-untyped-call]
     mine = (time.process_time() - spent) / points
     amplitude = length * np.hypot(u[:, 1], u[:, orders + 1])
     off = np.abs(amplitude / ours.numbers["vibration_amplitude"] - 1)

@@ -41,7 +41,7 @@ def test_the_rig_file_of_a_design_gives_the_friction_it_was_asked_for(
     assert simulated["vibration_amplitude"]["value"] == approx(best["vibration_amplitude"]["value"], rel=1e-5)
     with xr.open_dataset(tmp_path / "tribometer-optimum.nc") as designs:
         assert int(designs["feasible"].sum()) == told["feasible"]
-        assert designs.sizes["design"] == told["looked_at"]
+        assert designs.sizes["design"] == told["screened"]
 
 
 def test_a_front_of_tolerant_designs_is_drawn(tmp_path: Path, capsys: CaptureFixture[str]) -> None:

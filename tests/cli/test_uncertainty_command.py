@@ -95,7 +95,7 @@ def test_what_facts_leave_free_is_said() -> None:
         ),
     )
     rig = RIGS / "tribometer.toml"
-    result = propagate(rig, samples=32, joint=drawn.draws_by_key())
+    result = propagate(rig, samples=32, joint_samples=drawn.draws_by_key())
     told = "\n".join(uncertainty_lines(read_rig(rig), result, drawn, []))
     assert "structure.arm_damping" in told
     assert "; no fact settles it" in told

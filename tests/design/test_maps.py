@@ -1,4 +1,4 @@
-"""Maps: what vibration theory, single points and Table 4.1 say of them."""
+"""Maps against Table 4.1, single operating points and closed forms; Gaussian process regression of measured runs."""
 
 from pathlib import Path
 
@@ -10,10 +10,10 @@ from scipy.special import i0e
 
 from sonolube.design import (
     frequency_voltage_map,
+    gaussian_process_map,
     map_figure,
     map_page,
-    measured_map,
-    sufficient_power,
+    saturation_power,
     velocity_power_map,
     velocity_stress_map,
 )
@@ -25,85 +25,89 @@ SPEEDS, VOLTS, LOADS = np.linspace(0.02, 0.2, 7), np.array([5.1, 10.3, 15.5, 20.
 
 
 def test_powers_and_stresses_are_those_of_table_4_1() -> None:
-    found = velocity_power_map(RIG, sliding_speed=SPEEDS, voltage_peak_to_peak=VOLTS, normal_load=LOADS)
-    assert found["actuator_power"].values == approx([0.21, 0.84, 1.9, 3.39, 5.31], abs=0.005)
-    assert found["nominal_pressure"].values[[0, 4, 6]] == approx([23.8e6, 55.6e6, 71.4e6], abs=0.05e6)  # E34
-    assert dict(found["friction_reduction"].sizes) == {"normal_load": 7, "voltage_peak_to_peak": 5, "sliding_speed": 7}
+    computed = velocity_power_map(RIG, sliding_speed=SPEEDS, voltage_peak_to_peak=VOLTS, normal_load=LOADS)
+    assert computed["actuator_power"].values == approx([0.21, 0.84, 1.9, 3.39, 5.31], abs=0.005)
+    assert computed["nominal_pressure"].values[[0, 4, 6]] == approx([23.8e6, 55.6e6, 71.4e6], abs=0.05e6)  # E34
+    assert dict(computed["friction_reduction"].sizes) == {
+        "normal_load": 7,
+        "voltage_peak_to_peak": 5,
+        "sliding_speed": 7,
+    }
 
 
 def test_more_power_and_less_speed_reduce_friction_more_at_any_stress() -> None:
     # D 4.1.4, of figure 4.20
-    found = velocity_power_map(RIG, sliding_speed=SPEEDS, voltage_peak_to_peak=VOLTS, normal_load=LOADS)
-    reduction = found["friction_reduction"].transpose("normal_load", "voltage_peak_to_peak", "sliding_speed").values
+    computed = velocity_power_map(RIG, sliding_speed=SPEEDS, voltage_peak_to_peak=VOLTS, normal_load=LOADS)
+    reduction = computed["friction_reduction"].transpose("normal_load", "voltage_peak_to_peak", "sliding_speed").values
     assert np.all(np.diff(reduction, axis=1) > -1e-4)
     assert np.all(np.diff(reduction, axis=2) < 1e-4)
     assert np.ptp(reduction, axis=0).max() < 0.01
 
 
-def test_a_map_is_its_single_points() -> None:
-    found = velocity_stress_map(RIG, sliding_speed=SPEEDS[:2], normal_load=[3.0, 9.0], voltage_peak_to_peak=[20.0])
-    known = operating_points(
+def test_a_map_holds_the_single_operating_points() -> None:
+    computed = velocity_stress_map(RIG, sliding_speed=SPEEDS[:2], normal_load=[3.0, 9.0], voltage_peak_to_peak=[20.0])
+    expected = operating_points(
         RIG,
         voltage_peak_to_peak=20.0,
         voltage_offset=10.0,
         normal_load=np.array([[3.0], [9.0]]),
         sliding_speed=SPEEDS[:2],
     )
-    assert found["friction_reduction"].values[0] == approx(known.friction_reduction, abs=1e-4)
+    assert computed["friction_reduction"].values[0] == approx(expected.friction_reduction, abs=1e-4)
 
 
-def test_over_frequency_friction_falls_most_where_the_tip_moves_most() -> None:
-    found = frequency_voltage_map(RIG, frequency=np.linspace(20e3, 24e3, 41), voltage_peak_to_peak=[10.0, 25.9])
+def test_over_frequency_friction_is_lowest_where_the_amplitude_is_largest() -> None:
+    computed = frequency_voltage_map(RIG, frequency=np.linspace(20e3, 24e3, 41), voltage_peak_to_peak=[10.0, 25.9])
     assert np.array_equal(
-        found["friction_reduction"].values.argmax(axis=1), found["vibration_amplitude"].values.argmax(axis=1)
+        computed["friction_reduction"].values.argmax(axis=1), computed["vibration_amplitude"].values.argmax(axis=1)
     )
 
 
-def test_the_ridge_of_slow_sliding_lies_where_its_closed_form_says() -> None:
+def test_the_saturation_power_of_slow_sliding_has_its_closed_form() -> None:
     # slow sliding leaves exp(-beta)/I0(beta), beta = a/l in proportion to the voltage, and power goes as its square
     def reduction(beta: np.ndarray | float) -> np.ndarray:
         return np.asarray(1 - np.exp(-2 * np.asarray(beta)) / i0e(beta))
 
-    known = brentq(lambda beta: float(reduction(np.sqrt(2) * beta) - reduction(beta)) - 0.05, 0.5, 4)
+    expected = brentq(lambda beta: float(reduction(np.sqrt(2) * beta) - reduction(beta)) - 0.05, 0.5, 4)
     beta = np.linspace(0, 8, 4001)
-    ridge = sufficient_power(friction_reduction=reduction(beta), actuator_power=beta**2)
-    assert np.sqrt(ridge) == approx(known, rel=1e-3)
+    saturation = saturation_power(friction_reduction=reduction(beta), actuator_power=beta**2)
+    assert np.sqrt(saturation) == approx(expected, rel=1e-3)
 
 
-def test_a_ridge_beyond_the_map_or_of_nothing_known_is_not_told() -> None:
+def test_a_saturation_power_beyond_the_map_or_without_results_is_nan() -> None:
     power = np.linspace(0, 10, 101)
     rows = np.stack([power / 10, np.full(101, np.nan), np.minimum(power / 4, 0.5)])
-    ridge = sufficient_power(friction_reduction=rows, actuator_power=power)
-    assert np.isnan(ridge).tolist() == [True, True, False]
-    assert ridge[2] == approx(1.8)  # where 0.45 of the 0.5 are had
+    saturation = saturation_power(friction_reduction=rows, actuator_power=power)
+    assert np.isnan(saturation).tolist() == [True, True, False]
+    assert saturation[2] == approx(1.8)  # where 0.45 of the 0.5 are had
 
 
 @pytest.mark.parametrize("kind", ["stress", "power", "frequency"])
 def test_every_kind_of_map_is_drawn(kind: str) -> None:
-    found = {
+    computed = {
         "stress": lambda: velocity_stress_map(RIG, sliding_speed=SPEEDS, normal_load=LOADS, voltage_peak_to_peak=VOLTS),
         "power": lambda: velocity_power_map(RIG, sliding_speed=SPEEDS, normal_load=LOADS, voltage_peak_to_peak=VOLTS),
         "frequency": lambda: frequency_voltage_map(RIG, frequency=[21e3, 22e3, 23e3], voltage_peak_to_peak=VOLTS),
     }[kind]()
-    shown = [axes for axes in map_figure(found).axes if axes.get_title()]
+    shown = [axes for axes in map_figure(computed).axes if axes.get_title()]
     assert len(shown) == {"stress": 5, "power": 7, "frequency": 0}[kind]
 
 
-def test_an_interactive_map_holds_all_it_needs_or_says_what_to_install() -> None:
-    found = frequency_voltage_map(RIG, frequency=[21e3, 22e3], voltage_peak_to_peak=VOLTS)
+def test_an_interactive_map_is_self_contained_or_names_the_package_to_install() -> None:
+    computed = frequency_voltage_map(RIG, frequency=[21e3, 22e3], voltage_peak_to_peak=VOLTS)
     try:
         import plotly  # noqa: F401
     except ImportError:
         with raises(InvalidInput, match=r"pip install 'sonolube\[web\]'"):
-            map_page(found)
+            map_page(computed)
     else:
-        page = map_page(found)
+        page = map_page(computed)
         assert "<script src=" not in page
         assert "Drive frequency [kHz]" in page
 
 
-def test_values_that_do_not_rise_are_refused() -> None:
-    with raises(InvalidInput, match="sliding_speed must be one row of values that rise"):
+def test_values_that_do_not_increase_are_refused() -> None:
+    with raises(InvalidInput, match=r"sliding_speed must increase from value to value, got 0\.2 before 0\.1"):
         velocity_stress_map(RIG, sliding_speed=[0.2, 0.1], normal_load=[3.0], voltage_peak_to_peak=[20.0])
 
 
@@ -117,44 +121,44 @@ def surface(places: np.ndarray) -> np.ndarray:
     return np.asarray(1 - np.exp(-0.05 * places[..., 1] / places[..., 0]))
 
 
-def test_a_measured_map_tells_its_own_uncertainty() -> None:
+def test_a_gaussian_process_covers_the_truth_by_its_own_uncertainty() -> None:
     places, reduction = scattered(0.03)
-    asked = np.random.default_rng(6).uniform([0.06, 0.5], [0.19, 5.0], (400, 2))
-    found = measured_map(runs=places, friction_reduction=reduction, places=asked)
-    off = np.abs(found.friction_reduction - surface(asked)) / found.friction_reduction_uncertainty
-    assert 0.85 < np.mean(off < 2) <= 1.0  # 0.95 of a Gaussian's
-    assert found.scatter == approx(0.03, rel=0.3)
-    assert found.leave_one_out_error == approx(0.03, rel=0.4)
+    points = np.random.default_rng(6).uniform([0.06, 0.5], [0.19, 5.0], (400, 2))
+    computed = gaussian_process_map(runs=places, friction_reduction=reduction, points=points)
+    error = np.abs(computed.friction_reduction - surface(points)) / computed.friction_reduction_uncertainty
+    assert 0.85 < np.mean(error < 2) <= 1.0  # 0.95 of a Gaussian's
+    assert computed.scatter == approx(0.03, rel=0.3)
+    assert computed.leave_one_out_error == approx(0.03, rel=0.4)
 
 
-def test_the_leave_one_out_error_is_that_of_runs_left_out_one_by_one() -> None:
+def test_the_leave_one_out_error_is_that_of_fits_without_each_run() -> None:
     places, reduction = scattered(0.02, runs=25)
-    found = measured_map(runs=places, friction_reduction=reduction, places=places)
-    missed = [
-        measured_map(
-            runs=np.delete(places, i, axis=0), friction_reduction=np.delete(reduction, i), places=places[i]
+    computed = gaussian_process_map(runs=places, friction_reduction=reduction, points=places)
+    errors = [
+        gaussian_process_map(
+            runs=np.delete(places, i, axis=0), friction_reduction=np.delete(reduction, i), points=places[i]
         ).friction_reduction
         - reduction[i]
         for i in range(25)
     ]
-    assert found.leave_one_out_error == approx(float(np.sqrt(np.mean(np.square(missed)))), rel=0.25)
+    assert computed.leave_one_out_error == approx(float(np.sqrt(np.mean(np.square(errors)))), rel=0.25)
 
 
-def test_far_from_all_runs_a_measured_map_knows_little() -> None:
+def test_far_from_all_runs_the_uncertainty_of_a_gaussian_process_grows() -> None:
     places, reduction = scattered(0.01)
-    found = measured_map(runs=places, friction_reduction=reduction, places=[[0.1, 2.5], [5.0, 500.0]])
-    near, far = found.friction_reduction_uncertainty
+    computed = gaussian_process_map(runs=places, friction_reduction=reduction, points=[[0.1, 2.5], [5.0, 500.0]])
+    near, far = computed.friction_reduction_uncertainty
     assert far > 5 * near
 
 
 @pytest.mark.parametrize(
-    ("runs", "reduction", "said"),
+    ("runs", "reduction", "message"),
     [
         (np.zeros((3, 2)), np.zeros(3), "needs 6 runs or more, got 3"),
         (np.zeros((6, 2)), np.zeros(6), "agree in a coordinate"),
         (np.zeros((6, 2)), np.zeros(5), "one reduction to a run"),
     ],
 )
-def test_runs_that_make_no_map_are_refused(runs: np.ndarray, reduction: np.ndarray, said: str) -> None:
-    with raises(InvalidInput, match=said):
-        measured_map(runs=runs, friction_reduction=reduction, places=[[0.0, 0.0]])
+def test_unusable_runs_are_refused(runs: np.ndarray, reduction: np.ndarray, message: str) -> None:
+    with raises(InvalidInput, match=message):
+        gaussian_process_map(runs=runs, friction_reduction=reduction, points=[[0.0, 0.0]])

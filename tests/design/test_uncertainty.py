@@ -1,4 +1,4 @@
-"""Uncertainty carried through a rig: each sample the rig it says, and outcomes whose spread has a closed form."""
+"""Uncertainty propagation: samples against single rigs, and outcomes whose distribution has a closed form."""
 
 from pathlib import Path
 
@@ -8,14 +8,14 @@ from pytest import approx, raises
 from scipy import stats
 
 from sonolube.design import (
+    available_outcomes,
     band_figure,
-    indices_figure,
-    outcomes_of,
+    histogram_figure,
+    outcome_statistics,
     propagate,
+    sample_statistics,
+    sobol_figure,
     sobol_indices,
-    spread,
-    spread_figure,
-    spread_of,
 )
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.rig import operating_points, read_rig, wear_point
@@ -31,7 +31,7 @@ def rig_with(tmp_path: Path, table: str, base: str = "tribometer") -> Path:
     return path
 
 
-def test_every_sample_is_the_rig_that_it_says() -> None:
+def test_every_sample_is_the_rig_of_its_coordinates() -> None:
     found = propagate(UNCERTAIN, samples=32)
     for sample in (0, 17):
         row = found.isel(sample=sample)
@@ -46,17 +46,17 @@ def test_every_sample_is_the_rig_that_it_says() -> None:
         assert float(row["vibration_amplitude"]) == approx(float(known.vibration_amplitude), rel=1e-4)
 
 
-def test_what_is_in_proportion_to_a_normal_entry_is_normal(tmp_path: Path) -> None:
-    # the power of D 1.9 is in proportion to the capacitance, 360 nF 28 V 28 V 22 kHz = 6.209 W
+def test_an_outcome_proportional_to_a_normal_entry_is_normal(tmp_path: Path) -> None:
+    # the power of D 1.9 is proportional to the capacitance, 360 nF 28 V 28 V 22 kHz = 6.209 W
     path = rig_with(tmp_path, '"stack.free_capacitance" = "normal 5 %"')
-    found = spread_of(propagate(path, of="actuator_power", samples=256))
+    found = outcome_statistics(propagate(path, outcome="actuator_power", samples=256))
     exact = stats.norm(6.209, 0.05 * 6.209)
     assert found.mean.value == approx(exact.mean(), rel=1e-3)
-    assert found.deviation.value == approx(exact.std(), rel=0.02)
+    assert found.standard_deviation.value == approx(exact.std(), rel=0.02)
     assert found.quantiles[0.95].value == approx(exact.ppf(0.95), rel=0.005)
 
 
-def test_of_a_product_of_two_entries_the_indices_are_closed(tmp_path: Path) -> None:
+def test_the_sobol_indices_of_a_product_of_entries_have_their_closed_form(tmp_path: Path) -> None:
     # friction without vibration, mu F: relative variances a2 and b2 make a2 + b2 + a2 b2
     path = rig_with(
         tmp_path,
@@ -64,26 +64,26 @@ def test_of_a_product_of_two_entries_the_indices_are_closed(tmp_path: Path) -> N
         '"contact.nominal_area" = "normal 5 %"',
         "poisson_al_steel",
     )
-    result = propagate(path, of="intrinsic_friction_force", samples=64, indices=True)
+    result = propagate(path, outcome="intrinsic_friction_force", samples=64, indices=True)
     found = sobol_indices(result["intrinsic_friction_force"].values)
     a2, b2 = 0.1**2, 0.3**2 / 3
     whole = a2 + b2 + a2 * b2
-    assert found.first == approx(np.array([a2, b2, 0]) / whole, abs=0.06)
-    assert found.total == approx(np.array([a2 * (1 + b2), b2 * (1 + a2), 0]) / whole, abs=0.06)
+    assert found.first_order == approx(np.array([a2, b2, 0]) / whole, abs=0.06)
+    assert found.total_order == approx(np.array([a2 * (1 + b2), b2 * (1 + a2), 0]) / whole, abs=0.06)
     mean = read_rig(path).friction_coefficient * read_rig(path).normal_load
     assert found.standard_deviation == approx(mean * np.sqrt(whole), rel=0.06)
 
 
-def test_a_rig_without_structure_is_carried_through_its_cube(tmp_path: Path) -> None:
+def test_uncertainty_of_a_rig_without_structure_propagates_through_its_wear_model(tmp_path: Path) -> None:
     path = rig_with(tmp_path, '"contact.roughness.rms_height" = "normal 5 %"', "poisson_al_steel")
-    found = propagate(path, of="wear_rate_ratio", samples=32)
+    found = propagate(path, outcome="wear_rate_ratio", samples=32)
     height = float(found["rms_height"][5])
     known = wear_point(read_rig(path, changes=[f"contact.roughness.rms_height={height!r} m"]))
     assert float(found["wear_rate_ratio"][5]) == approx(known.wear_rate_ratio, rel=1e-9)
-    assert "vibration_velocity" not in outcomes_of(read_rig(path))
+    assert "vibration_velocity" not in available_outcomes(read_rig(path))
 
 
-def test_a_sample_that_cannot_be_had_keeps_its_reason(tmp_path: Path) -> None:
+def test_a_refused_sample_keeps_its_reason(tmp_path: Path) -> None:
     # the drive goes up to 28 V
     path = rig_with(tmp_path, '"stack.highest_voltage" = "uniform 27 V to 29 V"')
     found = propagate(path, samples=64)
@@ -91,10 +91,10 @@ def test_a_sample_that_cannot_be_had_keeps_its_reason(tmp_path: Path) -> None:
     assert np.array_equal(np.isnan(found["friction_ratio"].values), refused)
     reasons = found["reason_text"].values[found["reason"].values[refused]]
     assert all("that the stack bears" in str(reason) for reason in reasons)
-    assert spread_of(found).found == np.sum(~refused)
+    assert outcome_statistics(found).valid_samples == np.sum(~refused)
 
 
-def test_over_a_key_every_sample_is_taken_at_every_value() -> None:
+def test_every_sample_is_computed_at_every_swept_value() -> None:
     speeds = np.array([0.01, 0.05, 0.2])
     band = propagate(UNCERTAIN, samples=32, over={SPEED: speeds})
     assert band["friction_ratio"].dims == ("sample", "sliding_speed")
@@ -103,53 +103,58 @@ def test_over_a_key_every_sample_is_taken_at_every_value() -> None:
     assert np.all(np.diff(np.median(band["friction_ratio"].values, axis=0)) > 0)
 
 
-def test_what_is_swept_is_not_uncertain(tmp_path: Path) -> None:
+def test_a_swept_key_is_not_uncertain(tmp_path: Path) -> None:
     path = rig_with(tmp_path, '"contact.normal_load" = "normal 5 %"\n"sliding.sliding_speed" = "normal 50 %"')
     found = propagate(path, samples=32, over={SPEED: [0.02, 0.04]})
     assert found.attrs["uncertain"] == ["contact.normal_load"]
     assert found["sliding_speed"].values.tolist() == [0.02, 0.04]
 
 
-def test_joint_draws_stay_together() -> None:
-    draws = np.linspace(600.0, 800.0, 40)
-    joint = {"structure.tip_damping": draws, "structure.reaction_mass": draws / 300}
-    found = propagate(RIGS / "tribometer.toml", samples=64, joint=joint)
+def test_joint_samples_keep_their_correlation() -> None:
+    values = np.linspace(600.0, 800.0, 40)
+    joint = {"structure.tip_damping": values, "structure.reaction_mass": values / 300}
+    found = propagate(RIGS / "tribometer.toml", samples=64, joint_samples=joint)
     assert found["tip_damping"].values == approx(300 * found["reaction_mass"].values)
     assert np.unique(found["tip_damping"].values).size == 40
-    assert spread(found["vibration_amplitude"].values, stretch=found["stretch"].values).deviation.value > 0
+    assert (
+        sample_statistics(
+            found["vibration_amplitude"].values, subsequence=found["subsequence"].values
+        ).standard_deviation.value
+        > 0
+    )
 
 
-def test_a_second_run_goes_on_in_the_same_folder(tmp_path: Path) -> None:
+def test_a_second_run_resumes_from_the_same_folder(tmp_path: Path) -> None:
     once, again = (propagate(UNCERTAIN, samples=32, folder=tmp_path)["friction_ratio"].values for _ in range(2))
     assert np.array_equal(once, again)
     assert len(list(tmp_path.glob("chunk-*.npz"))) == 1
 
 
-def test_figures_carry_units_and_what_was_asked_for(tmp_path: Path) -> None:
-    plain = spread_figure(propagate(UNCERTAIN, samples=32, of="vibration_amplitude"))
+def test_figures_carry_units_and_uncertain_keys(tmp_path: Path) -> None:
+    plain = histogram_figure(propagate(UNCERTAIN, samples=32, outcome="vibration_amplitude"))
     assert plain.axes[0].get_xlabel() == "Vibration amplitude, zero to peak [µm]"
     band = band_figure(propagate(UNCERTAIN, samples=32, over={SPEED: np.geomspace(0.01, 0.2, 5)}))
     assert band.axes[0].get_xlabel() == "Sliding speed [mm/s]"
     assert band.axes[0].get_xscale() == "log"
     path = rig_with(tmp_path, '"friction.friction_coefficient" = "normal 5 %"', "poisson_al_steel")
-    result = propagate(path, samples=32, of="friction_force", indices=True)
-    bars = indices_figure(result, sobol_indices(result["friction_force"].values))
+    result = propagate(path, samples=32, outcome="friction_force", indices=True)
+    bars = sobol_figure(result, sobol_indices(result["friction_force"].values))
     assert [label.get_text() for label in bars.axes[0].get_yticklabels()] == ["friction.friction_coefficient"]
 
 
-def test_what_cannot_be_asked_is_refused() -> None:
+def test_unusable_requests_are_refused_with_the_reason() -> None:
     with raises(InvalidInput, match=r"table uncertainty is missing"):
         propagate(RIGS / "tribometer.toml")
-    with raises(InvalidInput, match=r"leave out over and joint"):
+    with raises(InvalidInput, match=r"leave out over and joint_samples"):
         propagate(UNCERTAIN, indices=True, over={SPEED: [0.02]})
     with raises(UnknownName, match=r"unknown outcome 'friction_rato'; did you mean friction_ratio\?"):
-        propagate(UNCERTAIN, of="friction_rato")
+        propagate(UNCERTAIN, outcome="friction_rato")
     with raises(InvalidInput, match=r"contact.normal_lod: unknown key"):
         propagate(UNCERTAIN, over={"contact.normal_lod": [3.0]})
 
 
 @pytest.mark.parametrize("keys", [0, 3])
-def test_a_band_runs_over_one_or_two_keys(keys: int) -> None:
+def test_an_uncertainty_band_needs_one_or_two_swept_keys(keys: int) -> None:
     over = {SPEED: [0.02], "drive.frequency": [22e3], "drive.voltage_peak_to_peak": [20.0]}
     found = propagate(UNCERTAIN, samples=32, over=dict(list(over.items())[:keys]))
     with raises(InvalidInput, match=rf"one or two swept keys, got {keys}"):

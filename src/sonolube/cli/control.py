@@ -66,7 +66,7 @@ def control(
     from sonolube.cli.control_output import control_lines, control_object, suppressed, write_control
     from sonolube.cli.design_page import asked_of, settings_of
     from sonolube.cli.progress import progress
-    from sonolube.design.control import Amplifier, ControlSettings, Disturbance, Drift, control_study
+    from sonolube.design.control import Amplifier, ControlSettings, Disturbance, ThermalDrift, design_control
     from sonolube.errors import InvalidInput
     from sonolube.rig import read_rig
     from sonolube.units import temperature_difference_to_si, to_si
@@ -98,7 +98,7 @@ def control(
         disturbance=Disturbance(
             friction_factor=factor, friction_force_deviation=to_si(noise, unit="N", name="--noise")
         ),
-        drift=Drift(
+        drift=ThermalDrift(
             final_temperature_rise=temperature_difference_to_si(warming, name="--warming"),
             warming_time=si(warmed_in, "s", "--warming-time", duration / 4),
         ),
@@ -107,7 +107,7 @@ def control(
     with progress("controlling"):
         mode = _mode(known, quality, coupling)
         line = _line(known, efficiency) if feed_forward is FeedForward.EFFICIENCY else None
-        study = control_study(known, settings, mode=mode, line=line)
+        study = design_control(known, settings, mode=mode, line=line)
         belt = suppressed(known, study) if stick_slip else None
         asked = [*asked_of(context, title=known.title, source=known.source), *settings_of(known)]
         name = f"{rig.stem}-control"
@@ -120,11 +120,11 @@ def control(
 
 
 def _mode(rig: "Rig", quality: float, coupling: float) -> "VibrationMode | None":
-    from sonolube.design.control import supposed_mode
+    from sonolube.design.control import assumed_mode
 
     if rig.structure is not None:
         return None
-    return supposed_mode(rig, quality_factor=quality, coupling_factor=coupling)
+    return assumed_mode(rig, quality_factor=quality, coupling_factor=coupling)
 
 
 def _supposed(quality: float, coupling: float) -> str:

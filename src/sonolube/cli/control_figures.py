@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sonolube.design.control import ControlStudy, DraggedMotion, loop_response
+from sonolube.design.control import ControlDesign, StickSlipMotion, open_loop_response
 from sonolube.figure import COLOURS
 
 if TYPE_CHECKING:
@@ -12,19 +12,19 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def course_figure(study: ControlStudy) -> "Figure":
+def course_figure(study: ControlDesign) -> "Figure":
     """Return friction, voltage and frequency over time."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(5.6, 5.6))
     friction, voltage, frequency = figure.subplots(3, 1, sharex=True, height_ratios=(2, 1, 1))
-    run, fixed = study.run, study.untracked
+    run, fixed = study.run, study.fixed_frequency_run
     ms = 1e3 * run.time
     if fixed is not None:
         friction.plot(ms, fixed.friction_force, color=COLOURS[1], linestyle="--", label="frequency fixed")
         voltage.plot(ms, fixed.voltage_peak_to_peak, color=COLOURS[1], linestyle="--")
     friction.plot(ms, run.friction_force, color=COLOURS[0], label="friction" if fixed is None else "resonance tracked")
-    friction.plot(ms, run.reference, color=COLOURS[6], linestyle=":", drawstyle="steps-post", label="wanted")
+    friction.plot(ms, run.setpoint, color=COLOURS[6], linestyle=":", drawstyle="steps-post", label="wanted")
     friction.set(ylabel="Friction force [N]", ylim=(0, None))
     friction.legend(loc="best")
     voltage.plot(ms, run.voltage_peak_to_peak, color=COLOURS[0])
@@ -40,7 +40,7 @@ def course_figure(study: ControlStudy) -> "Figure":
     return figure
 
 
-def design_figure(study: ControlStudy) -> "Figure":
+def design_figure(study: ControlDesign) -> "Figure":
     """Return the map the controller looks its voltages up in, and how the loop amplifies disturbances."""
     from matplotlib.figure import Figure
 
@@ -48,7 +48,7 @@ def design_figure(study: ControlStudy) -> "Figure":
     lookup, loop = figure.subplots(1, 2)
     plant, controller = study.plant, study.controller
     lookup.plot(plant.voltage_peak_to_peak, plant.friction_force, color=COLOURS[0], label="rig's model")
-    table = controller.intrinsic_friction_force - np.array(controller.saved_force)
+    table = controller.intrinsic_friction_force - np.array(controller.force_reduction)
     lookup.plot(controller.voltage_peak_to_peak, table, color=COLOURS[1], linestyle="--", label="controller's table")
     volts = np.interp(-study.friction_force, -plant.friction_force, plant.voltage_peak_to_peak)
     lookup.plot(volts, study.friction_force, "o", color=COLOURS[6], label="wanted")
@@ -56,7 +56,7 @@ def design_figure(study: ControlStudy) -> "Figure":
     lookup.legend()
     nyquist = 0.5 / controller.process.sample_interval
     f = np.geomspace(1e-3 * nyquist, nyquist, 600)
-    around = study.loop_gain * loop_response(controller.process, controller.gains, frequency=f)
+    around = study.plant_gain * open_loop_response(controller.process, controller.gains, frequency=f)
     loop.semilogx(f, 1 / np.abs(1 + around))
     peak = study.margins.sensitivity_peak
     loop.axhline(peak, color="0.5", linestyle="-.", linewidth=1, label=f"highest, {peak:.2f}")
@@ -66,7 +66,7 @@ def design_figure(study: ControlStudy) -> "Figure":
     return figure
 
 
-def belt_figure(still: DraggedMotion, vibrating: DraggedMotion, *, volts: float) -> "Figure":
+def belt_figure(still: StickSlipMotion, vibrating: StickSlipMotion, *, volts: float) -> "Figure":
     """Return the force in the holder of a dragged slider, without and with vibration."""
     from matplotlib.figure import Figure
 

@@ -11,16 +11,16 @@ from sonolube.cli.control_figures import belt_figure, course_figure, design_figu
 from sonolube.cli.design_page import notes_of
 from sonolube.cli.output import closing_lines
 from sonolube.design.control import (
+    ControlDesign,
     ControlSettings,
-    ControlStudy,
-    DraggedMotion,
-    capture_edge,
+    StickSlipMotion,
+    capture_limit,
     controller_source,
-    dragged_mass,
-    dragged_motion,
     lookup_table,
+    mass_on_belt,
     steady_sliding_damping,
-    voltage_for,
+    stick_slip_motion,
+    voltage_for_friction,
 )
 from sonolube.figure import publication_style
 from sonolube.files import write_atomically
@@ -53,17 +53,17 @@ class Suppression:
         Of small motions about steady sliding, without and with, in N s/m.
     """
 
-    still: DraggedMotion
-    vibrating: DraggedMotion
+    still: StickSlipMotion
+    vibrating: StickSlipMotion
     voltage_peak_to_peak: float
     damping: tuple[float, float]
 
 
-def suppressed(rig: Rig, study: ControlStudy) -> Suppression:
+def suppressed(rig: Rig, study: ControlDesign) -> Suppression:
     """Return how a rig's slider moves on a holder that lets it stick, without vibration and with that wanted."""
-    volts = float(voltage_for(study.plant, friction_force=study.friction_force))
+    volts = float(voltage_for_friction(study.plant, friction_force=study.friction_force))
     without, within = (
-        dragged_mass(
+        mass_on_belt(
             rig,
             holder_mass=_HOLDER_MASS,
             holder_stiffness=_HOLDER_STIFFNESS,
@@ -75,8 +75,8 @@ def suppressed(rig: Rig, study: ControlStudy) -> Suppression:
         for swing in (0.0, volts)
     )
     return Suppression(
-        still=dragged_motion(without, duration=_PERIODS * without.period),
-        vibrating=dragged_motion(within, duration=_PERIODS * within.period),
+        still=stick_slip_motion(without, duration=_PERIODS * without.period),
+        vibrating=stick_slip_motion(within, duration=_PERIODS * within.period),
         voltage_peak_to_peak=volts,
         damping=(steady_sliding_damping(without), steady_sliding_damping(within)),
     )
@@ -85,7 +85,7 @@ def suppressed(rig: Rig, study: ControlStudy) -> Suppression:
 def control_object(
     rig: Rig,
     settings: ControlSettings,
-    study: ControlStudy,
+    study: ControlDesign,
     belt: Suppression | None,
     supposed: Mapping[str, str],
     written: list[Path],
@@ -96,9 +96,9 @@ def control_object(
         "friction_force": study.friction_force,
         "voltage_maximum": study.voltage_maximum,
         "time_constant": study.mode.time_constant,
-        "dead_time": study.controller.process.delayed_samples * study.controller.process.sample_interval,
+        "dead_time": study.controller.process.dead_time_samples * study.controller.process.sample_interval,
         "sample_interval": study.controller.process.sample_interval,
-        "loop_gain": study.loop_gain,
+        "plant_gain": study.plant_gain,
         "proportional_gain": gains.proportional_gain,
         "integral_time": gains.integral_time,
         **{name: getattr(margins, name) for name in ("gain_margin", "phase_margin", "delay_margin")},
@@ -131,7 +131,7 @@ def control_object(
 def control_lines(
     rig: Rig,
     settings: ControlSettings,
-    study: ControlStudy,
+    study: ControlDesign,
     belt: Suppression | None,
     supposed: Mapping[str, str],
     written: list[Path],
@@ -148,7 +148,7 @@ def control_lines(
 def write_control(
     rig: Rig,
     settings: ControlSettings,
-    study: ControlStudy,
+    study: ControlDesign,
     belt: Suppression | None,
     supposed: Mapping[str, str],
     *,
@@ -208,7 +208,7 @@ def write_control(
     ]
 
 
-def _lookup(study: ControlStudy) -> FindingTable:
+def _lookup(study: ControlDesign) -> FindingTable:
     """Return the map from friction to voltage at about a dozen places."""
     plant = study.plant
     places = np.unique(np.linspace(0, plant.friction_force.size - 1, 12).round().astype(int))
@@ -220,26 +220,26 @@ def _lookup(study: ControlStudy) -> FindingTable:
     )
 
 
-def _caveats(study: ControlStudy) -> tuple[str, ...]:
+def _caveats(study: ControlDesign) -> tuple[str, ...]:
     return (*_thin_margin(study), *_lost_resonance(study))
 
 
-def _lost_resonance(study: ControlStudy) -> tuple[str, ...]:
+def _lost_resonance(study: ControlDesign) -> tuple[str, ...]:
     tracker, last = study.tracker, float(study.run.frequency[-1])
     if tracker is None or tracker.lowest_frequency < last < tracker.highest_frequency:
         return ()
-    edge = capture_edge(study.mode) - study.mode.frequency
+    edge = capture_limit(study.mode) - study.mode.frequency
     return (
         f"the drive ends at {format_si(last, 'Hz', digits=4)}, the end of its band, and has lost the resonance: it"
         f" finds back from up to {format_si(edge, 'Hz')} above it; warm slower or keep the drive on",
     )
 
 
-def _thin_margin(study: ControlStudy) -> tuple[str, ...]:
+def _thin_margin(study: ControlDesign) -> tuple[str, ...]:
     if study.margins.gain_margin >= _SAFE_GAIN_MARGIN:
         return ()
     verdict = "is unstable" if study.margins.gain_margin < 1 else "is near instability"
-    cause = f"real friction changes {study.loop_gain:.3g} times as the controller expects"
+    cause = f"real friction changes {study.plant_gain:.3g} times as the controller expects"
     return (f"the loop {verdict} at the friction wanted, where {cause}: ask for a slower --closed-loop",)
 
 
@@ -247,10 +247,10 @@ def _assumed(rig: Rig, belt: Suppression | None, supposed: Mapping[str, str]) ->
     return {**rig.assumptions, **supposed, **({} if belt is None else {"stick-slip": HOLDER})}
 
 
-def _facts(settings: ControlSettings, study: ControlStudy, belt: Suppression | None) -> list[tuple[str, str]]:
+def _facts(settings: ControlSettings, study: ControlDesign, belt: Suppression | None) -> list[tuple[str, str]]:
     process, gains, margins = study.controller.process, study.controller.gains, study.margins
     response, energy = study.response, study.energy
-    late = process.delayed_samples * process.sample_interval
+    late = process.dead_time_samples * process.sample_interval
     amplifier = "" if energy.amplifier_energy is None else f"{format_si(energy.amplifier_energy, 'J')} (D 1.9), "
     facts = [
         (
@@ -271,7 +271,7 @@ def _facts(settings: ControlSettings, study: ControlStudy, belt: Suppression | N
         ),
         (
             "margins",
-            f"gain {margins.gain_margin:.2f} where real friction changes {study.loop_gain:.2f} times as expected, "
+            f"gain {margins.gain_margin:.2f} where real friction changes {study.plant_gain:.2f} times as expected, "
             f"phase {np.degrees(margins.phase_margin):.1f} deg, "
             f"delay {format_si(margins.delay_margin, 's')}, "
             f"Ms {margins.sensitivity_peak:.2f}",
@@ -288,7 +288,7 @@ def _facts(settings: ControlSettings, study: ControlStudy, belt: Suppression | N
             f"work of friction saved {format_si(energy.saved_work, 'J')}",
         ),
     ]
-    if study.untracked is not None:
+    if study.fixed_frequency_run is not None:
         facts.append(("resonance", _tracked(study)))
     if belt is not None:
         facts += [
@@ -304,15 +304,15 @@ def _facts(settings: ControlSettings, study: ControlStudy, belt: Suppression | N
     return facts
 
 
-def _tracked(study: ControlStudy) -> str:
-    assert study.untracked is not None
+def _tracked(study: ControlDesign) -> str:
+    assert study.fixed_frequency_run is not None
     last = slice(-max(study.run.time.size // 5, 1), None)
     with_it, without = (
-        float(np.sqrt(np.mean((run.friction_force[last] - run.reference[last]) ** 2)))
-        for run in (study.run, study.untracked)
+        float(np.sqrt(np.mean((run.friction_force[last] - run.setpoint[last]) ** 2)))
+        for run in (study.run, study.fixed_frequency_run)
     )
     fell = study.run.resonance_frequency[-1] - study.run.resonance_frequency[0]
-    volts = study.run.voltage_peak_to_peak[last].mean(), study.untracked.voltage_peak_to_peak[last].mean()
+    volts = study.run.voltage_peak_to_peak[last].mean(), study.fixed_frequency_run.voltage_peak_to_peak[last].mean()
     return (
         f"moves by {format_si(float(fell), 'Hz')}; tracked {volts[0]:.3g} V and {format_si(with_it, 'N')} rms, "
         f"at a fixed frequency {volts[1]:.3g} V and {format_si(without, 'N')} rms"

@@ -48,7 +48,7 @@ def design(
     from sonolube.cli.horn_output import horn_lines, horn_object, write_horn
     from sonolube.cli.modal_part import horn_of
     from sonolube.cli.progress import progress
-    from sonolube.design.horn import designed_horn
+    from sonolube.design.horn import tuned_horn
     from sonolube.fem import medium_from_material
     from sonolube.materials import material as material_of
     from sonolube.units import to_si
@@ -58,7 +58,7 @@ def design(
     made_of = material_of(material)
     body = horn_of(shape, sizes or [], frequency=wanted, material=made_of, tune=tune, axis=axis)
     with progress("tuning") as advance:
-        found = designed_horn(
+        found = tuned_horn(
             body,
             medium=medium_from_material(made_of),
             frequency=wanted,

@@ -42,7 +42,7 @@ def horn_object(design: HornDesign, material: Material, tool: float, written: Se
         "part": design.body.name,
         "material": material.name,
         "mode": design.tuned.mode.names[design.tuned.mode.row],
-        "tuned_size": design.body.tuned,
+        "tuned_size": design.body.tuned_size,
         "thin_bar_length": None if design.body.thin is None else {"value": design.body.thin.length, "unit": "m"},
         "sizes": {name: {"value": value, "unit": "m"} for name, value in design.body.sizes.items()},
         **{name: {"value": value, "unit": quantities()[name].unit} for name, value in values.items()},
@@ -75,7 +75,7 @@ def horn_lines(design: HornDesign, material: Material, tool: float, written: Seq
     limits = amplitude_limits(design, material=material)
     near = [f"{name} {at / mode.frequency - 1:+.1%}" for name, at in design.neighbours[:_NEAR]]
     rows = {
-        design.body.tuned: f"{1e3 * design.tuned.length:.2f} mm{theory}",
+        design.body.tuned_size: f"{1e3 * design.tuned.length:.2f} mm{theory}",
         "frequency": f"{mode.frequency:.0f} Hz +-{mode.frequency * mode.frequency_error:.0f}  {mode.names[mode.row]}",
         "trim": f"{1e-3 * design.tuned.frequency_per_length:+.1f} Hz/mm",
         "neighbours": ", ".join(near) or "none below",

@@ -7,7 +7,7 @@ import numpy as np
 
 from sonolube.cli.design_page import notes_of, status_counts, status_tables
 from sonolube.cli.output import closing_lines
-from sonolube.design import PLACES, map_figure, map_page, measured_figure, measured_map
+from sonolube.design import MAP_LAYOUTS, gaussian_process_map, map_figure, map_page, measured_map_figure
 from sonolube.errors import InvalidInput
 from sonolube.figure import publication_style
 from sonolube.files import write_atomically
@@ -37,12 +37,14 @@ def write_map(
 ) -> list[Path]:
     """Write the report of a map, its figures and netCDF, that of the measured runs beside, and return the files."""
     page = map_page(mapped) if "html" in forms else None  # refuses before anything is written
-    across, up, panel = PLACES[mapped.attrs["map"]]
+    across, up, panel = MAP_LAYOUTS[mapped.attrs["map"]]
     between = _interpolated(mapped, runs, across, up, panel)
     with publication_style():
         figures = [Finding(name=name, caption=_caption(mapped, runs), figure=map_figure(mapped, measured=runs))]
         if between is not None and runs is not None:
-            figures.append(Finding(name=f"{name}-measured", caption=_MEASURED, figure=measured_figure(between, runs)))
+            figures.append(
+                Finding(name=f"{name}-measured", caption=_MEASURED, figure=measured_map_figure(between, runs))
+            )
     written = write_findings(
         title=f"Friction reduction over {_lower(across)} and {_lower(up)}: {rig.title}",
         asked=asked,
@@ -63,7 +65,7 @@ def write_map(
 
 def require_drawable(runs: "xr.Dataset", *, kind: str) -> None:
     """Refuse measured runs that a map of this kind has no place for."""
-    across, up, panel = PLACES[kind]
+    across, up, panel = MAP_LAYOUTS[kind]
     for axis in (across, up):
         if axis not in runs:
             raise InvalidInput(f"measured runs need a column {axis} for a {kind} map")
@@ -82,11 +84,11 @@ def _interpolated(
         return None
     x, y = (np.linspace(float(runs[axis].min()), float(runs[axis].max()), 61) for axis in (across, up))
     known = "friction_reduction_uncertainty"
-    found = measured_map(
+    found = gaussian_process_map(
         runs=np.stack([runs[across].values, runs[up].values], axis=1),
         friction_reduction=runs["friction_reduction"].values,
         friction_reduction_uncertainty=runs[known].values if known in runs else 0.0,
-        places=np.stack(np.meshgrid(x, y), axis=-1),
+        points=np.stack(np.meshgrid(x, y), axis=-1),
     )
     return xr.Dataset(
         {
@@ -169,7 +171,7 @@ def _panel_table(mapped: "xr.Dataset", panel: str | None) -> list[FindingTable]:
 
 
 def _ridge(mapped: "xr.Dataset") -> str:
-    ridge = mapped["sufficient_power"].values if "sufficient_power" in mapped else np.array([])
+    ridge = mapped["saturation_power"].values if "saturation_power" in mapped else np.array([])
     if not np.isfinite(ridge).any():
         return ""
     low, high = (format_si(float(pick(ridge)), "W") for pick in (np.nanmin, np.nanmax))

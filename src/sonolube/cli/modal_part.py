@@ -28,7 +28,7 @@ from sonolube.units import to_si
 from sonolube.vocabulary import quantities
 
 if TYPE_CHECKING:
-    from sonolube.design.horn_shapes import Body
+    from sonolube.design.horn_shapes import TunableBody
 
 ALL_TRANSDUCERS = {**TRANSDUCERS, **DONG_2015_TRANSDUCERS}
 """General transducers and those of the dissertation, by name."""
@@ -123,7 +123,7 @@ def transducer_of(part: str, sizes: Sequence[str], **wired: str) -> Transducer:
 
 def horn_of(
     shape: str, sizes: Sequence[str], *, frequency: float, material: Material, tune: str, axis: str | None
-) -> "Body":
+) -> "TunableBody":
     """Return the horn of this shape, or that of a STEP file.
 
     Parameters
@@ -144,11 +144,11 @@ def horn_of(
     -------
     Body
     """
-    from sonolube.design.horn_shapes import horn_body, own_body
+    from sonolube.design.horn_shapes import body_from_geometry, horn_body
 
     if _is_step(shape):
         geometry = _own(shape, sizes)
-        return own_body(geometry, axis=axis or longest_axis(generate_mesh(geometry, element_size=_COARSE)))
+        return body_from_geometry(geometry, axis=axis or longest_axis(generate_mesh(geometry, element_size=_COARSE)))
     given = {}
     for entry in sizes:
         name, _, value = entry.partition("=")

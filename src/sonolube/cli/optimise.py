@@ -86,7 +86,7 @@ def optimise(
     from sonolube.cli.optimise_output import optimum_lines, optimum_object, write_optimum
     from sonolube.cli.optimise_task import bolt_of, limits_of, space_of, wanted_ratio
     from sonolube.cli.progress import progress
-    from sonolube.design.optimisation import Task, Tolerance, electrical
+    from sonolube.design.optimisation import DesignProblem, Tolerance, required_electronics
     from sonolube.design.optimisation import optimise as optimised
     from sonolube.errors import InvalidInput
     from sonolube.rig import read_rig, rig_content
@@ -108,11 +108,11 @@ def optimise(
         quality,
         bolt_of(bolt, pressed_by, bolt_strength),
     )
-    task = Task(
+    problem = DesignProblem(
         space=space,
         friction_ratio=wanted_ratio(known, friction),
         limits=limits,
-        tolerance=None if robust is None else Tolerance(built_tolerance=robust, quantile=share),
+        tolerance=None if robust is None else Tolerance(manufacturing_tolerance=robust, quantile=share),
     )
     resistance = None
     if source is not None:
@@ -120,13 +120,13 @@ def optimise(
         require_positive(source_resistance=resistance)
     with progress("optimising") as advance:
         found = optimised(
-            task,
+            problem,
             minimise=minimise.value,
-            other=None if pareto is None or pareto == minimise else pareto.value,
+            second_objective=None if pareto is None or pareto == minimise else pareto.value,
             samples=samples,
             advance=lambda done, total: advance("structures", done, total),
         )
-        electric = electrical(task, found.best, source_resistance=resistance)
+        electric = required_electronics(problem, found.best, source_resistance=resistance)
         asked = [*asked_of(context, title=known.title, source=known.source), *settings_of(known)]
         name = f"{rig.stem}-optimum"
         written = write_optimum(rig, content, found, electric, asked=asked, folder=out, name=name)

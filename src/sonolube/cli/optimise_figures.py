@@ -8,13 +8,13 @@ from sonolube.actuator import matched_power_factor
 from sonolube.checks import Floats
 from sonolube.design.optimisation import (
     CAPACITANCE_TOLERANCE,
-    Electrical,
+    DesignPoint,
+    DriveElectronics,
     Optimum,
-    Point,
-    admittance_of,
     design_rig,
+    stack_admittance,
 )
-from sonolube.design.optimisation.space import OWN
+from sonolube.design.optimisation.space import OWN_ACTUATOR
 from sonolube.figure import COLOURS
 
 if TYPE_CHECKING:
@@ -48,13 +48,15 @@ def front_figure(found: Optimum) -> "Figure":
     """Return both objectives of all designs, and the front between the best."""
     from matplotlib.figure import Figure
 
-    assert found.other is not None
+    assert found.second_objective is not None
     figure = Figure(figsize=(5.8, 3.8))
     axes = figure.subplots()
-    land = found.landscape
-    first, second = (land.objectives[name][land.feasible] for name in (found.minimise, found.other))
+    land = found.screening
+    first, second = (land.objectives[name][land.feasible] for name in (found.minimise, found.second_objective))
     axes.plot(first, second, ".", color="0.75", markersize=3, label="designs looked at", rasterized=True, zorder=1)
-    points = np.array([[point.objective(name) for name in (found.minimise, found.other)] for point in found.front])
+    points = np.array(
+        [[point.objective(name) for name in (found.minimise, found.second_objective)] for point in found.front]
+    )
     axes.plot(*points.T, color="0.2", linewidth=1.2, drawstyle="steps-post", zorder=2)
     for index, name in enumerate(dict.fromkeys(_kind(point) for point in found.front)):
         own = points[[_kind(point) == name for point in found.front]]
@@ -72,7 +74,7 @@ def front_figure(found: Optimum) -> "Figure":
     for point, at, (across, align) in zip(ends, (points[0], points[-1]), ((8, "left"), (-8, "right")), strict=False):
         text = f"{1e-3 * point.frequency:.2f} kHz\n{point.voltage_peak_to_peak:.3g} V"
         axes.annotate(text, at, xytext=(across, 14), textcoords="offset points", fontsize=7, ha=align)
-    axes.set(xlabel=AXES[found.minimise], ylabel=AXES[found.other])
+    axes.set(xlabel=AXES[found.minimise], ylabel=AXES[found.second_objective])
     figure.legend(*axes.get_legend_handles_labels(), loc="outside upper center", ncols=3)
     return figure
 
@@ -83,8 +85,10 @@ def frequency_figure(found: Optimum) -> "Figure":
 
     figure = Figure(figsize=(5.8, 3.6))
     axes = figure.subplots()
-    land = found.landscape
-    kinds = np.array([f"{choice.actuator}, {choice.waveform}" for choice in land.choices])[land.which]
+    land = found.screening
+    kinds = np.array([f"{candidate.actuator}, {candidate.waveform}" for candidate in land.candidates])[
+        land.candidate_index
+    ]
     for index, point in enumerate(found.designs[:_SHOWN]):
         own = land.feasible & (kinds == _kind(point))
         f, least = _envelope(land.frequency[own], land.objectives[found.minimise][own])
@@ -102,17 +106,17 @@ def frequency_figure(found: Optimum) -> "Figure":
             label=(None if index else "best of each" if len(found.designs) > 1 else "best"),
         )
     _plain_numbers(axes.yaxis)
-    low, high = found.task.space.frequencies
+    low, high = found.problem.space.frequencies
     axes.set(xlabel="Drive frequency [kHz]", ylabel=AXES[found.minimise], xlim=(1e-3 * low, 1e-3 * high))
     axes.legend(ncols=2 if len(found.designs) > 3 else 1)
     return figure
 
 
-def limits_figure(point: Point) -> "Figure":
+def limits_figure(point: DesignPoint) -> "Figure":
     """Return the share of each limit that a design uses."""
     from matplotlib.figure import Figure
 
-    used = {name: float(values[0]) for name, values in point.assessment.usage.items() if name in LIMITS}
+    used = {name: float(values[0]) for name, values in point.evaluation.utilisation.items() if name in LIMITS}
     used = {name: share for name, share in sorted(used.items(), key=lambda item: item[1]) if share > 0}
     figure = Figure(figsize=(5.8, 0.9 + 0.3 * max(len(used), 1)))
     axes = figure.subplots()
@@ -132,21 +136,21 @@ def limits_figure(point: Point) -> "Figure":
     return figure
 
 
-def power_factor_figure(found: Optimum, electric: Electrical) -> "Figure":
+def power_factor_figure(found: Optimum, electric: DriveElectronics) -> "Figure":
     """Return the power factor that the amplifier sees around the drive's frequency, with each network."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(5.8, 3.4))
     axes = figure.subplots()
-    rig = design_rig(found.task, found.best)
+    rig = design_rig(found.problem, found.best)
     f = found.best.frequency * np.linspace(0.85, 1.15, 401)
-    bare = admittance_of(rig, frequency=f)
+    bare = stack_admittance(rig, frequency=f)
     axes.plot(1e-3 * f, bare.real / np.abs(bare), color="0.4", linestyle=":", label="without a network")
-    for index, matched in enumerate(electric.matched):
+    for index, matched in enumerate(electric.networks):
         colour = COLOURS[index]
         changed = [
             matched_power_factor(
-                matched.network, admittance=admittance_of(rig, frequency=f, capacitance_change=share), frequency=f
+                matched.network, admittance=stack_admittance(rig, frequency=f, capacitance_change=share), frequency=f
             )
             for share in np.linspace(-CAPACITANCE_TOLERANCE, CAPACITANCE_TOLERANCE, 9)
         ]
@@ -161,13 +165,13 @@ def power_factor_figure(found: Optimum, electric: Electrical) -> "Figure":
     return figure
 
 
-def _kind(point: Point) -> str:
-    return f"{point.choice.actuator}, {point.choice.waveform}"
+def _kind(point: DesignPoint) -> str:
+    return f"{point.candidate.actuator}, {point.candidate.waveform}"
 
 
-def _named(point: Point) -> str:
+def _named(point: DesignPoint) -> str:
     """Return how a reader knows the actuator and waveform of a point."""
-    return _kind(point).replace(f"{OWN},", "the rig's actuator,", 1)
+    return _kind(point).replace(f"{OWN_ACTUATOR},", "the rig's actuator,", 1)
 
 
 def _plain_numbers(axis: "Axis") -> None:

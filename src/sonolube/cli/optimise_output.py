@@ -18,11 +18,11 @@ from sonolube.cli.optimise_figures import (
 )
 from sonolube.cli.output import closing_lines
 from sonolube.design.optimisation import (
-    OWN,
-    Electrical,
-    Matched,
+    OWN_ACTUATOR,
+    DesignPoint,
+    DriveElectronics,
+    MatchedNetwork,
     Optimum,
-    Point,
     design_text,
 )
 from sonolube.figure import publication_style
@@ -40,50 +40,50 @@ _NUMBERS = (
     "actuator_power",
     "heat_rate",
     "peak_current",
-    "pull",
+    "dynamic_tension",
     "nominal_pressure",
     "temperature_rise",
     "horn_stress",
 )
-_NEED = ("voltage_maximum", "peak_current", "rms_current", "apparent_power", "dissipated_power", "slew_rate")
+_NEED = ("voltage_maximum", "peak_current", "effective_current", "apparent_power", "dissipated_power", "slew_rate")
 _ELEMENTS = ("series_inductance", "series_capacitance", "shunt_inductance", "shunt_capacitance")
 _NO_LIMIT = "none set"
 _NEAR_END = 0.002  # of a range, in ratio: there a better design may lie beyond
 
 
-def optimum_object(found: Optimum, electric: Electrical, written: list[Path]) -> dict[str, Any]:
+def optimum_object(found: Optimum, electric: DriveElectronics, written: list[Path]) -> dict[str, Any]:
     """Return what was found as it goes into JSON."""
-    space = found.task.space
+    space = found.problem.space
     return {
         "rig": space.rig.title,
         "friction_model": space.rig.friction_model.name,
         "minimise": found.minimise,
-        "friction_ratio": {"value": found.task.friction_ratio, "unit": ""},
+        "friction_ratio": {"value": found.problem.friction_ratio, "unit": ""},
         "designs": [_design_object(point) for point in found.designs],
         "front": [_design_object(point) for point in found.front],
-        "looked_at": int(found.landscape.frequency.size),
-        "feasible": int(found.landscape.feasible.sum()),
+        "screened": int(found.screening.frequency.size),
+        "feasible": int(found.screening.feasible.sum()),
         "amplifier": {
-            **{name: _valued(name, getattr(electric.need, name)) for name in _NEED},
-            "power_factor": _valued("power_factor", electric.need.power_factor),
+            **{name: _valued(name, getattr(electric.amplifier, name)) for name in _NEED},
+            "power_factor": _valued("power_factor", electric.amplifier.power_factor),
         },
-        "networks": [_network_object(matched) for matched in electric.matched],
-        "refused": found.landscape.refused,
+        "networks": [_network_object(matched) for matched in electric.networks],
+        "refused": found.screening.refused,
         "caveats": _caveats(found),
         "assumptions": _assumed(found),
         "files": [str(path) for path in written],
     }
 
 
-def optimum_lines(found: Optimum, electric: Electrical, written: list[Path]) -> list[str]:
+def optimum_lines(found: Optimum, electric: DriveElectronics, written: list[Path]) -> list[str]:
     """Return what was found as lines."""
-    rig = found.task.space.rig
+    rig = found.problem.space.rig
     return [
         f"{rig.title}, {format_si(rig.normal_load, 'N')}, {format_si(rig.sliding_speed, 'm/s')},"
         f" friction model {rig.friction_model.name}",
         *[f"  {name:<20} {value}" for name, value in _facts(found, electric)],
         *_table_lines(_table(found.front or found.designs)),
-        *[f"  not used: {why}" for why in found.landscape.refused.values()],
+        *[f"  not used: {why}" for why in found.screening.refused.values()],
         *closing_lines(written, assumptions=_assumed(found), caveats=_caveats(found)),
     ]
 
@@ -92,14 +92,14 @@ def write_optimum(
     rig_file: Path,
     content: Mapping[str, Any],
     found: Optimum,
-    electric: Electrical,
+    electric: DriveElectronics,
     *,
     asked: list[tuple[str, str]],
     folder: Path,
     name: str,
 ) -> list[Path]:
     """Write the report with its figures, all designs as netCDF, and the best as a rig file; return the files."""
-    text = design_text(rig_file.read_text(encoding="utf-8-sig"), content, found.task, found.best)
+    text = design_text(rig_file.read_text(encoding="utf-8-sig"), content, found.problem, found.best)
     with publication_style():
         figures = [
             Finding(name=f"{name}-frequency", caption=_frequency_caption(found), figure=frequency_figure(found)),
@@ -116,13 +116,13 @@ def write_optimum(
             ),
         ]
     written = write_findings(
-        title=f"Least {found.minimise} for a friction ratio of {found.task.friction_ratio:.3g}:"
-        f" {found.task.space.rig.title}",
+        title=f"Least {found.minimise} for a friction ratio of {found.problem.friction_ratio:.3g}:"
+        f" {found.problem.space.rig.title}",
         asked=asked,
         facts=_facts(found, electric),
         tables=[_table(found.front or found.designs), *_beyond(found)],
         figures=figures,
-        notes=[f"Not used: {why}." for why in found.landscape.refused.values()]
+        notes=[f"Not used: {why}." for why in found.screening.refused.values()]
         + notes_of(_caveats(found), _assumed(found)),
         folder=folder,
         name="optimise",
@@ -139,23 +139,23 @@ def _limits(found: Optimum, name: str) -> Finding:
     )
 
 
-def _facts(found: Optimum, electric: Electrical) -> list[tuple[str, str]]:
-    best, need = found.best, electric.need
-    intrinsic = found.task.space.rig.friction_coefficient
-    ratio = found.task.friction_ratio
-    tolerance = found.task.tolerance
-    numbers = {key: float(values[0]) for key, values in best.assessment.numbers.items()}
+def _facts(found: Optimum, electric: DriveElectronics) -> list[tuple[str, str]]:
+    best, need = found.best, electric.amplifier
+    intrinsic = found.problem.space.rig.friction_coefficient
+    ratio = found.problem.friction_ratio
+    tolerance = found.problem.tolerance
+    numbers = {key: float(values[0]) for key, values in best.evaluation.quantities.items()}
     return [
         ("friction wanted", f"coefficient {ratio * intrinsic:.3g}, ratio {ratio:.3g}" + _stood(tolerance)),
         ("actuator", _title(found, best)),
         (
             "drive",
             f"{format_si(best.voltage_peak_to_peak, 'V', digits=4)} peak to peak,"
-            f" {format_si(best.frequency, 'Hz', digits=5)}, {best.choice.waveform}",
+            f" {format_si(best.frequency, 'Hz', digits=5)}, {best.candidate.waveform}",
         ),
         *[
             (key.replace("_", " "), format_si(value, "kg" if key.endswith("mass") else quantity(key).unit, digits=4))
-            for key, value in best.choice.entries.items()
+            for key, value in best.candidate.entries.items()
         ],
         ("amplitude", format_si(numbers["vibration_amplitude"], "m")),
         ("power of amplifier", f"{format_si(best.objective('power'), 'W')} (D 1.9)"),
@@ -167,22 +167,22 @@ def _facts(found: Optimum, electric: Electrical) -> list[tuple[str, str]]:
             f" {format_si(need.apparent_power, 'W').replace('W', 'VA')}, {need.slew_rate * 1e-6:.3g} V/us,"
             f" power factor {need.power_factor:.3g}",
         ),
-        *[(matched.name, _network_text(matched)) for matched in electric.matched],
-        ("designs", f"{int(found.landscape.feasible.sum())} of {found.landscape.frequency.size} within all limits"),
+        *[(matched.name, _network_text(matched)) for matched in electric.networks],
+        ("designs", f"{int(found.screening.feasible.sum())} of {found.screening.frequency.size} within all limits"),
     ]
 
 
-def _table(points: tuple[Point, ...]) -> FindingTable:
-    entries = list(points[0].choice.entries)
+def _table(points: tuple[DesignPoint, ...]) -> FindingTable:
+    entries = list(points[0].candidate.entries)
     heads = ["actuator", "waveform", "f [kHz]", "U_pp [V]", *[f"{name} [SI]" for name in entries]]
     heads += ["power [W]", "heat [W]", "tightest limit"]
     rows = tuple(
         (
-            point.choice.actuator,
-            point.choice.waveform,
+            point.candidate.actuator,
+            point.candidate.waveform,
             f"{1e-3 * point.frequency:.3f}",
             f"{point.voltage_peak_to_peak:.4g}",
-            *[f"{point.choice.entries[name]:.4g}" for name in entries],
+            *[f"{point.candidate.entries[name]:.4g}" for name in entries],
             f"{point.objective('power'):.4g}",
             f"{point.objective('heat'):.4g}",
             _tightest(point),
@@ -202,11 +202,11 @@ def _table_lines(table: FindingTable) -> list[str]:
 
 def _beyond(found: Optimum) -> list[FindingTable]:
     """Return how many of all designs looked at each limit rules out."""
-    usage, total = found.landscape.usage, found.landscape.frequency.size
-    reached = np.isfinite(found.landscape.voltage_peak_to_peak)
-    ruled_out = {text: int((usage[name][reached] > 1).sum()) for name, text in LIMITS.items()}
+    utilisation, total = found.screening.utilisation, found.screening.frequency.size
+    reached = np.isfinite(found.screening.voltage_peak_to_peak)
+    ruled_out = {text: int((utilisation[name][reached] > 1).sum()) for name, text in LIMITS.items()}
     rows = (
-        ("within all limits", int(found.landscape.feasible.sum())),
+        ("within all limits", int(found.screening.feasible.sum())),
         ("friction wanted not reached by any voltage", int((~reached).sum())),
         *((f"beyond the limit on {text}", count) for text, count in ruled_out.items() if count),
     )
@@ -215,31 +215,32 @@ def _beyond(found: Optimum) -> list[FindingTable]:
     return [FindingTable(title="What became of the designs looked at", heads=heads, rows=told)]
 
 
-def _tightest(point: Point) -> str:
-    used = {name: float(values[0]) for name, values in point.assessment.usage.items() if name in LIMITS}
+def _tightest(point: DesignPoint) -> str:
+    used = {name: float(values[0]) for name, values in point.evaluation.utilisation.items() if name in LIMITS}
     name = max(used, key=lambda each: used[each])
     return f"{LIMITS[name]}, {100 * used[name]:.3g} %" if used[name] > 0 else _NO_LIMIT
 
 
-def _title(found: Optimum, point: Point) -> str:
-    name = point.choice.actuator
-    return "the rig's own" if name == OWN else found.task.space.catalogue[name].title
+def _title(found: Optimum, point: DesignPoint) -> str:
+    name = point.candidate.actuator
+    return "the rig's own" if name == OWN_ACTUATOR else found.problem.space.catalogue[name].title
 
 
 def _stood(tolerance: Any) -> str:
     if tolerance is None:
         return ""
-    share = f"{100 * tolerance.built_tolerance:g} %"
+    share = f"{100 * tolerance.manufacturing_tolerance:g} %"
     if tolerance.quantile is None:
         return f", at every corner of {share}"
     return f", by {100 * tolerance.quantile:g} % of rigs with a standard deviation of {share}"
 
 
-def _network_text(matched: Matched) -> str:
+def _network_text(matched: MatchedNetwork) -> str:
     low, high = matched.band
     return (
         f"{_elements(matched.network)}; power factor above 0.9 from {1e-3 * low:.4g} to {1e-3 * high:.4g} kHz,"
-        f" {matched.off_capacitance:.2g} at worst with the capacitance off by 20 %; {matched.gain:.3g} x voltage"
+        f" {matched.detuned_power_factor:.2g} at worst with the capacitance off by 20 %;"
+        f" {matched.voltage_gain:.3g} x voltage"
     )
 
 
@@ -255,8 +256,8 @@ def _elements(network: MatchingNetwork) -> str:
 
 def _caveats(found: Optimum) -> list[str]:
     best, caveats = found.best, []
-    values = {"frequency": best.frequency, **best.choice.entries}
-    for name, (low, high) in found.task.space.bounds.items():
+    values = {"frequency": best.frequency, **best.candidate.entries}
+    for name, (low, high) in found.problem.space.bounds.items():
         for end, side in ((low, "lowest"), (high, "highest")):
             if abs(np.log(values[name] / end)) < _NEAR_END:
                 caveats.append(f"{name} lies at the {side} value allowed: a better design may lie beyond")
@@ -265,42 +266,42 @@ def _caveats(found: Optimum) -> list[str]:
             "more heat stays in the actuator than D 1.9 counts as the amplifier's power: near a resonance the motion"
             " takes real power, which that formula leaves out"
         )
-    stack = best.assessment.usage["tension"][0]
+    stack = best.evaluation.utilisation["tension"][0]
     if stack == 0:
         caveats.append("no preload is stated, so that tension in the stack is not judged: give --bolt and --preload")
     return caveats
 
 
 def _assumed(found: Optimum) -> dict[str, str]:
-    space, assumed = found.task.space, {}
-    if any(point.choice.actuator != OWN for point in found.designs):
+    space, assumed = found.problem.space, {}
+    if any(point.candidate.actuator != OWN_ACTUATOR for point in found.designs):
         assumed["quality factor"] = f"{space.mechanical_quality_factor:g} for the catalogue's ceramics; no sheet has it"
-    assumed["loss tangent"] = f"{found.task.limits.loss_tangent:g} for the ceramic, in its heat"
+    assumed["loss tangent"] = f"{found.problem.limits.loss_tangent:g} for the ceramic, in its heat"
     return assumed | dict(space.rig.assumptions)
 
 
-def _design_object(point: Point) -> dict[str, Any]:
-    numbers = point.assessment.numbers
+def _design_object(point: DesignPoint) -> dict[str, Any]:
+    numbers = point.evaluation.quantities
     return {
-        "actuator": point.choice.actuator,
-        "waveform": point.choice.waveform,
+        "actuator": point.candidate.actuator,
+        "waveform": point.candidate.waveform,
         "frequency": _valued("frequency", point.frequency),
         "voltage_peak_to_peak": _valued("voltage_peak_to_peak", point.voltage_peak_to_peak),
-        **{name: _valued(name, value) for name, value in point.choice.entries.items()},
+        **{name: _valued(name, value) for name, value in point.candidate.entries.items()},
         **{name: _valued(name, float(numbers[name][0])) for name in _NUMBERS if name in numbers},
-        "limits_used": {name: float(point.assessment.usage[name][0]) for name in LIMITS},
+        "limits_used": {name: float(point.evaluation.utilisation[name][0]) for name in LIMITS},
     }
 
 
-def _network_object(matched: Matched) -> dict[str, Any]:
+def _network_object(matched: MatchedNetwork) -> dict[str, Any]:
     network = matched.network
     return {
         "name": matched.name,
         **{name: _valued(name, value) for name in _ELEMENTS if (value := getattr(network, name)) is not None},
         "lowest_frequency": _valued("lowest_frequency", matched.band[0]),
         "highest_frequency": _valued("highest_frequency", matched.band[1]),
-        "power_factor_off_capacitance": matched.off_capacitance,
-        "voltage_gain": matched.gain,
+        "detuned_power_factor": matched.detuned_power_factor,
+        "voltage_gain": matched.voltage_gain,
     }
 
 
@@ -311,15 +312,15 @@ def _valued(name: str, value: float) -> dict[str, Any]:
 def _dataset(found: Optimum) -> "xr.Dataset":
     import xarray as xr
 
-    land = found.landscape
+    land = found.screening
     columns = {
         "frequency": land.frequency,
         "voltage_peak_to_peak": land.voltage_peak_to_peak,
         "actuator_power": land.objectives["power"],
         "heat_rate": land.objectives["heat"],
         **{
-            name: np.array([choice.entries[name] for choice in land.choices])[land.which]
-            for name in found.task.space.ranges
+            name: np.array([candidate.entries[name] for candidate in land.candidates])[land.candidate_index]
+            for name in found.problem.space.ranges
         },
     }
     data: dict[str, Any] = {
@@ -327,16 +328,20 @@ def _dataset(found: Optimum) -> "xr.Dataset":
         for name, values in columns.items()
     }
     for name in ("actuator", "waveform"):
-        data[name] = ("design", np.array([getattr(choice, name) for choice in land.choices])[land.which])
+        data[name] = (
+            "design",
+            np.array([getattr(candidate, name) for candidate in land.candidates])[land.candidate_index],
+        )
     for name, text in LIMITS.items():
-        data[f"used_{name}"] = ("design", land.usage[name], {"units": "1", "long_name": f"Share used: {text}"})
+        data[f"used_{name}"] = ("design", land.utilisation[name], {"units": "1", "long_name": f"Share used: {text}"})
     data["feasible"] = ("design", land.feasible.astype(np.int8), {"long_name": "Whether it keeps to every limit"})
     return xr.Dataset(
         data,
         attrs={
-            "title": f"Designs for a friction ratio of {found.task.friction_ratio:.4g}, {found.task.space.rig.title}",
+            "title": f"Designs for a friction ratio of {found.problem.friction_ratio:.4g},"
+            f" {found.problem.space.rig.title}",
             "source": f"sonolube {__version__}",
-            "friction_model": found.task.space.rig.friction_model.name,
+            "friction_model": found.problem.space.rig.friction_model.name,
         },
     )
 
@@ -349,4 +354,7 @@ def _frequency_caption(found: Optimum) -> str:
 
 
 def _front_caption(found: Optimum) -> str:
-    return f"Designs that no other beats in both {found.minimise} and {found.other}, among all that keep to the limits."
+    return (
+        f"Designs that no other beats in both {found.minimise} and {found.second_objective},"
+        " among all that keep to the limits."
+    )

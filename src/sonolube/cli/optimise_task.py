@@ -7,7 +7,7 @@ from typing import Any
 
 from sonolube.actuator import CatalogueActuator, PreloadBolt, catalogue_actuator, catalogue_names, read_catalogue
 from sonolube.cli.sweep_range import ends_of, values_of
-from sonolube.design.optimisation import OWN, DesignSpace, Horn, Limits
+from sonolube.design.optimisation import OWN_ACTUATOR, DesignSpace, HalfWaveHorn, Limits
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.materials import material
 from sonolube.rig import Rig, structure_entries
@@ -49,7 +49,7 @@ def limits_of(
     bar = None
     if horn is not None and horn_limit is not None:
         known = material(horn)
-        bar = Horn(
+        bar = HalfWaveHorn(
             density=known.value("density"),
             youngs_modulus=known.value("youngs_modulus"),
             stress_limit=to_si(horn_limit, unit="Pa", name="--horn-limit"),
@@ -136,7 +136,7 @@ def _require_choice(key: str, entries: Mapping[str, float]) -> None:
 def _named(actuators: list[str], known: Mapping[str, CatalogueActuator]) -> tuple[str, ...]:
     """Return the actuators asked for, the whole catalogue that can be used under its own word."""
     names: list[str] = []
-    for name in actuators or [OWN]:
+    for name in actuators or [OWN_ACTUATOR]:
         every = [each for each, entry in known.items() if entry.complete] if name == "catalogue" else [name]
         names += [each for each in every if each not in names]
     return tuple(names)

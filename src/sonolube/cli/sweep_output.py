@@ -7,7 +7,7 @@ import numpy as np
 import typer
 
 from sonolube.cli.design_page import asked_of, notes_of, status_counts, status_tables
-from sonolube.design import SweepPlan, sweep_figure, swept_names
+from sonolube.design import SweepPlan, sweep_figure, swept_variables
 from sonolube.figure import publication_style
 from sonolube.report import Finding, write_findings
 from sonolube.units import format_si
@@ -47,7 +47,7 @@ def write_sweep(
         figures=[
             Finding(
                 name="sweep",
-                caption=_CLOUD if drawn else _CAPTIONS.get(len(swept_names(result)), _CLOUD),
+                caption=_CLOUD if drawn else _CAPTIONS.get(len(swept_variables(result)), _CLOUD),
                 figure=figure,
             )
         ],

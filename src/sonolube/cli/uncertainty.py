@@ -66,11 +66,11 @@ def uncertainty(
         drawn = _identified(rig, seed, lambda done, total: advance("facts", done, total)) if identified else None
         result = propagate(
             rig,
-            of=of,
+            outcome=of,
             samples=samples,
             indices=sobol,
             over=grid,
-            joint=None if drawn is None else drawn.draws_by_key(),
+            joint_samples=None if drawn is None else drawn.draws_by_key(),
             seed=seed,
             changes=list(changes or ()),
             folder=keep,

@@ -10,13 +10,13 @@ from sonolube.checks import Floats
 from sonolube.cli.design_page import notes_of, status_counts, status_tables
 from sonolube.cli.output import closing_lines
 from sonolube.design import (
-    Estimated,
+    IntervalEstimate,
     SobolIndices,
     band_figure,
-    indices_figure,
+    histogram_figure,
+    outcome_statistics,
+    sobol_figure,
     sobol_indices,
-    spread_figure,
-    spread_of,
 )
 from sonolube.errors import InvalidInput
 from sonolube.figure import publication_style
@@ -60,7 +60,7 @@ def write_uncertainty(
     name: str,
 ) -> list[Path]:
     """Write the report with its figures, and the samples, and return the files; refuse samples without any result."""
-    if not np.isfinite(result[result.attrs["of"]].values).any():
+    if not np.isfinite(result[result.attrs["outcome"]].values).any():
         raise InvalidInput(f"no sample has a result: {next(reason for reason, _ in _failures(result))}")
     told = uncertainty_object(rig, result, drawn, [])
     with publication_style():
@@ -68,11 +68,11 @@ def write_uncertainty(
             Finding(
                 name=name,
                 caption=_BAND_CAPTION if result.attrs["swept"] else _SPREAD_CAPTION,
-                figure=band_figure(result) if result.attrs["swept"] else spread_figure(result),
+                figure=band_figure(result) if result.attrs["swept"] else histogram_figure(result),
             )
         ]
         if "block" in result.dims:
-            ranking = indices_figure(result, _indices(result))
+            ranking = sobol_figure(result, _indices(result))
             figures.append(Finding(name=f"{name}-sobol", caption=_SOBOL_CAPTION, figure=ranking))
     meaning, unit = quantity(told["of"]).meaning, told["unit"]
     written = write_findings(
@@ -94,7 +94,7 @@ def write_uncertainty(
 
 def uncertainty_object(rig: Rig, result: "xr.Dataset", drawn: Identified | None, written: list[Path]) -> dict[str, Any]:
     """Return spread, indices, statuses and what was assumed, as they go into JSON."""
-    of, joint = result.attrs["of"], {} if drawn is None else drawn.draws_by_key()
+    of, joint = result.attrs["outcome"], {} if drawn is None else drawn.draws_by_key()
     told: dict[str, Any] = {
         "rig": rig.title,
         "of": of,
@@ -120,10 +120,10 @@ def uncertainty_object(rig: Rig, result: "xr.Dataset", drawn: Identified | None,
     if result.attrs["swept"]:
         told["band"] = _band(result)
     else:
-        found = spread_of(result)
+        found = outcome_statistics(result)
         told |= {
             "mean": _estimated(found.mean),
-            "standard_deviation": _estimated(found.deviation),
+            "standard_deviation": _estimated(found.standard_deviation),
             "quantiles": {str(share): _estimated(each) for share, each in found.quantiles.items()},
             "relative_error": found.relative_error,
             "converged": found.has_converged,
@@ -151,7 +151,7 @@ def uncertainty_lines(rig: Rig, result: "xr.Dataset", drawn: Identified | None, 
 
 
 def _indices(result: "xr.Dataset") -> SobolIndices:
-    return sobol_indices(result[result.attrs["of"]].values, seed=result.attrs["seed"])
+    return sobol_indices(result[result.attrs["outcome"]].values, seed=result.attrs["seed"])
 
 
 def _ranking(result: "xr.Dataset") -> list[dict[str, Any]]:
@@ -160,28 +160,28 @@ def _ranking(result: "xr.Dataset") -> list[dict[str, Any]]:
     rows = [
         {
             "key": key,
-            "first": _estimated(Estimated(value=first, lower=ends[0], upper=ends[1])),
-            "total": _estimated(Estimated(value=total, lower=whole[0], upper=whole[1])),
+            "first": _estimated(IntervalEstimate(value=first, lower=ends[0], upper=ends[1])),
+            "total": _estimated(IntervalEstimate(value=total, lower=whole[0], upper=whole[1])),
             "deviation_if_known": found.standard_deviation * float(np.sqrt(np.clip(1 - first, 0, 1))),
         }
         for key, first, ends, total, whole in zip(
             result.attrs["uncertain"],
-            found.first.tolist(),
-            found.first_interval.tolist(),
-            found.total.tolist(),
-            found.total_interval.tolist(),
+            found.first_order.tolist(),
+            found.first_order_interval.tolist(),
+            found.total_order.tolist(),
+            found.total_order_interval.tolist(),
             strict=True,
         )
     ]
     return sorted(rows, key=lambda row: -row["first"]["value"])
 
 
-def _estimated(known: Estimated) -> dict[str, float]:
+def _estimated(known: IntervalEstimate) -> dict[str, float]:
     return {"value": known.value, "lower": known.lower, "upper": known.upper}
 
 
 def _failures(result: "xr.Dataset") -> list[tuple[str, int]]:
-    failed = np.isnan(result[result.attrs["of"]].values)
+    failed = np.isnan(result[result.attrs["outcome"]].values)
     codes, counts = np.unique(result["reason"].values[failed], return_counts=True)
     texts = result["reason_text"].values
     return [(str(texts[code]), int(count)) for code, count in zip(codes, counts, strict=True)]
@@ -198,7 +198,7 @@ def _contact_lost(result: "xr.Dataset") -> float | None:
 
 def _band(result: "xr.Dataset") -> dict[str, Any]:
     """Return median and 90 % interval where the interval is narrowest and widest, and its mean width."""
-    values = result[result.attrs["of"]]
+    values = result[result.attrs["outcome"]]
     known = values.values
     open_points = np.isfinite(known).any(axis=0)
     low, median, high = np.full((3, *known.shape[1:]), np.nan)

@@ -1,4 +1,4 @@
-"""Results of a sweep in a folder: chunks that appear whole, each named by the hash of what it holds."""
+"""Store of finished chunks of a sweep in a folder: atomically written files, each named by the hash of its content."""
 
 import hashlib
 import io
@@ -17,15 +17,21 @@ _MANIFEST = "sweep.json"
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ChunkStore:
-    """A folder that holds the chunks of one sweep.
+    """Folder with the finished chunks of one sweep.
 
     Parameters
     ----------
     folder : Path
     digest : str
-        Fingerprint of the sweep.
+        Digest of the sweep's plan.
     chunk_points : int
-        How many points there are to a chunk.
+        Points per chunk.
+
+    Notes
+    -----
+    The manifest sweep.json holds the digest and the chunk size, so that a folder is never continued with another
+    sweep. A chunk is the file chunk-NNNNNN.HASH.npz with 32 hexadecimal digits of the SHA-256 hash of its content; a
+    file that does not match its name is damaged and is computed anew.
     """
 
     folder: Path
@@ -33,56 +39,58 @@ class ChunkStore:
     chunk_points: int
 
     def open(self) -> None:
-        """Make the folder ready, or find it so.
+        """Create the folder with its manifest, or check that an existing one is of the same sweep.
 
         Raises
         ------
         InvalidInput
-            If it holds another sweep.
+            If the folder holds another sweep.
         """
         manifest = self.folder / _MANIFEST
-        own = {"sweep": self.digest, "chunk_points": self.chunk_points}
+        expected = {"sweep": self.digest, "chunk_points": self.chunk_points}
         if manifest.exists():
             try:
                 found = json.loads(manifest.read_text(encoding="utf-8"))
             except ValueError:
                 found = None
-            if found != own:
+            if found != expected:
                 raise InvalidInput(
                     f"{self.folder}: holds another sweep, of another rig, other values or another version;"
                     " name another folder, or remove this one"
                 )
         else:
-            write_atomically(manifest, json.dumps(own))
+            write_atomically(manifest, json.dumps(expected))
 
     def read(self, chunk: int) -> PointBatch | None:
-        """Return a chunk, or nothing if it is missing or not what was written; what was damaged is removed."""
-        found = None
+        """Chunk of an index, or None where it is missing or damaged; damaged files are removed."""
+        batch = None
         for path in self.folder.glob(f"chunk-{chunk:06d}.*.npz"):
             content = path.read_bytes()
-            if path.name == _name(chunk, content):
-                found = _batch(content)
+            if path.name == _file_name(chunk, content):
+                batch = _decoded(content)
             else:
                 path.unlink()
-        return found
+        return batch
 
     def write(self, chunk: int, batch: PointBatch) -> None:
-        """Keep a chunk.
+        """Write a chunk to its file.
 
         Raises
         ------
         InvalidInput
             If the folder cannot be written to.
         """
-        content = _content(batch)
-        write_atomically(self.folder / _name(chunk, content), content)
+        content = _encoded(batch)
+        write_atomically(self.folder / _file_name(chunk, content), content)
 
 
-def _name(chunk: int, content: bytes) -> str:
+def _file_name(chunk: int, content: bytes) -> str:
+    """Name of a chunk's file from its index and the hash of its content."""
     return f"chunk-{chunk:06d}.{hashlib.sha256(content).hexdigest()[:32]}.npz"
 
 
-def _content(batch: PointBatch) -> bytes:
+def _encoded(batch: PointBatch) -> bytes:
+    """Batch as an uncompressed NPZ archive."""
     buffer = io.BytesIO()
     np.savez(
         buffer,
@@ -95,11 +103,12 @@ def _content(batch: PointBatch) -> bytes:
     return buffer.getvalue()
 
 
-def _batch(content: bytes) -> PointBatch:
-    with np.load(io.BytesIO(content), allow_pickle=False) as held:
+def _decoded(content: bytes) -> PointBatch:
+    """Batch from an NPZ archive."""
+    with np.load(io.BytesIO(content), allow_pickle=False) as archive:
         return PointBatch(
-            numbers=dict(zip(NUMBERS, held["numbers"], strict=True)),
-            status=held["status"],
-            reason=held["reason"],
-            reasons=tuple(str(text) for text in held["reasons"]),
+            numbers=dict(zip(NUMBERS, archive["numbers"], strict=True)),
+            status=archive["status"],
+            reason=archive["reason"],
+            reasons=tuple(str(text) for text in archive["reasons"]),
         )

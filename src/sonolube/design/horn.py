@@ -1,4 +1,4 @@
-"""Horns tuned to a frequency, and what a designer asks of them: neighbours, face, gain, node, stress and trim."""
+"""Ultrasonic horns tuned to a frequency by finite elements: gain, face uniformity, node, stress, neighbouring modes."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.design.horn_shapes import Body
+from sonolube.design.horn_shapes import TunableBody
 from sonolube.errors import InvalidInput
 from sonolube.fem import (
     Medium,
@@ -27,38 +27,43 @@ from sonolube.fem.solver.simplex import shape_functions, simplex_quadrature
 from sonolube.fem.solver.system import assemble_system, shift_invert_solver
 from sonolube.materials import Material
 
-_ELEMENTS_ACROSS = 2.5  # of a horn as thick as a cube of its volume would be, in the first mesh
-_SLICES = 48  # across the axis, over which motion is averaged
+_ELEMENTS_ACROSS = 2.5  # in the first mesh, over the edge of a cube with the volume of the horn
+_SLICES = 48  # normal to the axis, over each of which the motion is averaged
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class HornDesign:
-    """A tuned horn.
+    """Ultrasonic horn whose length has been tuned to a frequency, with the properties of the tuned mode.
 
     Parameters
     ----------
-    body : Body
+    body : TunableBody
     tuned : TunedMode
-        Its length, frequency and mode.
+        Tuned length, frequency and mode.
     displacement_gain : float
-        Mean displacement of the working face over that of the driven one. []
+        Mean axial displacement of the working face over that of the driven face. []
     face_uniformity : float
-        Least over greatest displacement along the axis on the working face; negative where parts move against. []
+        Least over greatest axial displacement of the working face; negative where parts of it move in antiphase. []
     face_asymmetry : float
-        What a plane through these displacements rises over the face, over its mean. []
+        Range over the working face of the plane fitted to the axial displacement, over its mean: tilt of the face. []
     node_position : float
-        Where sections stand still, from the driven face. [m]
+        Distance of the displacement node from the driven face. [m]
     stress_per_displacement : float
-        Greatest equivalent stress per displacement of the working face. [Pa/m]
+        Greatest von Mises stress per displacement of the working face. [Pa/m]
     stress_change : float
-        Relative change of it from elements of one order less: large where corners are sharp, and then it has no limit.
+        Relative change of that stress from elements of one order less; large at sharp re-entrant corners, where the
+        stress does not converge.
     residual_compliance : float
-        Displacement per force of the working face by modes above those found. [m/N]
+        Residual compliance of the working face by the modes above those computed. [m/N]
     neighbours : tuple of (str, float)
-        Name and frequency in Hz of the elastic modes found, the tuned one left out, by distance.
+        Name and frequency in Hz of the other elastic modes computed, by distance from the tuned one.
+
+    See Also
+    --------
+    tuned_horn
     """
 
-    body: Body
+    body: TunableBody
     tuned: TunedMode
     displacement_gain: float
     face_uniformity: float
@@ -71,12 +76,12 @@ class HornDesign:
 
     @property
     def working_face(self) -> str:
-        """Name of the face that works."""
+        """Name of the working face."""
         return f"+{self.body.axis}"
 
 
-def designed_horn(
-    body: Body,
+def tuned_horn(
+    body: TunableBody,
     *,
     medium: Medium,
     frequency: float,
@@ -84,21 +89,21 @@ def designed_horn(
     relative_tolerance: float = 3e-3,
     advance: Callable[[str, int, int], None] | None = None,
 ) -> HornDesign:
-    """Return a horn whose length is tuned so that a named mode has a frequency.
+    """Horn tuned by its length so that a named mode has a target frequency, by finite elements.
 
     Parameters
     ----------
-    body : Body
+    body : TunableBody
     medium : Medium
-        What it is made of.
+        Material of the horn.
     frequency : float
-        Frequency at which it shall ring. [Hz]
+        Target frequency. [Hz]
     mode : str
         Name of the mode.
     relative_tolerance : float
         Largest estimated relative error of the frequency.
     advance : callable, optional
-        Told what is being done.
+        Called with the name of the step, the number of finished steps and their total.
 
     Returns
     -------
@@ -109,11 +114,15 @@ def designed_horn(
     InvalidInput
         If no mode has this name or the body lacks a flat working or driven face.
     NotConverged
-        If no length near the start gives the frequency.
+        If no length near the initial one gives the frequency.
+
+    See Also
+    --------
+    horn_body, body_from_geometry, amplitude_limits, loaded_frequency
     """
 
     def model_at(length: float, element_size: float) -> Model:
-        geometry = body.at(length)
+        geometry = body.geometry_at(length)
         return Model(mesh=generate_mesh(geometry, element_size=element_size), media={geometry.regions[0]: medium})
 
     tuned = tuned_mode(
@@ -122,32 +131,31 @@ def designed_horn(
         axis=body.axis,
         frequency=frequency,
         length=body.length,
-        element_size=float(body.at(body.length).volume ** (1 / 3) / _ELEMENTS_ACROSS),
+        element_size=float(body.geometry_at(body.length).volume ** (1 / 3) / _ELEMENTS_ACROSS),
         relative_tolerance=relative_tolerance,
         advance=advance,
     )
-    found = tuned.mode
-    peak = _peak_stress(found.model, found.displacement, body.axis)
-    change, compliance = _of_one_order_less(found, mode, body.axis, peak)
+    named = tuned.mode
+    working = face_motion(named.model, named.displacement, f"+{body.axis}", body.axis)
+    driven = face_motion(named.model, named.displacement, f"-{body.axis}", body.axis)
+    peak = _peak_stress(named.model, named.displacement, body.axis)
+    change, compliance = _lower_order_results(named, mode, body.axis, peak)
     return HornDesign(
         body=body,
         tuned=tuned,
-        displacement_gain=abs(
-            float(face_motion(found.model, found.displacement, f"+{body.axis}", body.axis).mean())
-            / float(face_motion(found.model, found.displacement, f"-{body.axis}", body.axis).mean())
-        ),
-        face_uniformity=_uniformity(face_motion(found.model, found.displacement, f"+{body.axis}", body.axis)),
-        face_asymmetry=_asymmetry(found, body.axis),
-        node_position=_node(found, body.axis),
+        displacement_gain=abs(float(working.mean()) / float(driven.mean())),
+        face_uniformity=_uniformity(working),
+        face_asymmetry=_asymmetry(named, body.axis),
+        node_position=_node(named, body.axis),
         stress_per_displacement=peak,
         stress_change=change,
         residual_compliance=compliance,
-        neighbours=_neighbours(found),
+        neighbours=_neighbours(named),
     )
 
 
 def amplitude_limits(design: HornDesign, *, material: Material) -> dict[str, float]:
-    """Return the amplitude of the working face in m at which the peak stress reaches each known strength.
+    """Displacement amplitude of the working face in m at which the peak stress reaches each known strength.
 
     Parameters
     ----------
@@ -158,6 +166,12 @@ def amplitude_limits(design: HornDesign, *, material: Material) -> dict[str, flo
     -------
     dict of str to float
         By "fatigue_strength" and "yield_strength", where the material has them.
+
+    Notes
+    -----
+    With the strength :math:`S` and the peak stress per displacement :math:`s`, as the model is linear,
+
+    .. math:: a = S / s
     """
     return {
         name: material.value(name) / design.stress_per_displacement
@@ -167,40 +181,43 @@ def amplitude_limits(design: HornDesign, *, material: Material) -> dict[str, flo
 
 
 def loaded_frequency(design: HornDesign, *, tool_mass: float) -> float:
-    """Return the frequency of the tuned mode with a rigid tool on the working face. [Hz]
+    """Natural frequency of the tuned mode with a rigid tool on the working face. [Hz]
 
     Parameters
     ----------
     design : HornDesign
     tool_mass : float
-        Its mass. [kg]
+        Mass of the tool. [kg]
 
     Returns
     -------
     float
     """
-    found = design.tuned.mode
+    mode = design.tuned.mode
     loaded = mass_loaded_frequencies(
-        found.modes,
-        found.model,
+        mode.modes,
+        mode.model,
         face=design.working_face,
         along=design.body.axis,
         tool_mass=tool_mass,
         residual_compliance=design.residual_compliance,
     )
-    own = found.modes.natural_frequency[found.row]
-    return float(loaded[found.row] / own * found.frequency)  # with the error of the mesh taken out
+    own = mode.modes.natural_frequency[mode.row]
+    return float(loaded[mode.row] / own * mode.frequency)  # the ratio cancels the discretisation error
 
 
 def face_motion(model: Model, shape: Floats, face: str, axis: str) -> Floats:
-    """Return displacements along an axis of the nodes on a face.
+    """Displacements along an axis at the nodes of a face.
 
     Parameters
     ----------
     model : Model
     shape : ndarray, shape (n, 3)
+        Displacements of all nodes.
     face : str
+        Name of the face, such as "+x".
     axis : str
+        "x", "y" or "z".
 
     Returns
     -------
@@ -210,12 +227,13 @@ def face_motion(model: Model, shape: Floats, face: str, axis: str) -> Floats:
 
 
 def nodal_stress(model: Model, shape: Floats) -> Floats:
-    """Return the equivalent stress at the nodes, averaged over the elements that meet there.
+    """Von Mises stress at the nodes, from stress components averaged over the adjacent elements.
 
     Parameters
     ----------
     model : Model
     shape : ndarray, shape (n, 3)
+        Displacements of all nodes.
 
     Returns
     -------
@@ -229,15 +247,16 @@ def nodal_stress(model: Model, shape: Floats) -> Floats:
 
 
 def _peak_stress(model: Model, shape: Floats, axis: str) -> float:
+    """Greatest nodal von Mises stress per mean displacement of the working face, in Pa/m."""
     return float(nodal_stress(model, shape).max() / abs(face_motion(model, shape, f"+{axis}", axis).mean()))
 
 
-def _of_one_order_less(found: NamedMode, name: str, axis: str, peak: float) -> tuple[float, float]:
-    """Return by how much the peak stress differs on elements of one order less, and what modes above yield there."""
-    model = replace(found.model, mesh=change_order(found.model.mesh, order=found.model.mesh.order - 1))
+def _lower_order_results(mode: NamedMode, name: str, axis: str, peak: float) -> tuple[float, float]:
+    """Relative change of the peak stress and residual compliance, on elements of one order less."""
+    model = replace(mode.model, mesh=change_order(mode.model.mesh, order=mode.model.mesh.order - 1))
     equations = assemble_system(model)
     inverse = shift_invert_solver(model, equations, shift=spectral_shift(model))
-    modes = lanczos_modes(model, equations, inverse=inverse, count=len(found.names) - found.modes.rigid_body_count)
+    modes = lanczos_modes(model, equations, inverse=inverse, count=len(mode.names) - mode.modes.rigid_body_count)
     compliance = face_residual_compliance(modes, model, equations, inverse=inverse, face=f"+{axis}", along=axis)
     names = mode_names(model, modes, axis=axis)
     if name not in names:
@@ -245,56 +264,62 @@ def _of_one_order_less(found: NamedMode, name: str, axis: str, peak: float) -> t
     return abs(_peak_stress(model, modes.shapes[names.index(name)], axis) / peak - 1), compliance
 
 
-def _uniformity(moves: Floats) -> float:
-    ordered = moves * np.sign(moves.mean())
-    return float(ordered.min() / ordered.max())
+def _uniformity(displacements: Floats) -> float:
+    """Least over greatest displacement, positive along the mean."""
+    signed = displacements * np.sign(displacements.mean())
+    return float(signed.min() / signed.max())
 
 
-def _asymmetry(found: NamedMode, axis: str) -> float:
-    nodes = found.model.mesh.face_nodes(f"+{axis}")
-    across = found.model.mesh.nodes[nodes][:, [k for k in range(3) if k != DIRECTIONS.index(axis)]]
+def _asymmetry(mode: NamedMode, axis: str) -> float:
+    """Range over the working face of the least-squares plane of the axial displacement, over its mean."""
+    nodes = mode.model.mesh.face_nodes(f"+{axis}")
+    across = mode.model.mesh.nodes[nodes][:, [k for k in range(3) if k != DIRECTIONS.index(axis)]]
     columns = np.column_stack([np.ones(len(nodes)), across - across.mean(axis=0)])
-    plane = np.linalg.lstsq(columns, found.displacement[nodes, DIRECTIONS.index(axis)], rcond=None)[0]
+    plane = np.linalg.lstsq(columns, mode.displacement[nodes, DIRECTIONS.index(axis)], rcond=None)[0]
     return float(np.ptp(columns[:, 1:] @ plane[1:]) / abs(plane[0]))
 
 
-def _node(found: NamedMode, axis: str) -> float:
-    """Return where the mean motion of sections changes sign for the first time."""
-    place, moves = section_motion(found, axis)
-    turn = np.flatnonzero(np.diff(np.sign(moves)))
-    if not turn.size:
-        raise InvalidInput("no section of this mode stands still; is it an axial mode?")
-    k = int(turn[0])
-    start = float(found.model.mesh.nodes[:, DIRECTIONS.index(axis)].min())
-    return float(place[k] - moves[k] * (place[k + 1] - place[k]) / (moves[k + 1] - moves[k])) - start
+def _node(mode: NamedMode, axis: str) -> float:
+    """Distance from the driven face to the first sign change of the mean axial displacement of sections."""
+    z, u = section_motion(mode, axis)
+    sign_changes = np.flatnonzero(np.diff(np.sign(u)))
+    if not sign_changes.size:
+        raise InvalidInput("this mode has no displacement node along the axis: tune an axial mode, such as axial 1")
+    k = int(sign_changes[0])
+    start = float(mode.model.mesh.nodes[:, DIRECTIONS.index(axis)].min())
+    return float(z[k] - u[k] * (z[k + 1] - z[k]) / (u[k + 1] - u[k])) - start
 
 
-def section_motion(found: NamedMode, axis: str) -> tuple[Floats, Floats]:
-    """Return places along an axis in m and the mean motion along it there.
+def section_motion(mode: NamedMode, axis: str) -> tuple[Floats, Floats]:
+    """Mean axial displacement of the cross-sections along an axis.
 
     Parameters
     ----------
-    found : NamedMode
+    mode : NamedMode
     axis : str
 
     Returns
     -------
     tuple of two ndarray
-        Means over the volume of each slice.
+        Positions along the axis in m, and displacements there; both means over the volume of a thin slice.
     """
-    mesh, along = found.model.mesh, DIRECTIONS.index(axis)
+    mesh, along = mode.model.mesh, DIRECTIONS.index(axis)
     points, weights = simplex_quadrature(2 * mesh.order, corners=4)
-    value, slope = shape_functions(mesh.order, points)
-    volume = np.linalg.det(np.einsum("eax,adq->eqdx", mesh.nodes[mesh.elements], slope, optimize=True)) * weights
-    place, moves = (own[mesh.elements, along] @ value for own in (mesh.nodes, found.displacement))
-    edges = np.linspace(place.min(), place.max(), _SLICES + 1)
-    which = np.clip(np.digitize(place, edges) - 1, 0, _SLICES - 1).ravel()
-    filled = np.bincount(which, volume.ravel(), minlength=_SLICES)
-    means = [np.bincount(which, (own * volume).ravel(), minlength=_SLICES)[filled > 0] for own in (place, moves)]
-    return means[0] / filled[filled > 0], means[1] / filled[filled > 0]
+    value, gradient = shape_functions(mesh.order, points)
+    volume = np.linalg.det(np.einsum("eax,adq->eqdx", mesh.nodes[mesh.elements], gradient, optimize=True)) * weights
+    position, displacement = (field[mesh.elements, along] @ value for field in (mesh.nodes, mode.displacement))
+    edges = np.linspace(position.min(), position.max(), _SLICES + 1)
+    slices = np.clip(np.digitize(position, edges) - 1, 0, _SLICES - 1).ravel()
+    slice_volume = np.bincount(slices, volume.ravel(), minlength=_SLICES)
+    filled = slice_volume > 0
+    moments = [
+        np.bincount(slices, (values * volume).ravel(), minlength=_SLICES)[filled] for values in (position, displacement)
+    ]
+    return moments[0] / slice_volume[filled], moments[1] / slice_volume[filled]
 
 
-def _neighbours(found: NamedMode) -> tuple[tuple[str, float], ...]:
-    elastic = range(found.modes.rigid_body_count, len(found.names))
-    others = [(found.names[k], float(found.modes.natural_frequency[k])) for k in elastic if k != found.row]
-    return tuple(sorted(others, key=lambda mode: abs(mode[1] - found.frequency)))
+def _neighbours(mode: NamedMode) -> tuple[tuple[str, float], ...]:
+    """Name and frequency of the other elastic modes, by distance from the tuned frequency."""
+    elastic = range(mode.modes.rigid_body_count, len(mode.names))
+    others = [(mode.names[k], float(mode.modes.natural_frequency[k])) for k in elastic if k != mode.row]
+    return tuple(sorted(others, key=lambda other: abs(other[1] - mode.frequency)))

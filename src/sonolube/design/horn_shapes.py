@@ -1,4 +1,4 @@
-"""Shapes of horns: bodies from the length that is tuned, with sizes chosen by the wavelength where none is given."""
+"""Shapes of ultrasonic horns as bodies with one adjustable length, sized by the wavelength where no size is given."""
 
 import inspect
 from collections.abc import Callable, Mapping
@@ -11,150 +11,169 @@ from sonolube.errors import UnknownName
 from sonolube.fem import PARTS, Geometry, adjust_length
 from sonolube.fem.parts.length_adjustment import extent_along
 
-_WIDE = 0.08  # radius over wavelength where none is given: a quarter of it is too thick for plane sections
+_RADIUS_RATIO = 0.08  # default radius over the wavelength; plane sections need it well below a quarter
 _POISSON_HORN = {"width": 60.96e-3, "thickness": 25.4e-3}  # D 2.1.3
+_NOT_SIZES = ("slots",)
+
+SizeRule = Callable[[float, Mapping[str, float]], dict[str, float]]
+"""Default sizes from the wavelength and the sizes that are given, all in m."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Body:
-    """A body whose length is to be tuned.
+class TunableBody:
+    """Body with one length to be tuned.
 
     Parameters
     ----------
     name : str
-    at : callable
+    geometry_at : callable
         From the length in m to the geometry.
     length : float
-        Length to start from. [m]
+        Initial length. [m]
     axis : str
-        Along which it vibrates; the working face looks along it, the driven one against.
+        Axis of vibration; the outward normal of the working face points along it, that of the driven face against it.
     sizes : mapping of str to float
         All other sizes, in SI.
-    tuned : str
-        What the length is called.
+    tuned_size : str
+        Name of the length that is tuned.
     thin : ThinHorn or None
-        The thin bar, where theory has one.
+        Thin-bar solution, where there is one for the shape.
     """
 
     name: str
-    at: Callable[[float], Geometry]
+    geometry_at: Callable[[float], Geometry]
     length: float
     axis: str
     sizes: Mapping[str, float]
-    tuned: str = "length"
+    tuned_size: str = "length"
     thin: ThinHorn | None = None
 
 
 def horn_body(
     shape: str, *, frequency: float, wave_speed: float, sizes: Mapping[str, float], tune: str = "length"
-) -> Body:
-    """Return a horn of a shape by name, sizes that were not given chosen by the wavelength.
+) -> TunableBody:
+    """Horn of a named shape, with default sizes by the wavelength.
 
     Parameters
     ----------
     shape : str
-        A name of `SHAPES`.
+        Key of `SHAPES`.
     frequency : float
-        Frequency at which it shall ring. [Hz]
+        Target frequency. [Hz]
     wave_speed : float
-        Of its material. [m/s]
+        Speed of axial waves in the material. [m/s]
     sizes : mapping of str to float
-        Those given, in SI; one of the tuned length is where the search starts.
+        Given sizes, in SI; that of the tuned length is its initial value.
     tune : str
-        Which length is tuned.
+        Name of the length that is tuned.
 
     Returns
     -------
-    Body
+    TunableBody
+        Its initial length, where it is not given, is that of the thin bar.
 
     Raises
     ------
     UnknownName
         If the shape or a size of it is unknown.
+
+    See Also
+    --------
+    body_from_geometry
     """
     if shape not in SHAPES:
         raise UnknownName.among(SHAPES, kind="horn shape", name=shape)
-    part, axis, chosen = SHAPES[shape]
+    part, axis, size_rule = SHAPES[shape]
     known = [name for name in inspect.signature(PARTS[part]).parameters if name not in _NOT_SIZES]
     for name in (*sizes, tune):
         if name not in known:
             raise UnknownName.among(known, kind=f"size of a {part}", name=name)
-    wave = float(require_positive(wave_speed=wave_speed) / require_positive(frequency=frequency))
-    given = chosen(wave, sizes) | dict(sizes)
-    thin = _thin(shape, given, frequency=frequency, wave_speed=wave_speed)
-    start = sizes.get(tune, given.get(tune, thin.length))
-    rest = {name: value for name, value in ({"length": thin.length} | given).items() if name != tune}
-    return Body(
+    wavelength = float(require_positive(wave_speed=wave_speed) / require_positive(frequency=frequency))
+    given = size_rule(wavelength, sizes) | dict(sizes)
+    thin = _thin_horn(shape, given, frequency=frequency, wave_speed=wave_speed)
+    initial = sizes.get(tune, given.get(tune, thin.length))
+    fixed = {name: value for name, value in ({"length": thin.length} | given).items() if name != tune}
+    return TunableBody(
         name=part,
-        at=lambda length: PARTS[part](**{tune: length}, **rest),
-        length=float(start),
+        geometry_at=lambda length: PARTS[part](**{tune: length}, **fixed),
+        length=float(initial),
         axis=axis,
-        sizes=rest,
-        tuned=tune,
+        sizes=fixed,
+        tuned_size=tune,
         thin=thin if tune == "length" else None,
     )
 
 
-def own_body(geometry: Geometry, *, axis: str) -> Body:
-    """Return a horn of the user's own geometry, whose length is tuned by cutting or drawing out its far end.
+def body_from_geometry(geometry: Geometry, *, axis: str) -> TunableBody:
+    """Horn of any geometry, whose length is adjusted by cutting off or extending its far end.
 
     Parameters
     ----------
     geometry : Geometry
-        One body.
+        A single body.
     axis : str
-        Along which it vibrates.
+        Axis of vibration.
 
     Returns
     -------
-    Body
+    TunableBody
+
+    See Also
+    --------
+    horn_body
     """
     low, high = extent_along(geometry, axis=axis)
-    at = partial(_trimmed_to, geometry, axis)
-    return Body(name=geometry.regions[0], at=at, length=high - low, axis=axis, sizes={})
+    return TunableBody(
+        name=geometry.regions[0],
+        geometry_at=partial(_with_length, geometry, axis),
+        length=high - low,
+        axis=axis,
+        sizes={},
+    )
 
 
-def _trimmed_to(geometry: Geometry, axis: str, length: float) -> Geometry:
+def _with_length(geometry: Geometry, axis: str, length: float) -> Geometry:
+    """Geometry cut off or extended to a length along an axis."""
     return adjust_length(geometry, axis=axis, length=length)
 
 
-def _thin(shape: str, sizes: Mapping[str, float], *, frequency: float, wave_speed: float) -> ThinHorn:
-    sound = {"frequency": frequency, "wave_speed": wave_speed}
+def _thin_horn(shape: str, sizes: Mapping[str, float], *, frequency: float, wave_speed: float) -> ThinHorn:
+    """Half-wave horn of a shape by the theory of thin bars."""
+    wave = {"frequency": frequency, "wave_speed": wave_speed}
     if shape in {"block", "cylinder"}:
-        return thin_exponential_horn(radius=1.0, end_radius=1.0, **sound)
+        return thin_exponential_horn(radius=1.0, end_radius=1.0, **wave)
     radii = {"radius": sizes["radius"], "end_radius": sizes["end_radius"]}
     if shape in {"stepped", "booster"}:
-        return thin_stepped_horn(**radii, end_length=sizes["end_length"], **sound)
-    return (thin_conical_horn if shape == "conical" else thin_exponential_horn)(**radii, **sound)
+        return thin_stepped_horn(**radii, end_length=sizes["end_length"], **wave)
+    return (thin_conical_horn if shape == "conical" else thin_exponential_horn)(**radii, **wave)
 
 
-def _round(wave: float, sizes: Mapping[str, float], share: float = 0.5) -> dict[str, float]:
-    radius = sizes.get("radius", _WIDE * wave)
-    return {"radius": radius, "end_radius": share * radius}
+def _round_sizes(wavelength: float, sizes: Mapping[str, float], end_ratio: float = 0.5) -> dict[str, float]:
+    """Default radii of a round horn."""
+    radius = sizes.get("radius", _RADIUS_RATIO * wavelength)
+    return {"radius": radius, "end_radius": end_ratio * radius}
 
 
-def _stepped(wave: float, sizes: Mapping[str, float]) -> dict[str, float]:
-    radii = _round(wave, sizes)
+def _stepped_sizes(wavelength: float, sizes: Mapping[str, float]) -> dict[str, float]:
+    """Default sizes of a stepped horn: a step at a quarter of the wavelength, with a fillet of half its height."""
+    radii = _round_sizes(wavelength, sizes)
     step = radii["radius"] - sizes.get("end_radius", radii["end_radius"])
-    return radii | {"end_length": wave / 4, "edge_radius": max(step, 0.0) / 2}
+    return radii | {"end_length": wavelength / 4, "edge_radius": max(step, 0.0) / 2}
 
 
-def _booster(wave: float, sizes: Mapping[str, float]) -> dict[str, float]:
-    radii = _round(wave, sizes, share=0.8)
-    flange = {"flange_radius": 1.3 * radii["radius"], "flange_thickness": 0.02 * wave}
-    return radii | flange | {"end_length": wave / 4}
+def _booster_sizes(wavelength: float, sizes: Mapping[str, float]) -> dict[str, float]:
+    """Default sizes of a booster with a clamping flange."""
+    radii = _round_sizes(wavelength, sizes, end_ratio=0.8)
+    flange = {"flange_radius": 1.3 * radii["radius"], "flange_thickness": 0.02 * wavelength}
+    return radii | flange | {"end_length": wavelength / 4}
 
 
-_NOT_SIZES = ("slots",)
-
-Chosen = Callable[[float, Mapping[str, float]], dict[str, float]]
-
-SHAPES: Mapping[str, tuple[str, str, Chosen]] = {
-    "block": ("block", "x", lambda _wave, _sizes: dict(_POISSON_HORN)),
-    "booster": ("booster", "z", _booster),
-    "conical": ("conical_horn", "z", _round),
-    "cylinder": ("cylinder", "z", lambda wave, _sizes: {"radius": _WIDE * wave}),
-    "exponential": ("exponential_horn", "z", _round),
-    "stepped": ("stepped_horn", "z", _stepped),
+SHAPES: Mapping[str, tuple[str, str, SizeRule]] = {
+    "block": ("block", "x", lambda _wavelength, _sizes: dict(_POISSON_HORN)),
+    "booster": ("booster", "z", _booster_sizes),
+    "conical": ("conical_horn", "z", _round_sizes),
+    "cylinder": ("cylinder", "z", lambda wavelength, _sizes: {"radius": _RADIUS_RATIO * wavelength}),
+    "exponential": ("exponential_horn", "z", _round_sizes),
+    "stepped": ("stepped_horn", "z", _stepped_sizes),
 }
-"""Shapes of horns by name: the part, its axis, and sizes chosen where none are given."""
+"""Horn shapes by name: the part of `PARTS`, its axis of vibration, and the rule for its default sizes."""

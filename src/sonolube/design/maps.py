@@ -1,6 +1,7 @@
-"""Maps of friction reduction: over sliding speed and stress, sliding speed and power, drive frequency and voltage."""
+"""Maps of friction reduction over sliding speed and stress, sliding speed and power, or drive frequency and voltage."""
 
 from collections.abc import Callable, Mapping
+from itertools import pairwise
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -11,13 +12,13 @@ from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.dynamics.backend import Backend, device_name, usable_backend
 from sonolube.errors import InvalidInput
 from sonolube.rig import NUMBERS, STATUSES, Rig, gridded, point_batch
-from sonolube.rig.driven_rig import require_drive
+from sonolube.rig.driven_rig import DrivenRig, driven_rig
 
 if TYPE_CHECKING:
     import xarray as xr
 
-SATURATION = 0.05
-"""Friction reduction by which doubling the power must add to be worth it; the ridge is where it no longer is. []"""
+SATURATION_GAIN = 0.05
+"""Additional friction reduction per doubling of the power below which the reduction counts as saturated. []"""
 
 
 def velocity_stress_map(
@@ -28,7 +29,7 @@ def velocity_stress_map(
     voltage_peak_to_peak: ArrayLike,
     backend: Backend = "cpu",
 ) -> "xr.Dataset":
-    """Return friction reduction over sliding speed and nominal stress, at some drive voltages.
+    """Friction reduction over sliding speed and nominal stress, for several drive voltages.
 
     Parameters
     ----------
@@ -37,34 +38,38 @@ def velocity_stress_map(
     sliding_speed : array_like, shape (n,)
         Macroscopic relative speeds. [m/s]
     normal_load : array_like, shape (m,)
-        Forces pressing the bodies together; the structure stays as it is. [N]
+        Forces pressing the bodies together; the structure is kept. [N]
     voltage_peak_to_peak : array_like, shape (p,)
-        Swings of the drive, one to a panel; the offset goes with them in the rig's own proportion. [V]
+        Drive voltages, one per panel; the offset is scaled in the rig's own ratio. [V]
     backend : {"cpu", "gpu"}
-        Whether an NVIDIA GPU finds the vibrations that it can; its name then stands in the attribute `device`.
+        Whether an NVIDIA GPU computes the vibrations that it supports; its name is then the attribute `device`.
 
     Returns
     -------
     xarray.Dataset
-        Over `voltage_peak_to_peak`, `normal_load` and `sliding_speed`, with `nominal_pressure` and `actuator_power`
-        beside.
+        Over `voltage_peak_to_peak`, `normal_load` and `sliding_speed`, with the coordinates `nominal_pressure` and
+        `actuator_power`.
 
     Raises
     ------
     InvalidInput
-        If the rig has no structure, or a value is not positive.
+        If the rig has no structure, or values are not positive and increasing.
 
     Warns
     -----
     GpuUnused
-        If a GPU was asked for and there is none, or it does not serve the rig's contact or structure.
+        If the GPU backend was requested but no GPU is present, or it does not support the rig's contact or structure.
+
+    See Also
+    --------
+    velocity_power_map, frequency_voltage_map
 
     References
     ----------
     .. [1] D figures 4.9 and 4.10.
     """
-    return _mapped(
-        rig,
+    return _computed_map(
+        driven_rig(rig),
         "velocity-stress",
         backend,
         voltage_peak_to_peak=voltage_peak_to_peak,
@@ -81,7 +86,7 @@ def velocity_power_map(
     normal_load: ArrayLike,
     backend: Backend = "cpu",
 ) -> "xr.Dataset":
-    """Return friction reduction over sliding speed and the amplifier's power, under some loads, and its ridge.
+    """Friction reduction over sliding speed and amplifier power, for several normal loads, with the saturation power.
 
     Parameters
     ----------
@@ -90,140 +95,166 @@ def velocity_power_map(
     sliding_speed : array_like, shape (n,)
         Macroscopic relative speeds. [m/s]
     voltage_peak_to_peak : array_like, shape (m,)
-        Swings of the drive that give the powers; the offset goes with them in the rig's own proportion. [V]
+        Drive voltages, which determine the powers; the offset is scaled in the rig's own ratio. [V]
     normal_load : array_like, shape (p,)
-        Forces pressing the bodies together, one to a panel; the structure stays as it is. [N]
+        Forces pressing the bodies together, one per panel; the structure is kept. [N]
     backend : {"cpu", "gpu"}
-        Whether an NVIDIA GPU finds the vibrations that it can; its name then stands in the attribute `device`.
+        Whether an NVIDIA GPU computes the vibrations that it supports; its name is then the attribute `device`.
 
     Returns
     -------
     xarray.Dataset
-        Over `normal_load`, `voltage_peak_to_peak` and `sliding_speed`, with `actuator_power` and `nominal_pressure`
-        beside. `sufficient_power` is the ridge: at each load and speed the power whose doubling reduces friction by
-        only another 0.05, NaN where that lies beyond half of the highest power of the map.
+        Over `normal_load`, `voltage_peak_to_peak` and `sliding_speed`, with the coordinates `actuator_power` and
+        `nominal_pressure`. `saturation_power` holds, for each load and speed, the power beyond which doubling it
+        reduces friction by no more than another 0.05; NaN where that exceeds half of the highest power of the map.
 
     Raises
     ------
     InvalidInput
-        If the rig has no structure, or a value is not positive.
+        If the rig has no structure, or values are not positive and increasing.
 
     Warns
     -----
     GpuUnused
-        If a GPU was asked for and there is none, or it does not serve the rig's contact or structure.
+        If the GPU backend was requested but no GPU is present, or it does not support the rig's contact or structure.
+
+    See Also
+    --------
+    saturation_power, velocity_stress_map, frequency_voltage_map
 
     References
     ----------
     .. [1] D figures 4.11, 4.12, 4.20 and B.1 to B.6.
     """
-    found = _mapped(
-        rig,
+    computed = _computed_map(
+        driven_rig(rig),
         "velocity-power",
         backend,
         normal_load=normal_load,
         voltage_peak_to_peak=voltage_peak_to_peak,
         sliding_speed=sliding_speed,
     )
-    power, reduction = found["actuator_power"].values, found["friction_reduction"].values
-    ridge = sufficient_power(friction_reduction=np.moveaxis(reduction, 1, -1), actuator_power=power)
-    labels = {"units": "W", "long_name": "Power whose doubling reduces friction by only another 0.05"}
-    return found.assign(sufficient_power=(("normal_load", "sliding_speed"), ridge, labels))
+    power, reduction = computed["actuator_power"].values, computed["friction_reduction"].values
+    saturation = saturation_power(friction_reduction=np.moveaxis(reduction, 1, -1), actuator_power=power)
+    labels = {"units": "W", "long_name": "Power beyond which doubling it reduces friction by no more than another 0.05"}
+    return computed.assign(saturation_power=(("normal_load", "sliding_speed"), saturation, labels))
 
 
 def frequency_voltage_map(
     rig: Rig, *, frequency: ArrayLike, voltage_peak_to_peak: ArrayLike, backend: Backend = "cpu"
 ) -> "xr.Dataset":
-    """Return friction reduction over drive frequency and voltage, at the rig's load and speed.
+    """Friction reduction over drive frequency and voltage, at the rig's load and speed.
 
     Parameters
     ----------
     rig : Rig
         With a stack, a structure and a drive voltage.
     frequency : array_like, shape (n,)
-        Frequencies of the drive. [Hz]
+        Drive frequencies. [Hz]
     voltage_peak_to_peak : array_like, shape (m,)
-        Swings of the drive; the offset goes with them in the rig's own proportion. [V]
+        Drive voltages; the offset is scaled in the rig's own ratio. [V]
     backend : {"cpu", "gpu"}
-        Whether an NVIDIA GPU finds the vibrations that it can; its name then stands in the attribute `device`.
+        Whether an NVIDIA GPU computes the vibrations that it supports; its name is then the attribute `device`.
 
     Returns
     -------
     xarray.Dataset
-        Over `voltage_peak_to_peak` and `frequency`.
+        Over `voltage_peak_to_peak` and `frequency`, with the coordinate `actuator_power`.
 
     Raises
     ------
     InvalidInput
-        If the rig has no structure, or a value is not positive.
+        If the rig has no structure, or values are not positive and increasing.
 
     Warns
     -----
     GpuUnused
-        If a GPU was asked for and there is none, or it does not serve the rig's contact or structure.
+        If the GPU backend was requested but no GPU is present, or it does not support the rig's contact or structure.
+
+    See Also
+    --------
+    velocity_power_map, velocity_stress_map
     """
-    return _mapped(rig, "frequency-voltage", backend, voltage_peak_to_peak=voltage_peak_to_peak, frequency=frequency)
+    return _computed_map(
+        driven_rig(rig),
+        "frequency-voltage",
+        backend,
+        voltage_peak_to_peak=voltage_peak_to_peak,
+        frequency=frequency,
+    )
 
 
-def sufficient_power(*, friction_reduction: ArrayLike, actuator_power: ArrayLike) -> Floats:
-    """Return the power beyond which doubling it reduces friction by no more than another 0.05. [W]
+def saturation_power(*, friction_reduction: ArrayLike, actuator_power: ArrayLike) -> Floats:
+    r"""Power beyond which doubling it reduces friction by no more than another 0.05. [W]
 
     Parameters
     ----------
     friction_reduction : array_like, shape (..., n)
-        Reductions over rising power, NaN where nothing is known. []
+        Friction reduction at each power, NaN where it is unknown. []
     actuator_power : array_like, shape (n,)
-        Power of the amplifier. [W]
+        Amplifier powers, increasing. [W]
 
     Returns
     -------
     ndarray, shape (...)
-        By lines between the powers; NaN where doubling buys more up to the end, or nowhere.
+        NaN where doubling gains more up to the last power, or gains less everywhere.
 
     Raises
     ------
     InvalidInput
         If a power is negative or not finite.
+
+    Notes
+    -----
+    The largest root :math:`P` of
+
+    .. math:: \mu_r(2P) - \mu_r(P) = 0.05
+
+    with the friction reduction :math:`\mu_r` interpolated linearly over the power.
     """
     power = require_non_negative(actuator_power=actuator_power)
     rows = np.asarray(friction_reduction, dtype=np.float64)
-    halves = np.unique(np.concatenate([power, power / 2]))
-    halves = halves[(halves >= power[0]) & (2 * halves <= power[-1])]
-    found = np.full(rows.shape[:-1], np.nan)
-    for place in np.ndindex(found.shape):
-        gain = np.interp(2 * halves, power, rows[place]) - np.interp(halves, power, rows[place]) - SATURATION
-        worth = np.flatnonzero(gain > 0)
-        if worth.size and worth[-1] + 1 < halves.size and np.isfinite(gain).all():
-            last = int(worth[-1])
-            share = gain[last] / (gain[last] - gain[last + 1])
-            found[place] = halves[last] + share * (halves[last + 1] - halves[last])
-    return found
+    lower = np.unique(np.concatenate([power, power / 2]))
+    lower = lower[(lower >= power[0]) & (2 * lower <= power[-1])]
+    saturation = np.full(rows.shape[:-1], np.nan)
+    for index in np.ndindex(saturation.shape):
+        excess = np.interp(2 * lower, power, rows[index]) - np.interp(lower, power, rows[index]) - SATURATION_GAIN
+        above = np.flatnonzero(excess > 0)
+        if above.size and above[-1] + 1 < lower.size and np.isfinite(excess).all():
+            last = int(above[-1])
+            fraction = excess[last] / (excess[last] - excess[last + 1])
+            saturation[index] = lower[last] + fraction * (lower[last + 1] - lower[last])
+    return saturation
 
 
-def _mapped(rig: Rig, kind: str, backend: Backend, **axes: ArrayLike) -> "xr.Dataset":
+def _computed_map(rig: DrivenRig, kind: str, backend: Backend, **axes: ArrayLike) -> "xr.Dataset":
+    """Operating points on the grid of some axes as a dataset, with amplifier power and nominal pressure."""
     backend = usable_backend(backend)
     values = {name: np.atleast_1d(require_positive(**{name: array})) for name, array in axes.items()}
     for name, array in values.items():
-        if array.ndim != 1 or np.any(np.diff(array) <= 0):
-            raise InvalidInput(f"{name} must be one row of values that rise")
+        if array.ndim != 1:
+            raise InvalidInput(f"{name} must have one axis, got shape {array.shape}")
+        for lower, upper in pairwise(array):
+            if upper <= lower:
+                raise InvalidInput(f"{name} must increase from value to value, got {lower:g} before {upper:g}")
     shape = tuple(array.size for array in values.values())
     mesh = dict(zip(values, np.meshgrid(*values.values(), indexing="ij"), strict=True))
-    share = require_drive(rig).offset_ratio
-    points = point_batch(rig, **mesh, voltage_offset=share * mesh["voltage_peak_to_peak"], backend=backend)
+    offset = rig.drive.offset_ratio * mesh["voltage_peak_to_peak"]
+    points = point_batch(rig, **mesh, voltage_offset=offset, backend=backend)
     columns: dict[str, NDArray[Any]] = {name: points.numbers[name].reshape(shape) for name in NUMBERS}
     columns["status"] = np.array(STATUSES)[points.status].reshape(shape)
     columns["reason"] = np.array(points.reasons)[points.reason].reshape(shape)
     power = columns.pop("actuator_power")
     about = {"rig": rig.title, "map": kind} | ({"device": device_name(backend)} if backend == "gpu" else {})
-    found = gridded(columns, axes=values, title=f"Friction reduction, {rig.title}", about=about)
+    computed = gridded(columns, axes=values, title=f"Friction reduction, {rig.title}", about=about)
     labels = {"units": "W", "long_name": "Power of a linear amplifier, D 1.9"}
     if "frequency" in values:
-        return found.assign_coords(actuator_power=(tuple(values), power, labels))
-    along = list(values).index("voltage_peak_to_peak")
-    at_each_voltage = np.moveaxis(power, along, 0).reshape(shape[along], -1)[:, 0]
+        return computed.assign_coords(actuator_power=(tuple(values), power, labels))
+    voltage_axis = list(values).index("voltage_peak_to_peak")
+    power_by_voltage = np.moveaxis(power, voltage_axis, 0).reshape(shape[voltage_axis], -1)[:, 0]
     pressure = {"units": "Pa", "long_name": "Nominal contact pressure"}
-    return found.assign_coords(
-        actuator_power=("voltage_peak_to_peak", at_each_voltage, labels),
+    return computed.assign_coords(
+        actuator_power=("voltage_peak_to_peak", power_by_voltage, labels),
         nominal_pressure=("normal_load", values["normal_load"] / rig.contact.nominal_area, pressure),
     )
 
@@ -235,13 +266,13 @@ MAPS: Mapping[str, Callable[..., "xr.Dataset"]] = MappingProxyType(
         "frequency-voltage": frequency_voltage_map,
     }
 )
-"""The maps by kind; each takes a rig, the axes that its docstring names, and a backend."""
+"""Functions that compute a map, by its kind; each takes a rig, the axes of its signature, and a backend."""
 
-PLACES: Mapping[str, tuple[str, str, str | None]] = MappingProxyType(
+MAP_LAYOUTS: Mapping[str, tuple[str, str, str | None]] = MappingProxyType(
     {
         "velocity-stress": ("sliding_speed", "nominal_pressure", "voltage_peak_to_peak"),
         "velocity-power": ("sliding_speed", "actuator_power", "normal_load"),
         "frequency-voltage": ("frequency", "voltage_peak_to_peak", None),
     }
 )
-"""What each kind of map has across, up, and one panel to each of."""
+"""Quantities along the x axis, along the y axis, and of the panels of each kind of map."""

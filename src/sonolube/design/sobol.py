@@ -1,4 +1,4 @@
-"""Sobol's indices: how much of an outcome's variance each uncertain input brings, alone and with the others."""
+"""Variance-based sensitivity analysis: scrambled Sobol samples, Saltelli's sampling scheme and Sobol indices."""
 
 from dataclasses import dataclass
 
@@ -8,182 +8,203 @@ from numpy.typing import ArrayLike, NDArray
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 
-STRETCHES = 16
-"""Parts of a sequence of which each fills the cube, so that their scatter tells how far to trust the whole."""
+SUBSEQUENCES = 16
+"""Number of consecutive subsequences of a sample, each a digital net itself, for intervals by sectioning."""
 
-_INSIDE = 2.0**-54  # keeps points off 0, where a normal distribution has no quantile
-_FEWEST = 32
+_MARGIN = 2.0**-54  # distance from 0 and 1, at which a normal distribution has no finite quantile
+_FEWEST_ROWS = 32
 _INTERVAL = (0.025, 0.975)
-_RESAMPLES_AT_ONCE = 4_000_000  # numbers; bounds the memory
+_RESAMPLED_NUMBERS = 4_000_000  # at a time; bounds the memory of the bootstrap
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class SobolIndices:
-    """Shares of the variance of an outcome by input.
+    """First-order and total-order Sobol indices of an outcome.
 
     Parameters
     ----------
-    first : ndarray, shape (inputs,)
-        Share that would go, on average, were the input known.
-    total : ndarray, shape (inputs,)
-        Share that would stay, were all others known; above `first` where inputs act together.
-    first_interval, total_interval : ndarray, shape (inputs, 2)
-        Intervals of 95 %, by bootstrap.
+    first_order : ndarray, shape (inputs,)
+        Fraction of the variance that is due to each input alone: its mean reduction were the input known.
+    total_order : ndarray, shape (inputs,)
+        Fraction of the variance that remains on average were all other inputs known; it exceeds `first_order` by the
+        interactions of the input.
+    first_order_interval, total_order_interval : ndarray, shape (inputs, 2)
+        Limits of the 95 % bootstrap intervals.
     standard_deviation : float
-        Of the outcome.
+        Standard deviation of the outcome.
     rows : int
-        Rows that entered.
+        Number of rows of the sample that were used.
     """
 
-    first: Floats
-    total: Floats
-    first_interval: Floats
-    total_interval: Floats
+    first_order: Floats
+    total_order: Floats
+    first_order_interval: Floats
+    total_order_interval: Floats
     standard_deviation: float
     rows: int
 
 
-def sobol_points(inputs: int, *, samples: int, seed: int = 0) -> tuple[Floats, NDArray[np.intp]]:
-    """Return points spread evenly over the unit cube: Sobol's sequence, scrambled.
+def sobol_sample(inputs: int, *, samples: int, seed: int = 0) -> tuple[Floats, NDArray[np.intp]]:
+    """Scrambled Sobol sequence in the unit cube.
 
     Parameters
     ----------
     inputs : int
-        Dimensions of the cube.
+        Dimension of the cube.
     samples : int
-        How many are wanted; taken up to the next power of two.
+        Least number of points; rounded up to a power of two.
     seed : int
-        Of the scrambling.
+        Seed of the scrambling.
 
     Returns
     -------
     points : ndarray, shape (samples, inputs)
         Strictly inside the cube.
-    stretch : ndarray of int, shape (samples,)
-        Which sixteenth of the sequence each point is of; each fills the cube on its own.
+    subsequence : ndarray of int, shape (samples,)
+        Index of the sixteenth of the sequence that each point belongs to.
 
     Raises
     ------
     InvalidInput
         If there are no inputs, or fewer than 32 samples.
+
+    See Also
+    --------
+    saltelli_sample, sample_statistics
 
     References
     ----------
     .. [1] A. B. Owen, J. Complexity 14, 466 (1998). doi:10.1006/jcom.1998.0487
     """
     if inputs < 1:
-        raise InvalidInput("inputs must be at least 1")
-    if samples < _FEWEST:
-        raise InvalidInput(f"samples must be at least {_FEWEST}, got {samples}")
+        raise InvalidInput(f"inputs must be at least 1, got {inputs}")
+    if samples < _FEWEST_ROWS:
+        raise InvalidInput(f"samples must be at least {_FEWEST_ROWS}, got {samples}")
     power = int(np.ceil(np.log2(samples)))
     from scipy.stats import qmc
 
     points = qmc.Sobol(d=inputs, rng=np.random.default_rng(seed)).random_base2(power)
-    return np.clip(points, _INSIDE, 1 - _INSIDE), np.repeat(np.arange(STRETCHES), 2**power // STRETCHES)
+    return np.clip(points, _MARGIN, 1 - _MARGIN), np.repeat(np.arange(SUBSEQUENCES), 2**power // SUBSEQUENCES)
 
 
-def saltelli_points(inputs: int, *, samples: int, seed: int = 0) -> tuple[Floats, NDArray[np.intp]]:
-    """Return the points at which an outcome must be known for Sobol's indices.
+def saltelli_sample(inputs: int, *, samples: int, seed: int = 0) -> tuple[Floats, NDArray[np.intp]]:
+    r"""Sample matrices A, B and A_B of Saltelli's scheme, from one scrambled Sobol sequence of twice the dimension.
 
     Parameters
     ----------
     inputs : int
-        Inputs of the outcome.
+        Number of inputs.
     samples : int
-        Rows of each block; taken up to the next power of two.
+        Least number of rows of each matrix; rounded up to a power of two.
     seed : int
-        Of the scrambling.
+        Seed of the scrambling.
 
     Returns
     -------
     points : ndarray, shape (inputs + 2, samples, inputs)
-        Two independent blocks, then the first with one column after the other from the second.
-    stretch : ndarray of int, shape (samples,)
-        Which sixteenth of the sequence each row is of.
+        :math:`A`, :math:`B`, then :math:`A_B^{(i)}` for each input: :math:`A` with column i taken from :math:`B`.
+    subsequence : ndarray of int, shape (samples,)
+        Index of the sixteenth of the sequence that each row belongs to.
 
     Raises
     ------
     InvalidInput
         If there are no inputs, or fewer than 32 samples.
 
+    See Also
+    --------
+    sobol_indices, sobol_sample
+
     References
     ----------
     .. [1] A. Saltelli et al., Comput. Phys. Commun. 181, 259 (2010). doi:10.1016/j.cpc.2009.09.018
     """
-    both, stretch = sobol_points(2 * inputs, samples=samples, seed=seed)
-    first, second = both[:, :inputs], both[:, inputs:]
-    mixed = np.repeat(first[np.newaxis], inputs, axis=0)
-    for each in range(inputs):
-        mixed[each, :, each] = second[:, each]
-    return np.concatenate([first[np.newaxis], second[np.newaxis], mixed]), stretch
+    both, subsequence = sobol_sample(2 * inputs, samples=samples, seed=seed)
+    a, b = both[:, :inputs], both[:, inputs:]
+    a_b = np.repeat(a[np.newaxis], inputs, axis=0)
+    for i in range(inputs):
+        a_b[i, :, i] = b[:, i]
+    return np.concatenate([a[np.newaxis], b[np.newaxis], a_b]), subsequence
 
 
 def sobol_indices(outcomes: ArrayLike, *, resamples: int = 1000, seed: int = 0) -> SobolIndices:
-    """Return Sobol's indices from an outcome at `saltelli_points`.
+    r"""Sobol indices of an outcome by the estimators of Saltelli (first order) and Jansen (total order).
 
     Parameters
     ----------
     outcomes : array_like, shape (inputs + 2, samples)
-        One row to each block; a column in which any is NaN is left out.
+        Outcome at the points of `saltelli_sample`; a row of the sample in which any is NaN is left out.
     resamples : int
-        Of the bootstrap.
+        Number of bootstrap resamples.
     seed : int
-        Of the bootstrap.
+        Seed of the bootstrap.
 
     Returns
     -------
     SobolIndices
-        All zero where the outcome never varies.
+        Zeros where the outcome does not vary.
 
     Raises
     ------
     InvalidInput
-        If fewer than 32 columns are left.
+        If fewer than 32 rows of the sample remain.
+
+    See Also
+    --------
+    saltelli_sample
 
     Notes
     -----
-    First indices by Saltelli's estimator about the mean, total ones by Jansen's, which is never negative. [1]_ [2]_
-    Inputs must be independent. Columns are drawn again as if they were random; as they fill the cube more evenly than
-    that, intervals are rather too wide.
+    With the outcomes :math:`y` counted from their mean over :math:`A` and :math:`B`,
+
+    .. math::
+
+        S_i \operatorname{Var} y &\approx \frac1n \sum y_B \bigl(y_{A_B^{(i)}} - y_A\bigr)
+
+        S_{Ti} \operatorname{Var} y &\approx \frac1{2n} \sum \bigl(y_A - y_{A_B^{(i)}}\bigr)^2
+
+    (table 2, b and f of [2]_; the latter is that of [1]_ and never negative), with the variance over :math:`A` and
+    :math:`B` together. Inputs must be independent. The intervals are percentiles of a bootstrap of the rows, which
+    treats them as random; rows of a Sobol sequence fill the cube more evenly, so that the intervals are conservative.
 
     References
     ----------
     .. [1] M. J. W. Jansen, Comput. Phys. Commun. 117, 35 (1999). doi:10.1016/S0010-4655(98)00154-4
     .. [2] A. Saltelli et al., Comput. Phys. Commun. 181, 259 (2010). doi:10.1016/j.cpc.2009.09.018
     """
-    known = np.asarray(outcomes, dtype=np.float64)
-    known = known[:, np.all(np.isfinite(known), axis=0)]
-    rows = known.shape[1]
-    if rows < _FEWEST:
-        raise InvalidInput(f"indices need at least {_FEWEST} rows with a result, got {rows}")
-    terms = _terms(known)
-    first, total, variance = _indices(terms.mean(axis=1))
+    valid = np.asarray(outcomes, dtype=np.float64)
+    valid = valid[:, np.all(np.isfinite(valid), axis=0)]
+    rows = valid.shape[1]
+    if rows < _FEWEST_ROWS:
+        raise InvalidInput(f"indices need at least {_FEWEST_ROWS} rows with a result, got {rows}")
+    terms = _row_terms(valid)
+    first, total, variance = _indices_from_means(terms.mean(axis=1))
     random = np.random.default_rng(seed)
-    drawn, step = [], max(1, _RESAMPLES_AT_ONCE // rows)
+    resampled, step = [], max(1, _RESAMPLED_NUMBERS // rows)
     for start in range(0, resamples, step):
         counts = random.multinomial(rows, np.full(rows, 1 / rows), size=min(step, resamples - start))
-        drawn.append(np.stack(_indices(terms @ counts.T / rows)[:2]))
-    low, high = np.quantile(np.concatenate(drawn, axis=-1), _INTERVAL, axis=-1)
+        resampled.append(np.stack(_indices_from_means(terms @ counts.T / rows)[:2]))
+    low, high = np.quantile(np.concatenate(resampled, axis=-1), _INTERVAL, axis=-1)
     return SobolIndices(
-        first=first,
-        total=total,
-        first_interval=np.stack([low[0], high[0]], axis=-1),
-        total_interval=np.stack([low[1], high[1]], axis=-1),
+        first_order=first,
+        total_order=total,
+        first_order_interval=np.stack([low[0], high[0]], axis=-1),
+        total_order_interval=np.stack([low[1], high[1]], axis=-1),
         standard_deviation=float(np.sqrt(variance)),
         rows=rows,
     )
 
 
-def _terms(known: Floats) -> Floats:
-    """Return for each row of samples what the indices are means of: outcomes, squares, and the products per input."""
-    a, b, mixed = known[0], known[1], known[2:]
-    centre = (a.mean() + b.mean()) / 2
-    a, b, mixed = a - centre, b - centre, mixed - centre
-    return np.concatenate([[(a + b) / 2, (a**2 + b**2) / 2], b * (mixed - a), (a - mixed) ** 2 / 2])
+def _row_terms(outcomes: Floats) -> Floats:
+    """Summands of the estimators by row: outcome, its square, then those of first and total order of each input."""
+    a, b, a_b = outcomes[0], outcomes[1], outcomes[2:]
+    mean = (a.mean() + b.mean()) / 2
+    a, b, a_b = a - mean, b - mean, a_b - mean
+    return np.concatenate([[(a + b) / 2, (a**2 + b**2) / 2], b * (a_b - a), (a - a_b) ** 2 / 2])
 
 
-def _indices(means: Floats) -> tuple[Floats, Floats, Floats]:
-    """Return first and total indices, and the variance, from the means of the terms."""
+def _indices_from_means(means: Floats) -> tuple[Floats, Floats, Floats]:
+    """First-order and total-order indices, and the variance, from the means of the summands over the rows."""
     variance = np.maximum(means[1] - means[0] ** 2, 0.0)
-    both = np.divide(means[2:], variance, out=np.zeros_like(means[2:]), where=variance > 0)
-    return both[: len(both) // 2], both[len(both) // 2 :], variance
+    indices = np.divide(means[2:], variance, out=np.zeros_like(means[2:]), where=variance > 0)
+    return indices[: len(indices) // 2], indices[len(indices) // 2 :], variance

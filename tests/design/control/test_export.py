@@ -1,4 +1,4 @@
-"""The exported controller: C that decides as the simulation does, and a table that programs can read."""
+"""Exported controller: compiled C against the simulation, and the lookup table as CSV."""
 
 import ctypes
 import shutil
@@ -11,17 +11,17 @@ from pytest import approx
 
 from sonolube.design.control import (
     Disturbance,
-    Drift,
+    FrictionCharacteristic,
     FrictionLoop,
-    FrictionMap,
     Process,
+    ThermalDrift,
     VibrationMode,
-    closed_loop,
     controller_source,
-    designed_controller,
-    designed_tracker,
     lookup_table,
     next_frequency,
+    simulate_closed_loop,
+    tuned_controller,
+    tuned_tracker,
 )
 
 COMPILER = next((found for name in ("cc", "gcc", "clang") if (found := shutil.which(name))), None)
@@ -29,22 +29,22 @@ MODE = VibrationMode(
     natural_frequency=22e3, damping_ratio=0.02, motional_conductance=0.4, parallel_capacitance=2e-7, frequency=21.95e3
 )
 VOLTS = np.linspace(0, 40, 9)
-MAP = FrictionMap(voltage_peak_to_peak=VOLTS, friction_force=1.02 / (1 + (VOLTS / 20) ** 2))
+CHARACTERISTIC = FrictionCharacteristic(voltage_peak_to_peak=VOLTS, friction_force=1.02 / (1 + (VOLTS / 20) ** 2))
 PROCESS = Process(time_constant=MODE.time_constant, dead_time=1e-3, sample_interval=2e-4)
-TRACKER = designed_tracker(MODE, sample_interval=2e-4)
+TRACKER = tuned_tracker(MODE, sample_interval=2e-4)
 
 
 @pytest.mark.skipif(COMPILER is None, reason="no C compiler on this machine")
 @pytest.mark.parametrize("feed_forward", [True, False])
-def test_the_compiled_controller_decides_as_the_simulation(feed_forward: bool, tmp_path: Path) -> None:
-    controller = designed_controller(MAP, PROCESS, voltage_maximum=35.0, feed_forward=feed_forward)
-    loop = FrictionLoop(plant=MAP, mode=MODE, controller=controller, tracker=TRACKER, voltage_maximum=35.0)
+def test_the_compiled_controller_commands_the_voltages_of_the_simulation(feed_forward: bool, tmp_path: Path) -> None:
+    controller = tuned_controller(CHARACTERISTIC, PROCESS, voltage_maximum=35.0, feed_forward=feed_forward)
+    loop = FrictionLoop(plant=CHARACTERISTIC, mode=MODE, controller=controller, tracker=TRACKER, voltage_maximum=35.0)
     rng = np.random.default_rng(1)
-    reference = np.repeat(rng.uniform(0.05, 1.1, 20), 60)  # some beyond what 35 V can do
-    run = closed_loop(
+    setpoint = np.repeat(rng.uniform(0.05, 1.1, 20), 60)  # some below what 35 V attain
+    run = simulate_closed_loop(
         loop,
-        reference=reference,
-        drift=Drift(final_temperature_rise=40.0, warming_time=0.1),
+        setpoint=setpoint,
+        drift=ThermalDrift(final_temperature_rise=40.0, warming_time=0.1),
         disturbance=Disturbance(friction_factor=1.15, friction_force_deviation=0.02),
     )
     source = tmp_path / "controller.c"
@@ -56,27 +56,27 @@ def test_the_compiled_controller_decides_as_the_simulation(feed_forward: bool, t
     library.sonolube_step.restype = library.sonolube_next_frequency.restype = ctypes.c_double
     library.sonolube_step.argtypes = [ctypes.c_void_p, ctypes.c_double, ctypes.c_double]
     library.sonolube_next_frequency.argtypes = [ctypes.c_double, ctypes.c_double]
-    state = (ctypes.c_double * (2 + PROCESS.delayed_samples))()
+    state = (ctypes.c_double * (2 + PROCESS.dead_time_samples))()
     library.sonolube_reset(state)
-    volts = [library.sonolube_step(state, *pair) for pair in zip(run.reference, run.measured, strict=True)]
+    volts = [library.sonolube_step(state, *pair) for pair in zip(run.setpoint, run.measured_force, strict=True)]
     assert np.array(volts) == approx(run.voltage_peak_to_peak, abs=1e-9)
     assert run.voltage_peak_to_peak.max() == 35.0
     for f, phase in ((21.9e3, -0.3), (22.1e3, 0.4), (1.0, 0.0), (1e6, 0.0)):
-        mine = next_frequency(TRACKER, frequency=f, phase=phase)
-        assert library.sonolube_next_frequency(f, phase) == approx(mine, abs=1e-9)
+        expected = next_frequency(TRACKER, frequency=f, phase=phase)
+        assert library.sonolube_next_frequency(f, phase) == approx(expected, abs=1e-9)
 
 
-def test_the_table_holds_the_map() -> None:
-    controller = designed_controller(MAP, PROCESS, voltage_maximum=35.0)
+def test_the_lookup_table_restores_the_characteristic() -> None:
+    controller = tuned_controller(CHARACTERISTIC, PROCESS, voltage_maximum=35.0)
     head, *rows = lookup_table(controller).splitlines()
     assert head == "friction_force [N],voltage_peak_to_peak [V]"
     read = np.array([[float(cell) for cell in row.split(",")] for row in rows])
-    assert read[:, 0] == approx(MAP.friction_force)
-    assert read[:, 1] == approx(MAP.voltage_peak_to_peak)
+    assert read[:, 0] == approx(CHARACTERISTIC.friction_force)
+    assert read[:, 1] == approx(CHARACTERISTIC.voltage_peak_to_peak)
 
 
-def test_a_title_cannot_leave_its_comment() -> None:
-    controller = designed_controller(MAP, PROCESS, voltage_maximum=35.0)
+def test_a_title_cannot_end_its_comment() -> None:
+    controller = tuned_controller(CHARACTERISTIC, PROCESS, voltage_maximum=35.0)
     first = controller_source(controller, None, title="a */ int x; /* b\nc").splitlines()[0]
     assert first.count("*/") == 1
     assert first.endswith("*/")

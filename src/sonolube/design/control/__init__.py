@@ -1,97 +1,115 @@
-"""Friction as a commanded quantity: controllers tuned for a rig, run against it, and exported."""
+"""Friction control: controllers of the friction force, tuned for a rig, simulated in closed loop and exported as C."""
 
-from sonolube.design.control.amplifier import Amplifier, largest_swing, limiting
-from sonolube.design.control.closed_loop import ControlRun, Disturbance, Drift, FrictionLoop, closed_loop
-from sonolube.design.control.control_design import FEED_FORWARD, ControlSettings, ControlStudy, control_study
+from sonolube.design.control.amplifier import Amplifier, active_limit, swing_limit
+from sonolube.design.control.closed_loop_simulation import (
+    ClosedLoopRun,
+    Disturbance,
+    FrictionLoop,
+    ThermalDrift,
+    simulate_closed_loop,
+)
+from sonolube.design.control.control_design import FEED_FORWARD, ControlDesign, ControlSettings, design_control
 from sonolube.design.control.controller import (
     ControllerState,
     FrictionController,
-    at_rest,
-    designed_controller,
+    initial_state,
     next_voltage,
+    tuned_controller,
 )
 from sonolube.design.control.export import controller_source, lookup_table
-from sonolube.design.control.friction_map import (
-    FrictionMap,
-    efficiency_map,
-    friction_at,
-    linear_map,
-    modelled_map,
-    voltage_for,
+from sonolube.design.control.friction_characteristic import (
+    FrictionCharacteristic,
+    computed_characteristic,
+    efficiency_characteristic,
+    friction_at_voltage,
+    linear_characteristic,
+    voltage_for_friction,
 )
-from sonolube.design.control.mass_on_belt import (
-    DraggedMass,
-    DraggedMotion,
-    dragged_mass,
-    dragged_motion,
+from sonolube.design.control.performance import (
+    ControlEnergy,
+    StepResponseMetrics,
+    control_energy,
+    step_response_metrics,
+)
+from sonolube.design.control.process import (
+    PIGains,
+    Process,
+    StabilityMargins,
+    open_loop_response,
+    simc_gains,
+    stability_margins,
+)
+from sonolube.design.control.resonance_tracking import FrequencyTracker, next_frequency, tuned_tracker
+from sonolube.design.control.stick_slip_oscillator import (
+    MassOnBelt,
+    StickSlipMotion,
     kinetic_friction,
+    mass_on_belt,
     steady_sliding_damping,
+    stick_slip_motion,
 )
-from sonolube.design.control.process import Margins, PIGains, Process, loop_margins, loop_response, simc_gains
-from sonolube.design.control.step_response import ControlEnergy, StepResponse, control_energy, step_response
-from sonolube.design.control.tracking import FrequencyTracker, designed_tracker, next_frequency
-from sonolube.design.control.vibration import (
+from sonolube.design.control.vibration_envelope import (
     VibrationMode,
-    capture_edge,
-    driven_mode,
+    assumed_mode,
+    capture_limit,
     impedance_phase,
+    measured_phase,
     mode_admittance,
+    mode_at_drive,
     next_envelope,
-    sensed_phase,
-    supposed_mode,
 )
 
 __all__ = [
     "FEED_FORWARD",
     "Amplifier",
+    "ClosedLoopRun",
+    "ControlDesign",
     "ControlEnergy",
-    "ControlRun",
     "ControlSettings",
-    "ControlStudy",
     "ControllerState",
     "Disturbance",
-    "DraggedMass",
-    "DraggedMotion",
-    "Drift",
     "FrequencyTracker",
+    "FrictionCharacteristic",
     "FrictionController",
     "FrictionLoop",
-    "FrictionMap",
-    "Margins",
+    "MassOnBelt",
     "PIGains",
     "Process",
-    "StepResponse",
+    "StabilityMargins",
+    "StepResponseMetrics",
+    "StickSlipMotion",
+    "ThermalDrift",
     "VibrationMode",
-    "at_rest",
-    "capture_edge",
-    "closed_loop",
+    "active_limit",
+    "assumed_mode",
+    "capture_limit",
+    "computed_characteristic",
     "control_energy",
-    "control_study",
     "controller_source",
-    "designed_controller",
-    "designed_tracker",
-    "dragged_mass",
-    "dragged_motion",
-    "driven_mode",
-    "efficiency_map",
-    "friction_at",
+    "design_control",
+    "efficiency_characteristic",
+    "friction_at_voltage",
     "impedance_phase",
+    "initial_state",
     "kinetic_friction",
-    "largest_swing",
-    "limiting",
-    "linear_map",
+    "linear_characteristic",
     "lookup_table",
-    "loop_margins",
-    "loop_response",
+    "mass_on_belt",
+    "measured_phase",
     "mode_admittance",
-    "modelled_map",
+    "mode_at_drive",
     "next_envelope",
     "next_frequency",
     "next_voltage",
-    "sensed_phase",
+    "open_loop_response",
     "simc_gains",
+    "simulate_closed_loop",
+    "stability_margins",
     "steady_sliding_damping",
-    "step_response",
-    "supposed_mode",
-    "voltage_for",
+    "step_response_metrics",
+    "stick_slip_motion",
+    "swing_limit",
+    "tuned_controller",
+    "tuned_tracker",
+    "voltage_for_friction",
 ]

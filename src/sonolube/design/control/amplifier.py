@@ -1,4 +1,4 @@
-"""What an amplifier can give: the largest swing within its voltage, current and slew rate."""
+"""Amplifier limits of a sinusoidal drive: the largest peak-to-peak voltage within voltage, current and slew rate."""
 
 from dataclasses import dataclass
 from math import inf, pi
@@ -13,11 +13,11 @@ class Amplifier:
     Parameters
     ----------
     voltage_maximum : float
-        Largest swing, peak to peak. [V]
+        Largest peak-to-peak voltage (swing). [V]
     current_maximum : float
-        Largest current, either way; no limit where it is infinite. [A]
+        Largest absolute current; infinite for no limit. [A]
     slew_rate_maximum : float
-        Greatest rate of change of the voltage; no limit where it is infinite. [V/s]
+        Slew rate; infinite for no limit. [V/s]
 
     Raises
     ------
@@ -37,38 +37,57 @@ class Amplifier:
             require_positive(slew_rate_maximum=self.slew_rate_maximum)
 
 
-def largest_swing(amplifier: Amplifier, *, admittance: complex, frequency: float) -> float:
-    """Return the largest sine, peak to peak, that an amplifier keeps up. [V]
+def swing_limit(amplifier: Amplifier, *, admittance: complex, frequency: float) -> float:
+    r"""Largest peak-to-peak voltage of a sine within the limits of an amplifier. [V]
 
     Parameters
     ----------
     amplifier : Amplifier
     admittance : complex
-        Of what it drives. [S]
+        Admittance of the load. [S]
     frequency : float
         Frequency of the sine. [Hz]
 
+    Returns
+    -------
+    float
+
+    See Also
+    --------
+    active_limit
+
     Notes
     -----
-    A sine of swing U draws up to abs(Y) U/2 and changes by up to pi f U per time.
+    A sine of the peak-to-peak voltage :math:`U` has the current amplitude :math:`|Y| U/2` and the largest slope
+    :math:`\pi f U`, so that
+
+    .. math:: U \le \min\Bigl(U_{max},\ \frac{2 I_{max}}{|Y|},\ \frac{S_{max}}{\pi f}\Bigr)
     """
     require_positive(frequency=frequency)
     by_current = 2 * amplifier.current_maximum / abs(admittance) if admittance else inf
     return min(amplifier.voltage_maximum, by_current, amplifier.slew_rate_maximum / (pi * frequency))
 
 
-def limiting(amplifier: Amplifier, *, admittance: complex, frequency: float) -> str:
-    """Return which limit decides: "voltage", "current" or "slew rate".
+def active_limit(amplifier: Amplifier, *, admittance: complex, frequency: float) -> str:
+    """Name of the limit that determines `swing_limit`: "voltage", "current" or "slew rate".
 
     Parameters
     ----------
     amplifier : Amplifier
     admittance : complex
-        Of what it drives. [S]
+        Admittance of the load. [S]
     frequency : float
         Frequency of the sine. [Hz]
+
+    Returns
+    -------
+    str
+
+    See Also
+    --------
+    swing_limit
     """
-    swing = largest_swing(amplifier, admittance=admittance, frequency=frequency)
+    swing = swing_limit(amplifier, admittance=admittance, frequency=frequency)
     if swing == amplifier.voltage_maximum:
         return "voltage"
     return "slew rate" if swing == amplifier.slew_rate_maximum / (pi * frequency) else "current"

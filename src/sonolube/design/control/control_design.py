@@ -1,53 +1,77 @@
-"""A friction controller for a rig, from its map to its margins, and how it fares."""
+"""Design of a friction controller for a rig: static characteristic, tuning, stability margins and simulated run."""
 
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from sonolube.checks import Floats, require_positive
-from sonolube.design.control.amplifier import Amplifier, largest_swing, limiting
-from sonolube.design.control.closed_loop import ControlRun, Disturbance, Drift, FrictionLoop, closed_loop
-from sonolube.design.control.controller import FrictionController, designed_controller
-from sonolube.design.control.friction_map import FrictionMap, efficiency_map, friction_at, modelled_map, voltage_for
-from sonolube.design.control.process import Margins, Process, loop_margins
-from sonolube.design.control.step_response import ControlEnergy, StepResponse, control_energy, step_response
-from sonolube.design.control.tracking import FrequencyTracker, designed_tracker
-from sonolube.design.control.vibration import VibrationMode, driven_mode, mode_admittance
+from sonolube.design.control.amplifier import Amplifier, active_limit, swing_limit
+from sonolube.design.control.closed_loop_simulation import (
+    ClosedLoopRun,
+    Disturbance,
+    FrictionLoop,
+    ThermalDrift,
+    simulate_closed_loop,
+)
+from sonolube.design.control.controller import FrictionController, tuned_controller
+from sonolube.design.control.friction_characteristic import (
+    FrictionCharacteristic,
+    computed_characteristic,
+    efficiency_characteristic,
+    friction_at_voltage,
+    voltage_for_friction,
+)
+from sonolube.design.control.performance import (
+    ControlEnergy,
+    StepResponseMetrics,
+    control_energy,
+    step_response_metrics,
+)
+from sonolube.design.control.process import Process, StabilityMargins, stability_margins
+from sonolube.design.control.resonance_tracking import FrequencyTracker, tuned_tracker
+from sonolube.design.control.vibration_envelope import VibrationMode, mode_admittance, mode_at_drive
 from sonolube.errors import InvalidInput, OutsideRange, UnknownName
 from sonolube.metrics import EfficiencyLine
 from sonolube.rig import Rig
 
 FEED_FORWARD = ("model", "efficiency", "none")
-"""What a controller may look its voltages up in: the rig's model, an efficiency line, or only the ends of the map."""
+"""Characteristic of the feed-forward: by the rig's model, by an efficiency line, or none but a straight line."""
 
-_SLOPE = 0.01  # of the highest voltage, over which slopes are taken
-_FIRST, _SECOND = 0.1, 0.55  # of the duration, when the reference steps
-_MOST_SAMPLES = 500_000
+_SLOPE_STEP = 0.01  # of the highest voltage, of the finite difference of the static gain
+_FIRST_STEP, _SECOND_STEP = 0.1, 0.55  # of the duration, when the set-point steps
+_FEWEST_SAMPLES, _MOST_SAMPLES = 20, 500_000
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ControlSettings:
-    """What is asked of a friction controller, and what it has to put up with.
+    """Requirements of a friction controller, and the disturbances of its simulation.
 
     Parameters
     ----------
-    friction_force : float or None
-        Friction wanted; half way between most and least where it is None. [N]
     amplifier : Amplifier
+    friction_force : float or None
+        Target friction force; half-way between the highest and the lowest where it is None. [N]
     dead_time : float
-        Delay of the friction measurement. [s]
+        Dead time of the friction measurement. [s]
     sample_interval : float
-        Time between decisions. [s]
+        Sampling interval of the controller. [s]
     closed_loop_time : float or None
-        Time constant wanted of the closed loop; as the tuning rule advises where it is None. [s]
+        Desired closed-loop time constant; None for the effective dead time, which the tuning rule recommends. [s]
     feed_forward : str
         One of `FEED_FORWARD`.
     tracking : bool
-        Whether the drive follows the resonance.
+        Whether the drive frequency tracks the resonance.
     duration : float
-        How long to run. [s]
+        Simulated time. [s]
     disturbance : Disturbance
-    drift : Drift
+    drift : ThermalDrift
+
+    Raises
+    ------
+    InvalidInput
+        If a time is not positive, or the duration is fewer than 20 or more than 500,000 intervals.
+    UnknownName
+        If the feed-forward is unknown.
     """
 
     amplifier: Amplifier
@@ -59,68 +83,69 @@ class ControlSettings:
     tracking: bool = True
     duration: float = 0.2
     disturbance: Disturbance = field(default_factory=Disturbance)
-    drift: Drift = field(default_factory=Drift)
+    drift: ThermalDrift = field(default_factory=ThermalDrift)
 
     def __post_init__(self) -> None:
         require_positive(duration=self.duration, sample_interval=self.sample_interval)
         if self.feed_forward not in FEED_FORWARD:
             raise UnknownName.among(FEED_FORWARD, kind="feed-forward", name=self.feed_forward)
-        if not 20 <= self.duration / self.sample_interval <= _MOST_SAMPLES:
+        intervals = self.duration / self.sample_interval
+        if not _FEWEST_SAMPLES <= intervals <= _MOST_SAMPLES:
             raise InvalidInput(
-                f"duration {self.duration:g} s makes {self.duration / self.sample_interval:.3g} intervals of"
-                f" {self.sample_interval:g} s; take one that makes 20 to {_MOST_SAMPLES}"
+                f"duration {self.duration:g} s makes {intervals:.3g} intervals of {self.sample_interval:g} s; take one"
+                f" that makes {_FEWEST_SAMPLES} to {_MOST_SAMPLES}"
             )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class ControlStudy:
-    """A friction controller for a rig and how it fares.
+class ControlDesign:
+    """Friction controller of a rig with its stability margins and simulated performance.
 
     Parameters
     ----------
-    plant : FrictionMap
-        Friction over voltage by the rig's model.
+    plant : FrictionCharacteristic
+        Static characteristic by the rig's model.
     mode : VibrationMode
     controller : FrictionController
     tracker : FrequencyTracker or None
-    loop_gain : float
-        Real change of friction per change that the controller expects, at the friction wanted. []
-    margins : Margins
-        With that gain.
+    plant_gain : float
+        Static gain from the commanded to the actual friction force at the target, 1 for an exact characteristic. []
+    margins : StabilityMargins
+        At that gain.
     friction_force : float
-        Friction wanted. [N]
+        Target friction force. [N]
     voltage_maximum : float
-        Largest swing that the amplifier keeps up. [V]
+        Largest peak-to-peak voltage within the limits of the amplifier. [V]
     limit : str
-        Which of its limits decides that.
-    run : ControlRun
-        Friction is wanted at a tenth of the duration; a little after its half, half of the reduction.
-    untracked : ControlRun or None
-        The same with the frequency fixed, where the resonance drifts and the drive follows it.
-    response : StepResponse
-        To the first step.
+        Name of the limit that determines it.
+    run : ClosedLoopRun
+        Simulation with a step to the target after a tenth of the duration, and one to half the reduction after 0.55.
+    fixed_frequency_run : ClosedLoopRun or None
+        The same at a fixed drive frequency, where the resonance drifts and the drive tracks it.
+    response : StepResponseMetrics
+        Of the first step.
     energy : ControlEnergy
     """
 
-    plant: FrictionMap
+    plant: FrictionCharacteristic
     mode: VibrationMode
     controller: FrictionController
     tracker: FrequencyTracker | None
-    loop_gain: float
-    margins: Margins
+    plant_gain: float
+    margins: StabilityMargins
     friction_force: float
     voltage_maximum: float
     limit: str
-    run: ControlRun
-    untracked: ControlRun | None
-    response: StepResponse
+    run: ClosedLoopRun
+    fixed_frequency_run: ClosedLoopRun | None
+    response: StepResponseMetrics
     energy: ControlEnergy
 
 
-def control_study(
+def design_control(
     rig: Rig, settings: ControlSettings, *, mode: VibrationMode | None = None, line: EfficiencyLine | None = None
-) -> ControlStudy:
-    """Return a friction controller tuned for a rig, and a run of it.
+) -> ControlDesign:
+    """Friction controller tuned for a rig by the SIMC rule, its margins, and a simulation of its closed loop.
 
     Parameters
     ----------
@@ -128,33 +153,37 @@ def control_study(
         With a drive voltage.
     settings : ControlSettings
     mode : VibrationMode, optional
-        The resonance that the drive uses; that of the rig's structure where absent.
+        Resonance that the drive excites; by default that of the rig's structure closest to the drive frequency.
     line : EfficiencyLine, optional
-        For feed-forward from efficiency.
+        Efficiency line for the feed-forward "efficiency".
 
     Returns
     -------
-    ControlStudy
+    ControlDesign
 
     Raises
     ------
     InvalidInput
-        If the rig lacks what the model needs, the phase cannot be tracked, or the line is missing.
+        If the rig lacks an entry that the model needs, the phase cannot be tracked, or the line is missing.
     OutsideRange
-        If the friction wanted is out of reach.
+        If the target friction force cannot be reached.
+
+    See Also
+    --------
+    tuned_controller, stability_margins, simulate_closed_loop
     """
-    driven = driven_mode(rig) if mode is None else mode
-    admittance = mode_admittance(driven, frequency=driven.frequency)
-    swing = largest_swing(settings.amplifier, admittance=admittance, frequency=driven.frequency)
-    plant = modelled_map(rig, voltage_maximum=swing)
-    wanted = settings.friction_force
-    if wanted is None:
-        wanted = 0.5 * (plant.highest_force + plant.lowest_force)
-    voltage_for(plant, friction_force=wanted)
-    controller = designed_controller(
-        _looked_up(rig, plant, settings, line, swing),
+    mode = mode_at_drive(rig) if mode is None else mode
+    admittance = mode_admittance(mode, frequency=mode.frequency)
+    swing = swing_limit(settings.amplifier, admittance=admittance, frequency=mode.frequency)
+    plant = computed_characteristic(rig, voltage_maximum=swing)
+    target = settings.friction_force
+    if target is None:
+        target = 0.5 * (plant.highest_force + plant.lowest_force)
+    voltage_for_friction(plant, friction_force=target)  # refuses a target out of reach
+    controller = tuned_controller(
+        _feed_forward_characteristic(rig, plant, settings, line, swing),
         Process(
-            time_constant=driven.time_constant,
+            time_constant=mode.time_constant,
             dead_time=settings.dead_time,
             sample_interval=settings.sample_interval,
         ),
@@ -162,65 +191,75 @@ def control_study(
         closed_loop_time=settings.closed_loop_time,
         feed_forward=settings.feed_forward != "none",
     )
-    tracker = designed_tracker(driven, sample_interval=settings.sample_interval) if settings.tracking else None
-    loop = FrictionLoop(plant=plant, mode=driven, controller=controller, tracker=tracker, voltage_maximum=swing)
-    reference = _reference(settings, plant.highest_force, wanted)
-    run = closed_loop(loop, reference=reference, drift=settings.drift, disturbance=settings.disturbance)
-    untracked = None
+    tracker = tuned_tracker(mode, sample_interval=settings.sample_interval) if settings.tracking else None
+    loop = FrictionLoop(plant=plant, mode=mode, controller=controller, tracker=tracker, voltage_maximum=swing)
+    setpoint = _setpoint_history(settings, plant.highest_force, target)
+    run = simulate_closed_loop(loop, setpoint=setpoint, drift=settings.drift, disturbance=settings.disturbance)
+    fixed_frequency_run = None
     if tracker is not None and settings.drift.final_temperature_rise:
-        fixed = replace(loop, tracker=None)
-        untracked = closed_loop(fixed, reference=reference, drift=settings.drift, disturbance=settings.disturbance)
-    gain = _loop_gain(plant, controller, wanted, settings.disturbance.friction_factor)
-    gains = replace(controller.gains, proportional_gain=gain * controller.gains.proportional_gain)
-    first = float(run.time[np.argmax(reference != reference[0])])
-    return ControlStudy(
+        fixed_frequency_run = simulate_closed_loop(
+            replace(loop, tracker=None), setpoint=setpoint, drift=settings.drift, disturbance=settings.disturbance
+        )
+    plant_gain = _plant_gain(plant, controller, target, settings.disturbance.friction_factor)
+    gains = replace(controller.gains, proportional_gain=plant_gain * controller.gains.proportional_gain)
+    first_step = float(run.time[np.argmax(setpoint != setpoint[0])])
+    return ControlDesign(
         plant=plant,
-        mode=driven,
+        mode=mode,
         controller=controller,
         tracker=tracker,
-        loop_gain=gain,
-        margins=loop_margins(controller.process, gains),
-        friction_force=float(wanted),
+        plant_gain=plant_gain,
+        margins=stability_margins(controller.process, gains),
+        friction_force=float(target),
         voltage_maximum=swing,
-        limit=limiting(settings.amplifier, admittance=admittance, frequency=driven.frequency),
+        limit=active_limit(settings.amplifier, admittance=admittance, frequency=mode.frequency),
         run=run,
-        untracked=untracked,
-        response=step_response(run, start_time=first),
+        fixed_frequency_run=fixed_frequency_run,
+        response=step_response_metrics(run, start_time=first_step),
         energy=control_energy(rig, run),
     )
 
 
-def _looked_up(
-    rig: Rig, plant: FrictionMap, settings: ControlSettings, line: EfficiencyLine | None, swing: float
-) -> FrictionMap:
+def _feed_forward_characteristic(
+    rig: Rig,
+    plant: FrictionCharacteristic,
+    settings: ControlSettings,
+    line: EfficiencyLine | None,
+    swing: float,
+) -> FrictionCharacteristic:
+    """Characteristic whose inverse the controller uses."""
     if settings.feed_forward != "efficiency":
         return plant
     if line is None:
-        raise InvalidInput("feed-forward from efficiency needs an efficiency line, calibrated for the rig")
-    return efficiency_map(rig, line, voltage_maximum=swing)
+        raise InvalidInput("feed-forward by efficiency needs an efficiency line that is calibrated for the rig")
+    return efficiency_characteristic(rig, line, voltage_maximum=swing)
 
 
-def _loop_gain(plant: FrictionMap, controller: FrictionController, wanted: float, factor: float) -> float:
-    """Return the slope of real friction over that of the controller's table, at the voltage that the wanted takes."""
-    reached = min(max(wanted / factor, plant.lowest_force), plant.highest_force)
-    volts = float(voltage_for(plant, friction_force=reached))
+def _plant_gain(
+    plant: FrictionCharacteristic, controller: FrictionController, target: float, friction_factor: float
+) -> float:
+    """Slope of the actual friction over that of the controller's characteristic, at the voltage of the target."""
+    reachable = min(max(target / friction_factor, plant.lowest_force), plant.highest_force)
+    volts = float(voltage_for_friction(plant, friction_force=reachable))
     table = controller.voltage_peak_to_peak
     if volts >= table[-1] and table[-1] < plant.voltage_peak_to_peak[-1]:
-        least = controller.intrinsic_friction_force - controller.saved_force[-1]
+        lowest = controller.intrinsic_friction_force - controller.force_reduction[-1]
         raise OutsideRange(
-            f"friction_force {wanted:.4g} N takes {volts:.4g} V by the rig's model, but the controller's table ends at"
-            f" {table[-1]:.4g} V, where it expects {least:.4g} N: its efficiency is higher than the model's"
+            f"friction_force {target:.4g} N needs {volts:.4g} V by the rig's model, but the efficiency line predicts"
+            f" {lowest:.4g} N at {table[-1]:.4g} V, where the controller's characteristic ends: recalibrate the"
+            " efficiency, or take feed-forward by the model"
         )
-    step = _SLOPE * plant.voltage_peak_to_peak[-1]
+    step = _SLOPE_STEP * plant.voltage_peak_to_peak[-1]
     ends = np.clip([volts - step, volts + step], 0.0, min(plant.voltage_peak_to_peak[-1], table[-1]))
-    real = factor * np.diff(friction_at(plant, voltage_peak_to_peak=ends))
-    expected = -np.diff(np.interp(ends, table, controller.saved_force))
-    return float(real[0] / expected[0])
+    actual = friction_factor * np.diff(friction_at_voltage(plant, voltage_peak_to_peak=ends))
+    expected = -np.diff(np.interp(ends, table, controller.force_reduction))
+    return float(actual[0] / expected[0])
 
 
-def _reference(settings: ControlSettings, intrinsic: float, wanted: float) -> Floats:
+def _setpoint_history(settings: ControlSettings, intrinsic: float, target: float) -> Floats:
+    """Set-point of each interval: friction without vibration, the target, then half of the reduction."""
     samples = round(settings.duration / settings.sample_interval)
-    reference = np.full(samples, intrinsic)
-    reference[round(_FIRST * samples) :] = wanted
-    reference[round(_SECOND * samples) :] = 0.5 * (intrinsic + wanted)
-    return reference
+    setpoint = np.full(samples, intrinsic)
+    setpoint[round(_FIRST_STEP * samples) :] = target
+    setpoint[round(_SECOND_STEP * samples) :] = 0.5 * (intrinsic + target)
+    return setpoint

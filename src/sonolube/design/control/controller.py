@@ -1,153 +1,192 @@
-"""The controller: what it knows, and what it does once an interval. The exported C does the same, line by line."""
+"""Sampled friction controller: PI control with feed-forward, inverse static characteristic and anti-windup.
+
+The C source of `sonolube.design.control.export` repeats the function `next_voltage` line by line.
+"""
 
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from sonolube.checks import require_positive
-from sonolube.design.control.friction_map import FrictionMap, linear_map
+from sonolube.design.control.friction_characteristic import FrictionCharacteristic, linear_characteristic
 from sonolube.design.control.process import PIGains, Process, simc_gains
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class FrictionController:
-    """A PI controller of friction through the inverse of a friction map, with feed-forward and anti-windup.
-
-    It commands a friction force; the map turns that into a voltage. Feedback acts on what the measurement differs
-    from that expected of the command fed forward, so that the delay is not taken for an error.
+    r"""PI controller of the friction force with feed-forward and anti-windup, through an inverse static characteristic.
 
     Parameters
     ----------
     process : Process
-        Lag, delay and interval it is made for.
+        Lag, dead time and sampling interval of the tuning.
     gains : PIGains
     intrinsic_friction_force : float
         Friction without vibration. [N]
-    saved_force : tuple of float
-        How far below it friction is to be, rising from zero, in N: the entries of its table.
+    force_reduction : tuple of float
+        Reduction of the friction force at the points of the characteristic, increasing from zero, in N.
     voltage_peak_to_peak : tuple of float
-        Swing for each, rising from zero. [V]
+        Drive voltages at these points, increasing from zero. [V]
     voltage_maximum : float
-        Largest swing it asks for. [V]
+        Largest commanded peak-to-peak voltage. [V]
     feed_forward : bool
-        Whether the reference is commanded at once; otherwise the integral alone finds it, from no vibration.
+        Whether the set-point is fed forward; otherwise the integral part alone brings the command to it.
+
+    Notes
+    -----
+    The command is a friction force, which the inverse characteristic converts to a voltage: a static nonlinearity is
+    cancelled by its inverse, so that the gain of the loop does not depend on the set-point. With feed-forward, the
+    feedback acts on the difference of the measurement from a reference model, the response of the process to the
+    set-point with its dead time (two-degree-of-freedom control). Unlike in a Smith predictor, the model receives the
+    set-point rather than the command, so that disturbances see the plain PI loop. See `next_voltage` for the equations.
     """
 
     process: Process
     gains: PIGains
     intrinsic_friction_force: float
-    saved_force: tuple[float, ...]
+    force_reduction: tuple[float, ...]
     voltage_peak_to_peak: tuple[float, ...]
     voltage_maximum: float
     feed_forward: bool = True
 
     @property
-    def integral_fraction(self) -> float:
-        """Share of the error that the integral takes up in an interval."""
+    def integral_gain(self) -> float:
+        """Change of the integral part per error and interval: K_c T / tau_I."""
         return self.gains.proportional_gain * self.process.sample_interval / self.gains.integral_time
 
     @property
-    def windup_fraction(self) -> float:
-        """Share of what a limit cut off that the integral gives up in an interval."""
+    def anti_windup_gain(self) -> float:
+        """Change of the integral part per saturation and interval, by back-calculation: T / tau_I, at most 1."""
         return min(self.process.sample_interval / self.gains.integral_time, 1.0)
 
     @property
-    def lag_fraction(self) -> float:
-        """Share of the way to the command that the expected friction goes in an interval."""
-        return 1 - self.process.decay
+    def lag_coefficient(self) -> float:
+        """Coefficient of the reference model's lag: 1 - exp(-T / tau)."""
+        return 1 - self.process.pole
 
 
 @dataclass(slots=True)
 class ControllerState:
-    """What a controller remembers between intervals; forces in N.
+    """State of a controller between intervals; forces in N.
 
     Parameters
     ----------
     integral : float
         Integral part of the command.
-    expected : list of float
-        Friction expected of the command fed forward, newest last, as many as the delay and one.
+    model_output : list of float
+        Output of the reference model, the latest last, over the dead time and one interval more.
     """
 
     integral: float
-    expected: list[float]
+    model_output: list[float]
 
 
-def designed_controller(
-    known: FrictionMap,
+def tuned_controller(
+    characteristic: FrictionCharacteristic,
     process: Process,
     *,
     voltage_maximum: float,
     closed_loop_time: float | None = None,
     feed_forward: bool = True,
 ) -> FrictionController:
-    """Return the controller that Skogestad's rule gives for a map and a process.
+    """Friction controller tuned by Skogestad's SIMC rule.
 
     Parameters
     ----------
-    known : FrictionMap
-        What it is to look its voltages up in; of which only the ends are used without feed-forward.
+    characteristic : FrictionCharacteristic
+        Of the plant; without feed-forward only its two ends are used.
     process : Process
     voltage_maximum : float
-        Largest swing it may ask for. [V]
+        Largest commanded peak-to-peak voltage. [V]
     closed_loop_time : float, optional
-        Time constant wanted of the closed loop; the effective delay where absent. [s]
+        Desired closed-loop time constant; by default the effective dead time. [s]
     feed_forward : bool
-        Whether the reference is commanded at once.
+        Whether the set-point is fed forward.
 
     Returns
     -------
     FrictionController
+
+    See Also
+    --------
+    simc_gains, next_voltage
     """
-    table = known if feed_forward else linear_map(known)
+    table = characteristic if feed_forward else linear_characteristic(characteristic)
     return FrictionController(
         process=process,
         gains=simc_gains(process, closed_loop_time=closed_loop_time),
         intrinsic_friction_force=table.highest_force,
-        saved_force=tuple((table.highest_force - table.friction_force).tolist()),
+        force_reduction=tuple((table.highest_force - table.friction_force).tolist()),
         voltage_peak_to_peak=tuple(table.voltage_peak_to_peak.tolist()),
         voltage_maximum=float(require_positive(voltage_maximum=voltage_maximum)),
         feed_forward=feed_forward,
     )
 
 
-def at_rest(controller: FrictionController) -> ControllerState:
-    """Return the state of a controller before its first interval, friction unreduced."""
-    expected = [controller.intrinsic_friction_force] * (controller.process.delayed_samples + 1)
-    return ControllerState(integral=0.0, expected=expected)
+def initial_state(controller: FrictionController) -> ControllerState:
+    """State of a controller before its first interval, at friction without vibration.
+
+    Parameters
+    ----------
+    controller : FrictionController
+
+    Returns
+    -------
+    ControllerState
+    """
+    model_output = [controller.intrinsic_friction_force] * (controller.process.dead_time_samples + 1)
+    return ControllerState(integral=0.0, model_output=model_output)
 
 
-def next_voltage(controller: FrictionController, state: ControllerState, reference: float, measured: float) -> float:
-    """Return the swing to drive with over the next interval, in V, and update the state.
+def next_voltage(controller: FrictionController, state: ControllerState, setpoint: float, measured: float) -> float:
+    r"""Peak-to-peak drive voltage over the next interval, in V; updates the state.
 
     Parameters
     ----------
     controller : FrictionController
     state : ControllerState
-    reference : float
-        Friction wanted, in N.
+    setpoint : float
+        Commanded friction force, in N.
     measured : float
-        Friction as measured, in N.
+        Measured friction force, in N.
+
+    Returns
+    -------
+    float
+
+    Notes
+    -----
+    With the set-point :math:`r`, the measurement :math:`y`, the output :math:`\hat F` of the reference model and the
+    command :math:`w`,
+
+    .. math::
+
+        e &= \hat F - y, \qquad w = r + K_c e + I
+
+        I &\leftarrow I + \frac{K_c T}{\tau_I} e + \frac{T}{\tau_I} (w_{sat} - w)
+
+    where :math:`w_{sat}` is the force at the saturated voltage (anti-windup by back-calculation). Without feed-forward
+    :math:`e = r - y`, and :math:`w` starts from the intrinsic friction force.
     """
-    unreduced = controller.intrinsic_friction_force
-    base = reference if controller.feed_forward else unreduced
-    error = (state.expected[0] if controller.feed_forward else reference) - measured
+    intrinsic = controller.intrinsic_friction_force
+    base = setpoint if controller.feed_forward else intrinsic
+    error = (state.model_output[0] if controller.feed_forward else setpoint) - measured
     command = base + controller.gains.proportional_gain * error + state.integral
-    wanted = _interpolated(unreduced - command, controller.saved_force, controller.voltage_peak_to_peak)
-    voltage = min(wanted, controller.voltage_maximum)
-    given = unreduced - _interpolated(voltage, controller.voltage_peak_to_peak, controller.saved_force)
-    state.integral += controller.integral_fraction * error + controller.windup_fraction * (given - command)
-    newest = state.expected[-1]
-    state.expected.append(newest + controller.lag_fraction * (reference - newest))
-    del state.expected[0]
+    unsaturated = _interpolated(intrinsic - command, controller.force_reduction, controller.voltage_peak_to_peak)
+    voltage = min(unsaturated, controller.voltage_maximum)
+    saturated = intrinsic - _interpolated(voltage, controller.voltage_peak_to_peak, controller.force_reduction)
+    state.integral += controller.integral_gain * error + controller.anti_windup_gain * (saturated - command)
+    latest = state.model_output[-1]
+    state.model_output.append(latest + controller.lag_coefficient * (setpoint - latest))
+    del state.model_output[0]
     return voltage
 
 
-def _interpolated(x: float, known: Sequence[float], of: Sequence[float]) -> float:
-    """Return the polygon through the points (known, of) at x, its ends beyond them."""
-    if x <= known[0]:
-        return of[0]
-    if x >= known[-1]:
-        return of[-1]
-    i = bisect_right(known, x) - 1
-    return of[i] + (of[i + 1] - of[i]) / (known[i + 1] - known[i]) * (x - known[i])
+def _interpolated(x: float, abscissa: Sequence[float], ordinate: Sequence[float]) -> float:
+    """Linear interpolation at x, constant beyond the ends."""
+    if x <= abscissa[0]:
+        return ordinate[0]
+    if x >= abscissa[-1]:
+        return ordinate[-1]
+    i = bisect_right(abscissa, x) - 1
+    return ordinate[i] + (ordinate[i + 1] - ordinate[i]) / (abscissa[i + 1] - abscissa[i]) * (x - abscissa[i])

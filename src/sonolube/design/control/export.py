@@ -1,48 +1,52 @@
-"""The tuned controller for other machines: C99 source, and the lookup table as CSV."""
+"""Export of a tuned controller: C99 source for embedded targets, and its lookup table as CSV."""
 
 from collections.abc import Sequence
 
 from sonolube.design.control.controller import FrictionController
-from sonolube.design.control.tracking import FrequencyTracker
+from sonolube.design.control.resonance_tracking import FrequencyTracker
 
 
 def controller_source(controller: FrictionController, tracker: FrequencyTracker | None, *, title: str) -> str:
-    """Return a C99 translation unit that does what the controller and the tracker do, in double precision.
+    """C99 source of a controller and a frequency tracker, in double precision.
 
     Parameters
     ----------
     controller : FrictionController
     tracker : FrequencyTracker or None
-        None where the frequency is fixed.
+        None for a fixed frequency.
     title : str
-        What it is for; goes into the first comment.
+        Title in the first comment.
 
     Returns
     -------
     str
-        Without dependencies, allocation or global state. Call `sonolube_step` once every `SONOLUBE_INTERVAL` seconds;
-        inputs must be finite.
+        One translation unit without dependencies, allocation or global state. Call `sonolube_step` once every
+        `SONOLUBE_INTERVAL` seconds; inputs must be finite.
+
+    See Also
+    --------
+    lookup_table, next_voltage, next_frequency
     """
     values = {
         "INTERVAL": (controller.process.sample_interval, "s"),
         "INTRINSIC_FRICTION": (controller.intrinsic_friction_force, "N"),
         "PROPORTIONAL_GAIN": (controller.gains.proportional_gain, "N/N"),
-        "INTEGRAL_SHARE": (controller.integral_fraction, "N/N per interval"),
-        "WINDUP_SHARE": (controller.windup_fraction, "N/N per interval"),
-        "LAG_SHARE": (controller.lag_fraction, "per interval"),
+        "INTEGRAL_GAIN": (controller.integral_gain, "N/N per interval"),
+        "ANTI_WINDUP_GAIN": (controller.anti_windup_gain, "N/N per interval"),
+        "LAG_COEFFICIENT": (controller.lag_coefficient, "per interval"),
         "HIGHEST_VOLTAGE": (controller.voltage_maximum, "V peak to peak"),
     }
     defines = [f"#define SONOLUBE_{name} ({_number(value)}) /* {unit} */" for name, (value, unit) in values.items()]
     counts = [
-        f"#define SONOLUBE_DELAY {controller.process.delayed_samples} /* intervals */",
-        f"#define SONOLUBE_POINTS {len(controller.saved_force)}",
+        f"#define SONOLUBE_DEAD_TIME {controller.process.dead_time_samples} /* intervals */",
+        f"#define SONOLUBE_POINTS {len(controller.force_reduction)}",
         f"#define SONOLUBE_FEED_FORWARD {int(controller.feed_forward)}",
     ]
     safe_title = " ".join(title.replace("*/", "* /").replace("/*", "/ *").split())
     parts = [
         f"/* Friction controller: {safe_title}. SI units; voltages peak to peak. */",
         "\n".join([*defines, *counts]),
-        _array("saved_force", controller.saved_force),
+        _array("force_reduction", controller.force_reduction),
         _array("voltage", controller.voltage_peak_to_peak),
         _STEP_SOURCE.strip(),
     ]
@@ -52,7 +56,7 @@ def controller_source(controller: FrictionController, tracker: FrequencyTracker 
 
 
 def lookup_table(controller: FrictionController) -> str:
-    """Return the controller's table as CSV: wanted friction force, voltage peak to peak.
+    """Lookup table of a controller as CSV: friction force and peak-to-peak drive voltage.
 
     Parameters
     ----------
@@ -61,68 +65,76 @@ def lookup_table(controller: FrictionController) -> str:
     Returns
     -------
     str
-        A line of names with units, then the points, friction falling; interpolate by straight lines.
+        A line of names with units, then the points by decreasing friction force; interpolate linearly.
+
+    See Also
+    --------
+    controller_source
     """
     rows = [
-        f"{controller.intrinsic_friction_force - saved!r},{volts!r}"
-        for saved, volts in zip(controller.saved_force, controller.voltage_peak_to_peak, strict=True)
+        f"{controller.intrinsic_friction_force - reduction!r},{volts!r}"
+        for reduction, volts in zip(controller.force_reduction, controller.voltage_peak_to_peak, strict=True)
     ]
     return "\n".join(["friction_force [N],voltage_peak_to_peak [V]", *rows]) + "\n"
 
 
 def _number(value: float) -> str:
+    """C literal of a double that restores it exactly."""
     return repr(float(value))
 
 
 def _array(name: str, values: Sequence[float]) -> str:
+    """C definition of a constant array."""
     rows = [", ".join(map(_number, values[i : i + 4])) for i in range(0, len(values), 4)]
     return f"static const double {name}[SONOLUBE_POINTS] = {{\n    " + ",\n    ".join(rows) + "\n};"
 
 
 def _tracker_source(tracker: FrequencyTracker) -> str:
-    return f"""/* Frequency of the next interval in Hz, from the last and the phase of the impedance in rad. */
+    """C source of the frequency tracker."""
+    return f"""/* Drive frequency of the next interval in Hz, from the last and the phase of the impedance in rad. */
 double sonolube_next_frequency(double frequency, double phase) {{
-    const double moved = frequency + {_number(tracker.frequency_gain)} * ({_number(tracker.phase)} - phase);
+    const double unlimited = frequency + {_number(tracker.frequency_gain)} * ({_number(tracker.phase)} - phase);
     const double lowest = {_number(tracker.lowest_frequency)}, highest = {_number(tracker.highest_frequency)};
-    return moved < lowest ? lowest : moved > highest ? highest : moved;
+    return unlimited < lowest ? lowest : unlimited > highest ? highest : unlimited;
 }}"""
 
 
 _STEP_SOURCE = """
 typedef struct {
-    double integral;                     /* N */
-    double expected[SONOLUBE_DELAY + 1]; /* N, newest last */
+    double integral;                             /* N */
+    double model_output[SONOLUBE_DEAD_TIME + 1]; /* N, the latest last */
 } sonolube_state;
 
 void sonolube_reset(sonolube_state *state) {
     state->integral = 0.0;
-    for (int i = 0; i <= SONOLUBE_DELAY; i++) state->expected[i] = SONOLUBE_INTRINSIC_FRICTION;
+    for (int i = 0; i <= SONOLUBE_DEAD_TIME; i++) state->model_output[i] = SONOLUBE_INTRINSIC_FRICTION;
 }
 
-static double interpolated(double x, const double *known, const double *of) {
-    if (x <= known[0]) return of[0];
-    if (x >= known[SONOLUBE_POINTS - 1]) return of[SONOLUBE_POINTS - 1];
+static double interpolated(double x, const double *abscissa, const double *ordinate) {
+    if (x <= abscissa[0]) return ordinate[0];
+    if (x >= abscissa[SONOLUBE_POINTS - 1]) return ordinate[SONOLUBE_POINTS - 1];
     int low = 0, high = SONOLUBE_POINTS - 1;
     while (high - low > 1) {
         const int middle = low + (high - low) / 2;
-        if (known[middle] <= x) low = middle;
+        if (abscissa[middle] <= x) low = middle;
         else high = middle;
     }
-    return of[low] + (of[high] - of[low]) / (known[high] - known[low]) * (x - known[low]);
+    return ordinate[low]
+        + (ordinate[high] - ordinate[low]) / (abscissa[high] - abscissa[low]) * (x - abscissa[low]);
 }
 
-/* Voltage for the next interval, from the friction wanted and the friction measured. */
-double sonolube_step(sonolube_state *state, double reference, double measured) {
-    const double base = SONOLUBE_FEED_FORWARD ? reference : SONOLUBE_INTRINSIC_FRICTION;
-    const double error = (SONOLUBE_FEED_FORWARD ? state->expected[0] : reference) - measured;
+/* Peak-to-peak voltage of the next interval, from the set-point and the measured friction force. */
+double sonolube_step(sonolube_state *state, double setpoint, double measured) {
+    const double base = SONOLUBE_FEED_FORWARD ? setpoint : SONOLUBE_INTRINSIC_FRICTION;
+    const double error = (SONOLUBE_FEED_FORWARD ? state->model_output[0] : setpoint) - measured;
     const double command = base + SONOLUBE_PROPORTIONAL_GAIN * error + state->integral;
-    const double wanted = interpolated(SONOLUBE_INTRINSIC_FRICTION - command, saved_force, voltage);
-    const double allowed = wanted < SONOLUBE_HIGHEST_VOLTAGE ? wanted : SONOLUBE_HIGHEST_VOLTAGE;
-    const double given = SONOLUBE_INTRINSIC_FRICTION - interpolated(allowed, voltage, saved_force);
-    state->integral += SONOLUBE_INTEGRAL_SHARE * error + SONOLUBE_WINDUP_SHARE * (given - command);
-    const double newest = state->expected[SONOLUBE_DELAY];
-    for (int i = 0; i < SONOLUBE_DELAY; i++) state->expected[i] = state->expected[i + 1];
-    state->expected[SONOLUBE_DELAY] = newest + SONOLUBE_LAG_SHARE * (reference - newest);
+    const double unsaturated = interpolated(SONOLUBE_INTRINSIC_FRICTION - command, force_reduction, voltage);
+    const double allowed = unsaturated < SONOLUBE_HIGHEST_VOLTAGE ? unsaturated : SONOLUBE_HIGHEST_VOLTAGE;
+    const double saturated = SONOLUBE_INTRINSIC_FRICTION - interpolated(allowed, voltage, force_reduction);
+    state->integral += SONOLUBE_INTEGRAL_GAIN * error + SONOLUBE_ANTI_WINDUP_GAIN * (saturated - command);
+    const double latest = state->model_output[SONOLUBE_DEAD_TIME];
+    for (int i = 0; i < SONOLUBE_DEAD_TIME; i++) state->model_output[i] = state->model_output[i + 1];
+    state->model_output[SONOLUBE_DEAD_TIME] = latest + SONOLUBE_LAG_COEFFICIENT * (setpoint - latest);
     return allowed;
 }
 """

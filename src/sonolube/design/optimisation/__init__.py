@@ -1,66 +1,85 @@
-"""Optimisation: which actuator, frequency, waveform and masses give a friction for the least power, heat or voltage."""
+"""Optimisation of a rig: actuator, frequency, waveform and structure for a target friction at minimum power or heat."""
 
-from sonolube.design.optimisation.assessment import CONSTRAINTS, Assessment, assess
-from sonolube.design.optimisation.electrical import (
+from sonolube.design.optimisation.drive_electronics import (
     CAPACITANCE_TOLERANCE,
-    Electrical,
-    Matched,
-    admittance_of,
+    DriveElectronics,
+    MatchedNetwork,
     design_rig,
-    electrical,
+    required_electronics,
+    stack_admittance,
 )
-from sonolube.design.optimisation.local_search import Point, descended, point_at, tangent
+from sonolube.design.optimisation.evaluation import CONSTRAINTS, Evaluation, evaluate
+from sonolube.design.optimisation.gradient_search import DesignPoint, design_point_at, local_search, swing_sensitivities
 from sonolube.design.optimisation.optimum import Optimum, optimise
-from sonolube.design.optimisation.pareto import bounds_between, epsilon_front, non_dominated
-from sonolube.design.optimisation.requirements import OBJECTIVES, Horn, Limits
+from sonolube.design.optimisation.pareto import epsilon_bounds, epsilon_constraint_front, non_dominated
+from sonolube.design.optimisation.required_voltage import (
+    DEFAULT_MAXIMUM_SWING,
+    estimate_swings,
+    maximum_swing,
+    refine_swing,
+)
+from sonolube.design.optimisation.requirements import OBJECTIVES, HalfWaveHorn, Limits
 from sonolube.design.optimisation.rig_text import design_text
-from sonolube.design.optimisation.screening import Landscape, Task, choices_of, looked_over, of_choice, worst_of
-from sonolube.design.optimisation.space import OWN, Choice, DesignSpace, rig_of, stack_of, structure_of
-from sonolube.design.optimisation.target import HIGHEST_SWING, exact_swing, highest_swing, swings_for_ratio
-from sonolube.design.optimisation.tolerance import NOMINAL, Deviation, Tolerance, deviations, over_deviations
+from sonolube.design.optimisation.screening import (
+    DesignProblem,
+    ScreeningResult,
+    enumerate_candidates,
+    evaluate_candidate,
+    evaluate_with_tolerance,
+    screen,
+)
+from sonolube.design.optimisation.space import (
+    OWN_ACTUATOR,
+    Candidate,
+    DesignSpace,
+    candidate_rig,
+    candidate_stack,
+    candidate_structure,
+)
+from sonolube.design.optimisation.tolerance import NOMINAL, Deviation, Tolerance, deviations, worst_or_quantile
 
 __all__ = [
     "CAPACITANCE_TOLERANCE",
     "CONSTRAINTS",
-    "HIGHEST_SWING",
+    "DEFAULT_MAXIMUM_SWING",
     "NOMINAL",
     "OBJECTIVES",
-    "OWN",
-    "Assessment",
-    "Choice",
+    "OWN_ACTUATOR",
+    "Candidate",
+    "DesignPoint",
+    "DesignProblem",
     "DesignSpace",
     "Deviation",
-    "Electrical",
-    "Horn",
-    "Landscape",
+    "DriveElectronics",
+    "Evaluation",
+    "HalfWaveHorn",
     "Limits",
-    "Matched",
+    "MatchedNetwork",
     "Optimum",
-    "Point",
-    "Task",
+    "ScreeningResult",
     "Tolerance",
-    "admittance_of",
-    "assess",
-    "bounds_between",
-    "choices_of",
-    "descended",
+    "candidate_rig",
+    "candidate_stack",
+    "candidate_structure",
+    "design_point_at",
     "design_rig",
     "design_text",
     "deviations",
-    "electrical",
-    "epsilon_front",
-    "exact_swing",
-    "highest_swing",
-    "looked_over",
+    "enumerate_candidates",
+    "epsilon_bounds",
+    "epsilon_constraint_front",
+    "estimate_swings",
+    "evaluate",
+    "evaluate_candidate",
+    "evaluate_with_tolerance",
+    "local_search",
+    "maximum_swing",
     "non_dominated",
-    "of_choice",
     "optimise",
-    "over_deviations",
-    "point_at",
-    "rig_of",
-    "stack_of",
-    "structure_of",
-    "swings_for_ratio",
-    "tangent",
-    "worst_of",
+    "refine_swing",
+    "required_electronics",
+    "screen",
+    "stack_admittance",
+    "swing_sensitivities",
+    "worst_or_quantile",
 ]

@@ -1,86 +1,86 @@
-"""The optimisation of a rig: its space looked over, the best designs refined, and the front of two objectives."""
+"""Optimisation of a rig: screening of the design space, local search from the best designs, and the Pareto front."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.design.optimisation.local_search import Point, descended, point_at
-from sonolube.design.optimisation.pareto import bounds_between, epsilon_front, non_dominated
+from sonolube.design.optimisation.gradient_search import DesignPoint, design_point_at, local_search
+from sonolube.design.optimisation.pareto import epsilon_bounds, epsilon_constraint_front, non_dominated
+from sonolube.design.optimisation.required_voltage import maximum_swing, refine_swing
 from sonolube.design.optimisation.requirements import OBJECTIVES
 from sonolube.design.optimisation.screening import (
-    Advance,
-    Landscape,
-    Task,
-    choices_of,
-    drawn,
-    looked_over,
-    of_choice,
-    worst_of,
+    DesignProblem,
+    ScreeningResult,
+    enumerate_candidates,
+    evaluate_candidate,
+    evaluate_with_tolerance,
+    sample_ranges,
+    screen,
 )
-from sonolube.design.optimisation.space import Choice, rig_of
-from sonolube.design.optimisation.target import exact_swing, highest_swing
-from sonolube.design.optimisation.tolerance import deviations, over_deviations
+from sonolube.design.optimisation.space import Candidate, candidate_rig
+from sonolube.design.optimisation.tolerance import deviations, worst_or_quantile
+from sonolube.design.progress import ProgressCallback
 from sonolube.errors import OutsideRange, UnknownName
 
-_FRONT = 9  # points of a front
-_ZOOMS, _DRAWN, _BETWEEN = 3, 8, 25  # rounds of closing in, choices and frequencies in each
+_FRONT_POINTS = 9
+_REFINEMENTS, _SAMPLES, _FREQUENCIES = 3, 8, 25  # of the search under tolerances; the latter two in each refinement
+_FEASIBLE = 0.999  # utilisation up to which a sampled design counts as feasible
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Optimum:
-    """What an optimisation found.
+    """Result of an optimisation.
 
     Parameters
     ----------
-    task : Task
+    problem : DesignProblem
     minimise : str
-        What was made least.
-    other : str or None
-        The second objective, where there is one.
-    landscape : Landscape
-        All designs looked at.
-    designs : tuple of Point
-        The best design of each actuator and waveform, the best of all first.
-    front : tuple of Point
-        Designs that no other beats in both objectives, by rising first objective; empty for one objective.
+        Objective that was minimised.
+    second_objective : str or None
+        Second objective of the Pareto front, where there is one.
+    screening : ScreeningResult
+        All screened designs.
+    designs : tuple of DesignPoint
+        Best design of each actuator and waveform, by increasing objective.
+    front : tuple of DesignPoint
+        Pareto front of both objectives, by increasing first objective; empty for a single objective.
     """
 
-    task: Task
+    problem: DesignProblem
     minimise: str
-    other: str | None
-    landscape: Landscape
-    designs: tuple[Point, ...]
-    front: tuple[Point, ...]
+    second_objective: str | None
+    screening: ScreeningResult
+    designs: tuple[DesignPoint, ...]
+    front: tuple[DesignPoint, ...]
 
     @property
-    def best(self) -> Point:
-        """The design with the least of the first objective."""
+    def best(self) -> DesignPoint:
+        """Design with the smallest first objective."""
         return self.designs[0]
 
 
 def optimise(
-    task: Task,
+    problem: DesignProblem,
     *,
     minimise: str = "power",
-    other: str | None = None,
+    second_objective: str | None = None,
     samples: int = 16,
-    advance: Advance | None = None,
+    advance: ProgressCallback | None = None,
 ) -> Optimum:
-    """Return the designs of a space that bring friction down as wanted for the least of an objective.
+    """Designs that reach a target friction ratio with the smallest objective, and the Pareto front of two objectives.
 
     Parameters
     ----------
-    task : Task
+    problem : DesignProblem
     minimise : str
-        What to make least, of `OBJECTIVES`.
-    other : str, optional
-        A second objective, for which the front is drawn.
+        Objective to minimise, of `OBJECTIVES`.
+    second_objective : str, optional
+        A second objective, for a Pareto front.
     samples : int
-        Entries of the structure to draw for each actuator and waveform, where they have ranges.
+        Structures sampled for each actuator and waveform, where entries of the structure have ranges.
     advance : callable, optional
-        Told how much is done, and of how much.
+        Called with the number of screened candidates and their total.
 
     Returns
     -------
@@ -89,144 +89,182 @@ def optimise(
     Raises
     ------
     OutsideRange
-        If no design brings friction down so far within the limits; it says what stands in the way.
+        If no design reaches the target within the limits; the message names the limit that prevents it.
     UnknownName
         If an objective is unknown.
 
+    See Also
+    --------
+    screen, local_search, epsilon_constraint_front
+
     Notes
     -----
-    The space is looked over first: every actuator and waveform, entries drawn evenly, frequencies crowded at
-    resonances. Then the best of each is refined: along the engine's gradients where it is built as drawn, by closing in
-    with more samples where it must stand deviations. A point of the front is the least of the first objective under a
-    bound on the second.
+    The design space is screened first: every actuator and waveform, structures from a Sobol sequence, a frequency grid
+    that is finer at resonances. The best feasible design of each actuator and waveform is then refined: the nominal
+    design by sequential quadratic programming, a design under tolerances by repeated sampling in shrinking ranges. Each
+    point of the front minimises the first objective under a bound on the second (epsilon-constraint method).
     """
-    for name in (minimise, *([other] if other else [])):
+    for name in (minimise, *([second_objective] if second_objective else [])):
         if name not in OBJECTIVES:
             raise UnknownName.among(OBJECTIVES, kind="objective", name=name)
-    land = looked_over(task, choices_of(task.space, samples=samples), advance=advance)
-    if not land.feasible.any():
-        raise OutsideRange(_in_the_way(task, land))
-    starts = _best_of_each(land, minimise)
-    designs = [_refined(task, land, row, minimise) for row in starts]
-    found = sorted((design for design in designs if design is not None), key=lambda point: point.objective(minimise))
-    if not found:
-        raise OutsideRange("designs found in the survey do not hold when worked out: give closer ranges with --over")
-    front = _front(task, land, minimise, other) if other is not None else ()
-    return Optimum(task=task, minimise=minimise, other=other, landscape=land, designs=tuple(found), front=tuple(front))
+    screening = screen(problem, enumerate_candidates(problem.space, samples=samples), advance=advance)
+    if not screening.feasible.any():
+        raise OutsideRange(_infeasibility(problem, screening))
+    starts = _best_of_each_kind(screening, minimise)
+    refined = [_refined(problem, screening, row, minimise) for row in starts]
+    designs = sorted((design for design in refined if design is not None), key=lambda point: point.objective(minimise))
+    if not designs:
+        raise OutsideRange(
+            "no design of the screening remains feasible when refined: voltage or vibration change too fast between the"
+            " screened frequencies; give narrower ranges with --over"
+        )
+    front = _pareto_front(problem, screening, minimise, second_objective) if second_objective is not None else ()
+    return Optimum(
+        problem=problem,
+        minimise=minimise,
+        second_objective=second_objective,
+        screening=screening,
+        designs=tuple(designs),
+        front=tuple(front),
+    )
 
 
-def _best_of_each(land: Landscape, minimise: str) -> list[int]:
-    """Return the best feasible design of each actuator and waveform."""
-    kinds = [(choice.actuator, choice.waveform) for choice in land.choices]
+def _best_of_each_kind(screening: ScreeningResult, minimise: str) -> list[int]:
+    """Row of the best feasible design of each actuator and waveform."""
+    kinds = [(candidate.actuator, candidate.waveform) for candidate in screening.candidates]
     best: dict[tuple[str, str], int] = {}
-    cost = land.objectives[minimise]
-    for row in np.flatnonzero(land.feasible):
-        kind = kinds[land.which[row]]
-        if kind not in best or cost[row] < cost[best[kind]]:
+    objective = screening.objectives[minimise]
+    for row in np.flatnonzero(screening.feasible):
+        kind = kinds[screening.candidate_index[row]]
+        if kind not in best or objective[row] < objective[best[kind]]:
             best[kind] = int(row)
     return list(best.values())
 
 
 def _refined(
-    task: Task, land: Landscape, row: int, minimise: str, other: str | None = None, bound: float = np.inf
-) -> Point | None:
-    choice, f = land.choices[land.which[row]], float(land.frequency[row])
-    if task.tolerance is not None:
-        return _closed_in(task, choice, f, minimise, other, bound)
-    start = point_at(task, choice, frequency=f, near=float(land.voltage_peak_to_peak[row]))
+    problem: DesignProblem,
+    screening: ScreeningResult,
+    row: int,
+    minimise: str,
+    second_objective: str | None = None,
+    bound: float = np.inf,
+) -> DesignPoint | None:
+    """Best design near a screened one; None where none is feasible."""
+    candidate, f = screening.candidates[screening.candidate_index[row]], float(screening.frequency[row])
+    if problem.tolerance is not None:
+        return _refined_with_tolerance(problem, candidate, f, minimise, second_objective, bound)
+    start = design_point_at(problem, candidate, frequency=f, near=float(screening.voltage_peak_to_peak[row]))
     if start is None:
         return None
-    best = descended(task, start, minimise=minimise, other=other, bound=bound)
-    return best if best.assessment.most_used[0] <= 1 + 1e-6 else None
+    best = local_search(problem, start, minimise=minimise, second_objective=second_objective, bound=bound)
+    return best if best.evaluation.maximum_utilisation[0] <= 1 + 1e-6 else None
 
 
-def _closed_in(
-    task: Task, choice: Choice, frequency: float, minimise: str, other: str | None, bound: float
-) -> Point | None:
-    """Return the best design near one that must stand deviations, by ever closer samples."""
-    space, best = task.space, (np.inf, choice, frequency)
+def _refined_with_tolerance(
+    problem: DesignProblem,
+    candidate: Candidate,
+    frequency: float,
+    minimise: str,
+    second_objective: str | None,
+    bound: float,
+) -> DesignPoint | None:
+    """Best design under tolerances near a screened one, by repeated sampling in shrinking ranges."""
+    space, best = problem.space, (np.inf, candidate, frequency)
     width = 0.5
-    for zoom in range(_ZOOMS):
+    for refinement in range(_REFINEMENTS):
         width /= 3
-        near = {name: _narrowed(bounds, best[1].entries[name], width) for name, bounds in space.ranges.items()}
+        ranges = {name: _narrowed(bounds, best[1].entries[name], width) for name, bounds in space.ranges.items()}
         low, high = _narrowed(space.frequencies, best[2], width)
-        rows = drawn(near, samples=_DRAWN, seed=zoom) if near else np.empty((1, 0))
-        for entries in [best[1].entries, *[dict(zip(near, map(float, row), strict=True)) for row in rows]]:
-            tried = replace(choice, entries=entries)
-            f, found = of_choice(task, tried, frequency=np.unique([best[2], *np.linspace(low, high, _BETWEEN)]))
-            cost = np.where(found.most_used <= 0.999, found.objectives[minimise], np.inf)
-            if other is not None:
-                cost = np.where(found.objectives[other] <= bound, cost, np.inf)
-            place = int(np.argmin(cost))
-            if cost[place] < best[0]:
-                best = (float(cost[place]), tried, float(f[place]))
-    return _under_deviations(task, best[1], best[2])
+        rows = sample_ranges(ranges, samples=_SAMPLES, seed=refinement) if ranges else np.empty((1, 0))
+        for entries in [best[1].entries, *[dict(zip(ranges, map(float, row), strict=True)) for row in rows]]:
+            trial = replace(candidate, entries=entries)
+            f, evaluation = evaluate_candidate(
+                problem, trial, frequency=np.unique([best[2], *np.linspace(low, high, _FREQUENCIES)])
+            )
+            objective = np.where(evaluation.maximum_utilisation <= _FEASIBLE, evaluation.objectives[minimise], np.inf)
+            if second_objective is not None:
+                objective = np.where(evaluation.objectives[second_objective] <= bound, objective, np.inf)
+            i = int(np.argmin(objective))
+            if objective[i] < best[0]:
+                best = (float(objective[i]), trial, float(f[i]))
+    return _design_point_with_tolerance(problem, best[1], best[2])
 
 
-def _under_deviations(task: Task, choice: Choice, frequency: float) -> Point | None:
-    rigs = [rig_of(task.space, choice, deviation) for deviation in deviations(task.tolerance)]
-    f = np.array([frequency])
-    needed = np.array(
+def _design_point_with_tolerance(problem: DesignProblem, candidate: Candidate, frequency: float) -> DesignPoint | None:
+    """Design point at the voltage that reaches the target under tolerances; None where it is infeasible."""
+    rigs = [candidate_rig(problem.space, candidate, deviation) for deviation in deviations(problem.tolerance)]
+    swings = np.array(
         [
-            exact_swing(
+            refine_swing(
                 rig,
                 frequency=frequency,
-                friction_ratio=task.friction_ratio,
-                near=0.3 * highest_swing(rig, task.limits),
-                highest=highest_swing(rig, task.limits),
+                friction_ratio=problem.friction_ratio,
+                near=0.3 * maximum_swing(rig, problem.limits),
+                highest=maximum_swing(rig, problem.limits),
             )
             for rig in rigs
         ]
     )
-    volts = float(over_deviations(np.where(np.isnan(needed), np.inf, needed), task.tolerance))
+    volts = float(worst_or_quantile(np.where(np.isnan(swings), np.inf, swings), problem.tolerance))
     if not np.isfinite(volts):
         return None
-    found = worst_of(task, rigs, frequency=f, voltage_peak_to_peak=np.array([volts]))
-    if found.most_used[0] > 1:
+    evaluation = evaluate_with_tolerance(
+        problem, rigs, frequency=np.array([frequency]), voltage_peak_to_peak=np.array([volts])
+    )
+    if evaluation.maximum_utilisation[0] > 1:
         return None
-    return Point(choice=choice, frequency=frequency, voltage_peak_to_peak=volts, assessment=found)
+    return DesignPoint(candidate=candidate, frequency=frequency, voltage_peak_to_peak=volts, evaluation=evaluation)
 
 
 def _narrowed(bounds: tuple[float, float], value: float, width: float) -> tuple[float, float]:
-    """Return a range about a value, a share of the whole one wide to each side in ratio."""
+    """Range about a value within bounds, of a given fraction of their ratio to either side, in the logarithm."""
     low, high = bounds
-    reach = (high / low) ** width
-    return max(low, value / reach), min(high, value * reach)
+    factor = (high / low) ** width
+    return max(low, value / factor), min(high, value * factor)
 
 
-def _front(task: Task, land: Landscape, minimise: str, other: str) -> list[Point]:
-    both = np.stack([land.objectives[minimise], land.objectives[other]], axis=1)
-    both[~land.feasible] = np.inf
-    kept = non_dominated(both)
+def _pareto_front(
+    problem: DesignProblem, screening: ScreeningResult, minimise: str, second_objective: str
+) -> list[DesignPoint]:
+    """Pareto front of two objectives by the epsilon-constraint method, from the non-dominated screened designs."""
+    objectives = np.stack([screening.objectives[minimise], screening.objectives[second_objective]], axis=1)
+    objectives[~screening.feasible] = np.inf
+    kept = non_dominated(objectives)
 
-    def least_under(bound: float) -> tuple[Point, Floats] | None:
-        within = np.flatnonzero(kept & (both[:, 1] <= bound * (1 + 1e-9)))
+    def minimise_under(bound: float) -> tuple[DesignPoint, Floats] | None:
+        """Best design under a bound on the second objective."""
+        within = np.flatnonzero(kept & (objectives[:, 1] <= bound * (1 + 1e-9)))
         if not within.size:
             return None
-        row = int(within[np.argmin(both[within, 0])])
-        found = _refined(task, land, row, minimise, other, bound)
-        return None if found is None else (found, np.array([found.objective(minimise), found.objective(other)]))
+        row = int(within[np.argmin(objectives[within, 0])])
+        point = _refined(problem, screening, row, minimise, second_objective, bound)
+        if point is None:
+            return None
+        return point, np.array([point.objective(minimise), point.objective(second_objective)])
 
-    return [point for point, _ in epsilon_front(least_under, bounds_between(both[kept], _FRONT))]
+    front = epsilon_constraint_front(minimise_under, epsilon_bounds(objectives[kept], _FRONT_POINTS))
+    return [point for point, _ in front]
 
 
-def _in_the_way(task: Task, land: Landscape) -> str:
-    """Return why no design does."""
-    if not land.frequency.size:
-        return "no actuator makes a rig: " + "; ".join(land.refused.values())
-    reaching = np.isfinite(land.voltage_peak_to_peak)
-    wanted = f"friction ratio of {task.friction_ratio:.3g}"
-    if not reaching.any():
+def _infeasibility(problem: DesignProblem, screening: ScreeningResult) -> str:
+    """Message why no screened design is feasible."""
+    if not screening.frequency.size:
+        return "no actuator makes a rig: " + "; ".join(screening.refused.values())
+    reached = np.isfinite(screening.voltage_peak_to_peak)
+    target = f"friction ratio of {problem.friction_ratio:.3g}"
+    if not reached.any():
         return (
-            f"out of reach: no design brings friction down to a {wanted} with the voltage that stack and amplifier"
-            " bear; take in more frequencies, lighter tips or other actuators"
+            f"out of reach: no design brings friction down to a {target} within the voltage limits of stack and"
+            " amplifier; take in more frequencies, lighter tips or other actuators"
         )
-    shares = {name: values[reaching] for name, values in land.usage.items()}
-    closest = int(np.argmin(land.most_used[reaching]))
-    worst: Callable[[str], float] = lambda name: float(shares[name][closest])  # noqa: E731
-    name = max(shares, key=worst)
-    over = f"{worst(name):.3g} times what is allowed" if np.isfinite(worst(name)) else "which no design keeps"
+    closest = int(np.argmin(screening.maximum_utilisation[reached]))
+    utilisation = {name: float(values[reached][closest]) for name, values in screening.utilisation.items()}
+    name = max(utilisation, key=lambda each: utilisation[each])
+    if np.isfinite(utilisation[name]):
+        excess = f"violates {name}, {utilisation[name]:.3g} times what is allowed"
+    else:
+        excess = f"violates {name}, with an infinite utilisation"
     return (
-        f"no design gives a {wanted} within the limits: the closest of {int(reaching.sum())} breaks {name}, {over};"
-        " ease that limit or widen the ranges"
+        f"no design gives a {target} within the limits: the closest of {int(reached.sum())} {excess};"
+        " relax that limit or widen the ranges"
     )

@@ -1,4 +1,4 @@
-"""Several objectives: which designs no other beats in all of them, and the front between their best."""
+"""Pareto front of several objectives: non-dominated points, and the front of two by the epsilon-constraint method."""
 
 from collections.abc import Callable
 from typing import TypeVar
@@ -8,20 +8,25 @@ from numpy.typing import NDArray
 
 from sonolube.checks import Floats
 
-Chosen = TypeVar("Chosen")
+Solution = TypeVar("Solution")
 
 
 def non_dominated(values: Floats) -> NDArray[np.bool_]:
-    """Return which rows no other row beats in one column without losing in another; less is better.
+    """Which points no other point dominates: is no worse in every objective and better in one; smaller is better.
 
     Parameters
     ----------
     values : ndarray, shape (n, m)
+        Objectives of each point.
 
     Returns
     -------
     ndarray of bool, shape (n,)
-        Of rows that are alike, the first; never one with a value that is not finite.
+        Of equal points the first; never a point with a value that is not finite.
+
+    See Also
+    --------
+    epsilon_constraint_front
     """
     keep: NDArray[np.bool_] = np.asarray(np.isfinite(values).all(axis=1), dtype=np.bool_)
     order = np.lexsort(values.T[::-1])
@@ -29,56 +34,71 @@ def non_dominated(values: Floats) -> NDArray[np.bool_]:
     for row in order:
         if not keep[row]:
             continue
-        beaten = kept and np.any(np.all(values[kept] <= values[row], axis=1))
-        keep[row] = not beaten
+        dominated = kept and np.any(np.all(values[kept] <= values[row], axis=1))
+        keep[row] = not dominated
         if keep[row]:
             kept.append(int(row))
     return keep
 
 
-def bounds_between(values: Floats, points: int) -> Floats:
-    """Return bounds on the second column that walk along a front, from its least to that of the first column's best.
+def epsilon_bounds(values: Floats, points: int) -> Floats:
+    """Bounds on the second objective between the two ends of a Pareto front, in geometric sequence.
 
     Parameters
     ----------
     values : ndarray, shape (n, 2)
-        Objectives of designs that no other beats.
+        Objectives of non-dominated points.
     points : int
-        How many bounds.
+        Number of bounds.
 
     Returns
     -------
     ndarray, shape (points,)
-        Even in ratio, falling; the first is no bound to the first column's best.
+        Decreasing, from the second objective of the point with the smallest first one.
+
+    See Also
+    --------
+    epsilon_constraint_front
     """
-    best = values[np.argmin(values[:, 0]), 1]
-    return np.geomspace(best, values[:, 1].min(), points)
+    largest = values[np.argmin(values[:, 0]), 1]
+    return np.geomspace(largest, values[:, 1].min(), points)
 
 
-def epsilon_front(
-    least_under: Callable[[float], tuple[Chosen, Floats] | None], bounds: Floats
-) -> list[tuple[Chosen, Floats]]:
-    """Return the front of two objectives: the least of the first under each bound on the second.
+def epsilon_constraint_front(
+    minimise_under: Callable[[float], tuple[Solution, Floats] | None], bounds: Floats
+) -> list[tuple[Solution, Floats]]:
+    r"""Pareto front of two objectives by the epsilon-constraint method.
 
     Parameters
     ----------
-    least_under : callable
-        Returns for a bound what was chosen and both objectives, or None where nothing keeps to it.
-    bounds : ndarray
+    minimise_under : callable
+        From a bound on the second objective to the solution with the smallest first objective, and both objectives; or
+        None where the bound is infeasible.
+    bounds : ndarray, shape (n,)
         Bounds on the second objective.
 
     Returns
     -------
     list of pair
-        What was chosen and its objectives, none beaten by another, by rising first objective.
+        Non-dominated solutions and their objectives, by increasing first objective.
+
+    See Also
+    --------
+    epsilon_bounds, non_dominated
+
+    Notes
+    -----
+    Each point solves
+
+    .. math:: \min_x f_1(x) \quad \text{subject to} \quad f_2(x) \le \varepsilon
 
     References
     ----------
     .. [1] Y. Y. Haimes, L. S. Lasdon, D. A. Wismer, IEEE Trans. Syst. Man Cybern. 1, 296 (1971).
     """
-    found = [point for bound in bounds if (point := least_under(float(bound))) is not None]
-    if not found:
+    solutions = [solution for bound in bounds if (solution := minimise_under(float(bound))) is not None]
+    if not solutions:
         return []
-    kept = non_dominated(np.array([objectives for _, objectives in found]))
-    front = [point for point, keep in zip(found, kept, strict=True) if keep]
-    return sorted(front, key=lambda point: float(point[1][0]))
+    kept = non_dominated(np.array([objectives for _, objectives in solutions]))
+    front = [solution for solution, keep in zip(solutions, kept, strict=True) if keep]
+    return sorted(front, key=lambda solution: float(solution[1][0]))

@@ -1,4 +1,4 @@
-"""What a design must keep to: limits of stack, bolt, contact, horn, temperature and amplifier."""
+"""Objectives and limits of a design: stack, preload bolt, contact, horn, temperature and amplifier."""
 
 from dataclasses import dataclass
 
@@ -6,12 +6,12 @@ from sonolube.checks import require_non_negative, require_positive
 from sonolube.errors import InvalidInput
 
 OBJECTIVES = ("power", "heat", "voltage")
-"""What can be made least: amplifier power (D 1.9), heat in the actuator, or swing of the drive."""
+"""Objectives that can be minimised: amplifier power (D 1.9), heat in the actuator, peak-to-peak drive voltage."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Horn:
-    """A prismatic half-wave horn between stack and contact, whose end moves as the tip does.
+class HalfWaveHorn:
+    r"""Prismatic half-wave horn between stack and contact, whose end moves as the tip does.
 
     Parameters
     ----------
@@ -20,7 +20,7 @@ class Horn:
     youngs_modulus : float
         Young's modulus. [Pa]
     stress_limit : float
-        Amplitude of the stress that it bears. [Pa]
+        Admissible stress amplitude. [Pa]
 
     Raises
     ------
@@ -29,7 +29,10 @@ class Horn:
 
     Notes
     -----
-    The stress at the node is rho c times the velocity of the end, with c the root of E/rho.
+    The stress amplitude at the displacement node of a half-wave bar whose end has the velocity amplitude :math:`\hat v`
+    is
+
+    .. math:: \hat\sigma = \rho c_0 \hat v = \sqrt{\rho E}\, \hat v
     """
 
     density: float
@@ -42,35 +45,35 @@ class Horn:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Limits:
-    """Limits beyond those of the stack; what is None is not judged.
+    """Limits of a design beyond those of the stack itself; None for no limit.
 
     Parameters
     ----------
     voltage_maximum : float or None
-        Highest voltage of the amplifier, either way. [V]
+        Highest absolute voltage of the amplifier. [V]
     current_maximum : float or None
         Highest current of the amplifier. [A]
     slew_rate_maximum : float or None
-        Fastest change of the amplifier's voltage. [V/s]
+        Slew rate of the amplifier. [V/s]
     nominal_pressure : float or None
-        Most that the contact bears at its highest force, over its nominal area. [Pa]
+        Admissible nominal pressure of the contact at its highest normal force. [Pa]
     temperature_rise : float or None
-        Most that the actuator may warm. [K]
+        Admissible temperature rise of the actuator. [K]
     thermal_conductance : float or None
-        Heat that leaves the actuator per kelvin. [W/K]
+        Heat flow from the actuator to the surroundings per kelvin. [W/K]
     loss_tangent : float
         Dielectric loss tangent of the ceramic. []
     fatigue_safety : float
-        Least safety of the bolt against fatigue. []
+        Required safety factor of the bolt against fatigue. []
     yield_safety : float
-        Least safety of the bolt against yielding. []
-    horn : Horn or None
-        Between stack and contact.
+        Required safety factor of the bolt against yielding. []
+    horn : HalfWaveHorn or None
+        Horn between stack and contact.
 
     Raises
     ------
     InvalidInput
-        If a limit is not positive, or a temperature is to be kept without a conductance.
+        If a limit is not positive, or the temperature rise is limited without a thermal conductance.
     """
 
     voltage_maximum: float | None = None
@@ -82,7 +85,7 @@ class Limits:
     loss_tangent: float = 0.02
     fatigue_safety: float = 1.2
     yield_safety: float = 1.1
-    horn: Horn | None = None
+    horn: HalfWaveHorn | None = None
 
     def __post_init__(self) -> None:
         names = ("voltage_maximum", "current_maximum", "slew_rate_maximum", "nominal_pressure", "temperature_rise")
@@ -92,4 +95,6 @@ class Limits:
         if self.thermal_conductance is not None:
             require_positive(thermal_conductance=self.thermal_conductance)
         if self.temperature_rise is not None and self.thermal_conductance is None:
-            raise InvalidInput("temperature_rise needs thermal_conductance, the heat that leaves per kelvin")
+            raise InvalidInput(
+                "temperature_rise needs thermal_conductance, the heat flow to the surroundings per kelvin"
+            )

@@ -1,18 +1,18 @@
-"""A design as a rig file, to be simulated, mapped and controlled as any other."""
+"""Text of the rig file of an optimised design."""
 
 import json
 from collections.abc import Mapping
 from typing import Any
 
 from sonolube.actuator import PiezoStack
-from sonolube.design.optimisation.electrical import design_rig
-from sonolube.design.optimisation.local_search import Point
-from sonolube.design.optimisation.screening import Task
-from sonolube.design.optimisation.space import OWN
+from sonolube.design.optimisation.drive_electronics import design_rig
+from sonolube.design.optimisation.gradient_search import DesignPoint
+from sonolube.design.optimisation.screening import DesignProblem
+from sonolube.design.optimisation.space import OWN_ACTUATOR
 from sonolube.rig import with_tables
 from sonolube.vocabulary import quantities
 
-_STACK = (
+_STACK_KEYS = (
     "free_capacitance",
     "free_stroke_per_volt",
     "stack_stiffness",
@@ -24,23 +24,23 @@ _STACK = (
 )
 
 
-def design_text(text: str, content: Mapping[str, Any], task: Task, point: Point) -> str:
-    """Return a rig file with the tables that a design changes.
+def design_text(text: str, content: Mapping[str, Any], problem: DesignProblem, point: DesignPoint) -> str:
+    """Rig file of a design point: the original file with the tables that the design changes.
 
     Parameters
     ----------
     text : str
-        The file that was optimised.
+        Text of the original file.
     content : mapping
-        Its content, entries changed on the way included.
-    task : Task
-    point : Point
+        Its parsed content, including entries changed on the command line.
+    problem : DesignProblem
+    point : DesignPoint
 
     Returns
     -------
     str
     """
-    rig = design_rig(task, point)
+    rig = design_rig(problem, point)
     drive = rig.drive
     changed: dict[str, dict[str, Any]] = {
         name: {key: value for key, value in content[name].items() if not isinstance(value, dict)}
@@ -51,41 +51,46 @@ def design_text(text: str, content: Mapping[str, Any], task: Task, point: Point)
     }
     if drive.waveform_samples is None:
         changed["drive"].pop("waveform_samples", None)
-    changed["stack"] = _stack(rig.stack)
-    changed["structure"] = {**task.space.entries, **point.choice.entries}
-    assumed = dict(content.get("assumptions", {}))
-    assumed["drive"] = f"chosen for a friction ratio of {task.friction_ratio:.4g}"
+    changed["stack"] = _stack_entries(rig.stack)
+    changed["structure"] = {**problem.space.entries, **point.candidate.entries}
+    assumptions = dict(content.get("assumptions", {}))
+    assumptions["drive"] = f"optimised for a friction ratio of {problem.friction_ratio:.4g}"
     if "actuator" in content:
         changed["actuator"] = dict(content["actuator"]) | {"capacitance": rig.stack.free_capacitance}
         if "amplitude_per_volt" in content["actuator"]:
             changed["actuator"]["amplitude_per_volt"] = rig.vibration_amplitude / rig.voltage_peak_to_peak
-            assumed["actuator.amplitude_per_volt"] = "computed at the drive chosen"
+            assumptions["actuator.amplitude_per_volt"] = "computed at this drive"
     if "vibration" in content:
         changed["vibration"] = {"vibration_amplitude": rig.vibration_amplitude}
-    if point.choice.actuator != OWN:
-        assumed["stack"] = (
-            f"{task.space.catalogue[point.choice.actuator].title}, by its sheet; quality factor"
-            f" {task.space.mechanical_quality_factor:g} taken for its ceramic"
+    if point.candidate.actuator != OWN_ACTUATOR:
+        assumptions["stack"] = (
+            f"{problem.space.catalogue[point.candidate.actuator].title}, by its data sheet; quality"
+            f" factor {problem.space.mechanical_quality_factor:g} assumed for its ceramic"
         )
-    tables = [*changed.items(), ("assumptions", assumed)]
-    own = "\n".join(line for line in text.splitlines() if not line.startswith("#:schema"))  # it need not lie there
-    return with_tables(own + "\n", "\n".join(_table(name, entries) for name, entries in tables))
+    tables = [*changed.items(), ("assumptions", assumptions)]
+    # the relative path of the schema holds only where the original file lies
+    original = "\n".join(line for line in text.splitlines() if not line.startswith("#:schema"))
+    return with_tables(original + "\n", "\n".join(_table(name, entries) for name, entries in tables))
 
 
-def _stack(stack: PiezoStack) -> dict[str, Any]:
-    return {name: getattr(stack, name) for name in _STACK if getattr(stack, name) is not None}
+def _stack_entries(stack: PiezoStack) -> dict[str, Any]:
+    """Entries of the table `stack` that are known."""
+    return {name: getattr(stack, name) for name in _STACK_KEYS if getattr(stack, name) is not None}
 
 
 def _table(name: str, entries: Mapping[str, Any]) -> str:
+    """TOML text of a table."""
     lines = [f"{_key(key)} = {_value(key, value)}" for key, value in entries.items() if value is not None]
     return "\n".join([f"[{name}]", *lines]) + "\n"
 
 
 def _key(key: str) -> str:
+    """TOML text of a key, quoted where needed."""
     return key if key.replace("_", "").isalnum() else json.dumps(key)
 
 
 def _value(key: str, value: Any) -> str:
+    """TOML text of a value, a quantity with its unit."""
     unit = quantities()[key].unit if key in quantities() else ""
     if isinstance(value, bool | str | list | tuple) or not unit:
         return json.dumps(list(value) if isinstance(value, tuple) else value, ensure_ascii=False)

@@ -1,4 +1,4 @@
-"""A space looked over: many choices, each at many frequencies, with what each asks for."""
+"""Screening of a design space: objectives and constraints of many candidates at many drive frequencies."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -7,32 +7,31 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.checks import Floats
-from sonolube.design.optimisation.assessment import CONSTRAINTS, Assessment, assess
+from sonolube.design.optimisation.evaluation import CONSTRAINTS, Evaluation, evaluate
+from sonolube.design.optimisation.required_voltage import estimate_swings
 from sonolube.design.optimisation.requirements import OBJECTIVES, Limits
-from sonolube.design.optimisation.space import Choice, DesignSpace, Range, rig_of
-from sonolube.design.optimisation.target import swings_for_ratio
-from sonolube.design.optimisation.tolerance import Tolerance, deviations, over_deviations
+from sonolube.design.optimisation.space import Candidate, DesignSpace, Range, candidate_rig
+from sonolube.design.optimisation.tolerance import Tolerance, deviations, worst_or_quantile
+from sonolube.design.progress import ProgressCallback
 from sonolube.errors import SonolubeError
 from sonolube.rig import frequency_grid
 from sonolube.rig.driven_rig import DrivenRig
 
-Advance = Callable[[int, int], None]
-
-_FREQUENCIES, _CROWDED = 60, 21
+_FREQUENCIES, _FREQUENCIES_PER_RESONANCE = 60, 21
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Task:
-    """What is asked of a space.
+class DesignProblem:
+    """Optimisation problem: a design space, the target friction ratio, limits and tolerances.
 
     Parameters
     ----------
     space : DesignSpace
     friction_ratio : float
-        Friction with vibration over friction without, to be had. []
+        Target of friction with vibration over friction without. []
     limits : Limits
     tolerance : Tolerance or None
-        For which deviations it must be had.
+        Manufacturing tolerance at which the target must be reached; None for the nominal design.
     """
 
     space: DesignSpace
@@ -42,71 +41,91 @@ class Task:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Landscape:
-    """Designs as columns, each array of one length.
+class ScreeningResult:
+    """Screened designs as columns, each a candidate at a drive frequency; every array has one entry per design.
 
     Parameters
     ----------
-    choices : tuple of Choice
-    which : ndarray of int
-        Place of each design's choice among them.
-    frequency : ndarray
-        Frequency of the drive. [Hz]
-    voltage_peak_to_peak : ndarray
-        Swing that brings friction down as wanted; NaN where none does. [V]
+    candidates : tuple of Candidate
+    candidate_index : ndarray of int, shape (n,)
+        Index of the candidate of each design.
+    frequency : ndarray, shape (n,)
+        Drive frequency. [Hz]
+    voltage_peak_to_peak : ndarray, shape (n,)
+        Drive voltage for the target friction ratio; NaN where none reaches it. [V]
     objectives : dict of str to ndarray
-        By the names of `OBJECTIVES`.
-    usage : dict of str to ndarray
-        Share of each limit used, by the names of `CONSTRAINTS`.
+        By the names of `OBJECTIVES`, in W, W and V.
+    utilisation : dict of str to ndarray
+        Demand over limit by the names of `CONSTRAINTS`.
     refused : dict of str to str
-        Actuators that make no rig, and why.
+        Reason by actuator that cannot be used.
     """
 
-    choices: tuple[Choice, ...]
-    which: NDArray[np.intp]
+    candidates: tuple[Candidate, ...]
+    candidate_index: NDArray[np.intp]
     frequency: Floats
     voltage_peak_to_peak: Floats
     objectives: dict[str, Floats]
-    usage: dict[str, Floats]
+    utilisation: dict[str, Floats]
     refused: dict[str, str]
 
     @property
-    def most_used(self) -> Floats:
-        """Largest share of any limit that each design uses."""
-        return np.asarray(np.max(np.stack(list(self.usage.values())), axis=0))
+    def maximum_utilisation(self) -> Floats:
+        """Largest utilisation of any constraint by each design."""
+        return np.asarray(np.max(np.stack(list(self.utilisation.values())), axis=0))
 
     @property
     def feasible(self) -> NDArray[np.bool_]:
-        """Which designs have a voltage and break no limit."""
-        return np.isfinite(self.voltage_peak_to_peak) & (self.most_used <= 1)
+        """Which designs reach the target and violate no constraint."""
+        return np.isfinite(self.voltage_peak_to_peak) & (self.maximum_utilisation <= 1)
 
 
-def choices_of(space: DesignSpace, *, samples: int, seed: int = 0) -> tuple[Choice, ...]:
-    """Return every actuator with every waveform, and entries drawn evenly from their ranges.
+def enumerate_candidates(space: DesignSpace, *, samples: int, seed: int = 0) -> tuple[Candidate, ...]:
+    """Candidates of a space: every actuator with every waveform and every sampled structure.
 
     Parameters
     ----------
     space : DesignSpace
     samples : int
-        Entries to draw for each, where there are ranges; they spread evenly in ratio, both ends of each among them.
+        Least number of structures sampled inside the ranges, rounded up to a power of two; the corners of the ranges
+        are added.
     seed : int
-        Of the random numbers.
+        Seed of the sample.
 
     Returns
     -------
-    tuple of Choice
+    tuple of Candidate
+
+    See Also
+    --------
+    sample_ranges
     """
-    rows = drawn(space.ranges, samples=samples, seed=seed) if space.ranges else np.empty((1, 0))
+    rows = sample_ranges(space.ranges, samples=samples, seed=seed) if space.ranges else np.empty((1, 0))
     return tuple(
-        Choice(actuator=actuator, waveform=waveform, entries=dict(zip(space.ranges, map(float, row), strict=True)))
+        Candidate(actuator=actuator, waveform=waveform, entries=dict(zip(space.ranges, map(float, row), strict=True)))
         for actuator in space.actuators
         for waveform in space.waveforms
         for row in rows
     )
 
 
-def drawn(ranges: Mapping[str, Range], *, samples: int, seed: int = 0) -> Floats:
-    """Return rows of values drawn evenly in ratio from ranges, their corners first."""
+def sample_ranges(ranges: Mapping[str, Range], *, samples: int, seed: int = 0) -> Floats:
+    """Corners of ranges and a scrambled Sobol sample inside them, uniform in the logarithm.
+
+    Parameters
+    ----------
+    ranges : mapping of str to pair of float
+        Lowest and highest value of each variable, positive.
+    samples : int
+        Least number of points inside; rounded up to a power of two.
+    seed : int
+        Seed of the scrambling.
+
+    Returns
+    -------
+    ndarray, shape (points, variables)
+        The corners first.
+    """
     from scipy.stats import qmc
 
     bounds = np.log(np.array(list(ranges.values())))
@@ -116,128 +135,147 @@ def drawn(ranges: Mapping[str, Range], *, samples: int, seed: int = 0) -> Floats
     return np.asarray(np.exp(bounds[:, 0] + np.vstack([corners, inside]) * (bounds[:, 1] - bounds[:, 0])))
 
 
-def looked_over(task: Task, choices: tuple[Choice, ...], *, advance: Advance | None = None) -> Landscape:
-    """Return what every choice asks for at many frequencies, crowded at its resonances.
+def screen(
+    problem: DesignProblem, candidates: tuple[Candidate, ...], *, advance: ProgressCallback | None = None
+) -> ScreeningResult:
+    """Objectives and constraints of every candidate over the frequency range, with a finer grid at its resonances.
 
     Parameters
     ----------
-    task : Task
-    choices : tuple of Choice
+    problem : DesignProblem
+    candidates : tuple of Candidate
     advance : callable, optional
-        Told how many choices are done, and of how many.
+        Called with the number of finished candidates and their total.
 
     Returns
     -------
-    Landscape
+    ScreeningResult
+
+    See Also
+    --------
+    enumerate_candidates, evaluate_candidate, optimise
     """
     parts, refused = [], {}
-    for place, choice in enumerate(choices):
-        if choice.actuator not in refused:
+    for index, candidate in enumerate(candidates):
+        if candidate.actuator not in refused:
             try:
-                parts.append((place, *of_choice(task, choice)))
+                parts.append((index, *evaluate_candidate(problem, candidate)))
             except SonolubeError as refusal:
-                refused[choice.actuator] = str(refusal)
+                refused[candidate.actuator] = str(refusal)
         if advance is not None:
-            advance(place + 1, len(choices))
-    which = [np.full(frequency.size, place) for place, frequency, _ in parts]
-    found = [assessed for *_, assessed in parts]
-    return Landscape(
-        choices=choices,
-        which=np.concatenate([*which, np.zeros(0, dtype=np.intp)]).astype(np.intp),
-        frequency=np.concatenate([*[frequency for _, frequency, _ in parts], np.zeros(0)]),
-        voltage_peak_to_peak=_joined([part.voltage_peak_to_peak for part in found]),
-        objectives={name: _joined([part.objectives[name] for part in found]) for name in OBJECTIVES},
-        usage={name: _joined([part.usage[name] for part in found]) for name in CONSTRAINTS},
+            advance(index + 1, len(candidates))
+    indices = [np.full(frequency.size, index) for index, frequency, _ in parts]
+    evaluations = [evaluation for *_, evaluation in parts]
+    return ScreeningResult(
+        candidates=candidates,
+        candidate_index=np.concatenate([*indices, np.zeros(0, dtype=np.intp)]).astype(np.intp),
+        frequency=_concatenated([frequency for _, frequency, _ in parts]),
+        voltage_peak_to_peak=_concatenated([each.voltage_peak_to_peak for each in evaluations]),
+        objectives={name: _concatenated([each.objectives[name] for each in evaluations]) for name in OBJECTIVES},
+        utilisation={name: _concatenated([each.utilisation[name] for each in evaluations]) for name in CONSTRAINTS},
         refused=refused,
     )
 
 
-def of_choice(task: Task, choice: Choice, *, frequency: Floats | None = None) -> tuple[Floats, Assessment]:
-    """Return frequencies, and what one choice asks for at each of them, the worst of its deviations.
+def evaluate_candidate(
+    problem: DesignProblem, candidate: Candidate, *, frequency: Floats | None = None
+) -> tuple[Floats, Evaluation]:
+    """Evaluation of a candidate over drive frequencies, each at the voltage for the target friction ratio.
 
     Parameters
     ----------
-    task : Task
-    choice : Choice
-    frequency : ndarray, optional
-        Frequencies of the drive; many over the whole range where absent. [Hz]
+    problem : DesignProblem
+    candidate : Candidate
+    frequency : ndarray, shape (n,), optional
+        Drive frequencies; where absent a grid over the whole range, finer at the resonances. [Hz]
 
     Returns
     -------
-    tuple of ndarray and Assessment
+    tuple of ndarray and Evaluation
+        Frequencies, and the worst case or quantile over the deviations.
 
     Raises
     ------
-    InvalidInput
-        If the choice makes no rig.
+    SonolubeError
+        If the candidate does not make a rig.
     """
-    rigs = [rig_of(task.space, choice, deviation) for deviation in deviations(task.tolerance)]
-    f = _grid(rigs[0], task) if frequency is None else frequency
-    needed = np.stack(
-        [swings_for_ratio(rig, task.limits, frequency=f, friction_ratio=task.friction_ratio) for rig in rigs]
+    rigs = [candidate_rig(problem.space, candidate, deviation) for deviation in deviations(problem.tolerance)]
+    f = _default_frequencies(rigs[0], problem) if frequency is None else frequency
+    swings = np.stack(
+        [estimate_swings(rig, problem.limits, frequency=f, friction_ratio=problem.friction_ratio) for rig in rigs]
     )
-    volts = over_deviations(np.where(np.isnan(needed), np.inf, needed), task.tolerance)
-    return f, worst_of(task, rigs, frequency=f, voltage_peak_to_peak=np.where(np.isinf(volts), np.nan, volts))
+    volts = worst_or_quantile(np.where(np.isnan(swings), np.inf, swings), problem.tolerance)
+    return f, evaluate_with_tolerance(
+        problem, rigs, frequency=f, voltage_peak_to_peak=np.where(np.isinf(volts), np.nan, volts)
+    )
 
 
-def worst_of(task: Task, rigs: list[DrivenRig], *, frequency: Floats, voltage_peak_to_peak: Floats) -> Assessment:
-    """Return what drives ask of a rig and its deviations, at worst or at the quantile.
+def evaluate_with_tolerance(
+    problem: DesignProblem, rigs: list[DrivenRig], *, frequency: Floats, voltage_peak_to_peak: Floats
+) -> Evaluation:
+    """Worst case or quantile of objectives and utilisation over a rig and its deviations.
 
     Parameters
     ----------
-    task : Task
+    problem : DesignProblem
     rigs : list of DrivenRig
-        The one drawn first.
+        By the deviations of `deviations`, the nominal one first.
     frequency : ndarray, shape (n,)
-        Frequency of each drive. [Hz]
+        Drive frequencies. [Hz]
     voltage_peak_to_peak : ndarray, shape (n,)
-        Swing of each; NaN where none gives the friction. [V]
+        Drive voltages; NaN where none reaches the target. [V]
 
     Returns
     -------
-    Assessment
-        Of the numbers, those of the rig as drawn.
+    Evaluation
+        Infinite without a voltage; its `quantities` are those of the nominal rig.
     """
-    known = np.isfinite(voltage_peak_to_peak)
-    if not known.any():
-        nothing = np.full(frequency.shape, np.inf)
-        return Assessment(
+    reached = np.isfinite(voltage_peak_to_peak)
+    if not reached.any():
+        infinite = np.full(frequency.shape, np.inf)
+        return Evaluation(
             voltage_peak_to_peak=voltage_peak_to_peak,
-            objectives=dict.fromkeys(OBJECTIVES, nothing),
-            usage=dict.fromkeys(CONSTRAINTS, nothing),
-            numbers={},
+            objectives=dict.fromkeys(OBJECTIVES, infinite),
+            utilisation=dict.fromkeys(CONSTRAINTS, infinite),
+            quantities={},
         )
-    parts = [
-        assess(
+    evaluations = [
+        evaluate(
             rig,
-            task.limits,
-            frequency=frequency[known],
-            voltage_peak_to_peak=voltage_peak_to_peak[known],
-            bolt=task.space.bolt,
+            problem.limits,
+            frequency=frequency[reached],
+            voltage_peak_to_peak=voltage_peak_to_peak[reached],
+            bolt=problem.space.bolt,
         )
         for rig in rigs
     ]
 
-    def spread(values: Floats) -> Floats:
-        whole = np.full(frequency.shape, np.inf)
-        whole[known] = values
-        return whole
+    def expanded(values: Floats) -> Floats:
+        """Values of all designs, infinite for those without a voltage."""
+        column = np.full(frequency.shape, np.inf)
+        column[reached] = values
+        return column
 
-    def worst(of: Callable[[Assessment], Floats]) -> Floats:
-        return spread(over_deviations(np.stack([of(part) for part in parts]), task.tolerance))
+    def over_deviations(values_of: Callable[[Evaluation], Floats]) -> Floats:
+        """Worst case or quantile over the deviations."""
+        return expanded(worst_or_quantile(np.stack([values_of(each) for each in evaluations]), problem.tolerance))
 
-    return Assessment(
+    return Evaluation(
         voltage_peak_to_peak=voltage_peak_to_peak,
-        objectives={name: worst(lambda part, name=name: part.objectives[name]) for name in OBJECTIVES},  # type: ignore[misc]
-        usage={name: worst(lambda part, name=name: part.usage[name]) for name in CONSTRAINTS},  # type: ignore[misc]
-        numbers={name: spread(values) for name, values in parts[0].numbers.items()},
+        objectives={name: over_deviations(lambda each, name=name: each.objectives[name]) for name in OBJECTIVES},  # type: ignore[misc]
+        utilisation={name: over_deviations(lambda each, name=name: each.utilisation[name]) for name in CONSTRAINTS},  # type: ignore[misc]
+        quantities={name: expanded(values) for name, values in evaluations[0].quantities.items()},
     )
 
 
-def _grid(rig: DrivenRig, task: Task) -> Floats:
-    low, high = task.space.frequencies
-    return frequency_grid(rig, lowest=low, highest=high, points=_FREQUENCIES, resonance_points=_CROWDED)
+def _default_frequencies(rig: DrivenRig, problem: DesignProblem) -> Floats:
+    """Grid over the frequency range, finer at the resonances of a rig."""
+    low, high = problem.space.frequencies
+    return frequency_grid(
+        rig, lowest=low, highest=high, points=_FREQUENCIES, resonance_points=_FREQUENCIES_PER_RESONANCE
+    )
 
 
-def _joined(parts: list[Floats]) -> Floats:
+def _concatenated(parts: list[Floats]) -> Floats:
+    """Arrays joined to one, empty where there are none."""
     return np.concatenate([*parts, np.zeros(0)])

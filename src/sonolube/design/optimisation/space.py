@@ -1,4 +1,4 @@
-"""What a designer may choose, actuator, waveform, frequency, entries of the structure, and the rig it makes."""
+"""Design space: actuators, waveforms, drive frequencies and entries of the structure, and the rig of a candidate."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -12,50 +12,50 @@ from sonolube.dynamics import Structure, chain_structure, pin_on_disc_chain
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.rig.driven_rig import DrivenRig
 
-OWN = "own"
-"""Name of the actuator that the rig has."""
+OWN_ACTUATOR = "own"
+"""Name that stands for the rig's own actuator."""
 
 Range = tuple[float, float]
+"""Lowest and highest value of a design variable."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class DesignSpace:
-    """Choices about a rig; all else of it stays.
+    """Design variables of a rig with their ranges; everything else is kept.
 
     Parameters
     ----------
     rig : DrivenRig
-        With a stack, a structure and a drive voltage.
     entries : mapping of str to float
-        Its table `structure`, in SI.
+        Entries of its table `structure`, in SI.
     frequencies : pair of float
-        Lowest and highest frequency of the drive, in Hz.
+        Lowest and highest drive frequency, in Hz.
     ranges : mapping of str to pair of float
-        Lowest and highest value of each entry of `structure` that may be chosen, in SI.
+        Lowest and highest value of each entry of `structure` that is a design variable, in SI.
     actuators : tuple of str
         Names of the catalogue, or "own" for the rig's own stack.
     waveforms : tuple of str
-        Shapes of the drive voltage.
+        Waveforms of the drive voltage.
     catalogue : mapping of str to CatalogueActuator
         Actuators by name.
     mechanical_quality_factor : float
-        Quality factor of the catalogue's ceramics, which sheets do not print. []
+        Quality factor assumed for the catalogue's ceramics, which data sheets do not state. []
     bolt : PreloadBolt or None
-        What presses the stack together; it stiffens it, too.
+        Bolt that preloads the stack, and adds its stiffness.
 
     Raises
     ------
     InvalidInput
-        If a range is none, or an entry none of the structure.
+        If a range does not increase from above zero.
     UnknownName
-        If an actuator is in no catalogue.
+        If a range is of no entry of the structure, or an actuator is not in the catalogue.
     """
 
     rig: DrivenRig
     entries: Mapping[str, float]
     frequencies: Range
     ranges: Mapping[str, Range] = field(default_factory=lambda: MappingProxyType({}))
-    actuators: tuple[str, ...] = (OWN,)
+    actuators: tuple[str, ...] = (OWN_ACTUATOR,)
     waveforms: tuple[str, ...] = ("sine",)
     catalogue: Mapping[str, CatalogueActuator] = field(default_factory=lambda: MappingProxyType({}))
     mechanical_quality_factor: float = 80.0
@@ -67,29 +67,29 @@ class DesignSpace:
             if name not in ("frequency", *self.entries):
                 raise UnknownName.among(self.entries, kind="entry of structure", name=name)
             if not 0 < low < high:
-                raise InvalidInput(f"{name}: needs a range from above 0 that rises, got {low:g} to {high:g}")
+                raise InvalidInput(f"{name}: a range must increase from above 0, got {low:g} to {high:g}")
         for name in self.actuators:
-            if name != OWN and name not in self.catalogue:
-                raise UnknownName.among((OWN, *self.catalogue), kind="actuator", name=name)
+            if name != OWN_ACTUATOR and name not in self.catalogue:
+                raise UnknownName.among((OWN_ACTUATOR, *self.catalogue), kind="actuator", name=name)
 
     @cached_property
     def bounds(self) -> dict[str, Range]:
-        """Ranges of all numbers to choose: the frequency, then the entries of the structure."""
+        """Ranges of all continuous design variables: the frequency, then the entries of the structure."""
         return {"frequency": self.frequencies, **self.ranges}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Choice:
-    """One choice out of a space, without the voltage that it takes.
+class Candidate:
+    """One choice of actuator, waveform and structure; frequency and voltage are open.
 
     Parameters
     ----------
     actuator : str
         Name in the catalogue, or "own".
     waveform : str
-        Shape of the drive voltage.
+        Waveform of the drive voltage.
     entries : mapping of str to float
-        Entries of the structure that were chosen, in SI.
+        Values of the entries of the structure that are design variables, in SI.
     """
 
     actuator: str
@@ -97,8 +97,8 @@ class Choice:
     entries: Mapping[str, float]
 
 
-def stack_of(space: DesignSpace, actuator: str) -> PiezoStack:
-    """Return the stack that an actuator makes, with the bolt that presses it.
+def candidate_stack(space: DesignSpace, actuator: str) -> PiezoStack:
+    """Piezoelectric stack of an actuator, with the preload bolt in parallel.
 
     Parameters
     ----------
@@ -109,16 +109,16 @@ def stack_of(space: DesignSpace, actuator: str) -> PiezoStack:
     Returns
     -------
     PiezoStack
-        A catalogue's material loses what its quality factor says at the middle of the frequencies.
+        For a catalogue actuator with the damping of its quality factor at the centre of the frequency range.
 
     Raises
     ------
     InvalidInput
-        If the actuator does not bear the bolt's preload.
+        If the bolt's preload exceeds what the actuator admits.
     MissingProperty
-        If its source says too little.
+        If the data sheet lacks a property.
     """
-    if actuator == OWN:
+    if actuator == OWN_ACTUATOR:
         stack = space.rig.stack
     else:
         stack = catalogue_stack(
@@ -130,10 +130,35 @@ def stack_of(space: DesignSpace, actuator: str) -> PiezoStack:
     return stack if space.bolt is None else bolted_stack(stack, space.bolt)
 
 
-def structure_of(
+def candidate_structure(
     space: DesignSpace, stack: PiezoStack, entries: Mapping[str, float], deviation: Deviation = NOMINAL
 ) -> tuple[PiezoStack, Structure]:
-    """Return stack and structure as they are built, off by a deviation."""
+    r"""Stack and structure of a candidate with a manufacturing deviation.
+
+    Parameters
+    ----------
+    space : DesignSpace
+    stack : PiezoStack
+        Nominal stack.
+    entries : mapping of str to float
+        Entries of the structure that replace those of the rig, in SI.
+    deviation : Deviation
+
+    Returns
+    -------
+    tuple of PiezoStack and Structure
+
+    Notes
+    -----
+    With the factors :math:`\kappa` of stiffness, :math:`\mu` of masses and :math:`\gamma` of gain,
+
+    .. math::
+
+        k_p \to \kappa k_p, \quad N d_{33} \to \frac{\gamma}{\sqrt\kappa} N d_{33}, \quad
+        c \to \frac{c}{\gamma}, \quad m \to \mu m
+
+    so that the stiffness alone leaves the coupling factor :math:`k^2 = (N d_{33})^2 k_p / C` unchanged.
+    """
     built = replace(
         stack,
         stack_stiffness=stack.stack_stiffness * deviation.stiffness,
@@ -147,22 +172,30 @@ def structure_of(
     return built, chain_structure(pin_on_disc_chain(built, **{**values, **masses, **damping}))
 
 
-def rig_of(space: DesignSpace, choice: Choice, deviation: Deviation = NOMINAL) -> DrivenRig:
-    """Return the rig that a choice makes, its drive's frequency and swing as they were.
+def candidate_rig(space: DesignSpace, candidate: Candidate, deviation: Deviation = NOMINAL) -> DrivenRig:
+    """Rig of a candidate with a manufacturing deviation, at the frequency and voltage of the original rig.
 
     Parameters
     ----------
     space : DesignSpace
-    choice : Choice
+    candidate : Candidate
     deviation : Deviation
-        By what it is off.
 
     Returns
     -------
     DrivenRig
+
+    Raises
+    ------
+    InvalidInput
+        If the actuator cannot be used with the bolt.
+    MissingProperty
+        If the data sheet of the actuator lacks a property.
     """
-    stack, structure = structure_of(space, stack_of(space, choice.actuator), choice.entries, deviation)
+    stack, structure = candidate_structure(
+        space, candidate_stack(space, candidate.actuator), candidate.entries, deviation
+    )
     drive = space.rig.drive
-    if choice.waveform != "sampled":
-        drive = replace(drive, waveform=choice.waveform, waveform_samples=None)
+    if candidate.waveform != "sampled":
+        drive = replace(drive, waveform=candidate.waveform, waveform_samples=None)
     return replace(space.rig, stack=stack, structure=structure, drive=drive, capacitance=stack.free_capacitance)

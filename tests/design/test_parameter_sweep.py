@@ -1,4 +1,4 @@
-"""Sweeps: the points of single computations, whatever the order, the chunks and the interruptions."""
+"""Sweeps against single computations, whatever the order, the chunks, the threads and the interruptions."""
 
 import os
 import signal
@@ -31,7 +31,7 @@ def small_plan() -> SweepPlan:
     )
 
 
-def test_a_grid_is_its_single_points() -> None:
+def test_a_grid_holds_the_single_operating_points() -> None:
     found = sweep(small_plan())
     assert dict(found.sizes) == {
         "rms_height": 2,
@@ -49,7 +49,7 @@ def test_a_grid_is_its_single_points() -> None:
         assert rows["friction_ratio"].values == approx(known.friction_ratio, abs=1e-4)
 
 
-def test_a_friction_model_without_a_batched_form_is_swept_too() -> None:
+def test_a_friction_model_without_a_batched_form_can_be_swept() -> None:
     plan = grid_plan(RIG_FILE, over={"friction.model": ["asperity_stick_slip", "kinematic"], SPEEDS: [0.02, 0.2]})
     found = sweep(plan)["friction_ratio"]
     for name in ("asperity_stick_slip", "kinematic"):
@@ -58,7 +58,7 @@ def test_a_friction_model_without_a_batched_form_is_swept_too() -> None:
         assert found.sel(model=name).values == approx(known, abs=1e-4)
 
 
-def test_a_point_that_cannot_be_had_keeps_its_reason_and_spoils_no_other() -> None:
+def test_a_refused_point_keeps_its_reason_and_affects_no_other() -> None:
     plan = list_plan(
         RIG_FILE,
         over={
@@ -77,7 +77,7 @@ def test_a_point_that_cannot_be_had_keeps_its_reason_and_spoils_no_other() -> No
     assert np.isnan(found["friction_ratio"].values).tolist() == [False, True, True, True]
 
 
-def test_a_latin_hypercube_meets_every_part_of_each_range_once() -> None:
+def test_a_latin_hypercube_has_one_point_in_each_interval_of_each_range() -> None:
     over = {VOLTS: (2.0, 28.0), SPEEDS: (0.01, 0.2)}
     drawn = latin_hypercube_plan(RIG_FILE, over=over, points=20, seed=3)
     for key, (low, high) in over.items():
@@ -97,12 +97,12 @@ def test_threads_and_files_change_no_bit(workers: int, tmp_path: Path) -> None:
     assert np.array_equal(*texts)
 
 
-def test_the_size_of_chunks_does_not_matter() -> None:
+def test_the_chunk_size_does_not_change_the_results() -> None:
     for name, known in sweep(small_plan()).drop_vars(["status", "reason", "reason_text"]).items():
         assert sweep(small_plan(), chunk_points=11)[name].values == approx(known.values, rel=1e-6, abs=1e-9), name
 
 
-def test_a_second_run_does_only_what_is_missing(tmp_path: Path) -> None:
+def test_a_second_run_computes_only_missing_and_damaged_chunks(tmp_path: Path) -> None:
     first = sweep(small_plan(), folder=tmp_path, chunk_points=11).load()
     first.close()
     chunks = sorted(tmp_path.glob("chunk-*.npz"))
@@ -110,15 +110,15 @@ def test_a_second_run_does_only_what_is_missing(tmp_path: Path) -> None:
     damaged, lost = chunks[2], chunks[4]
     damaged.write_bytes(damaged.read_bytes()[:-9] + b"different")
     lost.unlink()
-    told: list[tuple[int, int]] = []
-    second = sweep(small_plan(), folder=tmp_path, chunk_points=11, advance=lambda *far: told.append(far)).load()
+    reports: list[tuple[int, int]] = []
+    second = sweep(small_plan(), folder=tmp_path, chunk_points=11, advance=lambda *done: reports.append(done)).load()
     assert second.identical(first)
-    assert told == [(48, 70), (59, 70), (70, 70)]
+    assert reports == [(48, 70), (59, 70), (70, 70)]
     assert sorted(tmp_path.glob("chunk-*.npz")) == chunks
     assert {path for path in chunks if path.stat().st_mtime_ns != times[path]} == {damaged, lost}
 
 
-def test_a_sweep_killed_on_its_way_ends_as_if_it_had_not_been(tmp_path: Path) -> None:
+def test_a_resumed_sweep_equals_an_uninterrupted_one(tmp_path: Path) -> None:
     program = (
         "import sys, time, numpy as np\n"
         "from sonolube.design import grid_plan, sweep\n"
@@ -143,7 +143,7 @@ def test_a_sweep_killed_on_its_way_ends_as_if_it_had_not_been(tmp_path: Path) ->
     assert again.identical(sweep(plan, folder=whole, chunk_points=50))
 
 
-def test_the_file_of_a_folder_reads_as_any_other(tmp_path: Path) -> None:
+def test_the_netcdf_file_of_a_folder_has_units_and_keys(tmp_path: Path) -> None:
     made = sweep(small_plan(), folder=tmp_path)
     made.close()
     with xr.open_dataset(tmp_path / "sweep.nc") as found:
@@ -152,34 +152,34 @@ def test_the_file_of_a_folder_reads_as_any_other(tmp_path: Path) -> None:
         assert found["rms_height"].attrs["key"] == "contact.roughness.rms_height"
 
 
-def test_another_sweep_in_the_folder_is_refused(tmp_path: Path) -> None:
+def test_a_folder_with_another_sweep_is_refused(tmp_path: Path) -> None:
     sweep(small_plan(), folder=tmp_path).close()
     with raises(InvalidInput, match="holds another sweep"):
         sweep(grid_plan(RIG_FILE, over={VOLTS: [10.0]}), folder=tmp_path)
 
 
 @pytest.mark.parametrize(
-    ("over", "said"),
+    ("over", "message"),
     [
         ({"drive.voltage": [1.0]}, "drive.voltage: unknown key"),
         ({VOLTS: [-3.0]}, r"voltage_peak_to_peak must not be negative, got -3\.0 V"),
         ({"contact.roughness.rms_height": [-1.0]}, "rms_height must be positive"),
         ({"friction.model": ["sticky"]}, "friction.model"),
         ({VOLTS: []}, "at least one"),
-        ({}, "needs a key"),
+        ({}, "needs at least one key"),
     ],
 )
-def test_what_cannot_be_swept_is_refused_by_key(over: dict[str, list[float]], said: str) -> None:
-    with raises(InvalidInput, match=said):
+def test_unusable_keys_and_values_are_refused_by_name(over: dict[str, list[float]], message: str) -> None:
+    with raises(InvalidInput, match=message):
         grid_plan(RIG_FILE, over=over)
 
 
-def test_rows_of_a_list_must_be_of_one_length() -> None:
+def test_a_list_of_points_needs_equal_numbers_of_values() -> None:
     with raises(InvalidInput, match=r"got 2 of drive\.voltage_peak_to_peak, 1 of sliding\.sliding_speed"):
         list_plan(RIG_FILE, over={VOLTS: [1.0, 2.0], SPEEDS: [0.1]})
 
 
-def test_a_cluster_without_dask_says_what_to_install() -> None:
+def test_a_cluster_without_dask_names_the_package_to_install() -> None:
     try:
         import distributed  # noqa: F401
     except ImportError:

@@ -1,4 +1,4 @@
-"""Chunks of a sweep put together as one labelled dataset, in memory or in a file."""
+"""Labelled dataset of a sweep, assembled chunk by chunk in memory or in a netCDF file."""
 
 import os
 import tempfile
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sonolube import __version__
-from sonolube.design.plan import SweepPlan
+from sonolube.design.sweep_plan import SweepPlan
 from sonolube.rig import NUMBERS, STATUSES, PointBatch
 from sonolube.vocabulary import quantities
 
@@ -21,29 +21,34 @@ if TYPE_CHECKING:
 _CODES: dict[str, type[np.signedinteger[Any]]] = {"status": np.int8, "reason": np.int16}
 
 
-class _Reasons:
-    """One table of reasons from those of all chunks."""
+class _ReasonTable:
+    """Distinct reasons of all chunks, each with its integer code."""
 
     def __init__(self) -> None:
-        self.places: dict[str, int] = {}
+        self.code_of: dict[str, int] = {}
 
     def codes(self, batch: PointBatch) -> NDArray[np.int16]:
-        own = [self.places.setdefault(text, len(self.places)) for text in batch.reasons]
-        return np.array(own, dtype=np.int16)[batch.reason]
+        """Codes of the reasons of a batch, of which new ones are added to the table."""
+        codes = [self.code_of.setdefault(text, len(self.code_of)) for text in batch.reasons]
+        return np.array(codes, dtype=np.int16)[batch.reason]
 
 
-class InMemory:
-    """A dataset in memory.
+class MemoryDatasetWriter:
+    """Writer of a sweep's chunks to a dataset in memory.
 
     Parameters
     ----------
     plan : SweepPlan
     device : str
-        Name of the GPU at hand, which did what it serves, or empty.
+        Name of the GPU that was used, or empty.
+
+    See Also
+    --------
+    NetCDFDatasetWriter
     """
 
     def __init__(self, plan: SweepPlan, device: str = "") -> None:
-        self._plan, self._device, self._reasons = plan, device, _Reasons()
+        self._plan, self._device, self._reasons = plan, device, _ReasonTable()
         self._columns: dict[str, NDArray[Any]] = {name: np.empty(plan.points) for name in NUMBERS}
         self._columns |= {name: np.empty(plan.points, dtype=kind) for name, kind in _CODES.items()}
 
@@ -53,16 +58,16 @@ class InMemory:
     def __exit__(self, kind: type | None, value: BaseException | None, trace: TracebackType | None) -> None:
         pass
 
-    def take(self, start: int, batch: PointBatch) -> None:
-        """Put a chunk in its place."""
-        own = slice(start, start + batch.status.size)
+    def write(self, start: int, batch: PointBatch) -> None:
+        """Write a chunk from a flat index on."""
+        chunk = slice(start, start + batch.status.size)
         for name in NUMBERS:
-            self._columns[name][own] = batch.numbers[name]
-        self._columns["status"][own] = batch.status
-        self._columns["reason"][own] = self._reasons.codes(batch)
+            self._columns[name][chunk] = batch.numbers[name]
+        self._columns["status"][chunk] = batch.status
+        self._columns["reason"][chunk] = self._reasons.codes(batch)
 
     def dataset(self) -> "xr.Dataset":
-        """Return all chunks."""
+        """Dataset of all chunks."""
         import xarray as xr
 
         shape = self._plan.shape
@@ -70,25 +75,29 @@ class InMemory:
             name: (_dimensions(self._plan), array.reshape(shape), _labels(name))
             for name, array in self._columns.items()
         }
-        texts = np.array(list(self._reasons.places), dtype=np.str_)
+        texts = np.array(list(self._reasons.code_of), dtype=np.str_)
         variables["reason_text"] = ("reasons", texts, _labels("reason_text"))
         return xr.Dataset(variables, coords=_coordinates(self._plan), attrs=_attributes(self._plan, self._device))
 
 
-class InFile:
-    """A dataset in a netCDF file, written chunk by chunk.
+class NetCDFDatasetWriter:
+    """Writer of a sweep's chunks to a netCDF file, which is renamed to sweep.nc once it is complete.
 
     Parameters
     ----------
     plan : SweepPlan
     folder : Path
-        Where the file sweep.nc is to appear.
+        Folder of the file.
     device : str
-        Name of the GPU at hand, which did what it serves, or empty.
+        Name of the GPU that was used, or empty.
+
+    See Also
+    --------
+    MemoryDatasetWriter
     """
 
     def __init__(self, plan: SweepPlan, folder: Path, device: str = "") -> None:
-        self._plan, self._path, self._device, self._reasons = plan, folder / "sweep.nc", device, _Reasons()
+        self._plan, self._path, self._device, self._reasons = plan, folder / "sweep.nc", device, _ReasonTable()
 
     def __enter__(self) -> Self:
         import h5netcdf
@@ -102,8 +111,8 @@ class InFile:
         for name, (dimension, array, attributes) in _coordinates(self._plan).items():
             self._write_variable(name, (dimension,), array, attributes)
         for name in (*NUMBERS, *_CODES):
-            made = self._file.create_variable(name, _dimensions(self._plan), _CODES.get(name, np.float64))
-            made.attrs.update(_labels(name))
+            variable = self._file.create_variable(name, _dimensions(self._plan), _CODES.get(name, np.float64))
+            variable.attrs.update(_labels(name))
         return self
 
     def __exit__(self, kind: type | None, value: BaseException | None, trace: TracebackType | None) -> None:
@@ -111,23 +120,23 @@ class InFile:
             self._file.close()
         self._unfinished.unlink(missing_ok=True)
 
-    def take(self, start: int, batch: PointBatch) -> None:
-        """Put a chunk in its place."""
+    def write(self, start: int, batch: PointBatch) -> None:
+        """Write a chunk from a flat index on."""
         columns: dict[str, NDArray[Any]] = {
             **batch.numbers,
             "status": batch.status,
             "reason": self._reasons.codes(batch),
         }
-        for place, own in _slabs(self._plan.shape, start, start + batch.status.size):
+        for block, part in _blocks(self._plan.shape, start, start + batch.status.size):
             for name, column in columns.items():
-                self._file[name][place] = column[own].reshape([part.stop - part.start for part in place])
+                self._file[name][block] = column[part].reshape([axis.stop - axis.start for axis in block])
 
     def dataset(self) -> "xr.Dataset":
-        """Return all chunks, to be read from the file as they are needed."""
+        """Dataset of all chunks, read lazily from the completed file."""
         import xarray as xr
 
-        self._file.dimensions["reasons"] = len(self._reasons.places)
-        self._write_variable("reason_text", ("reasons",), np.array(list(self._reasons.places)), _labels("reason_text"))
+        self._file.dimensions["reasons"] = len(self._reasons.code_of)
+        self._write_variable("reason_text", ("reasons",), np.array(list(self._reasons.code_of)), _labels("reason_text"))
         self._file.close()
         self._file = None
         self._unfinished.chmod(0o644)
@@ -137,40 +146,43 @@ class InFile:
     def _write_variable(
         self, name: str, dims: tuple[str, ...], array: NDArray[Any], attributes: dict[str, Any]
     ) -> None:
+        """Write a variable that is known as a whole: a coordinate or the table of reasons."""
         import h5py
 
         kind = h5py.string_dtype() if array.dtype.kind == "U" else array.dtype
-        made = self._file.create_variable(name, dims, kind)
-        made[...] = array.astype(object) if array.dtype.kind == "U" else array
-        made.attrs.update(attributes)
+        variable = self._file.create_variable(name, dims, kind)
+        variable[...] = array.astype(object) if array.dtype.kind == "U" else array
+        variable.attrs.update(attributes)
 
 
-def _slabs(shape: tuple[int, ...], start: int, stop: int) -> Iterator[tuple[tuple[slice, ...], slice]]:
-    """Yield the blocks of an array that a run of its points fills, and which of the run goes to each."""
+def _blocks(shape: tuple[int, ...], start: int, stop: int) -> Iterator[tuple[tuple[slice, ...], slice]]:
+    """Yield the rectangular blocks of an array that a flat range covers, each with its part of the range."""
     inner = int(np.prod(shape[1:]))
     if len(shape) == 1:
         yield (slice(start, stop),), slice(0, stop - start)
         return
-    at = start
-    while at < stop:
-        row, into = divmod(at, inner)
-        if into == 0 and stop - at >= inner:
-            rows = (stop - at) // inner
+    index = start
+    while index < stop:
+        row, offset = divmod(index, inner)
+        if offset == 0 and stop - index >= inner:
+            rows = (stop - index) // inner
             whole = tuple(slice(0, size) for size in shape[1:])
-            yield (slice(row, row + rows), *whole), slice(at - start, at - start + rows * inner)
-            at += rows * inner
+            yield (slice(row, row + rows), *whole), slice(index - start, index - start + rows * inner)
+            index += rows * inner
         else:
             end = min(stop, (row + 1) * inner)
-            for place, own in _slabs(shape[1:], into, into + end - at):
-                yield (slice(row, row + 1), *place), slice(at - start + own.start, at - start + own.stop)
-            at = end
+            for block, part in _blocks(shape[1:], offset, offset + end - index):
+                yield (slice(row, row + 1), *block), slice(index - start + part.start, index - start + part.stop)
+            index = end
 
 
 def _dimensions(plan: SweepPlan) -> tuple[str, ...]:
+    """Dimensions of the result: one per key of a grid, else `point`."""
     return tuple(plan.names.values()) if plan.grid else ("point",)
 
 
 def _coordinates(plan: SweepPlan) -> dict[str, tuple[str, NDArray[Any], dict[str, str]]]:
+    """Dimension, values and attributes of the coordinate of each key."""
     return {
         name: (name if plan.grid else "point", plan.values[key], _labels(key.rpartition(".")[2]) | {"key": key})
         for key, name in plan.names.items()
@@ -178,23 +190,25 @@ def _coordinates(plan: SweepPlan) -> dict[str, tuple[str, NDArray[Any], dict[str
 
 
 def _attributes(plan: SweepPlan, device: str) -> dict[str, str]:
+    """Attributes of the dataset: title, rig, program version, digest of the plan and device."""
     title = str(plan.content["title"])
-    own = {"title": f"Sweep of {title}", "rig": title, "source": f"sonolube {__version__}", "sweep": plan.digest}
-    return own | ({"device": device} if device else {})
+    attributes = {"title": f"Sweep of {title}", "rig": title, "source": f"sonolube {__version__}", "sweep": plan.digest}
+    return attributes | ({"device": device} if device else {})
 
 
 def _labels(name: str) -> dict[str, Any]:
+    """Attributes of a variable: unit and meaning from the vocabulary, or the meaning of codes."""
     if name == "status":
         return {
-            "long_name": "What is known of the point",
+            "long_name": "Status of the point",
             "flag_values": np.arange(len(STATUSES), dtype=np.int8),
             "flag_meanings": " ".join(STATUSES),
         }
     if name == "reason":
-        return {"long_name": "Place of what the status means in reason_text"}
+        return {"long_name": "Index of the reason in reason_text"}
     if name == "reason_text":
-        return {"long_name": "What a status means, and what to try"}
+        return {"long_name": "Reason of a status, and remedy"}
     if name not in quantities():
         return {"long_name": name.replace("_", " ")}
-    known = quantities()[name]
-    return {"units": known.unit or "1", "long_name": known.meaning}
+    entry = quantities()[name]
+    return {"units": entry.unit or "1", "long_name": entry.meaning}

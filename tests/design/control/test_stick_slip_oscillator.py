@@ -1,4 +1,4 @@
-"""Stick-slip of a dragged mass against its closed forms, and how vibration ends it."""
+"""Stick-slip of a mass on a belt against closed forms, and its suppression by vibration."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -8,17 +8,17 @@ import pytest
 from pytest import approx, raises
 
 from sonolube.design.control import (
-    DraggedMass,
-    dragged_mass,
-    dragged_motion,
+    MassOnBelt,
     kinetic_friction,
+    mass_on_belt,
     steady_sliding_damping,
+    stick_slip_motion,
 )
 from sonolube.errors import InvalidInput
 from sonolube.rig import read_rig
 
 RIG = read_rig(Path(__file__).parents[3] / "examples" / "rigs" / "tribometer.toml")
-COULOMB = DraggedMass(
+COULOMB = MassOnBelt(
     holder_mass=0.05,
     holder_stiffness=2e4,
     holder_damping=0.0,
@@ -31,18 +31,18 @@ COULOMB = DraggedMass(
 )
 
 
-def test_undamped_stick_slip_has_the_swing_and_period_of_its_closed_form() -> None:
+def test_undamped_stick_slip_has_the_amplitude_and_period_of_its_closed_form() -> None:
     # Slip is a half sine about F_k/k from (F_s/k, v_b); stick carries the spring back at v_b.
     k, drop, v = 2e4, 0.5, 0.02
     omega = np.sqrt(k / 0.05)
-    motion = dragged_motion(COULOMB, duration=0.5, steps_per_period=8000)
+    motion = stick_slip_motion(COULOMB, duration=0.5, steps_per_period=8000)
     assert motion.stick_slip_amplitude == approx(2 * np.hypot(drop, k * v / omega), rel=2e-3)
     period = 2 * drop / (k * v) + 2 / omega * (np.pi - np.arctan(drop * omega / (k * v)))
     loose = motion.time[1:][motion.sticking[:-1] & ~motion.sticking[1:]]
     assert np.diff(loose[5:]).mean() == approx(period, rel=2e-3)
 
 
-def test_friction_that_rises_with_speed_damps_as_its_slope_says() -> None:
+def test_the_slope_of_rising_friction_is_a_viscous_damping() -> None:
     # F = F_c (a + b v) is a damper of F_c b: free decay at rate F_c b/(2 m).
     rising = replace(
         COULOMB,
@@ -51,7 +51,7 @@ def test_friction_that_rises_with_speed_damps_as_its_slope_says() -> None:
         friction_ratio=np.array([0.2, 4.2]),
     )
     assert steady_sliding_damping(rising) == approx(4.0)
-    motion = dragged_motion(rising, duration=30 * rising.period)
+    motion = stick_slip_motion(rising, duration=30 * rising.period)
     first, later = (
         np.ptp(motion.friction_force[(motion.time > start * rising.period) & (motion.time < end * rising.period)])
         for start, end in ((5, 6), (15, 16))
@@ -59,15 +59,15 @@ def test_friction_that_rises_with_speed_damps_as_its_slope_says() -> None:
     assert later / first == approx(np.exp(-4.0 / (2 * 0.05) * 10 * rising.period), rel=0.02)
 
 
-def test_stribeck_friction_goes_from_static_to_coulomb() -> None:
+def test_stribeck_friction_falls_from_static_to_coulomb_friction() -> None:
     falling = replace(COULOMB, stribeck_velocity=0.01)
     assert kinetic_friction(falling, relative_velocity=np.array([0.0, 0.01, 1.0])) == approx([1.5, 1 + 0.5 / np.e, 1.0])
     assert steady_sliding_damping(falling) < 0
 
 
 @pytest.mark.parametrize(("volts", "steady"), [(0.0, False), (20.0, True)])
-def test_vibration_ends_the_limit_cycle(volts: float, steady: bool) -> None:
-    dragged = dragged_mass(
+def test_vibration_suppresses_the_limit_cycle(volts: float, steady: bool) -> None:
+    oscillator = mass_on_belt(
         RIG,
         holder_mass=0.05,
         holder_stiffness=2e4,
@@ -76,8 +76,8 @@ def test_vibration_ends_the_limit_cycle(volts: float, steady: bool) -> None:
         stribeck_velocity=0.02,
         voltage_peak_to_peak=volts,
     )
-    motion = dragged_motion(dragged, duration=1.0)
-    assert (steady_sliding_damping(dragged) > 0) == steady
+    motion = stick_slip_motion(oscillator, duration=1.0)
+    assert (steady_sliding_damping(oscillator) > 0) == steady
     assert (motion.stick_slip_amplitude < 1e-6) == steady
     assert (motion.stick_fraction == 0) == steady
 

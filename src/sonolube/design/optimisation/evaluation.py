@@ -1,0 +1,210 @@
+"""Evaluation of drives of a rig: objectives, and the utilisation of each constraint."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sonolube.actuator import PreloadBolt, bolt_stresses
+from sonolube.actuator.stack import PiezoStack
+from sonolube.checks import Complexes, Floats
+from sonolube.contact import separation
+from sonolube.design.optimisation.requirements import Limits
+from sonolube.dynamics import Status, SteadyStates
+from sonolube.rig.driven_rig import DrivenRig, driven_rig
+from sonolube.rig.excitation import amplifier_power, voltage_range
+from sonolube.rig.operating_point_grid import OperatingConditions, steady_states_of
+from sonolube.rig.record import Rig
+
+CONSTRAINTS = (
+    "admissible_vibration",
+    "stack_voltage",
+    "voltage",
+    "current",
+    "slew_rate",
+    "tension",
+    "contact_pressure",
+    "horn_stress",
+    "temperature",
+    "bolt_fatigue",
+    "bolt_yield",
+)
+"""Constraints of a design; `admissible_vibration` requires a single stable vibration whose mean planes do not meet."""
+
+_PHASES_PER_HARMONIC = 64
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Evaluation:
+    """Objectives and constraints of several drives of one rig; every array has one entry per drive.
+
+    Parameters
+    ----------
+    voltage_peak_to_peak : ndarray, shape (n,)
+        Peak-to-peak drive voltage. [V]
+    objectives : dict of str to ndarray
+        Objectives by the names of `OBJECTIVES`, in W, W and V.
+    utilisation : dict of str to ndarray
+        Demand over limit by the names of `CONSTRAINTS`; violated above one, zero without a limit.
+    quantities : dict of str to ndarray
+        Amplitude, current, tension and further results by the names of the vocabulary, in SI.
+    """
+
+    voltage_peak_to_peak: Floats
+    objectives: dict[str, Floats]
+    utilisation: dict[str, Floats]
+    quantities: dict[str, Floats]
+
+    @property
+    def maximum_utilisation(self) -> Floats:
+        """Largest utilisation of any constraint."""
+        return np.asarray(np.max(np.stack(list(self.utilisation.values())), axis=0))
+
+
+def evaluate(
+    rig: Rig,
+    limits: Limits,
+    *,
+    frequency: ArrayLike,
+    voltage_peak_to_peak: ArrayLike,
+    bolt: PreloadBolt | None = None,
+) -> Evaluation:
+    r"""Objectives and constraint utilisation of several drives of a rig.
+
+    Parameters
+    ----------
+    rig : Rig
+        With a stack, a structure and a drive voltage.
+    limits : Limits
+    frequency : array_like, shape (n,)
+        Drive frequencies. [Hz]
+    voltage_peak_to_peak : array_like, shape (n,)
+        Drive voltages; the offset is scaled in the rig's own ratio. [V]
+    bolt : PreloadBolt or None
+        Bolt that preloads the stack.
+
+    Returns
+    -------
+    Evaluation
+        With an infinite utilisation of `admissible_vibration` where there is no stable vibration, or several.
+
+    Notes
+    -----
+    With the harmonics :math:`V_k` and :math:`I_k` of voltage and current, the heat is the electrical power dissipated
+    in stack, dampers and contact, and the dielectric loss of a sine:
+
+    .. math:: P_h = \frac12 \sum_k \operatorname{Re} V_k I_k^* + \frac\pi4 f C \tan\delta\, U_{pp}^2
+
+    The stack force follows from the current through its elongation, with :math:`s = 2 \pi i k f`:
+
+    .. math::
+
+        e_k &= \frac{I_k / s - C^S V_k}{N d_{33} k_p}
+
+        F_k &= N d_{33} k_p V_k - (k_p + s c_p)\, e_k
+
+    The tension is the greatest value of :math:`-F` over a period, its utilisation that over the preload.
+    """
+    rig = driven_rig(rig)
+    f, volts = np.broadcast_arrays(np.asarray(frequency, dtype=float), np.asarray(voltage_peak_to_peak, dtype=float))
+    offset = rig.drive.offset_ratio * volts
+    load = np.full(f.shape, rig.normal_load)
+    settings = OperatingConditions(voltage_peak_to_peak=volts, voltage_offset=offset, frequency=f, normal_load=load)
+    states = steady_states_of(rig, settings, separation(rig.contact, normal_load=load))
+    stack, drive = rig.stack, rig.drive
+    power = amplifier_power(
+        drive, capacitance=stack.free_capacitance, voltage_peak_to_peak=volts, voltage_offset=offset, frequency=f
+    )
+    dielectric_loss = np.pi / 4 * f * stack.free_capacitance * limits.loss_tangent * volts**2
+    heat = states.dissipated_power + dielectric_loss
+    quantities = _vibration_quantities(rig, stack, states, bolt) | {
+        "heat_rate": heat,
+        "actuator_power": power,
+        "dissipated_power": states.dissipated_power,
+        "vibration_amplitude": states.vibration_amplitude,
+    }
+    extremes = voltage_range(drive, voltage_peak_to_peak=volts, voltage_offset=offset)
+    utilisation = _utilisation(stack, limits, quantities, f, extremes)
+    admissible = (states.status == Status.PERIODIC) & ~states.gap_closed
+    utilisation["admissible_vibration"] = np.where(admissible, 0.0, np.inf)
+    if bolt is not None:
+        stresses = bolt_stresses(
+            bolt,
+            elongation_amplitude=np.nan_to_num(quantities["elongation"]),
+            elongation=stack.free_stroke_per_volt * offset,
+        )
+        utilisation["bolt_fatigue"] = limits.fatigue_safety / stresses.fatigue_safety
+        utilisation["bolt_yield"] = limits.yield_safety / stresses.yield_safety
+    return Evaluation(
+        voltage_peak_to_peak=volts,
+        objectives={"power": power, "heat": heat, "voltage": volts},
+        utilisation={name: np.nan_to_num(utilisation.get(name, np.zeros(f.shape)), nan=np.inf) for name in CONSTRAINTS},
+        quantities=quantities,
+    )
+
+
+def _vibration_quantities(
+    rig: DrivenRig, stack: PiezoStack, states: SteadyStates, bolt: PreloadBolt | None
+) -> dict[str, Floats]:
+    """Greatest current, slew rate, elongation and tension of the stack over a period, and pressure of the contact."""
+    orders = np.arange(1, states.voltage_harmonics.shape[-1] + 1)
+    s = 2j * np.pi * states.frequency[:, np.newaxis] * orders
+    volts, current = states.voltage_harmonics, states.current_harmonics
+    elongation = (current / s - stack.clamped_capacitance * volts) / stack.charge_per_elongation
+    force = stack.charge_per_elongation * volts - (stack.stack_stiffness + s * stack.stack_damping) * elongation
+    if bolt is not None:
+        force = force + bolt.stiffness * elongation  # the ceramic carries what the parallel bolt does not
+    return {
+        "peak_current": _periodic_maximum(current),
+        "slew_rate": _periodic_maximum(s * volts),
+        "elongation": _periodic_maximum(elongation),
+        "dynamic_tension": _periodic_maximum(-force),
+        "nominal_pressure": states.highest_normal_force / rig.contact.nominal_area,
+    }
+
+
+def _periodic_maximum(harmonics: Complexes) -> Floats:
+    """Greatest value over a period of functions given by their harmonics."""
+    if harmonics.shape[-1] == 1:
+        return np.abs(harmonics[..., 0])
+    phases = np.linspace(0, 2 * np.pi, _PHASES_PER_HARMONIC * harmonics.shape[-1], endpoint=False)
+    waves = np.exp(1j * np.multiply.outer(np.arange(1, harmonics.shape[-1] + 1), phases))
+    return np.asarray((harmonics @ waves).real.max(axis=-1))
+
+
+def _utilisation(
+    stack: PiezoStack,
+    limits: Limits,
+    quantities: dict[str, Floats],
+    f: Floats,
+    extremes: tuple[Floats, Floats],
+) -> dict[str, Floats]:
+    """Utilisation of the limits that are set; temperature rise and horn stress are added to the quantities."""
+    lowest, highest = extremes
+    voltage = np.maximum(np.abs(lowest), np.abs(highest))
+    utilisation = {"stack_voltage": np.zeros(f.shape)}
+    if stack.highest_voltage is not None:
+        utilisation["stack_voltage"] = highest / stack.highest_voltage
+    if stack.lowest_voltage is not None:
+        violation = np.where(lowest < stack.lowest_voltage, np.inf, 0.0)
+        negative = lowest / stack.lowest_voltage if stack.lowest_voltage < 0 else violation
+        utilisation["stack_voltage"] = np.maximum(utilisation["stack_voltage"], negative)
+    if stack.preload is not None:
+        utilisation["tension"] = quantities["dynamic_tension"] / max(stack.preload, 1e-300)
+    for name, demand, limit in (
+        ("voltage", voltage, limits.voltage_maximum),
+        ("current", quantities["peak_current"], limits.current_maximum),
+        ("slew_rate", quantities["slew_rate"], limits.slew_rate_maximum),
+        ("contact_pressure", quantities["nominal_pressure"], limits.nominal_pressure),
+    ):
+        if limit is not None:
+            utilisation[name] = demand / limit
+    if limits.thermal_conductance is not None:
+        quantities["temperature_rise"] = quantities["heat_rate"] / limits.thermal_conductance
+        if limits.temperature_rise is not None:
+            utilisation["temperature"] = quantities["temperature_rise"] / limits.temperature_rise
+    if limits.horn is not None:
+        velocity = 2 * np.pi * f * quantities["vibration_amplitude"]
+        quantities["horn_stress"] = np.sqrt(limits.horn.density * limits.horn.youngs_modulus) * velocity
+        utilisation["horn_stress"] = quantities["horn_stress"] / limits.horn.stress_limit
+    return utilisation

@@ -1,0 +1,238 @@
+"""Parameter sweeps: operating points of a rig over any of its parameters, computed in chunks that can be resumed."""
+
+from collections.abc import Callable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from contextlib import contextmanager, nullcontext
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sonolube.design.chunk_store import ChunkStore
+from sonolube.design.progress import ProgressCallback
+from sonolube.design.sweep_dataset import MemoryDatasetWriter, NetCDFDatasetWriter
+from sonolube.design.sweep_plan import OPERATING_CONDITIONS, SweepPlan
+from sonolube.dynamics.backend import Backend, device_name, usable_backend
+from sonolube.errors import InvalidInput, SonolubeError
+from sonolube.rig import NUMBERS, STATUSES, PointBatch, point_batch
+from sonolube.threads import thread_pool
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+CHUNK_POINTS = 100_000
+"""Default number of points of a chunk, the unit in which results are computed and stored."""
+
+
+def sweep(
+    plan: SweepPlan,
+    *,
+    folder: str | Path | None = None,
+    chunk_points: int = CHUNK_POINTS,
+    workers: int = 1,
+    scheduler: str | None = None,
+    advance: ProgressCallback | None = None,
+    backend: Backend = "cpu",
+) -> "xr.Dataset":
+    """Operating points of a rig at every point of a plan, with a status for each.
+
+    Parameters
+    ----------
+    plan : SweepPlan
+    folder : str or Path, optional
+        Folder in which finished chunks are stored, so that an interrupted sweep resumes from them; the result is then
+        read lazily from the file sweep.nc in it. Without a folder the result is held in memory.
+    chunk_points : int
+        Points per chunk, which bounds the memory.
+    workers : int
+        Threads that compute chunks in parallel, or processes of a local cluster.
+    scheduler : str, optional
+        Address of a Dask scheduler, or "local" for a cluster of processes on this machine; needs the extra `cluster`.
+    advance : callable, optional
+        Called with the number of finished points and their total.
+    backend : {"cpu", "gpu"}
+        Whether an NVIDIA GPU computes the vibrations that it supports; its name is then the attribute `device`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over the keys of a grid, or over `point`. `status` and `reason` are integer codes: the former indexes its
+        attribute `flag_meanings`, the latter `reason_text`.
+
+    Raises
+    ------
+    InvalidInput
+        If the rig has no structure, the folder holds another sweep, or Dask is missing.
+
+    Warns
+    -----
+    GpuUnused
+        If the GPU backend was requested but no GPU is present, or it does not support a rig's contact or structure.
+
+    See Also
+    --------
+    grid_plan, list_plan, latin_hypercube_plan, compute_points
+
+    Notes
+    -----
+    A point without a result does not end the sweep: it has a status, a reason and NaN. Each chunk depends on its own
+    points alone, so threads, clusters and interruptions change no bit of the result. Another chunk size groups points
+    into other simultaneous solves and changes the result by less than 1e-6, as does a GPU, whose sweeps therefore have
+    folders of their own.
+    """
+    if chunk_points < 1 or workers < 1:
+        raise InvalidInput(f"chunk_points and workers must be at least 1, got {chunk_points} and {workers}")
+    backend = usable_backend(backend)
+    device, store = device_name(backend), None
+    if folder is not None:
+        store = ChunkStore(
+            folder=Path(folder), digest=plan.digest + ("-gpu" if device else ""), chunk_points=chunk_points
+        )
+        store.open()
+    count = -(-plan.points // chunk_points)
+    with (
+        MemoryDatasetWriter(plan, device) if store is None else NetCDFDatasetWriter(plan, store.folder, device)
+    ) as writer:
+        done = 0
+        missing = []
+        for chunk in range(count):
+            stored = None if store is None else store.read(chunk)
+            if stored is None:
+                missing.append(chunk)
+            else:
+                writer.write(chunk * chunk_points, stored)
+                done += stored.status.size
+        if advance is not None and done:
+            advance(done, plan.points)
+        with _executor(workers, scheduler) as pool:
+            for chunk, batch in _computed_chunks(
+                pool, partial(compute_points, plan, backend=backend), plan.points, missing, chunk_points, 2 * workers
+            ):
+                if store is not None:
+                    store.write(chunk, batch)
+                writer.write(chunk * chunk_points, batch)
+                done += batch.status.size
+                if advance is not None:
+                    advance(done, plan.points)
+        return writer.dataset()
+
+
+def compute_points(plan: SweepPlan, start: int, stop: int, *, backend: Backend = "cpu") -> PointBatch:
+    """Operating points of a contiguous range of a plan.
+
+    Parameters
+    ----------
+    plan : SweepPlan
+    start, stop : int
+        First flat index, and that after the last.
+    backend : {"cpu", "gpu"}
+        Whether an NVIDIA GPU computes the vibrations that it supports.
+
+    Returns
+    -------
+    PointBatch
+    """
+    rows = plan.rows(start, stop)
+    conditions = {key.rpartition(".")[2]: rows[key] for key in OPERATING_CONDITIONS if key in rows}
+    rig_entries = {key: array for key, array in rows.items() if key not in OPERATING_CONDITIONS}
+    parts, indices = [], []
+    for members in _points_by_rig(rig_entries, stop - start):
+        changes = {key: array[members[0]] for key, array in rig_entries.items()}
+        own = {name: array[members] for name, array in conditions.items()}
+        parts.append(_points_of_one_rig(plan, changes, own, members.size, backend))
+        indices.append(members)
+    return _merged(parts, indices, stop - start)
+
+
+def _points_of_one_rig(
+    plan: SweepPlan, changes: dict[str, Any], conditions: dict[str, NDArray[Any]], count: int, backend: Backend
+) -> PointBatch:
+    """Operating points of one rig; all refused where the changes describe no rig."""
+    try:
+        rig = plan.rig(changes)
+    except SonolubeError as refusal:
+        return PointBatch(
+            numbers={name: np.full(count, np.nan) for name in NUMBERS},
+            status=np.full(count, len(STATUSES) - 1, dtype=np.int8),
+            reason=np.zeros(count, dtype=np.int16),
+            reasons=(str(refusal),),
+        )
+    if not conditions:
+        conditions = {"sliding_speed": np.full(count, rig.sliding_speed)}
+    return point_batch(rig, **conditions, backend=backend)
+
+
+def _points_by_rig(rig_entries: dict[str, NDArray[Any]], count: int) -> list[NDArray[np.intp]]:
+    """Indices of the points of each distinct rig."""
+    if not rig_entries:
+        return [np.arange(count)]
+    codes = np.stack([np.unique(array, return_inverse=True)[1] for array in rig_entries.values()])
+    _, rig_index = np.unique(codes, axis=1, return_inverse=True)
+    order = np.argsort(rig_index.ravel(), kind="stable")
+    return np.split(order, np.flatnonzero(np.diff(rig_index.ravel()[order])) + 1)
+
+
+def _merged(parts: list[PointBatch], indices: list[NDArray[np.intp]], count: int) -> PointBatch:
+    """One batch from the batches of several rigs, each placed at the indices of its points."""
+    if len(parts) == 1:
+        return parts[0]
+    texts = {text: code for code, text in enumerate(dict.fromkeys(text for part in parts for text in part.reasons))}
+    numbers = {name: np.empty(count) for name in NUMBERS}
+    status, reason = np.empty(count, dtype=np.int8), np.empty(count, dtype=np.int16)
+    for part, members in zip(parts, indices, strict=True):
+        for name, column in part.numbers.items():
+            numbers[name][members] = column
+        status[members] = part.status
+        reason[members] = np.array([texts[text] for text in part.reasons], dtype=np.int16)[part.reason]
+    return PointBatch(numbers=numbers, status=status, reason=reason, reasons=tuple(texts))
+
+
+def _computed_chunks(
+    pool: Executor,
+    compute: Callable[[int, int], PointBatch],
+    points: int,
+    chunks: list[int],
+    chunk_points: int,
+    most_pending: int,
+) -> Iterator[tuple[int, PointBatch]]:
+    """Yield chunks as they are finished, at most `most_pending` being submitted at a time."""
+    remaining, pending = iter(chunks), {}
+    try:
+        while True:
+            for chunk in remaining:
+                stop = min((chunk + 1) * chunk_points, points)
+                pending[pool.submit(compute, chunk * chunk_points, stop)] = chunk
+                if len(pending) >= most_pending:
+                    break
+            if not pending:
+                return
+            for future in _first_completed(pending):
+                yield pending.pop(future), future.result()
+    finally:
+        for future in pending:
+            future.cancel()
+
+
+def _first_completed(pending: dict[Future[PointBatch], int]) -> set[Future[PointBatch]]:
+    """Futures that are done once at least one of them is."""
+    return wait(pending, return_when=FIRST_COMPLETED).done
+
+
+@contextmanager
+def _executor(workers: int, scheduler: str | None) -> Iterator[Executor]:
+    """Yield a thread pool, or an executor of a Dask cluster."""
+    if scheduler is None:
+        with thread_pool(workers) as pool:
+            yield pool
+        return
+    try:
+        from distributed import Client, LocalCluster
+    except ImportError:
+        raise InvalidInput(
+            "a cluster needs Dask, which is not installed: pip install 'sonolube[cluster]', or leave the scheduler out"
+        ) from None
+    local = LocalCluster(n_workers=workers, threads_per_worker=1) if scheduler == "local" else None
+    with local or nullcontext(), Client(local or scheduler) as client:
+        yield client.get_executor(pure=False)
