@@ -1,7 +1,9 @@
-"""The walls of the house: which room may know which, and what each may lean on."""
+"""Architecture: which room may import which, the libraries of physics, lazy imports and sizes."""
 
+import importlib.util
 import subprocess
 import sys
+from collections import Counter
 from pathlib import Path
 
 import grimp
@@ -64,3 +66,18 @@ def test_help_imports_nothing_heavy() -> None:
 def test_no_file_outgrows_four_hundred_lines() -> None:
     long = [path for path in (ROOT / "src").rglob("*.py") if len(path.read_text().splitlines()) > 400]
     assert long == []
+
+
+def test_the_picture_of_the_rooms_is_up_to_date() -> None:
+    spec = importlib.util.spec_from_file_location("architecture_picture", ROOT / "docs/_ext/architecture_picture.py")
+    assert spec is not None
+    assert spec.loader is not None
+    drawing = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(drawing)
+    expected = drawing.picture()
+    assert drawing.PICTURE.read_text(encoding="utf-8") == expected, "run python docs/_ext/architecture_picture.py"
+
+
+def test_no_folder_holds_more_than_26_modules() -> None:
+    modules = Counter(path.parent for path in (ROOT / "src").rglob("*.py") if path.name != "__init__.py")
+    assert [(folder, count) for folder, count in modules.items() if count > 26] == []

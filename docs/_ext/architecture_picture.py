@@ -98,7 +98,7 @@ def _room(name: str, box: tuple[float, float, float], modules: int) -> str:
     return (
         f"<g><rect x='{left:.0f}' y='{top:.0f}' width='{width:.0f}' height='{_BOX}' rx='5' fill='{shade}'/>"
         f"<text x='{left + width / 2:.0f}' y='{top + 19.5:.1f}' {_FONT} font-size='12.5' fill='#ffffff'"
-        f" text-anchor='middle'>{name}</text><title>{name}: {modules} modules</title></g>"
+        f" text-anchor='middle'>{name}</text></g>"
     )
 
 
