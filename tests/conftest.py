@@ -14,5 +14,5 @@ _PACKAGE = Path(__file__).parents[1] / "src" / "sonolube"
 
 @pytest.fixture
 def copied_package(tmp_path: Path) -> Path:
-    """Copy of the package at tmp_path/sonolube, to extend and run in a subprocess with PYTHONPATH=tmp_path."""
-    return Path(shutil.copytree(_PACKAGE, tmp_path / "sonolube", ignore=shutil.ignore_patterns("__pycache__")))
+    """Copy of the package, with its compiled kernels, to extend and run in a subprocess with PYTHONPATH=tmp_path."""
+    return Path(shutil.copytree(_PACKAGE, tmp_path / "sonolube", ignore=shutil.ignore_patterns("*.pyc")))
