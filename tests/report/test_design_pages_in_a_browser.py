@@ -48,8 +48,8 @@ def page(address: str) -> Iterator[Page]:
         browser.close()
 
 
-def test_it_says_what_was_asked_found_assumed_and_computed_with_what(page: Page) -> None:
-    for part in ("asked", "found", "figures", "caveats"):
+def test_settings_results_figures_caveats_and_versions_are_on_the_page(page: Page) -> None:
+    for part in ("settings", "results", "figures", "caveats"):
         assert page.locator(f"#{part}").is_visible()
     assert page.locator("table.pairs").first.locator("th", has_text="--").count() > 0
     assert "sonolube" in page.locator("footer").inner_text()

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import Page, sync_playwright
 
-from sonolube.report import MeasurementReport, TestSheet, write_measurement_report
+from sonolube.report import MeasurementReport, PinOnDiscSheet, write_measurement_report
 from sonolube.report.measured.surface import SurfaceSettings, surface_sheet
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
@@ -31,7 +31,7 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> str:
         settings=MappingProxyType({"spacing": "1um"}),
         sheets=(sheet, sheet),
         refused=MappingProxyType({"bad.npy": "bad.npy: byte 0: the file is empty"}),
-        test=TestSheet(entries={"parameters": {"normal_load": "3N"}}),
+        test=PinOnDiscSheet(entries={"parameters": {"normal_load": "3N"}}),
     )
     return write_measurement_report(report, path=folder / "page.html").as_uri()
 

@@ -21,15 +21,15 @@ from sonolube.measurement.recordings.reader import read_recording
 from sonolube.report.measured import calibration_figures as figures
 from sonolube.report.measured.friction import recording_source
 from sonolube.report.measured.sheet import (
-    Column,
-    Part,
     Sheet,
+    SheetColumn,
     SheetFigure,
+    SheetSection,
     SheetTable,
-    Value,
-    attempted,
-    known,
-    sheet_of,
+    SheetValue,
+    attempted_section,
+    quantity_value,
+    sheet_from_sections,
 )
 
 
@@ -78,25 +78,25 @@ def calibration_sheet(path: Path, *, settings: CalibrationSettings) -> Sheet:
     hysteresis = fit_hysteresis(displacement=x, applied_force=force, levels=settings.levels)
     span = float(np.ptp(force))
     values = (
-        Value(
+        SheetValue(
             name="hysteresis_deviation",
             label="Deviation about Preisach's model",
             value=hysteresis.force_deviation,
             unit="N",
         ),
-        Value(
+        SheetValue(
             name="relative_deviation",
             label="The same over the range of force",
             value=hysteresis.force_deviation / span,
             unit="",
         ),
-        Value(
+        SheetValue(
             name="dissipated_energy",
             label="Energy lost in the greatest loop",
             value=model_energy(hysteresis),
             unit="J",
         ),
-        Value(
+        SheetValue(
             name="mean_stiffness",
             label="Force over displacement of the whole range",
             value=span / float(np.ptp(x)),
@@ -109,9 +109,9 @@ def calibration_sheet(path: Path, *, settings: CalibrationSettings) -> Sheet:
         caption="Measured loops and those of Preisach's model; below, what is left.",
         draw=partial(figures.loops, x, force, hysteresis),
     )
-    branches = attempted(partial(_branches, x, force, settings.degree), what="polynomials of the branches")
-    return sheet_of(
-        [Part(values=values, figures=(loop,)), branches], title=path.name, source=recording_source(recording)
+    branches = attempted_section(partial(_branches, x, force, settings.degree), what="polynomials of the branches")
+    return sheet_from_sections(
+        [SheetSection(values=values, figures=(loop,)), branches], title=path.name, source=recording_source(recording)
     )
 
 
@@ -172,8 +172,8 @@ def force_sheet(path: Path, *, calibration: HysteresisCalibration, settings: Cal
     mean, error = float(told.applied_force.mean()), float(told.applied_force_uncertainty.mean())
     highest = int(np.argmax(told.applied_force))
     values = (
-        known("applied_force", mean, label="Mean force", uncertainty=error),
-        Value(
+        quantity_value("applied_force", mean, label="Mean force", uncertainty=error),
+        SheetValue(
             name="highest_force",
             label="Highest force",
             value=float(told.applied_force[highest]),
@@ -187,33 +187,35 @@ def force_sheet(path: Path, *, calibration: HysteresisCalibration, settings: Cal
         caption="With its standard uncertainty as a band.",
         draw=partial(figures.force, channel(recording, "time"), told),
     )
-    return sheet_of([Part(values=values, figures=(drawn,))], title=path.name, source=recording_source(recording))
+    return sheet_from_sections(
+        [SheetSection(values=values, figures=(drawn,))], title=path.name, source=recording_source(recording)
+    )
 
 
-def _branches(x: Floats, force: Floats, degree: int) -> Part:
+def _branches(x: Floats, force: Floats, degree: int) -> SheetSection:
     found = fit_branches(displacement=x, applied_force=force, degree=degree)
     values = (
-        Value(
+        SheetValue(
             name="loading_deviation",
             label="Deviation about the polynomial of loading",
             value=found.loading_deviation,
             unit="N",
         ),
-        Value(
+        SheetValue(
             name="unloading_deviation",
             label="Deviation about the polynomial of unloading",
             value=found.unloading_deviation,
             unit="N",
         ),
     )
-    return Part(values=values, tables=(_coefficients(found),))
+    return SheetSection(values=values, tables=(_coefficients(found),))
 
 
 def _coefficients(found: BranchCalibration) -> SheetTable:
     columns = (
-        Column(name="power", label="Power of the displacement in m"),
-        Column(name="loading", label="Loading (N)"),
-        Column(name="unloading", label="Unloading (N)"),
+        SheetColumn(name="power", label="Power of the displacement in m"),
+        SheetColumn(name="loading", label="Loading (N)"),
+        SheetColumn(name="unloading", label="Unloading (N)"),
     )
     pairs = zip(found.loading.convert().coef, found.unloading.convert().coef, strict=True)
     return SheetTable(

@@ -30,15 +30,15 @@ from sonolube.measurement.recordings.tdms import FORMAT as TDMS
 from sonolube.measurement.statistics.correlation import correlated_mean
 from sonolube.report.measured import friction_figures as figures
 from sonolube.report.measured.sheet import (
-    Part,
     Sheet,
     SheetFigure,
+    SheetSection,
     SheetTable,
-    Value,
-    attempted,
-    column,
-    known,
-    sheet_of,
+    SheetValue,
+    attempted_section,
+    quantity_column,
+    quantity_value,
+    sheet_from_sections,
 )
 from sonolube.units import engineering
 
@@ -110,7 +110,7 @@ def friction_sheet(path: Path, *, settings: FrictionSettings) -> Sheet:
     recording = read_recording(path, mapping=settings.mapping)
     motor = settings.motor
     parts = _parts(recording, settings) if motor is None else [_motor(recording, settings, motor)]
-    return sheet_of(parts, title=path.name, source=recording_source(recording))
+    return sheet_from_sections(parts, title=path.name, source=recording_source(recording))
 
 
 def recording_source(recording: "xr.Dataset") -> dict[str, str]:
@@ -127,44 +127,46 @@ def recording_source(recording: "xr.Dataset") -> dict[str, str]:
     }
 
 
-def _parts(recording: "xr.Dataset", settings: FrictionSettings) -> list[Part]:
+def _parts(recording: "xr.Dataset", settings: FrictionSettings) -> list[SheetSection]:
     found = [name for name in _CHANNELS if name in recording.variables]
     if not found:
         channel(recording, "friction_force")  # says which channels there are
     name = found[0]
     parts = [_level(recording, name)]
     if "time" not in recording.variables:
-        return [*parts, Part(figures=(_cycle_figure(recording, name),))]
+        return [*parts, SheetSection(figures=(_cycle_figure(recording, name),))]
     windows = analyse_windows(recording, of=name, window_duration=settings.window_duration)
     if name != "friction_force":
         return [*parts, _windows(recording, windows, None)]
     steady = None
     if settings.sliding_speed is not None:
-        parts.append(attempted(partial(_running_in, recording, settings, settings.sliding_speed), what="steady state"))
+        parts.append(
+            attempted_section(partial(_running_in, recording, settings, settings.sliding_speed), what="steady state")
+        )
         steady = _quietly_steady(windows, settings.sliding_speed)
     parts.append(_windows(recording, windows, steady))
     if {"voltage_peak_to_peak", "stack_voltage"} & set(map(str, recording.variables)):
-        parts.append(attempted(partial(_staircase, recording), what="steps of the voltage"))
-    parts.append(attempted(partial(_stick_slip, recording, settings.rotation_speed), what="stick-slip"))
+        parts.append(attempted_section(partial(_staircase, recording), what="steps of the voltage"))
+    parts.append(attempted_section(partial(_stick_slip, recording, settings.rotation_speed), what="stick-slip"))
     if "relative_velocity" in recording.variables:
-        parts.append(attempted(partial(_cycles, recording), what="work of friction"))
+        parts.append(attempted_section(partial(_cycles, recording), what="work of friction"))
     if settings.rotation_speed is not None:
-        parts.append(attempted(partial(_wobble, recording, settings.rotation_speed), what="wobble"))
+        parts.append(attempted_section(partial(_wobble, recording, settings.rotation_speed), what="wobble"))
     return parts
 
 
-def _level(recording: "xr.Dataset", name: str) -> Part:
+def _level(recording: "xr.Dataset", name: str) -> SheetSection:
     mean = correlated_mean(channel(recording, name))
-    scatter = Value(
+    scatter = SheetValue(
         name=f"{name}_deviation",
         label="Standard deviation of the samples",
         value=mean.deviation,
         unit=str(recording[name].attrs.get("units", "")),
     )
-    return Part(values=(known(name, mean.mean, uncertainty=mean.uncertainty), scatter))
+    return SheetSection(values=(quantity_value(name, mean.mean, uncertainty=mean.uncertainty), scatter))
 
 
-def _windows(recording: "xr.Dataset", windows: WindowStatistics, steady: SteadyState | None) -> Part:
+def _windows(recording: "xr.Dataset", windows: WindowStatistics, steady: SteadyState | None) -> SheetSection:
     draw = partial(
         figures.trace,
         channel(recording, "time"),
@@ -172,14 +174,14 @@ def _windows(recording: "xr.Dataset", windows: WindowStatistics, steady: SteadyS
         windows=windows,
         steady=steady,
     )
-    return Part(values=(_fluctuation(windows),), figures=(_trace_figure(windows, draw),))
+    return SheetSection(values=(_fluctuation(windows),), figures=(_trace_figure(windows, draw),))
 
 
-def _fluctuation(windows: WindowStatistics) -> Value:
+def _fluctuation(windows: WindowStatistics) -> SheetValue:
     span = engineering(windows.window_duration, "s")
     known = np.isfinite(windows.fluctuation)  # of windows with a sample
     squares, weights = windows.fluctuation[known] ** 2, windows.samples[known]
-    return Value(
+    return SheetValue(
         name=f"{windows.channel}_fluctuation",
         label=f"Root mean square of the fluctuation in windows of {span}",
         value=float(np.sqrt(np.average(squares, weights=weights))),
@@ -214,40 +216,40 @@ def _quietly_steady(windows: WindowStatistics, sliding_speed: float) -> SteadySt
         return None
 
 
-def _running_in(recording: "xr.Dataset", settings: FrictionSettings, sliding_speed: float) -> Part:
+def _running_in(recording: "xr.Dataset", settings: FrictionSettings, sliding_speed: float) -> SheetSection:
     found = analyse_running_in(recording, sliding_speed=sliding_speed, window_duration=settings.window_duration)
     return _steady_part(found.friction, found.fluctuation)
 
 
-def _steady_part(friction: SteadyState, fluctuation: SteadyState) -> Part:
+def _steady_part(friction: SteadyState, fluctuation: SteadyState) -> SheetSection:
     if not friction.steady:
-        return Part(not_found=(f"steady friction: {friction.reason}",))
+        return SheetSection(not_found=(f"steady friction: {friction.reason}",))
     values = [
-        Value(
+        SheetValue(
             name="steady_friction_force",
             label="Steady friction force",
             value=friction.friction_force,
             unit="N",
             uncertainty=friction.friction_force_uncertainty,
         ),
-        Value(name="steady_time", label="Steady after", value=friction.start_time, unit="s"),
-        Value(name="steady_distance", label="Slid until steady", value=friction.sliding_distance, unit="m"),
+        SheetValue(name="steady_time", label="Steady after", value=friction.start_time, unit="s"),
+        SheetValue(name="steady_distance", label="Slid until steady", value=friction.sliding_distance, unit="m"),
     ]
     if fluctuation.steady:
         distance = fluctuation.sliding_distance
         values.append(
-            Value(
+            SheetValue(
                 name="steady_fluctuation_distance",
                 label="Slid until the fluctuation is steady",
                 value=distance,
                 unit="m",
             )
         )
-        return Part(values=tuple(values))
-    return Part(values=tuple(values), not_found=(f"steady fluctuation: {fluctuation.reason}",))
+        return SheetSection(values=tuple(values))
+    return SheetSection(values=tuple(values), not_found=(f"steady fluctuation: {fluctuation.reason}",))
 
 
-def _staircase(recording: "xr.Dataset") -> Part:
+def _staircase(recording: "xr.Dataset") -> SheetSection:
     steps = analyse_staircase(recording)
     names = (
         "voltage_peak_to_peak",
@@ -263,7 +265,7 @@ def _staircase(recording: "xr.Dataset") -> Part:
     table = SheetTable(
         name="steps",
         title="Friction at each step of the voltage",
-        columns=tuple(column(name, label) for name, label in zip(names, labels, strict=True)),
+        columns=tuple(quantity_column(name, label) for name, label in zip(names, labels, strict=True)),
         rows=tuple(tuple(getattr(step, name) for name in names) for step in steps),
     )
     drawn = SheetFigure(
@@ -272,33 +274,33 @@ def _staircase(recording: "xr.Dataset") -> Part:
         caption="Mean and its standard error at each step, and what the voltage takes from the friction without it.",
         draw=partial(figures.staircase, steps),
     )
-    return Part(tables=(table,), figures=(drawn,))
+    return SheetSection(tables=(table,), figures=(drawn,))
 
 
-def _stick_slip(recording: "xr.Dataset", rotation_speed: float | None) -> Part:
+def _stick_slip(recording: "xr.Dataset", rotation_speed: float | None) -> SheetSection:
     if rotation_speed is not None:  # a wobble would pass for stick-slip at the rotation's frequency
         without_wobble = analyse_wobble(recording, rotation_speed=rotation_speed).friction_force
         recording = recording.assign(friction_force=("time", without_wobble))
     found = analyse_stick_slip(recording)
     if not found.found:
-        return Part(not_found=(f"stick-slip: {found.reason}",))
-    amplitude = known(
+        return SheetSection(not_found=(f"stick-slip: {found.reason}",))
+    amplitude = quantity_value(
         "stick_slip_amplitude", found.stick_slip_amplitude, uncertainty=found.stick_slip_amplitude_uncertainty
     )
-    return Part(values=(known("stick_slip_frequency", found.stick_slip_frequency), amplitude))
+    return SheetSection(values=(quantity_value("stick_slip_frequency", found.stick_slip_frequency), amplitude))
 
 
-def _cycles(recording: "xr.Dataset") -> Part:
+def _cycles(recording: "xr.Dataset") -> SheetSection:
     found = analyse_cycles(recording)
     values = [
-        known("frictional_work", float(found.work.frictional_work[-1])),
-        known("sliding_distance", found.work.sliding_distance),
+        quantity_value("frictional_work", float(found.work.frictional_work[-1])),
+        quantity_value("sliding_distance", found.work.sliding_distance),
     ]
     if found.loops is not None:
         loops = found.loops
         work = loops.frictional_work
         values.append(
-            Value(
+            SheetValue(
                 name="work_per_cycle",
                 label=f"Work of friction per cycle, mean of {work.size}",
                 value=float(work.mean()),
@@ -312,13 +314,13 @@ def _cycles(recording: "xr.Dataset") -> Part:
         caption="Every cycle of the recording; the work is the area of the loop over displacement.",
         draw=partial(figures.loops, channel(recording, "relative_velocity"), channel(recording, "friction_force")),
     )
-    return Part(values=tuple(values), figures=(drawn,))
+    return SheetSection(values=tuple(values), figures=(drawn,))
 
 
-def _wobble(recording: "xr.Dataset", rotation_speed: float) -> Part:
+def _wobble(recording: "xr.Dataset", rotation_speed: float) -> SheetSection:
     found = analyse_wobble(recording, rotation_speed=rotation_speed)
     values = [
-        Value(
+        SheetValue(
             name=f"wobble_amplitude_{order}",
             label=f"Wobble at {order} times the rotation",
             value=float(amplitude),
@@ -326,16 +328,16 @@ def _wobble(recording: "xr.Dataset", rotation_speed: float) -> Part:
         )
         for order, amplitude in enumerate(found.wobble_amplitude, start=1)
     ]
-    left = Value(
+    left = SheetValue(
         name="deviation_without_wobble",
         label="Standard deviation without the wobble",
         value=found.friction_force_deviation,
         unit="N",
     )
-    return Part(values=(*values, left))
+    return SheetSection(values=(*values, left))
 
 
-def _motor(recording: "xr.Dataset", settings: FrictionSettings, motor: MotorFriction) -> Part:
+def _motor(recording: "xr.Dataset", settings: FrictionSettings, motor: MotorFriction) -> SheetSection:
     trace = analyse_motor_current(recording, motor=motor, window_duration=settings.window_duration)
     mean = float(trace.friction_force.mean())
     # all windows share the errors of torque constant and idle current, so that averaging does not lower them
@@ -346,7 +348,7 @@ def _motor(recording: "xr.Dataset", settings: FrictionSettings, motor: MotorFric
         caption="Mean in each window with its standard uncertainty.",
         draw=partial(figures.motor_trace, trace),
     )
-    return Part(values=(known("friction_force", mean, uncertainty=error),), figures=(drawn,))
+    return SheetSection(values=(quantity_value("friction_force", mean, uncertainty=error),), figures=(drawn,))
 
 
 def _streamed(path: Path, settings: FrictionSettings) -> Sheet:
@@ -354,20 +356,20 @@ def _streamed(path: Path, settings: FrictionSettings) -> Sheet:
         path, channels=["friction_force"], mapping=settings.mapping, window_duration=settings.window_duration
     )["friction_force"]
     mean = correlated_mean(windows.mean)
-    parts = [Part(values=(known("friction_force", mean.mean, uncertainty=mean.uncertainty),))]
+    parts = [SheetSection(values=(quantity_value("friction_force", mean.mean, uncertainty=mean.uncertainty),))]
     steady = None
     if settings.sliding_speed is not None:
         steady = _quietly_steady(windows, settings.sliding_speed)
         settle = partial(steady_state, time=windows.time, sliding_speed=settings.sliding_speed)
         parts.append(
-            attempted(
+            attempted_section(
                 lambda: _steady_part(settle(friction_force=windows.mean), settle(friction_force=windows.fluctuation)),
                 what="steady state",
             )
         )
     draw = partial(figures.trace, None, None, windows=windows, steady=steady)
-    parts.append(Part(values=(_fluctuation(windows),), figures=(_trace_figure(windows, draw),)))
+    parts.append(SheetSection(values=(_fluctuation(windows),), figures=(_trace_figure(windows, draw),)))
     with path.open("rb") as stream:
         digest = hashlib.file_digest(stream, "sha256").hexdigest()
     source = {"format": TDMS, "samples": f"{int(windows.samples.sum())}, read in blocks", "sha256": digest}
-    return sheet_of(parts, title=path.name, source=source)
+    return sheet_from_sections(parts, title=path.name, source=source)

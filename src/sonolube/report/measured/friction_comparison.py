@@ -5,7 +5,15 @@ from functools import partial
 
 from sonolube.measurement.statistics.intervals import compare, ratio_interval
 from sonolube.report.measured import friction_figures as figures
-from sonolube.report.measured.sheet import Part, Sheet, SheetFigure, Value, attempted, known, sheet_of
+from sonolube.report.measured.sheet import (
+    Sheet,
+    SheetFigure,
+    SheetSection,
+    SheetValue,
+    attempted_section,
+    quantity_value,
+    sheet_from_sections,
+)
 
 _LEVELS = ("steady_friction_force", "friction_force", "friction_coefficient")
 
@@ -28,7 +36,7 @@ def comparison_sheet(with_vibration: Sequence[Sheet], without_vibration: Sequenc
     title = f"{len(with_vibration)} with vibration against {len(without_vibration)} without"
     if level is None:
         reason = "comparison: the tests have no level of friction in common"
-        return sheet_of([Part(not_found=(reason,))], title=title, source={})
+        return sheet_from_sections([SheetSection(not_found=(reason,))], title=title, source={})
     on, off = (
         [found.value for sheet in sheets if (found := _value(sheet, level))]
         for sheets in (with_vibration, without_vibration)
@@ -40,32 +48,34 @@ def comparison_sheet(with_vibration: Sequence[Sheet], without_vibration: Sequenc
         draw=partial(figures.comparison, off, on, level),
     )
     parts = [
-        attempted(partial(_reduction, on, off), what="interval of the reduction"),
-        attempted(partial(_significance, on, off), what="significance"),
-        Part(figures=(drawn,)),
+        attempted_section(partial(_reduction, on, off), what="interval of the reduction"),
+        attempted_section(partial(_significance, on, off), what="significance"),
+        SheetSection(figures=(drawn,)),
     ]
     if min(len(on), len(off)) < 2:
         mean = 1 - (sum(on) / len(on)) / (sum(off) / len(off))
-        parts.insert(0, Part(values=(known("friction_reduction", mean),)))
-    return sheet_of(parts, title=title, source={"compared": level.replace("_", " ")})
+        parts.insert(0, SheetSection(values=(quantity_value("friction_reduction", mean),)))
+    return sheet_from_sections(parts, title=title, source={"compared": level.replace("_", " ")})
 
 
-def _value(sheet: Sheet, name: str) -> Value | None:
+def _value(sheet: Sheet, name: str) -> SheetValue | None:
     return next((value for value in sheet.values if value.name == name), None)
 
 
-def _reduction(on: Sequence[float], off: Sequence[float]) -> Part:
+def _reduction(on: Sequence[float], off: Sequence[float]) -> SheetSection:
     ratio = ratio_interval(on, off)
     interval = (1 - ratio.upper, 1 - ratio.lower) if ratio.bounded else None
-    value = known("friction_reduction", 1 - ratio.ratio, interval=interval)
-    return Part(values=(value,), caveats=(ratio.reason,) if ratio.reason else ())
+    value = quantity_value("friction_reduction", 1 - ratio.ratio, interval=interval)
+    return SheetSection(values=(value,), caveats=(ratio.reason,) if ratio.reason else ())
 
 
-def _significance(on: Sequence[float], off: Sequence[float]) -> Part:
+def _significance(on: Sequence[float], off: Sequence[float]) -> SheetSection:
     found = compare(off, on)
     values = (
-        Value(name="welch_p", label="Chance of so large a difference by scatter, Welch", value=found.welch_p, unit=""),
-        Value(
+        SheetValue(
+            name="welch_p", label="Chance of so large a difference by scatter, Welch", value=found.welch_p, unit=""
+        ),
+        SheetValue(
             name="permutation_p",
             label="The same by permutation, without assuming normal scatter",
             value=found.permutation_p,
@@ -78,4 +88,4 @@ def _significance(on: Sequence[float], off: Sequence[float]) -> Part:
             f"{len(on)} and {len(off)} tests cannot tell a difference at {found.confidence_level:.0%} without assuming"
             f" normal scatter: the chance is {found.smallest_permutation_p:.2g} at the least",
         )
-    return Part(values=values, caveats=caveats)
+    return SheetSection(values=values, caveats=caveats)

@@ -11,15 +11,15 @@ from sonolube.measurement.friction.wear_track import WearReduction, WearRing, ri
 from sonolube.measurement.surface_files.reader import read_surface_file
 from sonolube.report.measured import groove_figures as figures
 from sonolube.report.measured.sheet import (
-    Column,
-    Part,
     Sheet,
+    SheetColumn,
     SheetFigure,
+    SheetSection,
     SheetTable,
-    Value,
-    attempted,
-    known,
-    sheet_of,
+    SheetValue,
+    attempted_section,
+    quantity_value,
+    sheet_from_sections,
 )
 from sonolube.report.measured.surface import SurfaceSettings, surface_source
 from sonolube.report.measured.surface_figures import abbott
@@ -75,22 +75,30 @@ def groove_sheet(path: Path, *, settings: SurfaceSettings) -> tuple[Sheet, Groov
     )
     groove = measure_groove(file.height_map)
     values = [
-        known("wear_volume", groove.wear_volume, uncertainty=groove.wear_volume_uncertainty),
-        Value(name="pile_up_volume", label="Volume of ridges and projections", value=groove.pile_up_volume, unit="m3"),
-        Value(name="net_volume", label="Volume that has left the field", value=groove.net_volume, unit="m3"),
-        known("groove_width", groove.groove_width),
-        Value(name="groove_depth", label="Greatest depth of the mean section", value=groove.groove_depth, unit="m"),
-        Value(name="cross_section_area", label="Area of the mean section", value=groove.cross_section_area, unit="m2"),
-        Value(name="track_length", label="Length of track in the field", value=groove.track_length, unit="m"),
+        quantity_value("wear_volume", groove.wear_volume, uncertainty=groove.wear_volume_uncertainty),
+        SheetValue(
+            name="pile_up_volume", label="Volume of ridges and projections", value=groove.pile_up_volume, unit="m3"
+        ),
+        SheetValue(name="net_volume", label="Volume that has left the field", value=groove.net_volume, unit="m3"),
+        quantity_value("groove_width", groove.groove_width),
+        SheetValue(
+            name="groove_depth", label="Greatest depth of the mean section", value=groove.groove_depth, unit="m"
+        ),
+        SheetValue(
+            name="cross_section_area", label="Area of the mean section", value=groove.cross_section_area, unit="m2"
+        ),
+        SheetValue(name="track_length", label="Length of track in the field", value=groove.track_length, unit="m"),
     ]
     if groove.track.groove_diameter < _STRAIGHT * groove.track_length:
-        values.append(known("groove_diameter", groove.track.groove_diameter, label="Diameter of the track's arc"))
+        values.append(
+            quantity_value("groove_diameter", groove.track.groove_diameter, label="Diameter of the track's arc")
+        )
     caveats = (groove.caveat,) if groove.caveat else ()
     parts = [
-        Part(values=tuple(values), figures=_figures(groove), caveats=caveats),
-        attempted(partial(_marks, groove), what="marks along the track"),
+        SheetSection(values=tuple(values), figures=_figures(groove), caveats=caveats),
+        attempted_section(partial(_marks, groove), what="marks along the track"),
     ]
-    return sheet_of(parts, title=f"{path.parent.name}/{path.name}", source=surface_source(file)), groove
+    return sheet_from_sections(parts, title=f"{path.parent.name}/{path.name}", source=surface_source(file)), groove
 
 
 def ring_sheet(
@@ -123,21 +131,21 @@ def ring_sheet(
     )
     counted = [name for name, groove in grooves if isinstance(groove, Groove) and groove.complete]
     values = [
-        Value(
+        SheetValue(
             name="ring_volume",
             label="Wear volume of the ring",
             value=ring.wear_volume,
             unit="m3",
             uncertainty=ring.wear_volume_uncertainty,
         ),
-        Value(
+        SheetValue(
             name="ring_pile_up_volume",
             label="Ridges and projections of the ring",
             value=ring.pile_up_volume,
             unit="m3",
         ),
-        Value(name="ring_net_volume", label="Volume that has left the disc", value=ring.net_volume, unit="m3"),
-        known("wear_rate", ring.wear_rate, interval=ring.wear_rate_interval),
+        SheetValue(name="ring_net_volume", label="Volume that has left the disc", value=ring.net_volume, unit="m3"),
+        quantity_value("wear_rate", ring.wear_rate, interval=ring.wear_rate_interval),
     ]
     if settings.tip_radius is not None:
         width = float(np.mean([g.groove_width for _, g in grooves if isinstance(g, Groove) and g.complete]))
@@ -145,11 +153,14 @@ def ring_sheet(
             groove_diameter=settings.groove_diameter, groove_width=width, tip_radius=settings.tip_radius
         )
         label = "The same by ASTM G99's geometry, from width and tip"
-        values.append(Value(name="geometric_volume", label=label, value=float(volume), unit="m3"))
+        values.append(SheetValue(name="geometric_volume", label=label, value=float(volume), unit="m3"))
     table = SheetTable(
         name="sections",
         title="Area of the mean section by scan",
-        columns=(Column(name="scan", label="Scan"), Column(name="cross_section_area", label="Area", unit="m2")),
+        columns=(
+            SheetColumn(name="scan", label="Scan"),
+            SheetColumn(name="cross_section_area", label="Area", unit="m2"),
+        ),
         rows=tuple(zip(counted, map(float, ring.section_area), strict=True)),
     )
     drawn = SheetFigure(
@@ -158,8 +169,8 @@ def ring_sheet(
         caption="Area of the mean section of each scan; the line is the mean, the band its 95 % interval.",
         draw=partial(figures.ring, ring),
     )
-    part = Part(values=tuple(values), tables=(table,), figures=(drawn,), caveats=ring.left_out)
-    return sheet_of([part], title=title, source={}), ring
+    part = SheetSection(values=tuple(values), tables=(table,), figures=(drawn,), caveats=ring.left_out)
+    return sheet_from_sections([part], title=title, source={}), ring
 
 
 def wear_reduction_sheet(without: Sequence[WearRing], with_vibration: Sequence[WearRing]) -> Sheet:
@@ -180,9 +191,9 @@ def wear_reduction_sheet(without: Sequence[WearRing], with_vibration: Sequence[W
         caveats = (
             "the interval knows the scatter round each ring only, not that between specimens: wear more of them",
         )
-    value = known("wear_reduction", found.wear_reduction, interval=found.interval)
+    value = quantity_value("wear_reduction", found.wear_reduction, interval=found.interval)
     title = f"{len(with_vibration)} ring with vibration against {len(without)} without"
-    return sheet_of([Part(values=(value,), caveats=caveats)], title=title, source={})
+    return sheet_from_sections([SheetSection(values=(value,), caveats=caveats)], title=title, source={})
 
 
 def cap_sheet(path: Path, *, settings: SurfaceSettings, tip_radius: float | None) -> Sheet:
@@ -211,15 +222,15 @@ def cap_sheet(path: Path, *, settings: SurfaceSettings, tip_radius: float | None
     )
     cap = worn_cap(file.height_map, tip_radius=tip_radius)
     values = (
-        Value(
+        SheetValue(
             name="pin_volume",
             label="Wear volume of the pin",
             value=cap.wear_volume,
             unit="m3",
             uncertainty=cap.wear_volume_uncertainty,
         ),
-        Value(name="scar_diameter", label="Diameter of the scar", value=cap.scar_diameter, unit="m"),
-        known("tip_radius", cap.tip_radius),
+        SheetValue(name="scar_diameter", label="Diameter of the scar", value=cap.scar_diameter, unit="m"),
+        quantity_value("tip_radius", cap.tip_radius),
     )
     drawn = SheetFigure(
         name="cap",
@@ -227,7 +238,9 @@ def cap_sheet(path: Path, *, settings: SurfaceSettings, tip_radius: float | None
         caption="Heights over the ball; the line goes round the scar.",
         draw=partial(figures.height_map, cap.levelled, cap.worn),
     )
-    return sheet_of([Part(values=values, figures=(drawn,))], title=path.name, source=surface_source(file))
+    return sheet_from_sections(
+        [SheetSection(values=values, figures=(drawn,))], title=path.name, source=surface_source(file)
+    )
 
 
 def _figures(groove: Groove) -> tuple[SheetFigure, ...]:
@@ -260,15 +273,15 @@ def _figures(groove: Groove) -> tuple[SheetFigure, ...]:
     )
 
 
-def _marks(groove: Groove) -> Part:
+def _marks(groove: Groove) -> SheetSection:
     marks = track_marks(groove)
     if marks.dot_spacing is None:
-        return Part(not_found=(f"marks along the track: {marks.reason}",))
+        return SheetSection(not_found=(f"marks along the track: {marks.reason}",))
     drawn = SheetFigure(
         name="marks",
         title="Spectrum along the track",
         caption="Power of the groove's floor along the track over its background; the peak is the marks' spacing.",
         draw=partial(figures.marks, marks),
     )
-    value = known("dot_spacing", marks.dot_spacing, uncertainty=marks.dot_spacing_uncertainty)
-    return Part(values=(value,), figures=(drawn,))
+    value = quantity_value("dot_spacing", marks.dot_spacing, uncertainty=marks.dot_spacing_uncertainty)
+    return SheetSection(values=(value,), figures=(drawn,))

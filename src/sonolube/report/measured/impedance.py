@@ -14,7 +14,14 @@ from sonolube.measurement.impedance.reader import read_impedance
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 from sonolube.measurement.statistics.logarithmic_fit import Interval
 from sonolube.report.measured import impedance_figures as figures
-from sonolube.report.measured.sheet import Part, Sheet, SheetFigure, Value, known, sheet_of
+from sonolube.report.measured.sheet import (
+    Sheet,
+    SheetFigure,
+    SheetSection,
+    SheetValue,
+    quantity_value,
+    sheet_from_sections,
+)
 from sonolube.units import engineering
 from sonolube.vocabulary import quantities
 
@@ -81,10 +88,10 @@ def impedance_sheet(path: Path, *, settings: ImpedanceSettings) -> Sheet:
         "residual": settings.residual,
         "sha256": spectrum.sha256,
     }
-    return sheet_of([part], title=path.name, source=source)
+    return sheet_from_sections([part], title=path.name, source=source)
 
 
-def _circuit(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings) -> Part:
+def _circuit(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings) -> SheetSection:
     fit = fit_circuit(
         spectrum,
         branches=settings.branches,
@@ -105,15 +112,15 @@ def _circuit(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings) -> Part:
         draw=partial(figures.admittance_circle, spectrum, fit.circuit),
     )
     values = (*_values(fit.intervals), _rms(fit.residual_rms, fit.residual))
-    return Part(values=values, figures=(drawn, circle), caveats=fit.caveats)
+    return SheetSection(values=values, figures=(drawn, circle), caveats=fit.caveats)
 
 
-def _stack(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings, sought: StackInStructure) -> Part:
+def _stack(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings, sought: StackInStructure) -> SheetSection:
     fit = fit_stack(spectrum, sought.stack, in_structure=sought.in_structure, residual=settings.residual)
     charge = fit.charge_per_elongation
     values = (
         *_values(fit.intervals),
-        Value(
+        SheetValue(
             name="force_per_volt",
             label="Blocked force per volt",
             value=charge.value,
@@ -128,22 +135,22 @@ def _stack(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings, sought: Sta
         caption=f"Measured, and that of the structure with the stack found by the {fit.residual} residual.",
         draw=partial(figures.stack, spectrum, sought.in_structure(fit.stack)),
     )
-    return Part(values=values, figures=(drawn,), caveats=fit.caveats)
+    return SheetSection(values=values, figures=(drawn,), caveats=fit.caveats)
 
 
-def _values(intervals: Mapping[str, Interval]) -> tuple[Value, ...]:
+def _values(intervals: Mapping[str, Interval]) -> tuple[SheetValue, ...]:
     return tuple(_value(name, interval) for name, interval in intervals.items())
 
 
-def _value(name: str, interval: Interval) -> Value:
+def _value(name: str, interval: Interval) -> SheetValue:
     ends = (interval.lower, interval.upper)
     if name in quantities():
-        return known(name, interval.value, interval=ends)
+        return quantity_value(name, interval.value, interval=ends)
     base, _, branch = name.rpartition("_")
     word = quantities()[base]
     label = f"{word.meaning}, branch {branch}"
-    return Value(name=name, label=label, value=interval.value, unit=word.unit, interval=ends)
+    return SheetValue(name=name, label=label, value=interval.value, unit=word.unit, interval=ends)
 
 
-def _rms(rms: float, residual: str) -> Value:
-    return Value(name="residual_rms", label=f"Root mean square of the {residual} residual", value=rms, unit="")
+def _rms(rms: float, residual: str) -> SheetValue:
+    return SheetValue(name="residual_rms", label=f"Root mean square of the {residual} residual", value=rms, unit="")

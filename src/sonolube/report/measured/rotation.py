@@ -11,7 +11,14 @@ from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.measurement.recordings.reader import read_recording
 from sonolube.report.measured import rotation_figures as figures
 from sonolube.report.measured.friction import recording_source
-from sonolube.report.measured.sheet import Part, Sheet, SheetFigure, Value, known, sheet_of
+from sonolube.report.measured.sheet import (
+    Sheet,
+    SheetFigure,
+    SheetSection,
+    SheetValue,
+    quantity_value,
+    sheet_from_sections,
+)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -65,17 +72,19 @@ def rotation_sheet(path: Path, *, settings: RotationSettings) -> Sheet:
     turns = turning.rotation_speed
     repaired = int(turning.repaired.sum())
     values = [
-        known("rotation_speed", turning.mean_rotation_speed, uncertainty=error),
-        known("sliding_speed", around * turning.mean_rotation_speed, uncertainty=around * error),
-        known("revolutions", float(turning.revolutions[-1])),
-        known("sliding_distance", around * float(turning.revolutions[-1])),
-        Value(name="pulses", label="Pulses", value=float(turning.time.size), unit=""),
-        Value(name="repaired_pulses", label="Missing pulses put in", value=float(repaired), unit=""),
+        quantity_value("rotation_speed", turning.mean_rotation_speed, uncertainty=error),
+        quantity_value("sliding_speed", around * turning.mean_rotation_speed, uncertainty=around * error),
+        quantity_value("revolutions", float(turning.revolutions[-1])),
+        quantity_value("sliding_distance", around * float(turning.revolutions[-1])),
+        SheetValue(name="pulses", label="Pulses", value=float(turning.time.size), unit=""),
+        SheetValue(name="repaired_pulses", label="Missing pulses put in", value=float(repaired), unit=""),
     ]
     if turns.size > 1:
         spread = float(turns.std(ddof=1)) / turning.mean_rotation_speed
         values.append(
-            Value(name="speed_variation", label="Deviation of the turns' speed over its mean", value=spread, unit="")
+            SheetValue(
+                name="speed_variation", label="Deviation of the turns' speed over its mean", value=spread, unit=""
+            )
         )
     drawn = (
         SheetFigure(
@@ -96,8 +105,8 @@ def rotation_sheet(path: Path, *, settings: RotationSettings) -> Sheet:
     caveats: tuple[str, ...] = ()
     if repaired > turning.time.size / 10:
         caveats = (f"{repaired} of {turning.time.size} pulses were missing; lower the prominence or move the probe",)
-    return sheet_of(
-        [Part(values=tuple(values), figures=drawn, caveats=caveats)],
+    return sheet_from_sections(
+        [SheetSection(values=tuple(values), figures=drawn, caveats=caveats)],
         title=path.name,
         source=recording_source(recording),
     )

@@ -17,7 +17,7 @@ Cell = float | str | None
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Value:
+class SheetValue:
     """One number that a file was measured to say.
 
     Parameters
@@ -45,7 +45,7 @@ class Value:
 
     @property
     def text(self) -> str:
-        """The value as people write it, with how well it is known."""
+        """The value as people write it, with how well it is quantity_value."""
         if not math.isfinite(self.value):
             return "not known"
         told = engineering(self.value, self.unit, digits=self._digits)
@@ -67,7 +67,7 @@ class Value:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Column:
+class SheetColumn:
     """A column of a table: its name for programs, its heading for people, and its SI unit."""
 
     name: str
@@ -87,7 +87,7 @@ class SheetTable:
 
     name: str
     title: str
-    columns: tuple[Column, ...]
+    columns: tuple[SheetColumn, ...]
     rows: tuple[tuple[Cell, ...], ...]
 
 
@@ -125,7 +125,7 @@ class Sheet:
 
     title: str
     source: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
-    values: tuple[Value, ...] = ()
+    values: tuple[SheetValue, ...] = ()
     tables: tuple[SheetTable, ...] = ()
     figures: tuple[SheetFigure, ...] = ()
     caveats: tuple[str, ...] = ()
@@ -133,17 +133,17 @@ class Sheet:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Part:
+class SheetSection:
     """What one analysis adds to a sheet; fields as those of `Sheet`."""
 
-    values: tuple[Value, ...] = ()
+    values: tuple[SheetValue, ...] = ()
     tables: tuple[SheetTable, ...] = ()
     figures: tuple[SheetFigure, ...] = ()
     caveats: tuple[str, ...] = ()
     not_found: tuple[str, ...] = ()
 
 
-def sheet_of(parts: Sequence[Part], *, title: str, source: Mapping[str, str]) -> Sheet:
+def sheet_from_sections(parts: Sequence[SheetSection], *, title: str, source: Mapping[str, str]) -> Sheet:
     """Return the sheet to which analyses add up, in their order."""
     return Sheet(
         title=title,
@@ -156,22 +156,22 @@ def sheet_of(parts: Sequence[Part], *, title: str, source: Mapping[str, str]) ->
     )
 
 
-def attempted(analysis: Callable[[], Part], *, what: str) -> Part:
+def attempted_section(analysis: Callable[[], SheetSection], *, what: str) -> SheetSection:
     """Return what an analysis gives, or that it was not possible on this file, with its reason."""
     try:
         return analysis()
     except InvalidInput as refusal:
-        return Part(not_found=(f"{what}: {refusal}",))
+        return SheetSection(not_found=(f"{what}: {refusal}",))
 
 
-def known(
+def quantity_value(
     name: str,
     value: float,
     *,
     label: str = "",
     uncertainty: float | None = None,
     interval: tuple[float, float] | None = None,
-) -> Value:
+) -> SheetValue:
     """Return a value whose name is a word of the vocabulary, which gives its unit and, where none is given, its label.
 
     Parameters
@@ -192,12 +192,12 @@ def known(
     Value
     """
     word = quantities()[name]
-    return Value(
+    return SheetValue(
         name=name, label=label or word.meaning, value=value, unit=word.unit, uncertainty=uncertainty, interval=interval
     )
 
 
-def column(name: str, label: str = "") -> Column:
-    """Return a column whose name is a word of the vocabulary."""
+def quantity_column(name: str, label: str = "") -> SheetColumn:
+    """Return a quantity_column whose name is a word of the vocabulary."""
     word = quantities()[name]
-    return Column(name=name, label=label or word.meaning, unit=word.unit)
+    return SheetColumn(name=name, label=label or word.meaning, unit=word.unit)

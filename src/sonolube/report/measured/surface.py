@@ -11,15 +11,15 @@ from sonolube.errors import InvalidInput
 from sonolube.measurement.surface_files.reader import SurfaceFile, read_surface_file
 from sonolube.report.measured import surface_figures as figures
 from sonolube.report.measured.sheet import (
-    Column,
-    Part,
     Sheet,
+    SheetColumn,
     SheetFigure,
+    SheetSection,
     SheetTable,
-    attempted,
-    column,
-    known,
-    sheet_of,
+    attempted_section,
+    quantity_column,
+    quantity_value,
+    sheet_from_sections,
 )
 from sonolube.surfaces import (
     HeightMap,
@@ -158,15 +158,15 @@ def surface_sheet(path: Path, *, settings: SurfaceSettings) -> Sheet:
     parts = [_part(height_parameters(surface))]
     for measure in (hybrid_parameters, spatial_parameters, functional_parameters, feature_parameters):
         name = measure.__name__.replace("_", " ")
-        parts.append(attempted(lambda measure=measure: _part(measure(surface)), what=name))  # type: ignore[misc]
+        parts.append(attempted_section(lambda measure=measure: _part(measure(surface)), what=name))  # type: ignore[misc]
     parts += [
-        attempted(partial(_summits, surface), what="summits"),
-        attempted(partial(_profiles, surface), what="profile parameters"),
-        attempted(partial(_sampling, surface), what="summits at coarser sampling"),
-        attempted(partial(_waviness, levelled), what="waviness"),
+        attempted_section(partial(_summits, surface), what="summits"),
+        attempted_section(partial(_profiles, surface), what="profile parameters"),
+        attempted_section(partial(_sampling, surface), what="summits at coarser sampling"),
+        attempted_section(partial(_waviness, levelled), what="waviness"),
         _figures(surface),
     ]
-    return sheet_of(parts, title=path.name, source=surface_source(file))
+    return sheet_from_sections(parts, title=path.name, source=surface_source(file))
 
 
 def surface_source(file: SurfaceFile) -> dict[str, str]:
@@ -197,44 +197,46 @@ def _filtered(levelled: HeightMap, settings: SurfaceSettings) -> HeightMap:
     return surface
 
 
-def _part(record: object) -> Part:
+def _part(record: object) -> SheetSection:
     names = [each.name for each in fields(record) if each.name in _SYMBOLS]  # type: ignore[arg-type]
     small = not getattr(record, "decays_everywhere", True)
-    return Part(
-        values=tuple(known(name, getattr(record, name), label=f"{_SYMBOLS[name]}, {_LABELS[name]}") for name in names),
+    return SheetSection(
+        values=tuple(
+            quantity_value(name, getattr(record, name), label=f"{_SYMBOLS[name]}, {_LABELS[name]}") for name in names
+        ),
         caveats=("Str is an upper bound: the map is too small for its texture",) if small else (),
     )
 
 
-def _summits(surface: HeightMap) -> Part:
+def _summits(surface: HeightMap) -> SheetSection:
     counted, moments = summits(surface), spectral_moments(surface)
     for_contact = roughness(surface)
-    return Part(
+    return SheetSection(
         values=(
-            known("summit_density", counted.summit_density),
-            known("summit_radius", counted.summit_radius),
-            known("summit_height_deviation", counted.summit_height_deviation),
-            known("mean_summit_height", counted.mean_summit_height),
-            known("bandwidth", moments.bandwidth, label="Bandwidth of the spectrum, Nayak's alpha"),
-            known("roughness_parameter", for_contact.roughness_parameter),
+            quantity_value("summit_density", counted.summit_density),
+            quantity_value("summit_radius", counted.summit_radius),
+            quantity_value("summit_height_deviation", counted.summit_height_deviation),
+            quantity_value("mean_summit_height", counted.mean_summit_height),
+            quantity_value("bandwidth", moments.bandwidth, label="Bandwidth of the spectrum, Nayak's alpha"),
+            quantity_value("roughness_parameter", for_contact.roughness_parameter),
         )
     )
 
 
-def _profiles(surface: HeightMap) -> Part:
+def _profiles(surface: HeightMap) -> SheetSection:
     rows = []
     for along in ("rows", "columns"):
         if min(surface.height.shape) > 1 or surface.height.shape[along == "rows"] > 1:
             found = profile_statistics(surface, along=along)
             for kind, record in (("mean", found.mean), ("deviation", found.spread)):
                 rows.append((f"{found.profile_count} {along}", kind, *(getattr(record, name) for name in _PROFILE)))
-    columns = (Column(name="profiles", label="Profiles"), Column(name="statistic", label=""))
-    measured = tuple(column(name, label) for name, label in zip(_PROFILE, _PROFILE_LABELS, strict=True))
+    columns = (SheetColumn(name="profiles", label="Profiles"), SheetColumn(name="statistic", label=""))
+    measured = tuple(quantity_column(name, label) for name, label in zip(_PROFILE, _PROFILE_LABELS, strict=True))
     table = SheetTable(name="profiles", title="Profile parameters", columns=(*columns, *measured), rows=tuple(rows))
-    return Part(tables=(table,))
+    return SheetSection(tables=(table,))
 
 
-def _sampling(surface: HeightMap) -> Part:
+def _sampling(surface: HeightMap) -> SheetSection:
     pixel = math.sqrt(surface.spacing_x * surface.spacing_y)
     rows: list[tuple[float, ...]] = []
     for times in _COARSENINGS:
@@ -255,21 +257,21 @@ def _sampling(surface: HeightMap) -> Part:
     table = SheetTable(
         name="sampling",
         title="Roughness for the contact models, by sampling interval",
-        columns=tuple(column(name, label) for name, label in zip(names, labels, strict=True)),
+        columns=tuple(quantity_column(name, label) for name, label in zip(names, labels, strict=True)),
         rows=tuple(rows),
     )
-    return Part(tables=(table,)) if rows else Part()
+    return SheetSection(tables=(table,)) if rows else SheetSection()
 
 
-def _waviness(levelled: HeightMap) -> Part:
+def _waviness(levelled: HeightMap) -> SheetSection:
     rows = [
         (along, float(length)) for along in ("rows", "columns") for length in waviness_lengths(levelled, along=along)
     ]
-    columns = (Column(name="along", label="Along"), column("waviness_length", "Wavelength"))
-    return Part(tables=(SheetTable(name="waviness", title="Waviness", columns=columns, rows=tuple(rows)),))
+    columns = (SheetColumn(name="along", label="Along"), quantity_column("waviness_length", "Wavelength"))
+    return SheetSection(tables=(SheetTable(name="waviness", title="Waviness", columns=columns, rows=tuple(rows)),))
 
 
-def _figures(surface: HeightMap) -> Part:
+def _figures(surface: HeightMap) -> SheetSection:
     drawn = [
         SheetFigure(
             name="heights",
@@ -288,7 +290,7 @@ def _figures(surface: HeightMap) -> Part:
         spectrum = radial_spectrum(areal_spectrum(surface))
         correlation = autocorrelation(surface)
     except InvalidInput as refusal:
-        return Part(figures=tuple(drawn), not_found=(f"spectrum: {refusal}",))
+        return SheetSection(figures=tuple(drawn), not_found=(f"spectrum: {refusal}",))
     drawn += [
         SheetFigure(
             name="spectrum",
@@ -303,4 +305,4 @@ def _figures(surface: HeightMap) -> Part:
             draw=partial(figures.correlation, correlation),
         ),
     ]
-    return Part(figures=tuple(drawn))
+    return SheetSection(figures=tuple(drawn))

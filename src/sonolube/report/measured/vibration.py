@@ -25,16 +25,16 @@ from sonolube.measurement.vibration import (
 from sonolube.report.measured import vibration_figures as figures
 from sonolube.report.measured.friction import recording_source
 from sonolube.report.measured.sheet import (
-    Column,
-    Part,
     Sheet,
+    SheetColumn,
     SheetFigure,
+    SheetSection,
     SheetTable,
-    Value,
-    attempted,
-    column,
-    known,
-    sheet_of,
+    SheetValue,
+    attempted_section,
+    quantity_column,
+    quantity_value,
+    sheet_from_sections,
 )
 
 if TYPE_CHECKING:
@@ -96,13 +96,13 @@ def vibration_sheet(path: Path, *, settings: VibrationSettings) -> Sheet:
     motion = complex_amplitudes(time=time, signals=signals, frequency=f) * per_rate
     errors = _errors(time, signals, f) * np.abs(per_rate)
     moving = int(np.argmax(np.abs(motion)))
-    values = [known("vibration_amplitude", float(abs(motion[moving])), uncertainty=_or_none(errors[moving]))]
+    values = [quantity_value("vibration_amplitude", float(abs(motion[moving])), uncertainty=_or_none(errors[moving]))]
     drive = _drive_voltage(recording, time, f)
     if drive is not None:
         swing = 2 * abs(drive)
         values += [
-            known("voltage_peak_to_peak", swing),
-            known(
+            quantity_value("voltage_peak_to_peak", swing),
+            quantity_value(
                 "amplitude_per_volt",
                 float(abs(motion[moving])) / swing,
                 uncertainty=None if np.isnan(errors[moving]) else float(errors[moving]) / swing,
@@ -110,12 +110,17 @@ def vibration_sheet(path: Path, *, settings: VibrationSettings) -> Sheet:
         ]
         motion = motion * np.exp(-1j * np.angle(drive))
     shape = operating_shape(motion)
-    parts = [Part(values=tuple(values), tables=(_table(points, motion, errors),))]
+    parts = [SheetSection(values=tuple(values), tables=(_table(points, motion, errors),))]
     if len(points) > 1:
         parts.append(_shape(points, shape))
         if settings.modes is not None:
-            parts.append(attempted(partial(_assurance, motion, settings.modes), what="likeness to modes"))
-    return sheet_of(parts, title=path.name, source=recording_source(recording))
+            parts.append(attempted_section(partial(_assurance, motion, settings.modes), what="likeness to modes"))
+    return sheet_from_sections(parts, title=path.name, source=recording_source(recording))
+
+
+def has_voltage(sheet: Sheet) -> bool:
+    """Whether a sheet of vibration has the voltage of the drive."""
+    return any(value.name == "voltage_peak_to_peak" for value in sheet.values)
 
 
 def proportion_sheet(sheets: Sequence[Sheet]) -> Sheet:
@@ -135,8 +140,8 @@ def proportion_sheet(sheets: Sequence[Sheet]) -> Sheet:
         for sheet in sheets
         if "voltage_peak_to_peak" in (found := {value.name: value.value for value in sheet.values})
     ]
-    return sheet_of(
-        [attempted(partial(_proportion, pairs), what="proportion")],
+    return sheet_from_sections(
+        [attempted_section(partial(_proportion, pairs), what="proportion")],
         title=f"amplitude over voltage, {len(pairs)} recordings",
         source={},
     )
@@ -186,10 +191,10 @@ def _or_none(error: float) -> float | None:
 
 def _table(points: Sequence[str], motion: Complexes, errors: Floats) -> SheetTable:
     columns = (
-        Column(name="point", label="Point"),
-        column("vibration_amplitude", "Amplitude"),
-        Column(name="vibration_amplitude_uncertainty", label="Its uncertainty", unit="m"),
-        Column(name="phase", label="Phase", unit="rad"),
+        SheetColumn(name="point", label="Point"),
+        quantity_column("vibration_amplitude", "Amplitude"),
+        SheetColumn(name="vibration_amplitude_uncertainty", label="Its uncertainty", unit="m"),
+        SheetColumn(name="phase", label="Phase", unit="rad"),
     )
     rows = tuple(
         (name, float(abs(x)), _or_none(error), float(np.angle(x)))
@@ -198,8 +203,8 @@ def _table(points: Sequence[str], motion: Complexes, errors: Floats) -> SheetTab
     return SheetTable(name="points", title="Points", columns=columns, rows=rows)
 
 
-def _shape(points: Sequence[str], shape: OperatingShape) -> Part:
-    value = Value(
+def _shape(points: Sequence[str], shape: OperatingShape) -> SheetSection:
+    value = SheetValue(
         name="standing_share", label="Share of the motion that stands in step", value=shape.standing_share, unit=""
     )
     drawn = SheetFigure(
@@ -208,12 +213,12 @@ def _shape(points: Sequence[str], shape: OperatingShape) -> Part:
         caption="Motion in step with the whole, greatest 1, and the phase of each point from it.",
         draw=partial(figures.shape, points, shape),
     )
-    return Part(values=(value,), figures=(drawn,))
+    return SheetSection(values=(value,), figures=(drawn,))
 
 
-def _assurance(motion: Complexes, modes: Floats) -> Part:
+def _assurance(motion: Complexes, modes: Floats) -> SheetSection:
     likeness = modal_assurance(motion, modes)[0]
-    columns = (Column(name="mode", label="Mode"), Column(name="assurance", label="Modal assurance"))
+    columns = (SheetColumn(name="mode", label="Mode"), SheetColumn(name="assurance", label="Modal assurance"))
     rows = tuple((f"{place}", float(value)) for place, value in enumerate(likeness, start=1))
     drawn = SheetFigure(
         name="assurance",
@@ -222,16 +227,16 @@ def _assurance(motion: Complexes, modes: Floats) -> Part:
         draw=partial(figures.assurance, likeness),
     )
     table = SheetTable(name="modes", title="Likeness to computed modes", columns=columns, rows=rows)
-    return Part(tables=(table,), figures=(drawn,))
+    return SheetSection(tables=(table,), figures=(drawn,))
 
 
-def _proportion(pairs: Sequence[tuple[float, float]]) -> Part:
+def _proportion(pairs: Sequence[tuple[float, float]]) -> SheetSection:
     volts, amplitudes = (np.array([pair[which] for pair in pairs]) for which in range(2))
     found = amplitude_per_volt(voltage_peak_to_peak=volts, vibration_amplitude=amplitudes)
     values = (
-        known("amplitude_per_volt", found.amplitude_per_volt, interval=(found.lower, found.upper)),
-        known("amplitude_deviation", found.amplitude_deviation),
-        Value(
+        quantity_value("amplitude_per_volt", found.amplitude_per_volt, interval=(found.lower, found.upper)),
+        quantity_value("amplitude_deviation", found.amplitude_deviation),
+        SheetValue(
             name="curvature_p", label="Chance of such a curvature by scatter alone", value=found.curvature_p, unit=""
         ),
     )
@@ -244,4 +249,4 @@ def _proportion(pairs: Sequence[tuple[float, float]]) -> Part:
         caption="Each recording, and the line through the origin with its 95 % interval.",
         draw=partial(figures.proportion, volts, amplitudes, found),
     )
-    return Part(values=values, figures=(drawn,), caveats=caveats)
+    return SheetSection(values=values, figures=(drawn,), caveats=caveats)

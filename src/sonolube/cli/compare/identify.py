@@ -1,0 +1,96 @@
+"""Command `identify rig`: structure of the tribometer from the published facts, as tables of a rig file."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from sonolube.cli.console.answer import Answer, deliver, si
+from sonolube.cli.console.options import Json
+from sonolube.vocabulary import quantities
+
+if TYPE_CHECKING:
+    from sonolube.actuator import PiezoStack
+    from sonolube.identification import Identification
+
+
+def identify_rig(
+    base: Annotated[
+        Path | None, typer.Argument(metavar="[RIG.toml]", help="Rig whose tables stack and structure to replace.")
+    ] = None,
+    out: Annotated[Path | None, typer.Option(help="File to write; standard output by default.")] = None,
+    seed: Annotated[int, typer.Option(help="Seed of the search; equal seeds give equal results.", min=0)] = 0,
+    json: Json = False,
+) -> None:
+    """Masses, springs and dampers of the tribometer from the published facts, ranked, with what cannot hold together.
+
+    Example: sonolube identify rig examples/rigs/tribometer.toml --out my-tribometer.toml
+    """
+    from sonolube.cli.console.progress import progress
+    from sonolube.identification import rig_tables
+    from sonolube.rig import read_rig, with_tables
+    from sonolube.validation.tribometer import tribometer_identification, tribometer_stack
+
+    if base is not None:
+        read_rig(base)
+    with progress("identifying"):
+        identification, stack = tribometer_identification(seed=seed), tribometer_stack()
+    tables = rig_tables(identification, stack)
+    text = tables if base is None else with_tables(base.read_text(encoding="utf-8-sig"), tables)
+    answer = IdentificationAnswer(
+        identification=identification, stack=stack, text=text, file_name=None if out is None else out.name
+    )
+    deliver(answer, folder=Path() if out is None else out.parent, as_json=json)
+
+
+@dataclass(frozen=True, kw_only=True)
+class IdentificationAnswer(Answer):
+    """Identified structure with the facts that are kept and given up, and the rig file with its tables."""
+
+    identification: "Identification"
+    stack: "PiezoStack"
+    text: str
+    file_name: str | None
+
+    def lines(self) -> list[str]:
+        """The rig file itself where no file is written."""
+        return self.text.splitlines() if self.file_name is None else []
+
+    def object(self) -> dict[str, Any]:
+        """Stack, parameters with their ranges, facts with their misses, conflicts and free directions."""
+        found = self.identification
+        return {
+            "stack": si({name: value for name, value in asdict(self.stack).items() if value and name in quantities()}),
+            "structure": {
+                name: {
+                    **si({name: known.value})[name],
+                    "lower": known.lower,
+                    "upper": known.upper,
+                    "lower_is_bound": known.lower_is_bound,
+                    "upper_is_bound": known.upper_is_bound,
+                }
+                for name, known in found.estimates.items()
+            },
+            "facts": [
+                {
+                    "name": fact.name,
+                    "relation": fact.relation,
+                    "value": fact.value,
+                    "tolerance": fact.tolerance,
+                    "unit": fact.unit,
+                    "rank": fact.rank,
+                    "source": fact.source,
+                    "observed": found.observed[fact.name],
+                    "kept": fact.name in found.kept,
+                }
+                for fact in found.facts
+            ],
+            "conflicts": [sorted(conflict) for conflict in found.conflicts],
+            "free_directions": [dict(direction.exponents) for direction in found.free_directions],
+        }
+
+    def files(self) -> Mapping[str, str]:
+        """Rig file with the identified tables."""
+        return {} if self.file_name is None else {self.file_name: self.text}

@@ -1,0 +1,311 @@
+"""Answer of the command `optimise`: best designs, Pareto front, amplifier, matching networks and a rig file."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import log
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from sonolube.cli.console.answer import Answer, aligned, grid, si
+from sonolube.cli.console.rig_text import friction_model_object, operating_point, rig_settings
+from sonolube.units import engineering
+from sonolube.vocabulary import quantity
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from sonolube.actuator import MatchingNetwork
+    from sonolube.design.optimisation import Electrical, Matched, Optimum, Point, Tolerance
+    from sonolube.report import Drawing, Page, PageTable
+
+_DESIGN_QUANTITIES = (
+    "vibration_amplitude",
+    "actuator_power",
+    "heat_rate",
+    "peak_current",
+    "pull",
+    "nominal_pressure",
+    "temperature_rise",
+    "horn_stress",
+)
+_AMPLIFIER_QUANTITIES = (
+    "voltage_maximum",
+    "peak_current",
+    "effective_current",
+    "apparent_power",
+    "dissipated_power",
+    "slew_rate",
+    "power_factor",
+)
+_ELEMENTS = ("series_inductance", "series_capacitance", "shunt_inductance", "shunt_capacitance")
+_NO_LIMIT = "none set"
+_AT_END = 0.002  # relative distance from an end of a range, within which a better design may lie beyond
+
+
+@dataclass(frozen=True, kw_only=True)
+class OptimisationAnswer(Answer):
+    """Best designs and front of an optimisation, with the amplifier and the networks of the best."""
+
+    rig_file: Path
+    content: Mapping[str, Any]
+    optimum: "Optimum"
+    electric: "Electrical"
+
+    def lines(self) -> list[str]:
+        """Best design, table of all, and actuators that were not used."""
+        table = self._table()
+        return [
+            operating_point(self._space.rig),
+            *aligned(self._facts()),
+            *[f"  {line}" for line in grid([table.heads, *table.rows])],
+            *[f"  not used: {reason}" for reason in self.optimum.landscape.refused.values()],
+        ]
+
+    def object(self) -> dict[str, Any]:
+        """Best designs, front, number of designs, amplifier and networks."""
+        optimum, screened, need = self.optimum, self.optimum.landscape, self.electric.need
+        return {
+            "rig": self._space.rig.title,
+            **friction_model_object(self._space.rig),
+            "minimise": optimum.minimise,
+            **si({"friction_ratio": optimum.task.friction_ratio}),
+            "designs": [_design_object(point) for point in optimum.designs],
+            "front": [_design_object(point) for point in optimum.front],
+            "looked_at": int(screened.frequency.size),
+            "feasible": int(screened.feasible.sum()),
+            "amplifier": si({name: getattr(need, name) for name in _AMPLIFIER_QUANTITIES}),
+            "networks": [_network_object(matched) for matched in self.electric.matched],
+            "refused": screened.refused,
+        }
+
+    def caveats(self) -> Sequence[str]:
+        """Values at the end of their range, heat beyond the amplifier's power, and a preload that is not given."""
+        best, caveats = self.optimum.best, []
+        values = {"frequency": best.frequency, **best.choice.entries}
+        for name, (low, high) in self._space.bounds.items():
+            for end, side in ((low, "lowest"), (high, "highest")):
+                if abs(log(values[name] / end)) < _AT_END:
+                    caveats.append(f"{name} lies at the {side} value allowed: a better design may lie beyond")
+        if best.objective("heat") > best.objective("power"):
+            caveats.append(
+                "more heat stays in the actuator than D 1.9 counts as the amplifier's power: near a resonance the"
+                " motion takes real power, which that formula leaves out"
+            )
+        if best.assessment.usage["tension"][0] == 0:
+            caveats.append("no preload is given, so that tension in the stack is not judged: give --bolt and --preload")
+        return caveats
+
+    def assumptions(self) -> Mapping[str, str]:
+        """Quality factor and loss tangent of the ceramics, and the assumptions of the rig file."""
+        from sonolube.design.optimisation import OWN
+
+        assumed = {}
+        if any(point.choice.actuator != OWN for point in self.optimum.designs):
+            factor = self._space.mechanical_quality_factor
+            assumed["quality factor"] = f"{factor:g} for the catalogue's ceramics; no sheet has it"
+        loss = self.optimum.task.limits.loss_tangent
+        return assumed | {"loss tangent": f"{loss:g} for the ceramic, in its heat"} | dict(self._space.rig.assumptions)
+
+    def figures(self) -> "Mapping[str, Drawing]":
+        """Objective over frequency, front, limits used, and power factor."""
+        from sonolube.design.optimisation import figures
+        from sonolube.report import Drawing
+
+        optimum, name = self.optimum, self._name
+        drawings = {
+            f"{name}-frequency": Drawing(
+                draw=lambda: figures.frequency_figure(optimum),
+                caption=f"Least {optimum.minimise} for the target at each frequency, over all structures of the"
+                " screening; markers are the refined designs.",
+            )
+        }
+        if optimum.front:
+            drawings[f"{name}-front"] = Drawing(
+                draw=lambda: figures.front_figure(optimum),
+                caption=f"Designs that no other beats in both {optimum.minimise} and {optimum.other}, among all that"
+                " keep to the limits.",
+            )
+        if _tightest(optimum.best) != _NO_LIMIT:
+            drawings[f"{name}-limits"] = Drawing(
+                draw=lambda: figures.limits_figure(optimum.best),
+                caption="Fraction of each limit, set or of the actuator, that the best design uses.",
+            )
+        drawings[f"{name}-power-factor"] = Drawing(
+            draw=lambda: figures.power_factor_figure(optimum, self.electric),
+            caption="Power factor at the amplifier about the drive's frequency (vertical line).",
+        )
+        return drawings
+
+    def files(self) -> "Mapping[str, str | xr.Dataset]":
+        """All designs as netCDF, and the best as a rig file."""
+        from sonolube.design.optimisation import design_text
+        from sonolube.design.optimisation.designs_dataset import designs_dataset
+
+        source = self.rig_file.read_text(encoding="utf-8-sig")
+        return {
+            f"{self._name}.nc": designs_dataset(self.optimum),
+            f"{self._name}.toml": design_text(source, self.content, self.optimum.task, self.optimum.best),
+        }
+
+    def page(self) -> "Page":
+        """Page `optimise.html`."""
+        from sonolube.cli.design.status_tables import count_table
+        from sonolube.design.optimisation.designs_dataset import design_counts
+        from sonolube.report import Page
+
+        optimum, rig = self.optimum, self._space.rig
+        counts, total = design_counts(optimum), optimum.landscape.frequency.size
+        refused = [("not used", reason) for reason in optimum.landscape.refused.values()]
+        return Page(
+            name="optimise",
+            title=f"Least {optimum.minimise} for a friction ratio of {optimum.task.friction_ratio:.3g}: {rig.title}",
+            settings=rig_settings(rig, self.rig_file),
+            facts=[*self._facts(), *refused],
+            tables=[self._table(), count_table("Screened designs by status", "designs", counts, total=total)],
+        )
+
+    @property
+    def _space(self) -> Any:
+        """Design space of the task."""
+        return self.optimum.task.space
+
+    @property
+    def _name(self) -> str:
+        """Name of the files, without ending."""
+        return f"{self.rig_file.stem}-optimum"
+
+    def _facts(self) -> list[tuple[str, str]]:
+        """Target, best design, tightest limit, amplifier and networks."""
+        optimum, best, need = self.optimum, self.optimum.best, self.electric.need
+        ratio, screened = optimum.task.friction_ratio, optimum.landscape
+        coefficient = ratio * self._space.rig.friction_coefficient
+        amplitude = float(best.assessment.numbers["vibration_amplitude"][0])
+        return [
+            (
+                "friction wanted",
+                f"coefficient {coefficient:.3g}, ratio {ratio:.3g}{_tolerance_text(optimum.task.tolerance)}",
+            ),
+            ("actuator", self._actuator_title(best)),
+            (
+                "drive",
+                f"{engineering(best.voltage_peak_to_peak, 'V', digits=4)} peak to peak,"
+                f" {engineering(best.frequency, 'Hz', digits=5)}, {best.choice.waveform}",
+            ),
+            *[
+                (
+                    name.replace("_", " "),
+                    engineering(value, "kg" if name.endswith("mass") else quantity(name).unit, digits=4),
+                )
+                for name, value in best.choice.entries.items()
+            ],
+            ("amplitude", engineering(amplitude, "m")),
+            ("power of amplifier", f"{engineering(best.objective('power'), 'W')} (D 1.9)"),
+            ("heat in actuator", engineering(best.objective("heat"), "W")),
+            ("tightest limit", _tightest(best)),
+            (
+                "amplifier",
+                f"{engineering(need.voltage_maximum, 'V')}, {engineering(need.peak_current, 'A')} peak,"
+                f" {engineering(need.apparent_power, 'W').replace('W', 'VA')}, {need.slew_rate * 1e-6:.3g} V/us,"
+                f" power factor {need.power_factor:.3g}",
+            ),
+            *[(matched.name, _network_text(matched)) for matched in self.electric.matched],
+            ("designs", f"{int(screened.feasible.sum())} of {screened.frequency.size} within all limits"),
+        ]
+
+    def _table(self) -> "PageTable":
+        """Designs of the front, or the best of each actuator and waveform, the best first."""
+        from sonolube.report import PageTable
+
+        points = self.optimum.front or self.optimum.designs
+        entries = list(points[0].choice.entries)
+        heads = ["actuator", "waveform", "f [kHz]", "U_pp [V]", *[f"{name} [SI]" for name in entries]]
+        rows = tuple(
+            (
+                point.choice.actuator,
+                point.choice.waveform,
+                f"{1e-3 * point.frequency:.3f}",
+                f"{point.voltage_peak_to_peak:.4g}",
+                *[f"{point.choice.entries[name]:.4g}" for name in entries],
+                f"{point.objective('power'):.4g}",
+                f"{point.objective('heat'):.4g}",
+                _tightest(point),
+            )
+            for point in points
+        )
+        heads += ["power [W]", "heat [W]", "tightest limit"]
+        return PageTable(title="Designs, the best first", heads=tuple(heads), rows=rows)
+
+    def _actuator_title(self, point: "Point") -> str:
+        """Title of the actuator of a design."""
+        from sonolube.design.optimisation import OWN
+
+        name = point.choice.actuator
+        return "the rig's own" if name == OWN else str(self._space.catalogue[name].title)
+
+
+def _tightest(point: "Point") -> str:
+    """Limit of which a design uses most, with the fraction."""
+    from sonolube.design.optimisation.designs_dataset import LIMITS
+
+    used = {name: float(values[0]) for name, values in point.assessment.usage.items() if name in LIMITS}
+    name = max(used, key=lambda each: used[each])
+    return f"{LIMITS[name]}, {100 * used[name]:.3g} %" if used[name] > 0 else _NO_LIMIT
+
+
+def _tolerance_text(tolerance: "Tolerance | None") -> str:
+    """Deviations under which the target is reached."""
+    if tolerance is None:
+        return ""
+    deviation = f"{100 * tolerance.built_tolerance:g} %"
+    if tolerance.quantile is None:
+        return f", at every corner of {deviation}"
+    return f", by {100 * tolerance.quantile:g} % of rigs with a standard deviation of {deviation}"
+
+
+def _network_text(matched: "Matched") -> str:
+    """Elements, band, power factor with the capacitance off, and voltage gain of a matching network."""
+    low, high = matched.band
+    return (
+        f"{_element_text(matched.network)}; power factor above 0.9 from {1e-3 * low:.4g} to {1e-3 * high:.4g} kHz,"
+        f" {matched.off_capacitance:.2g} at worst with the capacitance off by 20 %; {matched.gain:.3g} x voltage"
+    )
+
+
+def _element_text(network: "MatchingNetwork") -> str:
+    """Elements of a matching network with their places."""
+    places = {"series": "in the line", "shunt": "across it"}
+    return ", ".join(
+        f"{engineering(value, quantity(name).unit)} {places[name.partition('_')[0]]}"
+        for name, value in _elements(network).items()
+    )
+
+
+def _elements(network: "MatchingNetwork") -> dict[str, float]:
+    """Inductances and capacitances that a matching network has."""
+    return {name: value for name in _ELEMENTS if (value := getattr(network, name)) is not None}
+
+
+def _design_object(point: "Point") -> dict[str, Any]:
+    """Design for JSON: choice, drive, quantities and fractions of the limits."""
+    from sonolube.design.optimisation.designs_dataset import LIMITS
+
+    numbers = point.assessment.numbers
+    return {
+        "actuator": point.choice.actuator,
+        "waveform": point.choice.waveform,
+        **si({"frequency": point.frequency, "voltage_peak_to_peak": point.voltage_peak_to_peak}),
+        **si(dict(point.choice.entries)),
+        **si({name: float(numbers[name][0]) for name in _DESIGN_QUANTITIES if name in numbers}),
+        "limits_used": {name: float(point.assessment.usage[name][0]) for name in LIMITS},
+    }
+
+
+def _network_object(matched: "Matched") -> dict[str, Any]:
+    """Matching network for JSON."""
+    return {
+        "name": matched.name,
+        **si(_elements(matched.network)),
+        **si({"lowest_frequency": matched.band[0], "highest_frequency": matched.band[1]}),
+        "power_factor_off_capacitance": matched.off_capacitance,
+        "voltage_gain": matched.gain,
+    }

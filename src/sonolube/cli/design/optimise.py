@@ -1,0 +1,132 @@
+"""Command `optimise`: actuator, frequency, waveform and masses for a friction at least power, heat or voltage."""
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from sonolube.cli.console.answer import deliver
+from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath, quantity
+from sonolube.errors import InvalidInput
+
+
+class Objective(StrEnum):
+    """Quantity that is minimised."""
+
+    POWER = "power"
+    HEAT = "heat"
+    VOLTAGE = "voltage"
+
+
+def optimise(
+    context: typer.Context,
+    rig: RigPath,
+    friction: Annotated[
+        str,
+        typer.Option("--target-friction", metavar="FRICTION", help="Coefficient or force, such as 0.1 or 0.3N."),
+    ],
+    over: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="KEY=FIRST:LAST",
+            help="A range to choose from: drive.frequency or an entry of structure; or drive.waveform=one,two."
+            " May come again; the frequency by a fifth either way by default.",
+        ),
+    ] = None,
+    actuator: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="own, a name that `sonolube actuators` lists, or catalogue. May come again."),
+    ] = None,
+    catalogue: Annotated[
+        Path | None, typer.Option(metavar="FILE.toml", help="Further actuators, in the format of the built-in list.")
+    ] = None,
+    minimise: Annotated[Objective, typer.Option(help="Quantity to minimise.")] = Objective.POWER,
+    pareto: Annotated[Objective | None, typer.Option(help="A second objective, for the front between both.")] = None,
+    robust: Annotated[
+        float | None, typer.Option(help="Relative tolerance of stiffness, masses and gain.", min=0, max=0.3)
+    ] = None,
+    share: Annotated[
+        float | None,
+        typer.Option(
+            "--quantile", help="Fraction of built rigs that must reach it; the worst by default.", min=0.5, max=1
+        ),
+    ] = None,
+    samples: Annotated[int, typer.Option(help="Structures drawn for each actuator.", min=2, max=4096)] = 16,
+    voltage_limit: Annotated[str | None, typer.Option(metavar="VOLTAGE", help="Highest voltage either way.")] = None,
+    current_limit: Annotated[str | None, typer.Option(metavar="CURRENT", help="Highest current.")] = None,
+    slew_limit: Annotated[str | None, typer.Option(metavar="RATE", help="Fastest change, such as 3V/us.")] = None,
+    stress_limit: Annotated[str | None, typer.Option(metavar="STRESS", help="Highest nominal stress.")] = None,
+    temperature_limit: Annotated[
+        str | None, typer.Option(metavar="KELVIN", help="Highest temperature rise, such as 40K.")
+    ] = None,
+    conductance: Annotated[
+        str | None, typer.Option(metavar="CONDUCTANCE", help="Thermal conductance of the actuator, such as 0.5W/K.")
+    ] = None,
+    horn: Annotated[str | None, typer.Option(metavar="MATERIAL", help="Of a half-wave horn at the tip.")] = None,
+    horn_limit: Annotated[str | None, typer.Option(metavar="STRESS", help="Stress amplitude allowed in it.")] = None,
+    bolt: Annotated[str | None, typer.Option(metavar="THREAD", help="Preload bolt, such as M6x40mm.")] = None,
+    preload: Annotated[str | None, typer.Option(metavar="FORCE", help="Tension of the bolt.")] = None,
+    bolt_strength: Annotated[str, typer.Option(metavar="STRESS", help="Proof strength; class 8.8.")] = "640MPa",
+    quality: Annotated[float, typer.Option(help="Mechanical quality factor of the catalogue's ceramics.")] = 80.0,
+    source: Annotated[
+        str | None,
+        typer.Option("--source-resistance", metavar="RESISTANCE", help="To match by two elements, such as 50ohm."),
+    ] = None,
+    changes: Changes = None,
+    out: Out = OUT,
+    json: Json = False,
+) -> None:
+    """Design: actuator, frequency, waveform and masses that give a friction for least power, heat or voltage.
+
+    Example: sonolube optimise examples/rigs/tribometer.toml --target-friction 0.15
+    """
+    from sonolube.checks import require_positive
+    from sonolube.cli.console.progress import progress
+    from sonolube.cli.design import optimisation_options as options
+    from sonolube.cli.design.optimisation_answer import OptimisationAnswer
+    from sonolube.design import optimisation
+    from sonolube.rig import read_rig, rig_content
+
+    known = read_rig(rig, changes=changes or ())
+    content = rig_content(rig, changes=changes or ())
+    if share is not None and robust is None:
+        raise InvalidInput("--quantile needs --robust, the tolerance")
+    limits = options.limits(
+        voltage=quantity(voltage_limit, unit="V", option="--voltage-limit"),
+        current=quantity(current_limit, unit="A", option="--current-limit"),
+        slew_rate=quantity(slew_limit, unit="V/s", option="--slew-limit"),
+        stress=quantity(stress_limit, unit="Pa", option="--stress-limit"),
+        warming=temperature_limit,
+        conductance=quantity(conductance, unit="W/K", option="--conductance"),
+        horn=options.horn(horn, horn_limit),
+    )
+    space = options.design_space(
+        known,
+        content,
+        over=over or [],
+        actuators=actuator or [],
+        catalogue=catalogue,
+        mechanical_quality_factor=quality,
+        bolt=options.bolt(bolt, preload, bolt_strength),
+    )
+    task = optimisation.Task(
+        space=space,
+        friction_ratio=options.friction_ratio(known, friction),
+        limits=limits,
+        tolerance=None if robust is None else optimisation.Tolerance(built_tolerance=robust, quantile=share),
+    )
+    resistance = quantity(source, unit="ohm", option="--source-resistance")
+    if resistance is not None:
+        require_positive(source_resistance=resistance)
+    with progress("optimising") as advance:
+        optimum = optimisation.optimise(
+            task,
+            minimise=minimise.value,
+            other=None if pareto is None or pareto == minimise else pareto.value,
+            samples=samples,
+            advance=lambda done, total: advance("structures", done, total),
+        )
+        electric = optimisation.electrical(task, optimum.best, source_resistance=resistance)
+    answer = OptimisationAnswer(rig_file=rig, content=content, optimum=optimum, electric=electric)
+    deliver(answer, folder=out, as_json=json, context=context)

@@ -1,0 +1,430 @@
+"""Command `uncertainty`: uncertainty of an outcome from the distributions in a rig file, and its ranking by Sobol."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from sonolube.cli.console.answer import Answer, aligned, deliver
+from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath
+from sonolube.cli.console.rig_text import rig_settings
+from sonolube.errors import InvalidInput
+from sonolube.units import engineering
+from sonolube.vocabulary import quantity, unit_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from sonolube.checks import Floats
+    from sonolube.design import Estimated, Spread
+    from sonolube.design.identified_structure import IdentifiedStructure
+    from sonolube.design.uncertainty_summary import Band, BandPlace
+    from sonolube.report import Drawing, Page, PageTable
+    from sonolube.rig import Distribution, Rig
+
+_LEAST_TRUNCATION = 1e-4  # fraction of a distribution that is cut off, from which on it is printed
+_LEAST_EXPONENT = 0.1  # of a parameter in a free direction, from which on it is printed
+_SAMPLES_CAPTION = "Histogram of the samples that have a result, quantiles with intervals of 95 %, and the mean."
+_BAND_CAPTION = "Median of the samples and their intervals over the keys that were swept."
+_SOBOL_CAPTION = "Contribution of each uncertain entry to the variance, with intervals of 95 %."
+
+
+def uncertainty(
+    context: typer.Context,
+    rig: RigPath,
+    of: Annotated[
+        str, typer.Option(metavar="QUANTITY", help="The outcome, such as vibration_amplitude or wear_rate_ratio.")
+    ] = "friction_ratio",
+    samples: Annotated[
+        int, typer.Option(help="Number of samples, up to the next power of two; with --sobol of each block.", min=32)
+    ] = 1024,
+    sobol: Annotated[
+        bool, typer.Option("--sobol", help="Rank the entries by their contribution to the variance, by Sobol indices.")
+    ] = False,
+    over: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="KEY=VALUES",
+            help="A band over a key, first:last:count or one,two,...; given twice, a map of median and interval.",
+        ),
+    ] = None,
+    identified: Annotated[
+        bool,
+        typer.Option(
+            "--identified", help="Draw the tribometer's masses, springs and dampers from the published facts."
+        ),
+    ] = False,
+    seed: Annotated[int, typer.Option(help="Of the samples.", min=0)] = 0,
+    workers: Annotated[int, typer.Option(help="Threads.", min=1)] = 2,
+    changes: Changes = None,
+    keep: Annotated[
+        Path | None,
+        typer.Option(metavar="FOLDER", help="Keep finished parts here, so that an interrupted run goes on."),
+    ] = None,
+    out: Out = OUT,
+    json: Json = False,
+) -> None:
+    """Uncertainty of an outcome from the distributions in the rig's file, and which entry to measure better.
+
+    Example: sonolube uncertainty examples/rigs/tribometer_uncertain.toml --samples 256
+    """
+    from sonolube.cli.console.progress import progress
+    from sonolube.design import propagate
+    from sonolube.design.identified_structure import identified_structure
+    from sonolube.rig import read_rig
+
+    if sobol and (over or identified):
+        raise InvalidInput("--sobol needs independent entries and one outcome each: leave out --over and --identified")
+    known = read_rig(rig, changes=changes or ())
+    axes = _axes(over)
+    structure = None
+    with progress("uncertainty") as advance:
+        if identified:
+            structure = identified_structure(rig, seed=seed, advance=lambda done, total: advance("facts", done, total))
+        result = propagate(
+            rig,
+            of=of,
+            samples=samples,
+            indices=sobol,
+            over=axes,
+            joint=None if structure is None else structure.draws_by_key(),
+            seed=seed,
+            changes=changes or (),
+            folder=keep,
+            workers=workers,
+            advance=lambda done, total: advance("points", done, total),
+        )
+    answer = UncertaintyAnswer(rig=known, rig_file=rig, result=result, structure=structure)
+    if result[of].isnull().all():
+        raise InvalidInput(f"no sample has a result: {next(iter(answer.failures()))}")
+    deliver(answer, folder=out, as_json=json, context=context)
+
+
+@dataclass(frozen=True, kw_only=True)
+class UncertaintyAnswer(Answer):
+    """Statistics of an uncertain outcome, or its band over swept keys, and the ranking of the uncertain entries."""
+
+    rig: "Rig"
+    rig_file: Path
+    result: "xr.Dataset"
+    structure: "IdentifiedStructure | None"
+
+    def lines(self) -> list[str]:
+        """Statistics or band, statuses, uncertain entries, and their ranking."""
+        return [
+            f"{self.rig.title}, {self.result[self._of].size} points: {_lower(self._of)}",
+            *aligned(self._statistics_rows()),
+            *(f"  without result: {count}: {reason}" for reason, count in self.failures().items()),
+            *self._status_lines(),
+            "  uncertain",
+            *(f"  {line}" for line in aligned(self._entry_rows())),
+            *self._free_lines(),
+            *self._ranking_lines(),
+        ]
+
+    def object(self) -> dict[str, Any]:
+        """Statistics or band, statuses, uncertain entries, and their ranking."""
+        from sonolube.design.point_statistics import status_counts
+        from sonolube.design.uncertainty_summary import contact_loss_probability, ranked_entries
+
+        content: dict[str, Any] = {
+            "rig": self.rig.title,
+            "of": self._of,
+            "unit": quantity(self._of).unit,
+            "points": int(self.result[self._of].size),
+            "statuses": status_counts(self.result),
+            "without_result": [{"reason": reason, "points": count} for reason, count in self.failures().items()],
+            "contact_lost": contact_loss_probability(self.result),
+            "uncertain": {
+                key: {"distribution": law.text, "truncated_fraction": law.truncated_fraction}
+                for key, law in self._distributions().items()
+            },
+        }
+        if self.structure is not None:
+            content["identified"] = self._identified_object(self.structure)
+        if self._swept:
+            band = self._band()
+            content["band"] = {"mean_width": band.mean_width} | {
+                name: asdict(place) for name, place in _places(band).items()
+            }
+        else:
+            found = self._statistics()
+            content |= {
+                "mean": asdict(found.mean),
+                "standard_deviation": asdict(found.deviation),
+                "quantiles": {str(share): asdict(each) for share, each in found.quantiles.items()},
+                "relative_error": found.relative_error,
+                "converged": found.has_converged,
+            }
+        if self._ranked:
+            content["sobol"] = [asdict(row) for row in ranked_entries(self.result)]
+        return content
+
+    def caveats(self) -> Sequence[str]:
+        """Too few samples, and draws of the structure that have not converged."""
+        caveats = []
+        if not self._swept and not self._statistics().has_converged:
+            caveats.append(self._convergence())
+        if self.structure is not None and not self.structure.posterior.has_settled:
+            caveats.append(_agreement(self.structure))
+        return caveats
+
+    def assumptions(self) -> Mapping[str, str]:
+        """Assumptions of the rig file."""
+        return self.rig.assumptions
+
+    def figures(self) -> "Mapping[str, Drawing]":
+        """Histogram or band of the outcome, and the ranking of the entries."""
+        from sonolube.design import band_figure, indices_figure, spread_figure
+        from sonolube.design.uncertainty_summary import outcome_indices
+        from sonolube.report import Drawing
+
+        result = self.result
+        outcome = (
+            Drawing(draw=lambda: band_figure(result), caption=_BAND_CAPTION)
+            if self._swept
+            else Drawing(draw=lambda: spread_figure(result), caption=_SAMPLES_CAPTION)
+        )
+        if not self._ranked:
+            return {self._name: outcome}
+        ranking = Drawing(draw=lambda: indices_figure(result, outcome_indices(result)), caption=_SOBOL_CAPTION)
+        return {self._name: outcome, f"{self._name}-sobol": ranking}
+
+    def files(self) -> "Mapping[str, xr.Dataset]":
+        """Samples as netCDF."""
+        return {f"{self._name}.nc": self.result}
+
+    def page(self) -> "Page":
+        """Page `uncertainty.html`."""
+        from sonolube.cli.design.status_tables import status_tables
+        from sonolube.design.uncertainty_summary import contact_loss_probability
+        from sonolube.report import Page, PageTable
+
+        lost = contact_loss_probability(self.result)
+        entries = PageTable(title="Uncertain entries", heads=("entry", "distribution"), rows=tuple(self._entry_rows()))
+        return Page(
+            name="uncertainty",
+            title=f"Uncertainty of the {_lower(self._of)}: {self.rig.title}",
+            settings=rig_settings(self.rig, self.rig_file),
+            facts=[
+                ("points", f"{self.result[self._of].size}"),
+                *self._statistics_rows(),
+                *([("contact lost", f"for part of the time in {lost:.1%} of the points")] if lost else []),
+            ],
+            tables=[
+                *([entries] if entries.rows else []),
+                *self._ranking_tables(),
+                *status_tables(self.result, self.failures()),
+            ],
+        )
+
+    def failures(self) -> dict[str, int]:
+        """Number of samples without a result, by the reason."""
+        from sonolube.design.point_statistics import failure_counts
+
+        return failure_counts(self.result, outcome=self._of)
+
+    @property
+    def _of(self) -> str:
+        """Quantity whose uncertainty is propagated."""
+        return str(self.result.attrs["of"])
+
+    @property
+    def _swept(self) -> bool:
+        """Whether the outcome is a band over swept keys."""
+        return bool(self.result.attrs["swept"])
+
+    @property
+    def _ranked(self) -> bool:
+        """Whether the samples are those of Sobol indices."""
+        return "block" in self.result.dims
+
+    @property
+    def _name(self) -> str:
+        """Name of the files, without ending."""
+        return f"{self.rig_file.stem}-uncertainty-{self._of}"
+
+    def _statistics(self) -> "Spread":
+        """Mean, deviation and quantiles of the outcome."""
+        from sonolube.design import spread_of
+
+        return spread_of(self.result)
+
+    def _band(self) -> "Band":
+        """Interval of the outcome over the swept keys."""
+        from sonolube.design.uncertainty_summary import outcome_band
+
+        return outcome_band(self.result)
+
+    def _distributions(self) -> "Mapping[str, Distribution]":
+        """Distributions that were drawn from, those of an identified structure apart."""
+        joint = {} if self.structure is None else self.structure.draws_by_key()
+        return {
+            key: law
+            for key, law in self.rig.uncertainty.items()
+            if key in self.result.attrs["uncertain"] and key not in joint
+        }
+
+    def _statistics_rows(self) -> list[tuple[str, str]]:
+        """Statistics with their intervals, or the band where it is narrowest and widest."""
+        unit = quantity(self._of).unit
+        if self._swept:
+            return [(name, _place_text(place, unit)) for name, place in _places(self._band()).items()]
+        found = self._statistics()
+        rows = {"mean": found.mean, "standard deviation": found.deviation}
+        for share, each in found.quantiles.items():
+            rows["median" if share == 0.5 else f"{100 * share:.0f} % lie below"] = each
+        texts = [(name, _with_interval(each, unit)) for name, each in rows.items()]
+        return [*texts, ("convergence", self._convergence())]
+
+    def _convergence(self) -> str:
+        """Width of the intervals of the statistics over the deviation of the samples."""
+        found = self._statistics()
+        if found.has_converged:
+            return f"intervals of 95 % within {found.relative_error:.1%} of the spread"
+        return f"not converged: an interval takes {found.relative_error:.1%} of the spread; take more --samples"
+
+    def _status_lines(self) -> list[str]:
+        """Fractions of the points by status, and of those that lose contact."""
+        from sonolube.design.point_statistics import status_counts
+        from sonolube.design.uncertainty_summary import contact_loss_probability
+
+        points, lost = self.result[self._of].size, contact_loss_probability(self.result)
+        shares = ", ".join(f"{name} {count / points:.1%}" for name, count in status_counts(self.result).items())
+        more = [f"  contact lost for part of the time in {lost:.1%} of them"] if lost else []
+        return [f"  {shares} of the points", *more]
+
+    def _entry_rows(self) -> list[tuple[str, str]]:
+        """Uncertain entries with their distributions, or with their posterior."""
+        rows = []
+        for key, law in self._distributions().items():
+            cut = law.truncated_fraction
+            remark = f"; {cut:.1%} of it is impossible and cut off" if cut > _LEAST_TRUNCATION else ""
+            rows.append((key, f"{law.text}{remark}"))
+        if self.structure is None:
+            return rows
+        for key, (low, median, high) in _quantiles(self.structure).items():
+            unit = quantity(key.rpartition(".")[2]).unit
+            free = key.removeprefix("structure.") in self.structure.posterior.free
+            ends = f"{engineering(low, unit)} to {engineering(high, unit)}{'; no fact settles it' if free else ''}"
+            rows.append((key, f"{engineering(median, unit)}, 90 % within {ends}"))
+        return rows
+
+    def _free_lines(self) -> list[str]:
+        """Directions in which the facts leave the structure free, and the agreement of its draws."""
+        if self.structure is None:
+            return []
+        lines = []
+        for direction in self.structure.free_directions:
+            exponents = {name: x for name, x in direction.exponents.items() if abs(x) > _LEAST_EXPONENT}
+            product = " ".join(f"{name}^{exponent:+.2f}" for name, exponent in exponents.items())
+            lines.append(f"    left free by the facts, to a factor of e and more: {product}")
+        return [*lines, f"    {_agreement(self.structure)}"]
+
+    def _identified_object(self, structure: "IdentifiedStructure") -> dict[str, Any]:
+        """Posterior of the structure, for JSON."""
+        posterior = structure.posterior
+        return {
+            "scale_reduction": posterior.scale_reduction,
+            "settled": posterior.has_settled,
+            "free": [f"structure.{name}" for name in posterior.free],
+            "free_directions": [dict(direction.exponents) for direction in structure.free_directions],
+            "quantiles": {key: list(ends) for key, ends in _quantiles(structure).items()},
+        }
+
+    def _ranking_rows(self) -> list[tuple[str, str, str, str]]:
+        """Entries by their contribution to the variance, alone and with the others, and the deviation without them."""
+        from sonolube.design.uncertainty_summary import ranked_entries
+
+        unit = quantity(self._of).unit
+        return [
+            (row.key, _percent(row.first), _percent(row.total), engineering(row.deviation_if_known, unit))
+            for row in (ranked_entries(self.result) if self._ranked else ())
+        ]
+
+    def _ranking_lines(self) -> list[str]:
+        """Ranking as lines of text."""
+        rows = self._ranking_rows()
+        head = "  which to measure better: share of the variance alone, with the others; deviation were it known"
+        lines = [f"    {key:<34} {alone:<20} {whole:<20} {deviation}" for key, alone, whole, deviation in rows]
+        return [head, *lines] if rows else []
+
+    def _ranking_tables(self) -> "list[PageTable]":
+        """Ranking as a table of the page."""
+        from sonolube.report import PageTable
+
+        rows = tuple(self._ranking_rows())
+        heads = ("entry", "share of the variance alone", "with the others", "deviation were it known")
+        return [PageTable(title="Which to measure better", heads=heads, rows=rows)] if rows else []
+
+
+def _axes(over: list[str] | None) -> "dict[str, Floats]":
+    """Values that a band or a map runs over, by key."""
+    import numpy as np
+
+    from sonolube.cli.console.ranges import values_by_key
+
+    if len(over or ()) > 2:
+        raise InvalidInput(f"--over gives a band once and a map twice, not {len(over or ())} times")
+    axes = {}
+    for key, values in values_by_key(over).items():
+        if values.dtype.kind == "U":
+            raise InvalidInput(f"--over {key}: a band needs numbers to run over, not words")
+        axes[key] = values.astype(np.float64)
+        if values.size < 2 or np.any(np.diff(axes[key]) <= 0):
+            raise InvalidInput(f"--over {key}: a band needs at least 2 values that rise")
+    return axes
+
+
+def _places(band: "Band") -> "dict[str, BandPlace]":
+    """Where a band is narrowest and widest."""
+    return {
+        name: place for name, place in (("narrowest", band.narrowest), ("widest", band.widest)) if place is not None
+    }
+
+
+def _place_text(place: "BandPlace", unit: str) -> str:
+    """Median and interval of a band at a place, with the swept values there."""
+    low, median, high = (engineering(value, unit) for value in (place.lower, place.median, place.upper))
+    at = [
+        value if isinstance(value, str) else engineering(value, unit_of(key.rpartition(".")[2]))
+        for key, value in place.at.items()
+    ]
+    return f"{median}, 90 % within {low} to {high}, at {', '.join(at)}"
+
+
+def _quantiles(structure: "IdentifiedStructure") -> dict[str, tuple[float, float, float]]:
+    """Quantiles of 5, 50 and 95 % of the draws of each parameter, by key."""
+    import numpy as np
+
+    from sonolube.design.uncertainty_summary import BAND
+
+    draws = structure.draws_by_key()
+    return {key: tuple(np.quantile(values, BAND).tolist()) for key, values in draws.items()}
+
+
+def _agreement(structure: "IdentifiedStructure") -> str:
+    """Agreement of independent populations of draws, by their scale reduction."""
+    posterior = structure.posterior
+    agree = "agree" if posterior.has_settled else "do not agree yet: take the ends with caution"
+    return f"independent populations of draws {agree} ({posterior.scale_reduction:.2f})"
+
+
+def _with_interval(each: "Estimated", unit: str) -> str:
+    """Estimate with its 95 % interval."""
+    value, low, high = (engineering(end, unit) for end in (each.value, each.lower, each.upper))
+    return f"{value} ({low} to {high})"
+
+
+def _percent(share: "Estimated") -> str:
+    """Fraction in percent with its interval, negative estimates cut at zero."""
+    value, low, high = (100 * max(end, 0.0) for end in (share.value, share.lower, share.upper))
+    return f"{value:5.1f} % ({low:.0f} to {high:.0f})"
+
+
+def _lower(name: str) -> str:
+    """Meaning of a quantity within a sentence."""
+    meaning = quantity(name).meaning
+    return meaning[:1].lower() + meaning[1:]

@@ -1,0 +1,93 @@
+"""Command `measure friction`: level, fluctuation, running-in, voltage steps, stick-slip and work in recordings."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from sonolube.cli.console.options import Json, quantity
+from sonolube.cli.measure.measured_files import (
+    Files,
+    Mapped,
+    Report,
+    Test,
+    column_mapping,
+    deliver_sheets,
+    each_file,
+    names_of,
+)
+from sonolube.errors import InvalidInput
+
+
+def friction(
+    files: Files,
+    mapping: Mapped = None,
+    without: Annotated[
+        list[Path] | None,
+        typer.Option("--without-vibration", metavar="FILE", help="A test without vibration; may come again."),
+    ] = None,
+    speed: Annotated[
+        str | None, typer.Option("--sliding-speed", metavar="SPEED", help="For the distance to the steady state.")
+    ] = None,
+    window: Annotated[str, typer.Option(metavar="TIME", help="Duration of the windows.")] = "2s",
+    turns: Annotated[
+        str | None, typer.Option("--rotation-speed", metavar="RATE", help="Of the disc, to remove its wobble.")
+    ] = None,
+    torque: Annotated[
+        str | None,
+        typer.Option("--torque-constant", metavar="QUANTITY", help="Of the motor, such as '0.5 N m/A'."),
+    ] = None,
+    idle: Annotated[
+        str | None, typer.Option("--idle-current", metavar="CURRENT", help="Of the motor with the pin lifted.")
+    ] = None,
+    diameter: Annotated[
+        str | None, typer.Option("--groove-diameter", metavar="LENGTH", help="Of the circle under the pin.")
+    ] = None,
+    test: Test = None,
+    report: Report = None,
+    json: Json = False,
+) -> None:
+    """Friction in recordings: level, fluctuation, running-in, steps of the voltage, stick-slip, work.
+
+    Example: sonolube measure friction test.csv --sliding-speed 20.3mm/s --report test.html
+    """
+    from functools import partial
+
+    from sonolube.measurement.friction.forces import MotorFriction
+    from sonolube.report.measured.friction import FrictionSettings, friction_sheet
+    from sonolube.report.measured.friction_comparison import comparison_sheet
+
+    motor = None
+    if torque is not None:
+        if idle is None or diameter is None:
+            raise InvalidInput("--torque-constant needs --idle-current and --groove-diameter")
+        motor = MotorFriction(
+            torque_constant=quantity(torque, unit="N m/A", option="--torque-constant") or 0.0,
+            idle_current=quantity(idle, unit="A", option="--idle-current") or 0.0,
+            groove_diameter=quantity(diameter, unit="m", option="--groove-diameter") or 0.0,
+        )
+    settings = FrictionSettings(
+        mapping=column_mapping(mapping),
+        window_duration=quantity(window, unit="s", option="--window") or 0.0,
+        sliding_speed=quantity(speed, unit="m/s", option="--sliding-speed"),
+        rotation_speed=quantity(turns, unit="1/s", option="--rotation-speed"),
+        motor=motor,
+    )
+    measure = partial(friction_sheet, settings=settings)
+    sheets, refused = each_file(files, measure, title="measuring")
+    if without:
+        others, others_refused = each_file(without, measure, title="measuring without vibration")
+        refused |= others_refused
+        compared = [comparison_sheet(sheets, others)] if sheets and others else []
+        sheets = [*sheets, *others, *compared]
+    options = {
+        "mapping": mapping,
+        "window": window,
+        "sliding speed": speed,
+        "rotation speed": turns,
+        "torque constant": torque,
+        "idle current": idle,
+        "groove diameter": diameter,
+        "without vibration": names_of(without),
+    }
+    deliver_sheets("friction", sheets, refused, settings=options, page=report, test=test, as_json=json)

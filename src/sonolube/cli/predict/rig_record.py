@@ -1,0 +1,80 @@
+"""Answer of commands whose result is one record of a rig: every field that is a quantity, with its unit."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields
+from typing import TYPE_CHECKING, Any
+
+from sonolube.cli.console.answer import Answer, aligned, si
+from sonolube.units import engineering
+from sonolube.vocabulary import quantities
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from sonolube.report import Drawing
+    from sonolube.rig import Rig
+
+
+@dataclass(frozen=True, kw_only=True)
+class RigRecord(Answer):
+    """Record of results of a rig: quantities by the vocabulary, other text as it is.
+
+    Parameters
+    ----------
+    rig : Rig
+    result : dataclass
+        Its fields named in the vocabulary are the quantities; None is passed over.
+    drawings : mapping of str to Drawing
+    datasets : mapping of str to xarray.Dataset
+    """
+
+    rig: "Rig"
+    result: Any
+    drawings: "Mapping[str, Drawing]" = field(default_factory=dict)
+    datasets: "Mapping[str, xr.Dataset]" = field(default_factory=dict)
+
+    def lines(self) -> list[str]:
+        """Load, quantities with the meaning and unit of the vocabulary, and text but for the status."""
+        known = quantities()
+        return [
+            f"{self.rig.title}, {engineering(self.rig.normal_load, 'N')}",
+            *aligned(
+                [
+                    *((known[name].meaning, engineering(value, known[name].unit)) for name, value in self._values()),
+                    *((name, text) for name, text in self._texts() if name != "status"),
+                ]
+            ),
+        ]
+
+    def object(self) -> dict[str, Any]:
+        """Title of the rig, text and quantities."""
+        return {"rig": self.rig.title, **dict(self._texts()), **si(dict(self._values()))}
+
+    def caveats(self) -> Sequence[str]:
+        """Caveats of the record."""
+        caveats: Sequence[str] = self.result.caveats
+        return caveats
+
+    def assumptions(self) -> Mapping[str, str]:
+        """Assumptions of the rig file."""
+        return self.rig.assumptions
+
+    def figures(self) -> "Mapping[str, Drawing]":
+        """Figures of the record."""
+        return self.drawings
+
+    def files(self) -> "Mapping[str, xr.Dataset]":
+        """Datasets of the record."""
+        return self.datasets
+
+    def _values(self) -> list[tuple[str, float]]:
+        """Fields that are quantities of the vocabulary, with their values in SI."""
+        return [(name, value) for name, value in self._fields() if name in quantities() and value is not None]
+
+    def _texts(self) -> list[tuple[str, str]]:
+        """Fields that are text, such as the friction model."""
+        return [(name, value) for name, value in self._fields() if isinstance(value, str)]
+
+    def _fields(self) -> list[tuple[str, Any]]:
+        """Fields of the record with their values."""
+        return [(field.name, getattr(self.result, field.name)) for field in fields(self.result)]

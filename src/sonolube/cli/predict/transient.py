@@ -1,0 +1,91 @@
+"""Command `transient`: start-up of a rig from rest by time integration."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from sonolube.cli.console.answer import Answer, aligned, deliver, si
+from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath
+from sonolube.units import engineering, to_si
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from sonolube.report import Drawing
+    from sonolube.rig import Rig, StartUp
+
+_QUANTITIES = ("settling_time", "vibration_amplitude", "mean_displacement", "beat_frequency")
+
+
+def transient(
+    rig: RigPath,
+    duration: Annotated[str, typer.Option(metavar="TIME", help="Time that is integrated.")] = "0.1s",
+    changes: Changes = None,
+    out: Out = OUT,
+    json: Json = False,
+) -> None:
+    """Start-up from rest: settling of the tip's vibration, step by step.
+
+    Example: sonolube transient examples/rigs/tribometer.toml --duration 0.06s
+    """
+    from sonolube.cli.console.progress import progress
+    from sonolube.rig import read_rig, start_up
+
+    seconds = to_si(duration, unit="s", name="--duration")
+    known = read_rig(rig, changes=changes or ())
+    with progress("marching"):
+        result = start_up(known, duration=seconds)
+    deliver(StartUpAnswer(rig=known, result=result, name=f"{rig.stem}-transient"), folder=out, as_json=json)
+
+
+@dataclass(frozen=True, kw_only=True)
+class StartUpAnswer(Answer):
+    """Start-up of a rig: settling time, final amplitude and slow oscillation."""
+
+    rig: "Rig"
+    result: "StartUp"
+    name: str
+
+    def lines(self) -> list[str]:
+        """Settling time, amplitude, mean displacement, slow oscillation and status."""
+        found = self.result
+        return [
+            f"{self.rig.title}, {engineering(self.rig.normal_load, 'N')}, from rest",
+            *aligned(
+                [
+                    ("amplitude settles", f"within 2 % after {engineering(found.settling_time, 's')}"),
+                    ("amplitude", engineering(found.vibration_amplitude, "m")),
+                    ("mean displacement", engineering(found.mean_displacement, "m")),
+                    ("slow oscillation", engineering(found.beat_frequency, "Hz")),
+                    ("status", found.status + (f": {found.reason}" if found.reason else "")),
+                ]
+            ),
+        ]
+
+    def object(self) -> dict[str, Any]:
+        """Status, settling time, amplitude, mean displacement and frequency of the slow oscillation."""
+        return {
+            "rig": self.rig.title,
+            "status": self.result.status,
+            "reason": self.result.reason,
+            **si({name: getattr(self.result, name) for name in _QUANTITIES}),
+        }
+
+    def assumptions(self) -> Mapping[str, str]:
+        """Assumptions of the rig file."""
+        return self.rig.assumptions
+
+    def figures(self) -> "Mapping[str, Drawing]":
+        """Displacement of the tip over time."""
+        from sonolube.report import Drawing
+        from sonolube.rig.figures import start_up_figure
+
+        return {self.name: Drawing(draw=lambda: start_up_figure(self.rig, self.result))}
+
+    def files(self) -> "Mapping[str, xr.Dataset]":
+        """Trajectory as netCDF."""
+        from sonolube.rig.result_datasets import start_up_dataset
+
+        return {f"{self.name}.nc": start_up_dataset(self.rig, self.result)}
