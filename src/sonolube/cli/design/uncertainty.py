@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -10,6 +11,7 @@ import typer
 from sonolube.cli.console.answer import Answer, aligned, deliver
 from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath
 from sonolube.cli.console.rig_text import rig_settings
+from sonolube.cli.design.uncertain_entries import agreement, distributions, entry_rows, free_lines, posterior_object
 from sonolube.errors import InvalidInput
 from sonolube.units import engineering
 from sonolube.vocabulary import quantity, unit_of
@@ -20,12 +22,10 @@ if TYPE_CHECKING:
     from sonolube.checks import Floats
     from sonolube.design import Estimated, Spread
     from sonolube.design.identified_structure import IdentifiedStructure
-    from sonolube.design.uncertainty_summary import Band, BandPlace
+    from sonolube.design.uncertainty_summary import Band, BandPlace, RankedEntry
     from sonolube.report import Drawing, Page, PageTable
-    from sonolube.rig import Distribution, Rig
+    from sonolube.rig import Rig
 
-_LEAST_TRUNCATION = 1e-4  # fraction of a distribution that is cut off, from which on it is printed
-_LEAST_EXPONENT = 0.1  # of a parameter in a free direction, from which on it is printed
 _SAMPLES_CAPTION = "Histogram of the samples that have a result, quantiles with intervals of 95 %, and the mean."
 _BAND_CAPTION = "Median of the samples and their intervals over the keys that were swept."
 _SOBOL_CAPTION = "Contribution of each uncertain entry to the variance, with intervals of 95 %."
@@ -119,15 +119,15 @@ class UncertaintyAnswer(Answer):
             *(f"  without result: {count}: {reason}" for reason, count in self.failures().items()),
             *self._status_lines(),
             "  uncertain",
-            *(f"  {line}" for line in aligned(self._entry_rows())),
-            *self._free_lines(),
+            *(f"  {line}" for line in aligned(entry_rows(self.rig, self.result, self.structure))),
+            *free_lines(self.structure),
             *self._ranking_lines(),
         ]
 
     def object(self) -> dict[str, Any]:
         """Statistics or band, statuses, uncertain entries, and their ranking."""
         from sonolube.design.point_statistics import status_counts
-        from sonolube.design.uncertainty_summary import contact_loss_probability, ranked_entries
+        from sonolube.design.uncertainty_summary import contact_loss_probability
 
         content: dict[str, Any] = {
             "rig": self.rig.title,
@@ -139,18 +139,18 @@ class UncertaintyAnswer(Answer):
             "contact_lost": contact_loss_probability(self.result),
             "uncertain": {
                 key: {"distribution": law.text, "truncated_fraction": law.truncated_fraction}
-                for key, law in self._distributions().items()
+                for key, law in distributions(self.rig, self.result, self.structure).items()
             },
         }
         if self.structure is not None:
-            content["identified"] = self._identified_object(self.structure)
+            content["identified"] = posterior_object(self.structure)
         if self._swept:
-            band = self._band()
+            band = self._band
             content["band"] = {"mean_width": band.mean_width} | {
                 name: asdict(place) for name, place in _places(band).items()
             }
         else:
-            found = self._statistics()
+            found = self._statistics
             content |= {
                 "mean": asdict(found.mean),
                 "standard_deviation": asdict(found.deviation),
@@ -159,16 +159,16 @@ class UncertaintyAnswer(Answer):
                 "converged": found.has_converged,
             }
         if self._ranked:
-            content["sobol"] = [asdict(row) for row in ranked_entries(self.result)]
+            content["sobol"] = [asdict(row) for row in self._ranking]
         return content
 
     def caveats(self) -> Sequence[str]:
         """Too few samples, and draws of the structure that have not converged."""
         caveats = []
-        if not self._swept and not self._statistics().has_converged:
+        if not self._swept and not self._statistics.has_converged:
             caveats.append(self._convergence())
         if self.structure is not None and not self.structure.posterior.has_settled:
-            caveats.append(_agreement(self.structure))
+            caveats.append(agreement(self.structure))
         return caveats
 
     def assumptions(self) -> Mapping[str, str]:
@@ -203,7 +203,11 @@ class UncertaintyAnswer(Answer):
         from sonolube.report import Page, PageTable
 
         lost = contact_loss_probability(self.result)
-        entries = PageTable(title="Uncertain entries", heads=("entry", "distribution"), rows=tuple(self._entry_rows()))
+        entries = PageTable(
+            title="Uncertain entries",
+            heads=("entry", "distribution"),
+            rows=tuple(entry_rows(self.rig, self.result, self.structure)),
+        )
         return Page(
             name="uncertainty",
             title=f"Uncertainty of the {_lower(self._of)}: {self.rig.title}",
@@ -246,42 +250,35 @@ class UncertaintyAnswer(Answer):
         """Name of the files, without ending."""
         return f"{self.rig_file.stem}-uncertainty-{self._of}"
 
+    @cached_property
     def _statistics(self) -> "Spread":
         """Mean, deviation and quantiles of the outcome."""
         from sonolube.design import spread_of
 
         return spread_of(self.result)
 
+    @cached_property
     def _band(self) -> "Band":
         """Interval of the outcome over the swept keys."""
         from sonolube.design.uncertainty_summary import outcome_band
 
         return outcome_band(self.result)
 
-    def _distributions(self) -> "Mapping[str, Distribution]":
-        """Distributions that were drawn from, those of an identified structure apart."""
-        joint = {} if self.structure is None else self.structure.draws_by_key()
-        return {
-            key: law
-            for key, law in self.rig.uncertainty.items()
-            if key in self.result.attrs["uncertain"] and key not in joint
-        }
-
     def _statistics_rows(self) -> list[tuple[str, str]]:
         """Statistics with their intervals, or the band where it is narrowest and widest."""
         unit = quantity(self._of).unit
         if self._swept:
-            return [(name, _place_text(place, unit)) for name, place in _places(self._band()).items()]
-        found = self._statistics()
+            return [(name, _place_text(place, unit)) for name, place in _places(self._band).items()]
+        found = self._statistics
         rows = {"mean": found.mean, "standard deviation": found.deviation}
         for share, each in found.quantiles.items():
             rows["median" if share == 0.5 else f"{100 * share:.0f} % lie below"] = each
         texts = [(name, _with_interval(each, unit)) for name, each in rows.items()]
-        return [*texts, ("convergence", self._convergence())]
+        return [*texts, ("convergence", self._convergence())] if found.has_converged else texts
 
     def _convergence(self) -> str:
         """Width of the intervals of the statistics over the deviation of the samples."""
-        found = self._statistics()
+        found = self._statistics
         if found.has_converged:
             return f"intervals of 95 % within {found.relative_error:.1%} of the spread"
         return f"not converged: an interval takes {found.relative_error:.1%} of the spread; take more --samples"
@@ -296,52 +293,19 @@ class UncertaintyAnswer(Answer):
         more = [f"  contact lost for part of the time in {lost:.1%} of them"] if lost else []
         return [f"  {shares} of the points", *more]
 
-    def _entry_rows(self) -> list[tuple[str, str]]:
-        """Uncertain entries with their distributions, or with their posterior."""
-        rows = []
-        for key, law in self._distributions().items():
-            cut = law.truncated_fraction
-            remark = f"; {cut:.1%} of it is impossible and cut off" if cut > _LEAST_TRUNCATION else ""
-            rows.append((key, f"{law.text}{remark}"))
-        if self.structure is None:
-            return rows
-        for key, (low, median, high) in _quantiles(self.structure).items():
-            unit = quantity(key.rpartition(".")[2]).unit
-            free = key.removeprefix("structure.") in self.structure.posterior.free
-            ends = f"{engineering(low, unit)} to {engineering(high, unit)}{'; no fact settles it' if free else ''}"
-            rows.append((key, f"{engineering(median, unit)}, 90 % within {ends}"))
-        return rows
-
-    def _free_lines(self) -> list[str]:
-        """Directions in which the facts leave the structure free, and the agreement of its draws."""
-        if self.structure is None:
-            return []
-        lines = []
-        for direction in self.structure.free_directions:
-            exponents = {name: x for name, x in direction.exponents.items() if abs(x) > _LEAST_EXPONENT}
-            product = " ".join(f"{name}^{exponent:+.2f}" for name, exponent in exponents.items())
-            lines.append(f"    left free by the facts, to a factor of e and more: {product}")
-        return [*lines, f"    {_agreement(self.structure)}"]
-
-    def _identified_object(self, structure: "IdentifiedStructure") -> dict[str, Any]:
-        """Posterior of the structure, for JSON."""
-        posterior = structure.posterior
-        return {
-            "scale_reduction": posterior.scale_reduction,
-            "settled": posterior.has_settled,
-            "free": [f"structure.{name}" for name in posterior.free],
-            "free_directions": [dict(direction.exponents) for direction in structure.free_directions],
-            "quantiles": {key: list(ends) for key, ends in _quantiles(structure).items()},
-        }
-
-    def _ranking_rows(self) -> list[tuple[str, str, str, str]]:
-        """Entries by their contribution to the variance, alone and with the others, and the deviation without them."""
+    @cached_property
+    def _ranking(self) -> "list[RankedEntry]":
+        """Entries by their contribution to the variance; empty without Sobol indices."""
         from sonolube.design.uncertainty_summary import ranked_entries
 
+        return ranked_entries(self.result) if self._ranked else []
+
+    def _ranking_rows(self) -> list[tuple[str, str, str, str]]:
+        """Entries with their contributions, alone and with the others, and the deviation that would remain."""
         unit = quantity(self._of).unit
         return [
             (row.key, _percent(row.first), _percent(row.total), engineering(row.deviation_if_known, unit))
-            for row in (ranked_entries(self.result) if self._ranked else ())
+            for row in self._ranking
         ]
 
     def _ranking_lines(self) -> list[str]:
@@ -393,23 +357,6 @@ def _place_text(place: "BandPlace", unit: str) -> str:
         for key, value in place.at.items()
     ]
     return f"{median}, 90 % within {low} to {high}, at {', '.join(at)}"
-
-
-def _quantiles(structure: "IdentifiedStructure") -> dict[str, tuple[float, float, float]]:
-    """Quantiles of 5, 50 and 95 % of the draws of each parameter, by key."""
-    import numpy as np
-
-    from sonolube.design.uncertainty_summary import BAND
-
-    draws = structure.draws_by_key()
-    return {key: tuple(np.quantile(values, BAND).tolist()) for key, values in draws.items()}
-
-
-def _agreement(structure: "IdentifiedStructure") -> str:
-    """Agreement of independent populations of draws, by their scale reduction."""
-    posterior = structure.posterior
-    agree = "agree" if posterior.has_settled else "do not agree yet: take the ends with caution"
-    return f"independent populations of draws {agree} ({posterior.scale_reduction:.2f})"
 
 
 def _with_interval(each: "Estimated", unit: str) -> str:
