@@ -14,14 +14,13 @@ from pathlib import Path
 import pytest
 
 import sonolube
-from sonolube.cli.app import function_of
 from sonolube.cli.commands import COMMANDS as TABLE
 from sonolube.rig import rig_schema
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
 PAGES = sorted(DOCS.rglob("*.md"))
-COMMANDS = {command.name: function_of(command) for command in TABLE}
+COMMANDS = {command.name: command.function for command in TABLE}
 PHYSICS = ("surfaces", "contact", "friction", "wear", "thermal", "actuator", "metrics")
 
 

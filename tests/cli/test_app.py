@@ -1,5 +1,6 @@
 """The program as its users meet it: help, exit codes, completion, and the addition of a command."""
 
+import inspect
 import os
 import re
 import shutil
@@ -9,7 +10,6 @@ from pathlib import Path
 
 import pytest
 
-from sonolube.cli.app import function_of
 from sonolube.cli.commands import COMMANDS, Command
 
 ROOT = Path(__file__).parents[2]
@@ -83,9 +83,26 @@ def test_the_help_lists_every_command_under_the_heading_of_its_task() -> None:
 
 @pytest.mark.parametrize("command", COMMANDS, ids=lambda command: command.name)
 def test_every_command_has_json_and_an_example_in_its_help(command: Command) -> None:
-    function = function_of(command)
+    function = command.function
     assert f"Example: sonolube {command.name}" in (function.__doc__ or "")
+    assert command.help == inspect.getdoc(function)
     assert "json" in function.__annotations__
+
+
+@pytest.mark.parametrize("name", ["numpy", "xarray", "sonolube.rig", "sonolube.report"])
+@pytest.mark.parametrize("arguments", [["--help"], ["measure", "--help"], ["frictoin"], ["study"]])
+def test_commands_that_are_not_called_are_not_imported(arguments: list[str], name: str) -> None:
+    code = (
+        "import sys\nfrom sonolube.cli import main\n"
+        f"try: main({arguments!r})\nexcept SystemExit: pass\nprint({name!r} in sys.modules, file=sys.stderr)"
+    )
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stderr.splitlines()[-1] == "False"
+
+
+def test_options_of_a_command_are_completed() -> None:
+    words = {"COMP_WORDS": "sonolube friction --mo", "COMP_CWORD": "2", "_SONOLUBE_COMPLETE": "complete_bash"}
+    assert sonolube(**words).stdout.split() == ["--model"]
 
 
 def test_help_of_a_command_shows_its_example() -> None:

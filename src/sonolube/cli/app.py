@@ -3,7 +3,6 @@
 import os
 import sys
 from collections.abc import Callable, Sequence
-from importlib import import_module
 
 import typer
 
@@ -20,29 +19,19 @@ _HELP = (
 )
 
 
-def function_of(command: Command) -> Callable[..., None]:
-    """Function of a command, imported from its module.
+def program(arguments: Sequence[str]) -> typer.Typer:
+    """Program with all commands of the table, of which only the one that is called is imported.
 
     Parameters
     ----------
-    command : Command
-
-    Returns
-    -------
-    callable
-    """
-    module, _, name = command.where.partition(":")
-    function: Callable[..., None] = getattr(import_module(f"sonolube.cli.{module}"), name)
-    return function
-
-
-def program() -> typer.Typer:
-    """Program with all commands of the table, grouped by panel.
+    arguments : sequence of str
+        Arguments of the program, which begin with the name of a command.
 
     Returns
     -------
     typer.Typer
     """
+    words = [*arguments, *_words_to_complete()]
     app = typer.Typer(
         name="sonolube",
         no_args_is_help=True,
@@ -55,12 +44,12 @@ def program() -> typer.Typer:
     for command in COMMANDS:
         *group, name = command.name.split()
         if not group:
-            app.command(name, rich_help_panel=command.panel)(function_of(command))
+            app.command(name, rich_help_panel=command.panel)(_function(command, words))
             continue
         if group[0] not in groups:
             groups[group[0]] = typer.Typer(no_args_is_help=True, help=GROUPS[group[0]])
             app.add_typer(groups[group[0]], name=group[0], rich_help_panel=command.panel)
-        groups[group[0]].command(name)(function_of(command))
+        groups[group[0]].command(name)(_function(command, words))
     return app
 
 
@@ -82,7 +71,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     try:
         if command in MOVED_COMMANDS:
             raise SonolubeError(MOVED_COMMANDS[command])
-        code = program()(args=arguments, prog_name="sonolube", standalone_mode=False)
+        code = program(arguments)(args=arguments, prog_name="sonolube", standalone_mode=False)
     except (SonolubeError, OSError) as refusal:
         code = _refuse(command, str(refusal))
     except typer.TyperException as refusal:
@@ -95,6 +84,27 @@ def main(arguments: Sequence[str] | None = None) -> None:
         sys.stdout.flush()
         os._exit(_INTERRUPTED)
     sys.exit(code if isinstance(code, int) else 0)
+
+
+def _function(command: Command, words: Sequence[str]) -> Callable[..., None]:
+    """Function of a command that is called; for others one with the same help, whose module is not imported."""
+    name = command.name.split()
+    if list(words[: len(name)]) == name:
+        return command.function
+
+    def not_called() -> None:
+        pass
+
+    not_called.__doc__ = command.help
+    return not_called
+
+
+def _words_to_complete() -> list[str]:
+    """Words typed so far where a shell asks to complete an option or its value; files the shell completes itself."""
+    if "_SONOLUBE_COMPLETE" not in os.environ:
+        return []
+    words = (os.environ.get("_TYPER_COMPLETE_ARGS") or os.environ.get("COMP_WORDS", "")).split()[1:]
+    return words if any(word.startswith("-") for word in words[-2:]) else []
 
 
 def _version(

@@ -1,6 +1,10 @@
 """Table of all commands, one line each: the panel of the help, the name, and the module with the function."""
 
+import ast
+from collections.abc import Callable
 from dataclasses import dataclass
+from importlib import import_module
+from importlib.resources import files
 
 _PREDICT = "Predict a rig"
 _PART = "Predict a part"
@@ -27,6 +31,21 @@ class Command:
     panel: str
     name: str
     where: str
+
+    @property
+    def function(self) -> Callable[..., None]:
+        """Function of the command, imported with its module."""
+        module, _, name = self.where.partition(":")
+        function: Callable[..., None] = getattr(import_module(f"sonolube.cli.{module}"), name)
+        return function
+
+    @property
+    def help(self) -> str:
+        """Docstring of the function, read from the source without importing the module."""
+        module, _, name = self.where.partition(":")
+        source = files("sonolube.cli").joinpath(f"{module.replace('.', '/')}.py").read_text(encoding="utf-8")
+        nodes = (node for node in ast.parse(source).body if isinstance(node, ast.FunctionDef) and node.name == name)
+        return ast.get_docstring(next(nodes)) or ""
 
 
 COMMANDS = (

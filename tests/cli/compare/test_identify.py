@@ -22,7 +22,7 @@ def identification() -> Identification:
 @pytest.fixture
 def once(identification: Identification, monkeypatch: MonkeyPatch) -> None:
     """Identify once for all tests, which takes twenty seconds."""
-    monkeypatch.setattr("sonolube.validation.tribometer.tribometer_identification", lambda *, seed: identification)
+    monkeypatch.setattr("sonolube.cli.compare.identify.tribometer_identification", lambda *, seed: identification)
 
 
 @pytest.mark.usefixtures("once")

@@ -4,21 +4,32 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
+import xarray as xr
 
 from sonolube.cli.console.answer import Answer, deliver
 from sonolube.cli.console.options import OUT, Changes, Json, Out
+from sonolube.cli.console.progress import progress
 from sonolube.errors import InvalidInput
+from sonolube.report import Drawing
+from sonolube.rig import Rig, read_rig
 from sonolube.units import engineering
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from sonolube.report import Drawing
-    from sonolube.rig import Rig
-    from sonolube.validation.compare import ComparedFit, FittedParameter, Prediction, RigPrediction
+from sonolube.validation.compare import (
+    DATA_SETS,
+    ONLY_PREDICTED,
+    ComparedFit,
+    FittedParameter,
+    Prediction,
+    RigPrediction,
+    compare_models,
+    predict_rig,
+)
+from sonolube.validation.figures import comparison_figures, rig_figure
+from sonolube.validation.models import compared_models
+from sonolube.validation.rig import vibrated_rig
+from sonolube.validation.table import comparison_csv, comparison_dataset, parameter_said
 
 
 def compare(
@@ -36,12 +47,6 @@ def compare(
 
     Example: sonolube compare examples/rigs/tribometer.toml --model stick-slip --model kinematic
     """
-    from sonolube.cli.console.progress import progress
-    from sonolube.rig import read_rig
-    from sonolube.validation.compare import compare_models, predict_rig
-    from sonolube.validation.models import compared_models
-    from sonolube.validation.rig import vibrated_rig
-
     if rig is None and changes:
         raise InvalidInput("--set changes a rig: name one, such as examples/rigs/tribometer.toml")
     known = None if rig is None else read_rig(rig, changes=changes or ())
@@ -56,14 +61,12 @@ def compare(
 class ComparisonAnswer(Answer):
     """Errors of models on published tests, fitted and cross-validated, and their predictions of a rig."""
 
-    fits: "tuple[ComparedFit, ...]"
-    rig: "Rig | None"
-    predictions: "tuple[RigPrediction, ...]"
+    fits: tuple[ComparedFit, ...]
+    rig: Rig | None
+    predictions: tuple[RigPrediction, ...]
 
     def lines(self) -> list[str]:
         """Errors and fitted parameters of each model, refused tests, and predictions of the rig."""
-        from sonolube.validation.compare import DATA_SETS, ONLY_PREDICTED
-
         tests = self.fits[0].predictions
         width = max(len(one.model.name) for one in self.fits)
         return [
@@ -77,8 +80,6 @@ class ComparisonAnswer(Answer):
 
     def object(self) -> dict[str, Any]:
         """Errors, fitted parameters and predictions of each model, and the predictions of the rig."""
-        from sonolube.validation.compare import DATA_SETS, ONLY_PREDICTED
-
         content: dict[str, Any] = {
             "sets": dict(DATA_SETS),
             "only_predicted": dict(ONLY_PREDICTED),
@@ -86,15 +87,8 @@ class ComparisonAnswer(Answer):
         }
         return content if self.rig is None else content | {"rig": _rig_object(self.rig, self.predictions)}
 
-    def assumptions(self) -> Mapping[str, str]:
-        """Assumptions of the rig file."""
-        return self.rig.assumptions if self.rig else {}
-
-    def figures(self) -> "Mapping[str, Drawing]":
+    def figures(self) -> Mapping[str, Drawing]:
         """Predicted against measured ratios, ratios over speed and amplitude, and the predictions of the rig."""
-        from sonolube.report import Drawing
-        from sonolube.validation.figures import comparison_figures, rig_figure
-
         drawings = {}
         if any(one.judgement for one in self.fits):
             every = comparison_figures(lambda: self.fits)
@@ -104,17 +98,13 @@ class ComparisonAnswer(Answer):
             drawings["models-on-the-rig"] = Drawing(draw=lambda: rig_figure(self.predictions, title))
         return drawings
 
-    def files(self) -> "Mapping[str, str | xr.Dataset]":
+    def files(self) -> Mapping[str, str | xr.Dataset]:
         """Errors as CSV, and every ratio as netCDF."""
-        from sonolube.validation.table import comparison_csv, comparison_dataset
-
         return {"models.csv": comparison_csv(self.fits), "models.nc": comparison_dataset(self.fits)}
 
 
-def _error_lines(one: "ComparedFit", width: int) -> Iterator[str]:
+def _error_lines(one: ComparedFit, width: int) -> Iterator[str]:
     """Errors of a model, then its fitted parameters."""
-    from sonolube.validation.table import parameter_said
-
     assert one.judgement is not None
     seen, unseen = one.judgement.seen, one.judgement.unseen
     reached = f"{seen.count}/{seen.count + len(seen.missed)}" if seen.missed else str(seen.count)
@@ -127,7 +117,7 @@ def _error_lines(one: "ComparedFit", width: int) -> Iterator[str]:
         yield f"    {parameter_said(parameter)}"
 
 
-def _refusals(one: "ComparedFit") -> Iterator[str]:
+def _refusals(one: ComparedFit) -> Iterator[str]:
     """Each reason for which a model does not apply to tests, once, with the tests."""
     reasons: dict[str, list[str]] = {}
     for prediction in one.predictions:
@@ -138,7 +128,7 @@ def _refusals(one: "ComparedFit") -> Iterator[str]:
             yield f"{one.model.name}: {reason} ({', '.join(labels) if len(labels) < 6 else f'{len(labels)} tests'})"
 
 
-def _rig_lines(rig: "Rig", predictions: "tuple[RigPrediction, ...]", width: int) -> Iterator[str]:
+def _rig_lines(rig: Rig, predictions: tuple[RigPrediction, ...], width: int) -> Iterator[str]:
     """Friction ratio and force of a rig by each applicable model."""
     yield (
         f"{rig.title}, {engineering(rig.normal_load, 'N')}, {engineering(rig.sliding_speed, 'm/s')}, "
@@ -156,7 +146,7 @@ def _rig_lines(rig: "Rig", predictions: "tuple[RigPrediction, ...]", width: int)
             yield f"  not applicable: {one.model.name}: {one.refusal}"
 
 
-def _model_object(one: "ComparedFit") -> dict[str, Any]:
+def _model_object(one: ComparedFit) -> dict[str, Any]:
     """Model for JSON with its errors, fitted parameters and predictions."""
     judgement = one.judgement
     errors = (
@@ -183,7 +173,7 @@ def _model_object(one: "ComparedFit") -> dict[str, Any]:
     }
 
 
-def _parameter_object(fitted: "FittedParameter") -> dict[str, Any]:
+def _parameter_object(fitted: FittedParameter) -> dict[str, Any]:
     """Fitted parameter for JSON."""
     return {
         "name": fitted.parameter.name,
@@ -198,7 +188,7 @@ def _parameter_object(fitted: "FittedParameter") -> dict[str, Any]:
     }
 
 
-def _prediction_object(prediction: "Prediction") -> dict[str, Any]:
+def _prediction_object(prediction: Prediction) -> dict[str, Any]:
     """Prediction of a test for JSON."""
     return {
         "test": prediction.test.label,
@@ -209,7 +199,7 @@ def _prediction_object(prediction: "Prediction") -> dict[str, Any]:
     }
 
 
-def _rig_object(rig: "Rig", predictions: "tuple[RigPrediction, ...]") -> dict[str, Any]:
+def _rig_object(rig: Rig, predictions: tuple[RigPrediction, ...]) -> dict[str, Any]:
     """Predictions of a rig for JSON."""
     return {
         "title": rig.title,

@@ -3,17 +3,18 @@
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
+from sonolube.actuator import PiezoStack
 from sonolube.cli.console.answer import Answer, deliver, si
 from sonolube.cli.console.options import Json
+from sonolube.cli.console.progress import progress
+from sonolube.identification import Identification, rig_tables
+from sonolube.rig import read_rig, with_tables
+from sonolube.validation.tribometer import tribometer_identification, tribometer_stack
 from sonolube.vocabulary import quantities
-
-if TYPE_CHECKING:
-    from sonolube.actuator import PiezoStack
-    from sonolube.identification import Identification
 
 
 def identify_rig(
@@ -28,11 +29,6 @@ def identify_rig(
 
     Example: sonolube identify rig examples/rigs/tribometer.toml --out my-tribometer.toml
     """
-    from sonolube.cli.console.progress import progress
-    from sonolube.identification import rig_tables
-    from sonolube.rig import read_rig, with_tables
-    from sonolube.validation.tribometer import tribometer_identification, tribometer_stack
-
     if base is not None:
         read_rig(base)
     with progress("identifying"):
@@ -49,8 +45,8 @@ def identify_rig(
 class IdentificationAnswer(Answer):
     """Identified structure with the facts that are kept and given up, and the rig file with its tables."""
 
-    identification: "Identification"
-    stack: "PiezoStack"
+    identification: Identification
+    stack: PiezoStack
     text: str
     file_name: str | None
 

@@ -3,21 +3,19 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from sonolube.cli.console.answer import Answer, deliver, si
 from sonolube.cli.console.options import OUT, Changes, Json, Out
 from sonolube.errors import InvalidInput
+from sonolube.published import PreviousStudy, Statement, previous_studies
+from sonolube.report import Drawing
+from sonolube.rig import Rig, friction_point, read_rig
 from sonolube.units import engineering
+from sonolube.validation.study_map import MapPoint, study_map
 from sonolube.vocabulary import quantity, unit_of
-
-if TYPE_CHECKING:
-    from sonolube.published import PreviousStudy, Statement
-    from sonolube.report import Drawing
-    from sonolube.rig import Rig
-    from sonolube.validation.study_map import MapPoint
 
 
 def literature(
@@ -32,10 +30,6 @@ def literature(
 
     Example: sonolube literature examples/rigs/tribometer.toml
     """
-    from sonolube.published import previous_studies
-    from sonolube.rig import friction_point, read_rig
-    from sonolube.validation.study_map import MapPoint
-
     known = point = None
     if rig is not None:
         known = read_rig(rig, changes=changes or ())
@@ -56,9 +50,9 @@ def literature(
 class LiteratureAnswer(Answer):
     """Earlier studies with their printed numbers, and the friction reduction of a rig beside them."""
 
-    studies: "tuple[PreviousStudy, ...]"
-    rig: "Rig | None"
-    point: "MapPoint | None"
+    studies: tuple[PreviousStudy, ...]
+    rig: Rig | None
+    point: MapPoint | None
 
     def lines(self) -> list[str]:
         """Studies with their text and numbers, and the rig."""
@@ -82,25 +76,18 @@ class LiteratureAnswer(Answer):
             )
         return content
 
-    def assumptions(self) -> Mapping[str, str]:
-        """Assumptions of the rig file."""
-        return self.rig.assumptions if self.rig else {}
-
-    def figures(self) -> "Mapping[str, Drawing]":
+    def figures(self) -> Mapping[str, Drawing]:
         """Friction reduction of the studies over sliding speed and nominal pressure."""
-        from sonolube.report import Drawing
-        from sonolube.validation.study_map import study_map
-
         return {"map-of-studies": Drawing(draw=lambda: study_map(self.point))}
 
 
-def _speed(point: "MapPoint") -> float:
+def _speed(point: MapPoint) -> float:
     """Sliding speed of a rig on the map."""
     assert point.sliding_speed is not None
     return point.sliding_speed[0]
 
 
-def _study_lines(study: "PreviousStudy") -> list[str]:
+def _study_lines(study: PreviousStudy) -> list[str]:
     """Author, direction, references, text and numbers of a study."""
     lines = [
         f"{study.study}, {study.direction or 'direction not stated'}, D {study.section} {list(study.references)}",
@@ -110,14 +97,14 @@ def _study_lines(study: "PreviousStudy") -> list[str]:
     return [*lines, f"  {numbers}"] if numbers else lines
 
 
-def _number(entry: "Statement") -> str:
+def _number(entry: Statement) -> str:
     """Number of a study with its meaning, relation and unit as printed."""
     meaning = quantity(entry.quantity).meaning if entry.quantity else entry.meaning
     relation = "" if entry.relation == "=" else f"{entry.relation} "
     return f"{meaning} {relation}{entry.number.text} {entry.unit}".rstrip()
 
 
-def _study_object(study: "PreviousStudy") -> dict[str, Any]:
+def _study_object(study: PreviousStudy) -> dict[str, Any]:
     """Study for JSON, its numbers by quantity."""
     return {
         "study": study.study,

@@ -2,15 +2,15 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from sonolube.cli.console.answer import Answer, deliver
 from sonolube.cli.console.options import OUT, Json, Out
-
-if TYPE_CHECKING:
-    from sonolube.reproduce import Reproduction
+from sonolube.cli.console.progress import progress
+from sonolube.report import reproduction_files, summary_lines, validation_object
+from sonolube.reproduce import Reproduction, reproduction
 
 
 def reproduce(
@@ -22,9 +22,6 @@ def reproduce(
 
     Example: sonolube reproduce --chapter 3 --out out
     """
-    from sonolube.cli.console.progress import progress
-    from sonolube.reproduce import reproduction
-
     with progress("reproducing"):
         result = reproduction(chapter=chapter)
     deliver(ReproductionAnswer(result), folder=out, as_json=json)
@@ -34,24 +31,17 @@ def reproduce(
 class ReproductionAnswer(Answer):
     """Rows of a reproduction by verdict, with the report and its figures."""
 
-    result: "Reproduction"
+    result: Reproduction
 
     def lines(self) -> list[str]:
         """Number of rows by verdict, and the rows whose model disagrees."""
-        from sonolube.report import summary_lines
-
         return summary_lines(self.result)
 
     def object(self) -> dict[str, Any]:
         """Rows, and their number by verdict."""
-        from sonolube.report import validation_object
-
         return validation_object(self.result)
 
     def files(self) -> Mapping[str, str | bytes]:
         """Report, rows as JSON, and every figure."""
-        from sonolube.cli.console.progress import progress
-        from sonolube.report import reproduction_files
-
         with progress("drawing") as advance:
             return reproduction_files(self.result, advance=advance)

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from sonolube.report import Drawing, Page
+    from sonolube.rig import Rig
 
     Content = str | bytes | xr.Dataset | Path
 
@@ -29,6 +30,9 @@ class Answer(Protocol):
     is_lookup: ClassVar[bool] = False
     """Whether `object` is complete in itself: a table of facts, without caveats, assumptions or files."""
 
+    rig: "Rig | None" = None
+    """Rig that the result is of."""
+
     @abstractmethod
     def lines(self) -> list[str]:
         """Lines of text for people, without caveats, assumptions and files, which `deliver` adds."""
@@ -42,8 +46,8 @@ class Answer(Protocol):
         return ()
 
     def assumptions(self) -> Mapping[str, str]:
-        """Values for which there is no source, by what was assumed, each with its reason."""
-        return {}
+        """Values for which there is no source, by what was assumed, each with its reason: those of the rig file."""
+        return {} if self.rig is None else self.rig.assumptions
 
     def figures(self) -> "Mapping[str, Drawing]":
         """Figures by the name of their files, without ending."""

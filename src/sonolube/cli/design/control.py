@@ -5,24 +5,39 @@ from dataclasses import dataclass
 from enum import StrEnum
 from math import degrees, inf
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
+import numpy as np
 import typer
+import xarray as xr
 
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
 from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath, quantity
+from sonolube.cli.console.progress import progress
 from sonolube.cli.console.rig_text import friction_model_object, operating_point, rig_settings
+from sonolube.design.control import (
+    Amplifier,
+    ControlSettings,
+    ControlStudy,
+    Disturbance,
+    DraggedMotion,
+    Drift,
+    capture_edge,
+    control_study,
+    controller_source,
+    figures,
+    lookup_table,
+    supposed_mode,
+)
+from sonolube.design.control import stick_slip as holder
+from sonolube.design.control.run_results import control_dataset, final_state, lost_resonance
+from sonolube.design.control.stick_slip import StickSlipSuppression, stick_slip_suppression
 from sonolube.errors import InvalidInput
+from sonolube.metrics import EfficiencyLine
+from sonolube.report import Drawing, Page, PageTable
+from sonolube.rig import Rig, read_rig
 from sonolube.units import engineering, rise_to_si, to_si
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from sonolube.design.control import ControlSettings, ControlStudy, DraggedMotion
-    from sonolube.design.control.stick_slip import StickSlipSuppression
-    from sonolube.metrics import EfficiencyLine
-    from sonolube.report import Drawing, Page, PageTable
-    from sonolube.rig import Rig
+from sonolube.validation.power_map import efficiency_line
 
 _LEAST_GAIN_MARGIN = 1.7  # lower limit of textbooks
 _TABLE_ROWS = 12  # of the lookup table on the page
@@ -78,18 +93,6 @@ def control(
 
     Example: sonolube control examples/rigs/tribometer.toml --friction 0.5N --factor 1.15 --warming 40K
     """
-    from sonolube.cli.console.progress import progress
-    from sonolube.design.control import (
-        Amplifier,
-        ControlSettings,
-        Disturbance,
-        Drift,
-        control_study,
-        supposed_mode,
-    )
-    from sonolube.design.control.stick_slip import stick_slip_suppression
-    from sonolube.rig import read_rig
-
     known = read_rig(rig, changes=changes or ())
     seconds, sampling_rate = to_si(duration, unit="s", name="--duration"), to_si(rate, unit="Hz", name="--rate")
     dead_time = to_si(delay, unit="s", name="--delay")
@@ -138,11 +141,11 @@ def control(
 class ControlAnswer(Answer):
     """A tuned controller with its margins, step response and energy, and stick-slip where it was computed."""
 
-    rig: "Rig"
+    rig: Rig
     rig_file: Path
-    settings: "ControlSettings"
-    study: "ControlStudy"
-    suppression: "StickSlipSuppression | None"
+    settings: ControlSettings
+    study: ControlStudy
+    suppression: StickSlipSuppression | None
     assumed: Mapping[str, str]
 
     def lines(self) -> list[str]:
@@ -186,9 +189,6 @@ class ControlAnswer(Answer):
 
     def caveats(self) -> Sequence[str]:
         """A thin gain margin, and a resonance that tracking has lost."""
-        from sonolube.design.control import capture_edge
-        from sonolube.design.control.run_results import lost_resonance
-
         study, caveats = self.study, []
         if study.margins.gain_margin < _LEAST_GAIN_MARGIN:
             verdict = "is unstable" if study.margins.gain_margin < 1 else "is near instability"
@@ -205,8 +205,6 @@ class ControlAnswer(Answer):
 
     def assumptions(self) -> Mapping[str, str]:
         """Assumptions of the rig file, of the resonance and of the holder."""
-        from sonolube.design.control import stick_slip as holder
-
         assumptions = {**self.rig.assumptions, **self.assumed}
         if self.suppression is not None:
             assumptions["stick-slip"] = (
@@ -216,11 +214,8 @@ class ControlAnswer(Answer):
             )
         return assumptions
 
-    def figures(self) -> "Mapping[str, Drawing]":
+    def figures(self) -> Mapping[str, Drawing]:
         """Run in closed loop, design of the loop, and stick-slip where it was computed."""
-        from sonolube.design.control import figures
-        from sonolube.report import Drawing
-
         study, suppression = self.study, self.suppression
         drawings = {
             self._name: Drawing(
@@ -239,11 +234,8 @@ class ControlAnswer(Answer):
             )
         return drawings
 
-    def files(self) -> "Mapping[str, str | xr.Dataset]":
+    def files(self) -> Mapping[str, str | xr.Dataset]:
         """Run as netCDF, controller as C source, and its lookup table."""
-        from sonolube.design.control import controller_source, lookup_table
-        from sonolube.design.control.run_results import control_dataset
-
         controller, title = self.study.controller, self.rig.title
         return {
             f"{self._name}.nc": control_dataset(self.study, title=f"Friction control of {title}"),
@@ -251,10 +243,8 @@ class ControlAnswer(Answer):
             f"{self._name}.csv": lookup_table(controller),
         }
 
-    def page(self) -> "Page":
+    def page(self) -> Page:
         """Page `control.html`."""
-        from sonolube.report import Page
-
         return Page(
             name="control",
             title=f"Friction control of {self.rig.title}",
@@ -323,11 +313,8 @@ def _or(default: float, value: float | None) -> float:
     return default if value is None else value
 
 
-def _efficiency_line(coefficient: str | None) -> "EfficiencyLine":
+def _efficiency_line(coefficient: str | None) -> EfficiencyLine:
     """Efficiency coefficient given, at every speed, or the line of D 4.2."""
-    from sonolube.metrics import EfficiencyLine
-    from sonolube.validation.power_map import efficiency_line
-
     if coefficient is None:
         return efficiency_line()
     return EfficiencyLine(slope=0.0, intercept=to_si(coefficient, unit="m2/N", name="--efficiency"))
@@ -338,18 +325,14 @@ def _fields(record: Any, *names: str) -> dict[str, float | None]:
     return {name: getattr(record, name) for name in names}
 
 
-def _motions(suppression: "StickSlipSuppression") -> "list[tuple[str, DraggedMotion, float]]":
+def _motions(suppression: StickSlipSuppression) -> list[tuple[str, DraggedMotion, float]]:
     """Motion and damping without and with vibration."""
     without, within = suppression.damping
     return [("without", suppression.still, without), ("with", suppression.vibrating, within)]
 
 
-def _lookup_table(study: "ControlStudy") -> "PageTable":
+def _lookup_table(study: ControlStudy) -> PageTable:
     """Map from voltage to friction at about a dozen voltages."""
-    import numpy as np
-
-    from sonolube.report import PageTable
-
     plant = study.plant
     places = np.unique(np.linspace(0, plant.friction_force.size - 1, _TABLE_ROWS).round().astype(int))
     rows = zip(plant.voltage_peak_to_peak[places], plant.friction_force[places], strict=True)
@@ -360,10 +343,8 @@ def _lookup_table(study: "ControlStudy") -> "PageTable":
     )
 
 
-def _resonance_text(study: "ControlStudy") -> str:
+def _resonance_text(study: ControlStudy) -> str:
     """Shift of the resonance, and final voltage and error with and without tracking."""
-    from sonolube.design.control.run_results import final_state
-
     assert study.untracked is not None
     shift = float(study.run.resonance_frequency[-1] - study.run.resonance_frequency[0])
     tracked, fixed = (

@@ -3,20 +3,20 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
+import xarray as xr
 
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
 from sonolube.cli.console.options import OUT, Changes, Json, Out, quantity
 from sonolube.cli.console.rig_text import rig_settings
+from sonolube.design.efficiency import EfficiencyCalibration, calibrate_efficiency, efficiency_dataset
+from sonolube.design.efficiency_figures import efficiency_figure
+from sonolube.design.measured_runs import read_runs
+from sonolube.report import Drawing, Page
+from sonolube.rig import read_rig
 from sonolube.units import engineering
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from sonolube.design.efficiency import EfficiencyCalibration
-    from sonolube.report import Drawing, Page
 
 _PRINTED_UNIT = 1e9  # m2/N in mW mm2/(N W), the unit of D
 _FIT_QUANTITIES = (
@@ -49,10 +49,6 @@ def efficiency(
 
     Example: sonolube efficiency examples/efficiency-runs.csv --rig examples/rigs/power_map.toml
     """
-    from sonolube.design.efficiency import calibrate_efficiency
-    from sonolube.design.measured_runs import read_runs
-    from sonolube.rig import read_rig
-
     known = read_rig(rig, changes=changes or ())
     calibration = calibrate_efficiency(
         known,
@@ -69,7 +65,7 @@ def efficiency(
 class EfficiencyAnswer(Answer):
     """Efficiency line of a rig with its uncertainty, and the power for a target of the friction."""
 
-    calibration: "EfficiencyCalibration"
+    calibration: EfficiencyCalibration
     rig_file: Path
     name: str
 
@@ -108,24 +104,17 @@ class EfficiencyAnswer(Answer):
         """Assumptions of the rig file."""
         return self.calibration.rig.assumptions
 
-    def figures(self) -> "Mapping[str, Drawing]":
+    def figures(self) -> Mapping[str, Drawing]:
         """Coefficients of the runs over speed, the line and its bands."""
-        from sonolube.design.efficiency_figures import efficiency_figure
-        from sonolube.report import Drawing
-
         caption = _CAPTION.format(runs=self.calibration.fit.runs)
         return {self.name: Drawing(draw=lambda: efficiency_figure(self.calibration), caption=caption)}
 
-    def files(self) -> "Mapping[str, xr.Dataset]":
+    def files(self) -> Mapping[str, xr.Dataset]:
         """Line and bands as netCDF."""
-        from sonolube.design.efficiency import efficiency_dataset
-
         return {f"{self.name}.nc": efficiency_dataset(self.calibration)}
 
-    def page(self) -> "Page":
+    def page(self) -> Page:
         """Page `efficiency.html`."""
-        from sonolube.report import Page
-
         return Page(
             name="efficiency",
             title=f"Efficiency line: {self.calibration.rig.title}",

@@ -3,18 +3,22 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
+from sonolube import materials
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
 from sonolube.cli.console.options import OUT, Json, Out
+from sonolube.cli.console.parts import named_horn
+from sonolube.cli.console.progress import progress
+from sonolube.design.horn import HornDesign, amplitude_limits, designed_horn, loaded_frequency
+from sonolube.design.horn_figures import horn_axis_figure
+from sonolube.fem import medium_of
+from sonolube.fem.figures import mode_figure
+from sonolube.materials import Material
+from sonolube.report import Drawing
 from sonolube.units import engineering, to_si
-
-if TYPE_CHECKING:
-    from sonolube.design.horn import HornDesign
-    from sonolube.materials import Material
-    from sonolube.report import Drawing
 
 _SHARP = 0.2  # change of the peak stress from mesh to mesh above which it is a caveat
 _NEAREST = 3  # neighbouring modes printed
@@ -55,12 +59,6 @@ def design(
 
     Example: sonolube horn design --frequency 20kHz --material titanium_6al4v --set end_radius=10mm
     """
-    from sonolube import materials
-    from sonolube.cli.console.parts import named_horn
-    from sonolube.cli.console.progress import progress
-    from sonolube.design.horn import designed_horn
-    from sonolube.fem import medium_of
-
     frequency = to_si(target, unit="Hz", name="--frequency")
     tool_mass = to_si(tool, unit="kg", name="--tool-mass")
     solid = materials.material(material)
@@ -82,8 +80,8 @@ def design(
 class HornAnswer(Answer):
     """A tuned horn: length, frequency, gain, node, uniformity of the face, stress, allowed amplitudes, neighbours."""
 
-    design: "HornDesign"
-    material: "Material"
+    design: HornDesign
+    material: Material
     tool_mass: float
     name: str
 
@@ -145,12 +143,8 @@ class HornAnswer(Answer):
             " sharp corner; give the corner an edge_radius, or lower --tolerance",
         )
 
-    def figures(self) -> "Mapping[str, Drawing]":
+    def figures(self) -> Mapping[str, Drawing]:
         """Profile, motion and stress along the axis, and a picture of the mode."""
-        from sonolube.design.horn_figures import horn_axis_figure
-        from sonolube.fem.figures import mode_figure
-        from sonolube.report import Drawing
-
         mode = self.design.tuned.mode
         title = f"{mode.names[mode.row]}, {mode.frequency:.0f} Hz"
         return {
@@ -162,12 +156,8 @@ class HornAnswer(Answer):
 
     def _loaded(self) -> float:
         """Frequency with the tool on the working face."""
-        from sonolube.design.horn import loaded_frequency
-
         return loaded_frequency(self.design, tool_mass=self.tool_mass)
 
     def _amplitudes(self) -> Mapping[str, float]:
         """Amplitudes of the working face at which the peak stress reaches fatigue strength and yield strength."""
-        from sonolube.design.horn import amplitude_limits
-
         return amplitude_limits(self.design, material=self.material)

@@ -4,24 +4,31 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
+import xarray as xr
 
+from sonolube import design
+from sonolube.checks import Floats
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
 from sonolube.cli.console.backend import Backend, BackendName, gpu_warning
 from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath
+from sonolube.cli.console.progress import progress
+from sonolube.cli.console.ranges import values_by_key
 from sonolube.cli.console.rig_text import friction_model_object, friction_model_text, rig_settings
+from sonolube.cli.design.status_tables import status_tables
+from sonolube.design import PLACES, map_figure, map_page, measured_figure
+from sonolube.design.map_axes import default_axes
+from sonolube.design.measured_runs import read_runs
+from sonolube.design.point_statistics import extreme_point, failure_counts
+from sonolube.design.runs_map import FEWEST_RUNS, require_mappable, runs_map
 from sonolube.errors import InvalidInput
+from sonolube.report import Drawing, Page, PageTable
+from sonolube.rig import Rig, read_rig
+from sonolube.rig.linear_response import require_structure
 from sonolube.units import engineering
 from sonolube.vocabulary import quantity
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from sonolube.checks import Floats
-    from sonolube.report import Drawing, Page, PageTable
-    from sonolube.rig import Rig
 
 _AXIS_KEYS = {
     "sliding.sliding_speed": "sliding_speed",
@@ -86,12 +93,6 @@ def map(  # noqa: A001 - the command's name
 
     Example: sonolube map examples/rigs/power_map.toml --kind velocity-power
     """
-    from sonolube import design
-    from sonolube.cli.console.progress import progress
-    from sonolube.design.measured_runs import read_runs
-    from sonolube.design.runs_map import require_mappable, runs_map
-    from sonolube.rig import read_rig
-
     known = read_rig(rig, changes=changes or ())
     axes = _axes(known, kind.value, over)
     runs = None if measured is None else read_runs(measured)
@@ -114,11 +115,11 @@ def map(  # noqa: A001 - the command's name
 class MapAnswer(Answer):
     """Map of friction reduction: its greatest value, the ridge of sufficient power, and the measured runs."""
 
-    rig: "Rig"
+    rig: Rig
     rig_file: Path
-    mapped: "xr.Dataset"
-    runs: "xr.Dataset | None"
-    interpolated: "xr.Dataset | None"
+    mapped: xr.Dataset
+    runs: xr.Dataset | None
+    interpolated: xr.Dataset | None
     forms: tuple[str, ...]
 
     def lines(self) -> list[str]:
@@ -140,15 +141,8 @@ class MapAnswer(Answer):
             "most_reduction": si(_greatest(self.mapped)),
         }
 
-    def assumptions(self) -> Mapping[str, str]:
-        """Assumptions of the rig file."""
-        return self.rig.assumptions
-
-    def figures(self) -> "Mapping[str, Drawing]":
+    def figures(self) -> Mapping[str, Drawing]:
         """Contours of the map, and those between the measured runs."""
-        from sonolube.design import map_figure, measured_figure
-        from sonolube.report import Drawing
-
         forms = tuple(form for form in self.forms if form != Form.HTML)
         runs, between = self.runs, self.interpolated
         drawings = {
@@ -164,10 +158,8 @@ class MapAnswer(Answer):
             )
         return drawings
 
-    def files(self) -> "Mapping[str, str | xr.Dataset]":
+    def files(self) -> Mapping[str, str | xr.Dataset]:
         """Interactive page where it is wanted, and the datasets."""
-        from sonolube.design import map_page
-
         files: dict[str, str | xr.Dataset] = {}
         if Form.HTML in self.forms:
             files[f"{self._name}.html"] = map_page(self.mapped)
@@ -175,12 +167,8 @@ class MapAnswer(Answer):
             files[f"{self._name}-measured.nc"] = self.interpolated
         return files | {f"{self._name}.nc": self.mapped}
 
-    def page(self) -> "Page":
+    def page(self) -> Page:
         """Page `map.html`."""
-        from sonolube.cli.design.status_tables import status_tables
-        from sonolube.design import PLACES
-        from sonolube.report import Page
-
         across, up, panel = PLACES[self._kind]
         return Page(
             name="map",
@@ -213,8 +201,6 @@ class MapAnswer(Answer):
 
     def _run_facts(self) -> list[tuple[str, str]]:
         """Number of measured runs, their scatter and their leave-one-out error."""
-        from sonolube.design.runs_map import FEWEST_RUNS
-
         if self.runs is None:
             return []
         count = f"{self.runs.sizes['run']}"
@@ -226,8 +212,6 @@ class MapAnswer(Answer):
 
     def _failures(self) -> dict[str, int]:
         """Number of points without a result, by the reason."""
-        from sonolube.design.point_statistics import failure_counts
-
         return failure_counts(self.mapped, outcome="friction_reduction")
 
     def _caption(self) -> str:
@@ -238,12 +222,8 @@ class MapAnswer(Answer):
         return caption if self.runs is None else f"{caption} Circles: measured runs, with their reductions in percent."
 
 
-def _axes(rig: "Rig", kind: str, over: list[str] | None) -> "dict[str, Floats]":
+def _axes(rig: Rig, kind: str, over: list[str] | None) -> dict[str, Floats]:
     """Values of each axis of a kind of map: those given, and the default ones of the others."""
-    from sonolube.cli.console.ranges import values_by_key
-    from sonolube.design.map_axes import default_axes
-    from sonolube.rig.linear_response import require_structure
-
     require_structure(rig)
     axes = default_axes(rig, kind=kind)
     across_and_up = list(axes)[:2]
@@ -258,17 +238,15 @@ def _axes(rig: "Rig", kind: str, over: list[str] | None) -> "dict[str, Floats]":
     return axes
 
 
-def _greatest(mapped: "xr.Dataset") -> dict[str, float]:
+def _greatest(mapped: xr.Dataset) -> dict[str, float]:
     """Greatest reduction and the quantities where it occurs; empty where no point has a result."""
-    from sonolube.design.point_statistics import extreme_point
-
     point = extreme_point(mapped, outcome="friction_reduction", highest=True)
     if point is None:
         return {}
     return {name: float(point[name]) for name in _QUANTITIES if name in point and point[name].ndim == 0}
 
 
-def _ridge(mapped: "xr.Dataset") -> str:
+def _ridge(mapped: xr.Dataset) -> str:
     """Range of the sufficient power; empty where the map does not reach it."""
     if "sufficient_power" not in mapped or mapped["sufficient_power"].isnull().all():
         return ""
@@ -276,10 +254,8 @@ def _ridge(mapped: "xr.Dataset") -> str:
     return f"{engineering(low, 'W')} to {engineering(high, 'W')}"
 
 
-def _panel_tables(mapped: "xr.Dataset", panel: str | None) -> "list[PageTable]":
+def _panel_tables(mapped: xr.Dataset, panel: str | None) -> list[PageTable]:
     """Greatest reduction at each load or voltage, and the ridge where the map has one."""
-    from sonolube.report import PageTable
-
     if panel is None:
         return []
     rows = []

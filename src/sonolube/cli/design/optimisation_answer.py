@@ -4,19 +4,19 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import log
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import xarray as xr
+
+from sonolube.actuator import MatchingNetwork
 from sonolube.cli.console.answer import Answer, aligned, grid, si
 from sonolube.cli.console.rig_text import friction_model_object, operating_point, rig_settings
+from sonolube.cli.design.status_tables import count_table
+from sonolube.design.optimisation import OWN, Electrical, Matched, Optimum, Point, Tolerance, design_text, figures
+from sonolube.design.optimisation.designs_dataset import LIMITS, design_counts, designs_dataset
+from sonolube.report import Drawing, Page, PageTable
 from sonolube.units import engineering
 from sonolube.vocabulary import quantity
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from sonolube.actuator import MatchingNetwork
-    from sonolube.design.optimisation import Electrical, Matched, Optimum, Point, Tolerance
-    from sonolube.report import Drawing, Page, PageTable
 
 _DESIGN_QUANTITIES = (
     "vibration_amplitude",
@@ -48,8 +48,8 @@ class OptimisationAnswer(Answer):
 
     rig_file: Path
     content: Mapping[str, Any]
-    optimum: "Optimum"
-    electric: "Electrical"
+    optimum: Optimum
+    electric: Electrical
 
     def lines(self) -> list[str]:
         """Best design, table of all, and actuators that were not used."""
@@ -97,8 +97,6 @@ class OptimisationAnswer(Answer):
 
     def assumptions(self) -> Mapping[str, str]:
         """Quality factor and loss tangent of the ceramics, and the assumptions of the rig file."""
-        from sonolube.design.optimisation import OWN
-
         assumed = {}
         if any(point.choice.actuator != OWN for point in self.optimum.designs):
             factor = self._space.mechanical_quality_factor
@@ -106,11 +104,8 @@ class OptimisationAnswer(Answer):
         loss = self.optimum.task.limits.loss_tangent
         return assumed | {"loss tangent": f"{loss:g} for the ceramic, in its heat"} | dict(self._space.rig.assumptions)
 
-    def figures(self) -> "Mapping[str, Drawing]":
+    def figures(self) -> Mapping[str, Drawing]:
         """Objective over frequency, front, limits used, and power factor."""
-        from sonolube.design.optimisation import figures
-        from sonolube.report import Drawing
-
         optimum, name = self.optimum, self._name
         drawings = {
             f"{name}-frequency": Drawing(
@@ -136,23 +131,16 @@ class OptimisationAnswer(Answer):
         )
         return drawings
 
-    def files(self) -> "Mapping[str, str | xr.Dataset]":
+    def files(self) -> Mapping[str, str | xr.Dataset]:
         """All designs as netCDF, and the best as a rig file."""
-        from sonolube.design.optimisation import design_text
-        from sonolube.design.optimisation.designs_dataset import designs_dataset
-
         source = self.rig_file.read_text(encoding="utf-8-sig")
         return {
             f"{self._name}.nc": designs_dataset(self.optimum),
             f"{self._name}.toml": design_text(source, self.content, self.optimum.task, self.optimum.best),
         }
 
-    def page(self) -> "Page":
+    def page(self) -> Page:
         """Page `optimise.html`."""
-        from sonolube.cli.design.status_tables import count_table
-        from sonolube.design.optimisation.designs_dataset import design_counts
-        from sonolube.report import Page
-
         optimum, rig = self.optimum, self._space.rig
         counts, total = design_counts(optimum), optimum.landscape.frequency.size
         refused = [("not used", reason) for reason in optimum.landscape.refused.values()]
@@ -212,10 +200,8 @@ class OptimisationAnswer(Answer):
             ("designs", f"{int(screened.feasible.sum())} of {screened.frequency.size} within all limits"),
         ]
 
-    def _table(self) -> "PageTable":
+    def _table(self) -> PageTable:
         """Designs of the front, or the best of each actuator and waveform, the best first."""
-        from sonolube.report import PageTable
-
         points = self.optimum.front or self.optimum.designs
         entries = list(points[0].choice.entries)
         heads = ["actuator", "waveform", "f [kHz]", "U_pp [V]", *[f"{name} [SI]" for name in entries]]
@@ -235,24 +221,20 @@ class OptimisationAnswer(Answer):
         heads += ["power [W]", "heat [W]", "tightest limit"]
         return PageTable(title="Designs, the best first", heads=tuple(heads), rows=rows)
 
-    def _actuator_title(self, point: "Point") -> str:
+    def _actuator_title(self, point: Point) -> str:
         """Title of the actuator of a design."""
-        from sonolube.design.optimisation import OWN
-
         name = point.choice.actuator
         return "the rig's own" if name == OWN else str(self._space.catalogue[name].title)
 
 
-def _tightest(point: "Point") -> str:
+def _tightest(point: Point) -> str:
     """Limit of which a design uses most, with the fraction."""
-    from sonolube.design.optimisation.designs_dataset import LIMITS
-
     used = {name: float(values[0]) for name, values in point.assessment.usage.items() if name in LIMITS}
     name = max(used, key=lambda each: used[each])
     return f"{LIMITS[name]}, {100 * used[name]:.3g} %" if used[name] > 0 else _NO_LIMIT
 
 
-def _tolerance_text(tolerance: "Tolerance | None") -> str:
+def _tolerance_text(tolerance: Tolerance | None) -> str:
     """Deviations under which the target is reached."""
     if tolerance is None:
         return ""
@@ -262,7 +244,7 @@ def _tolerance_text(tolerance: "Tolerance | None") -> str:
     return f", by {100 * tolerance.quantile:g} % of rigs with a standard deviation of {deviation}"
 
 
-def _network_text(matched: "Matched") -> str:
+def _network_text(matched: Matched) -> str:
     """Elements, band, power factor with the capacitance off, and voltage gain of a matching network."""
     low, high = matched.band
     return (
@@ -271,7 +253,7 @@ def _network_text(matched: "Matched") -> str:
     )
 
 
-def _element_text(network: "MatchingNetwork") -> str:
+def _element_text(network: MatchingNetwork) -> str:
     """Elements of a matching network with their places."""
     places = {"series": "in the line", "shunt": "across it"}
     return ", ".join(
@@ -280,15 +262,13 @@ def _element_text(network: "MatchingNetwork") -> str:
     )
 
 
-def _elements(network: "MatchingNetwork") -> dict[str, float]:
+def _elements(network: MatchingNetwork) -> dict[str, float]:
     """Inductances and capacitances that a matching network has."""
     return {name: value for name in _ELEMENTS if (value := getattr(network, name)) is not None}
 
 
-def _design_object(point: "Point") -> dict[str, Any]:
+def _design_object(point: Point) -> dict[str, Any]:
     """Design for JSON: choice, drive, quantities and fractions of the limits."""
-    from sonolube.design.optimisation.designs_dataset import LIMITS
-
     numbers = point.assessment.numbers
     return {
         "actuator": point.choice.actuator,
@@ -300,7 +280,7 @@ def _design_object(point: "Point") -> dict[str, Any]:
     }
 
 
-def _network_object(matched: "Matched") -> dict[str, Any]:
+def _network_object(matched: Matched) -> dict[str, Any]:
     """Matching network for JSON."""
     return {
         "name": matched.name,

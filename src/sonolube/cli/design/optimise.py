@@ -6,9 +6,15 @@ from typing import Annotated
 
 import typer
 
+from sonolube.checks import require_positive
 from sonolube.cli.console.answer import deliver
 from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath, quantity
+from sonolube.cli.console.progress import progress
+from sonolube.cli.design import optimisation_options as options
+from sonolube.cli.design.optimisation_answer import OptimisationAnswer
+from sonolube.design import optimisation
 from sonolube.errors import InvalidInput
+from sonolube.rig import read_rig, rig_content
 
 
 class Objective(StrEnum):
@@ -81,13 +87,6 @@ def optimise(
 
     Example: sonolube optimise examples/rigs/tribometer.toml --target-friction 0.15
     """
-    from sonolube.checks import require_positive
-    from sonolube.cli.console.progress import progress
-    from sonolube.cli.design import optimisation_options as options
-    from sonolube.cli.design.optimisation_answer import OptimisationAnswer
-    from sonolube.design import optimisation
-    from sonolube.rig import read_rig, rig_content
-
     known = read_rig(rig, changes=changes or ())
     content = rig_content(rig, changes=changes or ())
     if share is not None and robust is None:

@@ -5,20 +5,23 @@ from dataclasses import dataclass
 from enum import StrEnum
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import numpy as np
+import xarray as xr
+
+from sonolube import rig as rigs
+from sonolube.checks import Floats, require_positive
 from sonolube.cli.console.answer import Answer, aligned, si
+from sonolube.cli.console.progress import progress
 from sonolube.cli.console.rig_text import friction_model_object, friction_model_text
+from sonolube.design.point_statistics import extreme_place, extreme_point, failure_counts
 from sonolube.errors import InvalidInput
+from sonolube.report import Drawing
+from sonolube.rig import STUDY_FIGURES, Rig, frequency_grid, operating_points, read_rig
+from sonolube.rig.linear_response import gap_law_of, require_drive, require_structure
 from sonolube.units import engineering, to_si
 from sonolube.vocabulary import quantity
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from sonolube.checks import Floats
-    from sonolube.report import Drawing
-    from sonolube.rig import Rig
 
 _OUTCOMES = ("friction_ratio", "vibration_amplitude", "actuator_power", "dissipated_power")
 _POINTS_AT_RESONANCE = 41  # frequencies about each resonance
@@ -93,9 +96,6 @@ def parametric_study(
         If the rig has no structure, the range is empty, an option has no meaning for the study, or no point has a
         result.
     """
-    from sonolube.cli.console.progress import progress
-    from sonolube.rig import read_rig
-
     rig = read_rig(rig_file, changes=changes or ())
     run = _study(rig, of, lowest, highest, points, voltages)
     with progress("sweeping") as advance:
@@ -110,9 +110,9 @@ def parametric_study(
 class ParametricStudyAnswer(Answer):
     """Least friction over one quantity, and the points without a result."""
 
-    rig: "Rig"
+    rig: Rig
     of: str
-    study: "xr.Dataset"
+    study: xr.Dataset
     name: str
 
     def lines(self) -> list[str]:
@@ -135,14 +135,8 @@ class ParametricStudyAnswer(Answer):
             "without_result": [{"reason": reason, "points": count} for reason, count in self.failures().items()],
         }
 
-    def assumptions(self) -> Mapping[str, str]:
-        """Assumptions of the rig file."""
-        return self.rig.assumptions
-
-    def figures(self) -> "Mapping[str, Drawing]":
+    def figures(self) -> Mapping[str, Drawing]:
         """Figure of the study."""
-        from sonolube.report import Drawing
-        from sonolube.rig import STUDY_FIGURES
 
         def draw() -> Any:
             figure = STUDY_FIGURES[self.of](self.study)
@@ -151,25 +145,19 @@ class ParametricStudyAnswer(Answer):
 
         return {self.name: Drawing(draw=draw)}
 
-    def files(self) -> "Mapping[str, xr.Dataset]":
+    def files(self) -> Mapping[str, xr.Dataset]:
         """Every point as netCDF."""
         return {f"{self.name}.nc": self.study}
 
     def failures(self) -> dict[str, int]:
         """Number of points without a result, by the reason."""
-        from sonolube.design.point_statistics import failure_counts
-
         return failure_counts(self.study, outcome="friction_ratio")
 
 
 def _study(
-    rig: "Rig", of: str, lowest: str | None, highest: str | None, points: int | None, voltages: list[str] | None
-) -> "Callable[..., xr.Dataset]":
+    rig: Rig, of: str, lowest: str | None, highest: str | None, points: int | None, voltages: list[str] | None
+) -> Callable[..., xr.Dataset]:
     """Function that runs the study, all options read and checked; it takes `advance`."""
-    from sonolube import rig as rigs
-    from sonolube.checks import require_positive
-    from sonolube.rig.linear_response import gap_law_of, require_drive, require_structure
-
     require_structure(rig)
     require_drive(rig)
     gap_law_of(rig)
@@ -194,12 +182,8 @@ def _study(
     return partial(rigs.load_study, rig, normal_load=values)
 
 
-def _values(rig: "Rig", of: str, lowest: str | None, highest: str | None, points: int | None) -> "Floats":
+def _values(rig: Rig, of: str, lowest: str | None, highest: str | None, points: int | None) -> Floats:
     """Values that a study runs over."""
-    import numpy as np
-
-    from sonolube.rig import frequency_grid
-
     usual = _RANGES[of]
     low = to_si(lowest or usual.lowest, unit=usual.unit, name="--from")
     high = to_si(highest or usual.highest, unit=usual.unit, name="--to")
@@ -216,10 +200,8 @@ def _values(rig: "Rig", of: str, lowest: str | None, highest: str | None, points
     return np.geomspace(low, high, count) if usual.even_ratios else np.linspace(low, high, count)
 
 
-def _present_ratio(rig: "Rig") -> float:
+def _present_ratio(rig: Rig) -> float:
     """Friction ratio of the rig as it is driven."""
-    from sonolube.rig import operating_points
-
     own = operating_points(rig)
     if bool(own.failed):
         raise InvalidInput(f"{rig.title} has no friction ratio of its own to be had elsewhere: {own.reason}")
@@ -229,7 +211,7 @@ def _present_ratio(rig: "Rig") -> float:
 Rows = Iterator[tuple[str, str]]
 
 
-def _voltage_rows(study: "xr.Dataset") -> Rows:
+def _voltage_rows(study: xr.Dataset) -> Rows:
     """Least friction, voltage at which contact is lost, and power of the amplifier."""
     for best in _best_points(study):
         yield "least friction", f"ratio {_text(best, 'friction_ratio')} at {_text(best, 'voltage_peak_to_peak')}"
@@ -238,7 +220,7 @@ def _voltage_rows(study: "xr.Dataset") -> Rows:
     yield "amplifier", f"up to {engineering(float(study['actuator_power'].max()), 'W')}, D 1.9"
 
 
-def _speed_rows(study: "xr.Dataset") -> Rows:
+def _speed_rows(study: xr.Dataset) -> Rows:
     """Range of the friction ratio at each voltage."""
     for index in range(study.sizes["voltage_peak_to_peak"]):
         curve = study.isel(voltage_peak_to_peak=index)
@@ -246,7 +228,7 @@ def _speed_rows(study: "xr.Dataset") -> Rows:
         yield f"at {_text(curve, 'voltage_peak_to_peak')}", f"ratio {low:.3g} to {high:.3g}, slow to fast"
 
 
-def _frequency_rows(study: "xr.Dataset") -> Rows:
+def _frequency_rows(study: xr.Dataset) -> Rows:
     """Least friction at each voltage."""
     for best in _best_points(study):
         at = f"{_text(best, 'frequency', digits=4)}, {_text(best, 'vibration_amplitude')}"
@@ -254,10 +236,8 @@ def _frequency_rows(study: "xr.Dataset") -> Rows:
         yield f"at {_text(best, 'voltage_peak_to_peak')}", text
 
 
-def _power_rows(study: "xr.Dataset") -> Rows:
+def _power_rows(study: xr.Dataset) -> Rows:
     """Least power that the friction ratio takes, of the amplifier and dissipated."""
-    from sonolube.design.point_statistics import extreme_place
-
     for name, label in (("actuator_power", "least power, D 1.9"), ("dissipated_power", "least dissipation")):
         if not study[name].isnull().all():
             least = study.isel(frequency=extreme_place(study, outcome=name) or 0)
@@ -265,7 +245,7 @@ def _power_rows(study: "xr.Dataset") -> Rows:
             yield label, f"{_text(least, name)} at {at} for friction ratio {_text(least, 'friction_ratio')}"
 
 
-def _waveform_rows(study: "xr.Dataset") -> Rows:
+def _waveform_rows(study: xr.Dataset) -> Rows:
     """Friction ratio of each waveform, the least first."""
     for index in study["friction_ratio"].values.argsort():
         one = study.isel(waveform=int(index))
@@ -273,14 +253,14 @@ def _waveform_rows(study: "xr.Dataset") -> Rows:
         yield str(one["waveform"].values), text
 
 
-def _load_rows(study: "xr.Dataset") -> Rows:
+def _load_rows(study: xr.Dataset) -> Rows:
     """Range of the friction ratio and of the natural frequency of the loading arm."""
     ratios, arm = study["friction_ratio"], study["natural_frequency"]
     yield "friction ratio", f"{float(ratios.min()):.4g} to {float(ratios.max()):.4g}"
     yield "arm's frequency", f"{engineering(float(arm.min()), 'Hz')} to {engineering(float(arm.max()), 'Hz')}"
 
 
-_ROWS: "dict[str, Callable[[xr.Dataset], Rows]]" = {
+_ROWS: dict[str, Callable[[xr.Dataset], Rows]] = {
     "voltage": _voltage_rows,
     "speed": _speed_rows,
     "frequency": _frequency_rows,
@@ -290,10 +270,8 @@ _ROWS: "dict[str, Callable[[xr.Dataset], Rows]]" = {
 }
 
 
-def _best_points(study: "xr.Dataset") -> "Iterator[xr.Dataset]":
+def _best_points(study: xr.Dataset) -> Iterator[xr.Dataset]:
     """Point of least friction of each curve that has a result."""
-    from sonolube.design.point_statistics import extreme_point
-
     dims = study["friction_ratio"].dims
     curves = [study] if len(dims) == 1 else [study.isel({dims[0]: i}) for i in range(study.sizes[dims[0]])]
     for curve in curves:
@@ -302,13 +280,13 @@ def _best_points(study: "xr.Dataset") -> "Iterator[xr.Dataset]":
             yield best
 
 
-def _point_object(point: "xr.Dataset") -> dict[str, Any]:
+def _point_object(point: xr.Dataset) -> dict[str, Any]:
     """Coordinates and outcomes of a point, for JSON."""
     names = [str(name) for name in (*point.coords, *_OUTCOMES) if point[name].ndim == 0]
     waveform = {"waveform": str(point["waveform"].values)} if "waveform" in names else {}
     return waveform | si({name: float(point[name]) for name in names if name != "waveform"})
 
 
-def _text(point: "xr.Dataset", name: str, *, digits: int = 3) -> str:
+def _text(point: xr.Dataset, name: str, *, digits: int = 3) -> str:
     """Quantity of a point with its unit."""
     return engineering(float(point[name]), quantity(name).unit, digits=digits)

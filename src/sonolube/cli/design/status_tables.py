@@ -1,15 +1,14 @@
 """Tables of a page that count points by status and by the reason of their failure."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    import xarray as xr
+import xarray as xr
 
-    from sonolube.report import PageTable
+from sonolube.design.point_statistics import status_counts
+from sonolube.report import PageTable
 
 
-def status_tables(points: "xr.Dataset", failures: Mapping[str, int]) -> "list[PageTable]":
+def status_tables(points: xr.Dataset, failures: Mapping[str, int]) -> list[PageTable]:
     """Number of points of each status, and of those without a result by reason, where there are any.
 
     Parameters
@@ -23,9 +22,6 @@ def status_tables(points: "xr.Dataset", failures: Mapping[str, int]) -> "list[Pa
     -------
     list of PageTable
     """
-    from sonolube.design.point_statistics import status_counts
-    from sonolube.report import PageTable
-
     tables = [count_table("Points by status", "points", status_counts(points))]
     if failures:
         rows = tuple((reason, f"{count}") for reason, count in failures.items())
@@ -33,7 +29,7 @@ def status_tables(points: "xr.Dataset", failures: Mapping[str, int]) -> "list[Pa
     return tables
 
 
-def count_table(title: str, counted: str, counts: Mapping[str, int], *, total: int | None = None) -> "PageTable":
+def count_table(title: str, counted: str, counts: Mapping[str, int], *, total: int | None = None) -> PageTable:
     """Counts by status with their fractions.
 
     Parameters
@@ -49,8 +45,6 @@ def count_table(title: str, counted: str, counts: Mapping[str, int], *, total: i
     -------
     PageTable
     """
-    from sonolube.report import PageTable
-
     whole = sum(counts.values()) if total is None else total
     rows = tuple((name, f"{count}", f"{count / whole:.1%}") for name, count in counts.items())
     return PageTable(title=title, heads=("status", counted, "share"), rows=rows)

@@ -4,23 +4,26 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 import typer
+import xarray as xr
 
+from sonolube import design
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
 from sonolube.cli.console.backend import Backend, BackendName, gpu_warning
 from sonolube.cli.console.options import OUT, Changes, Json, RigPath
+from sonolube.cli.console.progress import progress
+from sonolube.cli.console.ranges import ends_by_key, values_by_key
 from sonolube.cli.design.parametric_study import Parameter, parametric_study
+from sonolube.cli.design.status_tables import status_tables
+from sonolube.design import SweepPlan, grid_plan, latin_hypercube_plan, list_plan, sweep_figure, swept_names
+from sonolube.design.point_statistics import extreme_place, extreme_point, failure_counts, status_counts
+from sonolube.dynamics.backend import available
 from sonolube.errors import InvalidInput
+from sonolube.report import Drawing, Page
 from sonolube.units import engineering
 from sonolube.vocabulary import unit_of
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from sonolube.design import SweepPlan
-    from sonolube.report import Drawing, Page
 
 _OUTCOMES = ("friction_ratio", "vibration_amplitude", "actuator_power", "dissipated_power")
 _CAPTIONS = {1: "Results of the rig over the key that was swept.", 2: "Friction over both keys that were swept."}
@@ -110,7 +113,7 @@ def sweep(
 
 def _sweep_over(
     context: typer.Context,
-    plan: "SweepPlan",
+    plan: SweepPlan,
     *,
     folder: Path | None,
     json: bool,
@@ -118,10 +121,6 @@ def _sweep_over(
     options: Mapping[str, Any],
 ) -> None:
     """Compute every point of a plan, in a folder of its own by default, and deliver the answer."""
-    from sonolube import design
-    from sonolube.cli.console.progress import progress
-    from sonolube.dynamics.backend import available
-
     rig_file = context.params["rig"]
     with gpu_warning():
         chosen = available(backend)
@@ -142,15 +141,13 @@ def _sweep_over(
 class SweepAnswer(Answer):
     """Points of a sweep by status, reasons of those without a result, and the point of least friction."""
 
-    plan: "SweepPlan"
+    plan: SweepPlan
     rig_file: Path
-    result: "xr.Dataset"
+    result: xr.Dataset
     data_file: Path
 
     def lines(self) -> list[str]:
         """Number of points by status, failures, and the point of least friction."""
-        from sonolube.design.point_statistics import status_counts
-
         result = self.result
         device = f", on {result.attrs['device']}" if "device" in result.attrs else ""
         least = [f"  {line}" for line in aligned(self._least_texts())]
@@ -163,8 +160,6 @@ class SweepAnswer(Answer):
 
     def object(self) -> dict[str, Any]:
         """Number of points by status, failures, and the point of least friction."""
-        from sonolube.design.point_statistics import status_counts
-
         result = self.result
         return {
             "rig": result.attrs["rig"],
@@ -180,11 +175,8 @@ class SweepAnswer(Answer):
         assumptions: Mapping[str, str] = self.plan.content.get("assumptions", {})
         return assumptions
 
-    def figures(self) -> "Mapping[str, Drawing]":
+    def figures(self) -> Mapping[str, Drawing]:
         """Friction over the keys that were swept."""
-        from sonolube.design import sweep_figure, swept_names
-        from sonolube.report import Drawing
-
         listed = self.result["friction_ratio"].dims == ("point",)
         caption = _CLOUD_CAPTION if listed else _CAPTIONS.get(len(swept_names(self.result)), _CLOUD_CAPTION)
         return {"sweep": Drawing(draw=lambda: sweep_figure(self.result), caption=caption)}
@@ -193,11 +185,8 @@ class SweepAnswer(Answer):
         """Dataset that the sweep itself has written."""
         return {self.data_file.name: self.data_file}
 
-    def page(self) -> "Page":
+    def page(self) -> Page:
         """Page `sweep.html`."""
-        from sonolube.cli.design.status_tables import status_tables
-        from sonolube.report import Page
-
         source = str(self.plan.content.get("source", ""))
         points, failures = int(self.result["friction_ratio"].size), self._failures()
         return Page(
@@ -217,14 +206,10 @@ class SweepAnswer(Answer):
 
     def _failures(self) -> dict[str, int]:
         """Number of points without a result, by the reason."""
-        from sonolube.design.point_statistics import failure_counts
-
         return failure_counts(self.result, outcome="friction_ratio")
 
     def _least(self) -> dict[str, Any]:
         """Values of the swept keys and outcomes at the point of least friction; empty where no point has a result."""
-        from sonolube.design.point_statistics import extreme_place, extreme_point
-
         place = extreme_place(self.result, outcome="friction_ratio")
         point = extreme_point(self.result[list(_OUTCOMES)], outcome="friction_ratio")
         if place is None or point is None:
@@ -246,11 +231,8 @@ def _as_text(name: str, value: Any) -> str:
 
 def _plan(
     rig: Path, over: list[str], sample: Sample, points: int | None, seed: int, changes: list[str] | None
-) -> "SweepPlan":
+) -> SweepPlan:
     """Points of a sweep on a grid, in a list, or drawn by Latin hypercube."""
-    from sonolube.cli.console.ranges import ends_by_key, values_by_key
-    from sonolube.design import grid_plan, latin_hypercube_plan, list_plan
-
     if sample is Sample.LHS:
         if points is None:
             raise InvalidInput("--sample lhs needs --points, how many to draw")

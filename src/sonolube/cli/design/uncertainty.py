@@ -4,27 +4,37 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
+import numpy as np
 import typer
+import xarray as xr
 
+from sonolube.checks import Floats
 from sonolube.cli.console.answer import Answer, aligned, deliver
 from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath
+from sonolube.cli.console.progress import progress
+from sonolube.cli.console.ranges import values_by_key
 from sonolube.cli.console.rig_text import rig_settings
+from sonolube.cli.design.status_tables import status_tables
 from sonolube.cli.design.uncertain_entries import agreement, distributions, entry_rows, free_lines, posterior_object
+from sonolube.design import Estimated, Spread, band_figure, indices_figure, propagate, spread_figure, spread_of
+from sonolube.design.identified_structure import IdentifiedStructure, identified_structure
+from sonolube.design.point_statistics import failure_counts, status_counts
+from sonolube.design.uncertainty_summary import (
+    Band,
+    BandPlace,
+    RankedEntry,
+    contact_loss_probability,
+    outcome_band,
+    outcome_indices,
+    ranked_entries,
+)
 from sonolube.errors import InvalidInput
+from sonolube.report import Drawing, Page, PageTable
+from sonolube.rig import Rig, read_rig
 from sonolube.units import engineering
 from sonolube.vocabulary import quantity, unit_of
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from sonolube.checks import Floats
-    from sonolube.design import Estimated, Spread
-    from sonolube.design.identified_structure import IdentifiedStructure
-    from sonolube.design.uncertainty_summary import Band, BandPlace, RankedEntry
-    from sonolube.report import Drawing, Page, PageTable
-    from sonolube.rig import Rig
 
 _SAMPLES_CAPTION = "Histogram of the samples that have a result, quantiles with intervals of 95 %, and the mean."
 _BAND_CAPTION = "Median of the samples and their intervals over the keys that were swept."
@@ -70,11 +80,6 @@ def uncertainty(
 
     Example: sonolube uncertainty examples/rigs/tribometer_uncertain.toml --samples 256
     """
-    from sonolube.cli.console.progress import progress
-    from sonolube.design import propagate
-    from sonolube.design.identified_structure import identified_structure
-    from sonolube.rig import read_rig
-
     if sobol and (over or identified):
         raise InvalidInput("--sobol needs independent entries and one outcome each: leave out --over and --identified")
     known = read_rig(rig, changes=changes or ())
@@ -106,10 +111,10 @@ def uncertainty(
 class UncertaintyAnswer(Answer):
     """Statistics of an uncertain outcome, or its band over swept keys, and the ranking of the uncertain entries."""
 
-    rig: "Rig"
+    rig: Rig
     rig_file: Path
-    result: "xr.Dataset"
-    structure: "IdentifiedStructure | None"
+    result: xr.Dataset
+    structure: IdentifiedStructure | None
 
     def lines(self) -> list[str]:
         """Statistics or band, statuses, uncertain entries, and their ranking."""
@@ -126,9 +131,6 @@ class UncertaintyAnswer(Answer):
 
     def object(self) -> dict[str, Any]:
         """Statistics or band, statuses, uncertain entries, and their ranking."""
-        from sonolube.design.point_statistics import status_counts
-        from sonolube.design.uncertainty_summary import contact_loss_probability
-
         content: dict[str, Any] = {
             "rig": self.rig.title,
             "of": self._of,
@@ -171,16 +173,8 @@ class UncertaintyAnswer(Answer):
             caveats.append(agreement(self.structure))
         return caveats
 
-    def assumptions(self) -> Mapping[str, str]:
-        """Assumptions of the rig file."""
-        return self.rig.assumptions
-
-    def figures(self) -> "Mapping[str, Drawing]":
+    def figures(self) -> Mapping[str, Drawing]:
         """Histogram or band of the outcome, and the ranking of the entries."""
-        from sonolube.design import band_figure, indices_figure, spread_figure
-        from sonolube.design.uncertainty_summary import outcome_indices
-        from sonolube.report import Drawing
-
         result = self.result
         outcome = (
             Drawing(draw=lambda: band_figure(result), caption=_BAND_CAPTION)
@@ -192,16 +186,12 @@ class UncertaintyAnswer(Answer):
         ranking = Drawing(draw=lambda: indices_figure(result, outcome_indices(result)), caption=_SOBOL_CAPTION)
         return {self._name: outcome, f"{self._name}-sobol": ranking}
 
-    def files(self) -> "Mapping[str, xr.Dataset]":
+    def files(self) -> Mapping[str, xr.Dataset]:
         """Samples as netCDF."""
         return {f"{self._name}.nc": self.result}
 
-    def page(self) -> "Page":
+    def page(self) -> Page:
         """Page `uncertainty.html`."""
-        from sonolube.cli.design.status_tables import status_tables
-        from sonolube.design.uncertainty_summary import contact_loss_probability
-        from sonolube.report import Page, PageTable
-
         lost = contact_loss_probability(self.result)
         entries = PageTable(
             title="Uncertain entries",
@@ -226,8 +216,6 @@ class UncertaintyAnswer(Answer):
 
     def failures(self) -> dict[str, int]:
         """Number of samples without a result, by the reason."""
-        from sonolube.design.point_statistics import failure_counts
-
         return failure_counts(self.result, outcome=self._of)
 
     @property
@@ -251,17 +239,13 @@ class UncertaintyAnswer(Answer):
         return f"{self.rig_file.stem}-uncertainty-{self._of}"
 
     @cached_property
-    def _statistics(self) -> "Spread":
+    def _statistics(self) -> Spread:
         """Mean, deviation and quantiles of the outcome."""
-        from sonolube.design import spread_of
-
         return spread_of(self.result)
 
     @cached_property
-    def _band(self) -> "Band":
+    def _band(self) -> Band:
         """Interval of the outcome over the swept keys."""
-        from sonolube.design.uncertainty_summary import outcome_band
-
         return outcome_band(self.result)
 
     def _statistics_rows(self) -> list[tuple[str, str]]:
@@ -285,19 +269,14 @@ class UncertaintyAnswer(Answer):
 
     def _status_lines(self) -> list[str]:
         """Fractions of the points by status, and of those that lose contact."""
-        from sonolube.design.point_statistics import status_counts
-        from sonolube.design.uncertainty_summary import contact_loss_probability
-
         points, lost = self.result[self._of].size, contact_loss_probability(self.result)
         shares = ", ".join(f"{name} {count / points:.1%}" for name, count in status_counts(self.result).items())
         more = [f"  contact lost for part of the time in {lost:.1%} of them"] if lost else []
         return [f"  {shares} of the points", *more]
 
     @cached_property
-    def _ranking(self) -> "list[RankedEntry]":
+    def _ranking(self) -> list[RankedEntry]:
         """Entries by their contribution to the variance; empty without Sobol indices."""
-        from sonolube.design.uncertainty_summary import ranked_entries
-
         return ranked_entries(self.result) if self._ranked else []
 
     def _ranking_rows(self) -> list[tuple[str, str, str, str]]:
@@ -315,21 +294,15 @@ class UncertaintyAnswer(Answer):
         lines = [f"    {key:<34} {alone:<20} {whole:<20} {deviation}" for key, alone, whole, deviation in rows]
         return [head, *lines] if rows else []
 
-    def _ranking_tables(self) -> "list[PageTable]":
+    def _ranking_tables(self) -> list[PageTable]:
         """Ranking as a table of the page."""
-        from sonolube.report import PageTable
-
         rows = tuple(self._ranking_rows())
         heads = ("entry", "share of the variance alone", "with the others", "deviation were it known")
         return [PageTable(title="Which to measure better", heads=heads, rows=rows)] if rows else []
 
 
-def _axes(over: list[str] | None) -> "dict[str, Floats]":
+def _axes(over: list[str] | None) -> dict[str, Floats]:
     """Values that a band or a map runs over, by key."""
-    import numpy as np
-
-    from sonolube.cli.console.ranges import values_by_key
-
     if len(over or ()) > 2:
         raise InvalidInput(f"--over gives a band once and a map twice, not {len(over or ())} times")
     axes = {}
@@ -342,14 +315,14 @@ def _axes(over: list[str] | None) -> "dict[str, Floats]":
     return axes
 
 
-def _places(band: "Band") -> "dict[str, BandPlace]":
+def _places(band: Band) -> dict[str, BandPlace]:
     """Where a band is narrowest and widest."""
     return {
         name: place for name, place in (("narrowest", band.narrowest), ("widest", band.widest)) if place is not None
     }
 
 
-def _place_text(place: "BandPlace", unit: str) -> str:
+def _place_text(place: BandPlace, unit: str) -> str:
     """Median and interval of a band at a place, with the swept values there."""
     low, median, high = (engineering(value, unit) for value in (place.lower, place.median, place.upper))
     at = [
@@ -359,13 +332,13 @@ def _place_text(place: "BandPlace", unit: str) -> str:
     return f"{median}, 90 % within {low} to {high}, at {', '.join(at)}"
 
 
-def _with_interval(each: "Estimated", unit: str) -> str:
+def _with_interval(each: Estimated, unit: str) -> str:
     """Estimate with its 95 % interval."""
     value, low, high = (engineering(end, unit) for end in (each.value, each.lower, each.upper))
     return f"{value} ({low} to {high})"
 
 
-def _percent(share: "Estimated") -> str:
+def _percent(share: Estimated) -> str:
     """Fraction in percent with its interval, negative estimates cut at zero."""
     value, low, high = (100 * max(end, 0.0) for end in (share.value, share.lower, share.upper))
     return f"{value:5.1f} % ({low:.0f} to {high:.0f})"

@@ -1,18 +1,16 @@
 """Command `actuators`: actuators on the market with the numbers of their data sheets."""
 
 from dataclasses import fields
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
+from sonolube.actuator import CatalogueActuator, catalogue_actuator, catalogue_names
 from sonolube.cli.console.answer import aligned, deliver, grid, si
 from sonolube.cli.console.options import Json
 from sonolube.cli.lookup.listing import Listing
 from sonolube.units import engineering
 from sonolube.vocabulary import quantities
-
-if TYPE_CHECKING:
-    from sonolube.actuator import CatalogueActuator
 
 _HEADS = ("name", "stroke", "over", "blocked", "capacitance", "resonance", "title")
 _QUANTITIES = ("stroke", "stroke_voltage", "blocked_force", "free_capacitance", "resonance_frequency")
@@ -26,8 +24,6 @@ def actuators(
 
     Example: sonolube actuators sa050510
     """
-    from sonolube.actuator import catalogue_actuator, catalogue_names
-
     if name is None:
         every = [catalogue_actuator(each) for each in catalogue_names()]
         text = grid([_HEADS, *map(_row, every)])
@@ -37,7 +33,7 @@ def actuators(
         deliver(Listing(text=_lines(shown), content=_object(shown)), as_json=json)
 
 
-def _lines(shown: "CatalogueActuator") -> list[str]:
+def _lines(shown: CatalogueActuator) -> list[str]:
     """Name, title, kind, every quantity that the data sheet has, and its source."""
     known = quantities()
     rows = [
@@ -51,20 +47,20 @@ def _lines(shown: "CatalogueActuator") -> list[str]:
     ]
 
 
-def _row(shown: "CatalogueActuator") -> list[str]:
+def _row(shown: CatalogueActuator) -> list[str]:
     """Row of the list: name, main quantities and title."""
     known = _printed(shown)
     cells = [engineering(known[key], quantities()[key].unit) if key in known else "not printed" for key in _QUANTITIES]
     return [shown.name, *cells, shown.title]
 
 
-def _printed(shown: "CatalogueActuator") -> dict[str, float]:
+def _printed(shown: CatalogueActuator) -> dict[str, float]:
     """Quantities that the data sheet has, in SI."""
     values = {field.name: getattr(shown, field.name) for field in fields(shown) if field.name in quantities()}
     return {key: value for key, value in values.items() if value is not None}
 
 
-def _object(shown: "CatalogueActuator") -> dict[str, Any]:
+def _object(shown: CatalogueActuator) -> dict[str, Any]:
     """Actuator for JSON."""
     return {
         "title": shown.title,

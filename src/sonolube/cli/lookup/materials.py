@@ -1,17 +1,15 @@
 """Command `materials`: properties of materials and piezo ceramics with their sources."""
 
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from sonolube.cli.console.answer import aligned, deliver
 from sonolube.cli.console.options import Json
 from sonolube.cli.lookup.listing import Listing
+from sonolube.materials import Material, SourcedValue, material, material_names
 from sonolube.units import engineering
-
-if TYPE_CHECKING:
-    from sonolube.materials import Material, SourcedValue
 
 
 def materials(
@@ -22,8 +20,6 @@ def materials(
 
     Example: sonolube materials aluminium_2024
     """
-    from sonolube.materials import material, material_names
-
     if name is None:
         every = {each: material(each) for each in material_names()}
         width = max(map(len, every))
@@ -34,7 +30,7 @@ def materials(
         deliver(Listing(text=_lines(shown), content=_object(shown)), as_json=json)
 
 
-def _lines(shown: "Material") -> list[str]:
+def _lines(shown: Material) -> list[str]:
     """Name, title, and every property with its source."""
     rows = [(key, _property(known)) for key, known in shown.properties.items()]
     if shown.crystal_structure:
@@ -42,13 +38,13 @@ def _lines(shown: "Material") -> list[str]:
     return [f"{shown.name}: {shown.title}", *aligned(rows)]
 
 
-def _property(known: "SourcedValue") -> str:
+def _property(known: SourcedValue) -> str:
     """Value of a property with its source, condition and note."""
     remarks = (remark for remark in (known.source, known.condition, known.note) if remark)
     return f"{engineering(known.value, known.unit, digits=4):<14}  {'; '.join(remarks)}"
 
 
-def _object(shown: "Material") -> dict[str, Any]:
+def _object(shown: Material) -> dict[str, Any]:
     """Material for JSON."""
     return {
         "title": shown.title,

@@ -1,16 +1,15 @@
 """Command `published`: tables of the dissertation as printed, with the corrections of single cells."""
 
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
+from sonolube import published as data
 from sonolube.cli.console.answer import deliver, grid
 from sonolube.cli.console.options import Json
 from sonolube.cli.lookup.listing import Listing
-
-if TYPE_CHECKING:
-    from sonolube.published import Column, Table
+from sonolube.published import Column, Table
 
 
 def published(
@@ -21,8 +20,6 @@ def published(
 
     Example: sonolube published 2.5
     """
-    from sonolube import published as data
-
     if table is None:
         titles = {each: data.table(each).title for each in data.table_ids()}
         deliver(Listing(text=[f"{each:<5} {title}" for each, title in titles.items()], content=titles), as_json=json)
@@ -31,7 +28,7 @@ def published(
         deliver(Listing(text=_lines(shown), content=_object(shown)), as_json=json)
 
 
-def _lines(shown: "Table") -> list[str]:
+def _lines(shown: Table) -> list[str]:
     """Title, columns as printed, and corrections."""
     columns = list(shown.columns.values())
     heads = [f"{column.name} [{_printed_unit(column)}]" if column.unit else column.name for column in columns]
@@ -48,7 +45,7 @@ def _lines(shown: "Table") -> list[str]:
     ]
 
 
-def _object(shown: "Table") -> dict[str, Any]:
+def _object(shown: Table) -> dict[str, Any]:
     """Table for JSON."""
     return {
         "id": shown.id,
@@ -68,6 +65,6 @@ def _object(shown: "Table") -> dict[str, Any]:
     }
 
 
-def _printed_unit(column: "Column") -> str:
+def _printed_unit(column: Column) -> str:
     """Unit in which a column is printed."""
     return column.unit if column.scale == 1 else f"{column.scale:g} {column.unit}".strip()

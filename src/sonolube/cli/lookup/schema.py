@@ -5,6 +5,7 @@ from json import dumps
 from sonolube.cli.console.answer import deliver
 from sonolube.cli.console.options import Json
 from sonolube.cli.lookup.listing import Listing
+from sonolube.rig import rig_schema
 
 
 def schema(json: Json = False) -> None:
@@ -12,7 +13,5 @@ def schema(json: Json = False) -> None:
 
     Example: sonolube schema > rig.schema.json
     """
-    from sonolube.rig import rig_schema
-
     content = rig_schema()
     deliver(Listing(text=dumps(content, indent=2).splitlines(), content=content), as_json=json)

@@ -1,11 +1,12 @@
 """Command `measure calibration`: a displacement sensor as a force gauge with hysteresis."""
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from sonolube.cli.console.options import Json, quantity
+from sonolube.cli.console.options import Json
 from sonolube.cli.measure.measured_files import (
     Files,
     Mapped,
@@ -17,6 +18,13 @@ from sonolube.cli.measure.measured_files import (
     names_of,
 )
 from sonolube.errors import InvalidInput
+from sonolube.report.measured.calibration import (
+    CalibrationSettings,
+    calibrated_hysteresis,
+    calibration_sheet,
+    force_sheet,
+)
+from sonolube.units import to_si
 
 
 def calibration(
@@ -39,20 +47,11 @@ def calibration(
 
     Example: sonolube measure calibration loops.csv --apply test.csv --report gauge.html
     """
-    from functools import partial
-
-    from sonolube.report.measured.calibration import (
-        CalibrationSettings,
-        calibrated_hysteresis,
-        calibration_sheet,
-        force_sheet,
-    )
-
     settings = CalibrationSettings(
         mapping=column_mapping(mapping),
         degree=degree,
         levels=levels,
-        displacement_uncertainty=quantity(uncertainty, unit="m", option="--displacement-uncertainty") or 0.0,
+        displacement_uncertainty=to_si(uncertainty, unit="m", name="--displacement-uncertainty"),
     )
     sheets, refused = each_file(files, partial(calibration_sheet, settings=settings), title="calibrating")
     if applied:

@@ -1,5 +1,6 @@
 """Command `measure friction`: level, fluctuation, running-in, voltage steps, stick-slip and work in recordings."""
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -17,6 +18,10 @@ from sonolube.cli.measure.measured_files import (
     names_of,
 )
 from sonolube.errors import InvalidInput
+from sonolube.measurement.friction.forces import MotorFriction
+from sonolube.report.measured.friction import FrictionSettings, friction_sheet
+from sonolube.report.measured.friction_comparison import comparison_sheet
+from sonolube.units import to_si
 
 
 def friction(
@@ -51,24 +56,18 @@ def friction(
 
     Example: sonolube measure friction test.csv --sliding-speed 20.3mm/s --report test.html
     """
-    from functools import partial
-
-    from sonolube.measurement.friction.forces import MotorFriction
-    from sonolube.report.measured.friction import FrictionSettings, friction_sheet
-    from sonolube.report.measured.friction_comparison import comparison_sheet
-
     motor = None
     if torque is not None:
         if idle is None or diameter is None:
             raise InvalidInput("--torque-constant needs --idle-current and --groove-diameter")
         motor = MotorFriction(
-            torque_constant=quantity(torque, unit="N m/A", option="--torque-constant") or 0.0,
-            idle_current=quantity(idle, unit="A", option="--idle-current") or 0.0,
-            groove_diameter=quantity(diameter, unit="m", option="--groove-diameter") or 0.0,
+            torque_constant=to_si(torque, unit="N m/A", name="--torque-constant"),
+            idle_current=to_si(idle, unit="A", name="--idle-current"),
+            groove_diameter=to_si(diameter, unit="m", name="--groove-diameter"),
         )
     settings = FrictionSettings(
         mapping=column_mapping(mapping),
-        window_duration=quantity(window, unit="s", option="--window") or 0.0,
+        window_duration=to_si(window, unit="s", name="--window"),
         sliding_speed=quantity(speed, unit="m/s", option="--sliding-speed"),
         rotation_speed=quantity(turns, unit="1/s", option="--rotation-speed"),
         motor=motor,

@@ -1,22 +1,22 @@
 """Command `measure groove`: width, depth and volume of wear grooves, wear of a ring, and its reduction by vibration."""
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from sonolube.cli.console.options import Json, quantity
 from sonolube.cli.measure.measured_files import Files, Report, Test, deliver_sheets, each_file, names_of
 from sonolube.cli.measure.surface import Spacing, Unit, spacings
-from sonolube.errors import InvalidInput
-
-if TYPE_CHECKING:
-    from sonolube.measurement.friction.wear_track import WearRing
-    from sonolube.report.measured.groove import RingSettings
-    from sonolube.report.measured.sheet import Sheet
-    from sonolube.report.measured.surface import SurfaceSettings
-    from sonolube.surfaces.grooves.groove import Groove
+from sonolube.errors import InvalidInput, NoGroove
+from sonolube.measurement.friction.wear_track import WearRing
+from sonolube.report.measured.groove import RingSettings, cap_sheet, groove_sheet, ring_sheet, wear_reduction_sheet
+from sonolube.report.measured.sheet import Sheet
+from sonolube.report.measured.surface import SurfaceSettings
+from sonolube.surfaces.grooves.groove import Groove
+from sonolube.units import to_si
 
 
 def groove(
@@ -47,19 +47,14 @@ def groove(
 
     Example: sonolube measure groove ring --groove-diameter 50mm --sliding-distance 292m --report ring.html
     """
-    from functools import partial
-
-    from sonolube.report.measured.groove import RingSettings, cap_sheet, wear_reduction_sheet
-    from sonolube.report.measured.surface import SurfaceSettings
-
     spacing_x, spacing_y = spacings(pixel)
     settings = SurfaceSettings(spacing_x=spacing_x, spacing_y=spacing_y, length_unit=unit)
     tip_radius = quantity(tip, unit="m", option="--tip-radius")
     ring = None
     if diameter is not None and slid is not None:
         ring = RingSettings(
-            groove_diameter=quantity(diameter, unit="m", option="--groove-diameter") or 0.0,
-            sliding_distance=quantity(slid, unit="m", option="--sliding-distance") or 0.0,
+            groove_diameter=to_si(diameter, unit="m", name="--groove-diameter"),
+            sliding_distance=to_si(slid, unit="m", name="--sliding-distance"),
             tip_radius=tip_radius,
         )
     elif diameter or slid or without:
@@ -91,13 +86,9 @@ def groove(
 
 
 def _ring(
-    title: str, paths: Sequence[Path], settings: "SurfaceSettings", ring: "RingSettings | None"
-) -> tuple[list["Sheet"], dict[str, str], list["WearRing"]]:
+    title: str, paths: Sequence[Path], settings: SurfaceSettings, ring: RingSettings | None
+) -> tuple[list[Sheet], dict[str, str], list[WearRing]]:
     """Sheets of scans and of their ring, reasons of the files refused, and the ring where there is one."""
-    from sonolube.errors import NoGroove
-    from sonolube.report.measured.groove import groove_sheet, ring_sheet
-    from sonolube.report.measured.sheet import Sheet
-
     grooves: list[tuple[str, Groove | str]] = []
 
     def measure(path: Path) -> Sheet:

@@ -1,13 +1,17 @@
 """Command `measure impedance`: equivalent circuit of an impedance spectrum, or the stack of a rig's structure."""
 
 from enum import StrEnum
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from sonolube.cli.console.options import Json, quantity
+from sonolube.cli.console.options import Json
 from sonolube.cli.measure.measured_files import Files, Report, Test, deliver_sheets, each_file
+from sonolube.report.measured.impedance import ImpedanceSettings, StackInStructure, impedance_sheet
+from sonolube.rig import structure_by_stack
+from sonolube.units import to_si
 
 
 class Residual(StrEnum):
@@ -38,15 +42,10 @@ def impedance(
 
     Example: sonolube measure impedance transducer.csv --residual linear-magnitude --report transducer.html
     """
-    from functools import partial
-
-    from sonolube.report.measured.impedance import ImpedanceSettings, StackInStructure, impedance_sheet
-    from sonolube.rig import structure_by_stack
-
     settings = ImpedanceSettings(
         branches=branches,
         residual=residual.value,
-        series_resistance=quantity(leads, unit="ohm", option="--series-resistance") or 0.0,
+        series_resistance=0.0 if leads is None else to_si(leads, unit="ohm", name="--series-resistance"),
         sweep=sweep,
         stack=None if rig is None else StackInStructure(*structure_by_stack(rig)),
     )

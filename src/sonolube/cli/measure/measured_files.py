@@ -3,17 +3,23 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from sonolube.cli.console.answer import Answer, deliver
+from sonolube.cli.console.progress import progress
 from sonolube.errors import InvalidInput, SonolubeError
-
-if TYPE_CHECKING:
-    from sonolube.measurement.recordings.mapping import RecordingMapping
-    from sonolube.report import MeasurementReport
-    from sonolube.report.measured.sheet import Sheet
+from sonolube.measurement.recordings.mapping import RecordingMapping, read_mapping
+from sonolube.report import (
+    MeasurementReport,
+    measurement_caveats,
+    measurement_lines,
+    measurement_object,
+    measurement_page,
+    read_pin_on_disc_sheet,
+)
+from sonolube.report.measured.sheet import Sheet
 
 Files = Annotated[list[Path], typer.Argument(metavar="FILES...", help="Files, or folders whose files are taken.")]
 Mapped = Annotated[
@@ -26,7 +32,7 @@ Test = Annotated[
 Measure = Callable[[Path], "Sheet"]
 
 
-def each_file(paths: Sequence[Path], measure: Measure, *, title: str) -> tuple[list["Sheet"], dict[str, str]]:
+def each_file(paths: Sequence[Path], measure: Measure, *, title: str) -> tuple[list[Sheet], dict[str, str]]:
     """Sheets of all files that can be measured, and the reasons of the others.
 
     Parameters
@@ -49,8 +55,6 @@ def each_file(paths: Sequence[Path], measure: Measure, *, title: str) -> tuple[l
     InvalidInput
         If a folder is empty.
     """
-    from sonolube.cli.console.progress import progress
-
     files = _files(paths)
     sheets, refused = [], {}
     with progress(title) as advance:
@@ -63,10 +67,8 @@ def each_file(paths: Sequence[Path], measure: Measure, *, title: str) -> tuple[l
     return sheets, refused
 
 
-def column_mapping(path: Path | None) -> "RecordingMapping | None":
+def column_mapping(path: Path | None) -> RecordingMapping | None:
     """Meaning of the columns from a mapping file; None where it was not given."""
-    from sonolube.measurement.recordings.mapping import read_mapping
-
     return None if path is None else read_mapping(path)
 
 
@@ -77,7 +79,7 @@ def names_of(paths: Sequence[Path] | None) -> str | None:
 
 def deliver_sheets(
     title: str,
-    sheets: Sequence["Sheet"],
+    sheets: Sequence[Sheet],
     refused: Mapping[str, str],
     *,
     settings: Mapping[str, Any],
@@ -107,8 +109,6 @@ def deliver_sheets(
     typer.Exit
         If files were refused.
     """
-    from sonolube.report import MeasurementReport, read_pin_on_disc_sheet
-
     report = MeasurementReport(
         title=title,
         settings={name: str(value) for name, value in settings.items() if value is not None},
@@ -128,32 +128,23 @@ def deliver_sheets(
 class MeasuredFiles(Answer):
     """Values, tables and caveats of measured files, and their page."""
 
-    report: "MeasurementReport"
+    report: MeasurementReport
     page_name: str | None
 
     def lines(self) -> list[str]:
         """Values and tables of each file."""
-        from sonolube.report import measurement_lines
-
         return measurement_lines(self.report)
 
     def object(self) -> dict[str, Any]:
         """Values, tables and caveats of each file, settings, and the files that were refused."""
-        from sonolube.report import measurement_object
-
         return measurement_object(self.report)
 
     def caveats(self) -> Sequence[str]:
         """Caveats of all files."""
-        from sonolube.report import measurement_caveats
-
         return measurement_caveats(self.report)
 
     def files(self) -> Mapping[str, str]:
         """Page where it is wanted."""
-        from sonolube.cli.console.progress import progress
-        from sonolube.report import measurement_page
-
         if self.page_name is None:
             return {}
         with progress("drawing") as advance:

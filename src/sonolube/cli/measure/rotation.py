@@ -1,11 +1,14 @@
 """Command `measure rotation`: speed of a disc and of the pin on it from a Hall probe."""
 
+from functools import partial
 from typing import Annotated
 
 import typer
 
-from sonolube.cli.console.options import Json, quantity
+from sonolube.cli.console.options import Json
 from sonolube.cli.measure.measured_files import Files, Mapped, Report, Test, column_mapping, deliver_sheets, each_file
+from sonolube.report.measured.rotation import RotationSettings, rotation_sheet
+from sonolube.units import to_si
 
 
 def rotation(
@@ -24,12 +27,8 @@ def rotation(
 
     Example: sonolube measure rotation hall.csv --groove-diameter 50mm --magnets 2 --report hall.html
     """
-    from functools import partial
-
-    from sonolube.report.measured.rotation import RotationSettings, rotation_sheet
-
     settings = RotationSettings(
-        groove_diameter=quantity(diameter, unit="m", option="--groove-diameter") or 0.0,
+        groove_diameter=to_si(diameter, unit="m", name="--groove-diameter"),
         magnets=magnets,
         prominence=prominence,
         mapping=column_mapping(mapping),

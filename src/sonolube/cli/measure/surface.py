@@ -1,11 +1,13 @@
 """Command `measure surface`: areal and profile parameters, spectra and summits of height maps."""
 
+from functools import partial
 from typing import Annotated
 
 import typer
 
 from sonolube.cli.console.options import Json, quantity
 from sonolube.cli.measure.measured_files import Files, Report, Test, deliver_sheets, each_file
+from sonolube.report.measured.surface import SurfaceSettings, surface_sheet
 
 Spacing = Annotated[
     str | None,
@@ -39,10 +41,6 @@ def surface(
 
     Example: sonolube measure surface plate.opd --long-cutoff 25um --report plate.html
     """
-    from functools import partial
-
-    from sonolube.report.measured.surface import SurfaceSettings, surface_sheet
-
     spacing_x, spacing_y = spacings(pixel)
     settings = SurfaceSettings(
         spacing_x=spacing_x,

@@ -1,13 +1,16 @@
 """Command `measure vibration`: amplitudes, operating shape and modal assurance of vibrometer recordings."""
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from sonolube.cli.console.number_table import number_table
-from sonolube.cli.console.options import Json, quantity
+from sonolube.cli.console.options import Json
 from sonolube.cli.measure.measured_files import Files, Mapped, Report, Test, column_mapping, deliver_sheets, each_file
+from sonolube.report.measured.vibration import VibrationSettings, has_voltage, proportion_sheet, vibration_sheet
+from sonolube.units import to_si
 
 
 def vibration(
@@ -25,12 +28,8 @@ def vibration(
 
     Example: sonolube measure vibration tip.csv --frequency 22kHz --report tip.html
     """
-    from functools import partial
-
-    from sonolube.report.measured.vibration import VibrationSettings, has_voltage, proportion_sheet, vibration_sheet
-
     settings = VibrationSettings(
-        frequency=quantity(drive, unit="Hz", option="--frequency") or 0.0,
+        frequency=to_si(drive, unit="Hz", name="--frequency"),
         mapping=column_mapping(mapping),
         modes=None if modes is None else number_table(modes),
     )

@@ -3,6 +3,7 @@
 from sonolube.cli.console.answer import deliver
 from sonolube.cli.console.options import Changes, Json, Load, RigPath, loaded_rig
 from sonolube.cli.predict.rig_record import RigRecord
+from sonolube.rig import contact_point
 
 
 def contact(rig: RigPath, load: Load = None, changes: Changes = None, json: Json = False) -> None:
@@ -10,7 +11,5 @@ def contact(rig: RigPath, load: Load = None, changes: Changes = None, json: Json
 
     Example: sonolube contact examples/rigs/poisson_al_steel.toml --load 40N
     """
-    from sonolube.rig import contact_point
-
     known = loaded_rig(rig, load=load, changes=changes)
     deliver(RigRecord(rig=known, result=contact_point(known)), as_json=json)

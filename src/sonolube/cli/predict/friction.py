@@ -7,6 +7,7 @@ import typer
 from sonolube.cli.console.answer import deliver
 from sonolube.cli.console.options import Changes, Json, Load, RigPath, loaded_rig
 from sonolube.cli.predict.rig_record import RigRecord
+from sonolube.rig import friction_point
 
 
 def friction(
@@ -22,7 +23,5 @@ def friction(
 
     Example: sonolube friction examples/rigs/collar.toml --set drive.voltage_peak_to_peak=14V
     """
-    from sonolube.rig import friction_point
-
     known = loaded_rig(rig, load=load, changes=changes)
     deliver(RigRecord(rig=known, result=friction_point(known, closure=model)), as_json=json)

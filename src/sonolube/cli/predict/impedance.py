@@ -3,22 +3,26 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
+import numpy as np
 import typer
+import xarray as xr
 
+from sonolube.checks import require_positive
 from sonolube.cli.console.answer import Answer, deliver, si
 from sonolube.cli.console.options import OUT, Json, Out, Sizes
+from sonolube.cli.console.parts import longest_axis, named_transducer, starting_size
+from sonolube.cli.console.progress import progress
 from sonolube.errors import InvalidInput
+from sonolube.fem import Transducer
+from sonolube.fem.figures import impedance_figure
+from sonolube.fem.impedance_spectra import SupportedSpectrum, coupled_modes_grid, spectrum_table, supported_spectra
+from sonolube.measurement.impedance.reader import read_impedance
+from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
+from sonolube.report import Drawing
+from sonolube.rig import dataset
 from sonolube.units import engineering, to_si
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from sonolube.fem import Transducer
-    from sonolube.fem.impedance_spectra import SupportedSpectrum
-    from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
-    from sonolube.report import Drawing
 
 
 def compute(
@@ -51,14 +55,6 @@ def compute(
 
     Example: sonolube impedance compute tribometer_actuator --clamp back.-z --to 40kHz
     """
-    import numpy as np
-
-    from sonolube.checks import require_positive
-    from sonolube.cli.console.parts import longest_axis, named_transducer, starting_size
-    from sonolube.cli.console.progress import progress
-    from sonolube.fem.impedance_spectra import supported_spectra
-    from sonolube.measurement.impedance.reader import read_impedance
-
     low, high = to_si(lowest, unit="Hz", name="--from"), to_si(highest, unit="Hz", name="--to")
     if not low < high:
         raise InvalidInput(f"--from must lie below --to, got {lowest} and {highest}")
@@ -84,9 +80,9 @@ class ImpedanceAnswer(Answer):
     """Impedance spectra of a transducer with their coupled modes, beside a measured spectrum where there is one."""
 
     part: str
-    transducer: "Transducer"
-    spectra: "Mapping[str, SupportedSpectrum]"
-    measured: "ImpedanceSpectrum | None"
+    transducer: Transducer
+    spectra: Mapping[str, SupportedSpectrum]
+    measured: ImpedanceSpectrum | None
     with_modes: bool
 
     def lines(self) -> list[str]:
@@ -136,23 +132,15 @@ class ImpedanceAnswer(Answer):
         """Dimensions that no source prints, with the reason for their values."""
         return {size.name: size.source for size in self.transducer.dimensions if not size.printed}
 
-    def figures(self) -> "Mapping[str, Drawing]":
+    def figures(self) -> Mapping[str, Drawing]:
         """Impedance and motion per volt over frequency."""
-        from sonolube.fem.figures import impedance_figure
-        from sonolube.report import Drawing
-
         measured = None if self.measured is None else (self.measured.frequency, self.measured.impedance)
         title = self._stem().replace("_", " ")
         draw = lambda: impedance_figure(self.spectra, title=title, measured=measured)  # noqa: E731
         return {f"{self._stem()}-impedance": Drawing(draw=draw)}
 
-    def files(self) -> "Mapping[str, str | xr.Dataset]":
+    def files(self) -> Mapping[str, str | xr.Dataset]:
         """Table and dataset of each spectrum, and its coupled modes where they are wanted."""
-        import numpy as np
-
-        from sonolube.fem.impedance_spectra import coupled_modes_grid, spectrum_table
-        from sonolube.rig import dataset
-
         stem = self._stem()
         files: dict[str, str | xr.Dataset] = {}
         for name, spectrum in self.spectra.items():
@@ -174,7 +162,7 @@ class ImpedanceAnswer(Answer):
         return Path(self.part).stem
 
 
-def _spectrum_object(spectrum: "SupportedSpectrum") -> dict[str, Any]:
+def _spectrum_object(spectrum: SupportedSpectrum) -> dict[str, Any]:
     """Nodes, error, capacitance and coupled modes of a spectrum, for JSON."""
     names = ("series_frequency", "parallel_frequency", "coupling_factor")
     return {

@@ -2,18 +2,21 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
+from sonolube.checks import Floats
+from sonolube.cli.console import parts
 from sonolube.cli.console.answer import Answer, deliver, si
 from sonolube.cli.console.options import OUT, Json, Out, Sizes
-
-if TYPE_CHECKING:
-    from sonolube.checks import Floats
-    from sonolube.fem import ConvergedModes
-    from sonolube.report import Drawing
+from sonolube.cli.console.progress import progress
+from sonolube.fem import ConvergedModes, Electrodes, Fixed, Model, converged_modes, mesh_of, mode_names
+from sonolube.fem.figures import mode_figure
+from sonolube.fem.mode_files import elastic_rows, mode_animation, mode_title, modes_grid, shapes_table
+from sonolube.report import Drawing
 
 
 def modes(
@@ -43,10 +46,6 @@ def modes(
 
     Example: sonolube modes block --set length=127mm --set width=60.96mm --set thickness=25.4mm
     """
-    from sonolube.cli.console import parts
-    from sonolube.cli.console.progress import progress
-    from sonolube.fem import Electrodes, Fixed, Model, converged_modes, mesh_of, mode_names
-
     parts.require_axis(axis=axis, toward=toward)
     is_transducer = part in parts.ALL_TRANSDUCERS
     geometry = parts.named_part(part, sizes or [])
@@ -87,9 +86,9 @@ class ModesAnswer(Answer):
 
     part: str
     material: str
-    found: "ConvergedModes"
+    found: ConvergedModes
     names: Sequence[str]
-    points: "Floats | None"
+    points: Floats | None
     direction: str
     with_grid: bool
     with_animations: bool
@@ -131,14 +130,8 @@ class ModesAnswer(Answer):
             ],
         }
 
-    def figures(self) -> "Mapping[str, Drawing]":
+    def figures(self) -> Mapping[str, Drawing]:
         """Picture of every elastic mode."""
-        from functools import partial
-
-        from sonolube.fem.figures import mode_figure
-        from sonolube.fem.mode_files import mode_title
-        from sonolube.report import Drawing
-
         mesh, shapes = self.found.model.mesh, self.found.modes.shapes
         return {
             self._file_name(row): Drawing(
@@ -150,9 +143,6 @@ class ModesAnswer(Answer):
 
     def files(self) -> Mapping[str, str | bytes]:
         """Shapes at points, grid and animations, as far as they are wanted."""
-        from sonolube.cli.console.progress import progress
-        from sonolube.fem.mode_files import mode_animation, mode_title, modes_grid, shapes_table
-
         files: dict[str, str | bytes] = {}
         stem = Path(self.part).stem
         if self.points is not None:
@@ -171,8 +161,6 @@ class ModesAnswer(Answer):
 
     def _rows(self) -> range:
         """Indices of the elastic modes."""
-        from sonolube.fem.mode_files import elastic_rows
-
         return elastic_rows(self.found)
 
     def _file_name(self, row: int) -> str:

@@ -2,19 +2,21 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from sonolube.cli.console.answer import Answer, deliver, si
 from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath
 from sonolube.errors import InvalidInput
+from sonolube.friction import BoundaryLubricant
+from sonolube.materials import material
+from sonolube.report import Drawing
+from sonolube.rig import RegimeMap, RegimePoint, Rig, read_rig, regime_map, regime_point, wear_of_materials
+from sonolube.rig.figures import lubrication_figure
+from sonolube.rig.file.plausible import plausible_si, require_plausible
 from sonolube.units import engineering
-
-if TYPE_CHECKING:
-    from sonolube.report import Drawing
-    from sonolube.rig import RegimeMap, RegimePoint, Rig
-    from sonolube.wear.mechanism import WearAssessment
+from sonolube.wear.mechanism import WearAssessment
 
 _QUANTITIES = ("sliding_speed", "nominal_pressure", "asperity_load_fraction")
 
@@ -41,11 +43,6 @@ def regime(
 
     Example: sonolube regime examples/rigs/tribometer.toml --film-coefficient 0.25 --asperity-pressure 10MPa
     """
-    from sonolube.friction import BoundaryLubricant
-    from sonolube.materials import material
-    from sonolube.rig import read_rig, regime_map, regime_point, wear_of_materials
-    from sonolube.rig.file.plausible import plausible_si, require_plausible
-
     if (pin is None) != (disc is None):
         raise InvalidInput("--pin and --disc belong together: give both or neither")
     known = read_rig(rig, changes=changes or ())
@@ -66,10 +63,10 @@ def regime(
 class RegimeAnswer(Answer):
     """Coefficients of friction of a rig dry, vibrated, lubricated and both, the best of them, and its wear."""
 
-    rig: "Rig"
-    result: "RegimePoint"
-    wear: "WearAssessment | None"
-    surroundings: "RegimeMap"
+    rig: Rig
+    result: RegimePoint
+    wear: WearAssessment | None
+    surroundings: RegimeMap
     name: str
 
     def lines(self) -> list[str]:
@@ -106,19 +103,12 @@ class RegimeAnswer(Answer):
         """Caveats of the regime."""
         return self.result.caveats
 
-    def assumptions(self) -> Mapping[str, str]:
-        """Assumptions of the rig file."""
-        return self.rig.assumptions
-
-    def figures(self) -> "Mapping[str, Drawing]":
+    def figures(self) -> Mapping[str, Drawing]:
         """Map of the best method about the rig's speed and pressure."""
-        from sonolube.report import Drawing
-        from sonolube.rig.figures import lubrication_figure
-
         return {self.name: Drawing(draw=lambda: lubrication_figure(self.rig, self.result, self.surroundings))}
 
 
-def _wear_lines(wear: "WearAssessment") -> list[str]:
+def _wear_lines(wear: WearAssessment) -> list[str]:
     """Kind of wear, effect of vibration on it, and their reasons."""
     return [
         f"  wear            {wear.kind}; vibration: {wear.effect} in pairs like this (a rule, not a law)",
@@ -127,7 +117,7 @@ def _wear_lines(wear: "WearAssessment") -> list[str]:
     ]
 
 
-def _wear_object(wear: "WearAssessment") -> dict[str, Any]:
+def _wear_object(wear: WearAssessment) -> dict[str, Any]:
     """Kind of wear, effect of vibration on it, and their reasons, for JSON."""
     return {
         "kind": str(wear.kind),

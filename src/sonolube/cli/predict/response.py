@@ -2,20 +2,21 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
+import xarray as xr
 
+from sonolube.checks import Floats
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
 from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath
-from sonolube.units import engineering
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from sonolube.checks import Floats
-    from sonolube.report import Drawing
-    from sonolube.rig import Response, Rig
+from sonolube.dynamics import modes
+from sonolube.errors import InvalidInput
+from sonolube.report import Drawing
+from sonolube.rig import Response, Rig, frequency_grid, linear_response, read_rig, touching_structure
+from sonolube.rig.figures import response_figure
+from sonolube.rig.result_datasets import response_dataset
+from sonolube.units import engineering, to_si
 
 
 def response(
@@ -30,11 +31,6 @@ def response(
 
     Example: sonolube response examples/rigs/tribometer.toml --from 15kHz --to 35kHz
     """
-    from sonolube.dynamics import modes
-    from sonolube.errors import InvalidInput
-    from sonolube.rig import frequency_grid, linear_response, read_rig, touching_structure
-    from sonolube.units import to_si
-
     low, high = (to_si(text, unit="Hz", name=name) for text, name in ((lowest, "--from"), (highest, "--to")))
     if not 0 < low < high:
         raise InvalidInput(f"--from {lowest} must lie above 0 Hz and below --to {highest}")
@@ -54,9 +50,9 @@ def response(
 class ResponseAnswer(Answer):
     """Linear response of a rig: natural frequencies and the largest amplitude per volt."""
 
-    rig: "Rig"
-    result: "Response"
-    natural_frequency: "Floats"
+    rig: Rig
+    result: Response
+    natural_frequency: Floats
     name: str
 
     def lines(self) -> list[str]:
@@ -83,21 +79,12 @@ class ResponseAnswer(Answer):
             **si({"frequency": frequency, "amplitude_per_volt": amplitude}),
         }
 
-    def assumptions(self) -> Mapping[str, str]:
-        """Assumptions of the rig file."""
-        return self.rig.assumptions
-
-    def figures(self) -> "Mapping[str, Drawing]":
+    def figures(self) -> Mapping[str, Drawing]:
         """Response over frequency."""
-        from sonolube.report import Drawing
-        from sonolube.rig.figures import response_figure
-
         return {self.name: Drawing(draw=lambda: response_figure(self.rig, self.result))}
 
-    def files(self) -> "Mapping[str, xr.Dataset]":
+    def files(self) -> Mapping[str, xr.Dataset]:
         """Response over frequency as netCDF."""
-        from sonolube.rig.result_datasets import response_dataset
-
         return {f"{self.name}.nc": response_dataset(self.rig, self.result)}
 
     def _largest(self) -> tuple[float, float]:

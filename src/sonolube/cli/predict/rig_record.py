@@ -2,17 +2,15 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import xarray as xr
 
 from sonolube.cli.console.answer import Answer, aligned, si
+from sonolube.report import Drawing
+from sonolube.rig import Rig
 from sonolube.units import engineering
 from sonolube.vocabulary import quantities
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from sonolube.report import Drawing
-    from sonolube.rig import Rig
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,10 +26,10 @@ class RigRecord(Answer):
     datasets : mapping of str to xarray.Dataset
     """
 
-    rig: "Rig"
+    rig: Rig
     result: Any
-    drawings: "Mapping[str, Drawing]" = field(default_factory=dict)
-    datasets: "Mapping[str, xr.Dataset]" = field(default_factory=dict)
+    drawings: Mapping[str, Drawing] = field(default_factory=dict)
+    datasets: Mapping[str, xr.Dataset] = field(default_factory=dict)
 
     def lines(self) -> list[str]:
         """Load, quantities with the meaning and unit of the vocabulary, and text but for the status."""
@@ -55,15 +53,11 @@ class RigRecord(Answer):
         caveats: Sequence[str] = self.result.caveats
         return caveats
 
-    def assumptions(self) -> Mapping[str, str]:
-        """Assumptions of the rig file."""
-        return self.rig.assumptions
-
-    def figures(self) -> "Mapping[str, Drawing]":
+    def figures(self) -> Mapping[str, Drawing]:
         """Figures of the record."""
         return self.drawings
 
-    def files(self) -> "Mapping[str, xr.Dataset]":
+    def files(self) -> Mapping[str, xr.Dataset]:
         """Datasets of the record."""
         return self.datasets
 

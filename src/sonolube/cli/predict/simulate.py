@@ -1,8 +1,13 @@
 """Command `simulate`: steady vibration of a rig's drive, structure and contact, with the friction and wear under it."""
 
+from sonolube import rig as rigs
 from sonolube.cli.console.answer import deliver
 from sonolube.cli.console.options import OUT, Changes, Json, Load, Out, RigPath, loaded_rig
+from sonolube.cli.console.progress import progress
 from sonolube.cli.predict.rig_record import RigRecord
+from sonolube.report import Drawing
+from sonolube.rig.figures import simulation_figure
+from sonolube.rig.result_datasets import simulation_dataset
 
 
 def simulate(rig: RigPath, load: Load = None, changes: Changes = None, out: Out = OUT, json: Json = False) -> None:
@@ -10,12 +15,6 @@ def simulate(rig: RigPath, load: Load = None, changes: Changes = None, out: Out 
 
     Example: sonolube simulate examples/rigs/tribometer.toml --set drive.voltage_peak_to_peak=25.9V
     """
-    from sonolube import rig as rigs
-    from sonolube.cli.console.progress import progress
-    from sonolube.report import Drawing
-    from sonolube.rig.figures import simulation_figure
-    from sonolube.rig.result_datasets import simulation_dataset
-
     known = loaded_rig(rig, load=load, changes=changes)
     with progress("simulating"):
         result = rigs.simulate(known)

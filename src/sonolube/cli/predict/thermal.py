@@ -7,6 +7,10 @@ import typer
 from sonolube.cli.console.answer import deliver
 from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath
 from sonolube.cli.predict.rig_record import RigRecord
+from sonolube.report import Drawing
+from sonolube.rig import heat_point, read_rig, thermal_solid
+from sonolube.rig.figures import temperature_figure
+from sonolube.rig.file.plausible import plausible_si
 
 
 def thermal(
@@ -27,11 +31,6 @@ def thermal(
 
     Example: sonolube thermal examples/rigs/tribometer.toml --pin stainless_steel_316 --disc aluminium_2024
     """
-    from sonolube.report import Drawing
-    from sonolube.rig import heat_point, read_rig, thermal_solid
-    from sonolube.rig.figures import temperature_figure
-    from sonolube.rig.file.plausible import plausible_si
-
     known = read_rig(rig, changes=changes or ())
     result = heat_point(
         known,

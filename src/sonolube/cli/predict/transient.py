@@ -2,19 +2,19 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
+import xarray as xr
 
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
 from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath
+from sonolube.cli.console.progress import progress
+from sonolube.report import Drawing
+from sonolube.rig import Rig, StartUp, read_rig, start_up
+from sonolube.rig.figures import start_up_figure
+from sonolube.rig.result_datasets import start_up_dataset
 from sonolube.units import engineering, to_si
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from sonolube.report import Drawing
-    from sonolube.rig import Rig, StartUp
 
 _QUANTITIES = ("settling_time", "vibration_amplitude", "mean_displacement", "beat_frequency")
 
@@ -30,9 +30,6 @@ def transient(
 
     Example: sonolube transient examples/rigs/tribometer.toml --duration 0.06s
     """
-    from sonolube.cli.console.progress import progress
-    from sonolube.rig import read_rig, start_up
-
     seconds = to_si(duration, unit="s", name="--duration")
     known = read_rig(rig, changes=changes or ())
     with progress("marching"):
@@ -44,8 +41,8 @@ def transient(
 class StartUpAnswer(Answer):
     """Start-up of a rig: settling time, final amplitude and slow oscillation."""
 
-    rig: "Rig"
-    result: "StartUp"
+    rig: Rig
+    result: StartUp
     name: str
 
     def lines(self) -> list[str]:
@@ -73,19 +70,10 @@ class StartUpAnswer(Answer):
             **si({name: getattr(self.result, name) for name in _QUANTITIES}),
         }
 
-    def assumptions(self) -> Mapping[str, str]:
-        """Assumptions of the rig file."""
-        return self.rig.assumptions
-
-    def figures(self) -> "Mapping[str, Drawing]":
+    def figures(self) -> Mapping[str, Drawing]:
         """Displacement of the tip over time."""
-        from sonolube.report import Drawing
-        from sonolube.rig.figures import start_up_figure
-
         return {self.name: Drawing(draw=lambda: start_up_figure(self.rig, self.result))}
 
-    def files(self) -> "Mapping[str, xr.Dataset]":
+    def files(self) -> Mapping[str, xr.Dataset]:
         """Trajectory as netCDF."""
-        from sonolube.rig.result_datasets import start_up_dataset
-
         return {f"{self.name}.nc": start_up_dataset(self.rig, self.result)}

@@ -3,6 +3,7 @@
 from sonolube.cli.console.answer import deliver
 from sonolube.cli.console.options import Changes, Json, Load, RigPath, loaded_rig
 from sonolube.cli.predict.rig_record import RigRecord
+from sonolube.rig import wear_point
 
 
 def wear(rig: RigPath, load: Load = None, changes: Changes = None, json: Json = False) -> None:
@@ -10,7 +11,5 @@ def wear(rig: RigPath, load: Load = None, changes: Changes = None, json: Json = 
 
     Example: sonolube wear examples/rigs/tribometer.toml
     """
-    from sonolube.rig import wear_point
-
     known = loaded_rig(rig, load=load, changes=changes)
     deliver(RigRecord(rig=known, result=wear_point(known)), as_json=json)
