@@ -133,7 +133,7 @@ def _sheet_object(sheet: Sheet) -> dict[str, Any]:
 
 
 def _value_object(value: SheetValue) -> dict[str, Any]:
-    """SheetValue for JSON with its unit, uncertainty and interval."""
+    """Value for JSON with its unit, uncertainty and interval."""
     content: dict[str, Any] = {"value": _finite(value.value), "unit": value.unit}
     if value.uncertainty is not None:
         content["uncertainty"] = _finite(value.uncertainty)

@@ -115,6 +115,7 @@ def pin_on_disc_rows(test: PinOnDiscSheet, sheets: Sequence[Sheet]) -> dict[str,
     """
 
     def stated(section: str, prefix: str = "") -> list[tuple[str, str]]:
+        """Entries of a section with their labels."""
         entries = test.entries.get(section, {})
         return [(f"{prefix}{label}", entries.get(key, _NOT_STATED)) for key, label in _SECTIONS[section].items()]
 
@@ -164,9 +165,9 @@ def _specific_wear(test: PinOnDiscSheet, sheets: Sequence[Sheet]) -> list[tuple[
 
 
 def _divided(value: SheetValue, divisor: float, unit: str) -> SheetValue:
-    """SheetValue and uncertainty over an exact divisor."""
+    """Value and uncertainty over an exact divisor."""
     error = None if value.uncertainty is None else value.uncertainty / divisor
-    return SheetValue(name=value.name, label=value.label, value=value.value / divisor, unit=unit, uncertainty=error)
+    return SheetValue(value.name, value.label, value.value / divisor, unit, uncertainty=error)
 
 
 def _require_known(path: Path, key: str, expected: Mapping[str, object], prefix: str) -> None:

@@ -1,4 +1,4 @@
-"""Height maps as sheets: parameters of ISO 25178-2 and of profiles, spectra, summits for the contact models."""
+"""Sheets of height maps: parameters of ISO 25178-2 and of profiles, spectra, summits for the contact models."""
 
 import math
 from collections.abc import Mapping
@@ -17,7 +17,7 @@ from sonolube.report.measured.sheet import (
     SheetSection,
     SheetTable,
     attempted_section,
-    quantity_column,
+    quantity_columns,
     quantity_value,
     sheet_from_sections,
 )
@@ -98,14 +98,30 @@ _LABELS: Mapping[str, str] = MappingProxyType(
         "mean_peak_curvature": "mean curvature of their peaks",
     }
 )
-_PROFILE = ("mean_roughness", "rms_height", "peak_height", "valley_depth", "total_height", "mean_section_height")
-_PROFILE_LABELS = ("Ra", "Rq", "Rp", "Rv", "Rt", "Rz")
+_PROFILE_LABELS: Mapping[str, str] = MappingProxyType(
+    {
+        "mean_roughness": "Ra",
+        "rms_height": "Rq",
+        "peak_height": "Rp",
+        "valley_depth": "Rv",
+        "total_height": "Rt",
+        "mean_section_height": "Rz",
+    }
+)
+_SAMPLING_LABELS: Mapping[str, str] = MappingProxyType(
+    {
+        "sampling_interval": "Interval",
+        "rms_height": "Deviation of summit heights",
+        "summit_radius": "Summit radius",
+        "summit_density": "Summit density",
+    }
+)
 _COARSENINGS = (1, 2, 4, 8)  # times the pixel, at which summits are sought
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SurfaceSettings:
-    """What the numbers of a height map depend on.
+    """Settings of the evaluation of a height map.
 
     Parameters
     ----------
@@ -133,7 +149,7 @@ class SurfaceSettings:
 
 
 def surface_sheet(path: Path, *, settings: SurfaceSettings) -> Sheet:
-    """Return what a surface file says.
+    """Areal and profile parameters, spectra and summits of a surface file.
 
     Parameters
     ----------
@@ -155,22 +171,22 @@ def surface_sheet(path: Path, *, settings: SurfaceSettings) -> Sheet:
     )
     levelled = level(file.height_map, degree=settings.degree, robust=settings.robust)
     surface = _filtered(levelled, settings)
-    parts = [_part(height_parameters(surface))]
+    sections = [_part(height_parameters(surface))]
     for measure in (hybrid_parameters, spatial_parameters, functional_parameters, feature_parameters):
         name = measure.__name__.replace("_", " ")
-        parts.append(attempted_section(lambda measure=measure: _part(measure(surface)), what=name))  # type: ignore[misc]
-    parts += [
+        sections.append(attempted_section(lambda measure=measure: _part(measure(surface)), what=name))  # type: ignore[misc]
+    sections += [
         attempted_section(partial(_summits, surface), what="summits"),
         attempted_section(partial(_profiles, surface), what="profile parameters"),
         attempted_section(partial(_sampling, surface), what="summits at coarser sampling"),
         attempted_section(partial(_waviness, levelled), what="waviness"),
         _figures(surface),
     ]
-    return sheet_from_sections(parts, title=path.name, source=surface_source(file))
+    return sheet_from_sections(sections, title=path.name, source=surface_source(file))
 
 
 def surface_source(file: SurfaceFile) -> dict[str, str]:
-    """Return where a height map came from, for its sheet."""
+    """Origin of a height map: format, instrument, pixels, field and digest."""
     rows, columns = file.height_map.height.shape
     step_x, step_y = file.height_map.spacing_x, file.height_map.spacing_y
     return {
@@ -186,6 +202,7 @@ def surface_source(file: SurfaceFile) -> dict[str, str]:
 
 
 def _filtered(levelled: HeightMap, settings: SurfaceSettings) -> HeightMap:
+    """Surface between the cutoff lengths."""
     short, long = settings.short_cutoff_length, settings.long_cutoff_length
     if short is not None and long is not None and short >= long:
         raise InvalidInput(f"the short cutoff, {short:.3g} m, must be below the long one, {long:.3g} m")
@@ -198,6 +215,7 @@ def _filtered(levelled: HeightMap, settings: SurfaceSettings) -> HeightMap:
 
 
 def _part(record: object) -> SheetSection:
+    """Areal parameters of a record, labelled with their symbols."""
     names = [each.name for each in fields(record) if each.name in _SYMBOLS]  # type: ignore[arg-type]
     small = not getattr(record, "decays_everywhere", True)
     return SheetSection(
@@ -209,14 +227,15 @@ def _part(record: object) -> SheetSection:
 
 
 def _summits(surface: HeightMap) -> SheetSection:
-    counted, moments = summits(surface), spectral_moments(surface)
+    """Density, radius and heights of summits, and the bandwidth of the spectrum."""
+    found, moments = summits(surface), spectral_moments(surface)
     for_contact = roughness(surface)
     return SheetSection(
         values=(
-            quantity_value("summit_density", counted.summit_density),
-            quantity_value("summit_radius", counted.summit_radius),
-            quantity_value("summit_height_deviation", counted.summit_height_deviation),
-            quantity_value("mean_summit_height", counted.mean_summit_height),
+            quantity_value("summit_density", found.summit_density),
+            quantity_value("summit_radius", found.summit_radius),
+            quantity_value("summit_height_deviation", found.summit_height_deviation),
+            quantity_value("mean_summit_height", found.mean_summit_height),
             quantity_value("bandwidth", moments.bandwidth, label="Bandwidth of the spectrum, Nayak's alpha"),
             quantity_value("roughness_parameter", for_contact.roughness_parameter),
         )
@@ -224,19 +243,24 @@ def _summits(surface: HeightMap) -> SheetSection:
 
 
 def _profiles(surface: HeightMap) -> SheetSection:
+    """Mean and deviation of profile parameters over all rows and columns."""
     rows = []
     for along in ("rows", "columns"):
         if min(surface.height.shape) > 1 or surface.height.shape[along == "rows"] > 1:
             found = profile_statistics(surface, along=along)
             for kind, record in (("mean", found.mean), ("deviation", found.spread)):
-                rows.append((f"{found.profile_count} {along}", kind, *(getattr(record, name) for name in _PROFILE)))
-    columns = (SheetColumn(name="profiles", label="Profiles"), SheetColumn(name="statistic", label=""))
-    measured = tuple(quantity_column(name, label) for name, label in zip(_PROFILE, _PROFILE_LABELS, strict=True))
-    table = SheetTable(name="profiles", title="Profile parameters", columns=(*columns, *measured), rows=tuple(rows))
-    return SheetSection(tables=(table,))
+                values = (getattr(record, name) for name in _PROFILE_LABELS)
+                rows.append((f"{found.profile_count} {along}", kind, *values))
+    columns = (
+        SheetColumn("profiles", "Profiles"),
+        SheetColumn("statistic", ""),
+        *quantity_columns(_PROFILE_LABELS),
+    )
+    return SheetSection(tables=(SheetTable("profiles", "Profile parameters", columns, tuple(rows)),))
 
 
 def _sampling(surface: HeightMap) -> SheetSection:
+    """Roughness for the contact models at multiples of the sampling interval."""
     pixel = math.sqrt(surface.spacing_x * surface.spacing_y)
     rows: list[tuple[float, ...]] = []
     for times in _COARSENINGS:
@@ -244,35 +268,24 @@ def _sampling(surface: HeightMap) -> SheetSection:
             found = against_sampling_interval(surface, sampling_interval=times * pixel)
         except InvalidInput:
             break
-        rows.append(
-            (
-                float(found.sampling_interval[0]),
-                float(found.rms_height[0]),
-                float(found.summit_radius[0]),
-                float(found.summit_density[0]),
-            )
-        )
-    names = ("sampling_interval", "rms_height", "summit_radius", "summit_density")
-    labels = ("Interval", "Deviation of summit heights", "Summit radius", "Summit density")
-    table = SheetTable(
-        name="sampling",
-        title="Roughness for the contact models, by sampling interval",
-        columns=tuple(quantity_column(name, label) for name, label in zip(names, labels, strict=True)),
-        rows=tuple(rows),
-    )
+        rows.append(tuple(float(getattr(found, name)[0]) for name in _SAMPLING_LABELS))
+    title = "Roughness for the contact models, by sampling interval"
+    table = SheetTable("sampling", title, quantity_columns(_SAMPLING_LABELS), tuple(rows))
     return SheetSection(tables=(table,)) if rows else SheetSection()
 
 
 def _waviness(levelled: HeightMap) -> SheetSection:
+    """Wavelengths of the waviness along rows and columns."""
     rows = [
         (along, float(length)) for along in ("rows", "columns") for length in waviness_lengths(levelled, along=along)
     ]
-    columns = (SheetColumn(name="along", label="Along"), quantity_column("waviness_length", "Wavelength"))
-    return SheetSection(tables=(SheetTable(name="waviness", title="Waviness", columns=columns, rows=tuple(rows)),))
+    columns = (SheetColumn("along", "Along"), *quantity_columns({"waviness_length": "Wavelength"}))
+    return SheetSection(tables=(SheetTable("waviness", "Waviness", columns, tuple(rows)),))
 
 
 def _figures(surface: HeightMap) -> SheetSection:
-    drawn = [
+    """Heights, Abbott curve, power spectrum and autocorrelation."""
+    pictures = [
         SheetFigure(
             name="heights",
             title="Heights",
@@ -290,12 +303,12 @@ def _figures(surface: HeightMap) -> SheetSection:
         spectrum = radial_spectrum(areal_spectrum(surface))
         correlation = autocorrelation(surface)
     except InvalidInput as refusal:
-        return SheetSection(figures=tuple(drawn), not_found=(f"spectrum: {refusal}",))
-    drawn += [
+        return SheetSection(figures=tuple(pictures), not_found=(f"spectrum: {refusal}",))
+    pictures += [
         SheetFigure(
             name="spectrum",
             title="Power spectrum",
-            caption="Areal power spectral density, averaged over direction; the grid's ends are where it means least.",
+            caption="Areal power spectral density, averaged over direction; least certain at the ends of the grid.",
             draw=partial(figures.spectrum, spectrum),
         ),
         SheetFigure(
@@ -305,4 +318,4 @@ def _figures(surface: HeightMap) -> SheetSection:
             draw=partial(figures.correlation, correlation),
         ),
     ]
-    return SheetSection(figures=tuple(drawn))
+    return SheetSection(figures=tuple(pictures))

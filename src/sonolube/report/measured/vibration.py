@@ -1,4 +1,4 @@
-"""Vibrometer recordings as sheets: amplitudes at the drive frequency, per volt, and how points move together."""
+"""Sheets of vibrometer recordings: amplitudes at the drive frequency, per volt, and operating shapes."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -32,7 +32,7 @@ from sonolube.report.measured.sheet import (
     SheetTable,
     SheetValue,
     attempted_section,
-    quantity_column,
+    quantity_columns,
     quantity_value,
     sheet_from_sections,
 )
@@ -46,7 +46,7 @@ _LEAST_PERIODS = 2.0  # in each
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class VibrationSettings:
-    """What amplitudes depend on.
+    """Settings of the evaluation of a vibrometer recording.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ class VibrationSettings:
 
 
 def vibration_sheet(path: Path, *, settings: VibrationSettings) -> Sheet:
-    """Return how the recorded points vibrate at the drive frequency.
+    """Amplitude and phase of every recorded point at the drive frequency, and the operating shape.
 
     Parameters
     ----------
@@ -95,8 +95,8 @@ def vibration_sheet(path: Path, *, settings: VibrationSettings) -> Sheet:
     per_rate = np.where(velocities, 1 / (2j * np.pi * f), 1.0)
     motion = complex_amplitudes(time=time, signals=signals, frequency=f) * per_rate
     errors = _errors(time, signals, f) * np.abs(per_rate)
-    moving = int(np.argmax(np.abs(motion)))
-    values = [quantity_value("vibration_amplitude", float(abs(motion[moving])), uncertainty=_or_none(errors[moving]))]
+    largest = int(np.argmax(np.abs(motion)))
+    values = [quantity_value("vibration_amplitude", float(abs(motion[largest])), uncertainty=_or_none(errors[largest]))]
     drive = _drive_voltage(recording, time, f)
     if drive is not None:
         swing = 2 * abs(drive)
@@ -104,18 +104,18 @@ def vibration_sheet(path: Path, *, settings: VibrationSettings) -> Sheet:
             quantity_value("voltage_peak_to_peak", swing),
             quantity_value(
                 "amplitude_per_volt",
-                float(abs(motion[moving])) / swing,
-                uncertainty=None if np.isnan(errors[moving]) else float(errors[moving]) / swing,
+                float(abs(motion[largest])) / swing,
+                uncertainty=None if np.isnan(errors[largest]) else float(errors[largest]) / swing,
             ),
         ]
         motion = motion * np.exp(-1j * np.angle(drive))
     shape = operating_shape(motion)
-    parts = [SheetSection(values=tuple(values), tables=(_table(points, motion, errors),))]
+    sections = [SheetSection(values=tuple(values), tables=(_table(points, motion, errors),))]
     if len(points) > 1:
-        parts.append(_shape(points, shape))
+        sections.append(_shape(points, shape))
         if settings.modes is not None:
-            parts.append(attempted_section(partial(_assurance, motion, settings.modes), what="likeness to modes"))
-    return sheet_from_sections(parts, title=path.name, source=recording_source(recording))
+            sections.append(attempted_section(partial(_assurance, motion, settings.modes), what="modal assurance"))
+    return sheet_from_sections(sections, title=path.name, source=recording_source(recording))
 
 
 def has_voltage(sheet: Sheet) -> bool:
@@ -124,7 +124,7 @@ def has_voltage(sheet: Sheet) -> bool:
 
 
 def proportion_sheet(sheets: Sequence[Sheet]) -> Sheet:
-    """Return whether the greatest amplitude is in proportion to the voltage, over recordings at several voltages.
+    """Linearity of amplitude over voltage, from recordings at several voltages.
 
     Parameters
     ----------
@@ -148,6 +148,7 @@ def proportion_sheet(sheets: Sequence[Sheet]) -> Sheet:
 
 
 def _points(recording: "xr.Dataset", path: Path) -> tuple[list[str], Floats, Floats]:
+    """Names and signals of the recorded points, and whether each is a velocity."""
     names, signals, velocities = [], [], []
     for name in map(str, recording):
         unit = str(recording[name].attrs.get("units", ""))
@@ -165,6 +166,7 @@ def _points(recording: "xr.Dataset", path: Path) -> tuple[list[str], Floats, Flo
 
 
 def _drive_voltage(recording: "xr.Dataset", time: Floats, frequency: float) -> complex | None:
+    """Complex amplitude of the drive voltage; None where it was not recorded."""
     for name in map(str, recording):
         if str(recording[name].attrs.get("units", "")) == "V":
             return complex(complex_amplitudes(time=time, signals=channel(recording, name), frequency=frequency)[0])
@@ -172,7 +174,7 @@ def _drive_voltage(recording: "xr.Dataset", time: Floats, frequency: float) -> c
 
 
 def _errors(time: Floats, signals: Floats, frequency: float) -> Floats:
-    """Standard errors of the amplitudes, from their scatter over stretches; NaN where the recording is too short."""
+    """Standard errors of the amplitudes by their scatter over eight stretches; NaN for short recordings."""
     edges = np.linspace(0, time.size, _STRETCHES + 1).astype(int)
     if np.diff(edges).min() < 2 or (time[edges[1] - 1] - time[0]) * frequency < _LEAST_PERIODS:
         return np.full(signals.shape[0], np.nan)
@@ -186,15 +188,17 @@ def _errors(time: Floats, signals: Floats, frequency: float) -> Floats:
 
 
 def _or_none(error: float) -> float | None:
+    """Error, or None for NaN."""
     return None if np.isnan(error) else float(error)
 
 
 def _table(points: Sequence[str], motion: Complexes, errors: Floats) -> SheetTable:
+    """Amplitude, uncertainty and phase of each point."""
     columns = (
-        SheetColumn(name="point", label="Point"),
-        quantity_column("vibration_amplitude", "Amplitude"),
-        SheetColumn(name="vibration_amplitude_uncertainty", label="Its uncertainty", unit="m"),
-        SheetColumn(name="phase", label="Phase", unit="rad"),
+        SheetColumn("point", "Point"),
+        *quantity_columns({"vibration_amplitude": "Amplitude"}),
+        SheetColumn("vibration_amplitude_uncertainty", "Uncertainty", "m"),
+        SheetColumn("phase", "Phase", "rad"),
     )
     rows = tuple(
         (name, float(abs(x)), _or_none(error), float(np.angle(x)))
@@ -204,49 +208,48 @@ def _table(points: Sequence[str], motion: Complexes, errors: Floats) -> SheetTab
 
 
 def _shape(points: Sequence[str], shape: OperatingShape) -> SheetSection:
-    value = SheetValue(
-        name="standing_share", label="Share of the motion that stands in step", value=shape.standing_share, unit=""
-    )
-    drawn = SheetFigure(
+    """Operating shape, and the fraction of the motion that is in phase."""
+    value = SheetValue("standing_share", "Fraction of the motion in phase", shape.standing_share, "")
+    figure = SheetFigure(
         name="shape",
         title="Operating shape",
-        caption="Motion in step with the whole, greatest 1, and the phase of each point from it.",
+        caption="Motion in phase with the whole, scaled to 1, and the phase of each point.",
         draw=partial(figures.shape, points, shape),
     )
-    return SheetSection(values=(value,), figures=(drawn,))
+    return SheetSection(values=(value,), figures=(figure,))
 
 
 def _assurance(motion: Complexes, modes: Floats) -> SheetSection:
-    likeness = modal_assurance(motion, modes)[0]
-    columns = (SheetColumn(name="mode", label="Mode"), SheetColumn(name="assurance", label="Modal assurance"))
-    rows = tuple((f"{place}", float(value)) for place, value in enumerate(likeness, start=1))
-    drawn = SheetFigure(
+    """Modal assurance criterion of the operating shape with each computed mode."""
+    assurance = modal_assurance(motion, modes)[0]
+    columns = (SheetColumn("mode", "Mode"), SheetColumn("assurance", "Modal assurance"))
+    rows = tuple((f"{place}", float(value)) for place, value in enumerate(assurance, start=1))
+    figure = SheetFigure(
         name="assurance",
-        title="Likeness to computed modes",
+        title="Modal assurance with computed modes",
         caption="Modal assurance criterion of the operating shape with each mode: 1 in proportion, 0 orthogonal.",
-        draw=partial(figures.assurance, likeness),
+        draw=partial(figures.assurance, assurance),
     )
-    table = SheetTable(name="modes", title="Likeness to computed modes", columns=columns, rows=rows)
-    return SheetSection(tables=(table,), figures=(drawn,))
+    table = SheetTable(name="modes", title="Modal assurance with computed modes", columns=columns, rows=rows)
+    return SheetSection(tables=(table,), figures=(figure,))
 
 
 def _proportion(pairs: Sequence[tuple[float, float]]) -> SheetSection:
+    """Line through the origin with its interval, and the significance of a curvature."""
     volts, amplitudes = (np.array([pair[which] for pair in pairs]) for which in range(2))
-    found = amplitude_per_volt(voltage_peak_to_peak=volts, vibration_amplitude=amplitudes)
+    fit = amplitude_per_volt(voltage_peak_to_peak=volts, vibration_amplitude=amplitudes)
     values = (
-        quantity_value("amplitude_per_volt", found.amplitude_per_volt, interval=(found.lower, found.upper)),
-        quantity_value("amplitude_deviation", found.amplitude_deviation),
-        SheetValue(
-            name="curvature_p", label="Chance of such a curvature by scatter alone", value=found.curvature_p, unit=""
-        ),
+        quantity_value("amplitude_per_volt", fit.amplitude_per_volt, interval=(fit.lower, fit.upper)),
+        quantity_value("amplitude_deviation", fit.amplitude_deviation),
+        SheetValue("curvature_p", "p value of the curvature", fit.curvature_p, ""),
     )
     caveats: tuple[str, ...] = ()
-    if not found.proportional:
-        caveats = (f"amplitude is not in proportion to voltage: the slope changes by {found.curvature:+.0%}",)
-    drawn = SheetFigure(
+    if not fit.proportional:
+        caveats = (f"amplitude is not in proportion to voltage: the slope changes by {fit.curvature:+.0%}",)
+    figure = SheetFigure(
         name="proportion",
         title="Amplitude over voltage",
         caption="Each recording, and the line through the origin with its 95 % interval.",
-        draw=partial(figures.proportion, volts, amplitudes, found),
+        draw=partial(figures.proportion, volts, amplitudes, fit),
     )
-    return SheetSection(values=values, figures=(drawn,), caveats=caveats)
+    return SheetSection(values=values, figures=(figure,), caveats=caveats)
