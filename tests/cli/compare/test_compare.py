@@ -1,69 +1,55 @@
-"""The command `compare` as its users meet it: in a process of its own."""
+"""Command `compare`: errors, predictions of a rig, files and refusals."""
 
-import json
-import subprocess
-import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 from pytest import approx
 
-ROOT = Path(__file__).parents[3]
-RIG = "examples/rigs/tribometer.toml"
+Program = Callable[..., Any]
 QUICK = ("--model", "stick-slip", "--model", "kinematic", "--model", "dahl-driven")
 
 
-def compare(*arguments: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [Path(sys.executable).parent / "sonolube", "compare", *arguments],
-        capture_output=True,
-        text=True,
-        check=False,
-        cwd=ROOT,
-    )
-
-
-def test_models_are_compared_on_the_tests_and_on_a_rig_for_programs(tmp_path: Path) -> None:
-    run = compare(RIG, *QUICK, "--json", "--out", str(tmp_path))
-    assert run.returncode == 0, run.stderr
-    answer = json.loads(run.stdout)
+def test_errors_fits_and_predictions_of_a_rig_are_in_the_answer(tmp_path: Path, sonolube: Program, rigs: Path) -> None:
+    answer = sonolube("compare", rigs / "tribometer.toml", *QUICK, "--json", "--out", tmp_path).answer
     stick_slip, kinematic, driven = answer["models"]
     assert (stick_slip["name"], kinematic["name"], driven["errors"]) == ("stick-slip", "kinematic", None)
     (memory,) = stick_slip["fitted"]
     assert memory["bounds"][0] <= memory["interval"][0] < memory["value"] < memory["interval"][1]
-    said = {one["model"]: one for one in answer["rig"]["predictions"]}
-    assert said["kinematic"]["uncertainty"] == approx(kinematic["errors"]["rms_unseen"])
-    assert "the stiffness of the holder" in said["dahl-driven"]["reason"]
+    predicted = {one["model"]: one for one in answer["rig"]["predictions"]}
+    assert predicted["kinematic"]["uncertainty"] == approx(kinematic["errors"]["rms_unseen"])
+    assert "the stiffness of the holder" in predicted["dahl-driven"]["reason"]
     assert {Path(file).suffix for file in answer["files"]} == {".png", ".svg", ".csv", ".nc"}
     assert all(Path(file).stat().st_size > 0 for file in answer["files"])
 
 
-def test_people_read_errors_what_was_fitted_and_what_was_not(tmp_path: Path) -> None:
-    run = compare(*QUICK, "--out", str(tmp_path))
-    assert run.returncode == 0, run.stderr
-    assert "memory_length 3.4" in run.stdout
-    assert "not fitted: set H" in run.stdout
-    assert "not reached: dahl-driven: needs the amplitude along the sliding" in run.stdout
+def test_the_lines_have_errors_fitted_parameters_and_tests_out_of_reach(tmp_path: Path, sonolube: Program) -> None:
+    run = sonolube("compare", *QUICK, "--out", tmp_path)
+    assert run.code == 0, run.err
+    assert "memory_length 3.4" in run.out
+    assert "not fitted: set H" in run.out
+    assert "not reached: dahl-driven: needs the amplitude along the sliding" in run.out
 
 
-def test_a_model_that_no_test_suits_is_listed_and_not_drawn(tmp_path: Path) -> None:
-    run = compare("--model", "dahl-driven", "--out", str(tmp_path))
-    assert run.returncode == 0, run.stderr
-    assert "not reached: dahl-driven" in run.stdout
+def test_a_model_that_suits_no_test_is_listed_and_not_drawn(tmp_path: Path, sonolube: Program) -> None:
+    run = sonolube("compare", "--model", "dahl-driven", "--out", tmp_path)
+    assert run.code == 0, run.err
+    assert "not reached: dahl-driven" in run.out
     assert sorted(file.name for file in tmp_path.iterdir()) == ["models.csv", "models.nc"]
 
 
 @pytest.mark.parametrize(
-    ("arguments", "complaint"),
+    ("arguments", "line"),
     [
-        (["--model", "stickslip"], "did you mean stick-slip"),
-        (["--set", "contact.normal_load=4N"], "--set changes a rig"),
-        ([RIG, "--set", "sliding.sliding_speed=0mm/s", *QUICK], "sliding_speed is 0"),
+        (("--model", "stickslip"), "did you mean stick-slip"),
+        (("--set", "contact.normal_load=4N"), "--set changes a rig"),
+        (("RIG", "--set", "sliding.sliding_speed=0mm/s", *QUICK), "sliding_speed is 0"),
     ],
 )
-def test_what_cannot_be_compared_is_told_in_one_line(arguments: list[str], complaint: str, tmp_path: Path) -> None:
-    run = compare(*arguments, "--out", str(tmp_path))
-    assert run.returncode == 2
-    assert complaint in run.stderr
-    assert len(run.stderr.strip().splitlines()) == 1
+def test_a_comparison_without_meaning_is_refused_in_one_line(
+    arguments: tuple[str, ...], line: str, tmp_path: Path, sonolube: Program, rigs: Path
+) -> None:
+    words = [rigs / "tribometer.toml" if word == "RIG" else word for word in arguments]
+    assert line in sonolube("compare", *words, "--out", tmp_path).refusal
     assert not list(tmp_path.iterdir())

@@ -1,4 +1,4 @@
-"""Measuring from the command line: many files at once, bad ones among them, and answers for programs."""
+"""Commands of `measure`: many files at once, bad ones among them, and answers against known inputs."""
 
 import json
 from pathlib import Path
@@ -30,14 +30,14 @@ def plates(tmp_path: Path) -> Path:
     return folder
 
 
-def told(capsys: pytest.CaptureFixture[str]) -> dict[str, Any]:
+def answer_of(capsys: pytest.CaptureFixture[str]) -> dict[str, Any]:
     content: dict[str, Any] = json.loads(capsys.readouterr().out)
     return content
 
 
 def test_one_bad_file_of_a_folder_does_not_lose_the_others(plates: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run("measure", "surface", plates, "--spacing", "1um", "--json") == 1
-    answer = told(capsys)
+    answer = answer_of(capsys)
     assert [result["title"] for result in answer["results"]] == ["a.npy", "c.npy"]
     # two crossed sines of amplitude a have the variance a^2
     assert [result["values"]["rms_height"]["value"] for result in answer["results"]] == approx([1e-6, 2e-6], rel=0.02)
@@ -75,7 +75,7 @@ def test_the_hall_probe_of_a_steady_disc_gives_its_speed(tmp_path: Path, capsys:
     path = tmp_path / "hall.csv"
     np.savetxt(path, rows, delimiter=",", header="time (s),magnetic_flux_density (mT)", comments="", fmt="%.6g")
     assert run("measure", "rotation", path, "--groove-diameter", "50mm", "--json") == 0
-    values = told(capsys)["results"][0]["values"]
+    values = answer_of(capsys)["results"][0]["values"]
     assert values["sliding_speed"]["value"] == approx(np.pi * 0.05 * 0.8, rel=1e-4)
     assert values["repaired_pulses"]["value"] == 0
 
@@ -87,7 +87,7 @@ def test_a_linear_spring_is_calibrated_to_its_stiffness(tmp_path: Path, capsys: 
     heading = "time (s),displacement (um),applied_force (N)"
     np.savetxt(path, np.stack([time, x, 0.02 * x], 1), delimiter=",", header=heading, comments="", fmt="%.9g")
     assert run("measure", "calibration", path, "--apply", path, "--json") == 0
-    spring, force = told(capsys)["results"]
+    spring, force = answer_of(capsys)["results"]
     assert spring["values"]["mean_stiffness"]["value"] == approx(2e4, rel=1e-6)
     assert spring["values"]["dissipated_energy"]["value"] == approx(0.0, abs=1e-9)
     assert force["values"]["highest_force"]["value"] == approx(2.0, rel=1e-3)
@@ -106,7 +106,7 @@ def test_velocities_become_displacements_per_volt(tmp_path: Path, capsys: pytest
         )
     files = sorted(tmp_path.glob("*.csv"))
     assert run("measure", "vibration", *files, "--frequency", "20kHz", "--json") == 0
-    *each, proportion = told(capsys)["results"]
+    *each, proportion = answer_of(capsys)["results"]
     assert [sheet["values"]["vibration_amplitude"]["value"] for sheet in each] == approx([0.5e-6, 1e-6, 1.5e-6])
     assert each[0]["tables"]["points"]["rows"][0]["phase"] == approx(0.5 - np.pi / 2)
     assert proportion["values"]["amplitude_per_volt"]["value"] == approx(50e-9)
@@ -126,7 +126,7 @@ def test_the_stack_of_a_rig_is_found_in_the_impedance_that_the_rig_computes(
     path = tmp_path / "stack.csv"
     np.savetxt(path, rows, delimiter=",", header="frequency (Hz),|Z| (ohm),phase (deg)", comments="")
     assert run("measure", "impedance", path, "--stack-of", rig, "--json") == 0
-    values = told(capsys)["results"][0]["values"]
+    values = answer_of(capsys)["results"][0]["values"]
     assert values["stack_stiffness"]["value"] == approx(stack.stack_stiffness, rel=0.01)
     assert values["free_capacitance"]["value"] == approx(stack.free_capacitance, rel=0.01)
 
@@ -152,7 +152,7 @@ def test_rings_of_known_depth_give_their_volume_and_the_reduction(
     page = tmp_path / "ring.html"
     call = ["measure", "groove", tmp_path / "on", "--without-vibration", tmp_path / "off", *words, "--report", page]
     assert run(*call) == 1
-    answer = told(capsys)
+    answer = answer_of(capsys)
     sheets = {result["title"]: result["values"] for result in answer["results"]}
     for title, ring in {"the ring": "on", "the ring without vibration": "off"}.items():
         # Pappus: section times circumference

@@ -14,12 +14,12 @@ from sonolube.cli import main
 from sonolube.report.measured import friction
 
 
-def answer_to(capsys: pytest.CaptureFixture[str], *words: object) -> list[dict[str, Any]]:
+def results_of(capsys: pytest.CaptureFixture[str], *words: object) -> list[dict[str, Any]]:
     with pytest.raises(SystemExit) as ended:
         main([str(word) for word in (*words, "--json")])
     printed = capsys.readouterr()
     assert ended.value.code in (0, None), printed.err
-    assert printed.err == ""  # no bar where nobody watches
+    assert printed.err == ""  # no progress bar without a terminal
     results: list[dict[str, Any]] = json.loads(printed.out)["results"]
     return results
 
@@ -36,7 +36,7 @@ def test_a_pin_with_a_flat_has_lost_the_cap_above_it(
     ridge = 1e-6 * np.exp(-(((x + 0.2e-3) / 1e-4) ** 2))
     np.save(tmp_path / "scan.npy", 0.02e-6 * rng.standard_normal(height.shape) - 10 * ridge)
     call = ["measure", "groove", tmp_path / "scan.npy", "--pin", tmp_path / "pin.npy", "--spacing", "8um", *known]
-    pin = answer_to(capsys, *call)[-1]["values"]
+    pin = results_of(capsys, *call)[-1]["values"]
     # a segment of a ball of height h: pi h^2 (R - h/3)
     h = radius - math.sqrt(radius**2 - flat**2 / 4)
     assert pin["pin_volume"]["value"] == approx(math.pi * h**2 * (radius - h / 3), rel=0.03)
@@ -52,7 +52,7 @@ def test_a_rubbing_stroke_to_and_fro_costs_its_force_over_its_length(
     path = tmp_path / "loops.csv"
     heading = "time (s),relative_velocity (m/s),friction_force (N)"
     np.savetxt(path, np.stack([time, velocity, force], 1), delimiter=",", header=heading, comments="", fmt="%.9g")
-    values = answer_to(capsys, "measure", "friction", path)[0]["values"]
+    values = results_of(capsys, "measure", "friction", path)[0]["values"]
     assert values["work_per_cycle"]["value"] == approx(0.3 * 4 * 0.02 / (2 * np.pi), rel=2e-3)  # stroke 2 v/omega
     assert values["sliding_distance"]["value"] == approx(5 * 4 * 0.02 / (2 * np.pi), rel=1e-3)
 
@@ -65,10 +65,10 @@ def test_a_recording_too_large_to_hold_gives_the_windows_of_the_whole(
         for _ in range(10):
             part = 0.4 + 0.02 * rng.standard_normal(2000)
             writer.write_segment([ChannelObject("g", "friction_force", part, {"wf_increment": 1e-3})])
-    whole = answer_to(capsys, "measure", "friction", path)[0]["values"]
+    whole = results_of(capsys, "measure", "friction", path)[0]["values"]
     monkeypatch.setattr(friction, "_LARGE", path.stat().st_size - 1)
-    streamed = answer_to(capsys, "measure", "friction", path)[0]["values"]
+    streamed = results_of(capsys, "measure", "friction", path)[0]["values"]
     assert streamed.keys() <= whole.keys()
     assert streamed["friction_force"]["value"] == approx(0.4, abs=1e-3)
-    for name, told in streamed.items():
-        assert told["value"] == approx(whole[name]["value"], rel=1e-9), name
+    for name, value in streamed.items():
+        assert value["value"] == approx(whole[name]["value"], rel=1e-9), name

@@ -266,7 +266,7 @@ class ControlAnswer(Answer):
         amplifier = "" if energy.amplifier_energy is None else f"{engineering(energy.amplifier_energy, 'J')} (D 1.9), "
         facts = [
             (
-                "friction wanted",
+                "target friction",
                 f"{engineering(study.friction_force, 'N')} of {study.plant.highest_force:.3g} N; "
                 f"least within reach {study.plant.lowest_force:.3g} N",
             ),

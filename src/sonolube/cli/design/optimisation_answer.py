@@ -170,7 +170,7 @@ class OptimisationAnswer(Answer):
         amplitude = float(best.assessment.numbers["vibration_amplitude"][0])
         return [
             (
-                "friction wanted",
+                "target friction",
                 f"coefficient {coefficient:.3g}, ratio {ratio:.3g}{_tolerance_text(optimum.task.tolerance)}",
             ),
             ("actuator", self._actuator_title(best)),
