@@ -3,6 +3,7 @@
 import json
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
@@ -85,16 +86,8 @@ def deliver(
     written = _write(answer, folder, context)
     if as_json:
         typer.echo(json.dumps(_json_object(answer, written), indent=2, allow_nan=False))
-    elif lines := [*answer.lines(), *closing_lines(answer), *_file_lines(written, folder)]:
+    elif lines := [*answer.lines(), *_closing_lines(answer), *_file_lines(written, folder)]:
         typer.echo("\n".join(lines))
-
-
-def closing_lines(answer: Answer) -> list[str]:
-    """Caveats and assumptions of an answer as lines of text."""
-    return [
-        *[f"  caveat: {caveat}" for caveat in answer.caveats()],
-        *[f"  assumed {key}: {reason}" for key, reason in answer.assumptions().items()],
-    ]
 
 
 def si(values: Mapping[str, float | None], *, unit: str | None = None) -> dict[str, Any]:
@@ -139,8 +132,6 @@ def _write(answer: Answer, folder: Path, context: typer.Context | None) -> list[
     page, drawings = answer.page(), answer.figures()
     contents: dict[str, Any] = {}
     if page is not None or drawings:
-        from dataclasses import replace
-
         from sonolube.cli.console.progress import progress
         from sonolube.report import rendered_files
 
@@ -175,6 +166,14 @@ def _json_object(answer: Answer, written: Sequence[Path]) -> dict[str, Any]:
         return answer.object()
     closing = {"caveats": list(answer.caveats()), "assumptions": dict(answer.assumptions())}
     return answer.object() | closing | {"files": [str(path) for path in written]}
+
+
+def _closing_lines(answer: Answer) -> list[str]:
+    """Caveats and assumptions of an answer as lines of text."""
+    return [
+        *[f"  caveat: {caveat}" for caveat in answer.caveats()],
+        *[f"  assumed {key}: {reason}" for key, reason in answer.assumptions().items()],
+    ]
 
 
 def _file_lines(written: Sequence[Path], folder: Path) -> list[str]:

@@ -224,7 +224,7 @@ class ControlAnswer(Answer):
             ),
             f"{self._name}-design": Drawing(
                 draw=lambda: figures.control_design_figure(study),
-                caption="Map from voltage to friction of the controller, and disturbances that the loop leaves.",
+                caption="Map from voltage to friction of the controller, and magnitude of the sensitivity function.",
             ),
         }
         if suppression is not None:

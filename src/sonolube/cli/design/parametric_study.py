@@ -23,6 +23,8 @@ from sonolube.rig.linear_response import gap_law_of, require_drive, require_stru
 from sonolube.units import engineering, to_si
 from sonolube.vocabulary import quantity
 
+Rows = Iterator[tuple[str, str]]
+
 _OUTCOMES = ("friction_ratio", "vibration_amplitude", "actuator_power", "dissipated_power")
 _POINTS_AT_RESONANCE = 41  # frequencies about each resonance
 _MOST_POINTS = 10_000
@@ -206,9 +208,6 @@ def _present_ratio(rig: Rig) -> float:
     if bool(own.failed):
         raise InvalidInput(f"{rig.title} has no friction ratio of its own to be had elsewhere: {own.reason}")
     return float(own.friction_ratio)
-
-
-Rows = Iterator[tuple[str, str]]
 
 
 def _voltage_rows(study: xr.Dataset) -> Rows:

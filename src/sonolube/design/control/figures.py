@@ -36,7 +36,7 @@ def closed_loop_figure(study: ControlStudy) -> "Figure":
         friction.plot(ms, fixed.friction_force, color=COLOURS[1], linestyle="--", label="frequency fixed")
         voltage.plot(ms, fixed.voltage_peak_to_peak, color=COLOURS[1], linestyle="--")
     friction.plot(ms, run.friction_force, color=COLOURS[0], label="friction" if fixed is None else "resonance tracked")
-    friction.plot(ms, run.reference, color=COLOURS[6], linestyle=":", drawstyle="steps-post", label="wanted")
+    friction.plot(ms, run.reference, color=COLOURS[6], linestyle=":", drawstyle="steps-post", label="target")
     friction.set(ylabel="Friction force [N]", ylim=(0, None))
     friction.legend(loc="best")
     voltage.plot(ms, run.voltage_peak_to_peak, color=COLOURS[0])
@@ -78,7 +78,7 @@ def control_design_figure(study: ControlStudy) -> "Figure":
     table = controller.intrinsic_friction_force - np.array(controller.saved_force)
     lookup.plot(controller.voltage_peak_to_peak, table, color=COLOURS[1], linestyle="--", label="controller's table")
     volts = np.interp(-study.friction_force, -plant.friction_force, plant.voltage_peak_to_peak)
-    lookup.plot(volts, study.friction_force, "o", color=COLOURS[6], label="wanted")
+    lookup.plot(volts, study.friction_force, "o", color=COLOURS[6], label="target")
     lookup.set(xlabel="Drive, peak to peak [V]", ylabel="Friction force [N]", ylim=(0, None), xlim=(0, None))
     lookup.legend()
     nyquist = 0.5 / controller.process.sample_interval
@@ -86,9 +86,9 @@ def control_design_figure(study: ControlStudy) -> "Figure":
     open_loop = study.loop_gain * loop_response(controller.process, controller.gains, frequency=f)
     loop.semilogx(f, 1 / np.abs(1 + open_loop))
     peak = study.margins.sensitivity_peak
-    loop.axhline(peak, color="0.5", linestyle="-.", linewidth=1, label=f"highest, {peak:.2f}")
+    loop.axhline(peak, color="0.5", linestyle="-.", linewidth=1, label=f"maximum, {peak:.2f}")
     loop.axhline(1, color="0.5", linewidth=0.6)
-    loop.set(xlabel="Frequency [Hz]", ylabel="Disturbance left by the loop [–]", ylim=(0, 1.25 * max(peak, 1)))
+    loop.set(xlabel="Frequency [Hz]", ylabel="Sensitivity, magnitude [–]", ylim=(0, 1.25 * max(peak, 1)))
     loop.legend(loc="lower right")
     return figure
 
