@@ -32,7 +32,7 @@ def mode_figure(mesh: Mesh, shape: Floats, *, title: str, amplitude: float = 1.0
         Displacements of the nodes, of any scale.
     title : str
     amplitude : float
-        Displacement drawn over the largest one, -1 to 1. []
+        Displacement drawn over the largest one, -1 to 1.
 
     Returns
     -------

@@ -76,9 +76,9 @@ def supported_spectra(
     axis_of : callable
         From a mesh to the axis after which modes are named.
     element_size : float
-        Largest edge of an element in the first mesh, in m.
+        Largest edge of an element in the first mesh. [m]
     relative_tolerance : float
-        Largest change of a coupled resonance from mesh to mesh. []
+        Largest change of a coupled resonance from mesh to mesh.
     advance : callable, optional
         Called with what is being done, how many meshes are done, and their expected number.
 

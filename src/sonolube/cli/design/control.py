@@ -75,8 +75,11 @@ def control(
     current_limit: Annotated[str | None, typer.Option(metavar="CURRENT", help="Largest current.")] = None,
     slew_limit: Annotated[str | None, typer.Option(metavar="V/s", help="Fastest change of voltage.")] = None,
     warming: Annotated[str, typer.Option(metavar="TEMPERATURE", help="Final temperature rise, such as 40K.")] = "0K",
-    warming_time: Annotated[
-        str | None, typer.Option(metavar="TIME", help="Time constant of the warming; a quarter of the run by default.")
+    warming_constant: Annotated[
+        str | None,
+        typer.Option(
+            "--warming-time", metavar="TIME", help="Time constant of the warming; a quarter of the run by default."
+        ),
     ] = None,
     track: Annotated[bool, typer.Option(help="Follow the resonance by the phase of the impedance.")] = True,
     quality: Annotated[float, typer.Option(help="Quality factor, where the rig has no structure.", min=0.6)] = 50.0,
@@ -84,7 +87,7 @@ def control(
     stick_slip: Annotated[
         bool, typer.Option("--stick-slip", help="Also compute stick-slip of the slider on an elastic holder.")
     ] = False,
-    duration: Annotated[str, typer.Option(metavar="TIME", help="Duration of the run.")] = "0.2s",
+    run_time: Annotated[str, typer.Option("--duration", metavar="TIME", help="Duration of the run.")] = "0.2s",
     changes: Changes = None,
     out: Out = OUT,
     json: Json = False,
@@ -94,12 +97,12 @@ def control(
     Example: sonolube control examples/rigs/tribometer.toml --friction 0.5N --factor 1.15 --warming 40K
     """
     known = read_rig(rig, changes=changes or ())
-    seconds, sampling_rate = to_si(duration, unit="s", name="--duration"), to_si(rate, unit="Hz", name="--rate")
+    seconds, sampling_rate = to_si(run_time, unit="s", name="--duration"), to_si(rate, unit="Hz", name="--rate")
     dead_time = to_si(delay, unit="s", name="--delay")
     if sampling_rate <= 0 or seconds <= 0:
-        raise InvalidInput(f"--rate {rate} and --duration {duration} must be positive")
+        raise InvalidInput(f"--rate {rate} and --duration {run_time} must be positive")
     if dead_time > seconds:
-        raise InvalidInput(f"--delay {delay} must not exceed --duration {duration}")
+        raise InvalidInput(f"--delay {delay} must not exceed --duration {run_time}")
     swing = known.drive.voltage_peak_to_peak if known.drive is not None else None
     settings = ControlSettings(
         friction_force=quantity(friction, unit="N", option="--friction"),
@@ -119,7 +122,7 @@ def control(
         ),
         drift=Drift(
             final_temperature_rise=rise_to_si(warming, name="--warming"),
-            warming_time=_or(seconds / 4, quantity(warming_time, unit="s", option="--warming-time")),
+            warming_time=_or(seconds / 4, quantity(warming_constant, unit="s", option="--warming-time")),
         ),
     )
     assumed, mode = {}, None

@@ -1,4 +1,4 @@
-"""Options of the command `optimise` as a design space, limits, bolt and target."""
+"""Options of the command `optimise` as a design space, horn, bolt and target."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -7,12 +7,12 @@ from typing import Any
 
 from sonolube.actuator import CatalogueActuator, PreloadBolt, catalogue_actuator, catalogue_names, read_catalogue
 from sonolube.cli.console.ranges import ends_by_key, values_by_key
-from sonolube.design.optimisation import OWN, DesignSpace, Horn, Limits
+from sonolube.design.optimisation import OWN, DesignSpace, Horn
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.materials import material
 from sonolube.rig import Rig, structure_entries
 from sonolube.rig.linear_response import require_drive
-from sonolube.units import rise_to_si, to_si
+from sonolube.units import to_si
 
 _WAVEFORMS = ("sine", "square", "triangle", "sawtooth")
 _THREAD = re.compile(r"M(\d+(?:\.\d+)?)x(.+)")
@@ -48,37 +48,7 @@ def friction_ratio(rig: Rig, target: str) -> float:
     return value / intrinsic
 
 
-def limits(
-    *,
-    voltage: float | None,
-    current: float | None,
-    slew_rate: float | None,
-    stress: float | None,
-    warming: str | None,
-    conductance: float | None,
-    horn: Horn | None,
-) -> Limits:
-    """Limits of a design, in SI but for the warming, which is read here.
-
-    Raises
-    ------
-    InvalidInput
-        If a limit of the temperature has no thermal conductance beside it.
-    """
-    if warming is not None and conductance is None:
-        raise InvalidInput("--temperature-limit needs --conductance, the heat that the actuator loses per kelvin")
-    return Limits(
-        voltage_maximum=voltage,
-        current_maximum=current,
-        slew_rate_maximum=slew_rate,
-        nominal_pressure=stress,
-        temperature_rise=None if warming is None else rise_to_si(warming, name="--temperature-limit"),
-        thermal_conductance=conductance,
-        horn=horn,
-    )
-
-
-def horn(material_name: str | None, stress_limit: str | None) -> Horn | None:
+def horn(material_name: str | None, limit: str | None) -> Horn | None:
     """Half-wave horn of a material with the stress amplitude allowed in it; None without both.
 
     Raises
@@ -86,29 +56,29 @@ def horn(material_name: str | None, stress_limit: str | None) -> Horn | None:
     InvalidInput
         If one is given without the other.
     """
-    if material_name is None and stress_limit is None:
+    if material_name is None and limit is None:
         return None
-    if material_name is None or stress_limit is None:
+    if material_name is None or limit is None:
         raise InvalidInput("--horn and --horn-limit belong together: a material and the amplitude of stress it bears")
     solid = material(material_name)
     return Horn(
         density=solid.value("density"),
         youngs_modulus=solid.value("youngs_modulus"),
-        stress_limit=to_si(stress_limit, unit="Pa", name="--horn-limit"),
+        stress_limit=to_si(limit, unit="Pa", name="--horn-limit"),
     )
 
 
-def bolt(thread: str | None, preload: str | None, strength: str) -> PreloadBolt | None:
-    """Preload bolt of a thread such as M6x40mm; None without thread and preload.
+def bolt(thread: str | None, tension: str | None, strength: str) -> PreloadBolt | None:
+    """Preload bolt of a thread such as M6x40mm; None without thread and tension.
 
     Raises
     ------
     InvalidInput
         If one is given without the other, or the thread cannot be read.
     """
-    if thread is None and preload is None:
+    if thread is None and tension is None:
         return None
-    if thread is None or preload is None:
+    if thread is None or tension is None:
         raise InvalidInput("--bolt and --preload belong together, such as --bolt M6x40mm --preload 1kN")
     found = _THREAD.fullmatch(thread.strip())
     if not found:
@@ -118,7 +88,7 @@ def bolt(thread: str | None, preload: str | None, strength: str) -> PreloadBolt 
         length=to_si(found[2], unit="m", name="--bolt"),
         youngs_modulus=_STEEL,
         yield_strength=to_si(strength, unit="Pa", name="--bolt-strength"),
-        preload=to_si(preload, unit="N", name="--preload"),
+        preload=to_si(tension, unit="N", name="--preload"),
     )
 
 

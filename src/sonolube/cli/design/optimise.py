@@ -15,6 +15,7 @@ from sonolube.cli.design.optimisation_answer import OptimisationAnswer
 from sonolube.design import optimisation
 from sonolube.errors import InvalidInput
 from sonolube.rig import read_rig, rig_content
+from sonolube.units import rise_to_si
 
 
 class Objective(StrEnum):
@@ -62,9 +63,12 @@ def optimise(
     voltage_limit: Annotated[str | None, typer.Option(metavar="VOLTAGE", help="Highest voltage either way.")] = None,
     current_limit: Annotated[str | None, typer.Option(metavar="CURRENT", help="Highest current.")] = None,
     slew_limit: Annotated[str | None, typer.Option(metavar="RATE", help="Fastest change, such as 3V/us.")] = None,
-    stress_limit: Annotated[str | None, typer.Option(metavar="STRESS", help="Highest nominal stress.")] = None,
-    temperature_limit: Annotated[
-        str | None, typer.Option(metavar="KELVIN", help="Highest temperature rise, such as 40K.")
+    pressure_limit: Annotated[
+        str | None, typer.Option("--stress-limit", metavar="STRESS", help="Highest nominal stress.")
+    ] = None,
+    warming_limit: Annotated[
+        str | None,
+        typer.Option("--temperature-limit", metavar="KELVIN", help="Highest temperature rise, such as 40K."),
     ] = None,
     conductance: Annotated[
         str | None, typer.Option(metavar="CONDUCTANCE", help="Thermal conductance of the actuator, such as 0.5W/K.")
@@ -72,7 +76,7 @@ def optimise(
     horn: Annotated[str | None, typer.Option(metavar="MATERIAL", help="Of a half-wave horn at the tip.")] = None,
     horn_limit: Annotated[str | None, typer.Option(metavar="STRESS", help="Stress amplitude allowed in it.")] = None,
     bolt: Annotated[str | None, typer.Option(metavar="THREAD", help="Preload bolt, such as M6x40mm.")] = None,
-    preload: Annotated[str | None, typer.Option(metavar="FORCE", help="Tension of the bolt.")] = None,
+    bolt_tension: Annotated[str | None, typer.Option("--preload", metavar="FORCE", help="Tension of the bolt.")] = None,
     bolt_strength: Annotated[str, typer.Option(metavar="STRESS", help="Proof strength; class 8.8.")] = "640MPa",
     quality: Annotated[float, typer.Option(help="Mechanical quality factor of the catalogue's ceramics.")] = 80.0,
     source: Annotated[
@@ -91,13 +95,15 @@ def optimise(
     content = rig_content(rig, changes=changes or ())
     if share is not None and robust is None:
         raise InvalidInput("--quantile needs --robust, the tolerance")
-    limits = options.limits(
-        voltage=quantity(voltage_limit, unit="V", option="--voltage-limit"),
-        current=quantity(current_limit, unit="A", option="--current-limit"),
-        slew_rate=quantity(slew_limit, unit="V/s", option="--slew-limit"),
-        stress=quantity(stress_limit, unit="Pa", option="--stress-limit"),
-        warming=temperature_limit,
-        conductance=quantity(conductance, unit="W/K", option="--conductance"),
+    if warming_limit is not None and conductance is None:
+        raise InvalidInput("--temperature-limit needs --conductance, the heat that the actuator loses per kelvin")
+    limits = optimisation.Limits(
+        voltage_maximum=quantity(voltage_limit, unit="V", option="--voltage-limit"),
+        current_maximum=quantity(current_limit, unit="A", option="--current-limit"),
+        slew_rate_maximum=quantity(slew_limit, unit="V/s", option="--slew-limit"),
+        nominal_pressure=quantity(pressure_limit, unit="Pa", option="--stress-limit"),
+        temperature_rise=None if warming_limit is None else rise_to_si(warming_limit, name="--temperature-limit"),
+        thermal_conductance=quantity(conductance, unit="W/K", option="--conductance"),
         horn=options.horn(horn, horn_limit),
     )
     space = options.design_space(
@@ -107,7 +113,7 @@ def optimise(
         actuators=actuator or [],
         catalogue=catalogue,
         mechanical_quality_factor=quality,
-        bolt=options.bolt(bolt, preload, bolt_strength),
+        bolt=options.bolt(bolt, bolt_tension, bolt_strength),
     )
     task = optimisation.Task(
         space=space,

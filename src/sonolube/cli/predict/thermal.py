@@ -17,8 +17,10 @@ def thermal(
     rig: RigPath,
     pin: Annotated[str, typer.Option(metavar="MATERIAL", help="Material of the pin, which the contact stays on.")],
     disc: Annotated[str, typer.Option(metavar="MATERIAL", help="Material of the disc, which the contact moves over.")],
-    duration: Annotated[str, typer.Option(metavar="TIME", help="Duration of the test.")] = "50s",
-    heat_capacity: Annotated[str, typer.Option(metavar="CAPACITY", help="Heat capacity of the pin.")] = "1.5J/K",
+    test_time: Annotated[str, typer.Option("--duration", metavar="TIME", help="Duration of the test.")] = "50s",
+    capacity: Annotated[
+        str, typer.Option("--heat-capacity", metavar="CAPACITY", help="Heat capacity of the pin.")
+    ] = "1.5J/K",
     conductance: Annotated[
         str, typer.Option(metavar="CONDUCTANCE", help="Thermal conductance from the pin to its surroundings.")
     ] = "0.05W/K",
@@ -36,9 +38,9 @@ def thermal(
         known,
         pin=thermal_solid(pin),
         disc=thermal_solid(disc),
-        heat_capacity=plausible_si(heat_capacity, unit="J/K", name="--heat-capacity"),
+        heat_capacity=plausible_si(capacity, unit="J/K", name="--heat-capacity"),
         thermal_conductance=plausible_si(conductance, unit="W/K", name="--conductance"),
-        duration=plausible_si(duration, unit="s", name="--duration"),
+        duration=plausible_si(test_time, unit="s", name="--duration"),
         vibration_heat_rate=plausible_si(vibration_heat, unit="W", name="--vibration-heat"),
     )
     drawing = Drawing(draw=lambda: temperature_figure(known, result))

@@ -21,7 +21,7 @@ _QUANTITIES = ("settling_time", "vibration_amplitude", "mean_displacement", "bea
 
 def transient(
     rig: RigPath,
-    duration: Annotated[str, typer.Option(metavar="TIME", help="Time that is integrated.")] = "0.1s",
+    run_time: Annotated[str, typer.Option("--duration", metavar="TIME", help="Time that is integrated.")] = "0.1s",
     changes: Changes = None,
     out: Out = OUT,
     json: Json = False,
@@ -30,7 +30,7 @@ def transient(
 
     Example: sonolube transient examples/rigs/tribometer.toml --duration 0.06s
     """
-    seconds = to_si(duration, unit="s", name="--duration")
+    seconds = to_si(run_time, unit="s", name="--duration")
     known = read_rig(rig, changes=changes or ())
     with progress("marching"):
         result = start_up(known, duration=seconds)

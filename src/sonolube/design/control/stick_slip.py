@@ -35,7 +35,7 @@ class StickSlipSuppression:
     voltage_peak_to_peak : float
         Drive voltage of `vibrating`. [V]
     damping : tuple of two float
-        Damping of small motions about steady sliding, without and with vibration. [N s/m]
+        Damping of small motions about steady sliding, without and with vibration, in N s/m.
     """
 
     still: DraggedMotion
