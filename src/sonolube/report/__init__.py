@@ -51,3 +51,7 @@ if not TYPE_CHECKING:
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
         module = next((module for module, names in _MODULES.items() if name in names), "measurement")
         return getattr(import_module(f"{__name__}.{module}"), name)
+
+    def __dir__() -> list[str]:
+        """Public names, for documentation and completion."""
+        return __all__

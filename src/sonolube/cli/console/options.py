@@ -24,7 +24,7 @@ Sizes = Annotated[
 OUT = Path("out")
 
 
-def quantity(text: str | None, *, unit: str, option: str) -> float | None:
+def option_value(text: str | None, *, unit: str, option: str) -> float | None:
     """Value of an option in SI; None where it was not given.
 
     Parameters

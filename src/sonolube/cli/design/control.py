@@ -12,7 +12,7 @@ import typer
 import xarray as xr
 
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
-from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath, quantity
+from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath, option_value
 from sonolube.cli.console.progress import progress
 from sonolube.cli.console.rig_text import friction_model_object, operating_point, rig_settings
 from sonolube.design.control import (
@@ -105,15 +105,15 @@ def control(
         raise InvalidInput(f"--delay {delay} must not exceed --duration {run_time}")
     swing = known.drive.voltage_peak_to_peak if known.drive is not None else None
     settings = ControlSettings(
-        friction_force=quantity(friction, unit="N", option="--friction"),
+        friction_force=option_value(friction, unit="N", option="--friction"),
         amplifier=Amplifier(
-            voltage_maximum=_or(swing or 0.0, quantity(voltage_limit, unit="V", option="--voltage-limit")),
-            current_maximum=_or(inf, quantity(current_limit, unit="A", option="--current-limit")),
-            slew_rate_maximum=_or(inf, quantity(slew_limit, unit="V/s", option="--slew-limit")),
+            voltage_maximum=_value_or(swing or 0.0, option_value(voltage_limit, unit="V", option="--voltage-limit")),
+            current_maximum=_value_or(inf, option_value(current_limit, unit="A", option="--current-limit")),
+            slew_rate_maximum=_value_or(inf, option_value(slew_limit, unit="V/s", option="--slew-limit")),
         ),
         dead_time=dead_time,
         sample_interval=1 / sampling_rate,
-        closed_loop_time=quantity(closed_loop, unit="s", option="--closed-loop"),
+        closed_loop_time=option_value(closed_loop, unit="s", option="--closed-loop"),
         feed_forward=feed_forward.value,
         tracking=track,
         duration=seconds,
@@ -122,7 +122,7 @@ def control(
         ),
         drift=Drift(
             final_temperature_rise=rise_to_si(warming, name="--warming"),
-            warming_time=_or(seconds / 4, quantity(warming_constant, unit="s", option="--warming-time")),
+            warming_time=_value_or(seconds / 4, option_value(warming_constant, unit="s", option="--warming-time")),
         ),
     )
     assumed, mode = {}, None
@@ -311,7 +311,7 @@ class ControlAnswer(Answer):
         return facts
 
 
-def _or(default: float, value: float | None) -> float:
+def _value_or(default: float, value: float | None) -> float:
     """Value of an option, or its default where it was not given."""
     return default if value is None else value
 

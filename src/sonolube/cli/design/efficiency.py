@@ -9,7 +9,7 @@ import typer
 import xarray as xr
 
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
-from sonolube.cli.console.options import OUT, Changes, Json, Out, quantity
+from sonolube.cli.console.options import OUT, Changes, Json, Out, option_value
 from sonolube.cli.console.rig_text import rig_settings
 from sonolube.design.efficiency import EfficiencyCalibration, calibrate_efficiency, efficiency_dataset
 from sonolube.design.efficiency_figures import efficiency_figure
@@ -53,8 +53,8 @@ def efficiency(
     calibration = calibrate_efficiency(
         known,
         read_runs(runs),
-        friction_force=quantity(friction, unit="N", option="--target-friction"),
-        sliding_speed=quantity(speed, unit="m/s", option="--speed"),
+        friction_force=option_value(friction, unit="N", option="--target-friction"),
+        sliding_speed=option_value(speed, unit="m/s", option="--speed"),
         confidence_level=level,
     )
     answer = EfficiencyAnswer(calibration=calibration, rig_file=rig, name=f"{runs.stem}-efficiency")

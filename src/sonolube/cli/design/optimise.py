@@ -8,7 +8,7 @@ import typer
 
 from sonolube.checks import require_positive
 from sonolube.cli.console.answer import deliver
-from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath, quantity
+from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath, option_value
 from sonolube.cli.console.progress import progress
 from sonolube.cli.design import optimisation_options as options
 from sonolube.cli.design.optimisation_answer import OptimisationAnswer
@@ -98,12 +98,12 @@ def optimise(
     if warming_limit is not None and conductance is None:
         raise InvalidInput("--temperature-limit needs --conductance, the heat that the actuator loses per kelvin")
     limits = optimisation.Limits(
-        voltage_maximum=quantity(voltage_limit, unit="V", option="--voltage-limit"),
-        current_maximum=quantity(current_limit, unit="A", option="--current-limit"),
-        slew_rate_maximum=quantity(slew_limit, unit="V/s", option="--slew-limit"),
-        nominal_pressure=quantity(pressure_limit, unit="Pa", option="--stress-limit"),
+        voltage_maximum=option_value(voltage_limit, unit="V", option="--voltage-limit"),
+        current_maximum=option_value(current_limit, unit="A", option="--current-limit"),
+        slew_rate_maximum=option_value(slew_limit, unit="V/s", option="--slew-limit"),
+        nominal_pressure=option_value(pressure_limit, unit="Pa", option="--stress-limit"),
         temperature_rise=None if warming_limit is None else rise_to_si(warming_limit, name="--temperature-limit"),
-        thermal_conductance=quantity(conductance, unit="W/K", option="--conductance"),
+        thermal_conductance=option_value(conductance, unit="W/K", option="--conductance"),
         horn=options.horn(horn, horn_limit),
     )
     space = options.design_space(
@@ -121,7 +121,7 @@ def optimise(
         limits=limits,
         tolerance=None if robust is None else optimisation.Tolerance(built_tolerance=robust, quantile=share),
     )
-    resistance = quantity(source, unit="ohm", option="--source-resistance")
+    resistance = option_value(source, unit="ohm", option="--source-resistance")
     if resistance is not None:
         require_positive(source_resistance=resistance)
     with progress("optimising") as advance:

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from sonolube.cli.console.options import Json, quantity
+from sonolube.cli.console.options import Json, option_value
 from sonolube.cli.measure.measured_files import (
     Files,
     Mapped,
@@ -68,8 +68,8 @@ def friction(
     settings = FrictionSettings(
         mapping=column_mapping(mapping),
         window_duration=to_si(window, unit="s", name="--window"),
-        sliding_speed=quantity(speed, unit="m/s", option="--sliding-speed"),
-        rotation_speed=quantity(turns, unit="1/s", option="--rotation-speed"),
+        sliding_speed=option_value(speed, unit="m/s", option="--sliding-speed"),
+        rotation_speed=option_value(turns, unit="1/s", option="--rotation-speed"),
         motor=motor,
     )
     measure = partial(friction_sheet, settings=settings)

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from sonolube.cli.console.options import Json, quantity
+from sonolube.cli.console.options import Json, option_value
 from sonolube.cli.measure.measured_files import Files, Report, Test, deliver_sheets, each_file, names_of
 from sonolube.cli.measure.surface import Spacing, Unit, spacings
 from sonolube.errors import InvalidInput, NoGroove
@@ -49,7 +49,7 @@ def groove(
     """
     spacing_x, spacing_y = spacings(pixel)
     settings = SurfaceSettings(spacing_x=spacing_x, spacing_y=spacing_y, length_unit=unit)
-    tip_radius = quantity(tip, unit="m", option="--tip-radius")
+    tip_radius = option_value(tip, unit="m", option="--tip-radius")
     ring = None
     if diameter is not None and slid is not None:
         ring = RingSettings(

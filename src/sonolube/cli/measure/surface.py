@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from sonolube.cli.console.options import Json, quantity
+from sonolube.cli.console.options import Json, option_value
 from sonolube.cli.measure.measured_files import Files, Report, Test, deliver_sheets, each_file
 from sonolube.report.measured.surface import SurfaceSettings, surface_sheet
 
@@ -48,8 +48,8 @@ def surface(
         length_unit=unit,
         degree=form,
         robust=robust,
-        short_cutoff_length=quantity(short, unit="m", option="--short-cutoff"),
-        long_cutoff_length=quantity(long, unit="m", option="--long-cutoff"),
+        short_cutoff_length=option_value(short, unit="m", option="--short-cutoff"),
+        long_cutoff_length=option_value(long, unit="m", option="--long-cutoff"),
     )
     sheets, refused = each_file(files, partial(surface_sheet, settings=settings), title="measuring")
     options = {
@@ -67,5 +67,5 @@ def spacings(text: str | None) -> tuple[float | None, float | None]:
     if text is None:
         return None, None
     first, _, second = text.partition(",")
-    along = quantity(first, unit="m", option="--spacing")
-    return along, quantity(second, unit="m", option="--spacing") if second else along
+    along = option_value(first, unit="m", option="--spacing")
+    return along, option_value(second, unit="m", option="--spacing") if second else along
