@@ -186,7 +186,7 @@ def test_a_friction_model_is_one_file_and_one_line(with_friction_model: Path) ->
 def test_a_parameter_of_another_friction_model_is_refused(with_friction_model: Path) -> None:
     rig = with_friction_model / "rig.toml"
     rig.write_text(RIG.read_text().replace("[friction]\n", '[friction]\ndamping_reference = "500 g/s"\n'))
-    with pytest.raises(AssertionError, match="friction.damping_reference.*constant_ratio"):
+    with pytest.raises(AssertionError, match=r"friction\.damping_reference.*constant_ratio"):
         answer(with_friction_model, "friction", rig)
 
 

@@ -1,7 +1,7 @@
-"""Pages that quote the product: tables and answers of commands, made at build time so that they cannot go stale.
+"""Sphinx extension for tables and answers of commands, made from the product when the pages are built.
 
-A page asks for a table by the comment `<!-- table: NAME -->` on a line of its own, and for the answer of a command by
-a block whose first line is ```` ```{answer} sonolube ... ````.
+The comment `<!-- table: NAME -->` on a line of its own is replaced by a table, and a block whose first line is
+```` ```{answer} sonolube ... ```` by the command and what it prints.
 """
 
 import io
@@ -40,13 +40,13 @@ RIGS = DOCS.parent / "examples" / "rigs"
 
 
 def rig_keys() -> str:
-    """Return every table of a rig file with its keys, as sections."""
+    """Tables of a rig file with their keys, as sections."""
     schema = rig_schema()
     return "\n\n".join(_rig_table(name, table, schema) for name, table in _tables("", schema, schema))
 
 
 def example_rigs() -> str:
-    """Return the example rigs with the numbers that tell them apart."""
+    """Example rigs with their load, speed and amplitude."""
     rigs = {path.name: read_rig(path) for path in sorted(RIGS.glob("*.toml"))}
     return _grid(
         ["File", "Rig", "Source", "Load", "Speed", "Amplitude", "Assumed"],
@@ -66,7 +66,7 @@ def example_rigs() -> str:
 
 
 def errata_of_d() -> str:
-    """Return all errata of the dissertation."""
+    """Errata of the dissertation."""
     return _grid(
         ["", "Where", "Printed", "Right", "Evidence"],
         [[each.id, *map(_plain, (each.where, each.printed, each.right, each.evidence))] for each in errata()],
@@ -74,12 +74,12 @@ def errata_of_d() -> str:
 
 
 def materials_with_sources() -> str:
-    """Return every material with its properties, as sections."""
+    """Materials with their properties and sources, as sections."""
     return "\n\n".join(_material(material(name)) for name in material_names())
 
 
 def vocabulary() -> str:
-    """Return every quantity with its symbol and unit."""
+    """Quantities of the vocabulary with symbol and unit."""
     return _grid(
         ["Name", "Symbol", "Unit", "Meaning"],
         [[f"`{each.name}`", f"${each.symbol}$", each.unit, _plain(each.meaning)] for each in quantities().values()],
@@ -146,9 +146,9 @@ TABLES: Mapping[str, Callable[[], str]] = {
 
 
 class Answer(SphinxDirective):
-    """A command of the product and what it answers, run in a folder that holds `examples` and `my-rig.toml`.
+    """Directive for a command and its output, run in a folder with `examples` and `my-rig.toml`.
 
-    The option `refused` says that the command is meant to end with exit code 2.
+    With the option `refused` the command must end with exit code 2.
     """
 
     required_arguments = 1
@@ -156,7 +156,7 @@ class Answer(SphinxDirective):
     option_spec: ClassVar = {"refused": directives.flag}
 
     def run(self) -> list[nodes.Node]:
-        """Return the command and its answer as one block of text."""
+        """Block of text with the command and its output."""
         self.env.note_reread()
         command = self.arguments[0]
         code, printed = answer(command)
@@ -168,7 +168,7 @@ class Answer(SphinxDirective):
 
 
 def answer(command: str) -> tuple[object, str]:
-    """Return the exit code of a command and what it printed, complaints included."""
+    """Exit code and output of a command, standard error included."""
     printed = io.StringIO()
     with scratch_folder() as folder, chdir(folder), redirect_stdout(printed), redirect_stderr(printed):
         try:
@@ -180,7 +180,7 @@ def answer(command: str) -> tuple[object, str]:
 
 @contextmanager
 def scratch_folder() -> Iterator[Path]:
-    """Make a folder in which the commands of the pages work as they stand."""
+    """Temporary folder in which the commands of the pages run as printed."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "examples").symlink_to(RIGS.parent)
@@ -189,15 +189,15 @@ def scratch_folder() -> Iterator[Path]:
 
 
 def fill(app: Sphinx, docname: str, source: list[str]) -> None:
-    """Put the tables asked for into a page before it is parsed."""
-    filled = re.sub(r"^<!-- table: (\w+) -->$", lambda asked: TABLES[asked[1]](), source[0], flags=re.MULTILINE)
+    """Replace the comments that name tables by the tables, before a page is parsed."""
+    filled = re.sub(r"^<!-- table: (\w+) -->$", lambda match: TABLES[match[1]](), source[0], flags=re.MULTILINE)
     if filled != source[0]:
         app.env.note_reread()
     source[0] = filled
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
-    """Make both known to Sphinx."""
+    """Register the directive and the tables with Sphinx."""
     app.add_directive("answer", Answer)
     app.connect("source-read", fill)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
@@ -298,5 +298,5 @@ def _grid(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 
 def _plain(text: str) -> str:
-    """Return text that Markdown shows as it stands."""
+    """Text with the special characters of Markdown escaped."""
     return re.sub(r"([\\`*_{}\[\]<>#|$~^])", r"\\\1", text)

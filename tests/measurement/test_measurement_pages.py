@@ -9,12 +9,12 @@ from pathlib import Path
 import pytest
 
 from sonolube.cli import main
-from sonolube.cli.measure import measure
+from sonolube.cli.commands import COMMANDS as TABLE
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "measurements.md").read_text(encoding="utf-8")
 STEPS = re.findall(r"```console\n\$ (sonolube measure [^\n]*)\n```", PAGE)
-COMMANDS = {str(one.callback.__name__): one.callback for one in measure.registered_commands if one.callback}
+COMMANDS = {one.name.split()[1]: one.function for one in TABLE if one.name.startswith("measure ")}
 
 
 def quoted(step: str) -> list[str]:

@@ -14,14 +14,14 @@ from sonolube.report import (
     MeasurementReport,
     measurement_lines,
     measurement_object,
-    read_test_sheet,
-    test_sheet_table,
+    pin_on_disc_rows,
+    read_pin_on_disc_sheet,
     write_measurement_report,
 )
 from sonolube.report.measured.friction import FrictionSettings, friction_sheet
 from sonolube.report.measured.friction_comparison import comparison_sheet
 from sonolube.report.measured.impedance import ImpedanceSettings, impedance_sheet
-from sonolube.report.measured.sheet import Sheet, known
+from sonolube.report.measured.sheet import Sheet, quantity_value
 from sonolube.report.measured.surface import SurfaceSettings, surface_sheet
 from sonolube.surfaces import GaussianCorrelationSpectrum, gaussian_surface
 
@@ -79,13 +79,13 @@ def test_a_file_cannot_write_into_the_page(page: str) -> None:
 
 def test_a_mean_arrives_with_unit_uncertainty_digest_and_version(tmp_path: Path) -> None:
     sheet = friction_sheet(recording_file(tmp_path / "test.csv", 0.5), settings=FrictionSettings(sliding_speed=0.02))
-    told = json.loads(json.dumps(measurement_object(report_of(sheet)), allow_nan=False))
-    force = told["results"][0]["values"]["friction_force"]
+    content = json.loads(json.dumps(measurement_object(report_of(sheet)), allow_nan=False))
+    force = content["results"][0]["values"]["friction_force"]
     assert force["unit"] == "N"
     assert force["value"] == approx(0.5, abs=5 * force["uncertainty"])
     assert force["uncertainty"] == approx(0.02 / 6000**0.5, rel=0.3)
-    assert re.fullmatch("[0-9a-f]{64}", told["results"][0]["source"]["sha256"])
-    assert told["version"]
+    assert re.fullmatch("[0-9a-f]{64}", content["results"][0]["source"]["sha256"])
+    assert content["version"]
 
 
 def test_a_test_that_is_steady_from_the_start_slid_nothing_before(tmp_path: Path) -> None:
@@ -182,8 +182,8 @@ material = "aluminium 2024"
 
 def test_the_test_sheet_keeps_the_order_and_says_what_nobody_stated(tmp_path: Path) -> None:
     (tmp_path / "test.toml").write_text(TEST, encoding="utf-8")
-    sheet = Sheet(title="trace.csv", values=(known("friction_force", 0.5, uncertainty=0.1),))
-    table = test_sheet_table(read_test_sheet(tmp_path / "test.toml"), [sheet])
+    sheet = Sheet(title="trace.csv", values=(quantity_value("friction_force", 0.5, uncertainty=0.1),))
+    table = pin_on_disc_rows(read_pin_on_disc_sheet(tmp_path / "test.toml"), [sheet])
     assert list(table) == [
         "Test parameters",
         "Materials and specimens",
@@ -199,4 +199,4 @@ def test_the_test_sheet_keeps_the_order_and_says_what_nobody_stated(tmp_path: Pa
 def test_a_misspelt_key_of_a_test_sheet_is_answered_with_the_right_one(tmp_path: Path) -> None:
     (tmp_path / "test.toml").write_text('[parameters]\nnormal_lod = "2N"\n', encoding="utf-8")
     with raises(InvalidInput, match=r"parameters\.normal_lod: unknown key; did you mean normal_load\?"):
-        read_test_sheet(tmp_path / "test.toml")
+        read_pin_on_disc_sheet(tmp_path / "test.toml")

@@ -132,11 +132,15 @@ def test_a_fact_may_have_conditions_of_its_own(tmp_path: Path) -> None:
         (
             '["50 g", "500 g"]',
             '["50 g", "500 m"]',
-            r"parameters.tip_mass 500 m is a length; wanted a mass, such as 70g",
+            r"parameters.tip_mass 500 m is a length; expected a mass, such as 70g",
         ),
         ("frequency =", "frequenzy =", r"conditions.frequenzy: unknown key; did you mean frequency\?"),
-        ('"2 kHz"', '"2 km"', r"conditions.frequency: 2 km is a length; wanted a frequency, such as 22kHz"),
-        ('value = "120 g"', "value = 0.12", r"facts.0: value 0.12 has no unit; wanted a mass, such as 70g, in quotes"),
+        ('"2 kHz"', '"2 km"', r"conditions.frequency: 2 km is a length; expected a frequency, such as 22kHz"),
+        (
+            'value = "120 g"',
+            "value = 0.12",
+            r"facts.0: value 0.12 has no unit; expected a mass, such as 70g, in quotes",
+        ),
         ('tolerance = "1 g"', 'tolerance = "0 g"', r"facts.0: fact tip_mass: tolerance must be positive, got 0.0"),
         ('value = "22 kHz"', 'value = "22 THz"', r"facts.1: value 22 THz lies beyond any rig"),
         (

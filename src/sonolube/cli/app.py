@@ -1,103 +1,81 @@
-"""The command line: which commands there are, and what a user reads when one is refused."""
+"""Program `sonolube`: its commands from their table, exit codes, and the one line of a refusal."""
 
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import typer
 
 from sonolube import __version__
-from sonolube.cli import (
-    actuators,
-    catalogue,
-    comparison,
-    control,
-    efficiency,
-    horn,
-    identification,
-    impedance,
-    literature,
-    mapping,
-    measure,
-    modal,
-    motion,
-    operate,
-    optimise,
-    regime,
-    reproduction,
-    study,
-    sweep,
-    thermal,
-    uncertainty,
-)
+from sonolube.cli.commands import COMMANDS, GROUPS, MOVED_COMMANDS, RENAMED_OPTIONS, Command
 from sonolube.errors import SonolubeError
 from sonolube.threads import threads_running
 
-_INTERRUPTED = 130
-_LONGEST = 1200  # characters of a complaint, which may quote what was given
-
-app = typer.Typer(
-    name="sonolube",
-    no_args_is_help=True,
-    pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
-    help="Ultrasonic lubrication: friction and wear of two surfaces of which one vibrates.\n\n"
-    "Example: sonolube friction examples/rigs/tribometer.toml",
+_BAD_INPUT, _INTERRUPTED = 2, 130  # exit codes
+_LONGEST = 1200  # characters of a refusal, which may quote the input
+_HELP = (
+    "Ultrasonic lubrication: friction and wear of two surfaces of which one vibrates.\n\n"
+    "Example: sonolube friction examples/rigs/tribometer.toml"
 )
-app.command()(reproduction.reproduce)
-app.command()(operate.contact)
-app.command()(operate.friction)
-app.command()(operate.wear)
-app.command()(operate.simulate)
-app.command()(motion.response)
-app.command()(motion.transient)
-app.command()(modal.modes)
-app.add_typer(horn.horn, name="horn")
-app.add_typer(impedance.impedance, name="impedance")
-app.command()(study.study)
-app.command()(comparison.compare)
-app.command()(thermal.thermal)
-app.command()(regime.regime)
-app.command()(control.control)
-app.command()(sweep.sweep)
-app.command()(mapping.map)
-app.command()(uncertainty.uncertainty)
-app.command()(optimise.optimise)
-app.command()(efficiency.efficiency)
-app.add_typer(identification.identify, name="identify")
-app.add_typer(measure.measure, name="measure")
-app.command()(catalogue.materials)
-app.command()(actuators.actuators)
-app.command()(catalogue.published)
-app.command()(literature.literature)
-app.command()(catalogue.schema)
 
 
-@app.callback(invoke_without_command=True)
-def _version(
-    version: bool = typer.Option(False, "--version", help="Print the version and stop.", is_eager=True),
-) -> None:
-    if version:
-        typer.echo(f"sonolube {__version__}")
-        raise typer.Exit
+def program(arguments: Sequence[str]) -> typer.Typer:
+    """Program with all commands of the table, of which only the one that is called is imported.
+
+    Parameters
+    ----------
+    arguments : sequence of str
+        Arguments of the program, which begin with the name of a command.
+
+    Returns
+    -------
+    typer.Typer
+    """
+    words = [*arguments, *_words_to_complete()]
+    app = typer.Typer(
+        name="sonolube",
+        no_args_is_help=True,
+        pretty_exceptions_enable=False,
+        context_settings={"help_option_names": ["-h", "--help"]},
+        help=_HELP,
+    )
+    app.callback(invoke_without_command=True)(_version)
+    groups: dict[str, typer.Typer] = {}
+    for command in COMMANDS:
+        *group, name = command.name.split()
+        if not group:
+            app.command(name, rich_help_panel=command.panel)(_function(command, words))
+            continue
+        if group[0] not in groups:
+            groups[group[0]] = typer.Typer(no_args_is_help=True, help=GROUPS[group[0]])
+            app.add_typer(groups[group[0]], name=group[0], rich_help_panel=command.panel)
+        groups[group[0]].command(name)(_function(command, words))
+    return app
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Run the command line and exit: 0 after success, 2 after bad input, 130 after an interruption.
+    """Run the program and exit: 0 after success, 1 after files refused, 2 after bad input, 130 after an interruption.
 
     Parameters
     ----------
     arguments : sequence of str, optional
-        What follows the command's name; what the shell gave where absent.
+        Command with its arguments; those of the process where absent.
+
+    Raises
+    ------
+    SystemExit
+        Always.
     """
     arguments = list(sys.argv[1:] if arguments is None else arguments)
-    command = " ".join(["sonolube", *[word for word in arguments[:1] if not word.startswith("-")]])
+    command = next((word for word in arguments[:1] if not word.startswith("-")), "")
     try:
-        code = app(args=arguments, prog_name="sonolube", standalone_mode=False)
+        if command in MOVED_COMMANDS:
+            raise SonolubeError(MOVED_COMMANDS[command])
+        code = program(arguments)(args=arguments, prog_name="sonolube", standalone_mode=False)
     except (SonolubeError, OSError) as refusal:
         code = _refuse(command, str(refusal))
     except typer.TyperException as refusal:
-        code = _refuse(command, getattr(refusal, "format_message", refusal.__str__)())
+        code = _refuse(command, _usage_error(command, refusal))
     except MemoryError as refusal:
         code = _refuse(command, f"does not fit into memory; ask for fewer points: {refusal}")
     except (KeyboardInterrupt, typer.Abort):
@@ -108,10 +86,49 @@ def main(arguments: Sequence[str] | None = None) -> None:
     sys.exit(code if isinstance(code, int) else 0)
 
 
+def _function(command: Command, words: Sequence[str]) -> Callable[..., None]:
+    """Function of a command that is called; for others one with the same help, whose module is not imported."""
+    name = command.name.split()
+    if list(words[: len(name)]) == name:
+        return command.function
+
+    def not_called() -> None:
+        pass
+
+    not_called.__doc__ = command.help
+    return not_called
+
+
+def _words_to_complete() -> list[str]:
+    """Words typed so far where a shell asks to complete an option or its value; files the shell completes itself."""
+    if "_SONOLUBE_COMPLETE" not in os.environ:
+        return []
+    words = (os.environ.get("_TYPER_COMPLETE_ARGS") or os.environ.get("COMP_WORDS", "")).split()[1:]
+    return words if any(word.startswith("-") for word in words[-2:]) else []
+
+
+def _version(
+    version: bool = typer.Option(False, "--version", help="Print the version and stop.", is_eager=True),
+) -> None:
+    """Print the version where it is asked for."""
+    if version:
+        typer.echo(f"sonolube {__version__}")
+        raise typer.Exit
+
+
+def _usage_error(command: str, refusal: typer.TyperException) -> str:
+    """Message of arguments that do not fit a command, with the new name of a renamed option."""
+    renamed = RENAMED_OPTIONS.get((command, getattr(refusal, "option_name", "")))
+    if renamed:
+        return f"{refusal.option_name} is now {renamed}"  # type: ignore[attr-defined]
+    return str(getattr(refusal, "format_message", refusal.__str__)())
+
+
 def _refuse(command: str, reason: str) -> int:
-    told = " ".join(reason.replace("Value error, ", "").split())
-    if len(told) > _LONGEST:
-        told = f"{told[: _LONGEST // 2]} ... {told[-_LONGEST // 2 :]}"
-    if told:
-        typer.echo(f"{command}: {told}", err=True)
-    return 2
+    """Print a refusal as one line on standard error, and return the exit code of bad input."""
+    text = " ".join(reason.replace("Value error, ", "").split())
+    if len(text) > _LONGEST:
+        text = f"{text[: _LONGEST // 2]} ... {text[-_LONGEST // 2 :]}"
+    if text:
+        typer.echo(f"{' '.join(['sonolube', command]).strip()}: {text}", err=True)
+    return _BAD_INPUT

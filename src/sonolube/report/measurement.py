@@ -1,57 +1,82 @@
-"""The measurement report: sheets of measured files as a self-contained page, as JSON and as lines."""
+"""Measurement report: sheets of measured files as a self-contained page, as JSON and as lines of text."""
 
-import base64
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from sonolube import __version__
-from sonolube.figure import publication_style, render_figure
 from sonolube.files import write_atomically
-from sonolube.report.measured.sheet import Sheet, SheetFigure, SheetTable, Value
-from sonolube.report.pin_on_disc_sheet import TestSheet, test_sheet_table
-
-Advance = Callable[[str, int, int], None]
+from sonolube.report.measured.sheet import Sheet, SheetTable, SheetValue
+from sonolube.report.page import Advance, Drawing, drawn, embedded, html
+from sonolube.report.pin_on_disc_sheet import PinOnDiscSheet, pin_on_disc_rows
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class MeasurementReport:
-    """What files were measured to say.
+    """Sheets of measured files, with the settings that their numbers depend on.
 
     Parameters
     ----------
     title : str
         What was measured.
     settings : mapping of str to str
-        What the numbers depend on beside the files, as it was given.
+        Settings that the numbers depend on beside the files, as given.
     sheets : tuple of Sheet
-        One a file that could be measured, in the order given; then what compares them.
+        One a file that could be measured, in the order given, then those that compare them.
     refused : mapping of str to str
         Files that could not be measured, each with its reason.
-    test : TestSheet or None
-        How the test was made, as its operator says.
+    test : PinOnDiscSheet or None
+        Conditions of the test as its operator states them.
     """
 
     title: str
     settings: Mapping[str, str]
     sheets: tuple[Sheet, ...]
     refused: Mapping[str, str]
-    test: TestSheet | None = None
+    test: PinOnDiscSheet | None = None
+
+
+def measurement_page(report: MeasurementReport, *, advance: Advance = lambda name, done, total: None) -> str:
+    """HTML of a measurement report, self-contained, with all figures of its sheets.
+
+    Parameters
+    ----------
+    report : MeasurementReport
+    advance : callable
+        Called after each figure with its title, the number done and their total.
+
+    Returns
+    -------
+    str
+    """
+    total = sum(len(sheet.figures) for sheet in report.sheets)
+    pictures: dict[tuple[int, str], str] = {}
+    for place, sheet in enumerate(report.sheets):
+        for figure in sheet.figures:
+            pictures[place, figure.name] = embedded(drawn(Drawing(draw=figure.draw), forms=("png",))["png"])
+            advance(figure.title, len(pictures), total)
+    return html(
+        "measurement.html",
+        version=__version__,
+        report=report,
+        pictures=pictures,
+        test=None if report.test is None else pin_on_disc_rows(report.test, report.sheets),
+    )
 
 
 def write_measurement_report(
-    report: MeasurementReport, *, path: Path, advance: Advance = lambda what, done, total: None
+    report: MeasurementReport, *, path: Path, advance: Advance = lambda name, done, total: None
 ) -> Path:
-    """Write the report as one HTML file that needs no other.
+    """Write the page of a measurement report.
 
     Parameters
     ----------
     report : MeasurementReport
     path : Path
-        Where to; the folder is made where it is missing.
+        Its folder is made where it is missing.
     advance : callable
-        Told after each figure what was done, how many are done, and of how many.
+        As in `measurement_page`.
 
     Returns
     -------
@@ -61,31 +86,14 @@ def write_measurement_report(
     Raises
     ------
     InvalidInput
-        If the place cannot be written to.
+        If the file cannot be written.
     """
-    from jinja2 import Environment, PackageLoader, StrictUndefined
-
-    environment = Environment(
-        loader=PackageLoader("sonolube.report"), autoescape=True, undefined=StrictUndefined, trim_blocks=True
-    )
-    total = sum(len(sheet.figures) for sheet in report.sheets)
-    pictures: dict[tuple[int, str], str] = {}
-    for place, sheet in enumerate(report.sheets):
-        for figure in sheet.figures:
-            pictures[place, figure.name] = base64.b64encode(_png(figure)).decode()
-            advance(figure.title, len(pictures), total)
-    page = environment.get_template("measurement.html").render(
-        version=__version__,
-        report=report,
-        pictures=pictures,
-        test=None if report.test is None else test_sheet_table(report.test, report.sheets),
-    )
-    return write_atomically(path, page)
+    return write_atomically(path, measurement_page(report, advance=advance))
 
 
 def measurement_object(report: MeasurementReport) -> dict[str, Any]:
-    """Return the report as one JSON object, all quantities in SI."""
-    told: dict[str, Any] = {
+    """Measurement report for JSON, all quantities in SI."""
+    content: dict[str, Any] = {
         "measured": report.title,
         "version": __version__,
         "settings": dict(report.settings),
@@ -93,31 +101,27 @@ def measurement_object(report: MeasurementReport) -> dict[str, Any]:
         "refused": [{"file": name, "reason": reason} for name, reason in report.refused.items()],
     }
     if report.test is not None:
-        told["test_sheet"] = [
-            {"part": part, "what": what, "value": value}
-            for part, rows in test_sheet_table(report.test, report.sheets).items()
-            for what, value in rows
+        content["test_sheet"] = [
+            {"part": part, "what": name, "value": value}
+            for part, rows in pin_on_disc_rows(report.test, report.sheets).items()
+            for name, value in rows
         ]
-    return told
+    return content
 
 
 def measurement_lines(report: MeasurementReport) -> list[str]:
-    """Return what a person reads in the terminal."""
+    """Values, tables and results that were not found of every sheet, as lines of text; caveats apart."""
     return [line for sheet in report.sheets for line in _sheet_lines(sheet)]
 
 
-def _png(figure: SheetFigure) -> bytes:
-    import matplotlib.pyplot as plt
-
-    with publication_style():
-        drawn = figure.draw()
-        try:
-            return render_figure(drawn, "png")
-        finally:
-            plt.close(drawn)
+def measurement_caveats(report: MeasurementReport) -> list[str]:
+    """Caveats of all sheets, each preceded by the title of its sheet where there are several."""
+    several = len(report.sheets) > 1
+    return [f"{sheet.title}: {caveat}" if several else caveat for sheet in report.sheets for caveat in sheet.caveats]
 
 
 def _sheet_object(sheet: Sheet) -> dict[str, Any]:
+    """Sheet for JSON, figures left out."""
     return {
         "title": sheet.title,
         "source": dict(sheet.source),
@@ -128,16 +132,18 @@ def _sheet_object(sheet: Sheet) -> dict[str, Any]:
     }
 
 
-def _value_object(value: Value) -> dict[str, Any]:
-    told: dict[str, Any] = {"value": _finite(value.value), "unit": value.unit}
+def _value_object(value: SheetValue) -> dict[str, Any]:
+    """Value for JSON with its unit, uncertainty and interval."""
+    content: dict[str, Any] = {"value": _finite(value.value), "unit": value.unit}
     if value.uncertainty is not None:
-        told["uncertainty"] = _finite(value.uncertainty)
+        content["uncertainty"] = _finite(value.uncertainty)
     if value.interval is not None:
-        told["lower"], told["upper"] = map(_finite, value.interval)
-    return told
+        content["lower"], content["upper"] = map(_finite, value.interval)
+    return content
 
 
 def _table_object(table: SheetTable) -> dict[str, Any]:
+    """Table for JSON: units by column, and rows by column."""
     return {
         "units": {column.name: column.unit for column in table.columns},
         "rows": [
@@ -147,20 +153,21 @@ def _table_object(table: SheetTable) -> dict[str, Any]:
 
 
 def _finite(cell: float | str | None) -> float | str | None:
-    """Return None for what JSON cannot say."""
+    """Cell, or None for a number that JSON has no notation for."""
     return None if isinstance(cell, float) and cell - cell != 0 else cell
 
 
 def _sheet_lines(sheet: Sheet) -> list[str]:
+    """Sheet as lines of text, caveats apart."""
     width = max((len(value.label) for value in sheet.values), default=0)
     lines = [sheet.title, *(f"  {value.label:<{width}}  {value.text}" for value in sheet.values)]
     for table in sheet.tables:
         lines += ["", f"  {table.title}", *_table_lines(table)]
-    lines += [f"  caveat: {caveat}" for caveat in sheet.caveats]
     return [*lines, *(f"  not found: {reason}" for reason in sheet.not_found)]
 
 
 def _table_lines(table: SheetTable) -> list[str]:
+    """Table as lines of text, columns aligned to the right."""
     cells = [[column.label for column in table.columns]]
     cells += [[column.text(cell) for column, cell in zip(table.columns, row, strict=True)] for row in table.rows]
     widths = [max(map(len, column)) for column in zip(*cells, strict=True)]

@@ -1,4 +1,4 @@
-"""The test sheet: how a pin-on-disc test was made and what came of it, in the order in which ASTM G99 asks for it."""
+"""Conditions and results of a pin-on-disc test in the order of ASTM G99, read from TOML and filled by measurements."""
 
 import tomllib
 from collections.abc import Mapping, Sequence
@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from sonolube.errors import InvalidInput, suggestion
-from sonolube.report.measured.sheet import Sheet, Value
+from sonolube.report.measured.sheet import Sheet, SheetValue
 from sonolube.units import format_si, to_si
 from sonolube.vocabulary import quantities
 
-_ABSENT = "not stated"
+_NOT_STATED = "not stated"
 _PARAMETERS = {
     "normal_load": "Load",
     "sliding_speed": "Sliding speed",
@@ -42,8 +42,8 @@ _FRICTION = ("friction_force", "friction_coefficient", "steady_friction_force", 
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class TestSheet:
-    """How a test was made.
+class PinOnDiscSheet:
+    """Conditions of a pin-on-disc test as its operator states them.
 
     Parameters
     ----------
@@ -51,32 +51,30 @@ class TestSheet:
         By section (parameters, pin, disc, test) and key, as written.
     """
 
-    __test__ = False  # a record of tests, not a test
-
     entries: Mapping[str, Mapping[str, str]]
 
     def quantity(self, name: str) -> float | None:
-        """Return a parameter of the test in SI, such as normal_load; None where it is not stated."""
+        """Value of a parameter of the test in SI, such as normal_load; None where it is not stated."""
         text = self.entries.get("parameters", {}).get(name)
         return None if text is None else to_si(text, unit=quantities()[name].unit, name=f"parameters.{name}")
 
 
-def read_test_sheet(path: Path) -> TestSheet:
-    """Read how a test was made from a TOML file.
+def read_pin_on_disc_sheet(path: Path) -> PinOnDiscSheet:
+    """Conditions of a test from a TOML file.
 
     Parameters
     ----------
     path : Path
-        With the tables `parameters`, `pin`, `disc` and `test`; every key may be left out.
+        With the tables `parameters`, `pin`, `disc` and `test`, whose keys are all optional.
 
     Returns
     -------
-    TestSheet
+    PinOnDiscSheet
 
     Raises
     ------
     InvalidInput
-        Naming the file and the key, if it cannot be read or a key or value is not understood.
+        Naming the file and the key, if the file cannot be read or a key or value is not valid.
     """
     try:
         content = tomllib.loads(path.read_text(encoding="utf-8-sig"))
@@ -85,12 +83,12 @@ def read_test_sheet(path: Path) -> TestSheet:
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as failure:
         raise InvalidInput(f"{path}: {failure}") from None
     for section, entries in content.items():
-        _refuse_unknown(path, section, _SECTIONS, "")
+        _require_known(path, section, _SECTIONS, "")
         if not isinstance(entries, dict):
             raise InvalidInput(f"{path}: {section} must be a table, got {entries!r}")
         for key in entries:
-            _refuse_unknown(path, key, _SECTIONS[section], f"{section}.")
-    sheet = TestSheet(
+            _require_known(path, key, _SECTIONS[section], f"{section}.")
+    sheet = PinOnDiscSheet(
         entries={section: {key: str(value) for key, value in entries.items()} for section, entries in content.items()}
     )
     try:
@@ -101,38 +99,37 @@ def read_test_sheet(path: Path) -> TestSheet:
     return sheet
 
 
-def test_sheet_table(test: TestSheet, sheets: Sequence[Sheet]) -> dict[str, list[tuple[str, str]]]:
-    """Return the rows of the test sheet by part.
+def pin_on_disc_rows(test: PinOnDiscSheet, sheets: Sequence[Sheet]) -> dict[str, list[tuple[str, str]]]:
+    """Conditions, wear and friction of a test in the order of ASTM G99.
 
     Parameters
     ----------
-    test : TestSheet
+    test : PinOnDiscSheet
     sheets : sequence of Sheet
-        What was measured, for the parts on wear and friction.
+        Measurements, for the parts on wear and friction.
 
     Returns
     -------
-    dict of str to list of (what, value)
-        Test parameters, specimens, apparatus, wear and friction; "not stated" where nobody said.
+    dict of str to list of (str, str)
+        Names and values of test parameters, specimens, apparatus, wear and friction; "not stated" where absent.
     """
 
     def stated(section: str, prefix: str = "") -> list[tuple[str, str]]:
+        """Entries of a section with their labels."""
         entries = test.entries.get(section, {})
-        return [(f"{prefix}{label}", entries.get(key, _ABSENT)) for key, label in _SECTIONS[section].items()]
+        return [(f"{prefix}{label}", entries.get(key, _NOT_STATED)) for key, label in _SECTIONS[section].items()]
 
     return {
         "Test parameters": stated("parameters"),
         "Materials and specimens": [*stated("pin", "Pin, "), *stated("disc", "Disc, ")],
         "Apparatus and procedure": stated("test"),
-        "Wear": _measured(sheets, _WEAR) + _wear_rates(test, sheets),
-        "Friction": _measured(sheets, _FRICTION) + _coefficients(test, sheets),
+        "Wear": _measured(sheets, _WEAR) + _specific_wear(test, sheets),
+        "Friction": _measured(sheets, _FRICTION) + _friction_coefficients(test, sheets),
     }
 
 
-test_sheet_table.__test__ = False  # type: ignore[attr-defined]
-
-
 def _measured(sheets: Sequence[Sheet], names: Sequence[str]) -> list[tuple[str, str]]:
+    """Values of these names from all sheets."""
     return [
         (f"{value.label}, {sheet.title}", value.text)
         for sheet in sheets
@@ -141,36 +138,40 @@ def _measured(sheets: Sequence[Sheet], names: Sequence[str]) -> list[tuple[str, 
     ] or [("Measured here", "no")]
 
 
-def _coefficients(test: TestSheet, sheets: Sequence[Sheet]) -> list[tuple[str, str]]:
+def _friction_coefficients(test: PinOnDiscSheet, sheets: Sequence[Sheet]) -> list[tuple[str, str]]:
+    """Measured friction forces over the stated load."""
     load = test.quantity("normal_load")
     if not load:
         return []
     return [
-        (f"Coefficient of friction at {format_si(load, 'N')}, {sheet.title}", _over(value, load, "").text)
+        (f"Coefficient of friction at {format_si(load, 'N')}, {sheet.title}", _divided(value, load, "").text)
         for sheet in sheets
         for value in sheet.values
         if value.name in ("friction_force", "steady_friction_force")
     ]
 
 
-def _wear_rates(test: TestSheet, sheets: Sequence[Sheet]) -> list[tuple[str, str]]:
+def _specific_wear(test: PinOnDiscSheet, sheets: Sequence[Sheet]) -> list[tuple[str, str]]:
+    """Measured wear volumes over the stated load and sliding distance."""
     load, distance = test.quantity("normal_load"), test.quantity("sliding_distance")
     if not load or not distance:
         return []
     return [
-        (f"Wear volume per distance and load, {sheet.title}", _over(value, load * distance, "m2/N").text)
+        (f"Wear volume per distance and load, {sheet.title}", _divided(value, load * distance, "m2/N").text)
         for sheet in sheets
         for value in sheet.values
         if value.name == "ring_volume"
     ]
 
 
-def _over(value: Value, divisor: float, unit: str) -> Value:
+def _divided(value: SheetValue, divisor: float, unit: str) -> SheetValue:
+    """Value and uncertainty over an exact divisor."""
     error = None if value.uncertainty is None else value.uncertainty / divisor
-    return Value(name=value.name, label=value.label, value=value.value / divisor, unit=unit, uncertainty=error)
+    return SheetValue(value.name, value.label, value.value / divisor, unit, uncertainty=error)
 
 
-def _refuse_unknown(path: Path, key: str, expected: Mapping[str, object], prefix: str) -> None:
+def _require_known(path: Path, key: str, expected: Mapping[str, object], prefix: str) -> None:
+    """Raise for a key that the file format does not have, with the nearest one that it has."""
     if key not in expected:
         advice = suggestion(key, expected) or f"known: {', '.join(expected)}"
         raise InvalidInput(f"{path}: {prefix}{key}: unknown key; {advice}")

@@ -246,7 +246,7 @@ def _quantity(key: str, value: str | float, unit: str) -> float:
     """Number in SI from text with a unit; pure numbers, such as quality factors, may stand without quotes."""
     if unit:
         if not isinstance(value, str):
-            raise InvalidInput(f"{key} {value!r} has no unit; wanted {unit_description(unit)}, in quotes")
+            raise InvalidInput(f"{key} {value!r} has no unit; expected {unit_description(unit)}, in quotes")
         return plausible_si(value, unit=unit, name=key)
     number = to_si(value, unit="", name=key) if isinstance(value, str) else value
     if not _LEAST_NUMBER <= number <= _LARGEST_NUMBER:

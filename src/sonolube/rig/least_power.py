@@ -67,12 +67,12 @@ def least_power_study(
     """
     rig = driven_rig(rig)
     f = np.atleast_1d(require_positive(frequency=frequency))
-    wanted = float(require_within(0.0, 1.0, friction_ratio=friction_ratio))
+    target = float(require_within(0.0, 1.0, friction_ratio=friction_ratio))
     highest = float(require_positive(voltage_maximum=voltage_maximum))
     top = _points(rig, f, np.full(f.shape, highest))
-    reached = top.friction_ratio <= wanted
+    reached = top.friction_ratio <= target
     log_volts = np.full(f.shape, np.log(highest))
-    log_volts[reached] = _search(rig, f[reached], wanted, top.friction_ratio[reached], np.log(highest), advance)
+    log_volts[reached] = _search(rig, f[reached], target, top.friction_ratio[reached], np.log(highest), advance)
     found = _points(rig, f, np.exp(log_volts))
     missed = ~reached & ~top.failed
     numbers = {
@@ -91,15 +91,15 @@ def least_power_study(
     return gridded(
         {"status": status.astype(np.str_), "reason": reason.astype(np.str_)} | numbers,
         axes={"frequency": f},
-        title=f"Voltage and power for a friction ratio of {wanted:g}, {rig.title}",
+        title=f"Voltage and power for a friction ratio of {target:g}, {rig.title}",
         about={"rig": rig.title, "friction_model": rig.friction_model.name},
     )
 
 
-def _search(rig: DrivenRig, f: Floats, wanted: float, at_top: Floats, top: float, advance: Advance | None) -> Floats:
+def _search(rig: DrivenRig, f: Floats, target: float, at_top: Floats, top: float, advance: Advance | None) -> Floats:
     """Return the logarithm of the voltage that gives the friction ratio at each frequency, by the Illinois method."""
     low, high = np.full(f.shape, top + np.log(_LOWEST)), np.full(f.shape, top)
-    above, below = np.full(f.shape, 1.0) - wanted, at_top - wanted
+    above, below = np.full(f.shape, 1.0) - target, at_top - target
     last = np.zeros(f.shape)
     for done in range(_ROUNDS):
         going = np.flatnonzero(high - low > _CLOSE)
@@ -109,7 +109,7 @@ def _search(rig: DrivenRig, f: Floats, wanted: float, at_top: Floats, top: float
             break
         span, a, b = high[going] - low[going], above[going], below[going]
         guess = low[going] + span * np.clip(a / (a - b), _CLOSE / 3, 1 - _CLOSE / 3)
-        miss = _points(rig, f[going], np.exp(guess)).friction_ratio - wanted
+        miss = _points(rig, f[going], np.exp(guess)).friction_ratio - target
         left = miss > 0
         low[going], high[going] = np.where(left, guess, low[going]), np.where(left, high[going], guess)
         # Illinois: the value at an end that stays twice is halved

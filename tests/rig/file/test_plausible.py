@@ -30,14 +30,14 @@ def test_what_no_rig_has_is_refused_under_its_key(path: Path, number: str) -> No
     keys = list(physical_keys(tomllib.loads(path.read_text(encoding="utf-8"))))
     assert len(keys) > 9
     for key, unit in keys:
-        with raises(InvalidInput, match=rf"{key}: .*(lies beyond any rig: wanted|is not a number)"):
+        with raises(InvalidInput, match=rf"{key}: .*(lies beyond any rig: expected|is not a number)"):
             read_rig(path, changes=[f"{key}={number} {unit}"])
 
 
 def test_an_integer_beyond_any_float_is_refused_too(tmp_path: Path) -> None:
     text = TRIBOMETER.read_text(encoding="utf-8").replace("= 0.341", f"= 1{'0' * 400}")
     (tmp_path / "rig.toml").write_text(text, encoding="utf-8")
-    with raises(InvalidInput, match=r"friction\.friction_coefficient: 1\S* lies beyond any rig: wanted 1e-09 to 100"):
+    with raises(InvalidInput, match=r"friction\.friction_coefficient: 1\S* lies beyond any rig: expected 1e-09 to 100"):
         read_rig(tmp_path / "rig.toml")
 
 

@@ -1,1 +1,1 @@
-"""Measured files as sheets: values with units and uncertainty, tables and figures, ready for page, JSON or terminal."""
+"""Sheets of measured files: values with units and uncertainty, tables, figures and caveats."""

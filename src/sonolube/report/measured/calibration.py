@@ -1,4 +1,4 @@
-"""Calibrations of a displacement sensor as a force gauge, and forces told by it, as sheets."""
+"""Sheets of force gauges: calibration of a displacement sensor with hysteresis, and forces by it."""
 
 from dataclasses import dataclass
 from functools import partial
@@ -21,21 +21,21 @@ from sonolube.measurement.recordings.reader import read_recording
 from sonolube.report.measured import calibration_figures as figures
 from sonolube.report.measured.friction import recording_source
 from sonolube.report.measured.sheet import (
-    Column,
-    Part,
     Sheet,
+    SheetColumn,
     SheetFigure,
+    SheetSection,
     SheetTable,
-    Value,
-    attempted,
-    known,
-    sheet_of,
+    SheetValue,
+    attempted_section,
+    quantity_value,
+    sheet_from_sections,
 )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class CalibrationSettings:
-    """What a calibration depends on.
+    """Settings of the calibration of a displacement sensor as a force gauge.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ class CalibrationSettings:
 
 
 def calibration_sheet(path: Path, *, settings: CalibrationSettings) -> Sheet:
-    """Return the calibration that a recording of displacement and force bears out.
+    """Calibration of a force gauge by the Preisach model and by polynomials, from recorded loops.
 
     Parameters
     ----------
@@ -78,45 +78,29 @@ def calibration_sheet(path: Path, *, settings: CalibrationSettings) -> Sheet:
     hysteresis = fit_preisach(displacement=x, applied_force=force, levels=settings.levels)
     span = float(np.ptp(force))
     values = (
-        Value(
-            name="hysteresis_deviation",
-            label="Deviation about Preisach's model",
-            value=hysteresis.force_deviation,
-            unit="N",
+        SheetValue("hysteresis_deviation", "Deviation about the Preisach model", hysteresis.force_deviation, "N"),
+        SheetValue(
+            "relative_deviation", "Relative deviation, over the range of force", hysteresis.force_deviation / span, ""
         ),
-        Value(
-            name="relative_deviation",
-            label="The same over the range of force",
-            value=hysteresis.force_deviation / span,
-            unit="",
+        SheetValue(
+            "dissipated_energy", "Energy dissipated in the greatest loop", major_loop_dissipation(hysteresis), "J"
         ),
-        Value(
-            name="dissipated_energy",
-            label="Energy lost in the greatest loop",
-            value=major_loop_dissipation(hysteresis),
-            unit="J",
-        ),
-        Value(
-            name="mean_stiffness",
-            label="Force over displacement of the whole range",
-            value=span / float(np.ptp(x)),
-            unit="N/m",
-        ),
+        SheetValue("mean_stiffness", "Mean stiffness over the whole range", span / float(np.ptp(x)), "N/m"),
     )
     loop = SheetFigure(
         name="loops",
         title="Force over displacement",
-        caption="Measured loops and those of Preisach's model; below, what is left.",
+        caption="Measured loops and those of the Preisach model; below, the residual.",
         draw=partial(figures.loops, x, force, hysteresis),
     )
-    branches = attempted(partial(_branches, x, force, settings.degree), what="polynomials of the branches")
-    return sheet_of(
-        [Part(values=values, figures=(loop,)), branches], title=path.name, source=recording_source(recording)
+    branches = attempted_section(partial(_branches, x, force, settings.degree), what="polynomials of the branches")
+    return sheet_from_sections(
+        [SheetSection(values=values, figures=(loop,)), branches], title=path.name, source=recording_source(recording)
     )
 
 
 def calibrated_hysteresis(path: Path, *, settings: CalibrationSettings) -> PreisachCalibration:
-    """Return the calibration of a recording, to tell forces by.
+    """Preisach model of a force gauge, fitted to recorded loops.
 
     Parameters
     ----------
@@ -142,7 +126,7 @@ def calibrated_hysteresis(path: Path, *, settings: CalibrationSettings) -> Preis
 
 
 def force_sheet(path: Path, *, calibration: PreisachCalibration, settings: CalibrationSettings) -> Sheet:
-    """Return the force that a recorded displacement tells.
+    """Force by a calibrated gauge from a recorded displacement, with its uncertainty.
 
     Parameters
     ----------
@@ -163,59 +147,55 @@ def force_sheet(path: Path, *, calibration: PreisachCalibration, settings: Calib
         If the displacement leaves the range that was calibrated.
     """
     recording = read_recording(path, mapping=settings.mapping)
-    told = force_from_preisach(
+    estimate = force_from_preisach(
         calibration,
         displacement=channel_values(recording, "displacement"),
         displacement_uncertainty=settings.displacement_uncertainty,
     )
     # readings share the error of the calibration, so that averaging does not lower it
-    mean, error = float(told.applied_force.mean()), float(told.applied_force_uncertainty.mean())
-    highest = int(np.argmax(told.applied_force))
+    mean, error = float(estimate.applied_force.mean()), float(estimate.applied_force_uncertainty.mean())
+    highest = int(np.argmax(estimate.applied_force))
     values = (
-        known("applied_force", mean, label="Mean force", uncertainty=error),
-        Value(
-            name="highest_force",
-            label="Highest force",
-            value=float(told.applied_force[highest]),
-            unit="N",
-            uncertainty=float(told.applied_force_uncertainty[highest]),
+        quantity_value("applied_force", mean, label="Mean force", uncertainty=error),
+        SheetValue(
+            "highest_force",
+            "Highest force",
+            float(estimate.applied_force[highest]),
+            "N",
+            uncertainty=float(estimate.applied_force_uncertainty[highest]),
         ),
     )
-    drawn = SheetFigure(
+    figure = SheetFigure(
         name="force",
-        title="Force told by the displacement",
+        title="Force by the displacement",
         caption="With its standard uncertainty as a band.",
-        draw=partial(figures.force, channel_values(recording, "time"), told),
+        draw=partial(figures.force, channel_values(recording, "time"), estimate),
     )
-    return sheet_of([Part(values=values, figures=(drawn,))], title=path.name, source=recording_source(recording))
+    return sheet_from_sections(
+        [SheetSection(values=values, figures=(figure,))], title=path.name, source=recording_source(recording)
+    )
 
 
-def _branches(x: Floats, force: Floats, degree: int) -> Part:
-    found = fit_branches(displacement=x, applied_force=force, degree=degree)
+def _branches(x: Floats, force: Floats, degree: int) -> SheetSection:
+    """Polynomials of loading and unloading with the deviations about them."""
+    branches = fit_branches(displacement=x, applied_force=force, degree=degree)
     values = (
-        Value(
-            name="loading_deviation",
-            label="Deviation about the polynomial of loading",
-            value=found.loading_deviation,
-            unit="N",
-        ),
-        Value(
-            name="unloading_deviation",
-            label="Deviation about the polynomial of unloading",
-            value=found.unloading_deviation,
-            unit="N",
+        SheetValue("loading_deviation", "Deviation about the polynomial of loading", branches.loading_deviation, "N"),
+        SheetValue(
+            "unloading_deviation", "Deviation about the polynomial of unloading", branches.unloading_deviation, "N"
         ),
     )
-    return Part(values=values, tables=(_coefficients(found),))
+    return SheetSection(values=values, tables=(_coefficients(branches),))
 
 
-def _coefficients(found: BranchCalibration) -> SheetTable:
+def _coefficients(branches: BranchCalibration) -> SheetTable:
+    """Coefficients of the polynomials as a table."""
     columns = (
-        Column(name="power", label="Power of the displacement in m"),
-        Column(name="loading", label="Loading (N)"),
-        Column(name="unloading", label="Unloading (N)"),
+        SheetColumn("power", "Power of the displacement in m"),
+        SheetColumn("loading", "Loading (N)"),
+        SheetColumn("unloading", "Unloading (N)"),
     )
-    pairs = zip(found.loading.convert().coef, found.unloading.convert().coef, strict=True)
+    pairs = zip(branches.loading.convert().coef, branches.unloading.convert().coef, strict=True)
     return SheetTable(
         name="branches",
         title="Force as a polynomial of displacement",

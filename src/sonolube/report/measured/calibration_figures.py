@@ -1,4 +1,4 @@
-"""Figures of force gauges."""
+"""Figures of force gauges: calibration loops and forces over time."""
 
 from typing import TYPE_CHECKING
 
@@ -11,28 +11,28 @@ if TYPE_CHECKING:
 
 
 def loops(x: Floats, force: Floats, calibration: PreisachCalibration) -> "Figure":
-    """Return force over displacement, measured and of the model, over what is left between them."""
+    """Force over displacement, measured and by the Preisach model, above the residual."""
     import matplotlib.pyplot as plt
 
     figure, (top, bottom) = plt.subplots(2, 1, figsize=(5.0, 4.8), sharex=True, height_ratios=(3, 1))
     model = force_from_preisach(calibration, displacement=x).applied_force
     um = 1e6 * x
     top.plot(um, force, ".", color="0.55", markersize=3, label="measured")
-    top.plot(um, model, color=COLOURS[1], linewidth=1, label="Preisach's model")
+    top.plot(um, model, color=COLOURS[1], linewidth=1, label="Preisach model")
     bottom.plot(um, force - model, ".", color=COLOURS[0], markersize=2)
     bottom.axhline(0, color="0.5", linewidth=0.6)
     top.set(ylabel="force (N)")
-    bottom.set(xlabel="displacement (um)", ylabel="left over (N)")
+    bottom.set(xlabel="displacement (um)", ylabel="residual (N)")
     top.legend()
     return figure
 
 
-def force(t: Floats, told: ForceEstimate) -> "Figure":
-    """Return the force over time with its uncertainty."""
+def force(t: Floats, estimate: ForceEstimate) -> "Figure":
+    """Force over time with its standard uncertainty as a band."""
     import matplotlib.pyplot as plt
 
     figure, axes = plt.subplots(figsize=(6.4, 3.0))
-    f, u = told.applied_force, told.applied_force_uncertainty
+    f, u = estimate.applied_force, estimate.applied_force_uncertainty
     axes.fill_between(t, f - u, f + u, color=COLOURS[5], alpha=0.6, linewidth=0, label="standard uncertainty")
     axes.plot(t, f, color=COLOURS[0], linewidth=1)
     axes.set(xlabel="time (s)", ylabel="force (N)")

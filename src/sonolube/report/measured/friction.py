@@ -1,4 +1,4 @@
-"""Recordings of friction as sheets: level, fluctuation, running-in, steps of voltage, stick-slip, work, wobble."""
+"""Sheets of friction recordings: level, fluctuation, running-in, voltage steps, stick-slip, work and wobble."""
 
 import hashlib
 from collections.abc import Callable
@@ -30,15 +30,15 @@ from sonolube.measurement.recordings.tdms import TDMS_FORMAT as TDMS
 from sonolube.measurement.statistics.autocorrelation import correlated_mean
 from sonolube.report.measured import friction_figures as figures
 from sonolube.report.measured.sheet import (
-    Part,
     Sheet,
     SheetFigure,
+    SheetSection,
     SheetTable,
-    Value,
-    attempted,
-    column,
-    known,
-    sheet_of,
+    SheetValue,
+    attempted_section,
+    quantity_columns,
+    quantity_value,
+    sheet_from_sections,
 )
 from sonolube.units import format_si
 
@@ -47,12 +47,22 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _LARGE = 1 << 29  # bytes of a TDMS file beyond which it is read in blocks, for its windows only
+_STEP_LABELS = {
+    "voltage_peak_to_peak": "Voltage",
+    "start_time": "From",
+    "end_time": "To",
+    "friction_force": "Friction",
+    "friction_force_deviation": "Deviation",
+    "friction_force_uncertainty": "Standard error",
+    "friction_reduction": "Reduction",
+    "friction_reduction_uncertainty": "Uncertainty",
+}
 _CHANNELS = ("friction_force", "friction_coefficient")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class FrictionSettings:
-    """What the reduction of a friction recording depends on.
+    """Settings of the evaluation of a friction recording.
 
     Parameters
     ----------
@@ -88,12 +98,12 @@ class FrictionSettings:
 
 
 def friction_sheet(path: Path, *, settings: FrictionSettings) -> Sheet:
-    """Return what a recording says of friction.
+    """Friction in a recording: level, fluctuation, running-in, voltage steps, stick-slip, work and wobble.
 
     Parameters
     ----------
     path : Path
-        In any format of `read_recording`; TDMS larger than 512 MB is read in blocks, and only its windows are told.
+        In any format of `read_recording`; TDMS files beyond 512 MB are read in blocks, for their windows only.
     settings : FrictionSettings
 
     Returns
@@ -109,12 +119,12 @@ def friction_sheet(path: Path, *, settings: FrictionSettings) -> Sheet:
         return _streamed(path, settings)
     recording = read_recording(path, mapping=settings.mapping)
     motor = settings.motor
-    parts = _parts(recording, settings) if motor is None else [_motor(recording, settings, motor)]
-    return sheet_of(parts, title=path.name, source=recording_source(recording))
+    sections = _sections(recording, settings) if motor is None else [_motor(recording, settings, motor)]
+    return sheet_from_sections(sections, title=path.name, source=recording_source(recording))
 
 
 def recording_source(recording: "xr.Dataset") -> dict[str, str]:
-    """Return where a recording came from, for its sheet."""
+    """Origin of a recording: format, title, samples, sample rate and digest."""
     attributes = recording.attrs
     rate, dropped = attributes.get("sample_rate"), int(attributes.get("dropped_samples", 0))
     return {
@@ -127,44 +137,49 @@ def recording_source(recording: "xr.Dataset") -> dict[str, str]:
     }
 
 
-def _parts(recording: "xr.Dataset", settings: FrictionSettings) -> list[Part]:
-    found = [name for name in _CHANNELS if name in recording.variables]
-    if not found:
+def _sections(recording: "xr.Dataset", settings: FrictionSettings) -> list[SheetSection]:
+    """Sections of a recording of friction, as far as its channels allow."""
+    channels = [name for name in _CHANNELS if name in recording.variables]
+    if not channels:
         channel_values(recording, "friction_force")  # says which channels there are
-    name = found[0]
-    parts = [_level(recording, name)]
+    name = channels[0]
+    sections = [_level(recording, name)]
     if "time" not in recording.variables:
-        return [*parts, Part(figures=(_cycle_figure(recording, name),))]
+        return [*sections, SheetSection(figures=(_cycle_figure(recording, name),))]
     windows = analyse_windows(recording, of=name, window_duration=settings.window_duration)
     if name != "friction_force":
-        return [*parts, _windows(recording, windows, None)]
+        return [*sections, _windows(recording, windows, None)]
     steady = None
     if settings.sliding_speed is not None:
-        parts.append(attempted(partial(_running_in, recording, settings, settings.sliding_speed), what="steady state"))
-        steady = _quietly_steady(windows, settings.sliding_speed)
-    parts.append(_windows(recording, windows, steady))
+        sections.append(
+            attempted_section(partial(_running_in, recording, settings, settings.sliding_speed), what="steady state")
+        )
+        steady = _steady_state_or_none(windows, settings.sliding_speed)
+    sections.append(_windows(recording, windows, steady))
     if {"voltage_peak_to_peak", "stack_voltage"} & set(map(str, recording.variables)):
-        parts.append(attempted(partial(_staircase, recording), what="steps of the voltage"))
-    parts.append(attempted(partial(_stick_slip, recording, settings.rotation_speed), what="stick-slip"))
+        sections.append(attempted_section(partial(_voltage_steps, recording), what="steps of the voltage"))
+    sections.append(attempted_section(partial(_stick_slip, recording, settings.rotation_speed), what="stick-slip"))
     if "relative_velocity" in recording.variables:
-        parts.append(attempted(partial(_cycles, recording), what="work of friction"))
+        sections.append(attempted_section(partial(_cycles, recording), what="work of friction"))
     if settings.rotation_speed is not None:
-        parts.append(attempted(partial(_wobble, recording, settings.rotation_speed), what="wobble"))
-    return parts
+        sections.append(attempted_section(partial(_wobble, recording, settings.rotation_speed), what="wobble"))
+    return sections
 
 
-def _level(recording: "xr.Dataset", name: str) -> Part:
+def _level(recording: "xr.Dataset", name: str) -> SheetSection:
+    """Mean and standard deviation of a channel_values, the uncertainty of the mean by the autocorrelation."""
     mean = correlated_mean(channel_values(recording, name))
-    scatter = Value(
-        name=f"{name}_deviation",
-        label="Standard deviation of the samples",
-        value=mean.deviation,
-        unit=str(recording[name].attrs.get("units", "")),
+    scatter = SheetValue(
+        f"{name}_deviation",
+        "Standard deviation of the samples",
+        mean.deviation,
+        str(recording[name].attrs.get("units", "")),
     )
-    return Part(values=(known(name, mean.mean, uncertainty=mean.uncertainty), scatter))
+    return SheetSection(values=(quantity_value(name, mean.mean, uncertainty=mean.uncertainty), scatter))
 
 
-def _windows(recording: "xr.Dataset", windows: WindowStatistics, steady: SteadyStateOnset | None) -> Part:
+def _windows(recording: "xr.Dataset", windows: WindowStatistics, steady: SteadyStateOnset | None) -> SheetSection:
+    """Fluctuation in windows, with the trace."""
     draw = partial(
         figures.trace,
         channel_values(recording, "time"),
@@ -172,22 +187,24 @@ def _windows(recording: "xr.Dataset", windows: WindowStatistics, steady: SteadyS
         windows=windows,
         steady=steady,
     )
-    return Part(values=(_fluctuation(windows),), figures=(_trace_figure(windows, draw),))
+    return SheetSection(values=(_fluctuation(windows),), figures=(_trace_figure(windows, draw),))
 
 
-def _fluctuation(windows: WindowStatistics) -> Value:
+def _fluctuation(windows: WindowStatistics) -> SheetValue:
+    """Root mean square of the fluctuation about the means of the windows, weighted by their samples."""
     span = format_si(windows.window_duration, "s")
-    known = np.isfinite(windows.fluctuation)  # of windows with a sample
-    squares, weights = windows.fluctuation[known] ** 2, windows.samples[known]
-    return Value(
-        name=f"{windows.channel}_fluctuation",
-        label=f"Root mean square of the fluctuation in windows of {span}",
-        value=float(np.sqrt(np.average(squares, weights=weights))),
-        unit=windows.unit,
+    filled = np.isfinite(windows.fluctuation)  # windows with samples
+    squares, weights = windows.fluctuation[filled] ** 2, windows.samples[filled]
+    return SheetValue(
+        f"{windows.channel}_fluctuation",
+        f"Root mean square of the fluctuation in windows of {span}",
+        float(np.sqrt(np.average(squares, weights=weights))),
+        windows.unit,
     )
 
 
 def _trace_figure(windows: WindowStatistics, draw: Callable[[], "Figure"]) -> SheetFigure:
+    """Figure of a trace with its windows."""
     span = format_si(windows.window_duration, "s")
     return SheetFigure(
         name="trace",
@@ -198,6 +215,7 @@ def _trace_figure(windows: WindowStatistics, draw: Callable[[], "Figure"]) -> Sh
 
 
 def _cycle_figure(recording: "xr.Dataset", name: str) -> SheetFigure:
+    """Figure of a recording with one value a cycle."""
     along = channel_values(recording, "revolutions")
     return SheetFigure(
         name="trace",
@@ -207,106 +225,96 @@ def _cycle_figure(recording: "xr.Dataset", name: str) -> SheetFigure:
     )
 
 
-def _quietly_steady(windows: WindowStatistics, sliding_speed: float) -> SteadyStateOnset | None:
+def _steady_state_or_none(windows: WindowStatistics, sliding_speed: float) -> SteadyStateOnset | None:
+    """Steady state of the friction; None where it cannot be determined."""
     try:
         return steady_state_onset(time=windows.time, friction_force=windows.mean, sliding_speed=sliding_speed)
     except InvalidInput:
         return None
 
 
-def _running_in(recording: "xr.Dataset", settings: FrictionSettings, sliding_speed: float) -> Part:
-    found = analyse_running_in(recording, sliding_speed=sliding_speed, window_duration=settings.window_duration)
-    return _steady_part(found.friction, found.fluctuation)
+def _running_in(recording: "xr.Dataset", settings: FrictionSettings, sliding_speed: float) -> SheetSection:
+    """Steady friction after running-in, and the sliding distance to it."""
+    running_in = analyse_running_in(recording, sliding_speed=sliding_speed, window_duration=settings.window_duration)
+    return _steady_part(running_in.friction, running_in.fluctuation)
 
 
-def _steady_part(friction: SteadyStateOnset, fluctuation: SteadyStateOnset) -> Part:
+def _steady_part(friction: SteadyStateOnset, fluctuation: SteadyStateOnset) -> SheetSection:
+    """Steady friction with time and distance to it, and the distance to a steady fluctuation."""
     if not friction.steady:
-        return Part(not_found=(f"steady friction: {friction.reason}",))
+        return SheetSection(not_found=(f"steady friction: {friction.reason}",))
     values = [
-        Value(
-            name="steady_friction_force",
-            label="Steady friction force",
-            value=friction.friction_force,
-            unit="N",
+        SheetValue(
+            "steady_friction_force",
+            "Steady friction force",
+            friction.friction_force,
+            "N",
             uncertainty=friction.friction_force_uncertainty,
         ),
-        Value(name="steady_time", label="Steady after", value=friction.start_time, unit="s"),
-        Value(name="steady_distance", label="Slid until steady", value=friction.sliding_distance, unit="m"),
+        SheetValue("steady_time", "Time to the steady state", friction.start_time, "s"),
+        SheetValue("steady_distance", "Sliding distance to the steady state", friction.sliding_distance, "m"),
     ]
     if fluctuation.steady:
         distance = fluctuation.sliding_distance
         values.append(
-            Value(
-                name="steady_fluctuation_distance",
-                label="Slid until the fluctuation is steady",
-                value=distance,
-                unit="m",
-            )
+            SheetValue("steady_fluctuation_distance", "Sliding distance to a steady fluctuation", distance, "m")
         )
-        return Part(values=tuple(values))
-    return Part(values=tuple(values), not_found=(f"steady fluctuation: {fluctuation.reason}",))
+        return SheetSection(values=tuple(values))
+    return SheetSection(values=tuple(values), not_found=(f"steady fluctuation: {fluctuation.reason}",))
 
 
-def _staircase(recording: "xr.Dataset") -> Part:
+def _voltage_steps(recording: "xr.Dataset") -> SheetSection:
+    """Friction at each step of the voltage, and its reduction."""
     steps = analyse_voltage_steps(recording)
-    names = (
-        "voltage_peak_to_peak",
-        "start_time",
-        "end_time",
-        "friction_force",
-        "friction_force_deviation",
-        "friction_force_uncertainty",
-        "friction_reduction",
-        "friction_reduction_uncertainty",
-    )
-    labels = ("Voltage", "From", "To", "Friction", "Deviation", "Error of the mean", "Reduction", "Its uncertainty")
     table = SheetTable(
         name="steps",
         title="Friction at each step of the voltage",
-        columns=tuple(column(name, label) for name, label in zip(names, labels, strict=True)),
-        rows=tuple(tuple(getattr(step, name) for name in names) for step in steps),
+        columns=quantity_columns(_STEP_LABELS),
+        rows=tuple(tuple(getattr(step, name) for name in _STEP_LABELS) for step in steps),
     )
-    drawn = SheetFigure(
+    figure = SheetFigure(
         name="staircase",
         title="Friction over voltage",
-        caption="Mean and its standard error at each step, and what the voltage takes from the friction without it.",
-        draw=partial(figures.staircase, steps),
+        caption="Mean and its standard error at each step, and the reduction of the friction without voltage.",
+        draw=partial(figures.voltage_steps, steps),
     )
-    return Part(tables=(table,), figures=(drawn,))
+    return SheetSection(tables=(table,), figures=(figure,))
 
 
-def _stick_slip(recording: "xr.Dataset", rotation_speed: float | None) -> Part:
+def _stick_slip(recording: "xr.Dataset", rotation_speed: float | None) -> SheetSection:
+    """Frequency and amplitude of stick-slip, the wobble of the disc removed first."""
     if rotation_speed is not None:  # a wobble would pass for stick-slip at the rotation's frequency
         without_wobble = analyse_wobble(recording, rotation_speed=rotation_speed).friction_force
         recording = recording.assign(friction_force=("time", without_wobble))
-    found = analyse_stick_slip(recording)
-    if not found.detected:
-        return Part(not_found=(f"stick-slip: {found.reason}",))
-    amplitude = known(
-        "stick_slip_amplitude", found.stick_slip_amplitude, uncertainty=found.stick_slip_amplitude_uncertainty
+    stick_slip = analyse_stick_slip(recording)
+    if not stick_slip.detected:
+        return SheetSection(not_found=(f"stick-slip: {stick_slip.reason}",))
+    amplitude = quantity_value(
+        "stick_slip_amplitude", stick_slip.stick_slip_amplitude, uncertainty=stick_slip.stick_slip_amplitude_uncertainty
     )
-    return Part(values=(known("stick_slip_frequency", found.stick_slip_frequency), amplitude))
+    return SheetSection(values=(quantity_value("stick_slip_frequency", stick_slip.stick_slip_frequency), amplitude))
 
 
-def _cycles(recording: "xr.Dataset") -> Part:
-    found = analyse_cycles(recording)
+def _cycles(recording: "xr.Dataset") -> SheetSection:
+    """Work of friction and sliding distance, and the work of each cycle of a reciprocating motion."""
+    cycles = analyse_cycles(recording)
     values = [
-        known("frictional_work", float(found.work.frictional_work[-1])),
-        known("sliding_distance", found.work.sliding_distance),
+        quantity_value("frictional_work", float(cycles.work.frictional_work[-1])),
+        quantity_value("sliding_distance", cycles.work.sliding_distance),
     ]
-    if found.loops is not None:
-        loops = found.loops
+    if cycles.loops is not None:
+        loops = cycles.loops
         work = loops.frictional_work
         values.append(
-            Value(
-                name="work_per_cycle",
-                label=f"Work of friction per cycle, mean of {work.size}",
-                value=float(work.mean()),
-                unit="J",
+            SheetValue(
+                "work_per_cycle",
+                f"Work of friction per cycle, mean of {work.size}",
+                float(work.mean()),
+                "J",
                 uncertainty=float(work.std(ddof=1) / work.size**0.5) if work.size > 1 else None,
             )
         )
-    drawn = SheetFigure(
+    figure = SheetFigure(
         name="loops",
         title="Friction over velocity",
         caption="Every cycle of the recording; the work is the area of the loop over displacement.",
@@ -314,62 +322,57 @@ def _cycles(recording: "xr.Dataset") -> Part:
             figures.loops, channel_values(recording, "relative_velocity"), channel_values(recording, "friction_force")
         ),
     )
-    return Part(values=tuple(values), figures=(drawn,))
+    return SheetSection(values=tuple(values), figures=(figure,))
 
 
-def _wobble(recording: "xr.Dataset", rotation_speed: float) -> Part:
-    found = analyse_wobble(recording, rotation_speed=rotation_speed)
+def _wobble(recording: "xr.Dataset", rotation_speed: float) -> SheetSection:
+    """Amplitudes of the wobble at multiples of the rotation frequency, and the deviation without it."""
+    wobble = analyse_wobble(recording, rotation_speed=rotation_speed)
     values = [
-        Value(
-            name=f"wobble_amplitude_{order}",
-            label=f"Wobble at {order} times the rotation",
-            value=float(amplitude),
-            unit="N",
-        )
-        for order, amplitude in enumerate(found.wobble_amplitude, start=1)
+        SheetValue(f"wobble_amplitude_{order}", f"Wobble at {order} times the rotation", float(amplitude), "N")
+        for order, amplitude in enumerate(wobble.wobble_amplitude, start=1)
     ]
-    left = Value(
-        name="deviation_without_wobble",
-        label="Standard deviation without the wobble",
-        value=found.friction_force_deviation,
-        unit="N",
+    deviation = SheetValue(
+        "deviation_without_wobble", "Standard deviation without the wobble", wobble.friction_force_deviation, "N"
     )
-    return Part(values=(*values, left))
+    return SheetSection(values=(*values, deviation))
 
 
-def _motor(recording: "xr.Dataset", settings: FrictionSettings, motor: MotorCalibration) -> Part:
+def _motor(recording: "xr.Dataset", settings: FrictionSettings, motor: MotorCalibration) -> SheetSection:
+    """Friction from the torque of the motor by its current, in windows."""
     trace = analyse_motor_current(recording, motor=motor, window_duration=settings.window_duration)
     mean = float(trace.friction_force.mean())
     # all windows share the errors of torque constant and idle current, so that averaging does not lower them
     error = float(np.sqrt(np.mean(trace.friction_force_uncertainty**2)))
-    drawn = SheetFigure(
+    figure = SheetFigure(
         name="trace",
-        title="Friction told by the motor's current",
+        title="Friction by the motor current",
         caption="Mean in each window with its standard uncertainty.",
         draw=partial(figures.motor_trace, trace),
     )
-    return Part(values=(known("friction_force", mean, uncertainty=error),), figures=(drawn,))
+    return SheetSection(values=(quantity_value("friction_force", mean, uncertainty=error),), figures=(figure,))
 
 
 def _streamed(path: Path, settings: FrictionSettings) -> Sheet:
+    """Level, steady state and fluctuation of a large file, read in blocks."""
     windows = streamed_window_statistics(
         path, channels=["friction_force"], mapping=settings.mapping, window_duration=settings.window_duration
     )["friction_force"]
     mean = correlated_mean(windows.mean)
-    parts = [Part(values=(known("friction_force", mean.mean, uncertainty=mean.uncertainty),))]
+    sections = [SheetSection(values=(quantity_value("friction_force", mean.mean, uncertainty=mean.uncertainty),))]
     steady = None
     if settings.sliding_speed is not None:
-        steady = _quietly_steady(windows, settings.sliding_speed)
+        steady = _steady_state_or_none(windows, settings.sliding_speed)
         settle = partial(steady_state_onset, time=windows.time, sliding_speed=settings.sliding_speed)
-        parts.append(
-            attempted(
+        sections.append(
+            attempted_section(
                 lambda: _steady_part(settle(friction_force=windows.mean), settle(friction_force=windows.fluctuation)),
                 what="steady state",
             )
         )
     draw = partial(figures.trace, None, None, windows=windows, steady=steady)
-    parts.append(Part(values=(_fluctuation(windows),), figures=(_trace_figure(windows, draw),)))
+    sections.append(SheetSection(values=(_fluctuation(windows),), figures=(_trace_figure(windows, draw),)))
     with path.open("rb") as stream:
         digest = hashlib.file_digest(stream, "sha256").hexdigest()
     source = {"format": TDMS, "samples": f"{int(windows.samples.sum())}, read in blocks", "sha256": digest}
-    return sheet_of(parts, title=path.name, source=source)
+    return sheet_from_sections(sections, title=path.name, source=source)

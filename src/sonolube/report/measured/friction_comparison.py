@@ -1,17 +1,25 @@
-"""Tests with vibration beside tests without: reduction, its interval, and whether so few tests can tell."""
+"""Sheet of tests with vibration beside tests without: friction reduction, its interval and its significance."""
 
 from collections.abc import Sequence
 from functools import partial
 
 from sonolube.measurement.statistics.repeated_tests import compare_means, ratio_interval
 from sonolube.report.measured import friction_figures as figures
-from sonolube.report.measured.sheet import Part, Sheet, SheetFigure, Value, attempted, known, sheet_of
+from sonolube.report.measured.sheet import (
+    Sheet,
+    SheetFigure,
+    SheetSection,
+    SheetValue,
+    attempted_section,
+    quantity_value,
+    sheet_from_sections,
+)
 
 _LEVELS = ("steady_friction_force", "friction_force", "friction_coefficient")
 
 
 def comparison_sheet(with_vibration: Sequence[Sheet], without_vibration: Sequence[Sheet]) -> Sheet:
-    """Return what vibration takes from friction, by tests with and tests without it.
+    """Friction reduction from tests with and without vibration, with its interval and its significance.
 
     Parameters
     ----------
@@ -28,54 +36,52 @@ def comparison_sheet(with_vibration: Sequence[Sheet], without_vibration: Sequenc
     title = f"{len(with_vibration)} with vibration against {len(without_vibration)} without"
     if level is None:
         reason = "comparison: the tests have no level of friction in common"
-        return sheet_of([Part(not_found=(reason,))], title=title, source={})
-    on, off = (
-        [found.value for sheet in sheets if (found := _value(sheet, level))]
+        return sheet_from_sections([SheetSection(not_found=(reason,))], title=title, source={})
+    vibrated, still = (
+        [value.value for sheet in sheets if (value := _value(sheet, level))]
         for sheets in (with_vibration, without_vibration)
     )
-    drawn = SheetFigure(
+    figure = SheetFigure(
         name="comparison",
         title="Tests with and without vibration",
         caption="Each test, and the mean of its kind.",
-        draw=partial(figures.comparison, off, on, level),
+        draw=partial(figures.comparison, still, vibrated, level),
     )
-    parts = [
-        attempted(partial(_reduction, on, off), what="interval of the reduction"),
-        attempted(partial(_significance, on, off), what="significance"),
-        Part(figures=(drawn,)),
+    sections = [
+        attempted_section(partial(_reduction, vibrated, still), what="interval of the reduction"),
+        attempted_section(partial(_significance, vibrated, still), what="significance"),
+        SheetSection(figures=(figure,)),
     ]
-    if min(len(on), len(off)) < 2:
-        mean = 1 - (sum(on) / len(on)) / (sum(off) / len(off))
-        parts.insert(0, Part(values=(known("friction_reduction", mean),)))
-    return sheet_of(parts, title=title, source={"compared": level.replace("_", " ")})
+    if min(len(vibrated), len(still)) < 2:
+        mean = 1 - (sum(vibrated) / len(vibrated)) / (sum(still) / len(still))
+        sections.insert(0, SheetSection(values=(quantity_value("friction_reduction", mean),)))
+    return sheet_from_sections(sections, title=title, source={"compared": level.replace("_", " ")})
 
 
-def _value(sheet: Sheet, name: str) -> Value | None:
+def _value(sheet: Sheet, name: str) -> SheetValue | None:
+    """Value of this name on a sheet; None where it has none."""
     return next((value for value in sheet.values if value.name == name), None)
 
 
-def _reduction(on: Sequence[float], off: Sequence[float]) -> Part:
-    ratio = ratio_interval(on, off)
+def _reduction(vibrated: Sequence[float], still: Sequence[float]) -> SheetSection:
+    """Friction reduction with its 95 % interval, by the ratio of means."""
+    ratio = ratio_interval(vibrated, still)
     interval = (1 - ratio.upper, 1 - ratio.lower) if ratio.bounded else None
-    value = known("friction_reduction", 1 - ratio.ratio, interval=interval)
-    return Part(values=(value,), caveats=(ratio.reason,) if ratio.reason else ())
+    value = quantity_value("friction_reduction", 1 - ratio.ratio, interval=interval)
+    return SheetSection(values=(value,), caveats=(ratio.reason,) if ratio.reason else ())
 
 
-def _significance(on: Sequence[float], off: Sequence[float]) -> Part:
-    found = compare_means(off, on)
+def _significance(vibrated: Sequence[float], still: Sequence[float]) -> SheetSection:
+    """Significance of the difference by Welch and by permutation tests."""
+    test = compare_means(still, vibrated)
     values = (
-        Value(name="welch_p", label="Chance of so large a difference by scatter, Welch", value=found.welch_p, unit=""),
-        Value(
-            name="permutation_p",
-            label="The same by permutation, without assuming normal scatter",
-            value=found.permutation_p,
-            unit="",
-        ),
+        SheetValue("welch_p", "p value of the difference, Welch test", test.welch_p, ""),
+        SheetValue("permutation_p", "p value of the difference, permutation test", test.permutation_p, ""),
     )
     caveats: tuple[str, ...] = ()
-    if found.smallest_permutation_p > 1 - found.confidence_level:
+    if test.smallest_permutation_p > 1 - test.confidence_level:
         caveats = (
-            f"{len(on)} and {len(off)} tests cannot tell a difference at {found.confidence_level:.0%} without assuming"
-            f" normal scatter: the chance is {found.smallest_permutation_p:.2g} at the least",
+            f"{len(vibrated)} and {len(still)} tests are too few for significance at {test.confidence_level:.0%}"
+            f" without assuming normal scatter: the least possible p value is {test.smallest_permutation_p:.2g}",
         )
-    return Part(values=values, caveats=caveats)
+    return SheetSection(values=values, caveats=caveats)

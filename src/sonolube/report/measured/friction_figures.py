@@ -1,4 +1,4 @@
-"""Figures of friction recordings."""
+"""Figures of friction recordings: traces, voltage steps, loops and comparisons."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -24,7 +24,7 @@ _LABELS = {"friction_force": "friction force (N)", "friction_coefficient": "coef
 def trace(
     t: Floats | None, signal: Floats | None, *, windows: WindowStatistics, steady: SteadyStateOnset | None
 ) -> "Figure":
-    """Return the samples with windows and where the steady state begins; without samples, where they are too many."""
+    """Samples over time with the means and fluctuations of windows and the begin of the steady state."""
     import matplotlib.pyplot as plt
 
     figure, axes = plt.subplots(figsize=_WIDE)
@@ -45,7 +45,7 @@ def trace(
 
 
 def by_cycle(cycles: Floats, signal: Floats, name: str) -> "Figure":
-    """Return a signal with one value a cycle."""
+    """Signal with one value a cycle over the number of the cycle."""
     import matplotlib.pyplot as plt
 
     figure, axes = plt.subplots(figsize=_WIDE)
@@ -54,8 +54,8 @@ def by_cycle(cycles: Floats, signal: Floats, name: str) -> "Figure":
     return figure
 
 
-def staircase(steps: Sequence[VoltageStep]) -> "Figure":
-    """Return friction and its reduction over the voltage."""
+def voltage_steps(steps: Sequence[VoltageStep]) -> "Figure":
+    """Friction and its reduction over the voltage."""
     import matplotlib.pyplot as plt
 
     figure, (left, right) = plt.subplots(1, 2, figsize=_WIDE)
@@ -85,7 +85,7 @@ def staircase(steps: Sequence[VoltageStep]) -> "Figure":
 
 
 def loops(velocity: Floats, force: Floats) -> "Figure":
-    """Return friction over velocity."""
+    """Friction over velocity."""
     import matplotlib.pyplot as plt
 
     figure, axes = plt.subplots(figsize=(4.2, 3.4))
@@ -97,20 +97,20 @@ def loops(velocity: Floats, force: Floats) -> "Figure":
     return figure
 
 
-def motor_trace(found: MotorFrictionTrace) -> "Figure":
-    """Return the friction that a motor's current tells."""
+def motor_trace(motor: MotorFrictionTrace) -> "Figure":
+    """Friction by the motor current over time with its uncertainty."""
     import matplotlib.pyplot as plt
 
     figure, axes = plt.subplots(figsize=_WIDE)
     axes.errorbar(
-        found.time, found.friction_force, yerr=found.friction_force_uncertainty, marker=MARKERS[0], elinewidth=0.8
+        motor.time, motor.friction_force, yerr=motor.friction_force_uncertainty, marker=MARKERS[0], elinewidth=0.8
     )
     axes.set(xlabel="time (s)", ylabel="friction force (N)")
     return figure
 
 
 def comparison(without: Sequence[float], with_vibration: Sequence[float], level: str) -> "Figure":
-    """Return single tests and the means of both kinds."""
+    """Friction of single tests without and with vibration, and the mean of each kind."""
     import matplotlib.pyplot as plt
 
     figure, axes = plt.subplots(figsize=(3.8, 3.2))
@@ -125,7 +125,7 @@ def comparison(without: Sequence[float], with_vibration: Sequence[float], level:
 
 
 def _envelope(time: Floats, signal: Floats) -> tuple[Floats, Floats, Floats]:
-    """Return lowest and highest sample in bins of equal numbers, which a page shows as the trace itself."""
+    """Middle, lowest and highest sample of bins of equal numbers, finer than a page resolves."""
     size = max(1, -(-time.size // _BINS))
     starts = np.arange(0, time.size, size)
     low = np.fmin.reduceat(signal, starts)

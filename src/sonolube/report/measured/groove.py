@@ -1,4 +1,4 @@
-"""Scans of wear grooves as sheets: width, depth, volume and pile-up of a scan, wear of a ring, wear reduction."""
+"""Sheets of wear grooves: volume of a scan, wear of a ring and of the pin, wear reduction by vibration."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,27 +16,27 @@ from sonolube.measurement.wear_track import (
 )
 from sonolube.report.measured import groove_figures as figures
 from sonolube.report.measured.sheet import (
-    Column,
-    Part,
     Sheet,
+    SheetColumn,
     SheetFigure,
+    SheetSection,
     SheetTable,
-    Value,
-    attempted,
-    known,
-    sheet_of,
+    SheetValue,
+    attempted_section,
+    quantity_value,
+    sheet_from_sections,
 )
 from sonolube.report.measured.surface import SurfaceSettings, surface_source
 from sonolube.report.measured.surface_figures import abbott
 from sonolube.surfaces import disc_volume_loss, material_ratio_curve, measure_groove, track_marks, wear_scar
 from sonolube.surfaces.grooves.groove import Groove
 
-_STRAIGHT = 100  # lengths of track, beyond which a diameter is the scan's whim
+_STRAIGHT = 100  # lengths of track, beyond which a diameter is not determined by the scan
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RingSettings:
-    """What the wear of a ring depends on beside its scans.
+    """Geometry and sliding distance of a worn ring.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ class RingSettings:
 
 
 def groove_sheet(path: Path, *, settings: SurfaceSettings) -> tuple[Sheet, Groove]:
-    """Return what a scan says of the groove in it, and the groove for its ring.
+    """Wear groove in a scan: width, depth, volumes and pile-up.
 
     Parameters
     ----------
@@ -80,28 +80,30 @@ def groove_sheet(path: Path, *, settings: SurfaceSettings) -> tuple[Sheet, Groov
     )
     groove = measure_groove(file.height_map)
     values = [
-        known("wear_volume", groove.wear_volume, uncertainty=groove.wear_volume_uncertainty),
-        Value(name="pile_up_volume", label="Volume of ridges and projections", value=groove.pile_up_volume, unit="m3"),
-        Value(name="net_volume", label="Volume that has left the field", value=groove.net_volume, unit="m3"),
-        known("groove_width", groove.groove_width),
-        Value(name="groove_depth", label="Greatest depth of the mean section", value=groove.groove_depth, unit="m"),
-        Value(name="cross_section_area", label="Area of the mean section", value=groove.cross_section_area, unit="m2"),
-        Value(name="track_length", label="Length of track in the field", value=groove.track_length, unit="m"),
+        quantity_value("wear_volume", groove.wear_volume, uncertainty=groove.wear_volume_uncertainty),
+        SheetValue("pile_up_volume", "Volume of ridges and projections", groove.pile_up_volume, "m3"),
+        SheetValue("net_volume", "Net volume lost in the field", groove.net_volume, "m3"),
+        quantity_value("groove_width", groove.groove_width),
+        SheetValue("groove_depth", "Greatest depth of the mean section", groove.groove_depth, "m"),
+        SheetValue("cross_section_area", "Area of the mean section", groove.cross_section_area, "m2"),
+        SheetValue("track_length", "Length of track in the field", groove.track_length, "m"),
     ]
     if groove.track.groove_diameter < _STRAIGHT * groove.track_length:
-        values.append(known("groove_diameter", groove.track.groove_diameter, label="Diameter of the track's arc"))
+        values.append(
+            quantity_value("groove_diameter", groove.track.groove_diameter, label="Diameter of the track's arc")
+        )
     caveats = (groove.caveat,) if groove.caveat else ()
-    parts = [
-        Part(values=tuple(values), figures=_figures(groove), caveats=caveats),
-        attempted(partial(_marks, groove), what="marks along the track"),
+    sections = [
+        SheetSection(values=tuple(values), figures=_figures(groove), caveats=caveats),
+        attempted_section(partial(_marks, groove), what="marks along the track"),
     ]
-    return sheet_of(parts, title=f"{path.parent.name}/{path.name}", source=surface_source(file)), groove
+    return sheet_from_sections(sections, title=f"{path.parent.name}/{path.name}", source=surface_source(file)), groove
 
 
 def ring_sheet(
     title: str, grooves: Sequence[tuple[str, Groove | str]], *, settings: RingSettings
 ) -> tuple[Sheet, WearTrack]:
-    """Return the wear of a ring from the grooves of its scans.
+    """Wear of a ring by the mean section of its scans and the theorem of Pappus.
 
     Parameters
     ----------
@@ -128,47 +130,41 @@ def ring_sheet(
     )
     counted = [name for name, groove in grooves if isinstance(groove, Groove) and groove.complete]
     values = [
-        Value(
-            name="ring_volume",
-            label="Wear volume of the ring",
-            value=ring.wear_volume,
-            unit="m3",
-            uncertainty=ring.wear_volume_uncertainty,
+        SheetValue(
+            "ring_volume", "Wear volume of the ring", ring.wear_volume, "m3", uncertainty=ring.wear_volume_uncertainty
         ),
-        Value(
-            name="ring_pile_up_volume",
-            label="Ridges and projections of the ring",
-            value=ring.pile_up_volume,
-            unit="m3",
-        ),
-        Value(name="ring_net_volume", label="Volume that has left the disc", value=ring.net_volume, unit="m3"),
-        known("wear_rate", ring.wear_rate, interval=ring.wear_rate_interval),
+        SheetValue("ring_pile_up_volume", "Ridges and projections of the ring", ring.pile_up_volume, "m3"),
+        SheetValue("ring_net_volume", "Net volume lost by the disc", ring.net_volume, "m3"),
+        quantity_value("wear_rate", ring.wear_rate, interval=ring.wear_rate_interval),
     ]
     if settings.tip_radius is not None:
         width = float(np.mean([g.groove_width for _, g in grooves if isinstance(g, Groove) and g.complete]))
         volume = disc_volume_loss(
             groove_diameter=settings.groove_diameter, groove_width=width, tip_radius=settings.tip_radius
         )
-        label = "The same by ASTM G99's geometry, from width and tip"
-        values.append(Value(name="geometric_volume", label=label, value=float(volume), unit="m3"))
+        label = "Wear volume by the geometry of ASTM G99, from width and tip"
+        values.append(SheetValue("geometric_volume", label, float(volume), "m3"))
     table = SheetTable(
         name="sections",
         title="Area of the mean section by scan",
-        columns=(Column(name="scan", label="Scan"), Column(name="cross_section_area", label="Area", unit="m2")),
+        columns=(
+            SheetColumn("scan", "Scan"),
+            SheetColumn("cross_section_area", "Area", "m2"),
+        ),
         rows=tuple(zip(counted, map(float, ring.cross_section_area), strict=True)),
     )
-    drawn = SheetFigure(
+    figure = SheetFigure(
         name="ring",
         title="Sections round the ring",
         caption="Area of the mean section of each scan; the line is the mean, the band its 95 % interval.",
         draw=partial(figures.ring, ring),
     )
-    part = Part(values=tuple(values), tables=(table,), figures=(drawn,), caveats=ring.excluded_scans)
-    return sheet_of([part], title=title, source={}), ring
+    section = SheetSection(values=tuple(values), tables=(table,), figures=(figure,), caveats=ring.excluded_scans)
+    return sheet_from_sections([section], title=title, source={}), ring
 
 
 def wear_reduction_sheet(without: Sequence[WearTrack], with_vibration: Sequence[WearTrack]) -> Sheet:
-    """Return what vibration takes off the wear.
+    """Wear reduction by vibration from worn rings, with its interval.
 
     Parameters
     ----------
@@ -179,19 +175,19 @@ def wear_reduction_sheet(without: Sequence[WearTrack], with_vibration: Sequence[
     -------
     Sheet
     """
-    found: WearReduction = wear_reduction_between_tracks(without, with_vibration)
+    reduction: WearReduction = wear_reduction_between_tracks(without, with_vibration)
     caveats: tuple[str, ...] = ()
-    if not found.between_specimens:
+    if not reduction.between_specimens:
         caveats = (
-            "the interval knows the scatter round each ring only, not that between specimens: wear more of them",
+            "the interval covers the scatter along each ring only, not that between specimens: test more specimens",
         )
-    value = known("wear_reduction", found.wear_reduction, interval=found.interval)
+    value = quantity_value("wear_reduction", reduction.wear_reduction, interval=reduction.interval)
     title = f"{len(with_vibration)} ring with vibration against {len(without)} without"
-    return sheet_of([Part(values=(value,), caveats=caveats)], title=title, source={})
+    return sheet_from_sections([SheetSection(values=(value,), caveats=caveats)], title=title, source={})
 
 
 def cap_sheet(path: Path, *, settings: SurfaceSettings, tip_radius: float | None) -> Sheet:
-    """Return what a pin has lost at its tip.
+    """Wear of a pin by the scar in a scan of its tip.
 
     Parameters
     ----------
@@ -216,26 +212,25 @@ def cap_sheet(path: Path, *, settings: SurfaceSettings, tip_radius: float | None
     )
     cap = wear_scar(file.height_map, tip_radius=tip_radius)
     values = (
-        Value(
-            name="pin_volume",
-            label="Wear volume of the pin",
-            value=cap.wear_volume,
-            unit="m3",
-            uncertainty=cap.wear_volume_uncertainty,
+        SheetValue(
+            "pin_volume", "Wear volume of the pin", cap.wear_volume, "m3", uncertainty=cap.wear_volume_uncertainty
         ),
-        Value(name="scar_diameter", label="Diameter of the scar", value=cap.scar_diameter, unit="m"),
-        known("tip_radius", cap.tip_radius),
+        SheetValue("scar_diameter", "Diameter of the scar", cap.scar_diameter, "m"),
+        quantity_value("tip_radius", cap.tip_radius),
     )
-    drawn = SheetFigure(
+    figure = SheetFigure(
         name="cap",
         title="Scar of the pin",
         caption="Heights over the ball; the line goes round the scar.",
         draw=partial(figures.height_map, cap.levelled, cap.worn),
     )
-    return sheet_of([Part(values=values, figures=(drawn,))], title=path.name, source=surface_source(file))
+    return sheet_from_sections(
+        [SheetSection(values=values, figures=(figure,))], title=path.name, source=surface_source(file)
+    )
 
 
 def _figures(groove: Groove) -> tuple[SheetFigure, ...]:
+    """View, cross-sections, map and Abbott curve of a groove."""
     return (
         SheetFigure(
             name="view",
@@ -265,15 +260,16 @@ def _figures(groove: Groove) -> tuple[SheetFigure, ...]:
     )
 
 
-def _marks(groove: Groove) -> Part:
+def _marks(groove: Groove) -> SheetSection:
+    """Spacing of marks along the track by the spectrum of its floor."""
     marks = track_marks(groove)
     if marks.dot_spacing is None:
-        return Part(not_found=(f"marks along the track: {marks.reason}",))
-    drawn = SheetFigure(
+        return SheetSection(not_found=(f"marks along the track: {marks.reason}",))
+    figure = SheetFigure(
         name="marks",
         title="Spectrum along the track",
         caption="Power of the groove's floor along the track over its background; the peak is the marks' spacing.",
         draw=partial(figures.marks, marks),
     )
-    value = known("dot_spacing", marks.dot_spacing, uncertainty=marks.dot_spacing_uncertainty)
-    return Part(values=(value,), figures=(drawn,))
+    value = quantity_value("dot_spacing", marks.dot_spacing, uncertainty=marks.dot_spacing_uncertainty)
+    return SheetSection(values=(value,), figures=(figure,))

@@ -1,4 +1,4 @@
-"""Figures of wear grooves."""
+"""Figures of wear grooves: view, sections, map, ring and marks."""
 
 import math
 from typing import TYPE_CHECKING, Any
@@ -22,7 +22,7 @@ _SINGLE = 9  # sections shown
 
 
 def view(groove: Groove) -> "Figure":
-    """Return the groove in three dimensions."""
+    """Three-dimensional view of the groove, the vertical stretched."""
     import matplotlib.pyplot as plt
 
     figure = plt.figure(figsize=(6.4, 4.2))
@@ -44,7 +44,7 @@ def view(groove: Groove) -> "Figure":
 
 
 def sections(groove: Groove) -> "Figure":
-    """Return single sections and the mean one with its edges."""
+    """Single cross-sections, and the mean one with its edges."""
     import matplotlib.pyplot as plt
 
     figure, axes = plt.subplots(figsize=(6.4, 3.2))
@@ -63,7 +63,7 @@ def sections(groove: Groove) -> "Figure":
 
 
 def height_map(levelled: HeightMap, worn: NDArray[np.bool_]) -> "Figure":
-    """Return heights as colours, with a line round what is worn."""
+    """Heights as colours, with the outline of the worn area."""
     import matplotlib.pyplot as plt
 
     figure, axes = plt.subplots(figsize=(5.0, 3.4))
@@ -74,14 +74,14 @@ def height_map(levelled: HeightMap, worn: NDArray[np.bool_]) -> "Figure":
     return figure
 
 
-def ring(found: WearTrack) -> "Figure":
-    """Return the area of each scan's section, with mean and interval."""
+def ring(worn: WearTrack) -> "Figure":
+    """Area of the mean section of each scan, with the mean of the ring and its 95 % interval."""
     import matplotlib.pyplot as plt
 
     figure, axes = plt.subplots(figsize=(4.6, 3.0))
-    area = 1e12 * found.cross_section_area
-    around = math.pi * found.groove_diameter
-    low, high = (1e12 * end / around for end in found.wear_volume_interval)
+    area = 1e12 * worn.cross_section_area
+    circumference = math.pi * worn.groove_diameter
+    low, high = (1e12 * end / circumference for end in worn.wear_volume_interval)
     place = np.arange(1, area.size + 1)
     axes.axhspan(low, high, color=COLOURS[5], alpha=0.4, linewidth=0, label="95 %")
     axes.axhline(float(area.mean()), color=COLOURS[0], linewidth=1.2, label="mean")
@@ -91,25 +91,25 @@ def ring(found: WearTrack) -> "Figure":
     return figure
 
 
-def marks(found: TrackMarks) -> "Figure":
-    """Return the spectrum along the track over its background."""
+def marks(track: TrackMarks) -> "Figure":
+    """Power spectrum along the track over its background."""
     import matplotlib.pyplot as plt
 
     figure, axes = plt.subplots(figsize=(4.6, 3.0))
-    inner = found.wavenumber > 0
-    k = found.wavenumber[inner]
-    axes.loglog(k, found.profile_spectral_density[inner], linewidth=1, label="along the track")
-    background = np.broadcast_to(found.background, found.wavenumber.shape)[inner]
+    inner = track.wavenumber > 0
+    k = track.wavenumber[inner]
+    axes.loglog(k, track.profile_spectral_density[inner], linewidth=1, label="along the track")
+    background = np.broadcast_to(track.background, track.wavenumber.shape)[inner]
     axes.loglog(k, background, "--", color=COLOURS[1], label="background")
-    if found.dot_spacing is not None:
-        axes.axvline(1 / found.dot_spacing, color="0.4", linewidth=0.8, linestyle=":")
+    if track.dot_spacing is not None:
+        axes.axvline(1 / track.dot_spacing, color="0.4", linewidth=0.8, linestyle=":")
     axes.set(xlabel="wavenumber (1/m)", ylabel="power spectral density (m$^3$)")
     axes.legend()
     return figure
 
 
 def _block_means(height: Floats, size: int) -> Floats:
-    """Return means over square blocks of pixels, missing ones left out; NaN where a block has none."""
+    """Means over square blocks of pixels without missing ones; NaN for blocks without pixels."""
     rows, columns = (n // size * size for n in height.shape)
     blocks = height[:rows, :columns].reshape(rows // size, size, columns // size, size)
     measured = np.isfinite(blocks)

@@ -1,4 +1,4 @@
-"""Impedance spectra as sheets: the equivalent circuit that fits, and the stack of a structure."""
+"""Sheets of impedance spectra: fitted equivalent circuit, or the fitted stack of a structure."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -14,14 +14,21 @@ from sonolube.measurement.impedance.reader import read_impedance
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 from sonolube.measurement.statistics.log_parameter_fit import ConfidenceInterval
 from sonolube.report.measured import impedance_figures as figures
-from sonolube.report.measured.sheet import Part, Sheet, SheetFigure, Value, known, sheet_of
+from sonolube.report.measured.sheet import (
+    Sheet,
+    SheetFigure,
+    SheetSection,
+    SheetValue,
+    quantity_value,
+    sheet_from_sections,
+)
 from sonolube.units import format_si
 from sonolube.vocabulary import quantities
 
 
 @dataclass(frozen=True, slots=True)
 class StackInStructure:
-    """A stack as its maker states it, and the structure as it would be with another."""
+    """Stack by its data sheet, and the structure as a function of the stack."""
 
     stack: PiezoStack
     in_structure: Callable[[PiezoStack], Structure]
@@ -29,7 +36,7 @@ class StackInStructure:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ImpedanceSettings:
-    """What the fit to a spectrum depends on.
+    """Settings of the fit to an impedance spectrum.
 
     Parameters
     ----------
@@ -53,7 +60,7 @@ class ImpedanceSettings:
 
 
 def impedance_sheet(path: Path, *, settings: ImpedanceSettings) -> Sheet:
-    """Return the circuit, or the stack, that an impedance file bears out.
+    """Equivalent circuit fitted to a measured impedance spectrum, or the stack of a structure.
 
     Parameters
     ----------
@@ -71,31 +78,32 @@ def impedance_sheet(path: Path, *, settings: ImpedanceSettings) -> Sheet:
         If the file cannot be read, or nothing fits it.
     """
     spectrum = read_impedance(path, sweep=settings.sweep)
-    part = _circuit(spectrum, settings) if settings.stack is None else _stack(spectrum, settings, settings.stack)
-    f = spectrum.frequency
-    ends = " to ".join(format_si(float(end), "Hz", digits=6) for end in (f[0], f[-1]))
+    section = _circuit(spectrum, settings) if settings.stack is None else _stack(spectrum, settings, settings.stack)
+    frequency = spectrum.frequency
+    ends = " to ".join(format_si(float(end), "Hz", digits=6) for end in (frequency[0], frequency[-1]))
     source = {
         "format": spectrum.file_format,
         "sweep": spectrum.sweep,
-        "points": f"{f.size}, {ends}",
+        "points": f"{frequency.size}, {ends}",
         "residual": settings.residual,
         "sha256": spectrum.sha256,
     }
-    return sheet_of([part], title=path.name, source=source)
+    return sheet_from_sections([section], title=path.name, source=source)
 
 
-def _circuit(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings) -> Part:
+def _circuit(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings) -> SheetSection:
+    """Butterworth-Van Dyke circuit fitted to a spectrum."""
     fit = fit_circuit(
         spectrum,
         branches=settings.branches,
         residual=settings.residual,
         series_resistance=settings.series_resistance,
     )
-    drawn = SheetFigure(
+    figure = SheetFigure(
         name="fit",
-        title="Impedance with the circuit that fits",
-        caption=f"Measured and fitted by the {fit.residual} residual, and what is left over: share of the magnitude"
-        " and radians of the phase.",
+        title="Impedance with the fitted circuit",
+        caption=f"Measured and fitted by the {fit.residual} residual, and the residual: relative in magnitude,"
+        " radians in phase.",
         draw=partial(figures.circuit, spectrum, fit.circuit),
     )
     circle = SheetFigure(
@@ -105,45 +113,45 @@ def _circuit(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings) -> Part:
         draw=partial(figures.admittance_circle, spectrum, fit.circuit),
     )
     values = (*_values(fit.intervals), _rms(fit.residual_rms, fit.residual))
-    return Part(values=values, figures=(drawn, circle), caveats=fit.caveats)
+    return SheetSection(values=values, figures=(figure, circle), caveats=fit.caveats)
 
 
-def _stack(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings, sought: StackInStructure) -> Part:
-    fit = fit_stack(spectrum, sought.stack, in_structure=sought.in_structure, residual=settings.residual)
+def _stack(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings, initial: StackInStructure) -> SheetSection:
+    """Parameters of a stack fitted to the spectrum of its structure."""
+    fit = fit_stack(spectrum, initial.stack, in_structure=initial.in_structure, residual=settings.residual)
     charge = fit.charge_per_elongation
     values = (
         *_values(fit.intervals),
-        Value(
-            name="force_per_volt",
-            label="Blocked force per volt",
-            value=charge.value,
-            unit="N/V",
-            interval=(charge.lower, charge.upper),
+        SheetValue(
+            "force_per_volt", "Blocked force per volt", charge.value, "N/V", interval=(charge.lower, charge.upper)
         ),
         _rms(fit.residual_rms, fit.residual),
     )
-    drawn = SheetFigure(
+    figure = SheetFigure(
         name="fit",
-        title="Impedance with the stack that fits",
+        title="Impedance with the fitted stack",
         caption=f"Measured, and that of the structure with the stack found by the {fit.residual} residual.",
-        draw=partial(figures.stack, spectrum, sought.in_structure(fit.stack)),
+        draw=partial(figures.stack, spectrum, initial.in_structure(fit.stack)),
     )
-    return Part(values=values, figures=(drawn,), caveats=fit.caveats)
+    return SheetSection(values=values, figures=(figure,), caveats=fit.caveats)
 
 
-def _values(intervals: Mapping[str, ConfidenceInterval]) -> tuple[Value, ...]:
+def _values(intervals: Mapping[str, ConfidenceInterval]) -> tuple[SheetValue, ...]:
+    """Fitted parameters with their intervals."""
     return tuple(_value(name, interval) for name, interval in intervals.items())
 
 
-def _value(name: str, interval: ConfidenceInterval) -> Value:
+def _value(name: str, interval: ConfidenceInterval) -> SheetValue:
+    """Fitted parameter with its interval, that of a branch named by its number."""
     ends = (interval.lower, interval.upper)
     if name in quantities():
-        return known(name, interval.value, interval=ends)
+        return quantity_value(name, interval.value, interval=ends)
     base, _, branch = name.rpartition("_")
     word = quantities()[base]
     label = f"{word.meaning}, branch {branch}"
-    return Value(name=name, label=label, value=interval.value, unit=word.unit, interval=ends)
+    return SheetValue(name, label, interval.value, word.unit, interval=ends)
 
 
-def _rms(rms: float, residual: str) -> Value:
-    return Value(name="residual_rms", label=f"Root mean square of the {residual} residual", value=rms, unit="")
+def _rms(rms: float, residual: str) -> SheetValue:
+    """Root mean square of the residual of a fit."""
+    return SheetValue("residual_rms", f"Root mean square of the {residual} residual", rms, "")

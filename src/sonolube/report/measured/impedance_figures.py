@@ -1,4 +1,4 @@
-"""Figures of impedance spectra."""
+"""Figures of impedance spectra: fits and the admittance circle."""
 
 from typing import TYPE_CHECKING
 
@@ -15,17 +15,17 @@ if TYPE_CHECKING:
 
 
 def circuit(spectrum: ImpedanceSpectrum, fitted: ButterworthVanDyke) -> "Figure":
-    """Return magnitude and phase, measured and of a circuit, over what is left between them."""
+    """Impedance measured and of a fitted circuit, above the residual."""
     return _fit(spectrum, circuit_admittance(fitted, frequency=spectrum.frequency))
 
 
 def stack(spectrum: ImpedanceSpectrum, fitted: Structure) -> "Figure":
-    """Return magnitude and phase, measured and of a structure, over what is left between them."""
+    """Impedance measured and of a fitted structure, above the residual."""
     return _fit(spectrum, electrical_admittance(fitted, frequency=spectrum.frequency))
 
 
 def admittance_circle(spectrum: ImpedanceSpectrum, fitted: ButterworthVanDyke) -> "Figure":
-    """Return susceptance over conductance, measured and fitted."""
+    """Susceptance over conductance, measured and fitted."""
     import matplotlib.pyplot as plt
 
     figure, axes = plt.subplots(figsize=(3.8, 3.6))
@@ -40,6 +40,7 @@ def admittance_circle(spectrum: ImpedanceSpectrum, fitted: ButterworthVanDyke) -
 
 
 def _fit(spectrum: ImpedanceSpectrum, model: Complexes) -> "Figure":
+    """Magnitude and phase of the impedance, measured and fitted, above the residual of the logarithm."""
     import matplotlib.pyplot as plt
 
     f = spectrum.frequency / 1e3

@@ -1,4 +1,4 @@
-"""Recordings of a Hall probe as sheets: speed of the disc, and of the pin on it."""
+"""Sheets of Hall-probe recordings: rotation speed of the disc and sliding speed of the pin."""
 
 from dataclasses import dataclass
 from functools import partial
@@ -11,12 +11,19 @@ from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.measurement.recordings.reader import read_recording
 from sonolube.report.measured import rotation_figures as figures
 from sonolube.report.measured.friction import recording_source
-from sonolube.report.measured.sheet import Part, Sheet, SheetFigure, Value, known, sheet_of
+from sonolube.report.measured.sheet import (
+    Sheet,
+    SheetFigure,
+    SheetSection,
+    SheetValue,
+    quantity_value,
+    sheet_from_sections,
+)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RotationSettings:
-    """What the speed of a disc depends on.
+    """Geometry of the disc and detection of pulses of its Hall probe.
 
     Parameters
     ----------
@@ -37,7 +44,7 @@ class RotationSettings:
 
 
 def rotation_sheet(path: Path, *, settings: RotationSettings) -> Sheet:
-    """Return how fast a disc turned.
+    """Rotation speed of a disc, and speed of the pin on it, from the pulses of a Hall probe.
 
     Parameters
     ----------
@@ -55,54 +62,56 @@ def rotation_sheet(path: Path, *, settings: RotationSettings) -> Sheet:
         If the file cannot be read or shows fewer pulses than a turn needs.
     """
     recording = read_recording(path, mapping=settings.mapping)
-    turning = analyse_rotation(
+    rotation = analyse_rotation(
         recording,
         groove_diameter=settings.groove_diameter,
         magnets=settings.magnets,
         prominence=settings.prominence,
     )
-    around, error = np.pi * settings.groove_diameter, turning.rotation_speed_uncertainty
-    turns = turning.rotation_speed
-    interpolated = int(turning.interpolated.sum())
+    circumference, error = np.pi * settings.groove_diameter, rotation.rotation_speed_uncertainty
+    turns = rotation.rotation_speed
+    interpolated = int(rotation.interpolated.sum())
     values = [
-        known("rotation_speed", turning.mean_rotation_speed, uncertainty=error),
-        known("sliding_speed", around * turning.mean_rotation_speed, uncertainty=around * error),
-        known("revolutions", float(turning.revolutions[-1])),
-        known("sliding_distance", around * float(turning.revolutions[-1])),
-        Value(name="pulses", label="Pulses", value=float(turning.time.size), unit=""),
-        Value(name="repaired_pulses", label="Missing pulses put in", value=float(interpolated), unit=""),
+        quantity_value("rotation_speed", rotation.mean_rotation_speed, uncertainty=error),
+        quantity_value(
+            "sliding_speed", circumference * rotation.mean_rotation_speed, uncertainty=circumference * error
+        ),
+        quantity_value("revolutions", float(rotation.revolutions[-1])),
+        quantity_value("sliding_distance", circumference * float(rotation.revolutions[-1])),
+        SheetValue("pulses", "Pulses", float(rotation.time.size), ""),
+        SheetValue("repaired_pulses", "Missing pulses inserted", float(interpolated), ""),
     ]
     if turns.size > 1:
-        spread = float(turns.std(ddof=1)) / turning.mean_rotation_speed
+        spread = float(turns.std(ddof=1)) / rotation.mean_rotation_speed
         values.append(
-            Value(name="speed_variation", label="Deviation of the turns' speed over its mean", value=spread, unit="")
+            SheetValue("speed_variation", "Relative standard deviation of the speed of the turns", spread, "")
         )
-    drawn = (
+    pictures = (
         SheetFigure(
             name="speed",
             title="Speed turn by turn",
             caption="Each turn is timed from a magnet to the same magnet; the line is the mean.",
-            draw=partial(figures.speed, turning),
+            draw=partial(figures.speed, rotation),
         ),
         SheetFigure(
             name="pulses",
             title="Pulses of the probe",
-            caption="The first turns, with the pulses that count and those put in where one was missing.",
+            caption="The first turns, with the pulses detected and those inserted where one was missing.",
             draw=partial(
                 figures.pulses,
                 channel_values(recording, "time"),
                 channel_values(recording, "magnetic_flux_density"),
-                turning,
+                rotation,
             ),
         ),
     )
     caveats: tuple[str, ...] = ()
-    if interpolated > turning.time.size / 10:
+    if interpolated > rotation.time.size / 10:
         caveats = (
-            f"{interpolated} of {turning.time.size} pulses were missing; lower the prominence or move the probe",
+            f"{interpolated} of {rotation.time.size} pulses were missing; lower the prominence or move the probe",
         )
-    return sheet_of(
-        [Part(values=tuple(values), figures=drawn, caveats=caveats)],
+    return sheet_from_sections(
+        [SheetSection(values=tuple(values), figures=pictures, caveats=caveats)],
         title=path.name,
         source=recording_source(recording),
     )

@@ -1,4 +1,4 @@
-"""Figures of a turning disc."""
+"""Figures of a rotating disc: speed and pulses."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -14,17 +14,17 @@ if TYPE_CHECKING:
 _TURNS_SHOWN = 6
 
 
-def speed(turning: DiscRotation) -> "Figure":
-    """Return the rotation speed turn by turn, with the speed at the groove on the right."""
+def speed(rotation: DiscRotation) -> "Figure":
+    """DiscRotation speed turn by turn, with the speed at the groove on the right."""
     import matplotlib.pyplot as plt
 
     figure, axes = plt.subplots(figsize=(6.4, 3.0))
-    turns = turning.rotation_speed
-    begun = turning.time[: turns.size]
-    axes.plot(begun, turns, marker=".", linewidth=0.8, markersize=4)
-    axes.axhline(turning.mean_rotation_speed, color=COLOURS[1], linestyle="--", linewidth=1.2, label="mean")
+    speeds = rotation.rotation_speed
+    begun = rotation.time[: speeds.size]
+    axes.plot(begun, speeds, marker=".", linewidth=0.8, markersize=4)
+    axes.axhline(rotation.mean_rotation_speed, color=COLOURS[1], linestyle="--", linewidth=1.2, label="mean")
     axes.set(xlabel="time (s)", ylabel="rotation speed (1/s)")
-    per_turn = float(turning.sliding_speed[0] / turns[0])
+    per_turn = float(rotation.sliding_speed[0] / speeds[0])
 
     def at_groove(rotation_speed: Any) -> Any:
         return rotation_speed * per_turn
@@ -38,21 +38,21 @@ def speed(turning: DiscRotation) -> "Figure":
     return figure
 
 
-def pulses(t: Floats, flux_density: Floats, turning: DiscRotation) -> "Figure":
-    """Return the first turns of the probe's reading with the pulses in it."""
+def pulses(t: Floats, flux_density: Floats, rotation: DiscRotation) -> "Figure":
+    """Reading of the probe over the first turns, with its pulses."""
     import matplotlib.pyplot as plt
 
     figure, axes = plt.subplots(figsize=(6.4, 3.0))
-    end = float(np.interp(_TURNS_SHOWN, turning.revolutions, turning.time))
+    end = float(np.interp(_TURNS_SHOWN, rotation.revolutions, rotation.time))
     shown = t <= end + 0.02 * (end - t[0])
     axes.plot(t[shown], flux_density[shown], color="0.5", linewidth=0.8, label="reading")
-    early = turning.time <= end
+    early = rotation.time <= end
     for which, name, place in (
-        (early & ~turning.interpolated, "pulses", 0),
-        (early & turning.interpolated, "put in", 1),
+        (early & ~rotation.interpolated, "pulses", 0),
+        (early & rotation.interpolated, "inserted", 1),
     ):
         if which.any():
-            at = turning.time[which]
+            at = rotation.time[which]
             height = np.interp(at, t, flux_density)
             axes.plot(at, height, MARKERS[place], color=COLOURS[place], linestyle="none", label=name)
     axes.set(xlabel="time (s)", ylabel="magnetic flux density (T)")

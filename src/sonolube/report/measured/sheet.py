@@ -1,4 +1,4 @@
-"""A sheet: what one file was measured to say, with where it came from."""
+"""Sheet of one measured file: values, tables, figures and caveats, with their origin."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -16,16 +16,16 @@ if TYPE_CHECKING:
 Cell = float | str | None
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Value:
-    """One number that a file was measured to say.
+@dataclass(frozen=True, slots=True)
+class SheetValue:
+    """One measured number with its unit, uncertainty and interval.
 
     Parameters
     ----------
     name : str
-        For programs; a word of the vocabulary where it has one.
+        In JSON; a word of the vocabulary where it has one.
     label : str
-        For people.
+        As printed.
     value : float
         In SI.
     unit : str
@@ -45,55 +45,55 @@ class Value:
 
     @property
     def text(self) -> str:
-        """The value as people write it, with how well it is known."""
+        """Value with the precision that its uncertainty allows, and the uncertainty or interval."""
         if not math.isfinite(self.value):
             return "not known"
-        told = format_si(self.value, self.unit, digits=self._digits)
-        number, _, unit = told.partition(" ")
+        rounded = format_si(self.value, self.unit, digits=self._digits)
+        number, _, unit = rounded.partition(" ")
         scale = 10.0 ** round(math.log10(self.value / float(number))) if float(number) else 1.0
         if self.uncertainty is not None:
             return f"{number} ± {self.uncertainty / scale:.2g} {unit}".rstrip()
         if self.interval is not None:
             lower, upper = (end / scale for end in self.interval)
             return f"{number} {unit}".rstrip() + f" ({lower:.4g} to {upper:.4g})"
-        return told
+        return rounded
 
     @property
     def _digits(self) -> int:
-        """Significant digits that the uncertainty leaves a meaning, three to eight; four where none is known."""
+        """Significant digits that the uncertainty leaves a meaning, three to eight; four without uncertainty."""
         if not self.uncertainty or not self.value:
             return 4
         return min(8, max(3, math.floor(math.log10(abs(self.value))) - math.floor(math.log10(self.uncertainty)) + 2))
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Column:
-    """A column of a table: its name for programs, its heading for people, and its SI unit."""
+@dataclass(frozen=True, slots=True)
+class SheetColumn:
+    """Column of a table: its name in JSON, its heading, and its SI unit."""
 
     name: str
     label: str
     unit: str = ""
 
     def text(self, cell: Cell) -> str:
-        """Return a cell as people write it; empty where there is nothing."""
+        """Cell as text with its unit; empty for None."""
         if cell is None or (isinstance(cell, float) and not math.isfinite(cell)):
             return ""
         return cell if isinstance(cell, str) else format_si(cell, self.unit, digits=4)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+@dataclass(frozen=True, slots=True)
 class SheetTable:
-    """A table of a sheet: cells are numbers in SI, words, or None."""
+    """Table of a sheet; cells are numbers in SI, text, or None."""
 
     name: str
     title: str
-    columns: tuple[Column, ...]
+    columns: tuple[SheetColumn, ...]
     rows: tuple[tuple[Cell, ...], ...]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class SheetFigure:
-    """A figure of a sheet, drawn when the page is made."""
+    """Figure of a sheet, drawn when the page is made."""
 
     name: str
     title: str
@@ -103,7 +103,7 @@ class SheetFigure:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Sheet:
-    """What one file was measured to say.
+    """Values, tables, figures and caveats of one measured file.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ class Sheet:
 
     title: str
     source: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
-    values: tuple[Value, ...] = ()
+    values: tuple[SheetValue, ...] = ()
     tables: tuple[SheetTable, ...] = ()
     figures: tuple[SheetFigure, ...] = ()
     caveats: tuple[str, ...] = ()
@@ -133,18 +133,18 @@ class Sheet:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Part:
-    """What one analysis adds to a sheet; fields as those of `Sheet`."""
+class SheetSection:
+    """Part of a sheet by one analysis; fields as those of `Sheet`."""
 
-    values: tuple[Value, ...] = ()
+    values: tuple[SheetValue, ...] = ()
     tables: tuple[SheetTable, ...] = ()
     figures: tuple[SheetFigure, ...] = ()
     caveats: tuple[str, ...] = ()
     not_found: tuple[str, ...] = ()
 
 
-def sheet_of(parts: Sequence[Part], *, title: str, source: Mapping[str, str]) -> Sheet:
-    """Return the sheet to which analyses add up, in their order."""
+def sheet_from_sections(parts: Sequence[SheetSection], *, title: str, source: Mapping[str, str]) -> Sheet:
+    """Sheet of several sections, in their order."""
     return Sheet(
         title=title,
         source={key: text for key, text in source.items() if text},
@@ -156,23 +156,23 @@ def sheet_of(parts: Sequence[Part], *, title: str, source: Mapping[str, str]) ->
     )
 
 
-def attempted(analysis: Callable[[], Part], *, what: str) -> Part:
-    """Return what an analysis gives, or that it was not possible on this file, with its reason."""
+def attempted_section(analysis: Callable[[], SheetSection], *, what: str) -> SheetSection:
+    """Section by an analysis, or the reason for which it is not possible on this file."""
     try:
         return analysis()
     except InvalidInput as refusal:
-        return Part(not_found=(f"{what}: {refusal}",))
+        return SheetSection(not_found=(f"{what}: {refusal}",))
 
 
-def known(
+def quantity_value(
     name: str,
     value: float,
     *,
     label: str = "",
     uncertainty: float | None = None,
     interval: tuple[float, float] | None = None,
-) -> Value:
-    """Return a value whose name is a word of the vocabulary, which gives its unit and, where none is given, its label.
+) -> SheetValue:
+    """Value of a quantity of the vocabulary, which gives its unit and its default label.
 
     Parameters
     ----------
@@ -192,12 +192,9 @@ def known(
     Value
     """
     word = quantities()[name]
-    return Value(
-        name=name, label=label or word.meaning, value=value, unit=word.unit, uncertainty=uncertainty, interval=interval
-    )
+    return SheetValue(name, label or word.meaning, value, word.unit, uncertainty=uncertainty, interval=interval)
 
 
-def column(name: str, label: str = "") -> Column:
-    """Return a column whose name is a word of the vocabulary."""
-    word = quantities()[name]
-    return Column(name=name, label=label or word.meaning, unit=word.unit)
+def quantity_columns(labels: Mapping[str, str]) -> tuple[SheetColumn, ...]:
+    """Columns of quantities of the vocabulary, by name with their headings."""
+    return tuple(SheetColumn(name, label, quantities()[name].unit) for name, label in labels.items())

@@ -1,4 +1,4 @@
-"""Height maps as sheets: parameters of ISO 25178-2 and of profiles, spectra, summits for the contact models."""
+"""Sheets of height maps: parameters of ISO 25178-2 and of profiles, spectra, summits for the contact models."""
 
 import math
 from collections.abc import Mapping
@@ -11,15 +11,15 @@ from sonolube.errors import InvalidInput
 from sonolube.measurement.surface_files.reader import SurfaceFile, read_surface_file
 from sonolube.report.measured import surface_figures as figures
 from sonolube.report.measured.sheet import (
-    Column,
-    Part,
     Sheet,
+    SheetColumn,
     SheetFigure,
+    SheetSection,
     SheetTable,
-    attempted,
-    column,
-    known,
-    sheet_of,
+    attempted_section,
+    quantity_columns,
+    quantity_value,
+    sheet_from_sections,
 )
 from sonolube.surfaces import (
     HeightMap,
@@ -98,21 +98,30 @@ _LABELS: Mapping[str, str] = MappingProxyType(
         "mean_peak_curvature": "mean curvature of their peaks",
     }
 )
-_PROFILE = (
-    "arithmetic_mean_height",
-    "rms_height",
-    "maximum_peak_height",
-    "maximum_pit_depth",
-    "total_height",
-    "mean_section_height",
+_PROFILE_LABELS: Mapping[str, str] = MappingProxyType(
+    {
+        "arithmetic_mean_height": "Ra",
+        "rms_height": "Rq",
+        "maximum_peak_height": "Rp",
+        "maximum_pit_depth": "Rv",
+        "total_height": "Rt",
+        "mean_section_height": "Rz",
+    }
 )
-_PROFILE_LABELS = ("Ra", "Rq", "Rp", "Rv", "Rt", "Rz")
+_SAMPLING_LABELS: Mapping[str, str] = MappingProxyType(
+    {
+        "sampling_interval": "Interval",
+        "rms_height": "Deviation of summit heights",
+        "summit_radius": "Summit radius",
+        "summit_density": "Summit density",
+    }
+)
 _COARSENINGS = (1, 2, 4, 8)  # times the pixel, at which summits are sought
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SurfaceSettings:
-    """What the numbers of a height map depend on.
+    """Settings of the evaluation of a height map.
 
     Parameters
     ----------
@@ -140,7 +149,7 @@ class SurfaceSettings:
 
 
 def surface_sheet(path: Path, *, settings: SurfaceSettings) -> Sheet:
-    """Return what a surface file says.
+    """Areal and profile parameters, spectra and summits of a surface file.
 
     Parameters
     ----------
@@ -162,22 +171,22 @@ def surface_sheet(path: Path, *, settings: SurfaceSettings) -> Sheet:
     )
     levelled = remove_form(file.height_map, degree=settings.degree, robust=settings.robust)
     surface = _filtered(levelled, settings)
-    parts = [_part(height_parameters(surface))]
+    sections = [_part(height_parameters(surface))]
     for measure in (hybrid_parameters, spatial_parameters, functional_parameters, feature_parameters):
         name = measure.__name__.replace("_", " ")
-        parts.append(attempted(lambda measure=measure: _part(measure(surface)), what=name))  # type: ignore[misc]
-    parts += [
-        attempted(partial(_summits, surface), what="summits"),
-        attempted(partial(_profiles, surface), what="profile parameters"),
-        attempted(partial(_sampling, surface), what="summits at coarser sampling"),
-        attempted(partial(_waviness, levelled), what="waviness"),
+        sections.append(attempted_section(lambda measure=measure: _part(measure(surface)), what=name))  # type: ignore[misc]
+    sections += [
+        attempted_section(partial(_summits, surface), what="summits"),
+        attempted_section(partial(_profiles, surface), what="profile parameters"),
+        attempted_section(partial(_sampling, surface), what="summits at coarser sampling"),
+        attempted_section(partial(_waviness, levelled), what="waviness"),
         _figures(surface),
     ]
-    return sheet_of(parts, title=path.name, source=surface_source(file))
+    return sheet_from_sections(sections, title=path.name, source=surface_source(file))
 
 
 def surface_source(file: SurfaceFile) -> dict[str, str]:
-    """Return where a height map came from, for its sheet."""
+    """Origin of a height map: format, instrument, pixels, field and digest."""
     rows, columns = file.height_map.height.shape
     step_x, step_y = file.height_map.spacing_x, file.height_map.spacing_y
     return {
@@ -193,6 +202,7 @@ def surface_source(file: SurfaceFile) -> dict[str, str]:
 
 
 def _filtered(levelled: HeightMap, settings: SurfaceSettings) -> HeightMap:
+    """Surface between the cutoff lengths."""
     short, long = settings.short_cutoff_length, settings.long_cutoff_length
     if short is not None and long is not None and short >= long:
         raise InvalidInput(f"the short cutoff, {short:.3g} m, must be below the long one, {long:.3g} m")
@@ -204,44 +214,53 @@ def _filtered(levelled: HeightMap, settings: SurfaceSettings) -> HeightMap:
     return surface
 
 
-def _part(record: object) -> Part:
+def _part(record: object) -> SheetSection:
+    """Areal parameters of a record, labelled with their symbols."""
     names = [each.name for each in fields(record) if each.name in _SYMBOLS]  # type: ignore[arg-type]
     small = not getattr(record, "decays_in_all_directions", True)
-    return Part(
-        values=tuple(known(name, getattr(record, name), label=f"{_SYMBOLS[name]}, {_LABELS[name]}") for name in names),
+    return SheetSection(
+        values=tuple(
+            quantity_value(name, getattr(record, name), label=f"{_SYMBOLS[name]}, {_LABELS[name]}") for name in names
+        ),
         caveats=("Str is an upper bound: the map is too small for its texture",) if small else (),
     )
 
 
-def _summits(surface: HeightMap) -> Part:
-    counted, moments = summit_statistics(surface), spectral_moments(surface)
+def _summits(surface: HeightMap) -> SheetSection:
+    """Density, radius and heights of summit_statistics, and the bandwidth of the spectrum."""
+    found, moments = summit_statistics(surface), spectral_moments(surface)
     for_contact = contact_roughness(surface)
-    return Part(
+    return SheetSection(
         values=(
-            known("summit_density", counted.summit_density),
-            known("summit_radius", counted.summit_radius),
-            known("summit_height_deviation", counted.summit_height_deviation),
-            known("mean_summit_height", counted.mean_summit_height),
-            known("bandwidth", moments.bandwidth, label="Bandwidth of the spectrum, Nayak's alpha"),
-            known("roughness_parameter", for_contact.roughness_parameter),
+            quantity_value("summit_density", found.summit_density),
+            quantity_value("summit_radius", found.summit_radius),
+            quantity_value("summit_height_deviation", found.summit_height_deviation),
+            quantity_value("mean_summit_height", found.mean_summit_height),
+            quantity_value("bandwidth", moments.bandwidth, label="Bandwidth of the spectrum, Nayak's alpha"),
+            quantity_value("roughness_parameter", for_contact.roughness_parameter),
         )
     )
 
 
-def _profiles(surface: HeightMap) -> Part:
+def _profiles(surface: HeightMap) -> SheetSection:
+    """Mean and deviation of profile parameters over all rows and columns."""
     rows = []
     for along in ("rows", "columns"):
         if min(surface.height.shape) > 1 or surface.height.shape[along == "rows"] > 1:
             found = profile_statistics(surface, along=along)
             for kind, record in (("mean", found.mean), ("deviation", found.standard_deviation)):
-                rows.append((f"{found.profile_count} {along}", kind, *(getattr(record, name) for name in _PROFILE)))
-    columns = (Column(name="profiles", label="Profiles"), Column(name="statistic", label=""))
-    measured = tuple(column(name, label) for name, label in zip(_PROFILE, _PROFILE_LABELS, strict=True))
-    table = SheetTable(name="profiles", title="Profile parameters", columns=(*columns, *measured), rows=tuple(rows))
-    return Part(tables=(table,))
+                values = (getattr(record, name) for name in _PROFILE_LABELS)
+                rows.append((f"{found.profile_count} {along}", kind, *values))
+    columns = (
+        SheetColumn("profiles", "Profiles"),
+        SheetColumn("statistic", ""),
+        *quantity_columns(_PROFILE_LABELS),
+    )
+    return SheetSection(tables=(SheetTable("profiles", "Profile parameters", columns, tuple(rows)),))
 
 
-def _sampling(surface: HeightMap) -> Part:
+def _sampling(surface: HeightMap) -> SheetSection:
+    """Roughness for the contact models at multiples of the sampling interval."""
     pixel = math.sqrt(surface.spacing_x * surface.spacing_y)
     rows: list[tuple[float, ...]] = []
     for times in _COARSENINGS:
@@ -249,37 +268,26 @@ def _sampling(surface: HeightMap) -> Part:
             found = sampling_dependence(surface, sampling_interval=times * pixel)
         except InvalidInput:
             break
-        rows.append(
-            (
-                float(found.sampling_interval[0]),
-                float(found.rms_height[0]),
-                float(found.summit_radius[0]),
-                float(found.summit_density[0]),
-            )
-        )
-    names = ("sampling_interval", "rms_height", "summit_radius", "summit_density")
-    labels = ("Interval", "Deviation of summit heights", "Summit radius", "Summit density")
-    table = SheetTable(
-        name="sampling",
-        title="Roughness for the contact models, by sampling interval",
-        columns=tuple(column(name, label) for name, label in zip(names, labels, strict=True)),
-        rows=tuple(rows),
-    )
-    return Part(tables=(table,)) if rows else Part()
+        rows.append(tuple(float(getattr(found, name)[0]) for name in _SAMPLING_LABELS))
+    title = "Roughness for the contact models, by sampling interval"
+    table = SheetTable("sampling", title, quantity_columns(_SAMPLING_LABELS), tuple(rows))
+    return SheetSection(tables=(table,)) if rows else SheetSection()
 
 
-def _waviness(levelled: HeightMap) -> Part:
+def _waviness(levelled: HeightMap) -> SheetSection:
+    """Wavelengths of the waviness along rows and columns."""
     rows = [
         (along, float(length))
         for along in ("rows", "columns")
         for length in dominant_wavelengths(levelled, along=along)
     ]
-    columns = (Column(name="along", label="Along"), column("waviness_length", "Wavelength"))
-    return Part(tables=(SheetTable(name="waviness", title="Waviness", columns=columns, rows=tuple(rows)),))
+    columns = (SheetColumn("along", "Along"), *quantity_columns({"waviness_length": "Wavelength"}))
+    return SheetSection(tables=(SheetTable("waviness", "Waviness", columns, tuple(rows)),))
 
 
-def _figures(surface: HeightMap) -> Part:
-    drawn = [
+def _figures(surface: HeightMap) -> SheetSection:
+    """Heights, Abbott curve, power spectrum and autocorrelation."""
+    pictures = [
         SheetFigure(
             name="heights",
             title="Heights",
@@ -297,12 +305,12 @@ def _figures(surface: HeightMap) -> Part:
         spectrum = radial_spectrum(areal_spectrum(surface))
         correlation = autocorrelation(surface)
     except InvalidInput as refusal:
-        return Part(figures=tuple(drawn), not_found=(f"spectrum: {refusal}",))
-    drawn += [
+        return SheetSection(figures=tuple(pictures), not_found=(f"spectrum: {refusal}",))
+    pictures += [
         SheetFigure(
             name="spectrum",
             title="Power spectrum",
-            caption="Areal power spectral density, averaged over direction; the grid's ends are where it means least.",
+            caption="Areal power spectral density, averaged over direction; least certain at the ends of the grid.",
             draw=partial(figures.spectrum, spectrum),
         ),
         SheetFigure(
@@ -312,4 +320,4 @@ def _figures(surface: HeightMap) -> Part:
             draw=partial(figures.correlation, correlation),
         ),
     ]
-    return Part(figures=tuple(drawn))
+    return SheetSection(figures=tuple(pictures))

@@ -1,4 +1,4 @@
-"""Figures of height maps."""
+"""Figures of height maps: heights, Abbott curve, spectrum and autocorrelation."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -24,7 +24,7 @@ _LONGEST = 2000.0  # of a unit, before the next is taken
 
 
 def heights(surface: HeightMap) -> "Figure":
-    """Return the map, and a profile through its middle."""
+    """Height map, and a profile through its middle."""
     import matplotlib.pyplot as plt
 
     figure, (left, right) = plt.subplots(1, 2, figsize=(7.4, 3.0), width_ratios=(1.15, 1))
@@ -40,7 +40,7 @@ def heights(surface: HeightMap) -> "Figure":
 
 
 def show_map(axes: "Axes", surface: HeightMap) -> None:
-    """Draw heights as colours, with their scale, the extremes cut so that a spike does not hide the rest."""
+    """Draw heights as colours with their scale, whose ends are the 0.1 and 99.9 % quantiles."""
     unit, scale = length_scale(surface.height)
     across, per_metre = length_scale(surface.x)
     rows, columns = surface.height.shape
@@ -59,13 +59,13 @@ def show_map(axes: "Axes", surface: HeightMap) -> None:
 
 
 def length_scale(lengths: Floats) -> tuple[str, float]:
-    """Return the unit in which lengths read well, and how many of it make a metre."""
+    """Unit in which lengths have readable numbers, and its number in a metre."""
     spread = float(np.nanquantile(lengths, 0.99) - np.nanquantile(lengths, 0.01))
     return next(((unit, scale) for unit, scale in (("nm", 1e9), ("um", 1e6)) if spread * scale < _LONGEST), ("mm", 1e3))
 
 
 def abbott(curve: MaterialRatioCurve) -> "Figure":
-    """Return the material ratio curve with its core, beside the histogram of heights."""
+    """Material ratio curve with the equivalent line of its core, beside the histogram of heights."""
     import matplotlib.pyplot as plt
 
     figure, (left, right) = plt.subplots(1, 2, figsize=(6.4, 3.2), width_ratios=(1, 2.2), sharey=True)
@@ -87,6 +87,7 @@ def abbott(curve: MaterialRatioCurve) -> "Figure":
 
 
 def _core(axes: "Axes", curve: MaterialRatioCurve, scale: float, first: float, second: float) -> None:
+    """Draw the equivalent line of the core with its material ratios."""
     top, bottom = (scale * float(height) for height in curve.height_at(material_ratio=[first, second]))
     axes.plot([0, 100], [top, bottom], LINES[1], color=COLOURS[1], linewidth=1.2, label="equivalent line of the core")
     axes.hlines([top, bottom], [0, 100 * second], [100 * first, 100], color=COLOURS[1], linewidth=0.8)
@@ -98,13 +99,13 @@ def _core(axes: "Axes", curve: MaterialRatioCurve, scale: float, first: float, s
         axes.annotate(text, place, xytext=shift, textcoords="offset points", fontsize=8, ha=side)
 
 
-def spectrum(found: RadialSpectrum) -> "Figure":
-    """Return the radial power spectral density."""
+def spectrum(radial: RadialSpectrum) -> "Figure":
+    """Radially averaged power spectral density."""
     import matplotlib.pyplot as plt
 
     figure, axes = plt.subplots(figsize=(4.6, 3.2))
-    inner = found.wavenumber > 0
-    axes.loglog(found.wavenumber[inner], found.areal_spectral_density[inner])
+    inner = radial.wavenumber > 0
+    axes.loglog(radial.wavenumber[inner], radial.areal_spectral_density[inner])
     axes.set(xlabel="wavenumber (1/m)", ylabel="power spectral density (m$^4$)")
     above = axes.secondary_xaxis("top", functions=(_wavelength, _wavelength))
     above.set_xlabel("wavelength (um)")
@@ -112,19 +113,29 @@ def spectrum(found: RadialSpectrum) -> "Figure":
 
 
 def _wavelength(other: Any) -> Any:
-    """Wavelength in um for a wavenumber in 1/m, and the other way round."""
+    """Wavelength in um of a wavenumber in 1/m, and the inverse."""
     return 1e6 / np.maximum(np.asarray(other, dtype=np.float64), 1e-9)
 
 
 def correlation(found: Autocorrelation) -> "Figure":
-    """Return the autocorrelation along rows and columns."""
+    """Autocorrelation along rows and columns."""
     import matplotlib.pyplot as plt
 
     figure, axes = plt.subplots(figsize=(4.6, 3.0))
     rows, columns = (size // 2 for size in found.normalized.shape)
     unit, scale = length_scale(found.lag_x)
-    axes.plot(scale * found.lag_x[columns:], found.normalized[rows, columns:], LINES[0], label="along rows")
-    axes.plot(scale * found.lag_y[rows:], found.normalized[rows:, columns], LINES[1], label="along columns")
+    axes.plot(
+        scale * found.lag_x[columns:],
+        found.normalized[rows, columns:],
+        LINES[0],
+        label="along rows",
+    )
+    axes.plot(
+        scale * found.lag_y[rows:],
+        found.normalized[rows:, columns],
+        LINES[1],
+        label="along columns",
+    )
     axes.axhline(0.2, color="0.5", linewidth=0.8, linestyle=":")
     axes.text(1, 0.21, "0.2 ", transform=axes.get_yaxis_transform(), ha="right", fontsize=8)
     axes.set(xlabel=f"lag ({unit})", ylabel="autocorrelation", xlim=(0, None))

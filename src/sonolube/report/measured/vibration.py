@@ -1,4 +1,4 @@
-"""Vibrometer recordings as sheets: amplitudes at the drive frequency, per volt, and how points move together."""
+"""Sheets of vibrometer recordings: amplitudes at the drive frequency, per volt, and operating shapes."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -25,16 +25,16 @@ from sonolube.measurement.vibration import (
 from sonolube.report.measured import vibration_figures as figures
 from sonolube.report.measured.friction import recording_source
 from sonolube.report.measured.sheet import (
-    Column,
-    Part,
     Sheet,
+    SheetColumn,
     SheetFigure,
+    SheetSection,
     SheetTable,
-    Value,
-    attempted,
-    column,
-    known,
-    sheet_of,
+    SheetValue,
+    attempted_section,
+    quantity_columns,
+    quantity_value,
+    sheet_from_sections,
 )
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ _LEAST_PERIODS = 2.0  # in each
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class VibrationSettings:
-    """What amplitudes depend on.
+    """Settings of the evaluation of a vibrometer recording.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ class VibrationSettings:
 
 
 def vibration_sheet(path: Path, *, settings: VibrationSettings) -> Sheet:
-    """Return how the recorded points vibrate at the drive frequency.
+    """Amplitude and phase of every recorded point at the drive frequency, and the operating shape.
 
     Parameters
     ----------
@@ -95,31 +95,36 @@ def vibration_sheet(path: Path, *, settings: VibrationSettings) -> Sheet:
     per_rate = np.where(velocities, 1 / (2j * np.pi * f), 1.0)
     motion = complex_amplitudes(time=time, signals=signals, frequency=f) * per_rate
     errors = _errors(time, signals, f) * np.abs(per_rate)
-    moving = int(np.argmax(np.abs(motion)))
-    values = [known("vibration_amplitude", float(abs(motion[moving])), uncertainty=_or_none(errors[moving]))]
+    largest = int(np.argmax(np.abs(motion)))
+    values = [quantity_value("vibration_amplitude", float(abs(motion[largest])), uncertainty=_or_none(errors[largest]))]
     drive = _drive_voltage(recording, time, f)
     if drive is not None:
         swing = 2 * abs(drive)
         values += [
-            known("voltage_peak_to_peak", swing),
-            known(
+            quantity_value("voltage_peak_to_peak", swing),
+            quantity_value(
                 "amplitude_per_volt",
-                float(abs(motion[moving])) / swing,
-                uncertainty=None if np.isnan(errors[moving]) else float(errors[moving]) / swing,
+                float(abs(motion[largest])) / swing,
+                uncertainty=None if np.isnan(errors[largest]) else float(errors[largest]) / swing,
             ),
         ]
         motion = motion * np.exp(-1j * np.angle(drive))
     shape = operating_deflection_shape(motion)
-    parts = [Part(values=tuple(values), tables=(_table(points, motion, errors),))]
+    sections = [SheetSection(values=tuple(values), tables=(_table(points, motion, errors),))]
     if len(points) > 1:
-        parts.append(_shape(points, shape))
+        sections.append(_shape(points, shape))
         if settings.modes is not None:
-            parts.append(attempted(partial(_assurance, motion, settings.modes), what="likeness to modes"))
-    return sheet_of(parts, title=path.name, source=recording_source(recording))
+            sections.append(attempted_section(partial(_assurance, motion, settings.modes), what="modal assurance"))
+    return sheet_from_sections(sections, title=path.name, source=recording_source(recording))
+
+
+def has_voltage(sheet: Sheet) -> bool:
+    """Whether a sheet of vibration has the voltage of the drive."""
+    return any(value.name == "voltage_peak_to_peak" for value in sheet.values)
 
 
 def proportion_sheet(sheets: Sequence[Sheet]) -> Sheet:
-    """Return whether the greatest amplitude is in proportion to the voltage, over recordings at several voltages.
+    """Linearity of amplitude over voltage, from recordings at several voltages.
 
     Parameters
     ----------
@@ -135,14 +140,15 @@ def proportion_sheet(sheets: Sequence[Sheet]) -> Sheet:
         for sheet in sheets
         if "voltage_peak_to_peak" in (found := {value.name: value.value for value in sheet.values})
     ]
-    return sheet_of(
-        [attempted(partial(_proportion, pairs), what="proportion")],
+    return sheet_from_sections(
+        [attempted_section(partial(_proportion, pairs), what="proportion")],
         title=f"amplitude over voltage, {len(pairs)} recordings",
         source={},
     )
 
 
 def _points(recording: "xr.Dataset", path: Path) -> tuple[list[str], Floats, Floats]:
+    """Names and signals of the recorded points, and whether each is a velocity."""
     names, signals, velocities = [], [], []
     for name in map(str, recording):
         unit = str(recording[name].attrs.get("units", ""))
@@ -160,6 +166,7 @@ def _points(recording: "xr.Dataset", path: Path) -> tuple[list[str], Floats, Flo
 
 
 def _drive_voltage(recording: "xr.Dataset", time: Floats, frequency: float) -> complex | None:
+    """Complex amplitude of the drive voltage; None where it was not recorded."""
     for name in map(str, recording):
         if str(recording[name].attrs.get("units", "")) == "V":
             return complex(
@@ -169,7 +176,7 @@ def _drive_voltage(recording: "xr.Dataset", time: Floats, frequency: float) -> c
 
 
 def _errors(time: Floats, signals: Floats, frequency: float) -> Floats:
-    """Standard errors of the amplitudes, from their scatter over stretches; NaN where the recording is too short."""
+    """Standard errors of the amplitudes by their scatter over eight stretches; NaN for short recordings."""
     edges = np.linspace(0, time.size, _STRETCHES + 1).astype(int)
     if np.diff(edges).min() < 2 or (time[edges[1] - 1] - time[0]) * frequency < _LEAST_PERIODS:
         return np.full(signals.shape[0], np.nan)
@@ -183,15 +190,17 @@ def _errors(time: Floats, signals: Floats, frequency: float) -> Floats:
 
 
 def _or_none(error: float) -> float | None:
+    """Error, or None for NaN."""
     return None if np.isnan(error) else float(error)
 
 
 def _table(points: Sequence[str], motion: Complexes, errors: Floats) -> SheetTable:
+    """Amplitude, uncertainty and phase of each point."""
     columns = (
-        Column(name="point", label="Point"),
-        column("vibration_amplitude", "Amplitude"),
-        Column(name="vibration_amplitude_uncertainty", label="Its uncertainty", unit="m"),
-        Column(name="phase", label="Phase", unit="rad"),
+        SheetColumn("point", "Point"),
+        *quantity_columns({"vibration_amplitude": "Amplitude"}),
+        SheetColumn("vibration_amplitude_uncertainty", "Uncertainty", "m"),
+        SheetColumn("phase", "Phase", "rad"),
     )
     rows = tuple(
         (name, float(abs(x)), _or_none(error), float(np.angle(x)))
@@ -200,56 +209,49 @@ def _table(points: Sequence[str], motion: Complexes, errors: Floats) -> SheetTab
     return SheetTable(name="points", title="Points", columns=columns, rows=rows)
 
 
-def _shape(points: Sequence[str], shape: OperatingDeflectionShape) -> Part:
-    value = Value(
-        name="standing_wave_fraction",
-        label="Share of the motion that stands in step",
-        value=shape.standing_wave_fraction,
-        unit="",
-    )
-    drawn = SheetFigure(
+def _shape(points: Sequence[str], shape: OperatingDeflectionShape) -> SheetSection:
+    """Operating shape, and the fraction of the motion that is in phase."""
+    value = SheetValue("standing_wave_fraction", "Fraction of the motion in phase", shape.standing_wave_fraction, "")
+    figure = SheetFigure(
         name="shape",
         title="Operating shape",
-        caption="Motion in step with the whole, greatest 1, and the phase of each point from it.",
+        caption="Motion in phase with the whole, scaled to 1, and the phase of each point.",
         draw=partial(figures.shape, points, shape),
     )
-    return Part(values=(value,), figures=(drawn,))
+    return SheetSection(values=(value,), figures=(figure,))
 
 
-def _assurance(motion: Complexes, modes: Floats) -> Part:
-    likeness = modal_assurance_criterion(motion, modes)[0]
-    columns = (Column(name="mode", label="Mode"), Column(name="assurance", label="Modal assurance"))
-    rows = tuple((f"{place}", float(value)) for place, value in enumerate(likeness, start=1))
-    drawn = SheetFigure(
+def _assurance(motion: Complexes, modes: Floats) -> SheetSection:
+    """Modal assurance criterion of the operating shape with each computed mode."""
+    assurance = modal_assurance_criterion(motion, modes)[0]
+    columns = (SheetColumn("mode", "Mode"), SheetColumn("assurance", "Modal assurance"))
+    rows = tuple((f"{place}", float(value)) for place, value in enumerate(assurance, start=1))
+    figure = SheetFigure(
         name="assurance",
-        title="Likeness to computed modes",
+        title="Modal assurance with computed modes",
         caption="Modal assurance criterion of the operating shape with each mode: 1 in proportion, 0 orthogonal.",
-        draw=partial(figures.assurance, likeness),
+        draw=partial(figures.assurance, assurance),
     )
-    table = SheetTable(name="modes", title="Likeness to computed modes", columns=columns, rows=rows)
-    return Part(tables=(table,), figures=(drawn,))
+    table = SheetTable(name="modes", title="Modal assurance with computed modes", columns=columns, rows=rows)
+    return SheetSection(tables=(table,), figures=(figure,))
 
 
-def _proportion(pairs: Sequence[tuple[float, float]]) -> Part:
+def _proportion(pairs: Sequence[tuple[float, float]]) -> SheetSection:
+    """Line through the origin with its interval, and the significance of a curvature."""
     volts, amplitudes = (np.array([pair[which] for pair in pairs]) for which in range(2))
-    found = amplitude_per_volt(voltage_peak_to_peak=volts, vibration_amplitude=amplitudes)
+    fit = amplitude_per_volt(voltage_peak_to_peak=volts, vibration_amplitude=amplitudes)
     values = (
-        known("amplitude_per_volt", found.amplitude_per_volt, interval=(found.lower, found.upper)),
-        known("amplitude_deviation", found.amplitude_deviation),
-        Value(
-            name="curvature_p_value",
-            label="Chance of such a curvature by scatter alone",
-            value=found.curvature_p_value,
-            unit="",
-        ),
+        quantity_value("amplitude_per_volt", fit.amplitude_per_volt, interval=(fit.lower, fit.upper)),
+        quantity_value("amplitude_deviation", fit.amplitude_deviation),
+        SheetValue("curvature_p_value", "p value of the curvature", fit.curvature_p_value, ""),
     )
     caveats: tuple[str, ...] = ()
-    if not found.proportional:
-        caveats = (f"amplitude is not in proportion to voltage: the slope changes by {found.curvature:+.0%}",)
-    drawn = SheetFigure(
+    if not fit.proportional:
+        caveats = (f"amplitude is not in proportion to voltage: the slope changes by {fit.curvature:+.0%}",)
+    figure = SheetFigure(
         name="proportion",
         title="Amplitude over voltage",
         caption="Each recording, and the line through the origin with its 95 % interval.",
-        draw=partial(figures.proportion, volts, amplitudes, found),
+        draw=partial(figures.proportion, volts, amplitudes, fit),
     )
-    return Part(values=values, figures=(drawn,), caveats=caveats)
+    return SheetSection(values=values, figures=(figure,), caveats=caveats)

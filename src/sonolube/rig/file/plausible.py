@@ -42,7 +42,7 @@ def plausible_si(text: str, *, unit: str, name: str) -> float:
     text : str
         A number and its unit.
     unit : str
-        The SI unit wanted.
+        SI unit expected.
     name : str
         What to call the value in an error.
 
@@ -82,5 +82,5 @@ def require_plausible(value: float, *, unit: str, text: str) -> float:
     least, largest = LIMITS.get(unit, _ANY_UNIT)
     if value and (abs(value) < least or abs(value) > largest):  # what is no number is for others as well
         bounds = " to ".join(format_si(bound, unit) for bound in (least, largest))
-        raise InvalidInput(f"{text} lies beyond any rig: wanted {bounds}")
+        raise InvalidInput(f"{text} lies beyond any rig: expected {bounds}")
     return float(value)

@@ -1,0 +1,1 @@
+"""Commands that compare models with published data and identify parameters from them."""

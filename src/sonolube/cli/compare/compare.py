@@ -1,0 +1,221 @@
+"""Command `compare`: models of friction under vibration against published tests, and on a rig."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from math import isfinite
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+import xarray as xr
+
+from sonolube.cli.console.answer import Answer, deliver
+from sonolube.cli.console.options import OUT, Changes, Json, Out
+from sonolube.cli.console.progress import progress
+from sonolube.errors import InvalidInput
+from sonolube.report import Drawing
+from sonolube.rig import Rig, read_rig
+from sonolube.units import format_si
+from sonolube.validation.compare import (
+    DATA_SETS,
+    ONLY_PREDICTED,
+    ComparedFit,
+    FittedParameter,
+    Prediction,
+    RigPrediction,
+    compare_models,
+    predict_rig,
+)
+from sonolube.validation.figures import comparison_figures, rig_figure
+from sonolube.validation.models import compared_models
+from sonolube.validation.rig import vibrated_rig
+from sonolube.validation.table import comparison_csv, comparison_dataset, parameter_said
+
+
+def compare(
+    rig: Annotated[
+        Path | None, typer.Argument(metavar="[RIG.toml]", help="A rig that every applicable model predicts too.")
+    ] = None,
+    models: Annotated[
+        list[str] | None, typer.Option("--model", metavar="NAME", help="Only this model; may come again.")
+    ] = None,
+    changes: Changes = None,
+    out: Out = OUT,
+    json: Json = False,
+) -> None:
+    """Models of friction under vibration against every published test: fitted, cross-validated, and on your rig.
+
+    Example: sonolube compare examples/rigs/tribometer.toml --model stick-slip --model kinematic
+    """
+    if rig is None and changes:
+        raise InvalidInput("--set changes a rig: name one, such as examples/rigs/tribometer.toml")
+    known = None if rig is None else read_rig(rig, changes=changes or ())
+    point = None if known is None else vibrated_rig(known)
+    with progress("comparing") as advance:
+        fits = compare_models(compared_models(models or ()), advance=advance)
+        predictions = () if point is None else predict_rig(fits, point)
+    deliver(ComparisonAnswer(fits=fits, rig=known, predictions=predictions), folder=out, as_json=json)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ComparisonAnswer(Answer):
+    """Errors of models on published tests, fitted and cross-validated, and their predictions of a rig."""
+
+    fits: tuple[ComparedFit, ...]
+    rig: Rig | None
+    predictions: tuple[RigPrediction, ...]
+
+    def lines(self) -> list[str]:
+        """Errors and fitted parameters of each model, refused tests, and predictions of the rig."""
+        tests = self.fits[0].predictions
+        width = max(len(one.model.name) for one in self.fits)
+        return [
+            f"{len(self.fits)} models, {len(tests)} tests in sets {', '.join(DATA_SETS)}; errors of the friction ratio",
+            f"  {'model':<{width}}  sets      tests  k     rms  unseen  median    AICc",
+            *[f"  {line}" for one in self.fits if one.judgement for line in _error_lines(one, width)],
+            *[f"  not fitted: set {letter}: {reason}" for letter, reason in ONLY_PREDICTED.items()],
+            *[f"  not reached: {line}" for one in self.fits for line in _refusals(one)],
+            *([] if self.rig is None else _rig_lines(self.rig, self.predictions, width)),
+        ]
+
+    def object(self) -> dict[str, Any]:
+        """Errors, fitted parameters and predictions of each model, and the predictions of the rig."""
+        content: dict[str, Any] = {
+            "sets": dict(DATA_SETS),
+            "only_predicted": dict(ONLY_PREDICTED),
+            "models": [_model_object(one) for one in self.fits],
+        }
+        return content if self.rig is None else content | {"rig": _rig_object(self.rig, self.predictions)}
+
+    def figures(self) -> Mapping[str, Drawing]:
+        """Predicted against measured ratios, ratios over speed and amplitude, and the predictions of the rig."""
+        drawings = {}
+        if any(one.judgement for one in self.fits):
+            every = comparison_figures(lambda: self.fits)
+            drawings = {figure.name: Drawing(draw=figure.draw, caption=figure.caption) for figure in every}
+        if self.rig is not None and any(one.friction_ratio is not None for one in self.predictions):
+            title = self.rig.title
+            drawings["models-on-the-rig"] = Drawing(draw=lambda: rig_figure(self.predictions, title))
+        return drawings
+
+    def files(self) -> Mapping[str, str | xr.Dataset]:
+        """Errors as CSV, and every ratio as netCDF."""
+        return {"models.csv": comparison_csv(self.fits), "models.nc": comparison_dataset(self.fits)}
+
+
+def _error_lines(one: ComparedFit, width: int) -> Iterator[str]:
+    """Errors of a model, then its fitted parameters."""
+    assert one.judgement is not None
+    seen, unseen = one.judgement.seen, one.judgement.unseen
+    reached = f"{seen.count}/{seen.count + len(seen.missed)}" if seen.missed else str(seen.count)
+    akaike = "" if one.akaike is None else f"{one.akaike:.1f}"
+    yield (
+        f"{one.model.name:<{width}}  {one.sets:<7}  {reached:>6} {len(one.parameters):>2}"
+        f"  {seen.rms:6.3f}  {unseen.rms:6.3f}  {100 * seen.median_relative:4.0f} %  {akaike:>6}"
+    )
+    for parameter in one.parameters:
+        yield f"    {parameter_said(parameter)}"
+
+
+def _refusals(one: ComparedFit) -> Iterator[str]:
+    """Each reason for which a model does not apply to tests, once, with the tests."""
+    reasons: dict[str, list[str]] = {}
+    for prediction in one.predictions:
+        if prediction.refusal:
+            reasons.setdefault(prediction.refusal, []).append(prediction.test.label)
+    for reason, labels in reasons.items():
+        if one.judgement is None or not reason.startswith("needs "):
+            yield f"{one.model.name}: {reason} ({', '.join(labels) if len(labels) < 6 else f'{len(labels)} tests'})"
+
+
+def _rig_lines(rig: Rig, predictions: tuple[RigPrediction, ...], width: int) -> Iterator[str]:
+    """Friction ratio and force of a rig by each applicable model."""
+    yield (
+        f"{rig.title}, {format_si(rig.normal_load, 'N')}, {format_si(rig.sliding_speed, 'm/s')}, "
+        f"{format_si(rig.vibration_amplitude, 'm')}"
+    )
+    steady = rig.friction_coefficient * rig.normal_load
+    for one in predictions:
+        if one.friction_ratio is None:
+            continue
+        error = ", error not known," if one.uncertainty is None else f" +- {one.uncertainty:.2f}"
+        force = format_si(one.friction_ratio * steady, "N")
+        yield f"  {one.model.name:<{width}}  ratio {one.friction_ratio:.3f}{error}  friction {force}"
+    for one in predictions:
+        if one.refusal:
+            yield f"  not applicable: {one.model.name}: {one.refusal}"
+
+
+def _model_object(one: ComparedFit) -> dict[str, Any]:
+    """Model for JSON with its errors, fitted parameters and predictions."""
+    judgement = one.judgement
+    errors = (
+        {
+            "rms": _finite(judgement.seen.rms),
+            "rms_unseen": _finite(judgement.unseen.rms),
+            "worst": _finite(judgement.seen.worst),
+            "median_relative": _finite(judgement.seen.median_relative),
+            "akaike": one.akaike,
+            "missed": list(judgement.seen.missed),
+        }
+        if judgement
+        else None
+    )
+    return {
+        "name": one.model.name,
+        "meaning": one.model.variant.meaning,
+        "source": one.model.source,
+        "needs": list(one.model.needs),
+        "sets": list(one.sets),
+        "errors": errors,
+        "fitted": [_parameter_object(parameter) for parameter in one.parameters],
+        "predictions": [_prediction_object(prediction) for prediction in one.predictions],
+    }
+
+
+def _parameter_object(fitted: FittedParameter) -> dict[str, Any]:
+    """Fitted parameter for JSON."""
+    return {
+        "name": fitted.parameter.name,
+        "matters_in": list(fitted.parameter.matters_in),
+        "value": fitted.value,
+        "unit": fitted.parameter.unit,
+        "interval": fitted.interval,
+        "left_out_range": fitted.left_out_range,
+        "bounds": (fitted.parameter.low, fitted.parameter.high),
+        "at_bound": fitted.at_bound,
+        "why_these_bounds": fitted.parameter.reason,
+    }
+
+
+def _prediction_object(prediction: Prediction) -> dict[str, Any]:
+    """Prediction of a test for JSON."""
+    return {
+        "test": prediction.test.label,
+        "measured": prediction.test.friction_ratio,
+        "fitted": prediction.fitted,
+        "unseen": prediction.unseen,
+        "reason": prediction.refusal,
+    }
+
+
+def _rig_object(rig: Rig, predictions: tuple[RigPrediction, ...]) -> dict[str, Any]:
+    """Predictions of a rig for JSON."""
+    return {
+        "title": rig.title,
+        "predictions": [
+            {
+                "model": one.model.name,
+                "friction_ratio": one.friction_ratio,
+                "uncertainty": one.uncertainty,
+                "reason": one.refusal,
+            }
+            for one in predictions
+        ],
+        "assumptions": dict(rig.assumptions),
+    }
+
+
+def _finite(value: float) -> float | None:
+    """Value, or None where JSON has no notation for it."""
+    return value if isfinite(value) else None

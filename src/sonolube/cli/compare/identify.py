@@ -1,0 +1,110 @@
+"""Command `identify rig`: entries of a rig's stack and structure from ranked facts, as tables of a rig file."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from sonolube.actuator import PiezoStack
+from sonolube.cli.console.answer import Answer, deliver, si
+from sonolube.cli.console.options import Json
+from sonolube.cli.console.progress import progress
+from sonolube.errors import InvalidInput
+from sonolube.identification import Identification, identify, rig_tables
+from sonolube.rig import read_rig, with_tables
+from sonolube.rig.facts_file import identified_tables, read_facts, rig_forward_model
+from sonolube.validation.tribometer import tribometer_identification, tribometer_stack
+from sonolube.vocabulary import quantities
+
+
+def identify_rig(
+    base: Annotated[
+        Path | None, typer.Argument(metavar="[RIG.toml]", help="Rig whose tables stack and structure to replace.")
+    ] = None,
+    facts: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FACTS.toml", help="Facts about the rig; those of the dissertation's tribometer by default."
+        ),
+    ] = None,
+    out: Annotated[Path | None, typer.Option(help="File to write; standard output by default.")] = None,
+    seed: Annotated[int, typer.Option(help="Seed of the search; equal seeds give equal results.", min=0)] = 0,
+    json: Json = False,
+) -> None:
+    """Masses, springs and dampers of a rig from ranked facts, with the facts that contradict each other.
+
+    Example: sonolube identify rig examples/rigs/tribometer.toml --facts examples/facts/tribometer.toml --out my.toml
+    """
+    if facts is not None and base is None:
+        raise InvalidInput("--facts needs the rig they are of: sonolube identify rig RIG.toml --facts FACTS.toml")
+    rig = None if base is None else read_rig(base)
+    with progress("identifying"):
+        if facts is None or base is None:
+            identification, stack = tribometer_identification(seed=seed), tribometer_stack()
+            tables = rig_tables(identification, stack)
+        else:
+            problem = read_facts(facts)
+            model = rig_forward_model(base, problem)
+            identification = identify(model, facts=problem.facts, bounds=problem.bounds, seed=seed)
+            tables = identified_tables(base, identification)
+            assert rig is not None
+            assert rig.stack is not None
+            stack = rig.stack
+    text = tables if base is None else with_tables(base.read_text(encoding="utf-8-sig"), tables)
+    answer = IdentificationAnswer(
+        identification=identification, stack=stack, text=text, file_name=None if out is None else out.name
+    )
+    deliver(answer, folder=Path() if out is None else out.parent, as_json=json)
+
+
+@dataclass(frozen=True, kw_only=True)
+class IdentificationAnswer(Answer):
+    """Identified parameters with the facts that are satisfied or not, and the rig file with its tables."""
+
+    identification: Identification
+    stack: PiezoStack
+    text: str
+    file_name: str | None
+
+    def lines(self) -> list[str]:
+        """The rig file itself where no file is written."""
+        return self.text.splitlines() if self.file_name is None else []
+
+    def object(self) -> dict[str, Any]:
+        """Stack, parameters with their ranges, facts with their misses, conflicts and free directions."""
+        found = self.identification
+        return {
+            "stack": si({name: value for name, value in asdict(self.stack).items() if value and name in quantities()}),
+            "parameters": {
+                name: {
+                    **si({name: known.value})[name],
+                    "lower": known.lower,
+                    "upper": known.upper,
+                    "lower_is_bound": known.lower_is_bound,
+                    "upper_is_bound": known.upper_is_bound,
+                }
+                for name, known in found.estimates.items()
+            },
+            "facts": [
+                {
+                    "name": fact.name,
+                    "relation": fact.relation,
+                    "value": fact.value,
+                    "tolerance": fact.tolerance,
+                    "unit": fact.unit,
+                    "rank": fact.rank,
+                    "source": fact.source,
+                    "observed": found.observed[fact.name],
+                    "satisfied": fact.name in found.satisfied,
+                }
+                for fact in found.facts
+            ],
+            "conflicts": [sorted(conflict) for conflict in found.conflicts],
+            "unidentifiable_directions": [dict(direction.exponents) for direction in found.unidentifiable_directions],
+        }
+
+    def files(self) -> Mapping[str, str]:
+        """Rig file with the identified tables."""
+        return {} if self.file_name is None else {self.file_name: self.text}

@@ -1,0 +1,47 @@
+"""Command `reproduce`: published numbers of the dissertation beside computed ones."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+import typer
+
+from sonolube.cli.console.answer import Answer, deliver
+from sonolube.cli.console.options import OUT, Json, Out
+from sonolube.cli.console.progress import progress
+from sonolube.report import reproduction_files, summary_lines, validation_object
+from sonolube.reproduce import Reproduction, reproduction
+
+
+def reproduce(
+    chapter: Annotated[int | None, typer.Option(help="Only this chapter: 2, 3 or 4.", min=2, max=4)] = None,
+    out: Out = OUT,
+    json: Json = False,
+) -> None:
+    """Every published number beside the one computed, as a report with figures.
+
+    Example: sonolube reproduce --chapter 3 --out out
+    """
+    with progress("reproducing"):
+        result = reproduction(chapter=chapter)
+    deliver(ReproductionAnswer(result), folder=out, as_json=json)
+
+
+@dataclass(frozen=True)
+class ReproductionAnswer(Answer):
+    """Rows of a reproduction by verdict, with the report and its figures."""
+
+    result: Reproduction
+
+    def lines(self) -> list[str]:
+        """Number of rows by verdict, and the rows whose model disagrees."""
+        return summary_lines(self.result)
+
+    def object(self) -> dict[str, Any]:
+        """Rows, and their number by verdict."""
+        return validation_object(self.result)
+
+    def files(self) -> Mapping[str, str | bytes]:
+        """Report, rows as JSON, and every figure."""
+        with progress("drawing") as advance:
+            return reproduction_files(self.result, advance=advance)

@@ -1,0 +1,47 @@
+"""Rig of an answer as text and JSON: its operating point and its friction model."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from sonolube.units import format_si
+
+if TYPE_CHECKING:
+    from sonolube.rig import Rig
+
+
+def friction_model_text(rig: "Rig") -> str:
+    """Friction model of a rig as text, such as "friction model kinematic"."""
+    return f"friction model {rig.friction_model.name}"
+
+
+def friction_model_object(rig: "Rig") -> dict[str, Any]:
+    """Friction model of a rig as an entry for JSON."""
+    return {"friction_model": rig.friction_model.name}
+
+
+def operating_point(rig: "Rig") -> str:
+    """Title, load, speed and friction model of a rig as one line."""
+    load, speed = format_si(rig.normal_load, "N"), format_si(rig.sliding_speed, "m/s")
+    return f"{rig.title}, {load}, {speed}, {friction_model_text(rig)}"
+
+
+def rig_settings(rig: "Rig", path: Path) -> list[tuple[str, str]]:
+    """Rig of a page: title with its file, source, load, speed, friction without vibration and friction model.
+
+    Parameters
+    ----------
+    rig : Rig
+    path : Path
+        Its file.
+
+    Returns
+    -------
+    list of pair of str
+    """
+    return [
+        ("rig", f"{rig.title} ({path.name})"),
+        *([("source of its numbers", rig.source)] if rig.source else []),
+        ("load and speed", f"{format_si(rig.normal_load, 'N')}, {format_si(rig.sliding_speed, 'm/s')}"),
+        ("without vibration", f"coefficient of friction {rig.friction_coefficient:.3g}"),
+        ("friction model", rig.friction_model.name),
+    ]

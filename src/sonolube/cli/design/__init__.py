@@ -1,0 +1,1 @@
+"""Commands that design: sweeps, maps, optimisation, uncertainty, control, efficiency and horns."""

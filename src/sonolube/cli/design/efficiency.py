@@ -1,0 +1,146 @@
+"""Command `efficiency`: efficiency line of a rig from measured runs, and the power that a friction force requires."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+import xarray as xr
+
+from sonolube.cli.console.answer import Answer, aligned, deliver, si
+from sonolube.cli.console.options import OUT, Changes, Json, Out, option_value
+from sonolube.cli.console.rig_text import rig_settings
+from sonolube.design.efficiency import EfficiencyCalibration, calibrate_efficiency, efficiency_dataset
+from sonolube.design.efficiency_figures import efficiency_figure
+from sonolube.design.measured_runs import read_runs
+from sonolube.report import Drawing, Page
+from sonolube.rig import read_rig
+from sonolube.units import format_si
+
+_PRINTED_UNIT = 1e9  # m2/N in mW mm2/(N W), the unit of D
+_FIT_QUANTITIES = (
+    "slope_uncertainty",
+    "intercept_uncertainty",
+    "efficiency_deviation",
+    "lowest_speed",
+    "highest_speed",
+)
+_CAPTION = (
+    "Efficiency coefficient (D 4.1) of {runs} runs over sliding speed, with the line of least squares, the band of the"
+    " line and that of one more run."
+)
+
+
+def efficiency(
+    context: typer.Context,
+    runs: Annotated[Path, typer.Argument(metavar="RUNS.csv", help="Measured runs, a row each.")],
+    rig: Annotated[Path, typer.Option(metavar="RIG.toml", help="The rig, for what the table of runs does not give.")],
+    friction: Annotated[
+        str | None, typer.Option("--target-friction", metavar="FORCE", help="Target of the friction, for its power.")
+    ] = None,
+    speed: Annotated[str | None, typer.Option(metavar="SPEED", help="Sliding speed of that target.")] = None,
+    level: Annotated[float, typer.Option(help="Confidence level.", min=0.5, max=0.9999)] = 0.95,
+    changes: Changes = None,
+    out: Out = OUT,
+    json: Json = False,
+) -> None:
+    """Efficiency line from measured runs (D 4.1 to 4.3), and the power that a friction takes.
+
+    Example: sonolube efficiency examples/efficiency-runs.csv --rig examples/rigs/power_map.toml
+    """
+    known = read_rig(rig, changes=changes or ())
+    calibration = calibrate_efficiency(
+        known,
+        read_runs(runs),
+        friction_force=option_value(friction, unit="N", option="--target-friction"),
+        sliding_speed=option_value(speed, unit="m/s", option="--speed"),
+        confidence_level=level,
+    )
+    answer = EfficiencyAnswer(calibration=calibration, rig_file=rig, name=f"{runs.stem}-efficiency")
+    deliver(answer, folder=out, as_json=json, context=context)
+
+
+@dataclass(frozen=True, kw_only=True)
+class EfficiencyAnswer(Answer):
+    """Efficiency line of a rig with its uncertainty, and the power for a target of the friction."""
+
+    calibration: EfficiencyCalibration
+    rig_file: Path
+    name: str
+
+    def lines(self) -> list[str]:
+        """Line, scatter and range of the runs, and the power."""
+        return [f"{self.calibration.rig.title}, {self.calibration.fit.runs} runs", *aligned(self._facts())]
+
+    def object(self) -> dict[str, Any]:
+        """Slope and intercept with their uncertainties, range of speeds, and the power with its interval."""
+        found = self.calibration
+        values = {
+            "slope": found.fit.line.slope,
+            "intercept": found.fit.line.intercept,
+            **{name: getattr(found.fit, name) for name in _FIT_QUANTITIES},
+            "confidence_level": found.confidence_level,
+        }
+        if found.estimate is not None:
+            values |= {"friction_force": found.friction_force, "sliding_speed": found.target_speed}
+            values |= {
+                name: value
+                for name in ("actuator_power", "lowest_power", "highest_power")
+                if (value := getattr(found.estimate, name)) is not None
+            }
+        return {"rig": found.rig.title, "runs": found.fit.runs, **si(values)}
+
+    def caveats(self) -> Sequence[str]:
+        """Runs whose power was more than the friction needed."""
+        saturated = self.calibration.saturated_runs
+        if not saturated:
+            return ()
+        return (
+            f"{saturated} runs left less than a tenth of the friction: power beyond what is needed makes the line low",
+        )
+
+    def assumptions(self) -> Mapping[str, str]:
+        """Assumptions of the rig file."""
+        return self.calibration.rig.assumptions
+
+    def figures(self) -> Mapping[str, Drawing]:
+        """Coefficients of the runs over speed, the line and its bands."""
+        caption = _CAPTION.format(runs=self.calibration.fit.runs)
+        return {self.name: Drawing(draw=lambda: efficiency_figure(self.calibration), caption=caption)}
+
+    def files(self) -> Mapping[str, xr.Dataset]:
+        """Line and bands as netCDF."""
+        return {f"{self.name}.nc": efficiency_dataset(self.calibration)}
+
+    def page(self) -> Page:
+        """Page `efficiency.html`."""
+        return Page(
+            name="efficiency",
+            title=f"Efficiency line: {self.calibration.rig.title}",
+            settings=rig_settings(self.calibration.rig, self.rig_file),
+            facts=self._facts(),
+        )
+
+    def _facts(self) -> list[tuple[str, str]]:
+        """Line, scatter and range of the runs, and the power."""
+        found, fit = self.calibration, self.calibration.fit
+        slope, intercept = _PRINTED_UNIT * fit.line.slope, _PRINTED_UNIT * fit.line.intercept
+        facts = [
+            (
+                "line",
+                f"({slope:.3g} +- {_PRINTED_UNIT * fit.slope_uncertainty:.2g}) v + ({intercept:.3g} +-"
+                f" {_PRINTED_UNIT * fit.intercept_uncertainty:.2g}), in mW mm2/(N W) with v in m/s",
+            ),
+            ("scatter of runs", f"{_PRINTED_UNIT * fit.efficiency_deviation:.2g} mW mm2/(N W)"),
+            ("speeds covered", f"{format_si(fit.lowest_speed, 'm/s')} to {format_si(fit.highest_speed, 'm/s')}"),
+        ]
+        if found.estimate is not None:
+            power, low, high = (
+                "no bound" if value is None else format_si(value, "W")
+                for value in (found.estimate.actuator_power, found.estimate.lowest_power, found.estimate.highest_power)
+            )
+            at = format_si(found.target_speed or 0.0, "m/s")
+            text = f"{power} for {format_si(found.friction_force or 0.0, 'N')} at {at}; {low} to {high} with"
+            facts.append(("power", f"{text} {100 * found.confidence_level:g} %"))
+        return facts

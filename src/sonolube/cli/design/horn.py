@@ -1,0 +1,163 @@
+"""Command `horn design`: a horn tuned to a frequency by its length, with gain, node, stress and neighbouring modes."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from sonolube import materials
+from sonolube.cli.console.answer import Answer, aligned, deliver, si
+from sonolube.cli.console.options import OUT, Json, Out
+from sonolube.cli.console.parts import named_horn
+from sonolube.cli.console.progress import progress
+from sonolube.design.horn import HornDesign, amplitude_limits, loaded_frequency, tuned_horn
+from sonolube.design.horn_figures import horn_axis_figure
+from sonolube.fem import medium_from_material
+from sonolube.fem.figures import mode_figure
+from sonolube.materials import Material
+from sonolube.report import Drawing
+from sonolube.units import format_si, to_si
+
+_SHARP = 0.2  # change of the peak stress from mesh to mesh above which it is a caveat
+_NEAREST = 3  # neighbouring modes printed
+_LIMITS = {"fatigue_strength": "fatigue limit", "yield_strength": "yield point"}
+_DESIGN_QUANTITIES = (
+    "displacement_gain",
+    "node_position",
+    "face_uniformity",
+    "face_asymmetry",
+    "stress_per_displacement",
+)
+
+
+def design(
+    target: Annotated[
+        str, typer.Option("--frequency", metavar="FREQUENCY", help="Frequency of the tuned mode, such as 20kHz.")
+    ],
+    material: Annotated[str, typer.Option(metavar="NAME", help="Material of the horn.")],
+    shape: Annotated[
+        str,
+        typer.Option(metavar="SHAPE", help="block, booster, conical, cylinder, exponential, stepped, or a STEP file."),
+    ] = "stepped",
+    sizes: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="SIZE=VALUE", help="A size, such as radius=20mm; others are chosen."),
+    ] = None,
+    tune: Annotated[str, typer.Option(metavar="SIZE", help="Length that is tuned.")] = "length",
+    mode: Annotated[str, typer.Option(metavar="NAME", help="Mode that is tuned.")] = "axial 1",
+    axis: Annotated[
+        str | None, typer.Option(metavar="x|y|z", help="Axis of the part of a STEP file; its longest by default.")
+    ] = None,
+    tool: Annotated[str, typer.Option("--tool-mass", metavar="MASS", help="Of a tool on the working face.")] = "10g",
+    tolerance: Annotated[float, typer.Option(metavar="RATIO", help="Largest relative error of the frequency.")] = 0.003,
+    out: Out = OUT,
+    json: Json = False,
+) -> None:
+    """Tune a horn's length to a frequency, and compute its gain, node, stress, face and neighbouring modes.
+
+    Example: sonolube horn design --frequency 20kHz --material titanium_6al4v --set end_radius=10mm
+    """
+    frequency = to_si(target, unit="Hz", name="--frequency")
+    tool_mass = to_si(tool, unit="kg", name="--tool-mass")
+    solid = materials.material(material)
+    body = named_horn(shape, sizes or [], frequency=frequency, solid=solid, tune=tune, axis=axis)
+    with progress("tuning") as advance:
+        found = tuned_horn(
+            body,
+            medium=medium_from_material(solid),
+            frequency=frequency,
+            mode=mode,
+            relative_tolerance=tolerance,
+            advance=advance,
+        )
+    answer = HornAnswer(design=found, material=solid, tool_mass=tool_mass, name=f"horn-{Path(shape).stem}")
+    deliver(answer, folder=out, as_json=json)
+
+
+@dataclass(frozen=True, kw_only=True)
+class HornAnswer(Answer):
+    """A tuned horn: length, frequency, gain, node, uniformity of the face, stress, allowed amplitudes, neighbours."""
+
+    design: HornDesign
+    material: Material
+    tool_mass: float
+    name: str
+
+    def lines(self) -> list[str]:
+        """Tuned size, frequency and what follows from the mode."""
+        design, mode, thin = self.design, self.design.tuned.mode, self.design.body.thin
+        sizes = ", ".join(f"{name} {format_si(value, 'm')}" for name, value in design.body.sizes.items())
+        near = [f"{name} {at / mode.frequency - 1:+.1%}" for name, at in design.neighbours[:_NEAREST]]
+        length = f"{1e3 * design.tuned.length:.2f} mm"
+        gain = f"{design.displacement_gain:.2f}"
+        if thin is not None:
+            length += f"  (thin bar {1e3 * thin.length:.2f} mm)"
+            gain += f"  (thin bar {thin.displacement_gain:.2f})"
+        error = mode.frequency * mode.frequency_error
+        rows = [
+            (design.body.tuned_size, length),
+            ("frequency", f"{mode.frequency:.0f} Hz +-{error:.0f}  {mode.names[mode.row]}"),
+            ("trim", f"{1e-3 * design.tuned.frequency_per_length:+.1f} Hz/mm"),
+            ("neighbours", ", ".join(near) or "none below"),
+            ("gain", gain),
+            ("node", f"{1e3 * design.node_position:.1f} mm from the driven face"),
+            ("face", f"Umin/Umax {design.face_uniformity:.3f}, asymmetry {design.face_asymmetry:.2g}"),
+            ("peak stress", f"{1e-12 * design.stress_per_displacement:.2f} MPa per um of the working face"),
+            *((_LIMITS[name], f"{1e6 * value:.0f} um, zero to peak") for name, value in self._amplitudes().items()),
+            ("tool", f"{1e3 * self.tool_mass:g} g on the face: {self._loaded() - mode.frequency:+.0f} Hz"),
+        ]
+        return [f"{design.body.name} of {self.material.name}" + (f": {sizes}" if sizes else ""), *aligned(rows)]
+
+    def object(self) -> dict[str, Any]:
+        """Sizes, frequency, quantities of the mode, amplitudes allowed and neighbouring modes."""
+        design, tuned, thin = self.design, self.design.tuned, self.design.body.thin
+        frequency = tuned.mode.frequency
+        return {
+            "part": design.body.name,
+            "material": self.material.name,
+            "mode": tuned.mode.names[tuned.mode.row],
+            "tuned_size": design.body.tuned_size,
+            "thin_bar_length": None if thin is None else {"value": thin.length, "unit": "m"},
+            "sizes": si(design.body.sizes, unit="m"),
+            **si({name: getattr(tuned, name) for name in ("length", "frequency_per_length")}),
+            **si({name: getattr(tuned.mode, name) for name in ("frequency", "frequency_error")}),
+            **si({name: getattr(design, name) for name in _DESIGN_QUANTITIES}),
+            **si({"tool_mass": self.tool_mass, "loaded_frequency": self._loaded()}),
+            **si({"stress_change": design.stress_change}, unit=""),
+            "amplitude_limits": si(self._amplitudes(), unit="m"),
+            "neighbours": [
+                {"name": name, **si({"frequency": at}), **si({"gap": at / frequency - 1}, unit="")}
+                for name, at in design.neighbours
+            ],
+            "nodes": tuned.mode.model.mesh.node_count,
+        }
+
+    def caveats(self) -> Sequence[str]:
+        """A peak stress that depends on the mesh."""
+        if self.design.stress_change <= _SHARP:
+            return ()
+        return (
+            f"the peak stress changed by {self.design.stress_change:.0%} with the last refinement: it has no limit at a"
+            " sharp corner; give the corner an edge_radius, or lower --tolerance",
+        )
+
+    def figures(self) -> Mapping[str, Drawing]:
+        """Profile, motion and stress along the axis, and a picture of the mode."""
+        mode = self.design.tuned.mode
+        title = f"{mode.names[mode.row]}, {mode.frequency:.0f} Hz"
+        return {
+            f"{self.name}-axis": Drawing(draw=lambda: horn_axis_figure(self.design)),
+            f"{self.name}-mode": Drawing(
+                draw=lambda: mode_figure(mode.model.mesh, mode.displacement, title=title), forms=("png",)
+            ),
+        }
+
+    def _loaded(self) -> float:
+        """Frequency with the tool on the working face."""
+        return loaded_frequency(self.design, tool_mass=self.tool_mass)
+
+    def _amplitudes(self) -> Mapping[str, float]:
+        """Amplitudes of the working face at which the peak stress reaches fatigue strength and yield strength."""
+        return amplitude_limits(self.design, material=self.material)

@@ -1,0 +1,275 @@
+"""Command `map`: friction reduction of a rig over two quantities, beside measured runs."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+import xarray as xr
+
+from sonolube import design
+from sonolube.checks import Floats
+from sonolube.cli.console.answer import Answer, aligned, deliver, si
+from sonolube.cli.console.backend import Backend, BackendName, gpu_warning
+from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath
+from sonolube.cli.console.progress import progress
+from sonolube.cli.console.ranges import values_by_key
+from sonolube.cli.console.rig_text import friction_model_object, friction_model_text, rig_settings
+from sonolube.cli.design.status_tables import status_tables
+from sonolube.design import MAP_LAYOUTS, map_figure, map_page, measured_map_figure
+from sonolube.design.map_axes import default_axes
+from sonolube.design.measured_runs import read_runs
+from sonolube.design.point_statistics import extreme_point, failure_counts
+from sonolube.design.runs_map import FEWEST_RUNS, require_mappable, runs_map
+from sonolube.errors import InvalidInput
+from sonolube.report import Drawing, Page, PageTable
+from sonolube.rig import Rig, read_rig
+from sonolube.rig.driven_rig import driven_rig
+from sonolube.units import format_si
+from sonolube.vocabulary import quantity
+
+_AXIS_KEYS = {
+    "sliding.sliding_speed": "sliding_speed",
+    "contact.normal_load": "normal_load",
+    "drive.voltage_peak_to_peak": "voltage_peak_to_peak",
+    "drive.frequency": "frequency",
+}
+_MEASURED_CAPTION = "Friction reduction between the measured runs alone by a Gaussian process, with its uncertainty."
+_COLUMNS = ("friction_reduction", "sliding_speed", "actuator_power")
+_QUANTITIES = (
+    "friction_reduction",
+    "sliding_speed",
+    "normal_load",
+    "frequency",
+    "voltage_peak_to_peak",
+    "actuator_power",
+)
+
+
+class Kind(StrEnum):
+    """Quantities that a map runs over."""
+
+    VELOCITY_STRESS = "velocity-stress"
+    VELOCITY_POWER = "velocity-power"
+    FREQUENCY_VOLTAGE = "frequency-voltage"
+
+
+class Form(StrEnum):
+    """Format of the figures of a map."""
+
+    PNG = "png"
+    PDF = "pdf"
+    SVG = "svg"
+    HTML = "html"
+
+
+def map(  # noqa: A001 - the command's name
+    context: typer.Context,
+    rig: RigPath,
+    kind: Annotated[Kind, typer.Option(help="Quantities that the map runs over.")] = Kind.VELOCITY_POWER,
+    over: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="KEY=VALUES",
+            help="Other values of an axis, first:last:count or one,two,...: sliding.sliding_speed, contact.normal_load,"
+            " drive.voltage_peak_to_peak or drive.frequency. May come again.",
+        ),
+    ] = None,
+    measured: Annotated[
+        Path | None,
+        typer.Option(metavar="RUNS.csv", help="Measured runs to draw beside, and to interpolate from six runs on."),
+    ] = None,
+    forms: Annotated[
+        list[Form] | None, typer.Option("--form", help="png, pdf, svg or an interactive html; may come again.")
+    ] = None,
+    changes: Changes = None,
+    backend: BackendName = Backend.CPU,
+    out: Out = OUT,
+    json: Json = False,
+) -> None:
+    """Map of friction reduction: over sliding speed and stress, speed and power, or drive frequency and voltage.
+
+    Example: sonolube map examples/rigs/power_map.toml --kind velocity-power
+    """
+    known = read_rig(rig, changes=changes or ())
+    axes = _axes(known, kind.value, over)
+    runs = None if measured is None else read_runs(measured)
+    if runs is not None:
+        require_mappable(runs, kind=kind.value)
+    with gpu_warning(), progress("mapping"):
+        mapped = design.MAPS[kind.value](known, **axes, backend=backend.value)
+    answer = MapAnswer(
+        rig=known,
+        rig_file=rig,
+        mapped=mapped,
+        runs=runs,
+        interpolated=None if runs is None else runs_map(runs, kind=kind.value),
+        forms=tuple(form.value for form in forms or (Form.PNG, Form.PDF)),
+    )
+    deliver(answer, folder=out, as_json=json, context=context)
+
+
+@dataclass(frozen=True, kw_only=True)
+class MapAnswer(Answer):
+    """Map of friction reduction: its greatest value, the ridge of sufficient power, and the measured runs."""
+
+    rig: Rig
+    rig_file: Path
+    mapped: xr.Dataset
+    runs: xr.Dataset | None
+    interpolated: xr.Dataset | None
+    forms: tuple[str, ...]
+
+    def lines(self) -> list[str]:
+        """Greatest reduction, ridge, and points without a result."""
+        failures = [("without result", f"{count}: {reason}") for reason, count in self._failures().items()]
+        return [
+            f"{self.rig.title}, {self.mapped['status'].size} points, {friction_model_text(self.rig)}",
+            *aligned([*self._facts(), *failures]),
+        ]
+
+    def object(self) -> dict[str, Any]:
+        """Greatest reduction with the point where it occurs, and the number of points without a result."""
+        return {
+            "rig": self.rig.title,
+            "map": self._kind,
+            **friction_model_object(self.rig),
+            "points": int(self.mapped["status"].size),
+            "without_result": int(self.mapped["friction_reduction"].isnull().sum()),
+            "most_reduction": si(_greatest(self.mapped)),
+        }
+
+    def figures(self) -> Mapping[str, Drawing]:
+        """Contours of the map, and those between the measured runs."""
+        forms = tuple(form for form in self.forms if form != Form.HTML)
+        runs, between = self.runs, self.interpolated
+        drawings = {
+            self._name: Drawing(
+                draw=lambda: map_figure(self.mapped, measured=runs), caption=self._caption(), forms=forms
+            )
+        }
+        if runs is not None and between is not None:
+            drawings[f"{self._name}-measured"] = Drawing(
+                draw=lambda: measured_map_figure(between, runs),
+                caption=_MEASURED_CAPTION,
+                forms=forms,
+            )
+        return drawings
+
+    def files(self) -> Mapping[str, str | xr.Dataset]:
+        """Interactive page where it is wanted, and the datasets."""
+        files: dict[str, str | xr.Dataset] = {}
+        if Form.HTML in self.forms:
+            files[f"{self._name}.html"] = map_page(self.mapped)
+        if self.interpolated is not None:
+            files[f"{self._name}-measured.nc"] = self.interpolated
+        return files | {f"{self._name}.nc": self.mapped}
+
+    def page(self) -> Page:
+        """Page `map.html`."""
+        across, up, panel = MAP_LAYOUTS[self._kind]
+        return Page(
+            name="map",
+            title=f"Friction reduction over {_lower(across)} and {_lower(up)}: {self.rig.title}",
+            settings=rig_settings(self.rig, self.rig_file),
+            facts=[("points", f"{self.mapped['status'].size}"), *self._facts(), *self._run_facts()],
+            tables=[*_panel_tables(self.mapped, panel), *status_tables(self.mapped, self._failures())],
+        )
+
+    @property
+    def _kind(self) -> str:
+        """Kind of the map, such as "velocity-power"."""
+        return str(self.mapped.attrs["map"])
+
+    @property
+    def _name(self) -> str:
+        """Name of the files, without ending."""
+        return f"{self.rig_file.stem}-{self._kind}"
+
+    def _facts(self) -> list[tuple[str, str]]:
+        """Greatest reduction, and the ridge where the map has one."""
+        facts = []
+        values = [format_si(value, quantity(name).unit) for name, value in _greatest(self.mapped).items()]
+        if values:
+            facts.append(("most reduction", f"{values[0]} at {', '.join(values[1:])}"))
+        ridge = _ridge(self.mapped)
+        if ridge:
+            facts.append(("ridge", f"{ridge}; beyond it doubling the power buys less than 5 %"))
+        return facts
+
+    def _run_facts(self) -> list[tuple[str, str]]:
+        """Number of measured runs, their scatter and their leave-one-out error."""
+        if self.runs is None:
+            return []
+        count = f"{self.runs.sizes['run']}"
+        if self.interpolated is None:
+            return [("measured runs", f"{count}; {FEWEST_RUNS} make a map of their own")]
+        scatter, error = (100 * float(self.interpolated.attrs[name]) for name in ("scatter", "leave_one_out_error"))
+        text = f"scatter {scatter:.2g} % about a smooth map, leave-one-out error {error:.2g} %"
+        return [("measured runs", f"{count}; {text}")]
+
+    def _failures(self) -> dict[str, int]:
+        """Number of points without a result, by the reason."""
+        return failure_counts(self.mapped, outcome="friction_reduction")
+
+    def _caption(self) -> str:
+        """Caption of the contours."""
+        caption = "Friction reduction by the model."
+        if _ridge(self.mapped):
+            caption += " Dashed: the power beyond which doubling it reduces friction by less than another 5 %."
+        return caption if self.runs is None else f"{caption} Circles: measured runs, with their reductions in percent."
+
+
+def _axes(rig: Rig, kind: str, over: list[str] | None) -> dict[str, Floats]:
+    """Values of each axis of a kind of map: those given, and the default ones of the others."""
+    rig = driven_rig(rig)
+    axes = default_axes(rig, kind=kind)
+    across_and_up = list(axes)[:2]
+    for key, values in values_by_key(over).items():
+        name = _AXIS_KEYS.get(key)
+        if name not in axes:
+            known = ", ".join(long for long, short in _AXIS_KEYS.items() if short in axes)
+            raise InvalidInput(f"--over {key}: no axis of a {kind} map; its axes are {known}")
+        if values.size < 2 and name in across_and_up:
+            raise InvalidInput(f"--over {key}: a {kind} map runs over it, and needs at least 2 values")
+        axes[name] = values.astype("float64")
+    return axes
+
+
+def _greatest(mapped: xr.Dataset) -> dict[str, float]:
+    """Greatest reduction and the quantities where it occurs; empty where no point has a result."""
+    point = extreme_point(mapped, outcome="friction_reduction", highest=True)
+    if point is None:
+        return {}
+    return {name: float(point[name]) for name in _QUANTITIES if name in point and point[name].ndim == 0}
+
+
+def _ridge(mapped: xr.Dataset) -> str:
+    """Range of the sufficient power; empty where the map does not reach it."""
+    if "saturation_power" not in mapped or mapped["saturation_power"].isnull().all():
+        return ""
+    low, high = float(mapped["saturation_power"].min()), float(mapped["saturation_power"].max())
+    return f"{format_si(low, 'W')} to {format_si(high, 'W')}"
+
+
+def _panel_tables(mapped: xr.Dataset, panel: str | None) -> list[PageTable]:
+    """Greatest reduction at each load or voltage, and the ridge where the map has one."""
+    if panel is None:
+        return []
+    rows = []
+    for index in range(mapped.sizes[panel]):
+        part = mapped.isel({panel: index})
+        texts = {name: format_si(value, quantity(name).unit) for name, value in _greatest(part).items()}
+        value = format_si(float(part[panel]), quantity(panel).unit)
+        rows.append((value, *(texts.get(name, "") for name in _COLUMNS), _ridge(part)))
+    heads = (quantity(panel).meaning, *(quantity(name).meaning for name in _COLUMNS), "Ridge")
+    columns = slice(None) if any(row[-1] for row in rows) else slice(-1)
+    return [PageTable(title="Most reduction", heads=heads[columns], rows=tuple(row[columns] for row in rows))]
+
+
+def _lower(name: str) -> str:
+    """Meaning of a quantity within a sentence, without what follows a comma."""
+    meaning = quantity(name).meaning.partition(",")[0]
+    return meaning[:1].lower() + meaning[1:]

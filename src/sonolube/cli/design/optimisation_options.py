@@ -1,0 +1,190 @@
+"""Options of the command `optimise` as a design space, horn, bolt and target."""
+
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from sonolube.actuator import CatalogueActuator, PreloadBolt, catalogue_actuator, catalogue_names, read_catalogue
+from sonolube.cli.console.ranges import ends_by_key, values_by_key
+from sonolube.design.optimisation import OWN_ACTUATOR, DesignSpace, HalfWaveHorn
+from sonolube.errors import InvalidInput, UnknownName
+from sonolube.materials import material
+from sonolube.rig import Rig, structure_entries
+from sonolube.rig.driven_rig import driven_rig
+from sonolube.units import to_si
+
+_WAVEFORMS = ("sine", "square", "triangle", "sawtooth")
+_THREAD = re.compile(r"M(\d+(?:\.\d+)?)x(.+)")
+_STEEL = 205e9  # Pa, Young's modulus of bolts
+
+
+def friction_ratio(rig: Rig, target: str) -> float:
+    """Target friction over friction without vibration, from a coefficient or a force.
+
+    Parameters
+    ----------
+    rig : Rig
+    target : str
+        Such as "0.1" or "0.3N".
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    InvalidInput
+        If the target does not lie between zero and the friction without vibration.
+    """
+    is_force = bool(re.search(r"[A-Za-z]\s*$", target.strip()))
+    intrinsic = rig.friction_coefficient * (rig.normal_load if is_force else 1.0)
+    value = to_si(target, unit="N" if is_force else "", name="--target-friction")
+    if not 0 < value < intrinsic:
+        limit = f"{intrinsic:.4g}{' N' if is_force else ''}"
+        raise InvalidInput(
+            f"--target-friction {target} must lie between nought and friction without vibration, {limit}"
+        )
+    return value / intrinsic
+
+
+def horn(material_name: str | None, limit: str | None) -> HalfWaveHorn | None:
+    """Half-wave horn of a material with the stress amplitude allowed in it; None without both.
+
+    Raises
+    ------
+    InvalidInput
+        If one is given without the other.
+    """
+    if material_name is None and limit is None:
+        return None
+    if material_name is None or limit is None:
+        raise InvalidInput("--horn and --horn-limit belong together: a material and the amplitude of stress it bears")
+    solid = material(material_name)
+    return HalfWaveHorn(
+        density=solid.value("density"),
+        youngs_modulus=solid.value("youngs_modulus"),
+        stress_limit=to_si(limit, unit="Pa", name="--horn-limit"),
+    )
+
+
+def bolt(thread: str | None, tension: str | None, strength: str) -> PreloadBolt | None:
+    """Preload bolt of a thread such as M6x40mm; None without thread and tension.
+
+    Raises
+    ------
+    InvalidInput
+        If one is given without the other, or the thread cannot be read.
+    """
+    if thread is None and tension is None:
+        return None
+    if thread is None or tension is None:
+        raise InvalidInput("--bolt and --preload belong together, such as --bolt M6x40mm --preload 1kN")
+    found = _THREAD.fullmatch(thread.strip())
+    if not found:
+        raise InvalidInput(f"--bolt {thread} must look like M6x40mm: thread and length that stretches")
+    return PreloadBolt(
+        thread_diameter=1e-3 * float(found[1]),
+        length=to_si(found[2], unit="m", name="--bolt"),
+        youngs_modulus=_STEEL,
+        yield_strength=to_si(strength, unit="Pa", name="--bolt-strength"),
+        preload=to_si(tension, unit="N", name="--preload"),
+    )
+
+
+def design_space(
+    rig: Rig,
+    content: Mapping[str, Any],
+    *,
+    over: Sequence[str],
+    actuators: Sequence[str],
+    catalogue: Path | None,
+    mechanical_quality_factor: float,
+    bolt: PreloadBolt | None,
+) -> DesignSpace:
+    """Design space of actuators, frequencies, waveforms and entries of the structure.
+
+    Parameters
+    ----------
+    rig : Rig
+    content : mapping
+        Of its file.
+    over : sequence of str
+        Ranges such as "structure.tip_mass=50g:150g", or "drive.waveform=sine,triangle".
+    actuators : sequence of str
+        Names of the catalogue, "own" or "catalogue"; the rig's own where empty.
+    catalogue : Path or None
+        File of further actuators.
+    mechanical_quality_factor : float
+        Of the catalogue's ceramics. []
+    bolt : PreloadBolt or None
+
+    Returns
+    -------
+    DesignSpace
+
+    Raises
+    ------
+    InvalidInput
+        If a range cannot be read or a key cannot be chosen over.
+    UnknownName
+        If an entry of the structure is unknown.
+    """
+    rig = driven_rig(rig)
+    drive = rig.drive
+    known: dict[str, CatalogueActuator] = {name: catalogue_actuator(name) for name in catalogue_names()}
+    if catalogue is not None:
+        known |= read_catalogue(catalogue)
+    entries = structure_entries(content)
+    waveforms = [entry for entry in over if _key(entry) == "drive.waveform"]
+    numbers = [entry for entry in over if entry not in waveforms]
+    for entry in numbers:
+        _require_range_key(_key(entry), entries)
+    ranges = ends_by_key(numbers)
+    for key, (low, high) in ranges.items():
+        if not 0 < low < high:
+            raise InvalidInput(f"--over {key}: needs a range from above 0 that rises, got {low:g} to {high:g}")
+    frequencies = ranges.pop("drive.frequency", (0.8 * drive.frequency, 1.2 * drive.frequency))
+    return DesignSpace(
+        rig=rig,
+        entries=entries,
+        frequencies=frequencies,
+        ranges={key.removeprefix("structure."): ends for key, ends in ranges.items()},
+        actuators=_actuator_names(actuators, known),
+        waveforms=_waveform_names(waveforms, drive.waveform),
+        catalogue=known,
+        mechanical_quality_factor=mechanical_quality_factor,
+        bolt=bolt,
+    )
+
+
+def _key(entry: str) -> str:
+    """Key of KEY=VALUES."""
+    return entry.partition("=")[0].strip()
+
+
+def _require_range_key(key: str, entries: Mapping[str, float]) -> None:
+    """Raise for a key that no range can be chosen over."""
+    table, _, name = key.rpartition(".")
+    if table == "structure" and name not in entries:
+        raise UnknownName.among(entries, kind="entry of structure", name=name)
+    if table != "structure" and key != "drive.frequency":
+        raise InvalidInput(f"--over {key}: choose over drive.frequency, drive.waveform or an entry of structure")
+
+
+def _actuator_names(actuators: Sequence[str], known: Mapping[str, CatalogueActuator]) -> tuple[str, ...]:
+    """Names of the actuators to choose from, "catalogue" replaced by those whose data sheets are complete."""
+    names: list[str] = []
+    for name in actuators or [OWN_ACTUATOR]:
+        every = [each for each, entry in known.items() if entry.complete] if name == "catalogue" else [name]
+        names += [each for each in every if each not in names]
+    return tuple(names)
+
+
+def _waveform_names(entries: Sequence[str], default: str) -> tuple[str, ...]:
+    """Names of the waveforms to choose from."""
+    names = tuple(str(value) for value in values_by_key(entries).get("drive.waveform", ()))
+    for name in names:
+        if name not in _WAVEFORMS:
+            raise InvalidInput(f"--over drive.waveform: {name!r} is none of {', '.join(_WAVEFORMS)}")
+    return names or (default,)

@@ -1,0 +1,290 @@
+"""Parametric study of `sweep --of`: friction over voltage, speed, frequency, waveform or load, or its power."""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from sonolube import rig as rigs
+from sonolube.checks import Floats, require_positive
+from sonolube.cli.console.answer import Answer, aligned, si
+from sonolube.cli.console.progress import progress
+from sonolube.cli.console.rig_text import friction_model_object, friction_model_text
+from sonolube.design.point_statistics import extreme_place, extreme_point, failure_counts
+from sonolube.errors import InvalidInput
+from sonolube.report import Drawing
+from sonolube.rig import STUDY_FIGURES, Rig, frequency_grid, operating_points, read_rig
+from sonolube.rig.driven_rig import driven_rig
+from sonolube.rig.linear_response import gap_law_of
+from sonolube.units import format_si, to_si
+from sonolube.vocabulary import quantity
+
+Rows = Iterator[tuple[str, str]]
+
+_OUTCOMES = ("friction_ratio", "vibration_amplitude", "actuator_power", "dissipated_power")
+_POINTS_AT_RESONANCE = 41  # frequencies about each resonance
+_MOST_POINTS = 10_000
+
+
+class Parameter(StrEnum):
+    """Quantity that a parametric study varies."""
+
+    VOLTAGE = "voltage"
+    SPEED = "speed"
+    FREQUENCY = "frequency"
+    POWER = "power"
+    WAVEFORM = "waveform"
+    LOAD = "load"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Range:
+    """Default range of a study."""
+
+    unit: str
+    lowest: str
+    highest: str
+    points: int
+    even_ratios: bool = False
+    from_zero: bool = False
+
+
+_RANGES = {
+    "voltage": _Range(unit="V", lowest="0V", highest="200V", points=101, from_zero=True),
+    "speed": _Range(unit="m/s", lowest="1mm/s", highest="1m/s", points=61, even_ratios=True),
+    "frequency": _Range(unit="Hz", lowest="1kHz", highest="100kHz", points=120),
+    "power": _Range(unit="Hz", lowest="1kHz", highest="100kHz", points=60),
+    "load": _Range(unit="N", lowest="3N", highest="9N", points=25),
+}
+
+
+def parametric_study(
+    rig_file: Path,
+    *,
+    of: str,
+    lowest: str | None,
+    highest: str | None,
+    points: int | None,
+    voltages: list[str] | None,
+    changes: list[str] | None,
+) -> "ParametricStudyAnswer":
+    """Study of a rig over one quantity.
+
+    Parameters
+    ----------
+    rig_file : Path
+    of : str
+        "voltage", "speed", "frequency", "power", "waveform" or "load".
+    lowest, highest : str or None
+        Ends of the range with their units; the default ones where None.
+    points : int or None
+        Number of values.
+    voltages : list of str or None
+        Drive voltage of each curve over speed or frequency, with its unit.
+    changes : list of str or None
+        Entries of the rig file to replace.
+
+    Returns
+    -------
+    ParametricStudyAnswer
+
+    Raises
+    ------
+    InvalidInput
+        If the rig has no structure, the range is empty, an option has no meaning for the study, or no point has a
+        result.
+    """
+    rig = read_rig(rig_file, changes=changes or ())
+    run = _study(rig, of, lowest, highest, points, voltages)
+    with progress("sweeping") as advance:
+        result = run(advance=lambda done, total: advance(of, done, total))
+    answer = ParametricStudyAnswer(rig=rig, of=of, study=result, name=f"{rig_file.stem}-{of}")
+    if result["friction_ratio"].isnull().all():
+        raise InvalidInput(f"no point has a result: {next(iter(answer.failures()))}")
+    return answer
+
+
+@dataclass(frozen=True, kw_only=True)
+class ParametricStudyAnswer(Answer):
+    """Least friction over one quantity, and the points without a result."""
+
+    rig: Rig
+    of: str
+    study: xr.Dataset
+    name: str
+
+    def lines(self) -> list[str]:
+        """Main results over the quantity, and the points without a result."""
+        points, load = self.study["status"].size, format_si(self.rig.normal_load, "N")
+        return [
+            f"{self.rig.title}, {load}, {points} points, {friction_model_text(self.rig)}",
+            *aligned(list(_ROWS[self.of](self.study))),
+            *[f"  without result: {count} of {points}: {reason}" for reason, count in self.failures().items()],
+        ]
+
+    def object(self) -> dict[str, Any]:
+        """Point of least friction of each curve, and the points without a result."""
+        return {
+            "rig": self.rig.title,
+            "study": self.of,
+            **friction_model_object(self.rig),
+            "least_friction": [_point_object(best) for best in _best_points(self.study)],
+            "points": int(self.study["status"].size),
+            "without_result": [{"reason": reason, "points": count} for reason, count in self.failures().items()],
+        }
+
+    def figures(self) -> Mapping[str, Drawing]:
+        """Figure of the study."""
+
+        def draw() -> Any:
+            figure = STUDY_FIGURES[self.of](self.study)
+            figure.suptitle(self.study.attrs["rig"], fontsize=9)
+            return figure
+
+        return {self.name: Drawing(draw=draw)}
+
+    def files(self) -> Mapping[str, xr.Dataset]:
+        """Every point as netCDF."""
+        return {f"{self.name}.nc": self.study}
+
+    def failures(self) -> dict[str, int]:
+        """Number of points without a result, by the reason."""
+        return failure_counts(self.study, outcome="friction_ratio")
+
+
+def _study(
+    rig: Rig, of: str, lowest: str | None, highest: str | None, points: int | None, voltages: list[str] | None
+) -> Callable[..., xr.Dataset]:
+    """Function that runs the study, all options read and checked; it takes `advance`."""
+    gap_law_of(driven_rig(rig))
+    if of not in ("speed", "frequency") and voltages:
+        raise InvalidInput(f"--voltage has no meaning for --of {of}; it is for speed and frequency")
+    if of == "waveform":
+        if lowest or highest or points:
+            raise InvalidInput("--from, --to and --points have no meaning for --of waveform, which runs over names")
+        return partial(rigs.waveform_study, rig)
+    values = _values(rig, of, lowest, highest, points)
+    curves = None
+    if voltages:
+        curves = require_positive(voltage_peak_to_peak=[to_si(text, unit="V", name="--voltage") for text in voltages])
+    if of == "voltage":
+        return partial(rigs.voltage_study, rig, voltage_peak_to_peak=values)
+    if of == "speed":
+        return partial(rigs.speed_study, rig, sliding_speed=values, voltage_peak_to_peak=curves)
+    if of == "frequency":
+        return partial(rigs.frequency_study, rig, frequency=values, voltage_peak_to_peak=curves)
+    if of == "power":
+        return partial(rigs.least_power_study, rig, frequency=values, friction_ratio=_present_ratio(rig))
+    return partial(rigs.load_study, rig, normal_load=values)
+
+
+def _values(rig: Rig, of: str, lowest: str | None, highest: str | None, points: int | None) -> Floats:
+    """Values that a study runs over."""
+    usual = _RANGES[of]
+    low = to_si(lowest or usual.lowest, unit=usual.unit, name="--from")
+    high = to_si(highest or usual.highest, unit=usual.unit, name="--to")
+    if low < 0 or (low == 0 and not usual.from_zero) or low >= high:
+        floor = f"not lie below 0 {usual.unit}" if usual.from_zero else f"lie above 0 {usual.unit}"
+        raise InvalidInput(
+            f"--from {lowest or usual.lowest} must {floor} and must lie below --to {highest or usual.highest}"
+        )
+    count = usual.points if points is None else points
+    if not 2 <= count <= _MOST_POINTS:
+        raise InvalidInput(f"--points {count} must lie between 2 and {_MOST_POINTS} for --of {of}")
+    if of in ("frequency", "power"):
+        return frequency_grid(rig, lowest=low, highest=high, points=count, resonance_points=_POINTS_AT_RESONANCE)
+    return np.geomspace(low, high, count) if usual.even_ratios else np.linspace(low, high, count)
+
+
+def _present_ratio(rig: Rig) -> float:
+    """Friction ratio of the rig as it is driven."""
+    own = operating_points(rig)
+    if bool(own.failed):
+        raise InvalidInput(f"{rig.title} has no friction ratio of its own to be had elsewhere: {own.reason}")
+    return float(own.friction_ratio)
+
+
+def _voltage_rows(study: xr.Dataset) -> Rows:
+    """Least friction, voltage at which contact is lost, and power of the amplifier."""
+    for best in _best_points(study):
+        yield "least friction", f"ratio {_text(best, 'friction_ratio')} at {_text(best, 'voltage_peak_to_peak')}"
+    lost = study["voltage_peak_to_peak"].values[study["contact_loss_fraction"].values > 0]
+    yield "contact is lost", f"from {format_si(float(lost.min()), 'V')}" if lost.size else "nowhere"
+    yield "amplifier", f"up to {format_si(float(study['actuator_power'].max()), 'W')}, D 1.9"
+
+
+def _speed_rows(study: xr.Dataset) -> Rows:
+    """Range of the friction ratio at each voltage."""
+    for index in range(study.sizes["voltage_peak_to_peak"]):
+        curve = study.isel(voltage_peak_to_peak=index)
+        low, high = float(curve["friction_ratio"].min()), float(curve["friction_ratio"].max())
+        yield f"at {_text(curve, 'voltage_peak_to_peak')}", f"ratio {low:.3g} to {high:.3g}, slow to fast"
+
+
+def _frequency_rows(study: xr.Dataset) -> Rows:
+    """Least friction at each voltage."""
+    for best in _best_points(study):
+        at = f"{_text(best, 'frequency', digits=4)}, {_text(best, 'vibration_amplitude')}"
+        text = f"least friction ratio {_text(best, 'friction_ratio')} at {at}, {_text(best, 'actuator_power')}"
+        yield f"at {_text(best, 'voltage_peak_to_peak')}", text
+
+
+def _power_rows(study: xr.Dataset) -> Rows:
+    """Least power that the friction ratio takes, of the amplifier and dissipated."""
+    for name, label in (("actuator_power", "least power, D 1.9"), ("dissipated_power", "least dissipation")):
+        if not study[name].isnull().all():
+            least = study.isel(frequency=extreme_place(study, outcome=name) or 0)
+            at = f"{_text(least, 'frequency', digits=4)} and {_text(least, 'voltage_peak_to_peak')}"
+            yield label, f"{_text(least, name)} at {at} for friction ratio {_text(least, 'friction_ratio')}"
+
+
+def _waveform_rows(study: xr.Dataset) -> Rows:
+    """Friction ratio of each waveform, the least first."""
+    for index in study["friction_ratio"].values.argsort():
+        one = study.isel(waveform=int(index))
+        text = f"ratio {_text(one, 'friction_ratio')}, {_text(one, 'vibration_amplitude')}"
+        yield str(one["waveform"].values), text
+
+
+def _load_rows(study: xr.Dataset) -> Rows:
+    """Range of the friction ratio and of the natural frequency of the loading arm."""
+    ratios, arm = study["friction_ratio"], study["natural_frequency"]
+    yield "friction ratio", f"{float(ratios.min()):.4g} to {float(ratios.max()):.4g}"
+    yield "arm's frequency", f"{format_si(float(arm.min()), 'Hz')} to {format_si(float(arm.max()), 'Hz')}"
+
+
+_ROWS: dict[str, Callable[[xr.Dataset], Rows]] = {
+    "voltage": _voltage_rows,
+    "speed": _speed_rows,
+    "frequency": _frequency_rows,
+    "power": _power_rows,
+    "waveform": _waveform_rows,
+    "load": _load_rows,
+}
+
+
+def _best_points(study: xr.Dataset) -> Iterator[xr.Dataset]:
+    """Point of least friction of each curve that has a result."""
+    dims = study["friction_ratio"].dims
+    curves = [study] if len(dims) == 1 else [study.isel({dims[0]: i}) for i in range(study.sizes[dims[0]])]
+    for curve in curves:
+        best = extreme_point(curve, outcome="friction_ratio")
+        if best is not None:
+            yield best
+
+
+def _point_object(point: xr.Dataset) -> dict[str, Any]:
+    """Coordinates and outcomes of a point, for JSON."""
+    names = [str(name) for name in (*point.coords, *_OUTCOMES) if point[name].ndim == 0]
+    waveform = {"waveform": str(point["waveform"].values)} if "waveform" in names else {}
+    return waveform | si({name: float(point[name]) for name in names if name != "waveform"})
+
+
+def _text(point: xr.Dataset, name: str, *, digits: int = 3) -> str:
+    """Quantity of a point with its unit."""
+    return format_si(float(point[name]), quantity(name).unit, digits=digits)

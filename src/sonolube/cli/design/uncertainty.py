@@ -1,0 +1,358 @@
+"""Command `uncertainty`: uncertainty of an outcome from the distributions in a rig file, and its ranking by Sobol."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+import xarray as xr
+
+from sonolube.checks import Floats
+from sonolube.cli.console.answer import Answer, aligned, deliver
+from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath
+from sonolube.cli.console.progress import progress
+from sonolube.cli.console.ranges import values_by_key
+from sonolube.cli.console.rig_text import rig_settings
+from sonolube.cli.design.status_tables import status_tables
+from sonolube.cli.design.uncertain_entries import agreement, distributions, entry_rows, free_lines, posterior_object
+from sonolube.design import (
+    IntervalEstimate,
+    SampleStatistics,
+    band_figure,
+    histogram_figure,
+    outcome_statistics,
+    propagate,
+    sobol_figure,
+)
+from sonolube.design.identified_structure import IdentifiedStructure, identified_structure
+from sonolube.design.point_statistics import failure_counts, status_counts
+from sonolube.design.uncertainty_summary import (
+    Band,
+    BandPlace,
+    RankedEntry,
+    contact_loss_probability,
+    outcome_band,
+    outcome_indices,
+    ranked_entries,
+)
+from sonolube.errors import InvalidInput
+from sonolube.report import Drawing, Page, PageTable
+from sonolube.rig import Rig, read_rig
+from sonolube.units import format_si
+from sonolube.vocabulary import quantity, unit_of
+
+_SAMPLES_CAPTION = "Histogram of the samples that have a result, quantiles with intervals of 95 %, and the mean."
+_BAND_CAPTION = "Median of the samples and their intervals over the keys that were swept."
+_SOBOL_CAPTION = "Contribution of each uncertain entry to the variance, with intervals of 95 %."
+
+
+def uncertainty(
+    context: typer.Context,
+    rig: RigPath,
+    of: Annotated[
+        str, typer.Option(metavar="QUANTITY", help="The outcome, such as vibration_amplitude or wear_rate_ratio.")
+    ] = "friction_ratio",
+    samples: Annotated[
+        int, typer.Option(help="Number of samples, up to the next power of two; with --sobol of each block.", min=32)
+    ] = 1024,
+    sobol: Annotated[
+        bool, typer.Option("--sobol", help="Rank the entries by their contribution to the variance, by Sobol indices.")
+    ] = False,
+    over: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="KEY=VALUES",
+            help="A band over a key, first:last:count or one,two,...; given twice, a map of median and interval.",
+        ),
+    ] = None,
+    identified: Annotated[
+        bool,
+        typer.Option(
+            "--identified", help="Draw the tribometer's masses, springs and dampers from the published facts."
+        ),
+    ] = False,
+    seed: Annotated[int, typer.Option(help="Of the samples.", min=0)] = 0,
+    workers: Annotated[int, typer.Option(help="Threads.", min=1)] = 2,
+    changes: Changes = None,
+    keep: Annotated[
+        Path | None,
+        typer.Option(metavar="FOLDER", help="Keep finished parts here, so that an interrupted run goes on."),
+    ] = None,
+    out: Out = OUT,
+    json: Json = False,
+) -> None:
+    """Uncertainty of an outcome from the distributions in the rig's file, and which entry to measure better.
+
+    Example: sonolube uncertainty examples/rigs/tribometer_uncertain.toml --samples 256
+    """
+    if sobol and (over or identified):
+        raise InvalidInput("--sobol needs independent entries and one outcome each: leave out --over and --identified")
+    known = read_rig(rig, changes=changes or ())
+    axes = _axes(over)
+    structure = None
+    with progress("uncertainty") as advance:
+        if identified:
+            structure = identified_structure(rig, seed=seed, advance=lambda done, total: advance("facts", done, total))
+        result = propagate(
+            rig,
+            outcome=of,
+            samples=samples,
+            indices=sobol,
+            over=axes,
+            joint_samples=None if structure is None else structure.draws_by_key(),
+            seed=seed,
+            changes=changes or (),
+            folder=keep,
+            workers=workers,
+            advance=lambda done, total: advance("points", done, total),
+        )
+    answer = UncertaintyAnswer(rig=known, rig_file=rig, result=result, structure=structure)
+    if result[of].isnull().all():
+        raise InvalidInput(f"no sample has a result: {next(iter(answer.failures()))}")
+    deliver(answer, folder=out, as_json=json, context=context)
+
+
+@dataclass(frozen=True, kw_only=True)
+class UncertaintyAnswer(Answer):
+    """Statistics of an uncertain outcome, or its band over swept keys, and the ranking of the uncertain entries."""
+
+    rig: Rig
+    rig_file: Path
+    result: xr.Dataset
+    structure: IdentifiedStructure | None
+
+    def lines(self) -> list[str]:
+        """Statistics or band, statuses, uncertain entries, and their ranking."""
+        return [
+            f"{self.rig.title}, {self.result[self._of].size} points: {_lower(self._of)}",
+            *aligned(self._statistics_rows()),
+            *(f"  without result: {count}: {reason}" for reason, count in self.failures().items()),
+            *self._status_lines(),
+            "  uncertain",
+            *(f"  {line}" for line in aligned(entry_rows(self.rig, self.result, self.structure))),
+            *free_lines(self.structure),
+            *self._ranking_lines(),
+        ]
+
+    def object(self) -> dict[str, Any]:
+        """Statistics or band, statuses, uncertain entries, and their ranking."""
+        content: dict[str, Any] = {
+            "rig": self.rig.title,
+            "of": self._of,
+            "unit": quantity(self._of).unit,
+            "points": int(self.result[self._of].size),
+            "statuses": status_counts(self.result),
+            "without_result": [{"reason": reason, "points": count} for reason, count in self.failures().items()],
+            "contact_lost": contact_loss_probability(self.result),
+            "uncertain": {
+                key: {"distribution": law.text, "truncated_fraction": law.truncated_fraction}
+                for key, law in distributions(self.rig, self.result, self.structure).items()
+            },
+        }
+        if self.structure is not None:
+            content["identified"] = posterior_object(self.structure)
+        if self._swept:
+            band = self._band
+            content["band"] = {"mean_width": band.mean_width} | {
+                name: asdict(place) for name, place in _places(band).items()
+            }
+        else:
+            found = self._statistics
+            content |= {
+                "mean": asdict(found.mean),
+                "standard_deviation": asdict(found.standard_deviation),
+                "quantiles": {str(share): asdict(each) for share, each in found.quantiles.items()},
+                "relative_error": found.relative_error,
+                "converged": found.has_converged,
+            }
+        if self._ranked:
+            content["sobol"] = [asdict(row) for row in self._ranking]
+        return content
+
+    def caveats(self) -> Sequence[str]:
+        """Too few samples, and draws of the structure that have not converged."""
+        caveats = []
+        if not self._swept and not self._statistics.has_converged:
+            caveats.append(self._convergence())
+        if self.structure is not None and not self.structure.posterior.has_converged:
+            caveats.append(agreement(self.structure))
+        return caveats
+
+    def figures(self) -> Mapping[str, Drawing]:
+        """Histogram or band of the outcome, and the ranking of the entries."""
+        result = self.result
+        outcome = (
+            Drawing(draw=lambda: band_figure(result), caption=_BAND_CAPTION)
+            if self._swept
+            else Drawing(draw=lambda: histogram_figure(result), caption=_SAMPLES_CAPTION)
+        )
+        if not self._ranked:
+            return {self._name: outcome}
+        ranking = Drawing(draw=lambda: sobol_figure(result, outcome_indices(result)), caption=_SOBOL_CAPTION)
+        return {self._name: outcome, f"{self._name}-sobol": ranking}
+
+    def files(self) -> Mapping[str, xr.Dataset]:
+        """Samples as netCDF."""
+        return {f"{self._name}.nc": self.result}
+
+    def page(self) -> Page:
+        """Page `uncertainty.html`."""
+        lost = contact_loss_probability(self.result)
+        entries = PageTable(
+            title="Uncertain entries",
+            heads=("entry", "distribution"),
+            rows=tuple(entry_rows(self.rig, self.result, self.structure)),
+        )
+        return Page(
+            name="uncertainty",
+            title=f"Uncertainty of the {_lower(self._of)}: {self.rig.title}",
+            settings=rig_settings(self.rig, self.rig_file),
+            facts=[
+                ("points", f"{self.result[self._of].size}"),
+                *self._statistics_rows(),
+                *([("contact lost", f"for part of the time in {lost:.1%} of the points")] if lost else []),
+            ],
+            tables=[
+                *([entries] if entries.rows else []),
+                *self._ranking_tables(),
+                *status_tables(self.result, self.failures()),
+            ],
+        )
+
+    def failures(self) -> dict[str, int]:
+        """Number of samples without a result, by the reason."""
+        return failure_counts(self.result, outcome=self._of)
+
+    @property
+    def _of(self) -> str:
+        """Quantity whose uncertainty is propagated."""
+        return str(self.result.attrs["outcome"])
+
+    @property
+    def _swept(self) -> bool:
+        """Whether the outcome is a band over swept keys."""
+        return bool(self.result.attrs["swept"])
+
+    @property
+    def _ranked(self) -> bool:
+        """Whether the samples are those of Sobol indices."""
+        return "block" in self.result.dims
+
+    @property
+    def _name(self) -> str:
+        """Name of the files, without ending."""
+        return f"{self.rig_file.stem}-uncertainty-{self._of}"
+
+    @cached_property
+    def _statistics(self) -> SampleStatistics:
+        """Mean, deviation and quantiles of the outcome."""
+        return outcome_statistics(self.result)
+
+    @cached_property
+    def _band(self) -> Band:
+        """Interval of the outcome over the swept keys."""
+        return outcome_band(self.result)
+
+    def _statistics_rows(self) -> list[tuple[str, str]]:
+        """Statistics with their intervals, or the band where it is narrowest and widest."""
+        unit = quantity(self._of).unit
+        if self._swept:
+            return [(name, _place_text(place, unit)) for name, place in _places(self._band).items()]
+        found = self._statistics
+        rows = {"mean": found.mean, "standard deviation": found.standard_deviation}
+        for share, each in found.quantiles.items():
+            rows["median" if share == 0.5 else f"{100 * share:.0f} % lie below"] = each
+        texts = [(name, _with_interval(each, unit)) for name, each in rows.items()]
+        return [*texts, ("convergence", self._convergence())] if found.has_converged else texts
+
+    def _convergence(self) -> str:
+        """Width of the intervals of the statistics over the deviation of the samples."""
+        found = self._statistics
+        if found.has_converged:
+            return f"intervals of 95 % within {found.relative_error:.1%} of the spread"
+        return f"not converged: an interval takes {found.relative_error:.1%} of the spread; take more --samples"
+
+    def _status_lines(self) -> list[str]:
+        """Fractions of the points by status, and of those that lose contact."""
+        points, lost = self.result[self._of].size, contact_loss_probability(self.result)
+        shares = ", ".join(f"{name} {count / points:.1%}" for name, count in status_counts(self.result).items())
+        more = [f"  contact lost for part of the time in {lost:.1%} of them"] if lost else []
+        return [f"  {shares} of the points", *more]
+
+    @cached_property
+    def _ranking(self) -> list[RankedEntry]:
+        """Entries by their contribution to the variance; empty without Sobol indices."""
+        return ranked_entries(self.result) if self._ranked else []
+
+    def _ranking_rows(self) -> list[tuple[str, str, str, str]]:
+        """Entries with their contributions, alone and with the others, and the deviation that would remain."""
+        unit = quantity(self._of).unit
+        return [
+            (row.key, _percent(row.first), _percent(row.total), format_si(row.deviation_if_known, unit))
+            for row in self._ranking
+        ]
+
+    def _ranking_lines(self) -> list[str]:
+        """Ranking as lines of text."""
+        rows = self._ranking_rows()
+        head = "  which to measure better: share of the variance alone, with the others; deviation were it known"
+        lines = [f"    {key:<34} {alone:<20} {whole:<20} {deviation}" for key, alone, whole, deviation in rows]
+        return [head, *lines] if rows else []
+
+    def _ranking_tables(self) -> list[PageTable]:
+        """Ranking as a table of the page."""
+        rows = tuple(self._ranking_rows())
+        heads = ("entry", "share of the variance alone", "with the others", "deviation were it known")
+        return [PageTable(title="Which to measure better", heads=heads, rows=rows)] if rows else []
+
+
+def _axes(over: list[str] | None) -> dict[str, Floats]:
+    """Values that a band or a map runs over, by key."""
+    if len(over or ()) > 2:
+        raise InvalidInput(f"--over gives a band once and a map twice, not {len(over or ())} times")
+    axes = {}
+    for key, values in values_by_key(over).items():
+        if values.dtype.kind == "U":
+            raise InvalidInput(f"--over {key}: a band needs numbers to run over, not words")
+        axes[key] = values.astype(np.float64)
+        if values.size < 2 or np.any(np.diff(axes[key]) <= 0):
+            raise InvalidInput(f"--over {key}: a band needs at least 2 values that rise")
+    return axes
+
+
+def _places(band: Band) -> dict[str, BandPlace]:
+    """Where a band is narrowest and widest."""
+    return {
+        name: place for name, place in (("narrowest", band.narrowest), ("widest", band.widest)) if place is not None
+    }
+
+
+def _place_text(place: BandPlace, unit: str) -> str:
+    """Median and interval of a band at a place, with the swept values there."""
+    low, median, high = (format_si(value, unit) for value in (place.lower, place.median, place.upper))
+    at = [
+        value if isinstance(value, str) else format_si(value, unit_of(key.rpartition(".")[2]))
+        for key, value in place.at.items()
+    ]
+    return f"{median}, 90 % within {low} to {high}, at {', '.join(at)}"
+
+
+def _with_interval(each: IntervalEstimate, unit: str) -> str:
+    """Estimate with its 95 % interval."""
+    value, low, high = (format_si(end, unit) for end in (each.value, each.lower, each.upper))
+    return f"{value} ({low} to {high})"
+
+
+def _percent(share: IntervalEstimate) -> str:
+    """Fraction in percent with its interval, negative estimates cut at zero."""
+    value, low, high = (100 * max(end, 0.0) for end in (share.value, share.lower, share.upper))
+    return f"{value:5.1f} % ({low:.0f} to {high:.0f})"
+
+
+def _lower(name: str) -> str:
+    """Meaning of a quantity within a sentence."""
+    meaning = quantity(name).meaning
+    return meaning[:1].lower() + meaning[1:]

@@ -1,0 +1,1 @@
+"""Commands that look up materials, actuators, published tables and the schema of rig files."""

@@ -1,0 +1,1 @@
+"""Commands that measure recordings, surfaces and spectra."""

@@ -1,0 +1,165 @@
+"""Measurement of many files by one function, options that all its commands share, and their answer."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from sonolube.cli.console.answer import Answer, deliver
+from sonolube.cli.console.progress import progress
+from sonolube.errors import InvalidInput, SonolubeError
+from sonolube.measurement.recordings.mapping import RecordingMapping, read_mapping
+from sonolube.report import (
+    MeasurementReport,
+    measurement_caveats,
+    measurement_lines,
+    measurement_object,
+    measurement_page,
+    read_pin_on_disc_sheet,
+)
+from sonolube.report.measured.sheet import Sheet
+
+Files = Annotated[list[Path], typer.Argument(metavar="FILES...", help="Files, or folders whose files are taken.")]
+Mapped = Annotated[
+    Path | None, typer.Option("--mapping", metavar="MAPPING.toml", help="Meaning of the columns of the files.")
+]
+Report = Annotated[Path | None, typer.Option(metavar="PAGE.html", help="Self-contained page to write.")]
+Test = Annotated[
+    Path | None, typer.Option("--test-sheet", metavar="TEST.toml", help="Conditions of the test, for the page.")
+]
+Measure = Callable[[Path], "Sheet"]
+
+
+def each_file(paths: Sequence[Path], measure: Measure, *, title: str) -> tuple[list[Sheet], dict[str, str]]:
+    """Sheets of all files that can be measured, and the reasons of the others.
+
+    Parameters
+    ----------
+    paths : sequence of Path
+        Files and folders; of a folder all files but hidden ones, by name.
+    measure : callable
+        Returns the sheet of one file.
+    title : str
+        Of the progress bar.
+
+    Returns
+    -------
+    list of Sheet
+    dict of str to str
+        Reason for each file that could not be measured.
+
+    Raises
+    ------
+    InvalidInput
+        If a folder is empty.
+    """
+    files = _files(paths)
+    sheets, refused = [], {}
+    with progress(title) as advance:
+        for done, path in enumerate(files):
+            advance(path.name, done, len(files))
+            try:
+                sheets.append(measure(path))
+            except SonolubeError as failure:
+                refused[str(path)] = " ".join(str(failure).split())
+    return sheets, refused
+
+
+def column_mapping(path: Path | None) -> RecordingMapping | None:
+    """Meaning of the columns from a mapping file; None where it was not given."""
+    return None if path is None else read_mapping(path)
+
+
+def names_of(paths: Sequence[Path] | None) -> str | None:
+    """Names of files as one text; None where there are none."""
+    return ", ".join(path.name for path in paths or ()) or None
+
+
+def deliver_sheets(
+    title: str,
+    sheets: Sequence[Sheet],
+    refused: Mapping[str, str],
+    *,
+    settings: Mapping[str, Any],
+    page: Path | None,
+    test: Path | None,
+    as_json: bool,
+) -> None:
+    """Deliver the sheets of measured files, then exit with 1 where some files were refused, with 2 where all were.
+
+    Parameters
+    ----------
+    title : str
+        What was measured.
+    sheets : sequence of Sheet
+    refused : mapping of str to str
+        Reason for each file that could not be measured.
+    settings : mapping
+        Options that the numbers depend on, as given; None is left out.
+    page : Path or None
+        HTML page to write.
+    test : Path or None
+        File of the conditions of the test.
+    as_json : bool
+
+    Raises
+    ------
+    typer.Exit
+        If files were refused.
+    """
+    report = MeasurementReport(
+        title=title,
+        settings={name: str(value) for name, value in settings.items() if value is not None},
+        sheets=tuple(sheets),
+        refused=refused,
+        test=None if test is None else read_pin_on_disc_sheet(test),
+    )
+    folder = Path() if page is None else page.parent
+    deliver(MeasuredFiles(report=report, page_name=None if page is None else page.name), folder=folder, as_json=as_json)
+    for reason in refused.values():
+        typer.echo(f"sonolube measure: {reason}", err=True)
+    if refused:
+        raise typer.Exit(2 if not sheets else 1)
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeasuredFiles(Answer):
+    """Values, tables and caveats of measured files, and their page."""
+
+    report: MeasurementReport
+    page_name: str | None
+
+    def lines(self) -> list[str]:
+        """Values and tables of each file."""
+        return measurement_lines(self.report)
+
+    def object(self) -> dict[str, Any]:
+        """Values, tables and caveats of each file, settings, and the files that were refused."""
+        return measurement_object(self.report)
+
+    def caveats(self) -> Sequence[str]:
+        """Caveats of all files."""
+        return measurement_caveats(self.report)
+
+    def files(self) -> Mapping[str, str]:
+        """Page where it is wanted."""
+        if self.page_name is None:
+            return {}
+        with progress("drawing") as advance:
+            return {self.page_name: measurement_page(self.report, advance=advance)}
+
+
+def _files(paths: Sequence[Path]) -> list[Path]:
+    """Files, folders replaced by their files."""
+    files: list[Path] = []
+    for path in paths:
+        if not path.is_dir():
+            files.append(path)
+            continue
+        inside = sorted(each for each in path.iterdir() if each.is_file() and not each.name.startswith("."))
+        if not inside:
+            raise InvalidInput(f"{path}: holds no file")
+        files += inside
+    return files

@@ -1,0 +1,71 @@
+"""Command `measure surface`: areal and profile parameters, spectra and summits of height maps."""
+
+from functools import partial
+from typing import Annotated
+
+import typer
+
+from sonolube.cli.console.options import Json, option_value
+from sonolube.cli.measure.measured_files import Files, Report, Test, deliver_sheets, each_file
+from sonolube.report.measured.surface import SurfaceSettings, surface_sheet
+
+Spacing = Annotated[
+    str | None,
+    typer.Option("--spacing", metavar="LENGTH", help="Distance of pixels, for files that lack it; one or 'x,y'."),
+]
+Unit = Annotated[
+    str | None,
+    typer.Option("--length-unit", metavar="UNIT", help="For files that lack it, such as um."),
+]
+
+
+def surface(
+    files: Files,
+    pixel: Spacing = None,
+    unit: Unit = None,
+    form: Annotated[
+        int, typer.Option(help="Degree of the form that is removed: 1 tilt, 2 curvature.", min=0, max=12)
+    ] = 1,
+    robust: Annotated[bool, typer.Option("--robust", help="Weight pixels far from the form less.")] = False,
+    short: Annotated[
+        str | None, typer.Option("--short-cutoff", metavar="LENGTH", help="Remove shorter waves, as noise.")
+    ] = None,
+    long: Annotated[
+        str | None, typer.Option("--long-cutoff", metavar="LENGTH", help="Remove longer waves, as waviness.")
+    ] = None,
+    test: Test = None,
+    report: Report = None,
+    json: Json = False,
+) -> None:
+    """Surfaces: parameters of ISO 25178-2 and of profiles, spectra, and summits for the contact models.
+
+    Example: sonolube measure surface plate.opd --long-cutoff 25um --report plate.html
+    """
+    spacing_x, spacing_y = spacings(pixel)
+    settings = SurfaceSettings(
+        spacing_x=spacing_x,
+        spacing_y=spacing_y,
+        length_unit=unit,
+        degree=form,
+        robust=robust,
+        short_cutoff_length=option_value(short, unit="m", option="--short-cutoff"),
+        long_cutoff_length=option_value(long, unit="m", option="--long-cutoff"),
+    )
+    sheets, refused = each_file(files, partial(surface_sheet, settings=settings), title="measuring")
+    options = {
+        "spacing": pixel,
+        "length unit": unit,
+        "form": f"degree {form}{', robust' if robust else ''}",
+        "short cutoff": short,
+        "long cutoff": long,
+    }
+    deliver_sheets("surfaces", sheets, refused, settings=options, page=report, test=test, as_json=json)
+
+
+def spacings(text: str | None) -> tuple[float | None, float | None]:
+    """Distances of columns and rows in m, from text such as 0.5um or 0.5um,0.6um; None where it was not given."""
+    if text is None:
+        return None, None
+    first, _, second = text.partition(",")
+    along = option_value(first, unit="m", option="--spacing")
+    return along, option_value(second, unit="m", option="--spacing") if second else along

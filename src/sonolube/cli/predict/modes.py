@@ -1,0 +1,169 @@
+"""Command `modes`: natural modes of a part by finite elements, with pictures, grids, shapes and animations."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from sonolube.checks import Floats
+from sonolube.cli.console import parts
+from sonolube.cli.console.answer import Answer, deliver, si
+from sonolube.cli.console.options import OUT, Json, Out, Sizes
+from sonolube.cli.console.progress import progress
+from sonolube.fem import ConvergedModes, Electrodes, FixedSupport, Model, converged_modes, generate_mesh, mode_names
+from sonolube.fem.figures import mode_figure
+from sonolube.fem.mode_files import elastic_rows, mode_animation, mode_title, modes_grid, shapes_table
+from sonolube.report import Drawing
+
+
+def modes(
+    part: Annotated[
+        str, typer.Argument(metavar="PART", help="A part such as block, a transducer such as stack, or a STEP file.")
+    ],
+    sizes: Sizes = None,
+    material: Annotated[
+        str, typer.Option(metavar="NAME", help="Material of the part; transducers have their own.")
+    ] = "stainless_steel_304",
+    count: Annotated[int, typer.Option(metavar="NUMBER", help="Number of elastic modes.")] = 6,
+    clamp: Annotated[list[str] | None, typer.Option(metavar="FACE", help="A face held still, such as -x.")] = None,
+    axis: Annotated[str | None, typer.Option(metavar="x|y|z", help="The part's axis; its longest by default.")] = None,
+    tolerance: Annotated[float, typer.Option(metavar="RATIO", help="Largest relative error of a frequency.")] = 0.005,
+    points: Annotated[
+        Path | None, typer.Option(metavar="POINTS.csv", help="Points x, y, z in mm at which to write the shapes.")
+    ] = None,
+    toward: Annotated[
+        str | None, typer.Option(metavar="x|y|z", help="Component at the points; that of the axis by default.")
+    ] = None,
+    vtu: Annotated[bool, typer.Option("--vtu", help="Write the modes for ParaView too.")] = False,
+    animate: Annotated[bool, typer.Option("--animate", help="Draw each mode as an animated GIF too.")] = False,
+    out: Out = OUT,
+    json: Json = False,
+) -> None:
+    """Natural modes of a part: frequencies with their errors, names and pictures.
+
+    Example: sonolube modes block --set length=127mm --set width=60.96mm --set thickness=25.4mm
+    """
+    parts.require_axis(axis=axis, toward=toward)
+    is_transducer = part in parts.ALL_TRANSDUCERS
+    geometry = parts.named_part(part, sizes or [])
+    media = parts.named_media(part, sizes or [], material)
+    electrodes = parts.named_transducer(part, sizes or []).electrodes if is_transducer else Electrodes()
+    fixed = tuple(FixedSupport(face=face) for face in clamp or ())
+    scanned = None if points is None else parts.points_in_metres(points)
+
+    def model_at(element_size: float) -> Model:
+        mesh = generate_mesh(geometry, element_size=element_size)
+        return Model(mesh=mesh, media=media, fixed=fixed, electrodes=electrodes)
+
+    with progress("meshing and solving") as advance:
+        found = converged_modes(
+            model_at,
+            count=count,
+            element_size=parts.starting_size(geometry),
+            relative_tolerance=tolerance,
+            advance=advance,
+        )
+    along = axis or parts.longest_axis(found.model.mesh)
+    answer = ModesAnswer(
+        part=part,
+        material="its own materials" if is_transducer else material,
+        found=found,
+        names=mode_names(found.model, found.modes, axis=along),
+        points=scanned,
+        direction=toward or along,
+        with_grid=vtu,
+        with_animations=animate,
+    )
+    deliver(answer, folder=out, as_json=json)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ModesAnswer(Answer):
+    """Natural frequencies of a part with their errors, and its elastic modes as pictures and files."""
+
+    part: str
+    material: str
+    found: ConvergedModes
+    names: Sequence[str]
+    points: Floats | None
+    direction: str
+    with_grid: bool
+    with_animations: bool
+
+    def lines(self) -> list[str]:
+        """Name, natural frequency and relative error of every elastic mode."""
+        found, rigid = self.found, self.found.modes.rigid_body_count
+        width = max(len(self.names[row]) for row in self._rows())
+        support = f"{rigid} rigid motions, " if rigid else "held, "
+        nodes = f"{found.nodes[-1]} nodes in the last of {len(found.nodes)} meshes"
+        return [
+            f"{self.part} of {self.material}: {support}{nodes}",
+            *[
+                f"  {self.names[row]:<{width}}  {found.natural_frequency[row]:>10.1f} Hz  "
+                f"+-{found.frequency_error[row]:.2g}"
+                for row in self._rows()
+            ],
+        ]
+
+    def object(self) -> dict[str, Any]:
+        """Number of rigid motions, nodes of the meshes, and name, frequency and error of every elastic mode."""
+        found = self.found
+        return {
+            "part": self.part,
+            "material": self.material,
+            "rigid_motions": found.modes.rigid_body_count,
+            "nodes": list(found.nodes),
+            "modes": [
+                {
+                    "name": self.names[row],
+                    **si(
+                        {
+                            "natural_frequency": float(found.natural_frequency[row]),
+                            "frequency_error": float(found.frequency_error[row]),
+                        }
+                    ),
+                }
+                for row in self._rows()
+            ],
+        }
+
+    def figures(self) -> Mapping[str, Drawing]:
+        """Picture of every elastic mode."""
+        mesh, shapes = self.found.model.mesh, self.found.modes.shapes
+        return {
+            self._file_name(row): Drawing(
+                draw=partial(mode_figure, mesh, shapes[row], title=mode_title(self.found, self.names, row)),
+                forms=("png",),
+            )
+            for row in self._rows()
+        }
+
+    def files(self) -> Mapping[str, str | bytes]:
+        """Shapes at points, grid and animations, as far as they are wanted."""
+        files: dict[str, str | bytes] = {}
+        stem = Path(self.part).stem
+        if self.points is not None:
+            table = shapes_table(self.found, self.names, self.points, direction=self.direction)
+            files[f"{stem}-shapes.csv"] = table
+        if self.with_grid:
+            files[f"{stem}-modes.vtu"] = modes_grid(self.found, self.names)
+        if self.with_animations:
+            with progress("animating") as advance:
+                for done, row in enumerate(self._rows()):
+                    advance(self.names[row], done, len(self._rows()))
+                    title = mode_title(self.found, self.names, row)
+                    animation = mode_animation(self.found, self.found.modes.shapes[row], title=title)
+                    files[f"{self._file_name(row)}.gif"] = animation
+        return files
+
+    def _rows(self) -> range:
+        """Indices of the elastic modes."""
+        return elastic_rows(self.found)
+
+    def _file_name(self, row: int) -> str:
+        """Name of the picture of a mode: part, number among the elastic modes, and name of the mode."""
+        number = row - self.found.modes.rigid_body_count + 1
+        return f"{Path(self.part).stem}-{number}-{self.names[row].replace(' ', '-')}"

@@ -1,0 +1,93 @@
+"""Command `response`: linear response of a rig, amplitude per volt and electrical impedance over frequency."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+import typer
+import xarray as xr
+
+from sonolube.checks import Floats
+from sonolube.cli.console.answer import Answer, aligned, deliver, si
+from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath
+from sonolube.dynamics import modes
+from sonolube.errors import InvalidInput
+from sonolube.report import Drawing
+from sonolube.rig import FrequencyResponse, Rig, frequency_grid, frequency_response, read_rig, structure_in_contact
+from sonolube.rig.figures import response_figure
+from sonolube.rig.result_datasets import response_dataset
+from sonolube.units import format_si, to_si
+
+
+def response(
+    rig: RigPath,
+    lowest: Annotated[str, typer.Option("--from", metavar="FREQUENCY", help="Lowest frequency.")] = "1kHz",
+    highest: Annotated[str, typer.Option("--to", metavar="FREQUENCY", help="Highest frequency.")] = "100kHz",
+    changes: Changes = None,
+    out: Out = OUT,
+    json: Json = False,
+) -> None:
+    """Linear response: tip amplitude per volt and electrical impedance over frequency.
+
+    Example: sonolube response examples/rigs/tribometer.toml --from 15kHz --to 35kHz
+    """
+    low, high = (to_si(text, unit="Hz", name=name) for text, name in ((lowest, "--from"), (highest, "--to")))
+    if not 0 < low < high:
+        raise InvalidInput(f"--from {lowest} must lie above 0 Hz and below --to {highest}")
+    known = read_rig(rig, changes=changes or ())
+    result = frequency_response(known, frequency=frequency_grid(known, lowest=low, highest=high))
+    natural = modes(structure_in_contact(known))
+    answer = ResponseAnswer(
+        rig=known,
+        result=result,
+        natural_frequency=natural.natural_frequency[~natural.rigid],
+        name=f"{rig.stem}-response",
+    )
+    deliver(answer, folder=out, as_json=json)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ResponseAnswer(Answer):
+    """Linear response of a rig: natural frequencies and the largest amplitude per volt."""
+
+    rig: Rig
+    result: FrequencyResponse
+    natural_frequency: Floats
+    name: str
+
+    def lines(self) -> list[str]:
+        """Natural frequencies and the largest amplitude per volt."""
+        frequency, amplitude = self._largest()
+        found = ", ".join(format_si(f, "Hz", digits=4) for f in self.natural_frequency.tolist()) or "none"
+        at = format_si(frequency, "Hz", digits=4)
+        return [
+            f"{self.rig.title}, {format_si(self.rig.normal_load, 'N')}, small motions",
+            *aligned(
+                [
+                    ("natural frequencies", found),
+                    ("largest amplitude", f"{format_si(amplitude, 'm')} per volt peak to peak at {at}"),
+                ]
+            ),
+        ]
+
+    def object(self) -> dict[str, Any]:
+        """Natural frequencies, and frequency and value of the largest amplitude per volt."""
+        frequency, amplitude = self._largest()
+        return {
+            "rig": self.rig.title,
+            "resonances": [{"value": f, "unit": "Hz"} for f in self.natural_frequency.tolist()],
+            **si({"frequency": frequency, "amplitude_per_volt": amplitude}),
+        }
+
+    def figures(self) -> Mapping[str, Drawing]:
+        """FrequencyResponse over frequency."""
+        return {self.name: Drawing(draw=lambda: response_figure(self.rig, self.result))}
+
+    def files(self) -> Mapping[str, xr.Dataset]:
+        """FrequencyResponse over frequency as netCDF."""
+        return {f"{self.name}.nc": response_dataset(self.rig, self.result)}
+
+    def _largest(self) -> tuple[float, float]:
+        """Frequency and value of the largest amplitude per volt."""
+        best = int(self.result.amplitude_per_volt.argmax())
+        return float(self.result.frequency[best]), float(self.result.amplitude_per_volt[best])

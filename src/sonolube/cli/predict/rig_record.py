@@ -1,0 +1,83 @@
+"""Answer of commands whose result is one record of a rig: every field that is a quantity, with its unit."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields, is_dataclass
+from typing import Any
+
+import xarray as xr
+
+from sonolube.cli.console.answer import Answer, aligned, si
+from sonolube.report import Drawing
+from sonolube.rig import Rig
+from sonolube.units import format_si
+from sonolube.vocabulary import quantities
+
+
+@dataclass(frozen=True, kw_only=True)
+class RigRecord(Answer):
+    """Record of results of a rig: quantities by the vocabulary, other text as it is.
+
+    Parameters
+    ----------
+    rig : Rig
+    result : dataclass
+        Its fields named in the vocabulary, and those of records within it, are the quantities; None is left out.
+    drawings : mapping of str to Drawing
+    datasets : mapping of str to xarray.Dataset
+    """
+
+    rig: Rig
+    result: Any
+    drawings: Mapping[str, Drawing] = field(default_factory=dict)
+    datasets: Mapping[str, xr.Dataset] = field(default_factory=dict)
+
+    def lines(self) -> list[str]:
+        """Load, quantities with the meaning and unit of the vocabulary, and text but for the status."""
+        known = quantities()
+        return [
+            f"{self.rig.title}, {format_si(self.rig.normal_load, 'N')}",
+            *aligned(
+                [
+                    *((known[name].meaning, format_si(value, known[name].unit)) for name, value in self._values()),
+                    *((name, text) for name, text in self._texts() if name != "status"),
+                ]
+            ),
+        ]
+
+    def object(self) -> dict[str, Any]:
+        """Title of the rig, text and quantities."""
+        return {"rig": self.rig.title, **dict(self._texts()), **si(dict(self._values()))}
+
+    def caveats(self) -> Sequence[str]:
+        """Caveats of the record."""
+        caveats: Sequence[str] = self.result.caveats
+        return caveats
+
+    def figures(self) -> Mapping[str, Drawing]:
+        """Figures of the record."""
+        return self.drawings
+
+    def files(self) -> Mapping[str, xr.Dataset]:
+        """Datasets of the record."""
+        return self.datasets
+
+    def _values(self) -> list[tuple[str, float]]:
+        """Fields that are quantities of the vocabulary, with their values in SI."""
+        return [(name, value) for name, value in self._fields() if name in quantities() and value is not None]
+
+    def _texts(self) -> list[tuple[str, str]]:
+        """Fields that are text, such as the friction model."""
+        return [(name, value) for name, value in self._fields() if isinstance(value, str)]
+
+    def _fields(self) -> list[tuple[str, Any]]:
+        """Fields of the record and of the records within it with their values; of one name the outermost."""
+        return list(_flat(self.result).items())
+
+
+def _flat(record: Any) -> dict[str, Any]:
+    """Fields of a record by name, and those of records within it that it has none of the name of."""
+    own = {each.name: getattr(record, each.name) for each in fields(record)}
+    values: dict[str, Any] = {}
+    for value in own.values():
+        values |= _flat(value) if is_dataclass(value) else {}
+    return values | {name: value for name, value in own.items() if not is_dataclass(value)}

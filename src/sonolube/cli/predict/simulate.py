@@ -1,0 +1,28 @@
+"""Command `simulate`: steady vibration of a rig's drive, structure and contact, with the friction and wear under it."""
+
+from sonolube import rig as rigs
+from sonolube.cli.console.answer import deliver
+from sonolube.cli.console.options import OUT, Changes, Json, Load, Out, RigPath, loaded_rig
+from sonolube.cli.console.progress import progress
+from sonolube.cli.predict.rig_record import RigRecord
+from sonolube.report import Drawing
+from sonolube.rig.figures import simulation_figure
+from sonolube.rig.result_datasets import simulation_dataset
+
+
+def simulate(rig: RigPath, load: Load = None, changes: Changes = None, out: Out = OUT, json: Json = False) -> None:
+    """Multi-scale model: drive, structure and contact in one steady vibration, and the friction and wear under it.
+
+    Example: sonolube simulate examples/rigs/tribometer.toml --set drive.voltage_peak_to_peak=25.9V
+    """
+    known = loaded_rig(rig, load=load, changes=changes)
+    with progress("simulating"):
+        result = rigs.simulate(known)
+    name = f"{rig.stem}-simulation"
+    answer = RigRecord(
+        rig=known,
+        result=result,
+        drawings={name: Drawing(draw=lambda: simulation_figure(known, result))},
+        datasets={f"{name}.nc": simulation_dataset(known, result)},
+    )
+    deliver(answer, folder=out, as_json=json)

@@ -1,0 +1,48 @@
+"""Command `thermal`: heat of friction and vibration in a rig's contact, and its temperature over a test."""
+
+from typing import Annotated
+
+import typer
+
+from sonolube.cli.console.answer import deliver
+from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath
+from sonolube.cli.predict.rig_record import RigRecord
+from sonolube.report import Drawing
+from sonolube.rig import read_rig, temperature_point, thermal_solid
+from sonolube.rig.figures import temperature_figure
+from sonolube.rig.file.plausible import plausible_si
+
+
+def thermal(
+    rig: RigPath,
+    pin: Annotated[str, typer.Option(metavar="MATERIAL", help="Material of the pin, which the contact stays on.")],
+    disc: Annotated[str, typer.Option(metavar="MATERIAL", help="Material of the disc, which the contact moves over.")],
+    test_time: Annotated[str, typer.Option("--duration", metavar="TIME", help="Duration of the test.")] = "50s",
+    capacity: Annotated[
+        str, typer.Option("--heat-capacity", metavar="CAPACITY", help="Heat capacity of the pin.")
+    ] = "1.5J/K",
+    conductance: Annotated[
+        str, typer.Option(metavar="CONDUCTANCE", help="Thermal conductance from the pin to its surroundings.")
+    ] = "0.05W/K",
+    vibration_heat: Annotated[str, typer.Option(metavar="POWER", help="Heat of the vibration in the contact.")] = "0W",
+    changes: Changes = None,
+    out: Out = OUT,
+    json: Json = False,
+) -> None:
+    """Heat of friction and vibration: flash, bulk and their share in each body.
+
+    Example: sonolube thermal examples/rigs/tribometer.toml --pin stainless_steel_316 --disc aluminium_2024
+    """
+    known = read_rig(rig, changes=changes or ())
+    result = temperature_point(
+        known,
+        pin=thermal_solid(pin),
+        disc=thermal_solid(disc),
+        heat_capacity=plausible_si(capacity, unit="J/K", name="--heat-capacity"),
+        thermal_conductance=plausible_si(conductance, unit="W/K", name="--conductance"),
+        duration=plausible_si(test_time, unit="s", name="--duration"),
+        vibration_heat_rate=plausible_si(vibration_heat, unit="W", name="--vibration-heat"),
+    )
+    drawing = Drawing(draw=lambda: temperature_figure(known, result))
+    answer = RigRecord(rig=known, result=result, drawings={f"{rig.stem}-thermal": drawing})
+    deliver(answer, folder=out, as_json=json)

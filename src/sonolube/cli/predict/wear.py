@@ -1,0 +1,15 @@
+"""Command `wear`: wear of the softer body of a rig with and without vibration."""
+
+from sonolube.cli.console.answer import deliver
+from sonolube.cli.console.options import Changes, Json, Load, RigPath, loaded_rig
+from sonolube.cli.predict.rig_record import RigRecord
+from sonolube.rig import wear_point
+
+
+def wear(rig: RigPath, load: Load = None, changes: Changes = None, json: Json = False) -> None:
+    """Wear of the rig's softer body with and without vibration.
+
+    Example: sonolube wear examples/rigs/tribometer.toml
+    """
+    known = loaded_rig(rig, load=load, changes=changes)
+    deliver(RigRecord(rig=known, result=wear_point(known)), as_json=json)

@@ -1,0 +1,69 @@
+"""Posterior draws of the tribometer's structure from the published facts, for the propagation of uncertainty."""
+
+from collections.abc import Callable
+from dataclasses import astuple, dataclass
+from pathlib import Path
+
+from sonolube.checks import Floats
+from sonolube.errors import InvalidInput
+from sonolube.identification import Posterior, SingularDirection, pin_on_disc_model, posterior
+from sonolube.rig import read_rig
+from sonolube.validation.tribometer import BOUNDS, tribometer_identification, tribometer_stack, tribometer_test
+
+_STACK_FIELDS = 5  # leading fields of a stack that must agree with the tribometer's
+_STACK_TOLERANCE = 0.01  # relative
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class IdentifiedStructure:
+    """Draws of the parameters of a structure, and the directions in which the facts leave them free.
+
+    Parameters
+    ----------
+    posterior : Posterior
+    unidentifiable_directions : tuple of Direction
+    """
+
+    posterior: Posterior
+    unidentifiable_directions: tuple[SingularDirection, ...]
+
+    def draws_by_key(self) -> dict[str, Floats]:
+        """Draws by the keys of a rig file."""
+        return {f"structure.{name}": values for name, values in self.posterior.draws.items()}
+
+
+def identified_structure(
+    rig_file: Path, *, seed: int, advance: Callable[[int, int], None] | None = None
+) -> IdentifiedStructure:
+    """Posterior of the tribometer's masses, springs and dampers, given the published facts that are consistent.
+
+    Parameters
+    ----------
+    rig_file : Path
+        A rig with the tribometer's stack.
+    seed : int
+        Of identification and draws.
+    advance : callable, optional
+        Called with the number of facts done and their total.
+
+    Returns
+    -------
+    IdentifiedStructure
+
+    Raises
+    ------
+    InvalidInput
+        If the rig has another stack.
+    """
+    stack = read_rig(rig_file).stack
+    if stack is None or not all(
+        own == expected or (own and expected and abs(own / expected - 1) < _STACK_TOLERANCE)
+        for own, expected in zip(
+            astuple(stack)[:_STACK_FIELDS], astuple(tribometer_stack())[:_STACK_FIELDS], strict=True
+        )
+    ):
+        raise InvalidInput(f"{rig_file}: --identified needs the tribometer's stack, which the facts are of")
+    identification = tribometer_identification(seed=seed)
+    consistent = [fact for fact in identification.facts if fact.name in identification.satisfied]
+    drawn = posterior(pin_on_disc_model(tribometer_test()), facts=consistent, bounds=BOUNDS, seed=seed, advance=advance)
+    return IdentifiedStructure(posterior=drawn, unidentifiable_directions=identification.unidentifiable_directions)

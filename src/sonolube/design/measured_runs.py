@@ -1,0 +1,91 @@
+"""Reader of measured runs from CSV: one row a run, one column a quantity with its unit."""
+
+import csv
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from sonolube.errors import InvalidInput
+from sonolube.units import to_si
+from sonolube.vocabulary import quantities
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_COLUMN = re.compile(r"(\w+)\s*(?:\[([^\]]*)\])?")
+_LARGEST = 1e30  # in any unit; keeps squares of quantities within the range of floats
+_QUOTED = 40  # characters of a cell in an error message
+
+
+def read_runs(path: Path) -> "xr.Dataset":
+    """Measured runs from a CSV file whose header names quantities, such as `sliding_speed [mm/s]`.
+
+    Parameters
+    ----------
+    path : Path
+        With a column `friction_reduction` and further columns of the vocabulary.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `run`, in SI.
+
+    Raises
+    ------
+    InvalidInput
+        Naming the file, the column and the cell, if the table cannot be read.
+    """
+    import xarray as xr
+
+    header, *rows = _rows(path)
+    columns: dict[str, list[float]] = {}
+    for place, head in enumerate(header):
+        found = _COLUMN.fullmatch(head.strip())
+        if not found or found[1] not in quantities():
+            remedy = "separate columns by commas" if ";" in head or "\t" in head else "such as sliding_speed [mm/s]"
+            raise InvalidInput(f"{path}: column {_quoted(head)} must name a quantity; {remedy}")
+        if found[1] in columns:
+            raise InvalidInput(f"{path}: two columns are named {found[1]}")
+        columns[found[1]] = [
+            _number(path, line, row, place, found[1], found[2] or "") for line, row in enumerate(rows, 2)
+        ]
+    if "friction_reduction" not in columns:
+        raise InvalidInput(f"{path}: needs a column friction_reduction [%]")
+    return xr.Dataset(
+        {name: ("run", values) for name, values in columns.items()}, attrs={"title": f"{path.name}, in %"}
+    )
+
+
+def _rows(path: Path) -> list[list[str]]:
+    """Header and rows of a CSV file, empty rows left out, no row longer than the header."""
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as stream:
+            rows = [row for row in csv.reader(stream) if any(cell.strip() for cell in row)]
+    except OSError as failure:
+        raise InvalidInput(f"{path}: cannot be read: {failure.strerror}") from None
+    except (UnicodeDecodeError, csv.Error):
+        raise InvalidInput(f"{path}: not a table of comma-separated values") from None
+    if len(rows) < 2:
+        raise InvalidInput(f"{path}: needs a head and at least one run")
+    for line, row in enumerate(rows[1:], 2):
+        if len(row) > len(rows[0]):
+            raise InvalidInput(f"{path}: line {line}: has {len(row)} cells where {len(rows[0])} columns are named")
+    return rows
+
+
+def _number(path: Path, line: int, row: list[str], place: int, name: str, unit: str) -> float:
+    """Cell of a row in SI."""
+    cell = row[place].strip() if place < len(row) else ""
+    try:
+        number = float(cell)
+    except ValueError:
+        raise InvalidInput(f"{path}: line {line}: {name} {_quoted(cell)} is no number") from None
+    if abs(number) > _LARGEST:
+        raise InvalidInput(f"{path}: line {line}: {name} {_quoted(cell)} lies beyond any run")
+    return to_si(f"{number!r} {unit}", unit=quantities()[name].unit, name=f"{path}: line {line}: {name}")
+
+
+def _quoted(cell: str) -> str:
+    """Cell in quotation marks, shortened where it is long."""
+    text = cell.strip()
+    return repr(text if len(text) <= _QUOTED else text[:_QUOTED] + "...")

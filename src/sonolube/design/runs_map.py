@@ -1,0 +1,90 @@
+"""Map of friction reduction between measured runs, interpolated by a Gaussian process."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sonolube.design.gaussian_process import gaussian_process_map
+from sonolube.design.maps import MAP_LAYOUTS
+from sonolube.errors import InvalidInput
+from sonolube.vocabulary import quantity
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+FEWEST_RUNS = 6
+"""Least number of measured runs that are interpolated."""
+
+_POINTS = 61  # of the interpolated map along each axis
+_UNCERTAINTY = "friction_reduction_uncertainty"
+
+
+def require_mappable(runs: "xr.Dataset", *, kind: str) -> None:
+    """Raise if measured runs cannot be drawn on a kind of map.
+
+    Parameters
+    ----------
+    runs : xarray.Dataset
+        Over `run`, as `read_runs` returns them.
+    kind : str
+        Key of `MAP_LAYOUTS`, such as "velocity-power".
+
+    Raises
+    ------
+    InvalidInput
+        If a column of an axis is missing, or the runs are of several panels.
+    """
+    across, up, panel = MAP_LAYOUTS[kind]
+    for axis in (across, up):
+        if axis not in runs:
+            raise InvalidInput(f"measured runs need a column {axis} for a {kind} map")
+    several = panel is not None and panel in runs and np.unique(runs[panel].values).size > 1
+    if several and runs.sizes["run"] >= FEWEST_RUNS:
+        raise InvalidInput(f"measured runs at several values of {panel} make several maps: give one file to each")
+
+
+def runs_map(runs: "xr.Dataset", *, kind: str) -> "xr.Dataset | None":
+    """Friction reduction between measured runs over the axes of a map, with its uncertainty.
+
+    Parameters
+    ----------
+    runs : xarray.Dataset
+        Over `run`, as `read_runs` returns them.
+    kind : str
+        Key of `MAP_LAYOUTS`, such as "velocity-power".
+
+    Returns
+    -------
+    xarray.Dataset or None
+        Over both axes of the map, with the scatter of the runs and their leave-one-out error as attributes; None for
+        fewer than `FEWEST_RUNS` runs.
+
+    See Also
+    --------
+    measured_map
+    """
+    import xarray as xr
+
+    if runs.sizes["run"] < FEWEST_RUNS:
+        return None
+    across, up, _ = MAP_LAYOUTS[kind]
+    x, y = (np.linspace(float(runs[axis].min()), float(runs[axis].max()), _POINTS) for axis in (across, up))
+    interpolated = gaussian_process_map(
+        runs=np.stack([runs[across].values, runs[up].values], axis=1),
+        friction_reduction=runs["friction_reduction"].values,
+        friction_reduction_uncertainty=runs[_UNCERTAINTY].values if _UNCERTAINTY in runs else 0.0,
+        points=np.stack(np.meshgrid(x, y), axis=-1),
+    )
+    return xr.Dataset(
+        {
+            "friction_reduction": ((up, across), interpolated.friction_reduction, {"units": "1"}),
+            _UNCERTAINTY: ((up, across), interpolated.friction_reduction_uncertainty, {"units": "1"}),
+        },
+        coords={across: (across, x, {"units": quantity(across).unit}), up: (up, y, {"units": quantity(up).unit})},
+        attrs={
+            "title": f"Friction reduction between {runs.sizes['run']} measured runs",
+            "map": kind,
+            "scatter": interpolated.scatter,
+            "leave_one_out_error": interpolated.leave_one_out_error,
+        },
+    )

@@ -1,0 +1,177 @@
+"""Summaries of a propagated uncertainty: band over swept keys, ranking of entries by Sobol indices, contact loss."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sonolube.design.sobol import SobolIndices, sobol_indices
+from sonolube.design.statistics import IntervalEstimate
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+BAND = (0.05, 0.5, 0.95)
+"""Probabilities of the quantiles that bound and halve a band."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class BandPlace:
+    """Median and 90 % interval of an outcome at one place of a swept band.
+
+    Parameters
+    ----------
+    at : dict of str to float or str
+        Value of each swept key, SI.
+    median, lower, upper : float
+        Quantiles of the outcome at 50, 5 and 95 %, SI.
+    """
+
+    at: dict[str, Any]
+    median: float
+    lower: float
+    upper: float
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Band:
+    """Width of the 90 % interval of an outcome over swept keys.
+
+    Parameters
+    ----------
+    mean_width : float or None
+        Mean width, SI; None where no sample has a result.
+    narrowest, widest : BandPlace or None
+    """
+
+    mean_width: float | None
+    narrowest: BandPlace | None
+    widest: BandPlace | None
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RankedEntry:
+    """Contribution of one uncertain entry to the variance of an outcome.
+
+    Parameters
+    ----------
+    key : str
+        Of the rig file.
+    first, total : Estimated
+        First-order and total Sobol index with their 95 % intervals.
+    deviation_if_known : float
+        Standard deviation of the outcome that would remain were the entry known, SI.
+    """
+
+    key: str
+    first: IntervalEstimate
+    total: IntervalEstimate
+    deviation_if_known: float
+
+
+def outcome_indices(propagated: "xr.Dataset") -> SobolIndices:
+    """Sobol indices of the outcome of a propagation that was made for them.
+
+    Parameters
+    ----------
+    propagated : xarray.Dataset
+        Result of `propagate` with `indices=True`.
+
+    Returns
+    -------
+    SobolIndices
+    """
+    return sobol_indices(propagated[propagated.attrs["outcome"]].values, seed=propagated.attrs["seed"])
+
+
+def ranked_entries(propagated: "xr.Dataset") -> list[RankedEntry]:
+    r"""Uncertain entries by falling first-order Sobol index.
+
+    Parameters
+    ----------
+    propagated : xarray.Dataset
+        Result of `propagate` with `indices=True`.
+
+    Returns
+    -------
+    list of RankedEntry
+
+    Notes
+    -----
+    With the standard deviation :math:`\sigma` of the outcome and the first-order index :math:`S_i` of an entry, the
+    deviation that remains were the entry known is :math:`\sigma \sqrt{1 - S_i}`.
+    """
+    indices = outcome_indices(propagated)
+    rows = [
+        RankedEntry(
+            key=key,
+            first=IntervalEstimate(value=first, lower=first_ends[0], upper=first_ends[1]),
+            total=IntervalEstimate(value=total, lower=total_ends[0], upper=total_ends[1]),
+            deviation_if_known=indices.standard_deviation * float(np.sqrt(np.clip(1 - first, 0, 1))),
+        )
+        for key, first, first_ends, total, total_ends in zip(
+            propagated.attrs["uncertain"],
+            indices.first_order.tolist(),
+            indices.first_order_interval.tolist(),
+            indices.total_order.tolist(),
+            indices.total_order_interval.tolist(),
+            strict=True,
+        )
+    ]
+    return sorted(rows, key=lambda row: -row.first.value)
+
+
+def contact_loss_probability(propagated: "xr.Dataset") -> float | None:
+    """Fraction of the points with a vibration that lose contact for part of the time. []
+
+    Parameters
+    ----------
+    propagated : xarray.Dataset
+        Result of `propagate`.
+
+    Returns
+    -------
+    float or None
+        None where contact loss was not computed.
+    """
+    if "contact_loss_fraction" not in propagated:
+        return None
+    lost = propagated["contact_loss_fraction"].values
+    known = np.isfinite(lost)
+    return float(np.mean(lost[known] > 0)) if known.any() else None
+
+
+def outcome_band(propagated: "xr.Dataset") -> Band:
+    """Median and 90 % interval of an outcome where the interval is narrowest and widest, and its mean width.
+
+    Parameters
+    ----------
+    propagated : xarray.Dataset
+        Result of `propagate` over swept keys.
+
+    Returns
+    -------
+    Band
+    """
+    outcome = propagated[propagated.attrs["outcome"]]
+    samples = outcome.values
+    with_result = np.isfinite(samples).any(axis=0)
+    if not with_result.any():
+        return Band(mean_width=None, narrowest=None, widest=None)
+    low, median, high = np.full((3, *samples.shape[1:]), np.nan)
+    low[with_result], median[with_result], high[with_result] = np.nanquantile(samples[:, with_result], BAND, axis=0)
+    width = high - low
+
+    def place(flat: int) -> BandPlace:
+        index = np.unravel_index(flat, width.shape)
+        at = {
+            str(propagated[name].attrs["key"]): propagated[name].values[own].item()
+            for name, own in zip(outcome.dims[1:], index, strict=True)
+        }
+        return BandPlace(at=at, median=float(median[index]), lower=float(low[index]), upper=float(high[index]))
+
+    return Band(
+        mean_width=float(np.nanmean(width)),
+        narrowest=place(int(np.nanargmin(width))),
+        widest=place(int(np.nanargmax(width))),
+    )

@@ -1,0 +1,92 @@
+"""Labelled datasets of results of a rig over time or frequency: steady vibration, linear response and start-up."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sonolube.contact import separation
+from sonolube.rig.datasets import dataset
+from sonolube.rig.linear_response import FrequencyResponse
+from sonolube.rig.record import Rig
+from sonolube.rig.simulation import Simulation
+from sonolube.rig.start_up_transient import StartUp
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def simulation_dataset(rig: Rig, result: Simulation) -> "xr.Dataset":
+    """One repetition of the steady vibration: displacement and contact force over time.
+
+    Parameters
+    ----------
+    rig : Rig
+    result : Simulation
+        Result of `simulate` for the same rig.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `time`; status, attractor, load, separation at rest and mean displacement are attributes.
+    """
+    vibration = result.vibration
+    motion = vibration.motions[0]
+    time = np.arange(motion.displacement.size) / (motion.displacement.size * motion.frequency)
+    values = {"time": time, "displacement": motion.displacement, "normal_force": motion.normal_force}
+    labelled = dataset(values, along="time", title=f"Steady motion of {rig.title}")
+    labelled.attrs |= {
+        "status": vibration.status,
+        "reason": vibration.reason,
+        "attractor": vibration.attractor,
+        "repetition_periods": vibration.repetition_periods,
+        "normal_load_N": motion.normal_load,
+        "separation_at_rest_m": float(separation(rig.contact, normal_load=rig.normal_load)),
+        "mean_displacement_m": vibration.mean_displacement,
+        "contact_loss_fraction": vibration.contact_loss_fraction,
+    }
+    return labelled
+
+
+def response_dataset(rig: Rig, result: FrequencyResponse) -> "xr.Dataset":
+    """Linear response over frequency: amplitude per volt, magnitude and phase of the impedance.
+
+    Parameters
+    ----------
+    rig : Rig
+    result : Response
+        Result of `linear_response` for the same rig.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `frequency`.
+    """
+    values = {
+        "frequency": result.frequency,
+        "amplitude_per_volt": result.amplitude_per_volt,
+        "impedance": result.impedance,
+        "phase": result.phase,
+    }
+    return dataset(values, along="frequency", title=f"Linear response of {rig.title}")
+
+
+def start_up_dataset(rig: Rig, result: StartUp) -> "xr.Dataset":
+    """Start-up from rest: displacement and contact force at every step of the time integration.
+
+    Parameters
+    ----------
+    rig : Rig
+    result : StartUp
+        Result of `start_up` for the same rig.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `time`.
+    """
+    values = {
+        "time": result.trajectory.time,
+        "displacement": result.trajectory.contact.displacement,
+        "normal_force": result.trajectory.contact.normal_force,
+    }
+    return dataset(values, along="time", title=f"Start-up of {rig.title}")

@@ -1,0 +1,53 @@
+"""Command `identify rig`: a rig file on standard output or in a file, and the facts as JSON."""
+
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from pytest import MonkeyPatch, approx
+
+from sonolube.identification import Identification
+from sonolube.validation.tribometer import tribometer_identification
+
+Program = Callable[..., Any]
+
+
+@pytest.fixture(scope="module")
+def identification() -> Identification:
+    return tribometer_identification()
+
+
+@pytest.fixture
+def once(identification: Identification, monkeypatch: MonkeyPatch) -> None:
+    """Identify once for all tests, which takes twenty seconds."""
+    monkeypatch.setattr("sonolube.cli.compare.identify.tribometer_identification", lambda *, seed: identification)
+
+
+@pytest.mark.usefixtures("once")
+def test_the_file_written_is_a_rig_that_simulates(tmp_path: Path, sonolube: Program, rigs: Path) -> None:
+    path = tmp_path / "identified.toml"
+    run = sonolube("identify", "rig", rigs / "tribometer.toml", "--out", path)
+    assert (run.code, run.out) == (0, f"  {path}\n")
+    simulated = sonolube("simulate", path, "--out", tmp_path, "--json").answer
+    assert simulated["vibration_amplitude"]["value"] == approx(2.5e-6, rel=0.02)
+
+
+@pytest.mark.usefixtures("once")
+def test_standard_output_without_a_file_is_toml_and_nothing_else(sonolube: Program) -> None:
+    tables = tomllib.loads(sonolube("identify", "rig").out)
+    assert set(tables) == {"stack", "structure"}
+
+
+@pytest.mark.usefixtures("once")
+def test_json_holds_parameters_with_their_ranges_and_facts_with_their_fate(
+    tmp_path: Path, sonolube: Program, identification: Identification
+) -> None:
+    path = tmp_path / "identified.toml"
+    answer = sonolube("identify", "rig", "--out", path, "--json").answer
+    assert answer["files"] == [str(path)]
+    for name, entry in answer["structure"].items():
+        assert entry["lower"] <= entry["value"] <= entry["upper"], name
+    assert {fact["name"] for fact in answer["facts"] if fact["kept"]} == identification.satisfied
+    assert answer["stack"]["stack_stiffness"]["unit"] == "N/m"

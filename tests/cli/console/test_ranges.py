@@ -1,0 +1,36 @@
+"""Reading of KEY=VALUES: ranges, even ratios, lists and text, in SI."""
+
+import numpy as np
+import pytest
+from pytest import approx, raises
+
+from sonolube.cli.console.ranges import ends_by_key, values_by_key
+from sonolube.errors import InvalidInput
+
+
+def test_a_range_has_both_ends_and_even_steps() -> None:
+    values = values_by_key(["drive.frequency=20kHz:24kHz:5"])["drive.frequency"]
+    assert values == approx([20e3, 21e3, 22e3, 23e3, 24e3])
+
+
+def test_a_logarithmic_range_has_even_ratios() -> None:
+    values = values_by_key(["sliding.sliding_speed=1mm/s:1m/s:4:log"])["sliding.sliding_speed"].astype(float)
+    assert np.diff(np.log10(values)) == approx([1, 1, 1])
+
+
+def test_a_list_of_quantities_is_in_si_and_a_list_of_names_is_text() -> None:
+    values = values_by_key(["drive.frequency=1kHz, 2kHz", "drive.waveform=sine,square"])
+    assert values["drive.frequency"] == approx([1e3, 2e3])
+    assert values["drive.waveform"].tolist() == ["sine", "square"]
+
+
+def test_ends_are_read_alone() -> None:
+    assert ends_by_key(["structure.tip_mass=50g:150g"])["structure.tip_mass"] == approx((0.05, 0.15))
+    with raises(InvalidInput, match="points are drawn between two ends"):
+        ends_by_key(["structure.tip_mass=50g:150g:3"])
+
+
+@pytest.mark.parametrize("read", [values_by_key, ends_by_key])
+def test_no_option_gives_no_key(read: object) -> None:
+    assert callable(read)
+    assert read(None) == {}

@@ -1,0 +1,55 @@
+"""Command `control`: controller, source, page, caveats and refusals."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from pytest import approx
+
+Program = Callable[..., Any]
+
+
+def test_the_collar_gets_a_controller_its_source_and_its_page(tmp_path: Path, sonolube: Program, rigs: Path) -> None:
+    options = ("--friction", "1.5N", "--duration", "40ms", "--json", "--out", tmp_path)
+    answer = sonolube("control", rigs / "collar.toml", *options).answer
+    assert answer["friction_force"] == {"value": 1.5, "unit": "N"}
+    assert answer["phase_margin"]["value"] == approx(1.07, abs=0.01)
+    assert answer["settling_time"]["value"] < 0.01
+    assert "quality factor 50" in answer["assumptions"]["resonance"]
+    assert {Path(name).suffix for name in answer["files"]} == {".html", ".png", ".svg", ".nc", ".c", ".csv"}
+    assert all(Path(name).stat().st_size > 0 for name in answer["files"])
+    assert "http" not in (tmp_path / "control.html").read_text(encoding="utf-8").lower()
+
+
+def test_vibration_suppresses_stick_slip_on_an_elastic_holder(tmp_path: Path, sonolube: Program, rigs: Path) -> None:
+    options = ("--friction", "0.5N", "--duration", "20ms", "--stick-slip", "--json", "--out", tmp_path)
+    answer = sonolube("control", rigs / "tribometer.toml", *options).answer
+    without, within = (answer["stick_slip"][name]["stick_slip_amplitude"]["value"] for name in ("without", "with"))
+    assert within < 0.5 * without
+    assert answer["stick_slip"]["with"]["damping"]["value"] > answer["stick_slip"]["without"]["damping"]["value"]
+    assert "a holder of 20 kN/m and 50 g" in answer["assumptions"]["stick-slip"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        (["--friction", "0.1N"], "friction_force must lie between"),
+        (["--friction", "3mm"], "--friction"),
+        (["--voltage-limit", "0V"], "voltage_maximum must be positive, got 0.0 V"),
+        (["--duration", "1ms"], "intervals"),
+        (["--delay", "-1ms"], "dead_time must not be negative"),
+        (["--feed-forward", "efficiency", "--efficiency", "-1m2/N"], "intercept must be positive"),
+    ],
+)
+def test_a_refusal_is_one_line_with_the_cause(
+    arguments: list[str], line: str, tmp_path: Path, sonolube: Program, rigs: Path
+) -> None:
+    assert line in sonolube("control", rigs / "collar.toml", *arguments, "--out", tmp_path).refusal
+    assert not any(tmp_path.iterdir())
+
+
+def test_a_resonance_that_tracking_loses_is_a_caveat(tmp_path: Path, sonolube: Program, rigs: Path) -> None:
+    options = ("--friction", "1.5N", "--warming", "150K", "--warming-time", "10ms", "--duration", "0.1s", "--json")
+    (caveat,) = sonolube("control", rigs / "collar.toml", *options, "--out", tmp_path).answer["caveats"]
+    assert "lost the resonance" in caveat

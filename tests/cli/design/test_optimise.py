@@ -1,0 +1,60 @@
+"""Command `optimise`: the rig file of the best design, the front, and refusals."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+import xarray as xr
+from pytest import approx
+
+Program = Callable[..., Any]
+
+
+def test_the_rig_file_of_a_design_gives_the_target_friction(tmp_path: Path, sonolube: Program, rigs: Path) -> None:
+    target = ("--target-friction", "0.45N", "--set", "contact.normal_load=4N", "--over", "drive.frequency=18kHz:24kHz")
+    chosen = ("--actuator", "own", "--actuator", "nac2023", "--current-limit", "20A", "--samples", "2")
+    answer = sonolube("optimise", rigs / "tribometer.toml", *target, *chosen, "--json", "--out", tmp_path).answer
+    best = answer["designs"][0]
+    assert {design["actuator"] for design in answer["designs"]} == {"own", "nac2023"}
+    assert best["limits_used"]["current"] <= 1
+    simulated = sonolube("simulate", tmp_path / "tribometer-optimum.toml", "--json", "--out", tmp_path).answer
+    assert simulated["friction_force"]["value"] == approx(0.45, rel=2e-4)
+    assert simulated["actuator_power"]["value"] == approx(best["actuator_power"]["value"], rel=1e-9)
+    assert simulated["vibration_amplitude"]["value"] == approx(best["vibration_amplitude"]["value"], rel=1e-5)
+    with xr.open_dataset(tmp_path / "tribometer-optimum.nc") as designs:
+        assert int(designs["feasible"].sum()) == answer["feasible"]
+        assert designs.sizes["design"] == answer["screened"]
+
+
+def test_a_front_of_tolerant_designs_is_drawn(tmp_path: Path, sonolube: Program, rigs: Path) -> None:
+    target = ("--target-friction", "0.2", "--over", "drive.frequency=21kHz:23kHz", "--robust", "0.02")
+    pressed = ("--bolt", "M10x60mm", "--preload", "12kN", "--source-resistance", "50ohm")
+    run = sonolube("optimise", rigs / "tribometer.toml", *target, *pressed, "--pareto", "voltage", "--out", tmp_path)
+    assert run.code == 0
+    assert "at every corner of 2 %" in run.out
+    assert "L network" in run.out
+    assert (tmp_path / "tribometer-optimum-front.png").is_file()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        (("--target-friction", "0.9"), "must lie between nought and friction without vibration, 0.341"),
+        (("--target-friction", "2N"), "must lie between nought and friction without vibration, 1.023 N"),
+        (("--target-friction", "0.1", "--actuator", "sa0505"), "unknown actuator 'sa0505'; did you mean"),
+        (("--target-friction", "0.1", "--over", "contact.normal_load=1N:2N"), "choose over drive.frequency"),
+        (("--target-friction", "0.1", "--over", "drive.waveform=saw"), "none of sine, square"),
+        (("--target-friction", "0.1", "--bolt", "M6x40mm"), "--bolt and --preload belong together"),
+        (("--target-friction", "0.1", "--bolt", "6mm", "--preload", "1kN"), "must look like M6x40mm"),
+        (("--target-friction", "0.1", "--horn", "m50"), "--horn and --horn-limit belong together"),
+        (("--target-friction", "0.1", "--temperature-limit", "40K"), "needs --conductance"),
+        (("--target-friction", "0.1", "--quantile", "0.9"), "--quantile needs --robust"),
+        (("--target-friction", "0.1", "--voltage-limit", "1V"), "out of reach: no design"),
+    ],
+)
+def test_a_target_that_makes_no_design_is_refused_in_one_line(
+    arguments: tuple[str, ...], line: str, tmp_path: Path, sonolube: Program, rigs: Path
+) -> None:
+    assert line in sonolube("optimise", rigs / "tribometer.toml", *arguments, "--out", tmp_path / "none").refusal
+    assert not (tmp_path / "none").exists()

@@ -1,0 +1,35 @@
+"""Commands that look up facts: every fact has its source, and JSON is the table itself."""
+
+import json
+from collections.abc import Callable
+from typing import Any
+
+from sonolube.rig import rig_schema
+
+Program = Callable[..., Any]
+
+
+def test_every_material_is_listed_with_its_sources(sonolube: Program) -> None:
+    listed = sonolube("materials", "--json").answer
+    assert "aluminium_2024" in listed
+    assert all(entry["source"] for entry in listed["m50"]["properties"].values())
+
+
+def test_a_published_table_is_shown_as_printed_with_its_corrections(sonolube: Program) -> None:
+    shown = sonolube("published", "2.5", "--json").answer
+    assert "2.237" in json.dumps(shown)
+    assert any(correction["erratum"] == "E27" for correction in shown["corrections"])
+
+
+def test_actuators_are_listed_with_their_sources(sonolube: Program) -> None:
+    listed = sonolube("actuators", "--json").answer
+    assert listed["apa40sm"]["source"] == "Dissertation (D), section 2.2.2"
+    assert "blocked_force" not in listed["apa40sm"]
+    assert "not printed" in sonolube("actuators").out
+    assert "did you mean sa050510?" in sonolube("actuators", "sa05051").refusal
+
+
+def test_the_schema_is_the_same_with_and_without_json(sonolube: Program) -> None:
+    plain = sonolube("schema").out
+    assert json.loads(plain) == rig_schema()
+    assert sonolube("schema", "--json").out == plain

@@ -1,0 +1,87 @@
+"""Commands that answer with one record of a rig: quantities of the vocabulary, in SI."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from pytest import approx
+
+from sonolube.vocabulary import quantity
+
+Program = Callable[..., Any]
+
+
+@pytest.mark.parametrize(
+    ("command", "names"),
+    [
+        (
+            "contact",
+            ["separation", "real_contact_area", "contact_count", "normal_stiffness", "tangential_stiffness"],
+        ),
+        (
+            "friction",
+            [
+                "friction_force",
+                "friction_coefficient",
+                "friction_ratio",
+                "friction_reduction",
+                "vibration_amplitude",
+                "actuator_power",
+            ],
+        ),
+        ("wear", ["wear_rate", "vibration_amplitude"]),
+    ],
+)
+def test_a_command_answers_in_words_of_the_vocabulary_and_si(
+    command: str, names: list[str], sonolube: Program, rigs: Path
+) -> None:
+    result = sonolube(command, rigs / "tribometer.toml", "--json").answer
+    for name in names:
+        assert result[name]["unit"] == quantity(name).unit
+        assert result[name]["value"] > 0
+
+
+def test_the_published_separation_of_18_um_is_one_command_away(sonolube: Program, rigs: Path) -> None:
+    result = sonolube("contact", rigs / "poisson_al_steel.toml", "--load", "40N", "--json").answer
+    assert result["separation"]["value"] == approx(18.11e-6, abs=0.005e-6)
+    assert result["normal_load"] == {"value": 40.0, "unit": "N"}
+
+
+def test_friction_force_and_coefficient_belong_together(sonolube: Program, rigs: Path) -> None:
+    changes = ("--set", "contact.normal_load=7N")
+    result = sonolube("friction", rigs / "power_map.toml", *changes, "--json").answer
+    assert result["friction_force"]["value"] == approx(7 * result["friction_coefficient"]["value"])
+    assert result["friction_reduction"]["value"] == approx(1 - result["friction_ratio"]["value"])
+
+
+def test_another_friction_model_is_taken_by_name(sonolube: Program, rigs: Path) -> None:
+    from sonolube.rig import friction_point, read_rig
+
+    result = sonolube("friction", rigs / "tribometer.toml", "--model", "kinematic", "--json").answer
+    expected = friction_point(read_rig(rigs / "tribometer.toml"), model="kinematic").friction_ratio
+    assert result["friction_ratio"]["value"] == expected
+
+
+@pytest.mark.parametrize("command", ["simulate", "response", "transient"])
+def test_a_command_on_motion_answers_with_status_or_files_and_writes_them_whole(
+    command: str, tmp_path: Path, sonolube: Program, rigs: Path
+) -> None:
+    extra = ["--out", tmp_path, *(["--duration", "0.01s"] if command == "transient" else [])]
+    result = sonolube(command, rigs / "tribometer.toml", *extra, "--json").answer
+    files = [Path(name) for name in result["files"]]
+    assert sorted(files) == sorted(tmp_path.iterdir())
+    assert all(path.stat().st_size > 1000 for path in files)
+    assert sorted(path.suffix for path in files) == [".nc", ".png", ".svg"]
+
+
+def test_heat_and_regime_answer_with_the_figure_they_wrote(tmp_path: Path, sonolube: Program, rigs: Path) -> None:
+    rig = rigs / "tribometer.toml"
+    solids = ["--pin", "stainless_steel_316", "--disc", "aluminium_2024", "--out", tmp_path, "--json"]
+    heat = sonolube("thermal", rig, *solids).answer
+    assert heat["temperature_rise_ratio"]["value"] == approx(heat["friction_ratio"]["value"])
+    lubricant = ["--film-coefficient", "0.25", "--asperity-pressure", "10MPa"]
+    regime = sonolube("regime", rig, *lubricant, *solids).answer
+    assert regime["best"] == "ultrasonic"
+    assert regime["wear"]["kind"] == "abrasive"
+    assert sorted(map(Path, [*heat["files"], *regime["files"]])) == sorted(tmp_path.iterdir())

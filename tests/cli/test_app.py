@@ -1,0 +1,181 @@
+"""The program as its users meet it: help, exit codes, completion, and the addition of a command."""
+
+import inspect
+import os
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from sonolube.cli.commands import COMMANDS, Command
+
+ROOT = Path(__file__).parents[2]
+Program = Callable[..., Any]
+TRIBOMETER = "examples/rigs/tribometer.toml"
+
+
+def installed(*arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    """Run the program in a process of its own."""
+    return subprocess.run(
+        [Path(sys.executable).parent / "sonolube", *arguments],
+        capture_output=True,
+        text=True,
+        check=False,
+        cwd=ROOT,
+        env=os.environ | environment,
+    )
+
+
+def assert_refused(run: subprocess.CompletedProcess[str], line: str) -> None:
+    assert (run.returncode, run.stdout) == (2, "")
+    assert len(run.stderr.splitlines()) == 1
+    assert line in run.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        (
+            ["contact", "RIG", "--load", "40mm"],
+            "sonolube contact: --load 40mm is a length; expected a force, such as 40N",
+        ),
+        (["contact", "RIG", "--load", "40"], "sonolube contact: --load 40 has no unit; expected a force, such as 40N"),
+        (["contact", "RIG", "--load", "-3N"], "normal_load must be positive, got -3.0 N"),
+        (["contact", "RIG", "--load", "1e9N"], "leaves no separation"),
+        (["friction", "RIG", "--set", "drive.frequenzy=1kHz"], "drive.frequenzy: unknown key; did you mean frequency?"),
+        (["friction", "RIG", "--set", "drive"], "change 'drive' must look like drive.frequency=22kHz"),
+        (["friction", "RIG", "--model", "kinematics"], "did you mean kinematic?"),
+        (["friction", "RIG", "--closure", "kinematic"], "sonolube friction: --closure is now --model"),
+        (["wear", "none.toml"], "sonolube wear: none.toml: no such file"),
+        (["materials", "unobtainium"], "sonolube materials: unknown material 'unobtainium'"),
+        (["published", "9.9"], "sonolube published: unknown table '9.9'"),
+        (["reproduce", "--chapter", "7"], "sonolube reproduce:"),
+        (["thermal", "RIG", "--pin", "m50", "--disc", "powder_coating"], "powder_coating has no thermal_conductivity"),
+        (
+            ["regime", "RIG", "--film-coefficient", "0.1", "--asperity-pressure", "10mm"],
+            "--asperity-pressure 10mm is a length",
+        ),
+        (
+            ["regime", "RIG", "--film-coefficient", "0.1", "--asperity-pressure", "10MPa", "--pin", "m50"],
+            "--pin and --disc belong together",
+        ),
+        (["contact"], "sonolube contact: Missing argument 'RIG.toml'"),
+        (["fricton", "RIG"], "sonolube fricton: No such command 'fricton'. Did you mean 'friction'?"),
+        (
+            ["study", "RIG", "--of", "voltage"],
+            "sonolube study: now part of sweep: sonolube sweep RIG.toml --of voltage|speed|",
+        ),
+    ],
+)
+def test_bad_input_gets_one_clear_line_and_exit_code_2(
+    arguments: list[str], line: str, sonolube: Program, rigs: Path
+) -> None:
+    assert line in sonolube(*[rigs / "tribometer.toml" if word == "RIG" else word for word in arguments]).refusal
+
+
+def test_the_installed_program_refuses_in_one_line_too() -> None:
+    assert_refused(installed("contact", TRIBOMETER, "--load", "40mm"), "sonolube contact: --load 40mm is a length")
+
+
+def test_the_help_lists_every_command_under_the_heading_of_its_task() -> None:
+    run = installed("--help", COLUMNS="200")
+    assert run.returncode == 0
+    for command in COMMANDS:
+        panel = run.stdout.split(f"─ {command.panel} ─", 1)[1].split("╰", 1)[0]
+        assert re.search(rf"^│ {command.name.split()[0]} ", panel, flags=re.MULTILINE), command
+
+
+@pytest.mark.parametrize("command", COMMANDS, ids=lambda command: command.name)
+def test_every_command_has_json_and_an_example_in_its_help(command: Command) -> None:
+    function = command.function
+    assert f"Example: sonolube {command.name}" in (function.__doc__ or "")
+    assert command.help == inspect.getdoc(function)
+    assert "json" in function.__annotations__
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["measure", "--help"], ["frictoin"], ["study"]])
+def test_commands_that_are_not_called_are_not_imported(arguments: list[str]) -> None:
+    heavy = ("numpy", "xarray", "sonolube.rig", "sonolube.report")
+    code = (
+        "import sys\nfrom sonolube.cli import main\n"
+        f"try: main({arguments!r})\nexcept SystemExit: pass\n"
+        f"print([name for name in {heavy!r} if name in sys.modules], file=sys.stderr)"
+    )
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stderr.splitlines()[-1] == "[]"
+
+
+def test_options_of_a_command_are_completed() -> None:
+    words = {"COMP_WORDS": "sonolube friction --mo", "COMP_CWORD": "2", "_SONOLUBE_COMPLETE": "complete_bash"}
+    assert installed(**words).stdout.split() == ["--model"]
+
+
+def test_help_of_a_command_shows_its_example() -> None:
+    run = installed("sweep", "--help")
+    assert run.returncode == 0
+    assert "Example: sonolube sweep" in " ".join(run.stdout.split())
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_completion_can_be_had_for_every_shell(shell: str) -> None:
+    run = installed(_SONOLUBE_COMPLETE=f"source_{shell}")
+    assert run.returncode == 0
+    assert "_SONOLUBE_COMPLETE" in run.stdout
+
+
+TOY = '''
+"""Command `greet`."""
+
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+import typer
+
+from sonolube.cli.console.answer import Answer, deliver
+from sonolube.cli.console.options import Json
+
+
+@dataclass(frozen=True)
+class Greeting(Answer):
+    times: int
+
+    def lines(self) -> list[str]:
+        return ["hello"] * self.times
+
+    def object(self) -> dict[str, Any]:
+        return {"times": self.times}
+
+
+def greet(times: Annotated[int, typer.Option(help="How often.", max=3)] = 1, json: Json = False) -> None:
+    """Greet the user.
+
+    Example: sonolube greet --times 2
+    """
+    deliver(Greeting(times), as_json=json)
+'''
+
+
+def test_a_command_is_added_by_one_file_and_one_line_of_the_table(tmp_path: Path) -> None:
+    shutil.copytree(ROOT / "src" / "sonolube", tmp_path / "sonolube", ignore=shutil.ignore_patterns("__pycache__"))
+    folder = tmp_path / "sonolube" / "cli"
+    (folder / "lookup" / "greet.py").write_text(TOY, encoding="utf-8")
+    table = (folder / "commands.py").read_text(encoding="utf-8")
+    line = '    Command(_LOOKUP, "greet", "lookup.greet:greet"),\n'
+    (folder / "commands.py").write_text(table.replace("COMMANDS = (\n", f"COMMANDS = (\n{line}"), encoding="utf-8")
+
+    def run(*arguments: str) -> subprocess.CompletedProcess[str]:
+        code = "from sonolube.cli import main; main()"
+        environment = os.environ | {"PYTHONPATH": str(tmp_path)}
+        return subprocess.run(
+            [sys.executable, "-c", code, *arguments], capture_output=True, text=True, check=False, env=environment
+        )
+
+    assert "Greet the user." in run("--help").stdout
+    assert run("greet", "--times", "2").stdout == "hello\nhello\n"
+    assert '"times": 1' in run("greet", "--json").stdout
+    assert_refused(run("greet", "--times", "7"), "sonolube greet: Invalid value for '--times'")
