@@ -88,7 +88,7 @@ def hello(frequency: str, json: Json = False) -> None:
 
     Example: sonolube hello 1kHz
     """
-    deliver(Circular(to_si(frequency, "Hz", name="FREQUENCY")), as_json=json)
+    deliver(Circular(to_si(frequency, unit="Hz", name="FREQUENCY")), as_json=json)
 '''
 
 

@@ -190,7 +190,7 @@ def test_a_control_task_that_makes_no_sense_is_refused(
         ((UNCERTAIN, "--over", "drive.frequency=1kHz:2kHz:99999999999999"), "does not fit into memory"),
         ((UNCERTAIN, "--over", "drive.frequency=2kHz:1kHz:3"), "needs at least 2 values that rise"),
         ((UNCERTAIN, "--over", "sliding.sliding_speed=20mm/s"), "a band needs at least 2 values that rise"),
-        ((UNCERTAIN, "--over", "friction.closure=kinematic,stick_slip"), "a band needs numbers to run over"),
+        ((UNCERTAIN, "--over", "friction.model=kinematic,asperity_stick_slip"), "a band needs numbers to run over"),
         ((UNCERTAIN, *("--over", "drive.frequency=1kHz,2kHz") * 3), "--over gives a band once and a map twice"),
         ((UNCERTAIN, "--samples", "1e3"), "Invalid value for '--samples'"),
         ((UNCERTAIN, *FEW, "--set", "contact.normal_load=1MN"), "no sample has a result: normal_load leaves no separ"),

@@ -47,7 +47,24 @@ def test_json_holds_parameters_with_their_ranges_and_facts_with_their_fate(
     path = tmp_path / "identified.toml"
     answer = sonolube("identify", "rig", "--out", path, "--json").answer
     assert answer["files"] == [str(path)]
-    for name, entry in answer["structure"].items():
+    for name, entry in answer["parameters"].items():
         assert entry["lower"] <= entry["value"] <= entry["upper"], name
-    assert {fact["name"] for fact in answer["facts"] if fact["kept"]} == identification.satisfied
+    assert {fact["name"] for fact in answer["facts"] if fact["satisfied"]} == identification.satisfied
     assert answer["stack"]["stack_stiffness"]["unit"] == "N/m"
+
+
+@pytest.mark.slow
+def test_facts_of_a_file_identify_the_same_structure(
+    tmp_path: Path, sonolube: Program, rigs: Path, identification: Identification
+) -> None:
+    facts, path = rigs.parent / "facts" / "tribometer.toml", tmp_path / "identified.toml"
+    answer = sonolube("identify", "rig", rigs / "tribometer.toml", "--facts", facts, "--out", path, "--json").answer
+    assert {fact["name"] for fact in answer["facts"] if fact["satisfied"]} == identification.satisfied
+    for name, known in identification.estimates.items():
+        assert answer["parameters"][name]["value"] == approx(known.value, rel=1e-3), name
+    assert sonolube("simulate", path, "--out", tmp_path).code == 0
+
+
+def test_facts_without_their_rig_are_refused(sonolube: Program, rigs: Path) -> None:
+    facts = rigs.parent / "facts" / "tribometer.toml"
+    assert "--facts needs the rig they are of" in sonolube("identify", "rig", "--facts", facts).refusal

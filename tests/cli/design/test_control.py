@@ -1,6 +1,7 @@
 """Command `control`: controller, source, page, caveats and refusals."""
 
 from collections.abc import Callable
+import re
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,7 @@ def test_the_collar_gets_a_controller_its_source_and_its_page(tmp_path: Path, so
     assert "quality factor 50" in answer["assumptions"]["resonance"]
     assert {Path(name).suffix for name in answer["files"]} == {".html", ".png", ".svg", ".nc", ".c", ".csv"}
     assert all(Path(name).stat().st_size > 0 for name in answer["files"])
-    assert "http" not in (tmp_path / "control.html").read_text(encoding="utf-8").lower()
+    assert not re.search(r"https?:", (tmp_path / "control.html").read_text(encoding="utf-8"), re.IGNORECASE)
 
 
 def test_vibration_suppresses_stick_slip_on_an_elastic_holder(tmp_path: Path, sonolube: Program, rigs: Path) -> None:

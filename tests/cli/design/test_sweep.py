@@ -62,7 +62,7 @@ def test_a_latin_hypercube_has_as_many_points_as_asked_for(tmp_path: Path, sonol
         (("--over", VOLTS), "must look like drive.frequency=20kHz:24kHz:50"),
         (("--over", f"{VOLTS}=1V", "--over", f"{VOLTS}=2V"), "was given twice"),
         (("--over", "drive.voltag=1,2"), "drive.voltag: unknown key"),
-        (("--over", "friction.closure=a:b:3"), "list its values"),
+        (("--over", "friction.model=a:b:3"), "list its values"),
         (("--over", f"{VOLTS}=2V:28V", "--sample", "lhs"), "needs --points"),
         (("--over", f"{VOLTS}=2V:28V:3", "--points", "3"), "--points has no meaning for --sample grid"),
         (("--over", f"{VOLTS}=2V:28V:3", "--to", "3V"), "--to has no meaning for --over"),
@@ -80,7 +80,7 @@ def test_a_sweep_without_meaning_is_refused_in_one_line(
 def test_the_page_of_a_sweep_lists_its_options_and_the_points_that_failed(
     tmp_path: Path, sonolube: Program, rigs: Path
 ) -> None:
-    over = ("--over", "contact.roughness.rms_height=6um,-6um", "--over", "friction.closure=stick_slip,kinematic")
+    over = ("--over", "contact.roughness.rms_height=6um,-6um", "--over", "friction.model=asperity_stick_slip,kinematic")
     run = sonolube("sweep", rigs / "tribometer.toml", *over, "--set", f"{VOLTS}=20V", "--out", tmp_path)
     page = (tmp_path / "sweep.html").read_text(encoding="utf-8")
     assert run.code == 0

@@ -63,7 +63,9 @@ class RigRecord(Answer):
 
     def _values(self) -> list[tuple[str, float]]:
         """Fields that are quantities of the vocabulary, with their values in SI."""
-        return [(name, value) for name, value in self._fields() if name in quantities() and value is not None]
+        return [
+            (name, value) for name, value in self._fields() if name in quantities() and isinstance(value, int | float)
+        ]
 
     def _texts(self) -> list[tuple[str, str]]:
         """Fields that are text, such as the friction model."""
