@@ -1,7 +1,7 @@
 """Command `control`: controller, source, page, caveats and refusals."""
 
-from collections.abc import Callable
 import re
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
