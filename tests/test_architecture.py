@@ -47,7 +47,7 @@ def test_physics_leans_on_numpy_scipy_and_numba_only(graph: grimp.ImportGraph) -
         for name in graph.find_modules_directly_imported_by(module)
         if not name.startswith("sonolube")
     }
-    assert outside - set(sys.stdlib_module_names) <= {"numpy", "scipy", "numba"}
+    assert outside - set(sys.stdlib_module_names) <= {"numpy", "scipy", "numba", "lazy_loader"}
 
 
 def test_help_imports_nothing_heavy() -> None:
@@ -81,3 +81,25 @@ def test_the_picture_of_the_rooms_is_up_to_date() -> None:
 def test_no_folder_holds_more_than_26_modules() -> None:
     modules = Counter(path.parent for path in (ROOT / "src").rglob("*.py") if path.name != "__init__.py")
     assert [(folder, count) for folder, count in modules.items() if count > 26] == []
+
+
+def _faces() -> list[str]:
+    """Rooms whose face is a stub, such as sonolube.contact."""
+    stubs = (ROOT / "src").rglob("__init__.pyi")
+    return sorted(".".join(stub.parent.relative_to(ROOT / "src").parts) for stub in stubs)
+
+
+@pytest.mark.parametrize("room", _faces())
+def test_every_name_of_a_face_is_there_and_is_no_module(room: str) -> None:
+    face = importlib.import_module(room)
+    submodules = {path.stem for path in Path(str(face.__file__)).parent.iterdir()}
+    assert face.__all__
+    assert [name for name in face.__all__ if not hasattr(face, name)] == []
+    assert submodules & set(face.__all__) == set()
+
+
+def test_a_face_imports_nothing_before_a_name_is_used() -> None:
+    heavy = ("numpy", "scipy", "numba", "xarray", "pint", "pydantic", "matplotlib")
+    code = f"import sys, {', '.join(_faces())}\nprint([name for name in {heavy!r} if name in sys.modules])"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout.strip() == "[]"

@@ -1,8 +1,7 @@
 """Amplifier power, dissipated power and power factor against printed values and the time domain."""
 
 import numpy as np
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from pytest import approx, raises
 
 from sonolube.actuator import dissipated_power, linear_amplifier_power, peak_current, power_factor

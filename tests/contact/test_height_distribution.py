@@ -1,8 +1,7 @@
 """Height distributions: normalization, the common tail, and refused parameters."""
 
 import numpy as np
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from pytest import approx, raises
 from scipy.integrate import quad
 from scipy.stats import norm

@@ -1,8 +1,7 @@
 """Hertz contact of the pin's tip, held to integrals of point loads on a half-space."""
 
 import numpy as np
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from pytest import approx, raises
 from scipy.integrate import quad
 

@@ -7,8 +7,7 @@ from itertools import pairwise
 
 import mpmath
 import numpy as np
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from numpy.typing import NDArray
 from pytest import approx, fixture, mark, raises
 from scipy.integrate import quad

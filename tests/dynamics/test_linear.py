@@ -1,8 +1,7 @@
 from dataclasses import replace
 
 import numpy as np
-from hypothesis import assume, given
-from hypothesis import strategies as st
+from hypothesis import assume, given, strategies as st
 from pytest import approx, raises
 
 from sonolube.actuator import PiezoStack, circuit_admittance

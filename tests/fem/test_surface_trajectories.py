@@ -1,8 +1,7 @@
 """Paths of surface points against orbits drawn point by point."""
 
 import numpy as np
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from pytest import approx, raises
 
 from sonolube.errors import InvalidInput

@@ -1,8 +1,7 @@
 """Traction of an elliptically vibrating surface against the mean of its instantaneous friction."""
 
 import numpy as np
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from pytest import approx, raises
 from scipy.optimize import brentq
 

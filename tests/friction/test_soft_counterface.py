@@ -1,8 +1,7 @@
 """Friction on soft counterfaces against springs integrated in time, and closed forms."""
 
 import numpy as np
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from pytest import approx, raises
 from scipy.optimize import brentq
 from scipy.special import i0, i0e, modstruve

@@ -2,8 +2,7 @@
 
 from itertools import chain, combinations
 
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from pytest import raises
 
 from sonolube.errors import InvalidInput

@@ -1,8 +1,7 @@
 """Vibration: proportionality of amplitude to voltage, operating deflection shapes and modal assurance."""
 
 import numpy as np
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from pytest import approx, mark, raises
 
 from sonolube.errors import InvalidInput

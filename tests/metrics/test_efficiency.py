@@ -1,8 +1,7 @@
 """Efficiency coefficient against D Table 4.2, and the inverse of power and friction on the efficiency line."""
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from pytest import approx, raises
 
 from sonolube.errors import InvalidInput, OutsideRange

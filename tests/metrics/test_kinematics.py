@@ -1,8 +1,7 @@
 """Speeds, distances and spacings of marks against tables of the dissertation."""
 
 import numpy as np
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from pytest import approx
 
 from sonolube.metrics import (

@@ -1,8 +1,7 @@
 """A DC motor at constant voltage: power balance, identification, and friction from its current."""
 
 import numpy as np
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from pytest import approx, raises
 
 from sonolube.errors import InvalidInput

@@ -1,7 +1,6 @@
 """A verdict follows from print, rounding and recorded evidence, and from nothing else."""
 
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from pytest import approx
 
 from sonolube.published import PrintedNumber, parse_printed

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 from pytest import approx, raises
 
-from sonolube.dynamics import Status, steady_state, waveform_extremes, waveform_value
-from sonolube.dynamics import contact_motion as vibration
+from sonolube.dynamics import Status, contact_motion as vibration, steady_state, waveform_extremes, waveform_value
 from sonolube.dynamics.structure import contact_receptance, drive_receptance
 from sonolube.errors import InvalidInput
 from sonolube.friction import FRICTION_MODELS

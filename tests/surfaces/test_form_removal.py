@@ -1,8 +1,7 @@
 """Form removal: polynomials of known coefficients, with missing pixels, grooves and outliers."""
 
 import numpy as np
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from pytest import approx, mark, raises
 
 from sonolube.checks import Floats

@@ -13,8 +13,7 @@ from scipy.special import i0
 
 from sonolube.figure import ReportFigure, publication_style
 from sonolube.friction import sine_stick_slip_ratio
-from sonolube.reproduce.closures import comparison
-from sonolube.reproduce.closures import figures as closure_figures
+from sonolube.reproduce.closures import comparison, figures as closure_figures
 from sonolube.validation.closure_comparison import ALL_FITTED, FITTED_ON, REPORTED, fits, judged
 from sonolube.validation.closures import VARIANTS
 from sonolube.validation.fit import (

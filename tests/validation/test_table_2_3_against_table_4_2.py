@@ -12,9 +12,11 @@ from pytest import approx
 from sonolube.contact import GapMotion
 from sonolube.figure import ReportFigure, publication_style
 from sonolube.friction import AsperityStickSlip, BristleWithHolder
-from sonolube.reproduce.closures import dynamics as closure_dynamics
-from sonolube.reproduce.closures import error_figures as closure_error_figures
-from sonolube.reproduce.closures import tables_in_conflict as closure_dispute
+from sonolube.reproduce.closures import (
+    dynamics as closure_dynamics,
+    error_figures as closure_error_figures,
+    tables_in_conflict as closure_dispute,
+)
 from sonolube.reproduce.closures.dynamics import MODELS, MOTIONS, identified_structure, predictions, slow_arm_motion
 from sonolube.reproduce.closures.tables_in_conflict import Mechanism, mechanisms, speeds_of_no_reduction
 from sonolube.rig import read_rig

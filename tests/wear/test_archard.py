@@ -1,7 +1,6 @@
 """Archard's law against hand computation and its proportionality."""
 
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from pytest import approx, raises
 
 from sonolube.errors import InvalidInput

@@ -1,7 +1,6 @@
 """Specific wear rate, mass loss and number of contacts by hand."""
 
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from pytest import approx
 
 from sonolube.wear import (

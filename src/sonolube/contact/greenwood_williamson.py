@@ -24,7 +24,6 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from scipy.interpolate import PPoly, make_interp_spline
 
 from sonolube.checks import Floats
 from sonolube.contact.asperity import AsperityLaw
@@ -78,6 +77,8 @@ class LogSpline:
     """A quantity whose logarithm is interpolated by a spline of degree seven."""
 
     def __init__(self, h: Floats, log_values: Floats) -> None:
+        from scipy.interpolate import PPoly, make_interp_spline
+
         self._h, self._log_values = h, log_values
         self._log = PPoly.from_spline(make_interp_spline(h, log_values, k=7))
         self._slope = self._log.derivative()

@@ -7,8 +7,8 @@ from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.identification.fact import Bounds, Fact, ForwardModel
 from sonolube.identification.observables import OBSERVABLES, Observable, observable_named
-from sonolube.identification.parametric_structure import ParametricStructure
 from sonolube.identification.small_vibration import Conditions, SmallVibration
+from sonolube.identification.structure_parametrisation import ParametricStructure
 from sonolube.vocabulary import unit_of
 
 _Evaluate = Callable[[Mapping[str, Floats], Mapping[Conditions, SmallVibration]], Floats]

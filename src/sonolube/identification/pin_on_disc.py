@@ -8,8 +8,8 @@ from sonolube.checks import require_non_negative, require_positive
 from sonolube.dynamics import Structure, chain_structure, pin_on_disc_chain
 from sonolube.identification.fact import ForwardModel
 from sonolube.identification.observation import Observation, structure_model
-from sonolube.identification.parametric_structure import parametric_structure
 from sonolube.identification.small_vibration import Conditions
+from sonolube.identification.structure_parametrisation import parametric_structure
 
 _REFERENCE = {
     "tip_mass": 1.0,

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from sonolube.checks import Complexes, Floats, require_non_negative, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.identification.parametric_structure import StructureMatrices
+from sonolube.identification.structure_parametrisation import StructureMatrices
 
 _GRAVITY = 9.80665  # m/s2
 _SETTLED = 0.02  # amplitude over the initial one at which a transient counts as settled

@@ -21,8 +21,7 @@ import numpy as np
 
 from sonolube.checks import Floats, require_finite
 from sonolube.errors import InvalidInput, MissingProperty, UnknownName
-from sonolube.materials.catalogue import Material
-from sonolube.materials.catalogue import material as catalogue_material
+from sonolube.materials.catalogue import Material, material as catalogue_material
 from sonolube.materials.property_file import read_property_file
 
 VACUUM_PERMITTIVITY = 8.8541878128e-12

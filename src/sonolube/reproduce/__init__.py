@@ -5,11 +5,13 @@ from sonolube.figure import ReportFigure
 from sonolube.reproduce.chapter2 import rows as chapter2
 from sonolube.reproduce.chapter3 import rows as chapter3
 from sonolube.reproduce.chapter4 import rows as chapter4
-from sonolube.reproduce.closures import comparison as closure_comparison
-from sonolube.reproduce.closures import dynamics as closure_dynamics
-from sonolube.reproduce.closures import error_figures as closure_error_figures
-from sonolube.reproduce.closures import figures as closure_figures
-from sonolube.reproduce.closures import tables_in_conflict as closure_dispute
+from sonolube.reproduce.closures import (
+    comparison as closure_comparison,
+    dynamics as closure_dynamics,
+    error_figures as closure_error_figures,
+    figures as closure_figures,
+    tables_in_conflict as closure_dispute,
+)
 from sonolube.reproduce.result import Reproduction
 from sonolube.reproduce.row import Row, Verdict
 from sonolube.validation import figures as model_comparison_figures

@@ -108,7 +108,7 @@ def height_parameters(surface: HeightMap) -> HeightParameters:
     See Also
     --------
     hybrid_parameters, spatial_parameters : Other field parameters.
-    sonolube.surfaces.profile_parameters.profile_parameters : Parameters of a profile.
+    sonolube.surfaces.roughness_profile.profile_parameters : Parameters of a profile.
 
     Notes
     -----

@@ -1,8 +1,7 @@
 """Pareto fronts against the definition of dominance and a closed form."""
 
 import numpy as np
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from pytest import approx
 
 from sonolube.design.optimisation import epsilon_bounds, epsilon_constraint_front, non_dominated

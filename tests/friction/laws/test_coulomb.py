@@ -1,8 +1,7 @@
 """Coulomb's law: sign, proportionality to the load, and refused arguments."""
 
 import numpy as np
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from pytest import approx, raises
 
 from sonolube.errors import InvalidInput

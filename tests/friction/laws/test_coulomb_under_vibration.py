@@ -1,8 +1,7 @@
 """Coulomb friction under in-plane vibration against the averaged direction cosine and its limits."""
 
 import numpy as np
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from pytest import approx, mark, raises
 from scipy.integrate import quad
 

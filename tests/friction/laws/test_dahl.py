@@ -1,8 +1,7 @@
 """Dahl's law against closed forms, an integrator, and the work of closed loops."""
 
 import numpy as np
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from pytest import approx, raises
 from scipy.integrate import solve_ivp
 

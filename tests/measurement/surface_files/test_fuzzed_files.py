@@ -11,8 +11,7 @@ import warnings
 from collections import Counter
 from pathlib import Path
 
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from pytest import mark
 
 from sonolube.errors import InvalidInput

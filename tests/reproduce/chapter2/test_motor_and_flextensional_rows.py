@@ -4,8 +4,7 @@ from pytest import approx
 from scipy.special import i0
 
 from sonolube.reproduce import Verdict
-from sonolube.reproduce.chapter2 import flextensional as chapter2_flextensional
-from sonolube.reproduce.chapter2 import motor as chapter2_motor
+from sonolube.reproduce.chapter2 import flextensional as chapter2_flextensional, motor as chapter2_motor
 from sonolube.reproduce.chapter2.flextensional import gain_for_the_slow_test
 from sonolube.reproduce.chapter2.motor import drop_by_current, welder_motor
 

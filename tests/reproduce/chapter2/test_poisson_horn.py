@@ -13,8 +13,7 @@ from sonolube.fem import Model, block, generate_mesh, isotropic_medium, natural_
 from sonolube.figure import publication_style
 from sonolube.friction import elliptical_traction_ratio
 from sonolube.reproduce import Verdict
-from sonolube.reproduce.chapter2 import horn as chapter2_horn
-from sonolube.reproduce.chapter2 import horn_figures as chapter2_horn_figures
+from sonolube.reproduce.chapter2 import horn as chapter2_horn, horn_figures as chapter2_horn_figures
 from sonolube.reproduce.chapter2.horn_bending import PAD_DISTANCE, sag
 from sonolube.reproduce.chapter2.horn_regions import FACE_END, driven_face, friction_on_face, transition_region
 from sonolube.reproduce.chapter2.horn_sensitivity import frequency_changes, node_shifts, with_tip

@@ -28,8 +28,8 @@ from sonolube.design.control import (
     design_control,
     figures,
     lookup_table,
+    stick_slip as holder,
 )
-from sonolube.design.control import stick_slip as holder
 from sonolube.design.control.run_results import control_dataset, final_state, lost_resonance
 from sonolube.design.control.stick_slip import StickSlipSuppression, stick_slip_suppression
 from sonolube.errors import InvalidInput

@@ -12,14 +12,16 @@ from sonolube.actuator import free_bar_frequency
 from sonolube.figure import ReportFigure
 from sonolube.materials import material
 from sonolube.published.values import Published, over_rounding, stated
-from sonolube.reproduce.chapter2 import figures as chapter2_figures
-from sonolube.reproduce.chapter2 import flextensional as chapter2_flextensional
-from sonolube.reproduce.chapter2 import horn as chapter2_horn
-from sonolube.reproduce.chapter2 import horn_figures as chapter2_horn_figures
-from sonolube.reproduce.chapter2 import motor as chapter2_motor
-from sonolube.reproduce.chapter2 import pairs as chapter2_pairs
-from sonolube.reproduce.chapter2 import tribometer as chapter2_tribometer
-from sonolube.reproduce.chapter2 import welder as chapter2_welder
+from sonolube.reproduce.chapter2 import (
+    figures as chapter2_figures,
+    flextensional as chapter2_flextensional,
+    horn as chapter2_horn,
+    horn_figures as chapter2_horn_figures,
+    motor as chapter2_motor,
+    pairs as chapter2_pairs,
+    tribometer as chapter2_tribometer,
+    welder as chapter2_welder,
+)
 from sonolube.reproduce.row import Row, compare
 from sonolube.validation.contacts import STEEL_ON_STEEL_NOTE, Bodies, poisson_friction_ratio
 from sonolube.validation.inputs import friction_drop, in_table, named, said

@@ -17,8 +17,15 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.contact import GapMotion, decay_length, load_balanced_motion, sinusoidal_motion
-from sonolube.dynamics import ExponentialGap, Structure, chain_structure, pin_on_disc_chain, steady_state, trajectory
-from sonolube.dynamics import contact_motion as motion_of
+from sonolube.dynamics import (
+    ExponentialGap,
+    Structure,
+    chain_structure,
+    contact_motion as motion_of,
+    pin_on_disc_chain,
+    steady_state,
+    trajectory,
+)
 from sonolube.friction import FRICTION_MODELS
 from sonolube.reproduce.row import Row, compare
 from sonolube.validation.fit import measured_in

@@ -10,7 +10,7 @@ from sonolube.actuator import PiezoStack
 from sonolube.dynamics import GROUND, Damper, LumpedChain, Spring, Structure, chain_structure, modal_structure
 from sonolube.errors import InvalidInput
 from sonolube.identification import StructureBuilder, parametric_structure, reference_parameters
-from sonolube.identification.parametric_structure import StructureMatrices
+from sonolube.identification.structure_parametrisation import StructureMatrices
 
 STACK = {
     "free_capacitance": 360e-9,

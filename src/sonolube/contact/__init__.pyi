@@ -1,0 +1,85 @@
+from .asperity import (
+    ASPERITY_LAWS as ASPERITY_LAWS,
+    AsperityLaw as AsperityLaw,
+    ChangEtsionBogy as ChangEtsionBogy,
+    Dong2015Asperity as Dong2015Asperity,
+    ElasticAsperity as ElasticAsperity,
+    JacksonGreen as JacksonGreen,
+    KogutEtsion as KogutEtsion,
+)
+from .coated_body import (
+    CoatedBody as CoatedBody,
+    equivalent_plane_strain_modulus as equivalent_plane_strain_modulus,
+    layer_compliance_ratio as layer_compliance_ratio,
+)
+from .cube import cube_axial_stiffness as cube_axial_stiffness, cube_tangential_stiffness as cube_tangential_stiffness
+from .gap_motion import (
+    GapMotion as GapMotion,
+    GapMotionBatch as GapMotionBatch,
+    load_balanced_motion as load_balanced_motion,
+    sinusoidal_motion as sinusoidal_motion,
+)
+from .height_distribution import (
+    HEIGHT_DISTRIBUTIONS as HEIGHT_DISTRIBUTIONS,
+    ExponentialHeights as ExponentialHeights,
+    GaussianHeights as GaussianHeights,
+    HeightDistribution as HeightDistribution,
+    height_density as height_density,
+)
+from .hertz import (
+    SphereOnFlat as SphereOnFlat,
+    hertz_approach as hertz_approach,
+    hertz_axial_shear_stress as hertz_axial_shear_stress,
+    hertz_axial_stresses as hertz_axial_stresses,
+    hertz_contact_radius as hertz_contact_radius,
+    hertz_mean_pressure as hertz_mean_pressure,
+    hertz_peak_pressure as hertz_peak_pressure,
+    hertz_stiffness as hertz_stiffness,
+    maximum_axial_shear as maximum_axial_shear,
+    nominal_area_from_groove as nominal_area_from_groove,
+    tip_radius_for_pressure as tip_radius_for_pressure,
+    worn_flat_pressure as worn_flat_pressure,
+    yield_onset_load as yield_onset_load,
+)
+from .mindlin import mindlin_tangential_stiffness as mindlin_tangential_stiffness
+from .pair import (
+    ContactPair as ContactPair,
+    ElasticBody as ElasticBody,
+    contact_pair as contact_pair,
+    identical_materials_mindlin_ratio as identical_materials_mindlin_ratio,
+)
+from .persson import (
+    PerssonContact as PerssonContact,
+    persson_area as persson_area,
+    persson_area_fraction as persson_area_fraction,
+    persson_load as persson_load,
+    persson_separation as persson_separation,
+    persson_stiffness as persson_stiffness,
+)
+from .plasticity import (
+    elastic_area as elastic_area,
+    elastic_load_fraction as elastic_load_fraction,
+    plastic_area as plastic_area,
+    plasticity_index as plasticity_index,
+)
+from .rough import (
+    RoughContact as RoughContact,
+    contact_count as contact_count,
+    decay_length as decay_length,
+    normal_force as normal_force,
+    normal_stiffness as normal_stiffness,
+    real_contact_area as real_contact_area,
+    separation as separation,
+    separation_range as separation_range,
+)
+from .single_asperity import (
+    asperity_area as asperity_area,
+    asperity_force as asperity_force,
+    critical_interference as critical_interference,
+)
+from .squeeze_film import (
+    levitation_gap as levitation_gap,
+    squeeze_film_pressure as squeeze_film_pressure,
+    squeeze_number as squeeze_number,
+)
+from .validity_range import contact_caveats as contact_caveats, exponential_validity_range as exponential_validity_range

@@ -1,0 +1,39 @@
+from .gaussian_process import GaussianProcessMap as GaussianProcessMap, gaussian_process_map as gaussian_process_map
+from .map_figures import map_figure as map_figure, map_page as map_page, measured_map_figure as measured_map_figure
+from .maps import (
+    MAP_LAYOUTS as MAP_LAYOUTS,
+    MAPS as MAPS,
+    SATURATION_GAIN as SATURATION_GAIN,
+    frequency_voltage_map as frequency_voltage_map,
+    saturation_power as saturation_power,
+    velocity_power_map as velocity_power_map,
+    velocity_stress_map as velocity_stress_map,
+)
+from .parameter_sweep import CHUNK_POINTS as CHUNK_POINTS, compute_points as compute_points, sweep as sweep
+from .sobol import (
+    SobolIndices as SobolIndices,
+    saltelli_sample as saltelli_sample,
+    sobol_indices as sobol_indices,
+    sobol_sample as sobol_sample,
+)
+from .statistics import (
+    QUANTILES as QUANTILES,
+    IntervalEstimate as IntervalEstimate,
+    SampleStatistics as SampleStatistics,
+    sample_statistics as sample_statistics,
+)
+from .sweep_figures import sweep_figure as sweep_figure, swept_variables as swept_variables
+from .sweep_plan import (
+    OPERATING_CONDITIONS as OPERATING_CONDITIONS,
+    SweepPlan as SweepPlan,
+    grid_plan as grid_plan,
+    latin_hypercube_plan as latin_hypercube_plan,
+    list_plan as list_plan,
+)
+from .uncertainty import available_outcomes as available_outcomes, propagate as propagate
+from .uncertainty_figures import (
+    band_figure as band_figure,
+    histogram_figure as histogram_figure,
+    outcome_statistics as outcome_statistics,
+    sobol_figure as sobol_figure,
+)

@@ -1,0 +1,67 @@
+from .amplifier import Amplifier as Amplifier, active_limit as active_limit, swing_limit as swing_limit
+from .closed_loop_simulation import (
+    ClosedLoopRun as ClosedLoopRun,
+    Disturbance as Disturbance,
+    FrictionLoop as FrictionLoop,
+    ThermalDrift as ThermalDrift,
+    simulate_closed_loop as simulate_closed_loop,
+)
+from .control_design import (
+    FEED_FORWARD as FEED_FORWARD,
+    ControlDesign as ControlDesign,
+    ControlSettings as ControlSettings,
+    design_control as design_control,
+)
+from .controller import (
+    ControllerState as ControllerState,
+    FrictionController as FrictionController,
+    initial_state as initial_state,
+    next_voltage as next_voltage,
+    tuned_controller as tuned_controller,
+)
+from .export import controller_source as controller_source, lookup_table as lookup_table
+from .friction_characteristic import (
+    FrictionCharacteristic as FrictionCharacteristic,
+    computed_characteristic as computed_characteristic,
+    efficiency_characteristic as efficiency_characteristic,
+    friction_at_voltage as friction_at_voltage,
+    linear_characteristic as linear_characteristic,
+    voltage_for_friction as voltage_for_friction,
+)
+from .performance import (
+    ControlEnergy as ControlEnergy,
+    StepResponseMetrics as StepResponseMetrics,
+    control_energy as control_energy,
+    step_response_metrics as step_response_metrics,
+)
+from .process import (
+    PIGains as PIGains,
+    Process as Process,
+    StabilityMargins as StabilityMargins,
+    open_loop_response as open_loop_response,
+    simc_gains as simc_gains,
+    stability_margins as stability_margins,
+)
+from .resonance_tracking import (
+    FrequencyTracker as FrequencyTracker,
+    next_frequency as next_frequency,
+    tuned_tracker as tuned_tracker,
+)
+from .stick_slip_oscillator import (
+    MassOnBelt as MassOnBelt,
+    StickSlipMotion as StickSlipMotion,
+    kinetic_friction as kinetic_friction,
+    mass_on_belt as mass_on_belt,
+    steady_sliding_damping as steady_sliding_damping,
+    stick_slip_motion as stick_slip_motion,
+)
+from .vibration_envelope import (
+    VibrationMode as VibrationMode,
+    assumed_mode as assumed_mode,
+    capture_limit as capture_limit,
+    impedance_phase as impedance_phase,
+    measured_phase as measured_phase,
+    mode_admittance as mode_admittance,
+    mode_at_drive as mode_at_drive,
+    next_envelope as next_envelope,
+)

@@ -1,0 +1,100 @@
+from .classification import (
+    ModeFamily as ModeFamily,
+    kinetic_energy_fractions as kinetic_energy_fractions,
+    mode_names as mode_names,
+)
+from .electromechanical_model import (
+    ElectromechanicalMode as ElectromechanicalMode,
+    ElectromechanicalModel as ElectromechanicalModel,
+    converged_electromechanical_model as converged_electromechanical_model,
+)
+from .mass_loading import (
+    face_residual_compliance as face_residual_compliance,
+    mass_loaded_frequencies as mass_loaded_frequencies,
+)
+from .parts.bodies import (
+    PARTS as PARTS,
+    Slot as Slot,
+    block as block,
+    booster as booster,
+    conical_horn as conical_horn,
+    cylinder as cylinder,
+    exponential_horn as exponential_horn,
+    hexagon as hexagon,
+    ring as ring,
+    stepped_horn as stepped_horn,
+)
+from .parts.length_adjustment import adjust_length as adjust_length
+from .parts.stack_material import homogenised_stack as homogenised_stack, stack_ceramic as stack_ceramic
+from .parts.tips import acorn_nut as acorn_nut, hub_disc as hub_disc
+from .parts.transducers import (
+    TRANSDUCERS as TRANSDUCERS,
+    SourcedDimension as SourcedDimension,
+    Transducer as Transducer,
+    poled_part as poled_part,
+    stack_bodies as stack_bodies,
+    stack_from_bodies as stack_from_bodies,
+    stack_transducer as stack_transducer,
+)
+from .ritz import (
+    CrossSection as CrossSection,
+    annular_section as annular_section,
+    rectangular_section as rectangular_section,
+    ritz_frequencies as ritz_frequencies,
+)
+from .solver.cad import MissingPackage as MissingPackage
+from .solver.convergence import (
+    ConvergedModes as ConvergedModes,
+    converged_modes as converged_modes,
+    extrapolate_frequencies as extrapolate_frequencies,
+)
+from .solver.element_order import change_order as change_order, transfer_field as transfer_field
+from .solver.forced_vibration import forced_response as forced_response
+from .solver.geometry import Geometry as Geometry, bond as bond, read_step as read_step, translate as translate
+from .solver.grading import grade_reentrant_edges as grade_reentrant_edges
+from .solver.harmonic_analysis import (
+    HarmonicResponse as HarmonicResponse,
+    direct_response as direct_response,
+    harmonic_response as harmonic_response,
+)
+from .solver.krylov import krylov_reduction as krylov_reduction
+from .solver.medium import (
+    Medium as Medium,
+    isotropic_medium as isotropic_medium,
+    medium_from_material as medium_from_material,
+    poled_medium as poled_medium,
+)
+from .solver.mesh import Mesh as Mesh, box_mesh as box_mesh, face_triangulation as face_triangulation
+from .solver.mesh_editing import (
+    add_face_patch as add_face_patch,
+    edge_nodes as edge_nodes,
+    transform_nodes as transform_nodes,
+)
+from .solver.meshing import generate_mesh as generate_mesh
+from .solver.model import (
+    Electrodes as Electrodes,
+    FaceSpring as FaceSpring,
+    FixedSupport as FixedSupport,
+    Model as Model,
+)
+from .solver.modes import (
+    NaturalModes as NaturalModes,
+    NotConverged as NotConverged,
+    natural_modes as natural_modes,
+    rigid_body_mode_count as rigid_body_mode_count,
+)
+from .solver.postprocessing import (
+    gauss_point_stress as gauss_point_stress,
+    interpolate_at_points as interpolate_at_points,
+    nodal_average as nodal_average,
+    von_mises_stress as von_mises_stress,
+)
+from .solver.reduction import Output as Output, ReducedModel as ReducedModel, reduce_model as reduce_model
+from .solver.resonances import (
+    coupled_resonances as coupled_resonances,
+    series_parallel_resonances as series_parallel_resonances,
+)
+from .solver.structure_conversion import contact_structure as contact_structure, with_free_body as with_free_body
+from .surface_trajectories import TrajectoryEllipse as TrajectoryEllipse, trajectory_ellipse as trajectory_ellipse
+from .tuning import NamedMode as NamedMode, TunedMode as TunedMode, named_mode as named_mode, tuned_mode as tuned_mode
+from .vtk_export import vtu_text as vtu_text

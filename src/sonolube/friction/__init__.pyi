@@ -1,0 +1,111 @@
+from .bristle import RIGID as RIGID, Holder as Holder
+from .elliptical_motion import (
+    contact_time_fraction as contact_time_fraction,
+    elliptical_traction_ratio as elliptical_traction_ratio,
+)
+from .laws.coulomb import (
+    CoulombFriction as CoulombFriction,
+    coulomb_friction as coulomb_friction,
+    friction_coefficient as friction_coefficient,
+)
+from .laws.coulomb_under_vibration import (
+    oblique_vibration_ratio as oblique_vibration_ratio,
+    parallel_vibration_ratio as parallel_vibration_ratio,
+    transverse_vibration_ratio as transverse_vibration_ratio,
+)
+from .laws.dahl import (
+    DahlFriction as DahlFriction,
+    dahl_friction as dahl_friction,
+    dahl_friction_history as dahl_friction_history,
+)
+from .laws.dahl_under_vibration import dahl_under_vibration as dahl_under_vibration
+from .laws.lugre import (
+    LuGreFriction as LuGreFriction,
+    LuGreHistory as LuGreHistory,
+    lugre_friction_history as lugre_friction_history,
+    lugre_steady_friction as lugre_steady_friction,
+)
+from .laws.lugre_under_vibration import lugre_under_vibration as lugre_under_vibration
+from .laws.spring_driven_slider import (
+    DriveForce as DriveForce,
+    spring_driven_slider_force as spring_driven_slider_force,
+)
+from .lubrication import (
+    BoundaryLubricant as BoundaryLubricant,
+    LubricationCoefficients as LubricationCoefficients,
+    LubricationMethod as LubricationMethod,
+    LubricationRegime as LubricationRegime,
+    StribeckCurve as StribeckCurve,
+    asperity_load_fraction as asperity_load_fraction,
+    best_lubrication_method as best_lubrication_method,
+    hersey_number as hersey_number,
+    lubrication_coefficients as lubrication_coefficients,
+    lubrication_regime as lubrication_regime,
+    stribeck_coefficient as stribeck_coefficient,
+)
+from .metal_forming import (
+    ZINC_STRESS_RATIO as ZINC_STRESS_RATIO,
+    acoustic_intensity as acoustic_intensity,
+    acoustic_softening_ratio as acoustic_softening_ratio,
+    reference_intensity_from_test as reference_intensity_from_test,
+    superposed_mean_stress as superposed_mean_stress,
+)
+from .models import (
+    FRICTION_MODELS as FRICTION_MODELS,
+    FrictionModel as FrictionModel,
+    MeanGap as MeanGap,
+    ModelParameter as ModelParameter,
+    parameter as parameter,
+)
+from .models.asperity_stick_slip import AsperityStickSlip as AsperityStickSlip
+from .models.asperity_stick_slip_batch import (
+    SINE_TOLERANCE as SINE_TOLERANCE,
+    batched_stick_slip_ratio as batched_stick_slip_ratio,
+)
+from .models.asperity_stick_slip_sine import (
+    EMPIRICAL_MEMORY_LENGTH as EMPIRICAL_MEMORY_LENGTH,
+    mindlin_memory_length as mindlin_memory_length,
+    sine_stick_slip_ratio as sine_stick_slip_ratio,
+)
+from .models.bristle_with_holder import BristleWithHolder as BristleWithHolder
+from .models.dong_2015 import (
+    Dong2015FullPeriod as Dong2015FullPeriod,
+    Dong2015HalfPeriod as Dong2015HalfPeriod,
+    Dong2015LoadBalanced as Dong2015LoadBalanced,
+)
+from .models.dong_2015_sine import (
+    dong_2015_deformation_ratio as dong_2015_deformation_ratio,
+    dong_2015_half_period_ratio as dong_2015_half_period_ratio,
+    steady_deformation as steady_deformation,
+)
+from .models.kinematic import Kinematic as Kinematic
+from .oscillating_contact.approximations import (
+    approximate_guided_ratio as approximate_guided_ratio,
+    approximate_longitudinal_ratio as approximate_longitudinal_ratio,
+    approximate_normal_ratio as approximate_normal_ratio,
+    approximate_transverse_ratio as approximate_transverse_ratio,
+)
+from .oscillating_contact.combined_oscillation import combined_oscillation_ratio as combined_oscillation_ratio
+from .oscillating_contact.compliant_guide import (
+    guided_critical_speed as guided_critical_speed,
+    guided_oscillation_ratio as guided_oscillation_ratio,
+)
+from .oscillating_contact.rigid_guide import (
+    longitudinal_oscillation_ratio as longitudinal_oscillation_ratio,
+    normal_oscillation_ratio as normal_oscillation_ratio,
+)
+from .oscillating_contact.spring_contact import (
+    SpringContact as SpringContact,
+    critical_speed as critical_speed,
+    load_balanced_approach as load_balanced_approach,
+)
+from .oscillating_contact.static_friction import (
+    longitudinal_static_ratio as longitudinal_static_ratio,
+    normal_static_ratio as normal_static_ratio,
+    transverse_static_ratio as transverse_static_ratio,
+)
+from .soft_counterface import (
+    FaceVibrationMode as FaceVibrationMode,
+    exponential_layer_ratio as exponential_layer_ratio,
+    linear_layer_ratio as linear_layer_ratio,
+)

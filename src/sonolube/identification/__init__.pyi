@@ -1,0 +1,37 @@
+from .bounded_error import identify as identify
+from .fact import (
+    Bounds as Bounds,
+    Fact as Fact,
+    ForwardModel as ForwardModel,
+    Relation as Relation,
+    normalized_residuals as normalized_residuals,
+)
+from .observables import (
+    NUMBERED_OBSERVABLES as NUMBERED_OBSERVABLES,
+    OBSERVABLES as OBSERVABLES,
+    Observable as Observable,
+    observable_named as observable_named,
+)
+from .observation import (
+    IdentificationProblem as IdentificationProblem,
+    Observation as Observation,
+    observable_unit as observable_unit,
+    structure_model as structure_model,
+)
+from .pin_on_disc import PinOnDiscTest as PinOnDiscTest, pin_on_disc_model as pin_on_disc_model
+from .result import (
+    ConsistentFit as ConsistentFit,
+    Identification as Identification,
+    ParameterEstimate as ParameterEstimate,
+    SingularDirection as SingularDirection,
+)
+from .sequential_monte_carlo import Posterior as Posterior, posterior as posterior
+from .small_vibration import Conditions as Conditions
+from .structure_parametrisation import (
+    ParametricStructure as ParametricStructure,
+    StructureBuilder as StructureBuilder,
+    parametric_structure as parametric_structure,
+    reference_parameters as reference_parameters,
+)
+from .subsets import ConsistentSubsets as ConsistentSubsets, consistent_subsets as consistent_subsets
+from .toml_tables import rig_tables as rig_tables

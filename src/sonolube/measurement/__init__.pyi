@@ -1,0 +1,137 @@
+from .friction.loops import (
+    FrictionLoops as FrictionLoops,
+    FrictionWork as FrictionWork,
+    friction_loops as friction_loops,
+    friction_work as friction_work,
+)
+from .friction.motor_current import (
+    MotorCalibration as MotorCalibration,
+    friction_from_motor_current as friction_from_motor_current,
+)
+from .friction.reduction import (
+    FrictionReductionEstimate as FrictionReductionEstimate,
+    estimate_friction_reduction as estimate_friction_reduction,
+)
+from .friction.rotation import (
+    DiscRotation as DiscRotation,
+    disc_rotation as disc_rotation,
+    hall_pulse_times as hall_pulse_times,
+    revolutions_at as revolutions_at,
+)
+from .friction.running_in import SteadyStateOnset as SteadyStateOnset, steady_state_onset as steady_state_onset
+from .friction.stick_slip import StickSlipEstimate as StickSlipEstimate, estimate_stick_slip as estimate_stick_slip
+from .friction.voltage_steps import (
+    VoltageStep as VoltageStep,
+    friction_at_voltage_steps as friction_at_voltage_steps,
+    voltage_envelope as voltage_envelope,
+)
+from .friction.windows import (
+    DEFAULT_WINDOW_DURATION as DEFAULT_WINDOW_DURATION,
+    WindowStatistics as WindowStatistics,
+    streamed_window_statistics as streamed_window_statistics,
+    window_statistics as window_statistics,
+)
+from .friction.wobble import WobbleCorrection as WobbleCorrection, remove_wobble as remove_wobble
+from .friction_analysis import (
+    FrictionCycles as FrictionCycles,
+    MotorFrictionTrace as MotorFrictionTrace,
+    RunningIn as RunningIn,
+    analyse_cycles as analyse_cycles,
+    analyse_motor_current as analyse_motor_current,
+    analyse_rotation as analyse_rotation,
+    analyse_running_in as analyse_running_in,
+    analyse_stick_slip as analyse_stick_slip,
+    analyse_voltage_steps as analyse_voltage_steps,
+    analyse_windows as analyse_windows,
+    analyse_wobble as analyse_wobble,
+    channel_values as channel_values,
+)
+from .gauge.calibration import (
+    BranchCalibration as BranchCalibration,
+    ForceEstimate as ForceEstimate,
+    PreisachCalibration as PreisachCalibration,
+    dissipated_energy as dissipated_energy,
+    fit_branches as fit_branches,
+    fit_preisach as fit_preisach,
+    force_from_branches as force_from_branches,
+    force_from_preisach as force_from_preisach,
+    major_loop_dissipation as major_loop_dissipation,
+)
+from .gauge.preisach import (
+    PreisachPlane as PreisachPlane,
+    mean_relay_widths as mean_relay_widths,
+    preisach_output as preisach_output,
+    relay_fractions as relay_fractions,
+)
+from .impedance.formats import IMPEDANCE_FORMATS as IMPEDANCE_FORMATS, ImpedanceFormat as ImpedanceFormat
+from .impedance.reader import read_impedance as read_impedance
+from .impedance.spectrum import ImpedanceSpectrum as ImpedanceSpectrum
+from .recordings.formats import (
+    RECORDING_FORMATS as RECORDING_FORMATS,
+    RecordingFormat as RecordingFormat,
+    StreamedRecordingFormat as StreamedRecordingFormat,
+)
+from .recordings.mapping import (
+    ChannelSource as ChannelSource,
+    RecordingMapping as RecordingMapping,
+    TextLayout as TextLayout,
+    read_mapping as read_mapping,
+)
+from .recordings.reader import (
+    read_recording as read_recording,
+    recording_blocks as recording_blocks,
+    recording_format_name as recording_format_name,
+    write_recording as write_recording,
+)
+from .statistics.autocorrelation import (
+    CorrelatedMean as CorrelatedMean,
+    correlated_mean as correlated_mean,
+    correlation_time as correlation_time,
+    statistical_inefficiency as statistical_inefficiency,
+)
+from .statistics.log_parameter_fit import (
+    ConfidenceInterval as ConfidenceInterval,
+    LogParameterFit as LogParameterFit,
+    confidence_intervals as confidence_intervals,
+    fit_log_parameters as fit_log_parameters,
+    residual_inefficiency as residual_inefficiency,
+)
+from .statistics.repeated_tests import (
+    MeanDifference as MeanDifference,
+    MeanEstimate as MeanEstimate,
+    RatioEstimate as RatioEstimate,
+    Repeatability as Repeatability,
+    compare_means as compare_means,
+    mean_estimate as mean_estimate,
+    ratio_interval as ratio_interval,
+    repeatability as repeatability,
+)
+from .surface_files.formats import SURFACE_FORMATS as SURFACE_FORMATS, SurfaceFormat as SurfaceFormat
+from .surface_files.reader import (
+    SurfaceFile as SurfaceFile,
+    read_height_map as read_height_map,
+    read_surface_file as read_surface_file,
+)
+from .temperature import (
+    TemperatureResponse as TemperatureResponse,
+    TemperatureRise as TemperatureRise,
+    fit_temperature_response as fit_temperature_response,
+    heating_rate as heating_rate,
+    temperature_rise_between as temperature_rise_between,
+    temperature_rise_by_stage as temperature_rise_by_stage,
+)
+from .vibration import (
+    AmplitudePerVolt as AmplitudePerVolt,
+    OperatingDeflectionShape as OperatingDeflectionShape,
+    amplitude_per_volt as amplitude_per_volt,
+    complex_amplitudes as complex_amplitudes,
+    modal_assurance_criterion as modal_assurance_criterion,
+    operating_deflection_shape as operating_deflection_shape,
+)
+from .wear_track import (
+    WearReduction as WearReduction,
+    WearTrack as WearTrack,
+    measure_wear_track as measure_wear_track,
+    wear_reduction_between_tracks as wear_reduction_between_tracks,
+    wear_track_from_grooves as wear_track_from_grooves,
+)

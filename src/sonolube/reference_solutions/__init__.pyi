@@ -1,0 +1,19 @@
+from .boundary_element import (
+    BoundaryElementContact as BoundaryElementContact,
+    boundary_element_contact as boundary_element_contact,
+    mirror_extension as mirror_extension,
+)
+from .figures import (
+    comparison_figure as comparison_figure,
+    comparison_table as comparison_table,
+    dimensionless_curve as dimensionless_curve,
+)
+from .law_comparison import (
+    QUANTITIES as QUANTITIES,
+    REFERENCE_SOLUTION as REFERENCE_SOLUTION,
+    LawComparison as LawComparison,
+    LawCurve as LawCurve,
+    compare_laws as compare_laws,
+    deviation as deviation,
+    validity_ranges as validity_ranges,
+)

@@ -1,0 +1,20 @@
+from .measurement import (
+    MeasurementReport as MeasurementReport,
+    measurement_caveats as measurement_caveats,
+    measurement_lines as measurement_lines,
+    measurement_object as measurement_object,
+    measurement_page as measurement_page,
+    write_measurement_report as write_measurement_report,
+)
+from .page import Drawing as Drawing, Page as Page, PageTable as PageTable, rendered_files as rendered_files
+from .pin_on_disc_sheet import (
+    PinOnDiscSheet as PinOnDiscSheet,
+    pin_on_disc_rows as pin_on_disc_rows,
+    read_pin_on_disc_sheet as read_pin_on_disc_sheet,
+)
+from .reproduction import (
+    reproduction_files as reproduction_files,
+    summary_lines as summary_lines,
+    validation_object as validation_object,
+    write_report as write_report,
+)

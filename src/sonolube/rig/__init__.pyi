@@ -1,0 +1,62 @@
+from .contact_temperature import (
+    TemperaturePoint as TemperaturePoint,
+    temperature_point as temperature_point,
+    thermal_solid as thermal_solid,
+)
+from .datasets import dataset as dataset, gridded as gridded, write_netcdf as write_netcdf
+from .distribution import Distribution as Distribution, LogNormal as LogNormal, Normal as Normal, Uniform as Uniform
+from .file.edit import with_tables as with_tables
+from .file.json_schema import rig_schema as rig_schema
+from .file.reader import (
+    read_rig as read_rig,
+    rig_content as rig_content,
+    rig_from as rig_from,
+    structure_by_stack as structure_by_stack,
+    structure_entries as structure_entries,
+)
+from .friction_and_wear import friction_ratios as friction_ratios
+from .least_power import least_power_study as least_power_study
+from .linear_response import (
+    FrequencyResponse as FrequencyResponse,
+    frequency_grid as frequency_grid,
+    frequency_response as frequency_response,
+    structure_in_contact as structure_in_contact,
+)
+from .lubrication import (
+    LubricationMap as LubricationMap,
+    LubricationPoint as LubricationPoint,
+    lubrication_map as lubrication_map,
+    lubrication_point as lubrication_point,
+    wear_of_materials as wear_of_materials,
+)
+from .operating_point import (
+    ContactPoint as ContactPoint,
+    FrictionPoint as FrictionPoint,
+    WearPoint as WearPoint,
+    contact_point as contact_point,
+    friction_point as friction_point,
+    wear_point as wear_point,
+)
+from .operating_point_batch import (
+    NUMBERS as NUMBERS,
+    STATUSES as STATUSES,
+    PointBatch as PointBatch,
+    point_batch as point_batch,
+)
+from .operating_point_grid import (
+    OperatingPoints as OperatingPoints,
+    operating_points as operating_points,
+    steady_states as steady_states,
+)
+from .parametric_study import (
+    frequency_study as frequency_study,
+    load_study as load_study,
+    speed_study as speed_study,
+    voltage_study as voltage_study,
+    waveform_study as waveform_study,
+)
+from .record import Rig as Rig
+from .simulation import Simulation as Simulation, simulate as simulate
+from .start_up_transient import StartUp as StartUp, start_up as start_up
+from .study_figures import STUDY_FIGURES as STUDY_FIGURES
+from .vibration import gap_motion as gap_motion

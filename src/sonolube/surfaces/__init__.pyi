@@ -1,0 +1,80 @@
+from .areal_parameters import (
+    HeightParameters as HeightParameters,
+    HybridParameters as HybridParameters,
+    SpatialParameters as SpatialParameters,
+    height_parameters as height_parameters,
+    hybrid_parameters as hybrid_parameters,
+    spatial_parameters as spatial_parameters,
+)
+from .asperities import (
+    SamplingDependence as SamplingDependence,
+    SummitStatistics as SummitStatistics,
+    combined_roughness as combined_roughness,
+    contact_roughness as contact_roughness,
+    nayak_summit_statistics as nayak_summit_statistics,
+    sampling_dependence as sampling_dependence,
+    spectral_moments as spectral_moments,
+    summit_statistics as summit_statistics,
+)
+from .correlation import (
+    Autocorrelation as Autocorrelation,
+    CorrelationLengths as CorrelationLengths,
+    autocorrelation as autocorrelation,
+    correlation_lengths as correlation_lengths,
+)
+from .features import FeatureParameters as FeatureParameters, feature_parameters as feature_parameters
+from .form_removal import fit_form as fit_form, remove_form as remove_form
+from .gaussian_filter import (
+    band_pass as band_pass,
+    high_pass as high_pass,
+    low_pass as low_pass,
+    profile_low_pass as profile_low_pass,
+)
+from .grooves.ball_on_disc import (
+    WearScar as WearScar,
+    disc_volume_loss as disc_volume_loss,
+    pin_volume_loss as pin_volume_loss,
+    wear_scar as wear_scar,
+)
+from .grooves.detection import DetectedGroove as DetectedGroove, detect_groove as detect_groove
+from .grooves.groove import Groove as Groove, measure_groove as measure_groove
+from .grooves.synthetic import (
+    GrooveShape as GrooveShape,
+    ScannedField as ScannedField,
+    SyntheticGroove as SyntheticGroove,
+    synthetic_groove as synthetic_groove,
+)
+from .grooves.track import GrooveTrack as GrooveTrack
+from .grooves.track_marks import TrackMarks as TrackMarks, track_marks as track_marks
+from .height_map import HeightMap as HeightMap
+from .material_ratio import (
+    FunctionalParameters as FunctionalParameters,
+    MaterialRatioCurve as MaterialRatioCurve,
+    functional_parameters as functional_parameters,
+    material_ratio_curve as material_ratio_curve,
+)
+from .random_surface import (
+    GaussianCorrelationSpectrum as GaussianCorrelationSpectrum,
+    HeightSpectrum as HeightSpectrum,
+    SelfAffineSpectrum as SelfAffineSpectrum,
+    gaussian_surface as gaussian_surface,
+)
+from .roughness import Roughness as Roughness
+from .roughness_profile import (
+    ProfileParameters as ProfileParameters,
+    ProfileStatistics as ProfileStatistics,
+    profile_parameters as profile_parameters,
+    profile_statistics as profile_statistics,
+)
+from .spectrum import (
+    ArealSpectrum as ArealSpectrum,
+    ProfileSpectrum as ProfileSpectrum,
+    RadialSpectrum as RadialSpectrum,
+    SpectralMoments as SpectralMoments,
+    areal_spectrum as areal_spectrum,
+    moments_of_spectrum as moments_of_spectrum,
+    profile_spectrum as profile_spectrum,
+    profiles as profiles,
+    radial_spectrum as radial_spectrum,
+)
+from .waviness import dominant_wavelengths as dominant_wavelengths

@@ -1,0 +1,42 @@
+from .bulk import (
+    HeatedDisc as HeatedDisc,
+    HeatedPin as HeatedPin,
+    disc_track_rise as disc_track_rise,
+    half_space_rise as half_space_rise,
+    lumped_rise as lumped_rise,
+    pin_conductance as pin_conductance,
+    pin_rise as pin_rise,
+)
+from .contact_history import (
+    ContactTemperatureHistory as ContactTemperatureHistory,
+    HeatedContact as HeatedContact,
+    contact_temperature_history as contact_temperature_history,
+    frictional_heat_rate as frictional_heat_rate,
+    superimposed_heat_rate as superimposed_heat_rate,
+)
+from .flash import (
+    ContactRise as ContactRise,
+    FlashRise as FlashRise,
+    blok_partition as blok_partition,
+    contact_rise as contact_rise,
+    flash_rise as flash_rise,
+    high_peclet_rise as high_peclet_rise,
+    low_peclet_rise as low_peclet_rise,
+    peclet_number as peclet_number,
+)
+from .jaeger import moving_band_rise as moving_band_rise, moving_rectangle_rise as moving_rectangle_rise
+from .network import ThermalNetwork as ThermalNetwork, network_rise as network_rise
+from .solid import ThermalSolid as ThermalSolid
+from .source import (
+    EllipticSource as EllipticSource,
+    HeatSource as HeatSource,
+    HertzianSource as HertzianSource,
+    RectangularSource as RectangularSource,
+)
+from .vibration_heat import (
+    adiabatic_heat_rate as adiabatic_heat_rate,
+    half_wave_bar_energy as half_wave_bar_energy,
+    interface_conductance as interface_conductance,
+    layer_conductance as layer_conductance,
+    vibration_loss_heat_rate as vibration_loss_heat_rate,
+)
