@@ -1,6 +1,7 @@
 """Architecture: which room may import which, the libraries of physics, lazy imports and sizes."""
 
 import importlib.util
+import pkgutil
 import subprocess
 import sys
 from collections import Counter
@@ -92,7 +93,7 @@ def _faces() -> list[str]:
 @pytest.mark.parametrize("room", _faces())
 def test_every_name_of_a_face_is_there_and_is_no_module(room: str) -> None:
     face = importlib.import_module(room)
-    submodules = {path.stem for path in Path(str(face.__file__)).parent.iterdir()}
+    submodules = {module.name for module in pkgutil.iter_modules(face.__path__)}
     assert face.__all__
     assert [name for name in face.__all__ if not hasattr(face, name)] == []
     assert submodules & set(face.__all__) == set()

@@ -68,8 +68,8 @@ def example_rigs() -> str:
 def errata_of_d() -> str:
     """Errata of the dissertation."""
     return _grid(
-        ["", "Where", "Printed", "Right", "Evidence"],
-        [[each.id, *map(_plain, (each.where, each.printed, each.right, each.evidence))] for each in errata()],
+        ["", "Location", "Printed", "Corrected", "Evidence"],
+        [[each.id, *map(_plain, (each.location, each.printed, each.corrected, each.evidence))] for each in errata()],
     )
 
 

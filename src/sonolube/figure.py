@@ -41,24 +41,21 @@ _STYLE = {
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ReportFigure:
-    """A figure of the reproduction report.
+    """Figure with title and caption, drawn on demand.
 
     Parameters
     ----------
     name : str
-        File name without suffix.
-    chapter : int
-        Chapter of the source to which it belongs.
+        Name of its file, without ending.
     title : str
-        Title.
+        Content of the figure.
     caption : str
-        Caption, with the source of every data point.
+        Explanation, with the source of every data point.
     draw : callable
-        Returns the figure.
+        Function that draws the figure.
     """
 
     name: str
-    chapter: int
     title: str
     caption: str
     draw: "Callable[[], Figure]"

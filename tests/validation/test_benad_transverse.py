@@ -56,20 +56,22 @@ def test_the_closed_form_is_near_a_spring_marched(stroke: float, speed: float) -
 @pytest.mark.parametrize(("least", "most"), [(0.3, 0.043), (0.5, 0.021), (0.7, 0.01)])
 def test_it_is_nearer_the_faster_the_sliding(contact: SpringContact, least: float, most: float) -> None:
     strokes = np.array([0.1, 0.5, 1.0, 1.5, 2.0, 3.0, 10.0])[:, np.newaxis] * SLIP
-    told: dict[str, Any] = {
+    conditions: dict[str, Any] = {
         "approach": DEPTH,
         "frequency": FREQUENCY,
         "transverse_amplitude": strokes,
         "sliding_speed": np.array([least, 1.5 * least, 1.5]) * 2 * np.pi * FREQUENCY * strokes,
     }
-    error = approximate_transverse_ratio(contact, **told) - combined_oscillation_ratio(contact, steps=512, **told)
+    error = approximate_transverse_ratio(contact, **conditions) - combined_oscillation_ratio(
+        contact, steps=512, **conditions
+    )
     assert error.min() > -0.004
     assert 0.4 * most < error.max() < most
 
 
 def test_a_long_stroke_turns_friction_as_rigid_bodies_do() -> None:
-    told: dict[str, Any] = {"sliding_speed": 0.5, "frequency": FREQUENCY}
-    long = approximate_transverse_ratio(FLAT, approach=1e-12, transverse_amplitude=5e-6, **told)
+    conditions: dict[str, Any] = {"sliding_speed": 0.5, "frequency": FREQUENCY}
+    long = approximate_transverse_ratio(FLAT, approach=1e-12, transverse_amplitude=5e-6, **conditions)
     rigid = transverse_vibration_ratio(sliding_speed=0.5, vibration_velocity=2 * np.pi * FREQUENCY * 5e-6)
     assert long == approx(float(rigid), rel=1e-9)
 

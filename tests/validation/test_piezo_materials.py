@@ -46,7 +46,7 @@ def test_the_shear_compliance_in_the_plane_is_the_one_printed(name: str, s66: fl
     ("name", "d33", "d31", "d15", "eps33", "eps11"),
     [("pzt4", 289e-12, -123e-12, 496e-12, 1300, 1475), ("pzt5h", 593e-12, -274e-12, 741e-12, 3400, 3130)],
 )
-def test_charge_constants_and_free_permittivities_are_those_everyone_knows(
+def test_charge_constants_and_free_permittivities_are_those_of_handbooks(
     name: str, d33: float, d31: float, d15: float, eps33: float, eps11: float
 ) -> None:
     ceramic = piezo_ceramic(name)

@@ -67,7 +67,7 @@ def test_on_a_sphere_it_holds_up_to_half_the_slip_length(stroke: float, most: fl
 
 @pytest.mark.parametrize(("contact", "stroke"), [(FLAT, 1.1), (SPHERE, 0.6)])
 def test_a_stroke_that_slides_back_warns(contact: SpringContact, stroke: float) -> None:
-    with pytest.warns(ModelRangeWarning, match="slides springs back"):
+    with pytest.warns(ModelRangeWarning, match="reverses the slip of springs"):
         approximate_longitudinal_ratio(
             contact, approach=DEPTH, in_plane_amplitude=stroke * SLIP, frequency=20e3, sliding_speed=0.01
         )

@@ -73,9 +73,9 @@ def marched(states: SteadyStates, steps: int) -> tuple[Array, NDArray[np.bool_]]
             steps_per_period=steps,
             strobed_periods=1,
         )
-        seen = end.envelope
+        last = end.envelope
         found[:, some] = [
-            each[:, -1] for each in (seen.first_harmonic_amplitude, seen.mean_displacement, seen.mean_normal_force)
+            each[:, -1] for each in (last.first_harmonic_amplitude, last.mean_displacement, last.mean_normal_force)
         ]
         followed[some] = end.status == "marched"
     return found, followed

@@ -1,4 +1,4 @@
-"""What the dissertation says of the tribometer's unprinted parameters, and what of it can hold together."""
+"""Parameters of the tribometer that are not printed, identified from published facts."""
 
 import math
 

@@ -1,34 +1,9 @@
-"""The dissertation's data: every table, the numbers of its text, its figures and its errata.
+"""Published data of the dissertation: tables, quoted numbers, figure captions, reviewed studies and errata.
 
 D is "Friction and Wear Reduction via Ultrasonic Lubrication", the dissertation that sonolube implements. Numbers are
-kept as the digits printed, so that their resolution is known; what speaks against one stands beside it as a correction.
+kept with their printed digits, so that their rounding intervals are known; errata stand beside them as corrections.
 """
 
-from sonolube.published.captions import Figure, figure, figures
-from sonolube.published.misprints import Correction, Erratum, errata, erratum
-from sonolube.published.number import PrintedNumber, parse_printed
-from sonolube.published.previous_studies import PreviousStudy, previous_studies
-from sonolube.published.running_text import Statement, statement, statements
-from sonolube.published.tidy_table import Column, Role, Table, table, table_ids
+import lazy_loader
 
-__all__ = [
-    "Column",
-    "Correction",
-    "Erratum",
-    "Figure",
-    "PreviousStudy",
-    "PrintedNumber",
-    "Role",
-    "Statement",
-    "Table",
-    "errata",
-    "erratum",
-    "figure",
-    "figures",
-    "parse_printed",
-    "previous_studies",
-    "statement",
-    "statements",
-    "table",
-    "table_ids",
-]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,4 +1,4 @@
-"""The figures of the dissertation: what each shows, and what the text says of it; no curve came along as data."""
+"""Figure captions of the dissertation, with the statements of the running text on each figure."""
 
 import tomllib
 from dataclasses import dataclass
@@ -9,66 +9,59 @@ from sonolube.errors import UnknownName
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Figure:
-    """One figure of D, of which only the caption and the text's words are known.
+class FigureCaption:
+    """Content of one figure of D by its caption and the running text; no curve is available as data.
 
     Parameters
     ----------
     number : str
-        Its number, such as "2.13".
+        Number of the figure, such as "2.13".
     section : str
-        The section it belongs to.
-    shows : str
-        What it shows.
+        Section the figure belongs to.
+    content : str
+        Content by the caption.
     no_data : bool
-        True: no curve, picture or drawing came along, so no number may be read off it.
+        True: no curve, picture or drawing is available, so that no number may be read off the figure.
+    remarks : tuple of str
+        Statements of the running text on the figure, in words.
     statements : tuple of str
-        What the text says of it.
-    numbers : tuple of str
-        The statements of the running text that put it in numbers, by name.
+        Ids of the numbers that the running text states of the figure, as in `statement`.
     """
 
     number: str
     section: str
-    shows: str
+    content: str
     no_data: bool
+    remarks: tuple[str, ...] = ()
     statements: tuple[str, ...] = ()
-    numbers: tuple[str, ...] = ()
 
 
 @cache
-def figures() -> tuple[Figure, ...]:
-    """Return all figures of D, in its order."""
+def figures() -> tuple[FigureCaption, ...]:
+    """Return the captions of all figures, in the order of D."""
     text = files("sonolube.published").joinpath("figures.toml").read_text(encoding="utf-8")
     return tuple(
-        Figure(
-            number=entry["number"],
-            section=entry["section"],
-            shows=entry["shows"],
-            no_data=entry["no_data"],
-            statements=tuple(entry.get("statements", ())),
-            numbers=tuple(entry.get("numbers", ())),
-        )
+        FigureCaption(**entry | {name: tuple(entry.get(name, ())) for name in ("remarks", "statements")})
         for entry in tomllib.loads(text)["figures"]
     )
 
 
-def figure(number: str) -> Figure:
-    """Return one figure.
+def figure(number: str) -> FigureCaption:
+    """Return the caption of one figure.
 
     Parameters
     ----------
     number : str
-        Its number, such as "2.13" or "B.1".
+        Number of the figure, such as "2.13" or "B.1".
 
     Returns
     -------
-    Figure
+    FigureCaption
 
     Raises
     ------
     UnknownName
-        If there is none of that number.
+        If no figure has that number.
     """
     known = {entry.number: entry for entry in figures()}
     if number not in known:

@@ -1,4 +1,4 @@
-"""The numbers that the dissertation states in its running text."""
+"""Numbers that the running text of the dissertation states: quoted numbers with relation, meaning and erratum."""
 
 import tomllib
 from dataclasses import dataclass
@@ -7,41 +7,41 @@ from importlib.resources import files
 from typing import Any
 
 from sonolube.errors import UnknownName
-from sonolube.published.number import PrintedNumber, parse_printed
+from sonolube.published.printed_number import PrintedNumber, parse_printed
 
 _PARTS = ("abstract", "chapter1", "chapter2", "chapter3", "chapter4", "chapter5", "appendix")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Statement:
-    """One number of the running text.
+    """One number that the running text states.
 
     Parameters
     ----------
     id : str
-        Its stable name, the section first.
+        Stable id that begins with the section.
     section : str
-        Where it stands; "abstract" and "A" for the abstract and the protocol.
+        Section of D; "abstract" for the abstract, "A" and below for the protocol of the tests.
     quantity : str
-        What it is a number of, by its name in the vocabulary; empty for a pure number that has none.
+        Quantity by its name in the vocabulary; empty for a pure number that has none.
     unit : str
-        The unit printed.
+        Printed unit.
     number : PrintedNumber
-        The number, in SI.
+        Number with its rounding interval, in SI.
     relation : str
-        How the text relates the quantity to the number: "=", "about", "up to", "<" or ">".
+        Relation of the quantity to the number: "=", "about", "up to", "<" or ">".
     meaning : str
-        What is stated.
+        Content of the statement.
     study : str
-        The earlier study it comes from; empty for D's own numbers.
+        Authors of the reviewed study that the number is quoted from; empty for a number of D.
     direction : str
-        How that study's vibration stood to the sliding, where D tells.
+        Direction of vibration in that study, where D states it.
     erratum : str
-        The erratum it belongs to; empty where nothing speaks against the number.
-    right : str
-        What it should be; empty where nothing speaks against it.
-    reason : str
-        What speaks against it; empty where nothing does.
+        Id of the erratum that corrects the number; empty where there is none.
+    corrected : str
+        Corrected number or reading; empty where nothing is to correct.
+    evidence : str
+        Evidence against the print; empty where there is none.
     """
 
     id: str
@@ -54,17 +54,17 @@ class Statement:
     study: str = ""
     direction: str = ""
     erratum: str = ""
-    right: str = ""
-    reason: str = ""
+    corrected: str = ""
+    evidence: str = ""
 
 
 def statements(chapter: int | None = None) -> tuple[Statement, ...]:
-    """Return the numbers of the running text, in its order.
+    """Return the numbers that the running text states, in its order.
 
     Parameters
     ----------
     chapter : int or None
-        The chapter, from 1 to 5; None for all of D, with abstract and appendix.
+        Chapter from 1 to 5; None for all of D, with abstract and appendix.
 
     Returns
     -------
@@ -73,7 +73,7 @@ def statements(chapter: int | None = None) -> tuple[Statement, ...]:
     Raises
     ------
     UnknownName
-        If there is no such chapter.
+        If D has no such chapter.
     """
     if chapter is None:
         return tuple(entry for part in _PARTS for entry in _read(part))
@@ -84,12 +84,12 @@ def statements(chapter: int | None = None) -> tuple[Statement, ...]:
 
 
 def statement(id: str) -> Statement:  # noqa: A002 - the field's own word
-    """Return one number of the running text.
+    """Return one number that the running text states.
 
     Parameters
     ----------
     id : str
-        Its name, such as "2.5.2-friction-titanium-off".
+        Id, such as "2.5.2-friction-titanium-off".
 
     Returns
     -------
@@ -98,7 +98,7 @@ def statement(id: str) -> Statement:  # noqa: A002 - the field's own word
     Raises
     ------
     UnknownName
-        If there is none of that name.
+        If no statement has that id.
     """
     if id not in _by_id():
         raise UnknownName.among(_by_id(), kind="statement", name=id)
@@ -107,15 +107,18 @@ def statement(id: str) -> Statement:  # noqa: A002 - the field's own word
 
 @cache
 def _by_id() -> dict[str, Statement]:
+    """Return all statements by id."""
     return {entry.id: entry for entry in statements()}
 
 
 @cache
 def _read(part: str) -> tuple[Statement, ...]:
+    """Return the statements of one part of D from its file."""
     text = files("sonolube.published").joinpath("statements", f"{part}.toml").read_text(encoding="utf-8")
     return tuple(_statement(**entry) for entry in tomllib.loads(text)["statements"])
 
 
 def _statement(*, printed: str, quantity: str, unit: str = "", relation: str = "=", **entry: Any) -> Statement:
+    """Return a statement from an entry of a file, its number parsed and converted to SI."""
     number = parse_printed(printed, unit, quantity=quantity)
     return Statement(quantity=quantity, unit=unit, number=number, relation=relation, **entry)

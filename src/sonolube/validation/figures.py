@@ -1,83 +1,153 @@
-"""Figures of the comparison: predicted against measured, friction over speed and amplitude, and a rig's predictions."""
+"""Figures of the comparison: predicted against measured ratios, ratios over speed and amplitude, and those of a rig."""
 
 from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from sonolube.checks import Floats
 from sonolube.figure import COLOURS, LINES, MARKERS, ReportFigure
-from sonolube.validation.compare import DATA_SETS, ComparedFit, RigPrediction, published_comparison
-from sonolube.validation.fit import measured_in
-from sonolube.validation.friction_tests import FrictionTest
+from sonolube.validation.comparison import DATA_SETS, ComparedFit, RigPrediction
+from sonolube.validation.published_tests import FrictionTest, friction_tests
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_PANELS: Final = 12  # models of which predicted is drawn against measured
-_CURVES: Final = 6  # models drawn over speed and amplitude
+_PANELS: Final = 12  # variants with a panel of predicted against measured ratios
+_CURVES: Final = 6  # variants drawn over speed and amplitude
 _POINTS: Final = 40
-_MICRO, _MILLI = 1e6, 1e3
 _STYLES: Final = {
     letter: (COLOURS[index % len(COLOURS)], (*MARKERS, "<", ">")[index]) for index, letter in enumerate(DATA_SETS)
 }
-_LOW, _TOP = -0.1, 1.15  # of the ratios drawn
-
-
-def figures() -> tuple[ReportFigure, ...]:
-    """Return the figures of the comparison of all models with all published tests."""
-    return comparison_figures(published_comparison)
+_LOW, _HIGH = -0.1, 1.15  # limits of the ratios drawn
+_HIGHEST_OF_RIG: Final = 1.5
 
 
 def comparison_figures(compared: Callable[[], tuple[ComparedFit, ...]]) -> tuple[ReportFigure, ...]:
-    """Return the figures of a comparison, which is only asked for when one is drawn."""
+    """Return the figures of a comparison.
 
-    def judged() -> list[ComparedFit]:
-        return [one for one in compared() if one.judgement is not None]
+    Parameters
+    ----------
+    compared : callable
+        Function that returns the comparison; called when a figure is drawn.
+
+    Returns
+    -------
+    tuple of ReportFigure
+    """
+
+    def assessed() -> list[ComparedFit]:
+        return [one for one in compared() if one.assessment is not None]
 
     return (
         ReportFigure(
             name="models-predicted-against-measured",
-            chapter=3,
             title="Models of friction under vibration: predicted against measured",
             caption="Filled: by the fit to all sets A to G. Open: each set by a fit to the others, where "
-            "that differs; set H by the fit to all. On the line both "
-            "would agree; ratios outside the frame stand at its edge. k fitted parameters, rms errors of the fit and "
-            f"unseen. The {_PANELS} models of the least corrected criterion of Akaike.",
-            draw=lambda: _against_measured(judged()[:_PANELS]),
+            "that differs; set H by the fit to all. On the line both would agree; ratios outside the frame are drawn "
+            "at its edge. k fitted parameters, rms errors of the fit and of the cross-validation (CV). The "
+            f"{_PANELS} models of the lowest corrected Akaike criterion.",
+            draw=lambda: _predicted_against_measured(assessed()[:_PANELS]),
         ),
         ReportFigure(
             name="models-over-speed-and-amplitude",
-            chapter=3,
             title="Models of friction under vibration over speed and amplitude",
-            caption="Points and scatter: Tables 2.3 and 4.2. Lines: models fitted to all sets, of each kind the one of "
-            "the least corrected criterion of Akaike.",
-            draw=lambda: _over_speed_and_amplitude(_one_of_each_kind(judged())[:_CURVES]),
+            caption="Points and scatter: Tables 2.3 and 4.2. Lines: models fitted to all sets, of each family the one "
+            "of the lowest corrected Akaike criterion.",
+            draw=lambda: _over_speed_and_amplitude(_best_of_each_family(assessed())[:_CURVES]),
         ),
     )
 
 
 def rig_figure(predictions: tuple[RigPrediction, ...], title: str) -> "Figure":
-    """Draw what every applicable model says of a rig, each with its unseen error."""
+    """Draw the friction ratio of a rig by every applicable model, with its cross-validation error.
+
+    Parameters
+    ----------
+    predictions : tuple of RigPrediction
+    title : str
+        Name of the rig.
+
+    Returns
+    -------
+    Figure
+    """
     from matplotlib import pyplot as plt
 
-    said = [one for one in predictions if one.friction_ratio is not None][::-1]
-    figure, axes = plt.subplots(figsize=(5.6, 1.3 + 0.22 * len(said)))
-    ratios = np.array([min(one.friction_ratio or 0.0, 1.5) for one in said])
-    spread = np.array([one.uncertainty or 0.0 for one in said])
-    axes.errorbar(ratios, range(len(said)), xerr=spread, fmt="o", color=COLOURS[0], ecolor="0.6", capsize=2.5)
-    for row, one in enumerate(said):
-        if (one.friction_ratio or 0.0) > 1.5:
-            axes.annotate(f"{one.friction_ratio:.1f} →", (1.5, row), ha="right", va="bottom", fontsize=7)
+    known = [(one.model.name, one.friction_ratio, one.uncertainty or 0.0) for one in predictions[::-1]]
+    rows = [(name, ratio, error) for name, ratio, error in known if ratio is not None]
+    figure, axes = plt.subplots(figsize=(5.6, 1.3 + 0.22 * len(rows)))
+    ratios = np.array([min(ratio, _HIGHEST_OF_RIG) for _, ratio, _ in rows])
+    errors = np.array([error for _, _, error in rows])
+    axes.errorbar(ratios, range(len(rows)), xerr=errors, fmt="o", color=COLOURS[0], ecolor="0.6", capsize=2.5)
+    for row, (_, ratio, _) in enumerate(rows):
+        if ratio > _HIGHEST_OF_RIG:
+            axes.annotate(f"{ratio:.1f} →", (_HIGHEST_OF_RIG, row), ha="right", va="bottom", fontsize=7)
     axes.axvline(1.0, color="0.5", lw=0.8, ls="--")
-    axes.set_yticks(range(len(said)), labels=[one.model.name.replace("-", " ") for one in said])
-    axes.set(xlabel="Friction with over without vibration [-]", xlim=(-0.1, 1.6), ylim=(-0.7, len(said) - 0.3))
-    axes.set_title(f"{title}\nbars: rms error in sets of tests that no fit had seen", fontsize=9)
+    axes.set_yticks(range(len(rows)), labels=[name.replace("-", " ") for name, _, _ in rows])
+    axes.set(xlabel="Friction with over without vibration [-]", xlim=(-0.1, 1.6), ylim=(-0.7, len(rows) - 0.3))
+    axes.set_title(f"{title}\nbars: rms error of the cross-validation", fontsize=9)
     return figure
 
 
-def _against_measured(fits: list[ComparedFit]) -> "Figure":
+def speed_and_amplitude_panels() -> "tuple[Figure, Axes, Axes]":
+    """Return a figure with the measured ratios of Table 2.3 over sliding speed and of Table 4.2 over amplitude.
+
+    Returns
+    -------
+    Figure, Axes, Axes
+    """
+    from matplotlib import pyplot as plt
+
+    figure, (speeds, amplitudes) = plt.subplots(1, 2, figsize=(8.2, 4.4), sharey=True)
+    draw_measured(speeds, friction_tests("A"), lambda test: 1e3 * test.sliding_speed, "measured, Tables 2.3 and 4.2")
+    draw_measured(amplitudes, friction_tests("B"), lambda test: 1e6 * test.vibration_amplitude)
+    speeds.set(xlabel="Sliding speed [mm/s]", ylabel="Friction with over without vibration [-]", ylim=(-0.12, 1.1))
+    amplitudes.set(xlabel="Vibration amplitude [µm]")
+    speeds.set_title("Table 2.3: 2.5 µm, 3 N", fontsize=9)
+    amplitudes.set_title("Table 4.2: 65.5 mm/s, 5 N", fontsize=9)
+    return figure, speeds, amplitudes
+
+
+def draw_measured(
+    axes: "Axes",
+    tests: tuple[FrictionTest, ...],
+    abscissa: Callable[[FrictionTest], float],
+    label: str | None = None,
+    *,
+    fmt: str = "o",
+    color: str = "black",
+) -> None:
+    """Draw measured friction ratios with their uncertainties as points on axes.
+
+    Parameters
+    ----------
+    axes : Axes
+    tests : tuple of FrictionTest
+    abscissa : callable
+        Function of a test that returns its abscissa.
+    label : str or None
+        Label in the legend.
+    fmt, color : str
+        Marker and colour.
+    """
+    axes.errorbar(
+        [abscissa(test) for test in tests],
+        [test.friction_ratio for test in tests],
+        yerr=[test.uncertainty or 0.0 for test in tests],
+        fmt=fmt,
+        color=color,
+        capsize=3,
+        zorder=5,
+        label=label,
+    )
+
+
+def _predicted_against_measured(fits: list[ComparedFit]) -> "Figure":
+    """Draw predicted against measured ratios, one panel for each model."""
     from matplotlib import pyplot as plt
     from matplotlib.lines import Line2D
 
@@ -99,99 +169,60 @@ def _against_measured(fits: list[ComparedFit]) -> "Figure":
         grid[lowest, column].tick_params(labelbottom=True)
     shown = sorted({p.test.set_name for one in fits for p in one.predictions if p.fitted is not None})
     handles = [
-        Line2D(
-            [], [], ls="", color=_STYLES[letter][0], marker=_STYLES[letter][1], label=f"{letter}: {DATA_SETS[letter]}"
-        )
-        for letter in shown
+        Line2D([], [], ls="", color=colour, marker=marker, label=f"{letter}: {DATA_SETS[letter]}")
+        for letter, (colour, marker) in ((letter, _STYLES[letter]) for letter in shown)
     ]
     figure.legend(handles=handles, loc="outside lower center", ncols=legend_columns)
     return figure
 
 
 def _panel(axes: "Axes", one: ComparedFit) -> None:
-    assert one.judgement is not None
-    axes.plot([0, _TOP], [0, _TOP], color="0.5", lw=0.8)
+    """Draw the predictions of one model against the measured ratios."""
+    assert one.assessment is not None
+    axes.plot([0, _HIGH], [0, _HIGH], color="0.5", lw=0.8)
     for prediction in one.predictions:
         colour, marker = _STYLES[prediction.test.set_name]
-        for ratio, face in ((prediction.unseen, "none"), (prediction.fitted, colour)):
+        for ratio, face in ((prediction.cross_validated, "none"), (prediction.fitted, colour)):
             if ratio is not None:
-                axes.plot(
-                    prediction.test.friction_ratio,
-                    min(max(ratio, _LOW), _TOP),
-                    ls="",
-                    marker=marker,
-                    color=colour,
-                    mfc=face,
-                    ms=4.5,
-                    clip_on=False,
-                )
-    seen, unseen = one.judgement.seen.rms, one.judgement.unseen.rms
+                place = prediction.test.friction_ratio, min(max(ratio, _LOW), _HIGH)
+                axes.plot(*place, ls="", marker=marker, color=colour, mfc=face, ms=4.5, clip_on=False)
+    fit, cross_validation = one.assessment.fit_errors.rms, one.assessment.cross_validation_errors.rms
     axes.set_title(
-        f"{one.model.name.replace('-', ' ')}\nk = {len(one.parameters)}, rms {seen:.2f}, unseen {unseen:.2f}",
+        f"{one.model.name.replace('-', ' ')}\nk = {len(one.parameters)}, rms {fit:.2f}, CV {cross_validation:.2f}",
         fontsize=8,
     )
-    axes.set(xlim=(0, _TOP), ylim=(_LOW, _TOP), aspect="equal", xticks=(0, 0.5, 1), yticks=(0, 0.5, 1))
+    axes.set(xlim=(0, _HIGH), ylim=(_LOW, _HIGH), aspect="equal", xticks=(0, 0.5, 1), yticks=(0, 0.5, 1))
 
 
 def _over_speed_and_amplitude(fits: list[ComparedFit]) -> "Figure":
-    from matplotlib import pyplot as plt
-
-    figure, (speeds, amplitudes) = plt.subplots(1, 2, figsize=(8.2, 4.4), sharey=True)
-    slow, loud = measured_in("A"), measured_in("B")
-    over_speed = np.geomspace(5e-3, 0.2, _POINTS)
-    over_amplitude = np.linspace(0.05e-6, 2.6e-6, _POINTS)
+    """Draw fitted models over sliding speed and amplitude with the measured ratios of Tables 2.3 and 4.2."""
+    figure, speeds, amplitudes = speed_and_amplitude_panels()
+    tribometer, power_map = friction_tests("A")[0], friction_tests("B")[0]
+    speed, amplitude = np.geomspace(5e-3, 0.2, _POINTS), np.linspace(0.05e-6, 2.6e-6, _POINTS)
     for index, one in enumerate(fits):
-        style = {"color": COLOURS[index % len(COLOURS)], "ls": LINES[index % len(LINES)]}
-        speeds.plot(
-            _MILLI * over_speed,
-            _curve(one, over_speed, lambda speed: replace(slow[0], sliding_speed=speed)),
-            **style,
-            label=f"{one.model.name.replace('-', ' ')}, k = {len(one.parameters)}",
-        )
-        amplitudes.plot(
-            _MICRO * over_amplitude,
-            _curve(one, over_amplitude, lambda amplitude: replace(loud[0], vibration_amplitude=amplitude)),
-            **style,
-        )
-    for axes, tests, places in (
-        (speeds, slow, [_MILLI * test.sliding_speed for test in slow]),
-        (amplitudes, loud, [_MICRO * test.vibration_amplitude for test in loud]),
-    ):
-        axes.errorbar(
-            places,
-            [test.friction_ratio for test in tests],
-            yerr=[test.uncertainty for test in tests],
-            fmt="o",
-            color="black",
-            capsize=3,
-            zorder=5,
-            label="measured, Tables 2.3 and 4.2" if axes is speeds else None,
-        )
-    speeds.set(
-        xscale="log",
-        xlabel="Sliding speed [mm/s]",
-        ylabel="Friction with over without vibration [-]",
-        ylim=(-0.05, 1.1),
-        xticks=(5, 10, 20, 50, 100, 200),
-    )
+        colour, line = COLOURS[index % len(COLOURS)], LINES[index % len(LINES)]
+        over_speed = _ratios(one, [replace(tribometer, sliding_speed=float(v)) for v in speed])
+        over_amplitude = _ratios(one, [replace(power_map, vibration_amplitude=float(a)) for a in amplitude])
+        label = f"{one.model.name.replace('-', ' ')}, k = {len(one.parameters)}"
+        speeds.plot(1e3 * speed, over_speed, color=colour, ls=line, label=label)
+        amplitudes.plot(1e6 * amplitude, over_amplitude, color=colour, ls=line)
+    speeds.set(xscale="log", xticks=(5, 10, 20, 50, 100, 200))
     speeds.xaxis.set_major_formatter("{x:g}")
     speeds.minorticks_off()
-    speeds.set_title("Table 2.3: 2.5 µm, 3 N", fontsize=9)
-    amplitudes.set(xlabel="Vibration amplitude [µm]")
-    amplitudes.set_title("Table 4.2: 65.5 mm/s, 5 N", fontsize=9)
     figure.legend(loc="outside lower center", ncols=3)
     return figure
 
 
-def _curve(one: ComparedFit, values: np.ndarray, at: Callable[[float], FrictionTest]) -> np.ndarray:
-    ratios = (one.fit.predict(at(float(value))) for value in values)
-    return np.array([np.nan if ratio is None else ratio for ratio in ratios])
+def _ratios(one: ComparedFit, tests: list[FrictionTest]) -> Floats:
+    """Return the friction ratios of tests by a fitted model; NaN outside its range. []"""
+    ratios: list[ArrayLike] = [np.nan if ratio is None else ratio for ratio in map(one.fit.predict, tests)]
+    return np.array(ratios, dtype=np.float64)
 
 
-def _one_of_each_kind(fits: list[ComparedFit]) -> list[ComparedFit]:
-    """Return the first model of each kind that knows normal vibration; a kind is the first word of the name."""
-    kinds: dict[str, ComparedFit] = {}
+def _best_of_each_family(fits: list[ComparedFit]) -> list[ComparedFit]:
+    """Return the first fit to set A of each family of models, named by the first word of their names."""
+    families: dict[str, ComparedFit] = {}
     for one in fits:
         if "A" in one.sets:
-            kinds.setdefault(one.model.name.split("-")[0], one)
-    return list(kinds.values())
+            families.setdefault(one.model.name.split("-")[0], one)
+    return list(families.values())

@@ -1,20 +1,19 @@
-"""What the dissertation says of the tribometer's unprinted masses, springs and dampers, ranked, and the rig they make.
+"""Published facts on the unprinted masses, springs and dampers of the tribometer, ranked, and the identified structure.
 
-Rank 1 is what was measured or how the rig is built, rank 2 a number that the dissertation computed, rank 3 what
-is only said in words or concluded here.
+Rank 1: measurements and construction of the rig. Rank 2: numbers that the dissertation computed. Rank 3: statements in
+words and conclusions drawn here.
 """
 
 import math
+from typing import Final
 
 from sonolube.actuator.stack import PiezoStack
 from sonolube.contact import decay_length
 from sonolube.identification import Fact, Identification, PinOnDiscTest, identify, pin_on_disc_model
-from sonolube.published import PrintedNumber
-from sonolube.published.values import Computed, over_rounding
+from sonolube.published import ComputedValue, PrintedNumber, propagate_rounding, published_number, si_value
 from sonolube.validation.contacts import wear_contact
-from sonolube.validation.inputs import in_table, said
 
-BOUNDS = {
+BOUNDS: Final = {
     "tip_mass": (0.01, 10.0),
     "reaction_mass": (0.01, 10.0),
     "arm_mass": (0.05, 5.0),
@@ -22,7 +21,9 @@ BOUNDS = {
     "arm_damping": (1.0, 1e3),
     "tip_damping": (0.1, 1e4),
 }
-IDENTIFIED = {
+"""Bounds of the identified parameters, in SI."""
+
+IDENTIFIED: Final = {
     "tip_mass": 0.1093,
     "reaction_mass": 2.41,
     "arm_mass": 0.602,
@@ -30,21 +31,20 @@ IDENTIFIED = {
     "arm_damping": 90.0,
     "tip_damping": 702.0,
 }
-"""What `tribometer_identification` finds, rounded, in SI."""
+"""Rounded result of `tribometer_identification`, in SI; the search takes half a minute."""
 
 _GRAVITY = 9.80665  # m/s2
 _HALF_POWER = 0.5**0.5
 _ARM_HEAVIEST = 1.0  # kg
-_TOP_VOLTAGE = 14  # row of Table 4.1
 
 
 def tribometer_identification(*, seed: int = 0) -> Identification:
-    """Return what the published facts say of m1, m2, m3, k2, c1 and c2.
+    """Return the identification of m1, m2, m3, k2, c1 and c2 of D 3.31 from the published facts.
 
     Parameters
     ----------
     seed : int
-        Seed of the searches.
+        Seed of the random searches.
 
     Returns
     -------
@@ -54,23 +54,23 @@ def tribometer_identification(*, seed: int = 0) -> Identification:
 
 
 def tribometer_test() -> PinOnDiscTest:
-    """Return the tribometer's stack as printed, and how it was driven and loaded."""
-    contact, load = wear_contact(), in_table("3.2", "normal_load").value
+    """Return the stack of the tribometer as printed, with its drive and load."""
+    contact, load = wear_contact(), si_value("table-3.2-normal_load-1")
     return PinOnDiscTest(
         stack=tribometer_stack(),
-        frequency=said("4.1.1-frequency").value,
-        voltage_peak_to_peak=in_table("4.1", "voltage_peak_to_peak", _TOP_VOLTAGE).value,
+        frequency=si_value("4.1.1-frequency"),
+        voltage_peak_to_peak=si_value("table-4.1-voltage_peak_to_peak-15"),
         normal_load=load,
         decay_length=float(decay_length(contact)),
-        settling_time=said("3.3.4-settling-time").value,
+        settling_time=si_value("3.3.4-settling-time"),
         added_mass=(_load_of_most_arm_vibration() - load) / _GRAVITY,
     )
 
 
 def tribometer_stack() -> PiezoStack:
-    """Return the stack of Table 3.5, its coupling factor left to be derived."""
+    """Return the stack of Table 3.5, its coupling factor derived from the other constants."""
     layers, constant, stiffness, capacitance, mass, damping = (
-        in_table("3.5", name).value
+        si_value(f"table-3.5-{name}-1")
         for name in (
             "stack_layers",
             "charge_constant_33",
@@ -90,20 +90,21 @@ def tribometer_stack() -> PiezoStack:
 
 
 def tribometer_facts() -> tuple[Fact, ...]:
-    """Return the facts, the more trusted first."""
+    """Return the published facts, in the order of their ranks."""
     return (*_measured(), *_simulated(), *_concluded())
 
 
 def _measured() -> tuple[Fact, ...]:
-    per_volt = over_rounding(
+    """Return the facts of rank 1: measurements and construction of the rig."""
+    per_volt = propagate_rounding(
         lambda amplitude, voltage: amplitude / voltage,
-        in_table("4.1", "vibration_amplitude", _TOP_VOLTAGE),
-        in_table("4.1", "voltage_peak_to_peak", _TOP_VOLTAGE),
+        "table-4.1-vibration_amplitude-15",
+        "table-4.1-voltage_peak_to_peak-15",
     )
     return (
         _printed(
             "electrical_resonance",
-            said("4.1.1-frequency"),
+            published_number("4.1.1-frequency"),
             rank=1,
             unit="Hz",
             meaning="Resonance of the actuator, to the digits printed",
@@ -139,14 +140,15 @@ def _measured() -> tuple[Fact, ...]:
 
 
 def _simulated() -> tuple[Fact, ...]:
-    quality = over_rounding(
+    """Return the facts of rank 2: numbers that D computed."""
+    quality = propagate_rounding(
         lambda stiffness, frequency, damping: stiffness / (2 * math.pi * frequency * damping),
-        in_table("3.5", "stack_stiffness"),
-        said("4.1.1-frequency"),
-        in_table("3.5", "stack_damping"),
+        "table-3.5-stack_stiffness-1",
+        "4.1.1-frequency",
+        "table-3.5-stack_damping-1",
     )
-    power = in_table("4.1", "actuator_power", _TOP_VOLTAGE)
-    settling = said("3.3.4-settling-time").value
+    power = published_number("table-4.1-actuator_power-15")
+    settling = si_value("3.3.4-settling-time")
     return (
         _printed(
             "resonance_quality_factor",
@@ -158,7 +160,7 @@ def _simulated() -> tuple[Fact, ...]:
         Fact(
             name="dissipated_power",
             value=power.value,
-            tolerance=power.half_digit,
+            tolerance=power.rounding_half_width,
             rank=2,
             relation="<=",
             unit="W",
@@ -185,7 +187,7 @@ def _simulated() -> tuple[Fact, ...]:
         ),
         Fact(
             name="residual_frequency",
-            value=said("3.3.4-residual-frequency").value,
+            value=si_value("3.3.4-residual-frequency"),
             tolerance=20.0,
             rank=2,
             unit="Hz",
@@ -196,7 +198,8 @@ def _simulated() -> tuple[Fact, ...]:
 
 
 def _concluded() -> tuple[Fact, ...]:
-    hung = said("A.3.1.1-weight").value / _GRAVITY
+    """Return the facts of rank 3: statements in words and conclusions drawn here."""
+    hung = si_value("A.3.1.1-weight") / _GRAVITY
     return (
         Fact(
             name="residual_fraction",
@@ -209,7 +212,7 @@ def _concluded() -> tuple[Fact, ...]:
         ),
         Fact(
             name="residual_frequency_with_added_mass",
-            value=said("4.1.2-arm-frequency").value,
+            value=si_value("4.1.2-arm-frequency"),
             tolerance=20.0,
             rank=3,
             unit="Hz",
@@ -229,12 +232,13 @@ def _concluded() -> tuple[Fact, ...]:
 
 
 def _printed(
-    name: str, number: PrintedNumber | Computed, *, rank: int, unit: str = "", meaning: str, source: str
+    name: str, number: PrintedNumber | ComputedValue, *, rank: int, unit: str = "", meaning: str, source: str
 ) -> Fact:
-    """Return a fact as close as the printed digits tell."""
+    """Return a fact with half the rounding interval of its printed digits as the tolerance."""
     within = (number.high - number.low) / 2
     return Fact(name=name, value=number.value, tolerance=within, rank=rank, unit=unit, meaning=meaning, source=source)
 
 
 def _load_of_most_arm_vibration() -> float:
-    return (said("4.1.2-peak-load-1").value + said("4.1.2-peak-load-2").value) / 2
+    """Return the load at which D 4.1.2 states the largest vibration of the arm. [N]"""
+    return (si_value("4.1.2-peak-load-1") + si_value("4.1.2-peak-load-2")) / 2

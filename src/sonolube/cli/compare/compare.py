@@ -16,7 +16,7 @@ from sonolube.errors import InvalidInput
 from sonolube.report import Drawing
 from sonolube.rig import Rig, read_rig
 from sonolube.units import format_si
-from sonolube.validation.compare import (
+from sonolube.validation.comparison import (
     DATA_SETS,
     ONLY_PREDICTED,
     ComparedFit,
@@ -24,12 +24,12 @@ from sonolube.validation.compare import (
     Prediction,
     RigPrediction,
     compare_models,
+    compared_models,
     predict_rig,
 )
 from sonolube.validation.figures import comparison_figures, rig_figure
-from sonolube.validation.models import compared_models
-from sonolube.validation.rig import vibrated_rig
-from sonolube.validation.table import comparison_csv, comparison_dataset, parameter_said
+from sonolube.validation.rig_conditions import vibrated_rig
+from sonolube.validation.tables import comparison_csv, comparison_dataset, parameter_text
 
 
 def compare(
@@ -45,7 +45,7 @@ def compare(
 ) -> None:
     """Models of friction under vibration against every published test: fitted, cross-validated, and on your rig.
 
-    Example: sonolube compare examples/rigs/tribometer.toml --model stick-slip --model kinematic
+    Example: sonolube compare examples/rigs/tribometer.toml --model asperity-stick-slip --model kinematic
     """
     if rig is None and changes:
         raise InvalidInput("--set changes a rig: name one, such as examples/rigs/tribometer.toml")
@@ -71,8 +71,8 @@ class ComparisonAnswer(Answer):
         width = max(len(one.model.name) for one in self.fits)
         return [
             f"{len(self.fits)} models, {len(tests)} tests in sets {', '.join(DATA_SETS)}; errors of the friction ratio",
-            f"  {'model':<{width}}  sets      tests  k     rms  unseen  median    AICc",
-            *[f"  {line}" for one in self.fits if one.judgement for line in _error_lines(one, width)],
+            f"  {'model':<{width}}  sets      tests  k     rms  rms CV  median    AICc",
+            *[f"  {line}" for one in self.fits if one.assessment for line in _error_lines(one, width)],
             *[f"  not fitted: set {letter}: {reason}" for letter, reason in ONLY_PREDICTED.items()],
             *[f"  not reached: {line}" for one in self.fits for line in _refusals(one)],
             *([] if self.rig is None else _rig_lines(self.rig, self.predictions, width)),
@@ -90,7 +90,7 @@ class ComparisonAnswer(Answer):
     def figures(self) -> Mapping[str, Drawing]:
         """Predicted against measured ratios, ratios over speed and amplitude, and the predictions of the rig."""
         drawings = {}
-        if any(one.judgement for one in self.fits):
+        if any(one.assessment for one in self.fits):
             every = comparison_figures(lambda: self.fits)
             drawings = {figure.name: Drawing(draw=figure.draw, caption=figure.caption) for figure in every}
         if self.rig is not None and any(one.friction_ratio is not None for one in self.predictions):
@@ -105,26 +105,26 @@ class ComparisonAnswer(Answer):
 
 def _error_lines(one: ComparedFit, width: int) -> Iterator[str]:
     """Errors of a model, then its fitted parameters."""
-    assert one.judgement is not None
-    seen, unseen = one.judgement.seen, one.judgement.unseen
-    reached = f"{seen.count}/{seen.count + len(seen.missed)}" if seen.missed else str(seen.count)
-    akaike = "" if one.akaike is None else f"{one.akaike:.1f}"
+    assert one.assessment is not None
+    fitted, held_out = one.assessment.fit_errors, one.assessment.cross_validation_errors
+    reached = f"{fitted.count}/{fitted.count + len(fitted.out_of_range)}" if fitted.out_of_range else str(fitted.count)
+    aicc = "" if one.aicc is None else f"{one.aicc:.1f}"
     yield (
         f"{one.model.name:<{width}}  {one.sets:<7}  {reached:>6} {len(one.parameters):>2}"
-        f"  {seen.rms:6.3f}  {unseen.rms:6.3f}  {100 * seen.median_relative:4.0f} %  {akaike:>6}"
+        f"  {fitted.rms:6.3f}  {held_out.rms:6.3f}  {100 * fitted.median_relative:4.0f} %  {aicc:>6}"
     )
     for parameter in one.parameters:
-        yield f"    {parameter_said(parameter)}"
+        yield f"    {parameter_text(parameter)}"
 
 
 def _refusals(one: ComparedFit) -> Iterator[str]:
     """Each reason for which a model does not apply to tests, once, with the tests."""
     reasons: dict[str, list[str]] = {}
     for prediction in one.predictions:
-        if prediction.refusal:
-            reasons.setdefault(prediction.refusal, []).append(prediction.test.label)
+        if prediction.reason:
+            reasons.setdefault(prediction.reason, []).append(prediction.test.label)
     for reason, labels in reasons.items():
-        if one.judgement is None or not reason.startswith("needs "):
+        if one.assessment is None or not reason.startswith("needs "):
             yield f"{one.model.name}: {reason} ({', '.join(labels) if len(labels) < 6 else f'{len(labels)} tests'})"
 
 
@@ -142,30 +142,30 @@ def _rig_lines(rig: Rig, predictions: tuple[RigPrediction, ...], width: int) -> 
         force = format_si(one.friction_ratio * steady, "N")
         yield f"  {one.model.name:<{width}}  ratio {one.friction_ratio:.3f}{error}  friction {force}"
     for one in predictions:
-        if one.refusal:
-            yield f"  not applicable: {one.model.name}: {one.refusal}"
+        if one.reason:
+            yield f"  not applicable: {one.model.name}: {one.reason}"
 
 
 def _model_object(one: ComparedFit) -> dict[str, Any]:
     """Model for JSON with its errors, fitted parameters and predictions."""
-    judgement = one.judgement
+    assessment = one.assessment
     errors = (
         {
-            "rms": _finite(judgement.seen.rms),
-            "rms_unseen": _finite(judgement.unseen.rms),
-            "worst": _finite(judgement.seen.worst),
-            "median_relative": _finite(judgement.seen.median_relative),
-            "akaike": one.akaike,
-            "missed": list(judgement.seen.missed),
+            "rms": _finite(assessment.fit_errors.rms),
+            "rms_cross_validated": _finite(assessment.cross_validation_errors.rms),
+            "largest_error": _finite(assessment.fit_errors.largest),
+            "median_relative": _finite(assessment.fit_errors.median_relative),
+            "aicc": one.aicc,
+            "out_of_range": list(assessment.fit_errors.out_of_range),
         }
-        if judgement
+        if assessment
         else None
     )
     return {
         "name": one.model.name,
-        "meaning": one.model.variant.meaning,
+        "description": one.model.description,
         "source": one.model.source,
-        "needs": list(one.model.needs),
+        "required_inputs": list(one.model.required_inputs),
         "sets": list(one.sets),
         "errors": errors,
         "fitted": [_parameter_object(parameter) for parameter in one.parameters],
@@ -177,14 +177,14 @@ def _parameter_object(fitted: FittedParameter) -> dict[str, Any]:
     """Fitted parameter for JSON."""
     return {
         "name": fitted.parameter.name,
-        "matters_in": list(fitted.parameter.matters_in),
+        "applicable_sets": list(fitted.parameter.applicable_sets),
         "value": fitted.value,
         "unit": fitted.parameter.unit,
         "interval": fitted.interval,
-        "left_out_range": fitted.left_out_range,
+        "leave_one_out_range": fitted.leave_one_out_range,
         "bounds": (fitted.parameter.low, fitted.parameter.high),
         "at_bound": fitted.at_bound,
-        "why_these_bounds": fitted.parameter.reason,
+        "bounds_reason": fitted.parameter.reason,
     }
 
 
@@ -194,8 +194,8 @@ def _prediction_object(prediction: Prediction) -> dict[str, Any]:
         "test": prediction.test.label,
         "measured": prediction.test.friction_ratio,
         "fitted": prediction.fitted,
-        "unseen": prediction.unseen,
-        "reason": prediction.refusal,
+        "cross_validated": prediction.cross_validated,
+        "reason": prediction.reason,
     }
 
 
@@ -208,7 +208,7 @@ def _rig_object(rig: Rig, predictions: tuple[RigPrediction, ...]) -> dict[str, A
                 "model": one.model.name,
                 "friction_ratio": one.friction_ratio,
                 "uncertainty": one.uncertainty,
-                "reason": one.refusal,
+                "reason": one.reason,
             }
             for one in predictions
         ],

@@ -14,7 +14,7 @@ from sonolube.published import PreviousStudy, Statement, previous_studies
 from sonolube.report import Drawing
 from sonolube.rig import Rig, friction_point, read_rig
 from sonolube.units import format_si
-from sonolube.validation.study_map import MapPoint, study_map
+from sonolube.validation.previous_study_map import StudyPoint, study_map
 from sonolube.vocabulary import quantity, unit_of
 
 
@@ -36,7 +36,7 @@ def literature(
         speed = known.sliding_speed
         if not speed > 0:
             raise InvalidInput(f"{rig}: the map needs a sliding.sliding_speed above 0")
-        point = MapPoint(
+        point = StudyPoint(
             label=rig.stem,
             direction="perpendicular",
             friction_reduction=friction_point(known).friction_reduction,
@@ -52,7 +52,7 @@ class LiteratureAnswer(Answer):
 
     studies: tuple[PreviousStudy, ...]
     rig: Rig | None
-    point: MapPoint | None
+    point: StudyPoint | None
 
     def lines(self) -> list[str]:
         """Studies with their text and numbers, and the rig."""
@@ -81,7 +81,7 @@ class LiteratureAnswer(Answer):
         return {"map-of-studies": Drawing(draw=lambda: study_map(self.point))}
 
 
-def _speed(point: MapPoint) -> float:
+def _speed(point: StudyPoint) -> float:
     """Sliding speed of a rig on the map."""
     assert point.sliding_speed is not None
     return point.sliding_speed[0]
@@ -91,7 +91,7 @@ def _study_lines(study: PreviousStudy) -> list[str]:
     """Author, direction, references, text and numbers of a study."""
     lines = [
         f"{study.study}, {study.direction or 'direction not stated'}, D {study.section} {list(study.references)}",
-        f"  {study.told}",
+        f"  {study.summary}",
     ]
     numbers = "; ".join(map(_number, study.numbers))
     return [*lines, f"  {numbers}"] if numbers else lines
@@ -111,7 +111,7 @@ def _study_object(study: PreviousStudy) -> dict[str, Any]:
         "section": study.section,
         "references": list(study.references),
         "direction": study.direction,
-        "told": study.told,
+        "summary": study.summary,
         **{
             entry.quantity: {
                 "value": entry.number.value,

@@ -37,7 +37,7 @@ from sonolube.metrics import EfficiencyLine
 from sonolube.report import Drawing, Page, PageTable
 from sonolube.rig import Rig, read_rig
 from sonolube.units import format_si, temperature_difference_to_si, to_si
-from sonolube.validation.power_map import efficiency_line
+from sonolube.validation.efficiency import efficiency_line
 
 _LEAST_GAIN_MARGIN = 1.7  # lower limit of textbooks
 _TABLE_ROWS = 12  # of the lookup table on the page

@@ -39,7 +39,7 @@ def _lines(shown: Table) -> list[str]:
         *[
             f"  correction{f' ({correction.erratum})' if correction.erratum else ''}: {correction.column}"
             f"{f', row {correction.row + 1}' if correction.row is not None else ''}: {correction.printed}, "
-            f"right: {correction.right}; {correction.reason}"
+            f"corrected: {correction.corrected}; {correction.evidence}"
             for correction in shown.corrections
         ],
     ]

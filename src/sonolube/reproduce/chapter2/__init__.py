@@ -1,1 +1,1 @@
-"""Chapter 2 of the dissertation, experiments: published against computed numbers, and figures."""
+"""Chapter 2 of the dissertation: experiments."""

@@ -1,12 +1,11 @@
-"""Chapter 2, the flextensional actuator between two plates: section 2.2.
+"""Section 2.2, the flextensional actuator between two plates: rows of pull, power, velocity, saturation and speed.
 
-Of its vibration only the stroke far from resonance is printed, so that the gain at resonance is free. One gain must
-give both statements on friction: what is left of it at 3.5 mm/s, and the speed at which nothing is gained any more.
+Of its vibration only the quasi-static stroke is printed, so that the gain at resonance is free. One gain must agree
+with both statements on friction: the reduction at 3.5 mm/s, and the speed at which the reduction vanishes.
 """
 
 from collections.abc import Iterator
 from dataclasses import replace
-from itertools import chain
 from math import pi
 
 from scipy.optimize import brentq
@@ -15,30 +14,35 @@ from sonolube.actuator import linear_amplifier_power
 from sonolube.contact import decay_length, separation
 from sonolube.friction import EMPIRICAL_MEMORY_LENGTH, sine_stick_slip_ratio
 from sonolube.metrics import peak_vibration_velocity
-from sonolube.published.values import stated
-from sonolube.reproduce.row import Row, compare, undetermined
-from sonolube.validation.friction_tests import FrictionTest, friction_tests
-from sonolube.validation.inputs import named, said
+from sonolube.published import si_value
+from sonolube.reproduce.row import Row, comparison_row, undetermined_row
+from sonolube.validation.published_tests import FrictionTest, friction_tests
 
-_LARGEST_GAIN = 20.0  # beyond any stroke that the ceramic would bear at this voltage
+_LARGEST_GAIN = 20.0  # beyond the strength of the ceramic at this voltage
 
 
-def rows() -> Iterator[Row]:
+def flextensional_rows() -> Iterator[Row]:
     """Yield the rows of section 2.2."""
-    return chain(_pull(), _power(), _velocity(), _saturation(), _loss_with_speed())
+    yield _pulling_force()
+    yield from _powers()
+    yield from _velocities()
+    yield from _saturation()
+    yield from _vanishing_reduction()
 
 
-def gain_for_the_slow_test() -> float:
-    """Return the gain at resonance with which the stick-slip closure gives the friction measured at 3.5 mm/s. []"""
+def gain_of_slow_test() -> float:
+    """Return the gain at resonance at which asperity stick-slip has the friction measured at 3.5 mm/s. []"""
     test = _slow_test()
     return float(brentq(lambda gain: _ratio(test, gain) - test.friction_ratio, 1e-3, _LARGEST_GAIN))
 
 
 def _slow_test() -> FrictionTest:
-    return next(test for test in friction_tests() if test.set_name == "H")
+    """Return test H-1, at 3.5 mm/s."""
+    return friction_tests("H")[0]
 
 
 def _ratio(test: FrictionTest, gain: float = 1.0) -> float:
+    """Return the friction ratio of a test by asperity stick-slip at a gain of the stroke. []"""
     return float(
         sine_stick_slip_ratio(
             decay_length=_decay_length(test),
@@ -50,81 +54,88 @@ def _ratio(test: FrictionTest, gain: float = 1.0) -> float:
 
 
 def _decay_length(test: FrictionTest) -> float:
+    """Return the decay length of the contact of a test. [m]"""
     return float(decay_length(test.contact, separation=separation(test.contact, normal_load=test.normal_load)))
 
 
-def _pull() -> Iterator[Row]:
+def _pulling_force() -> Row:
+    """Return the pulling force over the friction of one plate from the balance of forces."""
     test = _slow_test()
     friction = test.friction_coefficient * test.normal_load
-    yield compare(
-        stated("2.2.2-pulling-force-factor"),
+    return comparison_row(
+        "2.2.2-pulling-force-factor",
         (friction + friction) / friction,
         "Balance of forces: either plate presses with the same load and rubs with the same coefficient; the actuator's "
         "own weight is left out.",
     )
 
 
-def _power() -> Iterator[Row]:
+def _powers() -> Iterator[Row]:
+    """Yield the powers of the three levels by D 1.9."""
     for level in (1, 2, 3):
         power = linear_amplifier_power(
-            capacitance=said("2.2.2-capacitance").value,
-            voltage_maximum=said(f"2.2.3-voltage-maximum-{level}").value,
-            voltage_peak_to_peak=said("2.2.5-voltage-peak-to-peak").value,
-            frequency=said("2.2.2-resonance").value,
+            capacitance=si_value("2.2.2-capacitance"),
+            voltage_maximum=si_value(f"2.2.3-voltage-maximum-{level}"),
+            voltage_peak_to_peak=si_value("2.2.5-voltage-peak-to-peak"),
+            frequency=si_value("2.2.2-resonance"),
         )
-        yield compare(
-            stated(f"2.2.5-power-{level}"), float(power), "D 1.9: capacitance times both voltages times frequency."
-        )
+        note = "D 1.9: capacitance times both voltages times frequency."
+        yield comparison_row(f"2.2.5-power-{level}", float(power), note)
 
 
-def _velocity() -> Iterator[Row]:
+def _velocities() -> Iterator[Row]:
+    """Yield the peak vibration velocity, and the speed of no reduction that equals it."""
     test = _slow_test()
-    at_amplitude, at_stroke = (
+    of_amplitude, of_stroke = (
         float(peak_vibration_velocity(frequency=test.frequency, vibration_amplitude=amplitude))
         for amplitude in (test.vibration_amplitude, 2 * test.vibration_amplitude)
     )
-    yield compare(
-        stated("2.2.5-vibration-velocity"),
-        at_amplitude,
-        f"2 pi f a, a half the stroke at this voltage; the whole stroke gives {1e3 * at_stroke:.0f} mm/s.",
+    yield comparison_row(
+        "2.2.5-vibration-velocity",
+        of_amplitude,
+        f"2 pi f a, a half the stroke at this voltage; the whole stroke gives {1e3 * of_stroke:.0f} mm/s.",
     )
-    yield compare(
-        stated("2.2.5-speed-of-no-reduction"),
-        at_amplitude,
-        "Where sliding and vibration are equally fast; of the vibration only the stroke far from resonance is printed.",
+    yield comparison_row(
+        "2.2.5-speed-of-no-reduction",
+        of_amplitude,
+        "Equal speeds of sliding and vibration; of the vibration only the stroke far from resonance is printed.",
     )
 
 
 def _saturation() -> Iterator[Row]:
-    """Yield the reduction at each of three levels, which differ in their highest voltage alone."""
-    yield undetermined(stated("2.2.4-reduction"), "the friction forces, which are only plotted, and the roughness.")
-    test, gain = _slow_test(), gain_for_the_slow_test()
+    """Yield the reduction at three levels, which differ in their highest voltage alone."""
+    yield undetermined_row("2.2.4-reduction", "the friction forces, which are only plotted, and the roughness.")
+    test, gain = _slow_test(), gain_of_slow_test()
     for level in (1, 2, 3):
-        yield compare(
-            named(stated("2.2.6-reduction"), f"level-{level}"),
+        yield comparison_row(
+            "2.2.6-reduction",
             1 - _ratio(test),
-            f"Stick-slip closure at {1e3 * test.sliding_speed:g} mm/s, without gain at resonance. Level {level} has "
-            f"the stroke of the others, for all have 4 V peak to peak: saturation is all that is left. A gain of "
-            f"{gain:.2g} would give what was measured.",
+            f"Asperity stick-slip at {1e3 * test.sliding_speed:g} mm/s, without gain at resonance. Level {level} has "
+            f"the stroke of the others, for all have 4 V peak to peak: saturation is the only difference. A gain of "
+            f"{gain:.2g} would give the measured reduction.",
+            suffix=f"level-{level}",
         )
 
 
-def _loss_with_speed() -> Iterator[Row]:
-    test, gain = _slow_test(), gain_for_the_slow_test()
-    fast = replace(test, sliding_speed=said("2.2.5-speed-of-no-reduction").value)
-    left = 1 - _ratio(fast, gain)
-    # the closure's ratio is exactly 1 from v_r = omega a D_c/l on
-    share = EMPIRICAL_MEMORY_LENGTH / _decay_length(test)
+def _vanishing_reduction() -> Iterator[Row]:
+    """Yield the speed from which asperity stick-slip has no reduction, absolute and over the vibration velocity."""
+    test, gain = _slow_test(), gain_of_slow_test()
+    fast = replace(test, sliding_speed=si_value("2.2.5-speed-of-no-reduction"))
+    reduction = 1 - _ratio(fast, gain)
+    velocity_ratio = EMPIRICAL_MEMORY_LENGTH / _decay_length(test)  # the friction ratio is 1 from omega a D_c/l on
     velocity = 2 * pi * test.frequency * test.vibration_amplitude
-    yield compare(
-        named(stated("2.2.5-speed-of-no-reduction"), "stick-slip"),
-        gain * share * velocity,
-        f"Stick-slip closure, from where on it gives no reduction, with the gain of {gain:.2g} at resonance that its "
-        f"reduction at {1e3 * test.sliding_speed:g} mm/s asks for, where {100 * left:.0f} % are still gained at "
-        f"{1e3 * fast.sliding_speed:g} mm/s; without gain {1e3 * share * velocity:.0f} mm/s.",
+    yield comparison_row(
+        "2.2.5-speed-of-no-reduction",
+        gain * velocity_ratio * velocity,
+        "Asperity stick-slip, speed from which it has no reduction, with the gain at resonance of "
+        f"{gain:.2g} of its reduction at {1e3 * test.sliding_speed:g} mm/s, with which it still has "
+        f"{100 * reduction:.0f} % at {1e3 * fast.sliding_speed:g} mm/s; without gain "
+        f"{1e3 * velocity_ratio * velocity:.0f} mm/s.",
+        suffix="asperity-stick-slip",
     )
-    yield compare(
-        named(stated("2.2.5-littmann-ratio"), "stick-slip"),
-        share,
-        "Stick-slip closure: memory length over decay length, whatever amplitude and frequency.",
+    yield comparison_row(
+        "2.2.5-littmann-ratio",
+        velocity_ratio,
+        "Asperity stick-slip: memory length over decay length, at any amplitude and frequency.",
+        suffix="asperity-stick-slip",
     )

@@ -1,7 +1,7 @@
-"""What each assumption about the horn moves: its first axial frequency, and the node of its motion."""
+"""Sensitivity of the Poisson horn to single assumptions: first axial frequency and node of the axial motion."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 from typing import Final
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from sonolube.fem import FaceSpring, Model
 from sonolube.reproduce.chapter2.horn_bending import PAD_STIFFNESS
-from sonolube.reproduce.chapter2.horn_regions import driven_face
+from sonolube.reproduce.chapter2.horn_friction import driven_face
 from sonolube.reproduce.chapter2.poisson_horn import (
     ASSUMED_SOLIDS,
     AxialMode,
@@ -29,49 +29,23 @@ _TIP_MASS: Final = 0.02  # kg, about that of a steel stud of 1/2 in
 _WEDGE: Final = 0.1
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Assumption:
-    """One assumption, and what it alone does to the plain steel block.
-
-    Parameters
-    ----------
-    name : str
-        What is assumed.
-    change : float
-        Relative change of the first axial frequency.
-    """
-
-    name: str
-    change: float
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Asymmetry:
-    """One asymmetry of the steel horn, and where it alone puts the node of the motion.
-
-    Parameters
-    ----------
-    name : str
-        What is not symmetric.
-    node : float
-        Place where the motion along the face vanishes, from the centre, in m.
-    """
-
-    name: str
-    node: float
-
-
 @cache
-def frequency_changes() -> tuple[Assumption, ...]:
-    """Return what single assumptions do to the first axial frequency of the plain steel block of Table 3.1."""
+def frequency_changes() -> dict[str, float]:
+    """Return the relative changes of the first axial frequency of the plain steel block by single assumptions. []
+
+    Returns
+    -------
+    dict of str to float
+        By the assumption in words.
+    """
     solid = printed_solid("steel")
     plain = axial_mode(printed_shape(), solid).natural_frequency
-    return tuple(
-        Assumption(name=name, change=frequency / plain - 1) for name, frequency in _varied(printed_shape(), solid)
-    )
+    return {assumption: frequency / plain - 1 for assumption, frequency in _varied(printed_shape(), solid)}
 
 
 def _varied(shape: HornShape, solid: HornSolid) -> Iterator[tuple[str, float]]:
+    """Yield assumptions with the first axial frequency of a horn that differs in each alone. [Hz]"""
+
     def of(shape: HornShape = shape, solid: HornSolid = solid) -> float:
         return axial_mode(shape, solid).natural_frequency
 
@@ -90,12 +64,19 @@ def _varied(shape: HornShape, solid: HornSolid) -> Iterator[tuple[str, float]]:
 
 
 @cache
-def node_shifts() -> tuple[Asymmetry, ...]:
-    """Return where single asymmetries put the node of the steel horn that has the printed frequency."""
-    return tuple(Asymmetry(name=name, node=node) for name, node in _asymmetric())
+def node_positions() -> dict[str, float]:
+    """Return the nodes of the axial motion of the steel horn of the printed frequency under single asymmetries. [m]
+
+    Returns
+    -------
+    dict of str to float
+        Position from the centre, by the asymmetry in words.
+    """
+    return dict(_asymmetric())
 
 
 def _asymmetric() -> Iterator[tuple[str, float]]:
+    """Yield asymmetries with the position of the node under each alone. [m]"""
     shape, solid = assumed_shape(), ASSUMED_SOLIDS["steel"]
     resonance = axial_mode(shape, solid).natural_frequency
 
@@ -115,13 +96,13 @@ def _asymmetric() -> Iterator[tuple[str, float]]:
 
 
 def with_tip(model: Model, *, tip_mass: float) -> Model:
-    """Return a quarter of a horn whose right end carries a mass, spread over its last layer of elements.
+    """Return the model of a horn with a mass on its right end, distributed over the last layer of elements.
 
     Parameters
     ----------
     model : Model
     tip_mass : float
-        Mass on the whole horn's end. [kg]
+        Mass on the end of the whole horn. [kg]
 
     Returns
     -------
@@ -140,5 +121,6 @@ def with_tip(model: Model, *, tip_mass: float) -> Model:
 
 
 def _on_pads(model: Model) -> Model:
+    """Return the model of a horn on two pads on either face."""
     spring = FaceSpring(face="-z", spring_stiffness=2 * PAD_STIFFNESS / 2, along=(0.0, 0.0, 1.0))
     return replace(model, springs=(spring,))

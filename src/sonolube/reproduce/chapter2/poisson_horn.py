@@ -1,14 +1,14 @@
-"""The horn of section 2.1 by finite elements: two sets of assumptions, its first axial mode, its motion when driven.
+"""Finite-element model of the Poisson horn of section 2.1: first axial mode and driven motion of its sliding face.
 
-D gives the block's three sizes, and says of the tapers and rounded edges only that there are some. `PRINTED` is the
-block with D's moduli and data-sheet densities; `ASSUMED` the one set of assumptions that gives both frequencies that
-D prints. A quarter of the horn is meshed: y = 0 and z = 0 are planes of symmetry.
+D prints the three dimensions of the block, and of tapers and rounded edges only that they exist. The printed shape is
+the plain block with the moduli of D and data-sheet densities; the assumed shape with the assumed solids is the one set
+of assumptions that has both printed frequencies. A quarter of the horn is meshed: y = 0 and z = 0 are symmetry planes.
 """
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import Final, Literal
+from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -28,23 +28,21 @@ from sonolube.fem import (
     transform_nodes,
 )
 from sonolube.materials import material
-from sonolube.validation.inputs import in_table, said
-
-Horn = Literal["aluminium", "steel"]
-HORNS: Final[tuple[Horn, ...]] = ("aluminium", "steel")
+from sonolube.published import si_value
+from sonolube.reproduce.cube import Horn
 
 _ALLOYS: Final = {"aluminium": "aluminium_2024", "steel": "stainless_steel_316"}
 _SYMMETRY: Final = (FixedSupport(face="-y", along="y"), FixedSupport(face="+z", along="z"))
-_TAPER_CELLS: Final = 2  # of the cells along either taper
+_TAPER_CELLS: Final = 2  # elements along either taper
 _DIVISIONS: Final = (10, 2, 2)
-_SEARCHED: Final = 5  # elastic modes of this symmetry, of which the first axial one is among the lowest three
+_MODE_COUNT: Final = 5  # elastic modes of this symmetry; the first axial one is among the lowest three
 ELASTIC_LOSS: Final = 1e-3
 """Loss tangent of the horns, assumed: a quality factor of 1000. []"""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class HornSolid:
-    """What one horn is made of.
+    """Isotropic elastic solid of a horn.
 
     Parameters
     ----------
@@ -63,18 +61,18 @@ class HornSolid:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class HornShape:
-    """Sizes of a horn.
+    """Dimensions of a horn.
 
     Parameters
     ----------
     length, width, thickness : float
         Extent along, across, and across the sliding face. [m]
     taper_length : float
-        Length of either end over which the thickness falls, on both sides alike, in m.
+        Length of either end over which the thickness falls symmetrically, in m.
     end_thickness_ratio : float
         Thickness of the ends over that of the middle.
     wedge : float
-        Excess of the right end's width over the left one's, over the width in the middle.
+        Width of the right end minus that of the left end, over the width in the middle.
     """
 
     length: float
@@ -88,9 +86,9 @@ class HornShape:
 def printed_shape() -> HornShape:
     """Return the plain block of D 2.1.2."""
     return HornShape(
-        length=said("2.1.2-waveguide-length").value,
-        width=said("2.1.2-waveguide-width").value,
-        thickness=said("2.1.2-waveguide-thickness").value,
+        length=si_value("2.1.2-waveguide-length"),
+        width=si_value("2.1.2-waveguide-width"),
+        thickness=si_value("2.1.2-waveguide-thickness"),
     )
 
 
@@ -100,10 +98,10 @@ def assumed_shape() -> HornShape:
 
 
 def printed_solid(horn: Horn) -> HornSolid:
-    """Return a horn's constants from Table 3.1, its density from its alloy's data sheet."""
+    """Return the elastic constants of a horn from Table 3.1, its density from the data sheet of its alloy."""
     return HornSolid(
-        youngs_modulus=in_table("3.1", f"youngs_modulus_{horn}").value,
-        poisson_ratio=in_table("3.1", f"poisson_ratio_{horn}").value,
+        youngs_modulus=si_value(f"table-3.1-youngs_modulus_{horn}-1"),
+        poisson_ratio=si_value(f"table-3.1-poisson_ratio_{horn}-1"),
         density=material(_ALLOYS[horn]).value("density"),
     )
 
@@ -112,21 +110,21 @@ ASSUMED_SOLIDS: Final[Mapping[Horn, HornSolid]] = {
     "aluminium": HornSolid(youngs_modulus=70e9, poisson_ratio=0.33, density=2700.0),
     "steel": HornSolid(youngs_modulus=205e9, poisson_ratio=0.28, density=7850.0),
 }
-"""Handbook constants of plain aluminium and of a low-alloy steel, which general finite-element programs come with."""
+"""Handbook constants of plain aluminium and of a low-alloy steel, the defaults of general finite-element programs."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class AxialMode:
-    """The first axial mode of a horn.
+    """First axial mode of a horn.
 
     Parameters
     ----------
     natural_frequency : float
-        Its frequency. [Hz]
+        Natural frequency. [Hz]
     position : ndarray, shape (k,)
-        Places along the middle line of the sliding face, from the centre. [m]
+        Position along the middle line of the sliding face, from the centre. [m]
     axial, normal : ndarray, shape (k,)
-        Displacements there along the horn and out of its face, those at the right end's middle being one along it.
+        Mode shape along the horn and out of its face; the axial one is 1 at the middle of the right end.
     """
 
     natural_frequency: float
@@ -144,9 +142,9 @@ class FaceMotion:
     frequency : float
         Frequency of the force. [Hz]
     position : ndarray, shape (k,)
-        Places along the line, from the centre. [m]
+        Position along the line, from the centre. [m]
     axial, normal : ndarray of complex, shape (k,)
-        Amplitudes along the horn and out of its face in m, the mean one of the driven end being real and as asked.
+        Complex amplitudes along the horn and out of its face in m, the mean axial one of the driven end being real.
     """
 
     frequency: float
@@ -154,19 +152,15 @@ class FaceMotion:
     axial: Complexes
     normal: Complexes
 
-    def at(self, places: ArrayLike) -> tuple[Complexes, Complexes]:
-        """Return the amplitudes along the horn and out of its face at places in m."""
-        return CubicSpline(self.position, self.axial)(places), CubicSpline(self.position, self.normal)(places)
+    def at(self, position: ArrayLike) -> tuple[Complexes, Complexes]:
+        """Return the complex amplitudes along the horn and out of its face at positions in m, by cubic splines. [m]"""
+        return CubicSpline(self.position, self.axial)(position), CubicSpline(self.position, self.normal)(position)
 
 
 def horn_model(
-    shape: HornShape,
-    solid: HornSolid,
-    *,
-    elastic_loss: float = 0.0,
-    divisions: tuple[int, int, int] = _DIVISIONS,
+    shape: HornShape, solid: HornSolid, *, elastic_loss: float = 0.0, divisions: tuple[int, int, int] = _DIVISIONS
 ) -> Model:
-    """Return a quarter of a horn.
+    """Return the finite-element model of a quarter of a horn.
 
     Parameters
     ----------
@@ -175,12 +169,12 @@ def horn_model(
     elastic_loss : float
         Loss tangent of the stiffness. []
     divisions : tuple of three int
-        Cells along, across and through the quarter.
+        Elements along, across and through the quarter.
 
     Returns
     -------
     Model
-        Its sliding face is "-z", the middle line of that its edge with "-y".
+        The sliding face is "-z", its middle line the edge with "-y".
     """
     medium = isotropic_medium(
         youngs_modulus=solid.youngs_modulus,
@@ -193,14 +187,14 @@ def horn_model(
 
 @cache
 def axial_mode(shape: HornShape, solid: HornSolid, *, divisions: tuple[int, int, int] = _DIVISIONS) -> AxialMode:
-    """Return the first axial mode: of the lowest modes that keep both planes, the one that moves most along the horn.
+    """Return the first axial mode: of the lowest symmetric modes the one with the largest axial fraction.
 
     Parameters
     ----------
     shape : HornShape
     solid : HornSolid
     divisions : tuple of three int
-        Cells along, across and through the quarter.
+        Elements along, across and through the quarter.
 
     Returns
     -------
@@ -210,13 +204,13 @@ def axial_mode(shape: HornShape, solid: HornSolid, *, divisions: tuple[int, int,
 
 
 def axial_mode_of(model: Model) -> AxialMode:
-    """Return the first axial mode of a quarter of a horn."""
-    modes = natural_modes(model, count=_SEARCHED)
+    """Return the first axial mode of the model of a quarter of a horn."""
+    modes = natural_modes(model, count=_MODE_COUNT)
     x = model.mesh.nodes[:, 0]
     stretch = np.sign(x - x.mean())
     elastic = modes.shapes[modes.rigid_body_count :]
-    shares = np.abs((elastic[:, :, 0] * stretch).mean(axis=1)) / np.sqrt((elastic**2).sum(axis=2).mean(axis=1))
-    best = int(np.argmax(shares))
+    axial_fractions = np.abs((elastic[:, :, 0] * stretch).mean(axis=1)) / np.sqrt((elastic**2).sum(axis=2).mean(axis=1))
+    best = int(np.argmax(axial_fractions))
     line = edge_nodes(model.mesh, "-z", "-y", along="x")
     shape = elastic[best] / elastic[best][line[-1], 0]
     return AxialMode(
@@ -229,12 +223,7 @@ def axial_mode_of(model: Model) -> AxialMode:
 
 @cache
 def face_motion(
-    shape: HornShape,
-    solid: HornSolid,
-    *,
-    frequency: float,
-    axial_amplitude: float,
-    elastic_loss: float = ELASTIC_LOSS,
+    shape: HornShape, solid: HornSolid, *, frequency: float, axial_amplitude: float, elastic_loss: float = ELASTIC_LOSS
 ) -> FaceMotion:
     """Return the motion of the sliding face under a force along the horn on its right end.
 
@@ -254,22 +243,22 @@ def face_motion(
     FaceMotion
     """
     model = horn_model(shape, solid, elastic_loss=elastic_loss)
-    moves = forced_response(model, load=Output(face="+x", along="x"), frequency=frequency)
-    end = moves[model.mesh.face_nodes("+x"), 0].mean()
+    displacement = forced_response(model, load=Output(face="+x", along="x"), frequency=frequency)
+    end = displacement[model.mesh.face_nodes("+x"), 0].mean()
     line = edge_nodes(model.mesh, "-z", "-y", along="x")
-    scaled = moves[line] * axial_amplitude / end
+    scaled = displacement[line] * axial_amplitude / end
     return FaceMotion(frequency=frequency, position=model.mesh.nodes[line, 0], axial=scaled[:, 0], normal=-scaled[:, 2])
 
 
 def node_position(*, position: Floats, axial: Floats) -> float:
-    """Return where a motion along the horn vanishes, of several places the one nearest to the centre. [m]
+    """Return the position of the node of an axial motion; of several nodes, of the one nearest to the centre. [m]
 
     Parameters
     ----------
     position : ndarray, shape (k,)
-        Places along the horn, from the centre. [m]
+        Position along the horn, from the centre. [m]
     axial : ndarray, shape (k,)
-        Displacements there along the horn.
+        Axial displacement.
 
     Returns
     -------
@@ -279,6 +268,7 @@ def node_position(*, position: Floats, axial: Floats) -> float:
 
 
 def _quarter(shape: HornShape, divisions: tuple[int, int, int]) -> Mesh:
+    """Return the mesh of a quarter of a horn: a box mapped to tapers and wedge."""
     half, step = shape.length / 2, shape.length / divisions[0]
     flat = half - shape.taper_length
     columns = [-half, -half + _TAPER_CELLS * step, half - _TAPER_CELLS * step, half]

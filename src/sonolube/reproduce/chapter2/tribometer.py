@@ -1,278 +1,200 @@
-"""Chapter 2, the modified tribometer: section 2.3 and its protocol, appendix A."""
+"""Section 2.3, the modified tribometer, and its protocol in appendix A: rows of settings, friction, wear and marks."""
 
 from collections.abc import Iterator
-from itertools import chain
-from math import pi
 from operator import add, sub, truediv
 from typing import Final
 
 from sonolube.friction import dong_2015_half_period_ratio
-from sonolube.metrics import dot_spacing, indentation_spacing, linear_speed, sliding_distance
-from sonolube.published import PrintedNumber
-from sonolube.published.values import Computed, cell, over_rounding, stated
-from sonolube.reproduce.row import Row, compare
+from sonolube.published import ComputedValue, as_exact, as_setting, propagate_rounding, published_number, si_value
+from sonolube.reproduce import formulas
+from sonolube.reproduce.row import Row, comparison_row, range_rows
 from sonolube.validation.contacts import wear_contact
-from sonolube.validation.inputs import (
-    exact,
-    friction_drop,
-    in_table,
-    largest,
-    published_ends,
-    said,
-    setting,
-    smallest,
-    wear_drop,
-    worn_per_metre,
-)
-from sonolube.wear import vibration_contact_count
 
-_SPEEDS: Final = ("20.3", "40.6", "87")  # row by row in Tables 2.2 and 2.5, in pairs of rows in Tables 2.3 and 2.4
+_SPEEDS: Final = ("20.3", "40.6", "87")  # one to a row of Tables 2.2 and 2.5, one to two rows of Tables 2.3 and 2.4
 _ROTATIONS: Final = ("A.3.1.6-rotation-20.3", "A.3.1.10-rotation-40.6", "A.3.1.10-rotation-87")
+_DISTANCE: Final = "table-2.2-sliding_distance-1"
+_HIGHEST_SPEED: Final = "table-2.2-sliding_speed-3"
 
 
-def rows() -> Iterator[Row]:
+def tribometer_rows() -> Iterator[Row]:
     """Yield the rows of section 2.3."""
-    return chain(
-        _settings_of_study_one(),
-        _protocol(),
-        _cube_friction(),
-        _friction_reductions(),
-        _fluctuation(),
-        _surfaces(),
-        _wear_of_study_one(),
-        _marks(),
-        _settings_of_study_two(),
-        _revolutions_of_study_two(),
-        _wear_of_study_two(),
-    )
+    yield from _settings_of_first_study()
+    yield from _protocol()
+    yield from _friction()
+    yield from _surfaces()
+    yield from _wear_of_first_study()
+    yield from _marks()
+    yield from _settings_of_second_study()
+    yield from _wear_of_second_study()
 
 
-def drops_of(column: str) -> list[Computed]:
-    """Return by what share a column of Table 2.3 falls under vibration, for the three speeds. []"""
+def reductions_of_table_2_3(column: str) -> list[ComputedValue]:
+    """Return the reductions of a column of Table 2.3 under vibration at the three speeds. []"""
     return [
-        over_rounding(friction_drop, in_table("2.3", column, off), in_table("2.3", column, off + 1))
-        for off in (0, 2, 4)
+        propagate_rounding(formulas.friction_reduction, f"table-2.3-{column}-{off}", f"table-2.3-{column}-{off + 1}")
+        for off in (1, 3, 5)
     ]
 
 
-def wear_reductions(table_id: str) -> list[Computed]:
-    """Return the reductions that the three pairs of wear rates of Table 2.5 or 2.7 give. []"""
+def wear_reductions(table_id: str) -> list[ComputedValue]:
+    """Return the wear reductions of the three pairs of wear rates of Table 2.5 or 2.7. []"""
     return [
-        over_rounding(
-            wear_drop, in_table(table_id, "intrinsic_wear_rate", row), in_table(table_id, "reduced_wear_rate", row)
+        propagate_rounding(
+            formulas.wear_reduction,
+            f"table-{table_id}-intrinsic_wear_rate-{row}",
+            f"table-{table_id}-reduced_wear_rate-{row}",
         )
-        for row in range(3)
+        for row in (1, 2, 3)
     ]
 
 
-def _settings_of_study_one() -> Iterator[Row]:
-    distance, turns = in_table("2.2", "sliding_distance"), setting(in_table("2.2", "revolutions"))
-    printed = float(sliding_distance(revolutions=turns.value, groove_diameter=in_table("2.2", "groove_diameter").value))
-    yield compare(
-        cell("2.2", "groove_diameter", 0),
-        over_rounding(_groove_diameter, distance, turns),
+def _settings_of_first_study() -> Iterator[Row]:
+    """Yield the rows of Table 2.2 from distance, revolutions and rotation speed."""
+    turns = as_setting("table-2.2-revolutions-1")
+    printed = formulas.sliding_distance(turns.value, si_value("table-2.2-groove_diameter-1"))
+    yield comparison_row(
+        "table-2.2-groove_diameter-1",
+        propagate_rounding(formulas.groove_diameter, _DISTANCE, turns),
         f"Distance over pi times turns; with the printed diameter the distance is {printed:.1f} m.",
     )
-    for row, rotation in enumerate(_ROTATIONS):
-        yield compare(
-            cell("2.2", "sliding_speed", row),
-            over_rounding(_speed, said(rotation), distance, turns),
+
+    def speed(rotation: float, distance: float, turns: float) -> float:
+        return formulas.sliding_speed(rotation, formulas.groove_diameter(distance, turns))
+
+    for row, rotation in enumerate(_ROTATIONS, start=1):
+        yield comparison_row(
+            f"table-2.2-sliding_speed-{row}",
+            propagate_rounding(speed, rotation, _DISTANCE, turns),
             "Rotation of appendix A times distance per turn.",
         )
-        yield compare(
-            cell("2.2", "running_time", row),
-            over_rounding(truediv, distance, in_table("2.2", "sliding_speed", row)),
-            "Distance over speed.",
-        )
+        time = propagate_rounding(truediv, _DISTANCE, f"table-2.2-sliding_speed-{row}")
+        yield comparison_row(f"table-2.2-running_time-{row}", time, "Distance over speed.")
 
 
 def _protocol() -> Iterator[Row]:
-    distance, turns = in_table("2.2", "sliding_distance"), setting(in_table("2.2", "revolutions"))
-    yield compare(
-        stated("A.1.3.6-groove-radius"),
-        over_rounding(_groove_radius, distance, turns),
-        "Half the diameter that distance and turns of Table 2.2 ask for.",
+    """Yield the rows of appendix A from the settings of Table 2.2."""
+    turns = as_setting("table-2.2-revolutions-1")
+    yield comparison_row(
+        "A.1.3.6-groove-radius",
+        propagate_rounding(lambda *settings: formulas.groove_diameter(*settings) / 2, _DISTANCE, turns),
+        "Half the diameter that follows from distance and turns of Table 2.2.",
     )
-    for row, rotation in enumerate(_ROTATIONS):
-        yield compare(
-            stated(rotation),
-            over_rounding(truediv, turns, setting(in_table("2.2", "running_time", row))),
-            "Turns over running time of Table 2.2.",
-        )
-    yield compare(
-        stated("A.3.1.10-duration-87"),
-        over_rounding(truediv, distance, in_table("2.2", "sliding_speed", 2)),
+    for row, rotation in enumerate(_ROTATIONS, start=1):
+        computed = propagate_rounding(truediv, turns, as_setting(f"table-2.2-running_time-{row}"))
+        yield comparison_row(rotation, computed, "Turns over running time of Table 2.2.")
+    yield comparison_row(
+        "A.3.1.10-duration-87",
+        propagate_rounding(truediv, _DISTANCE, _HIGHEST_SPEED),
         "Distance over speed of Table 2.2.",
     )
 
 
-def _cube_friction() -> Iterator[Row]:
-    load, amplitude = in_table("2.2", "normal_load").value, in_table("2.2", "vibration_amplitude").value
+def _friction() -> Iterator[Row]:
+    """Yield the rows of friction with vibration by the cube, and of the reductions of friction and fluctuation."""
+    load, amplitude = si_value("table-2.2-normal_load-1"), si_value("table-2.2-vibration_amplitude-1")
     ratio = float(dong_2015_half_period_ratio(wear_contact(), normal_load=load, vibration_amplitude=amplitude))
-    for row in (1, 3, 5):
-        yield compare(
-            cell("2.3", "friction_force", row),
-            ratio * in_table("2.3", "friction_force", row - 1).value,
+    for row in (2, 4, 6):
+        yield comparison_row(
+            f"table-2.3-friction_force-{row}",
+            ratio * si_value(f"table-2.3-friction_force-{row - 1}"),
             f"Cube, D 3.15 with Table 3.2: {ratio:.3f} of the force without vibration, at every speed; it has no slip.",
         )
-
-
-def _friction_reductions() -> Iterator[Row]:
-    drops = drops_of("friction_force")
-    for published, drop in (
-        *((cell("2.5", "friction_reduction", row), drop) for row, drop in enumerate(drops)),
-        (stated("2.3.5-friction-reduction-20.3"), drops[0]),
-        (stated("2.3.5-friction-reduction-87"), drops[2]),
-        (stated("2.3.7-friction-reduction"), largest(drops)),
-        (stated("2.3.7-friction-reduction-87"), drops[2]),
+    reductions = reductions_of_table_2_3("friction_force")
+    for published, reduction in (
+        *((f"table-2.5-friction_reduction-{row}", each) for row, each in enumerate(reductions, start=1)),
+        ("2.3.5-friction-reduction-20.3", reductions[0]),
+        ("2.3.5-friction-reduction-87", reductions[2]),
+        ("2.3.7-friction-reduction", max(reductions)),
+        ("2.3.7-friction-reduction-87", reductions[2]),
     ):
-        yield compare(published, drop, "D 2.1 from the forces of Table 2.3.")
-
-
-def _fluctuation() -> Iterator[Row]:
-    drops = drops_of("friction_rms")
-    each = ", ".join(f"{100 * drop.value:.1f}" for drop in drops)
-    yield compare(
-        stated("2.3.7-stick-slip-reduction"),
-        largest(drops),
-        f"Largest drop of the fluctuation in Table 2.3: {each} %.",
-    )
+        yield comparison_row(published, reduction, "D 2.1 from the forces of Table 2.3.")
+    reductions = reductions_of_table_2_3("friction_rms")
+    each = ", ".join(f"{100 * reduction.value:.1f}" for reduction in reductions)
+    note = f"Largest reduction of the fluctuation in Table 2.3: {each} %."
+    yield comparison_row("2.3.7-stick-slip-reduction", max(reductions), note)
 
 
 def _surfaces() -> Iterator[Row]:
-    for row in range(7):
-        yield compare(
-            cell("2.4", "total_height", row),
-            over_rounding(
-                add,
-                in_table("2.4", "maximum_peak_height", row),
-                in_table("2.4", "maximum_pit_depth", row),
-            ),
-            "R_p + R_v.",
-        )
-    for metal, row in (("steel", 1), ("aluminium", 0)):
-        yield compare(
-            stated(f"2.3.4-hardness-{metal}"),
-            over_rounding(float, in_table("2.15", "hardness", row)),
-            "The same alloy in Table 2.15.",
-        )
+    """Yield the rows of Table 2.4 and of the hardness."""
+    for row in range(1, 8):
+        height = propagate_rounding(add, f"table-2.4-maximum_peak_height-{row}", f"table-2.4-maximum_pit_depth-{row}")
+        yield comparison_row(f"table-2.4-total_height-{row}", height, "R_p + R_v.")
+    for metal, row in (("steel", 2), ("aluminium", 1)):
+        hardness = propagate_rounding(float, f"table-2.15-hardness-{row}")
+        yield comparison_row(f"2.3.4-hardness-{metal}", hardness, "The same alloy in Table 2.15.")
 
 
-def _wear_of_study_one() -> Iterator[Row]:
+def _wear_of_first_study() -> Iterator[Row]:
+    """Yield the rows of Table 2.5 on wear, and of the wear reductions in the text."""
     reductions = wear_reductions("2.5")
-    for row, reduction in enumerate(reductions):
-        rates = in_table("2.5", "intrinsic_wear_rate", row), in_table("2.5", "reduced_wear_rate", row)
-        yield compare(cell("2.5", "wear_rate_drop", row), over_rounding(sub, *rates), "Difference of the rates.")
-        yield compare(cell("2.5", "wear_reduction", row), reduction, "D 2.3 from the rates.")
-        time = setting(in_table("2.2", "running_time", row))
-        yield compare(
-            cell("2.5", "vibration_contact_count", row),
-            over_rounding(_contacts, in_table("2.2", "frequency", row), time),
-            "f times running time.",
-        )
-    lowest, highest = published_ends(stated("2.3.5-wear-reduction"))
-    yield compare(lowest, smallest(reductions), "D 2.3 from the rates of Table 2.5, the smallest.")
-    for published in (highest, stated("2.3.7-wear-reduction")):
-        yield compare(published, largest(reductions), "D 2.3 from the rates of Table 2.5, the largest.")
+    for row, reduction in enumerate(reductions, start=1):
+        rates = f"table-2.5-intrinsic_wear_rate-{row}", f"table-2.5-reduced_wear_rate-{row}"
+        drop = propagate_rounding(sub, *rates)
+        yield comparison_row(f"table-2.5-wear_rate_drop-{row}", drop, "Difference of the rates.")
+        yield comparison_row(f"table-2.5-wear_reduction-{row}", reduction, "D 2.3 from the rates.")
+        time = as_setting(f"table-2.2-running_time-{row}")
+        count = propagate_rounding(formulas.contact_count, f"table-2.2-frequency-{row}", time)
+        yield comparison_row(f"table-2.5-vibration_contact_count-{row}", count, "f times running time.")
+    smallest, largest = (f"D 2.3 from the rates of Table 2.5, the {which}." for which in ("smallest", "largest"))
+    yield from range_rows("2.3.5-wear-reduction", min(reductions), max(reductions), smallest, high_note=largest)
+    yield comparison_row("2.3.7-wear-reduction", max(reductions), largest)
 
 
 def _marks() -> Iterator[Row]:
-    speed, period = in_table("2.2", "sliding_speed", 2), exact(said("2.3.4-stick-slip-period"))
-    dots = over_rounding(_dots, speed, in_table("2.2", "frequency", 2))
-    yield compare(stated("2.3.4-dots-calculated"), dots, "v over f.")
-    yield compare(
-        stated("2.3.4-dots-measured"),
+    """Yield the rows of the marks on the discs: dots of the vibration and indentations of stick-slip."""
+    period = as_exact("2.3.4-stick-slip-period")
+    dots = propagate_rounding(formulas.dot_spacing, _HIGHEST_SPEED, "table-2.2-frequency-3")
+    yield comparison_row("2.3.4-dots-calculated", dots, "v over f.")
+    yield comparison_row(
+        "2.3.4-dots-measured",
         dots,
-        "v over f, the length of one cycle; D states no scatter of what it measured in one image.",
+        "v over f, the length of one cycle; D states no scatter of the measurement in one image.",
     )
-    for row, printed in enumerate(_SPEEDS):
-        asked = said(f"2.3.4-indentation-{printed}").value / in_table("2.2", "sliding_speed", row).value
-        yield compare(
-            stated(f"2.3.4-indentation-{printed}"),
-            over_rounding(_indentations, in_table("2.2", "sliding_speed", row), period),
-            f"D 2.4 with {1e3 * period.value:g} ms; the print asks for {1e3 * asked:.1f} ms.",
+    for row, printed in enumerate(_SPEEDS, start=1):
+        needed = si_value(f"2.3.4-indentation-{printed}") / si_value(f"table-2.2-sliding_speed-{row}")
+        yield comparison_row(
+            f"2.3.4-indentation-{printed}",
+            propagate_rounding(formulas.indentation_spacing, f"table-2.2-sliding_speed-{row}", period),
+            f"D 2.4 with {1e3 * period.value:g} ms; the print corresponds to {1e3 * needed:.1f} ms.",
         )
-    measured = said("2.3.4-indentation-measured")
-    at_highest_speed = over_rounding(_indentations, speed, period)
-    yield compare(stated("2.3.4-indentation-measured"), at_highest_speed, "D 2.4.")
-    yield compare(stated("2.3.7-indentations"), at_highest_speed, "D 2.4.")
-    yield compare(
-        stated("2.3.7-stick-slip-frequency"),
-        over_rounding(truediv, speed, measured),
+    at_highest_speed = propagate_rounding(formulas.indentation_spacing, _HIGHEST_SPEED, period)
+    yield comparison_row("2.3.4-indentation-measured", at_highest_speed, "D 2.4.")
+    yield comparison_row("2.3.7-indentations", at_highest_speed, "D 2.4.")
+    yield comparison_row(
+        "2.3.7-stick-slip-frequency",
+        propagate_rounding(truediv, _HIGHEST_SPEED, "2.3.4-indentation-measured"),
         "v over the measured distance of indentations.",
     )
 
 
-def _settings_of_study_two() -> Iterator[Row]:
-    times = _times_of_study_two()
-    for row, time in enumerate(times):
-        yield compare(
-            cell("2.6", "sliding_speed", row),
-            over_rounding(truediv, in_table("2.6", "sliding_distance", row), time),
-            "Distance over running time.",
-        )
-    for row in (0, 1):
-        yield compare(
-            cell("2.6", "sliding_distance", row),
-            over_rounding(_in_proportion, in_table("2.6", "sliding_distance", 2), times[row], times[2]),
-            "Distance of the longest test, in proportion to time.",
-        )
+def _settings_of_second_study() -> Iterator[Row]:
+    """Yield the rows of Table 2.6, and of the revolutions of the second study, from running times."""
+    times = [as_setting(f"table-2.6-running_time-{row}") for row in (1, 2, 3)]
+    for row, time in enumerate(times, start=1):
+        speed = propagate_rounding(truediv, f"table-2.6-sliding_distance-{row}", time)
+        yield comparison_row(f"table-2.6-sliding_speed-{row}", speed, "Distance over running time.")
 
+    def in_proportion(whole: float, part_time: float, whole_time: float) -> float:
+        return whole * part_time / whole_time
 
-def _revolutions_of_study_two() -> Iterator[Row]:
-    times, turns = _times_of_study_two(), setting(in_table("2.6", "revolutions", 2))
-    for published, row in (
-        (cell("2.6", "revolutions", 0), 0),
-        (cell("2.6", "revolutions", 1), 1),
-        (cell("2.7", "revolutions", 0), 0),
-        (stated("2.3.6-revolutions-1"), 0),
+    longest = published_number("table-2.6-sliding_distance-3"), as_setting("table-2.6-revolutions-3")
+    for published, quantity, whole, row in (
+        ("table-2.6-sliding_distance-1", "Distance", longest[0], 1),
+        ("table-2.6-sliding_distance-2", "Distance", longest[0], 2),
+        ("table-2.6-revolutions-1", "Turns", longest[1], 1),
+        ("table-2.6-revolutions-2", "Turns", longest[1], 2),
+        ("table-2.7-revolutions-1", "Turns", longest[1], 1),
+        ("2.3.6-revolutions-1", "Turns", longest[1], 1),
     ):
-        yield compare(
-            published,
-            over_rounding(_in_proportion, turns, times[row], times[2]),
-            "Turns of the longest test, in proportion to time.",
-        )
+        computed = propagate_rounding(in_proportion, whole, times[row - 1], times[2])
+        yield comparison_row(published, computed, f"{quantity} of the longest test, in proportion to time.")
 
 
-def _wear_of_study_two() -> Iterator[Row]:
-    for row, reduction in enumerate(wear_reductions("2.7")):
-        distance = in_table("2.6", "sliding_distance", row)
+def _wear_of_second_study() -> Iterator[Row]:
+    """Yield the rows of Table 2.7."""
+    for row, reduction in enumerate(wear_reductions("2.7"), start=1):
+        distance = f"table-2.6-sliding_distance-{row}"
         for state in ("intrinsic", "reduced"):
-            yield compare(
-                cell("2.7", f"{state}_wear_rate", row),
-                over_rounding(worn_per_metre, in_table("2.7", f"{state}_wear_volume", row), distance),
-                "D 2.2 with the distance of Table 2.6.",
-            )
-        yield compare(cell("2.7", "wear_reduction", row), reduction, "D 2.3 from the rates.")
-
-
-def _times_of_study_two() -> tuple[PrintedNumber, ...]:
-    return tuple(setting(in_table("2.6", "running_time", row)) for row in range(3))
-
-
-def _groove_diameter(distance: float, turns: float) -> float:
-    return distance / (pi * turns)
-
-
-def _groove_radius(distance: float, turns: float) -> float:
-    return _groove_diameter(distance, turns) / 2
-
-
-def _speed(rotation: float, distance: float, turns: float) -> float:
-    return float(linear_speed(rotation_speed=rotation, groove_diameter=_groove_diameter(distance, turns)))
-
-
-def _in_proportion(whole: float, part_time: float, whole_time: float) -> float:
-    return whole * part_time / whole_time
-
-
-def _contacts(frequency: float, duration: float) -> float:
-    return float(vibration_contact_count(frequency=frequency, duration=duration))
-
-
-def _dots(speed: float, frequency: float) -> float:
-    return float(dot_spacing(sliding_speed=speed, frequency=frequency))
-
-
-def _indentations(speed: float, period: float) -> float:
-    return float(indentation_spacing(sliding_speed=speed, period=period))
+            rate = propagate_rounding(formulas.wear_rate, f"table-2.7-{state}_wear_volume-{row}", distance)
+            yield comparison_row(f"table-2.7-{state}_wear_rate-{row}", rate, "D 2.2 with the distance of Table 2.6.")
+        yield comparison_row(f"table-2.7-wear_reduction-{row}", reduction, "D 2.3 from the rates.")

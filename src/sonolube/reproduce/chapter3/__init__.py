@@ -1,1 +1,1 @@
-"""Chapter 3 of the dissertation, models: published against computed numbers, and figures."""
+"""Chapter 3 of the dissertation: cube model and multi-scale model."""

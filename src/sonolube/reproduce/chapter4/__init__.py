@@ -1,1 +1,1 @@
-"""Chapter 4 of the dissertation, applications: published against computed numbers, and figures."""
+"""Chapter 4 of the dissertation: applications."""

@@ -1,7 +1,8 @@
-"""The collar of D 4.5 computed once for rows and figures: its modes, its responses, a rod pulled through it."""
+"""Collar of D 4.5 by finite elements: modes, responses to voltage, and friction of a rod pulled through it."""
 
 from dataclasses import dataclass
 from functools import cache
+from typing import Final
 
 import numpy as np
 
@@ -16,27 +17,33 @@ from sonolube.dynamics import ExponentialGap, steady_state
 from sonolube.fem import ReducedModel, contact_structure, with_free_body
 from sonolube.friction import AsperityStickSlip
 from sonolube.materials import material
-from sonolube.published import statement
+from sonolube.published import si_value
 from sonolube.rig.vibration import gap_motion
 from sonolube.validation.contacts import steel_on_steel_contact
 
-ROD_LENGTH = 0.3  # m, not printed: that of examples/rigs/collar.toml
-NOMINAL_AREA = 10e-6  # m2, not printed: 10 mm along the rod by 1 mm
-LOAD_AT_ENDS = 2.0  # over the load in the middle, not printed: "higher" says D 4.5.4
-PULL_SPEED = 0.05  # m/s, only drawn
-_MODES = 10
-_PLACES = 9  # along the rod at which the vibration is computed
-_GRAVITY = 9.81
+ROD_LENGTH: Final = 0.3
+"""Length of the rod, not printed: that of examples/rigs/collar.toml. [m]"""
+
+LOAD_AT_ENDS: Final = 2.0
+"""Load at the ends over that in the middle of the rod, not printed: "higher" in D 4.5.4. []"""
+
+PULL_SPEED: Final = 0.05
+"""Speed of the rod, only drawn. [m/s]"""
+
+_NOMINAL_AREA: Final = 10e-6  # m2, not printed: 10 mm along the rod by 1 mm
+_MODES: Final = 10
+_POSITIONS: Final = 9  # along the rod, at which the vibration is computed
+_GRAVITY: Final = 9.81  # m/s2
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Pull:
-    """A rod pulled through the collar from one end to the other.
+class PulledRod:
+    """Friction of a rod pulled through the collar from one end to the other.
 
     Parameters
     ----------
-    place : ndarray, shape (n,)
-        Part of the rod in the ring, from 0 at one end to 1 at the other.
+    relative_position : ndarray, shape (n,)
+        Position of the ring on the rod over its length, from 0 to 1.
     normal_load : ndarray, shape (n,)
         Load on the ring. [N]
     vibration_amplitude : ndarray, shape (n,)
@@ -47,7 +54,7 @@ class Pull:
         Speed of the rod. [m/s]
     """
 
-    place: Floats
+    relative_position: Floats
     normal_load: Floats
     vibration_amplitude: Floats
     friction_ratio: Floats
@@ -55,44 +62,49 @@ class Pull:
 
     @property
     def work_reduction(self) -> Floats:
-        """Share of the work of friction that vibration saves at each speed, friction in proportion to the load."""
-        work = np.trapezoid(self.friction_ratio * self.normal_load, self.place, axis=-1)
-        return np.asarray(1 - work / np.trapezoid(self.normal_load, self.place))
+        """Reduction of the work of friction at each speed, friction in proportion to the load. []"""
+        work = np.trapezoid(self.friction_ratio * self.normal_load, self.relative_position, axis=-1)
+        return np.asarray(1 - work / np.trapezoid(self.normal_load, self.relative_position))
+
+    @property
+    def ratio_at_pull_speed(self) -> Floats:
+        """Friction ratio along the rod at the assumed speed, by linear interpolation. []"""
+        return np.array([np.interp(PULL_SPEED, self.sliding_speed, ratio) for ratio in self.friction_ratio.T])
 
 
 @cache
 def response_model(collar: Collar, *, clamped: bool = False, open_top: bool = False) -> ReducedModel:
-    """Return a collar under voltage."""
+    """Return the reduced model of a collar under voltage."""
     return reduced_collar_model(collar, clamped=clamped, open_top=open_top)
 
 
 @cache
 def mode_frequency(collar: Collar, kind: BoreMotion) -> float:
-    """Return the frequency of the mode of a kind in which the inner ring moves most. [Hz]"""
+    """Return the frequency of the mode of a kind with the largest motion of the inner ring. [Hz]"""
     odd = kind in (BoreMotion.TORSIONAL, BoreMotion.DIAGONAL_OVAL, BoreMotion.TRANSLATION_ALONG_X)
     return collar_modes(collar, count=_MODES, parity=Parity(odd_across=odd)).dominant_frequency(kind)
 
 
 @cache
-def pull() -> Pull:
-    """Return the pull of D 4.5.4 at the voltage printed, the drive at the main resonance of the free collar."""
-    radius = statement("4.5.4-rod-diameter").number.value / 2
+def pulled_rod() -> PulledRod:
+    """Return the pulled rod of D 4.5.4 at the printed voltage and the main resonance of the free collar."""
+    radius = si_value("4.5.4-rod-diameter") / 2
     rod_mass = material("stainless_steel_304").value("density") * np.pi * radius**2 * ROD_LENGTH
-    place = np.linspace(0.0, 1.0, _PLACES)
-    load = rod_mass * _GRAVITY * (1 + (LOAD_AT_ENDS - 1) * np.abs(2 * place - 1))
-    contact = steel_on_steel_contact(nominal_area=NOMINAL_AREA)
+    position = np.linspace(0.0, 1.0, _POSITIONS)
+    load = rod_mass * _GRAVITY * (1 + (LOAD_AT_ENDS - 1) * np.abs(2 * position - 1))
+    contact = steel_on_steel_contact(nominal_area=_NOMINAL_AREA)
     model = response_model(FINAL_COLLAR)
     states = steady_state(
         with_free_body(contact_structure(model, contact="saddle", outwards=-1.0), body_mass=rod_mass),
         ExponentialGap(decay_length=float(decay_length(contact))),
         normal_load=load,
         frequency=main_resonance(model).series_frequency,
-        voltage_amplitude=statement("4.5.4-voltage").number.value / 2,
+        voltage_amplitude=si_value("4.5.4-voltage") / 2,
     )
     speed = np.linspace(0.01, 0.25, 49)
-    ratios = [AsperityStickSlip().ratio(contact, gap_motion(states, k), sliding_speed=speed) for k in range(_PLACES)]
-    return Pull(
-        place=place,
+    ratios = [AsperityStickSlip().ratio(contact, gap_motion(states, k), sliding_speed=speed) for k in range(_POSITIONS)]
+    return PulledRod(
+        relative_position=position,
         normal_load=load,
         vibration_amplitude=states.vibration_amplitude,
         friction_ratio=np.array(ratios).T,

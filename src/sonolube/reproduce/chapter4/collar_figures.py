@@ -1,6 +1,6 @@
-"""Figures of section 4.5, the collar: impedance, amplitudes over voltage, a rod pulled through."""
+"""Section 4.5, the collar: figures of impedance, of amplitudes over voltage, and of a rod pulled through it."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -8,60 +8,57 @@ from sonolube.dong2015.collar_designs import FINAL_COLLAR
 from sonolube.dong2015.collar_tuning import HIGHEST_FREQUENCY, LOWEST_FREQUENCY, main_resonance
 from sonolube.fem import ReducedModel, harmonic_response
 from sonolube.figure import COLOURS, LINES, ReportFigure
-from sonolube.reproduce.chapter4.collar import LOAD_AT_ENDS, PULL_SPEED, pull, response_model
+from sonolube.published import si_value
+from sonolube.reproduce.chapter4.collar import LOAD_AT_ENDS, PULL_SPEED, pulled_rod, response_model
 from sonolube.reproduce.chapter4.collar_rows import finite_elements_missing
-from sonolube.validation.inputs import said
+from sonolube.reproduce.plots import axes_row, line_style, single_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_ASSUMED = "Dimensions that D does not print are assumed and fitted to 25 and 24.4 kHz."
-_POINTS = 2001
+_ASSUMED: Final = "Dimensions that D does not print are assumed and fitted to 25 and 24.4 kHz."
+_POINTS: Final = 2001
 
 
 def collar_figures() -> tuple[ReportFigure, ...]:
-    """Return the figures of section 4.5; none where finite elements are not installed."""
+    """Return the figures of section 4.5; none if a package of the finite elements is missing."""
     if finite_elements_missing():
         return ()
     return (
         ReportFigure(
             name="figures-4-51-4-53-collar-impedance",
-            chapter=4,
             title="Impedance of the collar",
             caption="Left, figure 4.51: base free and clamped, top closed. Right, figure 4.53: top closed and open, "
-            f"base free. {_ASSUMED} Closed, two pairs of half the coupling and less show below the main one, the only "
-            "one that D saw; open, one shows clearly, where D saw three. Below 15 kHz the model has pairs that D does "
-            "not tell of. The base is clamped by its whole lower face, without give.",
+            f"base free. {_ASSUMED} Closed, two pairs of half the coupling and less lie below the main one, the only "
+            "one in D; open, one is distinct, while D has three. Below 15 kHz the model has pairs that D does not "
+            "mention. The base is rigidly clamped by its whole lower face.",
             draw=_impedances,
         ),
         ReportFigure(
             name="figure-4-55-collar-amplitudes",
-            chapter=4,
             title="Amplitudes of the collar over voltage",
             caption="Top open, each at its own resonance: the flat of the inner ring, and the base under the stack. "
             f"{_ASSUMED} Linear, as measured. The base moves a twentieth as much as the ring, clamped a fifth. "
-            "Clamping raises the ring's amplitude by less than a tenth, where D has it significantly higher: the mode "
-            "is the ring's own and the base heavy. How high all are goes with the losses, which are assumed.",
+            "Clamping raises the ring's amplitude by less than a tenth, while in D it is significantly higher: the "
+            "mode is that of the ring and the base is heavy. All amplitudes depend on the losses, which are assumed.",
             draw=_amplitudes,
         ),
         ReportFigure(
             name="figure-4-57-collar-pull",
-            chapter=4,
             title="A rod pulled through the collar",
             caption="28 V peak to peak at the resonance, multi-scale model with the structure of the finite elements. "
             f"{_ASSUMED} Load assumed {LOAD_AT_ENDS:g} times as high at the ends as in the middle; a higher load "
-            "detunes the resonance and leaves less amplitude, so that friction falls least at the ends. The share of "
-            "the work that is saved depends on the speed, which is only drawn in D.",
-            draw=_pull,
+            "detunes the resonance and leaves less amplitude, so that friction falls least at the ends. The "
+            "reduction of the work depends on the speed, which is only drawn in D.",
+            draw=_pulled_rod,
         ),
     )
 
 
 def _impedances() -> "Figure":
-    from matplotlib import pyplot as plt
-
-    figure, (left, right) = plt.subplots(1, 2, figsize=(7.8, 3.6), sharey=True)
+    """Draw the impedance with free and clamped base, and with closed and open top."""
+    figure, (left, right) = axes_row(2, (7.8, 3.6), sharey=True)
     free = response_model(FINAL_COLLAR)
     for axes, cases in (
         (left, {"base free": free, "base clamped": response_model(FINAL_COLLAR, clamped=True)}),
@@ -79,16 +76,16 @@ def _impedances() -> "Figure":
 
 
 def _impedance(axes: "Axes", model: ReducedModel, label: str, index: int) -> None:
+    """Draw the magnitude of the impedance of a model over frequency."""
     frequency = np.linspace(LOWEST_FREQUENCY, HIGHEST_FREQUENCY, _POINTS)
     admittance = harmonic_response(model, frequency=frequency).admittance
-    axes.semilogy(1e-3 * frequency, 1 / np.abs(admittance), linestyle=LINES[index], color=COLOURS[index], label=label)
+    axes.semilogy(1e-3 * frequency, 1 / np.abs(admittance), **line_style(index), label=label)
 
 
 def _amplitudes() -> "Figure":
-    from matplotlib import pyplot as plt
-
-    figure, axes = plt.subplots(figsize=(4.8, 3.6))
-    swing = np.array([0.0, said("4.5.4-voltage").value])
+    """Draw the amplitudes of inner ring and base over voltage, with free and clamped base."""
+    figure, axes = single_axes()
+    swing = np.array([0.0, si_value("4.5.4-voltage")])
     for index, (label, clamped) in enumerate((("unclamped", False), ("clamped", True))):
         model = response_model(FINAL_COLLAR, clamped=clamped, open_top=True)
         at_resonance = harmonic_response(model, frequency=main_resonance(model).series_frequency)
@@ -102,26 +99,27 @@ def _amplitudes() -> "Figure":
     return figure
 
 
-def _pull() -> "Figure":
-    from matplotlib import pyplot as plt
-
-    figure, (left, right) = plt.subplots(1, 2, figsize=(7.8, 3.6))
-    rod = pull()
-    at_speed = np.array([np.interp(PULL_SPEED, rod.sliding_speed, ratio) for ratio in rod.friction_ratio.T])
+def _pulled_rod() -> "Figure":
+    """Draw the friction along a pulled rod, and the reductions of friction and work over its speed."""
+    figure, (left, right) = axes_row(2, (7.8, 3.6))
+    rod = pulled_rod()
     intrinsic = rod.normal_load / rod.normal_load.min()
-    left.plot(rod.place, intrinsic, LINES[0], color=COLOURS[0], label="without vibration")
+    left.plot(rod.relative_position, intrinsic, **line_style(0), label="without vibration")
     left.plot(
-        rod.place, intrinsic * at_speed, linestyle=LINES[1], color=COLOURS[1], label=f"with, {1e3 * PULL_SPEED:g} mm/s"
+        rod.relative_position,
+        intrinsic * rod.ratio_at_pull_speed,
+        **line_style(1),
+        label=f"with, {1e3 * PULL_SPEED:g} mm/s",
     )
     left.set(
-        xlabel="Place on the rod over its length [1]",
+        xlabel="Position on the rod over its length [1]",
         ylabel="Friction over that in the middle [1]",
         xlim=(0, 1),
         ylim=(0, 1.35 * intrinsic.max()),
     )
     left.legend(loc="upper right")
     speed = 1e3 * rod.sliding_speed
-    right.plot(speed, 100 * rod.work_reduction, LINES[0], color=COLOURS[0], label="work of friction")
+    right.plot(speed, 100 * rod.work_reduction, **line_style(0), label="work of friction")
     right.fill_between(
         speed,
         100 * (1 - rod.friction_ratio.max(axis=1)),
@@ -130,7 +128,7 @@ def _pull() -> "Figure":
         label="friction, ends to middle",
     )
     right.axhline(
-        100 * said("4.5.4-work-reduction").value, color="0.3", linestyle=":", label="work in D 4.5.4, speed not printed"
+        100 * si_value("4.5.4-work-reduction"), color="0.3", linestyle=":", label="work in D 4.5.4, speed not printed"
     )
     right.set(xlabel="Speed of the rod [mm/s]", ylabel="Reduction [%]", xlim=(speed[0], speed[-1]), ylim=(0, 110))
     right.legend(loc="upper right")

@@ -1,9 +1,11 @@
-"""Section 4.5, the collar element: modes, resonances, friction and work by finite elements with assumed dimensions."""
+"""Section 4.5, the collar: rows of its stack, and of modes, friction and work by finite elements."""
 
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
+from scipy.constants import epsilon_0
 
 from sonolube.dong2015.bore import BoreMotion
 from sonolube.dong2015.collar_designs import (
@@ -15,19 +17,18 @@ from sonolube.dong2015.collar_designs import (
 )
 from sonolube.dong2015.collar_tuning import main_resonance
 from sonolube.fem.solver.cad import MissingPackage, cad_kernel
-from sonolube.published.values import Computed, stated
+from sonolube.published import ComputedValue, published_value, si_value
 from sonolube.reproduce.chapter4.collar import (
     LOAD_AT_ENDS,
     PULL_SPEED,
     ROD_LENGTH,
     mode_frequency,
-    pull,
+    pulled_rod,
     response_model,
 )
-from sonolube.reproduce.row import Row, compare, undetermined
-from sonolube.validation.inputs import named, published_ends
+from sonolube.reproduce.row import Row, comparison_row, range_rows, undetermined_row
 
-_STATEMENTS = (
+_BY_FINITE_ELEMENTS: Final = (
     "4.5.2-breathing-mode-first",
     "4.5.2-torsional-mode-first",
     "4.5.2-breathing-mode-revised",
@@ -37,10 +38,10 @@ _STATEMENTS = (
     "4.5.4-reduction",
     "4.5.4-work-reduction",
 )
-_MESH_ERROR = 0.003  # relative, against elements of higher order
-_REVISED = {"hexagon": THIN_HEXAGON_COLLAR, "ring": THIN_RING_COLLAR}
-_ASSUMED = "walls of the outer ring, thickness of the inner one and bolts are assumed"
-_PULLED = (
+_MESH_ERROR: Final = 0.003  # relative, against elements of higher order
+_REVISED: Final = {"hexagon": THIN_HEXAGON_COLLAR, "ring": THIN_RING_COLLAR}
+_ASSUMED: Final = "walls of the outer ring, thickness of the inner one and bolts are assumed"
+_PULLED: Final = (
     f"multi-scale model with the computed structure at its resonance, 28 V; assumed: rod of {ROD_LENGTH:g} m, load from"
     f" its weight in the middle to {LOAD_AT_ENDS:g} times that at the ends, a steady {1e3 * PULL_SPEED:g} mm/s,"
     " roughness of Table 3.2, losses of metal 0.005"
@@ -48,7 +49,7 @@ _PULLED = (
 
 
 def finite_elements_missing() -> str:
-    """Return which package finite elements lack; empty where they can be computed."""
+    """Return the message on a package that finite elements lack; empty if none is missing."""
     try:
         cad_kernel()
     except MissingPackage as failure:
@@ -57,9 +58,10 @@ def finite_elements_missing() -> str:
 
 
 def collar_rows() -> Iterator[Row]:
-    """Yield the rows of section 4.5 that need finite elements."""
+    """Yield the rows of section 4.5; those by finite elements are undetermined if a package is missing."""
+    yield from _stack()
     if missing := finite_elements_missing():
-        yield from (undetermined(stated(name), missing) for name in _STATEMENTS)
+        yield from (undetermined_row(name, missing) for name in _BY_FINITE_ELEMENTS)
         return
     yield from _first_design()
     yield from _revised_designs()
@@ -67,70 +69,102 @@ def collar_rows() -> Iterator[Row]:
     yield from _pulled_rod()
 
 
+def _stack() -> Iterator[Row]:
+    """Yield coupling factor and capacitance of the stack, Table 4.7."""
+    stiffness, length, charge_constant, relative_permittivity, outer, inner = (
+        si_value(f"table-4.7-{name}-1")
+        for name in (
+            "stack_stiffness",
+            "length",
+            "charge_constant_33",
+            "relative_permittivity",
+            "outer_diameter",
+            "inner_diameter",
+        )
+    )
+    area = float(np.pi / 4 * (outer**2 - inner**2))
+    modulus, permittivity = stiffness * length / area, relative_permittivity * float(epsilon_0)
+    needed = si_value("table-4.7-coupling_factor-1") ** 2 * permittivity / charge_constant**2
+    yield comparison_row(
+        "table-4.7-coupling_factor-1",
+        charge_constant * float(np.sqrt(modulus / permittivity)),
+        f"d33 sqrt(E/eps) with E = k_p L/A = {modulus * 1e-9:.3g} GPa, as of ceramic alone; the printed factor"
+        f" needs {needed * 1e-9:.3g} GPa; end pieces and glue, which soften a stack, would account for the difference",
+    )
+    layers = np.sqrt(si_value("table-4.7-capacitance-1") / (permittivity * area / length))
+    missing = f"number of layers; C = N^2 eps A/L, ceramic over the whole length, would take {layers:.1f} of them"
+    yield undetermined_row("table-4.7-capacitance-1", missing)
+
+
 def _first_design() -> Iterator[Row]:
+    """Yield the modes of the first design."""
     oval = _on_mesh(mode_frequency(FIRST_COLLAR, BoreMotion.OVAL))
-    published = stated("4.5.2-breathing-mode-first")
+    published = published_value("4.5.2-breathing-mode-first")
     least = published.number.value
-    beyond = replace(published, number=replace(published.number, low=least, high=max(least, oval.value)))
+    at_least = replace(published, number=replace(published.number, low=least, high=max(least, oval.value)))
     mean_radius = (FIRST_COLLAR.ring_width + FIRST_COLLAR.bore_diameter) / 4
     radial = float(np.sqrt(200e9 / 8000.0)) / (2 * np.pi * mean_radius)
-    yield compare(
-        beyond,
+    yield comparison_row(
+        at_least,
         oval,
-        "Mode in which the bore turns oval along the stacks, hexagon and hexagonal hole across flats; "
-        f"{_ASSUMED}. Breathing proper, all of the bore widening, lies near {radial * 1e-3:.0f} kHz by the theory of "
-        "thin rings, and the 27 kHz of the revised designs would take a ring of 59 mm: D's breathing is taken for the "
-        "oval mode (erratum N16)",
+        "Mode in which the bore becomes oval along the stacks, hexagon and hexagonal hole across flats; "
+        f"{_ASSUMED}. Proper breathing, uniform widening of the bore, lies near {radial * 1e-3:.0f} kHz by the theory "
+        "of thin rings, and the 27 kHz of the revised designs would take a ring of 59 mm: D's breathing is taken for "
+        "the oval mode (erratum N16)",
     )
-    yield compare(
-        stated("4.5.2-torsional-mode-first"),
+    yield comparison_row(
+        "4.5.2-torsional-mode-first",
         _on_mesh(mode_frequency(FIRST_COLLAR, BoreMotion.DIAGONAL_OVAL)),
-        "Mode odd about the stacks in which the inner ring moves most: its hole turns oval along the diagonals and its "
-        f"sides turn; {_ASSUMED}. In a collar alike on both sides no voltage excites it: that it was seen in impedance "
-        "takes stacks or bolts that differ",
+        "Mode odd about the stacks with the largest motion of the inner ring: its hole becomes oval along the "
+        f"diagonals and its sides rotate; {_ASSUMED}. In a symmetric collar no voltage excites it: its presence in the "
+        "impedance requires stacks or bolts that differ",
     )
 
 
 def _revised_designs() -> Iterator[Row]:
+    """Yield the modes of the revised designs."""
     for shape, collar in _REVISED.items():
         for mode, kind in (("breathing", BoreMotion.OVAL), ("torsional", BoreMotion.DIAGONAL_OVAL)):
-            yield compare(
-                named(stated(f"4.5.2-{mode}-mode-revised"), shape),
+            yield comparison_row(
+                f"4.5.2-{mode}-mode-revised",
                 _on_mesh(mode_frequency(collar, kind)),
                 f"The {kind} mode of a {shape} of 1 in across flats with a hole of 0.75 in, sizes that D does not"
                 f" print; {_ASSUMED}",
+                suffix=shape,
             )
 
 
 def _final_design() -> Iterator[Row]:
+    """Yield the resonances of the final design."""
     for statement_id, open_top in (("4.5.3-mode-closed-top", False), ("4.5.3-mode-open-top", True)):
         for suffix, collar, note in (
             ("tuned", FINAL_COLLAR, "assumed dimensions fitted to this and the other frequency, none by more than 9 %"),
             ("guess", NOMINAL_COLLAR, "round inches for what D does not print, nothing fitted"),
         ):
             found = main_resonance(response_model(collar, open_top=open_top))
-            yield compare(
-                named(stated(statement_id), suffix),
+            yield comparison_row(
+                statement_id,
                 _on_mesh(found.series_frequency),
                 f"Resonance of the largest k_eff, {found.coupling_factor:.2f}, between 15 and 40 kHz; {note}",
+                suffix=suffix,
             )
 
 
 def _pulled_rod() -> Iterator[Row]:
-    rod = pull()
-    at_speed = np.array(
-        [np.interp(PULL_SPEED, rod.sliding_speed, ratio) for ratio in rod.friction_ratio.T], dtype=np.float64
-    )
-    for end, reduction in zip(
-        published_ends(stated("4.5.4-reduction")), (1 - at_speed.max(), 1 - at_speed.min()), strict=True
-    ):
-        yield compare(end, float(reduction), f"At the ends and in the middle of the rod; {_PULLED}")
+    """Yield the reductions of friction and of its work on a rod pulled through the collar."""
+    rod = pulled_rod()
+    low, high = 1 - rod.ratio_at_pull_speed.max(), 1 - rod.ratio_at_pull_speed.min()
+    note = f"At the ends and in the middle of the rod; {_PULLED}"
+    yield from range_rows("4.5.4-reduction", float(low), float(high), note)
     work = rod.work_reduction
-    found = float(np.interp(PULL_SPEED, rod.sliding_speed, work))
-    published = stated("4.5.4-work-reduction")
-    exact = float(np.interp(-published.number.value, -work, rod.sliding_speed))
-    yield compare(published, found, f"{_PULLED}. At {1e3 * exact:.0f} mm/s it would be the printed number")
+    exact = float(np.interp(-si_value("4.5.4-work-reduction"), -work, rod.sliding_speed))
+    yield comparison_row(
+        "4.5.4-work-reduction",
+        float(np.interp(PULL_SPEED, rod.sliding_speed, work)),
+        f"{_PULLED}. At {1e3 * exact:.0f} mm/s it would be the printed number",
+    )
 
 
-def _on_mesh(frequency: float) -> Computed:
-    return Computed(value=frequency, low=frequency * (1 - _MESH_ERROR), high=frequency)
+def _on_mesh(frequency: float) -> ComputedValue:
+    """Return a natural frequency with the interval of the discretisation error. [Hz]"""
+    return ComputedValue(value=frequency, low=frequency * (1 - _MESH_ERROR), high=frequency)

@@ -1,42 +1,43 @@
-"""Sections 4.1.2 to 4.1.4 and appendix B: maps of friction reduction by the multi-scale model, beside what is printed.
+"""Sections 4.1.2 to 4.1.4 and appendix B: rows and figures of the maps of friction reduction by the multi-scale model.
 
-D fitted its maps to measured runs that did not come along; what it prints of them is a few numbers in the text and
-Table 4.2. The maps here are computed: the identified tribometer with the contact of steel plates, stick-slip closure.
+D fitted its maps to measured runs that are not available; it prints a few numbers of them in the text and Table 4.2.
+The maps here are computed: the identified tribometer with the contact of steel plates and asperity stick-slip.
 """
 
 from collections.abc import Iterator
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.design import map_figure, velocity_power_map, velocity_stress_map
 from sonolube.figure import COLOURS, LINES, MARKERS, ReportFigure
-from sonolube.published.values import stated
-from sonolube.reproduce.row import Row, compare, undetermined
-from sonolube.validation.contacts import STEEL_YIELD_STRENGTH
-from sonolube.validation.inputs import exact, named, said
-from sonolube.validation.power_map import (
-    actuator_power,
+from sonolube.published import column_numbers, published_number, si_value
+from sonolube.reproduce.chapter4.power_map import (
     example_points,
     example_test,
     line_end,
     line_friction,
-    printed,
     sufficient_power,
 )
-from sonolube.validation.tribometer_rig import IDENTIFIED_NOTE, plate_rig
+from sonolube.reproduce.plots import draw_printed, single_axes
+from sonolube.reproduce.row import Row, comparison_row, undetermined_row
+from sonolube.reproduce.tribometer_rigs import IDENTIFIED_NOTE, plate_rig
+from sonolube.validation.contacts import STEEL_YIELD_STRENGTH
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-_TABOR = 2.8  # hardness over yield strength of a metal that does not harden; Tabor, The Hardness of Metals (1951)
-_BY_THE_MODEL = "by-the-multi-scale-model"
-_MODEL = f"Multi-scale model with the stick-slip closure, nothing fitted to friction. {IDENTIFIED_NOTE}"
-_SCANS = "scans of the plates, which are only drawn (Figs. 4.15 and 4.19)"
-_MEASURED = {
+_TABOR: Final = 2.8  # hardness over yield strength of a non-hardening metal; Tabor, The Hardness of Metals (1951)
+_BY_THE_MODEL: Final = "by-the-multi-scale-model"
+_MODEL: Final = f"Multi-scale model with asperity stick-slip, nothing fitted to friction. {IDENTIFIED_NOTE}"
+_SCANS: Final = "scans of the plates, which are only drawn (Figs. 4.15 and 4.19)"
+_COATED_FRICTION: Final = (
+    "friction forces on coated plates, only drawn (Fig. 4.33); printed as forces, meant as coefficients (E18)"
+)
+_NOT_COMPUTABLE: Final = {
     "4.1.3-hardness-coating": "yield strength of the coating",
     "4.1.3-coating-thickness": "anything it could follow from; it was measured",
     "4.1.3-roughness-uncoated": _SCANS,
@@ -45,28 +46,33 @@ _MEASURED = {
     "4.1.3-waviness-x": _SCANS,
     "4.1.3-waviness-y": _SCANS,
     "4.1.3-groove-depth": "distance slid and wear coefficient of the coating; it is within the coating, of 60 um",
+    "4.1.3-friction-coated-first": _COATED_FRICTION,
+    "4.1.3-friction-coated-last": _COATED_FRICTION,
 }
+"""Missing inputs of published numbers, by id."""
 
 
 def map_rows() -> Iterator[Row]:
-    """Yield the rows of what the text says of its maps, by the multi-scale model, and of section 4.1.3."""
-    reduction = over_stress()["friction_reduction"]
+    """Yield the rows of the maps by the multi-scale model, and of section 4.1.3."""
+    reduction = stress_maps()["friction_reduction"]
     lowest, highest = reduction.isel(voltage_peak_to_peak=0), reduction.isel(voltage_peak_to_peak=-1)
     speed = 1e3 * float(reduction["sliding_speed"][0])
-    yield compare(
-        named(stated("4.1.2-reduction-lowest-voltage"), _BY_THE_MODEL),
+    yield comparison_row(
+        "4.1.2-reduction-lowest-voltage",
         float(lowest.max()),
-        f"Most at any speed and load; the model gives {float(lowest.max()):.1%}. {_MODEL}",
+        f"Largest at any speed and load; the model gives {float(lowest.max()):.1%}. {_MODEL}",
+        suffix=_BY_THE_MODEL,
     )
-    yield compare(
-        named(stated("4.1.2-reduction-highest-voltage"), _BY_THE_MODEL),
+    yield comparison_row(
+        "4.1.2-reduction-highest-voltage",
         float(highest.isel(sliding_speed=0).max()),
         f"At {speed:g} mm/s, the lowest speed of the tests; {float(highest.isel(sliding_speed=-1).max()):.0%} at the"
         f" highest. {_MODEL}; friction falls too little at every voltage, as in Table 4.2",
+        suffix=_BY_THE_MODEL,
     )
-    yield _plates()
+    yield _plate_count()
     yield _hardness()
-    yield from (undetermined(stated(name), missing) for name, missing in _MEASURED.items())
+    yield from (undetermined_row(name, missing) for name, missing in _NOT_COMPUTABLE.items())
 
 
 def map_figures() -> tuple[ReportFigure, ...]:
@@ -74,49 +80,45 @@ def map_figures() -> tuple[ReportFigure, ...]:
     return (
         ReportFigure(
             name="figure-4-9-stress-maps",
-            chapter=4,
             title="Friction reduction over sliding speed and stress",
             caption="As D figures 4.9 and 4.10, by the multi-scale model on uncoated steel, at the five voltages of "
-            "Table 4.1. Contours stand upright: the stress does not matter, which the text finds too but for the arm's "
+            "Table 4.1. Contours are vertical: the stress has no effect, as in the text except at the arm's "
             "resonance. For coated steel no parameter but hardness, thickness and roughness is printed.",
-            draw=lambda: map_figure(over_stress()),
+            draw=lambda: map_figure(stress_maps()),
         ),
         ReportFigure(
             name="figure-4-20-power-maps",
-            chapter=4,
             title="Friction reduction over sliding speed and power",
             caption="As D figures 4.11, 4.12, 4.20 and B.1 to B.6, by the multi-scale model, for all seven loads. More "
-            "power and less speed reduce friction more, as the text says; no ridge lies within the powers of the "
+            "power and less speed reduce friction more, as in the text; no ridge lies within the powers of the "
             "tests.",
-            draw=lambda: map_figure(over_power()),
+            draw=lambda: map_figure(power_maps()),
         ),
         ReportFigure(
             name="figure-4-21-reduction-over-speed",
-            chapter=4,
             title="Model and test over sliding speed",
-            caption="As D figure 4.21. Solid: multi-scale model; curves of 3 and of 9 N lie within a line's width. "
+            caption="As D figure 4.21. Solid: multi-scale model; curves of 3 and of 9 N coincide in print. "
             "Dashed: D's efficiency line (D 4.4), which measured runs were fitted to. Points: Table 4.2, the one test "
             "printed. D's own model met the tests at low speeds; its structure is not printed. With the structure "
             "identified, and nothing fitted to friction, a third of the reduction comes out at the highest voltage, "
-            "and less of it below. In-plane motion of the pin could bring most of the rest; nobody measured it.",
-            draw=_over_speed,
+            "and less of it below. In-plane motion of the pin, which was not measured, could explain most of the rest.",
+            draw=_reduction_over_speed,
         ),
         ReportFigure(
             name="figure-4-11-ridge",
-            chapter=4,
-            title="Where more power buys nothing",
+            title="Power beyond which friction falls no further",
             caption="The model at 5 N, up to 200 V, far beyond the tests (dash-dotted: their highest power). Dashed: "
-            "where doubling the power buys less than another 5 %. Dotted: the power that takes all friction away on "
+            "power whose doubling reduces friction by less than another 5 %. Dotted: the power of zero friction on "
             f"D's efficiency line (D 4.3), which has no meaning from {1e3 * line_end():.0f} mm/s on. Both rise with "
-            "the speed, as the text's optimum at low speeds wants; the model's lies some ten times higher.",
+            "the speed, as does the optimum at low speeds of the text; that of the model is some ten times higher.",
             draw=_ridge,
         ),
     )
 
 
 @cache
-def over_stress() -> "xr.Dataset":
-    """Return friction reduction over the speeds and loads of Table 4.1 at its voltages."""
+def stress_maps() -> "xr.Dataset":
+    """Return the friction reduction over the speeds and loads of Table 4.1 at its voltages."""
     voltages = [point.voltage_peak_to_peak for point in example_points()]
     return velocity_stress_map(
         plate_rig(), sliding_speed=_speeds(), normal_load=_loads(), voltage_peak_to_peak=voltages
@@ -124,75 +126,68 @@ def over_stress() -> "xr.Dataset":
 
 
 @cache
-def over_power() -> "xr.Dataset":
-    """Return friction reduction over the speeds and powers of Table 4.1 under its loads."""
+def power_maps() -> "xr.Dataset":
+    """Return the friction reduction over the speeds and powers of Table 4.1 under its loads."""
     voltages = np.linspace(1.0, example_points()[-1].voltage_peak_to_peak, 26)
     return velocity_power_map(plate_rig(), sliding_speed=_speeds(), voltage_peak_to_peak=voltages, normal_load=_loads())
 
 
 @cache
-def far_beyond() -> "xr.Dataset":
-    """Return friction reduction over speed and powers far beyond those of the tests, at the load of the example."""
+def extended_power_map() -> "xr.Dataset":
+    """Return the friction reduction over speed and powers up to those of 200 V, at the load of the example test."""
     return velocity_power_map(
         plate_rig(),
         sliding_speed=_speeds(),
-        voltage_peak_to_peak=np.linspace(2.0, said("3.3.5-voltage").high, 100),
+        voltage_peak_to_peak=np.linspace(2.0, published_number("3.3.5-voltage").high, 100),
         normal_load=[example_test()["normal_load"]],
     )
 
 
 def _speeds() -> Floats:
-    speed = printed("4.1", "sliding_speed")[0]
+    """Return the speeds of the maps. [m/s]"""
+    speed = published_number("table-4.1-sliding_speed-1")
     return np.linspace(speed.low, speed.high, 31)
 
 
 def _loads() -> list[float]:
-    return [load.value for load in printed("4.1", "normal_load").values()]
+    """Return the loads of Table 4.1. [N]"""
+    return [load.value for load in column_numbers("4.1", "normal_load").values()]
 
 
-def _plates() -> Row:
-    loads, step = said("4.1.1-normal-load"), exact(said("4.1.1-load-step")).value
+def _plate_count() -> Row:
+    """Return the number of plates from the loads."""
+    loads, step = published_number("4.1.1-normal-load"), si_value("4.1.1-load-step")
     note = f"Loads from {loads.low:g} to {loads.high:g} N by {step:g} N; as many stresses in the captions of appendix B"
-    return compare(stated("4.1.1-plate-count"), (loads.high - loads.low) / step + 1, note)
+    return comparison_row("4.1.1-plate-count", (loads.high - loads.low) / step + 1, note)
 
 
 def _hardness() -> Row:
-    published = stated("4.1.3-hardness-uncoated")
+    """Return the hardness from the yield strength implied by section 3.1.4."""
+    implied = si_value("4.1.3-hardness-uncoated") / _TABOR
     note = (
         f"{_TABOR:g} times the {STEEL_YIELD_STRENGTH / 1e6:g} MPa that the separations of D 3.1.4 imply (Tabor); the"
-        f" measured hardness is of a steel that yields at {published.number.value / _TABOR / 1e6:.0f} MPa"
+        f" measured hardness is of a steel that yields at {implied / 1e6:.0f} MPa"
     )
-    return compare(published, _TABOR * STEEL_YIELD_STRENGTH, note)
+    return comparison_row("4.1.3-hardness-uncoated", _TABOR * STEEL_YIELD_STRENGTH, note)
 
 
-def _over_speed() -> "Figure":
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(6.4, 4.0))
-    axes = figure.subplots()
-    found, test = over_stress(), example_test()
+def _reduction_over_speed() -> "Figure":
+    """Draw the friction reduction over speed of the model, the efficiency line and Table 4.2."""
+    figure, axes = single_axes((6.4, 4.0))
+    found, test = stress_maps(), example_test()
     speeds = found["sliding_speed"].values
     fine = np.linspace(speeds[0], speeds[-1], 301)
-    reductions = list(printed("4.2", "friction_reduction").values())
+    reductions = list(column_numbers("4.2", "friction_reduction").values())
     off = test["intrinsic_friction_force"]
     for index, (point, measured) in enumerate(zip(example_points(), reductions, strict=True)):
         colour, reduction = COLOURS[index], 100 * found["friction_reduction"].isel(voltage_peak_to_peak=index).values
         axes.fill_between(1e3 * speeds, reduction.min(axis=0), reduction.max(axis=0), color=colour, linewidth=1.6)
-        power = float(actuator_power(voltage_peak_to_peak=point.voltage_peak_to_peak))
-        left = [float(line_friction(test | {"sliding_speed": float(v)}, actuator_power=power)) for v in fine]
-        axes.plot(1e3 * fine, 100 * (1 - np.array(left) / off), LINES[1], color=colour, linewidth=1.0)
-        place = 1e3 * test["sliding_speed"]
-        axes.errorbar(
-            place,
-            100 * measured.value,
-            yerr=100 * (measured.value - measured.low),
-            fmt=MARKERS[index],
-            color=colour,
-            markeredgecolor="black",
-            capsize=2,
-            zorder=4,
-            label=f"{point.voltage_peak_to_peak:g} V, {power:.2f} W",
-        )
+        power = point.actuator_power
+        friction = [float(line_friction(test | {"sliding_speed": float(v)}, actuator_power=power)) for v in fine]
+        axes.plot(1e3 * fine, 100 * (1 - np.array(friction) / off), LINES[1], color=colour, linewidth=1.0)
+        style = {"fmt": MARKERS[index], "color": colour, "markeredgecolor": "black", "capsize": 2, "zorder": 4}
+        label = f"{point.voltage_peak_to_peak:g} V, {power:.2f} W"
+        draw_printed(axes, [1e3 * test["sliding_speed"]], [measured], 100, **style, label=label)
     axes.plot([], [], color="0.3", label="multi-scale model")
     axes.plot([], [], LINES[1], color="0.3", linewidth=1.0, label="efficiency line")
     axes.set(
@@ -209,14 +204,15 @@ def _over_speed() -> "Figure":
 
 
 def _ridge() -> "Figure":
+    """Draw the map of friction reduction over speed and power with its ridge and the sufficient power."""
     from matplotlib.patheffects import Normal, Stroke
 
-    figure = map_figure(far_beyond())
+    figure = map_figure(extended_power_map())
     axes = figure.axes[0]
     speeds = _speeds()
-    enough = [sufficient_power(example_test() | {"sliding_speed": float(v)}) for v in speeds]
+    sufficient = [sufficient_power(example_test() | {"sliding_speed": float(v)}) for v in speeds]
     halo = [Stroke(linewidth=3.6, foreground="white"), Normal()]
-    axes.plot(1e3 * speeds, enough, ":", color=COLOURS[1], lw=2, path_effects=halo, label="all friction, D 4.3")
+    axes.plot(1e3 * speeds, sufficient, ":", color=COLOURS[1], lw=2, path_effects=halo, label="all friction, D 4.3")
     axes.axhline(
         example_points()[-1].actuator_power,
         color="0.2",

@@ -1,12 +1,15 @@
-"""The temperature measurements of D 4.3 as its printed numbers describe them, and what is assumed beside them."""
+"""Temperature tests of D 4.3: printed settings, assumptions, heat of friction and vibration, computed histories."""
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.friction import sine_stick_slip_ratio
 from sonolube.materials import material
+from sonolube.published import column_numbers, si_value
+from sonolube.reproduce.chapter4.power_map import actuator_power
 from sonolube.thermal import (
     ContactTemperatureHistory,
     EllipticSource,
@@ -16,38 +19,37 @@ from sonolube.thermal import (
     contact_temperature_history,
     frictional_heat_rate,
 )
-from sonolube.validation.inputs import said
-from sonolube.validation.power_map import actuator_power, printed
 
-ROOM_TEMPERATURE = 294.15
-"""Temperature of the room in K: 21 degC, that of D's other tests."""
+ROOM_TEMPERATURE: Final = 294.15
+"""Room temperature, that of the other tests of D, 21 degC. [K]"""
 
-FRICTION_KEPT = 0.9
-"""Friction with vibration over friction without, in the example: 10 % less at 5.1 and 10.3 V, from there on it falls
-further by an amount not printed. Held at 10 % at every voltage, what cools least."""
+EXAMPLE_FRICTION_RATIO: Final = 0.9
+"""Friction with vibration over friction without in the example: 10 % less at 5.1 and 10.3 V, beyond which it falls
+further by an unprinted amount. Kept at 10 % at every voltage, the case of the least cooling. []"""
 
-POWDER_COATING = ThermalSolid(thermal_conductivity=0.25, density=1500.0, specific_heat_capacity=1200.0)
-"""The coating of the disc, assumed: a filled thermoset, of which D prints only thickness and hardness."""
+POWDER_COATING: Final = ThermalSolid(thermal_conductivity=0.25, density=1500.0, specific_heat_capacity=1200.0)
+"""Coating of the disc, assumed: a filled thermoset, of which D prints only thickness and hardness."""
 
-_NUT = ThermalNetwork(heat_capacity=(1.5,), links=(), losses=(0.05,))  # 3 g of steel on a thread
-_DECAY_LENGTH = 2e-6
+_NUT: Final = ThermalNetwork(heat_capacity=(1.5,), links=(), losses=(0.05,))  # 3 g of steel on a thread
+_DECAY_LENGTH: Final = 2e-6  # m, of the contact of Table 3.2
 
-ASSUMED = (
+ASSUMED: Final = (
     "Assumed, for D prints none of it: room at 21 degC, coating with 0.25 W/(m K), a coefficient of friction of 0.1 "
     "(E18), a thermocouple that conducts like the nut's stainless steel, the nut 3 g and 0.05 W/K"
 )
+"""Assumptions of the computed histories, in words."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class TemperatureTest:
-    """One of the tests: its load and speed, and how long each level of voltage lasted.
+    """One temperature test: load, speed, and whether the five voltages were applied.
 
     Parameters
     ----------
     normal_load : float
         Force pressing the bodies together. [N]
     sliding_speed : float
-        Speed of the sliding. [m/s]
+        Sliding speed. [m/s]
     vibrated : bool
         Whether the voltages were applied.
     """
@@ -58,18 +60,18 @@ class TemperatureTest:
 
 
 def voltages() -> Floats:
-    """Return the five voltages, peak to peak, in V."""
-    return np.array([voltage.value for voltage in printed("4.4", "voltage_peak_to_peak").values()])
+    """Return the five voltages, peak to peak. [V]"""
+    return _column("voltage_peak_to_peak")
 
 
 def speeds() -> Floats:
-    """Return the six sliding speeds, in m/s."""
-    return np.array([speed.value for speed in printed("4.4", "sliding_speed").values()])
+    """Return the six sliding speeds. [m/s]"""
+    return _column("sliding_speed")
 
 
 def loads() -> Floats:
-    """Return both loads, in N."""
-    return np.array([load.value for load in printed("4.4", "normal_load").values()])
+    """Return both loads. [N]"""
+    return _column("normal_load")
 
 
 def dry_heat(*, normal_load: float, sliding_speed: float) -> float:
@@ -80,48 +82,54 @@ def dry_heat(*, normal_load: float, sliding_speed: float) -> float:
     normal_load : float
         Force pressing the bodies together. [N]
     sliding_speed : float
-        Speed of the sliding. [m/s]
+        Sliding speed. [m/s]
 
     Returns
     -------
     float
     """
-    friction = said("4.1.3-friction-coated-last").value * normal_load  # a coefficient: erratum E18
+    friction = si_value("4.1.3-friction-coated-last") * normal_load  # a coefficient: erratum E18
     return float(frictional_heat_rate(friction_force=friction, sliding_speed=sliding_speed))
 
 
 def example_heat() -> float:
     """Return the heat of friction of the example, 3 N and 220 mm/s, without vibration. [W]"""
-    return dry_heat(normal_load=float(loads()[0]), sliding_speed=said("4.3.4-example-speed").value)
+    return dry_heat(normal_load=float(loads()[0]), sliding_speed=si_value("4.3.4-example-speed"))
 
 
 def vibration_heat_window() -> tuple[float, float]:
-    """Return the least and greatest share of the actuator's power for which the example cools and warms as D says.
+    """Return the limits of the fraction of the actuator's power at which the example cools and warms as in D. []
 
-    At 10.3 V the vibration must bring less heat than the friction loses, at 20.7 V more.
+    Returns
+    -------
+    tuple of float
+
+    Notes
+    -----
+    At 10.3 V the heat of vibration must be less than the loss of frictional heat, at 20.7 V more.
     """
     power = actuator_power(voltage_peak_to_peak=voltages())
-    lost = (1 - FRICTION_KEPT) * example_heat()
+    lost = (1 - EXAMPLE_FRICTION_RATIO) * example_heat()
     return lost / float(power[3]), lost / float(power[1])
 
 
 def vibration_heat_fraction() -> float:
-    """Return the geometric mean of that window: what the model takes, since D tells no more. []"""
+    """Return the fraction of the actuator's power that heats the contact: the geometric mean of its limits. []"""
     low, high = vibration_heat_window()
     return float(np.sqrt(low * high))
 
 
 def vibration_heat() -> Floats:
-    """Return the heat of vibration at the five voltages, in W."""
+    """Return the heat of vibration at the five voltages. [W]"""
     return vibration_heat_fraction() * actuator_power(voltage_peak_to_peak=voltages())
 
 
-def slow_friction_kept() -> Floats:
-    """Return what the vibration leaves of friction at the lowest speed and the five voltages, by stick-slip."""
+def slow_friction_ratio() -> Floats:
+    """Return the friction ratio at the lowest speed and the five voltages by asperity stick-slip. []"""
     return sine_stick_slip_ratio(
         decay_length=_DECAY_LENGTH,
-        vibration_amplitude=[amplitude.value for amplitude in printed("4.4", "vibration_amplitude").values()],
-        frequency=printed("4.4", "frequency")[0].value,
+        vibration_amplitude=_column("vibration_amplitude"),
+        frequency=si_value("table-4.4-frequency-1"),
         sliding_speed=float(speeds()[0]),
     )
 
@@ -134,21 +142,32 @@ def heated_contact(*, disc: ThermalSolid = POWDER_COATING) -> HeatedContact:
         density=steel.value("density"),
         specific_heat_capacity=steel.value("specific_heat_capacity"),
     )
-    radius = float(np.sqrt(printed("4.4", "nominal_area")[0].value / np.pi))
+    radius = float(np.sqrt(si_value("table-4.4-nominal_area-1") / np.pi))
     return HeatedContact(pin=pin, disc=disc, source=EllipticSource(half_length=radius, half_width=radius), network=_NUT)
 
 
 def history(test: TemperatureTest, *, step: float = 0.25) -> ContactTemperatureHistory:
-    """Return the computed temperature of a test in time, at steps of `step` seconds."""
-    start, dry = said("4.3.3-motor-start").value, said("4.3.3-vibration-start").value
-    level, rest = said("4.3.3-level-duration").value, said("4.3.3-cooling-duration").value
+    """Return the computed temperature history of a test.
+
+    Parameters
+    ----------
+    test : TemperatureTest
+    step : float
+        Time step, in s.
+
+    Returns
+    -------
+    ContactTemperatureHistory
+    """
+    start, dry = si_value("4.3.3-motor-start"), si_value("4.3.3-vibration-start")
+    level, rest = si_value("4.3.3-level-duration"), si_value("4.3.3-cooling-duration")
     end = dry + level * voltages().size
     moments = np.arange(0.0, end + rest + step / 2, step)
     middle = (moments[1:] + moments[:-1]) / 2
     turning = (middle > start) & (middle < end)
     shaken = turning & (middle > dry) & test.vibrated
     at_level = np.clip((middle - dry) // level, 0, voltages().size - 1).astype(int)
-    friction = said("4.1.3-friction-coated-last").value * test.normal_load * np.where(shaken, FRICTION_KEPT, 1.0)
+    friction = si_value("4.1.3-friction-coated-last") * test.normal_load * np.where(shaken, EXAMPLE_FRICTION_RATIO, 1.0)
     return contact_temperature_history(
         heated_contact(),
         time=moments,
@@ -156,3 +175,8 @@ def history(test: TemperatureTest, *, step: float = 0.25) -> ContactTemperatureH
         sliding_speed=np.where(turning, test.sliding_speed, 0.0),
         vibration_heat_rate=np.where(shaken, vibration_heat()[at_level], 0.0),
     )
+
+
+def _column(name: str) -> Floats:
+    """Return the numbers of a column of Table 4.4, in SI."""
+    return np.array([number.value for number in column_numbers("4.4", name).values()])

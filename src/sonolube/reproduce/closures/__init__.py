@@ -1,1 +1,0 @@
-"""Friction models against the dissertation's friction tables: rows and figures."""

@@ -1,0 +1,55 @@
+"""Cube model on the contacts of the Poisson-effect tests, with its assumptions."""
+
+from dataclasses import replace
+from typing import Final, Literal
+
+from sonolube.actuator import BarWaveguide, normal_amplitude
+from sonolube.checks import Floats
+from sonolube.contact import ASPERITY_LAWS, RoughContact
+from sonolube.friction import dong_2015_half_period_ratio
+from sonolube.published import si_value
+from sonolube.validation.contacts import STEEL_YIELD_STRENGTH, Bodies, poisson_contact
+
+Horn = Literal["aluminium", "steel"]
+"""Material of the waveguide of the Poisson-effect tests."""
+
+HORNS: Final[tuple[Horn, ...]] = ("aluminium", "steel")
+
+STEEL_ON_STEEL_NOTE: Final = (
+    f"yield strength of steel on steel not printed, {STEEL_YIELD_STRENGTH / 1e6:g} MPa implied by D 3.1.4"
+)
+
+
+def poisson_friction_ratio(*, bodies: Bodies, horn: Horn, normal_load: Floats, axial_amplitude: float) -> Floats:
+    """Return the friction ratio at the centre of the waveguide by the cube over the separating half period, D 3.15. []
+
+    Parameters
+    ----------
+    bodies : str
+        Pair in contact.
+    horn : str
+        Material of the waveguide.
+    normal_load : ndarray
+        Force pressing the bodies together. [N]
+    axial_amplitude : float
+        Axial amplitude at the ends of the waveguide. [m]
+
+    Returns
+    -------
+    ndarray, shape of `normal_load`
+    """
+    waveguide = BarWaveguide(
+        length=si_value("2.1.2-waveguide-length"),
+        thickness=si_value("2.1.2-waveguide-thickness"),
+        poisson_ratio=si_value(f"table-3.1-poisson_ratio_{horn}-1"),
+        axial_amplitude=axial_amplitude,
+        frequency=si_value("3.1.4-frequency"),
+    )
+    return dong_2015_half_period_ratio(
+        poisson_contact(bodies=bodies), normal_load=normal_load, vibration_amplitude=normal_amplitude(waveguide)
+    )
+
+
+def without_yielding(contact: RoughContact) -> RoughContact:
+    """Return a contact with purely elastic asperities."""
+    return replace(contact, asperity=ASPERITY_LAWS["elastic"])

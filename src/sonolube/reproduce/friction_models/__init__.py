@@ -1,0 +1,1 @@
+"""Friction models against the published friction reductions: variants, mechanisms and computed motions."""

@@ -1,0 +1,61 @@
+"""Sections of the reproduction, and their results: rows and figures of one section of the dissertation."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+from sonolube.figure import ReportFigure
+from sonolube.reproduce.row import Row
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ChapterFigure(ReportFigure):
+    """Figure of the reproduction report with its chapter.
+
+    Parameters
+    ----------
+    chapter : int
+        Chapter of the dissertation.
+    """
+
+    chapter: int
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Reproduction:
+    """Rows and figures of the reproduction.
+
+    Parameters
+    ----------
+    rows : tuple of Row
+    figures : tuple of ChapterFigure
+    """
+
+    rows: tuple[Row, ...]
+    figures: tuple[ChapterFigure, ...]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Section:
+    """Section of the dissertation with the functions that compute its rows and its figures.
+
+    Parameters
+    ----------
+    number : str
+        Number of the section, such as "2.3"; its first digit is the chapter of the figures.
+    rows : callable
+        Function that returns the rows.
+    figures : callable
+        Function that returns the figures.
+    row_chapters : tuple of int
+        Chapters of the rows, if others than that of the section.
+    """
+
+    number: str
+    rows: Callable[[], Iterable[Row]] = tuple
+    figures: Callable[[], Iterable[ReportFigure]] = tuple
+    row_chapters: tuple[int, ...] = ()
+
+    @property
+    def chapter(self) -> int:
+        """Chapter of the section."""
+        return int(self.number[0])

@@ -1,0 +1,197 @@
+"""Assessment of model variants: error statistics, leave-one-set-out cross-validation and information criteria.
+
+Sets A and C to G are fitted without Table 4.2 (set B) and with it. The cross-validation error predicts each set by a
+fit to the others: it is the error to expect on a rig that was not fitted.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from sonolube.validation.fitting import Fit, fit_variant, root_mean_square, select_tests
+from sonolube.validation.model_variant import ModelVariant
+from sonolube.validation.published_tests import MeasuredConditions
+
+SETS_WITHOUT_POWER_MAP: Final = "ACDEFG"
+"""Fitted sets of D without Table 4.2."""
+
+FITTED_SETS: Final = "ABCDEFG"
+"""Fitted sets of D; for set H the amplitude is not known."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ErrorStatistics:
+    """Statistics of the errors, predicted minus measured friction ratio; all are pure numbers.
+
+    Parameters
+    ----------
+    rms : float
+        Root mean square error over the tests inside the range of the model.
+    largest : float
+        Error of the largest absolute value.
+    median_relative : float
+        Median of the absolute error over the measured ratio.
+    count : int
+        Number of tests inside the range of the model.
+    out_of_range : tuple of str
+        Labels of the tests outside it.
+    """
+
+    rms: float
+    largest: float
+    median_relative: float
+    count: int
+    out_of_range: tuple[str, ...]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class InformationCriteria:
+    """Information criteria of a fit with Gaussian errors of one unknown variance; comparable on the same tests only.
+
+    Parameters
+    ----------
+    aicc : float
+        Akaike information criterion, corrected for small samples.
+    bic : float
+        Bayesian information criterion.
+    parameter_count : int
+        Number of fitted parameters, without the variance.
+    """
+
+    aicc: float
+    bic: float
+    parameter_count: int
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Assessment:
+    """Assessment of one model variant on some sets.
+
+    Parameters
+    ----------
+    fit : Fit
+        Fit to all of the sets.
+    fit_errors : ErrorStatistics
+        Errors of that fit.
+    cross_validation_errors : ErrorStatistics
+        Errors with each set predicted by a fit to the others.
+    information : InformationCriteria or None
+        Criteria of the fit; None where a test is outside the range of the model.
+    """
+
+    fit: Fit
+    fit_errors: ErrorStatistics
+    cross_validation_errors: ErrorStatistics
+    information: InformationCriteria | None
+
+
+def assess_variant(
+    variant: ModelVariant, sets: str, *, tests: tuple[MeasuredConditions, ...] | None = None
+) -> Assessment:
+    """Return the assessment of a model variant on some sets.
+
+    Parameters
+    ----------
+    variant : ModelVariant
+    sets : str
+        Letters of the sets.
+    tests : tuple of MeasuredConditions, optional
+        Tests from which the sets are selected; all published ones where absent.
+
+    Returns
+    -------
+    Assessment
+    """
+    fit, selected = fit_variant(variant, sets, tests=tests), select_tests(sets, tests)
+    return Assessment(
+        fit=fit,
+        fit_errors=prediction_errors(fit, selected),
+        cross_validation_errors=cross_validation_errors(variant, sets, tests=tests),
+        information=information_criteria(fit, selected),
+    )
+
+
+def prediction_errors(fit: Fit, tests: Iterable[MeasuredConditions]) -> ErrorStatistics:
+    """Return the error statistics of a fit over some tests."""
+    return error_statistics((test, fit.predict(test)) for test in tests)
+
+
+def error_statistics(predicted: Iterable[tuple[MeasuredConditions, float | None]]) -> ErrorStatistics:
+    """Return the error statistics of predicted friction ratios, None being outside the range of the model."""
+    pairs = list(predicted)
+    in_range = [(test, ratio) for test, ratio in pairs if ratio is not None]
+    measured = np.array([test.friction_ratio for test, _ in in_range])
+    errors = np.array([ratio for _, ratio in in_range]) - measured
+    return ErrorStatistics(
+        rms=root_mean_square(errors),
+        largest=float(errors[np.argmax(np.abs(errors))]) if in_range else float("inf"),
+        median_relative=float(np.median(np.abs(errors) / measured)) if in_range else float("inf"),
+        count=len(in_range),
+        out_of_range=tuple(test.label for test, ratio in pairs if ratio is None),
+    )
+
+
+def leave_one_set_out_fits(
+    variant: ModelVariant, sets: str, *, tests: tuple[MeasuredConditions, ...] | None = None
+) -> tuple[Fit, ...]:
+    """Return for each set, in order, the fit to all the others, which starts from the fit to all."""
+    initial = fit_variant(variant, sets, tests=tests).values
+    return tuple(fit_variant(variant, sets.replace(one, ""), initial=initial, tests=tests) for one in sets)
+
+
+def cross_validation_errors(
+    variant: ModelVariant, sets: str, *, tests: tuple[MeasuredConditions, ...] | None = None
+) -> ErrorStatistics:
+    """Return the error statistics with each set predicted by a fit to the others."""
+    fits = zip(sets, leave_one_set_out_fits(variant, sets, tests=tests), strict=True)
+    return error_statistics((test, fit.predict(test)) for one, fit in fits for test in select_tests(one, tests))
+
+
+def information_criteria(fit: Fit, tests: tuple[MeasuredConditions, ...]) -> InformationCriteria | None:
+    """Return the information criteria of a fit on some tests; None where one is outside the range of the model."""
+    errors = prediction_errors(fit, tests)
+    if errors.out_of_range:
+        return None
+    sets = "".join(test.set_name for test in tests)
+    fitted = sum(parameter.applies_to(sets) for parameter in fit.variant.parameters) if fit.sets else 0
+    return gaussian_criteria(errors.rms, count=len(tests), parameter_count=fitted)
+
+
+def gaussian_criteria(rms: float, *, count: int, parameter_count: int) -> InformationCriteria:
+    r"""Return the information criteria for Gaussian errors of unknown variance.
+
+    Parameters
+    ----------
+    rms : float
+        Root mean square error.
+    count : int
+        Number of tests.
+    parameter_count : int
+        Number of fitted parameters, without the variance.
+
+    Returns
+    -------
+    InformationCriteria
+
+    Notes
+    -----
+    .. math::
+
+        \mathrm{AICc} = 2 n \ln s + 2 k + \frac{2 k (k + 1)}{n - k - 1}, \qquad \mathrm{BIC} = 2 n \ln s + k \ln n
+
+    with the rms error s of n tests and k parameters, the variance counted. [1]_ [2]_ AICc is infinite for n <= k + 1.
+
+    References
+    ----------
+    .. [1] C. M. Hurvich and C.-L. Tsai, Biometrika 76, 297 (1989). doi:10.1093/biomet/76.2.297
+    .. [2] G. Schwarz, Ann. Stat. 6, 461 (1978). doi:10.1214/aos/1176344136
+    """
+    deviance = 2 * count * np.log(rms)
+    k = parameter_count + 1
+    return InformationCriteria(
+        aicc=float(deviance + 2 * k + 2 * k * (k + 1) / (count - k - 1)) if count > k + 1 else float("inf"),
+        bic=float(deviance + k * np.log(count)),
+        parameter_count=parameter_count,
+    )

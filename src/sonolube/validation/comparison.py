@@ -1,0 +1,341 @@
+"""Comparison of model variants on published tests: fits, cross-validation by sets, and predictions of a rig.
+
+A variant is fitted to the friction ratios of all tests whose conditions have its required inputs; then each set of
+tests is left out in turn and predicted by a fit to the others. This cross-validation error, not that of the fit, is the
+uncertainty of a prediction on another rig.
+"""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Final
+
+from sonolube.errors import InvalidInput, UnknownName
+from sonolube.validation.assessment import (
+    FITTED_SETS,
+    Assessment,
+    ErrorStatistics,
+    assess_variant,
+    error_statistics,
+    leave_one_set_out_fits,
+)
+from sonolube.validation.coulomb_and_spring_variants import COULOMB_AND_SPRING_VARIANTS
+from sonolube.validation.dahl_and_lugre_variants import DAHL_AND_LUGRE_VARIANTS
+from sonolube.validation.fitting import Fit, profile_likelihood_interval, select_tests
+from sonolube.validation.free_parameters import FreeParameter
+from sonolube.validation.friction_model_variants import FRICTION_MODEL_VARIANTS
+from sonolube.validation.model_variant import ModelVariant
+from sonolube.validation.published_tests import IN_PLANE_VIBRATION_SETS, NORMAL_VIBRATION_SETS, MeasuredConditions
+from sonolube.validation.rig_conditions import VibratedRig
+
+Advance = Callable[[str, int, int], None]
+
+COMPARED_MODELS: Final = (*FRICTION_MODEL_VARIANTS, *COULOMB_AND_SPRING_VARIANTS, *DAHL_AND_LUGRE_VARIANTS)
+"""All model variants: of the friction models of this program and of the literature."""
+
+DATA_SETS: Final = {**NORMAL_VIBRATION_SETS, **IN_PLANE_VIBRATION_SETS}
+"""Content of each set of tests, by its letter."""
+
+ONLY_PREDICTED: Final = {"H": "its amplitude at resonance is not known; it is predicted only"}
+"""Sets to which no variant is fitted, with the reason."""
+
+_FORMER_NAMES: Final = {
+    "as-published": "dong-2015-full-period",
+    "separating-half-period": "dong-2015-half-period",
+    "load-balanced": "dong-2015-load-balanced",
+    "load-balanced-per-rig": "dong-2015-load-balanced-per-rig",
+    "stick-slip-mindlin": "asperity-stick-slip-mindlin",
+    "stick-slip-mindlin-per-rig": "asperity-stick-slip-mindlin-per-rig",
+    "stick-slip": "asperity-stick-slip",
+    "stick-slip-in-plane": "asperity-stick-slip-in-plane",
+    "stick-slip-in-plane-pins": "asperity-stick-slip-in-plane-pins",
+    "stick-slip-in-plane-per-rig": "asperity-stick-slip-in-plane-per-rig",
+    "coupled": "bristle-with-holder",
+    "coupled-per-rig": "bristle-with-holder-per-rig",
+    "coupled-in-plane": "bristle-with-holder-in-plane",
+    "coulomb-along-hidden": "coulomb-longitudinal-fitted",
+    "coulomb-oblique-hidden": "coulomb-oblique-fitted",
+    "spring-along": "spring-longitudinal",
+}
+_MOST_PROFILED: Final = (
+    2  # parameters of a variant whose intervals are computed; with more, each point takes a long fit
+)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FittedParameter:
+    """Fitted value of one free parameter with its uncertainty, in SI.
+
+    Parameters
+    ----------
+    parameter : FreeParameter
+    value : float
+        Value fitted to all sets.
+    interval : tuple of float or None
+        95 % profile likelihood interval, truncated at the bounds; None for variants of more than two parameters.
+    leave_one_out_range : tuple of float or None
+        Smallest and largest value of the fits with one set left out; None where no such fit determines the parameter.
+    """
+
+    parameter: FreeParameter
+    value: float
+    interval: tuple[float, float] | None
+    leave_one_out_range: tuple[float, float] | None
+
+    @property
+    def at_bound(self) -> bool:
+        """Whether the value is at a physical bound."""
+        if self.parameter.is_angle:
+            return False
+        slack = 1e-3 * (self.parameter.high - self.parameter.low)
+        return min(self.value - self.parameter.low, self.parameter.high - self.value) < slack
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Prediction:
+    """Friction ratios of one test by one model variant.
+
+    Parameters
+    ----------
+    test : MeasuredConditions
+    fitted : float or None
+        Friction ratio by the fit to all sets; None where the variant does not apply.
+    cross_validated : float or None
+        Friction ratio by the fit to the other sets.
+    reason : str or None
+        Reason why the variant does not apply to the test.
+    """
+
+    test: MeasuredConditions
+    fitted: float | None
+    cross_validated: float | None
+    reason: str | None
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ComparedFit:
+    """Model variant with its assessment and its predictions of the tests.
+
+    Parameters
+    ----------
+    model : ModelVariant
+    sets : str
+        Letters of the sets that it was fitted to and assessed on.
+    assessment : Assessment or None
+        Errors and information criteria; None where no set has its required inputs.
+    parameters : tuple of FittedParameter
+    predictions : tuple of Prediction
+        Predictions of all tests, those of other sets included.
+    """
+
+    model: ModelVariant
+    sets: str
+    assessment: Assessment | None
+    parameters: tuple[FittedParameter, ...]
+    predictions: tuple[Prediction, ...]
+
+    @property
+    def fit(self) -> Fit:
+        """Fit to all sets; the defaults of all parameters where there is none."""
+        defaults = tuple(parameter.default for parameter in self.model.parameters)
+        return self.assessment.fit if self.assessment else Fit(variant=self.model, sets="", values=defaults)
+
+    @property
+    def aicc(self) -> float | None:
+        """Corrected Akaike criterion; None where a test is out of range or the tests are too few for it."""
+        criteria = self.assessment.information if self.assessment else None
+        return None if criteria is None or criteria.aicc == float("inf") else criteria.aicc
+
+    def errors_in(self, set_name: str) -> ErrorStatistics | None:
+        """Return the error statistics of the fit in one set; None where all its tests are out of range."""
+        of_set = [one for one in self.predictions if one.test.set_name == set_name]
+        errors = error_statistics((one.test, one.fitted) for one in of_set)
+        return errors if errors.count else None
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RigPrediction:
+    """Friction ratio of a rig by one model variant.
+
+    Parameters
+    ----------
+    model : ModelVariant
+    friction_ratio : float or None
+        Friction with vibration over friction without; None where the variant does not apply. []
+    uncertainty : float or None
+        Root mean square cross-validation error; None where the variant was assessed on fewer than two sets, or some
+        of their tests are outside its range.
+    reason : str or None
+        Reason why the variant does not apply to the rig.
+    """
+
+    model: ModelVariant
+    friction_ratio: float | None
+    uncertainty: float | None
+    reason: str | None
+
+
+def compared_models(names: Iterable[str] = ()) -> tuple[ModelVariant, ...]:
+    """Return the model variants of some names in the order of `COMPARED_MODELS`; all of them if no name is given.
+
+    Parameters
+    ----------
+    names : iterable of str
+
+    Returns
+    -------
+    tuple of ModelVariant
+
+    Raises
+    ------
+    InvalidInput
+        For a former name, with the present one.
+    UnknownName
+        If there is no such variant.
+    """
+    known = {model.name: model for model in COMPARED_MODELS}
+    selected = list(names)
+    for name in selected:
+        if name in _FORMER_NAMES:
+            raise InvalidInput(f"model {name!r} is now {_FORMER_NAMES[name]!r}")
+        if name not in known:
+            raise UnknownName.among(known, kind="model", name=name)
+    return tuple(model for model in COMPARED_MODELS if not selected or model.name in selected)
+
+
+def compare_models(
+    models: tuple[ModelVariant, ...] = COMPARED_MODELS,
+    *,
+    tests: tuple[MeasuredConditions, ...] | None = None,
+    advance: Advance = lambda name, done, total: None,
+) -> tuple[ComparedFit, ...]:
+    """Return model variants fitted to and assessed on the tests that have their required inputs.
+
+    Parameters
+    ----------
+    models : tuple of ModelVariant
+    tests : tuple of MeasuredConditions, optional
+        All published tests where absent.
+    advance : callable
+        Called after each variant with its name, the number done and their total.
+
+    Returns
+    -------
+    tuple of ComparedFit
+        In increasing order of the corrected Akaike criterion; after them those without one, in increasing order of
+        their cross-validation error.
+
+    Notes
+    -----
+    Information criteria are comparable on the same tests only, not between variants assessed on different sets.
+    """
+    fits = []
+    for done, model in enumerate(models, start=1):
+        fits.append(_compared_fit(model, tests))
+        advance(model.name, done, len(models))
+    return tuple(sorted(fits, key=_rank))
+
+
+def predict_rig(fits: tuple[ComparedFit, ...], rig: VibratedRig) -> tuple[RigPrediction, ...]:
+    """Return the friction ratio of a rig by every fitted variant, in increasing order of the uncertainty.
+
+    Parameters
+    ----------
+    fits : tuple of ComparedFit
+    rig : VibratedRig
+
+    Returns
+    -------
+    tuple of RigPrediction
+        Those that do not apply come last.
+
+    Notes
+    -----
+    Parameters specific to one rig of the tests, such as in-plane motion, keep their defaults.
+    """
+    return tuple(sorted((_rig_prediction(one, rig) for one in fits), key=_rig_rank))
+
+
+def _compared_fit(model: ModelVariant, tests: tuple[MeasuredConditions, ...] | None) -> ComparedFit:
+    """Return one variant fitted to, and assessed on, the sets whose tests have its required inputs."""
+    selected = select_tests("".join(DATA_SETS), tests)
+    applicable = {test.set_name for test in selected if model.inapplicability(test) is None}
+    sets = "".join(letter for letter in (*FITTED_SETS, *IN_PLANE_VIBRATION_SETS) if letter in applicable)
+    if not sets:
+        predictions = tuple(
+            Prediction(test=test, fitted=None, cross_validated=None, reason=model.inapplicability(test))
+            for test in selected
+        )
+        return ComparedFit(model=model, sets="", assessment=None, parameters=(), predictions=predictions)
+    assessment = assess_variant(model, sets, tests=tests)
+    left_out = dict(zip(sets, leave_one_set_out_fits(model, sets, tests=tests), strict=True))
+    return ComparedFit(
+        model=model,
+        sets=sets,
+        assessment=assessment,
+        parameters=_fitted_parameters(assessment.fit, left_out, tests),
+        predictions=tuple(
+            _prediction(test, assessment.fit, left_out.get(test.set_name, assessment.fit)) for test in selected
+        ),
+    )
+
+
+def _fitted_parameters(
+    fit: Fit, left_out: dict[str, Fit], tests: tuple[MeasuredConditions, ...] | None
+) -> tuple[FittedParameter, ...]:
+    """Return the fitted parameters with intervals and ranges over the fits with one set left out."""
+    parameters, found = fit.variant.parameters, []
+    for index, (parameter, value) in enumerate(zip(parameters, fit.values, strict=True)):
+        others = [
+            other.values[index]
+            for letter, other in left_out.items()
+            if parameter.applies_to("".join(left_out).replace(letter, ""))
+        ]
+        profiled = len(parameters) <= _MOST_PROFILED
+        found.append(
+            FittedParameter(
+                parameter=parameter,
+                value=value,
+                interval=profile_likelihood_interval(fit, index, tests=tests) if profiled else None,
+                leave_one_out_range=(min(others), max(others)) if others else None,
+            )
+        )
+    return tuple(found)
+
+
+def _prediction(test: MeasuredConditions, fit: Fit, left_out: Fit) -> Prediction:
+    """Return the prediction of one test by the fit to all sets and by that to the other sets."""
+    missing = fit.variant.inapplicability(test)
+    if missing:
+        return Prediction(test=test, fitted=None, cross_validated=None, reason=missing)
+    return Prediction(
+        test=test,
+        fitted=fit.predict(test),
+        cross_validated=left_out.predict(test),
+        reason=fit.variant.range_violation(test, *fit.values),
+    )
+
+
+def _rig_prediction(one: ComparedFit, rig: VibratedRig) -> RigPrediction:
+    """Return the friction ratio of a rig by one fitted variant, its cross-validation error as the uncertainty."""
+    missing = one.model.inapplicability(rig)
+    ratio = None if missing else one.fit.predict(rig)
+    errors = one.assessment.cross_validation_errors if one.assessment else None
+    known = errors is not None and not errors.out_of_range and len(one.sets) > 1 and ratio is not None
+    return RigPrediction(
+        model=one.model,
+        friction_ratio=ratio,
+        uncertainty=errors.rms if errors and known else None,
+        reason=missing or one.model.range_violation(rig, *one.fit.values),
+    )
+
+
+def _rig_rank(one: RigPrediction) -> tuple[bool, float]:
+    """Return the sort key of a prediction: whether it is missing, then its uncertainty."""
+    return one.friction_ratio is None, float("inf") if one.uncertainty is None else one.uncertainty
+
+
+def _rank(one: ComparedFit) -> tuple[bool, float]:
+    """Return the sort key of a fit: whether it has no corrected Akaike criterion, then criterion or error."""
+    if one.aicc is not None:
+        return False, one.aicc
+    return True, one.assessment.cross_validation_errors.rms if one.assessment else float("inf")

@@ -1,0 +1,280 @@
+"""Variants of Coulomb friction under in-plane vibration and of spring-coupled contacts, from the literature.
+
+No in-plane motion is printed for any test of the dissertation. A model that requires one takes a fraction of the normal
+motion as a fitted parameter; across the sliding that is the variant `kinematic-fitted`.
+"""
+
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from functools import cache
+from math import pi
+from typing import Final
+
+from sonolube.contact import RoughContact, normal_stiffness, separation
+from sonolube.errors import ModelRangeWarning, OutsideRange
+from sonolube.friction import (
+    SpringContact,
+    approximate_normal_ratio,
+    combined_oscillation_ratio,
+    critical_speed,
+    elliptical_traction_ratio,
+    load_balanced_approach,
+    longitudinal_oscillation_ratio,
+    normal_oscillation_ratio,
+    oblique_vibration_ratio,
+    parallel_vibration_ratio,
+)
+from sonolube.validation.free_parameters import APPROACH, IN_PLANE_MOTION, MINDLIN_RATIO, VIBRATION_DIRECTION, per_rig
+from sonolube.validation.model_variant import NORMAL_VIBRATION, ModelVariant
+from sonolube.validation.published_tests import FrictionTest, InPlaneTest
+from sonolube.validation.rig_conditions import VibratedRig
+
+
+@cache
+def load_over_stiffness(contact: RoughContact, load: float) -> float:
+    """Return load over normal stiffness of a rough contact at rest: the approach of linear springs. [m]"""
+    at_rest = separation(contact, normal_load=load)
+    return load / float(normal_stiffness(contact, separation=at_rest))
+
+
+def _coulomb_in_plane(test: InPlaneTest) -> float:
+    """Return the friction ratio by Coulomb friction under the measured in-plane vibration. []"""
+    return float(
+        oblique_vibration_ratio(
+            sliding_speed=test.sliding_speed,
+            vibration_velocity=test.vibration_velocity,
+            vibration_direction=test.vibration_direction,
+        )
+    )
+
+
+def _coulomb_longitudinal(test: FrictionTest, in_plane_fraction: float) -> float:
+    """Return the friction ratio by Coulomb friction under vibration along the sliding. []"""
+    return float(
+        parallel_vibration_ratio(
+            sliding_speed=test.sliding_speed, vibration_velocity=in_plane_fraction * _peak_velocity(test)
+        )
+    )
+
+
+def _coulomb_oblique(test: FrictionTest, in_plane_fraction: float, vibration_direction: float) -> float:
+    """Return the friction ratio by Coulomb friction under vibration oblique to the sliding. []"""
+    return float(
+        oblique_vibration_ratio(
+            sliding_speed=test.sliding_speed,
+            vibration_velocity=in_plane_fraction * _peak_velocity(test),
+            vibration_direction=vibration_direction,
+        )
+    )
+
+
+def _spring_flat(test: FrictionTest, approach: float | None = None, mindlin_ratio: float | None = None) -> float:
+    """Return the friction ratio by springs of constant stiffness, the profile of a flat punch. []"""
+    springs = _springs(test, mindlin_ratio)
+    at_rest = load_over_stiffness(test.contact, test.normal_load) if approach is None else approach
+    return _under_normal_oscillation(test, springs, at_rest)
+
+
+def _spring_parabolic(test: FrictionTest) -> float:
+    """Return the friction ratio by springs of a parabolic profile with the load and stiffness of the contact. []"""
+    springs = replace(_springs(test, None), profile="parabolic")
+    hertz = 1.5 * load_over_stiffness(test.contact, test.normal_load)  # F_N = 2/3 k_z u
+    return _under_normal_oscillation(test, springs, hertz)
+
+
+def _under_normal_oscillation(test: FrictionTest, springs: SpringContact, at_rest: float) -> float:
+    """Return the friction ratio of a spring-coupled contact about the load-balanced approach. []"""
+    a = test.vibration_amplitude
+    return float(
+        normal_oscillation_ratio(
+            springs,
+            approach=load_balanced_approach(springs, approach=at_rest, normal_amplitude=a),
+            normal_amplitude=a,
+            frequency=test.frequency,
+            sliding_speed=test.sliding_speed,
+        )
+    )
+
+
+def _spring_approximate(test: FrictionTest) -> float:
+    """Return the friction ratio by the published approximation for springs of constant stiffness. []"""
+    springs, a = _springs(test, None), test.vibration_amplitude
+    critical = critical_speed(springs, frequency=test.frequency, normal_amplitude=a)
+    with _range_warnings_as_errors():
+        return float(
+            approximate_normal_ratio(
+                springs,
+                approach=load_over_stiffness(test.contact, test.normal_load),
+                normal_amplitude=a,
+                velocity_ratio=test.sliding_speed / critical,
+            )
+        )
+
+
+def _spring_in_plane(
+    test: FrictionTest, mindlin_ratio: float, in_plane_fraction: float = 0.0, in_plane_phase: float = 0.0
+) -> float:
+    """Return the friction ratio by springs of constant stiffness under normal and in-plane motion. []"""
+    if in_plane_fraction == 0:
+        return _spring_flat(test, mindlin_ratio=mindlin_ratio)
+    springs, a = _springs(test, mindlin_ratio), test.vibration_amplitude
+    with _range_warnings_as_errors():
+        return float(
+            combined_oscillation_ratio(
+                springs,
+                approach=load_balanced_approach(
+                    springs, approach=load_over_stiffness(test.contact, test.normal_load), normal_amplitude=a
+                ),
+                frequency=test.frequency,
+                sliding_speed=test.sliding_speed,
+                normal_amplitude=a,
+                in_plane_amplitude=in_plane_fraction * a,
+                in_plane_phase=in_plane_phase,
+                steps=128,
+            )
+        )
+
+
+def _spring_longitudinal(rig: VibratedRig) -> float:
+    """Return the friction ratio by springs of constant stiffness under the measured motion along the sliding. []"""
+    assert rig.in_plane_amplitude is not None
+    assert rig.frequency is not None
+    return float(
+        longitudinal_oscillation_ratio(
+            _springs(rig, None),
+            approach=load_over_stiffness(rig.contact, rig.normal_load),
+            in_plane_amplitude=rig.in_plane_amplitude,
+            frequency=rig.frequency,
+            sliding_speed=rig.sliding_speed,
+        )
+    )
+
+
+def _elliptical(test: FrictionTest, in_plane_fraction: float, in_plane_phase: float) -> float:
+    """Return the friction ratio by rigid Coulomb friction on an elliptical path. []"""
+    return -float(
+        elliptical_traction_ratio(
+            normal_load=test.normal_load,
+            normal_stiffness=test.normal_load / load_over_stiffness(test.contact, test.normal_load),
+            normal_amplitude=test.vibration_amplitude,
+            in_plane_amplitude=in_plane_fraction * test.vibration_amplitude,
+            frequency=test.frequency,
+            relative_velocity=test.sliding_speed,
+            phase=-in_plane_phase,  # lag of the normal motion behind the in-plane motion
+        )
+    )
+
+
+@contextmanager
+def _range_warnings_as_errors() -> Iterator[None]:
+    """Raise OutsideRange where a model warns that it is used outside its range."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", ModelRangeWarning)
+        try:
+            yield
+        except ModelRangeWarning as caveat:
+            raise OutsideRange(str(caveat)) from None
+
+
+def _peak_velocity(test: FrictionTest) -> float:
+    """Return the peak velocity of the normal vibration. [m/s]"""
+    return 2 * pi * test.frequency * test.vibration_amplitude
+
+
+def _springs(test: FrictionTest | VibratedRig, mindlin_ratio: float | None) -> SpringContact:
+    """Return a spring-coupled contact with a ratio of tangential to normal stiffness, that of Mindlin if None."""
+    return SpringContact(
+        friction_coefficient=test.friction_coefficient,
+        mindlin_ratio=test.contact.pair.mindlin_ratio if mindlin_ratio is None else mindlin_ratio,
+    )
+
+
+_POPOV_2017: Final = "M. Popov, V. L. Popov and N. V. Popov 2017"
+_AMPLITUDE: Final = ("vibration_amplitude", "frequency", "sliding_speed")
+_IN_PLANE_FRACTION: Final = IN_PLANE_MOTION[0]
+
+LONGITUDINAL_VIBRATION: Final = (
+    "contact",
+    "normal_load",
+    "friction_coefficient",
+    "in_plane_amplitude",
+    "frequency",
+    "sliding_speed",
+)
+"""Inputs of a contact that vibrates along the sliding."""
+
+COULOMB_AND_SPRING_VARIANTS: Final = (
+    ModelVariant(
+        "coulomb-in-plane",
+        "Coulomb friction, the vibration within the plane as measured",
+        _coulomb_in_plane,
+        required_inputs=("sliding_speed", "vibration_velocity", "vibration_direction"),
+        source="Littmann 2001; Kumar 2004",
+    ),
+    ModelVariant(
+        "coulomb-longitudinal-fitted",
+        "Coulomb friction, an unmeasured motion along the sliding alone",
+        _coulomb_longitudinal,
+        (_IN_PLANE_FRACTION,),
+        required_inputs=_AMPLITUDE,
+        source="Littmann, Storck and Wallaschek 2001",
+    ),
+    ModelVariant(
+        "coulomb-oblique-fitted",
+        "Coulomb friction, an unmeasured motion within the plane alone",
+        _coulomb_oblique,
+        (_IN_PLANE_FRACTION, VIBRATION_DIRECTION),
+        required_inputs=_AMPLITUDE,
+        source="Kumar and Hutchings 2004",
+    ),
+    ModelVariant(
+        "spring-flat",
+        "springs of constant stiffness, load over stiffness of the rough contact",
+        _spring_flat,
+        source=_POPOV_2017,
+    ),
+    ModelVariant(
+        "spring-parabolic",
+        "springs of a Hertzian contact of the same load and stiffness",
+        _spring_parabolic,
+        source=_POPOV_2017,
+    ),
+    ModelVariant(
+        "spring-approximate",
+        "the published approximation for springs of constant stiffness",
+        _spring_approximate,
+        source=_POPOV_2017,
+    ),
+    ModelVariant(
+        "spring-flat-fitted",
+        "springs of constant stiffness, approach and ratio of stiffnesses fitted",
+        _spring_flat,
+        (APPROACH, MINDLIN_RATIO),
+        source=_POPOV_2017,
+    ),
+    ModelVariant(
+        "spring-in-plane",
+        "springs of constant stiffness, with in-plane motion on the rig of Table 4.2",
+        _spring_in_plane,
+        (MINDLIN_RATIO, *per_rig(IN_PLANE_MOTION, "power map")),
+        source="M. Popov and Q. Li 2018",
+    ),
+    ModelVariant(
+        "spring-longitudinal",
+        "springs of constant stiffness, the measured motion along the sliding alone",
+        _spring_longitudinal,
+        required_inputs=LONGITUDINAL_VIBRATION,
+        source="V. L. Popov, Starcevic and Filippov 2010",
+    ),
+    ModelVariant(
+        "elliptical",
+        "rigid friction on an ellipse, an unmeasured motion along the sliding",
+        _elliptical,
+        IN_PLANE_MOTION,
+        required_inputs=NORMAL_VIBRATION,
+        source="D 2.1.4",
+    ),
+)
+"""Variants of Coulomb friction and of spring-coupled contacts."""

@@ -1,0 +1,142 @@
+"""Variants of the friction laws of Dahl and of LuGre under vibration, from the literature."""
+
+from functools import cache
+from math import exp, pi, sqrt
+from typing import Final
+
+import numpy as np
+
+from sonolube.contact import RoughContact, separation
+from sonolube.friction import (
+    DahlFriction,
+    Holder,
+    LuGreFriction,
+    dahl_under_vibration,
+    lugre_under_vibration,
+    spring_driven_slider_force,
+)
+from sonolube.validation.coulomb_and_spring_variants import LONGITUDINAL_VIBRATION, load_over_stiffness
+from sonolube.validation.free_parameters import IN_PLANE_MOTION, MINDLIN_RATIO, STRIBECK_CURVE, per_rig
+from sonolube.validation.friction_model_variants import balanced_motion
+from sonolube.validation.model_variant import ModelVariant
+from sonolube.validation.published_tests import FrictionTest
+from sonolube.validation.rig_conditions import VibratedRig
+
+_SETTLING_PERIODS: Final = 8  # natural periods of a driven holder before its force is averaged
+_DAMPING_RATIO: Final = 0.2  # of the driven holder
+
+
+def _dahl(test: FrictionTest, in_plane_fraction: float = 0.0, in_plane_phase: float = 0.0) -> float:
+    """Return the friction ratio by the law of Dahl with the stiffness of the cube, D 3.10 and 3.11. []"""
+    mean_force = dahl_under_vibration(
+        test.contact,
+        separation=_balanced_separation(test.contact, test.normal_load, test.vibration_amplitude, test.frequency),
+        friction_coefficient=test.friction_coefficient,
+        sliding_speed=test.sliding_speed,
+        frequency=test.frequency,
+        in_plane_amplitude=in_plane_fraction * test.vibration_amplitude,
+        normal_amplitude=test.vibration_amplitude,
+        phase=-in_plane_phase,  # lag of the normal motion behind the in-plane motion
+        steps=256,
+    )
+    return float(mean_force) / (test.friction_coefficient * test.normal_load)
+
+
+def _lugre(
+    test: FrictionTest,
+    mindlin_ratio: float,
+    static_friction_ratio: float = 1.0,
+    stribeck_velocity: float = 1.0,
+    in_plane_fraction: float = 0.0,
+    in_plane_phase: float = 0.0,
+) -> float:
+    """Return the friction ratio by the law of LuGre, the sliding friction of the test on its Stribeck curve. []"""
+    static_excess = (static_friction_ratio - 1) * exp(-((test.sliding_speed / stribeck_velocity) ** 2))
+    sliding = test.friction_coefficient * test.normal_load / (1 + static_excess)
+    law = LuGreFriction(
+        coulomb_friction_force=sliding,
+        static_friction_force=static_friction_ratio * sliding,
+        stribeck_velocity=stribeck_velocity,
+        bristle_stiffness=mindlin_ratio * test.normal_load / load_over_stiffness(test.contact, test.normal_load),
+        bristle_damping=0.0,  # its mean over a period vanishes
+        viscous_coefficient=0.0,
+    )
+    motion = balanced_motion(test.contact, test.normal_load, test.vibration_amplitude, test.frequency)
+    speed = test.sliding_speed
+    return float(
+        lugre_under_vibration(
+            law, motion, sliding_speed=speed, in_plane_fraction=in_plane_fraction, in_plane_phase=in_plane_phase
+        )
+    )
+
+
+def _dahl_driven(rig: VibratedRig) -> float:
+    """Return the friction ratio of a mass on the law of Dahl behind an elastic drive vibrating along the sliding. []"""
+    assert rig.in_plane_amplitude is not None
+    assert rig.frequency is not None
+    assert rig.holder_stiffness is not None
+    assert rig.holder_mass is not None
+    steady = rig.friction_coefficient * rig.normal_load
+    stiffness = rig.contact.pair.mindlin_ratio * rig.normal_load / load_over_stiffness(rig.contact, rig.normal_load)
+    natural = sqrt(rig.holder_stiffness / rig.holder_mass)
+    damping = 2 * _DAMPING_RATIO * rig.holder_mass * natural
+    slide = spring_driven_slider_force(
+        DahlFriction(coulomb_friction_force=steady, contact_stiffness=stiffness),
+        Holder(holder_stiffness=rig.holder_stiffness, holder_damping=damping, holder_mass=rig.holder_mass),
+        sliding_speed=rig.sliding_speed,
+        frequency=rig.frequency,
+        vibration_amplitude=rig.in_plane_amplitude,
+        settling_time=_SETTLING_PERIODS * 2 * pi / natural,
+        duration=2 * pi / natural,
+    )
+    return slide.mean_drive_force / steady
+
+
+@cache
+def _balanced_separation(contact: RoughContact, load: float, amplitude: float, frequency: float) -> float:
+    """Return the mean separation at which the mean contact force of a harmonic gap motion is the load. [m]"""
+    rise = float(np.mean(balanced_motion(contact, load, amplitude, frequency).displacement))
+    return float(separation(contact, normal_load=load)) + rise
+
+
+_DAHL_SOURCE: Final = "D 3.10 and 3.11; Dahl 1968"
+_LUGRE_SOURCE: Final = "Canudas de Wit, Olsson, Astrom and Lischinsky 1995"
+_IN_PLANE_POWER_MAP: Final = per_rig(IN_PLANE_MOTION, "power map")
+
+DAHL_AND_LUGRE_VARIANTS: Final = (
+    ModelVariant(
+        "dahl",
+        "the law of Dahl with the stiffness of the cube about the load-balanced mean gap",
+        _dahl,
+        source=_DAHL_SOURCE,
+    ),
+    ModelVariant(
+        "dahl-in-plane",
+        "the same, with in-plane motion on the rig of Table 4.2",
+        _dahl,
+        _IN_PLANE_POWER_MAP,
+        source=_DAHL_SOURCE,
+    ),
+    ModelVariant(
+        "lugre",
+        "the law of LuGre, its limit after the balanced load, stiffness of the bristles fitted",
+        _lugre,
+        (MINDLIN_RATIO,),
+        source=_LUGRE_SOURCE,
+    ),
+    ModelVariant(
+        "lugre-in-plane",
+        "the same, Stribeck curve fitted, with in-plane motion on the rig of Table 4.2",
+        _lugre,
+        (MINDLIN_RATIO, *STRIBECK_CURVE, *_IN_PLANE_POWER_MAP),
+        source=_LUGRE_SOURCE,
+    ),
+    ModelVariant(
+        "dahl-driven",
+        "a mass on the law of Dahl behind an elastic drive with a damping ratio of 0.2, vibrated along",
+        _dahl_driven,
+        required_inputs=(*LONGITUDINAL_VIBRATION, "holder_stiffness", "holder_mass"),
+        source="Gutowski and Leus 2012",
+    ),
+)
+"""Variants of the laws of Dahl and of LuGre."""

@@ -1,0 +1,205 @@
+"""Least-squares fits of model variants to measured friction ratios, and profile likelihood intervals of parameters."""
+
+from dataclasses import dataclass
+from functools import cache
+from itertools import product
+from typing import Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import brentq, least_squares
+
+from sonolube.checks import Floats
+from sonolube.validation.free_parameters import FreeParameter
+from sonolube.validation.model_variant import ModelVariant
+from sonolube.validation.published_tests import Conditions, MeasuredConditions, friction_tests, in_plane_tests
+
+_OUT_OF_RANGE_RESIDUAL: Final = 1.0  # residual of a test outside the range of the model, in fits only
+_CHI_SQUARED_95: Final = 3.841  # 95 % quantile of chi squared with one degree of freedom
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Fit:
+    """Model variant with values of its free parameters.
+
+    Parameters
+    ----------
+    variant : ModelVariant
+    sets : str
+        Letters of the fitted sets; empty where nothing was fitted.
+    values : tuple of float
+        Values of the free parameters, in SI.
+    """
+
+    variant: ModelVariant
+    sets: str
+    values: tuple[float, ...]
+
+    def predict(self, conditions: Conditions) -> float | None:
+        """Return the friction ratio under some conditions; None outside the range of the model. []"""
+        return self.variant.predict(conditions, *self.values)
+
+
+def select_tests(sets: str, tests: tuple[MeasuredConditions, ...] | None = None) -> tuple[MeasuredConditions, ...]:
+    """Return the tests that belong to the sets of the given letters, from all published tests if None are given."""
+    everything: tuple[MeasuredConditions, ...] = (*friction_tests(), *in_plane_tests()) if tests is None else tests
+    return tuple(test for test in everything if test.set_name in sets)
+
+
+@cache
+def fit_variant(
+    variant: ModelVariant,
+    sets: str,
+    *,
+    initial: tuple[float, ...] | None = None,
+    tests: tuple[MeasuredConditions, ...] | None = None,
+) -> Fit:
+    r"""Return a model variant fitted by least squares to the measured friction ratios of some sets.
+
+    Parameters
+    ----------
+    variant : ModelVariant
+    sets : str
+        Letters of the sets.
+    initial : tuple of float, optional
+        Initial values of the free parameters, in SI; the best of those of each parameter where absent.
+    tests : tuple of MeasuredConditions, optional
+        Tests from which the sets are selected; all published ones where absent.
+
+    Returns
+    -------
+    Fit
+        Parameters that apply to none of the sets keep their defaults.
+
+    Notes
+    -----
+    .. math:: \min_p \sum_i \left(R_i(p) - R_i^{\mathrm{measured}}\right)^2
+
+    within the bounds of the parameters p. A test outside the range of the model has a residual of 1.
+    """
+    selected = select_tests(sets, tests)
+    free = [index for index, parameter in enumerate(variant.parameters) if parameter.applies_to(sets)]
+    if initial is None:
+        start = _initial_guess(variant, selected)
+    else:
+        start = np.array([parameter.default for parameter in variant.parameters])
+        start[free] = np.array(initial)[free]
+    values = _minimise(variant, selected, free, start)
+    return Fit(variant=variant, sets=sets if free else "", values=tuple(values.tolist()))
+
+
+def profile_likelihood_interval(
+    fit: Fit, index: int, *, tests: tuple[MeasuredConditions, ...] | None = None
+) -> tuple[float, float]:
+    r"""Return the 95 % profile likelihood interval of one parameter, truncated at its bounds.
+
+    Parameters
+    ----------
+    fit : Fit
+    index : int
+        Index of the parameter.
+    tests : tuple of MeasuredConditions, optional
+        Tests from which the fitted sets are selected; all published ones where absent.
+
+    Returns
+    -------
+    tuple of float
+
+    Notes
+    -----
+    .. math:: n \ln\frac{S(p)}{S(\hat p)} \le 3.841
+
+    with the sum of squares S, minimised over the other parameters, of n tests with Gaussian errors of unknown variance.
+    [1]_
+
+    References
+    ----------
+    .. [1] D. J. Venzon and S. H. Moolgavkar, Appl. Stat. 37, 87 (1988). doi:10.2307/2347496
+    """
+    variant, best, selected = fit.variant, fit.values[index], select_tests(fit.sets, tests)
+    parameter = variant.parameters[index]
+    others = [other for other, one in enumerate(variant.parameters) if other != index and one.applies_to(fit.sets)]
+    least = root_mean_square(_residuals(variant, selected, fit.values))
+
+    def excess(value: float) -> float:
+        values = np.array(fit.values)
+        values[index] = value
+        values = _minimise(variant, selected, others, values)
+        rms = root_mean_square(_residuals(variant, selected, values))
+        return 2 * len(selected) * float(np.log(rms / least)) - _CHI_SQUARED_95
+
+    reach = np.pi if parameter.is_angle else np.inf
+    limits = max(parameter.low, best - reach), min(parameter.high, best + reach)
+    low, high = (limit if excess(limit) < 0 else brentq(excess, best, limit, rtol=1e-3) for limit in limits)
+    return float(low), float(high)
+
+
+def root_mean_square(residuals: ArrayLike) -> float:
+    """Return the root mean square of residuals; infinite if there are none. []"""
+    squares = np.square(residuals)
+    return float(np.sqrt(np.mean(squares))) if squares.size else float("inf")
+
+
+def _initial_guess(variant: ModelVariant, tests: tuple[MeasuredConditions, ...]) -> Floats:
+    """Return the best initial values of each group of parameters with the same sets, the common group first."""
+    values = np.array([parameter.default for parameter in variant.parameters])
+    for group in sorted({parameter.applicable_sets for parameter in variant.parameters}):
+        group_tests = tuple(test for test in tests if not group or test.set_name in group)
+        if not group_tests:
+            continue
+        indices = [index for index, one in enumerate(variant.parameters) if one.applicable_sets == group]
+        trials = []
+        for initial in product(*(variant.parameters[index].initial_values for index in indices)):
+            trial = _with_values(values, indices, np.array(initial))
+            trials.append((root_mean_square(_residuals(variant, group_tests, trial)), initial))
+        values[indices] = min(trials)[1]
+    return values
+
+
+def _minimise(variant: ModelVariant, tests: tuple[MeasuredConditions, ...], free: list[int], start: Floats) -> Floats:
+    """Return the start with the parameters of some indices fitted by bounded least squares (dogbox)."""
+    if not free:
+        return start
+    parameters = [variant.parameters[index] for index in free]
+    scales = np.array([abs(parameter.high) for parameter in parameters])
+
+    def residuals(scaled: Floats) -> Floats:
+        return _residuals(variant, tests, _with_values(start, free, scaled * scales))
+
+    low, high = (np.array([getattr(parameter, end) for parameter in parameters]) / scales for end in ("low", "high"))
+    run = least_squares(
+        residuals,
+        np.clip(start[free] / scales, low, high),
+        bounds=(low, high),
+        method="dogbox",
+        diff_step=1e-3,
+        xtol=1e-4,
+        ftol=1e-5,
+        max_nfev=30,
+    )
+    return _with_values(
+        start, free, np.array([_wrapped(*pair) for pair in zip(parameters, run.x * scales, strict=True)])
+    )
+
+
+def _wrapped(parameter: FreeParameter, value: float) -> float:
+    """Return the value of a parameter, an angle wrapped to minus pi to pi."""
+    return float((value + np.pi) % (2 * np.pi) - np.pi) if parameter.is_angle else float(value)
+
+
+def _with_values(values: Floats, indices: list[int], replaced: Floats) -> Floats:
+    """Return a copy of an array with some elements replaced."""
+    changed = values.copy()
+    changed[indices] = replaced
+    return changed
+
+
+def _residuals(variant: ModelVariant, tests: tuple[MeasuredConditions, ...], values: ArrayLike) -> Floats:
+    """Return predicted minus measured friction ratios. []"""
+    predicted = (variant.predict(test, *np.asarray(values).tolist()) for test in tests)
+    return np.array(
+        [
+            _OUT_OF_RANGE_RESIDUAL if ratio is None else ratio - test.friction_ratio
+            for ratio, test in zip(predicted, tests, strict=True)
+        ]
+    )

@@ -1,0 +1,229 @@
+"""Variants of the friction models of this program: with default, fitted and rig-specific parameters."""
+
+from dataclasses import asdict, replace
+from functools import cache
+from typing import Final
+
+from sonolube.contact import GapMotion, RoughContact, decay_length, load_balanced_motion, separation, sinusoidal_motion
+from sonolube.friction import (
+    AsperityStickSlip,
+    BristleWithHolder,
+    Dong2015FullPeriod,
+    Dong2015HalfPeriod,
+    Dong2015LoadBalanced,
+    Holder,
+    Kinematic,
+    mindlin_memory_length,
+    sine_stick_slip_ratio,
+)
+from sonolube.validation.free_parameters import (
+    AMPLITUDE_FRACTION,
+    FITTED_RIGS,
+    FRICTION_COEFFICIENT_FACTOR,
+    HOLDER_COMPLIANCE,
+    IN_PLANE_MOTION,
+    MEMORY_LENGTH,
+    NOMINAL_AREA_FACTOR,
+    per_rig,
+)
+from sonolube.validation.model_variant import NORMAL_VIBRATION, ModelVariant
+from sonolube.validation.published_tests import FrictionTest
+
+
+@cache
+def balanced_motion(contact: RoughContact, load: float, amplitude: float, frequency: float) -> GapMotion:
+    """Return the harmonic gap motion about the mean gap at which the mean contact force is the load."""
+    return load_balanced_motion(contact, _harmonic_motion(contact, load, amplitude, frequency))
+
+
+def asperity_stick_slip(
+    test: FrictionTest, *, memory_length: float, in_plane_fraction: float = 0.0, in_plane_phase: float = 0.0
+) -> float:
+    """Return the friction ratio of a test by asperity stick-slip about the load-balanced mean gap. []
+
+    Parameters
+    ----------
+    test : FrictionTest
+    memory_length : float
+        Sliding distance over which an asperity loses its memory. [m]
+    in_plane_fraction : float
+        Amplitude along the sliding direction over that along the normal. []
+    in_plane_phase : float
+        Lag of the in-plane motion behind the normal one. [rad]
+
+    Returns
+    -------
+    float
+    """
+    if in_plane_fraction == 0:
+        at_rest = separation(test.contact, normal_load=test.normal_load)
+        return float(
+            sine_stick_slip_ratio(
+                decay_length=decay_length(test.contact, separation=at_rest),
+                vibration_amplitude=test.vibration_amplitude,
+                frequency=test.frequency,
+                sliding_speed=test.sliding_speed,
+                memory_length=memory_length,
+            )
+        )
+    model = AsperityStickSlip(
+        memory_length=memory_length, in_plane_fraction=in_plane_fraction, in_plane_phase=in_plane_phase
+    )
+    return float(model.ratio(test.contact, _balanced(test), sliding_speed=test.sliding_speed))
+
+
+def mindlin_stick_slip(test: FrictionTest, friction_coefficient_factor: float = 1.0) -> float:
+    """Return the friction ratio of a test by asperity stick-slip with the memory length of Mindlin. []"""
+    length = mindlin_memory_length(
+        test.contact,
+        friction_coefficient=friction_coefficient_factor * test.friction_coefficient,
+        normal_load=test.normal_load,
+    )
+    return asperity_stick_slip(test, memory_length=float(length))
+
+
+def _full_period(test: FrictionTest) -> float:
+    """Return the friction ratio by the cube over the full period, D 3.46 to 3.48. []"""
+    return float(Dong2015FullPeriod().ratio(test.contact, _unbalanced(test), sliding_speed=test.sliding_speed))
+
+
+def _half_period(test: FrictionTest) -> float:
+    """Return the friction ratio by the cube over the separating half period, D 3.15. []"""
+    return float(Dong2015HalfPeriod().ratio(test.contact, _unbalanced(test), sliding_speed=test.sliding_speed))
+
+
+def _load_balanced(test: FrictionTest, nominal_area_factor: float = 1.0) -> float:
+    """Return the friction ratio by the cube over the full period about the load-balanced mean gap. []"""
+    contact = replace(test.contact, nominal_area=nominal_area_factor * test.contact.nominal_area)
+    motion = _harmonic_motion(contact, test.normal_load, test.vibration_amplitude, test.frequency)
+    return float(Dong2015LoadBalanced().ratio(contact, motion, sliding_speed=test.sliding_speed))
+
+
+def _kinematic(test: FrictionTest, amplitude_fraction: float = 1.0) -> float:
+    """Return the friction ratio by the direction of the relative velocity, D 3.46. []"""
+    model = Kinematic(amplitude_fraction=amplitude_fraction)
+    return float(model.ratio(test.contact, _unbalanced(test), sliding_speed=test.sliding_speed))
+
+
+def _bristle_with_holder(
+    test: FrictionTest, holder_compliance: float = 0.0, in_plane_fraction: float = 0.0, in_plane_phase: float = 0.0
+) -> float:
+    """Return the friction ratio by a bristle of Mindlin's stiffness on a rigid or compliant holder. []"""
+    holder = Holder(holder_stiffness=1 / holder_compliance) if holder_compliance > 0 else Holder()
+    model = BristleWithHolder(**asdict(holder), in_plane_fraction=in_plane_fraction, in_plane_phase=in_plane_phase)
+    return float(
+        model.ratio(
+            test.contact,
+            _balanced(test),
+            sliding_speed=test.sliding_speed,
+            friction_coefficient=test.friction_coefficient,
+        )
+    )
+
+
+@cache
+def _harmonic_motion(contact: RoughContact, load: float, amplitude: float, frequency: float) -> GapMotion:
+    """Return the harmonic gap motion about the gap at rest."""
+    return sinusoidal_motion(contact, normal_load=load, vibration_amplitude=amplitude, frequency=frequency)
+
+
+def _unbalanced(test: FrictionTest) -> GapMotion:
+    """Return the harmonic gap motion of a test about the gap at rest."""
+    return _harmonic_motion(test.contact, test.normal_load, test.vibration_amplitude, test.frequency)
+
+
+def _balanced(test: FrictionTest) -> GapMotion:
+    """Return the harmonic gap motion of a test about the load-balanced mean gap."""
+    return balanced_motion(test.contact, test.normal_load, test.vibration_amplitude, test.frequency)
+
+
+_MEAN_GAP_CORRECTED: Final = "D 3.46 to 3.48, mean gap corrected"
+_KINEMATIC_SOURCE: Final = "D 3.46; Kumar and Hutchings 2004, across"
+_IN_PLANE_POWER_MAP: Final = per_rig(IN_PLANE_MOTION, "power map")
+
+FRICTION_MODEL_VARIANTS: Final = (
+    ModelVariant(
+        "dong-2015-full-period",
+        "D 3.46 to 3.48: k_t(t) cos(theta) over the whole period about an unchanged mean gap",
+        _full_period,
+        required_inputs=NORMAL_VIBRATION,
+        source="D 3.46 to 3.48",
+    ),
+    ModelVariant(
+        "dong-2015-half-period",
+        "D 3.15: k_t(t) over the separating half period",
+        _half_period,
+        required_inputs=NORMAL_VIBRATION,
+        source="D 3.15",
+    ),
+    ModelVariant(
+        "dong-2015-load-balanced",
+        "D 3.46 to 3.48 about the mean gap that balances the load",
+        _load_balanced,
+        required_inputs=NORMAL_VIBRATION,
+        source=_MEAN_GAP_CORRECTED,
+    ),
+    ModelVariant(
+        "dong-2015-load-balanced-per-rig",
+        "the same with a factor on nominal area times yield strength for each rig",
+        _load_balanced,
+        per_rig((NOMINAL_AREA_FACTOR,), *FITTED_RIGS),
+        required_inputs=NORMAL_VIBRATION,
+        source=_MEAN_GAP_CORRECTED,
+    ),
+    ModelVariant(
+        "kinematic", "cos(theta) alone", _kinematic, required_inputs=NORMAL_VIBRATION, source=_KINEMATIC_SOURCE
+    ),
+    ModelVariant(
+        "kinematic-fitted",
+        "cos(theta) alone with a fraction of the amplitude",
+        _kinematic,
+        (AMPLITUDE_FRACTION,),
+        required_inputs=NORMAL_VIBRATION,
+        source=_KINEMATIC_SOURCE,
+    ),
+    ModelVariant("asperity-stick-slip-mindlin", "asperity stick-slip, memory length after Mindlin", mindlin_stick_slip),
+    ModelVariant(
+        "asperity-stick-slip-mindlin-per-rig",
+        "the same with a factor on the friction coefficient for each rig",
+        mindlin_stick_slip,
+        per_rig((FRICTION_COEFFICIENT_FACTOR,), *FITTED_RIGS),
+    ),
+    ModelVariant(
+        "asperity-stick-slip", "asperity stick-slip, memory length fitted", asperity_stick_slip, (MEMORY_LENGTH,)
+    ),
+    ModelVariant(
+        "asperity-stick-slip-in-plane",
+        "asperity stick-slip, with in-plane motion on the rig of Table 4.2",
+        asperity_stick_slip,
+        (MEMORY_LENGTH, *_IN_PLANE_POWER_MAP),
+    ),
+    ModelVariant(
+        "asperity-stick-slip-in-plane-pins",
+        "asperity stick-slip, with in-plane motion of either piezo-driven pin",
+        asperity_stick_slip,
+        (MEMORY_LENGTH, *per_rig(IN_PLANE_MOTION, "tribometer", "power map")),
+    ),
+    ModelVariant(
+        "asperity-stick-slip-in-plane-per-rig",
+        "asperity stick-slip, with in-plane motion on every rig",
+        asperity_stick_slip,
+        (MEMORY_LENGTH, *per_rig(IN_PLANE_MOTION, *FITTED_RIGS)),
+    ),
+    ModelVariant(
+        "bristle-with-holder", "one bristle with the stiffness of Mindlin on a rigid holder", _bristle_with_holder
+    ),
+    ModelVariant(
+        "bristle-with-holder-per-rig",
+        "one bristle, with the compliance of each holder",
+        _bristle_with_holder,
+        per_rig((HOLDER_COMPLIANCE,), *FITTED_RIGS),
+    ),
+    ModelVariant(
+        "bristle-with-holder-in-plane",
+        "one bristle, with the compliance of each holder and in-plane motion on the rig of Table 4.2",
+        _bristle_with_holder,
+        (*per_rig((HOLDER_COMPLIANCE,), *FITTED_RIGS), *_IN_PLANE_POWER_MAP),
+    ),
+)
+"""Variants of the friction models of `sonolube.friction.models`."""

@@ -1,0 +1,97 @@
+"""Model variants: a model of friction under vibration with its free parameters, required inputs and source."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from types import MappingProxyType
+from typing import Final
+
+from sonolube.errors import OutsideRange
+from sonolube.validation.free_parameters import FreeParameter
+from sonolube.validation.published_tests import Conditions
+
+REQUIRED_INPUTS: Final = MappingProxyType(
+    {
+        "contact": "roughness and materials of the bodies",
+        "normal_load": "the normal load",
+        "friction_coefficient": "the friction coefficient without vibration",
+        "sliding_speed": "the sliding speed",
+        "vibration_amplitude": "the amplitude along the normal",
+        "frequency": "the frequency",
+        "in_plane_amplitude": "the amplitude along the sliding",
+        "vibration_velocity": "the velocity of a vibration within the plane",
+        "vibration_direction": "the direction of a vibration within the plane",
+        "holder_stiffness": "the stiffness of the holder",
+        "holder_mass": "the mass that moves with the holder",
+    }
+)
+"""Inputs that a model may require of the conditions, in words."""
+
+NORMAL_VIBRATION: Final = ("contact", "normal_load", "vibration_amplitude", "frequency", "sliding_speed")
+"""Inputs of a contact that vibrates along the normal."""
+
+NORMAL_VIBRATION_AND_FRICTION: Final = (*NORMAL_VIBRATION, "friction_coefficient")
+"""The same with the friction coefficient without vibration."""
+
+
+@dataclass(frozen=True, slots=True)
+class ModelVariant:
+    """Model of friction under vibration with its free parameters.
+
+    Parameters
+    ----------
+    name : str
+        Name in tables and figures.
+    description : str
+        Model and free parameters in words.
+    ratio : callable
+        Function that returns the friction ratio for conditions, and for values of the free parameters by name.
+    parameters : tuple of FreeParameter
+        Parameters to fit; empty where nothing is fitted.
+    required_inputs : tuple of str
+        Inputs that the conditions must have, keys of `REQUIRED_INPUTS`.
+    source : str
+        Publication of the model.
+    """
+
+    name: str
+    description: str
+    ratio: Callable[..., float]
+    parameters: tuple[FreeParameter, ...] = ()
+    required_inputs: tuple[str, ...] = NORMAL_VIBRATION_AND_FRICTION
+    source: str = "this program"
+
+    def inapplicability(self, conditions: Conditions) -> str | None:
+        """Return the required inputs that the conditions lack, as a sentence; None if they lack none."""
+        missing = [REQUIRED_INPUTS[name] for name in self.required_inputs if getattr(conditions, name, None) is None]
+        return f"needs {', '.join(missing)}: not known here" if missing else None
+
+    def predict(self, conditions: Conditions, *values: float) -> float | None:
+        """Return the friction ratio for values of the free parameters; None outside the range of the model. []"""
+        result = self._evaluate(conditions, values)
+        return None if isinstance(result, str) else result
+
+    def range_violation(self, conditions: Conditions, *values: float) -> str | None:
+        """Return the reason why the conditions are outside the range of the model; None inside it."""
+        result = self._evaluate(conditions, values)
+        return result if isinstance(result, str) else None
+
+    def _evaluate(self, conditions: Conditions, values: tuple[float, ...]) -> float | str:
+        """Return the friction ratio, or the reason why the conditions are outside the range of the model."""
+        applicable = tuple(
+            (parameter.name, value)
+            for parameter, value in zip(self.parameters, values, strict=True)
+            if parameter.applies_to(conditions.set_name)
+        )
+        return _cached_ratio(self.ratio, conditions, applicable)
+
+
+@lru_cache(maxsize=2**16)
+def _cached_ratio(
+    ratio: Callable[..., float], conditions: Conditions, values: tuple[tuple[str, float], ...]
+) -> float | str:
+    """Return a friction ratio, or the reason why the conditions are outside the range of the model."""
+    try:
+        return float(ratio(conditions, **dict(values)))
+    except OutsideRange as reason:
+        return str(reason)

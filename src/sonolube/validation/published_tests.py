@@ -1,0 +1,329 @@
+"""Published friction tests under vibration as records: conditions, measured friction ratio and its uncertainty."""
+
+from dataclasses import dataclass, replace
+from functools import cache
+from math import hypot
+from typing import Final, Protocol
+
+from sonolube.contact import RoughContact
+from sonolube.published import PublishedValue, published_number, published_value, si_value
+from sonolube.validation.contacts import steel_on_steel_contact, wear_contact
+
+NORMAL_VIBRATION_SETS: Final = {
+    "A": "steel on aluminium, three speeds (Table 2.3)",
+    "B": "example test of the power map, five voltages (Table 4.2)",
+    "C": "steel on titanium (section 2.5.2)",
+    "D": "titanium on titanium, two amplitudes (section 2.5.3)",
+    "E": "ceramic on M50 (section 2.5.4)",
+    "F": "M50 on M50 (section 2.5.5)",
+    "G": "welder rig, round and flat tip (section 2.4)",
+    "H": "flextensional actuator, slow and fast (section 2.2)",
+}
+"""Sets of tests of D with vibration along the normal. Section 2.5 repeats set A for steel on aluminium."""
+
+IN_PLANE_VIBRATION_SETS: Final = {"L": "along the sliding, earlier studies (sections 1.3.1 and 2.2.5)"}
+"""Sets of tests of other authors with vibration in the plane of contact, as quoted by D."""
+
+_STEEL_COEFFICIENT: Final = 0.26  # of steel on steel in D 3.1.4; for set H it is only drawn
+_TITANIUM_COEFFICIENT: Final = 0.4  # forces of titanium on titanium are only drawn; steel on titanium has 0.44
+_FLEXTENSIONAL_AREA: Final = 50e-6  # flats of the actuator, 10.5 mm by about 5 mm
+
+
+class Conditions(Protocol):
+    """Operating conditions of a test or a rig, as far as a model requires them."""
+
+    def __hash__(self) -> int:
+        """Return a hash by value, so that each prediction is computed once."""
+
+    @property
+    def label(self) -> str:
+        """Set and number in the set."""
+
+    @property
+    def set_name(self) -> str:
+        """Letter of the set."""
+
+
+class MeasuredConditions(Conditions, Protocol):
+    """Conditions under which friction was measured."""
+
+    @property
+    def friction_ratio(self) -> float:
+        """Friction with vibration over friction without. []"""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FrictionTest:
+    """Measured friction ratio under vibration along the normal, with its conditions.
+
+    Parameters
+    ----------
+    label : str
+        Set and number in the set, such as "A-1".
+    contact : RoughContact
+        Contact for the models; the roughness is that of Table 3.2 in every set.
+    sliding_speed : float
+        Sliding speed during vibration. [m/s]
+    vibration_amplitude : float
+        Amplitude of the vibration along the surface normal. [m]
+    frequency : float
+        Frequency of the vibration. [Hz]
+    normal_load : float
+        Force pressing the bodies together. [N]
+    friction_coefficient : float
+        Coefficient of friction without vibration. []
+    friction_ratio : float
+        Friction with vibration over friction without. []
+    uncertainty : float or None
+        Uncertainty of the ratio from the stated scatter of the forces; None where none is stated.
+    published : PublishedValue or None
+        Published friction reduction; None where it is in words.
+    """
+
+    label: str
+    contact: RoughContact
+    sliding_speed: float
+    vibration_amplitude: float
+    frequency: float
+    normal_load: float
+    friction_coefficient: float
+    friction_ratio: float
+    uncertainty: float | None
+    published: PublishedValue | None
+
+    @property
+    def set_name(self) -> str:
+        """Letter of the set."""
+        return self.label[0]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class InPlaneTest:
+    """Measured friction ratio under vibration in the plane of contact, with its conditions.
+
+    Parameters
+    ----------
+    label : str
+        Set and number in the set, such as "L-1".
+    study : str
+        Authors of the test.
+    sliding_speed : float
+        Sliding speed during vibration. [m/s]
+    vibration_velocity : float
+        Peak velocity of the vibration in the plane. [m/s]
+    vibration_direction : float
+        Angle between vibration and sliding. [rad]
+    friction_ratio : float
+        Friction with vibration over friction without. []
+    """
+
+    label: str
+    study: str
+    sliding_speed: float
+    vibration_velocity: float
+    vibration_direction: float
+    friction_ratio: float
+
+    @property
+    def set_name(self) -> str:
+        """Letter of the set."""
+        return self.label[0]
+
+
+def friction_tests(sets: str = "".join(NORMAL_VIBRATION_SETS)) -> tuple[FrictionTest, ...]:
+    """Return the tests with vibration along the normal in order, A-1 to H-2.
+
+    Parameters
+    ----------
+    sets : str
+        Letters of the sets; all where absent.
+
+    Returns
+    -------
+    tuple of FrictionTest
+    """
+    return tuple(test for test in _normal_vibration_tests() if test.set_name in sets)
+
+
+@cache
+def in_plane_tests() -> tuple[InPlaneTest, ...]:
+    """Return the tests with vibration in the plane of contact.
+
+    Notes
+    -----
+    That of Littmann et al. is at the sliding speed at which the reduction vanishes; the speed of their largest
+    reduction is not printed.
+    """
+    littmann = si_value("1.3.1-littmann-vibration-velocity")
+    return (
+        InPlaneTest(
+            label="L-1",
+            study="Littmann et al.",
+            sliding_speed=si_value("2.2.5-littmann-ratio") * littmann,
+            vibration_velocity=littmann,
+            vibration_direction=0.0,
+            friction_ratio=1.0,
+        ),
+        InPlaneTest(
+            label="L-2",
+            study="Gutowski and Leus",
+            sliding_speed=si_value("1.3.1-gutowski-sliding-speed"),
+            vibration_velocity=si_value("1.3.1-gutowski-vibration-velocity"),
+            vibration_direction=0.0,
+            friction_ratio=1 - si_value("1.3.1-gutowski-reduction"),
+        ),
+    )
+
+
+@cache
+def _normal_vibration_tests() -> tuple[FrictionTest, ...]:
+    """Return all tests with vibration along the normal."""
+    return (*_tribometer(), *_power_map(), *_material_pairs(), *_welder(), *_flextensional())
+
+
+def _tribometer() -> list[FrictionTest]:
+    """Return set A; rows of Table 2.3 alternate between friction without and with vibration."""
+    return [
+        _tribometer_test(
+            f"A-{number}",
+            speed=f"table-2.3-sliding_speed-{2 * number - 1}",
+            off=f"table-2.3-friction_force-{2 * number - 1}",
+            on=f"table-2.3-friction_force-{2 * number}",
+            published=f"table-2.5-friction_reduction-{number}",
+        )
+        for number in (1, 2, 3)
+    ]
+
+
+def _power_map() -> list[FrictionTest]:
+    """Return set B: rows 2 to 6 of Table 4.2 at the amplitudes of rows 11 to 15 of Table 4.1."""
+    load, off = si_value("4.1.2-normal-load"), "table-4.2-friction_force-1"
+    return [
+        FrictionTest(
+            label=f"B-{level}",
+            contact=steel_on_steel_contact(nominal_area=si_value("table-4.1-nominal_area-1")),
+            sliding_speed=si_value("4.1.2-sliding-speed"),
+            vibration_amplitude=si_value(f"table-4.1-vibration_amplitude-{10 + level}"),
+            frequency=si_value("table-4.1-frequency-1"),
+            normal_load=load,
+            friction_coefficient=si_value(off) / load,
+            friction_ratio=si_value(f"table-4.2-friction_force-{1 + level}") / si_value(off),
+            uncertainty=_ratio_uncertainty(off, f"table-4.2-friction_force-{1 + level}"),
+            published=published_value(f"table-4.2-friction_reduction-{1 + level}"),
+        )
+        for level in range(1, 6)
+    ]
+
+
+def _material_pairs() -> list[FrictionTest]:
+    """Return sets C to F; for titanium only reductions are printed, for M50 on M50 one force twice (erratum E11)."""
+    steel_on_titanium, ceramic = (
+        _tribometer_test(
+            label,
+            speed=speed,
+            off=f"{section}-friction-{pair}-off",
+            on=f"{section}-friction-{pair}-on",
+            published=f"{section}-friction-reduction",
+        )
+        for label, section, pair, speed in (
+            ("C-1", "2.5.2", "titanium", "table-2.11-sliding_speed-1"),
+            ("E-1", "2.5.4", "ceramic", "table-2.13-sliding_speed-1"),
+        )
+    )
+    titanium_on_titanium = [
+        FrictionTest(
+            label=f"D-{number}",
+            contact=wear_contact(),
+            sliding_speed=si_value("table-2.12-sliding_speed-1"),
+            vibration_amplitude=si_value(f"table-2.12-{size}_amplitude-1"),
+            frequency=si_value("table-2.12-frequency-1"),
+            normal_load=si_value("table-2.12-normal_load-1"),
+            friction_coefficient=_TITANIUM_COEFFICIENT,
+            friction_ratio=1 - si_value(reduction),
+            uncertainty=None,
+            published=published_value(reduction),
+        )
+        for number, size, reduction in (
+            (1, "larger", "2.5.3-friction-reduction-2.5um"),
+            (2, "smaller", "2.5.3-friction-reduction-1um"),
+        )
+    ]
+    m50 = replace(
+        _tribometer_test(
+            "F-1",
+            speed="table-2.13-sliding_speed-1",
+            off="2.5.5-friction-m50-off",
+            on="2.5.5-friction-m50-on",
+            published="2.5.5-friction-reduction",
+        ),
+        friction_ratio=1 - si_value("2.5.5-friction-reduction"),
+        uncertainty=None,
+    )
+    return [steel_on_titanium, *titanium_on_titanium, ceramic, m50]
+
+
+def _welder() -> list[FrictionTest]:
+    """Return set G: mean of the ratios of the lower and of the upper forces; the disc is faster during vibration."""
+    tests = []
+    for tip in (1, 2):
+        off, on = (published_number(f"table-2.9-{state}_friction_force-{tip}") for state in ("intrinsic", "reduced"))
+        low, high = on.low / off.low, on.high / off.high
+        vibrating = 2 * tip  # row of Table 2.8
+        load = si_value(f"table-2.8-normal_load-{vibrating}")
+        tests.append(
+            FrictionTest(
+                label=f"G-{tip}",
+                contact=steel_on_steel_contact(nominal_area=si_value(f"table-2.8-nominal_area-{vibrating}")),
+                sliding_speed=si_value(f"table-2.8-sliding_speed-{vibrating}"),
+                vibration_amplitude=si_value(f"table-2.8-vibration_amplitude-{vibrating}"),
+                frequency=si_value(f"table-2.8-frequency-{vibrating}"),
+                normal_load=load,
+                friction_coefficient=off.value / load,
+                friction_ratio=(low + high) / 2,
+                uncertainty=abs(high - low) / 2,
+                published=published_value(f"table-2.9-friction_reduction-{tip}"),
+            )
+        )
+    return tests
+
+
+def _flextensional() -> list[FrictionTest]:
+    """Return set H; the amplitude is half the quasi-static stroke at the drive voltage, without gain at resonance."""
+    stroke = si_value("2.2.2-stroke") / si_value("2.2.2-voltage") * si_value("2.2.5-voltage-peak-to-peak")
+    slow = FrictionTest(
+        label="H-1",
+        contact=steel_on_steel_contact(nominal_area=_FLEXTENSIONAL_AREA),
+        sliding_speed=si_value("2.2.4-sliding-speed-3.5"),
+        vibration_amplitude=stroke / 2,
+        frequency=si_value("2.2.2-resonance"),
+        normal_load=si_value("2.2.4-normal-load"),
+        friction_coefficient=_STEEL_COEFFICIENT,
+        friction_ratio=1 - si_value("2.2.4-reduction"),
+        uncertainty=None,
+        published=published_value("2.2.4-reduction"),
+    )
+    fast = si_value("2.2.5-speed-of-no-reduction")
+    return [slow, replace(slow, label="H-2", sliding_speed=fast, friction_ratio=1.0, published=None)]
+
+
+def _tribometer_test(label: str, *, speed: str, off: str, on: str, published: str) -> FrictionTest:
+    """Return a test on the modified tribometer of D 2.3 from the ids of its published numbers."""
+    load = si_value("table-2.2-normal_load-1")
+    return FrictionTest(
+        label=label,
+        contact=wear_contact(),
+        sliding_speed=si_value(speed),
+        vibration_amplitude=si_value("2.3.1-amplitude"),
+        frequency=si_value("2.3.1-frequency"),
+        normal_load=load,
+        friction_coefficient=si_value(off) / load,
+        friction_ratio=si_value(on) / si_value(off),
+        uncertainty=_ratio_uncertainty(off, on),
+        published=published_value(published),
+    )
+
+
+def _ratio_uncertainty(off: str, on: str) -> float:
+    """Return the uncertainty of a ratio of published forces from their scatter, taken as independent. []"""
+    relative = [(n.high - n.low) / 2 / n.value for n in (published_number(off), published_number(on))]
+    return si_value(on) / si_value(off) * hypot(*relative)

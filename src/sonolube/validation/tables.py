@@ -1,0 +1,141 @@
+"""Comparison of model variants as a labelled dataset, as CSV and as text."""
+
+import csv
+import io
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sonolube import __version__
+from sonolube.validation.comparison import DATA_SETS, ComparedFit, FittedParameter
+from sonolube.validation.free_parameters import RIGS
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_HEADS = (
+    "model",
+    "source",
+    "sets",
+    "fitted_parameters",
+    "rms",
+    "rms_cross_validated",
+    "largest_error",
+    "median_relative",
+    "aicc",
+)
+
+
+def comparison_dataset(fits: tuple[ComparedFit, ...]) -> "xr.Dataset":
+    """Return measured, fitted and cross-validated friction ratios over models and tests, with error statistics.
+
+    Parameters
+    ----------
+    fits : tuple of ComparedFit
+
+    Returns
+    -------
+    Dataset
+        Missing values are NaN; `reason` states why.
+    """
+    import xarray as xr
+
+    tests = [one.test for one in fits[0].predictions]
+    grid = ("model", "test")
+
+    def variable(dimensions: Any, values: Iterable[Any], long_name: str) -> tuple[Any, Any, dict[str, str]]:
+        return dimensions, np.array([*values], dtype=np.float64), {"units": "1", "long_name": long_name}
+
+    return xr.Dataset(
+        {
+            "friction_ratio": variable(
+                "test",
+                (test.friction_ratio for test in tests),
+                "Friction with vibration over friction without, measured",
+            ),
+            "set": ("test", [DATA_SETS[test.set_name] for test in tests], {"long_name": "Set of the test"}),
+            "fitted_ratio": variable(
+                grid, ([p.fitted for p in one.predictions] for one in fits), "Friction ratio by the fit to all sets"
+            ),
+            "cross_validated_ratio": variable(
+                grid,
+                ([p.cross_validated for p in one.predictions] for one in fits),
+                "Friction ratio by the fit to the other sets",
+            ),
+            "reason": (
+                grid,
+                [[p.reason or "" for p in one.predictions] for one in fits],
+                {"long_name": "Reason why a model does not apply"},
+            ),
+            "rms": variable(
+                "model",
+                (one.assessment.fit_errors.rms if one.assessment else None for one in fits),
+                "Root mean square error of the fit",
+            ),
+            "rms_cross_validated": variable(
+                "model",
+                (one.assessment.cross_validation_errors.rms if one.assessment else None for one in fits),
+                "Root mean square error with each set predicted by a fit to the others",
+            ),
+            "aicc": variable("model", (one.aicc for one in fits), "Akaike criterion corrected for small samples"),
+        },
+        coords={"model": [one.model.name for one in fits], "test": [test.label for test in tests]},
+        attrs={"title": "Models of friction under vibration against experiment", "source": f"sonolube {__version__}"},
+    )
+
+
+def comparison_csv(fits: tuple[ComparedFit, ...]) -> str:
+    """Return a table as CSV with one row for each model: errors, criterion, and fitted parameters.
+
+    Parameters
+    ----------
+    fits : tuple of ComparedFit
+
+    Returns
+    -------
+    str
+    """
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow((*_HEADS, *(f"rms_in_{letter}" for letter in DATA_SETS), "fitted"))
+    for one in fits:
+        errors: tuple[float | None, ...] = (None,) * 4
+        if one.assessment:
+            fitted, cross_validated = one.assessment.fit_errors, one.assessment.cross_validation_errors
+            errors = (fitted.rms, cross_validated.rms, fitted.largest, fitted.median_relative)
+        in_sets = [one.errors_in(letter) for letter in DATA_SETS]
+        numbers = (*errors, one.aicc, *(of_set.rms if of_set else None for of_set in in_sets))
+        writer.writerow(
+            (
+                one.model.name,
+                one.model.source,
+                one.sets,
+                len(one.parameters),
+                *("" if number is None else f"{number:.4g}" for number in numbers),
+                "; ".join(map(parameter_text, one.parameters)),
+            )
+        )
+    return text.getvalue()
+
+
+def parameter_text(fitted: FittedParameter) -> str:
+    """Return a fitted parameter as text: rig, value, and interval or leave-one-out range.
+
+    Parameters
+    ----------
+    fitted : FittedParameter
+
+    Returns
+    -------
+    str
+    """
+    parameter = fitted.parameter
+    rig = next((name for name, letters in RIGS.items() if letters == parameter.applicable_sets), None)
+    unit = f" {parameter.unit}" if parameter.unit else ""
+    text = f"{parameter.name}{f' of the {rig} rig' if rig else ''} {fitted.value:.3g}{unit}"
+    if fitted.interval:
+        text += f" (95 %: {fitted.interval[0]:.3g} to {fitted.interval[1]:.3g})"
+    elif fitted.leave_one_out_range:
+        text += f" (one set left out: {fitted.leave_one_out_range[0]:.3g} to {fitted.leave_one_out_range[1]:.3g})"
+    return text + (", at its bound" if fitted.at_bound else "")

@@ -1,0 +1,262 @@
+"""Model variants compared: known models recovered from synthetic tests, required inputs, cross-validation errors."""
+
+import csv
+import io
+from dataclasses import replace
+from math import pi
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pytest import approx, raises
+from scipy.special import i0
+
+from sonolube.errors import InvalidInput, UnknownName
+from sonolube.friction import sine_stick_slip_ratio
+from sonolube.rig import read_rig
+from sonolube.validation.assessment import FITTED_SETS
+from sonolube.validation.comparison import COMPARED_MODELS, ComparedFit, compare_models, compared_models, predict_rig
+from sonolube.validation.fitting import Fit
+from sonolube.validation.published_tests import FrictionTest, friction_tests, in_plane_tests
+from sonolube.validation.rig_conditions import VibratedRig, vibrated_rig
+from sonolube.validation.tables import comparison_csv, comparison_dataset
+
+NAMED = {model.name: model for model in COMPARED_MODELS}
+ROOT = Path(__file__).parents[2]
+QUICK = ("asperity-stick-slip", "kinematic", "kinematic-fitted", "coulomb-longitudinal-fitted", "spring-flat")
+SCATTER = np.random.default_rng(7).normal(scale=0.02, size=len(friction_tests(FITTED_SETS)))
+
+
+def ratio(name: str, test: FrictionTest | VibratedRig, *values: float) -> float:
+    found = Fit(variant=NAMED[name], sets="", values=values).predict(test)
+    assert found is not None
+    return found
+
+
+def synthetic_tests(ratios: np.ndarray) -> tuple[FrictionTest, ...]:
+    """Return the conditions of the dissertation with friction that scatters about that of a known model."""
+    tests = friction_tests(FITTED_SETS)
+    return tuple(
+        replace(test, friction_ratio=float(value)) for test, value in zip(tests, ratios + SCATTER, strict=True)
+    )
+
+
+def column(name: str) -> np.ndarray:
+    return np.array([getattr(test, name) for test in friction_tests(FITTED_SETS)])
+
+
+def peak_velocity() -> np.ndarray:
+    return np.asarray(2 * pi * column("frequency") * column("vibration_amplitude"))
+
+
+@pytest.fixture(scope="module")
+def published() -> tuple[ComparedFit, ...]:
+    return compare_models(compared_models((*QUICK, "coulomb-in-plane", "spring-approximate", "spring-longitudinal")))
+
+
+def test_synthetic_friction_of_asperity_stick_slip_recovers_the_model_and_its_memory_length() -> None:
+    ratios = sine_stick_slip_ratio(
+        decay_length=2e-6,
+        vibration_amplitude=column("vibration_amplitude"),
+        frequency=column("frequency"),
+        sliding_speed=column("sliding_speed"),
+        memory_length=1.2e-6,
+    )
+    best, *others = compare_models(compared_models(QUICK), tests=synthetic_tests(ratios))
+    (memory,) = best.parameters
+    assert best.model.name == "asperity-stick-slip"
+    assert memory.value == approx(1.2e-6, rel=0.1)
+    assert memory.interval is not None
+    assert memory.interval[0] < 1.2e-6 < memory.interval[1]
+    assert memory.leave_one_out_range is not None
+    assert memory.leave_one_out_range[0] <= memory.value <= memory.leave_one_out_range[1]
+    assert best.aicc is not None
+    assert all(other.aicc is not None and other.aicc > best.aicc + 10 for other in others)
+
+
+def test_synthetic_friction_of_a_motion_along_the_sliding_recovers_its_fraction() -> None:
+    zeta = column("sliding_speed") / (0.2 * peak_velocity())
+    best, *_ = compare_models(compared_models(QUICK), tests=synthetic_tests(2 / pi * np.arcsin(np.minimum(zeta, 1.0))))
+    assert best.model.name == "coulomb-longitudinal-fitted"
+    assert best.parameters[0].value == approx(0.2, rel=0.05)
+    assert best.assessment is not None
+    assert best.assessment.fit_errors.rms == approx(float(np.sqrt(np.mean(SCATTER**2))), rel=0.2)
+
+
+def test_a_set_left_out_is_predicted_by_the_best_fit_to_the_others(published: tuple[ComparedFit, ...]) -> None:
+    # written out on the closed form: the memory length of least squares over all sets but B, by grid search
+    others = [test for test in friction_tests(FITTED_SETS) if test.set_name != "B"]
+
+    def predicted(tests: list[FrictionTest], memory_length: float) -> np.ndarray:
+        return sine_stick_slip_ratio(
+            decay_length=2e-6,
+            vibration_amplitude=[test.vibration_amplitude for test in tests],
+            frequency=[test.frequency for test in tests],
+            sliding_speed=[test.sliding_speed for test in tests],
+            memory_length=memory_length,
+        )
+
+    measured = np.array([test.friction_ratio for test in others])
+    tried = np.geomspace(0.5e-6, 5e-6, 2000)
+    best = tried[np.argmin([np.sum((predicted(others, length) - measured) ** 2) for length in tried])]
+    stick_slip = next(one for one in published if one.model.name == "asperity-stick-slip")
+    left_out = [one.cross_validated for one in stick_slip.predictions if one.test.set_name == "B"]
+    assert left_out == approx(predicted(list(friction_tests("B")), best), abs=2e-3)
+
+
+def test_without_free_parameters_cross_validation_equals_the_fit(published: tuple[ComparedFit, ...]) -> None:
+    for one in published:
+        if not one.parameters:
+            assert all(prediction.fitted == prediction.cross_validated for prediction in one.predictions)
+
+
+def test_every_test_has_a_prediction_or_a_reason(published: tuple[ComparedFit, ...]) -> None:
+    for one in published:
+        for prediction in one.predictions:
+            assert (prediction.fitted is None) == bool(prediction.reason)
+
+
+def test_a_model_of_in_plane_vibration_names_the_inputs_that_the_dissertations_tests_lack(
+    published: tuple[ComparedFit, ...],
+) -> None:
+    along = next(one for one in published if one.model.name == "spring-longitudinal")
+    assert along.assessment is None
+    assert along.predictions[0].reason == "needs the amplitude along the sliding: not known here"
+    reason = NAMED["dahl-driven"].inapplicability(friction_tests("A")[0])
+    assert reason is not None
+    assert "the mass that moves with the holder" in reason
+
+
+def test_outside_its_range_a_model_has_no_information_criterion(published: tuple[ComparedFit, ...]) -> None:
+    approximate = next(one for one in published if one.model.name == "spring-approximate")
+    out_of_range = {one.test.label for one in approximate.predictions if one.reason and "contact is lost" in one.reason}
+    # load over stiffness is the decay length, 2 um
+    assert out_of_range == {test.label for test in friction_tests(FITTED_SETS) if test.vibration_amplitude > 2e-6}
+    assert approximate.aicc is None
+
+
+def test_previous_studies_along_the_sliding_lie_on_the_arcsine(published: tuple[ComparedFit, ...]) -> None:
+    littmann, gutowski = in_plane_tests()
+    assert (littmann.sliding_speed, gutowski.sliding_speed) == approx((0.26, 0.62e-3))
+    coulomb = next(one for one in published if one.model.name == "coulomb-in-plane")
+    assert coulomb.sets == "L"
+    predicted = [one.fitted for one in coulomb.predictions if one.test.set_name == "L"]
+    assert predicted == approx([1.0, 2 / pi * np.arcsin(0.62 / 6.64)], abs=1e-9)
+
+
+def test_synthetic_friction_of_lugre_bristles_recovers_their_stiffness() -> None:
+    lugre, test = NAMED["lugre"], friction_tests("A")[0]
+    ratios = np.array([ratio("lugre", each, 0.3) for each in friction_tests(FITTED_SETS)])
+    best, *_ = compare_models(compared_models(("lugre", "spring-flat", "kinematic")), tests=synthetic_tests(ratios))
+    assert best.model is lugre
+    assert best.parameters[0].value == approx(0.3, rel=0.2)
+    # bristles that yield keep their force while the load falls: between the mean and the harmonic mean of the load
+    spring_back = i0(test.vibration_amplitude / 2e-6) ** -2
+    assert spring_back < ratio("lugre", test, 0.02) < ratio("lugre", test, 1.0) < 1
+
+
+@pytest.mark.parametrize("phase", [-2.0, -0.4, 0.6, 1.5])
+def test_the_in_plane_phase_is_the_same_quantity_in_every_model(phase: float) -> None:
+    # a rigid contact of exponential heights: N falls as exp(-x/l), friction turns with the velocity
+    test, length, fraction = friction_tests("B")[3], 2e-6, 0.5
+    a, omega = test.vibration_amplitude, 2 * pi * test.frequency
+    theta = np.linspace(0, 2 * pi, 200_000, endpoint=False)
+    pressed = np.exp(-a / length * np.cos(theta)) / i0(a / length)
+    turned = np.sign(test.sliding_speed - fraction * omega * a * np.sin(theta - phase))
+    rigid = float(np.mean(pressed * turned))
+    assert ratio("dahl-in-plane", test, fraction, phase) == approx(rigid, abs=0.05)
+    assert ratio("asperity-stick-slip-in-plane", test, 1e-8, fraction, phase) == approx(
+        rigid, abs=0.1
+    )  # the memory length is not zero
+    assert ratio("lugre-in-plane", test, 1e4, 1.0, 1.0, fraction, phase) == approx(rigid, abs=0.05)
+    linear = float(np.mean((1 - a / length * np.cos(theta)) * turned))
+    assert ratio("elliptical", test, fraction, phase) == approx(linear, abs=1e-4)
+
+
+@pytest.mark.parametrize("name", ["spring-longitudinal", "dahl-driven"])
+def test_a_stroke_longer_than_any_preslide_is_that_of_coulombs_friction(name: str) -> None:
+    test = friction_tests("A")[0]
+    rig = VibratedRig(
+        label="long stroke",
+        contact=test.contact,
+        normal_load=test.normal_load,
+        friction_coefficient=test.friction_coefficient,
+        sliding_speed=1.0,
+        vibration_amplitude=1e-6,
+        frequency=2e3,
+        in_plane_amplitude=200e-6,
+        holder_stiffness=1e4,
+        holder_mass=0.5,
+    )
+    arcsine = 2 / pi * np.arcsin(1.0 / (2 * pi * 2e3 * 200e-6))
+    assert ratio(name, rig) == approx(arcsine, abs=0.02)
+
+
+def test_a_rig_like_a_test_is_predicted_as_the_test_is(published: tuple[ComparedFit, ...]) -> None:
+    test = friction_tests("A")[1]
+    rig = VibratedRig(
+        label="like A-2",
+        contact=test.contact,
+        normal_load=test.normal_load,
+        friction_coefficient=test.friction_coefficient,
+        sliding_speed=test.sliding_speed,
+        vibration_amplitude=test.vibration_amplitude,
+        frequency=test.frequency,
+    )
+    predicted = predict_rig(published, rig)
+    fits = {one.model.name: one for one in published}
+    for one in predicted:
+        fit = fits[one.model.name]
+        assert one.friction_ratio == next(p.fitted for p in fit.predictions if p.test.label == "A-2")
+        if one.uncertainty is not None:
+            assert fit.assessment is not None
+            assert one.uncertainty == fit.assessment.cross_validation_errors.rms
+    known = [one.uncertainty for one in predicted if one.uncertainty is not None]
+    assert known == sorted(known)
+    assert {one.model.name for one in predicted if one.reason} == {
+        "coulomb-in-plane",
+        "spring-approximate",
+        "spring-longitudinal",
+    }
+
+
+def test_the_error_on_a_single_set_is_no_uncertainty_of_a_rig(published: tuple[ComparedFit, ...]) -> None:
+    known = read_rig(ROOT / "examples/rigs/tribometer.toml", changes=["friction.in_plane_fraction=0.2"])
+    predicted = {one.model.name: one for one in predict_rig(published, vibrated_rig(known))}
+    coulomb = predicted["coulomb-in-plane"]
+    zeta = 20.3e-3 / (0.2 * 2 * pi * 22e3 * known.vibration_amplitude)
+    assert coulomb.friction_ratio == approx(2 / pi * np.arcsin(zeta))
+    assert coulomb.uncertainty is None
+    assert list(predicted)[-1] != "coulomb-in-plane"  # those that do not apply come last
+
+
+def test_a_rig_that_does_not_vibrate_is_refused() -> None:
+    rig = read_rig(ROOT / "examples/rigs/tribometer.toml", changes=["drive.voltage_peak_to_peak=0V"])
+    with raises(InvalidInput, match="vibration_amplitude is 0"):
+        vibrated_rig(rig)
+
+
+def test_a_model_that_does_not_exist_is_refused_with_the_nearest() -> None:
+    with raises(UnknownName, match="did you mean asperity-stick-slip"):
+        compared_models(["asperity-stickslip"])
+
+
+def test_every_model_has_required_inputs_and_a_source() -> None:
+    assert len({model.name for model in COMPARED_MODELS}) == len(COMPARED_MODELS)
+    for model in COMPARED_MODELS:
+        assert "sliding_speed" in model.required_inputs
+        assert model.source
+        assert all(parameter.low < parameter.high for parameter in model.parameters)
+
+
+def test_the_tables_have_every_model_and_test_with_units(published: tuple[ComparedFit, ...]) -> None:
+    table = comparison_dataset(published)
+    assert dict(table.sizes) == {"model": len(published), "test": 19}
+    assert all("long_name" in table[name].attrs for name in table.data_vars)
+    assert table["fitted_ratio"].attrs["units"] == "1"
+    off = table["fitted_ratio"] - table["friction_ratio"]
+    fitted = off.sel(model="asperity-stick-slip", test=[test.label for test in friction_tests(FITTED_SETS)])
+    assert float(np.sqrt((fitted**2).mean())) == approx(float(table["rms"].sel(model="asperity-stick-slip")))
+    rows = list(csv.DictReader(io.StringIO(comparison_csv(published))))
+    assert [row["model"] for row in rows] == [one.model.name for one in published]
+    assert rows[0]["fitted"].startswith("memory_length")

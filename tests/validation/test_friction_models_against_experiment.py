@@ -1,0 +1,246 @@
+"""Variants of the friction models against the measured ratios of the dissertation, and their known errors."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from pytest import approx
+from scipy.optimize import minimize
+from scipy.special import i0
+
+from sonolube.friction import sine_stick_slip_ratio
+from sonolube.reproduce.friction_models.variant_rows import reported_fits
+from sonolube.validation.assessment import (
+    FITTED_SETS,
+    SETS_WITHOUT_POWER_MAP,
+    assess_variant,
+    cross_validation_errors,
+    gaussian_criteria,
+    information_criteria,
+    leave_one_set_out_fits,
+    prediction_errors,
+)
+from sonolube.validation.fitting import Fit, fit_variant, profile_likelihood_interval
+from sonolube.validation.free_parameters import RIGS
+from sonolube.validation.friction_model_variants import FRICTION_MODEL_VARIANTS
+from sonolube.validation.published_tests import (
+    NORMAL_VIBRATION_SETS,
+    FrictionTest,
+    friction_tests,
+)
+
+NAMED = {variant.name: variant for variant in FRICTION_MODEL_VARIANTS}
+
+
+def measured_ratios(tests: tuple[FrictionTest, ...]) -> np.ndarray:
+    return np.array([test.friction_ratio for test in tests])
+
+
+def rms(name: str, sets: str, *values: float) -> float:
+    return prediction_errors(Fit(variant=NAMED[name], sets="", values=values), friction_tests(sets)).rms
+
+
+def test_measured_ratios_are_those_of_the_printed_forces() -> None:
+    assert measured_ratios(friction_tests("A")) == approx([0.370, 0.623, 0.707], abs=5e-4)
+    assert measured_ratios(friction_tests("B")) == approx([0.955, 0.753, 0.360, 0.135, 0.045], abs=5e-4)
+    assert measured_ratios(friction_tests("CDEF")) == approx([0.459, 0.40, 0.60, 0.337, 0.199], abs=5e-4)
+    assert measured_ratios(friction_tests("G")) == approx([0.511, 0.568], abs=5e-4)
+    assert {test.set_name for test in friction_tests()} == set(NORMAL_VIBRATION_SETS)
+
+
+def test_the_scatter_of_the_tribometers_forces_propagates_to_the_ratio() -> None:
+    # 0.379/1.024 with 0.041/0.379 and 0.063/1.024
+    assert friction_tests("A")[0].uncertainty == approx(0.370 * np.hypot(0.041 / 0.379, 0.063 / 1.024), rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "sets", "known", "tolerance"),
+    [
+        ("dong-2015-load-balanced", (), "A", 0.31, 0.005),
+        ("kinematic-fitted", (0.32,), "B", 0.48, 0.005),
+        ("kinematic-fitted", (0.32,), "CDEFG", 0.09, 0.025),
+        ("asperity-stick-slip-mindlin", (), "A", 0.06, 0.005),
+        ("asperity-stick-slip-mindlin", (), "B", 0.65, 0.005),
+        ("asperity-stick-slip-mindlin", (), "CDEFG", 0.26, 0.01),
+        ("asperity-stick-slip", (1.5e-6,), "A", 0.08, 0.005),
+        ("asperity-stick-slip", (1.5e-6,), "B", 0.46, 0.005),
+        ("asperity-stick-slip", (1.5e-6,), "CDEFG", 0.09, 0.015),
+    ],
+)
+def test_the_error_table_is_reproduced(
+    name: str, values: tuple[float, ...], sets: str, known: float, tolerance: float
+) -> None:
+    assert rms(name, sets, *values) == approx(known, abs=tolerance)
+
+
+def test_the_load_balanced_row_of_table_4_2_is_that_of_the_tribometers_contact_and_load() -> None:
+    # the cube's height matters: with the small contact of that test and its 5 N the error is 0.81
+    on_tribometer = friction_tests("A")[0]
+    tests = (
+        replace(test, contact=on_tribometer.contact, normal_load=on_tribometer.normal_load)
+        for test in friction_tests("B")
+    )
+    fit = Fit(variant=NAMED["dong-2015-load-balanced"], sets="", values=())
+    assert prediction_errors(fit, tests).rms == approx(0.58, abs=0.005)
+    assert rms("dong-2015-load-balanced", "B") == approx(0.81, abs=0.005)
+
+
+def test_as_printed_the_tribometers_ratios_rise_past_one() -> None:
+    predicted = [NAMED["dong-2015-full-period"].predict(test) for test in friction_tests("A")]
+    assert predicted == approx([1.22, 1.91, 2.89], abs=6e-3)
+
+
+def test_the_welders_speed_before_the_vibration_would_bring_its_error_below_nine_hundredths() -> None:
+    # the disc speeds up once the surfaces vibrate; at the speeds from before both rows agree better
+    slower = (
+        replace(test, sliding_speed=speed) for test, speed in zip(friction_tests("G"), (0.1725, 0.177), strict=True)
+    )
+    fit = Fit(variant=NAMED["asperity-stick-slip"], sets="", values=(1.5e-6,))
+    assert prediction_errors(fit, (*friction_tests("CDEF"), *slower)).rms == approx(0.088, abs=2e-3)
+
+
+def test_the_fitted_memory_length_lies_in_its_known_range() -> None:
+    (length,) = fit_variant(NAMED["asperity-stick-slip"], SETS_WITHOUT_POWER_MAP).values
+    assert 0.9e-6 < length < 1.7e-6
+    errors = prediction_errors(
+        fit_variant(NAMED["asperity-stick-slip"], SETS_WITHOUT_POWER_MAP), friction_tests(SETS_WITHOUT_POWER_MAP)
+    )
+    assert errors.rms < 0.1
+    assert abs(errors.largest) < 0.17
+
+
+def test_the_fits_are_the_best_within_their_bounds() -> None:
+    for name in ("asperity-stick-slip", "kinematic-fitted"):
+        fit = fit_variant(NAMED[name], SETS_WITHOUT_POWER_MAP)
+        (parameter,) = fit.variant.parameters
+        tried = np.geomspace(parameter.low, parameter.high, 60)
+        assert (
+            prediction_errors(fit, friction_tests(SETS_WITHOUT_POWER_MAP)).rms
+            <= min(rms(name, SETS_WITHOUT_POWER_MAP, value) for value in tried) + 1e-6
+        )
+
+
+@pytest.mark.parametrize("name", ["asperity-stick-slip", "kinematic-fitted"])
+def test_the_cross_validation_error_is_near_the_error_of_the_fit(name: str) -> None:
+    fit_error = prediction_errors(
+        fit_variant(NAMED[name], SETS_WITHOUT_POWER_MAP), friction_tests(SETS_WITHOUT_POWER_MAP)
+    ).rms
+    assert fit_error < cross_validation_errors(NAMED[name], SETS_WITHOUT_POWER_MAP).rms < 1.4 * fit_error
+
+
+def test_normal_vibration_alone_cannot_give_table_4_2() -> None:
+    # below what the widest gap carries friction cannot fall, whatever the memory
+    beta = friction_tests("B")[-1].vibration_amplitude / 2e-6
+    plateau = float(np.exp(-beta) / i0(beta))
+    assert plateau == approx(0.23, abs=5e-3)
+    assert friction_tests("B")[-1].friction_ratio + 2 * (friction_tests("B")[-1].uncertainty or 0.0) < plateau
+
+
+def test_even_free_lengths_do_not_give_table_4_2() -> None:
+    tests = friction_tests("B")
+
+    def off(logarithms: np.ndarray) -> float:
+        decay_length, memory_length = np.exp(logarithms) * 1e-6
+        predicted = sine_stick_slip_ratio(
+            decay_length=decay_length,
+            memory_length=memory_length,
+            vibration_amplitude=[test.vibration_amplitude for test in tests],
+            frequency=22e3,
+            sliding_speed=65.5e-3,
+        )
+        return float(np.sqrt(np.mean((predicted - measured_ratios(tests)) ** 2)))
+
+    best = min(minimize(off, start, method="Nelder-Mead").fun for start in ([0, 1], [-1, 0], [1, 3]))
+    assert best == approx(0.13, abs=0.005)
+
+
+def test_in_plane_motion_within_its_bounds_lowers_both_information_criteria() -> None:
+    moving, normal = (
+        assess_variant(NAMED[name], FITTED_SETS).information
+        for name in ("asperity-stick-slip-in-plane", "asperity-stick-slip")
+    )
+    assert moving is not None
+    assert normal is not None
+    assert moving.parameter_count == normal.parameter_count + 2
+    assert moving.aicc < normal.aicc - 10
+    assert moving.bic < normal.bic - 10
+
+
+def test_more_in_plane_motion_reaches_ten_per_cent_only_on_the_fitted_sets() -> None:
+    # the median error falls below a tenth in the fit, but not where a table is predicted by the others
+    pins = assess_variant(NAMED["asperity-stick-slip-in-plane-pins"], FITTED_SETS)
+    assert pins.fit_errors.median_relative < 0.1
+    assert pins.cross_validation_errors.median_relative > 0.2
+    fewer = assess_variant(NAMED["asperity-stick-slip-in-plane"], FITTED_SETS).information
+    assert fewer is not None
+    assert pins.information is not None
+    assert fewer.aicc < pins.information.aicc
+    assert fewer.bic < pins.information.bic
+
+
+def test_no_friction_model_predicts_table_4_2_from_the_other_tables() -> None:
+    # with 0.045 measured at 25.9 V, all of normal motion predict more than half
+    for name in ("asperity-stick-slip", "asperity-stick-slip-in-plane", "kinematic-fitted"):
+        fit = leave_one_set_out_fits(NAMED[name], FITTED_SETS)[FITTED_SETS.index("B")]
+        ratio = fit.predict(friction_tests("B")[-1])
+        assert ratio is not None
+        assert ratio > 0.5
+
+
+def test_the_information_criteria_are_hand_computed() -> None:
+    fit = fit_variant(NAMED["kinematic-fitted"], SETS_WITHOUT_POWER_MAP)
+    found = information_criteria(fit, friction_tests(SETS_WITHOUT_POWER_MAP))
+    deviance = 2 * 10 * np.log(prediction_errors(fit, friction_tests(SETS_WITHOUT_POWER_MAP)).rms)
+    assert found is not None
+    # the fraction and the error: k = 2, and 2 k (k + 1)/(n - k - 1) = 12/7 for ten tests
+    assert found.aicc == approx(deviance + 2 * 2 + 12 / 7)
+    assert found.bic == approx(deviance + 2 * np.log(10))
+    assert gaussian_criteria(0.1, count=4, parameter_count=2).aicc == np.inf
+
+
+def test_the_memory_length_is_known_to_a_third() -> None:
+    fit = fit_variant(NAMED["asperity-stick-slip"], SETS_WITHOUT_POWER_MAP)
+    low, high = profile_likelihood_interval(fit, 0)
+    assert 1e-6 < low < fit.values[0] < high < 2.5e-6
+    # at either end the squares have grown by exp(3.841/n): written out on the closed form
+    tests = friction_tests(SETS_WITHOUT_POWER_MAP)
+
+    def squares(memory_length: float) -> float:
+        predicted = sine_stick_slip_ratio(
+            decay_length=2e-6,
+            vibration_amplitude=[test.vibration_amplitude for test in tests],
+            frequency=[test.frequency for test in tests],
+            sliding_speed=[test.sliding_speed for test in tests],
+            memory_length=memory_length,
+        )
+        return float(np.sum((predicted - measured_ratios(tests)) ** 2))
+
+    for end in (low, high):
+        assert squares(end) / squares(fit.values[0]) == approx(np.exp(3.841 / 10), rel=5e-3)
+
+
+def test_a_parameter_of_one_rig_has_no_effect_on_the_others() -> None:
+    variant = NAMED["bristle-with-holder-per-rig"]
+    assert [parameter.applicable_sets for parameter in variant.parameters] == ["ACDEF", "B", "G"]
+    before, after = (variant.predict(friction_tests("A")[0], 1e-7, other, 1e-7) for other in (1e-8, 1e-6))
+    assert before == after
+    assert "".join(sorted("".join(RIGS.values()))) == "ABCDEFGH"
+
+
+def test_every_bound_has_its_reason() -> None:
+    for variant in FRICTION_MODEL_VARIANTS:
+        for parameter in variant.parameters:
+            assert len(parameter.reason) > 20 or parameter.is_angle
+            assert parameter.low <= parameter.default <= parameter.high or parameter.name == "holder_compliance"
+
+
+def test_tests_outside_the_range_of_a_friction_model_are_listed() -> None:
+    fit = Fit(variant=NAMED["dong-2015-full-period"], sets="", values=())
+    assert prediction_errors(fit, friction_tests("G")).out_of_range == ("G-1", "G-2")
+    assert information_criteria(fit, friction_tests(SETS_WITHOUT_POWER_MAP)) is None
+
+
+def test_no_fit_leaves_its_bounds() -> None:
+    for fit in reported_fits():
+        for parameter, value in zip(fit.variant.parameters, fit.values, strict=True):
+            assert parameter.low <= value <= parameter.high or value == parameter.default
