@@ -31,10 +31,7 @@ DECAY_LENGTH = 2e-6
 
 def loads_and_amplitudes(points: int) -> dict[str, np.ndarray]:
     random = np.random.default_rng(1)
-    return {
-        "normal_load": random.uniform(1.0, 10.0, points),
-        "vibration_amplitude": random.uniform(0.0, 5e-6, points),
-    }
+    return {"normal_load": random.uniform(1.0, 10.0, points), "vibration_amplitude": random.uniform(0.0, 5e-6, points)}
 
 
 def seconds_a_point(benchmark: BenchmarkFixture, points: int) -> float:

@@ -10,11 +10,7 @@ from sonolube.dong2015.collar_designs import COLLAR_DIMENSION_SOURCES, FINAL_COL
 from sonolube.dong2015.collar_tuning import main_resonance
 from sonolube.fem import harmonic_response
 
-for case, changes in (
-    ("top closed", {}),
-    ("top open", {"open_top": True}),
-    ("base clamped", {"clamped": True}),
-):
+for case, changes in (("top closed", {}), ("top open", {"open_top": True}), ("base clamped", {"clamped": True})):
     model = reduced_collar_model(FINAL_COLLAR, **changes)
     found = main_resonance(model)
     peak = harmonic_response(model, frequency=found.series_frequency)

@@ -11,16 +11,7 @@ import grimp
 import pytest
 
 ROOT = Path(__file__).parents[1]
-PHYSICS = (
-    "surfaces",
-    "contact",
-    "friction",
-    "wear",
-    "thermal",
-    "actuator",
-    "dynamics",
-    "metrics",
-)
+PHYSICS = ("surfaces", "contact", "friction", "wear", "thermal", "actuator", "dynamics", "metrics")
 
 
 @pytest.fixture(scope="module")

@@ -7,11 +7,7 @@ from sonolube.actuator import PiezoStack, dong_2015_impedance
 
 # D Table 3.5: 62 layers of 140 pm/V
 STACK = PiezoStack(
-    free_capacitance=360e-9,
-    free_stroke_per_volt=62 * 140e-12,
-    stack_stiffness=2e9,
-    stack_damping=30.0,
-    stack_mass=0.07,
+    free_capacitance=360e-9, free_stroke_per_volt=62 * 140e-12, stack_stiffness=2e9, stack_damping=30.0, stack_mass=0.07
 )
 RIG = {
     "tip_mass": 0.15,

@@ -3,13 +3,7 @@
 import numpy as np
 from pytest import approx
 
-from sonolube.contact import (
-    ASPERITY_LAWS,
-    ContactPair,
-    RoughContact,
-    mindlin_tangential_stiffness,
-    separation,
-)
+from sonolube.contact import ASPERITY_LAWS, ContactPair, RoughContact, mindlin_tangential_stiffness, separation
 from sonolube.surfaces import Roughness
 
 # D, Table 3.2

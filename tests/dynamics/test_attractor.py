@@ -162,13 +162,7 @@ def test_a_solution_that_runs_away_is_classified_as_diverged() -> None:
     s = tribometer()
     start = State(coordinates=np.array([-2e-4, 0.0, 0.0]), velocities=np.zeros(3))
     found = classify_attractor(
-        s,
-        ROUGH,
-        normal_load=100.0,
-        frequency=5e3,
-        voltage_peak_to_peak=1000.0,
-        initial_state=start,
-        steps_per_period=8,
+        s, ROUGH, normal_load=100.0, frequency=5e3, voltage_peak_to_peak=1000.0, initial_state=start, steps_per_period=8
     )
     assert found.kind == "diverged"
     assert np.isnan(found.lyapunov_exponent)

@@ -17,20 +17,11 @@ from sonolube.dynamics.chain import (
     pin_on_disc_chain,
 )
 from sonolube.dynamics.linear import modes
-from sonolube.dynamics.structure import (
-    contact_receptance,
-    drive_receptance,
-    electrical_admittance,
-    with_contact_spring,
-)
+from sonolube.dynamics.structure import contact_receptance, drive_receptance, electrical_admittance, with_contact_spring
 from sonolube.errors import InvalidInput, SonolubeError, UnknownName
 
 STACK = PiezoStack(
-    free_capacitance=360e-9,
-    free_stroke_per_volt=62 * 140e-12,
-    stack_stiffness=2e9,
-    stack_damping=30.0,
-    stack_mass=0.07,
+    free_capacitance=360e-9, free_stroke_per_volt=62 * 140e-12, stack_stiffness=2e9, stack_damping=30.0, stack_mass=0.07
 )
 CHAIN = pin_on_disc_chain(
     STACK, tip_mass=0.15, reaction_mass=0.28, arm_mass=0.5, arm_stiffness=2e5, arm_damping=20.0, tip_damping=3.0

@@ -56,10 +56,7 @@ def state_matrix(s: Structure) -> tuple[Array, Array, Array]:
     """Return A, b and c of z' = A z + b V + c (F_n - F_N) for z = (x, v/omega), which balances its entries."""
     n, omega, inverse = s.coordinates, 2 * np.pi * F, np.linalg.inv(s.mass_matrix)
     A = np.block(
-        [
-            [np.zeros((n, n)), omega * np.eye(n)],
-            [-inverse @ s.stiffness_matrix / omega, -inverse @ s.damping_matrix],
-        ]
+        [[np.zeros((n, n)), omega * np.eye(n)], [-inverse @ s.stiffness_matrix / omega, -inverse @ s.damping_matrix]]
     )
     zeros = np.zeros(n)
     return A, np.r_[zeros, inverse @ s.drive_vector / omega], np.r_[zeros, inverse @ s.contact_vector / omega]

@@ -116,9 +116,7 @@ def test_the_value_at_a_jump_is_the_one_after_it() -> None:
 
 
 @given(
-    samples=st.lists(st.floats(-1e6, 1e6), min_size=2, max_size=30),
-    scale=st.floats(0.1, 10),
-    shift=st.floats(-10, 10),
+    samples=st.lists(st.floats(-1e6, 1e6), min_size=2, max_size=30), scale=st.floats(0.1, 10), shift=st.floats(-10, 10)
 )
 def test_a_sampled_waveform_passes_through_its_normalised_samples(
     samples: list[float], scale: float, shift: float

@@ -39,12 +39,7 @@ def normal_force_over_period(load: float, lag: float) -> np.ndarray:
 
 
 @settings(deadline=None)  # the first call compiles
-@given(
-    load=st.floats(0.02, 3),
-    in_plane=st.floats(-2, 2),
-    velocity=st.floats(-1.5, 1.5),
-    lag=st.floats(-7, 7),
-)
+@given(load=st.floats(0.02, 3), in_plane=st.floats(-2, 2), velocity=st.floats(-1.5, 1.5), lag=st.floats(-7, 7))
 def test_the_traction_is_the_mean_of_the_instantaneous_friction(
     load: float, in_plane: float, velocity: float, lag: float
 ) -> None:

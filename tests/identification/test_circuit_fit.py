@@ -24,8 +24,7 @@ def branch(frequency: float, quality: float, capacitance: float) -> MotionalBran
 
 ONE = ButterworthVanDyke(parallel_capacitance=2e-9, branches=(branch(22e3, 150, 3e-10),))
 THREE = ButterworthVanDyke(
-    parallel_capacitance=5e-9,
-    branches=(branch(19e3, 90, 4e-10), branch(22e3, 300, 5e-11), branch(27e3, 60, 3e-10)),
+    parallel_capacitance=5e-9, branches=(branch(19e3, 90, 4e-10), branch(22e3, 300, 5e-11), branch(27e3, 60, 3e-10))
 )
 
 

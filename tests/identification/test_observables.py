@@ -72,12 +72,7 @@ def mounted_stack(parameters: Mapping[str, float]) -> Structure:
 def floating_chain(parameters: Mapping[str, float]) -> Structure:
     return chain_structure(
         pin_on_disc_chain(
-            STACK,
-            tip_mass=parameters["tip_mass"],
-            reaction_mass=0.5,
-            arm_mass=0.6,
-            arm_stiffness=2e5,
-            arm_damping=20.0,
+            STACK, tip_mass=parameters["tip_mass"], reaction_mass=0.5, arm_mass=0.6, arm_stiffness=2e5, arm_damping=20.0
         )
     )
 
@@ -94,8 +89,7 @@ def observed(
     observable: str, build: StructureBuilder, values: Mapping[str, float], conditions: Conditions = CONDITIONS
 ) -> float:
     model = structure_model(
-        parametric_structure(build, reference=values),
-        {"it": Observation(observable=observable, conditions=conditions)},
+        parametric_structure(build, reference=values), {"it": Observation(observable=observable, conditions=conditions)}
     )
     return float(model({name: np.array([value]) for name, value in values.items()})["it"][0])
 

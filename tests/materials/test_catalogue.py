@@ -9,11 +9,7 @@ from pytest import approx, raises
 
 from sonolube.contact.pair import ElasticBody, contact_pair
 from sonolube.errors import MissingProperty, UnknownName
-from sonolube.materials import (
-    material,
-    material_names,
-    piezo_ceramic,
-)
+from sonolube.materials import material, material_names, piezo_ceramic
 from sonolube.vocabulary import quantity
 
 every_material = pytest.mark.parametrize("name", material_names())

@@ -5,9 +5,7 @@ import xarray as xr
 from pytest import raises
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.friction_analysis import (
-    analyse_windows,
-)
+from sonolube.measurement.friction_analysis import analyse_windows
 
 RATE = 400.0  # Hz, D 2.3.2
 

@@ -77,10 +77,7 @@ def test_a_single_scan_is_refused(groove: Groove) -> None:
 
 
 def test_the_reduction_is_that_of_the_mean_rates(groove: Groove) -> None:
-    without, with_vibration = (
-        worn(groove, [4e-8, 4.1e-8, 3.9e-8]),
-        worn(groove, [2e-8, 2.1e-8, 1.9e-8]),
-    )
+    without, with_vibration = (worn(groove, [4e-8, 4.1e-8, 3.9e-8]), worn(groove, [2e-8, 2.1e-8, 1.9e-8]))
     found = wear_reduction_between_tracks([without], [with_vibration])
     assert found.wear_reduction == approx(0.5)
     assert found.wear_reduction_uncertainty == approx(0.5 * math.hypot(0.1 / 4, 0.1 / 2) / math.sqrt(3), rel=1e-6)

@@ -28,12 +28,7 @@ def test_the_measured_efficiency_lies_near_its_line() -> None:
     assert line / MILLIWATT_SQUARE_MILLIMETRES_PER_NEWTON_WATT == approx(0.480, abs=5e-4)
 
 
-@given(
-    reduced=st.floats(0, 0.89),
-    speed=st.floats(1e-3, 0.229),
-    area=st.floats(1e-8, 1e-4),
-    load=st.floats(0.1, 1e3),
-)
+@given(reduced=st.floats(0, 0.89), speed=st.floats(1e-3, 0.229), area=st.floats(1e-8, 1e-4), load=st.floats(0.1, 1e3))
 def test_friction_at_power_inverts_power_for_friction(reduced: float, speed: float, area: float, load: float) -> None:
     rig = {"intrinsic_friction_force": 0.89, "sliding_speed": speed, "nominal_area": area, "normal_load": load}
     power = power_for_friction(LINE, reduced_friction_force=reduced, **rig)

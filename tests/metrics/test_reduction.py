@@ -2,11 +2,7 @@
 
 from pytest import approx
 
-from sonolube.metrics import (
-    friction_reduction,
-    wear_rate,
-    wear_reduction,
-)
+from sonolube.metrics import friction_reduction, wear_rate, wear_reduction
 
 
 def test_reductions_are_relative_to_the_intrinsic_value() -> None:

@@ -184,13 +184,7 @@ def test_the_test_sheet_keeps_the_order_and_says_what_nobody_stated(tmp_path: Pa
     (tmp_path / "test.toml").write_text(TEST, encoding="utf-8")
     sheet = Sheet(title="trace.csv", values=(quantity_value("friction_force", 0.5, uncertainty=0.1),))
     table = pin_on_disc_rows(read_pin_on_disc_sheet(tmp_path / "test.toml"), [sheet])
-    assert list(table) == [
-        "Test parameters",
-        "Materials and specimens",
-        "Apparatus and procedure",
-        "Wear",
-        "Friction",
-    ]
+    assert list(table) == ["Test parameters", "Materials and specimens", "Apparatus and procedure", "Wear", "Friction"]
     assert table["Test parameters"][0] == ("Load", "2N")
     assert ("Sliding distance", "not stated") in table["Test parameters"]
     assert ("Coefficient of friction at 2 N, trace.csv", "0.25 ± 0.05") in table["Friction"]

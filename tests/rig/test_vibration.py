@@ -52,11 +52,7 @@ def simulated(*changes: str) -> Simulation:
 
 def test_what_grows_from_an_unstable_vibration_is_told_with_its_range_and_its_beat() -> None:
     result = simulated(*BEATING).vibration
-    assert (result.status, result.attractor, result.repetition_periods) == (
-        "unstable",
-        "beating",
-        0,
-    )
+    assert (result.status, result.attractor, result.repetition_periods) == ("unstable", "beating", 0)
     assert result.lowest_amplitude is not None
     assert result.highest_amplitude is not None
     assert 1.03 * result.lowest_amplitude < result.vibration_amplitude < 0.97 * result.highest_amplitude
@@ -86,22 +82,14 @@ def test_of_two_vibrations_the_one_that_the_ramp_reaches_is_taken_and_the_other_
 
 def test_a_motion_of_two_periods_is_one_repetition_of_half_the_frequency() -> None:
     result = simulated(*SUBHARMONIC).vibration
-    assert (result.status, result.attractor, result.repetition_periods) == (
-        "unstable",
-        "subharmonic",
-        2,
-    )
+    assert (result.status, result.attractor, result.repetition_periods) == ("unstable", "subharmonic", 2)
     assert result.motions[0].frequency == approx(733.7986 / 2)
     assert result.motions[0].normal_force.mean() == approx(27.7657, rel=1e-3)
 
 
 def test_where_no_vibration_was_found_the_march_tells_what_there_is() -> None:
     result = simulated(*NOT_FOUND).vibration
-    assert (result.status, result.attractor, result.repetition_periods) == (
-        "not_converged",
-        "subharmonic",
-        3,
-    )
+    assert (result.status, result.attractor, result.repetition_periods) == ("not_converged", "subharmonic", 3)
     assert "a lower voltage or more damping may give one; switched on at once," in result.reason
     assert result.motions[0].normal_force.mean() == approx(72.3823, rel=2e-3)
 

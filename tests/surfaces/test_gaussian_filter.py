@@ -167,11 +167,7 @@ def test_large_maps_are_filtered_in_strips_without_a_seam() -> None:
     ("arguments", "error", "message"),
     [
         ({"cutoff_length": 0.0}, InvalidInput, r"cutoff_length must be positive, got 0\.0 m"),
-        (
-            {"cutoff_length": 19e-6},
-            OutsideRange,
-            "cutoff_length must be at least 5 pixels of 4e-06 m",
-        ),
+        ({"cutoff_length": 19e-6}, OutsideRange, "cutoff_length must be at least 5 pixels of 4e-06 m"),
         ({"cutoff_length": CUTOFF, "order": 1}, InvalidInput, "order must be 0 or 2, got 1"),
     ],
 )

@@ -23,11 +23,7 @@ from sonolube.validation.assessment import (
 from sonolube.validation.fitting import Fit, fit_variant, profile_likelihood_interval
 from sonolube.validation.free_parameters import RIGS
 from sonolube.validation.friction_model_variants import FRICTION_MODEL_VARIANTS
-from sonolube.validation.published_tests import (
-    NORMAL_VIBRATION_SETS,
-    FrictionTest,
-    friction_tests,
-)
+from sonolube.validation.published_tests import NORMAL_VIBRATION_SETS, FrictionTest, friction_tests
 
 NAMED = {variant.name: variant for variant in FRICTION_MODEL_VARIANTS}
 

@@ -31,11 +31,7 @@ def curve(
     contact = SpringContact(friction_coefficient=coefficient, mindlin_ratio=ratio, profile=profile)
     critical = critical_speed(contact, frequency=frequency, normal_amplitude=share * depth)
     return normal_oscillation_ratio(
-        contact,
-        approach=depth,
-        normal_amplitude=share * depth,
-        frequency=frequency,
-        sliding_speed=SPEEDS * critical,
+        contact, approach=depth, normal_amplitude=share * depth, frequency=frequency, sliding_speed=SPEEDS * critical
     )
 
 

@@ -4,11 +4,7 @@ from sonolube.figure import publication_style
 from sonolube.validation.previous_study_map import StudyPoint, study_map, study_points
 
 OWN = StudyPoint(
-    label="own rig",
-    direction="perpendicular",
-    friction_reduction=0.5,
-    sliding_speed=(0.05, 0.05),
-    nominal_pressure=1e6,
+    label="own rig", direction="perpendicular", friction_reduction=0.5, sliding_speed=(0.05, 0.05), nominal_pressure=1e6
 )
 
 

@@ -12,15 +12,7 @@ import pytest
 from numpy.typing import NDArray
 
 from sonolube.contact import decay_length
-from sonolube.dynamics import (
-    ExponentialGap,
-    StartUpRamp,
-    Status,
-    SteadyStates,
-    drive_receptance,
-    march,
-    steady_state,
-)
+from sonolube.dynamics import ExponentialGap, StartUpRamp, Status, SteadyStates, drive_receptance, march, steady_state
 from sonolube.dynamics.linear import poles
 from sonolube.dynamics.long_time_response import march_until_settled
 from sonolube.dynamics.structure import with_contact_spring

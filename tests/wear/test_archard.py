@@ -4,10 +4,7 @@ from hypothesis import given, strategies as st
 from pytest import approx, raises
 
 from sonolube.errors import InvalidInput
-from sonolube.wear import (
-    ArchardWear,
-    archard_wear_rate,
-)
+from sonolube.wear import ArchardWear, archard_wear_rate
 
 STEEL_ON_BRASS = ArchardWear(wear_coefficient=1e-4, hardness=1e9)
 

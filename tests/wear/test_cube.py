@@ -10,10 +10,7 @@ from scipy.special import i0, i1, modstruve
 from sonolube.contact import ASPERITY_LAWS, ContactPair, RoughContact, real_contact_area, separation
 from sonolube.errors import InvalidInput
 from sonolube.surfaces import Roughness
-from sonolube.wear import (
-    cube_wear_rate,
-    vibrating_cube_wear_rate,
-)
+from sonolube.wear import cube_wear_rate, vibrating_cube_wear_rate
 
 ACORN_NUT_ON_DISC = RoughContact(  # D Table 3.2
     roughness=Roughness(rms_height=6e-6, summit_radius=1.5e-6, summit_density=4.7e10),

@@ -3,13 +3,7 @@
 from hypothesis import given, strategies as st
 from pytest import approx
 
-from sonolube.wear import (
-    ArchardWear,
-    archard_wear_rate,
-    mass_loss,
-    specific_wear_rate,
-    vibration_contact_count,
-)
+from sonolube.wear import ArchardWear, archard_wear_rate, mass_loss, specific_wear_rate, vibration_contact_count
 
 STEEL_ON_BRASS = ArchardWear(wear_coefficient=1e-4, hardness=1e9)
 

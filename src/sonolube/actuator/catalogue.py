@@ -184,11 +184,7 @@ def read_catalogue(path: str | Path) -> Mapping[str, CatalogueActuator]:
 
 
 def catalogue_stack(
-    actuator: CatalogueActuator,
-    *,
-    frequency: float,
-    mechanical_quality_factor: float,
-    preload: float | None = None,
+    actuator: CatalogueActuator, *, frequency: float, mechanical_quality_factor: float, preload: float | None = None
 ) -> PiezoStack:
     r"""Equivalent stack of a commercial actuator.
 

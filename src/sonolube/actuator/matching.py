@@ -9,13 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 
-from sonolube.checks import (
-    Complexes,
-    Floats,
-    require_finite_complex,
-    require_positive,
-    require_within,
-)
+from sonolube.checks import Complexes, Floats, require_finite_complex, require_positive, require_within
 from sonolube.errors import InvalidInput, OutsideRange
 
 AdmittanceFunction = Callable[[Floats], NDArray[np.complexfloating[Any, Any]]]

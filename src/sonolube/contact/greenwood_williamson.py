@@ -119,12 +119,7 @@ class GreenwoodWilliamsonIntegrals:
 
 
 def greenwood_williamson_integrals(
-    *,
-    roughness: Roughness,
-    pair: ContactPair,
-    nominal_area: float,
-    heights: HeightDistribution,
-    asperity: AsperityLaw,
+    *, roughness: Roughness, pair: ContactPair, nominal_area: float, heights: HeightDistribution, asperity: AsperityLaw
 ) -> GreenwoodWilliamsonIntegrals:
     """Return force, area and number of all asperities of a rough contact as functions of the separation.
 

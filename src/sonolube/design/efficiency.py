@@ -62,12 +62,7 @@ class EfficiencyCalibration:
 
 
 def calibrate_efficiency(
-    rig: Rig,
-    runs: "xr.Dataset",
-    *,
-    friction_force: float | None,
-    sliding_speed: float | None,
-    confidence_level: float,
+    rig: Rig, runs: "xr.Dataset", *, friction_force: float | None, sliding_speed: float | None, confidence_level: float
 ) -> EfficiencyCalibration:
     r"""Least-squares line of the efficiency coefficient over sliding speed, and the power for a target friction.
 

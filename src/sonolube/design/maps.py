@@ -176,11 +176,7 @@ def frequency_voltage_map(
     velocity_power_map, velocity_stress_map
     """
     return _computed_map(
-        driven_rig(rig),
-        "frequency-voltage",
-        backend,
-        voltage_peak_to_peak=voltage_peak_to_peak,
-        frequency=frequency,
+        driven_rig(rig), "frequency-voltage", backend, voltage_peak_to_peak=voltage_peak_to_peak, frequency=frequency
     )
 
 

@@ -19,10 +19,7 @@ CUTTER_HEAD_DIMENSIONS = (
     SourcedDimension(name="hub_radius", value=4.5e-3, printed=False, source="weld nut of 1/4 in"),
     SourcedDimension(name="hub_length", value=6e-3, printed=False, source="weld nut of 1/4 in"),
     SourcedDimension(
-        name="disc_radius",
-        value=15e-3,
-        printed=False,
-        source="its rim is to move against its centre, D 4.4.4",
+        name="disc_radius", value=15e-3, printed=False, source="its rim is to move against its centre, D 4.4.4"
     ),
     SourcedDimension(
         name="thickness", value=0.8e-3, printed=False, source="its rim is to move against its centre, D 4.4.4"

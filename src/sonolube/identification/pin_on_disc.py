@@ -111,8 +111,7 @@ def pin_on_disc_model(test: PinOnDiscTest) -> ForwardModel:
     observations = {name: Observation(observable=name, conditions=conditions) for name in _OBSERVED}
     observations["mass_ratio"] = Observation(observable="reaction_mass/tip_mass")
     observations["residual_frequency_with_added_mass"] = Observation(
-        observable="residual_frequency",
-        conditions=replace(conditions, added_mass=test.added_mass, added_to="arm_mass"),
+        observable="residual_frequency", conditions=replace(conditions, added_mass=test.added_mass, added_to="arm_mass")
     )
 
     def build(parameters: Mapping[str, float]) -> Structure:

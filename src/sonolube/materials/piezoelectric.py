@@ -215,10 +215,7 @@ def piezo_ceramic_from_stress_charge(
     )
 
 
-_CONSTRUCTORS = {
-    "strain-charge": piezo_ceramic_from_strain_charge,
-    "stress-charge": piezo_ceramic_from_stress_charge,
-}
+_CONSTRUCTORS = {"strain-charge": piezo_ceramic_from_strain_charge, "stress-charge": piezo_ceramic_from_stress_charge}
 
 
 @cache
@@ -335,13 +332,7 @@ def _inverse(elastic: Floats) -> Floats:
 def _piezoelectric_matrix(piezoelectric: Mapping[str, float]) -> Floats:
     """Return the piezoelectric matrix of class 6mm, shape (3, 6), from its independent constants."""
     p31, p33, p15 = _constants("piezoelectric", piezoelectric, "31", "33", "15")
-    return np.array(
-        [
-            [0.0, 0.0, 0.0, 0.0, p15, 0.0],
-            [0.0, 0.0, 0.0, p15, 0.0, 0.0],
-            [p31, p31, p33, 0.0, 0.0, 0.0],
-        ]
-    )
+    return np.array([[0.0, 0.0, 0.0, 0.0, p15, 0.0], [0.0, 0.0, 0.0, p15, 0.0, 0.0], [p31, p31, p33, 0.0, 0.0, 0.0]])
 
 
 def _permittivities(relative_permittivity: Mapping[str, float]) -> Floats:

@@ -29,12 +29,7 @@ _SPECIMEN = {
     "roughness": "roughness before the test",
     "cleaning": "cleaning",
 }
-_APPARATUS = {
-    "machine": "Machine",
-    "operator": "Operator",
-    "date": "Date",
-    "procedure": "Departures from procedure",
-}
+_APPARATUS = {"machine": "Machine", "operator": "Operator", "date": "Date", "procedure": "Departures from procedure"}
 _SECTIONS = {"parameters": _PARAMETERS, "pin": _SPECIMEN, "disc": _SPECIMEN, "test": _APPARATUS}
 _QUANTITIES = {"normal_load", "sliding_speed", "sliding_distance"}
 _WEAR = ("wear_volume", "pile_up_volume", "groove_width", "groove_depth", "wear_rate", "specific_wear_rate")

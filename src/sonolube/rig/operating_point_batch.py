@@ -163,10 +163,7 @@ def point_batch(
         "dissipated_power": dissipated,
     }
     return PointBatch(
-        numbers={name: found[name] for name in NUMBERS},
-        status=point_status,
-        reason=point_reason,
-        reasons=reasons,
+        numbers={name: found[name] for name in NUMBERS}, status=point_status, reason=point_reason, reasons=reasons
     )
 
 

@@ -250,9 +250,7 @@ def contact_roughness(surface: HeightMap, *, method: str = "summits") -> Roughne
         raise UnknownName.among(_METHODS, kind="method", name=method)
     found = _METHODS[method](surface)
     return Roughness(
-        rms_height=found.summit_height_deviation,
-        summit_radius=found.summit_radius,
-        summit_density=found.summit_density,
+        rms_height=found.summit_height_deviation, summit_radius=found.summit_radius, summit_density=found.summit_density
     )
 
 

@@ -138,12 +138,7 @@ def _sums_of_products(value: Floats, half_y: int, half_x: int) -> Floats:
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
 def _first_decay(
-    correlation: Floats,
-    per_x: Floats,
-    per_y: Floats,
-    threshold: float,
-    distance: Floats,
-    decayed: NDArray[np.bool_],
+    correlation: Floats, per_x: Floats, per_y: Floats, threshold: float, distance: Floats, decayed: NDArray[np.bool_]
 ) -> None:
     """Write distance and decay for each direction, by bilinear interpolation in steps of half a pixel from zero lag."""
     half_y, half_x = correlation.shape[0] // 2, correlation.shape[1] // 2

@@ -109,12 +109,7 @@ def high_pass(surface: HeightMap, *, cutoff_length: float, order: int = 0, robus
 
 
 def band_pass(
-    surface: HeightMap,
-    *,
-    short_cutoff_length: float,
-    long_cutoff_length: float,
-    order: int = 0,
-    robust: bool = False,
+    surface: HeightMap, *, short_cutoff_length: float, long_cutoff_length: float, order: int = 0, robust: bool = False
 ) -> HeightMap:
     """S-L surface of ISO 25178-3: short wavelengths removed by the S-filter and long ones by the L-filter.
 
@@ -234,7 +229,6 @@ def _robust_smooth(z: Floats, measured: Mask, smooth: Floats, widths: Widths, or
         refined = local_regression(z, weights, widths=widths, order=order)
         smooth = np.where(np.isfinite(refined), refined, smooth)  # unchanged where only outliers are within reach
     warnings.warn(
-        ModelRangeWarning(f"the robust filter has not converged in {_MOST_ITERATIONS} iterations"),
-        stacklevel=4,
+        ModelRangeWarning(f"the robust filter has not converged in {_MOST_ITERATIONS} iterations"), stacklevel=4
     )
     return smooth

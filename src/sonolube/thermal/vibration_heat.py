@@ -8,12 +8,7 @@ from sonolube.errors import InvalidInput
 
 
 def half_wave_bar_energy(
-    *,
-    density: ArrayLike,
-    cross_section: ArrayLike,
-    length: ArrayLike,
-    frequency: ArrayLike,
-    axial_amplitude: ArrayLike,
+    *, density: ArrayLike, cross_section: ArrayLike, length: ArrayLike, frequency: ArrayLike, axial_amplitude: ArrayLike
 ) -> Floats:
     r"""Return the vibration energy stored in a prismatic half-wave bar in axial resonance. [J]
 

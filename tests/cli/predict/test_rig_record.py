@@ -15,10 +15,7 @@ Program = Callable[..., Any]
 @pytest.mark.parametrize(
     ("command", "names"),
     [
-        (
-            "contact",
-            ["separation", "real_contact_area", "contact_count", "normal_stiffness", "tangential_stiffness"],
-        ),
+        ("contact", ["separation", "real_contact_area", "contact_count", "normal_stiffness", "tangential_stiffness"]),
         (
             "friction",
             [

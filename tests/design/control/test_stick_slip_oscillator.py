@@ -45,10 +45,7 @@ def test_undamped_stick_slip_has_the_amplitude_and_period_of_its_closed_form() -
 def test_the_slope_of_rising_friction_is_a_viscous_damping() -> None:
     # F = F_c (a + b v) is a damper of F_c b: free decay at rate F_c b/(2 m).
     rising = replace(
-        COULOMB,
-        static_friction_force=1.0,
-        relative_velocity=np.array([0.0, 1.0]),
-        friction_ratio=np.array([0.2, 4.2]),
+        COULOMB, static_friction_force=1.0, relative_velocity=np.array([0.0, 1.0]), friction_ratio=np.array([0.2, 4.2])
     )
     assert steady_sliding_damping(rising) == approx(4.0)
     motion = stick_slip_motion(rising, duration=30 * rising.period)

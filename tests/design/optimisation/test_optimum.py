@@ -47,12 +47,7 @@ def space(**changes: object) -> DesignSpace:
 
 
 def friction_of(rig: Rig, frequency: float, swing: float) -> float:
-    found = point_batch(
-        rig,
-        frequency=[frequency],
-        voltage_peak_to_peak=[swing],
-        voltage_offset=[swing / 2],
-    )
+    found = point_batch(rig, frequency=[frequency], voltage_peak_to_peak=[swing], voltage_offset=[swing / 2])
     return float(found.numbers["friction_ratio"][0])
 
 
@@ -125,11 +120,7 @@ def test_small_drives_have_the_amplitude_current_tension_and_heat_of_the_linear_
     stack, arm = 2e9 + 30.0 * s, ENTRIES["arm_stiffness"] + ENTRIES["arm_damping"] * s
     contact = 3.0 / 2e-6 + ENTRIES["tip_damping"] * s
     dynamic = np.array(
-        [
-            [m1 * s**2 + stack + contact, -stack, 0],
-            [-stack, m2 * s**2 + stack + arm, -arm],
-            [0, -arm, m3 * s**2 + arm],
-        ]
+        [[m1 * s**2 + stack + contact, -stack, 0], [-stack, m2 * s**2 + stack + arm, -arm], [0, -arm, m3 * s**2 + arm]]
     )
     push = 8.68e-9 * 2e9 * swing / 2
     x = np.linalg.solve(dynamic, np.array([-push, push, 0]))

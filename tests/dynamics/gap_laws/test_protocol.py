@@ -18,9 +18,7 @@ LAWS: dict[str, GapLaw] = {
     "sphere": HertzGap(tip_radius=5e-3, effective_modulus=1e11),
     "spring": LinearGap(normal_stiffness=5e6),
     "table": TabulatedGap(
-        separation=SEPARATION,
-        normal_force=FORCE,
-        normal_stiffness=FORCE * (1 / 2.3e-6 + 2 * SEPARATION / (30e-6) ** 2),
+        separation=SEPARATION, normal_force=FORCE, normal_stiffness=FORCE * (1 / 2.3e-6 + 2 * SEPARATION / (30e-6) ** 2)
     ),
 }
 LOADS = np.array([0.5, 3.0, 10.0])

@@ -42,11 +42,7 @@ def bar(*, lossless: bool, along_axis: bool = True, order: int = 2, **held: tupl
 
 def test_parallel_resonances_are_the_natural_frequencies_of_the_open_circuit() -> None:
     shorted = bar(lossless=True)
-    opened = Model(
-        mesh=shorted.mesh,
-        media=shorted.media,
-        electrodes=Electrodes(floating=("+x",), grounded=("-x",)),
-    )
+    opened = Model(mesh=shorted.mesh, media=shorted.media, electrodes=Electrodes(floating=("+x",), grounded=("-x",)))
     series, parallel, coupling = series_parallel_resonances(reduce_model(shorted, count=8, outputs=TIP))
     assert np.all(series[:6] == 0)
     assert np.all(coupling[:6] == 0)

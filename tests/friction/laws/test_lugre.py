@@ -78,11 +78,7 @@ def test_halving_the_step_quarters_the_error() -> None:
     assert (end(1000) - exact) / (end(2000) - exact) == approx(4, rel=0.02)
 
 
-@given(
-    velocities=st.lists(st.floats(-1, 1), min_size=2, max_size=40),
-    start=st.floats(-1, 1),
-    step=st.floats(1e-7, 10),
-)
+@given(velocities=st.lists(st.floats(-1, 1), min_size=2, max_size=40), start=st.floats(-1, 1), step=st.floats(1e-7, 10))
 def test_deflections_stay_within_the_static_force_over_the_stiffness(
     velocities: list[float], start: float, step: float
 ) -> None:

@@ -110,13 +110,7 @@ def test_vibration_slower_than_the_sliding_leaves_stick_slip() -> None:
 def test_a_stroke_within_the_bristle_deflection_does_not_reduce_friction() -> None:
     # 1 nm against a deformation of F_c/K = 0.2 um: Dahl's bristles follow it, and sliding on at mean(v)/mean(|v|)
     slide = spring_driven_slider_force(
-        STIFF,
-        HEAVY,
-        sliding_speed=1e-3,
-        frequency=1000.0,
-        vibration_amplitude=1e-9,
-        settling_time=0.1,
-        duration=0.03,
+        STIFF, HEAVY, sliding_speed=1e-3, frequency=1000.0, vibration_amplitude=1e-9, settling_time=0.1, duration=0.03
     )
     assert slide.mean_drive_force == approx(2.0, rel=1e-3)
 
@@ -124,11 +118,5 @@ def test_a_stroke_within_the_bristle_deflection_does_not_reduce_friction() -> No
 def test_a_drive_without_mass_is_refused() -> None:
     with raises(InvalidInput, match="holder_mass must be positive"):
         spring_driven_slider_force(
-            STIFF,
-            Holder(),
-            sliding_speed=1e-3,
-            frequency=1e3,
-            vibration_amplitude=0.0,
-            settling_time=0.0,
-            duration=0.1,
+            STIFF, Holder(), sliding_speed=1e-3, frequency=1e3, vibration_amplitude=0.0, settling_time=0.0, duration=0.1
         )

@@ -136,12 +136,7 @@ def test_the_printed_form_is_the_mean_of_stiffness_times_deformation(phase: floa
     k = cube_tangential_stiffness(ALUMINIUM_ON_STEEL, separation=d + b * np.sin(theta))
     by_hand = half_period_mean(k / k[0] * (delta + u * np.sin(theta + phase)) / delta)
     ratio = dong_2015_deformation_ratio(
-        ALUMINIUM_ON_STEEL,
-        normal_load=load,
-        normal_amplitude=b,
-        in_plane_amplitude=u,
-        deformation=delta,
-        phase=phase,
+        ALUMINIUM_ON_STEEL, normal_load=load, normal_amplitude=b, in_plane_amplitude=u, deformation=delta, phase=phase
     )
     assert ratio == approx(by_hand, rel=1e-7)
 

@@ -4,12 +4,7 @@ import numpy as np
 from pytest import approx, mark, warns
 
 from sonolube.errors import ModelRangeWarning
-from sonolube.friction import (
-    SpringContact,
-    approximate_normal_ratio,
-    critical_speed,
-    normal_oscillation_ratio,
-)
+from sonolube.friction import SpringContact, approximate_normal_ratio, critical_speed, normal_oscillation_ratio
 
 FLAT = SpringContact(friction_coefficient=0.4, mindlin_ratio=0.8)
 SPHERE = SpringContact(friction_coefficient=0.4, mindlin_ratio=0.8, profile="parabolic")

@@ -4,11 +4,7 @@ import numpy as np
 from pytest import approx, mark, raises
 
 from sonolube.errors import InvalidInput
-from sonolube.friction import (
-    SpringContact,
-    critical_speed,
-    load_balanced_approach,
-)
+from sonolube.friction import SpringContact, critical_speed, load_balanced_approach
 
 FLAT = SpringContact(friction_coefficient=0.4, mindlin_ratio=0.8)
 SPHERE = SpringContact(friction_coefficient=0.4, mindlin_ratio=0.8, profile="parabolic")

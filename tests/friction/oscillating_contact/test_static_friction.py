@@ -3,10 +3,7 @@
 from pytest import raises
 
 from sonolube.errors import OutsideRange
-from sonolube.friction import (
-    SpringContact,
-    normal_static_ratio,
-)
+from sonolube.friction import SpringContact, normal_static_ratio
 
 FLAT = SpringContact(friction_coefficient=0.4, mindlin_ratio=0.8)
 

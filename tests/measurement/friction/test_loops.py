@@ -5,9 +5,7 @@ import xarray as xr
 from pytest import approx
 
 from sonolube.measurement.friction.loops import friction_loops, friction_work
-from sonolube.measurement.friction_analysis import (
-    analyse_cycles,
-)
+from sonolube.measurement.friction_analysis import analyse_cycles
 
 RATE = 400.0  # Hz, D 2.3.2
 

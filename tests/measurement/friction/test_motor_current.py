@@ -4,13 +4,8 @@ import numpy as np
 import xarray as xr
 from pytest import approx
 
-from sonolube.measurement.friction.motor_current import (
-    MotorCalibration,
-    friction_from_motor_current,
-)
-from sonolube.measurement.friction_analysis import (
-    analyse_motor_current,
-)
+from sonolube.measurement.friction.motor_current import MotorCalibration, friction_from_motor_current
+from sonolube.measurement.friction_analysis import analyse_motor_current
 
 RNG = np.random.default_rng(7)
 RATE = 400.0  # Hz, D 2.3.2

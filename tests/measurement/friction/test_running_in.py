@@ -5,9 +5,7 @@ import xarray as xr
 from pytest import approx
 
 from sonolube.measurement.friction.running_in import steady_state_onset
-from sonolube.measurement.friction_analysis import (
-    analyse_running_in,
-)
+from sonolube.measurement.friction_analysis import analyse_running_in
 
 RNG = np.random.default_rng(7)
 RATE = 400.0  # Hz, D 2.3.2

@@ -7,9 +7,7 @@ from pytest import approx, raises
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.friction.stick_slip import estimate_stick_slip
-from sonolube.measurement.friction_analysis import (
-    analyse_stick_slip,
-)
+from sonolube.measurement.friction_analysis import analyse_stick_slip
 
 RNG = np.random.default_rng(7)
 RATE = 400.0  # Hz, D 2.3.2

@@ -6,9 +6,7 @@ from pytest import approx, raises
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.friction.voltage_steps import friction_at_voltage_steps, voltage_envelope
-from sonolube.measurement.friction_analysis import (
-    analyse_voltage_steps,
-)
+from sonolube.measurement.friction_analysis import analyse_voltage_steps
 
 RATE = 400.0  # Hz, D 2.3.2
 

@@ -7,10 +7,7 @@ from pytest import approx, raises
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.friction.wobble import remove_wobble
-from sonolube.measurement.friction_analysis import (
-    analyse_rotation,
-    analyse_wobble,
-)
+from sonolube.measurement.friction_analysis import analyse_rotation, analyse_wobble
 
 RATE = 400.0  # Hz, D 2.3.2
 

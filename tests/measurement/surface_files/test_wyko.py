@@ -46,11 +46,7 @@ def opd(blocks: Blocks, spare: int = 2) -> bytes:
     return b"\x01\x00" + directory + b"".join(content for _, _, content in blocks)
 
 
-SCALES: Blocks = [
-    ("Wavelength", 7, number(600.0)),
-    ("Pixel_size", 7, number(2e-4)),
-    ("Aspect", 7, number(1.5)),
-]
+SCALES: Blocks = [("Wavelength", 7, number(600.0)), ("Pixel_size", 7, number(2e-4)), ("Aspect", 7, number(1.5))]
 PLAIN: Blocks = [*SCALES, ("RAW_DATA", 3, floats(PICTURE))]
 
 

@@ -169,7 +169,4 @@ def _computed(row_id: str) -> float:
 
 def _printed(low: float, high: float, published: PublishedValue) -> tuple[float, float]:
     si = unit_of(published.quantity)
-    return (
-        convert(low, from_unit=si, to_unit=published.unit),
-        convert(high, from_unit=si, to_unit=published.unit),
-    )
+    return (convert(low, from_unit=si, to_unit=published.unit), convert(high, from_unit=si, to_unit=published.unit))

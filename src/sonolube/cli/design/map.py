@@ -152,9 +152,7 @@ class MapAnswer(Answer):
         }
         if runs is not None and between is not None:
             drawings[f"{self._name}-measured"] = Drawing(
-                draw=lambda: measured_map_figure(between, runs),
-                caption=_MEASURED_CAPTION,
-                forms=forms,
+                draw=lambda: measured_map_figure(between, runs), caption=_MEASURED_CAPTION, forms=forms
             )
         return drawings
 

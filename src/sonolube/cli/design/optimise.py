@@ -30,8 +30,7 @@ def optimise(
     context: typer.Context,
     rig: RigPath,
     friction: Annotated[
-        str,
-        typer.Option("--target-friction", metavar="FRICTION", help="Coefficient or force, such as 0.1 or 0.3N."),
+        str, typer.Option("--target-friction", metavar="FRICTION", help="Coefficient or force, such as 0.1 or 0.3N.")
     ],
     over: Annotated[
         list[str] | None,
@@ -67,8 +66,7 @@ def optimise(
         str | None, typer.Option("--stress-limit", metavar="STRESS", help="Highest nominal stress.")
     ] = None,
     warming_limit: Annotated[
-        str | None,
-        typer.Option("--temperature-limit", metavar="KELVIN", help="Highest temperature rise, such as 40K."),
+        str | None, typer.Option("--temperature-limit", metavar="KELVIN", help="Highest temperature rise, such as 40K.")
     ] = None,
     conductance: Annotated[
         str | None, typer.Option(metavar="CONDUCTANCE", help="Thermal conductance of the actuator, such as 0.5W/K.")

@@ -127,11 +127,7 @@ def _sweep_over(
     folder = folder or OUT / f"{rig_file.stem}-sweep-{plan.digest[:8]}{'-gpu' if chosen == 'gpu' else ''}"
     with gpu_warning(), progress("sweeping") as advance:
         result = design.sweep(
-            plan,
-            folder=folder,
-            advance=lambda done, total: advance("points", done, total),
-            backend=chosen,
-            **options,
+            plan, folder=folder, advance=lambda done, total: advance("points", done, total), backend=chosen, **options
         )
     answer = SweepAnswer(plan=plan, rig_file=rig_file, result=result, data_file=folder / "sweep.nc")
     deliver(answer, folder=folder, as_json=json, context=context)

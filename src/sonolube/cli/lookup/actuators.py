@@ -17,8 +17,7 @@ _QUANTITIES = ("stroke", "stroke_voltage", "blocked_force", "free_capacitance", 
 
 
 def actuators(
-    name: Annotated[str | None, typer.Argument(help="One actuator; all of them by default.")] = None,
-    json: Json = False,
+    name: Annotated[str | None, typer.Argument(help="One actuator; all of them by default.")] = None, json: Json = False
 ) -> None:
     """Actuators one can buy, with the numbers of their data sheets and where these were read.
 
@@ -60,10 +59,4 @@ def _printed(shown: CatalogueActuator) -> dict[str, float]:
 
 def _object(shown: CatalogueActuator) -> dict[str, Any]:
     """Actuator for JSON."""
-    return {
-        "title": shown.title,
-        "kind": shown.kind,
-        **si(_printed(shown)),
-        "source": shown.source,
-        "note": shown.note,
-    }
+    return {"title": shown.title, "kind": shown.kind, **si(_printed(shown)), "source": shown.source, "note": shown.note}

@@ -13,8 +13,7 @@ from sonolube.units import format_si
 
 
 def materials(
-    name: Annotated[str | None, typer.Argument(help="One material; all of them by default.")] = None,
-    json: Json = False,
+    name: Annotated[str | None, typer.Argument(help="One material; all of them by default.")] = None, json: Json = False
 ) -> None:
     """Materials and piezo ceramics, each property with its source.
 

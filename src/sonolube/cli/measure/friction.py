@@ -39,8 +39,7 @@ def friction(
         str | None, typer.Option("--rotation-speed", metavar="RATE", help="Of the disc, to remove its wobble.")
     ] = None,
     torque: Annotated[
-        str | None,
-        typer.Option("--torque-constant", metavar="QUANTITY", help="Of the motor, such as '0.5 N m/A'."),
+        str | None, typer.Option("--torque-constant", metavar="QUANTITY", help="Of the motor, such as '0.5 N m/A'.")
     ] = None,
     idle: Annotated[
         str | None, typer.Option("--idle-current", metavar="CURRENT", help="Of the motor with the pin lifted.")

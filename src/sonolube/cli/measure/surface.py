@@ -13,10 +13,7 @@ Spacing = Annotated[
     str | None,
     typer.Option("--spacing", metavar="LENGTH", help="Distance of pixels, for files that lack it; one or 'x,y'."),
 ]
-Unit = Annotated[
-    str | None,
-    typer.Option("--length-unit", metavar="UNIT", help="For files that lack it, such as um."),
-]
+Unit = Annotated[str | None, typer.Option("--length-unit", metavar="UNIT", help="For files that lack it, such as um.")]
 
 
 def surface(

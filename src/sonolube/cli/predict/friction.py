@@ -7,13 +7,23 @@ import typer
 from sonolube.cli.console.answer import deliver
 from sonolube.cli.console.options import Changes, Json, Load, RigPath, loaded_rig
 from sonolube.cli.predict.rig_record import RigRecord
+from sonolube.friction import FRICTION_MODELS, FrictionModel
 from sonolube.rig import friction_point
+
+
+def _described(model: type[FrictionModel]) -> str:
+    """Name, parameters with their units, and source of a friction model."""
+    parameters = ", ".join(f"{each.name} in {each.unit}" if each.unit else each.name for each in model.parameters())
+    return f"{model.name} ({parameters or 'no parameters'}; {model.citation})"
+
+
+_MODEL_HELP = f"Friction model instead of the rig's own: {'; '.join(map(_described, FRICTION_MODELS.values()))}."
 
 
 def friction(
     rig: RigPath,
     load: Load = None,
-    model: Annotated[str | None, typer.Option(metavar="NAME", help="Friction model instead of the rig's own.")] = None,
+    model: Annotated[str | None, typer.Option(metavar="NAME", help=_MODEL_HELP)] = None,
     changes: Changes = None,
     json: Json = False,
 ) -> None:

@@ -27,8 +27,7 @@ from sonolube.units import format_si, to_si
 
 def compute(
     part: Annotated[
-        str,
-        typer.Argument(metavar="PART", help="stack, tribometer_actuator, cutter_head, or a part or STEP file."),
+        str, typer.Argument(metavar="PART", help="stack, tribometer_actuator, cutter_head, or a part or STEP file.")
     ],
     sizes: Sizes = None,
     lowest: Annotated[str, typer.Option("--from", metavar="FREQUENCY", help="Lowest frequency.")] = "1kHz",

@@ -48,8 +48,7 @@ class ThermalDrift:
 
     def __post_init__(self) -> None:
         require_finite(
-            final_temperature_rise=self.final_temperature_rise,
-            frequency_per_temperature=self.frequency_per_temperature,
+            final_temperature_rise=self.final_temperature_rise, frequency_per_temperature=self.frequency_per_temperature
         )
         require_positive(warming_time=self.warming_time)
         if abs(self.frequency_per_temperature * self.final_temperature_rise) > _LARGEST_SHIFT:
@@ -192,11 +191,7 @@ class _PlantState:
         mode, tracker = self.loop.mode, self.loop.tracker
         interval = self.loop.controller.process.sample_interval
         self.envelope, integral = next_envelope(
-            mode,
-            self.envelope,
-            voltage_peak_to_peak=voltage,
-            rate=mode.rate(self.frequency, shift),
-            duration=interval,
+            mode, self.envelope, voltage_peak_to_peak=voltage, rate=mode.rate(self.frequency, shift), duration=interval
         )
         self.energy += mode.motional_conductance * voltage * integral.real / 8
         if voltage > _LEAST_VOLTAGE * self.loop.voltage_maximum:
@@ -206,11 +201,7 @@ class _PlantState:
 
 
 def simulate_closed_loop(
-    loop: FrictionLoop,
-    *,
-    setpoint: Floats,
-    drift: ThermalDrift | None = None,
-    disturbance: Disturbance | None = None,
+    loop: FrictionLoop, *, setpoint: Floats, drift: ThermalDrift | None = None, disturbance: Disturbance | None = None
 ) -> ClosedLoopRun:
     """Time simulation of a friction control loop from rest, interval by interval.
 

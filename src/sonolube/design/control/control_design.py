@@ -183,9 +183,7 @@ def design_control(
     controller = tuned_controller(
         _feed_forward_characteristic(rig, plant, settings, line, swing),
         Process(
-            time_constant=mode.time_constant,
-            dead_time=settings.dead_time,
-            sample_interval=settings.sample_interval,
+            time_constant=mode.time_constant, dead_time=settings.dead_time, sample_interval=settings.sample_interval
         ),
         voltage_maximum=swing,
         closed_loop_time=settings.closed_loop_time,
@@ -221,11 +219,7 @@ def design_control(
 
 
 def _feed_forward_characteristic(
-    rig: Rig,
-    plant: FrictionCharacteristic,
-    settings: ControlSettings,
-    line: EfficiencyLine | None,
-    swing: float,
+    rig: Rig, plant: FrictionCharacteristic, settings: ControlSettings, line: EfficiencyLine | None, swing: float
 ) -> FrictionCharacteristic:
     """Characteristic whose inverse the controller uses."""
     if settings.feed_forward != "efficiency":

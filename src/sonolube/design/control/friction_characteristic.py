@@ -197,10 +197,7 @@ def efficiency_characteristic(
     }
     volts = _voltages(voltage_maximum, points)
     power = amplifier_power(
-        drive,
-        capacitance=rig.capacitance,
-        voltage_peak_to_peak=volts,
-        voltage_offset=drive.offset_ratio * volts,
+        drive, capacitance=rig.capacitance, voltage_peak_to_peak=volts, voltage_offset=drive.offset_ratio * volts
     )
     zero_friction_power = float(power_for_friction(line, reduced_friction_force=0.0, **conditions))
     # the power is proportional to the square of the voltage

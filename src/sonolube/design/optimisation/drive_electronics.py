@@ -157,8 +157,7 @@ def required_electronics(
         network = l_match(admittance=load, frequency=point.frequency, source_resistance=source_resistance)
         networks.append(("L network", network))
     return DriveElectronics(
-        amplifier=amplifier,
-        networks=tuple(_matched_network(rig, point.frequency, *named) for named in networks),
+        amplifier=amplifier, networks=tuple(_matched_network(rig, point.frequency, *named) for named in networks)
     )
 
 

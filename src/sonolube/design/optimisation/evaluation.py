@@ -62,12 +62,7 @@ class Evaluation:
 
 
 def evaluate(
-    rig: Rig,
-    limits: Limits,
-    *,
-    frequency: ArrayLike,
-    voltage_peak_to_peak: ArrayLike,
-    bolt: PreloadBolt | None = None,
+    rig: Rig, limits: Limits, *, frequency: ArrayLike, voltage_peak_to_peak: ArrayLike, bolt: PreloadBolt | None = None
 ) -> Evaluation:
     r"""Objectives and constraint utilisation of several drives of a rig.
 
@@ -173,11 +168,7 @@ def _periodic_maximum(harmonics: Complexes) -> Floats:
 
 
 def _utilisation(
-    stack: PiezoStack,
-    limits: Limits,
-    quantities: dict[str, Floats],
-    f: Floats,
-    extremes: tuple[Floats, Floats],
+    stack: PiezoStack, limits: Limits, quantities: dict[str, Floats], f: Floats, extremes: tuple[Floats, Floats]
 ) -> dict[str, Floats]:
     """Utilisation of the limits that are set; temperature rise and horn stress are added to the quantities."""
     lowest, highest = extremes

@@ -312,10 +312,7 @@ def rig_at_design_point(rig: DrivenRig, point: DesignPoint) -> DrivenRig:
     """
     swing = point.voltage_peak_to_peak
     drive = replace(
-        rig.drive,
-        frequency=point.frequency,
-        voltage_peak_to_peak=swing,
-        voltage_offset=rig.drive.offset_ratio * swing,
+        rig.drive, frequency=point.frequency, voltage_peak_to_peak=swing, voltage_offset=rig.drive.offset_ratio * swing
     )
     return replace(rig, drive=drive)
 

@@ -48,14 +48,7 @@ _WORK = max(MATRIX, SQUARES)
 
 @on_device
 def first_truncation(
-    pairs: Floats,
-    tolerance: float,
-    omega: float,
-    load: float,
-    length: float,
-    amplitude: float,
-    drives: int,
-    least: int,
+    pairs: Floats, tolerance: float, omega: float, load: float, length: float, amplitude: float, drives: int, least: int
 ) -> tuple[int, int, int]:
     """Return the numbers of harmonics, of coupled harmonics and of samples to start with.
 

@@ -129,11 +129,7 @@ def receptance(model: PoleResidueModel, response: int, omega: Floats) -> Complex
     real, imaginary = np.zeros((2, *omega.shape))
     square = np.square(omega)
     for constant, slope, determinant, trace in zip(
-        model.numerator_constant[response],
-        model.numerator_slope[response],
-        model.determinant,
-        model.trace,
-        strict=True,
+        model.numerator_constant[response], model.numerator_slope[response], model.determinant, model.trace, strict=True
     ):
         re, im, rise = determinant - square, -trace * omega, slope * omega
         inverse = 1 / (re * re + im * im)

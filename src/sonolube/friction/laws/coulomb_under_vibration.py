@@ -137,10 +137,7 @@ def oblique_vibration_ratio(
 
 def _speeds(sliding_speed: ArrayLike, vibration_velocity: ArrayLike) -> tuple[Floats, Floats]:
     """Return the checked sliding speed and peak vibration velocity. [m/s]"""
-    return (
-        require_positive(sliding_speed=sliding_speed),
-        require_non_negative(vibration_velocity=vibration_velocity),
-    )
+    return (require_positive(sliding_speed=sliding_speed), require_non_negative(vibration_velocity=vibration_velocity))
 
 
 @numba.njit(cache=True)

@@ -96,8 +96,7 @@ def friction_from_motor_current(
         require_non_negative(motor_current_uncertainty=motor_current_uncertainty), motor.idle_current_uncertainty
     )
     torque_uncertainty = np.hypot(
-        motor.torque_constant * current_uncertainty,
-        motor.torque_constant_uncertainty * (current - motor.idle_current),
+        motor.torque_constant * current_uncertainty, motor.torque_constant_uncertainty * (current - motor.idle_current)
     )
     friction_force = friction_from_current(
         torque_constant=motor.torque_constant,

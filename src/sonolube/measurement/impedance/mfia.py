@@ -90,9 +90,7 @@ def _chunk_sweep(path: Path, chunk: str, fields: dict[str, tuple[int, Floats]]) 
     parts = ("R", "X") if pair[0] == "realz" else ("|Z|", "theta_Z")
     columns = {"f": f[measured], parts[0]: one[measured], parts[1]: two[measured]}
     return ImpedanceSweep(
-        frequency=columns["f"],
-        impedance=impedance_from_parts(columns, parts),
-        lines=np.full(int(measured.sum()), at),
+        frequency=columns["f"], impedance=impedance_from_parts(columns, parts), lines=np.full(int(measured.sum()), at)
     )
 
 

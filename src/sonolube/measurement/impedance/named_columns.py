@@ -71,12 +71,7 @@ class NamedColumns:
 
 
 def sweep_from_columns(
-    path: Path,
-    heading_line: int,
-    headings: list[ColumnHeading | None],
-    rows: list[NumberedCells],
-    *,
-    decimal_sign: str,
+    path: Path, heading_line: int, headings: list[ColumnHeading | None], rows: list[NumberedCells], *, decimal_sign: str
 ) -> ImpedanceSweep:
     """Return the sweep of a table by the headings of its columns.
 

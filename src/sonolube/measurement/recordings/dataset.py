@@ -198,11 +198,7 @@ def convert_to_si(values: Floats, *, written_unit: str, unit: str, name: str) ->
 
 
 def _axis(
-    table: RawTable,
-    path: Path,
-    mapping: RecordingMapping | None,
-    sources: dict[str, ChannelSource],
-    quantity: str,
+    table: RawTable, path: Path, mapping: RecordingMapping | None, sources: dict[str, ChannelSource], quantity: str
 ) -> Floats:
     """Return the axis in SI: of the mapping's column or sample rate, of a time column, or of stated intervals."""
     if mapping is not None and mapping.axis is not None:

@@ -46,11 +46,7 @@ class SurfaceFile:
 
 
 def read_surface_file(
-    path: Path | str,
-    *,
-    spacing_x: float | None = None,
-    spacing_y: float | None = None,
-    length_unit: str | None = None,
+    path: Path | str, *, spacing_x: float | None = None, spacing_y: float | None = None, length_unit: str | None = None
 ) -> SurfaceFile:
     """Return the height map of a surface file with its provenance.
 
@@ -104,11 +100,7 @@ def read_surface_file(
 
 
 def read_height_map(
-    path: Path | str,
-    *,
-    spacing_x: float | None = None,
-    spacing_y: float | None = None,
-    length_unit: str | None = None,
+    path: Path | str, *, spacing_x: float | None = None, spacing_y: float | None = None, length_unit: str | None = None
 ) -> HeightMap:
     """Return the height map of a surface file.
 
@@ -138,12 +130,7 @@ def read_height_map(
 
 
 def _height_map(
-    reading: SurfaceReading,
-    path: Path,
-    *,
-    spacing_x: float | None,
-    spacing_y: float | None,
-    length_unit: str | None,
+    reading: SurfaceReading, path: Path, *, spacing_x: float | None, spacing_y: float | None, length_unit: str | None
 ) -> HeightMap:
     """Return the height map in metres, with the unit and spacings of the file or those given."""
     if reading.states_unit and length_unit is not None:

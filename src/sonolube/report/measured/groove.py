@@ -147,10 +147,7 @@ def ring_sheet(
     table = SheetTable(
         name="sections",
         title="Area of the mean section by scan",
-        columns=(
-            SheetColumn("scan", "Scan"),
-            SheetColumn("cross_section_area", "Area", "m2"),
-        ),
+        columns=(SheetColumn("scan", "Scan"), SheetColumn("cross_section_area", "Area", "m2")),
         rows=tuple(zip(counted, map(float, ring.cross_section_area), strict=True)),
     )
     figure = SheetFigure(

@@ -94,10 +94,7 @@ def impedance_sheet(path: Path, *, settings: ImpedanceSettings) -> Sheet:
 def _circuit(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings) -> SheetSection:
     """Butterworth-Van Dyke circuit fitted to a spectrum."""
     fit = fit_circuit(
-        spectrum,
-        branches=settings.branches,
-        residual=settings.residual,
-        series_resistance=settings.series_resistance,
+        spectrum, branches=settings.branches, residual=settings.residual, series_resistance=settings.series_resistance
     )
     figure = SheetFigure(
         name="fit",

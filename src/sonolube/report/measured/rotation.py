@@ -63,10 +63,7 @@ def rotation_sheet(path: Path, *, settings: RotationSettings) -> Sheet:
     """
     recording = read_recording(path, mapping=settings.mapping)
     rotation = analyse_rotation(
-        recording,
-        groove_diameter=settings.groove_diameter,
-        magnets=settings.magnets,
-        prominence=settings.prominence,
+        recording, groove_diameter=settings.groove_diameter, magnets=settings.magnets, prominence=settings.prominence
     )
     circumference, error = np.pi * settings.groove_diameter, rotation.rotation_speed_uncertainty
     turns = rotation.rotation_speed

@@ -251,11 +251,7 @@ def _profiles(surface: HeightMap) -> SheetSection:
             for kind, record in (("mean", found.mean), ("deviation", found.standard_deviation)):
                 values = (getattr(record, name) for name in _PROFILE_LABELS)
                 rows.append((f"{found.profile_count} {along}", kind, *values))
-    columns = (
-        SheetColumn("profiles", "Profiles"),
-        SheetColumn("statistic", ""),
-        *quantity_columns(_PROFILE_LABELS),
-    )
+    columns = (SheetColumn("profiles", "Profiles"), SheetColumn("statistic", ""), *quantity_columns(_PROFILE_LABELS))
     return SheetSection(tables=(SheetTable("profiles", "Profile parameters", columns, tuple(rows)),))
 
 

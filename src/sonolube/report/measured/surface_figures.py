@@ -7,13 +7,7 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.figure import COLOURS, LINES
-from sonolube.surfaces import (
-    Autocorrelation,
-    HeightMap,
-    MaterialRatioCurve,
-    RadialSpectrum,
-    functional_parameters,
-)
+from sonolube.surfaces import Autocorrelation, HeightMap, MaterialRatioCurve, RadialSpectrum, functional_parameters
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -124,18 +118,8 @@ def correlation(found: Autocorrelation) -> "Figure":
     figure, axes = plt.subplots(figsize=(4.6, 3.0))
     rows, columns = (size // 2 for size in found.normalized.shape)
     unit, scale = length_scale(found.lag_x)
-    axes.plot(
-        scale * found.lag_x[columns:],
-        found.normalized[rows, columns:],
-        LINES[0],
-        label="along rows",
-    )
-    axes.plot(
-        scale * found.lag_y[rows:],
-        found.normalized[rows:, columns],
-        LINES[1],
-        label="along columns",
-    )
+    axes.plot(scale * found.lag_x[columns:], found.normalized[rows, columns:], LINES[0], label="along rows")
+    axes.plot(scale * found.lag_y[rows:], found.normalized[rows:, columns], LINES[1], label="along columns")
     axes.axhline(0.2, color="0.5", linewidth=0.8, linestyle=":")
     axes.text(1, 0.21, "0.2 ", transform=axes.get_yaxis_transform(), ha="right", fontsize=8)
     axes.set(xlabel=f"lag ({unit})", ylabel="autocorrelation", xlim=(0, None))

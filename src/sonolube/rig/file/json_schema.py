@@ -13,10 +13,9 @@ def rig_schema() -> dict[str, Any]:
     -------
     dict
     """
-    return {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "title": "sonolube rig",
-    } | {key: value for key, value in RigFile.model_json_schema().items() if key != "title"}
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "sonolube rig"} | {
+        key: value for key, value in RigFile.model_json_schema().items() if key != "title"
+    }
 
 
 def tables_of(entry: Mapping[str, Any]) -> Iterator[str]:

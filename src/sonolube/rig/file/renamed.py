@@ -5,10 +5,7 @@ from typing import Any
 
 from sonolube.errors import InvalidInput
 
-_KEYS = {
-    "contact.pair.combined_modulus": "contact.pair.effective_modulus",
-    "friction.closure": "friction.model",
-}
+_KEYS = {"contact.pair.combined_modulus": "contact.pair.effective_modulus", "friction.closure": "friction.model"}
 _NAMES = {
     "contact.asperity_law": {"as_published": "dong_2015", "corrected": "chang_etsion_bogy"},
     "friction.model": {

@@ -97,8 +97,7 @@ class ModesSection(Section):
 
     kind: Literal["modes"]
     file: Name | None = Field(
-        default=None,
-        description="CSV file with a column for each of the lists, relative to the rig's folder",
+        default=None, description="CSV file with a column for each of the lists, relative to the rig's folder"
     )
     natural_frequency: list[float] | None = Field(default=None, description="Of each mode, in Hz; 0 for rigid ones")
     damping_ratio: list[float] | None = Field(default=None, description="Damping over critical damping of each mode")
@@ -152,9 +151,7 @@ StructureSection = Annotated[
     | Annotated[ChainSection, Tag("chain")]
     | Annotated[ModesSection, Tag("modes")],
     Discriminator(
-        _kind,
-        custom_error_type="unknown_kind",
-        custom_error_message=f"kind must be one of {', '.join(STRUCTURES)}",
+        _kind, custom_error_type="unknown_kind", custom_error_message=f"kind must be one of {', '.join(STRUCTURES)}"
     ),
 ]
 """The table `structure`; its key `kind` says which, the pin-on-disc chain where absent."""

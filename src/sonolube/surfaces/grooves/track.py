@@ -31,9 +31,7 @@ class GrooveTrack:
 
     def __post_init__(self) -> None:
         require_finite(
-            track_direction=self.track_direction,
-            track_curvature=self.track_curvature,
-            track_offset=self.track_offset,
+            track_direction=self.track_direction, track_curvature=self.track_curvature, track_offset=self.track_offset
         )
 
     @property
