@@ -106,7 +106,7 @@ def _note(height: float) -> str:
     y = height - _MARGIN - (_GROUND - 1) * _ROW - _BOX - 14
     line = f"<line x1='40' x2='{_WIDTH - 40}' y1='{y:.0f}' y2='{y:.0f}' stroke='#d6dbe1' stroke-dasharray='4 4'/>"
     text = f"<text x='{_WIDTH - 40}' y='{y - 6:.0f}' {_FONT} font-size='11' fill='#5b6570' text-anchor='end'>"
-    return f"{line}{text}ground: every room may use it</text>"
+    return f"{line}{text}base: every room may import it</text>"
 
 
 if __name__ == "__main__":
