@@ -70,6 +70,10 @@ def test_the_picture_of_the_rooms_is_up_to_date() -> None:
     assert drawing.PICTURE.read_text(encoding="utf-8") == expected, "run python docs/_ext/architecture_picture.py"
 
 
+def test_no_product_file_is_named_like_a_test() -> None:
+    assert [path for path in (ROOT / "src").rglob("*.py") if path.name.startswith(("test_", "conftest"))] == []
+
+
 def test_no_folder_holds_more_than_26_modules() -> None:
     modules = Counter(path.parent for path in (ROOT / "src").rglob("*.py") if path.name != "__init__.py")
     assert [(folder, count) for folder, count in modules.items() if count > 26] == []
