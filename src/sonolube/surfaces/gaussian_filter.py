@@ -180,7 +180,7 @@ def profile_low_pass(
     """
     z = np.asarray(height, dtype=np.float64)
     if z.ndim == 0 or not np.isfinite(z).any() or np.isinf(z).any():
-        raise InvalidInput("height must be an array of profiles with a measured point; others are finite or NaN")
+        raise InvalidInput("height must be an array of profiles with a measured point, finite or NaN if unmeasured")
     widths = _widths(order, cutoff_length, spacing_x=spacing_x, spacing_y=None)
     return _smooth(z.reshape(-1, z.shape[-1]), widths, order=order, robust=robust).reshape(z.shape)
 
