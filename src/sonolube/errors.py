@@ -1,5 +1,6 @@
 """Errors and warnings of sonolube, each with one line that names the cause and the remedy."""
 
+import warnings
 from collections.abc import Iterable
 from difflib import get_close_matches
 
@@ -58,6 +59,11 @@ class InconsistentCoupling(ModelRangeWarning):
 
 class GpuUnused(UserWarning):
     """A GPU was requested but the processor was used; the results are the same, the computation slower."""
+
+
+def warn_of_range(message: str, *, stacklevel: int = 2) -> None:
+    """Issue a ModelRangeWarning; by default at the caller of the function that calls this one."""
+    warnings.warn(message, ModelRangeWarning, stacklevel=stacklevel + 1)
 
 
 def suggestion(name: str, known: Iterable[str]) -> str:

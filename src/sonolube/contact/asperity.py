@@ -187,12 +187,17 @@ def _hardness_coefficient(pair: ContactPair) -> float:
 
 def _constant_volume_force_ratio(r: Floats) -> Floats:
     """Return the force at constant pressure and volume over that of Hertz, for interferences over the critical one."""
-    return np.piecewise(r, [r >= 0, r >= 1], [1.0, lambda r: 1.5 * (2 * r - 1) / r**1.5])
+    return _piecewise(r, (1.0,), lambda r: 1.5 * (2 * r - 1) / r**1.5)
 
 
 def _constant_volume_area_ratio(r: Floats) -> Floats:
     """Return the area at constant volume over that of Hertz, for interferences over the critical one."""
-    return np.piecewise(r, [r >= 0, r >= 1], [1.0, lambda r: 2 - 1 / r])
+    return _piecewise(r, (1.0,), lambda r: 2 - 1 / r)
+
+
+def _piecewise(r: Floats, breakpoints: tuple[float, ...], *yielded: Piece) -> Floats:
+    """Return 1 below the onset of yielding and one expression from each breakpoint on."""
+    return np.piecewise(r, [r >= 0, *(r >= each for each in breakpoints)], [1.0, *yielded])
 
 
 @dataclass(frozen=True, slots=True)
@@ -229,8 +234,9 @@ class KogutEtsion:
     def force_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
         """Return the force over that of an elastic asperity. []"""
         plastic = 3 / self._pressure_coefficient(pair)  # 2 pi R w H over the force at the onset, 2/3 K H pi R w_c
-        return self._piecewise(
+        return _piecewise(
             interference_ratio,
+            self.breakpoints,
             lambda r: 1.03 * r ** (1.425 - 1.5),
             lambda r: 1.40 * r ** (1.263 - 1.5),
             lambda r: plastic * r ** (1 - 1.5),
@@ -238,11 +244,8 @@ class KogutEtsion:
 
     def area_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
         """Return the contact area over that of an elastic asperity. []"""
-        return self._piecewise(interference_ratio, lambda r: 0.93 * r**0.136, lambda r: 0.94 * r**0.146, 2.0)
-
-    def _piecewise(self, r: Floats, *yielded: Piece) -> Floats:
-        """Return 1 below the onset of yielding and one expression from each breakpoint on."""
-        return np.piecewise(r, [r >= 0, *(r >= each for each in self.breakpoints)], [1.0, *yielded])
+        pieces = (lambda r: 0.93 * r**0.136, lambda r: 0.94 * r**0.146, 2.0)
+        return _piecewise(interference_ratio, self.breakpoints, *pieces)
 
     def _pressure_coefficient(self, pair: ContactPair) -> float:
         """Return K, the peak pressure at the onset of yielding over the hardness. []"""
@@ -293,15 +296,11 @@ class JacksonGreen:
             plastic: Floats = 4 * hardness / C * (1 - np.exp(-(r ** (5 / 9)) / 25)) / np.sqrt(r)
             return np.exp(-0.25 * r ** (5 / 12)) + plastic
 
-        return np.piecewise(interference_ratio, [interference_ratio >= 0, interference_ratio >= 1.9], [1.0, yielded])
+        return _piecewise(interference_ratio, (1.9,), yielded)
 
     def area_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
         """Return the contact area over that of an elastic asperity. []"""
-        return np.piecewise(
-            interference_ratio,
-            [interference_ratio >= 0, interference_ratio >= 1.9],
-            [1.0, lambda r: self._area_growth(pair, r)],
-        )
+        return _piecewise(interference_ratio, (1.9,), lambda r: self._area_growth(pair, r))
 
     def _area_growth(self, pair: ContactPair, r: Floats) -> Floats:
         """Return the contact area over that of Hertz beyond 1.9 critical interferences. []"""

@@ -4,7 +4,7 @@ The record in which `sonolube.dynamics` hands over a vibration and which the mod
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -84,12 +84,8 @@ class GapMotion:
         -------
         GapMotion
         """
-        return GapMotion(
-            displacement=_resampled(self.displacement, samples),
-            normal_force=np.maximum(_resampled(self.normal_force, samples), 0.0),
-            frequency=self.frequency,
-            normal_load=self.normal_load,
-        )
+        force = np.maximum(_resampled(self.normal_force, samples), 0.0)
+        return replace(self, displacement=_resampled(self.displacement, samples), normal_force=force)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -225,15 +221,9 @@ def load_balanced_motion(contact: RoughContact, motion: GapMotion) -> GapMotion:
         if abs(excess) < 1e-13:
             break
     else:
-        raise OutsideRange(
-            f"normal_load of {motion.normal_load:.3g} N is balanced by no mean gap of this motion; reduce the amplitude"
-        )
-    return GapMotion(
-        displacement=x,
-        normal_force=normal_force(contact, separation=d + x),
-        frequency=motion.frequency,
-        normal_load=motion.normal_load,
-    )
+        load = f"normal_load of {motion.normal_load:.3g} N"
+        raise OutsideRange(f"{load} is balanced by no mean gap of this motion; reduce the amplitude")
+    return replace(motion, displacement=x, normal_force=normal_force(contact, separation=d + x))
 
 
 def require_open_gap(contact: RoughContact, motion: GapMotion) -> Floats:

@@ -138,9 +138,8 @@ def greenwood_williamson_integrals(
     """
     Rq, Rs = roughness.rms_height, roughness.summit_radius
     w_c = critical_interference(asperity, pair, summit_radius=Rs) / Rq
-    w, weights = _quadrature(
-        [each * w_c for each in asperity.breakpoints], standard_deviation=heights.standard_deviation
-    )
+    deviation = heights.standard_deviation
+    w, weights = _quadrature([each * w_c for each in asperity.breakpoints], standard_deviation=deviation)
     force = asperity_force(asperity, pair, summit_radius=Rs, interference=w * Rq)
     area = asperity_area(asperity, pair, summit_radius=Rs, interference=w * Rq)
     summits = roughness.summit_density * nominal_area * weights
@@ -151,25 +150,15 @@ def greenwood_williamson_integrals(
     if isinstance(heights, ExponentialHeights):
         logs = _log_integrals(heights, np.zeros(1), w, per_height)[0]
         rates = heights.decay * np.array([1, 1, 1, 0, 0])
-        functions: list[SeparationFunction] = [
-            ExponentialDecay(*line) for line in zip(logs.tolist(), rates.tolist(), strict=True)
-        ]
+        functions: list[SeparationFunction] = [ExponentialDecay(*line) for line in np.stack([logs, rates], 1).tolist()]
         # at most exp(600) times the values at zero separation: far beyond any meaning, and short of overflow
         lowest, highest = -600 / heights.decay, math.inf
     else:
-        h = heights.standard_deviation * np.arange(TABLE_RANGE[0], TABLE_RANGE[1] + TABLE_STEP / 2, TABLE_STEP)
+        h = deviation * np.arange(TABLE_RANGE[0], TABLE_RANGE[1] + TABLE_STEP / 2, TABLE_STEP)
         functions = [LogSpline(h, column) for column in _log_integrals(heights, h, w, per_height).T]
         lowest, highest = float(h[0]), float(h[-1])
-    total_force, total_area, count, load_fraction, area_fraction = functions
-    return GreenwoodWilliamsonIntegrals(
-        lowest=lowest,
-        highest=highest,
-        force=total_force,
-        area=total_area,
-        count=count,
-        elastic_load_fraction=load_fraction,
-        elastic_area_fraction=area_fraction,
-    )
+    names = ("force", "area", "count", "elastic_load_fraction", "elastic_area_fraction")
+    return GreenwoodWilliamsonIntegrals(lowest=lowest, highest=highest, **dict(zip(names, functions, strict=True)))
 
 
 def _log_integrals(heights: HeightDistribution, h: Floats, w: Floats, per_height: Floats) -> Floats:

@@ -64,11 +64,8 @@ class PerssonContact:
     _bands: tuple[Floats, Floats] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        require_positive(
-            effective_modulus=self.effective_modulus,
-            nominal_area=self.nominal_area,
-            energy_fraction=self.energy_fraction,
-        )
+        require_positive(effective_modulus=self.effective_modulus, nominal_area=self.nominal_area)
+        require_positive(energy_fraction=self.energy_fraction)
         require_within(0.0, 1.0, energy_fraction=self.energy_fraction)
         k, density = self.spectrum.wavenumber, self.spectrum.areal_spectral_density
         if k.size < 2 or not (k[0] > 0 and np.all(np.diff(k) > 0)):
@@ -187,9 +184,8 @@ def persson_separation(contact: PerssonContact, *, normal_load: ArrayLike) -> Fl
     s = np.multiply.outer(load / contact.nominal_area / contact.effective_modulus, inverse_width)
     gamma = contact.energy_fraction
     # integral over the pressure from p to infinity, of (gamma + 3 (1 - gamma) erf^2) exp(-s^2)/s
-    return np.asarray(
-        (gamma * exp1(s**2) / 2 + 3 * (1 - gamma) * _tail_integral()(np.minimum(s, _ABSCISSAE[-1]))) @ lengths
-    )
+    tail = _tail_integral()(np.minimum(s, _ABSCISSAE[-1]))
+    return np.asarray((gamma * exp1(s**2) / 2 + 3 * (1 - gamma) * tail) @ lengths)
 
 
 def persson_stiffness(contact: PerssonContact, *, normal_load: ArrayLike) -> Floats:

@@ -1,6 +1,6 @@
 """Statistical contact of rough surfaces after Greenwood and Williamson: separation, real area and normal stiffness."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import lru_cache
 
 import numpy as np
@@ -300,13 +300,7 @@ def decay_length(contact: RoughContact, *, separation: ArrayLike | None = None) 
 @lru_cache(maxsize=512)
 def _integrals(contact: RoughContact) -> GreenwoodWilliamsonIntegrals:
     """Return the integrals over all asperities of a contact, computed once."""
-    return greenwood_williamson_integrals(
-        roughness=contact.roughness,
-        pair=contact.pair,
-        nominal_area=contact.nominal_area,
-        heights=contact.heights,
-        asperity=contact.asperity,
-    )
+    return greenwood_williamson_integrals(**{part.name: getattr(contact, part.name) for part in fields(contact)})
 
 
 def integrals_at(contact: RoughContact, *, separation: ArrayLike) -> tuple[GreenwoodWilliamsonIntegrals, Floats]:

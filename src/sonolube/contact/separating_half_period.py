@@ -51,9 +51,8 @@ def separating_half_period_mean(
     ----------
     .. [1] D 3.15 and 3.28.
     """
-    d, a = np.broadcast_arrays(
-        require_positive(separation=separation), require_non_negative(vibration_amplitude=vibration_amplitude)
-    )
+    a = require_non_negative(vibration_amplitude=vibration_amplitude)
+    d, a = np.broadcast_arrays(require_positive(separation=separation), a)
     sines, weights = separating_half_period_quadrature()
     gaps, amplitudes, means = d.ravel(), a.ravel(), np.empty(d.size)
     for start in range(0, d.size, _BLOCK):

@@ -1,13 +1,12 @@
 """Squeeze-film levitation: mean pressure and gap of a gas film between parallel faces of which one vibrates."""
 
 import math
-import warnings
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_non_negative, require_positive
-from sonolube.errors import InvalidInput, ModelRangeWarning, OutsideRange
+from sonolube.errors import InvalidInput, OutsideRange, warn_of_range
 
 AIR_VISCOSITY = 1.82e-5
 """Dynamic viscosity of air at 20 degC. [Pa s]"""
@@ -103,10 +102,8 @@ def squeeze_film_pressure(
     .. [1] E. O. J. Salbu, J. Basic Eng. 86, 355 (1964). doi:10.1115/1.3653080
     .. [2] W. E. Langlois, Q. Appl. Math. 20, 131 (1962).
     """
-    a, h = (
-        require_non_negative(vibration_amplitude=vibration_amplitude),
-        require_positive(film_thickness=film_thickness),
-    )
+    a = require_non_negative(vibration_amplitude=vibration_amplitude)
+    h = require_positive(film_thickness=film_thickness)
     if np.any(a >= h):
         raise InvalidInput("vibration_amplitude must be smaller than film_thickness, or the faces touch")
     excursion = np.square(a / h)
@@ -172,17 +169,13 @@ def levitation_gap(
     square = np.square(1 + load / (math.pi * R**2 * p_a))
     h = a * np.sqrt((1.5 + square) / (square - 1))
     if np.any(h > 0.1 * R):
-        raise OutsideRange(
-            f"normal_load {np.min(load):.3g} N is too low: the film would be thicker than a tenth of face_radius"
-        )
+        raise OutsideRange(f"normal_load {np.min(load):.3g} N is too low: a film thicker than a tenth of face_radius")
     sigma = squeeze_number(
         face_radius=R, film_thickness=h, frequency=frequency, viscosity=viscosity, ambient_pressure=p_a
     )
     if np.any(sigma < MINIMUM_SQUEEZE_NUMBER):
-        warnings.warn(
+        warn_of_range(
             f"squeeze number {sigma.min():.3g} is below {MINIMUM_SQUEEZE_NUMBER:g}: gas leaks at the rim, and the film "
-            "is thinner than computed",
-            ModelRangeWarning,
-            stacklevel=2,
+            "is thinner than computed"
         )
     return np.asarray(h)

@@ -3,7 +3,7 @@
 import math
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import partial
 
 import numpy as np
@@ -175,13 +175,8 @@ def classify_attractor(
         workers=workers,
         backend=backend,
     )
-    observed = run(
-        normal_load=load,
-        periods=periods,
-        initial_state=initial_state,
-        recorded_periods=_RECORDED,
-        strobed_periods=periods,
-    )
+    observe = partial(run, recorded_periods=_RECORDED, strobed_periods=periods)
+    observed = observe(normal_load=load, periods=periods, initial_state=initial_state)
 
     def advance_pair(states: State) -> State:
         return run(normal_load=np.stack([load, load]), periods=_ROUND, initial_state=states).final_state
@@ -293,9 +288,8 @@ def _cycles_per_sample(samples: Floats) -> float:
 
 def _repetition(observed: Trajectories, f: Floats) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
     """Return the number of periods after which each motion repeats, 0 for never, and whether its samples converge."""
-    samples = np.stack(
-        [observed.strobed.displacement, observed.strobed.velocity / (2 * np.pi * f[..., np.newaxis])], axis=-1
-    )
+    strobed, omega = observed.strobed, 2 * np.pi * f[..., np.newaxis]
+    samples = np.stack([strobed.displacement, strobed.velocity / omega], axis=-1)
     scale = np.ptp(observed.last_periods.displacement, axis=-1)
     order = np.zeros(f.shape, dtype=np.intp)
     for p in range(_HIGHEST_ORDER, 0, -1):
@@ -328,9 +322,8 @@ def _lyapunov_exponent(
 
     initial = _DISTURBANCE * np.maximum(norm(start), 1e-300)[..., np.newaxis]
     direction = np.random.default_rng(0).normal(size=(2, n))  # arbitrary: it turns into the fastest growing one
-    disturbance = State(
-        coordinates=direction[0] / omega[..., np.newaxis], velocities=np.broadcast_to(direction[1], (*f.shape, n))
-    )
+    velocities = np.broadcast_to(direction[1], (*f.shape, n))
+    disturbance = State(coordinates=direction[0] / omega[..., np.newaxis], velocities=velocities)
     growth = []
     for _ in range(rounds):
         scale = initial / norm(disturbance)[..., np.newaxis]
@@ -340,10 +333,9 @@ def _lyapunov_exponent(
                 velocities=np.stack([start.velocities, start.velocities + scale * disturbance.velocities]),
             )
         )
-        start = State(coordinates=ends.coordinates[0], velocities=ends.velocities[0])
-        disturbance = State(
-            coordinates=np.diff(ends.coordinates, axis=0)[0], velocities=np.diff(ends.velocities, axis=0)[0]
-        )
+        x, v = ends.coordinates, ends.velocities
+        start = State(coordinates=x[0], velocities=v[0])
+        disturbance = State(coordinates=x[1] - x[0], velocities=v[1] - v[0])
         growth.append(np.log(np.maximum(norm(disturbance), 1e-300) / initial[..., 0]))
     return np.asarray(np.mean(growth[rounds // 2 :], axis=0) / _ROUND)
 
@@ -351,30 +343,20 @@ def _lyapunov_exponent(
 def _contact_loss_fraction(gap_law: GapLaw, motion: ContactMotion, load: Floats, rate: Floats) -> Floats:
     """Return the fraction of the time without contact, between steps by cubic Hermite interpolation."""
     s = (np.arange(_SUBDIVISIONS) / _SUBDIVISIONS)[:, np.newaxis]
-    x, v = (
-        motion.displacement[..., np.newaxis, :],
-        motion.velocity[..., np.newaxis, :] / rate[..., np.newaxis, np.newaxis],
-    )
+    x = motion.displacement[..., np.newaxis, :]
+    v = motion.velocity[..., np.newaxis, :] / rate[..., np.newaxis, np.newaxis]
     before, after, start, end = x[..., :-1], x[..., 1:], v[..., :-1], v[..., 1:]
-    between = before + s * (
-        start + s * (3 * (after - before) - 2 * start - end + s * (2 * (before - after) + start + end))
-    )
+    rise = after - before
+    between = before + s * (start + s * (3 * rise - 2 * start - end + s * (-2 * rise + start + end)))
     weight = load[..., np.newaxis, np.newaxis]
     return np.asarray(np.mean(gap_law.force(between, weight) < CONTACT_LOSS_THRESHOLD * weight, axis=(-2, -1)))
 
 
 def _descriptions(found: Attractors, advice: NDArray[np.str_]) -> NDArray[np.str_]:
     """Return the description of every attractor."""
-    fields = (
-        found.kind,
-        found.order,
-        found.lyapunov_exponent,
-        found.contact_loss_fraction,
-        found.beat_frequency,
-        found.beat_amplitude,
-        advice,
-    )
-    texts = [_description(*values) for values in zip(*(field.ravel().tolist() for field in fields), strict=True)]
+    columns = [getattr(found, each.name) for each in fields(found)[:6]]  # kind to beat_amplitude
+    lists = (values.ravel().tolist() for values in (*columns, advice))
+    texts = [_description(*values) for values in zip(*lists, strict=True)]
     return np.array(texts).reshape(found.kind.shape)
 
 

@@ -1,8 +1,8 @@
 """Response curves over voltage or frequency, by pseudo-arclength continuation through folds."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from typing import Literal
+from dataclasses import dataclass, fields, replace
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -219,15 +219,9 @@ def reached_by_ramp(curve: ResponseCurve, *, at: float, backward: bool = False) 
     if not found.parameter.size:
         raise InvalidInput(f"the curve does not reach {curve.along} {at:.6g}")
     chosen = slice(-1, None) if backward else slice(0, 1)
-    return replace(
-        found,
-        voltage_amplitude=found.voltage_amplitude[chosen],
-        frequency=found.frequency[chosen],
-        mean_displacement=found.mean_displacement[chosen],
-        harmonics=found.harmonics[chosen],
-        vibration_amplitude=found.vibration_amplitude[chosen],
-        stable=found.stable[chosen],
-    )
+    values: dict[str, Any] = {each.name: getattr(found, each.name) for each in fields(found)}
+    points = [name for name, value in values.items() if isinstance(value, np.ndarray)]
+    return replace(found, **{name: values[name][chosen] for name in points})
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -272,9 +266,7 @@ class _Path:
 
     def solve_at(self, y: Floats, fraction: float) -> Floats | None:
         """Return the nearby point of the curve at a fraction of the range, or None if Newton's method fails."""
-        normal = np.zeros(y.size)
-        normal[-1] = 1.0
-        return self.correct(y, normal, fraction)
+        return self.correct(y, np.eye(y.size)[-1], fraction)
 
     def tangent(self, y: Floats, previous: Floats) -> Floats:
         """Return the unit tangent at a point, in the direction of the previous one."""
@@ -288,9 +280,7 @@ class _Path:
         if y is None:
             raise InvalidInput("orders are too few for the vibration at the start of the curve; take more")
         yield y
-        tangent = np.zeros(y.size)
-        tangent[-1] = 1.0
-        tangent, step = self.tangent(y, tangent), _LONGEST / 10
+        tangent, step = self.tangent(y, np.eye(y.size)[-1]), _LONGEST / 10
         for _ in range(most_points - 1):
             found, turned, step = self._next(y, tangent, step)
             if found is None:

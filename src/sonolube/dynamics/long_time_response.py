@@ -155,9 +155,8 @@ def march_until_settled(
     million with a tabulated contact law: where these are fewer than the transient requires, `settled` is false.
     """
     settling = settling_periods(structure, gap_law, normal_load=normal_load, frequency=frequency)
-    observed = _multiple_of_sixteen(
-        settling / _DECAY_TIMES
-    )  # a decay time holds several cycles of a weakly damped mode
+    # a decay time holds several cycles of a weakly damped mode
+    observed = _multiple_of_sixteen(settling / _DECAY_TIMES)
     point: dict[str, Any] = {
         "normal_load": normal_load,
         "frequency": frequency,

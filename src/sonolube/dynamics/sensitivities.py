@@ -92,19 +92,14 @@ def steady_state_sensitivities(
     """
     if np.any(states.status == Status.NOT_CONVERGED):
         raise InvalidInput("states must have converged: a point without a vibration has no sensitivities")
-    speeds = (
-        np.empty(0) if np.size(sliding_speed) == 0 else np.atleast_1d(require_positive(sliding_speed=sliding_speed))
-    )
+    speeds = np.atleast_1d(require_positive(sliding_speed=sliding_speed)) if np.size(sliding_speed) else np.empty(0)
     changes = dict(structure_changes or {})
     shape = states.frequency.shape
     rows = [_one_state(states, index, speeds, changes) for index in np.ndindex(shape)]
     names = list(rows[0]) if rows else []
 
     def column(which: int, *inner: int) -> dict[str, Floats]:
-        return {
-            name: np.array([row[name][which] for row in rows], dtype=np.float64).reshape((*shape, *inner))
-            for name in names
-        }
+        return {name: np.array([row[name][which] for row in rows], float).reshape((*shape, *inner)) for name in names}
 
     return Sensitivities(vibration_amplitude=column(0), mean_displacement=column(1), kinematic=column(2, speeds.size))
 

@@ -185,10 +185,8 @@ def solve_steady_states(
         raise InvalidInput(f"relative_tolerance must lie between 1e-6 and 1e-3, got {relative_tolerance!r}")
     load, f = require_positive(normal_load=normal_load), require_positive(frequency=frequency)
     offset = require_finite(voltage_offset=voltage_offset)
-    rest = None if separation is None else require_positive(separation=separation)
-    shape = _batch_shape(
-        load.shape, f.shape, voltage_harmonics.shape[:-1], offset.shape, () if rest is None else rest.shape
-    )
+    rest = np.asarray(np.inf) if separation is None else require_positive(separation=separation)
+    shape = _batch_shape(load.shape, f.shape, voltage_harmonics.shape[:-1], offset.shape, rest.shape)
 
     def flat(values: Floats) -> Floats:
         return np.ascontiguousarray(np.broadcast_to(values, shape)).reshape(-1)
@@ -219,9 +217,7 @@ def solve_steady_states(
         "status": _status(solution),
         "current_harmonics": current,
         "dissipated_power": 0.5 * np.sum((problem.voltage * current.conj()).real, axis=1),
-        "gap_closed": np.zeros(problem.omega.size, dtype=bool)
-        if rest is None
-        else solution.lowest_displacement <= -flat(rest),
+        "gap_closed": solution.lowest_displacement <= -flat(rest),
     }
     columns |= {name: getattr(solution, name) for name in _SHARED_FIELDS}
     shaped = {name: values.reshape((*shape, *values.shape[1:])) for name, values in columns.items()}

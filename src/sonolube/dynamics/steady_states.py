@@ -133,9 +133,7 @@ class SteadyStates:
                 " march the point in time to find the motion that replaces it"
             )
         if status is Status.MULTISTABLE:
-            other, this = (
-                float(values[point]) * 1e6 for values in (self.coexisting_amplitude, self.vibration_amplitude)
-            )
+            other, this = float(self.coexisting_amplitude[point]) * 1e6, float(self.vibration_amplitude[point]) * 1e6
             return (
                 f"multistable: a vibration of {other:.4g} um coexists with this one of {this:.4g} um;"
                 " which one occurs depends on how the voltage was raised or lowered to its value"

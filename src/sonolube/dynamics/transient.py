@@ -243,15 +243,11 @@ def _problem(
         raise InvalidInput(f"load, frequency, voltage and offset must have matching shapes, got {shapes}") from None
     if not f.size:
         raise InvalidInput("there must be at least one point to march")
-    modes = first_order_modes(structure)
+    modes, contact = first_order_modes(structure), structure.contact_vector
+    outputs = [np.einsum("j,jpb->pb", contact, each) for each in (modes.to_displacement, modes.to_velocity)]
     problem = MarchingProblem(
         modes=modes,
-        contact_output=np.stack(
-            [
-                np.einsum("j,jpb->pb", structure.contact_vector, each)
-                for each in (modes.to_displacement, modes.to_velocity)
-            ]
-        ),
+        contact_output=np.stack(outputs),
         gap_law=gap_law,
         schedule=schedule,
         normal_load=load.ravel(),
@@ -294,9 +290,8 @@ def _contact_motion(problem: MarchingProblem, states: Floats, shape: tuple[int, 
     x, v = (np.einsum("m,tml->lt", row.ravel(), states) for row in problem.contact_output)
     with np.errstate(over="ignore", invalid="ignore"):  # of points that diverged
         force = damped_force(problem.gap_law, x, v, problem.normal_load[:, np.newaxis])
-    return ContactMotion(
-        displacement=x.reshape(*shape, -1), velocity=v.reshape(*shape, -1), normal_force=force.reshape(*shape, -1)
-    )
+    x, v, force = (values.reshape(*shape, -1) for values in (x, v, force))
+    return ContactMotion(displacement=x, velocity=v, normal_force=force)
 
 
 def _envelope(problem: MarchingProblem, solution: MarchingSolution, shape: tuple[int, ...]) -> Envelope:

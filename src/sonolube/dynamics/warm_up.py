@@ -40,11 +40,9 @@ class CompileProcess(Listener):
     def on_start(self, event: Event) -> None:
         """Start the process; where that fails, the caller compiles the remaining kernels itself."""
         if event.data["dispatcher"] is newton_solve and self._process is None:
-            silent = subprocess.DEVNULL
+            silent, command = subprocess.DEVNULL, [sys.executable, "-P", "-c", self._code]
             with suppress(OSError):
-                self._process = subprocess.Popen(
-                    [sys.executable, "-P", "-c", self._code], stdin=silent, stdout=silent, stderr=silent
-                )
+                self._process = subprocess.Popen(command, stdin=silent, stdout=silent, stderr=silent)
 
     def on_end(self, event: Event) -> None:
         """Wait for the process after `newton_solve`: it is ahead with the kernels that the caller requires next."""

@@ -54,14 +54,10 @@ class PiecewiseLinear:
             raise InvalidInput("starts_at, first and last must be arrays of one axis and the same length")
         if start[0] < 0 or start[-1] >= _PERIOD or np.any(np.diff(start) <= 0):
             raise InvalidInput("starts_at must increase, and lie between 0 and 2 pi, less than the latter")
-        mean, (lowest, highest) = (
-            float(self._lengths @ (self.first + self.last)) / (2 * _PERIOD),
-            waveform_extremes(self),
-        )
-        if abs(mean) > 1e-9 or abs(highest - lowest - 1) > 1e-9:
-            raise InvalidInput(
-                f"a waveform must have mean 0 and peak to peak 1, got {mean:.4g} and {highest - lowest:.4g}"
-            )
+        mean, (lowest, highest) = self._lengths @ (self.first + self.last) / (2 * _PERIOD), waveform_extremes(self)
+        swing = highest - lowest
+        if abs(mean) > 1e-9 or abs(swing - 1) > 1e-9:
+            raise InvalidInput(f"a waveform must have mean 0 and peak to peak 1, got {mean:.4g} and {swing:.4g}")
 
     @property
     def _lengths(self) -> Floats:
@@ -262,11 +258,9 @@ def drive_voltage(
     -----
     .. math:: V(t) = U_0 + U_{pp}\,w(2\pi f t)
     """
-    periods = require_positive(frequency=frequency) * require_finite(time=time)
-    swing = require_non_negative(voltage_peak_to_peak=voltage_peak_to_peak) * waveform_value(
-        waveform, phase=_PERIOD * periods
-    )
-    return require_finite(voltage_offset=voltage_offset) + swing
+    phase = _PERIOD * (require_positive(frequency=frequency) * require_finite(time=time))
+    swing = require_non_negative(voltage_peak_to_peak=voltage_peak_to_peak)
+    return require_finite(voltage_offset=voltage_offset) + swing * waveform_value(waveform, phase=phase)
 
 
 RAMP_SHAPES = ("linear", "cosine")

@@ -91,11 +91,8 @@ def holder_propagators(holder: Holder, step: float) -> tuple[Floats, Floats, Flo
     rates[:2] = np.array([[0, 1, 0, 0], [-K / m, -c / m, 1 / m, 0]])
     rates[2, 3] = 1 / step
     propagator = expm(rates * step)
-    return (
-        np.ascontiguousarray(propagator[:2, :2]),
-        propagator[:2, 2] - propagator[:2, 3],
-        np.ascontiguousarray(propagator[:2, 3]),
-    )
+    by_last = np.ascontiguousarray(propagator[:2, 3])
+    return np.ascontiguousarray(propagator[:2, :2]), propagator[:2, 2] - by_last, by_last
 
 
 @numba.njit(cache=True)

@@ -1,6 +1,6 @@
 """Lubricated friction: the Stribeck curve, and friction with vibration, a boundary lubricant, and both combined."""
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from enum import StrEnum
 from typing import NamedTuple
 
@@ -65,11 +65,7 @@ class StribeckCurve:
     film_slope: float
 
     def __post_init__(self) -> None:
-        require_positive(
-            boundary_coefficient=self.boundary_coefficient,
-            transition_hersey_number=self.transition_hersey_number,
-            film_slope=self.film_slope,
-        )
+        require_positive(**asdict(self))
         if self.film_slope * self.transition_hersey_number >= self.boundary_coefficient:
             raise InvalidInput("film_slope times transition_hersey_number must be smaller than boundary_coefficient")
 
@@ -282,10 +278,8 @@ def lubrication_coefficients(
     ratio = require_non_negative(friction_ratio=friction_ratio)
     fraction = asperity_load_fraction(lubricant, nominal_pressure=nominal_pressure)
     film = (1 - fraction) * lubricant.film_coefficient
-    dry, ultrasonic, lubricated, combined = np.broadcast_arrays(
-        mu, ratio * mu, fraction * mu + film, fraction * ratio * mu + film
-    )
-    return LubricationCoefficients(dry, ultrasonic, lubricated, combined)
+    coefficients = (mu, ratio * mu, fraction * mu + film, fraction * ratio * mu + film)
+    return LubricationCoefficients(*np.broadcast_arrays(*coefficients))
 
 
 def best_lubrication_method(coefficients: LubricationCoefficients, *, smallest_gain: float = 0.0) -> NDArray[np.str_]:

@@ -1,6 +1,7 @@
 """Detection of a file's format by its first bytes, then by the suffix of its name, from an ordered table of formats."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import ClassVar, Protocol, TypeVar
 
@@ -43,6 +44,15 @@ class FileFormat(Protocol):
 FormatT = TypeVar("FormatT", bound=FileFormat)
 
 
+@contextmanager
+def refuse_unreadable(path: Path) -> Iterator[None]:
+    """Raise InvalidInput, naming the file and the cause, where the operating system refuses to read the file."""
+    try:
+        yield
+    except OSError as failure:
+        raise InvalidInput(f"{path}: cannot be read: {failure.strerror or failure}") from None
+
+
 def read_head(path: Path) -> bytes:
     """Return the first `HEAD_SIZE` bytes of a file.
 
@@ -51,11 +61,8 @@ def read_head(path: Path) -> bytes:
     InvalidInput
         Naming the file, if it cannot be read or is empty.
     """
-    try:
-        with path.open("rb") as stream:
-            head = stream.read(HEAD_SIZE)
-    except OSError as failure:
-        raise InvalidInput(f"{path}: cannot be read: {failure.strerror or failure}") from None
+    with refuse_unreadable(path), path.open("rb") as stream:
+        head = stream.read(HEAD_SIZE)
     if not head:
         raise InvalidInput(f"{path}: is empty")
     return head

@@ -92,10 +92,8 @@ def channel_values(recording: "xr.Dataset", name: str) -> Floats:
     """
     if name not in recording.variables:
         names = [str(known) for known in recording.variables]
-        title = recording.attrs.get("file_name", "the recording")
-        raise InvalidInput(
-            f"{title} has no channel {name!r}; {suggestion(name, names) or 'it has ' + ', '.join(names)}"
-        )
+        file = recording.attrs.get("file_name", "the recording")
+        raise InvalidInput(f"{file} has no channel {name!r}; {suggestion(name, names) or 'it has ' + ', '.join(names)}")
     values: Floats = recording[name].to_numpy()
     return values
 
@@ -157,13 +155,11 @@ def analyse_running_in(
     .. [1] D 2.3.3, Table 2.3.
     """
     windows = analyse_windows(recording, window_duration=window_duration)
-    return RunningIn(
-        windows=windows,
-        friction=steady_state_onset(time=windows.time, friction_force=windows.mean, sliding_speed=sliding_speed),
-        fluctuation=steady_state_onset(
-            time=windows.time, friction_force=windows.fluctuation, sliding_speed=sliding_speed
-        ),
+    friction, fluctuation = (
+        steady_state_onset(time=windows.time, friction_force=values, sliding_speed=sliding_speed)
+        for values in (windows.mean, windows.fluctuation)
     )
+    return RunningIn(windows=windows, friction=friction, fluctuation=fluctuation)
 
 
 def analyse_voltage_steps(
@@ -192,17 +188,14 @@ def analyse_voltage_steps(
     ----------
     .. [1] D 4.1.2, figure 4.3, Table 4.2.
     """
-    time = channel_values(recording, "time")
+    t = channel_values(recording, "time")
     if "voltage_peak_to_peak" in recording:
-        level = channel_values(recording, "voltage_peak_to_peak")
+        u = channel_values(recording, "voltage_peak_to_peak")
     else:
-        level = voltage_envelope(time=time, stack_voltage=channel_values(recording, "stack_voltage"))
+        u = voltage_envelope(time=t, stack_voltage=channel_values(recording, "stack_voltage"))
+    f = channel_values(recording, "friction_force")
     return friction_at_voltage_steps(
-        time=time,
-        friction_force=channel_values(recording, "friction_force"),
-        voltage_peak_to_peak=level,
-        shortest_step=shortest_step,
-        settling_time=settling_time,
+        time=t, friction_force=f, voltage_peak_to_peak=u, shortest_step=shortest_step, settling_time=settling_time
     )
 
 
@@ -258,11 +251,8 @@ def analyse_stick_slip(recording: "xr.Dataset", *, minimum_drop: float | None = 
     ----------
     .. [1] D 2.3.2 to 2.3.4.
     """
-    return estimate_stick_slip(
-        time=channel_values(recording, "time"),
-        friction_force=channel_values(recording, "friction_force"),
-        minimum_drop=minimum_drop,
-    )
+    time, force = channel_values(recording, "time"), channel_values(recording, "friction_force")
+    return estimate_stick_slip(time=time, friction_force=force, minimum_drop=minimum_drop)
 
 
 def analyse_rotation(
@@ -293,11 +283,8 @@ def analyse_rotation(
     ----------
     .. [1] D 4.1.1.
     """
-    pulses = hall_pulse_times(
-        time=channel_values(recording, "time"),
-        magnetic_flux_density=channel_values(recording, "magnetic_flux_density"),
-        prominence=prominence,
-    )
+    time, field = channel_values(recording, "time"), channel_values(recording, "magnetic_flux_density")
+    pulses = hall_pulse_times(time=time, magnetic_flux_density=field, prominence=prominence)
     return disc_rotation(time=pulses, groove_diameter=groove_diameter, magnets=magnets)
 
 
@@ -338,15 +325,13 @@ def analyse_wobble(
     ----------
     .. [1] D 2.3.3 and 4.1.2 on the wobble of the disc.
     """
-    time = channel_values(recording, "time")
+    time, force = channel_values(recording, "time"), channel_values(recording, "friction_force")
     if (rotation is None) == (rotation_speed is None):
         raise InvalidInput("give either rotation, from the pulses, or a constant rotation_speed")
     revolutions = (
         revolutions_at(rotation, time=time) if rotation is not None else (rotation_speed or 0.0) * (time - time[0])
     )
-    return remove_wobble(
-        revolutions=revolutions, friction_force=channel_values(recording, "friction_force"), harmonics=harmonics
-    )
+    return remove_wobble(revolutions=revolutions, friction_force=force, harmonics=harmonics)
 
 
 def analyse_motor_current(
@@ -376,11 +361,9 @@ def analyse_motor_current(
     """
     windows = analyse_windows(recording, of="motor_current", window_duration=window_duration)
     known = windows.samples > 1
-    friction_force, uncertainty = friction_from_motor_current(
+    force, uncertainty = friction_from_motor_current(
         motor,
         motor_current=windows.mean[known],
         motor_current_uncertainty=windows.deviation[known] / windows.samples[known] ** 0.5,
     )
-    return MotorFrictionTrace(
-        time=windows.time[known], friction_force=friction_force, friction_force_uncertainty=uncertainty
-    )
+    return MotorFrictionTrace(time=windows.time[known], friction_force=force, friction_force_uncertainty=uncertainty)

@@ -1,7 +1,8 @@
 """Temperature measurements: rise between time spans, step response in exponentials, and differences between tests."""
 
 from dataclasses import dataclass
-from itertools import pairwise
+from functools import partial
+from itertools import combinations, pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -88,10 +89,8 @@ def temperature_rise_between(
         If a span holds fewer than two values.
     """
     t, value = require_time_series(time=time, temperature=temperature)
-    first, last = (_span_mean(t, value, span, name) for span, name in ((before, "before"), (after, "after")))
-    return TemperatureRise(
-        temperature_rise=last[0] - first[0], temperature_rise_uncertainty=float(np.hypot(first[1], last[1]))
-    )
+    (a, u_a), (b, u_b) = _span_mean(t, value, before, "before"), _span_mean(t, value, after, "after")
+    return TemperatureRise(temperature_rise=b - a, temperature_rise_uncertainty=float(np.hypot(u_a, u_b)))
 
 
 def fit_temperature_response(
@@ -253,28 +252,18 @@ def _projected_residuals(t: Floats, value: Floats, logarithms: Floats) -> Floats
 def _log_time_constants(t: Floats, value: Floats, count: int) -> Floats:
     """Return the logarithms of the fitted time constants, the shorter first."""
     duration, shortest = float(t[-1]), float(np.median(np.diff(t)))
-    bounds = np.log([shortest / 3, 30 * duration])
+    lower, upper = np.log([shortest / 3, 30 * duration])
     initial = np.geomspace(2 * shortest, 2 * duration, _INITIAL_TIME_CONSTANTS)
-    if count == 1:
-        starts = [np.log([tau]) for tau in initial]
-    else:
-        starts = [np.log([short, long]) for at, short in enumerate(initial) for long in initial[at + 1 :]]
-    best = min(starts, key=lambda start: float(np.sum(_projected_residuals(t, value, start) ** 2)))
-    minimum = least_squares(
-        lambda logarithms: _projected_residuals(t, value, logarithms),
-        np.clip(best, bounds[0] + 1e-6, bounds[1] - 1e-6),
-        bounds=(bounds[0], bounds[1]),
-        xtol=1e-12,
-        ftol=1e-12,
-    )
-    return np.sort(minimum.x)
+    residuals = partial(_projected_residuals, t, value)
+    best = min(map(np.log, combinations(initial, count)), key=lambda start: float(np.sum(residuals(start) ** 2)))
+    start = np.clip(best, lower + 1e-6, upper - 1e-6)
+    return np.sort(least_squares(residuals, start, bounds=(lower, upper), xtol=1e-12, ftol=1e-12).x)
 
 
 def _information_criterion(t: Floats, value: Floats, logarithms: Floats) -> float:
     """Return the Bayesian information criterion of a fit, up to a constant of the data."""
-    mean_square = max(
-        float(np.mean(_projected_residuals(t, value, logarithms) ** 2)), (1e-10 * float(np.ptp(value))) ** 2
-    )
+    residuals, rounding = _projected_residuals(t, value, logarithms), 1e-10 * float(np.ptp(value))
+    mean_square = max(float(np.mean(residuals**2)), rounding**2)
     return t.size * float(np.log(mean_square)) + (1 + 2 * logarithms.size) * float(np.log(t.size))
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sonolube.checks import Floats, require_finite
+from sonolube.checks import Complexes, Floats, require_finite
 from sonolube.errors import InvalidInput
 
 _INTERVAL_TOLERANCE = 0.05  # relative deviation of a sample interval from the mean
@@ -37,6 +37,20 @@ def require_time_series(*, time: ArrayLike, **signals: ArrayLike) -> tuple[Float
     if decreasing.any():
         raise InvalidInput(f"time must increase, got {t[int(np.argmax(decreasing)) + 1]:.10g} s after as much or more")
     return t, *(_signal(name, values, t.size) for name, values in signals.items())
+
+
+def require_equal_length(**vectors: Floats | Complexes) -> None:
+    """Refuse vectors that are not one-dimensional, equal in length and of one value at least.
+
+    Raises
+    ------
+    InvalidInput
+        Naming the vectors and their shapes.
+    """
+    shapes = [vector.shape for vector in vectors.values()]
+    if len(shapes[0]) != 1 or len(set(shapes)) > 1 or shapes[0] == (0,):
+        demand = f"{' and '.join(vectors)} must be one-dimensional and equal in length"
+        raise InvalidInput(f"{demand}, got shapes {' and '.join(map(str, shapes))}")
 
 
 def _signal(name: str, values: ArrayLike, samples: int) -> Floats:
@@ -73,7 +87,5 @@ def uniform_sample_interval(*, time: Floats) -> float:
     uneven = np.abs(np.diff(time) - interval) > _INTERVAL_TOLERANCE * interval
     if uneven.any():
         at = float(time[int(np.argmax(uneven))])
-        raise InvalidInput(
-            f"time must be evenly spaced here; after {at:.6g} s samples were dropped or the rate changes"
-        )
+        raise InvalidInput(f"time must be evenly spaced; after {at:.6g} s samples were dropped or the rate changes")
     return interval

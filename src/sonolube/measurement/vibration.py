@@ -122,9 +122,8 @@ def amplitude_per_volt(
     parabola, *_ = np.linalg.lstsq(np.stack([u, u**2], axis=-1), amplitude, rcond=None)
     squares_of_parabola = float(np.sum((amplitude - np.stack([u, u**2], axis=-1) @ parabola) ** 2))
     rounding = (1e-12 * float(np.abs(amplitude).max())) ** 2 * n
-    f_statistic = (
-        (squares_of_line - squares_of_parabola) * (n - 2) / max(squares_of_parabola, rounding, np.finfo(float).tiny)
-    )
+    least = max(squares_of_parabola, rounding, np.finfo(float).tiny)
+    f_statistic = (squares_of_line - squares_of_parabola) * (n - 2) / least
     p_value = float(stats.f.sf(max(f_statistic, 0.0), 1, n - 2)) if squares_of_line > rounding else 1.0
     deviation = float(np.sqrt(squares_of_line / (n - 1)))
     half = float(stats.t.ppf((1 + confidence_level) / 2, n - 1)) * deviation / float(np.sqrt(u @ u))

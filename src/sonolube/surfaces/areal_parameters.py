@@ -125,9 +125,7 @@ def height_parameters(surface: HeightMap) -> HeightParameters:
     z = np.ascontiguousarray(surface.height)
     count, total, lowest, highest = count_sum_and_extremes(z)
     if lowest == highest:
-        raise InvalidInput(
-            f"height must vary, got {lowest!r} m in every measured pixel: skewness and kurtosis are not defined"
-        )
+        raise InvalidInput(f"height must vary, got {lowest!r} m in every measured pixel: no skewness, no kurtosis")
     mean = total / count
     first, second, third, fourth = (part / count for part in central_moment_sums(z, mean))
     return HeightParameters(

@@ -75,9 +75,7 @@ def feature_parameters(surface: HeightMap, *, pruning: float = 0.05) -> FeatureP
     curvature_y = (2 * z[row, column] - z[row - 1, column] - z[row + 1, column]) / surface.spacing_y**2
     curvature = (curvature_x + curvature_y)[np.isfinite(curvature_x + curvature_y)] / 2
     if curvature.size == 0:
-        raise InvalidInput(
-            f"none of the {peaks.size} peaks has four measured neighbours, which their curvature requires"
-        )
+        raise InvalidInput(f"none of the {peaks.size} peaks has four measured neighbours, as their curvature requires")
     return FeatureParameters(
         peak_density=peaks.size / (count * surface.spacing_x * surface.spacing_y),
         mean_peak_curvature=float(curvature.mean()),

@@ -6,13 +6,12 @@ roughness is evaluated.
 """
 
 import math
-import warnings
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_positive
-from sonolube.errors import InvalidInput, ModelRangeWarning, OutsideRange
+from sonolube.errors import InvalidInput, OutsideRange, warn_of_range
 from sonolube.surfaces.height_map import HeightMap, Mask
 from sonolube.surfaces.local_regression import Widths, local_regression
 
@@ -181,9 +180,7 @@ def profile_low_pass(
     """
     z = np.asarray(height, dtype=np.float64)
     if z.ndim == 0 or not np.isfinite(z).any() or np.isinf(z).any():
-        raise InvalidInput(
-            "height must be an array of profiles with a measured point, finite or NaN where not measured"
-        )
+        raise InvalidInput("height must be an array of profiles with a measured point, finite or NaN if unmeasured")
     widths = _widths(order, cutoff_length, spacing_x=spacing_x, spacing_y=None)
     return _smooth(z.reshape(-1, z.shape[-1]), widths, order=order, robust=robust).reshape(z.shape)
 
@@ -228,7 +225,5 @@ def _robust_smooth(z: Floats, measured: Mask, smooth: Floats, widths: Widths, or
         weights = measured * np.maximum(0.0, 1 - (residual / scale) ** 2) ** 2
         refined = local_regression(z, weights, widths=widths, order=order)
         smooth = np.where(np.isfinite(refined), refined, smooth)  # unchanged where only outliers are within reach
-    warnings.warn(
-        ModelRangeWarning(f"the robust filter has not converged in {_MOST_ITERATIONS} iterations"), stacklevel=4
-    )
+    warn_of_range(f"the robust filter has not converged in {_MOST_ITERATIONS} iterations", stacklevel=4)
     return smooth

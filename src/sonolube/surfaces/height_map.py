@@ -45,10 +45,8 @@ class HeightMap:
             raise InvalidInput(f"height must be a matrix of numbers, got shape {z.shape} of {z.dtype}")
         if np.isinf(z).any():
             raise InvalidInput("height must be finite, or NaN where not measured; got an infinite value")
-        if (np.abs(z) > _LARGEST_HEIGHT).any():
-            raise InvalidInput(
-                f"height must not exceed {_LARGEST_HEIGHT:g} m, got {np.nanmax(np.abs(z)):g} m; check its unit"
-            )
+        if (highest := np.nanmax(np.abs(z), initial=0.0)) > _LARGEST_HEIGHT:
+            raise InvalidInput(f"height must not exceed {_LARGEST_HEIGHT:g} m, got {highest:g} m; check its unit")
         if not np.isfinite(z).any():
             raise InvalidInput(f"height must have a measured pixel, but all {z.size} are NaN")
         object.__setattr__(self, "height", z.astype(np.float64, copy=False))

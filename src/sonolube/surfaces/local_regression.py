@@ -76,7 +76,7 @@ def _strips(shape: tuple[int, ...], width: float | None) -> Iterator[tuple[slice
 def _patch_regression(z: Floats, weights: Floats, widths: Widths, order: int) -> Floats:
     """Local polynomial regression of a map that fits into memory as a whole."""
     sums = _Correlation.of(z.shape, widths, order)
-    uniform = bool(np.all(weights == 1))
+    uniform, least = bool(np.all(weights == 1)), _LEAST_WEIGHT * sums.full_weight
     spectrum_z = sums.forward(z if uniform else weights * z)
     spectrum_w = None if uniform else sums.forward(weights)
 
@@ -88,8 +88,8 @@ def _patch_regression(z: Floats, weights: Floats, widths: Widths, order: int) ->
     if order == 0:
         weight = moment(0, 0)
         fitted = sums.backward(spectrum_z, 0, 0)
-        np.divide(fitted, weight, out=fitted, where=weight > _LEAST_WEIGHT * sums.full_weight)
-        fitted[weight <= _LEAST_WEIGHT * sums.full_weight] = np.nan
+        np.divide(fitted, weight, out=fitted, where=weight > least)
+        fitted[weight <= least] = np.nan
         return fitted
     terms = [(a, b) for a in range(order + 1) for b in range(order + 1 - a) if widths[0] is not None or a == 0]
     terms.reverse()  # the constant last, so that elimination yields it without back substitution
@@ -102,13 +102,7 @@ def _patch_regression(z: Floats, weights: Floats, widths: Widths, order: int) ->
         plane[...] = sums.backward(spectrum_z, a, b)
     table = np.array([[powers.index((a + c, b + d)) for c, d in terms] for a, b in terms])
     fitted = np.empty(z.size)
-    _constant_terms(
-        moments.reshape(len(powers), -1),
-        values.reshape(len(terms), -1),
-        table,
-        _LEAST_WEIGHT * sums.full_weight,
-        fitted,
-    )
+    _constant_terms(moments.reshape(len(powers), -1), values.reshape(len(terms), -1), table, least, fitted)
     return fitted.reshape(z.shape)
 
 

@@ -1,6 +1,6 @@
 """Roughness of the statistical contact models: spherical summits of one radius with distributed heights."""
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 from sonolube.checks import require_positive
 
@@ -33,9 +33,7 @@ class Roughness:
     summit_density: float
 
     def __post_init__(self) -> None:
-        require_positive(
-            rms_height=self.rms_height, summit_radius=self.summit_radius, summit_density=self.summit_density
-        )
+        require_positive(**asdict(self))
 
     @property
     def roughness_parameter(self) -> float:

@@ -124,24 +124,21 @@ def profile_parameters(*, height: ArrayLike, spacing: float, section_length: flo
     require_positive(spacing=spacing)
     z = np.asarray(height)
     if z.ndim != 1 or z.dtype.kind not in "fiu":
-        raise InvalidInput(
-            f"height of a profile must be a one-dimensional array of numbers, got shape {z.shape} of {z.dtype}"
-        )
+        raise InvalidInput(f"height must be a one-dimensional array of numbers, got shape {z.shape} of {z.dtype}")
     if np.isinf(z).any():
         raise InvalidInput("height must be finite, or NaN where not measured; got an infinite value")
     z = z.astype(np.float64)
     measured = np.isfinite(z)
-    if np.count_nonzero(measured) < 2 or not np.ptp(z[measured]) > 0:
-        raise InvalidInput(
-            f"height of a profile must have two different measured values, got {np.count_nonzero(measured)} measured"
-        )
+    count = np.count_nonzero(measured)
+    if count < 2 or not np.ptp(z[measured]) > 0:
+        raise InvalidInput(f"height of a profile must have two different measured values, got {count} measured")
     z -= z[measured].mean()
     deviation = z[measured]
     section = _section_points(z.size, spacing, section_length)
     heights = [np.ptp(part) for part in _sections(z, section) if part.size]
     square = deviation**2
     rms = math.sqrt(square.mean())
-    section_height = float(np.mean(heights))
+    section_height, position = float(np.mean(heights)), spacing * np.flatnonzero(measured).astype(np.float64)
     return ProfileParameters(
         arithmetic_mean_height=float(np.abs(deviation).mean()),
         rms_height=rms,
@@ -151,9 +148,7 @@ def profile_parameters(*, height: ArrayLike, spacing: float, section_length: flo
         mean_section_height=section_height,
         skewness=float((square * deviation).mean() / rms**3),
         kurtosis=float((square**2).mean() / rms**4),
-        mean_profile_element_spacing=_mean_element_spacing(
-            spacing * np.flatnonzero(measured).astype(np.float64), deviation, section_height
-        ),
+        mean_profile_element_spacing=_mean_element_spacing(position, deviation, section_height),
     )
 
 

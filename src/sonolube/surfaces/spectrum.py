@@ -1,7 +1,7 @@
 """Power spectral densities of a height map, areal, radial and of profiles, and spectral moments by integration."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Literal
 
 import numba
@@ -102,11 +102,7 @@ class SpectralMoments:
     curvature_variance: float
 
     def __post_init__(self) -> None:
-        require_positive(
-            height_variance=self.height_variance,
-            slope_variance=self.slope_variance,
-            curvature_variance=self.curvature_variance,
-        )
+        require_positive(**asdict(self))
 
     @property
     def bandwidth(self) -> float:
@@ -150,9 +146,8 @@ def areal_spectrum(surface: HeightMap, *, window: Window = "hann") -> ArealSpect
     """
     rows, columns = surface.height.shape
     weighted = np.empty((rows, columns))
-    squares = _apply_window(
-        np.ascontiguousarray(surface.height), _window(rows, window), _window(columns, window), weighted
-    )
+    z = np.ascontiguousarray(surface.height)
+    squares = _apply_window(z, _window(rows, window), _window(columns, window), weighted)
     dx, dy = surface.spacing_x, surface.spacing_y
     transform = fft.rfft2(weighted, workers=-1, overwrite_x=True)
     density = transform.real**2

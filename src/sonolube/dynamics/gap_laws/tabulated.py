@@ -65,10 +65,8 @@ class TabulatedGap:
 
     def __post_init__(self) -> None:
         s = require_finite(separation=self.separation)
-        force, k = (
-            require_positive(normal_force=self.normal_force),
-            require_positive(normal_stiffness=self.normal_stiffness),
-        )
+        force = require_positive(normal_force=self.normal_force)
+        k = require_positive(normal_stiffness=self.normal_stiffness)
         require_non_negative(force_damping=self.force_damping)
         if s.ndim != 1 or s.size < 4 or not s.shape == force.shape == k.shape:
             raise InvalidInput(

@@ -74,22 +74,10 @@ def _pair_rows(modes: FirstOrderModes, contact_output: Floats) -> Floats:
     """Return the pairs of states as columns of one array, shape (18, n)."""
     middle = np.trace(modes.state_matrix, axis1=1, axis2=2) / 2
     traceless = modes.state_matrix - middle[:, np.newaxis, np.newaxis] * np.eye(2)
-    images = [np.einsum("pab,pb->ap", traceless, each) for each in (modes.contact_input, modes.drive_input)]
-    return np.ascontiguousarray(
-        np.vstack(
-            [
-                middle,
-                -np.linalg.det(traceless),
-                traceless.reshape(-1, 4).T,
-                modes.contact_input.T,
-                images[0],
-                modes.drive_input.T,
-                images[1],
-                contact_output[0].T,
-                contact_output[1].T,
-            ]
-        )
-    )
+    rows = [middle, -np.linalg.det(traceless), traceless.reshape(-1, 4).T]
+    for each in (modes.contact_input, modes.drive_input):
+        rows += [each.T, np.einsum("pab,pb->ap", traceless, each)]
+    return np.ascontiguousarray(np.vstack([*rows, contact_output[0].T, contact_output[1].T]))
 
 
 def _separated_waveform(waveform: Waveform, steps: int, nodes: Floats) -> tuple[Floats, Floats]:
@@ -97,9 +85,8 @@ def _separated_waveform(waveform: Waveform, steps: int, nodes: Floats) -> tuple[
     theta = 2 * np.pi / steps
     starts = theta * np.arange(steps)
     if isinstance(waveform, Sine):
-        return np.stack([np.sin(starts), np.cos(starts)]), 0.5 * np.stack(
-            [np.cos(theta * nodes), np.sin(theta * nodes)]
-        )
+        within = theta * nodes
+        return np.stack([np.sin(starts), np.cos(starts)]), 0.5 * np.stack([np.cos(within), np.sin(within)])
     early, late = (waveform_value(waveform, phase=starts + theta * part) for part in (0.25, 0.75))
     return np.stack([1.5 * early - 0.5 * late, 2 * (late - early)]), np.stack([np.ones_like(nodes), nodes])
 

@@ -39,19 +39,9 @@ def model_rows(model: PoleResidueModel) -> Floats:
     ndarray, shape (16, m)
         One column per pair of states, rows in the order of the constants of this module.
     """
-    return np.ascontiguousarray(
-        np.vstack(
-            [
-                model.state_matrix.reshape(-1, 4).T,
-                model.contact_input.T,
-                model.displacement_output.T,
-                model.determinant,
-                model.trace,
-                model.numerator_constant,
-                model.numerator_slope,
-            ]
-        )
-    )
+    vectors = (model.state_matrix.reshape(-1, 4).T, model.contact_input.T, model.displacement_output.T)
+    scalars = (model.determinant, model.trace, model.numerator_constant, model.numerator_slope)
+    return np.ascontiguousarray(np.vstack([*vectors, *scalars]))
 
 
 @on_device

@@ -60,10 +60,8 @@ def solve_on_gpu(problem: BatchProblem) -> tuple[BatchSolution, NDArray[np.int64
     """
     model, speeds, points = problem.model, problem.speeds, problem.omega.size
     tolerance = _TOLERANCE_FACTOR * problem.tolerance
-    length = problem.gap_law.kernel_parameter
-    constants = np.array(
-        [model.static_stiffness, model.clamped_capacitance, length, tolerance, speeds.min(initial=np.inf)]
-    )
+    length, slowest = problem.gap_law.kernel_parameter, speeds.min(initial=np.inf)
+    constants = np.array([model.static_stiffness, model.clamped_capacitance, length, tolerance, slowest])
     choices = (problem.minimum_harmonics, problem.upper_branch, problem.stability, speeds.size > 0)
     averaged = speeds if speeds.size else np.ones(1)  # which the kernel ignores without sliding
     settings = np.stack([problem.omega, problem.load, problem.static_displacement])

@@ -86,9 +86,8 @@ def initial_guess(
     """
     decay_lengths, own = np.minimum(force_decay_length(gap_law, load), _LONGEST), free_harmonics[:, 0]
     response = receptance(model, CONTACT_PER_FORCE, omega)
-    motions = _SinusoidalMotions(
-        gap_law, model.static_stiffness, load, static_displacement, decay_lengths, response, np.abs(own)
-    )
+    columns = (load, static_displacement, decay_lengths, response, np.abs(own))
+    motions = _SinusoidalMotions(gap_law, model.static_stiffness, *columns)
     smallest, largest = _amplitudes(motions)
     amplitude = largest if upper_branch else smallest
     mean, force = _balanced_mean(motions, amplitude)
@@ -111,9 +110,8 @@ def _amplitudes(motions: _SinusoidalMotions) -> tuple[Floats, Floats]:
         strength = np.abs(motions.receptance) * motions.load / motions.decay_length
     else:
         small = _SMALL * motions.decay_length
-        steepest = np.maximum(
-            _force_amplitude(motions, small) / small, _force_amplitude(motions, free) / (free + _TINY)
-        )
+        swinging = _force_amplitude(motions, free) / (free + _TINY)
+        steepest = np.maximum(_force_amplitude(motions, small) / small, swinging)
         strength = np.abs(motions.receptance) * steepest
     amplitude = free.copy()
     for _ in range(2):

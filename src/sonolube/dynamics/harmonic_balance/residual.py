@@ -205,14 +205,10 @@ class HarmonicBalanceResidual:
             receptance * derivative
             for derivative in (2 * stiffness[k][:, np.newaxis], direct + conjugate, 1j * (direct - conjugate))
         )
-        unit = np.eye(own.orders)
+        unit, mean = np.eye(own.orders), np.array([[own.static_stiffness + stiffness[0].real]])
         return np.block(
             [
-                [
-                    np.array([[own.static_stiffness + stiffness[0].real]]),
-                    on_mean.real[np.newaxis],
-                    -on_mean.imag[np.newaxis],
-                ],
+                [mean, on_mean.real[np.newaxis], -on_mean.imag[np.newaxis]],
                 [by_mean.real, unit + by_real.real, by_imaginary.real],
                 [by_mean.imag, by_real.imag, unit + by_imaginary.imag],
             ]
@@ -244,15 +240,10 @@ class HarmonicBalanceResidual:
 
     def _response(self, force: Floats) -> Complexes:
         """Return the coordinates under a unit generalised force at each harmonic, shape (H, n)."""
-        structure, k = self.equations.structure, self.equations.multiples[:, np.newaxis, np.newaxis]
-        stiffness = (
-            structure.stiffness_matrix
-            + 1j * k * self.omega * structure.damping_matrix
-            - (k * self.omega) ** 2 * structure.mass_matrix
-        )
-        return np.asarray(
-            np.linalg.solve(stiffness, np.broadcast_to(force + 0j, stiffness.shape[:-1])[..., np.newaxis])
-        )[..., 0]
+        own, omega = self.equations.structure, self.omega * self.equations.multiples[:, np.newaxis, np.newaxis]
+        stiffness = own.stiffness_matrix + 1j * omega * own.damping_matrix - omega**2 * own.mass_matrix
+        forces = np.broadcast_to(force + 0j, stiffness.shape[:-1])[..., np.newaxis]
+        return np.asarray(np.linalg.solve(stiffness, forces))[..., 0]
 
 
 def _fourier_coefficients(samples: Floats) -> Complexes:

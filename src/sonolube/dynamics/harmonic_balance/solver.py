@@ -88,15 +88,9 @@ def _iterates(problem: BatchProblem, free: Complexes, guess: InitialGuess) -> It
     harmonics = np.zeros((problem.omega.size, capacity), dtype=np.complex128)
     harmonics[:, 0] = guess.harmonic
     load, law = problem.load, problem.gap_law
-    columns = [
-        problem.omega,
-        load,
-        force_decay_length(law, load),
-        law.equilibrium_coordinate(load),
-        problem.static_displacement,
-    ]
+    length, equilibrium = force_decay_length(law, load), law.equilibrium_coordinate(load)
     return Iterates(
-        settings=np.stack(columns, axis=1),
+        settings=np.stack([problem.omega, load, length, equilibrium, problem.static_displacement], axis=1),
         free_harmonics=free.view(np.float64),
         mean=guess.mean[:, np.newaxis],
         harmonics=harmonics.view(np.float64),
@@ -114,7 +108,7 @@ def _raise_truncation(truncation: Truncation, harmonics: int) -> None:
 def _refine(problem: BatchProblem, iterates: Iterates, truncation: Truncation) -> tuple[Iterates, NDArray[np.bool_]]:
     """Solve all points, those without success again with more harmonics or samples; return which were solved."""
     (variant, law), poles = kernel_law(problem.gap_law), problem.model.contact_poles()
-    points = problem.omega.size
+    points, stiffness = problem.omega.size, problem.model.static_stiffness
     outcome = np.full(points, DIVERGED)
     pending = np.arange(points)
     for attempt in range(_REFINEMENTS):
@@ -125,17 +119,7 @@ def _refine(problem: BatchProblem, iterates: Iterates, truncation: Truncation) -
         work = harmonic_workspace(*(int(values[chosen].max()) for values in truncation))
         numbers, steps = np.array(truncation), _ITERATIONS + 4 * attempt
         newton_solve(
-            *variant,
-            poles,
-            problem.model.static_stiffness,
-            law,
-            iterates,
-            numbers,
-            chosen,
-            problem.tolerance,
-            steps,
-            outcome,
-            work,
+            *variant, poles, stiffness, law, iterates, numbers, chosen, problem.tolerance, steps, outcome, work
         )
         truncation.harmonics[:] = numbers[0]
         pending = np.flatnonzero(outcome != CONVERGED)

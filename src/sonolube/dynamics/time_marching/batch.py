@@ -119,15 +119,8 @@ class MarchingProblem:
         """
         law, load = self.gap_law, self.normal_load
         parameter = 1 / law.kernel_parameter if law.kind == EXPONENTIAL else law.kernel_parameter
-        return np.stack(
-            [
-                load,
-                np.full_like(load, parameter),
-                law.equilibrium_coordinate(load),
-                np.log(load),
-                np.full_like(load, law.force_damping),
-            ]
-        )
+        parameters, dampings = np.full_like(load, parameter), np.full_like(load, law.force_damping)
+        return np.stack([load, parameters, law.equilibrium_coordinate(load), np.log(load), dampings])
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -185,7 +178,8 @@ def march_on_cpu(problem: MarchingProblem, workers: int) -> MarchingSolution:
     strobed = np.empty((chunks, min(schedule.strobed, periods), m, width))
     final = np.empty((chunks, 1, m, width))
     step_response = np.empty((2, count))
-    state = row_layout((0,) * (m // 2)).state
+    pairs = (0,) * (m // 2)
+    state = row_layout(pairs).state
     variant, law = kernel_law(gap_law)
     law_rows = problem.law_rows()
 
@@ -193,13 +187,14 @@ def march_on_cpu(problem: MarchingProblem, workers: int) -> MarchingSolution:
         chunk: int, integrator: ExponentialIntegrator, which: NDArray[np.intp], points: NDArray[np.intp]
     ) -> None:
         numbers = _lane_rows(problem, law_rows[:, points], integrator, which, points)
+        drive, table = _drive_rows(problem, integrator, which, points), _aligned(np.empty((steps + 4) * m * LANES))
         march_lanes(
-            (0,) * (m // 2),
+            pairs,
             *variant,
             law.cells,
             numbers,
-            _drive_rows(problem, integrator, which, points),
-            _aligned(np.empty((steps + 4) * m * LANES)),
+            drive,
+            table,
             schedule.ramp.duration * problem.frequency[points] * steps,
             schedule.ramp.shape == "cosine",
             integrator.backward.ravel(),

@@ -199,9 +199,9 @@ def exponential_integrator(
         """Return the state that each sample of the force adds over a step."""
         return np.asarray(np.einsum("fmqa,qj->fjma", moved, sample_weights))
 
-    propagator = np.stack(
-        [_propagated(modes.state_matrix, unit, h[:, np.newaxis])[:, :, 0] for unit in _unit_states(modes)], axis=-1
-    )
+    units = [np.broadcast_to(row, modes.contact_input.shape) for row in np.eye(2)]
+    columns = [_propagated(modes.state_matrix, unit, h[:, np.newaxis])[:, :, 0] for unit in units]
+    propagator = np.stack(columns, axis=-1)
     corrected = added(of_force.corrected)
     recent = corrected[:, :PAST].copy()
     for j in range(1, PAST):  # filter W(q) = (1 - E q) V(q) + q^5 U, with the delay operator q
@@ -249,11 +249,6 @@ def _fastest(modes: FirstOrderModes) -> float:
     return float(np.abs(np.linalg.eigvals(modes.state_matrix)).max(initial=0.0))
 
 
-def _unit_states(modes: FirstOrderModes) -> list[Floats]:
-    """Return the two unit vectors of every pair of states."""
-    return [np.broadcast_to(row, modes.contact_input.shape) for row in np.eye(2)]
-
-
 def _apply(propagator: Floats, states: Floats) -> Floats:
     """Return states one step later without forces."""
     return np.asarray(np.einsum("fmab,fmb->fma", propagator, states))
@@ -284,9 +279,7 @@ def _propagated(state_matrix: Floats, start: Floats, time: Floats) -> Floats:
     series = both * t * (1 + (delta * t) ** 2 / 6 * (1 + (delta * t) ** 2 / 20 * (1 + (delta * t) ** 2 / 42)))
     sine = np.where(small, series, (one - other) / np.where(small, 1.0, 2 * delta)).real
     image = np.einsum("mab,mb->ma", traceless, start)
-    return np.asarray(
-        cosine[..., np.newaxis] * start[:, np.newaxis, :] + sine[..., np.newaxis] * image[:, np.newaxis, :]
-    )
+    return np.asarray(cosine[..., np.newaxis] * start[:, np.newaxis] + sine[..., np.newaxis] * image[:, np.newaxis])
 
 
 def _interpolation(time: Floats, sampled_at: Floats, theta: float) -> Floats:

@@ -88,21 +88,19 @@ def dahl_under_vibration(
         require_positive(separation=separation), require_non_negative(normal_amplitude=normal_amplitude)
     )
     _require_open_gap(d, a)
-    f = require_positive(frequency=frequency)
+    f, u_peak = require_positive(frequency=frequency), require_non_negative(in_plane_amplitude=in_plane_amplitude)
     arguments = np.broadcast_arrays(
         d,
         a,
         require_positive(friction_coefficient=friction_coefficient),
         require_positive(sliding_speed=sliding_speed),
-        peak_vibration_velocity(
-            frequency=f, vibration_amplitude=require_non_negative(in_plane_amplitude=in_plane_amplitude)
-        ),
+        peak_vibration_velocity(frequency=f, vibration_amplitude=u_peak),
         2 * np.pi * f,
         require_finite(phase=phase),
     )
     columns = [array.reshape(-1, 1) for array in arguments]
     means = [
-        _mean_over_period(contact, *(column[start : start + _BLOCK] for column in columns), steps=steps)
+        _mean_over_period(contact, [column[start : start + _BLOCK] for column in columns], steps)
         for start in range(0, columns[0].size, _BLOCK)
     ]
     return np.concatenate([*means, np.empty(0)]).reshape(arguments[0].shape)
@@ -118,19 +116,9 @@ def _require_open_gap(d: Floats, a: Floats) -> None:
         )
 
 
-def _mean_over_period(
-    contact: RoughContact,
-    d: Floats,
-    a: Floats,
-    mu: Floats,
-    v_r: Floats,
-    v_1: Floats,
-    omega: Floats,
-    phase: Floats,
-    *,
-    steps: int,
-) -> Floats:
+def _mean_over_period(contact: RoughContact, columns: list[Floats], steps: int) -> Floats:
     """Return the mean force of each row of arguments, columns of shape (n, 1). [N]"""
+    d, a, mu, v_r, v_1, omega, phase = columns
     edges = _step_edges(v_r, v_1, steps)
     gap = d + a * np.sin((edges[:, 1:] + edges[:, :-1]) / 2 - phase)
     slides = np.diff(v_r * edges + v_1 * np.sin(edges), axis=1) / omega

@@ -166,15 +166,9 @@ def lugre_friction_history(
     times = require_increasing(time=time)
     v = require_finite(relative_velocity=relative_velocity)
     start = require_finite(bristle_deflection=bristle_deflection)
-    z = integrate_rows(
-        _deflection_history,
-        times,
-        v,
-        start,
-        law.coulomb_friction_force / law.bristle_stiffness,
-        law.static_friction_force / law.bristle_stiffness,
-        law.stribeck_velocity,
-    )
+    sliding_limit = law.coulomb_friction_force / law.bristle_stiffness
+    sticking_limit = law.static_friction_force / law.bristle_stiffness
+    z = integrate_rows(_deflection_history, times, v, start, sliding_limit, sticking_limit, law.stribeck_velocity)
     z_rate = v - np.abs(v) / _steady_deflection(law, v) * z  # D 1.4
     force = law.bristle_stiffness * z + law.bristle_damping * z_rate + law.viscous_coefficient * v  # D 1.5
     return LuGreHistory(bristle_deflection=z, friction_force=force)

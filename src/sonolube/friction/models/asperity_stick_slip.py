@@ -149,12 +149,9 @@ class AsperityStickSlip(FrictionModel):
         """
         if self.in_plane_fraction or not isinstance(contact.heights, ExponentialHeights):
             return np.full(sliding_speed.shape, np.nan)
+        length, memory = decay_length(contact), self.memory_length
         return batched_stick_slip_ratio(
-            motions,
-            decay_length=decay_length(contact),
-            sliding_speed=sliding_speed,
-            motion=motion,
-            memory_length=self.memory_length,
+            motions, decay_length=length, sliding_speed=sliding_speed, motion=motion, memory_length=memory
         )
 
 

@@ -92,10 +92,8 @@ def batched_stick_slip_ratio(
     length = float(require_positive(decay_length=decay_length))
     memory = float(require_positive(memory_length=memory_length))
     mean, harmonics, f = motions.mean_displacement / length, motions.harmonics / length, motions.frequency
-    v_r, which = (
-        np.atleast_1d(require_positive(sliding_speed=sliding_speed)),
-        np.atleast_1d(np.asarray(motion, np.int64)),
-    )
+    v_r = np.atleast_1d(require_positive(sliding_speed=sliding_speed))
+    which = np.atleast_1d(np.asarray(motion, np.int64))
     if which.shape != v_r.shape:
         raise InvalidInput(f"sliding_speed and motion must have the same shape, got {v_r.shape} and {which.shape}")
     if which.size and not 0 <= which.min() <= which.max() < mean.size:
@@ -108,10 +106,7 @@ def batched_stick_slip_ratio(
     load_ratio = i0e(beta) * np.exp(beta - mean)
     slide = 1 / (2 * np.pi * f * memory)
     ratio = np.empty(v_r.shape)
-    nodes, weights = _NODES
-    _write_ratios(
-        _table(), harmonics, mean, beta, higher, closes_once, load_ratio, slide, v_r, which, nodes, weights, ratio
-    )
+    _write_ratios(_table(), harmonics, mean, beta, higher, closes_once, load_ratio, slide, v_r, which, *_NODES, ratio)
     beyond = np.flatnonzero(np.isinf(ratio))
     if beyond.size:  # sines outside the table
         own = which[beyond]

@@ -1,8 +1,7 @@
 """Mean friction ratio of a vibrated contact by one bristle on an elastic holder, with normal and in-plane vibration."""
 
 import math
-import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import ClassVar, final
 
 import numpy as np
@@ -12,7 +11,7 @@ from sonolube.checks import Floats, require_positive
 from sonolube.contact.gap_motion import GapMotion, delayed_oscillation, require_open_gap, richardson_period_mean
 from sonolube.contact.mindlin import mindlin_tangential_stiffness
 from sonolube.contact.rough import RoughContact
-from sonolube.errors import InvalidInput, ModelRangeWarning
+from sonolube.errors import InvalidInput, warn_of_range
 from sonolube.friction.bristle import (
     MAXIMUM_PERIODS,
     Holder,
@@ -95,9 +94,7 @@ class BristleWithHolder(FrictionModel):
     @property
     def holder(self) -> Holder:
         """Holder of the slider along the sliding direction."""
-        return Holder(
-            holder_stiffness=self.holder_stiffness, holder_mass=self.holder_mass, holder_damping=self.holder_damping
-        )
+        return Holder(**{field.name: getattr(self, field.name) for field in fields(Holder)})
 
     def ratio(
         self,
@@ -154,11 +151,9 @@ class BristleWithHolder(FrictionModel):
 
         ratio = richardson_period_mean(normalized_friction, motion)
         if not settled:
-            warnings.warn(
+            warn_of_range(
                 f"slider and holder reach no steady period within {MAXIMUM_PERIODS}; the mean over the last ones is"
-                " returned. Increase holder_damping",
-                ModelRangeWarning,
-                stacklevel=2,
+                " returned. Increase holder_damping"
             )
         return ratio.reshape(v_r.shape)
 

@@ -1,5 +1,6 @@
 """Mean friction ratio by the cube model of Dong (2015): over a full period, the separating half, and load-balanced."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar, final
 
@@ -132,15 +133,12 @@ class Dong2015HalfPeriod(FrictionModel):
             If the motion leaves the range of the height distribution.
         """
         v_r = require_positive(sliding_speed=sliding_speed)
-        d = separation(contact, normal_load=motion.normal_load)
-        at_rest = cube_tangential_stiffness(contact, separation=d)
-        ratio = richardson_period_mean(
-            lambda sampled: sampled_separating_mean(
-                lambda x: cube_tangential_stiffness(contact, separation=d + x) / at_rest,
-                displacement=sampled.displacement,
-            ),
-            motion,
-        )
+        k_ratio = _stiffness_ratio(contact, separation(contact, normal_load=motion.normal_load))
+
+        def mean(sampled: GapMotion) -> Floats:
+            return sampled_separating_mean(k_ratio, displacement=sampled.displacement)
+
+        ratio = richardson_period_mean(mean, motion)
         return np.broadcast_to(ratio, v_r.shape).copy()
 
 
@@ -201,8 +199,11 @@ class Dong2015LoadBalanced(FrictionModel):
 
 def _full_period(contact: RoughContact, motion: GapMotion, sliding_speed: ArrayLike) -> Floats:
     """Return the mean of the stiffness ratio of the cube times the kinematic factor over the full period. []"""
-    d = require_open_gap(contact, motion)
+    k_ratio = _stiffness_ratio(contact, require_open_gap(contact, motion))
+    return kinematic_mean(k_ratio, motion, sliding_speed=sliding_speed)
+
+
+def _stiffness_ratio(contact: RoughContact, d: Floats) -> Callable[[Floats], Floats]:
+    """Return the tangential stiffness over that at a separation, as a function of the displacement from it."""
     at_rest = cube_tangential_stiffness(contact, separation=d)
-    return kinematic_mean(
-        lambda x: cube_tangential_stiffness(contact, separation=d + x) / at_rest, motion, sliding_speed=sliding_speed
-    )
+    return lambda x: cube_tangential_stiffness(contact, separation=d + x) / at_rest

@@ -1,7 +1,5 @@
 """Friction ratio of the cube model of Dong (2015) under a sine about the separation at rest, and its deformation."""
 
-import warnings
-
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -9,7 +7,7 @@ from sonolube.checks import Floats, require_finite, require_non_negative, requir
 from sonolube.contact.cube import cube_tangential_stiffness
 from sonolube.contact.rough import RoughContact, separation
 from sonolube.contact.separating_half_period import separating_half_period_mean, separating_half_period_quadrature
-from sonolube.errors import ModelRangeWarning, OutsideRange
+from sonolube.errors import OutsideRange, warn_of_range
 
 
 def dong_2015_half_period_ratio(
@@ -156,11 +154,9 @@ def dong_2015_deformation_ratio(
     u_peak = require_non_negative(in_plane_amplitude=in_plane_amplitude)
     lag = require_finite(phase=phase)
     if np.any(u_peak > delta):
-        warnings.warn(
+        warn_of_range(
             f"in_plane_amplitude of up to {np.max(u_peak):.3g} m is added to a deformation of {np.min(delta):.3g} m,"
-            " beyond which the contact slides; use dahl_under_vibration",
-            ModelRangeWarning,
-            stacklevel=2,
+            " beyond which the contact slides; use dahl_under_vibration"
         )
     d, v_peak = np.broadcast_arrays(
         require_positive(separation=separation(contact, normal_load=normal_load)),

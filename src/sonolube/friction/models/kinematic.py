@@ -115,12 +115,11 @@ def kinematic_mean(
     .. math:: \langle w(x) \cos\theta \rangle, \qquad \cos\theta = \frac{v_r}{\sqrt{v_r^2 + v_1^2}}
     """
     v_r = require_positive(sliding_speed=sliding_speed)
-    return richardson_period_mean(
-        lambda sampled: _weighted_cosine(
-            weight(sampled.displacement), amplitude_fraction * sampled.velocity, v_r.ravel()
-        ),
-        motion,
-    ).reshape(v_r.shape)
+
+    def mean(sampled: GapMotion) -> Floats:
+        return _weighted_cosine(weight(sampled.displacement), amplitude_fraction * sampled.velocity, v_r.ravel())
+
+    return richardson_period_mean(mean, motion).reshape(v_r.shape)
 
 
 @numba.njit(cache=True)

@@ -67,14 +67,8 @@ class ModelParameter:
             Naming the parameter, the value and its unit.
         """
         if value < self.lowest or (self.positive and value == self.lowest):
-            demand = (
-                "must be positive"
-                if self.positive
-                else "must not be negative"
-                if self.lowest == 0
-                else "must be finite"
-            )
-            raise InvalidInput(f"{self.name} {demand}, got {value!r} {self.unit}".rstrip())
+            demand = "be positive" if self.positive else "not be negative" if self.lowest == 0 else "be finite"
+            raise InvalidInput(f"{self.name} must {demand}, got {value!r} {self.unit}".rstrip())
         if math.isinf(value) and value != self.default:
             raise InvalidInput(f"{self.name} must be finite, got {value!r} {self.unit}".rstrip())
 

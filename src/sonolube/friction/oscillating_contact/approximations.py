@@ -4,13 +4,11 @@ The exact ratios are those of `rigid_guide`, `combined_oscillation` and `complia
 approximation is stated relative to them.
 """
 
-import warnings
-
 import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
-from sonolube.errors import InvalidInput, ModelRangeWarning
+from sonolube.errors import InvalidInput, warn_of_range
 from sonolube.friction.bristle import Holder
 from sonolube.friction.laws.coulomb_under_vibration import transverse_vibration_ratio
 from sonolube.friction.oscillating_contact.compliant_guide import guided_critical_speed
@@ -75,9 +73,7 @@ def approximate_normal_ratio(
     ----------
     .. [1] M. Popov, V. L. Popov and N. V. Popov, Friction 5, 45 (2017). doi:10.1007/s40544-016-0136-4
     """
-    static = normal_static_ratio(contact, approach=approach, normal_amplitude=normal_amplitude)
-    _warn_of_contact_loss(approach, normal_amplitude)
-    return 1 - (1 - static) * _deficit(require_positive(velocity_ratio=velocity_ratio))
+    return _normal_ratio(contact, approach, normal_amplitude, require_positive(velocity_ratio=velocity_ratio))
 
 
 def approximate_guided_ratio(
@@ -149,16 +145,9 @@ def approximate_guided_ratio(
     )
     stiffness = holder.holder_stiffness + contact.mindlin_ratio * k_z
     if holder.holder_mass > 0 and np.any(np.sqrt(stiffness / holder.holder_mass) > _MAXIMUM_NATURAL_FREQUENCY * omega):
-        warnings.warn(
-            "the slider follows the oscillation on its guide and contact, which the approximation does not cover;"
-            " use guided_oscillation_ratio",
-            ModelRangeWarning,
-            stacklevel=2,
-        )
+        _warn("the slider follows the oscillation on its guide and contact", "guided_oscillation_ratio")
     speed = require_positive(sliding_speed=sliding_speed)
-    static = normal_static_ratio(contact, approach=approach, normal_amplitude=normal_amplitude)
-    _warn_of_contact_loss(approach, normal_amplitude)
-    return 1 - (1 - static) * _deficit(speed / np.maximum(critical, 1e-200 * speed))
+    return _normal_ratio(contact, approach, normal_amplitude, speed / np.maximum(critical, 1e-200 * speed))
 
 
 def approximate_longitudinal_ratio(
@@ -213,12 +202,7 @@ def approximate_longitudinal_ratio(
     """
     a = require_non_negative(in_plane_amplitude=in_plane_amplitude)
     if np.any(slip_length_fraction(contact, approach=approach, amplitude=a) > _MAXIMUM_STROKE[contact.profile]):
-        warnings.warn(
-            "in_plane_amplitude reverses the slip of springs, which the approximation does not cover;"
-            " use longitudinal_oscillation_ratio",
-            ModelRangeWarning,
-            stacklevel=2,
-        )
+        _warn("in_plane_amplitude reverses the slip of springs", "longitudinal_oscillation_ratio")
     static = longitudinal_static_ratio(contact, approach=approach, in_plane_amplitude=a)
     speed, omega = require_positive(sliding_speed=sliding_speed), 2 * np.pi * require_positive(frequency=frequency)
     return 1 - (1 - static) * _deficit(speed / np.maximum(omega * a, 1e-200 * speed))
@@ -277,18 +261,12 @@ def approximate_transverse_ratio(
     .. [1] J. Benad, K. Nakano, V. L. Popov and M. Popov, Friction 7, 74 (2019), who give the system.
        doi:10.1007/s40544-018-0202-1
     """
-    a, omega = (
-        require_non_negative(transverse_amplitude=transverse_amplitude),
-        2 * np.pi * require_positive(frequency=frequency),
-    )
+    a = require_non_negative(transverse_amplitude=transverse_amplitude)
+    omega = 2 * np.pi * require_positive(frequency=frequency)
     v_r, v_1 = require_positive(sliding_speed=sliding_speed), omega * a
     if np.any(v_r < _MINIMUM_SPEED * v_1):
-        warnings.warn(
-            "sliding_speed is below 0.3 of the peak velocity across, where springs stick, which the approximation"
-            " does not cover; use combined_oscillation_ratio",
-            ModelRangeWarning,
-            stacklevel=2,
-        )
+        reason = "sliding_speed is below 0.3 of the peak velocity across, where springs stick"
+        _warn(reason, "combined_oscillation_ratio")
     raised = omega * contact.slip_per_approach * require_positive(approach=approach)
     if contact.profile == "flat":
         return transverse_vibration_ratio(sliding_speed=np.hypot(v_r, raised), vibration_velocity=v_1)
@@ -306,12 +284,17 @@ def _deficit(velocity_ratio: Floats) -> Floats:
     return 0.75 * margin**2 + 0.25 * margin**4
 
 
-def _warn_of_contact_loss(approach: ArrayLike, normal_amplitude: ArrayLike) -> None:
-    """Warn where an amplitude exceeds the approach."""
+def _normal_ratio(
+    contact: SpringContact, approach: ArrayLike, normal_amplitude: ArrayLike, velocity_ratio: Floats
+) -> Floats:
+    """Return the ratio between that of static friction and one; warn the caller's caller where contact is lost."""
+    static = normal_static_ratio(contact, approach=approach, normal_amplitude=normal_amplitude)
     if np.any(require_finite(normal_amplitude=normal_amplitude) > require_finite(approach=approach)):
-        warnings.warn(
-            "normal_amplitude exceeds the approach: contact is lost for part of the period, which the approximation"
-            " does not cover; use normal_oscillation_ratio",
-            ModelRangeWarning,
-            stacklevel=3,
-        )
+        reason = "normal_amplitude exceeds the approach: contact is lost for part of the period"
+        _warn(reason, "normal_oscillation_ratio", stacklevel=4)
+    return 1 - (1 - static) * _deficit(velocity_ratio)
+
+
+def _warn(reason: str, exact: str, *, stacklevel: int = 3) -> None:
+    """Warn of a motion that the approximation does not cover, and name the exact function."""
+    warn_of_range(f"{reason}, which the approximation does not cover; use {exact}", stacklevel=stacklevel)

@@ -1,6 +1,5 @@
 """Friction of a spring contact on a rigid guide under oscillations in several directions, by time integration."""
 
-import warnings
 from math import atan, copysign, cos, exp, hypot, pi, sin, sqrt
 
 import numba
@@ -8,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
-from sonolube.errors import InvalidInput, ModelRangeWarning, OutsideRange
+from sonolube.errors import InvalidInput, OutsideRange, warn_of_range
 from sonolube.friction.oscillating_contact.spring_contact import SpringContact
 
 _MAXIMUM_PERIODS = 2000
@@ -109,26 +108,14 @@ def combined_oscillation_ratio(
     if np.any(u + a_z <= 0):
         raise OutsideRange("contact is lost throughout the period: approach plus normal_amplitude must be positive")
     nodes, weights = (np.zeros(1), np.ones(1)) if contact.profile == "flat" else _QUADRATURE
-    ratio, settled = _mean_ratios(
-        u.ravel(),
-        (v_r / f).ravel(),
-        a_z.ravel(),
-        a_x.ravel(),
-        lag_x.ravel(),
-        a_y.ravel(),
-        lag_y.ravel(),
-        contact.slip_per_approach,
-        nodes,
-        weights,
-        steps,
-    )
+    shape, slip = u.shape, contact.slip_per_approach
+    u, slide, a_z, a_x, lag_x, a_y, lag_y = (each.ravel() for each in (u, v_r / f, a_z, a_x, lag_x, a_y, lag_y))
+    ratio, settled = _mean_ratios(u, slide, a_z, a_x, lag_x, a_y, lag_y, slip, nodes, weights, steps)
     if not settled:
-        warnings.warn(
-            f"a spring has no steady period within {_MAXIMUM_PERIODS}; the last one is used. Increase sliding_speed",
-            ModelRangeWarning,
-            stacklevel=2,
+        warn_of_range(
+            f"a spring has no steady period within {_MAXIMUM_PERIODS}; the last one is used. Increase sliding_speed"
         )
-    return ratio.reshape(u.shape)
+    return ratio.reshape(shape)
 
 
 @numba.njit(cache=True)

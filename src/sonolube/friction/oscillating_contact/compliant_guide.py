@@ -1,12 +1,10 @@
 """Friction of a flat spring contact on a compliant guide, with spring, mass and damper, under normal oscillation."""
 
-import warnings
-
 import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_positive
-from sonolube.errors import InvalidInput, ModelRangeWarning, OutsideRange
+from sonolube.errors import InvalidInput, OutsideRange, warn_of_range
 from sonolube.friction.bristle import Holder, holder_propagators, mean_force_inertial_holder
 from sonolube.friction.oscillating_contact.rigid_guide import normal_oscillation_ratio
 from sonolube.friction.oscillating_contact.spring_contact import SpringContact, critical_speed
@@ -91,23 +89,13 @@ def guided_oscillation_ratio(
         speed = v_r / (1 + k_x[0] / holder.holder_stiffness)
         return normal_oscillation_ratio(contact, approach=u, normal_amplitude=a, frequency=f, sliding_speed=speed)
     step = 1 / (f * _STEPS)
-    deflection = np.mean(limit) / holder.holder_stiffness
-    forces, settled = mean_force_inertial_holder(
-        k_x,
-        limit,
-        np.zeros(_STEPS),
-        v_r.ravel() * step,
-        step,
-        0.0,
-        *holder_propagators(holder, step),
-        np.full(v_r.size, deflection),
-    )
+    deflection = np.full(v_r.size, np.mean(limit) / holder.holder_stiffness)
+    slides, matrices = (np.zeros(_STEPS), v_r.ravel() * step), holder_propagators(holder, step)
+    forces, settled = mean_force_inertial_holder(k_x, limit, *slides, step, 0.0, *matrices, deflection)
     if not settled:
-        warnings.warn(
+        warn_of_range(
             "no steady period of slider and guide was found; the mean over the last of many periods is returned."
-            " Increase holder_damping",
-            ModelRangeWarning,
-            stacklevel=2,
+            " Increase holder_damping"
         )
     return (forces / np.mean(limit)).reshape(v_r.shape)
 

@@ -18,11 +18,7 @@ from sonolube.checks import Floats, require_finite, require_non_negative, requir
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.friction.oscillating_contact.stick_slip_phases import profile_mean_limits
 
-__all__ = [  # the rest serves this package only
-    "SpringContact",
-    "critical_speed",
-    "load_balanced_approach",
-]
+__all__ = ["SpringContact", "critical_speed", "load_balanced_approach"]  # the rest serves this package only
 
 NODES = np.polynomial.legendre.leggauss(48)
 """Gauss-Legendre rule over the springs of a parabolic profile."""
@@ -142,9 +138,8 @@ def load_balanced_approach(contact: SpringContact, *, approach: ArrayLike, norma
 
     by bisection, with p = 1 for the flat and 3/2 for the parabolic profile.
     """
-    u, a = np.broadcast_arrays(
-        require_positive(approach=approach), require_non_negative(normal_amplitude=normal_amplitude)
-    )
+    a = require_non_negative(normal_amplitude=normal_amplitude)
+    u, a = np.broadcast_arrays(require_positive(approach=approach), a)
     load = mean_normal_forces(contact, u, np.zeros_like(a))
     low, high = np.minimum(-a, u), u.copy()
     for _ in range(60):
@@ -176,9 +171,8 @@ def require_contact(*, approach: ArrayLike, normal_amplitude: ArrayLike) -> tupl
     OutsideRange
         If contact is lost throughout the period.
     """
-    u, a = np.broadcast_arrays(
-        require_finite(approach=approach), require_non_negative(normal_amplitude=normal_amplitude)
-    )
+    a = require_non_negative(normal_amplitude=normal_amplitude)
+    u, a = np.broadcast_arrays(require_finite(approach=approach), a)
     separated = u + a <= 0
     if np.any(separated):
         raise OutsideRange(

@@ -129,10 +129,8 @@ def transverse_static_ratio(contact: SpringContact, *, approach: ArrayLike, tran
     .. [2] Friction Influenced by Vibrations: A Refined Contact-Mechanics View on Lateral and Rotational Oscillations,
        Front. Mech. Eng. 6 (2020). doi:10.3389/fmech.2020.566440
     """
-    s = slip_length_fraction(
-        contact, approach=approach, amplitude=require_non_negative(transverse_amplitude=transverse_amplitude)
-    )
-    s = np.minimum(s, 1.0)
+    a = require_non_negative(transverse_amplitude=transverse_amplitude)
+    s: Floats = np.minimum(slip_length_fraction(contact, approach=approach, amplitude=a), 1.0)
     if contact.profile == "flat":
         return np.sqrt((1 - s) * (1 + s))
     # springs that stick, at distances sqrt(1 - s) sin t

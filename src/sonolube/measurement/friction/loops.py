@@ -187,14 +187,9 @@ def _positive_reversals(t: Floats, v: Floats) -> Floats:
 
 def _cumulative_integrals(t: Floats, f: Floats, v: Floats) -> tuple[Floats, Floats, Floats]:
     """Return cumulative work, distance and known time; intervals with a missing value contribute nothing."""
-    power = f * v
-    step = np.diff(t)
+    power, speed, step = f * v, np.abs(v), np.diff(t)
     known = np.isfinite(power[1:]) & np.isfinite(power[:-1])
-    speed = np.abs(v)
-    parts = (
-        np.where(known, step * (power[1:] + power[:-1]) / 2, 0.0),
-        np.where(known, step * (speed[1:] + speed[:-1]) / 2, 0.0),
-        np.where(known, step, 0.0),
-    )
-    work, distance, known_time = (np.concatenate([[0.0], np.cumsum(part)]) for part in parts)
+    parts = step * (power[1:] + power[:-1]) / 2, step * (speed[1:] + speed[:-1]) / 2, step
+    sums = np.cumsum(np.where(known, np.stack(parts), 0.0), axis=1)
+    work, distance, known_time = np.concatenate([np.zeros((3, 1)), sums], axis=1)
     return work, distance, known_time

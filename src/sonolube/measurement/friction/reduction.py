@@ -79,11 +79,10 @@ def estimate_friction_reduction(
     """
     off, on = correlated_mean(intrinsic_friction_force), correlated_mean(reduced_friction_force)
     reduction = friction_reduction(intrinsic_friction_force=off.mean, reduced_friction_force=on.mean)
+    uncertainty = np.hypot(on.uncertainty / off.mean, on.mean * off.uncertainty / off.mean**2)
     return FrictionReductionEstimate(
         friction_reduction=float(reduction),
-        friction_reduction_uncertainty=float(
-            np.hypot(on.uncertainty / off.mean, on.mean * off.uncertainty / off.mean**2)
-        ),
+        friction_reduction_uncertainty=float(uncertainty),
         intrinsic_friction_force=off.mean,
         intrinsic_friction_force_uncertainty=off.uncertainty,
         reduced_friction_force=on.mean,

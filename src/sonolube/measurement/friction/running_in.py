@@ -129,7 +129,5 @@ def _drift(rise: float, residual: Floats, tolerance: float) -> str:
     # the rise of a regression line over n even points has the variance 12 s^2/n, times the statistical inefficiency
     variance = 12 * float(residual @ residual) / residual.size**2 * statistical_inefficiency(residual)
     if abs(rise) > tolerance and abs(rise) > 3 * variance**0.5:
-        return (
-            f"the last third of the test still {'rises' if rise > 0 else 'falls'} by {abs(rise):.3g} N; run it longer"
-        )
+        return f"the last third of the test still {'rises' if rise > 0 else 'falls'} by {abs(rise):.3g} N; run longer"
     return ""

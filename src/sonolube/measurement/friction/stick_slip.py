@@ -100,11 +100,10 @@ def estimate_stick_slip(
     drops = f[peaks[:-1]] - np.minimum.reduceat(f, peaks)[:-1]
     rate = float((peaks.size - 1) / (t[peaks[-1]] - t[peaks[0]]))
     agrees = abs(rate - spectral_frequency) <= _FREQUENCY_TOLERANCE * rate
+    disagreement = f"force drops recur at {rate:.3g} Hz, but the spectrum peaks at {spectral_frequency:.3g} Hz"
     return StickSlipEstimate(
         detected=bool(agrees),
-        reason=""
-        if agrees
-        else f"force drops recur at {rate:.3g} Hz, but the spectrum peaks at {spectral_frequency:.3g} Hz",
+        reason="" if agrees else disagreement,
         stick_slip_frequency=rate,
         spectral_frequency=spectral_frequency,
         stick_slip_amplitude=float(np.mean(drops)),

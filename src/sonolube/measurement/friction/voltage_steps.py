@@ -135,15 +135,11 @@ def friction_at_voltage_steps(
     require_non_negative(settling_time=settling_time)
     t, f, u = require_time_series(time=time, friction_force=friction_force, voltage_peak_to_peak=voltage_peak_to_peak)
     threshold = tolerance * float(np.nanmax(u) - np.nanmin(u))
-    steps = [
-        (first, last)
-        for first, last in _constant_levels(t, u, threshold, shortest_step)
-        if t[last - 1] - t[first] > max(shortest_step, 2 * settling_time)
-    ]
+    least = max(shortest_step, 2 * settling_time)
+    levels_held = _constant_levels(t, u, threshold, shortest_step)
+    steps = [(first, last) for first, last in levels_held if t[last - 1] - t[first] > least]
     if not steps:
-        raise InvalidInput(
-            f"voltage_peak_to_peak is constant nowhere for {max(shortest_step, 2 * settling_time):.3g} s"
-        )
+        raise InvalidInput(f"voltage_peak_to_peak is constant nowhere for {least:.3g} s")
     settled = [_settled_part(t, first, last, settling_time) for first, last in steps]
     levels = [float(np.nanmedian(u[part])) for part in settled]
     without = [level <= threshold for level in levels]
@@ -160,9 +156,7 @@ def _constant_levels(t: Floats, u: Floats, threshold: float, shortest: float) ->
     """Return the sample ranges of constant level, with those joined that a short disturbance separates."""
     section = max(1, round(shortest / _SECTIONS_PER_STEP / float(np.median(np.diff(t)))))
     starts = np.arange(0, t.size, section)
-    level = np.array(
-        [np.nanmedian(u[i : i + section]) if np.isfinite(u[i : i + section]).any() else np.nan for i in starts]
-    )
+    level = np.array([np.nanmedian(part) if np.isfinite(part).any() else np.nan for part in np.split(u, starts[1:])])
     known = np.isfinite(level)
     starts, level = starts[known], level[known]
     edges = np.concatenate([[0], np.flatnonzero(np.abs(np.diff(level)) > threshold) + 1, [level.size]])

@@ -202,9 +202,8 @@ def _moments(t: Floats, signals: Signals, origin: float, window: float) -> _Mome
     numbers = _window_numbers(t, origin, window)
     starts = np.concatenate([[0], np.flatnonzero(np.diff(numbers)) + 1])
     sizes = np.diff(np.append(starts, t.size))
-    return _Moments(
-        window=numbers[starts], channels={name: _channel_moments(x, starts, sizes) for name, x in signals.items()}
-    )
+    channels = {name: _channel_moments(x, starts, sizes) for name, x in signals.items()}
+    return _Moments(window=numbers[starts], channels=channels)
 
 
 def _channel_moments(

@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite
 from sonolube.errors import InvalidInput
+from sonolube.measurement.time_series import require_equal_length
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -71,11 +72,7 @@ def remove_wobble(
     """
     n = require_finite(revolutions=revolutions)
     f = np.asarray(friction_force, dtype=np.float64)
-    if n.ndim != 1 or f.shape != n.shape:
-        raise InvalidInput(
-            "revolutions and friction_force must be one-dimensional and equal in length,"
-            f" got shapes {n.shape} and {f.shape}"
-        )
+    require_equal_length(revolutions=n, friction_force=f)
     if np.isinf(f).any():
         raise InvalidInput("friction_force must be finite or NaN, got an infinite value")
     if harmonics < 1 or trend_degree < 0:

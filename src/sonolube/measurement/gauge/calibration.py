@@ -278,9 +278,8 @@ def force_from_preisach(
     force = calibration.resting_force + _ramps(plane, x) @ calibration.reversible - slipped
     mean_slope = float(np.sum(calibration.reversible) - np.sum(calibration.weights)) / (plane.highest - plane.lowest)
     slope = _local_slope(x, force, mean_slope) if x.size > 1 else np.array([mean_slope])
-    return ForceEstimate(
-        applied_force=force, applied_force_uncertainty=np.hypot(calibration.force_deviation, slope * u_x)
-    )
+    uncertainty = np.hypot(calibration.force_deviation, slope * u_x)
+    return ForceEstimate(applied_force=force, applied_force_uncertainty=uncertainty)
 
 
 def dissipated_energy(*, displacement: ArrayLike, applied_force: ArrayLike) -> float:

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numba
 import numpy as np
-from numpy.typing import NDArray
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
@@ -116,7 +115,7 @@ def mean_relay_widths(plane: PreisachPlane) -> Floats:
     -------
     ndarray, shape (cells,)
     """
-    up, down = _cell_levels(plane.levels)
+    up, down = np.tril_indices(plane.levels)  # levels at which the relays of each cell switch up and down
     width = np.where(up == down, 1 / 3, up - down)  # over a triangle on the diagonal the mean is a third of its side
     return np.asarray((plane.highest - plane.lowest) / plane.levels * width)
 
@@ -124,12 +123,6 @@ def mean_relay_widths(plane: PreisachPlane) -> Floats:
 def _in_levels(plane: PreisachPlane, values: Floats) -> Floats:
     """Return the input in units of the levels, from 0 at the lowest to `levels` at the highest."""
     return np.ascontiguousarray((values - plane.lowest) / (plane.highest - plane.lowest) * plane.levels)
-
-
-def _cell_levels(levels: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return the levels at which the relays of each cell switch up and down."""
-    up, down = np.tril_indices(levels)
-    return up, down
 
 
 @numba.njit(cache=True)

@@ -5,6 +5,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats, require_finite
 from sonolube.errors import InvalidInput, OutsideRange
+from sonolube.measurement.time_series import require_equal_length
 
 _REVERSAL = 0.02  # of the range, by which the displacement must return for a reversal
 _RANGE_TOLERANCE = 1e-9  # of the range
@@ -89,11 +90,7 @@ def require_readings(*, displacement: ArrayLike, applied_force: ArrayLike) -> tu
         If the lengths differ or a value is not finite.
     """
     x, force = require_finite(displacement=displacement), require_finite(applied_force=applied_force)
-    if x.ndim != 1 or x.shape != force.shape or not x.size:
-        raise InvalidInput(
-            "displacement and applied_force must be one-dimensional and equal in length,"
-            f" got shapes {x.shape} and {force.shape}"
-        )
+    require_equal_length(displacement=x, applied_force=force)
     return x, force
 
 

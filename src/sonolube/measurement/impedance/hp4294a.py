@@ -1,7 +1,6 @@
 """Text files of the HP, Agilent or Keysight 4294A impedance analyser: two traces, one after the other."""
 
 import re
-from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar, NamedTuple, final
 
@@ -37,7 +36,6 @@ class _Trace(NamedTuple):
 
 
 @final
-@dataclass(frozen=True, slots=True)
 class Hp4294A:
     """Text files of the HP, Agilent or Keysight 4294A impedance analyser."""
 
@@ -134,9 +132,7 @@ def _trace(path: Path, heading_line: int, rows: list[tuple[int, list[float]]]) -
         raise InvalidInput(f"{path}: line {heading_line}: no values follow")
     for at, row in rows:
         if len(row) != len(rows[0][1]):
-            raise InvalidInput(
-                f"{path}: line {at}: has {len(row)} numbers where the trace began with {len(rows[0][1])}"
-            )
+            raise InvalidInput(f"{path}: line {at}: has {len(row)} numbers; the trace began with {len(rows[0][1])}")
     return _Trace(heading_line, [at for at, _ in rows], np.array([row for _, row in rows]))
 
 

@@ -1,6 +1,5 @@
 """Trace files (CSV) of the Keysight E4990A impedance analyser."""
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar, final
 
@@ -12,7 +11,6 @@ from sonolube.measurement.impedance.spectrum import ImpedanceSweep
 
 
 @final
-@dataclass(frozen=True, slots=True)
 class KeysightE4990A:
     """Trace files (CSV) of the Keysight E4990A impedance analyser."""
 

@@ -1,7 +1,6 @@
 """Sweeps (CSV) that LabOne writes for the Zurich Instruments MFIA and MFLI."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar, final
 
@@ -20,7 +19,6 @@ _IMPEDANCE_FIELDS = (("realz", "imagz"), ("absz", "phasez"))
 
 
 @final
-@dataclass(frozen=True, slots=True)
 class Mfia:
     """Sweeps (CSV) that LabOne writes for the Zurich Instruments MFIA and MFLI, one line per chunk and field."""
 
@@ -59,9 +57,7 @@ class Mfia:
             if not line.strip() or cells[0] == "chunk":
                 continue
             if len(cells) < _LEADING_CELLS:
-                raise InvalidInput(
-                    f"{path}: line {at}: has {len(cells)} cells where chunk, timestamp, size, fieldname begin"
-                )
+                raise InvalidInput(f"{path}: line {at}: has {len(cells)} cells, not chunk, timestamp, size, fieldname")
             field = cells[_LEADING_CELLS - 1]
             if field in _FREQUENCY_FIELDS or any(field in pair for pair in _IMPEDANCE_FIELDS):
                 chunks.setdefault(cells[0], {})[field] = (at, _values(path, at, cells[_LEADING_CELLS:]))
@@ -76,9 +72,7 @@ def _chunk_sweep(path: Path, chunk: str, fields: dict[str, tuple[int, Floats]]) 
     axis = next((name for name in _FREQUENCY_FIELDS if name in fields), None)
     pair = next((pair for pair in _IMPEDANCE_FIELDS if all(name in fields for name in pair)), None)
     if axis is None or pair is None:
-        raise InvalidInput(
-            f"{path}: line {first}: chunk {chunk[:20]!r} lacks frequency, realz and imagz (or absz, phasez)"
-        )
+        raise InvalidInput(f"{path}: line {first}: chunk {chunk[:20]!r} lacks frequency, realz, imagz or absz, phasez")
     (_, f), (at, one), (_, two) = fields[axis], fields[pair[0]], fields[pair[1]]
     if not f.size == one.size == two.size:
         raise InvalidInput(

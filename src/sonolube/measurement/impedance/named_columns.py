@@ -1,6 +1,5 @@
 """Impedance in text tables whose first row names the columns, and the sweep that named columns define."""
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar, final
 
@@ -22,7 +21,6 @@ NumberedCells = tuple[int, list[str]]  # line of a row, and its cells
 
 
 @final
-@dataclass(frozen=True, slots=True)
 class NamedColumns:
     """Any text table whose first row names the columns, such as `frequency (kHz)`, `|Z| (ohm)`, `phase (deg)`.
 
@@ -57,9 +55,7 @@ class NamedColumns:
         InvalidInput
             Naming the file and the line, if the headings name no frequency and impedance, or a cell is no number.
         """
-        numbered = [
-            (at, line) for at, line in enumerate(lines, start=1) if line.strip() and not line.startswith(_COMMENTS)
-        ]
+        numbered = [(at, line) for at, line in enumerate(lines, 1) if line.strip() and not line.startswith(_COMMENTS)]
         if not numbered:
             raise InvalidInput(f"{path}: line {len(lines)}: holds no row")
         separator = next((sign for sign in "\t;," if sign in numbered[0][1]), ",")

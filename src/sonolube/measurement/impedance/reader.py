@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.measurement.file_format import HEAD_SIZE, detect_format
+from sonolube.measurement.file_format import HEAD_SIZE, detect_format, refuse_unreadable
 from sonolube.measurement.impedance.formats import IMPEDANCE_FORMATS
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum, ImpedanceSweep, sorted_by_frequency
 
@@ -52,12 +52,10 @@ def read_impedance(path: Path, *, sweep: str | None = None) -> ImpedanceSpectrum
 
 def _content_and_lines(path: Path) -> tuple[bytes, list[str]]:
     """Return the bytes and the lines of a text file of limited size."""
-    try:
+    with refuse_unreadable(path):
         if path.stat().st_size > _LARGEST_FILE:
             raise InvalidInput(f"{path}: line 1: is larger than {_LARGEST_FILE >> 20} MiB, more than any sweep")
         content = path.read_bytes()
-    except OSError as failure:
-        raise InvalidInput(f"{path}: cannot be read: {failure.strerror}") from None
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as failure:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from sonolube.checks import Complexes, Floats, require_finite_complex, require_positive
 from sonolube.errors import InvalidInput
+from sonolube.measurement.time_series import require_equal_length
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -45,15 +46,9 @@ class ImpedanceSpectrum:
     def __post_init__(self) -> None:
         f = require_positive(frequency=self.frequency)
         z = require_finite_complex(impedance=self.impedance)
-        if f.ndim != 1 or f.shape != z.shape or not f.size:
-            raise InvalidInput(
-                "frequency and impedance must be one-dimensional and equal in length,"
-                f" got shapes {f.shape} and {z.shape}"
-            )
-        if np.any(np.diff(f) <= 0):
-            raise InvalidInput(
-                f"frequency must increase, got {f[1:][np.diff(f) <= 0][0]:.10g} Hz after as much or more"
-            )
+        require_equal_length(frequency=f, impedance=z)
+        if np.any(falls := np.diff(f) <= 0):
+            raise InvalidInput(f"frequency must increase, got {f[1:][falls][0]:.10g} Hz after as much or more")
         if np.any(z == 0):
             raise InvalidInput(f"impedance must not be zero, as it is at {f[z == 0][0]:.10g} Hz")
         object.__setattr__(self, "frequency", f)

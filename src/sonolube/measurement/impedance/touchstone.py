@@ -34,7 +34,6 @@ class _Options:
 
 
 @final
-@dataclass(frozen=True, slots=True)
 class Touchstone:
     """Touchstone files of one port, versions 1 and 2.
 

@@ -1,11 +1,13 @@
 """Raw columns and provenance from the attributes of hierarchical files (HDF5 and netCDF)."""
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from sonolube.measurement.recordings.raw_table import RawColumn
+from sonolube.errors import InvalidInput
+from sonolube.measurement.recordings.raw_table import RawColumn, RawTable
 
 _ORIGIN_KEYS = ("title", "file_name", "file_format", "sha256", "begun")
 
@@ -44,7 +46,17 @@ def column_from_attributes(label: str, values: Any, attributes: Mapping[str, Any
     )
 
 
-def origin_from_attributes(attributes: Mapping[str, Any]) -> dict[str, str]:
+def table_from_attributes(
+    columns: list[RawColumn], attributes: Mapping[str, Any], path: Path, format_name: str
+) -> RawTable:
+    """Return a table of at least one vector with the provenance that the attributes of its file state."""
+    if not columns:
+        raise InvalidInput(f"{path}: holds no vector of numbers")
+    origin = _origin(attributes)
+    return RawTable(columns=tuple(columns), format_name=format_name, begun=origin.pop("begun", ""), origin=origin)
+
+
+def _origin(attributes: Mapping[str, Any]) -> dict[str, str]:
     """Return the provenance of the original file: the first one of a recording that was written several times."""
     origin = {}
     for key in _ORIGIN_KEYS:

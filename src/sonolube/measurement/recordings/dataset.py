@@ -11,7 +11,7 @@ from sonolube import __version__
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, suggestion
 from sonolube.measurement.recordings.mapping import ChannelSource, RecordingMapping
-from sonolube.measurement.recordings.raw_table import RawColumn, RawTable
+from sonolube.measurement.recordings.raw_table import RawColumn, RawTable, common_length
 from sonolube.units import convert
 from sonolube.vocabulary import quantities, unit_of
 
@@ -73,21 +73,19 @@ def recording_dataset(
     import xarray as xr
 
     sources = _channel_sources(table, path, mapping)
-    axis_quantity = _axis_quantity(table, mapping)
-    axis = _axis(table, path, mapping, sources, axis_quantity)
+    quantity = _axis_quantity(table, mapping)
+    axis = _axis(table, path, mapping, sources, quantity)
     if axis.size == 0:
         raise InvalidInput(f"{path}: holds no samples")
-    require_increasing_axis(axis, quantity=axis_quantity, path=path, place=table.place)
-    variables = {
-        name: (axis_quantity, *_channel(name, table, path, source, partial)) for name, source in sources.items()
-    }
+    require_increasing_axis(axis, quantity=quantity, path=path, place=table.place)
+    variables = {name: (quantity, *_channel(name, table, path, source, partial)) for name, source in sources.items()}
     if not variables:
-        raise InvalidInput(f"{path}: holds no channel beside its {axis_quantity}")
-    known = quantities()[axis_quantity]
+        raise InvalidInput(f"{path}: holds no channel beside its {quantity}")
+    known = quantities()[quantity]
     return xr.Dataset(
         variables,
-        coords={axis_quantity: (axis_quantity, axis, {"units": known.unit or "1", "long_name": known.meaning})},
-        attrs=_attributes(table, path, mapping, digest, axis if axis_quantity == "time" else None),
+        coords={quantity: (quantity, axis, {"units": known.unit or "1", "long_name": known.meaning})},
+        attrs=_attributes(table, path, mapping, digest, axis if quantity == "time" else None),
     )
 
 
@@ -203,15 +201,15 @@ def _axis(
     """Return the axis in SI: of the mapping's column or sample rate, of a time column, or of stated intervals."""
     if mapping is not None and mapping.axis is not None:
         return _axis_column(_column(table, path, mapping.axis.column), table, path, quantity, mapping.axis)
-    rows = _common_length(table, path, sources)
+    labels = [source.column for source in sources.values()]
+    rows = common_length({label: _column(table, path, label).values.size for label in labels}, path)
     if mapping is not None and mapping.sample_rate is not None:
         return (table.first_row + np.arange(rows)) / mapping.sample_rate
     for column in table.columns:
         name, unit = _name_and_unit(column)
         if name in _TIME_LABELS or name == quantity:
             return _axis_column(column, table, path, quantity, ChannelSource(column=column.label, unit=unit))
-    selected = {source.column for source in sources.values()}
-    time_bases = {(c.start or 0.0, c.interval) for c in table.columns if c.label in selected and c.interval is not None}
+    time_bases = {(c.start or 0.0, c.interval) for c in table.columns if c.label in labels and c.interval is not None}
     if len(time_bases) != 1:
         problem = "its channels have different time bases" if time_bases else "no column or property gives the time"
         raise InvalidInput(f"{path}: {problem}; name one with a mapping: axis.column or axis.sample_rate")
@@ -219,15 +217,6 @@ def _axis(
     if interval is None or not (np.isfinite(start) and np.isfinite(interval) and interval > 0):
         raise InvalidInput(f"{path}: the time between samples is {interval!r} s")
     return start + interval * (table.first_row + np.arange(rows, dtype=np.float64))
-
-
-def _common_length(table: RawTable, path: Path, sources: dict[str, ChannelSource]) -> int:
-    """Return the number of rows of all channels; refuse channels of different lengths."""
-    lengths = {source.column: _column(table, path, source.column).values.size for source in sources.values()}
-    if len(set(lengths.values())) > 1:
-        text = ", ".join(f"{label} {size}" for label, size in lengths.items())
-        raise InvalidInput(f"{path}: channels have different numbers of samples ({text[:200]}); choose with a mapping")
-    return next(iter(lengths.values()), 0)
 
 
 def _axis_column(column: RawColumn, table: RawTable, path: Path, quantity: str, source: ChannelSource) -> Floats:

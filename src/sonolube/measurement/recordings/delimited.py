@@ -3,13 +3,14 @@
 import csv
 import io
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar, final
 
 import numpy as np
 
+from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, suggestion
+from sonolube.measurement.file_format import refuse_unreadable
 from sonolube.measurement.numeric_text import parse_number, parse_numbers
 from sonolube.measurement.recordings.mapping import RecordingMapping, TextLayout
 from sonolube.measurement.recordings.raw_table import RawColumn, RawTable, one_line
@@ -21,7 +22,6 @@ NumberedCells = tuple[int, list[str]]  # line on which a row begins, and its cel
 
 
 @final
-@dataclass(frozen=True, slots=True)
 class DelimitedText:
     """Text with one row per sample and cells between separators, below a line of column labels.
 
@@ -66,15 +66,10 @@ class DelimitedText:
         labels = [one_line(label) for label in header]
         if not any(labels):
             raise InvalidInput(f"{path}: line {header_line}: no column names")
-        body = [
-            row
-            for row in _rows_of_width(rows, len(labels), path)
-            if mapping is None or _is_selected(row, labels, mapping, path)
-        ]
+        required = dict(mapping.rows) if mapping else {}
+        body = [row for row in _rows_of_width(rows, len(labels), path) if _is_selected(row, labels, required, path)]
         if not body:
-            raise InvalidInput(
-                f"{path}: holds no rows" + (f" with {dict(mapping.rows)}" if mapping and mapping.rows else "")
-            )
+            raise InvalidInput(f"{path}: holds no rows" + (f" with {required}" if required else ""))
         decimal_sign = layout.decimal_sign or _detected_decimal_sign(body, separator)
         columns = _columns(body, labels, _requested_labels(mapping), decimal_sign, frozenset(layout.missing), path)
         return RawTable(columns=columns, format_name=self.name, lines=np.array([line for line, _ in body]))
@@ -88,11 +83,10 @@ def decoded_text(path: Path, *, encoding: str) -> str:
     InvalidInput
         Naming the file and the line, if the file is missing, empty, or not of this encoding.
     """
-    try:
+    with refuse_unreadable(path):
         content = path.read_bytes()
+    try:
         text = content.decode(encoding)
-    except OSError as failure:
-        raise InvalidInput(f"{path}: cannot be read: {failure.strerror}") from None
     except UnicodeDecodeError as failure:
         line = content[: failure.start].count(b"\n") + 1
         raise InvalidInput(f"{path}: line {line}: not {encoding} text; give text.encoding in a mapping") from None
@@ -134,9 +128,9 @@ def _rows_of_width(rows: Iterator[NumberedCells], width: int, path: Path) -> Ite
         yield line, cells
 
 
-def _is_selected(row: NumberedCells, labels: list[str], mapping: RecordingMapping, path: Path) -> bool:
-    """Return whether a row has all cells that the mapping requires."""
-    return all(row[1][_index(labels, label, path)].strip() == required for label, required in mapping.rows.items())
+def _is_selected(row: NumberedCells, labels: list[str], required: dict[str, str], path: Path) -> bool:
+    """Return whether a row has the required cell in each of the columns given by label."""
+    return all(row[1][_index(labels, label, path)].strip() == cell for label, cell in required.items())
 
 
 def _index(labels: list[str], label: str, path: Path) -> int:
@@ -179,14 +173,22 @@ def _columns(
         cells = [row[index] for _, row in body]
         if requested is None and (not label or _is_text(cells, decimal_sign, missing)):
             continue
-        values, invalid_row = parse_numbers(cells, decimal_sign=decimal_sign, missing=missing)
-        if invalid_row is not None:
-            line = body[invalid_row][0]
-            raise InvalidInput(f"{path}: line {line}: {label!r} is {cells[invalid_row][:40]!r}, which is not a number")
-        columns.append(RawColumn(label=label, values=values))
+        columns.append(RawColumn(label=label, values=column_values(body, index, label, decimal_sign, missing, path)))
     if not columns:
         raise InvalidInput(f"{path}: line {body[0][0]}: no column holds numbers")
     return tuple(columns)
+
+
+def column_values(
+    rows: list[NumberedCells], index: int, label: str, decimal_sign: str, missing: frozenset[str], path: Path
+) -> Floats:
+    """Return the numbers of one column; cells beyond the end of a row are missing values."""
+    cells = [row[index] if index < len(row) else "" for _, row in rows]
+    values, invalid_row = parse_numbers(cells, decimal_sign=decimal_sign, missing=missing)
+    if invalid_row is not None:
+        line = rows[invalid_row][0]
+        raise InvalidInput(f"{path}: line {line}: {label!r} is {cells[invalid_row][:40]!r}, which is not a number")
+    return values
 
 
 def _is_text(cells: list[str], decimal_sign: str, missing: frozenset[str]) -> bool:

@@ -1,13 +1,11 @@
 """HDF5 and netCDF 4 files, among them the recordings written by `write_recording`."""
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar, final
 
 import numpy as np
 
-from sonolube.errors import InvalidInput
-from sonolube.measurement.recordings.attributes import column_from_attributes, origin_from_attributes
+from sonolube.measurement.recordings.attributes import column_from_attributes, table_from_attributes
 from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.measurement.recordings.raw_table import RawColumn, RawTable, refuse_library_errors
 
@@ -15,7 +13,6 @@ _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 
 @final
-@dataclass(frozen=True, slots=True)
 class Hdf5:
     """HDF5 files (also netCDF 4) whose one-dimensional numeric datasets are channels."""
 
@@ -58,7 +55,4 @@ class Hdf5:
                     columns.append(column_from_attributes(label, np.asarray(item[()]), dict(item.attrs), rate))
 
             file.visititems(visit)
-            origin = origin_from_attributes(file.attrs)
-        if not columns:
-            raise InvalidInput(f"{path}: holds no vector of numbers")
-        return RawTable(columns=tuple(columns), format_name=self.name, begun=origin.pop("begun", ""), origin=origin)
+            return table_from_attributes(columns, file.attrs, path, self.name)

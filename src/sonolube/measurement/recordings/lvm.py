@@ -14,7 +14,7 @@ from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.measurement.file_format import first_lines
 from sonolube.measurement.numeric_text import parse_numbers
-from sonolube.measurement.recordings.delimited import decoded_text
+from sonolube.measurement.recordings.delimited import column_values, decoded_text
 from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.measurement.recordings.raw_table import RawColumn, RawTable
 
@@ -50,7 +50,6 @@ class _NumberStyle:
 
 
 @final
-@dataclass(frozen=True, slots=True)
 class LabviewText:
     """LabVIEW's text recordings (LVM) of any number of segments."""
 
@@ -179,7 +178,7 @@ def _segment(
         at = segment.line + 1
         raise InvalidInput(f"{path}: line {at}: names {len(channels)} channels where the header has {count}")
     lines = np.array([line for line, _ in rows], dtype=np.int64)
-    table = {index: _column_values(rows, index, label, style, path) for index, label in named}
+    table = {index: column_values(rows, index, label, style.decimal_sign, _MISSING, path) for index, label in named}
     time = _time(table, named, segment, len(rows), style, path, lines)
     units = segment.keys.get("Y_Unit_Label", [])
     columns = [RawColumn(label=_X_LABEL, values=time, unit="s")]
@@ -188,18 +187,6 @@ def _segment(
         columns.append(RawColumn(label=label, values=table[index], unit=unit))
     begun = f"{segment.text('Date', '')} {segment.text('Time', '')}".strip()
     return RawTable(columns=tuple(columns), format_name=LabviewText.name, lines=lines, begun=begun)
-
-
-def _column_values(
-    rows: list[tuple[int, list[str]]], index: int, label: str, style: _NumberStyle, path: Path
-) -> Floats:
-    """Return the numbers of one column; cells beyond the end of a row are missing values."""
-    cells = [row[index] if index < len(row) else "" for _, row in rows]
-    values, invalid_row = parse_numbers(cells, decimal_sign=style.decimal_sign, missing=_MISSING)
-    if invalid_row is not None:
-        line = rows[invalid_row][0]
-        raise InvalidInput(f"{path}: line {line}: {label!r} is {cells[invalid_row][:40]!r}, which is not a number")
-    return values
 
 
 def _time(
@@ -231,9 +218,8 @@ def _header_numbers(segment: _Header, key: str, style: _NumberStyle, path: Path)
     cells = [cell for cell in segment.keys.get(key, []) if cell]
     values, invalid_row = parse_numbers(cells, decimal_sign=style.decimal_sign, missing=frozenset())
     if invalid_row is not None or not np.isfinite(values).all():
-        raise InvalidInput(
-            f"{path}: line {segment.line}: {key} is {cells[invalid_row or 0][:40]!r}, which is not a number"
-        )
+        cell = cells[invalid_row or 0][:40]
+        raise InvalidInput(f"{path}: line {segment.line}: {key} is {cell!r}, which is not a number")
     return [float(value) for value in values]
 
 

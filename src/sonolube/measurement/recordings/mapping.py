@@ -9,6 +9,7 @@ from typing import Any
 
 from sonolube.checks import require_finite, require_positive
 from sonolube.errors import InvalidInput, UnknownName, suggestion
+from sonolube.measurement.file_format import refuse_unreadable
 from sonolube.units import to_si
 from sonolube.vocabulary import quantity
 
@@ -157,9 +158,8 @@ def read_mapping(path: Path) -> RecordingMapping:
         Naming the file and the key, if the file is missing, is no TOML, or a key or a value is invalid.
     """
     try:
-        content = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except OSError as failure:
-        raise InvalidInput(f"{path}: cannot be read: {failure.strerror}") from None
+        with refuse_unreadable(path):
+            content = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as failure:
         raise InvalidInput(f"{path}: {failure}") from None
     try:

@@ -1,7 +1,6 @@
 """MATLAB files: versions 4 to 7 through scipy, version 7.3, which is HDF5, through h5py."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar, final
 
@@ -16,7 +15,6 @@ _RATE_NAMES = ("sample_rate", "sampling_rate", "fs", "Fs")
 
 
 @final
-@dataclass(frozen=True, slots=True)
 class Matlab:
     """MATLAB files of version 4 to 7.3 whose numeric vectors are channels.
 

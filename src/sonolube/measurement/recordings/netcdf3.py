@@ -1,13 +1,11 @@
 """Classic netCDF files (version 3)."""
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar, final
 
 import numpy as np
 
-from sonolube.errors import InvalidInput
-from sonolube.measurement.recordings.attributes import column_from_attributes, origin_from_attributes
+from sonolube.measurement.recordings.attributes import column_from_attributes, table_from_attributes
 from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.measurement.recordings.raw_table import RawTable, refuse_library_errors
 
@@ -15,7 +13,6 @@ _SIGNATURES = (b"CDF\1", b"CDF\2", b"CDF\5")  # classic, 64-bit offset, 64-bit d
 
 
 @final
-@dataclass(frozen=True, slots=True)
 class NetCdf3:
     """Classic netCDF files (version 3) whose one-dimensional numeric variables are channels."""
 
@@ -56,7 +53,4 @@ class NetCdf3:
                 for label, variable in file.variables.items()
                 if variable.data.dtype.kind in "fiub" and len(variable.shape) == 1
             ]
-            origin = origin_from_attributes(file._attributes)
-        if not columns:
-            raise InvalidInput(f"{path}: holds no vector of numbers")
-        return RawTable(columns=tuple(columns), format_name=self.name, begun=origin.pop("begun", ""), origin=origin)
+            return table_from_attributes(columns, file._attributes, path, self.name)

@@ -76,6 +76,14 @@ class RawTable:
         return f"sample {self.first_row + row}" if self.lines is None else f"line {self.lines[row]}"
 
 
+def common_length(lengths: Mapping[str, int], path: Path) -> int:
+    """Return the number of samples that all channels have, by label; refuse channels of different lengths."""
+    if len(set(lengths.values())) > 1:
+        text = ", ".join(f"{label} {size}" for label, size in lengths.items())
+        raise InvalidInput(f"{path}: channels have different numbers of samples ({text[:200]}); choose with a mapping")
+    return next(iter(lengths.values()), 0)
+
+
 def one_line(label: str) -> str:
     """Return a label with line breaks and runs of blanks replaced by one blank."""
     return " ".join(label.split())

@@ -94,9 +94,8 @@ def recording_blocks(
         block = recording_dataset(table, path=path, mapping=columns, digest=digest, partial=True)
         quantity = str(next(iter(block.sizes)))
         values = block[quantity].to_numpy()
-        require_increasing_axis(
-            np.array([last, values[0]]), quantity=quantity, path=path, place=f"sample {table.first_row}".format
-        )
+        joint, place = np.array([last, values[0]]), f"sample {table.first_row}".format
+        require_increasing_axis(joint, quantity=quantity, path=path, place=place)
         last = values[-1]
         yield block
 

@@ -2,7 +2,7 @@
 
 import struct
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, BinaryIO, ClassVar, final
 
@@ -11,7 +11,13 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.mapping import RecordingMapping
-from sonolube.measurement.recordings.raw_table import RawColumn, RawTable, one_line, refuse_library_errors
+from sonolube.measurement.recordings.raw_table import (
+    RawColumn,
+    RawTable,
+    common_length,
+    one_line,
+    refuse_library_errors,
+)
 
 TDMS_FORMAT = "TDMS"
 """Name of the format in results."""
@@ -24,7 +30,6 @@ _BIG_ENDIAN = 1 << 6
 
 
 @final
-@dataclass(frozen=True, slots=True)
 class Tdms:
     """LabVIEW's binary recordings (TDMS), whole or in blocks of rows.
 
@@ -102,7 +107,8 @@ class Tdms:
                 file = TdmsFile.open(_LimitedStream(stream))
             channels = _selected_channels(file, path, mapping)
             columns = {label: _empty_column(label, channel) for label, channel in channels.items()}
-            _require_equal_lengths(channels, path, incomplete)
+            if not incomplete:
+                common_length({label: len(channel) for label, channel in channels.items()}, path)
             with refuse_library_errors(path, format_name=self.name, offset=stream.tell):
                 rows = 0
                 for values in _blocks(file, channels, block_samples):
@@ -163,9 +169,7 @@ def _check_lead_ins(stream: BinaryIO, path: Path) -> bool:
 
 def _selected_channels(file: Any, path: Path, mapping: RecordingMapping | None) -> dict[str, Any]:
     """Return the numeric channels with samples that the mapping names, or all, by unique labels."""
-    by_full_name = {
-        one_line(f"{group.name}/{channel.name}"): channel for group in file.groups() for channel in group.channels()
-    }
+    by_full_name = {one_line(f"{group.name}/{each.name}"): each for group in file.groups() for each in group.channels()}
     names = [channel.name for channel in by_full_name.values()]
     labelled = {
         (one_line(channel.name) if names.count(channel.name) == 1 else full_name): channel
@@ -183,8 +187,7 @@ def _selected_channels(file: Any, path: Path, mapping: RecordingMapping | None) 
 
 def _is_numeric(channel: Any) -> bool:
     """Return whether the samples of a channel are real numbers or booleans."""
-    kind = getattr(channel.dtype, "kind", "O")
-    return kind in "fiub"
+    return getattr(channel.dtype, "kind", "O") in "fiub"
 
 
 def _empty_column(label: str, channel: Any) -> RawColumn:
@@ -199,14 +202,6 @@ def _empty_column(label: str, channel: Any) -> RawColumn:
         start=float(start) if isinstance(start, (int, float)) else 0.0,
         interval=float(interval) if isinstance(interval, (int, float)) and interval else None,
     )
-
-
-def _require_equal_lengths(channels: dict[str, Any], path: Path, incomplete: bool) -> None:
-    """Refuse channels of different lengths, except where the last segment is incomplete."""
-    lengths = {label: len(channel) for label, channel in channels.items()}
-    if len(set(lengths.values())) > 1 and not incomplete:
-        text = ", ".join(f"{label} {size}" for label, size in lengths.items())
-        raise InvalidInput(f"{path}: channels have different numbers of samples ({text[:200]}); choose with a mapping")
 
 
 def _blocks(file: Any, channels: dict[str, Any], block_samples: int | None) -> Iterator[dict[str, Floats]]:
@@ -239,7 +234,5 @@ def _take(pending: dict[str, list[Floats]], rows: int) -> dict[str, Floats]:
 
 def _start_time(channels: dict[str, Any]) -> str:
     """Return the start of the waveform of the first channel that states one; empty where none does."""
-    times = [
-        channel.properties["wf_start_time"] for channel in channels.values() if "wf_start_time" in channel.properties
-    ]
-    return str(times[0]) if times else ""
+    properties = (channel.properties for channel in channels.values())
+    return next((str(own["wf_start_time"]) for own in properties if "wf_start_time" in own), "")

@@ -1,6 +1,5 @@
 """Universal files (UFF), data set 58, as vibrometers and modal analysis software export them."""
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar, final
 
@@ -10,11 +9,10 @@ from sonolube.errors import InvalidInput
 from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.measurement.recordings.raw_table import RawColumn, RawTable, refuse_library_errors
 
-_GENERAL, _TIME_RESPONSE = 0, 1  # function types of data set 58
+_TIME_TYPES = (0, 1)  # function types of data set 58: general, and time response
 
 
 @final
-@dataclass(frozen=True, slots=True)
 class UniversalFile:
     """Universal files (UFF) with time responses in data set 58."""
 
@@ -52,11 +50,7 @@ class UniversalFile:
             file = pyuff.UFF(str(path))
             types = np.atleast_1d(file.get_set_types())
             sets = [file.read_sets(int(index)) for index in np.flatnonzero(types == 58)]
-            responses = [
-                data
-                for data in sets
-                if data["func_type"] in (_GENERAL, _TIME_RESPONSE) and not np.iscomplexobj(data["data"])
-            ]
+            responses = [one for one in sets if one["func_type"] in _TIME_TYPES and not np.iscomplexobj(one["data"])]
             columns = [_column(data, responses) for data in responses]
         if not columns:
             raise InvalidInput(f"{path}: holds no time response (data set 58, function type 1)")

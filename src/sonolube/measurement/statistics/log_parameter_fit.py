@@ -93,14 +93,8 @@ def fit_log_parameters(residuals: Callable[[Floats], Floats], start: Floats) -> 
             found = residuals(np.array(list(trial.valuesdict().values())))
         return np.clip(np.nan_to_num(found, nan=1e6), -1e6, 1e6)
 
-    minimum = lmfit.minimize(
-        bounded_residuals,
-        parameters,
-        method="leastsq",
-        ftol=1e-12,
-        xtol=1e-12,
-        max_nfev=_EVALUATIONS * (start.size + 1),
-    )
+    most = _EVALUATIONS * (start.size + 1)
+    minimum = lmfit.minimize(bounded_residuals, parameters, method="leastsq", ftol=1e-12, xtol=1e-12, max_nfev=most)
     covariance = getattr(minimum, "covar", None)
     return LogParameterFit(
         logarithms=np.array(list(minimum.params.valuesdict().values())),
@@ -159,22 +153,14 @@ def confidence_intervals(
 
     with Student's t of :math:`\nu = n/g - k` degrees of freedom for n residuals and k parameters.
     """
-    size = fit.logarithms.size
-    freedom = max(1.0, fit.residuals.size / correlation - size)
+    p = fit.logarithms
+    freedom = max(1.0, fit.residuals.size / correlation - p.size)
     t = float(stats.t.ppf((1 + confidence_level) / 2, freedom))
-    values = quantities(fit.logarithms)
-    jacobian = np.stack(
-        [
-            (_logarithms(quantities(fit.logarithms + step)) - _logarithms(quantities(fit.logarithms - step)))
-            / (2 * _STEP)
-            for step in _STEP * np.eye(size)
-        ],
-        axis=-1,
-    )
+    values = quantities(p)
+    rises = [_logarithms(quantities(p + step)) - _logarithms(quantities(p - step)) for step in _STEP * np.eye(p.size)]
+    slopes = np.stack(rises, axis=-1) / (2 * _STEP)
     determined = np.isfinite(fit.covariance).all()
-    variance = (
-        np.einsum("qi,ij,qj->q", jacobian, fit.covariance, jacobian) if determined else np.full(len(jacobian), np.inf)
-    )
+    variance = np.einsum("qi,ij,qj->q", slopes, fit.covariance, slopes) if determined else np.full(len(slopes), np.inf)
     with np.errstate(over="ignore"):
         factors = np.exp(t * np.sqrt(np.maximum(variance, 0.0) * correlation))
     return {

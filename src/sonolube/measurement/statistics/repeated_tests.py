@@ -166,7 +166,7 @@ def mean_estimate(tests: ArrayLike, *, confidence_level: float = 0.95) -> MeanEs
     .. math:: \bar x \pm t_{n-1}\, \frac{s}{\sqrt{n}}
     """
     x = _tests(tests, "tests")
-    _require_level(confidence_level)
+    require_within(0.5, 0.9999, confidence_level=confidence_level)
     mean, deviation = float(x.mean()), float(x.std(ddof=1))
     error = deviation / x.size**0.5
     half = error * float(stats.t.ppf((1 + confidence_level) / 2, x.size - 1))
@@ -214,7 +214,7 @@ def compare_means(first: ArrayLike, second: ArrayLike, *, confidence_level: floa
     .. [1] B. L. Welch, Biometrika 34, 28 (1947). doi:10.1093/biomet/34.1-2.28
     """
     a, b = _tests(first, "first"), _tests(second, "second")
-    _require_level(confidence_level)
+    require_within(0.5, 0.9999, confidence_level=confidence_level)
     difference, variances = float(b.mean() - a.mean()), (a.var(ddof=1) / a.size, b.var(ddof=1) / b.size)
     error, freedom = _welch(variances, (a.size, b.size))
     t = difference / error if error > 0 else float(np.copysign(np.inf, difference)) if difference else 0.0
@@ -344,7 +344,7 @@ def ratio_interval(numerator: ArrayLike, denominator: ArrayLike, *, confidence_l
     .. [1] E. C. Fieller, J. R. Stat. Soc. B 16, 175 (1954). doi:10.1111/j.2517-6161.1954.tb00159.x
     """
     x, y = _tests(numerator, "numerator"), _tests(denominator, "denominator")
-    _require_level(confidence_level)
+    require_within(0.5, 0.9999, confidence_level=confidence_level)
     a, b = float(x.mean()), float(y.mean())
     if b == 0:
         raise InvalidInput("denominator must not have a mean of zero")
@@ -373,8 +373,3 @@ def _tests(values: ArrayLike, name: str) -> Floats:
     if x.ndim != 1 or x.size < 2:
         raise InvalidInput(f"{name} must be at least two tests, got {x.size}")
     return x
-
-
-def _require_level(confidence_level: float) -> None:
-    """Refuse a confidence level outside 0.5 to 0.9999."""
-    require_within(0.5, 0.9999, confidence_level=confidence_level)

@@ -1,7 +1,6 @@
 """NPY files of numpy: a matrix of heights without unit or spacing."""
 
 import warnings
-from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO, ClassVar, final
 
@@ -14,7 +13,6 @@ _SIGNATURE = b"\x93NUMPY"
 
 
 @final
-@dataclass(frozen=True, slots=True)
 class Npy:
     """NPY files of numpy that hold a matrix of heights, in metres unless a unit is given."""
 

@@ -6,7 +6,7 @@ from datetime import datetime
 from pathlib import Path
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.file_format import detect_format, read_head
+from sonolube.measurement.file_format import detect_format, read_head, refuse_unreadable
 from sonolube.measurement.surface_files.formats import SURFACE_FORMATS
 from sonolube.measurement.surface_files.surface_reading import SurfaceReading
 from sonolube.surfaces import HeightMap
@@ -81,12 +81,9 @@ def read_surface_file(
     place = Path(path)
     formats = tuple(SURFACE_FORMATS.values())
     file_format = detect_format(formats, read_head(place), place) or formats[-1]
-    try:
-        with place.open("rb") as stream:
-            digest = hashlib.file_digest(stream, "sha256").hexdigest()
-            reading = file_format.read(stream, place)
-    except OSError as failure:
-        raise InvalidInput(f"{place}: cannot be read: {failure.strerror or failure}") from None
+    with refuse_unreadable(place), place.open("rb") as stream:
+        digest = hashlib.file_digest(stream, "sha256").hexdigest()
+        reading = file_format.read(stream, place)
     height_map = _height_map(reading, place, spacing_x=spacing_x, spacing_y=spacing_y, length_unit=length_unit)
     return SurfaceFile(
         height_map=height_map,

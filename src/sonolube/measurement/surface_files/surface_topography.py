@@ -1,7 +1,6 @@
 """All formats of the SurfaceTopography library, with the extra ``surfaces``."""
 
 import warnings
-from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 from typing import Any, BinaryIO, ClassVar, final
@@ -15,7 +14,6 @@ _TITLE_KEYS = ("Title", "DataSetName", "object_name")
 
 
 @final
-@dataclass(frozen=True, slots=True)
 class SurfaceTopographyFormats:
     """All formats of the SurfaceTopography library: SUR, X3P, SDF, PLU, VK, AL3D, GWY, OPDx, MetroPro and more.
 

@@ -8,7 +8,6 @@ the file states is checked against the size it has.
 
 import math
 import struct
-from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 from typing import BinaryIO, ClassVar, NamedTuple, final
@@ -43,7 +42,6 @@ class _Block(NamedTuple):
 
 
 @final
-@dataclass(frozen=True, slots=True)
 class WykoOpd:
     """Wyko OPD files of Veeco's and Bruker's Vision software, in all its dialects."""
 
@@ -114,9 +112,7 @@ def _directory(stream: BinaryIO, path: Path) -> dict[str, _Block]:
     if _terminated(title) != _SIGNATURE.decode():
         raise InvalidInput(f"{path}: byte 2: not a Wyko OPD file, which has 'Directory' here")
     if not _ENTRY.size <= length <= _LONGEST_DIRECTORY or length % _ENTRY.size:
-        raise InvalidInput(
-            f"{path}: byte 20: a directory of {length} bytes has no whole number of entries of {_ENTRY.size}"
-        )
+        raise InvalidInput(f"{path}: byte 20: a directory of {length} bytes has no whole entries of {_ENTRY.size}")
     entries = _bytes(stream, 2, length, path, "the directory")
     blocks: dict[str, _Block] = {}
     offset = 2 + length
@@ -163,6 +159,7 @@ def _number(stream: BinaryIO, blocks: dict[str, _Block], block_name: str, path: 
     block = blocks.get(block_name)
     if block is None:
         return None
+    _, kind, at, length = block
     layout = {
         (_SHORT, 2): "<h",
         (_SHORT, 4): "<i",
@@ -170,16 +167,12 @@ def _number(stream: BinaryIO, blocks: dict[str, _Block], block_name: str, path: 
         (_FLOAT, 4): "<f",
         (_DOUBLE, 8): "<d",
         (_LONG, 4): "<i",
-    }.get((block.kind, block.length))
+    }.get((kind, length))
     if layout is None:
-        raise InvalidInput(
-            f"{path}: byte {block.offset}: block {block_name!r} of type {block.kind} and {block.length} bytes is no"
-            " number"
-        )
-    content = _bytes(stream, block.offset, block.length, path, f"block {block_name!r}")
-    value = float(struct.unpack(layout, content)[0])
+        raise InvalidInput(f"{path}: byte {at}: block {block_name!r} of type {kind} and {length} bytes is no number")
+    value = float(struct.unpack(layout, _bytes(stream, at, length, path, f"block {block_name!r}"))[0])
     if not (math.isfinite(value) and value > 0):
-        raise InvalidInput(f"{path}: byte {block.offset}: {block_name} must be positive and finite, got {value!r}")
+        raise InvalidInput(f"{path}: byte {at}: {block_name} must be positive and finite, got {value!r}")
     return value
 
 

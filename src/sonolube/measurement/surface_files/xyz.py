@@ -2,7 +2,6 @@
 
 import math
 from array import array
-from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO, ClassVar, final
 
@@ -25,7 +24,6 @@ _LEAST_FILLED = 0.05  # fraction of the grid
 
 
 @final
-@dataclass(frozen=True, slots=True)
 class XyzText:
     """XYZ text: points x, y, z of a regular grid, one per line in any order; lengths in a unit the user gives."""
 
@@ -64,9 +62,8 @@ class XyzText:
         row, spacing_y = _grid(y, path, axis="y")
         columns, rows = int(column.max()) + 1, int(row.max()) + 1
         if z.size < _LEAST_FILLED * columns * rows:
-            raise InvalidInput(
-                f"{path}: {z.size} points fill too little of a {columns} x {rows} grid; are they scattered?"
-            )
+            points = f"{z.size} points fill too little of a {columns} x {rows} grid"
+            raise InvalidInput(f"{path}: {points}; are they scattered?")
         cell = row * columns + column
         if np.unique(cell).size < cell.size:
             twice = int(np.flatnonzero(np.bincount(cell) > 1)[0])
@@ -154,7 +151,5 @@ def _grid(position: Floats, path: Path, *, axis: str) -> tuple[NDArray[np.intp],
     off = np.abs(position - distinct[0] - index * spacing)
     if off.max() > _GRID_TOLERANCE * spacing:
         worst = float(position[np.argmax(off)])
-        raise InvalidInput(
-            f"{path}: {axis} = {worst:g} lies off the grid of spacing {spacing:g} that its neighbours make"
-        )
+        raise InvalidInput(f"{path}: {axis} = {worst:g} lies off the grid of spacing {spacing:g} of its neighbours")
     return index.astype(np.intp), spacing

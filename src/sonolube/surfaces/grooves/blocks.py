@@ -4,12 +4,11 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.surfaces.grooves.plane_coordinates import centred_coordinates, monomials
+from sonolube.surfaces.grooves.plane_coordinates import block_edges, block_means, centred_coordinates, monomials
 from sonolube.surfaces.grooves.track import GrooveTrack
 from sonolube.surfaces.height_map import HeightMap, Mask
 
@@ -151,16 +150,15 @@ def block_averages(
         bent[worn] = -slope * (t**2 / 2 - means[2])
     x, y = centred_coordinates(surface)
     fields = (x, y, surface.height - section, section, transverse, rotated, bent, arc_length)
-    edges = _block_edges(surface, longer / _BLOCKS)
-    unworn, groove = (_block_means(fields, mask, edges) for mask in (counted & ~inside, worn))
+    edges = block_edges(surface, longer / _BLOCKS)
+    unworn, groove = (block_means(fields, mask, edges) for mask in (counted & ~inside, worn))
     if unworn.shape[1] < _LEAST_UNWORN:
         raise InvalidInput(f"only {unworn.shape[1]} blocks of {longer / _BLOCKS:.2g} m are unworn; scan a wider field")
     groove = groove[:, np.abs(groove[2]) < _OUTLIER * _block_deviation(unworn[2], groove[2])]
     free = np.empty((0, 0))
     if groove.size:
-        free = np.column_stack(
-            [_hat_functions(groove[4], _KNOT * longer), _modulations(groove[3], groove[7] / longer), groove[5:7].T]
-        )
+        hats, modulations = _hat_functions(groove[4], _KNOT * longer), _modulations(groove[3], groove[7] / longer)
+        free = np.column_stack([hats, modulations, groove[5:7].T])
     both = np.concatenate([unworn, groove], axis=1)
     return BlockAverages(
         x=both[0],
@@ -204,20 +202,3 @@ def _modulations(section: Floats, arc_length: Floats) -> Floats:
     phase = 2 * math.pi * np.outer(arc_length, np.arange(1, _MODULATIONS + 1) / _MODULATIONS * _MOST_MODULATIONS)
     depth = section[:, None] / max(float(np.max(np.abs(section))), np.finfo(float).tiny)
     return np.concatenate([depth * np.cos(phase), depth * np.sin(phase)], axis=1)
-
-
-def _block_edges(surface: HeightMap, side: float) -> list[NDArray[np.intp]]:
-    """First rows and first columns of the blocks of a side in m."""
-    counts, spacings = surface.height.shape, (surface.spacing_y, surface.spacing_x)
-    return [np.arange(0, count, max(1, round(side / spacing))) for count, spacing in zip(counts, spacings, strict=True)]
-
-
-def _block_means(fields: tuple[Floats, ...], mask: Mask, edges: list[NDArray[np.intp]]) -> Floats:
-    """Mean of each field over the masked pixels of the blocks with any, and last their number."""
-
-    def total(values: Floats) -> Floats:
-        return np.asarray(np.add.reduceat(np.add.reduceat(values, edges[0], axis=0), edges[1], axis=1))
-
-    count = total(mask.astype(np.float64))
-    used = count > 0
-    return np.array([*(total(np.where(mask, values, 0.0))[used] / count[used] for values in fields), count[used]])

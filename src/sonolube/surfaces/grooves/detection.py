@@ -1,7 +1,7 @@
 """Detection of a straight or circular wear groove in a scan, by least squares over the direction and curvature."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -10,7 +10,7 @@ from scipy.optimize import minimize
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, NoGroove
-from sonolube.surfaces.grooves.plane_coordinates import arc_coordinates, centred_coordinates
+from sonolube.surfaces.grooves.plane_coordinates import arc_coordinates, block_edges, block_means, centred_coordinates
 from sonolube.surfaces.grooves.track import GrooveTrack
 from sonolube.surfaces.height_map import HeightMap
 
@@ -95,9 +95,7 @@ def detect_groove(surface: HeightMap) -> DetectedGroove:
     left_margin = margin if first > 0 else math.inf  # a groove cut by the field may extend to its corner
     right_margin = margin if last < section.transverse.size else math.inf
     return DetectedGroove(
-        track=GrooveTrack(
-            track_direction=track.track_direction, track_curvature=track.track_curvature, track_offset=float(middle)
-        ),
+        track=replace(track, track_offset=float(middle)),
         worn_band=(float(left - middle - left_margin), float(right - middle + right_margin)),
         contrast=depth / deviation,
     )
@@ -126,20 +124,8 @@ def _block_means(surface: HeightMap, blocks: int) -> _Blocks:
     """Means of positions and heights over square blocks, so many along the longer side of the field."""
     rows, columns = surface.height.shape
     reach = max(rows * surface.spacing_y, columns * surface.spacing_x)
-    edges = [
-        np.arange(0, count, max(1, round(reach / blocks / spacing)))
-        for count, spacing in ((rows, surface.spacing_y), (columns, surface.spacing_x))
-    ]
-
-    def total(values: Floats) -> Floats:
-        return np.asarray(np.add.reduceat(np.add.reduceat(values, edges[0], axis=0), edges[1], axis=1))
-
-    measured = surface.measured
-    count = total(measured.astype(np.float64))
-    used = count > 0
-    x, y = centred_coordinates(surface)
-    fields = (np.where(measured, values, 0.0) for values in (x + 0 * y, y + 0 * x, surface.height))
-    px, py, height = (total(values)[used] / count[used] for values in fields)
+    fields = (*centred_coordinates(surface), surface.height)
+    px, py, height, _ = block_means(fields, surface.measured, block_edges(surface, reach / blocks))
     if height.size < 100:
         raise InvalidInput(
             f"detection of a groove requires at least 100 measured blocks of {reach / blocks:.2g} m, got {height.size};"

@@ -242,7 +242,5 @@ def _caveat(edges: GrooveExtent, relative_uncertainty: float, missing_fraction: 
             " the field"
         )
     if missing_fraction > _MISSING:
-        caveats.append(
-            f"{missing_fraction:.0%} of the groove was not measured and is assumed to be as deep as the rest"
-        )
+        caveats.append(f"{missing_fraction:.0%} of the groove was not measured, and is assumed as deep as the rest")
     return "; ".join(caveats)

@@ -3,9 +3,10 @@
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sonolube.checks import Floats
-from sonolube.surfaces.height_map import HeightMap
+from sonolube.surfaces.height_map import HeightMap, Mask
 
 
 def centred_coordinates(surface: HeightMap) -> tuple[Floats, Floats]:
@@ -80,3 +81,20 @@ def monomials(u: Floats, v: Floats, terms: int) -> list[Floats]:
     list of ndarray
     """
     return [np.ones_like(u + v), u + 0 * v, v + 0 * u, u**2 + 0 * v, u * v, v**2 + 0 * u][:terms]
+
+
+def block_edges(surface: HeightMap, side: float) -> list[NDArray[np.intp]]:
+    """First rows and first columns of the blocks of a side in m."""
+    counts, spacings = surface.height.shape, (surface.spacing_y, surface.spacing_x)
+    return [np.arange(0, count, max(1, round(side / spacing))) for count, spacing in zip(counts, spacings, strict=True)]
+
+
+def block_means(fields: tuple[Floats, ...], mask: Mask, edges: list[NDArray[np.intp]]) -> Floats:
+    """Mean of each field over the masked pixels of the blocks with any, and last their number."""
+
+    def total(values: Floats) -> Floats:
+        return np.asarray(np.add.reduceat(np.add.reduceat(values, edges[0], axis=0), edges[1], axis=1))
+
+    count = total(mask.astype(np.float64))
+    used = count > 0
+    return np.array([*(total(np.where(mask, values, 0.0))[used] / count[used] for values in fields), count[used]])

@@ -200,9 +200,7 @@ def _misfit_reduction(cosine: Floats, sine: Floats, residual: Floats) -> Floats:
 
 def _local_maxima(candidates: Floats, gain: Floats) -> Floats:
     """Modes whose reduction exceeds that of all neighbours, the largest of them."""
-    spacing = np.min(
-        np.ptp(candidates, axis=0) / np.maximum(np.array([len(np.unique(k)) - 1 for k in candidates.T]), 1)
-    )
+    spacing = np.min(np.ptp(candidates, axis=0) / np.maximum([len(np.unique(k)) - 1 for k in candidates.T], 1))
     distance = np.hypot(*(candidates[:, None] - candidates[None, :]).T)
     opposite = np.hypot(*(candidates[:, None] + candidates[None, :]).T)
     near = np.minimum(distance, opposite) < 1.5 * spacing

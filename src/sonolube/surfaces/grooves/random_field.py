@@ -53,19 +53,17 @@ def fit_random_field(blocks: BlockAverages) -> WavinessModel:
     noise[0] = scale**2 / 10
     bound = np.arange(free, design.shape[1])
     for _ in range(_MOST_ITERATIONS):
-        prior = 1 / density[rings]
-        precision = sum(part.gram / variance for part, variance in zip(parts, noise, strict=True))
+        prior, pairs = 1 / density[rings], list(zip(parts, noise, strict=True))
+        precision = sum(part.gram / variance for part, variance in pairs)
         precision[np.diag_indices(free)] *= 1 + _ROUNDING
         precision[bound, bound] += prior
         covariance = np.linalg.inv(precision)
-        mean = covariance @ sum(part.moment / variance for part, variance in zip(parts, noise, strict=True))
+        mean = covariance @ sum(part.moment / variance for part, variance in pairs)
         used_noise, previous = noise, density
         freedom = np.bincount(rings, 1 - prior * np.diag(covariance)[free:], minlength=_RINGS)
         power = np.bincount(rings, mean[free:] ** 2, minlength=_RINGS)
         density = np.maximum(power / np.maximum(freedom, 1e-9), _LEAST_VARIANCE * noise[0])
-        effective = [
-            float(np.sum(covariance * part.gram)) / variance for part, variance in zip(parts, noise, strict=True)
-        ]
+        effective = [float(np.sum(covariance * part.gram)) / variance for part, variance in pairs]
         noise = np.array([part.variance(mean, used, scale) for part, used in zip(parts, effective, strict=True)])
         if np.all(np.abs(np.log(density / previous))[previous > _NEGLIGIBLE * noise[0]] < _CONVERGED):
             break
@@ -108,11 +106,8 @@ class _Part(NamedTuple):
 
     def variance(self, mean: Floats, used: float, scale: float) -> float:
         """Noise variance for given coefficients and effective number of parameters."""
-        return float(
-            max(
-                self.residual_sum(mean) / max(self.blocks - used, 1.0), (_NEGLIGIBLE * scale) ** 2, HEIGHT_RESOLUTION**2
-            )
-        )
+        estimate = self.residual_sum(mean) / max(self.blocks - used, 1.0)
+        return float(max(estimate, (_NEGLIGIBLE * scale) ** 2, HEIGHT_RESOLUTION**2))
 
 
 def _log_noise(parts: list[_Part], noise: Floats) -> float:

@@ -81,12 +81,7 @@ class GrooveExtent(NamedTuple):
 
     def shifted(self, shift: float) -> "GrooveExtent":
         """The same with `shift` in m added to all distances."""
-        return self._replace(
-            left=self.left + shift,
-            right=self.right + shift,
-            left_foot=self.left_foot + shift,
-            right_foot=self.right_foot + shift,
-        )
+        return self._replace(**{name: getattr(self, name) + shift for name in self._fields[:4]})
 
 
 def mean_cross_section(levelled: HeightMap, transverse: Floats, counted: Mask) -> MeanCrossSection:

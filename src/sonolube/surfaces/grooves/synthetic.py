@@ -180,9 +180,8 @@ def synthetic_groove(
     """
     field = field or ScannedField()
     rng = np.random.default_rng(seed)
-    unworn = HeightMap(
-        height=_plane(field, rng) + _wave(field, rng), spacing_x=field.spacing_x, spacing_y=field.spacing_y
-    )
+    ground = _plane(field, rng) + _wave(field, rng)
+    unworn = HeightMap(height=ground, spacing_x=field.spacing_x, spacing_y=field.spacing_y)
     transverse, arc_length = track.curvilinear_coordinates(unworn)
     depth, ridge = shape.depth_at(transverse, arc_length), shape.ridge_at(transverse)
     height = unworn.height - depth + ridge
@@ -216,10 +215,8 @@ def _wave(field: ScannedField, rng: np.random.Generator) -> Floats:
     """Plane wave of the field's waviness in a random direction."""
     x, y = _positions(field)
     angle, phase = rng.uniform(0, 2 * math.pi, 2)
-    wavenumber = 2 * math.pi / field.waviness_length
-    return np.asarray(
-        field.waviness_amplitude * np.sin(wavenumber * (x * math.cos(angle) + y * math.sin(angle)) + phase)
-    )
+    along = x * math.cos(angle) + y * math.sin(angle)
+    return np.asarray(field.waviness_amplitude * np.sin(2 * math.pi / field.waviness_length * along + phase))
 
 
 def _roughness(field: ScannedField, seed: int) -> Floats:

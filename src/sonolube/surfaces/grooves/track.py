@@ -1,7 +1,7 @@
 """Track of a wear groove in a scan, a line or a circular arc, and curvilinear coordinates about it."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 import numpy as np
 
@@ -30,9 +30,7 @@ class GrooveTrack:
     track_offset: float
 
     def __post_init__(self) -> None:
-        require_finite(
-            track_direction=self.track_direction, track_curvature=self.track_curvature, track_offset=self.track_offset
-        )
+        require_finite(**asdict(self))
 
     @property
     def groove_diameter(self) -> float:

@@ -100,9 +100,8 @@ def track_marks(groove: Groove, *, width_fraction: float = 0.6, averaged_points:
     resolved = (k >= _LEAST_PERIODS / length) & (k <= 1 / (_POINTS_PER_PERIOD * step))
     k, power = k[resolved], power[resolved]
     if k.size < 3 * _PADDING or not np.any(power > 0):
-        raise InvalidInput(
-            f"a track of {length:.2g} m with points every {step:.2g} m is too short or too flat for a spectrum"
-        )
+        track = f"a track of {length:.2g} m with points every {step:.2g} m"
+        raise InvalidInput(f"{track} is too short or too flat for a spectrum")
     maxima = 1 + np.flatnonzero((power[1:-1] > power[:-2]) & (power[1:-1] >= power[2:]))
     candidates = maxima[np.argsort(-(power * k)[maxima])][:_CANDIDATES]
     backgrounds = [_power_law(k, power, np.abs(k - k[index]) > _LOBE / length) for index in candidates]
@@ -112,13 +111,12 @@ def track_marks(groove: Groove, *, width_fraction: float = 0.6, averaged_points:
     background = backgrounds[best] if candidates.size else _power_law(k, power, np.ones(k.size, dtype=np.bool_))
     significant = prominence >= _SIGNIFICANT
     spacing = 1 / _interpolated_maximum(k, power, top) if significant else None
+    weak = f"no peak of the spectrum along the track exceeds {prominence:.1f} times the power of the background"
     return TrackMarks(
         dot_spacing=spacing,
         dot_spacing_uncertainty=None if spacing is None else _uncertainty(spacing, length, prominence),
         prominence=prominence,
-        reason=""
-        if significant
-        else f"no peak of the spectrum along the track exceeds {prominence:.1f} times the power of the background",
+        reason="" if significant else weak,
         wavenumber=k,
         profile_spectral_density=power,
         background=background,

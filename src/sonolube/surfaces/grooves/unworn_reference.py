@@ -1,7 +1,7 @@
 """Reference surface of a worn scan: form and waviness of the unworn pixels, extrapolated below the groove."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -55,11 +55,8 @@ class UnwornReference:
         if not section.size:
             return track
         rotation, bending = (float(change) for change in section[-2:] / self.blocks.longer_side)
-        return GrooveTrack(
-            track_direction=track.track_direction + rotation,
-            track_curvature=track.track_curvature + bending / self.blocks.longer_side,
-            track_offset=track.track_offset,
-        )
+        curvature = track.track_curvature + bending / self.blocks.longer_side
+        return replace(track, track_direction=track.track_direction + rotation, track_curvature=curvature)
 
     def groove_has_evidence(self) -> bool:
         """Whether a groove with a free section has greater evidence (BIC) than waviness alone."""
@@ -127,9 +124,8 @@ def unworn_reference(
     transverse, _ = track.curvilinear_coordinates(surface)
     unworn = (transverse <= worn_band[0]) | (transverse >= worn_band[1])
     plane = fit_form(surface, degree=1, reference=unworn if excluded is None else unworn & ~excluded).height
-    blocks = block_averages(
-        surface.with_height(surface.height - plane), track=track, worn_band=worn_band, excluded=excluded
-    )
+    flat = surface.with_height(surface.height - plane)
+    blocks = block_averages(flat, track=track, worn_band=worn_band, excluded=excluded)
     models = _models(blocks)
     x, y = centred_coordinates(surface)
     waves = sum(weight * model.heights(x, y) for weight, model in zip(model_probabilities(models), models, strict=True))
