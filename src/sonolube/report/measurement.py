@@ -54,7 +54,7 @@ def measurement_page(report: MeasurementReport, *, advance: Advance = lambda nam
     pictures: dict[tuple[int, str], str] = {}
     for place, sheet in enumerate(report.sheets):
         for figure in sheet.figures:
-            pictures[place, figure.name] = embedded(drawn(Drawing(draw=figure.draw), forms=("png",))["png"])
+            pictures[place, figure.title] = embedded(drawn(Drawing(draw=figure.draw), forms=("png",))["png"])
             advance(figure.title, len(pictures), total)
     return html(
         "measurement.html",

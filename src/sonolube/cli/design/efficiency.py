@@ -9,7 +9,7 @@ import typer
 import xarray as xr
 
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
-from sonolube.cli.console.options import OUT, Changes, Json, Out, option_value
+from sonolube.cli.console.options import OUT, Changes, Json, Out, si_option
 from sonolube.cli.console.rig_text import rig_settings
 from sonolube.design.efficiency import EfficiencyCalibration, calibrate_efficiency, efficiency_dataset
 from sonolube.design.efficiency_figures import efficiency_figure
@@ -37,9 +37,9 @@ def efficiency(
     runs: Annotated[Path, typer.Argument(metavar="RUNS.csv", help="Measured runs, a row each.")],
     rig: Annotated[Path, typer.Option(metavar="RIG.toml", help="The rig, for what the table of runs does not give.")],
     friction: Annotated[
-        str | None, typer.Option("--target-friction", metavar="FORCE", help="Target of the friction, for its power.")
+        float | None, si_option("N", "Target of the friction, for its power.", "--target-friction")
     ] = None,
-    speed: Annotated[str | None, typer.Option(metavar="SPEED", help="Sliding speed of that target.")] = None,
+    speed: Annotated[float | None, si_option("m/s", "Sliding speed of that target.")] = None,
     level: Annotated[float, typer.Option(help="Confidence level.", min=0.5, max=0.9999)] = 0.95,
     changes: Changes = None,
     out: Out = OUT,
@@ -51,11 +51,7 @@ def efficiency(
     """
     known = read_rig(rig, changes=changes or ())
     calibration = calibrate_efficiency(
-        known,
-        read_runs(runs),
-        friction_force=option_value(friction, unit="N", option="--target-friction"),
-        sliding_speed=option_value(speed, unit="m/s", option="--speed"),
-        confidence_level=level,
+        known, read_runs(runs), friction_force=friction, sliding_speed=speed, confidence_level=level
     )
     answer = EfficiencyAnswer(calibration=calibration, rig_file=rig, name=f"{runs.stem}-efficiency")
     deliver(answer, folder=out, as_json=json, context=context)

@@ -23,7 +23,6 @@ from sonolube.report.measured.friction import recording_source
 from sonolube.report.measured.sheet import (
     Sheet,
     SheetColumn,
-    SheetFigure,
     SheetSection,
     SheetTable,
     SheetValue,
@@ -87,12 +86,7 @@ def calibration_sheet(path: Path, *, settings: CalibrationSettings) -> Sheet:
         ),
         SheetValue("mean_stiffness", "Mean stiffness over the whole range", span / float(np.ptp(x)), "N/m"),
     )
-    loop = SheetFigure(
-        name="loops",
-        title="Force over displacement",
-        caption="Measured loops and those of the Preisach model; below, the residual.",
-        draw=partial(figures.loops, x, force, hysteresis),
-    )
+    loop = figures.loops(x, force, hysteresis)
     branches = attempted_section(partial(_branches, x, force, settings.degree), what="polynomials of the branches")
     return sheet_from_sections(
         [SheetSection(values=values, figures=(loop,)), branches], title=path.name, source=recording_source(recording)
@@ -165,12 +159,7 @@ def force_sheet(path: Path, *, calibration: PreisachCalibration, settings: Calib
             uncertainty=float(estimate.applied_force_uncertainty[highest]),
         ),
     )
-    figure = SheetFigure(
-        name="force",
-        title="Force by the displacement",
-        caption="With its standard uncertainty as a band.",
-        draw=partial(figures.force, channel_values(recording, "time"), estimate),
-    )
+    figure = figures.force(channel_values(recording, "time"), estimate)
     return sheet_from_sections(
         [SheetSection(values=values, figures=(figure,))], title=path.name, source=recording_source(recording)
     )

@@ -207,7 +207,6 @@ def _trace_figure(windows: WindowStatistics, draw: Callable[[], "Figure"]) -> Sh
     """Figure of a trace with its windows."""
     span = format_si(windows.window_duration, "s")
     return SheetFigure(
-        name="trace",
         title="Trace with windows",
         caption=f"Samples in grey; mean of each window of {span}, and as a band the root mean square about it.",
         draw=draw,
@@ -217,12 +216,7 @@ def _trace_figure(windows: WindowStatistics, draw: Callable[[], "Figure"]) -> Sh
 def _cycle_figure(recording: "xr.Dataset", name: str) -> SheetFigure:
     """Figure of a recording with one value a cycle."""
     along = channel_values(recording, "revolutions")
-    return SheetFigure(
-        name="trace",
-        title="Trace by cycle",
-        caption="One value a cycle, as the instrument gives it.",
-        draw=partial(figures.by_cycle, along, channel_values(recording, name), name),
-    )
+    return figures.by_cycle(along, channel_values(recording, name), name)
 
 
 def _steady_state_or_none(windows: WindowStatistics, sliding_speed: float) -> SteadyStateOnset | None:
@@ -272,12 +266,7 @@ def _voltage_steps(recording: "xr.Dataset") -> SheetSection:
         columns=quantity_columns(_STEP_LABELS),
         rows=tuple(tuple(getattr(step, name) for name in _STEP_LABELS) for step in steps),
     )
-    figure = SheetFigure(
-        name="staircase",
-        title="Friction over voltage",
-        caption="Mean and its standard error at each step, and the reduction of the friction without voltage.",
-        draw=partial(figures.voltage_steps, steps),
-    )
+    figure = figures.voltage_steps(steps)
     return SheetSection(tables=(table,), figures=(figure,))
 
 
@@ -314,14 +303,7 @@ def _cycles(recording: "xr.Dataset") -> SheetSection:
                 uncertainty=float(work.std(ddof=1) / work.size**0.5) if work.size > 1 else None,
             )
         )
-    figure = SheetFigure(
-        name="loops",
-        title="Friction over velocity",
-        caption="Every cycle of the recording; the work is the area of the loop over displacement.",
-        draw=partial(
-            figures.loops, channel_values(recording, "relative_velocity"), channel_values(recording, "friction_force")
-        ),
-    )
+    figure = figures.loops(channel_values(recording, "relative_velocity"), channel_values(recording, "friction_force"))
     return SheetSection(values=tuple(values), figures=(figure,))
 
 
@@ -344,12 +326,7 @@ def _motor(recording: "xr.Dataset", settings: FrictionSettings, motor: MotorCali
     mean = float(trace.friction_force.mean())
     # all windows share the errors of torque constant and idle current, so that averaging does not lower them
     error = float(np.sqrt(np.mean(trace.friction_force_uncertainty**2)))
-    figure = SheetFigure(
-        name="trace",
-        title="Friction by the motor current",
-        caption="Mean in each window with its standard uncertainty.",
-        draw=partial(figures.motor_trace, trace),
-    )
+    figure = figures.motor_trace(trace)
     return SheetSection(values=(quantity_value("friction_force", mean, uncertainty=error),), figures=(figure,))
 
 

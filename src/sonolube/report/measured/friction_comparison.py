@@ -7,7 +7,6 @@ from sonolube.measurement.statistics.repeated_tests import compare_means, ratio_
 from sonolube.report.measured import friction_figures as figures
 from sonolube.report.measured.sheet import (
     Sheet,
-    SheetFigure,
     SheetSection,
     SheetValue,
     attempted_section,
@@ -41,12 +40,7 @@ def comparison_sheet(with_vibration: Sequence[Sheet], without_vibration: Sequenc
         [value.value for sheet in sheets if (value := _value(sheet, level))]
         for sheets in (with_vibration, without_vibration)
     )
-    figure = SheetFigure(
-        name="comparison",
-        title="Tests with and without vibration",
-        caption="Each test, and the mean of its kind.",
-        draw=partial(figures.comparison, still, vibrated, level),
-    )
+    figure = figures.comparison(still, vibrated, level)
     sections = [
         attempted_section(partial(_reduction, vibrated, still), what="interval of the reduction"),
         attempted_section(partial(_significance, vibrated, still), what="significance"),

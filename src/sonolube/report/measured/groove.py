@@ -1,7 +1,7 @@
 """Sheets of wear grooves: volume of a scan, wear of a ring and of the pin, wear reduction by vibration."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
@@ -150,12 +150,7 @@ def ring_sheet(
         columns=(SheetColumn("scan", "Scan"), SheetColumn("cross_section_area", "Area", "m2")),
         rows=tuple(zip(counted, map(float, ring.cross_section_area), strict=True)),
     )
-    figure = SheetFigure(
-        name="ring",
-        title="Sections round the ring",
-        caption="Area of the mean section of each scan; the line is the mean, the band its 95 % interval.",
-        draw=partial(figures.ring, ring),
-    )
+    figure = figures.ring(ring)
     section = SheetSection(values=tuple(values), tables=(table,), figures=(figure,), caveats=ring.excluded_scans)
     return sheet_from_sections([section], title=title, source={}), ring
 
@@ -215,12 +210,8 @@ def cap_sheet(path: Path, *, settings: SurfaceSettings, tip_radius: float | None
         SheetValue("scar_diameter", "Diameter of the scar", cap.scar_diameter, "m"),
         quantity_value("tip_radius", cap.tip_radius),
     )
-    figure = SheetFigure(
-        name="cap",
-        title="Scar of the pin",
-        caption="Heights over the ball; the line goes round the scar.",
-        draw=partial(figures.height_map, cap.levelled, cap.worn),
-    )
+    scar_map = figures.height_map(cap.levelled, cap.worn)
+    figure = replace(scar_map, title="Scar of the pin", caption="Heights over the ball; the line goes round the scar.")
     return sheet_from_sections(
         [SheetSection(values=values, figures=(figure,))], title=path.name, source=surface_source(file)
     )
@@ -228,32 +219,12 @@ def cap_sheet(path: Path, *, settings: SurfaceSettings, tip_radius: float | None
 
 def _figures(groove: Groove) -> tuple[SheetFigure, ...]:
     """View, cross-sections, map and Abbott curve of a groove."""
+    curve = abbott(material_ratio_curve(groove.levelled))
     return (
-        SheetFigure(
-            name="view",
-            title="The groove",
-            caption="Heights over the unworn surface, the vertical stretched.",
-            draw=partial(figures.view, groove),
-        ),
-        SheetFigure(
-            name="sections",
-            title="Cross-sections",
-            caption="Single sections square to the track in grey, the mean in colour, its edges where it meets the"
-            " unworn surface.",
-            draw=partial(figures.sections, groove),
-        ),
-        SheetFigure(
-            name="map",
-            title="Map",
-            caption="Heights over the unworn surface; the line goes round what counts as worn.",
-            draw=partial(figures.height_map, groove.levelled, groove.worn),
-        ),
-        SheetFigure(
-            name="abbott",
-            title="Abbott curve",
-            caption="Of the whole field over the unworn surface; the groove is its tail.",
-            draw=partial(abbott, material_ratio_curve(groove.levelled)),
-        ),
+        figures.view(groove),
+        figures.sections(groove),
+        figures.height_map(groove.levelled, groove.worn),
+        replace(curve, caption="Of the whole field over the unworn surface; the groove is its tail."),
     )
 
 
@@ -262,11 +233,6 @@ def _marks(groove: Groove) -> SheetSection:
     marks = track_marks(groove)
     if marks.dot_spacing is None:
         return SheetSection(not_found=(f"marks along the track: {marks.reason}",))
-    figure = SheetFigure(
-        name="marks",
-        title="Spectrum along the track",
-        caption="Power of the groove's floor along the track over its background; the peak is the marks' spacing.",
-        draw=partial(figures.marks, marks),
-    )
+    figure = figures.marks(marks)
     value = quantity_value("dot_spacing", marks.dot_spacing, uncertainty=marks.dot_spacing_uncertainty)
     return SheetSection(values=(value,), figures=(figure,))

@@ -97,18 +97,12 @@ def _circuit(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings) -> SheetS
         spectrum, branches=settings.branches, residual=settings.residual, series_resistance=settings.series_resistance
     )
     figure = SheetFigure(
-        name="fit",
         title="Impedance with the fitted circuit",
         caption=f"Measured and fitted by the {fit.residual} residual, and the residual: relative in magnitude,"
         " radians in phase.",
         draw=partial(figures.circuit, spectrum, fit.circuit),
     )
-    circle = SheetFigure(
-        name="admittance",
-        title="Admittance circle",
-        caption="Susceptance over conductance; a mode draws a circle.",
-        draw=partial(figures.admittance_circle, spectrum, fit.circuit),
-    )
+    circle = figures.admittance_circle(spectrum, fit.circuit)
     values = (*_values(fit.intervals), _rms(fit.residual_rms, fit.residual))
     return SheetSection(values=values, figures=(figure, circle), caveats=fit.caveats)
 
@@ -125,7 +119,6 @@ def _stack(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings, initial: St
         _rms(fit.residual_rms, fit.residual),
     )
     figure = SheetFigure(
-        name="fit",
         title="Impedance with the fitted stack",
         caption=f"Measured, and that of the structure with the stack found by the {fit.residual} residual.",
         draw=partial(figures.stack, spectrum, initial.in_structure(fit.stack)),

@@ -1,7 +1,6 @@
 """Sheets of Hall-probe recordings: rotation speed of the disc and sliding speed of the pin."""
 
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -11,14 +10,7 @@ from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.measurement.recordings.reader import read_recording
 from sonolube.report.measured import rotation_figures as figures
 from sonolube.report.measured.friction import recording_source
-from sonolube.report.measured.sheet import (
-    Sheet,
-    SheetFigure,
-    SheetSection,
-    SheetValue,
-    quantity_value,
-    sheet_from_sections,
-)
+from sonolube.report.measured.sheet import Sheet, SheetSection, SheetValue, quantity_value, sheet_from_sections
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -84,23 +76,8 @@ def rotation_sheet(path: Path, *, settings: RotationSettings) -> Sheet:
             SheetValue("speed_variation", "Relative standard deviation of the speed of the turns", spread, "")
         )
     pictures = (
-        SheetFigure(
-            name="speed",
-            title="Speed turn by turn",
-            caption="Each turn is timed from a magnet to the same magnet; the line is the mean.",
-            draw=partial(figures.speed, rotation),
-        ),
-        SheetFigure(
-            name="pulses",
-            title="Pulses of the probe",
-            caption="The first turns, with the pulses detected and those inserted where one was missing.",
-            draw=partial(
-                figures.pulses,
-                channel_values(recording, "time"),
-                channel_values(recording, "magnetic_flux_density"),
-                rotation,
-            ),
-        ),
+        figures.speed(rotation),
+        figures.pulses(channel_values(recording, "time"), channel_values(recording, "magnetic_flux_density"), rotation),
     )
     caveats: tuple[str, ...] = ()
     if interpolated > rotation.time.size / 10:

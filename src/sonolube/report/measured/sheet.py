@@ -3,8 +3,9 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial, wraps
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ParamSpec
 
 from sonolube.errors import InvalidInput
 from sonolube.units import format_si
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Cell = float | str | None
+Drawn = ParamSpec("Drawn")
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,12 +95,24 @@ class SheetTable:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class SheetFigure:
-    """Figure of a sheet, drawn when the page is made."""
+    """Figure of a sheet, drawn when the page is made; no two of a sheet have the same title."""
 
-    name: str
     title: str
     caption: str
     draw: Callable[[], "Figure"]
+
+
+def sheet_figure(title: str, caption: str) -> Callable[[Callable[Drawn, "Figure"]], Callable[Drawn, SheetFigure]]:
+    """Decorator of a function that draws: it then returns the figure of a sheet with this title and caption."""
+
+    def decorated(draw: Callable[Drawn, "Figure"]) -> Callable[Drawn, SheetFigure]:
+        @wraps(draw)
+        def figure(*args: Drawn.args, **kwargs: Drawn.kwargs) -> SheetFigure:
+            return SheetFigure(title=title, caption=caption, draw=partial(draw, *args, **kwargs))
+
+        return figure
+
+    return decorated
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -1,11 +1,9 @@
 """Sheets of height maps: parameters of ISO 25178-2 and of profiles, spectra, summits for the contact models."""
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import partial
 from pathlib import Path
-from types import MappingProxyType
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.surface_files.reader import SurfaceFile, read_surface_file
@@ -13,7 +11,6 @@ from sonolube.report.measured import surface_figures as figures
 from sonolube.report.measured.sheet import (
     Sheet,
     SheetColumn,
-    SheetFigure,
     SheetSection,
     SheetTable,
     attempted_section,
@@ -44,78 +41,45 @@ from sonolube.surfaces import (
 )
 from sonolube.units import format_si
 
-_SYMBOLS: Mapping[str, str] = MappingProxyType(
-    {
-        "arithmetic_mean_height": "Sa",
-        "rms_height": "Sq",
-        "maximum_peak_height": "Sp",
-        "maximum_pit_depth": "Sv",
-        "total_height": "Sz",
-        "skewness": "Ssk",
-        "kurtosis": "Sku",
-        "rms_gradient": "Sdq",
-        "developed_interfacial_area_ratio": "Sdr",
-        "autocorrelation_length": "Sal",
-        "texture_aspect_ratio": "Str",
-        "texture_direction": "Std",
-        "core_height": "Sk",
-        "reduced_peak_height": "Spk",
-        "reduced_valley_depth": "Svk",
-        "peak_material_ratio": "Smr1",
-        "valley_material_ratio": "Smr2",
-        "peak_material_volume": "Vmp",
-        "core_material_volume": "Vmc",
-        "core_void_volume": "Vvc",
-        "valley_void_volume": "Vvv",
-        "peak_density": "Spd",
-        "mean_peak_curvature": "Spc",
-    }
-)
-_LABELS: Mapping[str, str] = MappingProxyType(
-    {
-        "arithmetic_mean_height": "mean deviation of heights",
-        "rms_height": "standard deviation of heights",
-        "maximum_peak_height": "highest above the mean",
-        "maximum_pit_depth": "deepest below the mean",
-        "total_height": "highest to deepest",
-        "skewness": "skewness",
-        "kurtosis": "kurtosis",
-        "rms_gradient": "root mean square slope",
-        "developed_interfacial_area_ratio": "excess of area",
-        "autocorrelation_length": "autocorrelation length",
-        "texture_aspect_ratio": "texture aspect ratio",
-        "texture_direction": "direction of the lay",
-        "core_height": "height of the core",
-        "reduced_peak_height": "peaks above the core",
-        "reduced_valley_depth": "valleys below the core",
-        "peak_material_ratio": "share of peaks",
-        "valley_material_ratio": "share that is not valleys",
-        "peak_material_volume": "material of the peaks per area",
-        "core_material_volume": "material of the core per area",
-        "core_void_volume": "void of the core per area",
-        "valley_void_volume": "void of the valleys per area",
-        "peak_density": "significant hills per area",
-        "mean_peak_curvature": "mean curvature of their peaks",
-    }
-)
-_PROFILE_LABELS: Mapping[str, str] = MappingProxyType(
-    {
-        "arithmetic_mean_height": "Ra",
-        "rms_height": "Rq",
-        "maximum_peak_height": "Rp",
-        "maximum_pit_depth": "Rv",
-        "total_height": "Rt",
-        "mean_section_height": "Rz",
-    }
-)
-_SAMPLING_LABELS: Mapping[str, str] = MappingProxyType(
-    {
-        "sampling_interval": "Interval",
-        "rms_height": "Deviation of summit heights",
-        "summit_radius": "Summit radius",
-        "summit_density": "Summit density",
-    }
-)
+_LABELS = {
+    "arithmetic_mean_height": "Sa, mean deviation of heights",
+    "rms_height": "Sq, standard deviation of heights",
+    "maximum_peak_height": "Sp, highest above the mean",
+    "maximum_pit_depth": "Sv, deepest below the mean",
+    "total_height": "Sz, highest to deepest",
+    "skewness": "Ssk, skewness",
+    "kurtosis": "Sku, kurtosis",
+    "rms_gradient": "Sdq, root mean square slope",
+    "developed_interfacial_area_ratio": "Sdr, excess of area",
+    "autocorrelation_length": "Sal, autocorrelation length",
+    "texture_aspect_ratio": "Str, texture aspect ratio",
+    "texture_direction": "Std, direction of the lay",
+    "core_height": "Sk, height of the core",
+    "reduced_peak_height": "Spk, peaks above the core",
+    "reduced_valley_depth": "Svk, valleys below the core",
+    "peak_material_ratio": "Smr1, share of peaks",
+    "valley_material_ratio": "Smr2, share that is not valleys",
+    "peak_material_volume": "Vmp, material of the peaks per area",
+    "core_material_volume": "Vmc, material of the core per area",
+    "core_void_volume": "Vvc, void of the core per area",
+    "valley_void_volume": "Vvv, void of the valleys per area",
+    "peak_density": "Spd, significant hills per area",
+    "mean_peak_curvature": "Spc, mean curvature of their peaks",
+}
+_PROFILE_LABELS = {
+    "arithmetic_mean_height": "Ra",
+    "rms_height": "Rq",
+    "maximum_peak_height": "Rp",
+    "maximum_pit_depth": "Rv",
+    "total_height": "Rt",
+    "mean_section_height": "Rz",
+}
+_SAMPLING_LABELS = {
+    "sampling_interval": "Interval",
+    "rms_height": "Deviation of summit heights",
+    "summit_radius": "Summit radius",
+    "summit_density": "Summit density",
+}
 _COARSENINGS = (1, 2, 4, 8)  # times the pixel, at which summits are sought
 
 
@@ -216,12 +180,10 @@ def _filtered(levelled: HeightMap, settings: SurfaceSettings) -> HeightMap:
 
 def _part(record: object) -> SheetSection:
     """Areal parameters of a record, labelled with their symbols."""
-    names = [each.name for each in fields(record) if each.name in _SYMBOLS]  # type: ignore[arg-type]
+    names = [each.name for each in fields(record) if each.name in _LABELS]  # type: ignore[arg-type]
     small = not getattr(record, "decays_in_all_directions", True)
     return SheetSection(
-        values=tuple(
-            quantity_value(name, getattr(record, name), label=f"{_SYMBOLS[name]}, {_LABELS[name]}") for name in names
-        ),
+        values=tuple(quantity_value(name, getattr(record, name), label=_LABELS[name]) for name in names),
         caveats=("Str is an upper bound: the map is too small for its texture",) if small else (),
     )
 
@@ -283,37 +245,11 @@ def _waviness(levelled: HeightMap) -> SheetSection:
 
 def _figures(surface: HeightMap) -> SheetSection:
     """Heights, Abbott curve, power spectrum and autocorrelation."""
-    pictures = [
-        SheetFigure(
-            name="heights",
-            title="Heights",
-            caption="The surface as evaluated, levelled and filtered; what was not measured is left white.",
-            draw=partial(figures.heights, surface),
-        ),
-        SheetFigure(
-            name="abbott",
-            title="Abbott curve",
-            caption="Share of the surface at or above each height, with the core by its equivalent line.",
-            draw=partial(figures.abbott, material_ratio_curve(surface)),
-        ),
-    ]
+    pictures = [figures.heights(surface), figures.abbott(material_ratio_curve(surface))]
     try:
         spectrum = radial_spectrum(areal_spectrum(surface))
         correlation = autocorrelation(surface)
     except InvalidInput as refusal:
         return SheetSection(figures=tuple(pictures), not_found=(f"spectrum: {refusal}",))
-    pictures += [
-        SheetFigure(
-            name="spectrum",
-            title="Power spectrum",
-            caption="Areal power spectral density, averaged over direction; least certain at the ends of the grid.",
-            draw=partial(figures.spectrum, spectrum),
-        ),
-        SheetFigure(
-            name="autocorrelation",
-            title="Autocorrelation",
-            caption="Along rows and columns; Sal is where it first falls to 0.2 in any direction.",
-            draw=partial(figures.correlation, correlation),
-        ),
-    ]
+    pictures += [figures.spectrum(spectrum), figures.correlation(correlation)]
     return SheetSection(figures=tuple(pictures))

@@ -27,7 +27,6 @@ from sonolube.report.measured.friction import recording_source
 from sonolube.report.measured.sheet import (
     Sheet,
     SheetColumn,
-    SheetFigure,
     SheetSection,
     SheetTable,
     SheetValue,
@@ -212,12 +211,7 @@ def _table(points: Sequence[str], motion: Complexes, errors: Floats) -> SheetTab
 def _shape(points: Sequence[str], shape: OperatingDeflectionShape) -> SheetSection:
     """Operating shape, and the fraction of the motion that is in phase."""
     value = SheetValue("standing_wave_fraction", "Fraction of the motion in phase", shape.standing_wave_fraction, "")
-    figure = SheetFigure(
-        name="shape",
-        title="Operating shape",
-        caption="Motion in phase with the whole, scaled to 1, and the phase of each point.",
-        draw=partial(figures.shape, points, shape),
-    )
+    figure = figures.shape(points, shape)
     return SheetSection(values=(value,), figures=(figure,))
 
 
@@ -226,12 +220,7 @@ def _assurance(motion: Complexes, modes: Floats) -> SheetSection:
     assurance = modal_assurance_criterion(motion, modes)[0]
     columns = (SheetColumn("mode", "Mode"), SheetColumn("assurance", "Modal assurance"))
     rows = tuple((f"{place}", float(value)) for place, value in enumerate(assurance, start=1))
-    figure = SheetFigure(
-        name="assurance",
-        title="Modal assurance with computed modes",
-        caption="Modal assurance criterion of the operating shape with each mode: 1 in proportion, 0 orthogonal.",
-        draw=partial(figures.assurance, assurance),
-    )
+    figure = figures.assurance(assurance)
     table = SheetTable(name="modes", title="Modal assurance with computed modes", columns=columns, rows=rows)
     return SheetSection(tables=(table,), figures=(figure,))
 
@@ -248,10 +237,5 @@ def _proportion(pairs: Sequence[tuple[float, float]]) -> SheetSection:
     caveats: tuple[str, ...] = ()
     if not fit.proportional:
         caveats = (f"amplitude is not in proportion to voltage: the slope changes by {fit.curvature:+.0%}",)
-    figure = SheetFigure(
-        name="proportion",
-        title="Amplitude over voltage",
-        caption="Each recording, and the line through the origin with its 95 % interval.",
-        draw=partial(figures.proportion, volts, amplitudes, fit),
-    )
+    figure = figures.proportion(volts, amplitudes, fit)
     return SheetSection(values=values, figures=(figure,), caveats=caveats)
