@@ -14,7 +14,7 @@ import xarray as xr
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
 from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath, TypedNumber, si_option
 from sonolube.cli.console.progress import progress
-from sonolube.cli.console.rig_text import friction_model_object, operating_point, rig_settings
+from sonolube.cli.console.rig_text import operating_point, rig_settings
 from sonolube.design.control import (
     Amplifier,
     ControlDesign,
@@ -162,7 +162,7 @@ class ControlAnswer(Answer):
         }
         content = {
             "rig": self.rig.title,
-            **friction_model_object(self.rig),
+            "friction_model": self.rig.friction_model.name,
             "feed_forward": self.settings.feed_forward,
             "limit": study.limit,
             **si(values),
@@ -257,48 +257,31 @@ class ControlAnswer(Answer):
         margins, response, energy = study.margins, study.response, study.energy
         late = process.dead_time_samples * process.sample_interval
         amplifier = "" if energy.amplifier_energy is None else f"{format_si(energy.amplifier_energy, 'J')} (D 1.9), "
-        facts = [
-            (
-                "target friction",
-                f"{format_si(study.friction_force, 'N')} of {study.plant.highest_force:.3g} N; "
-                f"least within reach {study.plant.lowest_force:.3g} N",
-            ),
-            ("drive", f"up to {study.voltage_maximum:.4g} V peak to peak, by the amplifier's {study.limit}"),
-            (
-                "process",
-                f"vibration {format_si(study.mode.time_constant, 's')}, delay {format_si(late, 's')}, "
-                f"interval {format_si(process.sample_interval, 's')}",
-            ),
-            (
-                "controller",
-                f"K_c {gains.proportional_gain:.3g}, tau_I {format_si(gains.integral_time, 's')} (SIMC), "
-                f"feed-forward {self.settings.feed_forward}",
-            ),
-            (
-                "margins",
-                f"gain {margins.gain_margin:.2f} where real friction changes {study.plant_gain:.2f} times as expected, "
-                f"phase {degrees(margins.phase_margin):.1f} deg, delay {format_si(margins.delay_margin, 's')}, "
-                f"Ms {margins.sensitivity_peak:.2f}",
-            ),
-            (
-                "step",
-                f"rise {_time(response.rise_time)}, within 5 % after {_time(response.settling_time)}, "
-                f"overshoot {100 * response.overshoot:.2g} %",
-            ),
-            ("tracking error", f"{format_si(response.tracking_error, 'N')} rms once settled"),
-            (
-                "energy",
-                f"amplifier {amplifier}motion {format_si(energy.electrical_energy, 'J')}, "
-                f"work of friction saved {format_si(energy.saved_work, 'J')}",
-            ),
-        ]
+        facts = {
+            "target friction": f"{format_si(study.friction_force, 'N')} of {study.plant.highest_force:.3g} N; "
+            f"least within reach {study.plant.lowest_force:.3g} N",
+            "drive": f"up to {study.voltage_maximum:.4g} V peak to peak, by the amplifier's {study.limit}",
+            "process": f"vibration {format_si(study.mode.time_constant, 's')}, delay {format_si(late, 's')}, "
+            f"interval {format_si(process.sample_interval, 's')}",
+            "controller": f"K_c {gains.proportional_gain:.3g}, tau_I {format_si(gains.integral_time, 's')} (SIMC), "
+            f"feed-forward {self.settings.feed_forward}",
+            "margins": f"gain {margins.gain_margin:.2f} where real friction changes {study.plant_gain:.2f} times as "
+            f"expected, phase {degrees(margins.phase_margin):.1f} deg, delay {format_si(margins.delay_margin, 's')}, "
+            f"Ms {margins.sensitivity_peak:.2f}",
+            "step": f"rise {_time(response.rise_time)}, within 5 % after {_time(response.settling_time)}, "
+            f"overshoot {100 * response.overshoot:.2g} %",
+            "tracking error": f"{format_si(response.tracking_error, 'N')} rms once settled",
+            "energy": f"amplifier {amplifier}motion {format_si(energy.electrical_energy, 'J')}, "
+            f"work of friction saved {format_si(energy.saved_work, 'J')}",
+        }
         if study.fixed_frequency_run is not None:
-            facts.append(("resonance", _resonance_text(study)))
+            facts["resonance"] = _resonance_text(study)
         for name, motion, damping in _motions(self.suppression) if self.suppression else ():
-            sticks = f"sticks {100 * motion.stick_fraction:.0f} % of the time"
-            amplitude = format_si(motion.stick_slip_amplitude, "N")
-            facts.append((f"stick-slip {name}", f"{amplitude}, {sticks}, damping of sliding {damping:.3g} N s/m"))
-        return facts
+            facts[f"stick-slip {name}"] = (
+                f"{format_si(motion.stick_slip_amplitude, 'N')}, sticks {100 * motion.stick_fraction:.0f} % of the"
+                f" time, damping of sliding {damping:.3g} N s/m"
+            )
+        return list(facts.items())
 
 
 def _value_or(default: float, value: float | None) -> float:

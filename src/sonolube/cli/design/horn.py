@@ -23,13 +23,7 @@ from sonolube.units import format_si
 _SHARP = 0.2  # change of the peak stress from mesh to mesh above which it is a caveat
 _NEAREST = 3  # neighbouring modes printed
 _LIMITS = {"fatigue_strength": "fatigue limit", "yield_strength": "yield point"}
-_DESIGN_QUANTITIES = (
-    "displacement_gain",
-    "node_position",
-    "face_uniformity",
-    "face_asymmetry",
-    "stress_per_displacement",
-)
+_QUANTITIES = ("displacement_gain", "node_position", "face_uniformity", "face_asymmetry", "stress_per_displacement")
 
 
 def design(
@@ -119,7 +113,7 @@ class HornAnswer(Answer):
             "sizes": si(design.body.sizes, unit="m"),
             **si({name: getattr(tuned, name) for name in ("length", "frequency_per_length")}),
             **si({name: getattr(tuned.mode, name) for name in ("frequency", "frequency_error")}),
-            **si({name: getattr(design, name) for name in _DESIGN_QUANTITIES}),
+            **si({name: getattr(design, name) for name in _QUANTITIES}),
             **si({"tool_mass": self.tool_mass, "loaded_frequency": self._loaded()}),
             **si({"stress_change": design.stress_change}, unit=""),
             "amplitude_limits": si(self._amplitudes(), unit="m"),

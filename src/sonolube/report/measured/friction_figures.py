@@ -11,7 +11,7 @@ from sonolube.measurement.friction.running_in import SteadyStateOnset
 from sonolube.measurement.friction.voltage_steps import VoltageStep
 from sonolube.measurement.friction.windows import WindowStatistics
 from sonolube.measurement.friction_analysis import MotorFrictionTrace
-from sonolube.report.measured.sheet import sheet_figure
+from sonolube.report.measured.sheet import captioned
 from sonolube.vocabulary import quantities
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def trace(
     return figure
 
 
-@sheet_figure("Trace by cycle", "One value a cycle, as the instrument gives it.")
+@captioned("Trace by cycle", "One value a cycle, as the instrument gives it.")
 def by_cycle(cycles: Floats, signal: Floats, name: str) -> "Figure":
     """Signal with one value a cycle over the number of the cycle."""
     import matplotlib.pyplot as plt
@@ -56,7 +56,7 @@ def by_cycle(cycles: Floats, signal: Floats, name: str) -> "Figure":
     return figure
 
 
-@sheet_figure(
+@captioned(
     "Friction over voltage",
     "Mean and its standard error at each step, and the reduction of the friction without voltage.",
 )
@@ -90,7 +90,7 @@ def voltage_steps(steps: Sequence[VoltageStep]) -> "Figure":
     return figure
 
 
-@sheet_figure(
+@captioned(
     "Friction over velocity", "Every cycle of the recording; the work is the area of the loop over displacement."
 )
 def loops(velocity: Floats, force: Floats) -> "Figure":
@@ -106,7 +106,7 @@ def loops(velocity: Floats, force: Floats) -> "Figure":
     return figure
 
 
-@sheet_figure("Friction by the motor current", "Mean in each window with its standard uncertainty.")
+@captioned("Friction by the motor current", "Mean in each window with its standard uncertainty.")
 def motor_trace(motor: MotorFrictionTrace) -> "Figure":
     """Friction by the motor current over time with its uncertainty."""
     import matplotlib.pyplot as plt
@@ -119,7 +119,7 @@ def motor_trace(motor: MotorFrictionTrace) -> "Figure":
     return figure
 
 
-@sheet_figure("Tests with and without vibration", "Each test, and the mean of its kind.")
+@captioned("Tests with and without vibration", "Each test, and the mean of its kind.")
 def comparison(without: Sequence[float], with_vibration: Sequence[float], level: str) -> "Figure":
     """Friction of single tests without and with vibration, and the mean of each kind."""
     import matplotlib.pyplot as plt

@@ -14,18 +14,7 @@ from sonolube.measurement.wear_track import (
     wear_reduction_between_tracks,
     wear_track_from_grooves,
 )
-from sonolube.report.measured import groove_figures as figures
-from sonolube.report.measured.sheet import (
-    Sheet,
-    SheetColumn,
-    SheetFigure,
-    SheetSection,
-    SheetTable,
-    SheetValue,
-    attempted_section,
-    quantity_value,
-    sheet_from_sections,
-)
+from sonolube.report.measured import groove_figures as figures, sheet
 from sonolube.report.measured.surface import SurfaceSettings, surface_source
 from sonolube.report.measured.surface_figures import abbott
 from sonolube.surfaces import disc_volume_loss, material_ratio_curve, measure_groove, track_marks, wear_scar
@@ -53,7 +42,7 @@ class RingSettings:
     tip_radius: float | None = None
 
 
-def groove_sheet(path: Path, *, settings: SurfaceSettings) -> tuple[Sheet, Groove]:
+def groove_sheet(path: Path, *, settings: SurfaceSettings) -> tuple[sheet.Sheet, Groove]:
     """Wear groove in a scan: width, depth, volumes and pile-up.
 
     Parameters
@@ -80,29 +69,29 @@ def groove_sheet(path: Path, *, settings: SurfaceSettings) -> tuple[Sheet, Groov
     )
     groove = measure_groove(file.height_map)
     values = [
-        quantity_value("wear_volume", groove.wear_volume, uncertainty=groove.wear_volume_uncertainty),
-        SheetValue("pile_up_volume", "Volume of ridges and projections", groove.pile_up_volume, "m3"),
-        SheetValue("net_volume", "Net volume lost in the field", groove.net_volume, "m3"),
-        quantity_value("groove_width", groove.groove_width),
-        SheetValue("groove_depth", "Greatest depth of the mean section", groove.groove_depth, "m"),
-        SheetValue("cross_section_area", "Area of the mean section", groove.cross_section_area, "m2"),
-        SheetValue("track_length", "Length of track in the field", groove.track_length, "m"),
+        sheet.quantity_value("wear_volume", groove.wear_volume, uncertainty=groove.wear_volume_uncertainty),
+        sheet.Value("pile_up_volume", "Volume of ridges and projections", groove.pile_up_volume, "m3"),
+        sheet.Value("net_volume", "Net volume lost in the field", groove.net_volume, "m3"),
+        sheet.quantity_value("groove_width", groove.groove_width),
+        sheet.Value("groove_depth", "Greatest depth of the mean section", groove.groove_depth, "m"),
+        sheet.Value("cross_section_area", "Area of the mean section", groove.cross_section_area, "m2"),
+        sheet.Value("track_length", "Length of track in the field", groove.track_length, "m"),
     ]
     if groove.track.groove_diameter < _STRAIGHT * groove.track_length:
         values.append(
-            quantity_value("groove_diameter", groove.track.groove_diameter, label="Diameter of the track's arc")
+            sheet.quantity_value("groove_diameter", groove.track.groove_diameter, label="Diameter of the track's arc")
         )
     caveats = (groove.caveat,) if groove.caveat else ()
     sections = [
-        SheetSection(values=tuple(values), figures=_figures(groove), caveats=caveats),
-        attempted_section(partial(_marks, groove), what="marks along the track"),
+        sheet.Sheet(values=tuple(values), figures=_figures(groove), caveats=caveats),
+        sheet.attempted(partial(_marks, groove), what="marks along the track"),
     ]
-    return sheet_from_sections(sections, title=f"{path.parent.name}/{path.name}", source=surface_source(file)), groove
+    return sheet.joined(sections, title=f"{path.parent.name}/{path.name}", source=surface_source(file)), groove
 
 
 def ring_sheet(
     title: str, grooves: Sequence[tuple[str, Groove | str]], *, settings: RingSettings
-) -> tuple[Sheet, WearTrack]:
+) -> tuple[sheet.Sheet, WearTrack]:
     """Wear of a ring by the mean section of its scans and the theorem of Pappus.
 
     Parameters
@@ -129,33 +118,32 @@ def ring_sheet(
         sliding_distance=settings.sliding_distance,
     )
     counted = [name for name, groove in grooves if isinstance(groove, Groove) and groove.complete]
+    volume, error = ring.wear_volume, ring.wear_volume_uncertainty
     values = [
-        SheetValue(
-            "ring_volume", "Wear volume of the ring", ring.wear_volume, "m3", uncertainty=ring.wear_volume_uncertainty
-        ),
-        SheetValue("ring_pile_up_volume", "Ridges and projections of the ring", ring.pile_up_volume, "m3"),
-        SheetValue("ring_net_volume", "Net volume lost by the disc", ring.net_volume, "m3"),
-        quantity_value("wear_rate", ring.wear_rate, interval=ring.wear_rate_interval),
+        sheet.Value("ring_volume", "Wear volume of the ring", volume, "m3", uncertainty=error),
+        sheet.Value("ring_pile_up_volume", "Ridges and projections of the ring", ring.pile_up_volume, "m3"),
+        sheet.Value("ring_net_volume", "Net volume lost by the disc", ring.net_volume, "m3"),
+        sheet.quantity_value("wear_rate", ring.wear_rate, interval=ring.wear_rate_interval),
     ]
     if settings.tip_radius is not None:
         width = float(np.mean([g.groove_width for _, g in grooves if isinstance(g, Groove) and g.complete]))
-        volume = disc_volume_loss(
+        loss = disc_volume_loss(
             groove_diameter=settings.groove_diameter, groove_width=width, tip_radius=settings.tip_radius
         )
         label = "Wear volume by the geometry of ASTM G99, from width and tip"
-        values.append(SheetValue("geometric_volume", label, float(volume), "m3"))
-    table = SheetTable(
+        values.append(sheet.Value("geometric_volume", label, float(loss), "m3"))
+    table = sheet.Table(
         name="sections",
         title="Area of the mean section by scan",
-        columns=(SheetColumn("scan", "Scan"), SheetColumn("cross_section_area", "Area", "m2")),
+        columns=(sheet.Column("scan", "Scan"), sheet.Column("cross_section_area", "Area", "m2")),
         rows=tuple(zip(counted, map(float, ring.cross_section_area), strict=True)),
     )
     figure = figures.ring(ring)
-    section = SheetSection(values=tuple(values), tables=(table,), figures=(figure,), caveats=ring.excluded_scans)
-    return sheet_from_sections([section], title=title, source={}), ring
+    section = sheet.Sheet(values=tuple(values), tables=(table,), figures=(figure,), caveats=ring.excluded_scans)
+    return sheet.joined([section], title=title, source={}), ring
 
 
-def wear_reduction_sheet(without: Sequence[WearTrack], with_vibration: Sequence[WearTrack]) -> Sheet:
+def wear_reduction_sheet(without: Sequence[WearTrack], with_vibration: Sequence[WearTrack]) -> sheet.Sheet:
     """Wear reduction by vibration from worn rings, with its interval.
 
     Parameters
@@ -173,12 +161,12 @@ def wear_reduction_sheet(without: Sequence[WearTrack], with_vibration: Sequence[
         caveats = (
             "the interval covers the scatter along each ring only, not that between specimens: test more specimens",
         )
-    value = quantity_value("wear_reduction", reduction.wear_reduction, interval=reduction.interval)
+    value = sheet.quantity_value("wear_reduction", reduction.wear_reduction, interval=reduction.interval)
     title = f"{len(with_vibration)} ring with vibration against {len(without)} without"
-    return sheet_from_sections([SheetSection(values=(value,), caveats=caveats)], title=title, source={})
+    return sheet.joined([sheet.Sheet(values=(value,), caveats=caveats)], title=title, source={})
 
 
-def cap_sheet(path: Path, *, settings: SurfaceSettings, tip_radius: float | None) -> Sheet:
+def cap_sheet(path: Path, *, settings: SurfaceSettings, tip_radius: float | None) -> sheet.Sheet:
     """Wear of a pin by the scar in a scan of its tip.
 
     Parameters
@@ -203,21 +191,18 @@ def cap_sheet(path: Path, *, settings: SurfaceSettings, tip_radius: float | None
         path, spacing_x=settings.spacing_x, spacing_y=settings.spacing_y, length_unit=settings.length_unit
     )
     cap = wear_scar(file.height_map, tip_radius=tip_radius)
+    volume, error = cap.wear_volume, cap.wear_volume_uncertainty
     values = (
-        SheetValue(
-            "pin_volume", "Wear volume of the pin", cap.wear_volume, "m3", uncertainty=cap.wear_volume_uncertainty
-        ),
-        SheetValue("scar_diameter", "Diameter of the scar", cap.scar_diameter, "m"),
-        quantity_value("tip_radius", cap.tip_radius),
+        sheet.Value("pin_volume", "Wear volume of the pin", volume, "m3", uncertainty=error),
+        sheet.Value("scar_diameter", "Diameter of the scar", cap.scar_diameter, "m"),
+        sheet.quantity_value("tip_radius", cap.tip_radius),
     )
     scar_map = figures.height_map(cap.levelled, cap.worn)
     figure = replace(scar_map, title="Scar of the pin", caption="Heights over the ball; the line goes round the scar.")
-    return sheet_from_sections(
-        [SheetSection(values=values, figures=(figure,))], title=path.name, source=surface_source(file)
-    )
+    return sheet.joined([sheet.Sheet(values=values, figures=(figure,))], title=path.name, source=surface_source(file))
 
 
-def _figures(groove: Groove) -> tuple[SheetFigure, ...]:
+def _figures(groove: Groove) -> tuple[sheet.Figure, ...]:
     """View, cross-sections, map and Abbott curve of a groove."""
     curve = abbott(material_ratio_curve(groove.levelled))
     return (
@@ -228,11 +213,11 @@ def _figures(groove: Groove) -> tuple[SheetFigure, ...]:
     )
 
 
-def _marks(groove: Groove) -> SheetSection:
+def _marks(groove: Groove) -> sheet.Sheet:
     """Spacing of marks along the track by the spectrum of its floor."""
     marks = track_marks(groove)
     if marks.dot_spacing is None:
-        return SheetSection(not_found=(f"marks along the track: {marks.reason}",))
+        return sheet.Sheet(not_found=(f"marks along the track: {marks.reason}",))
     figure = figures.marks(marks)
-    value = quantity_value("dot_spacing", marks.dot_spacing, uncertainty=marks.dot_spacing_uncertainty)
-    return SheetSection(values=(value,), figures=(figure,))
+    value = sheet.quantity_value("dot_spacing", marks.dot_spacing, uncertainty=marks.dot_spacing_uncertainty)
+    return sheet.Sheet(values=(value,), figures=(figure,))

@@ -8,9 +8,8 @@ import numpy as np
 from sonolube.measurement.friction_analysis import analyse_rotation, channel_values
 from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.measurement.recordings.reader import read_recording
-from sonolube.report.measured import rotation_figures as figures
+from sonolube.report.measured import rotation_figures as figures, sheet
 from sonolube.report.measured.friction import recording_source
-from sonolube.report.measured.sheet import Sheet, SheetSection, SheetValue, quantity_value, sheet_from_sections
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -35,7 +34,7 @@ class RotationSettings:
     mapping: RecordingMapping | None = None
 
 
-def rotation_sheet(path: Path, *, settings: RotationSettings) -> Sheet:
+def rotation_sheet(path: Path, *, settings: RotationSettings) -> sheet.Sheet:
     """Rotation speed of a disc, and speed of the pin on it, from the pulses of a Hall probe.
 
     Parameters
@@ -61,19 +60,19 @@ def rotation_sheet(path: Path, *, settings: RotationSettings) -> Sheet:
     turns = rotation.rotation_speed
     interpolated = int(rotation.interpolated.sum())
     values = [
-        quantity_value("rotation_speed", rotation.mean_rotation_speed, uncertainty=error),
-        quantity_value(
+        sheet.quantity_value("rotation_speed", rotation.mean_rotation_speed, uncertainty=error),
+        sheet.quantity_value(
             "sliding_speed", circumference * rotation.mean_rotation_speed, uncertainty=circumference * error
         ),
-        quantity_value("revolutions", float(rotation.revolutions[-1])),
-        quantity_value("sliding_distance", circumference * float(rotation.revolutions[-1])),
-        SheetValue("pulses", "Pulses", float(rotation.time.size), ""),
-        SheetValue("repaired_pulses", "Missing pulses inserted", float(interpolated), ""),
+        sheet.quantity_value("revolutions", float(rotation.revolutions[-1])),
+        sheet.quantity_value("sliding_distance", circumference * float(rotation.revolutions[-1])),
+        sheet.Value("pulses", "Pulses", float(rotation.time.size), ""),
+        sheet.Value("repaired_pulses", "Missing pulses inserted", float(interpolated), ""),
     ]
     if turns.size > 1:
         spread = float(turns.std(ddof=1)) / rotation.mean_rotation_speed
         values.append(
-            SheetValue("speed_variation", "Relative standard deviation of the speed of the turns", spread, "")
+            sheet.Value("speed_variation", "Relative standard deviation of the speed of the turns", spread, "")
         )
     pictures = (
         figures.speed(rotation),
@@ -84,8 +83,8 @@ def rotation_sheet(path: Path, *, settings: RotationSettings) -> Sheet:
         caveats = (
             f"{interpolated} of {rotation.time.size} pulses were missing; lower the prominence or move the probe",
         )
-    return sheet_from_sections(
-        [SheetSection(values=tuple(values), figures=pictures, caveats=caveats)],
+    return sheet.joined(
+        [sheet.Sheet(values=tuple(values), figures=pictures, caveats=caveats)],
         title=path.name,
         source=recording_source(recording),
     )

@@ -7,17 +7,7 @@ from pathlib import Path
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.surface_files.reader import SurfaceFile, read_surface_file
-from sonolube.report.measured import surface_figures as figures
-from sonolube.report.measured.sheet import (
-    Sheet,
-    SheetColumn,
-    SheetSection,
-    SheetTable,
-    attempted_section,
-    quantity_columns,
-    quantity_value,
-    sheet_from_sections,
-)
+from sonolube.report.measured import sheet, surface_figures as figures
 from sonolube.surfaces import (
     HeightMap,
     areal_spectrum,
@@ -112,7 +102,7 @@ class SurfaceSettings:
     long_cutoff_length: float | None = None
 
 
-def surface_sheet(path: Path, *, settings: SurfaceSettings) -> Sheet:
+def surface_sheet(path: Path, *, settings: SurfaceSettings) -> sheet.Sheet:
     """Areal and profile parameters, spectra and summits of a surface file.
 
     Parameters
@@ -138,15 +128,15 @@ def surface_sheet(path: Path, *, settings: SurfaceSettings) -> Sheet:
     sections = [_part(height_parameters(surface))]
     for measure in (hybrid_parameters, spatial_parameters, functional_parameters, feature_parameters):
         name = measure.__name__.replace("_", " ")
-        sections.append(attempted_section(lambda measure=measure: _part(measure(surface)), what=name))  # type: ignore[misc]
+        sections.append(sheet.attempted(lambda measure=measure: _part(measure(surface)), what=name))  # type: ignore[misc]
     sections += [
-        attempted_section(partial(_summits, surface), what="summits"),
-        attempted_section(partial(_profiles, surface), what="profile parameters"),
-        attempted_section(partial(_sampling, surface), what="summits at coarser sampling"),
-        attempted_section(partial(_waviness, levelled), what="waviness"),
+        sheet.attempted(partial(_summits, surface), what="summits"),
+        sheet.attempted(partial(_profiles, surface), what="profile parameters"),
+        sheet.attempted(partial(_sampling, surface), what="summits at coarser sampling"),
+        sheet.attempted(partial(_waviness, levelled), what="waviness"),
         _figures(surface),
     ]
-    return sheet_from_sections(sections, title=path.name, source=surface_source(file))
+    return sheet.joined(sections, title=path.name, source=surface_source(file))
 
 
 def surface_source(file: SurfaceFile) -> dict[str, str]:
@@ -178,33 +168,33 @@ def _filtered(levelled: HeightMap, settings: SurfaceSettings) -> HeightMap:
     return surface
 
 
-def _part(record: object) -> SheetSection:
+def _part(record: object) -> sheet.Sheet:
     """Areal parameters of a record, labelled with their symbols."""
     names = [each.name for each in fields(record) if each.name in _LABELS]  # type: ignore[arg-type]
     small = not getattr(record, "decays_in_all_directions", True)
-    return SheetSection(
-        values=tuple(quantity_value(name, getattr(record, name), label=_LABELS[name]) for name in names),
+    return sheet.Sheet(
+        values=tuple(sheet.quantity_value(name, getattr(record, name), label=_LABELS[name]) for name in names),
         caveats=("Str is an upper bound: the map is too small for its texture",) if small else (),
     )
 
 
-def _summits(surface: HeightMap) -> SheetSection:
+def _summits(surface: HeightMap) -> sheet.Sheet:
     """Density, radius and heights of summit_statistics, and the bandwidth of the spectrum."""
     found, moments = summit_statistics(surface), spectral_moments(surface)
     for_contact = contact_roughness(surface)
-    return SheetSection(
+    return sheet.Sheet(
         values=(
-            quantity_value("summit_density", found.summit_density),
-            quantity_value("summit_radius", found.summit_radius),
-            quantity_value("summit_height_deviation", found.summit_height_deviation),
-            quantity_value("mean_summit_height", found.mean_summit_height),
-            quantity_value("bandwidth", moments.bandwidth, label="Bandwidth of the spectrum, Nayak's alpha"),
-            quantity_value("roughness_parameter", for_contact.roughness_parameter),
+            sheet.quantity_value("summit_density", found.summit_density),
+            sheet.quantity_value("summit_radius", found.summit_radius),
+            sheet.quantity_value("summit_height_deviation", found.summit_height_deviation),
+            sheet.quantity_value("mean_summit_height", found.mean_summit_height),
+            sheet.quantity_value("bandwidth", moments.bandwidth, label="Bandwidth of the spectrum, Nayak's alpha"),
+            sheet.quantity_value("roughness_parameter", for_contact.roughness_parameter),
         )
     )
 
 
-def _profiles(surface: HeightMap) -> SheetSection:
+def _profiles(surface: HeightMap) -> sheet.Sheet:
     """Mean and deviation of profile parameters over all rows and columns."""
     rows = []
     for along in ("rows", "columns"):
@@ -213,11 +203,15 @@ def _profiles(surface: HeightMap) -> SheetSection:
             for kind, record in (("mean", found.mean), ("deviation", found.standard_deviation)):
                 values = (getattr(record, name) for name in _PROFILE_LABELS)
                 rows.append((f"{found.profile_count} {along}", kind, *values))
-    columns = (SheetColumn("profiles", "Profiles"), SheetColumn("statistic", ""), *quantity_columns(_PROFILE_LABELS))
-    return SheetSection(tables=(SheetTable("profiles", "Profile parameters", columns, tuple(rows)),))
+    columns = (
+        sheet.Column("profiles", "Profiles"),
+        sheet.Column("statistic", ""),
+        *sheet.quantity_columns(_PROFILE_LABELS),
+    )
+    return sheet.Sheet(tables=(sheet.Table("profiles", "Profile parameters", columns, tuple(rows)),))
 
 
-def _sampling(surface: HeightMap) -> SheetSection:
+def _sampling(surface: HeightMap) -> sheet.Sheet:
     """Roughness for the contact models at multiples of the sampling interval."""
     pixel = math.sqrt(surface.spacing_x * surface.spacing_y)
     rows: list[tuple[float, ...]] = []
@@ -228,28 +222,28 @@ def _sampling(surface: HeightMap) -> SheetSection:
             break
         rows.append(tuple(float(getattr(found, name)[0]) for name in _SAMPLING_LABELS))
     title = "Roughness for the contact models, by sampling interval"
-    table = SheetTable("sampling", title, quantity_columns(_SAMPLING_LABELS), tuple(rows))
-    return SheetSection(tables=(table,)) if rows else SheetSection()
+    table = sheet.Table("sampling", title, sheet.quantity_columns(_SAMPLING_LABELS), tuple(rows))
+    return sheet.Sheet(tables=(table,)) if rows else sheet.Sheet()
 
 
-def _waviness(levelled: HeightMap) -> SheetSection:
+def _waviness(levelled: HeightMap) -> sheet.Sheet:
     """Wavelengths of the waviness along rows and columns."""
     rows = [
         (along, float(length))
         for along in ("rows", "columns")
         for length in dominant_wavelengths(levelled, along=along)
     ]
-    columns = (SheetColumn("along", "Along"), *quantity_columns({"waviness_length": "Wavelength"}))
-    return SheetSection(tables=(SheetTable("waviness", "Waviness", columns, tuple(rows)),))
+    columns = (sheet.Column("along", "Along"), *sheet.quantity_columns({"waviness_length": "Wavelength"}))
+    return sheet.Sheet(tables=(sheet.Table("waviness", "Waviness", columns, tuple(rows)),))
 
 
-def _figures(surface: HeightMap) -> SheetSection:
+def _figures(surface: HeightMap) -> sheet.Sheet:
     """Heights, Abbott curve, power spectrum and autocorrelation."""
     pictures = [figures.heights(surface), figures.abbott(material_ratio_curve(surface))]
     try:
         spectrum = radial_spectrum(areal_spectrum(surface))
         correlation = autocorrelation(surface)
     except InvalidInput as refusal:
-        return SheetSection(figures=tuple(pictures), not_found=(f"spectrum: {refusal}",))
+        return sheet.Sheet(figures=tuple(pictures), not_found=(f"spectrum: {refusal}",))
     pictures += [figures.spectrum(spectrum), figures.correlation(correlation)]
-    return SheetSection(figures=tuple(pictures))
+    return sheet.Sheet(figures=tuple(pictures))
