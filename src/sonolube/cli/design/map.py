@@ -30,12 +30,7 @@ from sonolube.rig.driven_rig import driven_rig
 from sonolube.units import format_si
 from sonolube.vocabulary import quantity
 
-_AXIS_KEYS = {
-    "sliding.sliding_speed": "sliding_speed",
-    "contact.normal_load": "normal_load",
-    "drive.voltage_peak_to_peak": "voltage_peak_to_peak",
-    "drive.frequency": "frequency",
-}
+_AXIS_KEYS = ("sliding.sliding_speed", "contact.normal_load", "drive.voltage_peak_to_peak", "drive.frequency")
 _MEASURED_CAPTION = "Friction reduction between the measured runs alone by a Gaussian process, with its uncertainty."
 _COLUMNS = ("friction_reduction", "sliding_speed", "actuator_power")
 _SHOWN = ("friction_reduction", "sliding_speed", "normal_load", "frequency", "voltage_peak_to_peak", "actuator_power")
@@ -219,10 +214,10 @@ def _axes(rig: Rig, kind: str, over: list[str] | None) -> dict[str, Floats]:
     axes = default_axes(rig, kind=kind)
     across_and_up = list(axes)[:2]
     for key, values in values_by_key(over).items():
-        name = _AXIS_KEYS.get(key)
-        if name not in axes:
-            known = ", ".join(long for long, short in _AXIS_KEYS.items() if short in axes)
-            raise InvalidInput(f"--over {key}: no axis of a {kind} map; its axes are {known}")
+        name = key.rpartition(".")[2]
+        known = [each for each in _AXIS_KEYS if each.rpartition(".")[2] in axes]
+        if key not in known:
+            raise InvalidInput(f"--over {key}: no axis of a {kind} map; its axes are {', '.join(known)}")
         if values.size < 2 and name in across_and_up:
             raise InvalidInput(f"--over {key}: a {kind} map runs over it, and needs at least 2 values")
         axes[name] = values.astype("float64")

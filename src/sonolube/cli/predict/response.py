@@ -58,14 +58,10 @@ class ResponseAnswer(Answer):
         frequency, amplitude = self._largest()
         found = ", ".join(format_si(f, "Hz", digits=4) for f in self.natural_frequency.tolist()) or "none"
         at = format_si(frequency, "Hz", digits=4)
+        largest = f"{format_si(amplitude, 'm')} per volt peak to peak at {at}"
         return [
             f"{self.rig.title}, {format_si(self.rig.normal_load, 'N')}, small motions",
-            *aligned(
-                [
-                    ("natural frequencies", found),
-                    ("largest amplitude", f"{format_si(amplitude, 'm')} per volt peak to peak at {at}"),
-                ]
-            ),
+            *aligned([("natural frequencies", found), ("largest amplitude", largest)]),
         ]
 
     def object(self) -> dict[str, Any]:

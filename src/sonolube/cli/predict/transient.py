@@ -46,18 +46,14 @@ class StartUpAnswer(Answer):
     def lines(self) -> list[str]:
         """Settling time, amplitude, mean displacement, slow oscillation and status."""
         found = self.result
-        return [
-            f"{self.rig.title}, {format_si(self.rig.normal_load, 'N')}, from rest",
-            *aligned(
-                [
-                    ("amplitude settles", f"within 2 % after {format_si(found.settling_time, 's')}"),
-                    ("amplitude", format_si(found.vibration_amplitude, "m")),
-                    ("mean displacement", format_si(found.mean_displacement, "m")),
-                    ("slow oscillation", format_si(found.beat_frequency, "Hz")),
-                    ("status", found.status + (f": {found.reason}" if found.reason else "")),
-                ]
-            ),
+        rows = [
+            ("amplitude settles", f"within 2 % after {format_si(found.settling_time, 's')}"),
+            ("amplitude", format_si(found.vibration_amplitude, "m")),
+            ("mean displacement", format_si(found.mean_displacement, "m")),
+            ("slow oscillation", format_si(found.beat_frequency, "Hz")),
+            ("status", found.status + (f": {found.reason}" if found.reason else "")),
         ]
+        return [f"{self.rig.title}, {format_si(self.rig.normal_load, 'N')}, from rest", *aligned(rows)]
 
     def object(self) -> dict[str, Any]:
         """Status, settling time, amplitude, mean displacement and frequency of the slow oscillation."""

@@ -74,9 +74,8 @@ def calibration_sheet(path: Path, *, settings: CalibrationSettings) -> sheet.She
     )
     loop = figures.loops(x, force, hysteresis)
     branches = sheet.attempted(partial(_branches, x, force, settings.degree), what="polynomials of the branches")
-    return sheet.joined(
-        [sheet.Sheet(values=values, figures=(loop,)), branches], title=path.name, source=recording_source(recording)
-    )
+    loops = sheet.Sheet(values=values, figures=(loop,))
+    return sheet.joined([loops, branches], title=path.name, source=recording_source(recording))
 
 
 def calibrated_hysteresis(path: Path, *, settings: CalibrationSettings) -> PreisachCalibration:
@@ -140,9 +139,8 @@ def force_sheet(path: Path, *, calibration: PreisachCalibration, settings: Calib
         sheet.Value("highest_force", "Highest force", float(force[top]), "N", uncertainty=float(error[top])),
     )
     figure = figures.force(channel_values(recording, "time"), estimate)
-    return sheet.joined(
-        [sheet.Sheet(values=values, figures=(figure,))], title=path.name, source=recording_source(recording)
-    )
+    section = sheet.Sheet(values=values, figures=(figure,))
+    return sheet.joined([section], title=path.name, source=recording_source(recording))
 
 
 def _branches(x: Floats, force: Floats, degree: int) -> sheet.Sheet:

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 
-from sonolube.measurement.surface_files.reader import read_surface_file
 from sonolube.measurement.wear_track import (
     WearReduction,
     WearTrack,
@@ -15,7 +14,7 @@ from sonolube.measurement.wear_track import (
     wear_track_from_grooves,
 )
 from sonolube.report.measured import groove_figures as figures, sheet
-from sonolube.report.measured.surface import SurfaceSettings, surface_source
+from sonolube.report.measured.surface import SurfaceSettings, surface_file, surface_source
 from sonolube.report.measured.surface_figures import abbott
 from sonolube.surfaces import disc_volume_loss, material_ratio_curve, measure_groove, track_marks, wear_scar
 from sonolube.surfaces.grooves.groove import Groove
@@ -64,9 +63,7 @@ def groove_sheet(path: Path, *, settings: SurfaceSettings) -> tuple[sheet.Sheet,
     InvalidInput
         If the file cannot be read or too little was measured.
     """
-    file = read_surface_file(
-        path, spacing_x=settings.spacing_x, spacing_y=settings.spacing_y, length_unit=settings.length_unit
-    )
+    file = surface_file(path, settings)
     groove = measure_groove(file.height_map)
     values = [
         sheet.quantity_value("wear_volume", groove.wear_volume, uncertainty=groove.wear_volume_uncertainty),
@@ -187,9 +184,7 @@ def cap_sheet(path: Path, *, settings: SurfaceSettings, tip_radius: float | None
     SonolubeError
         If the file cannot be read or shows no scar.
     """
-    file = read_surface_file(
-        path, spacing_x=settings.spacing_x, spacing_y=settings.spacing_y, length_unit=settings.length_unit
-    )
+    file = surface_file(path, settings)
     cap = wear_scar(file.height_map, tip_radius=tip_radius)
     volume, error = cap.wear_volume, cap.wear_volume_uncertainty
     values = (

@@ -56,24 +56,20 @@ def rotation_sheet(path: Path, *, settings: RotationSettings) -> sheet.Sheet:
     rotation = analyse_rotation(
         recording, groove_diameter=settings.groove_diameter, magnets=settings.magnets, prominence=settings.prominence
     )
-    circumference, error = np.pi * settings.groove_diameter, rotation.rotation_speed_uncertainty
-    turns = rotation.rotation_speed
-    interpolated = int(rotation.interpolated.sum())
+    circumference, revolutions = np.pi * settings.groove_diameter, float(rotation.revolutions[-1])
+    speed, error = rotation.mean_rotation_speed, rotation.rotation_speed_uncertainty
+    turns, interpolated = rotation.rotation_speed, int(rotation.interpolated.sum())
     values = [
-        sheet.quantity_value("rotation_speed", rotation.mean_rotation_speed, uncertainty=error),
-        sheet.quantity_value(
-            "sliding_speed", circumference * rotation.mean_rotation_speed, uncertainty=circumference * error
-        ),
-        sheet.quantity_value("revolutions", float(rotation.revolutions[-1])),
-        sheet.quantity_value("sliding_distance", circumference * float(rotation.revolutions[-1])),
+        sheet.quantity_value("rotation_speed", speed, uncertainty=error),
+        sheet.quantity_value("sliding_speed", circumference * speed, uncertainty=circumference * error),
+        sheet.quantity_value("revolutions", revolutions),
+        sheet.quantity_value("sliding_distance", circumference * revolutions),
         sheet.Value("pulses", "Pulses", float(rotation.time.size), ""),
         sheet.Value("repaired_pulses", "Missing pulses inserted", float(interpolated), ""),
     ]
     if turns.size > 1:
-        spread = float(turns.std(ddof=1)) / rotation.mean_rotation_speed
-        values.append(
-            sheet.Value("speed_variation", "Relative standard deviation of the speed of the turns", spread, "")
-        )
+        label, spread = "Relative standard deviation of the speed of the turns", float(turns.std(ddof=1)) / speed
+        values.append(sheet.Value("speed_variation", label, spread, ""))
     pictures = (
         figures.speed(rotation),
         figures.pulses(channel_values(recording, "time"), channel_values(recording, "magnetic_flux_density"), rotation),
@@ -83,8 +79,5 @@ def rotation_sheet(path: Path, *, settings: RotationSettings) -> sheet.Sheet:
         caveats = (
             f"{interpolated} of {rotation.time.size} pulses were missing; lower the prominence or move the probe",
         )
-    return sheet.joined(
-        [sheet.Sheet(values=tuple(values), figures=pictures, caveats=caveats)],
-        title=path.name,
-        source=recording_source(recording),
-    )
+    section = sheet.Sheet(values=tuple(values), figures=pictures, caveats=caveats)
+    return sheet.joined([section], title=path.name, source=recording_source(recording))

@@ -5,30 +5,10 @@ from dataclasses import dataclass, fields
 from functools import partial
 from pathlib import Path
 
+from sonolube import surfaces
 from sonolube.errors import InvalidInput
 from sonolube.measurement.surface_files.reader import SurfaceFile, read_surface_file
 from sonolube.report.measured import sheet, surface_figures as figures
-from sonolube.surfaces import (
-    HeightMap,
-    areal_spectrum,
-    autocorrelation,
-    contact_roughness,
-    dominant_wavelengths,
-    feature_parameters,
-    functional_parameters,
-    height_parameters,
-    high_pass,
-    hybrid_parameters,
-    low_pass,
-    material_ratio_curve,
-    profile_statistics,
-    radial_spectrum,
-    remove_form,
-    sampling_dependence,
-    spatial_parameters,
-    spectral_moments,
-    summit_statistics,
-)
 from sonolube.units import format_si
 
 _LABELS = {
@@ -120,13 +100,16 @@ def surface_sheet(path: Path, *, settings: SurfaceSettings) -> sheet.Sheet:
     InvalidInput
         If the file cannot be read, levelled or filtered as asked, or its heights have no parameters.
     """
-    file = read_surface_file(
-        path, spacing_x=settings.spacing_x, spacing_y=settings.spacing_y, length_unit=settings.length_unit
-    )
-    levelled = remove_form(file.height_map, degree=settings.degree, robust=settings.robust)
+    file = surface_file(path, settings)
+    levelled = surfaces.remove_form(file.height_map, degree=settings.degree, robust=settings.robust)
     surface = _filtered(levelled, settings)
-    sections = [_part(height_parameters(surface))]
-    for measure in (hybrid_parameters, spatial_parameters, functional_parameters, feature_parameters):
+    sections = [_part(surfaces.height_parameters(surface))]
+    for measure in (
+        surfaces.hybrid_parameters,
+        surfaces.spatial_parameters,
+        surfaces.functional_parameters,
+        surfaces.feature_parameters,
+    ):
         name = measure.__name__.replace("_", " ")
         sections.append(sheet.attempted(lambda measure=measure: _part(measure(surface)), what=name))  # type: ignore[misc]
     sections += [
@@ -137,6 +120,13 @@ def surface_sheet(path: Path, *, settings: SurfaceSettings) -> sheet.Sheet:
         _figures(surface),
     ]
     return sheet.joined(sections, title=path.name, source=surface_source(file))
+
+
+def surface_file(path: Path, settings: SurfaceSettings) -> SurfaceFile:
+    """Height map of a file, with spacing and unit by the settings where the file does not say."""
+    return read_surface_file(
+        path, spacing_x=settings.spacing_x, spacing_y=settings.spacing_y, length_unit=settings.length_unit
+    )
 
 
 def surface_source(file: SurfaceFile) -> dict[str, str]:
@@ -155,16 +145,16 @@ def surface_source(file: SurfaceFile) -> dict[str, str]:
     }
 
 
-def _filtered(levelled: HeightMap, settings: SurfaceSettings) -> HeightMap:
+def _filtered(levelled: surfaces.HeightMap, settings: SurfaceSettings) -> surfaces.HeightMap:
     """Surface between the cutoff lengths."""
     short, long = settings.short_cutoff_length, settings.long_cutoff_length
     if short is not None and long is not None and short >= long:
         raise InvalidInput(f"the short cutoff, {short:.3g} m, must be below the long one, {long:.3g} m")
     surface = levelled
     if short is not None:
-        surface = low_pass(surface, cutoff_length=short)
+        surface = surfaces.low_pass(surface, cutoff_length=short)
     if long is not None:
-        surface = high_pass(surface, cutoff_length=long)
+        surface = surfaces.high_pass(surface, cutoff_length=long)
     return surface
 
 
@@ -178,10 +168,10 @@ def _part(record: object) -> sheet.Sheet:
     )
 
 
-def _summits(surface: HeightMap) -> sheet.Sheet:
-    """Density, radius and heights of summit_statistics, and the bandwidth of the spectrum."""
-    found, moments = summit_statistics(surface), spectral_moments(surface)
-    for_contact = contact_roughness(surface)
+def _summits(surface: surfaces.HeightMap) -> sheet.Sheet:
+    """Density, radius and heights of the summits, and the bandwidth of the spectrum."""
+    found, moments = surfaces.summit_statistics(surface), surfaces.spectral_moments(surface)
+    for_contact = surfaces.contact_roughness(surface)
     return sheet.Sheet(
         values=(
             sheet.quantity_value("summit_density", found.summit_density),
@@ -194,12 +184,12 @@ def _summits(surface: HeightMap) -> sheet.Sheet:
     )
 
 
-def _profiles(surface: HeightMap) -> sheet.Sheet:
+def _profiles(surface: surfaces.HeightMap) -> sheet.Sheet:
     """Mean and deviation of profile parameters over all rows and columns."""
     rows = []
     for along in ("rows", "columns"):
         if min(surface.height.shape) > 1 or surface.height.shape[along == "rows"] > 1:
-            found = profile_statistics(surface, along=along)
+            found = surfaces.profile_statistics(surface, along=along)
             for kind, record in (("mean", found.mean), ("deviation", found.standard_deviation)):
                 values = (getattr(record, name) for name in _PROFILE_LABELS)
                 rows.append((f"{found.profile_count} {along}", kind, *values))
@@ -211,13 +201,13 @@ def _profiles(surface: HeightMap) -> sheet.Sheet:
     return sheet.Sheet(tables=(sheet.Table("profiles", "Profile parameters", columns, tuple(rows)),))
 
 
-def _sampling(surface: HeightMap) -> sheet.Sheet:
+def _sampling(surface: surfaces.HeightMap) -> sheet.Sheet:
     """Roughness for the contact models at multiples of the sampling interval."""
     pixel = math.sqrt(surface.spacing_x * surface.spacing_y)
     rows: list[tuple[float, ...]] = []
     for times in _COARSENINGS:
         try:
-            found = sampling_dependence(surface, sampling_interval=times * pixel)
+            found = surfaces.sampling_dependence(surface, sampling_interval=times * pixel)
         except InvalidInput:
             break
         rows.append(tuple(float(getattr(found, name)[0]) for name in _SAMPLING_LABELS))
@@ -226,23 +216,23 @@ def _sampling(surface: HeightMap) -> sheet.Sheet:
     return sheet.Sheet(tables=(table,)) if rows else sheet.Sheet()
 
 
-def _waviness(levelled: HeightMap) -> sheet.Sheet:
+def _waviness(levelled: surfaces.HeightMap) -> sheet.Sheet:
     """Wavelengths of the waviness along rows and columns."""
     rows = [
         (along, float(length))
         for along in ("rows", "columns")
-        for length in dominant_wavelengths(levelled, along=along)
+        for length in surfaces.dominant_wavelengths(levelled, along=along)
     ]
     columns = (sheet.Column("along", "Along"), *sheet.quantity_columns({"waviness_length": "Wavelength"}))
     return sheet.Sheet(tables=(sheet.Table("waviness", "Waviness", columns, tuple(rows)),))
 
 
-def _figures(surface: HeightMap) -> sheet.Sheet:
+def _figures(surface: surfaces.HeightMap) -> sheet.Sheet:
     """Heights, Abbott curve, power spectrum and autocorrelation."""
-    pictures = [figures.heights(surface), figures.abbott(material_ratio_curve(surface))]
+    pictures = [figures.heights(surface), figures.abbott(surfaces.material_ratio_curve(surface))]
     try:
-        spectrum = radial_spectrum(areal_spectrum(surface))
-        correlation = autocorrelation(surface)
+        spectrum = surfaces.radial_spectrum(surfaces.areal_spectrum(surface))
+        correlation = surfaces.autocorrelation(surface)
     except InvalidInput as refusal:
         return sheet.Sheet(figures=tuple(pictures), not_found=(f"spectrum: {refusal}",))
     pictures += [figures.spectrum(spectrum), figures.correlation(correlation)]

@@ -84,18 +84,15 @@ def vibration_sheet(path: Path, *, settings: VibrationSettings) -> sheet.Sheet:
     motion = complex_amplitudes(time=time, signals=signals, frequency=f) * per_rate
     errors = _errors(time, signals, f) * np.abs(per_rate)
     largest = int(np.argmax(np.abs(motion)))
-    values = [
-        sheet.quantity_value("vibration_amplitude", float(abs(motion[largest])), uncertainty=_or_none(errors[largest]))
-    ]
+    amplitude, error = float(abs(motion[largest])), _or_none(errors[largest])
+    values = [sheet.quantity_value("vibration_amplitude", amplitude, uncertainty=error)]
     drive = _drive_voltage(recording, time, f)
     if drive is not None:
         swing = 2 * abs(drive)
         values += [
             sheet.quantity_value("voltage_peak_to_peak", swing),
             sheet.quantity_value(
-                "amplitude_per_volt",
-                float(abs(motion[largest])) / swing,
-                uncertainty=None if np.isnan(errors[largest]) else float(errors[largest]) / swing,
+                "amplitude_per_volt", amplitude / swing, uncertainty=None if error is None else error / swing
             ),
         ]
         motion = motion * np.exp(-1j * np.angle(drive))
