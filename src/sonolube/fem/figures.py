@@ -57,10 +57,8 @@ def mode_figure(mesh: Mesh, shape: Floats, *, title: str, amplitude: float = 1.0
         body = Poly3DCollection(millimetres[patches], facecolors=filled, edgecolors=filled, linewidths=0.3)
         body.set_rasterized(True)
         axes.add_collection3d(body)
-        middle, half = (
-            1e3 * (mesh.nodes.max(axis=0) + mesh.nodes.min(axis=0)) / 2,
-            1e3 * extent * 0.5 + 90 * extent.max(),
-        )
+        middle = 1e3 * (mesh.nodes.max(axis=0) + mesh.nodes.min(axis=0)) / 2
+        half = 1e3 * extent * 0.5 + 90 * extent.max()
         axes.set(**{f"{k}lim": (middle[i] - half[i], middle[i] + half[i]) for i, k in enumerate("xyz")})
         axes.set_box_aspect(half, zoom=0.96 - 0.28 * half[2] / np.linalg.norm(half))  # tall ones need room for labels
         figure.suptitle(f"{title}\nlargest displacement drawn as {_EXAGGERATION:.0%} of the part's length", fontsize=9)

@@ -7,7 +7,7 @@ from typing import Any
 
 from sonolube import __version__
 from sonolube.files import write_atomically
-from sonolube.report.measured.sheet import Sheet, SheetTable, SheetValue
+from sonolube.report.measured.sheet import Sheet, Table, Value
 from sonolube.report.page import Advance, Drawing, drawn, embedded, html
 from sonolube.report.pin_on_disc_sheet import PinOnDiscSheet, pin_on_disc_rows
 
@@ -54,7 +54,7 @@ def measurement_page(report: MeasurementReport, *, advance: Advance = lambda nam
     pictures: dict[tuple[int, str], str] = {}
     for place, sheet in enumerate(report.sheets):
         for figure in sheet.figures:
-            pictures[place, figure.name] = embedded(drawn(Drawing(draw=figure.draw), forms=("png",))["png"])
+            pictures[place, figure.title] = embedded(drawn(Drawing(draw=figure.draw), forms=("png",))["png"])
             advance(figure.title, len(pictures), total)
     return html(
         "measurement.html",
@@ -132,7 +132,7 @@ def _sheet_object(sheet: Sheet) -> dict[str, Any]:
     }
 
 
-def _value_object(value: SheetValue) -> dict[str, Any]:
+def _value_object(value: Value) -> dict[str, Any]:
     """Value for JSON with its unit, uncertainty and interval."""
     content: dict[str, Any] = {"value": _finite(value.value), "unit": value.unit}
     if value.uncertainty is not None:
@@ -142,7 +142,7 @@ def _value_object(value: SheetValue) -> dict[str, Any]:
     return content
 
 
-def _table_object(table: SheetTable) -> dict[str, Any]:
+def _table_object(table: Table) -> dict[str, Any]:
     """Table for JSON: units by column, and rows by column."""
     return {
         "units": {column.name: column.unit for column in table.columns},
@@ -166,7 +166,7 @@ def _sheet_lines(sheet: Sheet) -> list[str]:
     return [*lines, *(f"  not found: {reason}" for reason in sheet.not_found)]
 
 
-def _table_lines(table: SheetTable) -> list[str]:
+def _table_lines(table: Table) -> list[str]:
     """Table as lines of text, columns aligned to the right."""
     cells = [[column.label for column in table.columns]]
     cells += [[column.text(cell) for column, cell in zip(table.columns, row, strict=True)] for row in table.rows]

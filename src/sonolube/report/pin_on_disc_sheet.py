@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from sonolube.errors import InvalidInput, suggestion
-from sonolube.report.measured.sheet import Sheet, SheetValue
+from sonolube.report.measured.sheet import Sheet, Value
 from sonolube.units import format_si, to_si
 from sonolube.vocabulary import quantities
 
@@ -159,10 +159,10 @@ def _specific_wear(test: PinOnDiscSheet, sheets: Sequence[Sheet]) -> list[tuple[
     ]
 
 
-def _divided(value: SheetValue, divisor: float, unit: str) -> SheetValue:
+def _divided(value: Value, divisor: float, unit: str) -> Value:
     """Value and uncertainty over an exact divisor."""
     error = None if value.uncertainty is None else value.uncertainty / divisor
-    return SheetValue(value.name, value.label, value.value / divisor, unit, uncertainty=error)
+    return Value(value.name, value.label, value.value / divisor, unit, uncertainty=error)
 
 
 def _require_known(path: Path, key: str, expected: Mapping[str, object], prefix: str) -> None:

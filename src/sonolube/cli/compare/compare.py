@@ -31,6 +31,8 @@ from sonolube.validation.figures import comparison_figures, rig_figure
 from sonolube.validation.rig_conditions import vibrated_rig
 from sonolube.validation.tables import comparison_csv, comparison_dataset, parameter_text
 
+_PREDICTED = ("friction_ratio", "uncertainty", "reason")
+
 
 def compare(
     rig: Annotated[
@@ -148,19 +150,17 @@ def _rig_lines(rig: Rig, predictions: tuple[RigPrediction, ...], width: int) -> 
 
 def _model_object(one: ComparedFit) -> dict[str, Any]:
     """Model for JSON with its errors, fitted parameters and predictions."""
-    assessment = one.assessment
-    errors = (
-        {
-            "rms": _finite(assessment.fit_errors.rms),
-            "rms_cross_validated": _finite(assessment.cross_validation_errors.rms),
-            "largest_error": _finite(assessment.fit_errors.largest),
-            "median_relative": _finite(assessment.fit_errors.median_relative),
+    errors = None
+    if one.assessment is not None:
+        fitted = one.assessment.fit_errors
+        errors = {
+            "rms": _finite(fitted.rms),
+            "rms_cross_validated": _finite(one.assessment.cross_validation_errors.rms),
+            "largest_error": _finite(fitted.largest),
+            "median_relative": _finite(fitted.median_relative),
             "aicc": one.aicc,
-            "out_of_range": list(assessment.fit_errors.out_of_range),
+            "out_of_range": list(fitted.out_of_range),
         }
-        if assessment
-        else None
-    )
     return {
         "name": one.model.name,
         "description": one.model.description,
@@ -204,13 +204,7 @@ def _rig_object(rig: Rig, predictions: tuple[RigPrediction, ...]) -> dict[str, A
     return {
         "title": rig.title,
         "predictions": [
-            {
-                "model": one.model.name,
-                "friction_ratio": one.friction_ratio,
-                "uncertainty": one.uncertainty,
-                "reason": one.reason,
-            }
-            for one in predictions
+            {"model": one.model.name} | {name: getattr(one, name) for name in _PREDICTED} for one in predictions
         ],
         "assumptions": dict(rig.assumptions),
     }

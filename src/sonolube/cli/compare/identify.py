@@ -78,27 +78,10 @@ class IdentificationAnswer(Answer):
         return {
             "stack": si({name: value for name, value in asdict(self.stack).items() if value and name in quantities()}),
             "parameters": {
-                name: {
-                    **si({name: known.value})[name],
-                    "lower": known.lower,
-                    "upper": known.upper,
-                    "lower_is_bound": known.lower_is_bound,
-                    "upper_is_bound": known.upper_is_bound,
-                }
-                for name, known in found.estimates.items()
+                name: si({name: known.value})[name] | asdict(known) for name, known in found.estimates.items()
             },
             "facts": [
-                {
-                    "name": fact.name,
-                    "relation": fact.relation,
-                    "value": fact.value,
-                    "tolerance": fact.tolerance,
-                    "unit": fact.unit,
-                    "rank": fact.rank,
-                    "source": fact.source,
-                    "observed": found.observed[fact.name],
-                    "satisfied": fact.name in found.satisfied,
-                }
+                asdict(fact) | {"observed": found.observed[fact.name], "satisfied": fact.name in found.satisfied}
                 for fact in found.facts
             ],
             "conflicts": [sorted(conflict) for conflict in found.conflicts],

@@ -1,11 +1,12 @@
 """Options that several commands share, and quantities given as options."""
 
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any, Self
 
 import typer
 
-from sonolube.units import to_si
+from sonolube.units import temperature_difference_to_si, to_si, unit_description
 
 if TYPE_CHECKING:
     from sonolube.rig import Rig
@@ -24,28 +25,68 @@ Sizes = Annotated[
 OUT = Path("out")
 
 
-def option_value(text: str | None, *, unit: str, option: str) -> float | None:
-    """Value of an option in SI; None where it was not given.
+class TypedNumber(float):
+    """Number in SI that prints as it was typed.
 
     Parameters
     ----------
-    text : str or None
+    text : str
         Number with its unit, as typed.
     unit : str
-        SI unit of the quantity.
+        SI unit of the quantity; in K a temperature difference.
     option : str
         Name of the option, for the error message.
-
-    Returns
-    -------
-    float or None
 
     Raises
     ------
     InvalidInput
         If the text is no number with a unit of this kind.
     """
-    return None if text is None else to_si(text, unit=unit, name=option)
+
+    text: str
+
+    def __new__(cls, text: str, unit: str, *, option: str = "") -> Self:
+        """Read the text."""
+        value = temperature_difference_to_si(text, name=option) if unit == "K" else to_si(text, unit=unit, name=option)
+        number = super().__new__(cls, value)
+        number.text = text
+        return number
+
+    def __str__(self) -> str:
+        return self.text
+
+
+def si_option(unit: str, text: str, *names: str, metavar: str = "") -> Any:
+    """Option that is typed as a number with its unit and taken as a `TypedNumber`.
+
+    Parameters
+    ----------
+    unit : str
+        SI unit of the quantity.
+    text : str
+        Of the help.
+    *names : str
+        As typed, such as "--sliding-speed"; by the argument of the command where absent.
+    metavar : str
+        What stands for the value in the help; the kind of quantity where absent, such as FORCE.
+
+    Returns
+    -------
+    typer.models.OptionInfo
+    """
+    kind = unit_description(unit).partition(",")[0].partition(" ")[2].upper()
+    return typer.Option(*names, parser=str, callback=_reader(unit), metavar=metavar or kind, help=text)
+
+
+def _reader(unit: str) -> Callable[..., TypedNumber | None]:
+    """Function that reads the text of an option, or takes its default."""
+
+    def read(option: typer.CallbackParam, text: str | TypedNumber | None) -> TypedNumber | None:
+        if text is None or isinstance(text, TypedNumber):
+            return text
+        return TypedNumber(text, unit, option=option.opts[0])
+
+    return read
 
 
 def loaded_rig(path: Path, *, load: str | None, changes: list[str] | None) -> "Rig":

@@ -1,7 +1,7 @@
 """Rig of an answer as text and JSON: its operating point and its friction model."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from sonolube.units import format_si
 
@@ -12,11 +12,6 @@ if TYPE_CHECKING:
 def friction_model_text(rig: "Rig") -> str:
     """Friction model of a rig as text, such as "friction model kinematic"."""
     return f"friction model {rig.friction_model.name}"
-
-
-def friction_model_object(rig: "Rig") -> dict[str, Any]:
-    """Friction model of a rig as an entry for JSON."""
-    return {"friction_model": rig.friction_model.name}
 
 
 def operating_point(rig: "Rig") -> str:

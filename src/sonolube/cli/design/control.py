@@ -12,9 +12,9 @@ import typer
 import xarray as xr
 
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
-from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath, option_value
+from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath, TypedNumber, si_option
 from sonolube.cli.console.progress import progress
-from sonolube.cli.console.rig_text import friction_model_object, operating_point, rig_settings
+from sonolube.cli.console.rig_text import operating_point, rig_settings
 from sonolube.design.control import (
     Amplifier,
     ControlDesign,
@@ -36,7 +36,7 @@ from sonolube.errors import InvalidInput
 from sonolube.metrics import EfficiencyLine
 from sonolube.report import Drawing, Page, PageTable
 from sonolube.rig import Rig, read_rig
-from sonolube.units import format_si, temperature_difference_to_si, to_si
+from sonolube.units import format_si
 from sonolube.validation.efficiency import efficiency_line
 
 _LEAST_GAIN_MARGIN = 1.7  # lower limit of textbooks
@@ -55,31 +55,28 @@ def control(
     context: typer.Context,
     rig: RigPath,
     friction: Annotated[
-        str | None, typer.Option(metavar="FORCE", help="Target of the friction; half way to the least by default.")
+        float | None, si_option("N", "Target of the friction; half way to the least by default.")
     ] = None,
     feed_forward: Annotated[FeedForward, typer.Option(help="Map from friction to voltage.")] = FeedForward.MODEL,
     efficiency: Annotated[
-        str | None,
-        typer.Option(metavar="COEFFICIENT", help="Efficiency at the rig's speed, in m2/N, instead of the published."),
+        float | None,
+        si_option("m2/N", "Efficiency at the rig's speed, in m2/N, instead of the published.", metavar="COEFFICIENT"),
     ] = None,
-    delay: Annotated[str, typer.Option(metavar="TIME", help="Delay of the friction measurement.")] = "1ms",
-    rate: Annotated[str, typer.Option(metavar="FREQUENCY", help="Sampling rate of the controller.")] = "5kHz",
-    noise: Annotated[str, typer.Option(metavar="FORCE", help="Standard deviation of the sensor.")] = "0N",
+    delay: Annotated[float, si_option("s", "Delay of the friction measurement.")] = TypedNumber("1ms", "s"),
+    rate: Annotated[float, si_option("Hz", "Sampling rate of the controller.")] = TypedNumber("5kHz", "Hz"),
+    noise: Annotated[float, si_option("N", "Standard deviation of the sensor.")] = TypedNumber("0N", "N"),
     factor: Annotated[float, typer.Option(help="Real friction over that of the model.", min=0.01, max=100)] = 1.0,
     closed_loop: Annotated[
-        str | None, typer.Option(metavar="TIME", help="Time constant of the closed loop; the delay by default.")
+        float | None, si_option("s", "Time constant of the closed loop; the delay by default.")
     ] = None,
     voltage_limit: Annotated[
-        str | None, typer.Option(metavar="VOLTAGE", help="Largest swing, peak to peak; the rig's own by default.")
+        float | None, si_option("V", "Largest swing, peak to peak; the rig's own by default.")
     ] = None,
-    current_limit: Annotated[str | None, typer.Option(metavar="CURRENT", help="Largest current.")] = None,
-    slew_limit: Annotated[str | None, typer.Option(metavar="V/s", help="Fastest change of voltage.")] = None,
-    warming: Annotated[str, typer.Option(metavar="TEMPERATURE", help="Final temperature rise, such as 40K.")] = "0K",
+    current_limit: Annotated[float | None, si_option("A", "Largest current.", metavar="CURRENT")] = None,
+    slew_limit: Annotated[float | None, si_option("V/s", "Fastest change of voltage.", metavar="V/s")] = None,
+    warming: Annotated[float, si_option("K", "Final temperature rise, such as 40K.")] = TypedNumber("0K", "K"),
     warming_constant: Annotated[
-        str | None,
-        typer.Option(
-            "--warming-time", metavar="TIME", help="Time constant of the warming; a quarter of the run by default."
-        ),
+        float | None, si_option("s", "Time constant of the warming; a quarter of the run by default.", "--warming-time")
     ] = None,
     track: Annotated[bool, typer.Option(help="Follow the resonance by the phase of the impedance.")] = True,
     quality: Annotated[float, typer.Option(help="Quality factor, where the rig has no structure.", min=0.6)] = 50.0,
@@ -87,7 +84,7 @@ def control(
     stick_slip: Annotated[
         bool, typer.Option("--stick-slip", help="Also compute stick-slip of the slider on an elastic holder.")
     ] = False,
-    run_time: Annotated[str, typer.Option("--duration", metavar="TIME", help="Duration of the run.")] = "0.2s",
+    run_time: Annotated[float, si_option("s", "Duration of the run.", "--duration")] = TypedNumber("0.2s", "s"),
     changes: Changes = None,
     out: Out = OUT,
     json: Json = False,
@@ -97,33 +94,26 @@ def control(
     Example: sonolube control examples/rigs/tribometer.toml --friction 0.5N --factor 1.15 --warming 40K
     """
     known = read_rig(rig, changes=changes or ())
-    seconds, sampling_rate = to_si(run_time, unit="s", name="--duration"), to_si(rate, unit="Hz", name="--rate")
-    dead_time = to_si(delay, unit="s", name="--delay")
-    if sampling_rate <= 0 or seconds <= 0:
+    if rate <= 0 or run_time <= 0:
         raise InvalidInput(f"--rate {rate} and --duration {run_time} must be positive")
-    if dead_time > seconds:
+    if delay > run_time:
         raise InvalidInput(f"--delay {delay} must not exceed --duration {run_time}")
     swing = known.drive.voltage_peak_to_peak if known.drive is not None else None
     settings = ControlSettings(
-        friction_force=option_value(friction, unit="N", option="--friction"),
+        friction_force=friction,
         amplifier=Amplifier(
-            voltage_maximum=_value_or(swing or 0.0, option_value(voltage_limit, unit="V", option="--voltage-limit")),
-            current_maximum=_value_or(inf, option_value(current_limit, unit="A", option="--current-limit")),
-            slew_rate_maximum=_value_or(inf, option_value(slew_limit, unit="V/s", option="--slew-limit")),
+            voltage_maximum=_value_or(swing or 0.0, voltage_limit),
+            current_maximum=_value_or(inf, current_limit),
+            slew_rate_maximum=_value_or(inf, slew_limit),
         ),
-        dead_time=dead_time,
-        sample_interval=1 / sampling_rate,
-        closed_loop_time=option_value(closed_loop, unit="s", option="--closed-loop"),
+        dead_time=delay,
+        sample_interval=1 / rate,
+        closed_loop_time=closed_loop,
         feed_forward=feed_forward.value,
         tracking=track,
-        duration=seconds,
-        disturbance=Disturbance(
-            friction_factor=factor, friction_force_deviation=to_si(noise, unit="N", name="--noise")
-        ),
-        drift=ThermalDrift(
-            final_temperature_rise=temperature_difference_to_si(warming, name="--warming"),
-            warming_time=_value_or(seconds / 4, option_value(warming_constant, unit="s", option="--warming-time")),
-        ),
+        duration=run_time,
+        disturbance=Disturbance(friction_factor=factor, friction_force_deviation=noise),
+        drift=ThermalDrift(final_temperature_rise=warming, warming_time=_value_or(run_time / 4, warming_constant)),
     )
     assumed, mode = {}, None
     with progress("controlling"):
@@ -172,7 +162,7 @@ class ControlAnswer(Answer):
         }
         content = {
             "rig": self.rig.title,
-            **friction_model_object(self.rig),
+            "friction_model": self.rig.friction_model.name,
             "feed_forward": self.settings.feed_forward,
             "limit": study.limit,
             **si(values),
@@ -267,48 +257,31 @@ class ControlAnswer(Answer):
         margins, response, energy = study.margins, study.response, study.energy
         late = process.dead_time_samples * process.sample_interval
         amplifier = "" if energy.amplifier_energy is None else f"{format_si(energy.amplifier_energy, 'J')} (D 1.9), "
-        facts = [
-            (
-                "target friction",
-                f"{format_si(study.friction_force, 'N')} of {study.plant.highest_force:.3g} N; "
-                f"least within reach {study.plant.lowest_force:.3g} N",
-            ),
-            ("drive", f"up to {study.voltage_maximum:.4g} V peak to peak, by the amplifier's {study.limit}"),
-            (
-                "process",
-                f"vibration {format_si(study.mode.time_constant, 's')}, delay {format_si(late, 's')}, "
-                f"interval {format_si(process.sample_interval, 's')}",
-            ),
-            (
-                "controller",
-                f"K_c {gains.proportional_gain:.3g}, tau_I {format_si(gains.integral_time, 's')} (SIMC), "
-                f"feed-forward {self.settings.feed_forward}",
-            ),
-            (
-                "margins",
-                f"gain {margins.gain_margin:.2f} where real friction changes {study.plant_gain:.2f} times as expected, "
-                f"phase {degrees(margins.phase_margin):.1f} deg, delay {format_si(margins.delay_margin, 's')}, "
-                f"Ms {margins.sensitivity_peak:.2f}",
-            ),
-            (
-                "step",
-                f"rise {_time(response.rise_time)}, within 5 % after {_time(response.settling_time)}, "
-                f"overshoot {100 * response.overshoot:.2g} %",
-            ),
-            ("tracking error", f"{format_si(response.tracking_error, 'N')} rms once settled"),
-            (
-                "energy",
-                f"amplifier {amplifier}motion {format_si(energy.electrical_energy, 'J')}, "
-                f"work of friction saved {format_si(energy.saved_work, 'J')}",
-            ),
-        ]
+        facts = {
+            "target friction": f"{format_si(study.friction_force, 'N')} of {study.plant.highest_force:.3g} N; "
+            f"least within reach {study.plant.lowest_force:.3g} N",
+            "drive": f"up to {study.voltage_maximum:.4g} V peak to peak, by the amplifier's {study.limit}",
+            "process": f"vibration {format_si(study.mode.time_constant, 's')}, delay {format_si(late, 's')}, "
+            f"interval {format_si(process.sample_interval, 's')}",
+            "controller": f"K_c {gains.proportional_gain:.3g}, tau_I {format_si(gains.integral_time, 's')} (SIMC), "
+            f"feed-forward {self.settings.feed_forward}",
+            "margins": f"gain {margins.gain_margin:.2f} where real friction changes {study.plant_gain:.2f} times as "
+            f"expected, phase {degrees(margins.phase_margin):.1f} deg, delay {format_si(margins.delay_margin, 's')}, "
+            f"Ms {margins.sensitivity_peak:.2f}",
+            "step": f"rise {_time(response.rise_time)}, within 5 % after {_time(response.settling_time)}, "
+            f"overshoot {100 * response.overshoot:.2g} %",
+            "tracking error": f"{format_si(response.tracking_error, 'N')} rms once settled",
+            "energy": f"amplifier {amplifier}motion {format_si(energy.electrical_energy, 'J')}, "
+            f"work of friction saved {format_si(energy.saved_work, 'J')}",
+        }
         if study.fixed_frequency_run is not None:
-            facts.append(("resonance", _resonance_text(study)))
+            facts["resonance"] = _resonance_text(study)
         for name, motion, damping in _motions(self.suppression) if self.suppression else ():
-            sticks = f"sticks {100 * motion.stick_fraction:.0f} % of the time"
-            amplitude = format_si(motion.stick_slip_amplitude, "N")
-            facts.append((f"stick-slip {name}", f"{amplitude}, {sticks}, damping of sliding {damping:.3g} N s/m"))
-        return facts
+            facts[f"stick-slip {name}"] = (
+                f"{format_si(motion.stick_slip_amplitude, 'N')}, sticks {100 * motion.stick_fraction:.0f} % of the"
+                f" time, damping of sliding {damping:.3g} N s/m"
+            )
+        return list(facts.items())
 
 
 def _value_or(default: float, value: float | None) -> float:
@@ -316,11 +289,11 @@ def _value_or(default: float, value: float | None) -> float:
     return default if value is None else value
 
 
-def _efficiency_line(coefficient: str | None) -> EfficiencyLine:
+def _efficiency_line(coefficient: float | None) -> EfficiencyLine:
     """Efficiency coefficient given, at every speed, or the line of D 4.2."""
     if coefficient is None:
         return efficiency_line()
-    return EfficiencyLine(slope=0.0, intercept=to_si(coefficient, unit="m2/N", name="--efficiency"))
+    return EfficiencyLine(slope=0.0, intercept=coefficient)
 
 
 def _fields(record: Any, *names: str) -> dict[str, float | None]:

@@ -9,7 +9,7 @@ import typer
 import xarray as xr
 
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
-from sonolube.cli.console.options import OUT, Changes, Json, Out, option_value
+from sonolube.cli.console.options import OUT, Changes, Json, Out, si_option
 from sonolube.cli.console.rig_text import rig_settings
 from sonolube.design.efficiency import EfficiencyCalibration, calibrate_efficiency, efficiency_dataset
 from sonolube.design.efficiency_figures import efficiency_figure
@@ -19,13 +19,8 @@ from sonolube.rig import read_rig
 from sonolube.units import format_si
 
 _PRINTED_UNIT = 1e9  # m2/N in mW mm2/(N W), the unit of D
-_FIT_QUANTITIES = (
-    "slope_uncertainty",
-    "intercept_uncertainty",
-    "efficiency_deviation",
-    "lowest_speed",
-    "highest_speed",
-)
+_FITTED = ("slope_uncertainty", "intercept_uncertainty", "efficiency_deviation", "lowest_speed", "highest_speed")
+_POWERS = ("actuator_power", "lowest_power", "highest_power")
 _CAPTION = (
     "Efficiency coefficient (D 4.1) of {runs} runs over sliding speed, with the line of least squares, the band of the"
     " line and that of one more run."
@@ -37,9 +32,9 @@ def efficiency(
     runs: Annotated[Path, typer.Argument(metavar="RUNS.csv", help="Measured runs, a row each.")],
     rig: Annotated[Path, typer.Option(metavar="RIG.toml", help="The rig, for what the table of runs does not give.")],
     friction: Annotated[
-        str | None, typer.Option("--target-friction", metavar="FORCE", help="Target of the friction, for its power.")
+        float | None, si_option("N", "Target of the friction, for its power.", "--target-friction")
     ] = None,
-    speed: Annotated[str | None, typer.Option(metavar="SPEED", help="Sliding speed of that target.")] = None,
+    speed: Annotated[float | None, si_option("m/s", "Sliding speed of that target.")] = None,
     level: Annotated[float, typer.Option(help="Confidence level.", min=0.5, max=0.9999)] = 0.95,
     changes: Changes = None,
     out: Out = OUT,
@@ -51,11 +46,7 @@ def efficiency(
     """
     known = read_rig(rig, changes=changes or ())
     calibration = calibrate_efficiency(
-        known,
-        read_runs(runs),
-        friction_force=option_value(friction, unit="N", option="--target-friction"),
-        sliding_speed=option_value(speed, unit="m/s", option="--speed"),
-        confidence_level=level,
+        known, read_runs(runs), friction_force=friction, sliding_speed=speed, confidence_level=level
     )
     answer = EfficiencyAnswer(calibration=calibration, rig_file=rig, name=f"{runs.stem}-efficiency")
     deliver(answer, folder=out, as_json=json, context=context)
@@ -79,16 +70,13 @@ class EfficiencyAnswer(Answer):
         values = {
             "slope": found.fit.line.slope,
             "intercept": found.fit.line.intercept,
-            **{name: getattr(found.fit, name) for name in _FIT_QUANTITIES},
+            **{name: getattr(found.fit, name) for name in _FITTED},
             "confidence_level": found.confidence_level,
         }
         if found.estimate is not None:
             values |= {"friction_force": found.friction_force, "sliding_speed": found.target_speed}
-            values |= {
-                name: value
-                for name in ("actuator_power", "lowest_power", "highest_power")
-                if (value := getattr(found.estimate, name)) is not None
-            }
+            powers = {name: getattr(found.estimate, name) for name in _POWERS}
+            values |= {name: value for name, value in powers.items() if value is not None}
         return {"rig": found.rig.title, "runs": found.fit.runs, **si(values)}
 
     def caveats(self) -> Sequence[str]:
@@ -126,21 +114,18 @@ class EfficiencyAnswer(Answer):
         """Line, scatter and range of the runs, and the power."""
         found, fit = self.calibration, self.calibration.fit
         slope, intercept = _PRINTED_UNIT * fit.line.slope, _PRINTED_UNIT * fit.line.intercept
-        facts = [
-            (
-                "line",
-                f"({slope:.3g} +- {_PRINTED_UNIT * fit.slope_uncertainty:.2g}) v + ({intercept:.3g} +-"
-                f" {_PRINTED_UNIT * fit.intercept_uncertainty:.2g}), in mW mm2/(N W) with v in m/s",
-            ),
-            ("scatter of runs", f"{_PRINTED_UNIT * fit.efficiency_deviation:.2g} mW mm2/(N W)"),
-            ("speeds covered", f"{format_si(fit.lowest_speed, 'm/s')} to {format_si(fit.highest_speed, 'm/s')}"),
-        ]
+        facts = {
+            "line": f"({slope:.3g} +- {_PRINTED_UNIT * fit.slope_uncertainty:.2g}) v + ({intercept:.3g} +-"
+            f" {_PRINTED_UNIT * fit.intercept_uncertainty:.2g}), in mW mm2/(N W) with v in m/s",
+            "scatter of runs": f"{_PRINTED_UNIT * fit.efficiency_deviation:.2g} mW mm2/(N W)",
+            "speeds covered": f"{format_si(fit.lowest_speed, 'm/s')} to {format_si(fit.highest_speed, 'm/s')}",
+        }
         if found.estimate is not None:
             power, low, high = (
                 "no bound" if value is None else format_si(value, "W")
-                for value in (found.estimate.actuator_power, found.estimate.lowest_power, found.estimate.highest_power)
+                for value in (getattr(found.estimate, name) for name in _POWERS)
             )
             at = format_si(found.target_speed or 0.0, "m/s")
             text = f"{power} for {format_si(found.friction_force or 0.0, 'N')} at {at}; {low} to {high} with"
-            facts.append(("power", f"{text} {100 * found.confidence_level:g} %"))
-        return facts
+            facts["power"] = f"{text} {100 * found.confidence_level:g} %"
+        return list(facts.items())

@@ -9,7 +9,7 @@ import typer
 
 from sonolube import materials
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
-from sonolube.cli.console.options import OUT, Json, Out
+from sonolube.cli.console.options import OUT, Json, Out, TypedNumber, si_option
 from sonolube.cli.console.parts import named_horn
 from sonolube.cli.console.progress import progress
 from sonolube.design.horn import HornDesign, amplitude_limits, loaded_frequency, tuned_horn
@@ -18,24 +18,16 @@ from sonolube.fem import medium_from_material
 from sonolube.fem.figures import mode_figure
 from sonolube.materials import Material
 from sonolube.report import Drawing
-from sonolube.units import format_si, to_si
+from sonolube.units import format_si
 
 _SHARP = 0.2  # change of the peak stress from mesh to mesh above which it is a caveat
 _NEAREST = 3  # neighbouring modes printed
 _LIMITS = {"fatigue_strength": "fatigue limit", "yield_strength": "yield point"}
-_DESIGN_QUANTITIES = (
-    "displacement_gain",
-    "node_position",
-    "face_uniformity",
-    "face_asymmetry",
-    "stress_per_displacement",
-)
+_QUANTITIES = ("displacement_gain", "node_position", "face_uniformity", "face_asymmetry", "stress_per_displacement")
 
 
 def design(
-    target: Annotated[
-        str, typer.Option("--frequency", metavar="FREQUENCY", help="Frequency of the tuned mode, such as 20kHz.")
-    ],
+    target: Annotated[float, si_option("Hz", "Frequency of the tuned mode, such as 20kHz.", "--frequency")],
     material: Annotated[str, typer.Option(metavar="NAME", help="Material of the horn.")],
     shape: Annotated[
         str,
@@ -50,7 +42,7 @@ def design(
     axis: Annotated[
         str | None, typer.Option(metavar="x|y|z", help="Axis of the part of a STEP file; its longest by default.")
     ] = None,
-    tool: Annotated[str, typer.Option("--tool-mass", metavar="MASS", help="Of a tool on the working face.")] = "10g",
+    tool: Annotated[float, si_option("kg", "Of a tool on the working face.", "--tool-mass")] = TypedNumber("10g", "kg"),
     tolerance: Annotated[float, typer.Option(metavar="RATIO", help="Largest relative error of the frequency.")] = 0.003,
     out: Out = OUT,
     json: Json = False,
@@ -59,20 +51,18 @@ def design(
 
     Example: sonolube horn design --frequency 20kHz --material titanium_6al4v --set end_radius=10mm
     """
-    frequency = to_si(target, unit="Hz", name="--frequency")
-    tool_mass = to_si(tool, unit="kg", name="--tool-mass")
     solid = materials.material(material)
-    body = named_horn(shape, sizes or [], frequency=frequency, solid=solid, tune=tune, axis=axis)
+    body = named_horn(shape, sizes or [], frequency=target, solid=solid, tune=tune, axis=axis)
     with progress("tuning") as advance:
         found = tuned_horn(
             body,
             medium=medium_from_material(solid),
-            frequency=frequency,
+            frequency=target,
             mode=mode,
             relative_tolerance=tolerance,
             advance=advance,
         )
-    answer = HornAnswer(design=found, material=solid, tool_mass=tool_mass, name=f"horn-{Path(shape).stem}")
+    answer = HornAnswer(design=found, material=solid, tool_mass=tool, name=f"horn-{Path(shape).stem}")
     deliver(answer, folder=out, as_json=json)
 
 
@@ -123,7 +113,7 @@ class HornAnswer(Answer):
             "sizes": si(design.body.sizes, unit="m"),
             **si({name: getattr(tuned, name) for name in ("length", "frequency_per_length")}),
             **si({name: getattr(tuned.mode, name) for name in ("frequency", "frequency_error")}),
-            **si({name: getattr(design, name) for name in _DESIGN_QUANTITIES}),
+            **si({name: getattr(design, name) for name in _QUANTITIES}),
             **si({"tool_mass": self.tool_mass, "loaded_frequency": self._loaded()}),
             **si({"stress_change": design.stress_change}, unit=""),
             "amplitude_limits": si(self._amplitudes(), unit="m"),

@@ -16,7 +16,7 @@ from sonolube.cli.console.backend import Backend, BackendName, gpu_warning
 from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath
 from sonolube.cli.console.progress import progress
 from sonolube.cli.console.ranges import values_by_key
-from sonolube.cli.console.rig_text import friction_model_object, friction_model_text, rig_settings
+from sonolube.cli.console.rig_text import friction_model_text, rig_settings
 from sonolube.cli.design.status_tables import status_tables
 from sonolube.design import MAP_LAYOUTS, map_figure, map_page, measured_map_figure
 from sonolube.design.map_axes import default_axes
@@ -30,22 +30,10 @@ from sonolube.rig.driven_rig import driven_rig
 from sonolube.units import format_si
 from sonolube.vocabulary import quantity
 
-_AXIS_KEYS = {
-    "sliding.sliding_speed": "sliding_speed",
-    "contact.normal_load": "normal_load",
-    "drive.voltage_peak_to_peak": "voltage_peak_to_peak",
-    "drive.frequency": "frequency",
-}
+_AXIS_KEYS = ("sliding.sliding_speed", "contact.normal_load", "drive.voltage_peak_to_peak", "drive.frequency")
 _MEASURED_CAPTION = "Friction reduction between the measured runs alone by a Gaussian process, with its uncertainty."
 _COLUMNS = ("friction_reduction", "sliding_speed", "actuator_power")
-_QUANTITIES = (
-    "friction_reduction",
-    "sliding_speed",
-    "normal_load",
-    "frequency",
-    "voltage_peak_to_peak",
-    "actuator_power",
-)
+_SHOWN = ("friction_reduction", "sliding_speed", "normal_load", "frequency", "voltage_peak_to_peak", "actuator_power")
 
 
 class Kind(StrEnum):
@@ -135,7 +123,7 @@ class MapAnswer(Answer):
         return {
             "rig": self.rig.title,
             "map": self._kind,
-            **friction_model_object(self.rig),
+            "friction_model": self.rig.friction_model.name,
             "points": int(self.mapped["status"].size),
             "without_result": int(self.mapped["friction_reduction"].isnull().sum()),
             "most_reduction": si(_greatest(self.mapped)),
@@ -226,10 +214,10 @@ def _axes(rig: Rig, kind: str, over: list[str] | None) -> dict[str, Floats]:
     axes = default_axes(rig, kind=kind)
     across_and_up = list(axes)[:2]
     for key, values in values_by_key(over).items():
-        name = _AXIS_KEYS.get(key)
-        if name not in axes:
-            known = ", ".join(long for long, short in _AXIS_KEYS.items() if short in axes)
-            raise InvalidInput(f"--over {key}: no axis of a {kind} map; its axes are {known}")
+        name = key.rpartition(".")[2]
+        known = [each for each in _AXIS_KEYS if each.rpartition(".")[2] in axes]
+        if key not in known:
+            raise InvalidInput(f"--over {key}: no axis of a {kind} map; its axes are {', '.join(known)}")
         if values.size < 2 and name in across_and_up:
             raise InvalidInput(f"--over {key}: a {kind} map runs over it, and needs at least 2 values")
         axes[name] = values.astype("float64")
@@ -241,7 +229,7 @@ def _greatest(mapped: xr.Dataset) -> dict[str, float]:
     point = extreme_point(mapped, outcome="friction_reduction", highest=True)
     if point is None:
         return {}
-    return {name: float(point[name]) for name in _QUANTITIES if name in point and point[name].ndim == 0}
+    return {name: float(point[name]) for name in _SHOWN if name in point and point[name].ndim == 0}
 
 
 def _ridge(mapped: xr.Dataset) -> str:

@@ -1,7 +1,7 @@
 """Answer of the command `optimise`: best designs, Pareto front, amplifier, matching networks and a rig file."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from math import log
 from pathlib import Path
 from typing import Any
@@ -10,7 +10,7 @@ import xarray as xr
 
 from sonolube.actuator import MatchingNetwork
 from sonolube.cli.console.answer import Answer, aligned, grid, si
-from sonolube.cli.console.rig_text import friction_model_object, operating_point, rig_settings
+from sonolube.cli.console.rig_text import operating_point, rig_settings
 from sonolube.cli.design.status_tables import count_table
 from sonolube.design.optimisation import (
     OWN_ACTUATOR,
@@ -36,15 +36,6 @@ _DESIGN_QUANTITIES = (
     "nominal_pressure",
     "temperature_rise",
     "horn_stress",
-)
-_AMPLIFIER_QUANTITIES = (
-    "voltage_maximum",
-    "peak_current",
-    "rms_current",
-    "apparent_power",
-    "dissipated_power",
-    "slew_rate",
-    "power_factor",
 )
 _ELEMENTS = ("series_inductance", "series_capacitance", "shunt_inductance", "shunt_capacitance")
 _NO_LIMIT = "none set"
@@ -75,14 +66,14 @@ class OptimisationAnswer(Answer):
         optimum, screened, need = self.optimum, self.optimum.screening, self.electric.amplifier
         return {
             "rig": self._space.rig.title,
-            **friction_model_object(self._space.rig),
+            "friction_model": self._space.rig.friction_model.name,
             "minimise": optimum.minimise,
             **si({"friction_ratio": optimum.problem.friction_ratio}),
             "designs": [_design_object(point) for point in optimum.designs],
             "front": [_design_object(point) for point in optimum.front],
             "screened": int(screened.frequency.size),
             "feasible": int(screened.feasible.sum()),
-            "amplifier": si({name: getattr(need, name) for name in _AMPLIFIER_QUANTITIES}),
+            "amplifier": si(asdict(need)),
             "networks": [_network_object(matched) for matched in self.electric.networks],
             "refused": screened.refused,
         }
@@ -176,37 +167,28 @@ class OptimisationAnswer(Answer):
         ratio, screened = optimum.problem.friction_ratio, optimum.screening
         coefficient = ratio * self._space.rig.friction_coefficient
         amplitude = float(best.evaluation.quantities["vibration_amplitude"][0])
-        return [
-            (
-                "target friction",
-                f"coefficient {coefficient:.3g}, ratio {ratio:.3g}{_tolerance_text(optimum.problem.tolerance)}",
-            ),
-            ("actuator", self._actuator_title(best)),
-            (
-                "drive",
-                f"{format_si(best.voltage_peak_to_peak, 'V', digits=4)} peak to peak,"
-                f" {format_si(best.frequency, 'Hz', digits=5)}, {best.candidate.waveform}",
-            ),
-            *[
-                (
-                    name.replace("_", " "),
-                    format_si(value, "kg" if name.endswith("mass") else quantity(name).unit, digits=4),
-                )
+        units = {name: "kg" if name.endswith("mass") else quantity(name).unit for name in best.candidate.entries}
+        facts = {
+            "target friction": f"coefficient {coefficient:.3g}, ratio {ratio:.3g}"
+            f"{_tolerance_text(optimum.problem.tolerance)}",
+            "actuator": self._actuator_title(best),
+            "drive": f"{format_si(best.voltage_peak_to_peak, 'V', digits=4)} peak to peak,"
+            f" {format_si(best.frequency, 'Hz', digits=5)}, {best.candidate.waveform}",
+            **{
+                name.replace("_", " "): format_si(value, units[name], digits=4)
                 for name, value in best.candidate.entries.items()
-            ],
-            ("amplitude", format_si(amplitude, "m")),
-            ("power of amplifier", f"{format_si(best.objective('power'), 'W')} (D 1.9)"),
-            ("heat in actuator", format_si(best.objective("heat"), "W")),
-            ("tightest limit", _tightest(best)),
-            (
-                "amplifier",
-                f"{format_si(need.voltage_maximum, 'V')}, {format_si(need.peak_current, 'A')} peak,"
-                f" {format_si(need.apparent_power, 'W').replace('W', 'VA')}, {need.slew_rate * 1e-6:.3g} V/us,"
-                f" power factor {need.power_factor:.3g}",
-            ),
-            *[(matched.name, _network_text(matched)) for matched in self.electric.networks],
-            ("designs", f"{int(screened.feasible.sum())} of {screened.frequency.size} within all limits"),
-        ]
+            },
+            "amplitude": format_si(amplitude, "m"),
+            "power of amplifier": f"{format_si(best.objective('power'), 'W')} (D 1.9)",
+            "heat in actuator": format_si(best.objective("heat"), "W"),
+            "tightest limit": _tightest(best),
+            "amplifier": f"{format_si(need.voltage_maximum, 'V')}, {format_si(need.peak_current, 'A')} peak,"
+            f" {format_si(need.apparent_power, 'W').replace('W', 'VA')}, {need.slew_rate * 1e-6:.3g} V/us,"
+            f" power factor {need.power_factor:.3g}",
+            **{matched.name: _network_text(matched) for matched in self.electric.networks},
+            "designs": f"{int(screened.feasible.sum())} of {screened.frequency.size} within all limits",
+        }
+        return list(facts.items())
 
     def _table(self) -> PageTable:
         """Designs of the front, or the best of each actuator and waveform, the best first."""

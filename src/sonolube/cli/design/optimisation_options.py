@@ -48,7 +48,7 @@ def friction_ratio(rig: Rig, target: str) -> float:
     return value / intrinsic
 
 
-def horn(material_name: str | None, limit: str | None) -> HalfWaveHorn | None:
+def horn(material_name: str | None, limit: float | None) -> HalfWaveHorn | None:
     """Half-wave horn of a material with the stress amplitude allowed in it; None without both.
 
     Raises
@@ -62,13 +62,11 @@ def horn(material_name: str | None, limit: str | None) -> HalfWaveHorn | None:
         raise InvalidInput("--horn and --horn-limit belong together: a material and the amplitude of stress it bears")
     solid = material(material_name)
     return HalfWaveHorn(
-        density=solid.value("density"),
-        youngs_modulus=solid.value("youngs_modulus"),
-        stress_limit=to_si(limit, unit="Pa", name="--horn-limit"),
+        density=solid.value("density"), youngs_modulus=solid.value("youngs_modulus"), stress_limit=limit
     )
 
 
-def bolt(thread: str | None, tension: str | None, strength: str) -> PreloadBolt | None:
+def bolt(thread: str | None, tension: float | None, strength: float) -> PreloadBolt | None:
     """Preload bolt of a thread such as M6x40mm; None without thread and tension.
 
     Raises
@@ -87,8 +85,8 @@ def bolt(thread: str | None, tension: str | None, strength: str) -> PreloadBolt 
         thread_diameter=1e-3 * float(found[1]),
         length=to_si(found[2], unit="m", name="--bolt"),
         youngs_modulus=_STEEL,
-        yield_strength=to_si(strength, unit="Pa", name="--bolt-strength"),
-        preload=to_si(tension, unit="N", name="--preload"),
+        yield_strength=strength,
+        preload=tension,
     )
 
 

@@ -8,14 +8,13 @@ import typer
 
 from sonolube.checks import require_positive
 from sonolube.cli.console.answer import deliver
-from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath, option_value
+from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath, TypedNumber, si_option
 from sonolube.cli.console.progress import progress
 from sonolube.cli.design import optimisation_options as options
 from sonolube.cli.design.optimisation_answer import OptimisationAnswer
 from sonolube.design import optimisation
 from sonolube.errors import InvalidInput
 from sonolube.rig import read_rig, rig_content
-from sonolube.units import temperature_difference_to_si
 
 
 class Objective(StrEnum):
@@ -59,27 +58,29 @@ def optimise(
         ),
     ] = None,
     samples: Annotated[int, typer.Option(help="Structures drawn for each actuator.", min=2, max=4096)] = 16,
-    voltage_limit: Annotated[str | None, typer.Option(metavar="VOLTAGE", help="Highest voltage either way.")] = None,
-    current_limit: Annotated[str | None, typer.Option(metavar="CURRENT", help="Highest current.")] = None,
-    slew_limit: Annotated[str | None, typer.Option(metavar="RATE", help="Fastest change, such as 3V/us.")] = None,
+    voltage_limit: Annotated[float | None, si_option("V", "Highest voltage either way.")] = None,
+    current_limit: Annotated[float | None, si_option("A", "Highest current.", metavar="CURRENT")] = None,
+    slew_limit: Annotated[float | None, si_option("V/s", "Fastest change, such as 3V/us.", metavar="RATE")] = None,
     pressure_limit: Annotated[
-        str | None, typer.Option("--stress-limit", metavar="STRESS", help="Highest nominal stress.")
+        float | None, si_option("Pa", "Highest nominal stress.", "--stress-limit", metavar="STRESS")
     ] = None,
     warming_limit: Annotated[
-        str | None, typer.Option("--temperature-limit", metavar="KELVIN", help="Highest temperature rise, such as 40K.")
+        float | None, si_option("K", "Highest temperature rise, such as 40K.", "--temperature-limit")
     ] = None,
     conductance: Annotated[
-        str | None, typer.Option(metavar="CONDUCTANCE", help="Thermal conductance of the actuator, such as 0.5W/K.")
+        float | None, si_option("W/K", "Thermal conductance of the actuator, such as 0.5W/K.", metavar="CONDUCTANCE")
     ] = None,
     horn: Annotated[str | None, typer.Option(metavar="MATERIAL", help="Of a half-wave horn at the tip.")] = None,
-    horn_limit: Annotated[str | None, typer.Option(metavar="STRESS", help="Stress amplitude allowed in it.")] = None,
+    horn_limit: Annotated[float | None, si_option("Pa", "Stress amplitude allowed in it.", metavar="STRESS")] = None,
     bolt: Annotated[str | None, typer.Option(metavar="THREAD", help="Preload bolt, such as M6x40mm.")] = None,
-    bolt_tension: Annotated[str | None, typer.Option("--preload", metavar="FORCE", help="Tension of the bolt.")] = None,
-    bolt_strength: Annotated[str, typer.Option(metavar="STRESS", help="Proof strength; class 8.8.")] = "640MPa",
+    bolt_tension: Annotated[float | None, si_option("N", "Tension of the bolt.", "--preload")] = None,
+    bolt_strength: Annotated[float, si_option("Pa", "Proof strength; class 8.8.", metavar="STRESS")] = TypedNumber(
+        "640MPa", "Pa"
+    ),
     quality: Annotated[float, typer.Option(help="Mechanical quality factor of the catalogue's ceramics.")] = 80.0,
     source: Annotated[
-        str | None,
-        typer.Option("--source-resistance", metavar="RESISTANCE", help="To match by two elements, such as 50ohm."),
+        float | None,
+        si_option("ohm", "To match by two elements, such as 50ohm.", "--source-resistance", metavar="RESISTANCE"),
     ] = None,
     changes: Changes = None,
     out: Out = OUT,
@@ -96,14 +97,12 @@ def optimise(
     if warming_limit is not None and conductance is None:
         raise InvalidInput("--temperature-limit needs --conductance, the heat that the actuator loses per kelvin")
     limits = optimisation.Limits(
-        voltage_maximum=option_value(voltage_limit, unit="V", option="--voltage-limit"),
-        current_maximum=option_value(current_limit, unit="A", option="--current-limit"),
-        slew_rate_maximum=option_value(slew_limit, unit="V/s", option="--slew-limit"),
-        nominal_pressure=option_value(pressure_limit, unit="Pa", option="--stress-limit"),
-        temperature_rise=None
-        if warming_limit is None
-        else temperature_difference_to_si(warming_limit, name="--temperature-limit"),
-        thermal_conductance=option_value(conductance, unit="W/K", option="--conductance"),
+        voltage_maximum=voltage_limit,
+        current_maximum=current_limit,
+        slew_rate_maximum=slew_limit,
+        nominal_pressure=pressure_limit,
+        temperature_rise=warming_limit,
+        thermal_conductance=conductance,
         horn=options.horn(horn, horn_limit),
     )
     space = options.design_space(
@@ -121,9 +120,8 @@ def optimise(
         limits=limits,
         tolerance=None if robust is None else optimisation.Tolerance(manufacturing_tolerance=robust, quantile=share),
     )
-    resistance = option_value(source, unit="ohm", option="--source-resistance")
-    if resistance is not None:
-        require_positive(source_resistance=resistance)
+    if source is not None:
+        require_positive(source_resistance=source)
     with progress("optimising") as advance:
         optimum = optimisation.optimise(
             problem,
@@ -132,6 +130,6 @@ def optimise(
             samples=samples,
             advance=lambda done, total: advance("structures", done, total),
         )
-        electric = optimisation.required_electronics(problem, optimum.best, source_resistance=resistance)
+        electric = optimisation.required_electronics(problem, optimum.best, source_resistance=source)
     answer = OptimisationAnswer(rig_file=rig, content=content, optimum=optimum, electric=electric)
     deliver(answer, folder=out, as_json=json, context=context)

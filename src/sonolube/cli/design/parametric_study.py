@@ -14,7 +14,7 @@ from sonolube import rig as rigs
 from sonolube.checks import Floats, require_positive
 from sonolube.cli.console.answer import Answer, aligned, si
 from sonolube.cli.console.progress import progress
-from sonolube.cli.console.rig_text import friction_model_object, friction_model_text
+from sonolube.cli.console.rig_text import friction_model_text
 from sonolube.design.point_statistics import extreme_place, extreme_point, failure_counts
 from sonolube.errors import InvalidInput
 from sonolube.report import Drawing
@@ -26,7 +26,9 @@ from sonolube.vocabulary import quantity
 
 Rows = Iterator[tuple[str, str]]
 
-_OUTCOMES = ("friction_ratio", "vibration_amplitude", "actuator_power", "dissipated_power")
+OUTCOMES = ("friction_ratio", "vibration_amplitude", "actuator_power", "dissipated_power")
+"""Quantities that the answer of a sweep has of a point."""
+
 _POINTS_AT_RESONANCE = 41  # frequencies about each resonance
 _MOST_POINTS = 10_000
 
@@ -132,7 +134,7 @@ class ParametricStudyAnswer(Answer):
         return {
             "rig": self.rig.title,
             "study": self.of,
-            **friction_model_object(self.rig),
+            "friction_model": self.rig.friction_model.name,
             "least_friction": [_point_object(best) for best in _best_points(self.study)],
             "points": int(self.study["status"].size),
             "without_result": [{"reason": reason, "points": count} for reason, count in self.failures().items()],
@@ -280,7 +282,7 @@ def _best_points(study: xr.Dataset) -> Iterator[xr.Dataset]:
 
 def _point_object(point: xr.Dataset) -> dict[str, Any]:
     """Coordinates and outcomes of a point, for JSON."""
-    names = [str(name) for name in (*point.coords, *_OUTCOMES) if point[name].ndim == 0]
+    names = [str(name) for name in (*point.coords, *OUTCOMES) if point[name].ndim == 0]
     waveform = {"waveform": str(point["waveform"].values)} if "waveform" in names else {}
     return waveform | si({name: float(point[name]) for name in names if name != "waveform"})
 

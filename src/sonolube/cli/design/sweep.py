@@ -15,7 +15,7 @@ from sonolube.cli.console.backend import Backend, BackendName, gpu_warning
 from sonolube.cli.console.options import OUT, Changes, Json, RigPath
 from sonolube.cli.console.progress import progress
 from sonolube.cli.console.ranges import ends_by_key, values_by_key
-from sonolube.cli.design.parametric_study import Parameter, parametric_study
+from sonolube.cli.design.parametric_study import OUTCOMES, Parameter, parametric_study
 from sonolube.cli.design.status_tables import status_tables
 from sonolube.design import SweepPlan, grid_plan, latin_hypercube_plan, list_plan, sweep_figure, swept_variables
 from sonolube.design.point_statistics import extreme_place, extreme_point, failure_counts, status_counts
@@ -25,7 +25,6 @@ from sonolube.report import Drawing, Page
 from sonolube.units import format_si
 from sonolube.vocabulary import unit_of
 
-_OUTCOMES = ("friction_ratio", "vibration_amplitude", "actuator_power", "dissipated_power")
 _CAPTIONS = {1: "Results of the rig over the key that was swept.", 2: "Friction over both keys that were swept."}
 _CLOUD_CAPTION = (
     "Friction over each key that was swept, at all values of the others: points, at most 3000 of them, their median,"
@@ -207,11 +206,11 @@ class SweepAnswer(Answer):
     def _least(self) -> dict[str, Any]:
         """Values of the swept keys and outcomes at the point of least friction; empty where no point has a result."""
         place = extreme_place(self.result, outcome="friction_ratio")
-        point = extreme_point(self.result[list(_OUTCOMES)], outcome="friction_ratio")
+        point = extreme_point(self.result[list(OUTCOMES)], outcome="friction_ratio")
         if place is None or point is None:
             return {}
         swept = {key: values[0].item() for key, values in self.plan.rows(place, place + 1).items()}
-        return swept | si({name: float(point[name]) for name in _OUTCOMES})
+        return swept | si({name: float(point[name]) for name in OUTCOMES})
 
     def _least_texts(self) -> list[tuple[str, str]]:
         """The same as text."""

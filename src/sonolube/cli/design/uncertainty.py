@@ -184,11 +184,8 @@ class UncertaintyAnswer(Answer):
     def figures(self) -> Mapping[str, Drawing]:
         """Histogram or band of the outcome, and the ranking of the entries."""
         result = self.result
-        outcome = (
-            Drawing(draw=lambda: band_figure(result), caption=_BAND_CAPTION)
-            if self._swept
-            else Drawing(draw=lambda: histogram_figure(result), caption=_SAMPLES_CAPTION)
-        )
+        draw, caption = (band_figure, _BAND_CAPTION) if self._swept else (histogram_figure, _SAMPLES_CAPTION)
+        outcome = Drawing(draw=lambda: draw(result), caption=caption)
         if not self._ranked:
             return {self._name: outcome}
         ranking = Drawing(draw=lambda: sobol_figure(result, outcome_indices(result)), caption=_SOBOL_CAPTION)

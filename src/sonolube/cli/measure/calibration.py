@@ -6,17 +6,8 @@ from typing import Annotated
 
 import typer
 
-from sonolube.cli.console.options import Json
-from sonolube.cli.measure.measured_files import (
-    Files,
-    Mapped,
-    Report,
-    Test,
-    column_mapping,
-    deliver_sheets,
-    each_file,
-    names_of,
-)
+from sonolube.cli.console.options import Json, TypedNumber, si_option
+from sonolube.cli.measure.measured_files import Files, Mapped, Report, Test, column_mapping, deliver_sheets, each_file
 from sonolube.errors import InvalidInput
 from sonolube.report.measured.calibration import (
     CalibrationSettings,
@@ -24,10 +15,10 @@ from sonolube.report.measured.calibration import (
     calibration_sheet,
     force_sheet,
 )
-from sonolube.units import to_si
 
 
 def calibration(
+    context: typer.Context,
     files: Files,
     applied: Annotated[
         list[Path] | None,
@@ -37,8 +28,8 @@ def calibration(
     degree: Annotated[int, typer.Option(help="Of the polynomials of loading and unloading.", min=1, max=7)] = 3,
     levels: Annotated[int, typer.Option(help="Of displacement in the Preisach model.", min=2, max=64)] = 16,
     uncertainty: Annotated[
-        str, typer.Option("--displacement-uncertainty", metavar="LENGTH", help="Of a reading, standard.")
-    ] = "0um",
+        float, si_option("m", "Of a reading, standard.", "--displacement-uncertainty")
+    ] = TypedNumber("0um", "m"),
     test: Test = None,
     report: Report = None,
     json: Json = False,
@@ -48,10 +39,7 @@ def calibration(
     Example: sonolube measure calibration loops.csv --apply test.csv --report gauge.html
     """
     settings = CalibrationSettings(
-        mapping=column_mapping(mapping),
-        degree=degree,
-        levels=levels,
-        displacement_uncertainty=to_si(uncertainty, unit="m", name="--displacement-uncertainty"),
+        mapping=column_mapping(mapping), degree=degree, levels=levels, displacement_uncertainty=uncertainty
     )
     sheets, refused = each_file(files, partial(calibration_sheet, settings=settings), title="calibrating")
     if applied:
@@ -61,11 +49,4 @@ def calibration(
         measure = partial(force_sheet, calibration=gauge, settings=settings)
         forces, forces_refused = each_file(applied, measure, title="computing forces")
         sheets, refused = [*sheets, *forces], refused | forces_refused
-    options = {
-        "applied to": names_of(applied),
-        "mapping": mapping,
-        "degree": degree,
-        "levels": levels,
-        "displacement uncertainty": uncertainty,
-    }
-    deliver_sheets("calibration", sheets, refused, settings=options, page=report, test=test, as_json=json)
+    deliver_sheets(context, "calibration", sheets, refused, page=report, test=test, as_json=json)

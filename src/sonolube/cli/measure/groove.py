@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from sonolube.cli.console.options import Json, option_value
-from sonolube.cli.measure.measured_files import Files, Report, Test, deliver_sheets, each_file, names_of
+from sonolube.cli.console.options import Json, si_option
+from sonolube.cli.measure.measured_files import Files, Report, Test, deliver_sheets, each_file
 from sonolube.cli.measure.surface import Spacing, Unit, spacings
 from sonolube.errors import InvalidInput, NoGroove
 from sonolube.measurement.wear_track import WearTrack
@@ -16,24 +16,18 @@ from sonolube.report.measured.groove import RingSettings, cap_sheet, groove_shee
 from sonolube.report.measured.sheet import Sheet
 from sonolube.report.measured.surface import SurfaceSettings
 from sonolube.surfaces.grooves.groove import Groove
-from sonolube.units import to_si
 
 
 def groove(
+    context: typer.Context,
     files: Files,
-    diameter: Annotated[
-        str | None, typer.Option("--groove-diameter", metavar="LENGTH", help="Of the ring that the scans lie on.")
-    ] = None,
-    slid: Annotated[
-        str | None, typer.Option("--sliding-distance", metavar="LENGTH", help="Sliding distance on the ring.")
-    ] = None,
+    diameter: Annotated[float | None, si_option("m", "Of the ring that the scans lie on.", "--groove-diameter")] = None,
+    slid: Annotated[float | None, si_option("m", "Sliding distance on the ring.", "--sliding-distance")] = None,
     without: Annotated[
         list[Path] | None,
         typer.Option("--without-vibration", metavar="FILE", help="Scan or folder of a ring worn without vibration."),
     ] = None,
-    tip: Annotated[
-        str | None, typer.Option("--tip-radius", metavar="LENGTH", help="Of the pin, for ASTM G99's geometry.")
-    ] = None,
+    tip: Annotated[float | None, si_option("m", "Of the pin, for ASTM G99's geometry.", "--tip-radius")] = None,
     pin: Annotated[
         list[Path] | None, typer.Option("--pin", metavar="FILE", help="Scan of the pin's tip; may come again.")
     ] = None,
@@ -49,14 +43,9 @@ def groove(
     """
     spacing_x, spacing_y = spacings(pixel)
     settings = SurfaceSettings(spacing_x=spacing_x, spacing_y=spacing_y, length_unit=unit)
-    tip_radius = option_value(tip, unit="m", option="--tip-radius")
     ring = None
     if diameter is not None and slid is not None:
-        ring = RingSettings(
-            groove_diameter=to_si(diameter, unit="m", name="--groove-diameter"),
-            sliding_distance=to_si(slid, unit="m", name="--sliding-distance"),
-            tip_radius=tip_radius,
-        )
+        ring = RingSettings(groove_diameter=diameter, sliding_distance=slid, tip_radius=tip)
     elif diameter or slid or without:
         raise InvalidInput("a ring needs --groove-diameter and --sliding-distance")
     sheets: list[Sheet] = []
@@ -70,19 +59,11 @@ def groove(
     if len(rings) == 2:
         sheets.append(wear_reduction_sheet(rings[1:], rings[:1]))
     if pin:
-        measure = partial(cap_sheet, settings=settings, tip_radius=tip_radius)
+        measure = partial(cap_sheet, settings=settings, tip_radius=tip)
         caps, caps_refused = each_file(pin, measure, title="measuring")
         sheets += caps
         refused |= caps_refused
-    options = {
-        "groove diameter": diameter,
-        "sliding distance": slid,
-        "without vibration": names_of(without),
-        "tip radius": tip,
-        "spacing": pixel,
-        "length unit": unit,
-    }
-    deliver_sheets("wear grooves", sheets, refused, settings=options, page=report, test=test, as_json=json)
+    deliver_sheets(context, "wear grooves", sheets, refused, page=report, test=test, as_json=json)
 
 
 def _ring(

@@ -7,11 +7,10 @@ from typing import Annotated
 
 import typer
 
-from sonolube.cli.console.options import Json
+from sonolube.cli.console.options import Json, si_option
 from sonolube.cli.measure.measured_files import Files, Report, Test, deliver_sheets, each_file
 from sonolube.report.measured.impedance import ImpedanceSettings, StackInStructure, impedance_sheet
 from sonolube.rig import structure_by_stack
-from sonolube.units import to_si
 
 
 class Residual(StrEnum):
@@ -22,13 +21,14 @@ class Residual(StrEnum):
 
 
 def impedance(
+    context: typer.Context,
     files: Files,
     branches: Annotated[
         int | None, typer.Option(help="Number of modes; as many as are significant by default.", min=1, max=8)
     ] = None,
     residual: Annotated[Residual, typer.Option(help="Residual that the fit minimises.")] = Residual.LOG_COMPLEX,
     leads: Annotated[
-        str | None, typer.Option("--series-resistance", metavar="QUANTITY", help="Of the leads, such as 0.2ohm.")
+        float | None, si_option("ohm", "Of the leads, such as 0.2ohm.", "--series-resistance", metavar="RESISTANCE")
     ] = None,
     sweep: Annotated[str | None, typer.Option(metavar="NAME", help="Sweep of the file, such as memory.")] = None,
     rig: Annotated[
@@ -45,16 +45,9 @@ def impedance(
     settings = ImpedanceSettings(
         branches=branches,
         residual=residual.value,
-        series_resistance=0.0 if leads is None else to_si(leads, unit="ohm", name="--series-resistance"),
+        series_resistance=leads or 0.0,
         sweep=sweep,
         stack=None if rig is None else StackInStructure(*structure_by_stack(rig)),
     )
     sheets, refused = each_file(files, partial(impedance_sheet, settings=settings), title="fitting")
-    options = {
-        "branches": branches,
-        "residual": residual.value,
-        "series resistance": leads,
-        "sweep": sweep,
-        "stack of": rig,
-    }
-    deliver_sheets("impedance", sheets, refused, settings=options, page=report, test=test, as_json=json)
+    deliver_sheets(context, "impedance", sheets, refused, page=report, test=test, as_json=json)

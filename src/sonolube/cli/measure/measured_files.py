@@ -31,6 +31,9 @@ Test = Annotated[
 ]
 Measure = Callable[[Path], "Sheet"]
 
+_UNLISTED = ("files", "test", "report", "json")  # arguments that are listed otherwise, or that change no number
+_SETTINGS = {"--apply": "applied to"}  # names of settings that are not those of their options
+
 
 def each_file(paths: Sequence[Path], measure: Measure, *, title: str) -> tuple[list[Sheet], dict[str, str]]:
     """Sheets of all files that can be measured, and the reasons of the others.
@@ -72,17 +75,12 @@ def column_mapping(path: Path | None) -> RecordingMapping | None:
     return None if path is None else read_mapping(path)
 
 
-def names_of(paths: Sequence[Path] | None) -> str | None:
-    """Names of files as one text; None where there are none."""
-    return ", ".join(path.name for path in paths or ()) or None
-
-
 def deliver_sheets(
+    context: typer.Context,
     title: str,
     sheets: Sequence[Sheet],
     refused: Mapping[str, str],
     *,
-    settings: Mapping[str, Any],
     page: Path | None,
     test: Path | None,
     as_json: bool,
@@ -91,13 +89,13 @@ def deliver_sheets(
 
     Parameters
     ----------
+    context : typer.Context
+        Of the command, whose options are the settings that the numbers depend on.
     title : str
         What was measured.
     sheets : sequence of Sheet
     refused : mapping of str to str
         Reason for each file that could not be measured.
-    settings : mapping
-        Options that the numbers depend on, as given; None is left out.
     page : Path or None
         HTML page to write.
     test : Path or None
@@ -111,7 +109,7 @@ def deliver_sheets(
     """
     report = MeasurementReport(
         title=title,
-        settings={name: str(value) for name, value in settings.items() if value is not None},
+        settings=_settings(context),
         sheets=tuple(sheets),
         refused=refused,
         test=None if test is None else read_pin_on_disc_sheet(test),
@@ -149,6 +147,17 @@ class MeasuredFiles(Answer):
             return {}
         with progress("drawing") as advance:
             return {self.page_name: measurement_page(self.report, advance=advance)}
+
+
+def _settings(context: typer.Context) -> dict[str, str]:
+    """Options of a running command by name as given, those left out that were not given or change no number."""
+    settings = {}
+    for option in context.command.params:
+        value = context.params[option.name or ""]
+        if option.name not in _UNLISTED and value is not None and value is not False:
+            name = _SETTINGS.get(option.opts[0]) or option.opts[0].removeprefix("--").replace("-", " ")
+            settings[name] = ", ".join(path.name for path in value) if isinstance(value, list) else str(value)
+    return settings
 
 
 def _files(paths: Sequence[Path]) -> list[Path]:

@@ -5,15 +5,15 @@ from typing import Annotated
 
 import typer
 
-from sonolube.cli.console.options import Json
+from sonolube.cli.console.options import Json, si_option
 from sonolube.cli.measure.measured_files import Files, Mapped, Report, Test, column_mapping, deliver_sheets, each_file
 from sonolube.report.measured.rotation import RotationSettings, rotation_sheet
-from sonolube.units import to_si
 
 
 def rotation(
+    context: typer.Context,
     files: Files,
-    diameter: Annotated[str, typer.Option("--groove-diameter", metavar="LENGTH", help="Of the circle under the pin.")],
+    diameter: Annotated[float, si_option("m", "Of the circle under the pin.", "--groove-diameter")],
     magnets: Annotated[int, typer.Option(help="Magnets at the rim.", min=1)] = 1,
     prominence: Annotated[
         float, typer.Option(help="Weakest pulse that counts over the strongest.", min=0.01, max=1.0)
@@ -28,11 +28,7 @@ def rotation(
     Example: sonolube measure rotation hall.csv --groove-diameter 50mm --magnets 2 --report hall.html
     """
     settings = RotationSettings(
-        groove_diameter=to_si(diameter, unit="m", name="--groove-diameter"),
-        magnets=magnets,
-        prominence=prominence,
-        mapping=column_mapping(mapping),
+        groove_diameter=diameter, magnets=magnets, prominence=prominence, mapping=column_mapping(mapping)
     )
     sheets, refused = each_file(files, partial(rotation_sheet, settings=settings), title="measuring")
-    options = {"groove diameter": diameter, "magnets": magnets, "prominence": prominence, "mapping": mapping}
-    deliver_sheets("rotation", sheets, refused, settings=options, page=report, test=test, as_json=json)
+    deliver_sheets(context, "rotation", sheets, refused, page=report, test=test, as_json=json)

@@ -5,9 +5,10 @@ from typing import Annotated
 
 import typer
 
-from sonolube.cli.console.options import Json, option_value
+from sonolube.cli.console.options import Json, si_option
 from sonolube.cli.measure.measured_files import Files, Report, Test, deliver_sheets, each_file
 from sonolube.report.measured.surface import SurfaceSettings, surface_sheet
+from sonolube.units import to_si
 
 Spacing = Annotated[
     str | None,
@@ -17,6 +18,7 @@ Unit = Annotated[str | None, typer.Option("--length-unit", metavar="UNIT", help=
 
 
 def surface(
+    context: typer.Context,
     files: Files,
     pixel: Spacing = None,
     unit: Unit = None,
@@ -24,12 +26,8 @@ def surface(
         int, typer.Option(help="Degree of the form that is removed: 1 tilt, 2 curvature.", min=0, max=12)
     ] = 1,
     robust: Annotated[bool, typer.Option("--robust", help="Weight pixels far from the form less.")] = False,
-    short: Annotated[
-        str | None, typer.Option("--short-cutoff", metavar="LENGTH", help="Remove shorter waves, as noise.")
-    ] = None,
-    long: Annotated[
-        str | None, typer.Option("--long-cutoff", metavar="LENGTH", help="Remove longer waves, as waviness.")
-    ] = None,
+    short: Annotated[float | None, si_option("m", "Remove shorter waves, as noise.", "--short-cutoff")] = None,
+    long: Annotated[float | None, si_option("m", "Remove longer waves, as waviness.", "--long-cutoff")] = None,
     test: Test = None,
     report: Report = None,
     json: Json = False,
@@ -45,18 +43,11 @@ def surface(
         length_unit=unit,
         degree=form,
         robust=robust,
-        short_cutoff_length=option_value(short, unit="m", option="--short-cutoff"),
-        long_cutoff_length=option_value(long, unit="m", option="--long-cutoff"),
+        short_cutoff_length=short,
+        long_cutoff_length=long,
     )
     sheets, refused = each_file(files, partial(surface_sheet, settings=settings), title="measuring")
-    options = {
-        "spacing": pixel,
-        "length unit": unit,
-        "form": f"degree {form}{', robust' if robust else ''}",
-        "short cutoff": short,
-        "long cutoff": long,
-    }
-    deliver_sheets("surfaces", sheets, refused, settings=options, page=report, test=test, as_json=json)
+    deliver_sheets(context, "surfaces", sheets, refused, page=report, test=test, as_json=json)
 
 
 def spacings(text: str | None) -> tuple[float | None, float | None]:
@@ -64,5 +55,5 @@ def spacings(text: str | None) -> tuple[float | None, float | None]:
     if text is None:
         return None, None
     first, _, second = text.partition(",")
-    along = option_value(first, unit="m", option="--spacing")
-    return along, option_value(second, unit="m", option="--spacing") if second else along
+    along = to_si(first, unit="m", name="--spacing")
+    return along, to_si(second, unit="m", name="--spacing") if second else along

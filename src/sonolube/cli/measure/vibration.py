@@ -7,15 +7,15 @@ from typing import Annotated
 import typer
 
 from sonolube.cli.console.number_table import number_table
-from sonolube.cli.console.options import Json
+from sonolube.cli.console.options import Json, si_option
 from sonolube.cli.measure.measured_files import Files, Mapped, Report, Test, column_mapping, deliver_sheets, each_file
 from sonolube.report.measured.vibration import VibrationSettings, has_voltage, proportion_sheet, vibration_sheet
-from sonolube.units import to_si
 
 
 def vibration(
+    context: typer.Context,
     files: Files,
-    drive: Annotated[str, typer.Option("--frequency", metavar="FREQUENCY", help="Of the drive, such as 22kHz.")],
+    drive: Annotated[float, si_option("Hz", "Of the drive, such as 22kHz.", "--frequency")],
     modes: Annotated[
         Path | None, typer.Option(metavar="MODES.csv", help="Computed shapes at the points, one a column.")
     ] = None,
@@ -29,12 +29,9 @@ def vibration(
     Example: sonolube measure vibration tip.csv --frequency 22kHz --report tip.html
     """
     settings = VibrationSettings(
-        frequency=to_si(drive, unit="Hz", name="--frequency"),
-        mapping=column_mapping(mapping),
-        modes=None if modes is None else number_table(modes),
+        frequency=drive, mapping=column_mapping(mapping), modes=None if modes is None else number_table(modes)
     )
     sheets, refused = each_file(files, partial(vibration_sheet, settings=settings), title="measuring")
     if sum(map(has_voltage, sheets)) > 1:
         sheets.append(proportion_sheet(sheets))
-    options = {"frequency": drive, "modes": modes, "mapping": mapping}
-    deliver_sheets("vibration", sheets, refused, settings=options, page=report, test=test, as_json=json)
+    deliver_sheets(context, "vibration", sheets, refused, page=report, test=test, as_json=json)

@@ -11,7 +11,7 @@ import xarray as xr
 
 from sonolube.checks import require_positive
 from sonolube.cli.console.answer import Answer, deliver, si
-from sonolube.cli.console.options import OUT, Json, Out, Sizes
+from sonolube.cli.console.options import OUT, Json, Out, Sizes, TypedNumber, si_option
 from sonolube.cli.console.parts import longest_axis, named_transducer, starting_size
 from sonolube.cli.console.progress import progress
 from sonolube.errors import InvalidInput
@@ -22,7 +22,7 @@ from sonolube.measurement.impedance.reader import read_impedance
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 from sonolube.report import Drawing
 from sonolube.rig import dataset
-from sonolube.units import format_si, to_si
+from sonolube.units import format_si
 
 
 def compute(
@@ -30,8 +30,8 @@ def compute(
         str, typer.Argument(metavar="PART", help="stack, tribometer_actuator, cutter_head, or a part or STEP file.")
     ],
     sizes: Sizes = None,
-    lowest: Annotated[str, typer.Option("--from", metavar="FREQUENCY", help="Lowest frequency.")] = "1kHz",
-    highest: Annotated[str, typer.Option("--to", metavar="FREQUENCY", help="Highest frequency.")] = "60kHz",
+    lowest: Annotated[float, si_option("Hz", "Lowest frequency.", "--from")] = TypedNumber("1kHz", "Hz"),
+    highest: Annotated[float, si_option("Hz", "Highest frequency.", "--to")] = TypedNumber("60kHz", "Hz"),
     count: Annotated[int, typer.Option("--points", metavar="NUMBER", help="Number of frequencies.", min=2)] = 1001,
     clamp: Annotated[
         list[str] | None, typer.Option(metavar="FACE", help="A face held still for a second spectrum, such as back.-z.")
@@ -54,10 +54,9 @@ def compute(
 
     Example: sonolube impedance compute tribometer_actuator --clamp back.-z --to 40kHz
     """
-    low, high = to_si(lowest, unit="Hz", name="--from"), to_si(highest, unit="Hz", name="--to")
-    if not low < high:
+    if not lowest < highest:
         raise InvalidInput(f"--from must lie below --to, got {lowest} and {highest}")
-    frequency = np.linspace(float(require_positive(frequency=low)), high, count)
+    frequency = np.linspace(float(require_positive(frequency=lowest)), highest, count)
     reference = None if measured is None else read_impedance(measured)
     transducer = named_transducer(part, sizes or [], ceramic=ceramic, along=poled, driven=drive, grounded=ground)
     with progress("meshing and solving") as advance:

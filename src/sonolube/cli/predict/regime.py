@@ -94,15 +94,13 @@ class RegimeAnswer(Answer):
 
     def object(self) -> dict[str, Any]:
         """Coefficients of friction by method, the best of them, and the kind of wear."""
-        result, wear = self.result, self.wear
+        result, wear, methods = self.result, self.wear, self.result.coefficients._asdict()
         return {
             "rig": self.rig.title,
             "best": result.best,
             "friction_model": result.friction_model,
             **si({name: getattr(result, name) for name in _QUANTITIES}),
-            "friction_coefficient": si(
-                {name: float(value) for name, value in result.coefficients._asdict().items()}, unit=""
-            ),
+            "friction_coefficient": si({name: float(value) for name, value in methods.items()}, unit=""),
             **({} if wear is None else {"wear": _wear_object(wear)}),
         }
 

@@ -4,25 +4,24 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-import typer
 import xarray as xr
 
 from sonolube.checks import Floats
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
-from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath
+from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath, TypedNumber, si_option
 from sonolube.dynamics import modes
 from sonolube.errors import InvalidInput
 from sonolube.report import Drawing
 from sonolube.rig import FrequencyResponse, Rig, frequency_grid, frequency_response, read_rig, structure_in_contact
 from sonolube.rig.figures import response_figure
 from sonolube.rig.result_datasets import response_dataset
-from sonolube.units import format_si, to_si
+from sonolube.units import format_si
 
 
 def response(
     rig: RigPath,
-    lowest: Annotated[str, typer.Option("--from", metavar="FREQUENCY", help="Lowest frequency.")] = "1kHz",
-    highest: Annotated[str, typer.Option("--to", metavar="FREQUENCY", help="Highest frequency.")] = "100kHz",
+    lowest: Annotated[float, si_option("Hz", "Lowest frequency.", "--from")] = TypedNumber("1kHz", "Hz"),
+    highest: Annotated[float, si_option("Hz", "Highest frequency.", "--to")] = TypedNumber("100kHz", "Hz"),
     changes: Changes = None,
     out: Out = OUT,
     json: Json = False,
@@ -31,11 +30,10 @@ def response(
 
     Example: sonolube response examples/rigs/tribometer.toml --from 15kHz --to 35kHz
     """
-    low, high = (to_si(text, unit="Hz", name=name) for text, name in ((lowest, "--from"), (highest, "--to")))
-    if not 0 < low < high:
+    if not 0 < lowest < highest:
         raise InvalidInput(f"--from {lowest} must lie above 0 Hz and below --to {highest}")
     known = read_rig(rig, changes=changes or ())
-    result = frequency_response(known, frequency=frequency_grid(known, lowest=low, highest=high))
+    result = frequency_response(known, frequency=frequency_grid(known, lowest=lowest, highest=highest))
     natural = modes(structure_in_contact(known))
     answer = ResponseAnswer(
         rig=known,
@@ -60,14 +58,10 @@ class ResponseAnswer(Answer):
         frequency, amplitude = self._largest()
         found = ", ".join(format_si(f, "Hz", digits=4) for f in self.natural_frequency.tolist()) or "none"
         at = format_si(frequency, "Hz", digits=4)
+        largest = f"{format_si(amplitude, 'm')} per volt peak to peak at {at}"
         return [
             f"{self.rig.title}, {format_si(self.rig.normal_load, 'N')}, small motions",
-            *aligned(
-                [
-                    ("natural frequencies", found),
-                    ("largest amplitude", f"{format_si(amplitude, 'm')} per volt peak to peak at {at}"),
-                ]
-            ),
+            *aligned([("natural frequencies", found), ("largest amplitude", largest)]),
         ]
 
     def object(self) -> dict[str, Any]:

@@ -34,15 +34,9 @@ class RigRecord(Answer):
     def lines(self) -> list[str]:
         """Load, quantities with the meaning and unit of the vocabulary, and text but for the status."""
         known = quantities()
-        return [
-            f"{self.rig.title}, {format_si(self.rig.normal_load, 'N')}",
-            *aligned(
-                [
-                    *((known[name].meaning, format_si(value, known[name].unit)) for name, value in self._values()),
-                    *((name, text) for name, text in self._texts() if name != "status"),
-                ]
-            ),
-        ]
+        rows = [(known[name].meaning, format_si(value, known[name].unit)) for name, value in self._values()]
+        rows += [(name, text) for name, text in self._texts() if name != "status"]
+        return [f"{self.rig.title}, {format_si(self.rig.normal_load, 'N')}", *aligned(rows)]
 
     def object(self) -> dict[str, Any]:
         """Title of the rig, text and quantities."""
@@ -63,21 +57,16 @@ class RigRecord(Answer):
 
     def _values(self) -> list[tuple[str, float]]:
         """Fields that are quantities of the vocabulary, with their values in SI."""
-        return [
-            (name, value) for name, value in self._fields() if name in quantities() and isinstance(value, int | float)
-        ]
+        fields = _flat(self.result).items()
+        return [(name, value) for name, value in fields if name in quantities() and isinstance(value, int | float)]
 
     def _texts(self) -> list[tuple[str, str]]:
         """Fields that are text, such as the friction model."""
-        return [(name, value) for name, value in self._fields() if isinstance(value, str)]
-
-    def _fields(self) -> list[tuple[str, Any]]:
-        """Fields of the record and of the records within it with their values; of one name the outermost."""
-        return list(_flat(self.result).items())
+        return [(name, value) for name, value in _flat(self.result).items() if isinstance(value, str)]
 
 
 def _flat(record: Any) -> dict[str, Any]:
-    """Fields of a record by name, and those of records within it that it has none of the name of."""
+    """Fields of a record by name, and those of records within it; of one name the outermost."""
     own = {each.name: getattr(record, each.name) for each in fields(record)}
     values: dict[str, Any] = {}
     for value in own.values():

@@ -4,24 +4,23 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-import typer
 import xarray as xr
 
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
-from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath
+from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath, TypedNumber, si_option
 from sonolube.cli.console.progress import progress
 from sonolube.report import Drawing
 from sonolube.rig import Rig, StartUp, read_rig, start_up
 from sonolube.rig.figures import start_up_figure
 from sonolube.rig.result_datasets import start_up_dataset
-from sonolube.units import format_si, to_si
+from sonolube.units import format_si
 
 _QUANTITIES = ("settling_time", "vibration_amplitude", "mean_displacement", "beat_frequency")
 
 
 def transient(
     rig: RigPath,
-    run_time: Annotated[str, typer.Option("--duration", metavar="TIME", help="Time that is integrated.")] = "0.1s",
+    run_time: Annotated[float, si_option("s", "Time that is integrated.", "--duration")] = TypedNumber("0.1s", "s"),
     changes: Changes = None,
     out: Out = OUT,
     json: Json = False,
@@ -30,10 +29,9 @@ def transient(
 
     Example: sonolube transient examples/rigs/tribometer.toml --duration 0.06s
     """
-    seconds = to_si(run_time, unit="s", name="--duration")
     known = read_rig(rig, changes=changes or ())
     with progress("marching"):
-        result = start_up(known, duration=seconds)
+        result = start_up(known, duration=run_time)
     deliver(StartUpAnswer(rig=known, result=result, name=f"{rig.stem}-transient"), folder=out, as_json=json)
 
 
@@ -48,18 +46,14 @@ class StartUpAnswer(Answer):
     def lines(self) -> list[str]:
         """Settling time, amplitude, mean displacement, slow oscillation and status."""
         found = self.result
-        return [
-            f"{self.rig.title}, {format_si(self.rig.normal_load, 'N')}, from rest",
-            *aligned(
-                [
-                    ("amplitude settles", f"within 2 % after {format_si(found.settling_time, 's')}"),
-                    ("amplitude", format_si(found.vibration_amplitude, "m")),
-                    ("mean displacement", format_si(found.mean_displacement, "m")),
-                    ("slow oscillation", format_si(found.beat_frequency, "Hz")),
-                    ("status", found.status + (f": {found.reason}" if found.reason else "")),
-                ]
-            ),
+        rows = [
+            ("amplitude settles", f"within 2 % after {format_si(found.settling_time, 's')}"),
+            ("amplitude", format_si(found.vibration_amplitude, "m")),
+            ("mean displacement", format_si(found.mean_displacement, "m")),
+            ("slow oscillation", format_si(found.beat_frequency, "Hz")),
+            ("status", found.status + (f": {found.reason}" if found.reason else "")),
         ]
+        return [f"{self.rig.title}, {format_si(self.rig.normal_load, 'N')}, from rest", *aligned(rows)]
 
     def object(self) -> dict[str, Any]:
         """Status, settling time, amplitude, mean displacement and frequency of the slow oscillation."""

@@ -18,19 +18,8 @@ from sonolube.measurement.gauge.calibration import (
 )
 from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.measurement.recordings.reader import read_recording
-from sonolube.report.measured import calibration_figures as figures
+from sonolube.report.measured import calibration_figures as figures, sheet
 from sonolube.report.measured.friction import recording_source
-from sonolube.report.measured.sheet import (
-    Sheet,
-    SheetColumn,
-    SheetFigure,
-    SheetSection,
-    SheetTable,
-    SheetValue,
-    attempted_section,
-    quantity_value,
-    sheet_from_sections,
-)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -55,7 +44,7 @@ class CalibrationSettings:
     displacement_uncertainty: float = 0.0
 
 
-def calibration_sheet(path: Path, *, settings: CalibrationSettings) -> Sheet:
+def calibration_sheet(path: Path, *, settings: CalibrationSettings) -> sheet.Sheet:
     """Calibration of a force gauge by the Preisach model and by polynomials, from recorded loops.
 
     Parameters
@@ -76,27 +65,17 @@ def calibration_sheet(path: Path, *, settings: CalibrationSettings) -> Sheet:
     recording = read_recording(path, mapping=settings.mapping)
     x, force = channel_values(recording, "displacement"), channel_values(recording, "applied_force")
     hysteresis = fit_preisach(displacement=x, applied_force=force, levels=settings.levels)
-    span = float(np.ptp(force))
+    span, deviation, energy = float(np.ptp(force)), hysteresis.force_deviation, major_loop_dissipation(hysteresis)
     values = (
-        SheetValue("hysteresis_deviation", "Deviation about the Preisach model", hysteresis.force_deviation, "N"),
-        SheetValue(
-            "relative_deviation", "Relative deviation, over the range of force", hysteresis.force_deviation / span, ""
-        ),
-        SheetValue(
-            "dissipated_energy", "Energy dissipated in the greatest loop", major_loop_dissipation(hysteresis), "J"
-        ),
-        SheetValue("mean_stiffness", "Mean stiffness over the whole range", span / float(np.ptp(x)), "N/m"),
+        sheet.Value("hysteresis_deviation", "Deviation about the Preisach model", deviation, "N"),
+        sheet.Value("relative_deviation", "Relative deviation, over the range of force", deviation / span, ""),
+        sheet.Value("dissipated_energy", "Energy dissipated in the greatest loop", energy, "J"),
+        sheet.Value("mean_stiffness", "Mean stiffness over the whole range", span / float(np.ptp(x)), "N/m"),
     )
-    loop = SheetFigure(
-        name="loops",
-        title="Force over displacement",
-        caption="Measured loops and those of the Preisach model; below, the residual.",
-        draw=partial(figures.loops, x, force, hysteresis),
-    )
-    branches = attempted_section(partial(_branches, x, force, settings.degree), what="polynomials of the branches")
-    return sheet_from_sections(
-        [SheetSection(values=values, figures=(loop,)), branches], title=path.name, source=recording_source(recording)
-    )
+    loop = figures.loops(x, force, hysteresis)
+    branches = sheet.attempted(partial(_branches, x, force, settings.degree), what="polynomials of the branches")
+    loops = sheet.Sheet(values=values, figures=(loop,))
+    return sheet.joined([loops, branches], title=path.name, source=recording_source(recording))
 
 
 def calibrated_hysteresis(path: Path, *, settings: CalibrationSettings) -> PreisachCalibration:
@@ -125,7 +104,7 @@ def calibrated_hysteresis(path: Path, *, settings: CalibrationSettings) -> Preis
     )
 
 
-def force_sheet(path: Path, *, calibration: PreisachCalibration, settings: CalibrationSettings) -> Sheet:
+def force_sheet(path: Path, *, calibration: PreisachCalibration, settings: CalibrationSettings) -> sheet.Sheet:
     """Force by a calibrated gauge from a recorded displacement, with its uncertainty.
 
     Parameters
@@ -153,50 +132,38 @@ def force_sheet(path: Path, *, calibration: PreisachCalibration, settings: Calib
         displacement_uncertainty=settings.displacement_uncertainty,
     )
     # readings share the error of the calibration, so that averaging does not lower it
-    mean, error = float(estimate.applied_force.mean()), float(estimate.applied_force_uncertainty.mean())
-    highest = int(np.argmax(estimate.applied_force))
+    force, error = estimate.applied_force, estimate.applied_force_uncertainty
+    top = int(np.argmax(force))
     values = (
-        quantity_value("applied_force", mean, label="Mean force", uncertainty=error),
-        SheetValue(
-            "highest_force",
-            "Highest force",
-            float(estimate.applied_force[highest]),
-            "N",
-            uncertainty=float(estimate.applied_force_uncertainty[highest]),
-        ),
+        sheet.quantity_value("applied_force", float(force.mean()), label="Mean force", uncertainty=float(error.mean())),
+        sheet.Value("highest_force", "Highest force", float(force[top]), "N", uncertainty=float(error[top])),
     )
-    figure = SheetFigure(
-        name="force",
-        title="Force by the displacement",
-        caption="With its standard uncertainty as a band.",
-        draw=partial(figures.force, channel_values(recording, "time"), estimate),
-    )
-    return sheet_from_sections(
-        [SheetSection(values=values, figures=(figure,))], title=path.name, source=recording_source(recording)
-    )
+    figure = figures.force(channel_values(recording, "time"), estimate)
+    section = sheet.Sheet(values=values, figures=(figure,))
+    return sheet.joined([section], title=path.name, source=recording_source(recording))
 
 
-def _branches(x: Floats, force: Floats, degree: int) -> SheetSection:
+def _branches(x: Floats, force: Floats, degree: int) -> sheet.Sheet:
     """Polynomials of loading and unloading with the deviations about them."""
     branches = fit_branches(displacement=x, applied_force=force, degree=degree)
     values = (
-        SheetValue("loading_deviation", "Deviation about the polynomial of loading", branches.loading_deviation, "N"),
-        SheetValue(
+        sheet.Value("loading_deviation", "Deviation about the polynomial of loading", branches.loading_deviation, "N"),
+        sheet.Value(
             "unloading_deviation", "Deviation about the polynomial of unloading", branches.unloading_deviation, "N"
         ),
     )
-    return SheetSection(values=values, tables=(_coefficients(branches),))
+    return sheet.Sheet(values=values, tables=(_coefficients(branches),))
 
 
-def _coefficients(branches: BranchCalibration) -> SheetTable:
+def _coefficients(branches: BranchCalibration) -> sheet.Table:
     """Coefficients of the polynomials as a table."""
     columns = (
-        SheetColumn("power", "Power of the displacement in m"),
-        SheetColumn("loading", "Loading (N)"),
-        SheetColumn("unloading", "Unloading (N)"),
+        sheet.Column("power", "Power of the displacement in m"),
+        sheet.Column("loading", "Loading (N)"),
+        sheet.Column("unloading", "Unloading (N)"),
     )
     pairs = zip(branches.loading.convert().coef, branches.unloading.convert().coef, strict=True)
-    return SheetTable(
+    return sheet.Table(
         name="branches",
         title="Force as a polynomial of displacement",
         columns=columns,

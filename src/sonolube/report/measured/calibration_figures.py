@@ -5,11 +5,13 @@ from typing import TYPE_CHECKING
 from sonolube.checks import Floats
 from sonolube.figure import COLOURS
 from sonolube.measurement.gauge.calibration import ForceEstimate, PreisachCalibration, force_from_preisach
+from sonolube.report.measured.sheet import captioned
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+@captioned("Force over displacement", "Measured loops and those of the Preisach model; below, the residual.")
 def loops(x: Floats, force: Floats, calibration: PreisachCalibration) -> "Figure":
     """Force over displacement, measured and by the Preisach model, above the residual."""
     import matplotlib.pyplot as plt
@@ -27,6 +29,7 @@ def loops(x: Floats, force: Floats, calibration: PreisachCalibration) -> "Figure
     return figure
 
 
+@captioned("Force by the displacement", "With its standard uncertainty as a band.")
 def force(t: Floats, estimate: ForceEstimate) -> "Figure":
     """Force over time with its standard uncertainty as a band."""
     import matplotlib.pyplot as plt

@@ -28,18 +28,7 @@ from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.measurement.recordings.reader import read_recording, recording_format_name
 from sonolube.measurement.recordings.tdms import TDMS_FORMAT as TDMS
 from sonolube.measurement.statistics.autocorrelation import correlated_mean
-from sonolube.report.measured import friction_figures as figures
-from sonolube.report.measured.sheet import (
-    Sheet,
-    SheetFigure,
-    SheetSection,
-    SheetTable,
-    SheetValue,
-    attempted_section,
-    quantity_columns,
-    quantity_value,
-    sheet_from_sections,
-)
+from sonolube.report.measured import friction_figures as figures, sheet
 from sonolube.units import format_si
 
 if TYPE_CHECKING:
@@ -97,7 +86,7 @@ class FrictionSettings:
             require_positive(rotation_speed=self.rotation_speed)
 
 
-def friction_sheet(path: Path, *, settings: FrictionSettings) -> Sheet:
+def friction_sheet(path: Path, *, settings: FrictionSettings) -> sheet.Sheet:
     """Friction in a recording: level, fluctuation, running-in, voltage steps, stick-slip, work and wobble.
 
     Parameters
@@ -120,7 +109,7 @@ def friction_sheet(path: Path, *, settings: FrictionSettings) -> Sheet:
     recording = read_recording(path, mapping=settings.mapping)
     motor = settings.motor
     sections = _sections(recording, settings) if motor is None else [_motor(recording, settings, motor)]
-    return sheet_from_sections(sections, title=path.name, source=recording_source(recording))
+    return sheet.joined(sections, title=path.name, source=recording_source(recording))
 
 
 def recording_source(recording: "xr.Dataset") -> dict[str, str]:
@@ -137,7 +126,7 @@ def recording_source(recording: "xr.Dataset") -> dict[str, str]:
     }
 
 
-def _sections(recording: "xr.Dataset", settings: FrictionSettings) -> list[SheetSection]:
+def _sections(recording: "xr.Dataset", settings: FrictionSettings) -> list[sheet.Sheet]:
     """Sections of a recording of friction, as far as its channels allow."""
     channels = [name for name in _CHANNELS if name in recording.variables]
     if not channels:
@@ -145,40 +134,36 @@ def _sections(recording: "xr.Dataset", settings: FrictionSettings) -> list[Sheet
     name = channels[0]
     sections = [_level(recording, name)]
     if "time" not in recording.variables:
-        return [*sections, SheetSection(figures=(_cycle_figure(recording, name),))]
+        return [*sections, sheet.Sheet(figures=(_cycle_figure(recording, name),))]
     windows = analyse_windows(recording, of=name, window_duration=settings.window_duration)
     if name != "friction_force":
         return [*sections, _windows(recording, windows, None)]
     steady = None
     if settings.sliding_speed is not None:
         sections.append(
-            attempted_section(partial(_running_in, recording, settings, settings.sliding_speed), what="steady state")
+            sheet.attempted(partial(_running_in, recording, settings, settings.sliding_speed), what="steady state")
         )
         steady = _steady_state_or_none(windows, settings.sliding_speed)
     sections.append(_windows(recording, windows, steady))
     if {"voltage_peak_to_peak", "stack_voltage"} & set(map(str, recording.variables)):
-        sections.append(attempted_section(partial(_voltage_steps, recording), what="steps of the voltage"))
-    sections.append(attempted_section(partial(_stick_slip, recording, settings.rotation_speed), what="stick-slip"))
+        sections.append(sheet.attempted(partial(_voltage_steps, recording), what="steps of the voltage"))
+    sections.append(sheet.attempted(partial(_stick_slip, recording, settings.rotation_speed), what="stick-slip"))
     if "relative_velocity" in recording.variables:
-        sections.append(attempted_section(partial(_cycles, recording), what="work of friction"))
+        sections.append(sheet.attempted(partial(_cycles, recording), what="work of friction"))
     if settings.rotation_speed is not None:
-        sections.append(attempted_section(partial(_wobble, recording, settings.rotation_speed), what="wobble"))
+        sections.append(sheet.attempted(partial(_wobble, recording, settings.rotation_speed), what="wobble"))
     return sections
 
 
-def _level(recording: "xr.Dataset", name: str) -> SheetSection:
+def _level(recording: "xr.Dataset", name: str) -> sheet.Sheet:
     """Mean and standard deviation of a channel_values, the uncertainty of the mean by the autocorrelation."""
     mean = correlated_mean(channel_values(recording, name))
-    scatter = SheetValue(
-        f"{name}_deviation",
-        "Standard deviation of the samples",
-        mean.deviation,
-        str(recording[name].attrs.get("units", "")),
-    )
-    return SheetSection(values=(quantity_value(name, mean.mean, uncertainty=mean.uncertainty), scatter))
+    unit = str(recording[name].attrs.get("units", ""))
+    scatter = sheet.Value(f"{name}_deviation", "Standard deviation of the samples", mean.deviation, unit)
+    return sheet.Sheet(values=(sheet.quantity_value(name, mean.mean, uncertainty=mean.uncertainty), scatter))
 
 
-def _windows(recording: "xr.Dataset", windows: WindowStatistics, steady: SteadyStateOnset | None) -> SheetSection:
+def _windows(recording: "xr.Dataset", windows: WindowStatistics, steady: SteadyStateOnset | None) -> sheet.Sheet:
     """Fluctuation in windows, with the trace."""
     draw = partial(
         figures.trace,
@@ -187,42 +172,33 @@ def _windows(recording: "xr.Dataset", windows: WindowStatistics, steady: SteadyS
         windows=windows,
         steady=steady,
     )
-    return SheetSection(values=(_fluctuation(windows),), figures=(_trace_figure(windows, draw),))
+    return sheet.Sheet(values=(_fluctuation(windows),), figures=(_trace_figure(windows, draw),))
 
 
-def _fluctuation(windows: WindowStatistics) -> SheetValue:
+def _fluctuation(windows: WindowStatistics) -> sheet.Value:
     """Root mean square of the fluctuation about the means of the windows, weighted by their samples."""
     span = format_si(windows.window_duration, "s")
     filled = np.isfinite(windows.fluctuation)  # windows with samples
     squares, weights = windows.fluctuation[filled] ** 2, windows.samples[filled]
-    return SheetValue(
-        f"{windows.channel}_fluctuation",
-        f"Root mean square of the fluctuation in windows of {span}",
-        float(np.sqrt(np.average(squares, weights=weights))),
-        windows.unit,
-    )
+    rms = float(np.sqrt(np.average(squares, weights=weights)))
+    label = f"Root mean square of the fluctuation in windows of {span}"
+    return sheet.Value(f"{windows.channel}_fluctuation", label, rms, windows.unit)
 
 
-def _trace_figure(windows: WindowStatistics, draw: Callable[[], "Figure"]) -> SheetFigure:
+def _trace_figure(windows: WindowStatistics, draw: Callable[[], "Figure"]) -> sheet.Figure:
     """Figure of a trace with its windows."""
     span = format_si(windows.window_duration, "s")
-    return SheetFigure(
-        name="trace",
+    return sheet.Figure(
         title="Trace with windows",
         caption=f"Samples in grey; mean of each window of {span}, and as a band the root mean square about it.",
         draw=draw,
     )
 
 
-def _cycle_figure(recording: "xr.Dataset", name: str) -> SheetFigure:
+def _cycle_figure(recording: "xr.Dataset", name: str) -> sheet.Figure:
     """Figure of a recording with one value a cycle."""
     along = channel_values(recording, "revolutions")
-    return SheetFigure(
-        name="trace",
-        title="Trace by cycle",
-        caption="One value a cycle, as the instrument gives it.",
-        draw=partial(figures.by_cycle, along, channel_values(recording, name), name),
-    )
+    return figures.by_cycle(along, channel_values(recording, name), name)
 
 
 def _steady_state_or_none(windows: WindowStatistics, sliding_speed: float) -> SteadyStateOnset | None:
@@ -233,146 +209,117 @@ def _steady_state_or_none(windows: WindowStatistics, sliding_speed: float) -> St
         return None
 
 
-def _running_in(recording: "xr.Dataset", settings: FrictionSettings, sliding_speed: float) -> SheetSection:
+def _running_in(recording: "xr.Dataset", settings: FrictionSettings, sliding_speed: float) -> sheet.Sheet:
     """Steady friction after running-in, and the sliding distance to it."""
     running_in = analyse_running_in(recording, sliding_speed=sliding_speed, window_duration=settings.window_duration)
     return _steady_part(running_in.friction, running_in.fluctuation)
 
 
-def _steady_part(friction: SteadyStateOnset, fluctuation: SteadyStateOnset) -> SheetSection:
+def _steady_part(friction: SteadyStateOnset, fluctuation: SteadyStateOnset) -> sheet.Sheet:
     """Steady friction with time and distance to it, and the distance to a steady fluctuation."""
     if not friction.steady:
-        return SheetSection(not_found=(f"steady friction: {friction.reason}",))
+        return sheet.Sheet(not_found=(f"steady friction: {friction.reason}",))
+    level, error = friction.friction_force, friction.friction_force_uncertainty
     values = [
-        SheetValue(
-            "steady_friction_force",
-            "Steady friction force",
-            friction.friction_force,
-            "N",
-            uncertainty=friction.friction_force_uncertainty,
-        ),
-        SheetValue("steady_time", "Time to the steady state", friction.start_time, "s"),
-        SheetValue("steady_distance", "Sliding distance to the steady state", friction.sliding_distance, "m"),
+        sheet.Value("steady_friction_force", "Steady friction force", level, "N", uncertainty=error),
+        sheet.Value("steady_time", "Time to the steady state", friction.start_time, "s"),
+        sheet.Value("steady_distance", "Sliding distance to the steady state", friction.sliding_distance, "m"),
     ]
     if fluctuation.steady:
         distance = fluctuation.sliding_distance
         values.append(
-            SheetValue("steady_fluctuation_distance", "Sliding distance to a steady fluctuation", distance, "m")
+            sheet.Value("steady_fluctuation_distance", "Sliding distance to a steady fluctuation", distance, "m")
         )
-        return SheetSection(values=tuple(values))
-    return SheetSection(values=tuple(values), not_found=(f"steady fluctuation: {fluctuation.reason}",))
+        return sheet.Sheet(values=tuple(values))
+    return sheet.Sheet(values=tuple(values), not_found=(f"steady fluctuation: {fluctuation.reason}",))
 
 
-def _voltage_steps(recording: "xr.Dataset") -> SheetSection:
+def _voltage_steps(recording: "xr.Dataset") -> sheet.Sheet:
     """Friction at each step of the voltage, and its reduction."""
     steps = analyse_voltage_steps(recording)
-    table = SheetTable(
+    table = sheet.Table(
         name="steps",
         title="Friction at each step of the voltage",
-        columns=quantity_columns(_STEP_LABELS),
+        columns=sheet.quantity_columns(_STEP_LABELS),
         rows=tuple(tuple(getattr(step, name) for name in _STEP_LABELS) for step in steps),
     )
-    figure = SheetFigure(
-        name="staircase",
-        title="Friction over voltage",
-        caption="Mean and its standard error at each step, and the reduction of the friction without voltage.",
-        draw=partial(figures.voltage_steps, steps),
-    )
-    return SheetSection(tables=(table,), figures=(figure,))
+    figure = figures.voltage_steps(steps)
+    return sheet.Sheet(tables=(table,), figures=(figure,))
 
 
-def _stick_slip(recording: "xr.Dataset", rotation_speed: float | None) -> SheetSection:
+def _stick_slip(recording: "xr.Dataset", rotation_speed: float | None) -> sheet.Sheet:
     """Frequency and amplitude of stick-slip, the wobble of the disc removed first."""
     if rotation_speed is not None:  # a wobble would pass for stick-slip at the rotation's frequency
         without_wobble = analyse_wobble(recording, rotation_speed=rotation_speed).friction_force
         recording = recording.assign(friction_force=("time", without_wobble))
     stick_slip = analyse_stick_slip(recording)
     if not stick_slip.detected:
-        return SheetSection(not_found=(f"stick-slip: {stick_slip.reason}",))
-    amplitude = quantity_value(
+        return sheet.Sheet(not_found=(f"stick-slip: {stick_slip.reason}",))
+    amplitude = sheet.quantity_value(
         "stick_slip_amplitude", stick_slip.stick_slip_amplitude, uncertainty=stick_slip.stick_slip_amplitude_uncertainty
     )
-    return SheetSection(values=(quantity_value("stick_slip_frequency", stick_slip.stick_slip_frequency), amplitude))
+    return sheet.Sheet(
+        values=(sheet.quantity_value("stick_slip_frequency", stick_slip.stick_slip_frequency), amplitude)
+    )
 
 
-def _cycles(recording: "xr.Dataset") -> SheetSection:
+def _cycles(recording: "xr.Dataset") -> sheet.Sheet:
     """Work of friction and sliding distance, and the work of each cycle of a reciprocating motion."""
     cycles = analyse_cycles(recording)
     values = [
-        quantity_value("frictional_work", float(cycles.work.frictional_work[-1])),
-        quantity_value("sliding_distance", cycles.work.sliding_distance),
+        sheet.quantity_value("frictional_work", float(cycles.work.frictional_work[-1])),
+        sheet.quantity_value("sliding_distance", cycles.work.sliding_distance),
     ]
     if cycles.loops is not None:
-        loops = cycles.loops
-        work = loops.frictional_work
-        values.append(
-            SheetValue(
-                "work_per_cycle",
-                f"Work of friction per cycle, mean of {work.size}",
-                float(work.mean()),
-                "J",
-                uncertainty=float(work.std(ddof=1) / work.size**0.5) if work.size > 1 else None,
-            )
-        )
-    figure = SheetFigure(
-        name="loops",
-        title="Friction over velocity",
-        caption="Every cycle of the recording; the work is the area of the loop over displacement.",
-        draw=partial(
-            figures.loops, channel_values(recording, "relative_velocity"), channel_values(recording, "friction_force")
-        ),
-    )
-    return SheetSection(values=tuple(values), figures=(figure,))
+        work = cycles.loops.frictional_work
+        error = float(work.std(ddof=1) / work.size**0.5) if work.size > 1 else None
+        label = f"Work of friction per cycle, mean of {work.size}"
+        values.append(sheet.Value("work_per_cycle", label, float(work.mean()), "J", uncertainty=error))
+    figure = figures.loops(channel_values(recording, "relative_velocity"), channel_values(recording, "friction_force"))
+    return sheet.Sheet(values=tuple(values), figures=(figure,))
 
 
-def _wobble(recording: "xr.Dataset", rotation_speed: float) -> SheetSection:
+def _wobble(recording: "xr.Dataset", rotation_speed: float) -> sheet.Sheet:
     """Amplitudes of the wobble at multiples of the rotation frequency, and the deviation without it."""
     wobble = analyse_wobble(recording, rotation_speed=rotation_speed)
     values = [
-        SheetValue(f"wobble_amplitude_{order}", f"Wobble at {order} times the rotation", float(amplitude), "N")
+        sheet.Value(f"wobble_amplitude_{order}", f"Wobble at {order} times the rotation", float(amplitude), "N")
         for order, amplitude in enumerate(wobble.wobble_amplitude, start=1)
     ]
-    deviation = SheetValue(
-        "deviation_without_wobble", "Standard deviation without the wobble", wobble.friction_force_deviation, "N"
-    )
-    return SheetSection(values=(*values, deviation))
+    deviation, label = wobble.friction_force_deviation, "Standard deviation without the wobble"
+    return sheet.Sheet(values=(*values, sheet.Value("deviation_without_wobble", label, deviation, "N")))
 
 
-def _motor(recording: "xr.Dataset", settings: FrictionSettings, motor: MotorCalibration) -> SheetSection:
+def _motor(recording: "xr.Dataset", settings: FrictionSettings, motor: MotorCalibration) -> sheet.Sheet:
     """Friction from the torque of the motor by its current, in windows."""
     trace = analyse_motor_current(recording, motor=motor, window_duration=settings.window_duration)
     mean = float(trace.friction_force.mean())
     # all windows share the errors of torque constant and idle current, so that averaging does not lower them
     error = float(np.sqrt(np.mean(trace.friction_force_uncertainty**2)))
-    figure = SheetFigure(
-        name="trace",
-        title="Friction by the motor current",
-        caption="Mean in each window with its standard uncertainty.",
-        draw=partial(figures.motor_trace, trace),
-    )
-    return SheetSection(values=(quantity_value("friction_force", mean, uncertainty=error),), figures=(figure,))
+    figure = figures.motor_trace(trace)
+    return sheet.Sheet(values=(sheet.quantity_value("friction_force", mean, uncertainty=error),), figures=(figure,))
 
 
-def _streamed(path: Path, settings: FrictionSettings) -> Sheet:
+def _streamed(path: Path, settings: FrictionSettings) -> sheet.Sheet:
     """Level, steady state and fluctuation of a large file, read in blocks."""
     windows = streamed_window_statistics(
         path, channels=["friction_force"], mapping=settings.mapping, window_duration=settings.window_duration
     )["friction_force"]
     mean = correlated_mean(windows.mean)
-    sections = [SheetSection(values=(quantity_value("friction_force", mean.mean, uncertainty=mean.uncertainty),))]
+    sections = [sheet.Sheet(values=(sheet.quantity_value("friction_force", mean.mean, uncertainty=mean.uncertainty),))]
     steady = None
     if settings.sliding_speed is not None:
         steady = _steady_state_or_none(windows, settings.sliding_speed)
         settle = partial(steady_state_onset, time=windows.time, sliding_speed=settings.sliding_speed)
         sections.append(
-            attempted_section(
+            sheet.attempted(
                 lambda: _steady_part(settle(friction_force=windows.mean), settle(friction_force=windows.fluctuation)),
                 what="steady state",
             )
         )
     draw = partial(figures.trace, None, None, windows=windows, steady=steady)
-    sections.append(SheetSection(values=(_fluctuation(windows),), figures=(_trace_figure(windows, draw),)))
+    sections.append(sheet.Sheet(values=(_fluctuation(windows),), figures=(_trace_figure(windows, draw),)))
     with path.open("rb") as stream:
         digest = hashlib.file_digest(stream, "sha256").hexdigest()
     source = {"format": TDMS, "samples": f"{int(windows.samples.sum())}, read in blocks", "sha256": digest}
-    return sheet_from_sections(sections, title=path.name, source=source)
+    return sheet.joined(sections, title=path.name, source=source)

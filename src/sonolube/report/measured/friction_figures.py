@@ -11,6 +11,7 @@ from sonolube.measurement.friction.running_in import SteadyStateOnset
 from sonolube.measurement.friction.voltage_steps import VoltageStep
 from sonolube.measurement.friction.windows import WindowStatistics
 from sonolube.measurement.friction_analysis import MotorFrictionTrace
+from sonolube.report.measured.sheet import captioned
 from sonolube.vocabulary import quantities
 
 if TYPE_CHECKING:
@@ -44,6 +45,7 @@ def trace(
     return figure
 
 
+@captioned("Trace by cycle", "One value a cycle, as the instrument gives it.")
 def by_cycle(cycles: Floats, signal: Floats, name: str) -> "Figure":
     """Signal with one value a cycle over the number of the cycle."""
     import matplotlib.pyplot as plt
@@ -54,6 +56,10 @@ def by_cycle(cycles: Floats, signal: Floats, name: str) -> "Figure":
     return figure
 
 
+@captioned(
+    "Friction over voltage",
+    "Mean and its standard error at each step, and the reduction of the friction without voltage.",
+)
 def voltage_steps(steps: Sequence[VoltageStep]) -> "Figure":
     """Friction and its reduction over the voltage."""
     import matplotlib.pyplot as plt
@@ -84,6 +90,9 @@ def voltage_steps(steps: Sequence[VoltageStep]) -> "Figure":
     return figure
 
 
+@captioned(
+    "Friction over velocity", "Every cycle of the recording; the work is the area of the loop over displacement."
+)
 def loops(velocity: Floats, force: Floats) -> "Figure":
     """Friction over velocity."""
     import matplotlib.pyplot as plt
@@ -97,6 +106,7 @@ def loops(velocity: Floats, force: Floats) -> "Figure":
     return figure
 
 
+@captioned("Friction by the motor current", "Mean in each window with its standard uncertainty.")
 def motor_trace(motor: MotorFrictionTrace) -> "Figure":
     """Friction by the motor current over time with its uncertainty."""
     import matplotlib.pyplot as plt
@@ -109,6 +119,7 @@ def motor_trace(motor: MotorFrictionTrace) -> "Figure":
     return figure
 
 
+@captioned("Tests with and without vibration", "Each test, and the mean of its kind.")
 def comparison(without: Sequence[float], with_vibration: Sequence[float], level: str) -> "Figure":
     """Friction of single tests without and with vibration, and the mean of each kind."""
     import matplotlib.pyplot as plt

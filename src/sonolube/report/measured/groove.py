@@ -1,32 +1,20 @@
 """Sheets of wear grooves: volume of a scan, wear of a ring and of the pin, wear reduction by vibration."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from sonolube.measurement.surface_files.reader import read_surface_file
 from sonolube.measurement.wear_track import (
     WearReduction,
     WearTrack,
     wear_reduction_between_tracks,
     wear_track_from_grooves,
 )
-from sonolube.report.measured import groove_figures as figures
-from sonolube.report.measured.sheet import (
-    Sheet,
-    SheetColumn,
-    SheetFigure,
-    SheetSection,
-    SheetTable,
-    SheetValue,
-    attempted_section,
-    quantity_value,
-    sheet_from_sections,
-)
-from sonolube.report.measured.surface import SurfaceSettings, surface_source
+from sonolube.report.measured import groove_figures as figures, sheet
+from sonolube.report.measured.surface import SurfaceSettings, surface_file, surface_source
 from sonolube.report.measured.surface_figures import abbott
 from sonolube.surfaces import disc_volume_loss, material_ratio_curve, measure_groove, track_marks, wear_scar
 from sonolube.surfaces.grooves.groove import Groove
@@ -53,7 +41,7 @@ class RingSettings:
     tip_radius: float | None = None
 
 
-def groove_sheet(path: Path, *, settings: SurfaceSettings) -> tuple[Sheet, Groove]:
+def groove_sheet(path: Path, *, settings: SurfaceSettings) -> tuple[sheet.Sheet, Groove]:
     """Wear groove in a scan: width, depth, volumes and pile-up.
 
     Parameters
@@ -75,34 +63,32 @@ def groove_sheet(path: Path, *, settings: SurfaceSettings) -> tuple[Sheet, Groov
     InvalidInput
         If the file cannot be read or too little was measured.
     """
-    file = read_surface_file(
-        path, spacing_x=settings.spacing_x, spacing_y=settings.spacing_y, length_unit=settings.length_unit
-    )
+    file = surface_file(path, settings)
     groove = measure_groove(file.height_map)
     values = [
-        quantity_value("wear_volume", groove.wear_volume, uncertainty=groove.wear_volume_uncertainty),
-        SheetValue("pile_up_volume", "Volume of ridges and projections", groove.pile_up_volume, "m3"),
-        SheetValue("net_volume", "Net volume lost in the field", groove.net_volume, "m3"),
-        quantity_value("groove_width", groove.groove_width),
-        SheetValue("groove_depth", "Greatest depth of the mean section", groove.groove_depth, "m"),
-        SheetValue("cross_section_area", "Area of the mean section", groove.cross_section_area, "m2"),
-        SheetValue("track_length", "Length of track in the field", groove.track_length, "m"),
+        sheet.quantity_value("wear_volume", groove.wear_volume, uncertainty=groove.wear_volume_uncertainty),
+        sheet.Value("pile_up_volume", "Volume of ridges and projections", groove.pile_up_volume, "m3"),
+        sheet.Value("net_volume", "Net volume lost in the field", groove.net_volume, "m3"),
+        sheet.quantity_value("groove_width", groove.groove_width),
+        sheet.Value("groove_depth", "Greatest depth of the mean section", groove.groove_depth, "m"),
+        sheet.Value("cross_section_area", "Area of the mean section", groove.cross_section_area, "m2"),
+        sheet.Value("track_length", "Length of track in the field", groove.track_length, "m"),
     ]
     if groove.track.groove_diameter < _STRAIGHT * groove.track_length:
         values.append(
-            quantity_value("groove_diameter", groove.track.groove_diameter, label="Diameter of the track's arc")
+            sheet.quantity_value("groove_diameter", groove.track.groove_diameter, label="Diameter of the track's arc")
         )
     caveats = (groove.caveat,) if groove.caveat else ()
     sections = [
-        SheetSection(values=tuple(values), figures=_figures(groove), caveats=caveats),
-        attempted_section(partial(_marks, groove), what="marks along the track"),
+        sheet.Sheet(values=tuple(values), figures=_figures(groove), caveats=caveats),
+        sheet.attempted(partial(_marks, groove), what="marks along the track"),
     ]
-    return sheet_from_sections(sections, title=f"{path.parent.name}/{path.name}", source=surface_source(file)), groove
+    return sheet.joined(sections, title=f"{path.parent.name}/{path.name}", source=surface_source(file)), groove
 
 
 def ring_sheet(
     title: str, grooves: Sequence[tuple[str, Groove | str]], *, settings: RingSettings
-) -> tuple[Sheet, WearTrack]:
+) -> tuple[sheet.Sheet, WearTrack]:
     """Wear of a ring by the mean section of its scans and the theorem of Pappus.
 
     Parameters
@@ -129,38 +115,32 @@ def ring_sheet(
         sliding_distance=settings.sliding_distance,
     )
     counted = [name for name, groove in grooves if isinstance(groove, Groove) and groove.complete]
+    volume, error = ring.wear_volume, ring.wear_volume_uncertainty
     values = [
-        SheetValue(
-            "ring_volume", "Wear volume of the ring", ring.wear_volume, "m3", uncertainty=ring.wear_volume_uncertainty
-        ),
-        SheetValue("ring_pile_up_volume", "Ridges and projections of the ring", ring.pile_up_volume, "m3"),
-        SheetValue("ring_net_volume", "Net volume lost by the disc", ring.net_volume, "m3"),
-        quantity_value("wear_rate", ring.wear_rate, interval=ring.wear_rate_interval),
+        sheet.Value("ring_volume", "Wear volume of the ring", volume, "m3", uncertainty=error),
+        sheet.Value("ring_pile_up_volume", "Ridges and projections of the ring", ring.pile_up_volume, "m3"),
+        sheet.Value("ring_net_volume", "Net volume lost by the disc", ring.net_volume, "m3"),
+        sheet.quantity_value("wear_rate", ring.wear_rate, interval=ring.wear_rate_interval),
     ]
     if settings.tip_radius is not None:
         width = float(np.mean([g.groove_width for _, g in grooves if isinstance(g, Groove) and g.complete]))
-        volume = disc_volume_loss(
+        loss = disc_volume_loss(
             groove_diameter=settings.groove_diameter, groove_width=width, tip_radius=settings.tip_radius
         )
         label = "Wear volume by the geometry of ASTM G99, from width and tip"
-        values.append(SheetValue("geometric_volume", label, float(volume), "m3"))
-    table = SheetTable(
+        values.append(sheet.Value("geometric_volume", label, float(loss), "m3"))
+    table = sheet.Table(
         name="sections",
         title="Area of the mean section by scan",
-        columns=(SheetColumn("scan", "Scan"), SheetColumn("cross_section_area", "Area", "m2")),
+        columns=(sheet.Column("scan", "Scan"), sheet.Column("cross_section_area", "Area", "m2")),
         rows=tuple(zip(counted, map(float, ring.cross_section_area), strict=True)),
     )
-    figure = SheetFigure(
-        name="ring",
-        title="Sections round the ring",
-        caption="Area of the mean section of each scan; the line is the mean, the band its 95 % interval.",
-        draw=partial(figures.ring, ring),
-    )
-    section = SheetSection(values=tuple(values), tables=(table,), figures=(figure,), caveats=ring.excluded_scans)
-    return sheet_from_sections([section], title=title, source={}), ring
+    figure = figures.ring(ring)
+    section = sheet.Sheet(values=tuple(values), tables=(table,), figures=(figure,), caveats=ring.excluded_scans)
+    return sheet.joined([section], title=title, source={}), ring
 
 
-def wear_reduction_sheet(without: Sequence[WearTrack], with_vibration: Sequence[WearTrack]) -> Sheet:
+def wear_reduction_sheet(without: Sequence[WearTrack], with_vibration: Sequence[WearTrack]) -> sheet.Sheet:
     """Wear reduction by vibration from worn rings, with its interval.
 
     Parameters
@@ -178,12 +158,12 @@ def wear_reduction_sheet(without: Sequence[WearTrack], with_vibration: Sequence[
         caveats = (
             "the interval covers the scatter along each ring only, not that between specimens: test more specimens",
         )
-    value = quantity_value("wear_reduction", reduction.wear_reduction, interval=reduction.interval)
+    value = sheet.quantity_value("wear_reduction", reduction.wear_reduction, interval=reduction.interval)
     title = f"{len(with_vibration)} ring with vibration against {len(without)} without"
-    return sheet_from_sections([SheetSection(values=(value,), caveats=caveats)], title=title, source={})
+    return sheet.joined([sheet.Sheet(values=(value,), caveats=caveats)], title=title, source={})
 
 
-def cap_sheet(path: Path, *, settings: SurfaceSettings, tip_radius: float | None) -> Sheet:
+def cap_sheet(path: Path, *, settings: SurfaceSettings, tip_radius: float | None) -> sheet.Sheet:
     """Wear of a pin by the scar in a scan of its tip.
 
     Parameters
@@ -204,69 +184,35 @@ def cap_sheet(path: Path, *, settings: SurfaceSettings, tip_radius: float | None
     SonolubeError
         If the file cannot be read or shows no scar.
     """
-    file = read_surface_file(
-        path, spacing_x=settings.spacing_x, spacing_y=settings.spacing_y, length_unit=settings.length_unit
-    )
+    file = surface_file(path, settings)
     cap = wear_scar(file.height_map, tip_radius=tip_radius)
+    volume, error = cap.wear_volume, cap.wear_volume_uncertainty
     values = (
-        SheetValue(
-            "pin_volume", "Wear volume of the pin", cap.wear_volume, "m3", uncertainty=cap.wear_volume_uncertainty
-        ),
-        SheetValue("scar_diameter", "Diameter of the scar", cap.scar_diameter, "m"),
-        quantity_value("tip_radius", cap.tip_radius),
+        sheet.Value("pin_volume", "Wear volume of the pin", volume, "m3", uncertainty=error),
+        sheet.Value("scar_diameter", "Diameter of the scar", cap.scar_diameter, "m"),
+        sheet.quantity_value("tip_radius", cap.tip_radius),
     )
-    figure = SheetFigure(
-        name="cap",
-        title="Scar of the pin",
-        caption="Heights over the ball; the line goes round the scar.",
-        draw=partial(figures.height_map, cap.levelled, cap.worn),
-    )
-    return sheet_from_sections(
-        [SheetSection(values=values, figures=(figure,))], title=path.name, source=surface_source(file)
-    )
+    scar_map = figures.height_map(cap.levelled, cap.worn)
+    figure = replace(scar_map, title="Scar of the pin", caption="Heights over the ball; the line goes round the scar.")
+    return sheet.joined([sheet.Sheet(values=values, figures=(figure,))], title=path.name, source=surface_source(file))
 
 
-def _figures(groove: Groove) -> tuple[SheetFigure, ...]:
+def _figures(groove: Groove) -> tuple[sheet.Figure, ...]:
     """View, cross-sections, map and Abbott curve of a groove."""
+    curve = abbott(material_ratio_curve(groove.levelled))
     return (
-        SheetFigure(
-            name="view",
-            title="The groove",
-            caption="Heights over the unworn surface, the vertical stretched.",
-            draw=partial(figures.view, groove),
-        ),
-        SheetFigure(
-            name="sections",
-            title="Cross-sections",
-            caption="Single sections square to the track in grey, the mean in colour, its edges where it meets the"
-            " unworn surface.",
-            draw=partial(figures.sections, groove),
-        ),
-        SheetFigure(
-            name="map",
-            title="Map",
-            caption="Heights over the unworn surface; the line goes round what counts as worn.",
-            draw=partial(figures.height_map, groove.levelled, groove.worn),
-        ),
-        SheetFigure(
-            name="abbott",
-            title="Abbott curve",
-            caption="Of the whole field over the unworn surface; the groove is its tail.",
-            draw=partial(abbott, material_ratio_curve(groove.levelled)),
-        ),
+        figures.view(groove),
+        figures.sections(groove),
+        figures.height_map(groove.levelled, groove.worn),
+        replace(curve, caption="Of the whole field over the unworn surface; the groove is its tail."),
     )
 
 
-def _marks(groove: Groove) -> SheetSection:
+def _marks(groove: Groove) -> sheet.Sheet:
     """Spacing of marks along the track by the spectrum of its floor."""
     marks = track_marks(groove)
     if marks.dot_spacing is None:
-        return SheetSection(not_found=(f"marks along the track: {marks.reason}",))
-    figure = SheetFigure(
-        name="marks",
-        title="Spectrum along the track",
-        caption="Power of the groove's floor along the track over its background; the peak is the marks' spacing.",
-        draw=partial(figures.marks, marks),
-    )
-    value = quantity_value("dot_spacing", marks.dot_spacing, uncertainty=marks.dot_spacing_uncertainty)
-    return SheetSection(values=(value,), figures=(figure,))
+        return sheet.Sheet(not_found=(f"marks along the track: {marks.reason}",))
+    figure = figures.marks(marks)
+    value = sheet.quantity_value("dot_spacing", marks.dot_spacing, uncertainty=marks.dot_spacing_uncertainty)
+    return sheet.Sheet(values=(value,), figures=(figure,))

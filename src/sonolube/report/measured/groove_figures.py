@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from sonolube.checks import Floats
 from sonolube.figure import COLOURS, MARKERS
 from sonolube.measurement.wear_track import WearTrack
+from sonolube.report.measured.sheet import captioned
 from sonolube.report.measured.surface_figures import length_scale, show_map
 from sonolube.surfaces import HeightMap
 from sonolube.surfaces.grooves.groove import Groove
@@ -21,6 +22,7 @@ _BLOCKS = 110  # along the longer side of a view
 _SINGLE = 9  # sections shown
 
 
+@captioned("The groove", "Heights over the unworn surface, the vertical stretched.")
 def view(groove: Groove) -> "Figure":
     """Three-dimensional view of the groove, the vertical stretched."""
     import matplotlib.pyplot as plt
@@ -43,6 +45,10 @@ def view(groove: Groove) -> "Figure":
     return figure
 
 
+@captioned(
+    "Cross-sections",
+    "Single sections square to the track in grey, the mean in colour, its edges where it meets the unworn surface.",
+)
 def sections(groove: Groove) -> "Figure":
     """Single cross-sections, and the mean one with its edges."""
     import matplotlib.pyplot as plt
@@ -62,6 +68,7 @@ def sections(groove: Groove) -> "Figure":
     return figure
 
 
+@captioned("Map", "Heights over the unworn surface; the line goes round what counts as worn.")
 def height_map(levelled: HeightMap, worn: NDArray[np.bool_]) -> "Figure":
     """Heights as colours, with the outline of the worn area."""
     import matplotlib.pyplot as plt
@@ -74,6 +81,10 @@ def height_map(levelled: HeightMap, worn: NDArray[np.bool_]) -> "Figure":
     return figure
 
 
+@captioned(
+    "Sections round the ring",
+    "Area of the mean section of each scan; the line is the mean, the band its 95 % interval.",
+)
 def ring(worn: WearTrack) -> "Figure":
     """Area of the mean section of each scan, with the mean of the ring and its 95 % interval."""
     import matplotlib.pyplot as plt
@@ -91,6 +102,10 @@ def ring(worn: WearTrack) -> "Figure":
     return figure
 
 
+@captioned(
+    "Spectrum along the track",
+    "Power of the groove's floor along the track over its background; the peak is the marks' spacing.",
+)
 def marks(track: TrackMarks) -> "Figure":
     """Power spectrum along the track over its background."""
     import matplotlib.pyplot as plt

@@ -13,15 +13,7 @@ from sonolube.identification.stack_fit import fit_stack
 from sonolube.measurement.impedance.reader import read_impedance
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 from sonolube.measurement.statistics.log_parameter_fit import ConfidenceInterval
-from sonolube.report.measured import impedance_figures as figures
-from sonolube.report.measured.sheet import (
-    Sheet,
-    SheetFigure,
-    SheetSection,
-    SheetValue,
-    quantity_value,
-    sheet_from_sections,
-)
+from sonolube.report.measured import impedance_figures as figures, sheet
 from sonolube.units import format_si
 from sonolube.vocabulary import quantities
 
@@ -59,7 +51,7 @@ class ImpedanceSettings:
     stack: StackInStructure | None = None
 
 
-def impedance_sheet(path: Path, *, settings: ImpedanceSettings) -> Sheet:
+def impedance_sheet(path: Path, *, settings: ImpedanceSettings) -> sheet.Sheet:
     """Equivalent circuit fitted to a measured impedance spectrum, or the stack of a structure.
 
     Parameters
@@ -88,67 +80,56 @@ def impedance_sheet(path: Path, *, settings: ImpedanceSettings) -> Sheet:
         "residual": settings.residual,
         "sha256": spectrum.sha256,
     }
-    return sheet_from_sections([section], title=path.name, source=source)
+    return sheet.joined([section], title=path.name, source=source)
 
 
-def _circuit(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings) -> SheetSection:
+def _circuit(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings) -> sheet.Sheet:
     """Butterworth-Van Dyke circuit fitted to a spectrum."""
     fit = fit_circuit(
         spectrum, branches=settings.branches, residual=settings.residual, series_resistance=settings.series_resistance
     )
-    figure = SheetFigure(
-        name="fit",
+    figure = sheet.Figure(
         title="Impedance with the fitted circuit",
         caption=f"Measured and fitted by the {fit.residual} residual, and the residual: relative in magnitude,"
         " radians in phase.",
         draw=partial(figures.circuit, spectrum, fit.circuit),
     )
-    circle = SheetFigure(
-        name="admittance",
-        title="Admittance circle",
-        caption="Susceptance over conductance; a mode draws a circle.",
-        draw=partial(figures.admittance_circle, spectrum, fit.circuit),
-    )
+    circle = figures.admittance_circle(spectrum, fit.circuit)
     values = (*_values(fit.intervals), _rms(fit.residual_rms, fit.residual))
-    return SheetSection(values=values, figures=(figure, circle), caveats=fit.caveats)
+    return sheet.Sheet(values=values, figures=(figure, circle), caveats=fit.caveats)
 
 
-def _stack(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings, initial: StackInStructure) -> SheetSection:
+def _stack(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings, initial: StackInStructure) -> sheet.Sheet:
     """Parameters of a stack fitted to the spectrum of its structure."""
     fit = fit_stack(spectrum, initial.stack, in_structure=initial.in_structure, residual=settings.residual)
     charge = fit.charge_per_elongation
-    values = (
-        *_values(fit.intervals),
-        SheetValue(
-            "force_per_volt", "Blocked force per volt", charge.value, "N/V", interval=(charge.lower, charge.upper)
-        ),
-        _rms(fit.residual_rms, fit.residual),
-    )
-    figure = SheetFigure(
-        name="fit",
+    ends = (charge.lower, charge.upper)
+    force = sheet.Value("force_per_volt", "Blocked force per volt", charge.value, "N/V", interval=ends)
+    values = (*_values(fit.intervals), force, _rms(fit.residual_rms, fit.residual))
+    figure = sheet.Figure(
         title="Impedance with the fitted stack",
         caption=f"Measured, and that of the structure with the stack found by the {fit.residual} residual.",
         draw=partial(figures.stack, spectrum, initial.in_structure(fit.stack)),
     )
-    return SheetSection(values=values, figures=(figure,), caveats=fit.caveats)
+    return sheet.Sheet(values=values, figures=(figure,), caveats=fit.caveats)
 
 
-def _values(intervals: Mapping[str, ConfidenceInterval]) -> tuple[SheetValue, ...]:
+def _values(intervals: Mapping[str, ConfidenceInterval]) -> tuple[sheet.Value, ...]:
     """Fitted parameters with their intervals."""
     return tuple(_value(name, interval) for name, interval in intervals.items())
 
 
-def _value(name: str, interval: ConfidenceInterval) -> SheetValue:
+def _value(name: str, interval: ConfidenceInterval) -> sheet.Value:
     """Fitted parameter with its interval, that of a branch named by its number."""
     ends = (interval.lower, interval.upper)
     if name in quantities():
-        return quantity_value(name, interval.value, interval=ends)
+        return sheet.quantity_value(name, interval.value, interval=ends)
     base, _, branch = name.rpartition("_")
     word = quantities()[base]
     label = f"{word.meaning}, branch {branch}"
-    return SheetValue(name, label, interval.value, word.unit, interval=ends)
+    return sheet.Value(name, label, interval.value, word.unit, interval=ends)
 
 
-def _rms(rms: float, residual: str) -> SheetValue:
+def _rms(rms: float, residual: str) -> sheet.Value:
     """Root mean square of the residual of a fit."""
-    return SheetValue("residual_rms", f"Root mean square of the {residual} residual", rms, "")
+    return sheet.Value("residual_rms", f"Root mean square of the {residual} residual", rms, "")

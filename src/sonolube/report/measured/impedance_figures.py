@@ -9,6 +9,7 @@ from sonolube.checks import Complexes
 from sonolube.dynamics.structure import Structure, electrical_admittance
 from sonolube.figure import COLOURS
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
+from sonolube.report.measured.sheet import captioned
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -24,6 +25,7 @@ def stack(spectrum: ImpedanceSpectrum, fitted: Structure) -> "Figure":
     return _fit(spectrum, electrical_admittance(fitted, frequency=spectrum.frequency))
 
 
+@captioned("Admittance circle", "Susceptance over conductance; a mode draws a circle.")
 def admittance_circle(spectrum: ImpedanceSpectrum, fitted: ButterworthVanDyke) -> "Figure":
     """Susceptance over conductance, measured and fitted."""
     import matplotlib.pyplot as plt

@@ -1,7 +1,6 @@
 """Sheets of Hall-probe recordings: rotation speed of the disc and sliding speed of the pin."""
 
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -9,16 +8,8 @@ import numpy as np
 from sonolube.measurement.friction_analysis import analyse_rotation, channel_values
 from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.measurement.recordings.reader import read_recording
-from sonolube.report.measured import rotation_figures as figures
+from sonolube.report.measured import rotation_figures as figures, sheet
 from sonolube.report.measured.friction import recording_source
-from sonolube.report.measured.sheet import (
-    Sheet,
-    SheetFigure,
-    SheetSection,
-    SheetValue,
-    quantity_value,
-    sheet_from_sections,
-)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -43,7 +34,7 @@ class RotationSettings:
     mapping: RecordingMapping | None = None
 
 
-def rotation_sheet(path: Path, *, settings: RotationSettings) -> Sheet:
+def rotation_sheet(path: Path, *, settings: RotationSettings) -> sheet.Sheet:
     """Rotation speed of a disc, and speed of the pin on it, from the pulses of a Hall probe.
 
     Parameters
@@ -65,50 +56,28 @@ def rotation_sheet(path: Path, *, settings: RotationSettings) -> Sheet:
     rotation = analyse_rotation(
         recording, groove_diameter=settings.groove_diameter, magnets=settings.magnets, prominence=settings.prominence
     )
-    circumference, error = np.pi * settings.groove_diameter, rotation.rotation_speed_uncertainty
-    turns = rotation.rotation_speed
-    interpolated = int(rotation.interpolated.sum())
+    circumference, revolutions = np.pi * settings.groove_diameter, float(rotation.revolutions[-1])
+    speed, error = rotation.mean_rotation_speed, rotation.rotation_speed_uncertainty
+    turns, interpolated = rotation.rotation_speed, int(rotation.interpolated.sum())
     values = [
-        quantity_value("rotation_speed", rotation.mean_rotation_speed, uncertainty=error),
-        quantity_value(
-            "sliding_speed", circumference * rotation.mean_rotation_speed, uncertainty=circumference * error
-        ),
-        quantity_value("revolutions", float(rotation.revolutions[-1])),
-        quantity_value("sliding_distance", circumference * float(rotation.revolutions[-1])),
-        SheetValue("pulses", "Pulses", float(rotation.time.size), ""),
-        SheetValue("repaired_pulses", "Missing pulses inserted", float(interpolated), ""),
+        sheet.quantity_value("rotation_speed", speed, uncertainty=error),
+        sheet.quantity_value("sliding_speed", circumference * speed, uncertainty=circumference * error),
+        sheet.quantity_value("revolutions", revolutions),
+        sheet.quantity_value("sliding_distance", circumference * revolutions),
+        sheet.Value("pulses", "Pulses", float(rotation.time.size), ""),
+        sheet.Value("repaired_pulses", "Missing pulses inserted", float(interpolated), ""),
     ]
     if turns.size > 1:
-        spread = float(turns.std(ddof=1)) / rotation.mean_rotation_speed
-        values.append(
-            SheetValue("speed_variation", "Relative standard deviation of the speed of the turns", spread, "")
-        )
+        label, spread = "Relative standard deviation of the speed of the turns", float(turns.std(ddof=1)) / speed
+        values.append(sheet.Value("speed_variation", label, spread, ""))
     pictures = (
-        SheetFigure(
-            name="speed",
-            title="Speed turn by turn",
-            caption="Each turn is timed from a magnet to the same magnet; the line is the mean.",
-            draw=partial(figures.speed, rotation),
-        ),
-        SheetFigure(
-            name="pulses",
-            title="Pulses of the probe",
-            caption="The first turns, with the pulses detected and those inserted where one was missing.",
-            draw=partial(
-                figures.pulses,
-                channel_values(recording, "time"),
-                channel_values(recording, "magnetic_flux_density"),
-                rotation,
-            ),
-        ),
+        figures.speed(rotation),
+        figures.pulses(channel_values(recording, "time"), channel_values(recording, "magnetic_flux_density"), rotation),
     )
     caveats: tuple[str, ...] = ()
     if interpolated > rotation.time.size / 10:
         caveats = (
             f"{interpolated} of {rotation.time.size} pulses were missing; lower the prominence or move the probe",
         )
-    return sheet_from_sections(
-        [SheetSection(values=tuple(values), figures=pictures, caveats=caveats)],
-        title=path.name,
-        source=recording_source(recording),
-    )
+    section = sheet.Sheet(values=tuple(values), figures=pictures, caveats=caveats)
+    return sheet.joined([section], title=path.name, source=recording_source(recording))

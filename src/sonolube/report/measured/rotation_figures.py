@@ -7,6 +7,7 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.figure import COLOURS, MARKERS
 from sonolube.measurement.friction.rotation import DiscRotation
+from sonolube.report.measured.sheet import captioned
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
 _TURNS_SHOWN = 6
 
 
+@captioned("Speed turn by turn", "Each turn is timed from a magnet to the same magnet; the line is the mean.")
 def speed(rotation: DiscRotation) -> "Figure":
     """DiscRotation speed turn by turn, with the speed at the groove on the right."""
     import matplotlib.pyplot as plt
@@ -38,6 +40,7 @@ def speed(rotation: DiscRotation) -> "Figure":
     return figure
 
 
+@captioned("Pulses of the probe", "The first turns, with the pulses detected and those inserted where one was missing.")
 def pulses(t: Floats, flux_density: Floats, rotation: DiscRotation) -> "Figure":
     """Reading of the probe over the first turns, with its pulses."""
     import matplotlib.pyplot as plt

@@ -3,21 +3,23 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial, wraps
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ParamSpec
 
 from sonolube.errors import InvalidInput
 from sonolube.units import format_si
 from sonolube.vocabulary import quantities
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    from matplotlib import figure as matplotlib_figure
 
 Cell = float | str | None
+Drawn = ParamSpec("Drawn")
 
 
 @dataclass(frozen=True, slots=True)
-class SheetValue:
+class Value:
     """One measured number with its unit, uncertainty and interval.
 
     Parameters
@@ -67,7 +69,7 @@ class SheetValue:
 
 
 @dataclass(frozen=True, slots=True)
-class SheetColumn:
+class Column:
     """Column of a table: its name in JSON, its heading, and its SI unit."""
 
     name: str
@@ -82,40 +84,54 @@ class SheetColumn:
 
 
 @dataclass(frozen=True, slots=True)
-class SheetTable:
+class Table:
     """Table of a sheet; cells are numbers in SI, text, or None."""
 
     name: str
     title: str
-    columns: tuple[SheetColumn, ...]
+    columns: tuple[Column, ...]
     rows: tuple[tuple[Cell, ...], ...]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class SheetFigure:
-    """Figure of a sheet, drawn when the page is made."""
+class Figure:
+    """Figure of a sheet, drawn when the page is made; no two of a sheet have the same title."""
 
-    name: str
     title: str
     caption: str
-    draw: Callable[[], "Figure"]
+    draw: Callable[[], "matplotlib_figure.Figure"]
+
+
+def captioned(
+    title: str, caption: str
+) -> Callable[[Callable[Drawn, "matplotlib_figure.Figure"]], Callable[Drawn, Figure]]:
+    """Decorator of a function that draws: it then returns the figure of a sheet with this title and caption."""
+
+    def decorated(draw: Callable[Drawn, "matplotlib_figure.Figure"]) -> Callable[Drawn, Figure]:
+        @wraps(draw)
+        def figure(*args: Drawn.args, **kwargs: Drawn.kwargs) -> Figure:
+            return Figure(title=title, caption=caption, draw=partial(draw, *args, **kwargs))
+
+        return figure
+
+    return decorated
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Sheet:
-    """Values, tables, figures and caveats of one measured file.
+    """Values, tables, figures and caveats of one measured file, or of one analysis of it.
 
     Parameters
     ----------
     title : str
-        The file's name, or what was compared.
+        The file's name, or what was compared; empty for one analysis.
     source : mapping of str to str
         Where it came from: file, format, digest and what the instrument says of itself.
     values : tuple of Value
         The numbers, those that matter most first.
-    tables : tuple of SheetTable
+    tables : tuple of Table
         What comes in rows.
-    figures : tuple of SheetFigure
+    figures : tuple of Figure
         What is drawn.
     caveats : tuple of str
         What speaks against the numbers, one line each.
@@ -123,28 +139,17 @@ class Sheet:
         What was looked for and not found, with the reason.
     """
 
-    title: str
+    title: str = ""
     source: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
-    values: tuple[SheetValue, ...] = ()
-    tables: tuple[SheetTable, ...] = ()
-    figures: tuple[SheetFigure, ...] = ()
+    values: tuple[Value, ...] = ()
+    tables: tuple[Table, ...] = ()
+    figures: tuple[Figure, ...] = ()
     caveats: tuple[str, ...] = ()
     not_found: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class SheetSection:
-    """Part of a sheet by one analysis; fields as those of `Sheet`."""
-
-    values: tuple[SheetValue, ...] = ()
-    tables: tuple[SheetTable, ...] = ()
-    figures: tuple[SheetFigure, ...] = ()
-    caveats: tuple[str, ...] = ()
-    not_found: tuple[str, ...] = ()
-
-
-def sheet_from_sections(parts: Sequence[SheetSection], *, title: str, source: Mapping[str, str]) -> Sheet:
-    """Sheet of several sections, in their order."""
+def joined(parts: Sequence[Sheet], *, title: str, source: Mapping[str, str]) -> Sheet:
+    """Sheet of a file from those of several analyses, in their order; origins without text are left out."""
     return Sheet(
         title=title,
         source={key: text for key, text in source.items() if text},
@@ -156,12 +161,12 @@ def sheet_from_sections(parts: Sequence[SheetSection], *, title: str, source: Ma
     )
 
 
-def attempted_section(analysis: Callable[[], SheetSection], *, what: str) -> SheetSection:
-    """Section by an analysis, or the reason for which it is not possible on this file."""
+def attempted(analysis: Callable[[], Sheet], *, what: str) -> Sheet:
+    """Sheet by an analysis, or the reason for which it is not possible on this file."""
     try:
         return analysis()
     except InvalidInput as refusal:
-        return SheetSection(not_found=(f"{what}: {refusal}",))
+        return Sheet(not_found=(f"{what}: {refusal}",))
 
 
 def quantity_value(
@@ -171,7 +176,7 @@ def quantity_value(
     label: str = "",
     uncertainty: float | None = None,
     interval: tuple[float, float] | None = None,
-) -> SheetValue:
+) -> Value:
     """Value of a quantity of the vocabulary, which gives its unit and its default label.
 
     Parameters
@@ -192,9 +197,9 @@ def quantity_value(
     Value
     """
     word = quantities()[name]
-    return SheetValue(name, label or word.meaning, value, word.unit, uncertainty=uncertainty, interval=interval)
+    return Value(name, label or word.meaning, value, word.unit, uncertainty=uncertainty, interval=interval)
 
 
-def quantity_columns(labels: Mapping[str, str]) -> tuple[SheetColumn, ...]:
+def quantity_columns(labels: Mapping[str, str]) -> tuple[Column, ...]:
     """Columns of quantities of the vocabulary, by name with their headings."""
-    return tuple(SheetColumn(name, label, quantities()[name].unit) for name, label in labels.items())
+    return tuple(Column(name, label, quantities()[name].unit) for name, label in labels.items())

@@ -1,121 +1,55 @@
 """Sheets of height maps: parameters of ISO 25178-2 and of profiles, spectra, summits for the contact models."""
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import partial
 from pathlib import Path
-from types import MappingProxyType
 
+from sonolube import surfaces
 from sonolube.errors import InvalidInput
 from sonolube.measurement.surface_files.reader import SurfaceFile, read_surface_file
-from sonolube.report.measured import surface_figures as figures
-from sonolube.report.measured.sheet import (
-    Sheet,
-    SheetColumn,
-    SheetFigure,
-    SheetSection,
-    SheetTable,
-    attempted_section,
-    quantity_columns,
-    quantity_value,
-    sheet_from_sections,
-)
-from sonolube.surfaces import (
-    HeightMap,
-    areal_spectrum,
-    autocorrelation,
-    contact_roughness,
-    dominant_wavelengths,
-    feature_parameters,
-    functional_parameters,
-    height_parameters,
-    high_pass,
-    hybrid_parameters,
-    low_pass,
-    material_ratio_curve,
-    profile_statistics,
-    radial_spectrum,
-    remove_form,
-    sampling_dependence,
-    spatial_parameters,
-    spectral_moments,
-    summit_statistics,
-)
+from sonolube.report.measured import sheet, surface_figures as figures
 from sonolube.units import format_si
 
-_SYMBOLS: Mapping[str, str] = MappingProxyType(
-    {
-        "arithmetic_mean_height": "Sa",
-        "rms_height": "Sq",
-        "maximum_peak_height": "Sp",
-        "maximum_pit_depth": "Sv",
-        "total_height": "Sz",
-        "skewness": "Ssk",
-        "kurtosis": "Sku",
-        "rms_gradient": "Sdq",
-        "developed_interfacial_area_ratio": "Sdr",
-        "autocorrelation_length": "Sal",
-        "texture_aspect_ratio": "Str",
-        "texture_direction": "Std",
-        "core_height": "Sk",
-        "reduced_peak_height": "Spk",
-        "reduced_valley_depth": "Svk",
-        "peak_material_ratio": "Smr1",
-        "valley_material_ratio": "Smr2",
-        "peak_material_volume": "Vmp",
-        "core_material_volume": "Vmc",
-        "core_void_volume": "Vvc",
-        "valley_void_volume": "Vvv",
-        "peak_density": "Spd",
-        "mean_peak_curvature": "Spc",
-    }
-)
-_LABELS: Mapping[str, str] = MappingProxyType(
-    {
-        "arithmetic_mean_height": "mean deviation of heights",
-        "rms_height": "standard deviation of heights",
-        "maximum_peak_height": "highest above the mean",
-        "maximum_pit_depth": "deepest below the mean",
-        "total_height": "highest to deepest",
-        "skewness": "skewness",
-        "kurtosis": "kurtosis",
-        "rms_gradient": "root mean square slope",
-        "developed_interfacial_area_ratio": "excess of area",
-        "autocorrelation_length": "autocorrelation length",
-        "texture_aspect_ratio": "texture aspect ratio",
-        "texture_direction": "direction of the lay",
-        "core_height": "height of the core",
-        "reduced_peak_height": "peaks above the core",
-        "reduced_valley_depth": "valleys below the core",
-        "peak_material_ratio": "share of peaks",
-        "valley_material_ratio": "share that is not valleys",
-        "peak_material_volume": "material of the peaks per area",
-        "core_material_volume": "material of the core per area",
-        "core_void_volume": "void of the core per area",
-        "valley_void_volume": "void of the valleys per area",
-        "peak_density": "significant hills per area",
-        "mean_peak_curvature": "mean curvature of their peaks",
-    }
-)
-_PROFILE_LABELS: Mapping[str, str] = MappingProxyType(
-    {
-        "arithmetic_mean_height": "Ra",
-        "rms_height": "Rq",
-        "maximum_peak_height": "Rp",
-        "maximum_pit_depth": "Rv",
-        "total_height": "Rt",
-        "mean_section_height": "Rz",
-    }
-)
-_SAMPLING_LABELS: Mapping[str, str] = MappingProxyType(
-    {
-        "sampling_interval": "Interval",
-        "rms_height": "Deviation of summit heights",
-        "summit_radius": "Summit radius",
-        "summit_density": "Summit density",
-    }
-)
+_LABELS = {
+    "arithmetic_mean_height": "Sa, mean deviation of heights",
+    "rms_height": "Sq, standard deviation of heights",
+    "maximum_peak_height": "Sp, highest above the mean",
+    "maximum_pit_depth": "Sv, deepest below the mean",
+    "total_height": "Sz, highest to deepest",
+    "skewness": "Ssk, skewness",
+    "kurtosis": "Sku, kurtosis",
+    "rms_gradient": "Sdq, root mean square slope",
+    "developed_interfacial_area_ratio": "Sdr, excess of area",
+    "autocorrelation_length": "Sal, autocorrelation length",
+    "texture_aspect_ratio": "Str, texture aspect ratio",
+    "texture_direction": "Std, direction of the lay",
+    "core_height": "Sk, height of the core",
+    "reduced_peak_height": "Spk, peaks above the core",
+    "reduced_valley_depth": "Svk, valleys below the core",
+    "peak_material_ratio": "Smr1, share of peaks",
+    "valley_material_ratio": "Smr2, share that is not valleys",
+    "peak_material_volume": "Vmp, material of the peaks per area",
+    "core_material_volume": "Vmc, material of the core per area",
+    "core_void_volume": "Vvc, void of the core per area",
+    "valley_void_volume": "Vvv, void of the valleys per area",
+    "peak_density": "Spd, significant hills per area",
+    "mean_peak_curvature": "Spc, mean curvature of their peaks",
+}
+_PROFILE_LABELS = {
+    "arithmetic_mean_height": "Ra",
+    "rms_height": "Rq",
+    "maximum_peak_height": "Rp",
+    "maximum_pit_depth": "Rv",
+    "total_height": "Rt",
+    "mean_section_height": "Rz",
+}
+_SAMPLING_LABELS = {
+    "sampling_interval": "Interval",
+    "rms_height": "Deviation of summit heights",
+    "summit_radius": "Summit radius",
+    "summit_density": "Summit density",
+}
 _COARSENINGS = (1, 2, 4, 8)  # times the pixel, at which summits are sought
 
 
@@ -148,7 +82,7 @@ class SurfaceSettings:
     long_cutoff_length: float | None = None
 
 
-def surface_sheet(path: Path, *, settings: SurfaceSettings) -> Sheet:
+def surface_sheet(path: Path, *, settings: SurfaceSettings) -> sheet.Sheet:
     """Areal and profile parameters, spectra and summits of a surface file.
 
     Parameters
@@ -166,23 +100,33 @@ def surface_sheet(path: Path, *, settings: SurfaceSettings) -> Sheet:
     InvalidInput
         If the file cannot be read, levelled or filtered as asked, or its heights have no parameters.
     """
-    file = read_surface_file(
-        path, spacing_x=settings.spacing_x, spacing_y=settings.spacing_y, length_unit=settings.length_unit
-    )
-    levelled = remove_form(file.height_map, degree=settings.degree, robust=settings.robust)
+    file = surface_file(path, settings)
+    levelled = surfaces.remove_form(file.height_map, degree=settings.degree, robust=settings.robust)
     surface = _filtered(levelled, settings)
-    sections = [_part(height_parameters(surface))]
-    for measure in (hybrid_parameters, spatial_parameters, functional_parameters, feature_parameters):
+    sections = [_part(surfaces.height_parameters(surface))]
+    for measure in (
+        surfaces.hybrid_parameters,
+        surfaces.spatial_parameters,
+        surfaces.functional_parameters,
+        surfaces.feature_parameters,
+    ):
         name = measure.__name__.replace("_", " ")
-        sections.append(attempted_section(lambda measure=measure: _part(measure(surface)), what=name))  # type: ignore[misc]
+        sections.append(sheet.attempted(lambda measure=measure: _part(measure(surface)), what=name))  # type: ignore[misc]
     sections += [
-        attempted_section(partial(_summits, surface), what="summits"),
-        attempted_section(partial(_profiles, surface), what="profile parameters"),
-        attempted_section(partial(_sampling, surface), what="summits at coarser sampling"),
-        attempted_section(partial(_waviness, levelled), what="waviness"),
+        sheet.attempted(partial(_summits, surface), what="summits"),
+        sheet.attempted(partial(_profiles, surface), what="profile parameters"),
+        sheet.attempted(partial(_sampling, surface), what="summits at coarser sampling"),
+        sheet.attempted(partial(_waviness, levelled), what="waviness"),
         _figures(surface),
     ]
-    return sheet_from_sections(sections, title=path.name, source=surface_source(file))
+    return sheet.joined(sections, title=path.name, source=surface_source(file))
+
+
+def surface_file(path: Path, settings: SurfaceSettings) -> SurfaceFile:
+    """Height map of a file, with spacing and unit by the settings where the file does not say."""
+    return read_surface_file(
+        path, spacing_x=settings.spacing_x, spacing_y=settings.spacing_y, length_unit=settings.length_unit
+    )
 
 
 def surface_source(file: SurfaceFile) -> dict[str, str]:
@@ -201,119 +145,95 @@ def surface_source(file: SurfaceFile) -> dict[str, str]:
     }
 
 
-def _filtered(levelled: HeightMap, settings: SurfaceSettings) -> HeightMap:
+def _filtered(levelled: surfaces.HeightMap, settings: SurfaceSettings) -> surfaces.HeightMap:
     """Surface between the cutoff lengths."""
     short, long = settings.short_cutoff_length, settings.long_cutoff_length
     if short is not None and long is not None and short >= long:
         raise InvalidInput(f"the short cutoff, {short:.3g} m, must be below the long one, {long:.3g} m")
     surface = levelled
     if short is not None:
-        surface = low_pass(surface, cutoff_length=short)
+        surface = surfaces.low_pass(surface, cutoff_length=short)
     if long is not None:
-        surface = high_pass(surface, cutoff_length=long)
+        surface = surfaces.high_pass(surface, cutoff_length=long)
     return surface
 
 
-def _part(record: object) -> SheetSection:
+def _part(record: object) -> sheet.Sheet:
     """Areal parameters of a record, labelled with their symbols."""
-    names = [each.name for each in fields(record) if each.name in _SYMBOLS]  # type: ignore[arg-type]
+    names = [each.name for each in fields(record) if each.name in _LABELS]  # type: ignore[arg-type]
     small = not getattr(record, "decays_in_all_directions", True)
-    return SheetSection(
-        values=tuple(
-            quantity_value(name, getattr(record, name), label=f"{_SYMBOLS[name]}, {_LABELS[name]}") for name in names
-        ),
+    return sheet.Sheet(
+        values=tuple(sheet.quantity_value(name, getattr(record, name), label=_LABELS[name]) for name in names),
         caveats=("Str is an upper bound: the map is too small for its texture",) if small else (),
     )
 
 
-def _summits(surface: HeightMap) -> SheetSection:
-    """Density, radius and heights of summit_statistics, and the bandwidth of the spectrum."""
-    found, moments = summit_statistics(surface), spectral_moments(surface)
-    for_contact = contact_roughness(surface)
-    return SheetSection(
+def _summits(surface: surfaces.HeightMap) -> sheet.Sheet:
+    """Density, radius and heights of the summits, and the bandwidth of the spectrum."""
+    found, moments = surfaces.summit_statistics(surface), surfaces.spectral_moments(surface)
+    for_contact = surfaces.contact_roughness(surface)
+    return sheet.Sheet(
         values=(
-            quantity_value("summit_density", found.summit_density),
-            quantity_value("summit_radius", found.summit_radius),
-            quantity_value("summit_height_deviation", found.summit_height_deviation),
-            quantity_value("mean_summit_height", found.mean_summit_height),
-            quantity_value("bandwidth", moments.bandwidth, label="Bandwidth of the spectrum, Nayak's alpha"),
-            quantity_value("roughness_parameter", for_contact.roughness_parameter),
+            sheet.quantity_value("summit_density", found.summit_density),
+            sheet.quantity_value("summit_radius", found.summit_radius),
+            sheet.quantity_value("summit_height_deviation", found.summit_height_deviation),
+            sheet.quantity_value("mean_summit_height", found.mean_summit_height),
+            sheet.quantity_value("bandwidth", moments.bandwidth, label="Bandwidth of the spectrum, Nayak's alpha"),
+            sheet.quantity_value("roughness_parameter", for_contact.roughness_parameter),
         )
     )
 
 
-def _profiles(surface: HeightMap) -> SheetSection:
+def _profiles(surface: surfaces.HeightMap) -> sheet.Sheet:
     """Mean and deviation of profile parameters over all rows and columns."""
     rows = []
     for along in ("rows", "columns"):
         if min(surface.height.shape) > 1 or surface.height.shape[along == "rows"] > 1:
-            found = profile_statistics(surface, along=along)
+            found = surfaces.profile_statistics(surface, along=along)
             for kind, record in (("mean", found.mean), ("deviation", found.standard_deviation)):
                 values = (getattr(record, name) for name in _PROFILE_LABELS)
                 rows.append((f"{found.profile_count} {along}", kind, *values))
-    columns = (SheetColumn("profiles", "Profiles"), SheetColumn("statistic", ""), *quantity_columns(_PROFILE_LABELS))
-    return SheetSection(tables=(SheetTable("profiles", "Profile parameters", columns, tuple(rows)),))
+    columns = (
+        sheet.Column("profiles", "Profiles"),
+        sheet.Column("statistic", ""),
+        *sheet.quantity_columns(_PROFILE_LABELS),
+    )
+    return sheet.Sheet(tables=(sheet.Table("profiles", "Profile parameters", columns, tuple(rows)),))
 
 
-def _sampling(surface: HeightMap) -> SheetSection:
+def _sampling(surface: surfaces.HeightMap) -> sheet.Sheet:
     """Roughness for the contact models at multiples of the sampling interval."""
     pixel = math.sqrt(surface.spacing_x * surface.spacing_y)
     rows: list[tuple[float, ...]] = []
     for times in _COARSENINGS:
         try:
-            found = sampling_dependence(surface, sampling_interval=times * pixel)
+            found = surfaces.sampling_dependence(surface, sampling_interval=times * pixel)
         except InvalidInput:
             break
         rows.append(tuple(float(getattr(found, name)[0]) for name in _SAMPLING_LABELS))
     title = "Roughness for the contact models, by sampling interval"
-    table = SheetTable("sampling", title, quantity_columns(_SAMPLING_LABELS), tuple(rows))
-    return SheetSection(tables=(table,)) if rows else SheetSection()
+    table = sheet.Table("sampling", title, sheet.quantity_columns(_SAMPLING_LABELS), tuple(rows))
+    return sheet.Sheet(tables=(table,)) if rows else sheet.Sheet()
 
 
-def _waviness(levelled: HeightMap) -> SheetSection:
+def _waviness(levelled: surfaces.HeightMap) -> sheet.Sheet:
     """Wavelengths of the waviness along rows and columns."""
     rows = [
         (along, float(length))
         for along in ("rows", "columns")
-        for length in dominant_wavelengths(levelled, along=along)
+        for length in surfaces.dominant_wavelengths(levelled, along=along)
     ]
-    columns = (SheetColumn("along", "Along"), *quantity_columns({"waviness_length": "Wavelength"}))
-    return SheetSection(tables=(SheetTable("waviness", "Waviness", columns, tuple(rows)),))
+    columns = (sheet.Column("along", "Along"), *sheet.quantity_columns({"waviness_length": "Wavelength"}))
+    return sheet.Sheet(tables=(sheet.Table("waviness", "Waviness", columns, tuple(rows)),))
 
 
-def _figures(surface: HeightMap) -> SheetSection:
+def _figures(surface: surfaces.HeightMap) -> sheet.Sheet:
     """Heights, Abbott curve, power spectrum and autocorrelation."""
-    pictures = [
-        SheetFigure(
-            name="heights",
-            title="Heights",
-            caption="The surface as evaluated, levelled and filtered; what was not measured is left white.",
-            draw=partial(figures.heights, surface),
-        ),
-        SheetFigure(
-            name="abbott",
-            title="Abbott curve",
-            caption="Share of the surface at or above each height, with the core by its equivalent line.",
-            draw=partial(figures.abbott, material_ratio_curve(surface)),
-        ),
-    ]
+    pictures = [figures.heights(surface), figures.abbott(surfaces.material_ratio_curve(surface))]
     try:
-        spectrum = radial_spectrum(areal_spectrum(surface))
-        correlation = autocorrelation(surface)
+        spectrum = surfaces.radial_spectrum(surfaces.areal_spectrum(surface))
+        correlation = surfaces.autocorrelation(surface)
     except InvalidInput as refusal:
-        return SheetSection(figures=tuple(pictures), not_found=(f"spectrum: {refusal}",))
-    pictures += [
-        SheetFigure(
-            name="spectrum",
-            title="Power spectrum",
-            caption="Areal power spectral density, averaged over direction; least certain at the ends of the grid.",
-            draw=partial(figures.spectrum, spectrum),
-        ),
-        SheetFigure(
-            name="autocorrelation",
-            title="Autocorrelation",
-            caption="Along rows and columns; Sal is where it first falls to 0.2 in any direction.",
-            draw=partial(figures.correlation, correlation),
-        ),
-    ]
-    return SheetSection(figures=tuple(pictures))
+        return sheet.Sheet(figures=tuple(pictures), not_found=(f"spectrum: {refusal}",))
+    pictures += [figures.spectrum(spectrum), figures.correlation(correlation)]
+    return sheet.Sheet(figures=tuple(pictures))

@@ -7,6 +7,7 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.figure import COLOURS, LINES
+from sonolube.report.measured.sheet import captioned
 from sonolube.surfaces import Autocorrelation, HeightMap, MaterialRatioCurve, RadialSpectrum, functional_parameters
 
 if TYPE_CHECKING:
@@ -17,6 +18,7 @@ _PIXELS = 700  # along the longer side, more than a page resolves
 _LONGEST = 2000.0  # of a unit, before the next is taken
 
 
+@captioned("Heights", "The surface as evaluated, levelled and filtered; what was not measured is left white.")
 def heights(surface: HeightMap) -> "Figure":
     """Height map, and a profile through its middle."""
     import matplotlib.pyplot as plt
@@ -58,6 +60,7 @@ def length_scale(lengths: Floats) -> tuple[str, float]:
     return next(((unit, scale) for unit, scale in (("nm", 1e9), ("um", 1e6)) if spread * scale < _LONGEST), ("mm", 1e3))
 
 
+@captioned("Abbott curve", "Share of the surface at or above each height, with the core by its equivalent line.")
 def abbott(curve: MaterialRatioCurve) -> "Figure":
     """Material ratio curve with the equivalent line of its core, beside the histogram of heights."""
     import matplotlib.pyplot as plt
@@ -93,6 +96,9 @@ def _core(axes: "Axes", curve: MaterialRatioCurve, scale: float, first: float, s
         axes.annotate(text, place, xytext=shift, textcoords="offset points", fontsize=8, ha=side)
 
 
+@captioned(
+    "Power spectrum", "Areal power spectral density, averaged over direction; least certain at the ends of the grid."
+)
 def spectrum(radial: RadialSpectrum) -> "Figure":
     """Radially averaged power spectral density."""
     import matplotlib.pyplot as plt
@@ -111,6 +117,7 @@ def _wavelength(other: Any) -> Any:
     return 1e6 / np.maximum(np.asarray(other, dtype=np.float64), 1e-9)
 
 
+@captioned("Autocorrelation", "Along rows and columns; Sal is where it first falls to 0.2 in any direction.")
 def correlation(found: Autocorrelation) -> "Figure":
     """Autocorrelation along rows and columns."""
     import matplotlib.pyplot as plt

@@ -22,20 +22,8 @@ from sonolube.measurement.vibration import (
     modal_assurance_criterion,
     operating_deflection_shape,
 )
-from sonolube.report.measured import vibration_figures as figures
+from sonolube.report.measured import sheet, vibration_figures as figures
 from sonolube.report.measured.friction import recording_source
-from sonolube.report.measured.sheet import (
-    Sheet,
-    SheetColumn,
-    SheetFigure,
-    SheetSection,
-    SheetTable,
-    SheetValue,
-    attempted_section,
-    quantity_columns,
-    quantity_value,
-    sheet_from_sections,
-)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -71,7 +59,7 @@ class VibrationSettings:
         require_positive(frequency=self.frequency)
 
 
-def vibration_sheet(path: Path, *, settings: VibrationSettings) -> Sheet:
+def vibration_sheet(path: Path, *, settings: VibrationSettings) -> sheet.Sheet:
     """Amplitude and phase of every recorded point at the drive frequency, and the operating shape.
 
     Parameters
@@ -96,34 +84,33 @@ def vibration_sheet(path: Path, *, settings: VibrationSettings) -> Sheet:
     motion = complex_amplitudes(time=time, signals=signals, frequency=f) * per_rate
     errors = _errors(time, signals, f) * np.abs(per_rate)
     largest = int(np.argmax(np.abs(motion)))
-    values = [quantity_value("vibration_amplitude", float(abs(motion[largest])), uncertainty=_or_none(errors[largest]))]
+    amplitude, error = float(abs(motion[largest])), _or_none(errors[largest])
+    values = [sheet.quantity_value("vibration_amplitude", amplitude, uncertainty=error)]
     drive = _drive_voltage(recording, time, f)
     if drive is not None:
         swing = 2 * abs(drive)
         values += [
-            quantity_value("voltage_peak_to_peak", swing),
-            quantity_value(
-                "amplitude_per_volt",
-                float(abs(motion[largest])) / swing,
-                uncertainty=None if np.isnan(errors[largest]) else float(errors[largest]) / swing,
+            sheet.quantity_value("voltage_peak_to_peak", swing),
+            sheet.quantity_value(
+                "amplitude_per_volt", amplitude / swing, uncertainty=None if error is None else error / swing
             ),
         ]
         motion = motion * np.exp(-1j * np.angle(drive))
     shape = operating_deflection_shape(motion)
-    sections = [SheetSection(values=tuple(values), tables=(_table(points, motion, errors),))]
+    sections = [sheet.Sheet(values=tuple(values), tables=(_table(points, motion, errors),))]
     if len(points) > 1:
         sections.append(_shape(points, shape))
         if settings.modes is not None:
-            sections.append(attempted_section(partial(_assurance, motion, settings.modes), what="modal assurance"))
-    return sheet_from_sections(sections, title=path.name, source=recording_source(recording))
+            sections.append(sheet.attempted(partial(_assurance, motion, settings.modes), what="modal assurance"))
+    return sheet.joined(sections, title=path.name, source=recording_source(recording))
 
 
-def has_voltage(sheet: Sheet) -> bool:
+def has_voltage(each: sheet.Sheet) -> bool:
     """Whether a sheet of vibration has the voltage of the drive."""
-    return any(value.name == "voltage_peak_to_peak" for value in sheet.values)
+    return any(value.name == "voltage_peak_to_peak" for value in each.values)
 
 
-def proportion_sheet(sheets: Sequence[Sheet]) -> Sheet:
+def proportion_sheet(sheets: Sequence[sheet.Sheet]) -> sheet.Sheet:
     """Linearity of amplitude over voltage, from recordings at several voltages.
 
     Parameters
@@ -137,11 +124,11 @@ def proportion_sheet(sheets: Sequence[Sheet]) -> Sheet:
     """
     pairs = [
         (found["voltage_peak_to_peak"], found["vibration_amplitude"])
-        for sheet in sheets
-        if "voltage_peak_to_peak" in (found := {value.name: value.value for value in sheet.values})
+        for each in sheets
+        if "voltage_peak_to_peak" in (found := {value.name: value.value for value in each.values})
     ]
-    return sheet_from_sections(
-        [attempted_section(partial(_proportion, pairs), what="proportion")],
+    return sheet.joined(
+        [sheet.attempted(partial(_proportion, pairs), what="proportion")],
         title=f"amplitude over voltage, {len(pairs)} recordings",
         source={},
     )
@@ -194,64 +181,49 @@ def _or_none(error: float) -> float | None:
     return None if np.isnan(error) else float(error)
 
 
-def _table(points: Sequence[str], motion: Complexes, errors: Floats) -> SheetTable:
+def _table(points: Sequence[str], motion: Complexes, errors: Floats) -> sheet.Table:
     """Amplitude, uncertainty and phase of each point."""
     columns = (
-        SheetColumn("point", "Point"),
-        *quantity_columns({"vibration_amplitude": "Amplitude"}),
-        SheetColumn("vibration_amplitude_uncertainty", "Uncertainty", "m"),
-        SheetColumn("phase", "Phase", "rad"),
+        sheet.Column("point", "Point"),
+        *sheet.quantity_columns({"vibration_amplitude": "Amplitude"}),
+        sheet.Column("vibration_amplitude_uncertainty", "Uncertainty", "m"),
+        sheet.Column("phase", "Phase", "rad"),
     )
     rows = tuple(
         (name, float(abs(x)), _or_none(error), float(np.angle(x)))
         for name, x, error in zip(points, motion, errors, strict=True)
     )
-    return SheetTable(name="points", title="Points", columns=columns, rows=rows)
+    return sheet.Table(name="points", title="Points", columns=columns, rows=rows)
 
 
-def _shape(points: Sequence[str], shape: OperatingDeflectionShape) -> SheetSection:
+def _shape(points: Sequence[str], shape: OperatingDeflectionShape) -> sheet.Sheet:
     """Operating shape, and the fraction of the motion that is in phase."""
-    value = SheetValue("standing_wave_fraction", "Fraction of the motion in phase", shape.standing_wave_fraction, "")
-    figure = SheetFigure(
-        name="shape",
-        title="Operating shape",
-        caption="Motion in phase with the whole, scaled to 1, and the phase of each point.",
-        draw=partial(figures.shape, points, shape),
-    )
-    return SheetSection(values=(value,), figures=(figure,))
+    value = sheet.Value("standing_wave_fraction", "Fraction of the motion in phase", shape.standing_wave_fraction, "")
+    figure = figures.shape(points, shape)
+    return sheet.Sheet(values=(value,), figures=(figure,))
 
 
-def _assurance(motion: Complexes, modes: Floats) -> SheetSection:
+def _assurance(motion: Complexes, modes: Floats) -> sheet.Sheet:
     """Modal assurance criterion of the operating shape with each computed mode."""
     assurance = modal_assurance_criterion(motion, modes)[0]
-    columns = (SheetColumn("mode", "Mode"), SheetColumn("assurance", "Modal assurance"))
+    columns = (sheet.Column("mode", "Mode"), sheet.Column("assurance", "Modal assurance"))
     rows = tuple((f"{place}", float(value)) for place, value in enumerate(assurance, start=1))
-    figure = SheetFigure(
-        name="assurance",
-        title="Modal assurance with computed modes",
-        caption="Modal assurance criterion of the operating shape with each mode: 1 in proportion, 0 orthogonal.",
-        draw=partial(figures.assurance, assurance),
-    )
-    table = SheetTable(name="modes", title="Modal assurance with computed modes", columns=columns, rows=rows)
-    return SheetSection(tables=(table,), figures=(figure,))
+    figure = figures.assurance(assurance)
+    table = sheet.Table(name="modes", title="Modal assurance with computed modes", columns=columns, rows=rows)
+    return sheet.Sheet(tables=(table,), figures=(figure,))
 
 
-def _proportion(pairs: Sequence[tuple[float, float]]) -> SheetSection:
+def _proportion(pairs: Sequence[tuple[float, float]]) -> sheet.Sheet:
     """Line through the origin with its interval, and the significance of a curvature."""
     volts, amplitudes = (np.array([pair[which] for pair in pairs]) for which in range(2))
     fit = amplitude_per_volt(voltage_peak_to_peak=volts, vibration_amplitude=amplitudes)
     values = (
-        quantity_value("amplitude_per_volt", fit.amplitude_per_volt, interval=(fit.lower, fit.upper)),
-        quantity_value("amplitude_deviation", fit.amplitude_deviation),
-        SheetValue("curvature_p_value", "p value of the curvature", fit.curvature_p_value, ""),
+        sheet.quantity_value("amplitude_per_volt", fit.amplitude_per_volt, interval=(fit.lower, fit.upper)),
+        sheet.quantity_value("amplitude_deviation", fit.amplitude_deviation),
+        sheet.Value("curvature_p_value", "p value of the curvature", fit.curvature_p_value, ""),
     )
     caveats: tuple[str, ...] = ()
     if not fit.proportional:
         caveats = (f"amplitude is not in proportion to voltage: the slope changes by {fit.curvature:+.0%}",)
-    figure = SheetFigure(
-        name="proportion",
-        title="Amplitude over voltage",
-        caption="Each recording, and the line through the origin with its 95 % interval.",
-        draw=partial(figures.proportion, volts, amplitudes, fit),
-    )
-    return SheetSection(values=values, figures=(figure,), caveats=caveats)
+    figure = figures.proportion(volts, amplitudes, fit)
+    return sheet.Sheet(values=values, figures=(figure,), caveats=caveats)

@@ -8,11 +8,13 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.figure import COLOURS, MARKERS
 from sonolube.measurement.vibration import AmplitudePerVolt, OperatingDeflectionShape
+from sonolube.report.measured.sheet import captioned
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+@captioned("Operating shape", "Motion in phase with the whole, scaled to 1, and the phase of each point.")
 def shape(points: Sequence[str], operating: OperatingDeflectionShape) -> "Figure":
     """Operating shape and phase, point by point."""
     import matplotlib.pyplot as plt
@@ -29,6 +31,10 @@ def shape(points: Sequence[str], operating: OperatingDeflectionShape) -> "Figure
     return figure
 
 
+@captioned(
+    "Modal assurance with computed modes",
+    "Modal assurance criterion of the operating shape with each mode: 1 in proportion, 0 orthogonal.",
+)
 def assurance(assurance_values: Floats) -> "Figure":
     """Modal assurance criterion with each mode."""
     import matplotlib.pyplot as plt
@@ -40,6 +46,7 @@ def assurance(assurance_values: Floats) -> "Figure":
     return figure
 
 
+@captioned("Amplitude over voltage", "Each recording, and the line through the origin with its 95 % interval.")
 def proportion(volts: Floats, amplitudes: Floats, fit: AmplitudePerVolt) -> "Figure":
     """Amplitude over voltage with the line through the origin and its interval."""
     import matplotlib.pyplot as plt
