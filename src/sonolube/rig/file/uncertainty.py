@@ -7,10 +7,11 @@ from functools import cache
 from types import MappingProxyType
 from typing import Any, get_args, get_origin
 
-from sonolube.errors import InvalidInput, SonolubeError, suggestion
+from sonolube.errors import InvalidInput, suggestion
 from sonolube.rig.distribution import Distribution, Law, LogNormal, Normal, Uniform
 from sonolube.rig.file.section import Section
 from sonolube.rig.file.sections import RigFile
+from sonolube.rig.file.toml_file import prefixed
 from sonolube.units import format_si, to_si
 from sonolube.vocabulary import Quantity
 
@@ -54,10 +55,8 @@ def distributions_of(file: RigFile) -> Mapping[str, Distribution]:
     """
     found = {}
     for key, text in file.uncertainty.items():
-        try:
+        with prefixed(f"uncertainty.{key}"):
             found[key] = _distribution(_quantity(key), text, _value(file, key))
-        except SonolubeError as refusal:
-            raise InvalidInput(f"uncertainty.{key}: {refusal}") from None
     return MappingProxyType(found)
 
 
