@@ -15,18 +15,16 @@ from sonolube.design.progress import ProgressCallback
 from sonolube.design.sobol import SUBSEQUENCES, saltelli_sample, sobol_sample
 from sonolube.design.sweep_plan import SweepPlan, list_plan
 from sonolube.errors import InvalidInput, SonolubeError, UnknownName
-from sonolube.rig import (
-    NUMBERS,
+from sonolube.rig import NUMBERS, Rig, read_rig
+from sonolube.rig.datasets import labels
+from sonolube.rig.operating_point import (
     ContactPoint,
     FrictionPoint,
-    Rig,
     WearPoint,
     contact_point,
     friction_point,
-    read_rig,
     wear_point,
 )
-from sonolube.rig.datasets import labels
 from sonolube.vocabulary import quantities
 
 if TYPE_CHECKING:

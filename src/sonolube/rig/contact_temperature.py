@@ -11,16 +11,11 @@ from sonolube.materials import material
 from sonolube.rig.friction_and_wear import friction_ratio, prescribed_sine
 from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.record import Rig
-from sonolube.thermal import (
+from sonolube.thermal import EllipticSource, HeatedContact, ThermalNetwork, ThermalSolid, contact_rise, peclet_number
+from sonolube.thermal.contact_history import (
     ContactTemperatureHistory,
-    EllipticSource,
-    HeatedContact,
-    ThermalNetwork,
-    ThermalSolid,
-    contact_rise,
     contact_temperature_history,
     frictional_heat_rate,
-    peclet_number,
 )
 
 _STEPS = 200

@@ -8,15 +8,8 @@ from numpy.typing import ArrayLike
 from sonolube.actuator.drive import Drive
 from sonolube.actuator.drive_power import linear_amplifier_power
 from sonolube.checks import Complexes, Floats, require_non_negative
-from sonolube.dynamics import (
-    WAVEFORMS,
-    Sine,
-    StartUpRamp,
-    Waveform,
-    fourier_coefficients,
-    sampled_waveform,
-    waveform_extremes,
-)
+from sonolube.dynamics import WAVEFORMS, Sine, StartUpRamp, Waveform
+from sonolube.dynamics.waveform import fourier_coefficients, sampled_waveform, waveform_extremes
 from sonolube.rig.driven_rig import DrivenRig
 
 _VOLTAGE_HARMONICS = 64  # the 65th of a square wave moves the tip by less than 1e-5 of the first

@@ -10,21 +10,9 @@ from pydantic import Field
 from sonolube.actuator import PiezoStack
 from sonolube.dynamics import Structure, chain_structure, pin_on_disc_chain
 from sonolube.errors import InvalidInput, UnknownName, suggestion
-from sonolube.identification import (
-    Bounds,
-    Conditions,
-    Fact,
-    ForwardModel,
-    Identification,
-    IdentificationProblem,
-    Observation,
-    Relation,
-    observable_unit,
-    parametric_structure,
-    reference_parameters,
-    rig_tables,
-    structure_model,
-)
+from sonolube.identification import Conditions, Identification, parametric_structure, reference_parameters, rig_tables
+from sonolube.identification.fact import Bounds, Fact, ForwardModel, Relation
+from sonolube.identification.observation import IdentificationProblem, Observation, observable_unit, structure_model
 from sonolube.rig.file.plausible import plausible_si
 from sonolube.rig.file.reader import rig_content, rig_from
 from sonolube.rig.file.section import Section

@@ -8,15 +8,8 @@ from typing import Any
 from sonolube.actuator import PiezoStack
 from sonolube.actuator.drive import Drive
 from sonolube.actuator.waveguide import BarWaveguide, normal_amplitude
-from sonolube.contact import (
-    ASPERITY_LAWS,
-    HEIGHT_DISTRIBUTIONS,
-    ContactPair,
-    ElasticBody,
-    RoughContact,
-    contact_pair,
-    identical_materials_mindlin_ratio,
-)
+from sonolube.contact import ASPERITY_LAWS, HEIGHT_DISTRIBUTIONS, RoughContact
+from sonolube.contact.pair import ContactPair, ElasticBody, contact_pair, identical_materials_mindlin_ratio
 from sonolube.dynamics import Structure
 from sonolube.errors import InvalidInput, MissingProperty
 from sonolube.friction.models import FRICTION_MODELS, FrictionModel
