@@ -87,9 +87,8 @@ def sweep(
     backend = usable_backend(backend)
     device, store = device_name(backend), None
     if folder is not None:
-        store = ChunkStore(
-            folder=Path(folder), digest=plan.digest + ("-gpu" if device else ""), chunk_points=chunk_points
-        )
+        digest = plan.digest + ("-gpu" if device else "")
+        store = ChunkStore(folder=Path(folder), digest=digest, chunk_points=chunk_points)
         store.open()
     count = -(-plan.points // chunk_points)
     with (

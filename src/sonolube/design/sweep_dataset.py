@@ -135,16 +135,13 @@ class NetCDFDatasetWriter:
         self._unfinished.replace(self._path)
         return xr.open_dataset(self._path, engine="h5netcdf")
 
-    def _write_variable(
-        self, name: str, dims: tuple[str, ...], array: NDArray[Any], attributes: dict[str, Any]
-    ) -> None:
-        """Write a variable that is known as a whole: a coordinate or the table of reasons."""
+    def _write_variable(self, name: str, dims: tuple[str, ...], array: NDArray[Any], attrs: dict[str, Any]) -> None:
         import h5py
 
         kind = h5py.string_dtype() if array.dtype.kind == "U" else array.dtype
         variable = self._file.create_variable(name, dims, kind)
         variable[...] = array.astype(object) if array.dtype.kind == "U" else array
-        variable.attrs.update(attributes)
+        variable.attrs.update(attrs)
 
 
 def _blocks(shape: tuple[int, ...], start: int, stop: int) -> Iterator[tuple[tuple[slice, ...], slice]]:

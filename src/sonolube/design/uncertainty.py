@@ -151,10 +151,8 @@ def propagate(
     shape = points.shape[:-1] + tuple(values.size for values in grid.values())
     plan = _sample_plan(rig_file, sample, grid, shape, changes)
     if outcome in NUMBERS and rig.structure is not None:
-        points_per_rig = int(np.prod(shape[len(points.shape) - 1 :]))
-        result = sweep(
-            plan, folder=folder, chunk_points=_RIGS_PER_CHUNK * points_per_rig, workers=workers, advance=advance
-        )
+        chunk_points = _RIGS_PER_CHUNK * int(np.prod(shape[len(points.shape) - 1 :]))
+        result = sweep(plan, folder=folder, chunk_points=chunk_points, workers=workers, advance=advance)
     else:
         result = _point_by_point(plan, outcome, advance)
     return _labelled(result, plan, rig, outcome, sample, grid, shape, subsequence, seed)

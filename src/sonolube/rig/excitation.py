@@ -89,10 +89,8 @@ def voltage_range(
     pair of ndarray
     """
     offset = np.asarray(drive.voltage_offset if voltage_offset is None else voltage_offset, dtype=np.float64)
-    lowest, highest = (
-        offset + _swing(drive, voltage_peak_to_peak) * part for part in waveform_extremes(waveform_of(drive))
-    )
-    return lowest, highest
+    swing, (lowest, highest) = _swing(drive, voltage_peak_to_peak), waveform_extremes(waveform_of(drive))
+    return offset + swing * lowest, offset + swing * highest
 
 
 def amplifier_power(

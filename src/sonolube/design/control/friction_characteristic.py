@@ -49,7 +49,7 @@ class FrictionCharacteristic:
                 f" {volts.shape} and {force.shape}"
             )
         if np.any(np.diff(volts) <= 0) or np.any(np.diff(force) >= 0):
-            raise InvalidInput("a friction characteristic must have rising voltages and falling forces")
+            raise InvalidInput("voltages must increase and forces decrease along a friction characteristic")
 
     @property
     def highest_force(self) -> float:

@@ -138,16 +138,9 @@ def limits_figure(point: DesignPoint) -> "Figure":
     used = {name: share for name, share in sorted(used.items(), key=lambda item: item[1]) if share > 0}
     figure = Figure(figsize=(5.8, 0.9 + 0.3 * max(len(used), 1)))
     axes = figure.subplots()
-    axes.barh([LIMITS[name] for name in used], [100 * share for share in used.values()], color=COLOURS[0], height=0.6)
-    for place, share in enumerate(used.values()):
-        axes.annotate(
-            f"{100 * share:.3g} %",
-            (100 * share, place),
-            xytext=(4, 0),
-            textcoords="offset points",
-            va="center",
-            fontsize=8,
-        )
+    percent = [100 * share for share in used.values()]
+    bars = axes.barh([LIMITS[name] for name in used], percent, color=COLOURS[0], height=0.6)
+    axes.bar_label(bars, fmt="{:.3g} %", padding=4, fontsize=8)
     axes.axvline(100, color="black", linestyle="--", linewidth=1)
     axes.set(xlabel="Share of the limit used [%]", xlim=(0, 118))
     axes.grid(visible=False, axis="y")

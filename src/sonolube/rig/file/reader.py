@@ -243,9 +243,7 @@ def _pair(section: ContactSection) -> ContactPair:
 
 
 def _body(section: BodySection) -> ElasticBody:
-    return ElasticBody(
-        youngs_modulus=_property(section, "youngs_modulus"), poisson_ratio=_property(section, "poisson_ratio")
-    )
+    return ElasticBody(**{name: _property(section, name) for name in ("youngs_modulus", "poisson_ratio")})
 
 
 def _property(section: BodySection, name: str) -> float:

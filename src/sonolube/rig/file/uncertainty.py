@@ -112,13 +112,11 @@ def _distribution(known: Quantity, text: str, value: float | None) -> Distributi
         raise InvalidInput(f"the file has no value that {text!r} could be about; give one, or write {EXAMPLES[3]!r}")
     elif kind == "lognormal":
         law = LogNormal(median=value, factor=_factor(rest))
+    elif kind == "normal":
+        law = Normal(middle=value, deviation=_width(kind, rest, unit, value))
     else:
         width = _width(kind, rest, unit, value)
-        law = (
-            Normal(middle=value, deviation=width)
-            if kind == "normal"
-            else Uniform(low=value - width, high=value + width)
-        )
+        law = Uniform(low=value - width, high=value + width)
     lowest, highest = _POSSIBLE.get(name, (0.0, math.inf))
     return Distribution(law=law, lowest=lowest, highest=highest, text=_text(law, unit))
 
