@@ -7,13 +7,12 @@ import pytest
 from pytest import approx, raises
 
 from sonolube.errors import InvalidInput, SonolubeError
-from sonolube.identification import Fact, identify, pin_on_disc_model
+from sonolube.identification import identify, pin_on_disc_model
 from sonolube.rig import read_rig, with_tables
 from sonolube.rig.facts_file import identified_tables, read_facts, rig_forward_model
 from sonolube.validation.tribometer import (
-    BOUNDS,
-    tribometer_facts,
     tribometer_identification,
+    tribometer_problem,
     tribometer_stack,
     tribometer_test,
 )
@@ -55,20 +54,15 @@ def written(folder: Path, text: str) -> Path:
     return path
 
 
-def numbers(fact: Fact) -> tuple[object, ...]:
-    return fact.name, fact.value, fact.tolerance, fact.rank, fact.unit, fact.relation, fact.source
-
-
 def test_the_example_holds_exactly_the_published_facts_with_their_sources() -> None:
-    problem = read_facts(FACTS)
-    assert [numbers(fact) for fact in problem.facts] == [numbers(fact) for fact in tribometer_facts()]
-    assert list(problem.bounds.items()) == list(BOUNDS.items())
+    assert read_facts(FACTS) == tribometer_problem()
 
 
 def test_the_example_has_the_forward_model_of_the_published_facts_bit_for_bit() -> None:
-    logarithms = np.log(list(BOUNDS.values()))
-    points = logarithms[:, 0] + np.diff(logarithms).T[0] * np.random.default_rng(0).random((200, len(BOUNDS)))
-    parameters = dict(zip(BOUNDS, np.exp(points.T), strict=True))
+    bounds = tribometer_problem().bounds
+    logarithms = np.log(list(bounds.values()))
+    points = logarithms[:, 0] + np.diff(logarithms).T[0] * np.random.default_rng(0).random((200, len(bounds)))
+    parameters = dict(zip(bounds, np.exp(points.T), strict=True))
     found = rig_forward_model(RIG, read_facts(FACTS))(parameters)
     expected = pin_on_disc_model(tribometer_test())(parameters)
     assert set(found) == set(expected)

@@ -5,16 +5,21 @@ import math
 import pytest
 from pytest import approx
 
+from sonolube.contact import decay_length
 from sonolube.identification import Identification
+from sonolube.published import ComputedValue, PrintedNumber, propagate_rounding, published_number, si_value
+from sonolube.validation.contacts import wear_contact
 from sonolube.validation.tribometer import (
     IDENTIFIED,
-    tribometer_facts,
     tribometer_identification,
+    tribometer_problem,
     tribometer_stack,
     tribometer_test,
 )
 
-FACTS = {fact.name: fact for fact in tribometer_facts()}
+PROBLEM = tribometer_problem()
+FACTS = {fact.name: fact for fact in PROBLEM.facts}
+GRAVITY = 9.80665  # m/s2
 
 
 @pytest.fixture(scope="module")
@@ -30,6 +35,64 @@ def test_facts_are_the_printed_numbers() -> None:
     assert FACTS["resonance_quality_factor"].value == approx(482, rel=1e-3)
     assert tribometer_stack().derived_coupling_factor == approx(0.647, abs=5e-4)
     assert tribometer_test().decay_length == approx(2e-6)
+
+
+@pytest.mark.parametrize(
+    ("name", "printed"),
+    [
+        ("electrical_resonance", published_number("4.1.1-frequency")),
+        (
+            "amplitude_per_volt",
+            propagate_rounding(
+                lambda amplitude, voltage: amplitude / voltage,
+                "table-4.1-vibration_amplitude-15",
+                "table-4.1-voltage_peak_to_peak-15",
+            ),
+        ),
+        (
+            "resonance_quality_factor",
+            propagate_rounding(
+                lambda stiffness, frequency, damping: stiffness / (2 * math.pi * frequency * damping),
+                "table-3.5-stack_stiffness-1",
+                "4.1.1-frequency",
+                "table-3.5-stack_damping-1",
+            ),
+        ),
+    ],
+)
+def test_a_fact_of_printed_numbers_has_their_value_and_their_rounding_for_its_tolerance(
+    name: str, printed: PrintedNumber | ComputedValue
+) -> None:
+    assert FACTS[name].value == printed.value
+    assert FACTS[name].tolerance == (printed.high - printed.low) / 2
+
+
+def test_the_other_facts_are_the_printed_numbers_within_tolerances_that_their_reading_leaves() -> None:
+    power, settling = published_number("table-4.1-actuator_power-15"), si_value("3.3.4-settling-time")
+    hung, heaviest = si_value("A.3.1.1-weight") / GRAVITY, 1.0
+    expected = {
+        "resonance_amplitude_ratio": (">=", 1.0, 1 - 0.5**0.5),
+        "mass_ratio": (">=", 10.0, 5.0),
+        "dissipated_power": ("<=", power.value, power.rounding_half_width),
+        "resonance_settling_time": ("=", settling, settling / 2),
+        "residual_settling_time": ("=", settling, settling / 2),
+        "residual_frequency": ("=", si_value("3.3.4-residual-frequency"), 20.0),
+        "residual_fraction": (">=", 0.5, 0.25),
+        "residual_frequency_with_added_mass": ("=", si_value("4.1.2-arm-frequency"), 20.0),
+        "arm_mass": ("=", (hung + heaviest) / 2, (heaviest - hung) / 2),
+    }
+    assert {name: (FACTS[name].relation, FACTS[name].value, FACTS[name].tolerance) for name in expected} == expected
+
+
+def test_the_facts_are_observed_under_the_printed_conditions() -> None:
+    conditions = PROBLEM.observations["amplitude_per_volt"].conditions
+    assert conditions.frequency == si_value("4.1.1-frequency")
+    assert conditions.voltage_peak_to_peak == si_value("table-4.1-voltage_peak_to_peak-15")
+    assert conditions.normal_load == si_value("table-3.2-normal_load-1")
+    assert conditions.decay_length == float(decay_length(wear_contact()))
+    assert conditions.observation_time == si_value("3.3.4-settling-time")
+    added = PROBLEM.observations["residual_frequency_with_added_mass"].conditions.added_mass
+    assert added == tribometer_test().added_mass
 
 
 def test_the_amplitude_at_28_volts_is_the_same_amplitude_per_volt() -> None:

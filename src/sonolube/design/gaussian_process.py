@@ -10,7 +10,9 @@ from scipy.optimize import minimize
 from sonolube.checks import Floats, require_finite, require_non_negative
 from sonolube.errors import InvalidInput
 
-_FEWEST_RUNS = 6
+FEWEST_RUNS = 6
+"""Least number of measured runs that are interpolated."""
+
 # logarithms of the hyperparameters: both length scales, signal variance, noise variance
 _BOUNDS = ((-2.5, 2.5), (-2.5, 2.5), (-7.0, 1.0), (-12.0, 0.0))
 _STARTS = ((0.0, 0.0, -2.0, -6.0), (-1.0, 0.5, -2.0, -8.0), (0.5, -1.0, -3.0, -5.0))
@@ -110,8 +112,8 @@ def gaussian_process_map(
         )
     if not (np.isfinite(x).all() and np.isfinite(x_star).all()):
         raise InvalidInput("runs and points must be finite")
-    if z.size < _FEWEST_RUNS:
-        raise InvalidInput(f"a map needs {_FEWEST_RUNS} runs or more, got {z.size}")
+    if z.size < FEWEST_RUNS:
+        raise InvalidInput(f"a map needs {FEWEST_RUNS} runs or more, got {z.size}")
     centre, width = x.mean(axis=0), x.std(axis=0)
     if not np.all(width > 0):
         raise InvalidInput("all runs agree in a coordinate: a map needs runs that differ in both")
@@ -124,14 +126,14 @@ def gaussian_process_map(
     logs = min(fits, key=lambda fit: float(fit.fun)).x
     inverse = np.linalg.inv(_covariance(logs, x, noise))
     ones = np.ones(z.size)
-    mean = float(ones @ inverse @ z / (ones @ inverse @ ones))
+    precision = ones @ inverse @ ones  # of the estimated mean
+    mean = float(ones @ inverse @ z / precision)
     weights = inverse @ (z - mean)
     k_star = _kernel(logs, x_star.reshape(-1, 2), x)
     mean_residual = 1 - k_star @ inverse @ ones
-    variance = (
-        np.exp(logs[2]) - np.einsum("ij,jk,ik->i", k_star, inverse, k_star) + mean_residual**2 / (ones @ inverse @ ones)
-    )
-    reduced = inverse - np.outer(inverse @ ones, ones @ inverse) / (ones @ inverse @ ones)
+    explained = np.einsum("ij,jk,ik->i", k_star, inverse, k_star)
+    variance = np.exp(logs[2]) - explained + mean_residual**2 / precision
+    reduced = inverse - np.outer(inverse @ ones, ones @ inverse) / precision
     leave_one_out = (reduced @ z) / np.diag(reduced)
     shape = x_star.shape[:-1]
     return GaussianProcessMap(

@@ -8,17 +8,8 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.design.horn_shapes import TunableBody
 from sonolube.errors import InvalidInput
-from sonolube.fem import (
-    Medium,
-    Model,
-    NamedMode,
-    TunedMode,
-    face_residual_compliance,
-    generate_mesh,
-    mass_loaded_frequencies,
-    mode_names,
-    tuned_mode,
-)
+from sonolube.fem import Medium, Model, NamedMode, TunedMode, generate_mesh, mode_names, tuned_mode
+from sonolube.fem.mass_loading import face_residual_compliance, mass_loaded_frequencies
 from sonolube.fem.solver.element_order import change_order
 from sonolube.fem.solver.model import DIRECTIONS
 from sonolube.fem.solver.modes import lanczos_modes, spectral_shift

@@ -39,10 +39,8 @@ def horn_axis_figure(design: HornDesign) -> "Figure":
     start = along.min()
     figure = Figure(figsize=(5.6, 5.4))
     profile, motion, stress = figure.subplots(3, 1, sharex=True, height_ratios=(1, 1.3, 1.3))
-    middle, half_width = _profile(design)
-    profile.fill_between(
-        1e3 * (middle - start), 1e3 * half_width, -1e3 * half_width, color="0.8", edgecolor="0.3", lw=0.8
-    )
+    middle, half = _profile(design)
+    profile.fill_between(1e3 * (middle - start), 1e3 * half, -1e3 * half, color="0.8", edgecolor="0.3", lw=0.8)
     profile.set(ylabel="Half width\n[mm]")
     motion.plot(1e3 * (place - start), displacement / tip, color=COLOURS[0])
     motion.axhline(0, color="0.4", linewidth=0.8)

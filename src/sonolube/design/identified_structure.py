@@ -8,7 +8,7 @@ from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.identification import Posterior, SingularDirection, pin_on_disc_model, posterior
 from sonolube.rig import read_rig
-from sonolube.validation.tribometer import BOUNDS, tribometer_identification, tribometer_stack, tribometer_test
+from sonolube.validation.tribometer import tribometer_identification, tribometer_problem, tribometer_test
 
 _STACK_FIELDS = 5  # leading fields of a stack that must agree with the tribometer's
 _STACK_TOLERANCE = 0.01  # relative
@@ -55,15 +55,13 @@ def identified_structure(
     InvalidInput
         If the rig has another stack.
     """
-    stack = read_rig(rig_file).stack
+    stack, test = read_rig(rig_file).stack, tribometer_test()
     if stack is None or not all(
         own == expected or (own and expected and abs(own / expected - 1) < _STACK_TOLERANCE)
-        for own, expected in zip(
-            astuple(stack)[:_STACK_FIELDS], astuple(tribometer_stack())[:_STACK_FIELDS], strict=True
-        )
+        for own, expected in zip(astuple(stack)[:_STACK_FIELDS], astuple(test.stack)[:_STACK_FIELDS], strict=True)
     ):
         raise InvalidInput(f"{rig_file}: --identified needs the tribometer's stack, which the facts are of")
-    identification = tribometer_identification(seed=seed)
+    identification, bounds = tribometer_identification(seed=seed), tribometer_problem().bounds
     consistent = [fact for fact in identification.facts if fact.name in identification.satisfied]
-    drawn = posterior(pin_on_disc_model(tribometer_test()), facts=consistent, bounds=BOUNDS, seed=seed, advance=advance)
+    drawn = posterior(pin_on_disc_model(test), facts=consistent, bounds=bounds, seed=seed, advance=advance)
     return IdentifiedStructure(posterior=drawn, unidentifiable_directions=identification.unidentifiable_directions)

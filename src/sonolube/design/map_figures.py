@@ -107,9 +107,8 @@ def measured_map_figure(interpolated: "xr.Dataset", runs: "xr.Dataset") -> "Figu
     levels = _levels(interpolated, runs)
     filled = left.contourf(x, y, np.clip(100 * reduction, 0, 100), levels=levels, cmap="cividis")
     figure.colorbar(filled, ax=left, label="Friction reduction [%]", ticks=levels[::4])
-    figure.colorbar(
-        right.contourf(x, y, uncertainty, levels=8, cmap="Greys"), ax=right, label="Standard uncertainty [%]"
-    )
+    shaded = right.contourf(x, y, uncertainty, levels=8, cmap="Greys")
+    figure.colorbar(shaded, ax=right, label="Standard uncertainty [%]")
     for axes in (left, right):
         places = (runs[name].values * _AXES[name][0] for name in (x_name, y_name))
         axes.plot(*places, "o", ms=4, mfc="white", color="black", clip_on=False, label="measured runs")
@@ -217,10 +216,9 @@ def _draw_runs(
     axes.scatter(x, y, s=30, edgecolors="white", zorder=4, clip_on=False, **colours)
     axes.scatter([], [], s=30, facecolors="0.6", edgecolors="black", label=measured.attrs.get("title", _RUNS_LABEL))
     box = {"boxstyle": "round,pad=0.1", "fc": "white", "ec": "none", "alpha": 0.8}
+    style: dict[str, Any] = {"textcoords": "offset points", "fontsize": 7, "bbox": box, "zorder": 6}
     for place, reduction in zip(zip(x, y, strict=True), percent, strict=True):
-        axes.annotate(
-            f"{reduction:.0f}", place, xytext=(6, -3), textcoords="offset points", fontsize=7, bbox=box, zorder=6
-        )
+        axes.annotate(f"{reduction:.0f}", place, xytext=(6, -3), **style)
 
 
 def _columns(panels: int) -> int:

@@ -1,5 +1,6 @@
 """Maps of friction reduction over sliding speed and stress, sliding speed and power, or drive frequency and voltage."""
 
+import inspect
 from collections.abc import Callable, Mapping
 from itertools import pairwise
 from types import MappingProxyType
@@ -12,7 +13,7 @@ from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.dynamics.backend import Backend, device_name, usable_backend
 from sonolube.errors import InvalidInput
 from sonolube.rig import NUMBERS, STATUSES, Rig, gridded, point_batch
-from sonolube.rig.driven_rig import DrivenRig, driven_rig
+from sonolube.rig.driven_rig import DrivenRig, driven_rig, require_drive
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -272,3 +273,32 @@ MAP_LAYOUTS: Mapping[str, tuple[str, str, str | None]] = MappingProxyType(
     }
 )
 """Quantities along the x axis, along the y axis, and of the panels of each kind of map."""
+
+
+def default_axes(rig: Rig, *, kind: str) -> dict[str, Floats]:
+    """Values of every axis of a map about the operating point of a rig.
+
+    Parameters
+    ----------
+    rig : Rig
+        With a drive voltage.
+    kind : str
+        Key of `MAPS`.
+
+    Returns
+    -------
+    dict of str to ndarray
+        By quantity: speeds from 10 to 200 mm/s, loads from 0.6 to 1.8 of the rig's, voltages up to the rig's,
+        frequencies within a fifth of the rig's.
+    """
+    drive = require_drive(rig)
+    assert drive.voltage_peak_to_peak is not None
+    volts = drive.voltage_peak_to_peak or 1.0
+    load_is_panel = kind != "velocity-stress"
+    axes = {
+        "sliding_speed": np.linspace(10e-3, 0.2, 77),
+        "normal_load": rig.normal_load * np.linspace(0.6, 1.8, 7 if load_is_panel else 25),
+        "voltage_peak_to_peak": volts * (np.linspace(0.02, 1, 50) if load_is_panel else np.linspace(0.2, 1, 5)),
+        "frequency": drive.frequency * np.linspace(0.8, 1.2, 161),
+    }
+    return {name: axes[name] for name in inspect.signature(MAPS[kind]).parameters if name in axes}

@@ -44,16 +44,14 @@ def read_runs(path: Path) -> "xr.Dataset":
         if not found or found[1] not in quantities():
             remedy = "separate columns by commas" if ";" in head or "\t" in head else "such as sliding_speed [mm/s]"
             raise InvalidInput(f"{path}: column {_quoted(head)} must name a quantity; {remedy}")
-        if found[1] in columns:
-            raise InvalidInput(f"{path}: two columns are named {found[1]}")
-        columns[found[1]] = [
-            _number(path, line, row, place, found[1], found[2] or "") for line, row in enumerate(rows, 2)
-        ]
+        name, unit = found[1], found[2] or ""
+        if name in columns:
+            raise InvalidInput(f"{path}: two columns are named {name}")
+        columns[name] = [_number(path, line, row, place, name, unit) for line, row in enumerate(rows, 2)]
     if "friction_reduction" not in columns:
         raise InvalidInput(f"{path}: needs a column friction_reduction [%]")
-    return xr.Dataset(
-        {name: ("run", values) for name, values in columns.items()}, attrs={"title": f"{path.name}, in %"}
-    )
+    data = {name: ("run", values) for name, values in columns.items()}
+    return xr.Dataset(data, attrs={"title": f"{path.name}, in %"})
 
 
 def _rows(path: Path) -> list[list[str]]:

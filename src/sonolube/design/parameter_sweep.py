@@ -1,7 +1,7 @@
 """Parameter sweeps: operating points of a rig over any of its parameters, computed in chunks that can be resumed."""
 
 from collections.abc import Callable, Iterator
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from concurrent.futures import FIRST_COMPLETED, Executor, wait
 from contextlib import contextmanager, nullcontext
 from functools import partial
 from pathlib import Path
@@ -87,13 +87,14 @@ def sweep(
     backend = usable_backend(backend)
     device, store = device_name(backend), None
     if folder is not None:
-        store = ChunkStore(
-            folder=Path(folder), digest=plan.digest + ("-gpu" if device else ""), chunk_points=chunk_points
-        )
+        digest = plan.digest + ("-gpu" if device else "")
+        store = ChunkStore(folder=Path(folder), digest=digest, chunk_points=chunk_points)
         store.open()
     count = -(-plan.points // chunk_points)
     with (
-        MemoryDatasetWriter(plan, device) if store is None else NetCDFDatasetWriter(plan, store.folder, device)
+        nullcontext(MemoryDatasetWriter(plan, device))
+        if store is None
+        else NetCDFDatasetWriter(plan, store.folder, device)
     ) as writer:
         done = 0
         missing = []
@@ -208,16 +209,11 @@ def _computed_chunks(
                     break
             if not pending:
                 return
-            for future in _first_completed(pending):
+            for future in wait(pending, return_when=FIRST_COMPLETED).done:
                 yield pending.pop(future), future.result()
     finally:
         for future in pending:
             future.cancel()
-
-
-def _first_completed(pending: dict[Future[PointBatch], int]) -> set[Future[PointBatch]]:
-    """Futures that are done once at least one of them is."""
-    return wait(pending, return_when=FIRST_COMPLETED).done
 
 
 @contextmanager

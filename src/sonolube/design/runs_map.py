@@ -4,16 +4,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sonolube.design.gaussian_process import gaussian_process_map
+from sonolube.design.gaussian_process import FEWEST_RUNS, gaussian_process_map
 from sonolube.design.maps import MAP_LAYOUTS
 from sonolube.errors import InvalidInput
 from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:
     import xarray as xr
-
-FEWEST_RUNS = 6
-"""Least number of measured runs that are interpolated."""
 
 _POINTS = 61  # of the interpolated map along each axis
 _UNCERTAINTY = "friction_reduction_uncertainty"

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from sonolube import __version__
 from sonolube.design.sweep_plan import SweepPlan
 from sonolube.rig import NUMBERS, STATUSES, PointBatch
+from sonolube.rig.datasets import labels
 from sonolube.vocabulary import quantities
 
 if TYPE_CHECKING:
@@ -51,12 +52,6 @@ class MemoryDatasetWriter:
         self._plan, self._device, self._reasons = plan, device, _ReasonTable()
         self._columns: dict[str, NDArray[Any]] = {name: np.empty(plan.points) for name in NUMBERS}
         self._columns |= {name: np.empty(plan.points, dtype=kind) for name, kind in _CODES.items()}
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, kind: type | None, value: BaseException | None, trace: TracebackType | None) -> None:
-        pass
 
     def write(self, start: int, batch: PointBatch) -> None:
         """Write a chunk from a flat index on."""
@@ -122,11 +117,8 @@ class NetCDFDatasetWriter:
 
     def write(self, start: int, batch: PointBatch) -> None:
         """Write a chunk from a flat index on."""
-        columns: dict[str, NDArray[Any]] = {
-            **batch.numbers,
-            "status": batch.status,
-            "reason": self._reasons.codes(batch),
-        }
+        codes: dict[str, NDArray[Any]] = {"status": batch.status, "reason": self._reasons.codes(batch)}
+        columns = {**batch.numbers, **codes}
         for block, part in _blocks(self._plan.shape, start, start + batch.status.size):
             for name, column in columns.items():
                 self._file[name][block] = column[part].reshape([axis.stop - axis.start for axis in block])
@@ -143,16 +135,13 @@ class NetCDFDatasetWriter:
         self._unfinished.replace(self._path)
         return xr.open_dataset(self._path, engine="h5netcdf")
 
-    def _write_variable(
-        self, name: str, dims: tuple[str, ...], array: NDArray[Any], attributes: dict[str, Any]
-    ) -> None:
-        """Write a variable that is known as a whole: a coordinate or the table of reasons."""
+    def _write_variable(self, name: str, dims: tuple[str, ...], array: NDArray[Any], attrs: dict[str, Any]) -> None:
         import h5py
 
         kind = h5py.string_dtype() if array.dtype.kind == "U" else array.dtype
         variable = self._file.create_variable(name, dims, kind)
         variable[...] = array.astype(object) if array.dtype.kind == "U" else array
-        variable.attrs.update(attributes)
+        variable.attrs.update(attrs)
 
 
 def _blocks(shape: tuple[int, ...], start: int, stop: int) -> Iterator[tuple[tuple[slice, ...], slice]]:
@@ -210,5 +199,4 @@ def _labels(name: str) -> dict[str, Any]:
         return {"long_name": "Reason of a status, and remedy"}
     if name not in quantities():
         return {"long_name": name.replace("_", " ")}
-    entry = quantities()[name]
-    return {"units": entry.unit or "1", "long_name": entry.meaning}
+    return labels(name)

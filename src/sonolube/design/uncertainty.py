@@ -15,18 +15,17 @@ from sonolube.design.progress import ProgressCallback
 from sonolube.design.sobol import SUBSEQUENCES, saltelli_sample, sobol_sample
 from sonolube.design.sweep_plan import SweepPlan, list_plan
 from sonolube.errors import InvalidInput, SonolubeError, UnknownName
-from sonolube.rig import (
-    NUMBERS,
+from sonolube.rig import NUMBERS, Rig, read_rig
+from sonolube.rig.datasets import labels
+from sonolube.rig.operating_point import (
     ContactPoint,
     FrictionPoint,
-    Rig,
     WearPoint,
     contact_point,
     friction_point,
-    read_rig,
     wear_point,
 )
-from sonolube.vocabulary import quantities, quantity
+from sonolube.vocabulary import quantities
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -152,10 +151,8 @@ def propagate(
     shape = points.shape[:-1] + tuple(values.size for values in grid.values())
     plan = _sample_plan(rig_file, sample, grid, shape, changes)
     if outcome in NUMBERS and rig.structure is not None:
-        points_per_rig = int(np.prod(shape[len(points.shape) - 1 :]))
-        result = sweep(
-            plan, folder=folder, chunk_points=_RIGS_PER_CHUNK * points_per_rig, workers=workers, advance=advance
-        )
+        chunk_points = _RIGS_PER_CHUNK * int(np.prod(shape[len(points.shape) - 1 :]))
+        result = sweep(plan, folder=folder, chunk_points=chunk_points, workers=workers, advance=advance)
     else:
         result = _point_by_point(plan, outcome, advance)
     return _labelled(result, plan, rig, outcome, sample, grid, shape, subsequence, seed)
@@ -205,11 +202,7 @@ def _point_by_point(plan: SweepPlan, outcome: str, advance: ProgressCallback | N
     flags = {"flag_values": np.arange(2, dtype=np.int8), "flag_meanings": "computed refused"}
     return xr.Dataset(
         {
-            outcome: (
-                "point",
-                values,
-                {"units": quantity(outcome).unit or "1", "long_name": quantity(outcome).meaning},
-            ),
+            outcome: ("point", values, labels(outcome)),
             "status": ("point", status, flags),
             "reason": ("point", reason),
             "reason_text": ("reasons", np.array(list(texts))),
@@ -241,11 +234,8 @@ def _labelled(
     }
     coordinates: dict[str, Any] = {names[key]: (sample_dims, column, _labels(key)) for key, column in sample.items()}
     coordinates |= {names[key]: (names[key], values, _labels(key)) for key, values in grid.items()}
-    coordinates["subsequence"] = (
-        "sample",
-        subsequence,
-        {"long_name": "Index of the subsequence of the Sobol sequence"},
-    )
+    index = {"long_name": "Index of the subsequence of the Sobol sequence"}
+    coordinates["subsequence"] = ("sample", subsequence, index)
     if sample_dims[0] == "block":
         coordinates["block"] = ["A", "B", *sample]
     reasons = {"reason_text": ("reasons", result["reason_text"].values.astype(np.str_))}
@@ -268,5 +258,4 @@ def _labelled(
 def _labels(key: str) -> dict[str, str]:
     """Attributes of the coordinate of a key: key, and unit and meaning where the vocabulary has them."""
     name = key.rpartition(".")[2]
-    known = {"units": quantity(name).unit or "1", "long_name": quantity(name).meaning} if name in quantities() else {}
-    return {"key": key, **known}
+    return {"key": key, **(labels(name) if name in quantities() else {})}

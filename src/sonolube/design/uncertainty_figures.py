@@ -8,6 +8,7 @@ from sonolube.checks import Floats
 from sonolube.design.figure_axes import scaled_label, set_log_scale_if_geometric
 from sonolube.design.sobol import SobolIndices
 from sonolube.design.statistics import QUANTILES, SampleStatistics, sample_statistics
+from sonolube.design.uncertainty_summary import outcome_quantiles
 from sonolube.errors import InvalidInput
 from sonolube.figure import COLOURS
 from sonolube.vocabulary import quantity
@@ -169,7 +170,7 @@ def _band_curves(propagated: "xr.Dataset", name: str) -> "Figure":
     """Curves of the quantiles over one swept key."""
     from matplotlib.figure import Figure
 
-    quantiles, (x_label, x) = _outcome_quantiles(propagated), _scaled_axis(propagated, name)
+    quantiles, (x_label, x) = outcome_quantiles(propagated, QUANTILES), _scaled_axis(propagated, name)
     scale, label = scaled_label(propagated.attrs["outcome"], quantiles)
     low, lower, median, upper, high = scale * quantiles
     figure = Figure(figsize=(4.8, 3.4))
@@ -191,7 +192,7 @@ def _band_maps(propagated: "xr.Dataset", first: str, second: str) -> "Figure":
     from matplotlib.figure import Figure
     from matplotlib.patheffects import Normal, Stroke
 
-    quantiles = _outcome_quantiles(propagated)
+    quantiles = outcome_quantiles(propagated, QUANTILES)
     (x_label, x), (y_label, y) = _scaled_axis(propagated, first), _scaled_axis(propagated, second)
     scale, label = scaled_label(propagated.attrs["outcome"], quantiles)
     low, _, median, _, high = scale * quantiles
@@ -210,15 +211,6 @@ def _band_maps(propagated: "xr.Dataset", first: str, second: str) -> "Figure":
     panels[0].set_ylabel(y_label)
     figure.suptitle(f"{propagated.attrs['rig']}\n{label}", fontsize=9)
     return figure
-
-
-def _outcome_quantiles(propagated: "xr.Dataset") -> Floats:
-    """Quantiles of the outcome over the samples, the probabilities of `QUANTILES` along the first axis."""
-    values = propagated[propagated.attrs["outcome"]].values
-    valid = np.isfinite(values).any(axis=0)
-    quantiles = np.full((len(QUANTILES), *values.shape[1:]), np.nan)
-    quantiles[:, valid] = np.nanquantile(values[:, valid], QUANTILES, axis=0)
-    return quantiles
 
 
 def _scaled_axis(propagated: "xr.Dataset", name: str) -> tuple[str, Floats]:

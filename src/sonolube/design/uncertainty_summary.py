@@ -1,10 +1,12 @@
 """Summaries of a propagated uncertainty: band over swept keys, ranking of entries by Sobol indices, contact loss."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sonolube.checks import Floats
 from sonolube.design.sobol import SobolIndices, sobol_indices
 from sonolube.design.statistics import IntervalEstimate
 
@@ -141,6 +143,28 @@ def contact_loss_probability(propagated: "xr.Dataset") -> float | None:
     return float(np.mean(lost[known] > 0)) if known.any() else None
 
 
+def outcome_quantiles(propagated: "xr.Dataset", probabilities: Sequence[float]) -> Floats:
+    """Quantiles of an outcome over the samples.
+
+    Parameters
+    ----------
+    propagated : xarray.Dataset
+        Result of `propagate`.
+    probabilities : sequence of float
+        Of the quantiles.
+
+    Returns
+    -------
+    ndarray
+        One row per probability; NaN where no sample has a result.
+    """
+    samples = propagated[propagated.attrs["outcome"]].values
+    valid = np.isfinite(samples).any(axis=0)
+    quantiles = np.full((len(probabilities), *samples.shape[1:]), np.nan)
+    quantiles[:, valid] = np.nanquantile(samples[:, valid], probabilities, axis=0)
+    return quantiles
+
+
 def outcome_band(propagated: "xr.Dataset") -> Band:
     """Median and 90 % interval of an outcome where the interval is narrowest and widest, and its mean width.
 
@@ -154,12 +178,9 @@ def outcome_band(propagated: "xr.Dataset") -> Band:
     Band
     """
     outcome = propagated[propagated.attrs["outcome"]]
-    samples = outcome.values
-    with_result = np.isfinite(samples).any(axis=0)
-    if not with_result.any():
+    low, median, high = outcome_quantiles(propagated, BAND)
+    if np.isnan(median).all():
         return Band(mean_width=None, narrowest=None, widest=None)
-    low, median, high = np.full((3, *samples.shape[1:]), np.nan)
-    low[with_result], median[with_result], high[with_result] = np.nanquantile(samples[:, with_result], BAND, axis=0)
     width = high - low
 
     def place(flat: int) -> BandPlace:

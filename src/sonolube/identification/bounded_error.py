@@ -1,6 +1,6 @@
 """Bounded-error (set-membership) identification of parameters from facts that may contradict each other."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from types import MappingProxyType
 
 import numpy as np
@@ -83,9 +83,10 @@ def identify(model: ForwardModel, *, facts: Sequence[Fact], bounds: Bounds, seed
         *(_consistent_fit(bounded, facts, names, found.points[names]) for names in others),
     ]
     point = np.log(list(fits[0].parameters.values()))
+    observed = bounded.observables(point[np.newaxis])
     return Identification(
         facts=tuple(facts),
-        observed=_observed(bounded.observables(point[np.newaxis]), facts),
+        observed=MappingProxyType({fact.name: float(observed[fact.name][0]) for fact in facts}),
         estimates=MappingProxyType(
             {name: _estimate(bounded, satisfied, point, index) for index, name in enumerate(bounded.bounds)}
         ),
@@ -123,11 +124,6 @@ def _reliability(names: frozenset[str], facts: Sequence[Fact]) -> tuple[list[int
     ranks = sorted({fact.rank for fact in facts})
     counts = [sum(fact.name in names for fact in facts if fact.rank == rank) for rank in ranks]
     return counts, [fact.name in names for fact in facts]
-
-
-def _observed(observables: Mapping[str, Floats], facts: Sequence[Fact]) -> Mapping[str, float]:
-    """Value of each fact's observable for a single system."""
-    return MappingProxyType({fact.name: float(observables[fact.name][0]) for fact in facts})
 
 
 def _estimate(bounded: BoundedModel, facts: Sequence[Fact], point: Floats, index: int) -> ParameterEstimate:

@@ -165,15 +165,12 @@ def fit_circuit(
     residual_named(residual)
     require_non_negative(series_resistance=series_resistance)
     require_within(0.5, 0.9999, confidence_level=confidence_level)
-    most = min(_MOST_BRANCHES, spectrum.frequency.size // _POINTS_PER_BRANCH - 1)
+    points = spectrum.frequency.size
+    most = min(_MOST_BRANCHES, points // _POINTS_PER_BRANCH - 1)
     if most < 1:
-        raise InvalidInput(
-            f"spectrum must have at least {2 * _POINTS_PER_BRANCH} points, got {spectrum.frequency.size}"
-        )
+        raise InvalidInput(f"spectrum must have at least {2 * _POINTS_PER_BRANCH} points, got {points}")
     if branches is not None and not 1 <= branches <= most:
-        raise InvalidInput(
-            f"branches must lie between 1 and {most} for {spectrum.frequency.size} points, got {branches}"
-        )
+        raise InvalidInput(f"branches must lie between 1 and {most} for {points} points, got {branches}")
     log_complex = _Spectrum(
         frequency=spectrum.frequency,
         admittance=spectrum.admittance,

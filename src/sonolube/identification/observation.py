@@ -76,9 +76,7 @@ def structure_model(structure: ParametricStructure, observations: Mapping[str, O
     UnknownName
         If an observable or the parameter of an added mass is unknown.
     """
-    evaluators = {
-        name: _evaluator(observation, structure.parameters, fact=name) for name, observation in observations.items()
-    }
+    evaluators = {name: _evaluator(each, structure.parameters, fact=name) for name, each in observations.items()}
     added = {
         each.conditions: {each.conditions.added_to: each.conditions.added_mass} if each.conditions.added_mass else {}
         for each in observations.values()

@@ -173,14 +173,10 @@ class SmallVibration:
     def motion_per_volt(self, frequency: Floats) -> Complexes:
         """Complex amplitudes of the coordinates per volt at a frequency in Hz, contact free, shape (n, k)."""
         omega = 2 * np.pi * np.reshape(frequency, (-1, 1, 1))
-        dynamic = (
-            self.matrices.stiffness_matrix
-            + 1j * omega * self.matrices.damping_matrix
-            - omega**2 * self.matrices.mass_matrix
-        )
-        return np.asarray(
-            np.linalg.solve(dynamic, self.matrices.drive_vector[..., np.newaxis])[..., 0], dtype=np.complex128
-        )
+        m = self.matrices
+        dynamic = m.stiffness_matrix + 1j * omega * m.damping_matrix - omega**2 * m.mass_matrix
+        motion = np.linalg.solve(dynamic, m.drive_vector[..., np.newaxis])[..., 0]
+        return np.asarray(motion, dtype=np.complex128)
 
     def contact_amplitude(self, motion: Complexes) -> Floats:
         """Amplitude of the contact's displacement in a motion of shape (n, k), shape (n,)."""

@@ -2,14 +2,13 @@
 
 import math
 from collections.abc import Mapping
+from dataclasses import asdict
 
 from sonolube.actuator import PiezoStack
 from sonolube.identification.fact import Fact
 from sonolube.identification.result import Identification, ParameterEstimate
 from sonolube.vocabulary import unit_of
 
-_STACK = ("free_capacitance", "free_stroke_per_volt", "stack_stiffness", "stack_mass", "stack_damping")
-_STATED = ("lowest_voltage", "highest_voltage", "preload", "coupling_factor")  # where they are known
 _SHOWN_EXPONENT = 0.1  # least exponent of a direction that is written
 
 
@@ -35,23 +34,18 @@ def rig_tables(
         feasible interval of each identified parameter.
     """
     estimates = identification.estimates
-    stated = [name for name in _STATED if getattr(stack, name) is not None]
-    fixed = {name: float(getattr(stack, name)) for name in (*_STACK, *stated)}
-    entries = structure if structure is not None else [name for name in estimates if name not in fixed]
-    fixed.update(structure or {})
-    return (
-        "\n".join(
-            [
-                "[stack]",
-                *(_line(name, fixed, estimates) for name in (*_STACK, *stated)),
-                "",
-                *_comments(identification),
-                "[structure]",
-                *(_line(name, fixed, estimates) for name in entries),
-            ]
-        )
-        + "\n"
-    )
+    known = {name: float(value) for name, value in asdict(stack).items() if value is not None}
+    entries = structure if structure is not None else [name for name in estimates if name not in known]
+    fixed = {**known, **(structure or {})}
+    lines = [
+        "[stack]",
+        *(_line(name, fixed, estimates) for name in known),
+        "",
+        *_comments(identification),
+        "[structure]",
+        *(_line(name, fixed, estimates) for name in entries),
+    ]
+    return "\n".join(lines) + "\n"
 
 
 def _line(name: str, fixed: Mapping[str, float], estimates: Mapping[str, ParameterEstimate]) -> str:
@@ -81,14 +75,11 @@ def _comments(identification: Identification) -> list[str]:
     """Comment lines on the facts, their conflicts and the directions in which they determine nothing."""
     names = [fact.name for fact in identification.facts]
     conflicts = [", ".join(name for name in names if name in conflict) for conflict in identification.conflicts]
-    directions = [
-        " ".join(
-            f"{name}^{exponent:+.2f}"
-            for name, exponent in direction.exponents.items()
-            if abs(exponent) > _SHOWN_EXPONENT
-        )
+    shown = [
+        {name: exponent for name, exponent in direction.exponents.items() if abs(exponent) > _SHOWN_EXPONENT}
         for direction in identification.unidentifiable_directions
     ]
+    directions = [" ".join(f"{name}^{exponent:+.2f}" for name, exponent in each.items()) for each in shown]
     return [
         "# Identified from the facts below. All satisfied ones still hold at either end of a parameter's interval.",
         *(f"# - {_verdict(fact, identification)}" for fact in identification.facts),

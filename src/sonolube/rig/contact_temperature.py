@@ -1,25 +1,21 @@
 """Temperature of the contact of a rig over time, with and without vibration."""
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
-from sonolube.checks import Floats, require_non_negative, require_positive
+from sonolube.checks import require_non_negative, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.materials import material
 from sonolube.rig.friction_and_wear import friction_ratio, prescribed_sine
 from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.record import Rig
-from sonolube.thermal import (
+from sonolube.thermal import EllipticSource, HeatedContact, ThermalNetwork, ThermalSolid, contact_rise, peclet_number
+from sonolube.thermal.contact_history import (
     ContactTemperatureHistory,
-    EllipticSource,
-    HeatedContact,
-    ThermalNetwork,
-    ThermalSolid,
-    contact_rise,
     contact_temperature_history,
     frictional_heat_rate,
-    peclet_number,
 )
 
 _STEPS = 200
@@ -140,8 +136,9 @@ def temperature_point(
     contact = HeatedContact(pin=pin, disc=disc, source=source, network=network)
     intrinsic, ratio = rig.friction_coefficient * rig.normal_load, friction_ratio(rig, prescribed_sine(rig))
     times = np.linspace(0.0, duration, _STEPS + 1)
-    without = _history(rig, contact, times, intrinsic, 0.0)
-    vibrated = _history(rig, contact, times, ratio * intrinsic, vibration_heat_rate)
+    history = partial(contact_temperature_history, contact, time=times, sliding_speed=rig.sliding_speed)
+    without = history(friction_force=intrinsic, vibration_heat_rate=0.0)
+    vibrated = history(friction_force=ratio * intrinsic, vibration_heat_rate=vibration_heat_rate)
     of_friction = float(frictional_heat_rate(friction_force=ratio * intrinsic, sliding_speed=rig.sliding_speed))
     heat = of_friction + vibration_heat_rate
     shared = contact_rise(pin, disc, source, heat_rate=heat, sliding_speed=rig.sliding_speed)
@@ -159,18 +156,6 @@ def temperature_point(
         caveats=_caveats(network, vibration_heat_rate),
         with_vibration=vibrated,
         without_vibration=without,
-    )
-
-
-def _history(
-    rig: Rig, contact: HeatedContact, times: Floats, friction_force: float, vibration_heat_rate: float
-) -> ContactTemperatureHistory:
-    return contact_temperature_history(
-        contact,
-        time=times,
-        friction_force=friction_force,
-        sliding_speed=rig.sliding_speed,
-        vibration_heat_rate=vibration_heat_rate,
     )
 
 

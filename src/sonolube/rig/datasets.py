@@ -82,13 +82,20 @@ def gridded(
 
     names = tuple(axes)
     return xr.Dataset(
-        {name: (names[: array.ndim], array, _labels(name)) for name, array in values.items()},
-        coords={name: (name, array, _labels(name)) for name, array in axes.items()},
+        {name: (names[: array.ndim], array, labels(name)) for name, array in values.items()},
+        coords={name: (name, array, labels(name)) for name, array in axes.items()},
         attrs={"title": title, "source": f"sonolube {__version__}", **about},
     )
 
 
-def _labels(name: str) -> dict[str, str]:
+def labels(name: str) -> dict[str, str]:
+    """Return the attributes of a variable of a dataset: unit and meaning of the quantity of its name.
+
+    Raises
+    ------
+    UnknownName
+        If the name is not in the vocabulary.
+    """
     if name in _TEXTS:
         return {"long_name": _TEXTS[name]}
     known = quantity(name)

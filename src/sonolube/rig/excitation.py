@@ -1,20 +1,16 @@
 """Drive voltage of a rig: waveform, start-up ramp, harmonics, extremes and amplifier power."""
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.actuator.drive import Drive
 from sonolube.actuator.drive_power import linear_amplifier_power
 from sonolube.checks import Complexes, Floats, require_non_negative
-from sonolube.dynamics import (
-    WAVEFORMS,
-    Sine,
-    StartUpRamp,
-    Waveform,
-    fourier_coefficients,
-    sampled_waveform,
-    waveform_extremes,
-)
+from sonolube.dynamics import WAVEFORMS, Sine, StartUpRamp, Waveform
+from sonolube.dynamics.waveform import fourier_coefficients, sampled_waveform, waveform_extremes
+from sonolube.rig.driven_rig import DrivenRig
 
 _VOLTAGE_HARMONICS = 64  # the 65th of a square wave moves the tip by less than 1e-5 of the first
 
@@ -30,15 +26,31 @@ def waveform_of(drive: Drive) -> Waveform:
     return WAVEFORMS[drive.waveform] if drive.waveform_samples is None else sampled_waveform(drive.waveform_samples)
 
 
-def start_up_ramp(drive: Drive) -> StartUpRamp:
-    """Return the start-up ramp of the drive.
+def drive_and_load(rig: DrivenRig) -> dict[str, Any]:
+    """Return the arguments, by name, with which a structure in contact is marched in time under a rig's drive and load.
+
+    Parameters
+    ----------
+    rig : DrivenRig
+
+    Returns
+    -------
+    dict
 
     Raises
     ------
     UnknownName
-        If its shape is unknown.
+        If the shape of the start-up ramp is unknown.
     """
-    return StartUpRamp(duration=drive.ramp_duration, shape=drive.ramp_shape)
+    drive = rig.drive
+    return {
+        "normal_load": rig.normal_load,
+        "frequency": drive.frequency,
+        "voltage_peak_to_peak": rig.voltage_peak_to_peak,
+        "voltage_offset": drive.voltage_offset,
+        "waveform": waveform_of(drive),
+        "ramp": StartUpRamp(duration=drive.ramp_duration, shape=drive.ramp_shape),
+    }
 
 
 def voltage_harmonics(drive: Drive, *, voltage_peak_to_peak: ArrayLike | None = None) -> Complexes:
@@ -77,10 +89,8 @@ def voltage_range(
     pair of ndarray
     """
     offset = np.asarray(drive.voltage_offset if voltage_offset is None else voltage_offset, dtype=np.float64)
-    lowest, highest = (
-        offset + _swing(drive, voltage_peak_to_peak) * part for part in waveform_extremes(waveform_of(drive))
-    )
-    return lowest, highest
+    swing, (lowest, highest) = _swing(drive, voltage_peak_to_peak), waveform_extremes(waveform_of(drive))
+    return offset + swing * lowest, offset + swing * highest
 
 
 def amplifier_power(

@@ -1,51 +1,35 @@
 """Files of facts for the identification of a rig: TOML tables to an identification problem and its forward model."""
 
-import tomllib
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 from typing import Annotated, Any
 
-from pydantic import Field, ValidationError
+from pydantic import Field
 
 from sonolube.actuator import PiezoStack
 from sonolube.dynamics import Structure, chain_structure, pin_on_disc_chain
-from sonolube.errors import InvalidInput, SonolubeError, UnknownName, suggestion
-from sonolube.identification import (
-    Bounds,
-    Conditions,
-    Fact,
-    ForwardModel,
-    Identification,
-    IdentificationProblem,
-    Observation,
-    Relation,
-    observable_unit,
-    parametric_structure,
-    reference_parameters,
-    rig_tables,
-    structure_model,
-)
+from sonolube.errors import InvalidInput, UnknownName, suggestion
+from sonolube.identification import Conditions, Identification, parametric_structure, reference_parameters, rig_tables
+from sonolube.identification.fact import Bounds, Fact, ForwardModel, Relation
+from sonolube.identification.observation import IdentificationProblem, Observation, observable_unit, structure_model
 from sonolube.rig.file.plausible import plausible_si
 from sonolube.rig.file.reader import rig_content, rig_from
 from sonolube.rig.file.section import Section
-from sonolube.rig.file.sections import RigFile, Text
+from sonolube.rig.file.sections import RigFile, StackSection, Text
 from sonolube.rig.file.structures import PinOnDiscSection
+from sonolube.rig.file.toml_file import prefixed, toml_of, validated
 from sonolube.units import to_si, unit_description
 from sonolube.vocabulary import unit_of
 
-_LARGEST_FILE = 1_000_000  # bytes
 _MOST_FACTS = 16
 _LEAST_NUMBER, _LARGEST_NUMBER = 1e-9, 1e9  # of a pure number
-_FREE = (
-    *(name for name in PinOnDiscSection.model_fields if name != "kind"),
-    "free_capacitance",
-    "free_stroke_per_volt",
-    "stack_stiffness",
-    "stack_damping",
-    "stack_mass",
-)
+_FREE = [
+    name
+    for section in (PinOnDiscSection, StackSection)
+    for name, field in section.model_fields.items()
+    if field.annotation is float
+]
 
 
 class ConditionsSection(Section):
@@ -105,12 +89,8 @@ def read_facts(path: str | Path) -> IdentificationProblem:
         facts have one name.
     """
     path = Path(path)
-    with _prefixed(str(path)):
-        try:
-            file = FactsFile.model_validate(_toml(path))
-        except ValidationError as refusal:
-            raise InvalidInput(_first_error(refusal)) from None
-        return _problem(file)
+    with prefixed(str(path)):
+        return _problem(validated(FactsFile, toml_of(path, kind="a file of facts")))
 
 
 def rig_forward_model(path: str | Path, problem: IdentificationProblem) -> ForwardModel:
@@ -173,7 +153,7 @@ def identified_tables(path: str | Path, identification: Identification) -> str:
 def _stack_and_structure(path: str | Path) -> tuple[dict[str, Any], dict[str, float]]:
     """Entries of both tables of a rig's file, checked, in SI."""
     content = rig_content(path)
-    with _prefixed(str(path)):
+    with prefixed(str(path)):
         rig_from(content)
         file = RigFile.model_validate(content)
         if file.stack is None or file.structure is None:
@@ -181,24 +161,6 @@ def _stack_and_structure(path: str | Path) -> tuple[dict[str, Any], dict[str, fl
         if not isinstance(file.structure, PinOnDiscSection):
             raise InvalidInput(f'structure.kind: "{file.structure.kind}" has no entries to identify; "pin_on_disc" has')
         return file.stack.model_dump(), file.structure.entries()
-
-
-def _toml(path: Path) -> dict[str, Any]:
-    """Content of a TOML file of bounded size."""
-    try:
-        if path.stat().st_size > _LARGEST_FILE:
-            raise InvalidInput("larger than a file of facts can be (1 MB)")
-        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except FileNotFoundError:
-        raise InvalidInput("no such file") from None
-    except OSError as failure:
-        raise InvalidInput(f"cannot be read: {failure.strerror}") from None
-    except UnicodeDecodeError as failure:
-        raise InvalidInput(f"not UTF-8 text: byte {failure.object[failure.start]:#04x} at {failure.start}") from None
-    except tomllib.TOMLDecodeError as failure:
-        raise InvalidInput(f"not valid TOML: {failure}") from None
-    except RecursionError:
-        raise InvalidInput("not valid TOML: nested too deeply") from None
 
 
 def _problem(file: FactsFile) -> IdentificationProblem:
@@ -211,7 +173,7 @@ def _problem(file: FactsFile) -> IdentificationProblem:
     facts, observations = [], {}
     common = file.conditions.model_dump(exclude_none=True)
     for index, (name, section) in enumerate(zip(names, file.facts, strict=True)):
-        with _prefixed(f"facts.{index}"):
+        with prefixed(f"facts.{index}"):
             own = section.model_dump(include=set(ConditionsSection.model_fields), exclude_none=True)
             observations[name] = Observation(observable=section.observable, conditions=Conditions(**{**common, **own}))
             facts.append(_fact(name, section, bounds))
@@ -234,11 +196,8 @@ def _fact(name: str, section: FactSection, bounds: Bounds) -> Fact:
         name=name,
         value=_quantity("value", section.value, unit),
         tolerance=_quantity("tolerance", section.tolerance, unit),
-        rank=section.rank,
         unit=unit,
-        relation=section.relation,
-        meaning=section.meaning,
-        source=section.source,
+        **section.model_dump(include={"rank", "relation", "meaning", "source"}),
     )
 
 
@@ -257,42 +216,11 @@ def _quantity(key: str, value: str | float, unit: str) -> float:
 def _bounds(name: str, ends: Sequence[str]) -> tuple[float, float]:
     """Lower and upper bound of a free parameter, in SI."""
     if name not in _FREE:
-        raise InvalidInput(
-            f"parameters.{name}: no entry of the tables structure and stack; {suggestion(name, _FREE)}".removesuffix(
-                "; "
-            )
-        )
+        close = suggestion(name, _FREE)
+        raise InvalidInput(f"parameters.{name}: no entry of the tables structure and stack; {close}".removesuffix("; "))
     if len(ends) != 2:
         raise InvalidInput(f"parameters.{name}: must be a lower and an upper bound, got {len(ends)} values")
     lower, upper = (plausible_si(end, unit=unit_of(name), name=f"parameters.{name}") for end in ends)
     if not 0 < lower < upper:
         raise InvalidInput(f"parameters.{name}: bounds must be positive and rise, got {ends[0]} and {ends[1]}")
     return lower, upper
-
-
-def _first_error(refusal: ValidationError) -> str:
-    """First error of a file as one line, with the number of the others; an unknown key before a missing one."""
-    errors = refusal.errors(include_url=False, include_context=False)
-    first = min(errors, key=lambda error: error["type"] != "extra_forbidden")
-    key = ".".join(str(part) for part in first["loc"])
-    rest = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
-    return f"{key}: {_reason(first['type'], first['loc'], first['msg'])}{rest}".removeprefix(": ")
-
-
-def _reason(kind: str, place: tuple[int | str, ...], message: str) -> str:
-    """Reason of a refusal in plain words."""
-    if kind == "extra_forbidden":
-        table = next((part for part in place[:-1] if isinstance(part, str)), "")
-        sections: Mapping[str, type[Section]] = {"facts": FactSection, "conditions": ConditionsSection}
-        section = sections.get(table, FactsFile)
-        return f"unknown key; {suggestion(str(place[-1]), section.model_fields)}".removesuffix("; ")
-    return "missing" if kind == "missing" else message.removeprefix("Value error, ").strip()
-
-
-@contextmanager
-def _prefixed(place: str) -> Iterator[None]:
-    """Prefix refusals with the place in the file."""
-    try:
-        yield
-    except SonolubeError as refusal:
-        raise InvalidInput(f"{place}: {refusal}") from None

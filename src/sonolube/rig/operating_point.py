@@ -2,14 +2,8 @@
 
 from dataclasses import dataclass, replace
 
-from sonolube.contact import (
-    contact_caveats,
-    contact_count,
-    cube_tangential_stiffness,
-    normal_stiffness,
-    real_contact_area,
-    sinusoidal_motion,
-)
+from sonolube.contact import contact_caveats, cube_tangential_stiffness, sinusoidal_motion
+from sonolube.contact.rough import contact_count, normal_stiffness, real_contact_area
 from sonolube.friction.models import FRICTION_MODELS, FrictionModel
 from sonolube.rig.excitation import amplifier_power
 from sonolube.rig.friction_and_wear import friction_ratio, prescribed_sine

@@ -14,8 +14,9 @@ from sonolube.errors import SonolubeError
 from sonolube.rig.driven_rig import DrivenRig, driven_rig
 from sonolube.rig.excitation import voltage_range
 from sonolube.rig.operating_point_grid import (
+    VIBRATION_NUMBERS,
     OperatingConditions,
-    broadcast_conditions,
+    conditions_of,
     friction_and_power,
     friction_at_speeds,
     points_by_vibration,
@@ -125,9 +126,7 @@ def point_batch(
     each vibration.
     """
     rig = driven_rig(rig)
-    columns, speeds = broadcast_conditions(
-        rig, (voltage_peak_to_peak, voltage_offset, frequency, normal_load, sliding_speed)
-    )
+    columns, speeds = conditions_of(rig, (voltage_peak_to_peak, voltage_offset, frequency, normal_load, sliding_speed))
     columns, speeds = columns.reshape(4, -1), speeds.ravel()
     first, which = _distinct(columns)
     settings = OperatingConditions.of_columns(columns[:, first])
@@ -154,14 +153,8 @@ def point_batch(
         if text not in reasons:
             reasons = (*reasons, text)
         point_status[point], point_reason[point] = _REFUSED, reasons.index(text)
-    amplitude, velocity, rise, lost, dissipated = numbers[:, which]
-    found = friction_and_power(rig, columns, friction_ratio=ratio) | {
-        "vibration_amplitude": amplitude,
-        "vibration_velocity": velocity,
-        "mean_displacement": rise,
-        "contact_loss_fraction": lost,
-        "dissipated_power": dissipated,
-    }
+    found = friction_and_power(rig, columns, friction_ratio=ratio)
+    found |= dict(zip(VIBRATION_NUMBERS, numbers[:, which], strict=True))
     return PointBatch(
         numbers={name: found[name] for name in NUMBERS}, status=point_status, reason=point_reason, reasons=reasons
     )
@@ -186,18 +179,16 @@ def _refusals(rig: DrivenRig, settings: OperatingConditions, rest: Floats) -> tu
     lowest, highest = voltage_range(
         rig.drive, voltage_peak_to_peak=settings.voltage_peak_to_peak, voltage_offset=settings.voltage_offset
     )
-    refusal, texts = np.zeros(rest.size, dtype=np.int16), []
-    for beyond, text in (
-        (lowest < (-np.inf if low is None else low), f"the drive goes below the lowest voltage of the stack, {low} V"),
-        (
-            highest > (np.inf if high is None else high),
-            f"the drive goes above the highest voltage of the stack, {high} V",
-        ),
-        (rest <= 0, _NO_SEPARATION),
-    ):
-        texts.append(text)
-        refusal[beyond] = len(texts)
-    return refusal, tuple(texts)
+    texts = (
+        f"the drive goes too low: the lowest admissible voltage is {low} V",
+        f"the drive goes too high: the highest admissible voltage is {high} V",
+        _NO_SEPARATION,
+    )
+    refused = (lowest < (-np.inf if low is None else low), highest > (np.inf if high is None else high), rest <= 0)
+    refusal = np.zeros(rest.size, dtype=np.int16)
+    for code, points in enumerate(refused, start=1):
+        refusal[points] = code
+    return refusal, texts
 
 
 def _shifted(reason: NDArray[np.int16], refusal: NDArray[np.int16]) -> NDArray[np.int16]:
@@ -209,15 +200,7 @@ def _measures(states: SteadyStates) -> Floats:
     velocity = np.empty(states.frequency.size)
     peak_velocities(2 * np.pi * states.frequency, states.harmonics, velocity)
     velocity[states.status == Status.NOT_CONVERGED] = np.nan
-    return np.stack(
-        (
-            states.vibration_amplitude,
-            velocity,
-            states.mean_displacement,
-            states.contact_loss_fraction,
-            states.dissipated_power,
-        )
-    )
+    return np.stack([velocity if name == "vibration_velocity" else getattr(states, name) for name in VIBRATION_NUMBERS])
 
 
 def _friction(rig: Rig, states: SteadyStates, place: NDArray[np.intp], speeds: Floats) -> tuple[Floats, dict[int, str]]:

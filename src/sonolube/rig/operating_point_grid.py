@@ -25,6 +25,15 @@ REFUSED = "refused"
 CONDITIONS = ("voltage_peak_to_peak", "voltage_offset", "frequency", "normal_load")
 """Settings of a point apart from its sliding speed, in the order of the rows that hold them."""
 
+VIBRATION_NUMBERS = (
+    "vibration_amplitude",
+    "vibration_velocity",
+    "mean_displacement",
+    "contact_loss_fraction",
+    "dissipated_power",
+)
+"""Numbers of the vibration of a point."""
+
 Advance = Callable[[int, int], None]
 
 
@@ -175,9 +184,7 @@ def operating_points(
     Steady vibrations are found in one batch, each drive and load once, whatever the number of sliding speeds.
     """
     rig = driven_rig(rig)
-    columns, speeds = broadcast_conditions(
-        rig, (voltage_peak_to_peak, voltage_offset, frequency, normal_load, sliding_speed)
-    )
+    columns, speeds = conditions_of(rig, (voltage_peak_to_peak, voltage_offset, frequency, normal_load, sliding_speed))
     shape = speeds.shape
     distinct, which = np.unique(columns.reshape(4, -1), axis=1, return_inverse=True)
     settings, speeds = OperatingConditions.of_columns(distinct), speeds.ravel()
@@ -200,18 +207,14 @@ def operating_points(
         if advance is not None:
             advance(setting + 1, possible.size)
     columns = columns.reshape(4, *shape)
-    amplitude, velocity, rise, lost, dissipated, closed, ratio = numbers.reshape(7, *shape)
+    *vibration, closed, ratio = numbers.reshape(7, *shape)
     return OperatingPoints(
         **dict(zip(CONDITIONS, columns, strict=True)),
         sliding_speed=speeds.reshape(shape),
         status=status.astype(np.str_).reshape(shape),
         reason=reason.astype(np.str_).reshape(shape),
-        vibration_amplitude=amplitude,
-        vibration_velocity=velocity,
-        mean_displacement=rise,
-        contact_loss_fraction=lost,
+        **dict(zip(VIBRATION_NUMBERS, vibration, strict=True)),
         **friction_and_power(rig, columns, friction_ratio=ratio),
-        dissipated_power=dissipated,
         gap_closed=closed == 1,
     )
 
@@ -223,7 +226,7 @@ def friction_and_power(rig: DrivenRig, columns: Floats, *, friction_ratio: Float
     ----------
     rig : Rig
     columns : ndarray
-        Settings as `broadcast_conditions` returns them.
+        Settings as `conditions_of` returns them.
     friction_ratio : ndarray
         At each point. []
 
@@ -271,12 +274,12 @@ def steady_states(
         If the rig has no structure or a setting has no meaning.
     """
     rig = driven_rig(rig)
-    columns, _ = broadcast_conditions(rig, (voltage_peak_to_peak, voltage_offset, None, None, None))
+    columns, _ = conditions_of(rig, (voltage_peak_to_peak, voltage_offset, None, None, None))
     settings = OperatingConditions.of_columns(columns.reshape(4, -1))
     return steady_states_of(rig, settings, separation(rig.contact, normal_load=settings.normal_load))
 
 
-def broadcast_conditions(rig: DrivenRig, given: Sequence[ArrayLike | None]) -> tuple[Floats, Floats]:
+def conditions_of(rig: DrivenRig, given: Sequence[ArrayLike | None]) -> tuple[Floats, Floats]:
     """Return the settings of points as rows of `OperatingConditions` and sliding speeds, checked and broadcast.
 
     Given are peak-to-peak voltage, offset and frequency of the drive, load and sliding speed; None is the rig's own.

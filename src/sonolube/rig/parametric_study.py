@@ -13,6 +13,7 @@ from sonolube.errors import InvalidInput
 from sonolube.rig.datasets import gridded
 from sonolube.rig.driven_rig import DrivenRig, driven_rig
 from sonolube.rig.linear_response import structure_in_contact
+from sonolube.rig.operating_point_batch import NUMBERS
 from sonolube.rig.operating_point_grid import Advance, OperatingPoints, operating_points, steady_states
 from sonolube.rig.record import Rig
 
@@ -21,19 +22,8 @@ if TYPE_CHECKING:
 
 _GRAVITY = 9.80665  # m/s2
 _PHASES = 128
-_POINT = (
-    "status",
-    "reason",
-    "friction_ratio",
-    "friction_reduction",
-    "friction_force",
-    "vibration_amplitude",
-    "vibration_velocity",
-    "mean_displacement",
-    "contact_loss_fraction",
-    "actuator_power",
-    "dissipated_power",
-)
+_PHASE = 2 * np.pi * np.arange(_PHASES) / _PHASES
+_POINT = ("status", "reason", *(name for name in NUMBERS if name != "friction_coefficient"))
 
 
 def voltage_study(rig: Rig, *, voltage_peak_to_peak: ArrayLike, advance: Advance | None = None) -> "xr.Dataset":
@@ -65,14 +55,9 @@ def voltage_study(rig: Rig, *, voltage_peak_to_peak: ArrayLike, advance: Advance
     volts = np.atleast_1d(require_non_negative(voltage_peak_to_peak=voltage_peak_to_peak))
     offset = _offset(rig, volts)
     points = operating_points(rig, voltage_peak_to_peak=volts, voltage_offset=offset, advance=advance)
-    phase = 2 * np.pi * np.arange(_PHASES) / _PHASES
     displacement, normal_force = _periods(rig, volts, offset)
-    return gridded(
-        _values(points) | {"displacement": displacement, "normal_force": normal_force},
-        axes={"voltage_peak_to_peak": volts, "phase": phase},
-        title=f"Friction over drive voltage, {rig.title}",
-        about=_about(rig),
-    )
+    found = _values(points) | {"displacement": displacement, "normal_force": normal_force}
+    return _study(rig, "over drive voltage", found, voltage_peak_to_peak=volts, phase=_PHASE)
 
 
 def speed_study(
@@ -108,19 +93,9 @@ def speed_study(
     """
     volts = _volts(rig, voltage_peak_to_peak)
     speeds = np.atleast_1d(require_positive(sliding_speed=sliding_speed))
-    points = operating_points(
-        rig,
-        voltage_peak_to_peak=volts[:, np.newaxis],
-        voltage_offset=_offset(rig, volts)[:, np.newaxis],
-        sliding_speed=speeds,
-        advance=advance,
-    )
-    return gridded(
-        _values(points) | {"velocity_ratio": speeds / points.vibration_velocity},
-        axes={"voltage_peak_to_peak": volts, "sliding_speed": speeds},
-        title=f"Friction over sliding speed, {rig.title}",
-        about=_about(rig),
-    )
+    points = _by_voltage(rig, volts, sliding_speed=speeds, advance=advance)
+    found = _values(points) | {"velocity_ratio": speeds / points.vibration_velocity}
+    return _study(rig, "over sliding speed", found, voltage_peak_to_peak=volts, sliding_speed=speeds)
 
 
 def frequency_study(
@@ -155,19 +130,8 @@ def frequency_study(
     """
     volts = _volts(rig, voltage_peak_to_peak)
     f = np.atleast_1d(require_positive(frequency=frequency))
-    points = operating_points(
-        rig,
-        voltage_peak_to_peak=volts[:, np.newaxis],
-        voltage_offset=_offset(rig, volts)[:, np.newaxis],
-        frequency=f,
-        advance=advance,
-    )
-    return gridded(
-        _values(points),
-        axes={"voltage_peak_to_peak": volts, "frequency": f},
-        title=f"Friction over drive frequency, {rig.title}",
-        about=_about(rig),
-    )
+    points = _by_voltage(rig, volts, frequency=f, advance=advance)
+    return _study(rig, "over drive frequency", _values(points), voltage_peak_to_peak=volts, frequency=f)
 
 
 def waveform_study(rig: Rig, *, advance: Advance | None = None) -> "xr.Dataset":
@@ -201,12 +165,8 @@ def waveform_study(rig: Rig, *, advance: Advance | None = None) -> "xr.Dataset":
     swing, offset = np.array([rig.voltage_peak_to_peak]), np.array([drive.voltage_offset])
     periods = [_periods(one, swing, offset) for one in shaped]
     displacement, normal_force = (np.concatenate(rows) for rows in zip(*periods, strict=True))
-    return gridded(
-        points | {"displacement": displacement, "normal_force": normal_force},
-        axes={"waveform": np.array(list(WAVEFORMS)), "phase": 2 * np.pi * np.arange(_PHASES) / _PHASES},
-        title=f"Friction under waveforms of equal swing, {rig.title}",
-        about=_about(rig),
-    )
+    found = points | {"displacement": displacement, "normal_force": normal_force}
+    return _study(rig, "under waveforms of equal swing", found, waveform=np.array(list(WAVEFORMS)), phase=_PHASE)
 
 
 def load_study(rig: Rig, *, normal_load: ArrayLike, advance: Advance | None = None) -> "xr.Dataset":
@@ -243,12 +203,14 @@ def load_study(rig: Rig, *, normal_load: ArrayLike, advance: Advance | None = No
     rig = driven_rig(rig)
     loaded = [_weighted(rig, float(load)) for load in loads]
     points = _one_by_one(loaded, operating_points, advance)
-    return gridded(
-        points | {"natural_frequency": np.array([_slowest(one) for one in loaded])},
-        axes={"normal_load": loads},
-        title=f"Friction over normal load, {rig.title}",
-        about=_about(rig),
-    )
+    found = points | {"natural_frequency": np.array([_slowest(one) for one in loaded])}
+    return _study(rig, "over normal load", found, normal_load=loads)
+
+
+def _by_voltage(rig: Rig, volts: Floats, **others: Any) -> OperatingPoints:
+    """Points over voltage, a row each, and over another condition."""
+    u, offset = volts[:, np.newaxis], _offset(rig, volts)[:, np.newaxis]
+    return operating_points(rig, voltage_peak_to_peak=u, voltage_offset=offset, **others)
 
 
 def _values(points: OperatingPoints) -> dict[str, NDArray[Any]]:
@@ -308,5 +270,6 @@ def _slowest(rig: Rig) -> float:
     return float(natural.natural_frequency[~natural.rigid].min())
 
 
-def _about(rig: Rig) -> Mapping[str, str]:
-    return {"rig": rig.title, "friction_model": rig.friction_model.name}
+def _study(rig: Rig, title: str, values: Mapping[str, NDArray[Any]], **axes: NDArray[Any]) -> "xr.Dataset":
+    about = {"rig": rig.title, "friction_model": rig.friction_model.name}
+    return gridded(values, axes=axes, title=f"Friction {title}, {rig.title}", about=about)

@@ -9,7 +9,7 @@ from sonolube.dynamics.trajectories import Trajectory
 from sonolube.dynamics.transient import march, trajectory
 from sonolube.errors import InvalidInput
 from sonolube.rig.driven_rig import driven_rig
-from sonolube.rig.excitation import start_up_ramp, waveform_of
+from sonolube.rig.excitation import drive_and_load
 from sonolube.rig.linear_response import gap_law_of, rest_separation
 from sonolube.rig.record import Rig
 
@@ -77,31 +77,11 @@ def start_up(rig: Rig, *, duration: float) -> StartUp:
     periods = math.ceil(float(require_positive(duration=duration)) * drive.frequency)
     if not 8 <= periods <= _LONGEST:
         raise InvalidInput(f"duration must be from 8 to {_LONGEST} periods of the drive, got {periods}")
-    waveform, ramp, law = waveform_of(drive), start_up_ramp(drive), gap_law_of(rig)
-    window = max(1, periods // _WINDOWS)
+    law, window = gap_law_of(rig), max(1, periods // _WINDOWS)
     marched = march(
-        structure,
-        law,
-        normal_load=rig.normal_load,
-        frequency=drive.frequency,
-        voltage_peak_to_peak=rig.voltage_peak_to_peak,
-        voltage_offset=drive.voltage_offset,
-        waveform=waveform,
-        ramp=ramp,
-        periods=periods // window * window,
-        periods_per_window=window,
+        structure, law, periods=periods // window * window, periods_per_window=window, **drive_and_load(rig)
     )
-    every_step = trajectory(
-        structure,
-        law,
-        normal_load=rig.normal_load,
-        frequency=drive.frequency,
-        voltage_peak_to_peak=rig.voltage_peak_to_peak,
-        voltage_offset=drive.voltage_offset,
-        waveform=waveform,
-        ramp=ramp,
-        periods=periods,
-    )
+    every_step = trajectory(structure, law, periods=periods, **drive_and_load(rig))
     envelope = marched.envelope
     slow = beat(displacement=envelope.mean_displacement, interval=window / drive.frequency)
     return StartUp(

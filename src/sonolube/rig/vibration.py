@@ -12,7 +12,7 @@ from sonolube.dynamics import Status, SteadyStates, contact_motion, steady_state
 from sonolube.dynamics.long_time_response import LongTimeResponse, march_until_settled
 from sonolube.errors import OutsideRange
 from sonolube.rig.driven_rig import DrivenRig, driven_rig
-from sonolube.rig.excitation import start_up_ramp, voltage_harmonics, waveform_of
+from sonolube.rig.excitation import drive_and_load, voltage_harmonics
 from sonolube.rig.linear_response import gap_law_of
 from sonolube.rig.record import Rig
 from sonolube.units import format_si
@@ -163,17 +163,7 @@ def _balanced(rig: DrivenRig, *, upper_branch: bool) -> SteadyStates:
 
 
 def _marched(rig: DrivenRig) -> LongTimeResponse:
-    drive = rig.drive
-    return march_until_settled(
-        rig.structure,
-        gap_law_of(rig),
-        normal_load=rig.normal_load,
-        frequency=drive.frequency,
-        voltage_peak_to_peak=rig.voltage_peak_to_peak,
-        voltage_offset=drive.voltage_offset,
-        waveform=waveform_of(drive),
-        ramp=start_up_ramp(drive),
-    )
+    return march_until_settled(rig.structure, gap_law_of(rig), **drive_and_load(rig))
 
 
 def _why_marched(states: SteadyStates) -> str:

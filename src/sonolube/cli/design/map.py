@@ -19,10 +19,11 @@ from sonolube.cli.console.ranges import values_by_key
 from sonolube.cli.console.rig_text import friction_model_text, rig_settings
 from sonolube.cli.design.status_tables import status_tables
 from sonolube.design import MAP_LAYOUTS, map_figure, map_page, measured_map_figure
-from sonolube.design.map_axes import default_axes
+from sonolube.design.gaussian_process import FEWEST_RUNS
+from sonolube.design.maps import default_axes
 from sonolube.design.measured_runs import read_runs
 from sonolube.design.point_statistics import extreme_point, failure_counts
-from sonolube.design.runs_map import FEWEST_RUNS, require_mappable, runs_map
+from sonolube.design.runs_map import require_mappable, runs_map
 from sonolube.errors import InvalidInput
 from sonolube.report import Drawing, Page, PageTable
 from sonolube.rig import Rig, read_rig

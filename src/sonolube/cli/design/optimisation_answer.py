@@ -22,7 +22,8 @@ from sonolube.design.optimisation import (
     design_text,
     figures,
 )
-from sonolube.design.optimisation.designs_dataset import LIMITS, design_counts, designs_dataset
+from sonolube.design.optimisation.designs_dataset import design_counts, designs_dataset
+from sonolube.design.optimisation.evaluation import LIMITS
 from sonolube.report import Drawing, Page, PageTable
 from sonolube.units import format_si
 from sonolube.vocabulary import quantity

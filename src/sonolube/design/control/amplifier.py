@@ -1,6 +1,6 @@
 """Amplifier limits of a sinusoidal drive: the largest peak-to-peak voltage within voltage, current and slew rate."""
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from math import inf, pi
 
 from sonolube.checks import require_positive
@@ -30,11 +30,8 @@ class Amplifier:
     slew_rate_maximum: float = inf
 
     def __post_init__(self) -> None:
-        require_positive(voltage_maximum=self.voltage_maximum)
-        if self.current_maximum != inf:
-            require_positive(current_maximum=self.current_maximum)
-        if self.slew_rate_maximum != inf:
-            require_positive(slew_rate_maximum=self.slew_rate_maximum)
+        limits = {name: limit for name, limit in asdict(self).items() if name == "voltage_maximum" or limit != inf}
+        require_positive(**limits)
 
 
 def swing_limit(amplifier: Amplifier, *, admittance: complex, frequency: float) -> float:

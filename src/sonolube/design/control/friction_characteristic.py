@@ -49,9 +49,7 @@ class FrictionCharacteristic:
                 f" {volts.shape} and {force.shape}"
             )
         if np.any(np.diff(volts) <= 0) or np.any(np.diff(force) >= 0):
-            raise InvalidInput(
-                "in a friction characteristic voltages must increase and forces decrease from point to point"
-            )
+            raise InvalidInput("voltages must increase and forces decrease along a friction characteristic")
 
     @property
     def highest_force(self) -> float:
@@ -217,10 +215,8 @@ def linear_characteristic(characteristic: FrictionCharacteristic) -> FrictionCha
     -------
     FrictionCharacteristic
     """
-    return FrictionCharacteristic(
-        voltage_peak_to_peak=characteristic.voltage_peak_to_peak[[0, -1]],
-        friction_force=characteristic.friction_force[[0, -1]],
-    )
+    volts, force = characteristic.voltage_peak_to_peak[[0, -1]], characteristic.friction_force[[0, -1]]
+    return FrictionCharacteristic(voltage_peak_to_peak=volts, friction_force=force)
 
 
 def _voltages(highest: float, points: int) -> Floats:

@@ -1,6 +1,6 @@
 """Results of a closed-loop run: dataset over time, final voltage and error, and whether the resonance was lost."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -78,13 +78,6 @@ def control_dataset(study: ControlDesign, *, title: str) -> "xr.Dataset":
     xarray.Dataset
         Over `time`.
     """
-    names = (
-        "time",
-        "friction_force",
-        "voltage_peak_to_peak",
-        "frequency",
-        "resonance_frequency",
-        "phase",
-        "electrical_energy",
-    )
+    not_shown = ("setpoint", "measured_force", "envelope")
+    names = [field.name for field in fields(study.run) if field.name not in not_shown]
     return dataset({name: getattr(study.run, name) for name in names}, along="time", title=title)

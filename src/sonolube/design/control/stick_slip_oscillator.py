@@ -314,7 +314,7 @@ def _integrate(
     ratios: Floats,
 ) -> tuple[Floats, Floats, NDArray[np.bool_]]:
     """Displacement, velocity and sticking of the mass at each time step."""
-    m, c, k, belt = holder
+    _, c, k, belt = holder
     x, v = np.zeros(count), np.full(count, belt)
     sticking = np.ones(count, dtype=np.bool_)
     holding_force = forces[1] * ratios[0]
@@ -326,13 +326,13 @@ def _integrate(
         direction = 1.0 if v[n] < belt else -1.0
         if v[n] == belt:
             direction = 1.0 if k * x[n] + c * belt > 0 else -1.0
-        x1, v1 = v[n], _acceleration(x[n], v[n], direction, m, c, k, belt, forces, speeds, ratios)
+        x1, v1 = v[n], _acceleration(x[n], v[n], direction, holder, forces, speeds, ratios)
         x2 = v[n] + h / 2 * v1
-        v2 = _acceleration(x[n] + h / 2 * x1, x2, direction, m, c, k, belt, forces, speeds, ratios)
+        v2 = _acceleration(x[n] + h / 2 * x1, x2, direction, holder, forces, speeds, ratios)
         x3 = v[n] + h / 2 * v2
-        v3 = _acceleration(x[n] + h / 2 * x2, x3, direction, m, c, k, belt, forces, speeds, ratios)
+        v3 = _acceleration(x[n] + h / 2 * x2, x3, direction, holder, forces, speeds, ratios)
         x4 = v[n] + h * v3
-        v4 = _acceleration(x[n] + h * x3, x4, direction, m, c, k, belt, forces, speeds, ratios)
+        v4 = _acceleration(x[n] + h * x3, x4, direction, holder, forces, speeds, ratios)
         x[n + 1] = x[n] + h / 6 * (x1 + 2 * x2 + 2 * x3 + x4)
         v[n + 1] = v[n] + h / 6 * (v1 + 2 * v2 + 2 * v3 + v4)
         reversed_slip = (belt - v[n + 1]) * direction <= 0
@@ -347,15 +347,13 @@ def _acceleration(
     x: float,
     v: float,
     direction: float,
-    m: float,
-    c: float,
-    k: float,
-    belt: float,
+    holder: tuple[float, float, float, float],
     forces: tuple[float, float, float],
     speeds: Floats,
     ratios: Floats,
 ) -> float:
     """Acceleration of the mass in sliding."""
+    m, c, k, belt = holder
     slip = abs(belt - v)
     force = forces[0] + (forces[1] - forces[0]) * np.exp(-((slip / forces[2]) ** 2))
     return float((direction * force * np.interp(slip, speeds, ratios) - c * v - k * x) / m)

@@ -1,7 +1,7 @@
 """Envelope of a vibration near one resonance: slowly varying amplitude, impedance phase and energy of a driven mode."""
 
 from cmath import exp, phase
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from math import inf, pi
 
 import numpy as np
@@ -55,13 +55,7 @@ class VibrationMode:
     frequency: float
 
     def __post_init__(self) -> None:
-        require_positive(
-            natural_frequency=self.natural_frequency,
-            damping_ratio=self.damping_ratio,
-            motional_conductance=self.motional_conductance,
-            parallel_capacitance=self.parallel_capacitance,
-            frequency=self.frequency,
-        )
+        require_positive(**asdict(self))
 
     @property
     def decay_rate(self) -> float:

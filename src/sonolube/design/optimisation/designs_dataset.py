@@ -1,33 +1,17 @@
 """Labelled dataset of all designs of a screening, and the number of them that each limit rules out."""
 
-from collections.abc import Mapping
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sonolube import __version__
+from sonolube.design.optimisation.evaluation import LIMITS
 from sonolube.design.optimisation.optimum import Optimum
-from sonolube.vocabulary import quantity
+from sonolube.rig.datasets import labels
 
 if TYPE_CHECKING:
     import xarray as xr
-
-LIMITS: Mapping[str, str] = MappingProxyType(
-    {
-        "stack_voltage": "voltage the stack bears",
-        "voltage": "voltage of the amplifier",
-        "current": "current of the amplifier",
-        "slew_rate": "slew rate of the amplifier",
-        "tension": "tension in the stack",
-        "contact_pressure": "stress in the contact",
-        "horn_stress": "stress in the horn",
-        "temperature": "warming of the actuator",
-        "bolt_fatigue": "fatigue of the bolt",
-        "bolt_yield": "yielding of the bolt",
-    }
-)
-"""Printed name of each limit, by its name in `Assessment.utilisation`."""
 
 
 def designs_dataset(optimum: Optimum) -> "xr.Dataset":
@@ -45,31 +29,23 @@ def designs_dataset(optimum: Optimum) -> "xr.Dataset":
     import xarray as xr
 
     screened, space = optimum.screening, optimum.problem.space
+
+    def by_design(of_candidates: list[Any]) -> NDArray[Any]:
+        return np.array(of_candidates)[screened.candidate_index]
+
     columns = {
         "frequency": screened.frequency,
         "voltage_peak_to_peak": screened.voltage_peak_to_peak,
         "actuator_power": screened.objectives["power"],
         "heat_rate": screened.objectives["heat"],
-        **{
-            name: np.array([candidate.entries[name] for candidate in screened.candidates])[screened.candidate_index]
-            for name in space.ranges
-        },
+        **{name: by_design([each.entries[name] for each in screened.candidates]) for name in space.ranges},
     }
-    data: dict[str, Any] = {
-        name: ("design", values, {"units": quantity(name).unit, "long_name": quantity(name).meaning})
-        for name, values in columns.items()
-    }
-    for name in ("actuator", "waveform"):
-        data[name] = (
-            "design",
-            np.array([getattr(candidate, name) for candidate in screened.candidates])[screened.candidate_index],
-        )
+    data: dict[str, Any] = {name: ("design", values, labels(name)) for name, values in columns.items()}
+    data["actuator"] = ("design", by_design([each.actuator for each in screened.candidates]))
+    data["waveform"] = ("design", by_design([each.waveform for each in screened.candidates]))
     for name, text in LIMITS.items():
-        data[f"used_{name}"] = (
-            "design",
-            screened.utilisation[name],
-            {"units": "1", "long_name": f"Share used: {text}"},
-        )
+        used = {"units": "1", "long_name": f"Share used: {text}"}
+        data[f"used_{name}"] = ("design", screened.utilisation[name], used)
     data["feasible"] = ("design", screened.feasible.astype(np.int8), {"long_name": "Whether it keeps to every limit"})
     return xr.Dataset(
         data,

@@ -164,20 +164,16 @@ def required_electronics(
 def _matched_network(rig: DrivenRig, frequency: float, name: str, network: MatchingNetwork) -> MatchedNetwork:
     """Network with its band, its power factor over the tolerance of the capacitance, and its voltage gain."""
     f = np.array([frequency])
-    detuned = [
-        float(
-            matched_power_factor(
-                network, admittance=stack_admittance(rig, frequency=f, capacitance_change=change), frequency=f
-            )[0]
-        )
-        for change in (-CAPACITANCE_TOLERANCE, CAPACITANCE_TOLERANCE)
-    ]
+
+    def power_factor(capacitance_change: float) -> float:
+        y = stack_admittance(rig, frequency=f, capacitance_change=capacitance_change)
+        return float(matched_power_factor(network, admittance=y, frequency=f)[0])
+
+    gain = voltage_gain(network, admittance=stack_admittance(rig, frequency=f), frequency=f)
     return MatchedNetwork(
         name=name,
         network=network,
         band=matched_band(network, lambda at: stack_admittance(rig, frequency=at), frequency=frequency),
-        detuned_power_factor=min(detuned),
-        voltage_gain=float(
-            np.abs(voltage_gain(network, admittance=stack_admittance(rig, frequency=f), frequency=f))[0]
-        ),
+        detuned_power_factor=min(power_factor(-CAPACITANCE_TOLERANCE), power_factor(CAPACITANCE_TOLERANCE)),
+        voltage_gain=float(np.abs(gain)[0]),
     )

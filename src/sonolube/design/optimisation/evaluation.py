@@ -1,6 +1,8 @@
 """Evaluation of drives of a rig: objectives, and the utilisation of each constraint."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,19 +18,23 @@ from sonolube.rig.excitation import amplifier_power, voltage_range
 from sonolube.rig.operating_point_grid import OperatingConditions, steady_states_of
 from sonolube.rig.record import Rig
 
-CONSTRAINTS = (
-    "admissible_vibration",
-    "stack_voltage",
-    "voltage",
-    "current",
-    "slew_rate",
-    "tension",
-    "contact_pressure",
-    "horn_stress",
-    "temperature",
-    "bolt_fatigue",
-    "bolt_yield",
+LIMITS: Mapping[str, str] = MappingProxyType(
+    {
+        "stack_voltage": "voltage the stack bears",
+        "voltage": "voltage of the amplifier",
+        "current": "current of the amplifier",
+        "slew_rate": "slew rate of the amplifier",
+        "tension": "tension in the stack",
+        "contact_pressure": "stress in the contact",
+        "horn_stress": "stress in the horn",
+        "temperature": "warming of the actuator",
+        "bolt_fatigue": "fatigue of the bolt",
+        "bolt_yield": "yielding of the bolt",
+    }
 )
+"""Printed name of each limit, by its name in `Evaluation.utilisation`."""
+
+CONSTRAINTS = ("admissible_vibration", *LIMITS)
 """Constraints of a design; `admissible_vibration` requires a single stable vibration whose mean planes do not meet."""
 
 _PHASES_PER_HARMONIC = 64

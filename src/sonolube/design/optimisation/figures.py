@@ -6,16 +6,16 @@ import numpy as np
 
 from sonolube.actuator import matched_power_factor
 from sonolube.checks import Floats
-from sonolube.design.optimisation.designs_dataset import LIMITS
 from sonolube.design.optimisation.drive_electronics import (
     CAPACITANCE_TOLERANCE,
     DriveElectronics,
     design_rig,
     stack_admittance,
 )
+from sonolube.design.optimisation.evaluation import LIMITS
 from sonolube.design.optimisation.gradient_search import DesignPoint
 from sonolube.design.optimisation.optimum import Optimum
-from sonolube.design.optimisation.space import OWN_ACTUATOR
+from sonolube.design.optimisation.space import OWN_ACTUATOR, Candidate
 from sonolube.figure import COLOURS
 
 if TYPE_CHECKING:
@@ -52,16 +52,13 @@ def front_figure(optimum: Optimum) -> "Figure":
     figure = Figure(figsize=(5.8, 3.8))
     axes = figure.subplots()
     screened = optimum.screening
-    first, second = (
-        screened.objectives[name][screened.feasible] for name in (optimum.minimise, optimum.second_objective)
-    )
+    names = (optimum.minimise, optimum.second_objective)
+    first, second = (screened.objectives[name][screened.feasible] for name in names)
     axes.plot(first, second, ".", color="0.75", markersize=3, label="designs looked at", rasterized=True, zorder=1)
-    points = np.array(
-        [[point.objective(name) for name in (optimum.minimise, optimum.second_objective)] for point in optimum.front]
-    )
+    points = np.array([[point.objective(name) for name in names] for point in optimum.front])
     axes.plot(*points.T, color="0.2", linewidth=1.2, drawstyle="steps-post", zorder=2)
-    for index, name in enumerate(dict.fromkeys(_family(point) for point in optimum.front)):
-        own = points[[_family(point) == name for point in optimum.front]]
+    for index, name in enumerate(dict.fromkeys(_family(point.candidate) for point in optimum.front)):
+        own = points[[_family(point.candidate) == name for point in optimum.front]]
         axes.plot(
             *own.T,
             _MARKERS[index % len(_MARKERS)],
@@ -98,14 +95,12 @@ def frequency_figure(optimum: Optimum) -> "Figure":
     figure = Figure(figsize=(5.8, 3.6))
     axes = figure.subplots()
     screened = optimum.screening
-    families = np.array([f"{candidate.actuator}, {candidate.waveform}" for candidate in screened.candidates])[
-        screened.candidate_index
-    ]
+    families = np.array([_family(candidate) for candidate in screened.candidates])[screened.candidate_index]
     for index, point in enumerate(optimum.designs[:_MOST_CURVES]):
-        own = screened.feasible & (families == _family(point))
+        own = screened.feasible & (families == _family(point.candidate))
         f, least = _envelope(screened.frequency[own], screened.objectives[optimum.minimise][own])
         colour = COLOURS[index % len(COLOURS)]
-        label = _family(point).replace(f"{OWN_ACTUATOR},", "the rig's actuator,", 1)
+        label = _family(point.candidate).replace(f"{OWN_ACTUATOR},", "the rig's actuator,", 1)
         axes.semilogy(1e-3 * f, least, _STYLES[index % 4], color=colour, label=label)
         axes.plot(
             1e-3 * point.frequency,
@@ -143,16 +138,9 @@ def limits_figure(point: DesignPoint) -> "Figure":
     used = {name: share for name, share in sorted(used.items(), key=lambda item: item[1]) if share > 0}
     figure = Figure(figsize=(5.8, 0.9 + 0.3 * max(len(used), 1)))
     axes = figure.subplots()
-    axes.barh([LIMITS[name] for name in used], [100 * share for share in used.values()], color=COLOURS[0], height=0.6)
-    for place, share in enumerate(used.values()):
-        axes.annotate(
-            f"{100 * share:.3g} %",
-            (100 * share, place),
-            xytext=(4, 0),
-            textcoords="offset points",
-            va="center",
-            fontsize=8,
-        )
+    percent = [100 * share for share in used.values()]
+    bars = axes.barh([LIMITS[name] for name in used], percent, color=COLOURS[0], height=0.6)
+    axes.bar_label(bars, fmt="{:.3g} %", padding=4, fontsize=8)
     axes.axvline(100, color="black", linestyle="--", linewidth=1)
     axes.set(xlabel="Share of the limit used [%]", xlim=(0, 118))
     axes.grid(visible=False, axis="y")
@@ -200,9 +188,9 @@ def power_factor_figure(optimum: Optimum, electric: DriveElectronics) -> "Figure
     return figure
 
 
-def _family(point: DesignPoint) -> str:
+def _family(candidate: Candidate) -> str:
     """Actuator and waveform of a design."""
-    return f"{point.candidate.actuator}, {point.candidate.waveform}"
+    return f"{candidate.actuator}, {candidate.waveform}"
 
 
 def _plain_numbers(axis: "Axis") -> None:

@@ -228,13 +228,11 @@ class _ConstrainedProblem:
 
     def margins(self, x: Floats) -> Floats:
         """Margins of the constraints, negative where they are violated."""
-        _, values, _ = self._at(x)
-        return values[1:]
+        return self._at(x)[1][1:]
 
     def margin_derivatives(self, x: Floats) -> Floats:
         """Jacobian of the margins."""
-        _, _, slopes = self._at(x)
-        return slopes[1:]
+        return self._at(x)[2][1:]
 
     def feasible_points(self) -> list[DesignPoint]:
         """Computed points that violate no constraint."""

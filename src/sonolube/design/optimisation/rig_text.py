@@ -2,26 +2,15 @@
 
 import json
 from collections.abc import Mapping
+from dataclasses import asdict, replace
 from typing import Any
 
-from sonolube.actuator import PiezoStack
 from sonolube.design.optimisation.drive_electronics import design_rig
 from sonolube.design.optimisation.gradient_search import DesignPoint
 from sonolube.design.optimisation.screening import DesignProblem
 from sonolube.design.optimisation.space import OWN_ACTUATOR
 from sonolube.rig import with_tables
 from sonolube.vocabulary import quantities
-
-_STACK_KEYS = (
-    "free_capacitance",
-    "free_stroke_per_volt",
-    "stack_stiffness",
-    "stack_damping",
-    "stack_mass",
-    "lowest_voltage",
-    "highest_voltage",
-    "preload",
-)
 
 
 def design_text(text: str, content: Mapping[str, Any], problem: DesignProblem, point: DesignPoint) -> str:
@@ -51,7 +40,7 @@ def design_text(text: str, content: Mapping[str, Any], problem: DesignProblem, p
     }
     if drive.waveform_samples is None:
         changed["drive"].pop("waveform_samples", None)
-    changed["stack"] = _stack_entries(rig.stack)
+    changed["stack"] = asdict(replace(rig.stack, coupling_factor=None))  # the stated one was of the unaltered stack
     changed["structure"] = {**problem.space.entries, **point.candidate.entries}
     assumptions = dict(content.get("assumptions", {}))
     assumptions["drive"] = f"optimised for a friction ratio of {problem.friction_ratio:.4g}"
@@ -71,11 +60,6 @@ def design_text(text: str, content: Mapping[str, Any], problem: DesignProblem, p
     # the relative path of the schema holds only where the original file lies
     original = "\n".join(line for line in text.splitlines() if not line.startswith("#:schema"))
     return with_tables(original + "\n", "\n".join(_table(name, entries) for name, entries in tables))
-
-
-def _stack_entries(stack: PiezoStack) -> dict[str, Any]:
-    """Entries of the table `stack` that are known."""
-    return {name: getattr(stack, name) for name in _STACK_KEYS if getattr(stack, name) is not None}
 
 
 def _table(name: str, entries: Mapping[str, Any]) -> str:

@@ -17,7 +17,7 @@ from sonolube.errors import SonolubeError
 from sonolube.rig import frequency_grid
 from sonolube.rig.driven_rig import DrivenRig
 
-_FREQUENCIES, _FREQUENCIES_PER_RESONANCE = 60, 21
+_FREQUENCIES, _RESONANCE_FREQUENCIES = 60, 21
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -205,9 +205,8 @@ def evaluate_candidate(
         [estimate_swings(rig, problem.limits, frequency=f, friction_ratio=problem.friction_ratio) for rig in rigs]
     )
     volts = worst_or_quantile(np.where(np.isnan(swings), np.inf, swings), problem.tolerance)
-    return f, evaluate_with_tolerance(
-        problem, rigs, frequency=f, voltage_peak_to_peak=np.where(np.isinf(volts), np.nan, volts)
-    )
+    volts = np.where(np.isinf(volts), np.nan, volts)
+    return f, evaluate_with_tolerance(problem, rigs, frequency=f, voltage_peak_to_peak=volts)
 
 
 def evaluate_with_tolerance(
@@ -271,9 +270,7 @@ def evaluate_with_tolerance(
 def _default_frequencies(rig: DrivenRig, problem: DesignProblem) -> Floats:
     """Grid over the frequency range, finer at the resonances of a rig."""
     low, high = problem.space.frequencies
-    return frequency_grid(
-        rig, lowest=low, highest=high, points=_FREQUENCIES, resonance_points=_FREQUENCIES_PER_RESONANCE
-    )
+    return frequency_grid(rig, lowest=low, highest=high, points=_FREQUENCIES, resonance_points=_RESONANCE_FREQUENCIES)
 
 
 def _concatenated(parts: list[Floats]) -> Floats:

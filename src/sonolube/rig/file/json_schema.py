@@ -19,7 +19,7 @@ def rig_schema() -> dict[str, Any]:
 
 
 def tables_of(entry: Mapping[str, Any]) -> Iterator[str]:
-    """Yield the names, among the definitions of the schema, of the tables that a key may hold.
+    """Yield the names, among the definitions of the schema, of the tables that a key may hold, alone or in a list.
 
     Parameters
     ----------
@@ -32,5 +32,7 @@ def tables_of(entry: Mapping[str, Any]) -> Iterator[str]:
     """
     if "$ref" in entry:
         yield entry["$ref"].rpartition("/")[2]
+    if "items" in entry:
+        yield from tables_of(entry["items"])
     for option in (*entry.get("anyOf", ()), *entry.get("oneOf", ())):
         yield from tables_of(option)

@@ -6,10 +6,10 @@ from pathlib import Path
 
 from sonolube.errors import InvalidInput, suggestion
 from sonolube.rig.file.structures import MODE_LISTS
+from sonolube.rig.file.toml_file import prefixed, text_of
 from sonolube.units import convert
 
 _UNITS = {"natural_frequency": "Hz", "damping_ratio": "", "drive_participation": "N/V", "contact_participation": ""}
-_LARGEST_FILE = 1_000_000  # bytes; hundreds of modes are some 20 kB
 
 
 def read_modes(path: Path) -> dict[str, list[float]]:
@@ -32,39 +32,36 @@ def read_modes(path: Path) -> dict[str, list[float]]:
     InvalidInput
         If the file cannot be read, a column is missing or unknown, or an entry is no number.
     """
-    try:
-        if path.stat().st_size > _LARGEST_FILE:
-            raise InvalidInput(f"{path}: larger than a file of modes can be (1 MB)")
-        text = path.read_text(encoding="utf-8-sig")
-    except OSError as failure:
-        raise InvalidInput(f"{path}: cannot be read: {failure.strerror}") from None
-    except UnicodeDecodeError:
-        raise InvalidInput(f"{path}: not UTF-8 text") from None
+    with prefixed(str(path)):
+        return _modes(text_of(path, kind="a file of modes"))
+
+
+def _modes(text: str) -> dict[str, list[float]]:
     kept = "\n".join(line for line in text.splitlines() if line.strip() and not line.startswith("#"))
     heads, *rows = list(csv.reader(io.StringIO(kept))) or [[]]
-    columns = [_column(head, path) for head in heads]
+    columns = [_column(head) for head in heads]
     missing = [name for name in MODE_LISTS if name not in (known for known, _ in columns)]
     if missing:
-        raise InvalidInput(f"{path}: column {missing[0]} is missing; a file of modes has {', '.join(MODE_LISTS)}")
+        raise InvalidInput(f"column {missing[0]} is missing; a file of modes has {', '.join(MODE_LISTS)}")
     if not rows:
-        raise InvalidInput(f"{path}: has no modes below its headings")
+        raise InvalidInput("has no modes below its headings")
     modes: dict[str, list[float]] = {name: [] for name in MODE_LISTS}
     for number, row in enumerate(rows, start=1):
         if len(row) != len(columns):
-            raise InvalidInput(f"{path}: mode {number} has {len(row)} entries, its headings are {len(columns)}")
+            raise InvalidInput(f"mode {number} has {len(row)} entries, its headings are {len(columns)}")
         for (name, unit), entry in zip(columns, row, strict=True):
-            modes[name].append(_number(entry, unit, name, f"{path}: mode {number}"))
+            modes[name].append(_number(entry, unit, name, f"mode {number}"))
     return modes
 
 
-def _column(head: str, path: Path) -> tuple[str, str]:
+def _column(head: str) -> tuple[str, str]:
     """Return the name of a column and the unit of its entries."""
     name, _, rest = head.strip().partition("[")
     name, unit = name.strip(), rest.strip().removesuffix("]").strip()
     if name not in MODE_LISTS:
-        raise InvalidInput(f"{path}: unknown column {name!r}; {suggestion(name, MODE_LISTS)}".removesuffix("; "))
+        raise InvalidInput(f"unknown column {name!r}; {suggestion(name, MODE_LISTS)}".removesuffix("; "))
     if _UNITS[name] and not unit:
-        raise InvalidInput(f"{path}: column {name} has no unit; write it like {name} [{_UNITS[name]}]")
+        raise InvalidInput(f"column {name} has no unit; write it like {name} [{_UNITS[name]}]")
     return name, unit
 
 

@@ -5,15 +5,8 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
 from sonolube.actuator import PiezoStack
-from sonolube.dynamics import (
-    Damper,
-    LumpedChain,
-    Spring,
-    Structure,
-    chain_structure,
-    modal_structure,
-    pin_on_disc_chain,
-)
+from sonolube.dynamics import Structure
+from sonolube.dynamics.chain import Damper, LumpedChain, Spring, chain_structure, modal_structure, pin_on_disc_chain
 from sonolube.rig.file.section import Section, quantity_in_si
 
 Name = Annotated[str, Field(min_length=1)]

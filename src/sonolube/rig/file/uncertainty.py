@@ -7,10 +7,11 @@ from functools import cache
 from types import MappingProxyType
 from typing import Any, get_args, get_origin
 
-from sonolube.errors import InvalidInput, SonolubeError, suggestion
+from sonolube.errors import InvalidInput, suggestion
 from sonolube.rig.distribution import Distribution, Law, LogNormal, Normal, Uniform
 from sonolube.rig.file.section import Section
 from sonolube.rig.file.sections import RigFile
+from sonolube.rig.file.toml_file import prefixed
 from sonolube.units import format_si, to_si
 from sonolube.vocabulary import Quantity
 
@@ -54,10 +55,8 @@ def distributions_of(file: RigFile) -> Mapping[str, Distribution]:
     """
     found = {}
     for key, text in file.uncertainty.items():
-        try:
+        with prefixed(f"uncertainty.{key}"):
             found[key] = _distribution(_quantity(key), text, _value(file, key))
-        except SonolubeError as refusal:
-            raise InvalidInput(f"uncertainty.{key}: {refusal}") from None
     return MappingProxyType(found)
 
 
@@ -113,13 +112,11 @@ def _distribution(known: Quantity, text: str, value: float | None) -> Distributi
         raise InvalidInput(f"the file has no value that {text!r} could be about; give one, or write {EXAMPLES[3]!r}")
     elif kind == "lognormal":
         law = LogNormal(median=value, factor=_factor(rest))
+    elif kind == "normal":
+        law = Normal(middle=value, deviation=_width(kind, rest, unit, value))
     else:
         width = _width(kind, rest, unit, value)
-        law = (
-            Normal(middle=value, deviation=width)
-            if kind == "normal"
-            else Uniform(low=value - width, high=value + width)
-        )
+        law = Uniform(low=value - width, high=value + width)
     lowest, highest = _POSSIBLE.get(name, (0.0, math.inf))
     return Distribution(law=law, lowest=lowest, highest=highest, text=_text(law, unit))
 
