@@ -127,10 +127,9 @@ def _vanishing_reduction() -> Iterator[Row]:
     yield comparison_row(
         "2.2.5-speed-of-no-reduction",
         gain * velocity_ratio * velocity,
-        "Asperity stick-slip, speed from which it has no reduction, with the gain at resonance of "
-        f"{gain:.2g} of its reduction at {1e3 * test.sliding_speed:g} mm/s, with which it still has "
-        f"{100 * reduction:.0f} % at {1e3 * fast.sliding_speed:g} mm/s; without gain "
-        f"{1e3 * velocity_ratio * velocity:.0f} mm/s.",
+        f"Asperity stick-slip, speed from which it has no reduction, with the gain at resonance of {gain:.2g} of its "
+        f"reduction at {1e3 * test.sliding_speed:g} mm/s, with which it still has {100 * reduction:.0f} % at "
+        f"{1e3 * fast.sliding_speed:g} mm/s; without gain {1e3 * velocity_ratio * velocity:.0f} mm/s.",
         suffix="asperity-stick-slip",
     )
     yield comparison_row(

@@ -1,5 +1,6 @@
 """Figures of the Poisson horn by finite elements: sensitivity, paths of surface points, friction along the face."""
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -25,46 +26,44 @@ _HORN_NOTE: Final = (
 )
 
 
-def horn_figures() -> tuple[ReportFigure, ...]:
+def horn_figures() -> Iterator[ReportFigure]:
     """Return the figures of the horn."""
-    return (
-        ReportFigure(
-            name="figure-2-3-horn-assumptions",
-            title="First axial mode under single assumptions",
-            caption="Computed, plain steel block with the constants of Table 3.1. Bands: change from either plain "
-            "block to the printed 20.8 kHz and 20.6 kHz of D 2.1.3; no single shape gives both, for the moduli and "
-            "densities put steel 2 % below aluminium, and D prints it 1 % above.",
-            draw=_assumptions,
-        ),
-        ReportFigure(
-            name="figure-2-4-loci-by-elements",
-            title="Paths of three points on the horns' surfaces, by finite elements",
-            caption=f"Computed. {_HORN_NOTE} All paths are lines but for a hundredth of their length: losses of the "
-            "horn do not open them to the ellipses of D 3.25.",
-            draw=_paths,
-        ),
-        ReportFigure(
-            name="figure-2-4-ellipses-along-the-face",
-            title="Semi-axes of the paths and phase along the horns' faces",
-            caption=f"Computed. {_HORN_NOTE} Points turn the same way all along the face, as energy flows one "
-            "way; D 3.25 has a lag of a quarter turn.",
-            draw=_ellipses,
-        ),
-        ReportFigure(
-            name="table-2-1-friction-along-the-face",
-            title="Friction of a block that slides towards the node, along the horns' faces",
-            caption=f"Computed at 5 mm/s. {_HORN_NOTE} Springs of the contact of Table 3.1 with Mindlin's ratio. Below "
-            "zero the face drives the block: the motor region. Bands: transition regions of Table 2.1.",
-            draw=_friction,
-        ),
-        ReportFigure(
-            name="table-2-1-node-of-the-steel-horn",
-            title="Node of the steel horn under single asymmetries",
-            caption="Computed, steel horn of the printed first mode; drives act on its right end. Band: transition "
-            "region of Table 2.1. A symmetric horn on its resonance has its node in the middle; driven below it, the "
-            "node moves towards the drive.",
-            draw=_nodes,
-        ),
+    yield ReportFigure(
+        name="figure-2-3-horn-assumptions",
+        title="First axial mode under single assumptions",
+        caption="Computed, plain steel block with the constants of Table 3.1. Bands: change from either plain "
+        "block to the printed 20.8 kHz and 20.6 kHz of D 2.1.3; no single shape gives both, for the moduli and "
+        "densities put steel 2 % below aluminium, and D prints it 1 % above.",
+        draw=_assumptions,
+    )
+    yield ReportFigure(
+        name="figure-2-4-loci-by-elements",
+        title="Paths of three points on the horns' surfaces, by finite elements",
+        caption=f"Computed. {_HORN_NOTE} All paths are lines but for a hundredth of their length: losses of the "
+        "horn do not open them to the ellipses of D 3.25.",
+        draw=_paths,
+    )
+    yield ReportFigure(
+        name="figure-2-4-ellipses-along-the-face",
+        title="Semi-axes of the paths and phase along the horns' faces",
+        caption=f"Computed. {_HORN_NOTE} Points turn the same way all along the face, as energy flows one "
+        "way; D 3.25 has a lag of a quarter turn.",
+        draw=_ellipses,
+    )
+    yield ReportFigure(
+        name="table-2-1-friction-along-the-face",
+        title="Friction of a block that slides towards the node, along the horns' faces",
+        caption=f"Computed at 5 mm/s. {_HORN_NOTE} Springs of the contact of Table 3.1 with Mindlin's ratio. Below "
+        "zero the face drives the block: the motor region. Bands: transition regions of Table 2.1.",
+        draw=_friction,
+    )
+    yield ReportFigure(
+        name="table-2-1-node-of-the-steel-horn",
+        title="Node of the steel horn under single asymmetries",
+        caption="Computed, steel horn of the printed first mode; drives act on its right end. Band: transition "
+        "region of Table 2.1. A symmetric horn on its resonance has its node in the middle; driven below it, the "
+        "node moves towards the drive.",
+        draw=_nodes,
     )
 
 

@@ -110,9 +110,8 @@ def _bending() -> Row:
     return comparison_row(
         "2.1.5-coefficient-off",
         si_value("3.1.4-coefficient-2") + slopes["aluminium"] - slopes["steel"],
-        f"Coefficient of the steel horn with the contribution of bending between the pads, by which section 2.1.6 "
-        f"explains the difference: the bent face rises by {1e6 * slopes['aluminium']:.0f} um/m under "
-        f"{_BENDING_LOAD:g} N, that of steel by {1e6 * slopes['steel']:.0f}; pads {1e3 * PAD_DISTANCE:.1f} mm apart "
-        "are assumed.",
+        "Coefficient of the steel horn with the contribution of bending between the pads, by which section 2.1.6 "
+        f"explains the difference: the bent face rises by {1e6 * slopes['aluminium']:.0f} um/m under {_BENDING_LOAD:g} "
+        f"N, that of steel by {1e6 * slopes['steel']:.0f}; pads {1e3 * PAD_DISTANCE:.1f} mm apart are assumed.",
         suffix="bending",
     )

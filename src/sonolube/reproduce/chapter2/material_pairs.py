@@ -27,15 +27,13 @@ def material_pair_rows() -> Iterator[Row]:
     yield from _summary()
 
 
-def material_pair_figures() -> tuple[ReportFigure, ...]:
+def material_pair_figures() -> Iterator[ReportFigure]:
     """Return the figures of section 2.5."""
-    return (
-        ReportFigure(
-            name="table-2-14-pairs",
-            title="Reductions of friction and wear for six pairs of materials",
-            caption="Pin on disc, as printed in Table 2.14. Where titanium takes part, wear did not fall.",
-            draw=_pairs,
-        ),
+    yield ReportFigure(
+        name="table-2-14-pairs",
+        title="Reductions of friction and wear for six pairs of materials",
+        caption="Pin on disc, as printed in Table 2.14. Where titanium takes part, wear did not fall.",
+        draw=_pairs,
     )
 
 

@@ -34,22 +34,19 @@ def poisson_effect_rows() -> Iterator[Row]:
     yield from _friction_reductions()
 
 
-def poisson_effect_figures() -> tuple[ReportFigure, ...]:
+def poisson_effect_figures() -> Iterator[ReportFigure]:
     """Return the figures of section 2.1."""
-    return (
-        ReportFigure(
-            name="figure-2-4-loci",
-            title="Paths of three points on the waveguide's surface",
-            caption="Computed, D 3.22 and 3.25 at the amplitude of section 2.1.2: one inch left of the centre, at the "
-            "centre, one inch right of it. Full: a horn driven on one end, whose normal motion has no delay to the "
-            "axial one, so that the lag is zero on one side and half a turn on the other, and paths are lines. Broken: "
-            "normal motion a quarter turn ahead, the lag of D 3.25, which such a horn does not have, with the sign "
-            "with which the surface moves towards the centre while it is lowest, as the block did; the arrow shows the "
-            "sense of motion.",
-            draw=_paths,
-        ),
-        *horn_figures(),
+    yield ReportFigure(
+        name="figure-2-4-loci",
+        title="Paths of three points on the waveguide's surface",
+        caption="Computed, D 3.22 and 3.25 at the amplitude of section 2.1.2: one inch left of the centre, at the "
+        "centre, one inch right of it. Full: a horn driven on one end, whose normal motion has no delay to the axial "
+        "one, so that the lag is zero on one side and half a turn on the other, and paths are lines. Broken: normal "
+        "motion a quarter turn ahead, the lag of D 3.25, which such a horn does not have, with the sign with which the "
+        "surface moves towards the centre while it is lowest, as the block did; the arrow shows the sense of motion.",
+        draw=_paths,
     )
+    yield from horn_figures()
 
 
 def _uniform_bar_modes() -> Iterator[Row]:

@@ -1,5 +1,6 @@
 """Section 2.3: figures of friction, fluctuation and wear on the modified tribometer, with the cube model."""
 
+from collections.abc import Iterator
 from math import hypot
 from typing import TYPE_CHECKING, Final
 
@@ -22,37 +23,35 @@ _SPEED: Final = "Sliding speed [mm/s]"
 _OFFSET: Final = 1.2  # mm/s between points of one speed, so that none covers another
 
 
-def tribometer_figures() -> tuple[ReportFigure, ...]:
+def tribometer_figures() -> Iterator[ReportFigure]:
     """Return the figures of section 2.3."""
-    return (
-        ReportFigure(
-            name="figure-2-20-friction-against-speed",
-            title="Friction against sliding speed",
-            caption="Points and scatter: Table 2.3. Triangles: the cube (Table 3.2, 2.5 um) times the friction without "
-            "vibration. Its ratio is the same at every speed, so that it misses the benefit that fades with speed.",
-            draw=_friction_against_speed,
-        ),
-        ReportFigure(
-            name="figure-2-22-fluctuation-against-speed",
-            title="Stick-slip fluctuation of friction against sliding speed",
-            caption="Root mean square of the fluctuation and its scatter, Table 2.3.",
-            draw=_fluctuation_against_speed,
-        ),
-        ReportFigure(
-            name="figure-2-27-reductions-against-speed",
-            title="Reductions of friction, fluctuation and wear against sliding speed",
-            caption="Full points: reductions of the forces and fluctuations of Table 2.3 and of the wear rates of "
-            "Table 2.5; bars: the propagated scatter of Table 2.3. Open circles: the friction reductions printed in "
-            "Table 2.5. Points of one speed are drawn side by side.",
-            draw=_reductions_against_speed,
-        ),
-        ReportFigure(
-            name="table-2-7-wear-reduction",
-            title="Wear reduction against revolutions",
-            caption="Points: wear rates of Table 2.7. Line: the cube (Table 3.2, 2.5 um), D 3.26 averaged over the "
-            "separating half period; it does not depend on the distance.",
-            draw=_wear_reduction_against_revolutions,
-        ),
+    yield ReportFigure(
+        name="figure-2-20-friction-against-speed",
+        title="Friction against sliding speed",
+        caption="Points and scatter: Table 2.3. Triangles: the cube (Table 3.2, 2.5 um) times the friction without "
+        "vibration. Its ratio is the same at every speed, so that it misses the benefit that fades with speed.",
+        draw=_friction_against_speed,
+    )
+    yield ReportFigure(
+        name="figure-2-22-fluctuation-against-speed",
+        title="Stick-slip fluctuation of friction against sliding speed",
+        caption="Root mean square of the fluctuation and its scatter, Table 2.3.",
+        draw=_fluctuation_against_speed,
+    )
+    yield ReportFigure(
+        name="figure-2-27-reductions-against-speed",
+        title="Reductions of friction, fluctuation and wear against sliding speed",
+        caption="Full points: reductions of the forces and fluctuations of Table 2.3 and of the wear rates of "
+        "Table 2.5; bars: the propagated scatter of Table 2.3. Open circles: the friction reductions printed in "
+        "Table 2.5. Points of one speed are drawn side by side.",
+        draw=_reductions_against_speed,
+    )
+    yield ReportFigure(
+        name="table-2-7-wear-reduction",
+        title="Wear reduction against revolutions",
+        caption="Points: wear rates of Table 2.7. Line: the cube (Table 3.2, 2.5 um), D 3.26 averaged over the "
+        "separating half period; it does not depend on the distance.",
+        draw=_wear_reduction_against_revolutions,
     )
 
 

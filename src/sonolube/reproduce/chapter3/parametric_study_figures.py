@@ -1,5 +1,6 @@
 """Sections 3.3.4 and 3.3.5, the parametric study: figures of the identified tribometer as D figures 3.13 to 3.18."""
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,53 +27,51 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def parametric_study_figures() -> tuple[ReportFigure, ...]:
+def parametric_study_figures() -> Iterator[ReportFigure]:
     """Return the figures of sections 3.3.4 and 3.3.5."""
-    return (
-        ReportFigure(
-            name="figure-3-13-start-up",
-            title="Start-up of the tribometer",
-            caption="Tip and reaction mass from rest at 28 V and 22 kHz; bands are the extremes of each period. The "
-            f"stack settles in a millisecond, the arm in some thirty. {IDENTIFIED_NOTE}.",
-            draw=_start_up,
-        ),
-        ReportFigure(
-            name="figure-3-15-voltage",
-            title="Drive voltage",
-            caption="The mean rises with the vibration until the mean force is the load again, so that the contact "
-            "parts above rather than presses below. Asperity stick-slip, 22 kHz, 20.3 mm/s. Text of D 3.3.5: "
-            "hopping above 3.8 µm, and friction falls significantly up to 20 V.",
-            draw=_voltage,
-        ),
-        ReportFigure(
-            name="figure-3-16-speed",
-            title="Sliding speed",
-            caption="Faster sliding leaves less reduction at every voltage. Against the velocity ratio the curves do "
-            "not coincide, as those of a kinematic friction model would: contact memory is a second length.",
-            draw=lambda: speed_figure(response_over_speed()),
-        ),
-        ReportFigure(
-            name="figure-3-17-frequency",
-            title="Drive frequency",
-            caption="Around the resonance friction falls in a “v”; over the amplifier's power the tips of the “v”s "
-            "form the envelope that the text describes. Asperity stick-slip, 20.3 mm/s.",
-            draw=lambda: frequency_figure(response_over_frequency()),
-        ),
-        ReportFigure(
-            name="figure-3-17-least-power",
-            title="Voltage and power for one reduction",
-            caption="Voltage and powers at the friction of the tests' 28 V at 22 kHz. The amplifier's power has its "
-            "minimum at resonance; the dissipated power does not, for it is proportional to the square of the "
-            "frequency at a given amplitude. Lines end with the last frequencies at which 200 V suffice.",
-            draw=lambda: power_figure(least_power_over_frequency()),
-        ),
-        ReportFigure(
-            name="figure-3-18-waveform",
-            title="Waveform",
-            caption="0 to 200 V at 22 kHz. The tip moves as a sine under all four waveforms, with the amplitude of "
-            "their fundamentals: 4/π (square), 1, 8/π² (triangle) and 2/π (sawtooth).",
-            draw=lambda: waveform_figure(response_over_waveform()),
-        ),
+    yield ReportFigure(
+        name="figure-3-13-start-up",
+        title="Start-up of the tribometer",
+        caption="Tip and reaction mass from rest at 28 V and 22 kHz; bands are the extremes of each period. The "
+        f"stack settles in a millisecond, the arm in some thirty. {IDENTIFIED_NOTE}.",
+        draw=_start_up,
+    )
+    yield ReportFigure(
+        name="figure-3-15-voltage",
+        title="Drive voltage",
+        caption="The mean rises with the vibration until the mean force is the load again, so that the contact "
+        "parts above rather than presses below. Asperity stick-slip, 22 kHz, 20.3 mm/s. Text of D 3.3.5: "
+        "hopping above 3.8 µm, and friction falls significantly up to 20 V.",
+        draw=_voltage,
+    )
+    yield ReportFigure(
+        name="figure-3-16-speed",
+        title="Sliding speed",
+        caption="Faster sliding leaves less reduction at every voltage. Against the velocity ratio the curves do "
+        "not coincide, as those of a kinematic friction model would: contact memory is a second length.",
+        draw=lambda: speed_figure(response_over_speed()),
+    )
+    yield ReportFigure(
+        name="figure-3-17-frequency",
+        title="Drive frequency",
+        caption="Around the resonance friction falls in a “v”; over the amplifier's power the tips of the “v”s "
+        "form the envelope that the text describes. Asperity stick-slip, 20.3 mm/s.",
+        draw=lambda: frequency_figure(response_over_frequency()),
+    )
+    yield ReportFigure(
+        name="figure-3-17-least-power",
+        title="Voltage and power for one reduction",
+        caption="Voltage and powers at the friction of the tests' 28 V at 22 kHz. The amplifier's power has its "
+        "minimum at resonance; the dissipated power does not, for it is proportional to the square of the "
+        "frequency at a given amplitude. Lines end with the last frequencies at which 200 V suffice.",
+        draw=lambda: power_figure(least_power_over_frequency()),
+    )
+    yield ReportFigure(
+        name="figure-3-18-waveform",
+        title="Waveform",
+        caption="0 to 200 V at 22 kHz. The tip moves as a sine under all four waveforms, with the amplitude of "
+        "their fundamentals: 4/π (square), 1, 8/π² (triangle) and 2/π (sawtooth).",
+        draw=lambda: waveform_figure(response_over_waveform()),
     )
 
 

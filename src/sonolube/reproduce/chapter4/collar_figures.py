@@ -1,5 +1,6 @@
 """Section 4.5, the collar: figures of impedance, of amplitudes over voltage, and of a rod pulled through it."""
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -21,38 +22,36 @@ _ASSUMED: Final = "Dimensions that D does not print are assumed and fitted to 25
 _POINTS: Final = 2001
 
 
-def collar_figures() -> tuple[ReportFigure, ...]:
+def collar_figures() -> Iterator[ReportFigure]:
     """Return the figures of section 4.5; none if a package of the finite elements is missing."""
     if finite_elements_missing():
-        return ()
-    return (
-        ReportFigure(
-            name="figures-4-51-4-53-collar-impedance",
-            title="Impedance of the collar",
-            caption="Left, figure 4.51: base free and clamped, top closed. Right, figure 4.53: top closed and open, "
-            f"base free. {_ASSUMED} Closed, two pairs of half the coupling and less lie below the main one, the only "
-            "one in D; open, one is distinct, while D has three. Below 15 kHz the model has pairs that D does not "
-            "mention. The base is rigidly clamped by its whole lower face.",
-            draw=_impedances,
-        ),
-        ReportFigure(
-            name="figure-4-55-collar-amplitudes",
-            title="Amplitudes of the collar over voltage",
-            caption="Top open, each at its own resonance: the flat of the inner ring, and the base under the stack. "
-            f"{_ASSUMED} Linear, as measured. The base moves a twentieth as much as the ring, clamped a fifth. "
-            "Clamping raises the ring's amplitude by less than a tenth, while in D it is significantly higher: the "
-            "mode is that of the ring and the base is heavy. All amplitudes depend on the losses, which are assumed.",
-            draw=_amplitudes,
-        ),
-        ReportFigure(
-            name="figure-4-57-collar-pull",
-            title="A rod pulled through the collar",
-            caption="28 V peak to peak at the resonance, multi-scale model with the structure of the finite elements. "
-            f"{_ASSUMED} Load assumed {LOAD_AT_ENDS:g} times as high at the ends as in the middle; a higher load "
-            "detunes the resonance and leaves less amplitude, so that friction falls least at the ends. The "
-            "reduction of the work depends on the speed, which is only drawn in D.",
-            draw=_pulled_rod,
-        ),
+        return
+    yield ReportFigure(
+        name="figures-4-51-4-53-collar-impedance",
+        title="Impedance of the collar",
+        caption="Left, figure 4.51: base free and clamped, top closed. Right, figure 4.53: top closed and open, "
+        f"base free. {_ASSUMED} Closed, two pairs of half the coupling and less lie below the main one, the only "
+        "one in D; open, one is distinct, while D has three. Below 15 kHz the model has pairs that D does not "
+        "mention. The base is rigidly clamped by its whole lower face.",
+        draw=_impedances,
+    )
+    yield ReportFigure(
+        name="figure-4-55-collar-amplitudes",
+        title="Amplitudes of the collar over voltage",
+        caption="Top open, each at its own resonance: the flat of the inner ring, and the base under the stack. "
+        f"{_ASSUMED} Linear, as measured. The base moves a twentieth as much as the ring, clamped a fifth. "
+        "Clamping raises the ring's amplitude by less than a tenth, while in D it is significantly higher: the "
+        "mode is that of the ring and the base is heavy. All amplitudes depend on the losses, which are assumed.",
+        draw=_amplitudes,
+    )
+    yield ReportFigure(
+        name="figure-4-57-collar-pull",
+        title="A rod pulled through the collar",
+        caption="28 V peak to peak at the resonance, multi-scale model with the structure of the finite elements. "
+        f"{_ASSUMED} Load assumed {LOAD_AT_ENDS:g} times as high at the ends as in the middle; a higher load "
+        "detunes the resonance and leaves less amplitude, so that friction falls least at the ends. The "
+        "reduction of the work depends on the speed, which is only drawn in D.",
+        draw=_pulled_rod,
     )
 
 

@@ -60,20 +60,17 @@ def lubrication_rows() -> Iterator[Row]:
     yield comparison_row(from_zero, highest, note)
 
 
-def lubrication_figures() -> tuple[ReportFigure, ...]:
+def lubrication_figures() -> Iterator[ReportFigure]:
     """Return the figures of section 4.2."""
-    return (
-        ReportFigure(
-            name="figure-4-27-lubrication-regimes",
-            title="Best method of lubrication over speed and stress",
-            caption="Left: friction over that of the dry contact at 48 MPa. Right: method of the lowest friction; "
-            f"vibration counts in addition to a lubricant if it reduces friction by {100 * _SMALLEST_GAIN:g} %. Load "
-            "sharing with asperity stick-slip; the friction of the film is inferred from the 90 mm/s of D; that "
-            f"fraction and the stress at which asperities carry all, {1e-6 * _FULL_ASPERITY_PRESSURE:g} MPa, are "
-            "assumed. Below 90 mm/s vibration is best at every stress, above it both together, unless the stress is "
-            "low: as in D.",
-            draw=_method_map,
-        ),
+    yield ReportFigure(
+        name="figure-4-27-lubrication-regimes",
+        title="Best method of lubrication over speed and stress",
+        caption="Left: friction over that of the dry contact at 48 MPa. Right: method of the lowest friction; "
+        f"vibration counts in addition to a lubricant if it reduces friction by {100 * _SMALLEST_GAIN:g} %. Load "
+        "sharing with asperity stick-slip; the friction of the film is inferred from the 90 mm/s of D; that fraction "
+        f"and the stress at which asperities carry all, {1e-6 * _FULL_ASPERITY_PRESSURE:g} MPa, are assumed. Below 90 "
+        "mm/s vibration is best at every stress, above it both together, unless the stress is low: as in D.",
+        draw=_method_map,
     )
 
 

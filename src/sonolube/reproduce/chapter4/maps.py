@@ -75,44 +75,41 @@ def map_rows() -> Iterator[Row]:
     yield from (undetermined_row(name, missing) for name, missing in _NOT_COMPUTABLE.items())
 
 
-def map_figures() -> tuple[ReportFigure, ...]:
+def map_figures() -> Iterator[ReportFigure]:
     """Return the figures of the maps."""
-    return (
-        ReportFigure(
-            name="figure-4-9-stress-maps",
-            title="Friction reduction over sliding speed and stress",
-            caption="As D figures 4.9 and 4.10, by the multi-scale model on uncoated steel, at the five voltages of "
-            "Table 4.1. Contours are vertical: the stress has no effect, as in the text except at the arm's "
-            "resonance. For coated steel no parameter but hardness, thickness and roughness is printed.",
-            draw=lambda: map_figure(stress_maps()),
-        ),
-        ReportFigure(
-            name="figure-4-20-power-maps",
-            title="Friction reduction over sliding speed and power",
-            caption="As D figures 4.11, 4.12, 4.20 and B.1 to B.6, by the multi-scale model, for all seven loads. More "
-            "power and less speed reduce friction more, as in the text; no ridge lies within the powers of the "
-            "tests.",
-            draw=lambda: map_figure(power_maps()),
-        ),
-        ReportFigure(
-            name="figure-4-21-reduction-over-speed",
-            title="Model and test over sliding speed",
-            caption="As D figure 4.21. Solid: multi-scale model; curves of 3 and of 9 N coincide in print. "
-            "Dashed: D's efficiency line (D 4.4), which measured runs were fitted to. Points: Table 4.2, the one test "
-            "printed. D's own model met the tests at low speeds; its structure is not printed. With the structure "
-            "identified, and nothing fitted to friction, a third of the reduction comes out at the highest voltage, "
-            "and less of it below. In-plane motion of the pin, which was not measured, could explain most of the rest.",
-            draw=_reduction_over_speed,
-        ),
-        ReportFigure(
-            name="figure-4-11-ridge",
-            title="Power beyond which friction falls no further",
-            caption="The model at 5 N, up to 200 V, far beyond the tests (dash-dotted: their highest power). Dashed: "
-            "power whose doubling reduces friction by less than another 5 %. Dotted: the power of zero friction on "
-            f"D's efficiency line (D 4.3), which has no meaning from {1e3 * line_end():.0f} mm/s on. Both rise with "
-            "the speed, as does the optimum at low speeds of the text; that of the model is some ten times higher.",
-            draw=_ridge,
-        ),
+    yield ReportFigure(
+        name="figure-4-9-stress-maps",
+        title="Friction reduction over sliding speed and stress",
+        caption="As D figures 4.9 and 4.10, by the multi-scale model on uncoated steel, at the five voltages of "
+        "Table 4.1. Contours are vertical: the stress has no effect, as in the text except at the arm's "
+        "resonance. For coated steel no parameter but hardness, thickness and roughness is printed.",
+        draw=lambda: map_figure(stress_maps()),
+    )
+    yield ReportFigure(
+        name="figure-4-20-power-maps",
+        title="Friction reduction over sliding speed and power",
+        caption="As D figures 4.11, 4.12, 4.20 and B.1 to B.6, by the multi-scale model, for all seven loads. More "
+        "power and less speed reduce friction more, as in the text; no ridge lies within the powers of the tests.",
+        draw=lambda: map_figure(power_maps()),
+    )
+    yield ReportFigure(
+        name="figure-4-21-reduction-over-speed",
+        title="Model and test over sliding speed",
+        caption="As D figure 4.21. Solid: multi-scale model; curves of 3 and of 9 N coincide in print. "
+        "Dashed: D's efficiency line (D 4.4), which measured runs were fitted to. Points: Table 4.2, the one test "
+        "printed. D's own model met the tests at low speeds; its structure is not printed. With the structure "
+        "identified, and nothing fitted to friction, a third of the reduction comes out at the highest voltage, "
+        "and less of it below. In-plane motion of the pin, which was not measured, could explain most of the rest.",
+        draw=_reduction_over_speed,
+    )
+    yield ReportFigure(
+        name="figure-4-11-ridge",
+        title="Power beyond which friction falls no further",
+        caption="The model at 5 N, up to 200 V, far beyond the tests (dash-dotted: their highest power). Dashed: "
+        "power whose doubling reduces friction by less than another 5 %. Dotted: the power of zero friction on "
+        f"D's efficiency line (D 4.3), which has no meaning from {1e3 * line_end():.0f} mm/s on. Both rise with "
+        "the speed, as does the optimum at low speeds of the text; that of the model is some ten times higher.",
+        draw=_ridge,
     )
 
 

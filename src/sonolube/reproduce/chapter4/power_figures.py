@@ -1,5 +1,6 @@
 """Section 4.1: figures of actuator power, example test and efficiency coefficient."""
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -27,34 +28,32 @@ _VOLTAGE: Final = "Drive voltage, peak to peak [V]"
 _OFFSET: Final = 3.0  # mm/s between points of one speed
 
 
-def power_figures() -> tuple[ReportFigure, ...]:
+def power_figures() -> Iterator[ReportFigure]:
     """Return the figures of section 4.1 on power and efficiency."""
-    return (
-        ReportFigure(
-            name="table-4-1-actuator-power",
-            title="Power of the actuator against voltage",
-            caption="All powers of Table 4.1 follow from D 1.9 with the whole swing as the highest voltage, a drive up "
-            "from zero; about zero the same swing would take half.",
-            draw=_power,
-        ),
-        ReportFigure(
-            name="table-4-2-example-test",
-            title="Friction and its reduction in the example test",
-            caption="Table 4.2: 5 N, 65.5 mm/s, steel on steel. Squares: reductions of the printed mean forces, which "
-            "differ from those of D, whose averaging is not stated. The cube, with the roughness of Table 3.2, "
-            "has neither speed nor in-plane motion: it falls too early and too slowly. D's efficiency line, at the "
-            "power of D 1.9, follows the first three voltages and then takes all friction away.",
-            draw=_example_test,
-        ),
-        ReportFigure(
-            name="figure-4-13-efficiency",
-            title="Efficiency coefficient against sliding speed",
-            caption="D's line and the points of Table 4.2 at 65.5 mm/s, drawn side by side, with the scatter "
-            f"of the friction. On the line {sufficient_power(example_test()):.1f} W take all friction away; what is "
-            "supplied beyond, at the two highest voltages, only lowers the coefficient. From "
-            f"{1e3 * line_end():.0f} mm/s on the line has no meaning and is refused.",
-            draw=_efficiency,
-        ),
+    yield ReportFigure(
+        name="table-4-1-actuator-power",
+        title="Power of the actuator against voltage",
+        caption="All powers of Table 4.1 follow from D 1.9 with the whole swing as the highest voltage, a drive up "
+        "from zero; about zero the same swing would take half.",
+        draw=_power,
+    )
+    yield ReportFigure(
+        name="table-4-2-example-test",
+        title="Friction and its reduction in the example test",
+        caption="Table 4.2: 5 N, 65.5 mm/s, steel on steel. Squares: reductions of the printed mean forces, which "
+        "differ from those of D, whose averaging is not stated. The cube, with the roughness of Table 3.2, "
+        "has neither speed nor in-plane motion: it falls too early and too slowly. D's efficiency line, at the "
+        "power of D 1.9, follows the first three voltages and then takes all friction away.",
+        draw=_example_test,
+    )
+    yield ReportFigure(
+        name="figure-4-13-efficiency",
+        title="Efficiency coefficient against sliding speed",
+        caption="D's line and the points of Table 4.2 at 65.5 mm/s, drawn side by side, with the scatter "
+        f"of the friction. On the line {sufficient_power(example_test()):.1f} W take all friction away; what is "
+        "supplied beyond, at the two highest voltages, only lowers the coefficient. From "
+        f"{1e3 * line_end():.0f} mm/s on the line has no meaning and is refused.",
+        draw=_efficiency,
     )
 
 

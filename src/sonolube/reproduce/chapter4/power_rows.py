@@ -99,9 +99,8 @@ def line_reduction_row(published: str, test: dict[str, float], *, actuator_power
     """
     off, on = test["intrinsic_friction_force"], float(line_friction(test, actuator_power=actuator_power))
     note = (
-        f"efficiency line at {actuator_power:.3g} W, {test['normal_load']:g} N and"
-        f" {test['sliding_speed'] * 1e3:g} mm/s, from {off:.3g} N; the line ends at"
-        f" {line_end() * 1e3:.0f} mm/s, where it crosses zero"
+        f"efficiency line at {actuator_power:.3g} W, {test['normal_load']:g} N and {test['sliding_speed'] * 1e3:g} "
+        f"mm/s, from {off:.3g} N; the line ends at {line_end() * 1e3:.0f} mm/s, where it crosses zero"
     )
     return comparison_row(published, formulas.friction_reduction(off, on), note)
 

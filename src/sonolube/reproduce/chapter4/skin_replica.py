@@ -68,16 +68,14 @@ def skin_replica_rows() -> Iterator[Row]:
     yield from _soft_layers()
 
 
-def skin_replica_figures() -> tuple[ReportFigure, ...]:
+def skin_replica_figures() -> Iterator[ReportFigure]:
     """Return the figure of section 4.4."""
-    return (
-        ReportFigure(
-            name="section-4-4-skin-replica",
-            title="Friction coefficient on the skin replica",
-            caption="Steel cutter head on a skin replica, 44.3 mm/s and 20 kHz. Filled: coefficients as section 4.4.3 "
-            "prints them. Rings: its forces over the loads of Table 4.6. Arrows: reductions of those forces.",
-            draw=_friction_coefficients,
-        ),
+    yield ReportFigure(
+        name="section-4-4-skin-replica",
+        title="Friction coefficient on the skin replica",
+        caption="Steel cutter head on a skin replica, 44.3 mm/s and 20 kHz. Filled: coefficients as section 4.4.3 "
+        "prints them. Rings: its forces over the loads of Table 4.6. Arrows: reductions of those forces.",
+        draw=_friction_coefficients,
     )
 
 

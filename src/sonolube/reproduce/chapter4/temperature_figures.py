@@ -1,5 +1,6 @@
 """Section 4.3: figures of contact temperature over time, heat over voltage, and superimposed speed over voltage."""
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -32,34 +33,32 @@ if TYPE_CHECKING:
 _VOLTAGE: Final = "Drive voltage, peak to peak [V]"
 
 
-def temperature_figures() -> tuple[ReportFigure, ...]:
+def temperature_figures() -> Iterator[ReportFigure]:
     """Return the figures of section 4.3."""
-    return (
-        ReportFigure(
-            name="figure-4-30-contact-temperature",
-            title="Computed temperature of the contact in time",
-            caption=f"Tests of Table 4.4: sliding from 2 s, five voltages from 12 s on, rest from 32 s. {ASSUMED}; "
-            f"friction {100 * (1 - EXAMPLE_FRICTION_RATIO):.0f} % lower under vibration at every speed, which is "
-            f"printed for 220 mm/s only; {100 * vibration_heat_fraction():.2f} % of the actuator's power in the "
-            "contact. D measured up to 53 degC.",
-            draw=_temperature_over_time,
-        ),
-        ReportFigure(
-            name="figure-4-34-two-factors",
-            title="Heat of the example with vibration over heat without",
-            caption="220 mm/s and 26 MPa; friction 10 % lower at every voltage, while in the text it falls further. "
-            "Friction times superimposed speed, the explanation of D, stays below one at every voltage of the tests. "
-            "With a fraction of the actuator's power, taken from these very statements, the contact cools and warms as "
-            "in D. Triangles point to the temperature in D: below or above that without vibration.",
-            draw=_heat_over_voltage,
-        ),
-        ReportFigure(
-            name="figure-4-32-superimposed-speed",
-            title="Sliding speed with the vibration superimposed",
-            caption="Curves: the resultant of sliding speed and half-wave mean of the vibration velocity, the "
-            "amplitude in proportion to the voltage. Points: Table 4.5, with one misprinted cell, 110 for 112 mm/s.",
-            draw=_superimposed_speeds,
-        ),
+    yield ReportFigure(
+        name="figure-4-30-contact-temperature",
+        title="Computed temperature of the contact in time",
+        caption=f"Tests of Table 4.4: sliding from 2 s, five voltages from 12 s on, rest from 32 s. {ASSUMED}; "
+        f"friction {100 * (1 - EXAMPLE_FRICTION_RATIO):.0f} % lower under vibration at every speed, which is "
+        f"printed for 220 mm/s only; {100 * vibration_heat_fraction():.2f} % of the actuator's power in the "
+        "contact. D measured up to 53 degC.",
+        draw=_temperature_over_time,
+    )
+    yield ReportFigure(
+        name="figure-4-34-two-factors",
+        title="Heat of the example with vibration over heat without",
+        caption="220 mm/s and 26 MPa; friction 10 % lower at every voltage, while in the text it falls further. "
+        "Friction times superimposed speed, the explanation of D, stays below one at every voltage of the tests. "
+        "With a fraction of the actuator's power, taken from these very statements, the contact cools and warms as "
+        "in D. Triangles point to the temperature in D: below or above that without vibration.",
+        draw=_heat_over_voltage,
+    )
+    yield ReportFigure(
+        name="figure-4-32-superimposed-speed",
+        title="Sliding speed with the vibration superimposed",
+        caption="Curves: the resultant of sliding speed and half-wave mean of the vibration velocity, the "
+        "amplitude in proportion to the voltage. Points: Table 4.5, with one misprinted cell, 110 for 112 mm/s.",
+        draw=_superimposed_speeds,
     )
 
 

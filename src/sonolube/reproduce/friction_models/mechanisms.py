@@ -127,20 +127,17 @@ def mechanism_rows() -> Iterator[Row]:
             )
 
 
-def mechanism_figures() -> tuple[ReportFigure, ...]:
+def mechanism_figures() -> Iterator[ReportFigure]:
     """Return the figure of the mechanisms."""
-    return (
-        ReportFigure(
-            name="mechanisms-of-tables-2-3-and-4-2",
-            title="Mechanisms that could explain both Table 2.3 and Table 4.2",
-            caption="Points and scatter: measured. Lines: mechanisms fitted to both tables at once, with the number k "
-            "of fitted parameters and the corrected Akaike criterion, lower being better. Normal vibration cannot: "
-            "with the memory length of Mindlin it has no effect above "
-            f"{1e3 * speeds_of_no_reduction().max():.0f} mm/s in Table 4.2. In-plane motion can, if it is nearly as "
-            "large as the normal one and absent in Table 2.3; a zero error of the string can only if it is as large "
-            "as the friction itself.",
-            draw=_mechanisms_on_both_tables,
-        ),
+    yield ReportFigure(
+        name="mechanisms-of-tables-2-3-and-4-2",
+        title="Mechanisms that could explain both Table 2.3 and Table 4.2",
+        caption="Points and scatter: measured. Lines: mechanisms fitted to both tables at once, with the number k of "
+        "fitted parameters and the corrected Akaike criterion, lower being better. Normal vibration cannot: with the "
+        f"memory length of Mindlin it has no effect above {1e3 * speeds_of_no_reduction().max():.0f} mm/s in Table "
+        "4.2. In-plane motion can, if it is nearly as large as the normal one and absent in Table 2.3; a zero error of "
+        "the string can only if it is as large as the friction itself.",
+        draw=_mechanisms_on_both_tables,
     )
 
 
