@@ -12,7 +12,7 @@ from sonolube.reproduce import formulas
 from sonolube.reproduce.chapter2.tribometer import reductions_of_table_2_3, wear_reductions
 from sonolube.reproduce.chapter2.welder import welder_friction_reductions
 from sonolube.reproduce.plots import single_axes
-from sonolube.reproduce.row import Row, comparison_row, undetermined_row
+from sonolube.reproduce.row import Row, comparison_row, formula_row, undetermined_row
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -49,27 +49,23 @@ def _settings() -> Iterator[Row]:
     for table_id, row in _TESTS:
         v, n, d = (f"table-{table_id}-{column}-{row}" for column in ("sliding_speed", "revolutions", "groove_diameter"))
         time = as_setting(f"table-{table_id}-running_time-{row}")
-        distance = propagate_rounding(mul, v, time)
-        yield comparison_row(f"table-{table_id}-sliding_distance-{row}", distance, "Speed times running time.")
-        yield comparison_row(n, propagate_rounding(turns, v, time, d), "Distance over the length of the groove.")
-        yield comparison_row(v, propagate_rounding(speed, n, time, d), "Turns over time, times the groove's length.")
+        yield formula_row(f"table-{table_id}-sliding_distance-{row}", "Speed times running time.", mul, v, time)
+        yield formula_row(n, "Distance over the length of the groove.", turns, v, time, d)
+        yield formula_row(v, "Turns over time, times the groove's length.", speed, n, time, d)
     yield undetermined_row("table-2.13-nominal_pressure-1", "the radius of the pins' tips, or the first contact area.")
 
 
 def _friction() -> Iterator[Row]:
     """Yield the friction reductions of the text from forces."""
     for section, pair in (("2.5.2", "titanium"), ("2.5.4", "ceramic")):
-        reduction = propagate_rounding(
-            formulas.friction_reduction, f"{section}-friction-{pair}-off", f"{section}-friction-{pair}-on"
-        )
-        yield comparison_row(f"{section}-friction-reduction", reduction, "D 2.1 from the mean forces.")
-    yield comparison_row(
-        "2.5.5-friction-m50-on",
-        propagate_rounding(
-            lambda force, reduction: force * (1 - reduction), "2.5.5-friction-m50-off", "2.5.5-friction-reduction"
-        ),
-        "Force without vibration, less the stated reduction.",
-    )
+        reduction, forces = f"{section}-friction-reduction", (f"{section}-friction-{pair}-{x}" for x in ("off", "on"))
+        yield formula_row(reduction, "D 2.1 from the mean forces.", formulas.friction_reduction, *forces)
+
+    def reduced(force: float, reduction: float) -> float:
+        return force * (1 - reduction)
+
+    note, inputs = "Force without vibration, less the stated reduction.", ("friction-m50-off", "friction-reduction")
+    yield formula_row("2.5.5-friction-m50-on", note, reduced, *(f"2.5.5-{name}" for name in inputs))
     yield undetermined_row("2.5.5-friction-reduction", "the force with vibration: that without is printed twice.")
     for amplitude in ("2.5um", "1um"):
         yield undetermined_row(
@@ -84,14 +80,12 @@ def _summary() -> Iterator[Row]:
         propagate_rounding(formulas.friction_reduction, f"{pair}-off", f"{pair}-on")
         for pair in ("2.5.2-friction-titanium", "2.5.4-friction-ceramic")
     )
+    welder_reductions = welder_friction_reductions(1) + welder_friction_reductions(2)
     titanium_on_titanium = (propagate_rounding(float, f"2.5.3-friction-reduction-{size}") for size in ("2.5um", "1um"))
     for row, (reduction, note) in enumerate(
         (
             (max(reductions_of_table_2_3("friction_force")), "The largest that the forces of Table 2.3 give."),
-            (
-                max(welder_friction_reductions(1) + welder_friction_reductions(2)),
-                "The largest that the forces of Table 2.9 give.",
-            ),
+            (max(welder_reductions), "The largest that the forces of Table 2.9 give."),
             (titanium, "Forces of section 2.5.2."),
             (max(titanium_on_titanium), "The larger of section 2.5.3."),
             (ceramic, "Forces of section 2.5.4."),
@@ -100,12 +94,9 @@ def _summary() -> Iterator[Row]:
         start=1,
     ):
         yield comparison_row(f"table-2.14-friction_reduction-{row}", reduction, note)
-    yield comparison_row(
-        "table-2.14-wear_reduction-1", max(wear_reductions("2.5")), "The largest that the rates of Table 2.5 give."
-    )
-    yield comparison_row(
-        "table-2.14-wear_reduction-2", propagate_rounding(float, "2.4.5-wear-reduction"), "Section 2.4.5."
-    )
+    note = "The largest that the rates of Table 2.5 give."
+    yield comparison_row("table-2.14-wear_reduction-1", max(wear_reductions("2.5")), note)
+    yield formula_row("table-2.14-wear_reduction-2", "Section 2.4.5.", float, "2.4.5-wear-reduction")
     for row in (5, 6):
         yield undetermined_row(f"table-2.14-wear_reduction-{row}", "the worn volumes, shown only as profiles.")
     for measure in ("friction", "wear"):

@@ -19,7 +19,7 @@ from sonolube.friction import (
     sine_stick_slip_ratio,
 )
 from sonolube.published import column_numbers, published_number, published_value, si_value
-from sonolube.reproduce.chapter4.power_rows import nominal_pressure_rows, power_with_note
+from sonolube.reproduce.chapter4.power_rows import nominal_pressure_rows, power_row
 from sonolube.reproduce.plots import axes_row, line_style
 from sonolube.reproduce.row import Row, comparison_row, undetermined_row
 
@@ -42,7 +42,7 @@ _INFERRED: Final = (
 def lubrication_rows() -> Iterator[Row]:
     """Yield the rows of section 4.2."""
     yield from nominal_pressure_rows("4.3")
-    yield comparison_row("table-4.3-actuator_power-1", *power_with_note(si_value("table-4.3-voltage_peak_to_peak-1")))
+    yield power_row("table-4.3-actuator_power-1", si_value("table-4.3-voltage_peak_to_peak-1"))
     yield undetermined_row(
         _LIMIT,
         "friction under Molykote, which is only drawn (Figs. 4.24 to 4.27); by asperity stick-slip and load sharing a "

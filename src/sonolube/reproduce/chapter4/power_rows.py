@@ -8,9 +8,11 @@ from sonolube.metrics import power_for_friction
 from sonolube.published import (
     ComputedValue,
     PrintedNumber,
+    PublishedValue,
     column_numbers,
     propagate_rounding,
     published_number,
+    published_value,
     si_value,
 )
 from sonolube.reproduce import formulas
@@ -27,7 +29,7 @@ from sonolube.reproduce.chapter4.power_map import (
     sufficient_power,
 )
 from sonolube.reproduce.cube import STEEL_ON_STEEL_NOTE
-from sonolube.reproduce.row import Row, comparison_row, range_rows
+from sonolube.reproduce.row import Row, comparison_row, formula_row
 from sonolube.validation.efficiency import efficiency_line
 
 _UNIT_OF_LINE = 1e-9  # mW mm2/(N W) in m2/N
@@ -37,7 +39,7 @@ def power_map_rows() -> Iterator[Row]:
     """Yield the rows of section 4.1 on settings and example test."""
     yield from nominal_pressure_rows("4.1")
     for row, voltage in column_numbers("4.1", "voltage_peak_to_peak").items():
-        yield comparison_row(f"table-4.1-actuator_power-{row}", *power_with_note(voltage.value))
+        yield power_row(f"table-4.1-actuator_power-{row}", voltage.value)
     yield from amplitude_rows("4.1")
     yield _highest_amplitude()
     yield from _settings_of_the_text()
@@ -59,7 +61,7 @@ def nominal_pressure_rows(table_id: str) -> Iterator[Row]:
     """Yield the nominal pressures of a table from its loads and its nominal area."""
     area = published_number(f"table-{table_id}-nominal_area-1")
     for row, load in column_numbers(table_id, "normal_load").items():
-        yield comparison_row(f"table-{table_id}-nominal_pressure-{row}", *_pressure_with_note(load.value, area))
+        yield _pressure_row(f"table-{table_id}-nominal_pressure-{row}", load.value, area)
 
 
 def amplitude_rows(table_id: str) -> Iterator[Row]:
@@ -71,14 +73,15 @@ def amplitude_rows(table_id: str) -> Iterator[Row]:
     note = f"{amplitude.value / highest.value * 1e6:.4f} um per volt peak to peak, from {highest.text} V"
     for row, voltage in voltages.items():
         if 0 < voltage.value < highest.value:
-            computed = propagate_rounding(lambda a, u_highest, u: a / u_highest * u, amplitude, highest, voltage)
-            yield comparison_row(f"table-{table_id}-vibration_amplitude-{row}", computed, note)
+            published = f"table-{table_id}-vibration_amplitude-{row}"
+            yield formula_row(published, note, lambda a, highest, u: a / highest * u, amplitude, highest, voltage)
 
 
-def power_with_note(voltage: float) -> tuple[float, str]:
-    """Return the actuator power at a voltage peak to peak in V, in W, with the note of its row."""
+def power_row(published: PublishedValue | str, voltage: float) -> Row:
+    """Return the row of a published actuator power at a voltage peak to peak in V."""
     power = float(actuator_power(voltage_peak_to_peak=voltage))
-    return power, f"C U_max U_pp f (D 1.9) with U_max = U_pp; U_max = U_pp/2 would give {power / 2:.3g} W"
+    note = f"C U_max U_pp f (D 1.9) with U_max = U_pp; U_max = U_pp/2 would give {power / 2:.3g} W"
+    return comparison_row(published, power, note)
 
 
 def line_reduction_row(published: str, test: dict[str, float], *, actuator_power: float) -> Row:
@@ -105,10 +108,10 @@ def line_reduction_row(published: str, test: dict[str, float], *, actuator_power
     return comparison_row(published, formulas.friction_reduction(off, on), note)
 
 
-def _pressure_with_note(load: float, area: PrintedNumber) -> tuple[ComputedValue, str]:
-    """Return the nominal pressure of a load in N on a printed area, with the note of its row."""
-    pressure = propagate_rounding(partial(truediv, load), area)
-    return pressure, f"{load:g} N over {area.text} mm2, the load taken as exact"
+def _pressure_row(published: PublishedValue | str, load: float, area: PrintedNumber) -> Row:
+    """Return the row of a published nominal pressure of a load in N on a printed area."""
+    note = f"{load:g} N over {area.text} mm2, the load taken as exact"
+    return formula_row(published, note, partial(truediv, load), area)
 
 
 def _highest_amplitude() -> Row:
@@ -128,15 +131,13 @@ def _settings_of_the_text() -> Iterator[Row]:
     for nth in (1, 2):
         inches = published_number(f"4.1.3-groove-diameter-{nth}")
         yield comparison_row(f"4.1.1-diameter-{nth}", inches.value, f"{inches.text} in of section 4.1.3")
-    area = published_number("4.1.1-nominal-area")
-    (low, low_note), (high, high_note) = (
-        _pressure_with_note(load.value, area) for load in published_number("4.1.1-normal-load").limits()
-    )
-    yield from range_rows("4.1.1-stress", low, high, low_note, high_note=high_note)
-    yield comparison_row("4.1.2-efficiency-stress", high, high_note)
+    area, load = published_number("4.1.1-nominal-area"), published_number("4.1.1-normal-load")
+    for limit, newtons in zip(published_value("4.1.1-stress").limits(), (load.low, load.high), strict=True):
+        yield _pressure_row(limit, newtons, area)
+    yield _pressure_row("4.1.2-efficiency-stress", load.high, area)
     first, *_, last = example_points()
-    (lowest, low_note), (highest, high_note) = (power_with_note(point.voltage_peak_to_peak) for point in (first, last))
-    yield from range_rows("4.1.1-power", lowest, highest, low_note, high_note=high_note)
+    for limit, point in zip(published_value("4.1.1-power").limits(), (first, last), strict=True):
+        yield power_row(limit, point.voltage_peak_to_peak)
 
 
 def _example_test() -> Iterator[Row]:
@@ -147,7 +148,7 @@ def _example_test() -> Iterator[Row]:
 
     rounded = speed(si_value("4.1.2-turn-duration"), si_value("4.1.1-diameter-1"))
     note = f"pi times 1.1 in over the time of a turn; with the rounded 28 mm {rounded * 1e3:.1f} mm/s"
-    yield comparison_row("4.1.2-sliding-speed", propagate_rounding(speed, "4.1.2-turn-duration"), note)
+    yield formula_row("4.1.2-sliding-speed", note, speed, "4.1.2-turn-duration")
 
     levels, level = si_value("4.1.1-voltage-count"), si_value("4.1.2-level-duration")
     duration = si_value("4.1.2-vibration-start") + levels * level
@@ -155,8 +156,7 @@ def _example_test() -> Iterator[Row]:
     yield comparison_row("4.1.2-duration", duration, note)
 
     off, on, *_ = column_numbers("4.2", "friction_force").values()
-    drop = propagate_rounding(sub, off, on)
-    yield comparison_row("4.1.2-friction-drop", drop, f"{off.value:g} N less {on.value:g} N")
+    yield formula_row("4.1.2-friction-drop", f"{off.value:g} N less {on.value:g} N", sub, off, on)
 
 
 def _reduction_of_mean_forces(point: ExamplePoint) -> Row:
@@ -191,12 +191,8 @@ def _efficiency(point: ExamplePoint) -> Row:
     intercept = _over_scatter(
         lambda friction: point_efficiency(point, friction=friction) + to_zero_speed, point.friction
     )
-    return comparison_row(
-        "4.1.2-efficiency-intercept",
-        intercept,
-        note + _surplus_power_note(point),
-        suffix=f"at-{point.voltage_peak_to_peak:g}V",
-    )
+    note, suffix = note + _surplus_power_note(point), f"at-{point.voltage_peak_to_peak:g}V"
+    return comparison_row("4.1.2-efficiency-intercept", intercept, note, suffix=suffix)
 
 
 def _line_friction(point: ExamplePoint) -> Row:
@@ -205,12 +201,10 @@ def _line_friction(point: ExamplePoint) -> Row:
     as_printed = test["intrinsic_friction_force"] * (1 + point.actuator_power / sufficient_power(test))
     note = (
         f"D 4.4 solved for the reduced friction, at {point.actuator_power:.3g} W; "
-        f"as printed it would rise to {as_printed:.3g} N"
+        f"as printed it would rise to {as_printed:.3g} N{_surplus_power_note(point)}"
     )
     friction = float(line_friction(test, actuator_power=point.actuator_power))
-    return comparison_row(
-        f"table-4.2-friction_force-{point.row}", friction, note + _surplus_power_note(point), suffix="by-the-line"
-    )
+    return comparison_row(f"table-4.2-friction_force-{point.row}", friction, note, suffix="by-the-line")
 
 
 def _line_power(point: ExamplePoint) -> Row:
