@@ -12,20 +12,9 @@ from functools import cache
 from math import pi
 from typing import Final
 
+from sonolube import friction
 from sonolube.contact import RoughContact, normal_stiffness, separation
 from sonolube.errors import ModelRangeWarning, OutsideRange
-from sonolube.friction import (
-    SpringContact,
-    approximate_normal_ratio,
-    combined_oscillation_ratio,
-    critical_speed,
-    elliptical_traction_ratio,
-    load_balanced_approach,
-    longitudinal_oscillation_ratio,
-    normal_oscillation_ratio,
-    oblique_vibration_ratio,
-    parallel_vibration_ratio,
-)
 from sonolube.validation.free_parameters import APPROACH, IN_PLANE_MOTION, MINDLIN_RATIO, VIBRATION_DIRECTION, per_rig
 from sonolube.validation.model_variant import NORMAL_VIBRATION, ModelVariant
 from sonolube.validation.published_tests import FrictionTest, InPlaneTest
@@ -42,7 +31,7 @@ def load_over_stiffness(contact: RoughContact, load: float) -> float:
 def _coulomb_in_plane(test: InPlaneTest) -> float:
     """Return the friction ratio by Coulomb friction under the measured in-plane vibration. []"""
     return float(
-        oblique_vibration_ratio(
+        friction.oblique_vibration_ratio(
             sliding_speed=test.sliding_speed,
             vibration_velocity=test.vibration_velocity,
             vibration_direction=test.vibration_direction,
@@ -53,7 +42,7 @@ def _coulomb_in_plane(test: InPlaneTest) -> float:
 def _coulomb_longitudinal(test: FrictionTest, in_plane_fraction: float) -> float:
     """Return the friction ratio by Coulomb friction under vibration along the sliding. []"""
     return float(
-        parallel_vibration_ratio(
+        friction.parallel_vibration_ratio(
             sliding_speed=test.sliding_speed, vibration_velocity=in_plane_fraction * _peak_velocity(test)
         )
     )
@@ -62,7 +51,7 @@ def _coulomb_longitudinal(test: FrictionTest, in_plane_fraction: float) -> float
 def _coulomb_oblique(test: FrictionTest, in_plane_fraction: float, vibration_direction: float) -> float:
     """Return the friction ratio by Coulomb friction under vibration oblique to the sliding. []"""
     return float(
-        oblique_vibration_ratio(
+        friction.oblique_vibration_ratio(
             sliding_speed=test.sliding_speed,
             vibration_velocity=in_plane_fraction * _peak_velocity(test),
             vibration_direction=vibration_direction,
@@ -84,13 +73,13 @@ def _spring_parabolic(test: FrictionTest) -> float:
     return _under_normal_oscillation(test, springs, hertz)
 
 
-def _under_normal_oscillation(test: FrictionTest, springs: SpringContact, at_rest: float) -> float:
+def _under_normal_oscillation(test: FrictionTest, springs: friction.SpringContact, at_rest: float) -> float:
     """Return the friction ratio of a spring-coupled contact about the load-balanced approach. []"""
     a = test.vibration_amplitude
     return float(
-        normal_oscillation_ratio(
+        friction.normal_oscillation_ratio(
             springs,
-            approach=load_balanced_approach(springs, approach=at_rest, normal_amplitude=a),
+            approach=friction.load_balanced_approach(springs, approach=at_rest, normal_amplitude=a),
             normal_amplitude=a,
             frequency=test.frequency,
             sliding_speed=test.sliding_speed,
@@ -101,10 +90,10 @@ def _under_normal_oscillation(test: FrictionTest, springs: SpringContact, at_res
 def _spring_approximate(test: FrictionTest) -> float:
     """Return the friction ratio by the published approximation for springs of constant stiffness. []"""
     springs, a = _springs(test, None), test.vibration_amplitude
-    critical = critical_speed(springs, frequency=test.frequency, normal_amplitude=a)
+    critical = friction.critical_speed(springs, frequency=test.frequency, normal_amplitude=a)
     with _range_warnings_as_errors():
         return float(
-            approximate_normal_ratio(
+            friction.approximate_normal_ratio(
                 springs,
                 approach=load_over_stiffness(test.contact, test.normal_load),
                 normal_amplitude=a,
@@ -122,9 +111,9 @@ def _spring_in_plane(
     springs, a = _springs(test, mindlin_ratio), test.vibration_amplitude
     with _range_warnings_as_errors():
         return float(
-            combined_oscillation_ratio(
+            friction.combined_oscillation_ratio(
                 springs,
-                approach=load_balanced_approach(
+                approach=friction.load_balanced_approach(
                     springs, approach=load_over_stiffness(test.contact, test.normal_load), normal_amplitude=a
                 ),
                 frequency=test.frequency,
@@ -142,7 +131,7 @@ def _spring_longitudinal(rig: VibratedRig) -> float:
     assert rig.in_plane_amplitude is not None
     assert rig.frequency is not None
     return float(
-        longitudinal_oscillation_ratio(
+        friction.longitudinal_oscillation_ratio(
             _springs(rig, None),
             approach=load_over_stiffness(rig.contact, rig.normal_load),
             in_plane_amplitude=rig.in_plane_amplitude,
@@ -155,7 +144,7 @@ def _spring_longitudinal(rig: VibratedRig) -> float:
 def _elliptical(test: FrictionTest, in_plane_fraction: float, in_plane_phase: float) -> float:
     """Return the friction ratio by rigid Coulomb friction on an elliptical path. []"""
     return -float(
-        elliptical_traction_ratio(
+        friction.elliptical_traction_ratio(
             normal_load=test.normal_load,
             normal_stiffness=test.normal_load / load_over_stiffness(test.contact, test.normal_load),
             normal_amplitude=test.vibration_amplitude,
@@ -183,9 +172,9 @@ def _peak_velocity(test: FrictionTest) -> float:
     return 2 * pi * test.frequency * test.vibration_amplitude
 
 
-def _springs(test: FrictionTest | VibratedRig, mindlin_ratio: float | None) -> SpringContact:
+def _springs(test: FrictionTest | VibratedRig, mindlin_ratio: float | None) -> friction.SpringContact:
     """Return a spring-coupled contact with a ratio of tangential to normal stiffness, that of Mindlin if None."""
-    return SpringContact(
+    return friction.SpringContact(
         friction_coefficient=test.friction_coefficient,
         mindlin_ratio=test.contact.pair.mindlin_ratio if mindlin_ratio is None else mindlin_ratio,
     )

@@ -4,14 +4,8 @@ from collections.abc import Iterator
 from typing import Final
 
 from sonolube.published import si_value
+from sonolube.reproduce.chapter2 import horn_friction
 from sonolube.reproduce.chapter2.horn_bending import PAD_DISTANCE, bending_line
-from sonolube.reproduce.chapter2.horn_friction import (
-    driven_face,
-    friction_along,
-    friction_on_face,
-    spring_contact,
-    transition_region,
-)
 from sonolube.reproduce.chapter2.poisson_horn import (
     ASSUMED_SOLIDS,
     assumed_shape,
@@ -67,8 +61,8 @@ def _transition_regions() -> Iterator[Row]:
             ("", si_value("2.1.2-welder-frequency"), "driven on its right end at 20 kHz, below its own resonance"),
             ("on-resonance", resonance, f"driven at its own {resonance / 1e3:.1f} kHz"),
         ):
-            friction = friction_on_face(horn, frequency=frequency)
-            for side, limit in zip(("start", "end"), transition_region(friction), strict=True):
+            friction = horn_friction.friction_on_face(horn, frequency=frequency)
+            for side, limit in zip(("start", "end"), horn_friction.transition_region(friction), strict=True):
                 yield comparison_row(
                     f"table-2.1-{side}-{REGION_ROWS[horn]}",
                     limit,
@@ -88,9 +82,9 @@ def _friction() -> Iterator[Row]:
     )
     inch = si_value("2.1.3-outer-points")
     for published, horn, bodies in tests:
-        motion = driven_face(horn, frequency=si_value("2.1.2-welder-frequency"))
-        contact, approach = spring_contact(horn, bodies=bodies)
-        friction = friction_along(motion, contact, approach=approach)
+        motion = horn_friction.driven_face(horn, frequency=si_value("2.1.2-welder-frequency"))
+        contact, approach = horn_friction.spring_contact(horn, bodies=bodies)
+        friction = horn_friction.friction_along(motion, contact, approach=approach)
         driving = ", ".join(f"{-100 * friction.at(x):.0f} % at {name}" for name, x in (("-1", -inch), ("+1", inch)))
         yield comparison_row(
             published,

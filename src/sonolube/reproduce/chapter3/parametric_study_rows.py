@@ -7,16 +7,7 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.published import si_value
-from sonolube.reproduce.chapter3.tribometer_response import (
-    envelope,
-    least_power_over_frequency,
-    resonance,
-    response_over_frequency,
-    response_over_speed,
-    response_over_voltage,
-    response_over_waveform,
-    start_up_from_rest,
-)
+from sonolube.reproduce.chapter3 import tribometer_response
 from sonolube.reproduce.row import Row, comparison_row
 from sonolube.reproduce.tribometer_rigs import IDENTIFIED_NOTE, tribometer_rig
 from sonolube.rig import operating_points
@@ -40,8 +31,8 @@ def parametric_study_rows() -> Iterator[Row]:
 
 def _start_up() -> Iterator[Row]:
     """Yield settling time, residual frequency and amplitude of the start-up."""
-    started = start_up_from_rest()
-    upper = envelope(displacement=started.trajectory.contact.displacement)
+    started = tribometer_response.start_up_from_rest()
+    upper = tribometer_response.envelope(displacement=started.trajectory.contact.displacement)
     unsettled = np.abs(upper.high - upper.high[-1]) > _SETTLED * started.vibration_amplitude
     yield comparison_row(
         "3.3.4-settling-time",
@@ -112,7 +103,7 @@ def _voltage() -> Iterator[Row]:
 
 def _voltages_and_ratios(friction_model: str) -> tuple[Floats, Floats]:
     """Return voltages in V and friction ratios by a friction model."""
-    response = response_over_voltage(friction_model)
+    response = tribometer_response.response_over_voltage(friction_model)
     return response["voltage_peak_to_peak"].values, np.round(response["friction_ratio"].values, _DECIMALS)
 
 
@@ -124,7 +115,7 @@ def _knee(volts: Floats, ratios: Floats) -> float:
 
 def _speed() -> Iterator[Row]:
     """Yield the orders of friction over speed and voltage."""
-    ratios = np.round(response_over_speed()["friction_ratio"].values, _DECIMALS)
+    ratios = np.round(tribometer_response.response_over_speed()["friction_ratio"].values, _DECIMALS)
     note = f"Largest of all steps, 1 mm/s to 1 m/s at {_curves()}, by asperity stick-slip; 1 without any reduction."
     yield comparison_row("3.3.5-speed-order", _largest_step(ratios[:, ::-1].T), note)
     yield comparison_row("3.3.5-speed-voltage-order", _largest_step(ratios), note)
@@ -132,7 +123,7 @@ def _speed() -> Iterator[Row]:
 
 def _frequency() -> Iterator[Row]:
     """Yield friction at resonance over that elsewhere, and its order over the voltage."""
-    response, peak = response_over_frequency(), resonance()
+    response, peak = tribometer_response.response_over_frequency(), tribometer_response.resonance()
     f, ratios = response["frequency"].values, np.round(response["friction_ratio"].values, _DECIMALS)
     at_peak, elsewhere = ratios[:, peak.nearest(f)], ratios[:, peak.outside(f)].min(axis=1)
     yield comparison_row(
@@ -150,7 +141,7 @@ def _frequency() -> Iterator[Row]:
 
 def _power() -> Row:
     """Return the amplifier's power at resonance over the least elsewhere, for one reduction of friction."""
-    study, peak = least_power_over_frequency(), resonance()
+    study, peak = tribometer_response.least_power_over_frequency(), tribometer_response.resonance()
     f, amplifier, dissipated = (study[name].values for name in ("frequency", "actuator_power", "dissipated_power"))
     at_peak, possible = peak.nearest(f), ~np.isnan(amplifier)
     least = int(np.nanargmin(dissipated))
@@ -179,7 +170,7 @@ def _waveforms() -> Iterator[Row]:
 
 def _waveform_ratios(friction_model: str) -> dict[str, float]:
     """Return the friction ratio of each waveform by a friction model. []"""
-    response = response_over_waveform(friction_model)
+    response = tribometer_response.response_over_waveform(friction_model)
     names = [str(name) for name in response["waveform"].values]
     return dict(zip(names, response["friction_ratio"].values.tolist(), strict=True))
 
@@ -196,7 +187,7 @@ def _largest_step(ratios: Floats) -> float:
 
 def _curves() -> str:
     """Return the voltages of the curves as text."""
-    volts = response_over_speed()["voltage_peak_to_peak"].values
+    volts = tribometer_response.response_over_speed()["voltage_peak_to_peak"].values
     return f"{', '.join(f'{u:g}' for u in volts[:-1])} and {volts[-1]:g} V"
 
 

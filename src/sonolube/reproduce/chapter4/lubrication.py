@@ -8,16 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
+from sonolube import friction
 from sonolube.checks import Floats
 from sonolube.figure import ReportFigure
-from sonolube.friction import (
-    BoundaryLubricant,
-    LubricationCoefficients,
-    LubricationMethod,
-    best_lubrication_method,
-    lubrication_coefficients,
-    sine_stick_slip_ratio,
-)
 from sonolube.published import column_numbers, published_number, published_value, si_value
 from sonolube.reproduce.chapter4.power_rows import nominal_pressure_rows, power_row
 from sonolube.reproduce.plots import axes_row, line_style
@@ -86,7 +79,7 @@ def vibrated_ratio(*, sliding_speed: ArrayLike) -> Floats:
     -------
     ndarray, shape of `sliding_speed`
     """
-    return sine_stick_slip_ratio(
+    return friction.sine_stick_slip_ratio(
         decay_length=_DECAY_LENGTH,
         vibration_amplitude=si_value("table-4.3-vibration_amplitude-1"),
         frequency=si_value("table-4.3-frequency-1"),
@@ -94,13 +87,13 @@ def vibrated_ratio(*, sliding_speed: ArrayLike) -> Floats:
     )
 
 
-def molykote() -> BoundaryLubricant:
+def molykote() -> friction.BoundaryLubricant:
     """Return the lubricant whose film has the friction of the vibrated contact at the printed speed."""
     at_limit = float(vibrated_ratio(sliding_speed=si_value(_LIMIT)))
-    return BoundaryLubricant(film_coefficient=at_limit * _DRY, full_asperity_pressure=_FULL_ASPERITY_PRESSURE)
+    return friction.BoundaryLubricant(film_coefficient=at_limit * _DRY, full_asperity_pressure=_FULL_ASPERITY_PRESSURE)
 
 
-def coefficients(*, sliding_speed: ArrayLike, nominal_pressure: ArrayLike) -> LubricationCoefficients:
+def coefficients(*, sliding_speed: ArrayLike, nominal_pressure: ArrayLike) -> friction.LubricationCoefficients:
     """Return the coefficients of friction of the four methods over that of the dry contact.
 
     Parameters
@@ -114,7 +107,7 @@ def coefficients(*, sliding_speed: ArrayLike, nominal_pressure: ArrayLike) -> Lu
     -------
     LubricationCoefficients
     """
-    return lubrication_coefficients(
+    return friction.lubrication_coefficients(
         molykote(),
         friction_coefficient=_DRY,
         friction_ratio=vibrated_ratio(sliding_speed=sliding_speed),
@@ -152,11 +145,11 @@ def _method_map() -> "Figure":
     left.set(xlabel="Sliding speed [mm/s]", ylabel="Friction over dry friction [1]", ylim=(0.4, 1.05))
     left.legend(loc="lower right")
     stresses = np.linspace(5e6, 80e6, 151)
-    best = best_lubrication_method(
+    best = friction.best_lubrication_method(
         coefficients(sliding_speed=speeds[np.newaxis, :], nominal_pressure=stresses[:, np.newaxis]),
         smallest_gain=_SMALLEST_GAIN,
     )
-    names = [str(method) for method in LubricationMethod]
+    names = [str(method) for method in friction.LubricationMethod]
     numbers = np.vectorize(names.index)(best)
     right.pcolormesh(
         1e3 * speeds,

@@ -8,17 +8,7 @@ import numpy as np
 from sonolube.figure import COLOURS, MARKERS, ReportFigure
 from sonolube.published import column_numbers, table
 from sonolube.reproduce import formulas
-from sonolube.reproduce.chapter4.power_map import (
-    actuator_power,
-    cube_friction,
-    example_points,
-    example_test,
-    line_efficiency,
-    line_end,
-    line_friction,
-    point_efficiency,
-    sufficient_power,
-)
+from sonolube.reproduce.chapter4 import power_map
 from sonolube.reproduce.plots import axes_row, draw_printed, line_style, single_axes
 
 if TYPE_CHECKING:
@@ -30,6 +20,7 @@ _OFFSET: Final = 3.0  # mm/s between points of one speed
 
 def power_figures() -> Iterator[ReportFigure]:
     """Return the figures of section 4.1 on power and efficiency."""
+    sufficient = power_map.sufficient_power(power_map.example_test())
     yield ReportFigure(
         name="table-4-1-actuator-power",
         title="Power of the actuator against voltage",
@@ -50,9 +41,9 @@ def power_figures() -> Iterator[ReportFigure]:
         name="figure-4-13-efficiency",
         title="Efficiency coefficient against sliding speed",
         caption="D's line and the points of Table 4.2 at 65.5 mm/s, drawn side by side, with the scatter "
-        f"of the friction. On the line {sufficient_power(example_test()):.1f} W take all friction away; what is "
+        f"of the friction. On the line {sufficient:.1f} W take all friction away; what is "
         "supplied beyond, at the two highest voltages, only lowers the coefficient. From "
-        f"{1e3 * line_end():.0f} mm/s on the line has no meaning and is refused.",
+        f"{1e3 * power_map.line_end():.0f} mm/s on the line has no meaning and is refused.",
         draw=_efficiency,
     )
 
@@ -61,7 +52,7 @@ def _power() -> "Figure":
     """Draw the actuator power of Table 4.1 with D 1.9."""
     figure, axes = single_axes()
     swing = np.linspace(0, 28, 141)
-    power = actuator_power(voltage_peak_to_peak=swing)
+    power = power_map.actuator_power(voltage_peak_to_peak=swing)
     axes.plot(swing, power, **line_style(0), label="D 1.9, highest voltage = swing")
     axes.plot(swing, power / 2, **line_style(1), label="D 1.9, highest voltage = swing/2")
     columns = table("4.1").columns
@@ -75,10 +66,12 @@ def _power() -> "Figure":
 def _example_test() -> "Figure":
     """Draw friction and friction reduction of Table 4.2 with the cube and the efficiency line."""
     figure, (left, right) = axes_row(2, (7.8, 3.8))
-    off = example_test()["intrinsic_friction_force"]
+    off = power_map.example_test()["intrinsic_friction_force"]
     swing = np.linspace(0, 28, 1121)  # resolves the corner of the line
-    cube = cube_friction(voltage_peak_to_peak=swing)
-    line = line_friction(example_test(), actuator_power=actuator_power(voltage_peak_to_peak=swing))
+    cube = power_map.cube_friction(voltage_peak_to_peak=swing)
+    line = power_map.line_friction(
+        power_map.example_test(), actuator_power=power_map.actuator_power(voltage_peak_to_peak=swing)
+    )
     models = (("cube, D 3.15", cube), ("efficiency line, D 4.4 solved for reduced friction", line))
     for index, (label, friction) in enumerate(models):
         for axes, curve in ((left, friction), (right, 100 * (1 - friction / off))):
@@ -109,19 +102,19 @@ def _example_test() -> "Figure":
 def _efficiency() -> "Figure":
     """Draw the efficiency line with the efficiency coefficients of Table 4.2."""
     figure, axes = single_axes()
-    end = line_end()
+    end = power_map.line_end()
     speeds = np.linspace(0, end * (1 - 1e-9), 101)
-    axes.plot(1e3 * speeds, 1e9 * line_efficiency(sliding_speed=speeds), color="black", label="line of D 4.2")
+    axes.plot(1e3 * speeds, 1e9 * power_map.line_efficiency(sliding_speed=speeds), color="black", label="line of D 4.2")
     axes.axvspan(1e3 * end, 260, color="0.88", zorder=0)
     axes.text(245, 0.42, f"above {1e3 * end:.0f} mm/s: refused", rotation=90, ha="center", va="center")
-    points = example_points()
+    points = power_map.example_points()
     for index, point in enumerate(points):
         low, mean, high = (
-            1e9 * point_efficiency(point, friction=friction)
+            1e9 * power_map.point_efficiency(point, friction=friction)
             for friction in (point.friction.high, point.friction.value, point.friction.low)
         )
         axes.errorbar(
-            1e3 * example_test()["sliding_speed"] + _OFFSET * (index - (len(points) - 1) / 2),
+            1e3 * power_map.example_test()["sliding_speed"] + _OFFSET * (index - (len(points) - 1) / 2),
             mean,
             yerr=[[mean - low], [high - mean]],
             fmt=MARKERS[index],

@@ -16,18 +16,7 @@ from sonolube.published import (
     si_value,
 )
 from sonolube.reproduce import formulas
-from sonolube.reproduce.chapter4.power_map import (
-    ExamplePoint,
-    actuator_power,
-    cube_friction,
-    example_points,
-    example_test,
-    line_efficiency,
-    line_end,
-    line_friction,
-    point_efficiency,
-    sufficient_power,
-)
+from sonolube.reproduce.chapter4 import power_map
 from sonolube.reproduce.cube import STEEL_ON_STEEL_NOTE
 from sonolube.reproduce.row import Row, comparison_row, formula_row
 from sonolube.validation.efficiency import efficiency_line
@@ -44,14 +33,14 @@ def power_map_rows() -> Iterator[Row]:
     yield _highest_amplitude()
     yield from _settings_of_the_text()
     yield from _example_test()
-    for point in example_points():
+    for point in power_map.example_points():
         yield _reduction_of_mean_forces(point)
         yield _cube_friction(point)
         yield _efficiency(point)
         yield _line_friction(point)
         yield _line_power(point)
-    slowest = example_test() | {"sliding_speed": published_number("table-4.1-sliding_speed-1").low}
-    first, *_, last = example_points()
+    slowest = power_map.example_test() | {"sliding_speed": published_number("table-4.1-sliding_speed-1").low}
+    first, *_, last = power_map.example_points()
     yield line_reduction_row("4.1.2-reduction-lowest-voltage", slowest, actuator_power=first.actuator_power)
     yield line_reduction_row("4.1.2-reduction-highest-voltage", slowest, actuator_power=last.actuator_power)
     yield _intrinsic_friction()
@@ -79,7 +68,7 @@ def amplitude_rows(table_id: str) -> Iterator[Row]:
 
 def power_row(published: PublishedValue | str, voltage: float) -> Row:
     """Return the row of a published actuator power at a voltage peak to peak in V."""
-    power = float(actuator_power(voltage_peak_to_peak=voltage))
+    power = float(power_map.actuator_power(voltage_peak_to_peak=voltage))
     note = f"C U_max U_pp f (D 1.9) with U_max = U_pp; U_max = U_pp/2 would give {power / 2:.3g} W"
     return comparison_row(published, power, note)
 
@@ -100,10 +89,10 @@ def line_reduction_row(published: str, test: dict[str, float], *, actuator_power
     -------
     Row
     """
-    off, on = test["intrinsic_friction_force"], float(line_friction(test, actuator_power=actuator_power))
+    off, on = test["intrinsic_friction_force"], float(power_map.line_friction(test, actuator_power=actuator_power))
     note = (
         f"efficiency line at {actuator_power:.3g} W, {test['normal_load']:g} N and {test['sliding_speed'] * 1e3:g} "
-        f"mm/s, from {off:.3g} N; the line ends at {line_end() * 1e3:.0f} mm/s, where it crosses zero"
+        f"mm/s, from {off:.3g} N; the line ends at {power_map.line_end() * 1e3:.0f} mm/s, where it crosses zero"
     )
     return comparison_row(published, formulas.friction_reduction(off, on), note)
 
@@ -135,7 +124,7 @@ def _settings_of_the_text() -> Iterator[Row]:
     for limit, newtons in zip(published_value("4.1.1-stress").limits(), (load.low, load.high), strict=True):
         yield _pressure_row(limit, newtons, area)
     yield _pressure_row("4.1.2-efficiency-stress", load.high, area)
-    first, *_, last = example_points()
+    first, *_, last = power_map.example_points()
     for limit, point in zip(published_value("4.1.1-power").limits(), (first, last), strict=True):
         yield power_row(limit, point.voltage_peak_to_peak)
 
@@ -159,18 +148,18 @@ def _example_test() -> Iterator[Row]:
     yield formula_row("4.1.2-friction-drop", f"{off.value:g} N less {on.value:g} N", sub, off, on)
 
 
-def _reduction_of_mean_forces(point: ExamplePoint) -> Row:
+def _reduction_of_mean_forces(point: power_map.ExamplePoint) -> Row:
     """Return the friction reduction of the mean forces of Table 4.2 at a voltage."""
-    off, on = example_test()["intrinsic_friction_force"], point.friction.value
+    off, on = power_map.example_test()["intrinsic_friction_force"], point.friction.value
     note = f"D 2.1 from the mean forces, {off:g} N and {on:g} N"
     # compared within the scatter of D alone: the rounding of the forces would hide that D averaged otherwise, E17
     return comparison_row(f"table-4.2-friction_reduction-{point.row}", formulas.friction_reduction(off, on), note)
 
 
-def _cube_friction(point: ExamplePoint) -> Row:
+def _cube_friction(point: power_map.ExamplePoint) -> Row:
     """Return the friction of the cube at a voltage."""
-    off = example_test()["intrinsic_friction_force"]
-    friction = float(cube_friction(voltage_peak_to_peak=point.voltage_peak_to_peak))
+    off = power_map.example_test()["intrinsic_friction_force"]
+    friction = float(power_map.cube_friction(voltage_peak_to_peak=point.voltage_peak_to_peak))
     note = (
         f"cube, D 3.15: ratio {friction / off:.3f} of {off:g} N; roughness of Table 3.2; {STEEL_ON_STEEL_NOTE};"
         " neither sliding speed nor in-plane motion of the tip enters"
@@ -178,40 +167,40 @@ def _cube_friction(point: ExamplePoint) -> Row:
     return comparison_row(f"table-4.2-friction_force-{point.row}", friction, note, suffix="by-the-cube")
 
 
-def _efficiency(point: ExamplePoint) -> Row:
+def _efficiency(point: power_map.ExamplePoint) -> Row:
     """Return the intercept of the efficiency line from the efficiency coefficient at a voltage."""
-    line, speed = efficiency_line(), example_test()["sliding_speed"]
+    line, speed = efficiency_line(), power_map.example_test()["sliding_speed"]
     to_zero_speed = -line.slope * speed
-    coefficient = point_efficiency(point, friction=point.friction.value)
-    on_line = float(line_efficiency(sliding_speed=speed))
+    coefficient = power_map.point_efficiency(point, friction=point.friction.value)
+    on_line = float(power_map.line_efficiency(sliding_speed=speed))
     note = (
         f"D 4.1 at {point.voltage_peak_to_peak:g} V gives {coefficient / _UNIT_OF_LINE:.3f}, the line"
         f" {on_line / _UNIT_OF_LINE:.3f} mW mm2/(N W); carried to zero speed by the printed slope"
     )
     intercept = _over_scatter(
-        lambda friction: point_efficiency(point, friction=friction) + to_zero_speed, point.friction
+        lambda friction: power_map.point_efficiency(point, friction=friction) + to_zero_speed, point.friction
     )
     note, suffix = note + _surplus_power_note(point), f"at-{point.voltage_peak_to_peak:g}V"
     return comparison_row("4.1.2-efficiency-intercept", intercept, note, suffix=suffix)
 
 
-def _line_friction(point: ExamplePoint) -> Row:
+def _line_friction(point: power_map.ExamplePoint) -> Row:
     """Return the friction on the efficiency line at a voltage."""
-    test = example_test()
-    as_printed = test["intrinsic_friction_force"] * (1 + point.actuator_power / sufficient_power(test))
+    test = power_map.example_test()
+    as_printed = test["intrinsic_friction_force"] * (1 + point.actuator_power / power_map.sufficient_power(test))
     note = (
         f"D 4.4 solved for the reduced friction, at {point.actuator_power:.3g} W; "
         f"as printed it would rise to {as_printed:.3g} N{_surplus_power_note(point)}"
     )
-    friction = float(line_friction(test, actuator_power=point.actuator_power))
+    friction = float(power_map.line_friction(test, actuator_power=point.actuator_power))
     return comparison_row(f"table-4.2-friction_force-{point.row}", friction, note, suffix="by-the-line")
 
 
-def _line_power(point: ExamplePoint) -> Row:
+def _line_power(point: power_map.ExamplePoint) -> Row:
     """Return the power on the efficiency line for the friction at a voltage."""
 
     def power(friction: float) -> float:
-        return float(power_for_friction(efficiency_line(), reduced_friction_force=friction, **example_test()))
+        return float(power_for_friction(efficiency_line(), reduced_friction_force=friction, **power_map.example_test()))
 
     voltages = column_numbers("4.1", "voltage_peak_to_peak")
     row = next(row for row, voltage in voltages.items() if voltage.value == point.voltage_peak_to_peak)
@@ -220,9 +209,9 @@ def _line_power(point: ExamplePoint) -> Row:
     return comparison_row(f"table-4.1-actuator_power-{row}", power_over_scatter, note, suffix="by-the-line")
 
 
-def _surplus_power_note(point: ExamplePoint) -> str:
+def _surplus_power_note(point: power_map.ExamplePoint) -> str:
     """Return the note on power beyond the sufficient one; empty below it."""
-    sufficient = sufficient_power(example_test())
+    sufficient = power_map.sufficient_power(power_map.example_test())
     if point.actuator_power <= sufficient:
         return ""
     return (
@@ -233,7 +222,7 @@ def _surplus_power_note(point: ExamplePoint) -> str:
 
 def _intrinsic_friction() -> Row:
     """Return the friction without vibration of section 4.1.3 from Table 4.2."""
-    test = example_test()
+    test = power_map.example_test()
     off, load = test["intrinsic_friction_force"], test["normal_load"]
     note = f"friction of Table 4.2 at {load:g} N; over that load a coefficient of {off / load:.3f}"
     return comparison_row("4.1.3-friction-uncoated", off, note)
