@@ -6,6 +6,7 @@ from typing import Final
 
 import numpy as np
 
+from sonolube.checks import Floats
 from sonolube.contact import RoughContact, separation
 from sonolube.friction import (
     DahlFriction,
@@ -49,7 +50,7 @@ def _lugre(
     stribeck_velocity: float = 1.0,
     in_plane_fraction: float = 0.0,
     in_plane_phase: float = 0.0,
-) -> float:
+) -> Floats:
     """Return the friction ratio by the law of LuGre, the sliding friction of the test on its Stribeck curve. []"""
     static_excess = (static_friction_ratio - 1) * exp(-((test.sliding_speed / stribeck_velocity) ** 2))
     sliding = test.friction_coefficient * test.normal_load / (1 + static_excess)
@@ -63,10 +64,8 @@ def _lugre(
     )
     motion = balanced_motion(test.contact, test.normal_load, test.vibration_amplitude, test.frequency)
     speed = test.sliding_speed
-    return float(
-        lugre_under_vibration(
-            law, motion, sliding_speed=speed, in_plane_fraction=in_plane_fraction, in_plane_phase=in_plane_phase
-        )
+    return lugre_under_vibration(
+        law, motion, sliding_speed=speed, in_plane_fraction=in_plane_fraction, in_plane_phase=in_plane_phase
     )
 
 

@@ -5,6 +5,7 @@ from functools import cache
 from typing import Final
 
 from sonolube import friction
+from sonolube.checks import Floats
 from sonolube.contact import GapMotion, RoughContact, decay_length, load_balanced_motion, separation, sinusoidal_motion
 from sonolube.validation.free_parameters import (
     AMPLITUDE_FRACTION,
@@ -28,7 +29,7 @@ def balanced_motion(contact: RoughContact, load: float, amplitude: float, freque
 
 def asperity_stick_slip(
     test: FrictionTest, *, memory_length: float, in_plane_fraction: float = 0.0, in_plane_phase: float = 0.0
-) -> float:
+) -> Floats:
     """Return the friction ratio of a test by asperity stick-slip about the load-balanced mean gap. []
 
     Parameters
@@ -47,22 +48,20 @@ def asperity_stick_slip(
     """
     if in_plane_fraction == 0:
         at_rest = separation(test.contact, normal_load=test.normal_load)
-        return float(
-            friction.sine_stick_slip_ratio(
-                decay_length=decay_length(test.contact, separation=at_rest),
-                vibration_amplitude=test.vibration_amplitude,
-                frequency=test.frequency,
-                sliding_speed=test.sliding_speed,
-                memory_length=memory_length,
-            )
+        return friction.sine_stick_slip_ratio(
+            decay_length=decay_length(test.contact, separation=at_rest),
+            vibration_amplitude=test.vibration_amplitude,
+            frequency=test.frequency,
+            sliding_speed=test.sliding_speed,
+            memory_length=memory_length,
         )
     model = friction.AsperityStickSlip(
         memory_length=memory_length, in_plane_fraction=in_plane_fraction, in_plane_phase=in_plane_phase
     )
-    return float(model.ratio(test.contact, _balanced(test), sliding_speed=test.sliding_speed))
+    return model.ratio(test.contact, _balanced(test), sliding_speed=test.sliding_speed)
 
 
-def mindlin_stick_slip(test: FrictionTest, friction_coefficient_factor: float = 1.0) -> float:
+def mindlin_stick_slip(test: FrictionTest, friction_coefficient_factor: float = 1.0) -> Floats:
     """Return the friction ratio of a test by asperity stick-slip with the memory length of Mindlin. []"""
     length = friction.mindlin_memory_length(
         test.contact,
@@ -97,19 +96,14 @@ def _kinematic(test: FrictionTest, amplitude_fraction: float = 1.0) -> float:
 
 def _bristle_with_holder(
     test: FrictionTest, holder_compliance: float = 0.0, in_plane_fraction: float = 0.0, in_plane_phase: float = 0.0
-) -> float:
+) -> Floats:
     """Return the friction ratio by a bristle of Mindlin's stiffness on a rigid or compliant holder. []"""
     holder = friction.Holder(holder_stiffness=1 / holder_compliance) if holder_compliance > 0 else friction.Holder()
     model = friction.BristleWithHolder(
         **asdict(holder), in_plane_fraction=in_plane_fraction, in_plane_phase=in_plane_phase
     )
-    return float(
-        model.ratio(
-            test.contact,
-            _balanced(test),
-            sliding_speed=test.sliding_speed,
-            friction_coefficient=test.friction_coefficient,
-        )
+    return model.ratio(
+        test.contact, _balanced(test), sliding_speed=test.sliding_speed, friction_coefficient=test.friction_coefficient
     )
 
 

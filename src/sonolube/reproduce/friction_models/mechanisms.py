@@ -156,7 +156,7 @@ def _with_zero_error(
     zero_error: float = 0.0,
     in_plane_fraction: float = 0.0,
     in_plane_phase: float = 0.0,
-) -> float:
+) -> Floats:
     """Return the ratio of two force readings that both lack the same zero error. []"""
     ratio = asperity_stick_slip(
         test, memory_length=memory_length, in_plane_fraction=in_plane_fraction, in_plane_phase=in_plane_phase
@@ -165,7 +165,7 @@ def _with_zero_error(
     return (ratio * (reading + zero_error) - zero_error) / reading
 
 
-def _with_slack_string(test: FrictionTest, memory_length: float) -> float:
+def _with_slack_string(test: FrictionTest, memory_length: float) -> Floats:
     """Return the ratio of two force readings by a string that is slack on the rig of Table 4.2. []"""
     return _with_zero_error(test, memory_length, SLACK if test.set_name in RIGS["power map"] else 0.0)
 
