@@ -9,20 +9,8 @@ from sonolube.checks import Floats
 from sonolube.figure import ReportFigure
 from sonolube.metrics import peak_vibration_velocity, superimposed_speed
 from sonolube.published import si_value, table
+from sonolube.reproduce.chapter4 import temperature_tests as tests
 from sonolube.reproduce.chapter4.power_map import actuator_power, vibration_amplitude
-from sonolube.reproduce.chapter4.temperature_tests import (
-    ASSUMED,
-    EXAMPLE_FRICTION_RATIO,
-    ROOM_TEMPERATURE,
-    TemperatureTest,
-    example_heat,
-    history,
-    loads,
-    speeds,
-    vibration_heat_fraction,
-    vibration_heat_window,
-    voltages,
-)
 from sonolube.reproduce.plots import axes_row, curve_style, line_style, point_style, single_axes
 from sonolube.thermal import superimposed_heat_rate
 
@@ -38,9 +26,9 @@ def temperature_figures() -> Iterator[ReportFigure]:
     yield ReportFigure(
         name="figure-4-30-contact-temperature",
         title="Computed temperature of the contact in time",
-        caption=f"Tests of Table 4.4: sliding from 2 s, five voltages from 12 s on, rest from 32 s. {ASSUMED}; "
-        f"friction {100 * (1 - EXAMPLE_FRICTION_RATIO):.0f} % lower under vibration at every speed, which is "
-        f"printed for 220 mm/s only; {100 * vibration_heat_fraction():.2f} % of the actuator's power in the "
+        caption=f"Tests of Table 4.4: sliding from 2 s, five voltages from 12 s on, rest from 32 s. {tests.ASSUMED}; "
+        f"friction {100 * (1 - tests.EXAMPLE_FRICTION_RATIO):.0f} % lower under vibration at every speed, which is "
+        f"printed for 220 mm/s only; {100 * tests.vibration_heat_fraction():.2f} % of the actuator's power in the "
         "contact. D measured up to 53 degC.",
         draw=_temperature_over_time,
     )
@@ -65,12 +53,12 @@ def temperature_figures() -> Iterator[ReportFigure]:
 def _temperature_over_time() -> "Figure":
     """Draw the computed temperature of the contact over time at both loads."""
     figure, panels = axes_row(2, (7.8, 3.6), sharey=True)
-    for axes, load in zip(panels, loads(), strict=True):
-        for index, speed in enumerate(speeds()):
-            record = history(TemperatureTest(normal_load=float(load), sliding_speed=float(speed)))
+    for axes, load in zip(panels, tests.loads(), strict=True):
+        for index, speed in enumerate(tests.speeds()):
+            record = tests.history(tests.TemperatureTest(normal_load=float(load), sliding_speed=float(speed)))
             axes.plot(
                 record.time,
-                ROOM_TEMPERATURE - 273.15 + record.temperature_rise,
+                tests.ROOM_TEMPERATURE - 273.15 + record.temperature_rise,
                 **line_style(index),
                 label=f"{1e3 * speed:.0f} mm/s",
             )
@@ -88,27 +76,27 @@ def _heat_over_voltage() -> "Figure":
     swing = np.linspace(0.0, 28.0, 141)
     speed = si_value("4.3.4-example-speed")
     published = superimposed_heat_rate(
-        friction_force=EXAMPLE_FRICTION_RATIO, sliding_speed=speed, vibration_velocity=_peak_velocity(swing)
+        friction_force=tests.EXAMPLE_FRICTION_RATIO, sliding_speed=speed, vibration_velocity=_peak_velocity(swing)
     )
     axes.plot(swing, published / speed, **line_style(1), label="friction × superimposed speed (D)")
-    supplied = actuator_power(voltage_peak_to_peak=swing) / example_heat()
-    low, high = vibration_heat_window()
+    supplied = actuator_power(voltage_peak_to_peak=swing) / tests.example_heat()
+    low, high = tests.vibration_heat_window()
     axes.fill_between(
         swing,
-        EXAMPLE_FRICTION_RATIO + low * supplied,
-        EXAMPLE_FRICTION_RATIO + high * supplied,
+        tests.EXAMPLE_FRICTION_RATIO + low * supplied,
+        tests.EXAMPLE_FRICTION_RATIO + high * supplied,
         color="0.85",
         label="limits of the fraction",
     )
     axes.plot(
         swing,
-        EXAMPLE_FRICTION_RATIO + vibration_heat_fraction() * supplied,
+        tests.EXAMPLE_FRICTION_RATIO + tests.vibration_heat_fraction() * supplied,
         **line_style(0),
-        label=f"friction + {100 * vibration_heat_fraction():.2f} % of the power",
+        label=f"friction + {100 * tests.vibration_heat_fraction():.2f} % of the power",
     )
     for sense, marker, places, height in (
-        ("below one", "v", voltages()[:2], 0.985),
-        ("above one", "^", voltages()[3:], 1.015),
+        ("below one", "v", tests.voltages()[:2], 0.985),
+        ("above one", "^", tests.voltages()[3:], 1.015),
     ):
         axes.plot(places, np.full(places.size, height), marker, color="black", label=f"{sense}, section 4.3.4")
     axes.axhline(1.0, color="0.4", linewidth=0.8)

@@ -5,18 +5,10 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from sonolube import friction
 from sonolube.checks import Floats
 from sonolube.contact import load_balanced_motion, sinusoidal_motion
 from sonolube.figure import COLOURS, MARKERS, ReportFigure
-from sonolube.friction import (
-    AsperityStickSlip,
-    BristleWithHolder,
-    Dong2015FullPeriod,
-    Dong2015HalfPeriod,
-    Dong2015LoadBalanced,
-    Kinematic,
-    mindlin_memory_length,
-)
 from sonolube.reproduce.friction_models.variant_rows import DEFAULT, reported_fits
 from sonolube.reproduce.plots import line_style, single_axes
 from sonolube.validation.assessment import (
@@ -106,24 +98,28 @@ def _curves(speeds: Floats) -> Iterator[tuple[str, Floats]]:
     balanced = load_balanced_motion(contact, unbalanced)
     fits = {fit.variant.name: fit for fit in reported_fits()}
     fraction, memory = fits["kinematic-fitted"].values[0], fits[DEFAULT].values[0]
-    mindlin = float(mindlin_memory_length(contact, friction_coefficient=mu, normal_load=test.normal_load))
+    mindlin = float(friction.mindlin_memory_length(contact, friction_coefficient=mu, normal_load=test.normal_load))
     for label, model, motion in (
-        ("cube, full period", Dong2015FullPeriod(), unbalanced),
-        ("cube, separating half period", Dong2015HalfPeriod(), unbalanced),
-        ("cube, load balanced", Dong2015LoadBalanced(), unbalanced),
-        ("kinematic", Kinematic(), balanced),
-        (f"kinematic, {fraction:.2f} of the\namplitude (fitted)", Kinematic(amplitude_fraction=fraction), balanced),
+        ("cube, full period", friction.Dong2015FullPeriod(), unbalanced),
+        ("cube, separating half period", friction.Dong2015HalfPeriod(), unbalanced),
+        ("cube, load balanced", friction.Dong2015LoadBalanced(), unbalanced),
+        ("kinematic", friction.Kinematic(), balanced),
+        (
+            f"kinematic, {fraction:.2f} of the\namplitude (fitted)",
+            friction.Kinematic(amplitude_fraction=fraction),
+            balanced,
+        ),
         (
             f"asperity stick-slip, $D_c$ = {1e6 * mindlin:.2f} µm\n(Mindlin, µ = {mu:.2f})",
-            AsperityStickSlip(memory_length=mindlin),
+            friction.AsperityStickSlip(memory_length=mindlin),
             balanced,
         ),
         (
             f"asperity stick-slip, $D_c$ = {1e6 * memory:.2f} µm\n(fitted)",
-            AsperityStickSlip(memory_length=memory),
+            friction.AsperityStickSlip(memory_length=memory),
             balanced,
         ),
-        ("bristle with rigid holder", BristleWithHolder(), balanced),
+        ("bristle with rigid holder", friction.BristleWithHolder(), balanced),
     ):
         yield label, model.ratio(contact, motion, sliding_speed=speeds, friction_coefficient=mu)
 
