@@ -4,7 +4,7 @@ A block that slides away from the middle climbs the slope of the bent face, so t
 sliding. Distance and stiffness of the pads are not printed: 4 in, half an inch long, of a soft plastic, are assumed.
 """
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cache, partial
 from typing import Final
 
@@ -70,16 +70,13 @@ def bending_line(shape: HornShape, solid: HornSolid, *, normal_load: float) -> B
         ("contact", "-z", 0.0, _CELL),
     ):
         mesh = fem.add_face_patch(mesh, name, of=face, where=partial(_within, centre=centre, half_length=half_length))
-    medium = fem.isotropic_medium(
-        youngs_modulus=solid.youngs_modulus, poisson_ratio=solid.poisson_ratio, density=solid.density
-    )
     pads = tuple(
         # half the stiffness of each pad for the modelled half of the horn
         fem.FaceSpring(face=f"{side} pad", spring_stiffness=PAD_STIFFNESS / 2, along=(0.0, 0.0, 1.0))
         for side in ("left", "right")
     )
     supports = (fem.FixedSupport(face="-y", along="y"), fem.FixedSupport(face="left pad", along="x"))
-    model = fem.Model(mesh=mesh, media={"block": medium}, fixed=supports, springs=pads)
+    model = fem.Model(mesh=mesh, media={"block": fem.isotropic_medium(**asdict(solid))}, fixed=supports, springs=pads)
     moves = fem.forced_response(model, load=fem.Output(face="contact", along="z"), frequency=0.0).real * normal_load / 2
     line = np.flatnonzero(np.isclose(mesh.nodes[:, 1], -shape.width / 4) & np.isclose(mesh.nodes[:, 2], 0.0, atol=1e-9))
     line = line[np.argsort(mesh.nodes[line, 0])]

@@ -6,7 +6,7 @@ of assumptions that has both printed frequencies. A quarter of the horn is meshe
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from functools import cache
 from typing import Final
 
@@ -165,12 +165,7 @@ def horn_model(
     Model
         The sliding face is "-z", its middle line the edge with "-y".
     """
-    medium = fem.isotropic_medium(
-        youngs_modulus=solid.youngs_modulus,
-        poisson_ratio=solid.poisson_ratio,
-        density=solid.density,
-        elastic_loss=elastic_loss,
-    )
+    medium = fem.isotropic_medium(**asdict(solid), elastic_loss=elastic_loss)
     return fem.Model(mesh=_quarter(shape, divisions), media={"block": medium}, fixed=_SYMMETRY)
 
 

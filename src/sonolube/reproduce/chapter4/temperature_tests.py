@@ -8,9 +8,9 @@ import numpy as np
 from sonolube import thermal
 from sonolube.checks import Floats
 from sonolube.friction import sine_stick_slip_ratio
-from sonolube.materials import material
 from sonolube.published import column_numbers, si_value
 from sonolube.reproduce.chapter4.power_map import actuator_power
+from sonolube.rig import thermal_solid
 
 ROOM_TEMPERATURE: Final = 294.15
 """Room temperature, that of the other tests of D, 21 degC. [K]"""
@@ -128,12 +128,7 @@ def slow_friction_ratio() -> Floats:
 
 def heated_contact(*, disc: thermal.ThermalSolid = POWDER_COATING) -> thermal.HeatedContact:
     """Return the contact of the thermocouple's tip with the disc."""
-    steel = material("stainless_steel_304")
-    pin = thermal.ThermalSolid(
-        thermal_conductivity=steel.value("thermal_conductivity"),
-        density=steel.value("density"),
-        specific_heat_capacity=steel.value("specific_heat_capacity"),
-    )
+    pin = thermal_solid("stainless_steel_304")
     radius = float(np.sqrt(si_value("table-4.4-nominal_area-1") / np.pi))
     return thermal.HeatedContact(
         pin=pin, disc=disc, source=thermal.EllipticSource(half_length=radius, half_width=radius), network=_NUT
