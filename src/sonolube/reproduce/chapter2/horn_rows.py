@@ -63,14 +63,12 @@ def _transition_regions() -> Iterator[Row]:
         ):
             friction = horn_friction.friction_on_face(horn, frequency=frequency)
             for side, limit in zip(("start", "end"), horn_friction.transition_region(friction), strict=True):
-                yield comparison_row(
-                    f"table-2.1-{side}-{REGION_ROWS[horn]}",
-                    limit,
+                note = (
                     "Position at which the friction of a block at 5 mm/s towards the node reverses: finite elements, "
                     f"the horn of the printed mode ({_ASSUMED}), {drive}; springs of the contact of Table 3.1 with "
-                    f"Mindlin's ratio. The node lies at {friction.node / _INCH:+.2f} in.",
-                    suffix=suffix,
+                    f"Mindlin's ratio. The node lies at {friction.node / _INCH:+.2f} in."
                 )
+                yield comparison_row(f"table-2.1-{side}-{REGION_ROWS[horn]}", limit, note, suffix=suffix)
 
 
 def _friction() -> Iterator[Row]:
@@ -86,13 +84,11 @@ def _friction() -> Iterator[Row]:
         contact, approach = horn_friction.spring_contact(horn, bodies=bodies)
         friction = horn_friction.friction_along(motion, contact, approach=approach)
         driving = ", ".join(f"{-100 * friction.at(x):.0f} % at {name}" for name, x in (("-1", -inch), ("+1", inch)))
-        yield comparison_row(
-            published,
-            1 - friction.at(friction.node),
+        note = (
             "Springs of the contact of Table 3.1 with Mindlin's ratio, at the node of the motion by finite elements, "
-            f"the same at every load. The motor force over the intrinsic friction is {driving}.",
-            suffix="springs",
+            f"the same at every load. The motor force over the intrinsic friction is {driving}."
         )
+        yield comparison_row(published, 1 - friction.at(friction.node), note, suffix="springs")
 
 
 def _bending() -> Row:

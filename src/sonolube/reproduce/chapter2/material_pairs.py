@@ -68,10 +68,8 @@ def _friction() -> Iterator[Row]:
     yield formula_row("2.5.5-friction-m50-on", note, reduced, *(f"2.5.5-{name}" for name in inputs))
     yield undetermined_row("2.5.5-friction-reduction", "the force with vibration: that without is printed twice.")
     for amplitude in ("2.5um", "1um"):
-        yield undetermined_row(
-            f"2.5.3-friction-reduction-{amplitude}",
-            "the forces, and of the titanium surfaces the summit radius and density.",
-        )
+        note = "the forces, and of the titanium surfaces the summit radius and density."
+        yield undetermined_row(f"2.5.3-friction-reduction-{amplitude}", note)
 
 
 def _summary() -> Iterator[Row]:

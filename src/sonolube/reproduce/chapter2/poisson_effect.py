@@ -87,13 +87,11 @@ def _friction_reductions() -> Iterator[Row]:
             1 - float(poisson_friction_ratio(bodies=bodies, horn=horn, normal_load=load, axial_amplitude=amplitude))
             for amplitude in (si_value("2.1.2-welder-amplitude"), si_value("4.3.5-waveguide-amplitude"))
         )
-        yield comparison_row(
-            published,
-            at_welder_amplitude,
+        note = (
             f"Cube, D 3.15, {load:g} N, amplitude of D 2.1.2; with that of D 4.3.5 "
-            f"{100 * at_waveguide_amplitude:.1f} %.{remark}",
-            suffix=suffix,
+            f"{100 * at_waveguide_amplitude:.1f} %.{remark}"
         )
+        yield comparison_row(published, at_welder_amplitude, note, suffix=suffix)
 
 
 def _paths() -> "Figure":

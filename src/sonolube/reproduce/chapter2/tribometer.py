@@ -136,11 +136,8 @@ def _marks() -> Iterator[Row]:
     period = as_exact("2.3.4-stick-slip-period")
     dots = propagate_rounding(formulas.dot_spacing, _HIGHEST_SPEED, "table-2.2-frequency-3")
     yield comparison_row("2.3.4-dots-calculated", dots, "v over f.")
-    yield comparison_row(
-        "2.3.4-dots-measured",
-        dots,
-        "v over f, the length of one cycle; D states no scatter of the measurement in one image.",
-    )
+    note = "v over f, the length of one cycle; D states no scatter of the measurement in one image."
+    yield comparison_row("2.3.4-dots-measured", dots, note)
     for row, printed in enumerate(_SPEEDS, start=1):
         needed = si_value(f"2.3.4-indentation-{printed}") / si_value(f"table-2.2-sliding_speed-{row}")
         yield comparison_row(

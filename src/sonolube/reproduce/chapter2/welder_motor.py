@@ -68,12 +68,8 @@ def _rows_of_tip(tip: int) -> Iterator[Row]:
     yield comparison_row("2.4.2-rotation-on", reduced_speed, note + fall, suffix=f"{name}-motor")
     yield comparison_row("2.4.4-current-drop", current - reduced_current, note + fall, suffix=f"{name}-motor")
     drop = friction_drop_from_current(tip)
-    yield comparison_row(
-        f"table-2.9-friction_reduction-{tip}",
-        drop / off,
-        f"{note}the drop of the current corresponds to {drop:.2f} N of {off:.2f} N.",
-        suffix="motor",
-    )
+    note = f"{note}the drop of the current corresponds to {drop:.2f} N of {off:.2f} N."
+    yield comparison_row(f"table-2.9-friction_reduction-{tip}", drop / off, note, suffix="motor")
 
 
 def _currents(tip: int) -> tuple[float, float]:
