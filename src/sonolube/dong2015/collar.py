@@ -229,17 +229,9 @@ def _inner_ring(collar: Collar) -> tuple[Any, Any]:
 def _stack(collar: Collar, *, foot: float) -> tuple[Any, Any]:
     """Annular stack and its bolt, from a height of the foot."""
     occ = cad_kernel()
-    outer, inner, bolt, length, y = (
-        size / MILLIMETRE
-        for size in (
-            collar.stack_outer_diameter / 2,
-            collar.stack_inner_diameter / 2,
-            collar.bolt_diameter / 2,
-            collar.stack_length,
-            foot,
-        )
-    )
-    whole, hole, core = (occ.Cylinder(occ.Pnt(0, y, 0), occ.Y, radius, length) for radius in (outer, inner, bolt))
+    y, length = foot / MILLIMETRE, collar.stack_length / MILLIMETRE
+    diameters = collar.stack_outer_diameter, collar.stack_inner_diameter, collar.bolt_diameter
+    whole, hole, core = (occ.Cylinder(occ.Pnt(0, y, 0), occ.Y, d / 2 / MILLIMETRE, length) for d in diameters)
     return whole - hole, core
 
 

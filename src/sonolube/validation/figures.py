@@ -132,16 +132,9 @@ def draw_measured(
     fmt, color : str
         Marker and colour.
     """
-    axes.errorbar(
-        [abscissa(test) for test in tests],
-        [test.friction_ratio for test in tests],
-        yerr=[test.uncertainty or 0.0 for test in tests],
-        fmt=fmt,
-        color=color,
-        capsize=3,
-        zorder=5,
-        label=label,
-    )
+    x, ratios = [abscissa(test) for test in tests], [test.friction_ratio for test in tests]
+    errors = [test.uncertainty or 0.0 for test in tests]
+    axes.errorbar(x, ratios, yerr=errors, fmt=fmt, color=color, capsize=3, zorder=5, label=label)
 
 
 def _predicted_against_measured(fits: list[ComparedFit]) -> "Figure":
@@ -185,10 +178,8 @@ def _panel(axes: "Axes", one: ComparedFit) -> None:
                 place = prediction.test.friction_ratio, min(max(ratio, _LOW), _HIGH)
                 axes.plot(*place, ls="", marker=marker, color=colour, mfc=face, ms=4.5, clip_on=False)
     fit, cross_validation = one.assessment.fit_errors.rms, one.assessment.cross_validation_errors.rms
-    axes.set_title(
-        f"{one.model.name.replace('-', ' ')}\nk = {len(one.parameters)}, rms {fit:.2f}, CV {cross_validation:.2f}",
-        fontsize=8,
-    )
+    statistics = f"k = {len(one.parameters)}, rms {fit:.2f}, CV {cross_validation:.2f}"
+    axes.set_title(f"{one.model.name.replace('-', ' ')}\n{statistics}", fontsize=8)
     axes.set(xlim=(0, _HIGH), ylim=(_LOW, _HIGH), aspect="equal", xticks=(0, 0.5, 1), yticks=(0, 0.5, 1))
 
 

@@ -1,7 +1,7 @@
 """Figures of the Poisson horn by finite elements: sensitivity, paths of surface points, friction along the face."""
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -93,14 +93,8 @@ def _paths() -> "Figure":
     for axes, place, title in zip(panels, (-inch, 0.0, inch), ("point -1", "point 0", "point +1"), strict=True):
         for index, horn in enumerate(HORNS):
             u, v = _motion(horn).at(place)
-            axes.plot(
-                1e6 * (u * turn).real,
-                1e6 * (v * turn).real,
-                marker=MARKERS[index],
-                markevery=180,  # both ends
-                color=COLOURS[index],
-                label=f"{horn} horn, computed",
-            )
+            style: dict[str, Any] = {"color": COLOURS[index], "marker": MARKERS[index], "markevery": 180}  # both ends
+            axes.plot(1e6 * (u * turn).real, 1e6 * (v * turn).real, **style, label=f"{horn} horn, computed")
         axes.set(title=title.replace("-", "−"), xlabel="Axial displacement [µm]", xlim=(-6, 6), ylim=(-1.1, 1.1))
         axes.title.set_fontsize(9)
     panels[0].set(ylabel="Normal displacement\nout of the face [µm]")
@@ -123,11 +117,8 @@ def _ellipses() -> "Figure":
         below.plot(1e3 * position, np.degrees(path.phase), **line_style(index), label=horn)
     above.set(ylabel="Semi-axis [µm]", ylim=(1e-4, 30))
     above.legend(loc="center", ncols=2, fontsize=7)
-    below.set(
-        xlabel="Position along the horn [mm]",
-        ylabel="Lag of the normal behind\nthe axial motion [degrees]",
-        yticks=(0, 45, 90, 135, 180),
-    )
+    below.set(xlabel="Position along the horn [mm]")
+    below.set(ylabel="Lag of the normal behind\nthe axial motion [degrees]", yticks=(0, 45, 90, 135, 180))
     below.legend(loc="lower right")
     return figure
 

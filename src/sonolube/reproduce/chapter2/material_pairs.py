@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from operator import mul
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -109,20 +109,12 @@ def _pairs() -> "Figure":
     places = np.arange(len(columns["pin"].printed))[::-1]
     for name, offset, hatch, colour in (("friction", 0.2, "", COLOURS[0]), ("wear", -0.2, "////", COLOURS[1])):
         values = 100 * columns[f"{name}_reduction"].values
-        bars = axes.barh(
-            places + offset,
-            np.nan_to_num(values),
-            height=0.38,
-            label=f"{name}, Table 2.14",
-            facecolor=colour if not hatch else "white",
-            edgecolor=colour,
-            hatch=hatch,
-        )
+        style: dict[str, Any] = {"facecolor": "white" if hatch else colour, "edgecolor": colour, "hatch": hatch}
+        bars = axes.barh(places + offset, np.nan_to_num(values), height=0.38, label=f"{name}, Table 2.14", **style)
         axes.bar_label(bars, [f"{value:.0f}" if value > 0 else "no reduction" for value in values], padding=3, size=8)
     pairs = zip(columns["pin"].printed, columns["disc"].printed, strict=True)
-    axes.set(
-        xlabel="Reduction [%]", xlim=(0, 100), yticks=places, yticklabels=[f"{pin}\non {disc}" for pin, disc in pairs]
-    )
+    axes.set(xlabel="Reduction [%]", xlim=(0, 100))
+    axes.set_yticks(places, labels=[f"{pin}\non {disc}" for pin, disc in pairs])
     axes.grid(False, axis="y")
     figure.legend(loc="outside lower center", ncols=2)
     return figure

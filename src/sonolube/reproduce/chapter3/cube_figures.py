@@ -143,10 +143,8 @@ def _height_laws() -> "Figure":
     """Draw load against separation for exponential and Gaussian heights."""
     figure, axes = single_axes((4.8, 3.5))
     exponential = poisson_contact(bodies="aluminium_steel")
-    gaussian = replace(
-        exponential,
-        heights=GaussianHeights.from_roughness_parameter(roughness_parameter=exponential.roughness.roughness_parameter),
-    )
+    eta = exponential.roughness.roughness_parameter
+    gaussian = replace(exponential, heights=GaussianHeights.from_roughness_parameter(roughness_parameter=eta))
     Rq = exponential.roughness.rms_height  # noqa: N806
     gaps = np.linspace(0.2, 5, 200) * Rq
     for index, (label, contact) in enumerate((("exponential", exponential), ("Gaussian", gaussian))):
@@ -177,12 +175,8 @@ def _wear_rates() -> "Figure":
         columns = table(table_id).columns
         for index, condition in enumerate(("off", "on")):
             chosen = np.array([printed == condition for printed in columns["ultrasound"].printed])
-            axes.plot(
-                factor * columns[along].values[chosen],
-                1e9 * columns["test"].values[chosen],
-                **point_style(index),
-                label=f"test {names[condition]}",
-            )
+            x, measured = factor * columns[along].values[chosen], 1e9 * columns["test"].values[chosen]
+            axes.plot(x, measured, **point_style(index), label=f"test {names[condition]}")
             axes.axhline(1e9 * rates[condition], **line_style(index), label=f"cube {names[condition]}")
         axes.set(xlabel=label, title=f"Table {table_id}", ylim=(0, 0.03))
     panels[0].set_ylabel("Wear rate [mm³/m]")

@@ -71,17 +71,11 @@ def collar_rows() -> Iterator[Row]:
 
 def _stack() -> Iterator[Row]:
     """Yield coupling factor and capacitance of the stack, Table 4.7."""
-    stiffness, length, charge_constant, relative_permittivity, outer, inner = (
-        si_value(f"table-4.7-{name}-1")
-        for name in (
-            "stack_stiffness",
-            "length",
-            "charge_constant_33",
-            "relative_permittivity",
-            "outer_diameter",
-            "inner_diameter",
-        )
+    stiffness, length, outer, inner = (
+        si_value(f"table-4.7-{name}-1") for name in ("stack_stiffness", "length", "outer_diameter", "inner_diameter")
     )
+    charge_constant = si_value("table-4.7-charge_constant_33-1")
+    relative_permittivity = si_value("table-4.7-relative_permittivity-1")
     area = float(np.pi / 4 * (outer**2 - inner**2))
     modulus, permittivity = stiffness * length / area, relative_permittivity * float(epsilon_0)
     needed = si_value("table-4.7-coupling_factor-1") ** 2 * permittivity / charge_constant**2

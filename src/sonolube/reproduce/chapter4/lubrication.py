@@ -151,15 +151,8 @@ def _method_map() -> "Figure":
     )
     names = [str(method) for method in friction.LubricationMethod]
     numbers = np.vectorize(names.index)(best)
-    right.pcolormesh(
-        1e3 * speeds,
-        1e-6 * stresses,
-        numbers,
-        cmap=ListedColormap(["0.6", "#9ecae1", "#fdd0a2", "#c7e9c0"]),
-        vmin=-0.5,
-        vmax=3.5,
-        rasterized=True,
-    )
+    colours = ListedColormap(["0.6", "#9ecae1", "#fdd0a2", "#c7e9c0"])
+    right.pcolormesh(1e3 * speeds, 1e-6 * stresses, numbers, cmap=colours, vmin=-0.5, vmax=3.5, rasterized=True)
     for name in np.unique(best):
         rows, columns = np.nonzero(best == name)
         speed, stress = float(speeds[int(np.median(columns))]), float(stresses[int(np.median(rows))])

@@ -179,12 +179,8 @@ def _reduction_over_speed() -> "Figure":
         draw_printed(axes, [1e3 * test["sliding_speed"]], [measured], 100, **style, label=label)
     axes.plot([], [], color="0.3", label="multi-scale model")
     axes.plot([], [], LINES[1], color="0.3", linewidth=1.0, label="efficiency line")
-    axes.set(
-        xlabel="Sliding speed [mm/s]",
-        ylabel="Friction reduction [%]",
-        xlim=(1e3 * speeds[0] - 2, 1e3 * speeds[-1]),
-        ylim=(-3, 108),
-    )
+    axes.set(xlabel="Sliding speed [mm/s]", xlim=(1e3 * speeds[0] - 2, 1e3 * speeds[-1]))
+    axes.set(ylabel="Friction reduction [%]", ylim=(-3, 108))
     handles, labels = axes.get_legend_handles_labels()  # curves come before points
     figure.legend(
         handles[2:] + handles[:2], labels[2:] + labels[:2], loc="outside right center", title="Table 4.2, 5 N"
@@ -202,14 +198,8 @@ def _ridge() -> "Figure":
     sufficient = [power_map.sufficient_power(power_map.example_test() | {"sliding_speed": float(v)}) for v in speeds]
     halo = [Stroke(linewidth=3.6, foreground="white"), Normal()]
     axes.plot(1e3 * speeds, sufficient, ":", color=COLOURS[1], lw=2, path_effects=halo, label="all friction, D 4.3")
-    axes.axhline(
-        power_map.example_points()[-1].actuator_power,
-        color="0.2",
-        ls="-.",
-        lw=1.2,
-        path_effects=halo,
-        label="highest of the tests",
-    )
+    highest = power_map.example_points()[-1].actuator_power
+    axes.axhline(highest, color="0.2", ls="-.", lw=1.2, path_effects=halo, label="highest of the tests")
     axes.set(yscale="log", ylim=(0.2, None))
     axes.yaxis.set_major_formatter("{x:g}")
     for legend in figure.legends:

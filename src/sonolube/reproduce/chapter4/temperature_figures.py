@@ -56,12 +56,8 @@ def _temperature_over_time() -> "Figure":
     for axes, load in zip(panels, tests.loads(), strict=True):
         for index, speed in enumerate(tests.speeds()):
             record = tests.history(tests.TemperatureTest(normal_load=float(load), sliding_speed=float(speed)))
-            axes.plot(
-                record.time,
-                tests.ROOM_TEMPERATURE - 273.15 + record.temperature_rise,
-                **line_style(index),
-                label=f"{1e3 * speed:.0f} mm/s",
-            )
+            celsius = tests.ROOM_TEMPERATURE - 273.15 + record.temperature_rise
+            axes.plot(record.time, celsius, **line_style(index), label=f"{1e3 * speed:.0f} mm/s")
         pressure = load / si_value("table-4.4-nominal_area-1")
         axes.set(xlabel="Time [s]", ylabel="Temperature of the contact [°C]", xlim=(0, 50))
         axes.text(0.97, 0.93, f"{1e-6 * pressure:.0f} MPa", transform=axes.transAxes, ha="right")

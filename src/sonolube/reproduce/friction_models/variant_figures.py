@@ -1,7 +1,7 @@
 """Figures of the variants of the friction models: over speed, against measured ratios, and errors by test."""
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -150,17 +150,10 @@ def _panel(axes: "Axes", fit: Fit) -> None:
         in_range = [(test, ratio) for test, ratio in predicted if ratio is not None]
         inside = [(test, ratio) for test, ratio in in_range if ratio <= _HIGHEST]
         colour, marker = COLOURS[index % 7], MARKERS[index % 7]
-        axes.errorbar(
-            [test.friction_ratio for test, _ in inside],
-            [ratio for _, ratio in inside],
-            xerr=[test.uncertainty or 0.0 for test, _ in inside],
-            fmt=marker,
-            color=colour,
-            mfc=colour if index < 7 else "white",
-            ms=4.5,
-            elinewidth=0.7,
-            label=letter,
-        )
+        measured, ratios = [test.friction_ratio for test, _ in inside], [ratio for _, ratio in inside]
+        style: dict[str, Any] = {"color": colour, "mfc": colour if index < 7 else "white", "ms": 4.5, "elinewidth": 0.7}
+        scatter = [test.uncertainty or 0.0 for test, _ in inside]
+        axes.errorbar(measured, ratios, xerr=scatter, fmt=marker, **style, label=letter)
         beyond = [test.friction_ratio for test, ratio in in_range if ratio > _HIGHEST]
         axes.plot(beyond, [_HIGHEST - 0.04] * len(beyond), "^", color=colour, mfc="white", ms=5)
     errors = prediction_errors(fit, friction_tests(SETS_WITHOUT_POWER_MAP))
