@@ -131,10 +131,8 @@ def _friction() -> "Figure":
         _draw_transition_region(axes, horn, color="0.8")
         axes.plot(friction.position / _INCH, 100 * friction.ratio, **line_style(index))
         axes.axhline(0, color="black", lw=0.8)
-        axes.set(
-            title=f"{horn} horn", xlabel="Position along the face [in]", xlim=(-FACE_END / _INCH, FACE_END / _INCH)
-        )
-        axes.title.set_fontsize(9)
+        axes.set(xlabel="Position along the face [in]", xlim=(-FACE_END / _INCH, FACE_END / _INCH))
+        axes.set_title(f"{horn} horn", fontsize=9)
     panels[0].set(ylabel="Friction over that at rest [%]", ylim=(-50, 100))
     band, *_ = panels[0].get_legend_handles_labels()[0]
     lines = [axes.lines[0] for axes in panels]

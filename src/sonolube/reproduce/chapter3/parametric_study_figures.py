@@ -74,9 +74,8 @@ def _start_up() -> "Figure":
     end = 4 * tribometer_response.STEPS_PER_PERIOD + 1
     for index, (name, x) in enumerate(displacements.items()):
         band = tribometer_response.envelope(displacement=x)
-        whole.fill_between(
-            1e3 * band.time, 1e6 * band.low, 1e6 * band.high, color=COLOURS[index], alpha=0.6, linewidth=0.3, label=name
-        )
+        ms, low, high = 1e3 * band.time, 1e6 * band.low, 1e6 * band.high
+        whole.fill_between(ms, low, high, color=COLOURS[index], alpha=0.6, linewidth=0.3, label=name)
         microseconds = 1e6 * (trajectory.time[-end:] - trajectory.time[-end])
         last.plot(microseconds, 1e6 * x[-end:], **line_style(index), label=name)
     settling = 1e3 * si_value("3.3.4-settling-time")

@@ -1,7 +1,7 @@
 """Section 4.1: figures of actuator power, example test and efficiency coefficient."""
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -81,16 +81,17 @@ def _example_test() -> "Figure":
     for axes, numbers, factor in ((left, frictions, 1), (right, reductions, 100)):
         style = {"fmt": MARKERS[0], "color": "black", "zorder": 3, "label": "Table 4.2, as printed"}
         draw_printed(axes, [voltages[row] for row in numbers], numbers.values(), factor, **style)
-    right.plot(
-        [voltages[row] for row in reductions],
-        [100 * formulas.friction_reduction(off, frictions[row].value) for row in reductions],
-        MARKERS[1],
-        ms=9,
-        mfc="none",
-        color=COLOURS[2],
-        label="reduction of the mean forces of Table 4.2",
-        zorder=4,
-    )
+    of_means = [100 * formulas.friction_reduction(off, frictions[row].value) for row in reductions]
+    rings: dict[str, Any] = {
+        "marker": MARKERS[1],
+        "ls": "none",
+        "ms": 9,
+        "mfc": "none",
+        "color": COLOURS[2],
+        "zorder": 4,
+    }
+    label = "reduction of the mean forces of Table 4.2"
+    right.plot([voltages[row] for row in reductions], of_means, **rings, label=label)
     for axes in (left, right):
         axes.set(xlabel=_VOLTAGE, xlim=(-0.8, 28))
     left.set(ylabel="Friction force [N]", ylim=(-0.03, 1.0))
@@ -113,15 +114,10 @@ def _efficiency() -> "Figure":
             1e9 * power_map.point_efficiency(point, friction=friction)
             for friction in (point.friction.high, point.friction.value, point.friction.low)
         )
-        axes.errorbar(
-            1e3 * power_map.example_test()["sliding_speed"] + _OFFSET * (index - (len(points) - 1) / 2),
-            mean,
-            yerr=[[mean - low], [high - mean]],
-            fmt=MARKERS[index],
-            color=COLOURS[index],
-            capsize=2,
-            label=f"Table 4.2, {point.voltage_peak_to_peak:g} V, {point.actuator_power:.2f} W",
-        )
+        speed = 1e3 * power_map.example_test()["sliding_speed"] + _OFFSET * (index - (len(points) - 1) / 2)
+        errors = [[mean - low], [high - mean]]
+        label = f"Table 4.2, {point.voltage_peak_to_peak:g} V, {point.actuator_power:.2f} W"
+        axes.errorbar(speed, mean, yerr=errors, fmt=MARKERS[index], color=COLOURS[index], capsize=2, label=label)
     ylabel = "Efficiency coefficient [mW mm²/(N W)]"
     axes.set(xlabel="Sliding speed [mm/s]", ylabel=ylabel, xlim=(0, 260), ylim=(0, 0.85))
     axes.legend(loc="upper right", bbox_to_anchor=(0.885, 1.0))

@@ -71,25 +71,15 @@ def _heat_over_voltage() -> "Figure":
     figure, axes = single_axes()
     swing = np.linspace(0.0, 28.0, 141)
     speed = si_value("4.3.4-example-speed")
-    published = superimposed_heat_rate(
-        friction_force=tests.EXAMPLE_FRICTION_RATIO, sliding_speed=speed, vibration_velocity=_peak_velocity(swing)
-    )
+    ratio, fraction = tests.EXAMPLE_FRICTION_RATIO, tests.vibration_heat_fraction()
+    peaks = _peak_velocity(swing)
+    published = superimposed_heat_rate(friction_force=ratio, sliding_speed=speed, vibration_velocity=peaks)
     axes.plot(swing, published / speed, **line_style(1), label="friction × superimposed speed (D)")
     supplied = actuator_power(voltage_peak_to_peak=swing) / tests.example_heat()
-    low, high = tests.vibration_heat_window()
-    axes.fill_between(
-        swing,
-        tests.EXAMPLE_FRICTION_RATIO + low * supplied,
-        tests.EXAMPLE_FRICTION_RATIO + high * supplied,
-        color="0.85",
-        label="limits of the fraction",
-    )
-    axes.plot(
-        swing,
-        tests.EXAMPLE_FRICTION_RATIO + tests.vibration_heat_fraction() * supplied,
-        **line_style(0),
-        label=f"friction + {100 * tests.vibration_heat_fraction():.2f} % of the power",
-    )
+    low, high = (ratio + limit * supplied for limit in tests.vibration_heat_window())
+    axes.fill_between(swing, low, high, color="0.85", label="limits of the fraction")
+    label = f"friction + {100 * fraction:.2f} % of the power"
+    axes.plot(swing, ratio + fraction * supplied, **line_style(0), label=label)
     for sense, marker, places, height in (
         ("below one", "v", tests.voltages()[:2], 0.985),
         ("above one", "^", tests.voltages()[3:], 1.015),

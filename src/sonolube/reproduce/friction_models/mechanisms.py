@@ -179,14 +179,9 @@ def _mechanisms_on_both_tables() -> "Figure":
         label = f"{fit.variant.description}: k = {criteria.parameter_count}, AICc = {criteria.aicc:.0f}"
         for axes, letter in ((speeds, "A"), (amplitudes, "B")):
             tests = friction_tests(letter)
-            axes.plot(
-                [1e3 * test.sliding_speed if letter == "A" else 1e6 * test.vibration_amplitude for test in tests],
-                np.array([fit.predict(test) for test in tests], dtype=np.float64),
-                **curve_style(index),
-                ms=4,
-                mfc="white",
-                label=label if letter == "A" else None,
-            )
+            x = [1e3 * test.sliding_speed if letter == "A" else 1e6 * test.vibration_amplitude for test in tests]
+            ratios = np.array([fit.predict(test) for test in tests], dtype=np.float64)
+            axes.plot(x, ratios, **curve_style(index), ms=4, mfc="white", label=label if letter == "A" else None)
     figure.legend(loc="outside lower center", ncols=1, title="k parameters fitted to both tables")
     return figure
 
