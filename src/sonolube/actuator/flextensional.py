@@ -1,7 +1,7 @@
 """Flextensional actuators by their data sheet, and stacks behind an ideal displacement amplifier."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, replace
 
 from sonolube.actuator.stack import PiezoStack
 from sonolube.checks import require_positive
@@ -50,15 +50,7 @@ class FlextensionalActuator:
     mechanical_quality_factor: float
 
     def __post_init__(self) -> None:
-        require_positive(
-            stroke=self.stroke,
-            stroke_voltage=self.stroke_voltage,
-            blocked_force=self.blocked_force,
-            resonance_frequency=self.resonance_frequency,
-            free_capacitance=self.free_capacitance,
-            actuator_mass=self.actuator_mass,
-            mechanical_quality_factor=self.mechanical_quality_factor,
-        )
+        require_positive(**asdict(self))
         if self.effective_mass > self.actuator_mass:
             raise InvalidInput(
                 f"resonance_frequency of {self.resonance_frequency:g} Hz with a stiffness of {self.stiffness:.3g} N/m"
@@ -137,14 +129,11 @@ def lever_amplified_stack(stack: PiezoStack, *, amplification_ratio: float) -> P
     real frames lowers it.
     """
     n = float(require_positive(amplification_ratio=amplification_ratio))
-    return PiezoStack(
-        free_capacitance=stack.free_capacitance,
+    return replace(
+        stack,
         free_stroke_per_volt=stack.free_stroke_per_volt * n,
         stack_stiffness=stack.stack_stiffness / n**2,
         stack_damping=stack.stack_damping / n**2,
         stack_mass=stack.stack_mass / n**2,
-        lowest_voltage=stack.lowest_voltage,
-        highest_voltage=stack.highest_voltage,
         preload=None if stack.preload is None else stack.preload / n,
-        coupling_factor=stack.coupling_factor,
     )

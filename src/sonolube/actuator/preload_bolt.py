@@ -1,7 +1,7 @@
 """Preload bolt of a stack: its stiffness in parallel with the stack, its stresses and its fatigue strength."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -51,14 +51,7 @@ class PreloadBolt:
     bolts: int = 1
 
     def __post_init__(self) -> None:
-        require_positive(
-            thread_diameter=self.thread_diameter,
-            length=self.length,
-            youngs_modulus=self.youngs_modulus,
-            yield_strength=self.yield_strength,
-            preload=self.preload,
-            bolts=self.bolts,
-        )
+        require_positive(**asdict(self))
         if not any(math.isclose(self.thread_diameter, size) for size in _COARSE_PITCH):
             known = ", ".join(f"{1e3 * size:g}" for size in _COARSE_PITCH)
             raise InvalidInput(

@@ -5,7 +5,6 @@ only the captions are available, so that each dimension is either printed in the
 `COLLAR_DIMENSION_SOURCES` lists which.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from enum import StrEnum
 from typing import Any
@@ -14,6 +13,7 @@ import numpy as np
 
 from sonolube.checks import require_positive
 from sonolube.errors import InvalidInput
+from sonolube.fem.parts.bodies import extruded_polygon
 from sonolube.fem.solver.cad import MILLIMETRE, cad_kernel
 from sonolube.fem.solver.geometry import Geometry, bond, single_body
 
@@ -221,47 +221,31 @@ def _inner_ring(collar: Collar) -> tuple[Any, Any]:
         hole = _circular_cylinder(bore / 2, axis, 2 * depth)
     body = outside - hole
     reach = 2 * flat
-    wedge = _extruded([(0.0, axis), (-reach, axis - reach), (reach, axis - reach)], 2 * depth)
+    corners = [(0.0, axis), (-reach, axis - reach), (reach, axis - reach)]
+    wedge = extruded_polygon(corners, foot=-depth, height=2 * depth)
     return body * wedge, body - wedge
 
 
 def _stack(collar: Collar, *, foot: float) -> tuple[Any, Any]:
     """Annular stack and its bolt, from a height of the foot."""
     occ = cad_kernel()
-    outer, inner, bolt, length, y = (
-        size / MILLIMETRE
-        for size in (
-            collar.stack_outer_diameter / 2,
-            collar.stack_inner_diameter / 2,
-            collar.bolt_diameter / 2,
-            collar.stack_length,
-            foot,
-        )
-    )
-    whole, hole, core = (occ.Cylinder(occ.Pnt(0, y, 0), occ.Y, radius, length) for radius in (outer, inner, bolt))
+    y, length = foot / MILLIMETRE, collar.stack_length / MILLIMETRE
+    diameters = collar.stack_outer_diameter, collar.stack_inner_diameter, collar.bolt_diameter
+    whole, hole, core = (occ.Cylinder(occ.Pnt(0, y, 0), occ.Y, d / 2 / MILLIMETRE, length) for d in diameters)
     return whole - hole, core
 
 
 def _hexagonal_prism(width: float, axis: float, depth: float) -> Any:
     """Hexagonal prism along z of a width across flats, with its axis at a height y; all in mm."""
     corner, angles = width / np.sqrt(3.0), np.arange(6) * np.pi / 3
-    return _extruded([(corner * np.cos(a), axis + corner * np.sin(a)) for a in angles], depth)
+    corners = [(corner * np.cos(a), axis + corner * np.sin(a)) for a in angles]
+    return extruded_polygon(corners, foot=-depth / 2, height=depth)
 
 
 def _circular_cylinder(radius: float, axis: float, depth: float) -> Any:
     """Circular cylinder along z with its axis at a height y; all in mm."""
     occ = cad_kernel()
     return occ.Cylinder(occ.Pnt(0, axis, -depth / 2), occ.Z, radius, depth)
-
-
-def _extruded(corners: Sequence[tuple[float, float]], depth: float) -> Any:
-    """Prism along z with a polygonal cross-section, centred on z = 0; all in mm."""
-    occ = cad_kernel()
-    first, *others = ((float(x), float(y)) for x, y in corners)
-    outline = occ.WorkPlane(occ.Axes((0, 0, -depth / 2), n=occ.Z, h=occ.X)).MoveTo(*first)
-    for corner in others:
-        outline = outline.LineTo(*corner)
-    return outline.Close().Face().Extrude(depth)
 
 
 def _name_bore(body: Geometry, collar: Collar) -> None:

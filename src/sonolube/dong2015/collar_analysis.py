@@ -140,16 +140,8 @@ def collar_media(collar: Collar) -> Mapping[str, Medium]:
     lower, upper = (
         homogenised_stack(poled_medium(ceramic, along=(0.0, up, 0.0)), stack_layers=STACK_LAYERS) for up in (1.0, -1.0)
     )
-    return {
-        "frame": frame,
-        "top": frame,
-        "bolt": frame,
-        "bolt2": frame,
-        "saddle": ring,
-        "ring": ring,
-        "stack": lower,
-        "stack2": upper,
-    }
+    of_frame = dict.fromkeys(("frame", "top", "bolt", "bolt2"), frame)
+    return of_frame | {"saddle": ring, "ring": ring, "stack": lower, "stack2": upper}
 
 
 def collar_model(

@@ -13,17 +13,11 @@ from sonolube.fem.parts.transducers import SourcedDimension, Transducer, stack_b
 CUTTER_HEAD_DIMENSIONS = (
     *TRIBOMETER_ACTUATOR_DIMENSIONS[:6],  # D 4.4.2: the stack is that of the tribometer
     TRIBOMETER_ACTUATOR_DIMENSIONS[7],
-    SourcedDimension(
-        name="back_length", value=32e-3, printed=False, source="chosen for a resonance at 20 kHz, D Table 4.6"
-    ),
-    SourcedDimension(name="hub_radius", value=4.5e-3, printed=False, source="weld nut of 1/4 in"),
-    SourcedDimension(name="hub_length", value=6e-3, printed=False, source="weld nut of 1/4 in"),
-    SourcedDimension(
-        name="disc_radius", value=15e-3, printed=False, source="its rim is to move against its centre, D 4.4.4"
-    ),
-    SourcedDimension(
-        name="thickness", value=0.8e-3, printed=False, source="its rim is to move against its centre, D 4.4.4"
-    ),
+    SourcedDimension(name="back_length", value=32e-3, source="chosen for a resonance at 20 kHz, D Table 4.6"),
+    SourcedDimension(name="hub_radius", value=4.5e-3, source="weld nut of 1/4 in"),
+    SourcedDimension(name="hub_length", value=6e-3, source="weld nut of 1/4 in"),
+    SourcedDimension(name="disc_radius", value=15e-3, source="its rim is to move against its centre, D 4.4.4"),
+    SourcedDimension(name="thickness", value=0.8e-3, source="its rim is to move against its centre, D 4.4.4"),
 )
 """Dimensions of the cutter head (D 4.4) and their sources; the text prints none but the number of layers."""
 

@@ -10,24 +10,18 @@ from sonolube.fem.parts.tips import acorn_nut
 from sonolube.fem.parts.transducers import SourcedDimension, Transducer, stack_bodies, stack_from_bodies
 
 TRIBOMETER_ACTUATOR_DIMENSIONS = (
-    SourcedDimension(
-        name="outer_radius", value=9.5e-3, printed=False, source="360 nF and 62 layers of D Table 3.5 with PIC255"
-    ),
-    SourcedDimension(name="inner_radius", value=4e-3, printed=False, source="bore that a rod of 1/4 in passes"),
-    SourcedDimension(name="length", value=38.6e-3, printed=False, source="70 g of D Table 3.5 with PIC255"),
+    SourcedDimension(name="outer_radius", value=9.5e-3, source="360 nF and 62 layers of D Table 3.5 with PIC255"),
+    SourcedDimension(name="inner_radius", value=4e-3, source="bore that a rod of 1/4 in passes"),
+    SourcedDimension(name="length", value=38.6e-3, source="70 g of D Table 3.5 with PIC255"),
     SourcedDimension(name="stack_layers", value=62.0, printed=True, source="D Table 3.5"),
-    SourcedDimension(
-        name="rod_radius", value=2.7e-3, printed=False, source="root of a 1/4-20 thread; 3 in long in D A.1.3"
-    ),
-    SourcedDimension(name="washer_radius", value=8e-3, printed=False, source="washer for 1/4 in"),
-    SourcedDimension(
-        name="back_length", value=18e-3, printed=False, source="washer, nuts and the end of the gimbal's arm"
-    ),
-    SourcedDimension(name="front_length", value=7.2e-3, printed=False, source="washer and nut of 1/4 in"),
-    SourcedDimension(name="width", value=11.1e-3, printed=False, source="acorn nut of 1/4 in, 7/16 in across flats"),
-    SourcedDimension(name="nut_length", value=6.6e-3, printed=False, source="hexagon of an acorn nut of 1/4 in"),
-    SourcedDimension(name="tip_radius", value=5e-3, printed=False, source="dome of an acorn nut of 1/4 in"),
-    SourcedDimension(name="contact_radius", value=0.8e-3, printed=False, source="worn flat of 2 mm2 in D 2.4.3"),
+    SourcedDimension(name="rod_radius", value=2.7e-3, source="root of a 1/4-20 thread; 3 in long in D A.1.3"),
+    SourcedDimension(name="washer_radius", value=8e-3, source="washer for 1/4 in"),
+    SourcedDimension(name="back_length", value=18e-3, source="washer, nuts and the end of the gimbal's arm"),
+    SourcedDimension(name="front_length", value=7.2e-3, source="washer and nut of 1/4 in"),
+    SourcedDimension(name="width", value=11.1e-3, source="acorn nut of 1/4 in, 7/16 in across flats"),
+    SourcedDimension(name="nut_length", value=6.6e-3, source="hexagon of an acorn nut of 1/4 in"),
+    SourcedDimension(name="tip_radius", value=5e-3, source="dome of an acorn nut of 1/4 in"),
+    SourcedDimension(name="contact_radius", value=0.8e-3, source="worn flat of 2 mm2 in D 2.4.3"),
 )
 """Dimensions of the tribometer's actuator (D 2.3.1, appendix A) and their sources; the text prints few of them."""
 

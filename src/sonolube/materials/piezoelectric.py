@@ -13,7 +13,7 @@ the matrices.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cache
 from typing import Any
 
@@ -76,14 +76,7 @@ class PiezoCeramic:
                 "permittivity must be positive definite; check signs, and whether d or e, free or clamped permittivity "
                 "was given"
             )
-        for array in (
-            self.stiffness_short_circuit,
-            self.compliance_short_circuit,
-            self.stress_constants,
-            self.charge_constants,
-            self.permittivity_clamped,
-            self.permittivity_free,
-        ):
+        for array in (value for field in fields(self) if isinstance(value := getattr(self, field.name), np.ndarray)):
             array.setflags(write=False)
 
 

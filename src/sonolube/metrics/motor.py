@@ -1,6 +1,6 @@
 """Friction from the current of the DC motor that drives the disc, by the motor's voltage and torque equations."""
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -41,9 +41,7 @@ class DCMotor:
     resistance: float
 
     def __post_init__(self) -> None:
-        require_positive(
-            motor_voltage=self.motor_voltage, torque_constant=self.torque_constant, resistance=self.resistance
-        )
+        require_positive(**asdict(self))
 
 
 def motor_from_two_operating_points(

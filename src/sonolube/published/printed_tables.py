@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.published.corrections import Correction
@@ -143,30 +143,16 @@ def _read(number: str) -> Table:
     headings, cells = entry["columns"], zip(*entry["rows"], strict=True)
     columns = (_column(printed, **heading) for heading, printed in zip(headings, cells, strict=True))
     return Table(
-        id=entry["id"],
-        title=entry["title"],
-        section=entry["section"],
+        **{name: entry.get(name, "") for name in ("id", "title", "section", "layout")},
         columns=MappingProxyType({column.name: column for column in columns}),
         corrections=tuple(Correction(**correction) for correction in entry.get("corrections", ())),
-        layout=entry.get("layout", ""),
     )
 
 
-def _column(
-    printed: tuple[str, ...], *, name: str, quantity: str, unit: str, role: Role, meaning: str, scale: float = 1.0
-) -> Column:
+def _column(printed: tuple[str, ...], *, quantity: str, unit: str, scale: float = 1.0, **heading: Any) -> Column:
     """Return a column from its heading and its printed cells."""
     cells = (parse_printed(text, unit, scale, quantity=quantity) if quantity and text else None for text in printed)
-    return Column(
-        name=name,
-        quantity=quantity,
-        unit=unit,
-        scale=scale,
-        role=role,
-        meaning=meaning,
-        printed=printed,
-        cells=tuple(cells),
-    )
+    return Column(quantity=quantity, unit=unit, scale=scale, printed=printed, cells=tuple(cells), **heading)
 
 
 def _variable(column: Column) -> "tuple[list[str] | NDArray[np.float64], dict[str, str]]":

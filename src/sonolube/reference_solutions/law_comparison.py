@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sonolube import surfaces
 from sonolube.checks import Floats, require_positive
 from sonolube.contact import (
     ASPERITY_LAWS,
@@ -25,14 +26,6 @@ from sonolube.contact import (
 )
 from sonolube.errors import InvalidInput
 from sonolube.reference_solutions.boundary_element import boundary_element_contact
-from sonolube.surfaces import (
-    HeightMap,
-    areal_spectrum,
-    contact_roughness,
-    radial_spectrum,
-    spectral_moments,
-    summit_statistics,
-)
 
 QUANTITIES = ("separation", "real_contact_area", "normal_stiffness")
 """Quantities in which the contact laws are compared."""
@@ -96,7 +89,7 @@ class LawComparison:
 
 
 def compare_laws(
-    surface: HeightMap, *, effective_modulus: float, reduced_pressure: ArrayLike | None = None
+    surface: surfaces.HeightMap, *, effective_modulus: float, reduced_pressure: ArrayLike | None = None
 ) -> LawComparison:
     r"""Elastic contact of a surface with a rigid flat by every contact law, without fitted parameters.
 
@@ -132,7 +125,7 @@ def compare_laws(
     x = require_positive(reduced_pressure=pressures)
     if x.size < 3 or not np.all(np.diff(x) > 0):
         raise InvalidInput(f"reduced_pressure must have three or more values in ascending order, got {x.size}")
-    gradient = math.sqrt(2 * spectral_moments(surface).slope_variance)
+    gradient = math.sqrt(2 * surfaces.spectral_moments(surface).slope_variance)
     area = surface.height.size * surface.spacing_x * surface.spacing_y
     load = x * require_positive(effective_modulus=effective_modulus) * gradient * area
     return LawComparison(
@@ -202,11 +195,11 @@ def deviation(comparison: LawComparison, *, law: str, quantity: str) -> Floats:
 
 
 def _statistical(
-    surface: HeightMap, heights: HeightDistribution, load: Floats, area: float, modulus: float
+    surface: surfaces.HeightMap, heights: HeightDistribution, load: Floats, area: float, modulus: float
 ) -> LawCurve:
     """Contact by a statistical law of elastic asperities with the summits counted on the map."""
     contact = RoughContact(
-        roughness=contact_roughness(surface),
+        roughness=surfaces.contact_roughness(surface),
         # without yielding, Poisson's ratio and the tangential stiffness have no effect
         pair=ContactPair(effective_modulus=modulus, poisson_ratio=0.3, yield_strength=math.inf, mindlin_ratio=1.0),
         nominal_area=area,
@@ -215,15 +208,15 @@ def _statistical(
     )
     d = separation(contact, normal_load=load)
     return LawCurve(
-        separation=d + summit_statistics(surface).mean_summit_height,
+        separation=d + surfaces.summit_statistics(surface).mean_summit_height,
         real_contact_area=real_contact_area(contact, separation=d),
         normal_stiffness=normal_stiffness(contact, separation=d),
     )
 
 
-def _persson(surface: HeightMap, load: Floats, area: float, modulus: float) -> LawCurve:
+def _persson(surface: surfaces.HeightMap, load: Floats, area: float, modulus: float) -> LawCurve:
     """Contact by Persson's theory with the spectrum of the map."""
-    spectrum = radial_spectrum(areal_spectrum(surface, window="none"))
+    spectrum = surfaces.radial_spectrum(surfaces.areal_spectrum(surface, window="none"))
     contact = PerssonContact(spectrum=spectrum, effective_modulus=modulus, nominal_area=area)
     return LawCurve(
         separation=persson_separation(contact, normal_load=load),
@@ -232,7 +225,7 @@ def _persson(surface: HeightMap, load: Floats, area: float, modulus: float) -> L
     )
 
 
-def _boundary_element(surface: HeightMap, load: Floats, modulus: float) -> LawCurve:
+def _boundary_element(surface: surfaces.HeightMap, load: Floats, modulus: float) -> LawCurve:
     """Contact by boundary elements, refused where a load does not converge."""
     contact = boundary_element_contact(surface, normal_load=load, effective_modulus=modulus)
     unsolved = next((reason for reason in contact.reason if reason), "")

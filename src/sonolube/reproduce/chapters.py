@@ -1,5 +1,6 @@
 """Table of the reproduced sections, and the reproduction of a chapter or of the whole dissertation."""
 
+from dataclasses import asdict
 from functools import cache
 from typing import Final
 
@@ -93,9 +94,7 @@ def reproduction(*, chapter: int | None = None) -> Reproduction:
             if chapter in (None, row.chapter)
         ),
         figures=tuple(
-            ChapterFigure(
-                chapter=section.chapter, name=figure.name, title=figure.title, caption=figure.caption, draw=figure.draw
-            )
+            ChapterFigure(chapter=section.chapter, **asdict(figure))
             for section in SECTIONS
             if chapter in (None, section.chapter)
             for figure in section.figures()

@@ -38,15 +38,34 @@ def poisson_friction_ratio(*, bodies: Bodies, horn: Horn, normal_load: Floats, a
     -------
     ndarray, shape of `normal_load`
     """
-    waveguide = BarWaveguide(
+    waveguide = poisson_waveguide(horn, axial_amplitude=axial_amplitude, frequency=si_value("3.1.4-frequency"))
+    return dong_2015_half_period_ratio(
+        poisson_contact(bodies=bodies), normal_load=normal_load, vibration_amplitude=normal_amplitude(waveguide)
+    )
+
+
+def poisson_waveguide(horn: Horn, *, axial_amplitude: float, frequency: float) -> BarWaveguide:
+    """Waveguide of the Poisson-effect tests, a uniform bar.
+
+    Parameters
+    ----------
+    horn : {"aluminium", "steel"}
+        Material of the waveguide.
+    axial_amplitude : float
+        Axial amplitude at its ends. [m]
+    frequency : float
+        Frequency of the vibration. [Hz]
+
+    Returns
+    -------
+    BarWaveguide
+    """
+    return BarWaveguide(
         length=si_value("2.1.2-waveguide-length"),
         thickness=si_value("2.1.2-waveguide-thickness"),
         poisson_ratio=si_value(f"table-3.1-poisson_ratio_{horn}-1"),
         axial_amplitude=axial_amplitude,
-        frequency=si_value("3.1.4-frequency"),
-    )
-    return dong_2015_half_period_ratio(
-        poisson_contact(bodies=bodies), normal_load=normal_load, vibration_amplitude=normal_amplitude(waveguide)
+        frequency=frequency,
     )
 
 

@@ -46,6 +46,9 @@ dot_spacing: Final = _positional(metrics.dot_spacing, "sliding_speed", "frequenc
 indentation_spacing: Final = _positional(metrics.indentation_spacing, "sliding_speed", "period")
 """Spacing of the indentations of stick-slip of a sliding speed and a period, D 2.4. [m]"""
 
+peak_vibration_velocity: Final = _positional(metrics.peak_vibration_velocity, "frequency", "vibration_amplitude")
+"""Peak velocity of a frequency and an amplitude. [m/s]"""
+
 superimposed_speed: Final = _positional(metrics.superimposed_speed, "sliding_speed", "vibration_velocity")
 """Superimposed speed of a sliding speed and a peak vibration velocity. [m/s]"""
 

@@ -1,10 +1,10 @@
 """Rows of the reproduction: a published number, the number computed for it, and the verdict of their comparison."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import StrEnum
 
-from sonolube.published import ComputedValue, PrintedNumber, PublishedValue, published_value
+from sonolube.published import ComputedValue, PrintedNumber, PublishedValue, propagate_rounding, published_value
 from sonolube.units import convert
 from sonolube.vocabulary import unit_of
 
@@ -100,6 +100,29 @@ def comparison_row(
     else:
         verdict = Verdict.MODEL_DISAGREES
     return _row(published, suffix, _interval(published.number, computed), computed.value, verdict, note)
+
+
+def formula_row(
+    published: PublishedValue | str, note: str, formula: Callable[..., float], *inputs: PrintedNumber | str
+) -> Row:
+    """Return the row of a published number that follows from others by a formula, with their rounding propagated.
+
+    Parameters
+    ----------
+    published : PublishedValue or str
+        The published number, or its id.
+    note : str
+        Formula in words.
+    formula : callable
+        Function of the inputs.
+    *inputs : PrintedNumber or str
+        Published numbers, or their ids.
+
+    Returns
+    -------
+    Row
+    """
+    return comparison_row(published, propagate_rounding(formula, *inputs), note)
 
 
 def range_rows(

@@ -105,12 +105,8 @@ class HeatedDisc:
     convection_coefficient: float
 
     def __post_init__(self) -> None:
-        require_positive(
-            thickness=self.thickness,
-            track_radius=self.track_radius,
-            disc_radius=self.disc_radius,
-            convection_coefficient=self.convection_coefficient,
-        )
+        sizes = ("thickness", "track_radius", "disc_radius", "convection_coefficient")
+        require_positive(**{name: getattr(self, name) for name in sizes})
         if self.track_radius > self.disc_radius:
             raise InvalidInput(f"track_radius {self.track_radius!r} m lies outside disc_radius {self.disc_radius!r} m")
 

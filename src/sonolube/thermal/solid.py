@@ -1,6 +1,6 @@
 """Thermal properties of a homogeneous, isotropic solid."""
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 from sonolube.checks import require_positive
 
@@ -33,11 +33,7 @@ class ThermalSolid:
     specific_heat_capacity: float
 
     def __post_init__(self) -> None:
-        require_positive(
-            thermal_conductivity=self.thermal_conductivity,
-            density=self.density,
-            specific_heat_capacity=self.specific_heat_capacity,
-        )
+        require_positive(**asdict(self))
 
     @property
     def thermal_diffusivity(self) -> float:

@@ -9,8 +9,9 @@ sliding and the conductivity k. With the Peclet number Pe the limits are
     \frac{\Delta T}{\bar q b/k} \to \frac{c_\infty}{\sqrt{\mathrm{Pe}}} \quad (\mathrm{Pe} \to \infty) .
 """
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Protocol
+from typing import ClassVar
 
 import numpy as np
 from scipy.special import beta, ellipk
@@ -28,39 +29,51 @@ _MEAN_TO_PEAK_HERTZ = float(16 / (5 * np.pi) * beta(1 / 2, 9 / 4) / np.sqrt(np.p
 _MEAN_TO_CENTRE_HERTZ = 3 / 4  # at rest, for any ratio of axes
 
 
-class HeatSource(Protocol):
+@dataclass(frozen=True, kw_only=True, slots=True)
+class HeatSource(ABC):
     """Heat flux distributed over a patch of a half-space, with the low- and high-Peclet limits of its temperature.
 
     Rises are in units of mean flux times `half_length` over thermal conductivity.
+
+    Parameters
+    ----------
+    half_length, half_width : float
+        Half the length along the sliding, and half the width across it. [m]
+
+    Attributes
+    ----------
+    peak_high_peclet : float
+        Dimensionless peak rise times the square root of the Peclet number, for Pe to infinity. []
+    mean_to_peak_high_peclet : float
+        Mean over peak rise for Pe to infinity. []
     """
 
-    @property
-    def half_length(self) -> float:
-        """Half the length along the sliding. [m]"""
+    half_length: float
+    half_width: float
+    peak_high_peclet: ClassVar[float]
+    mean_to_peak_high_peclet: ClassVar[float]
+
+    def __post_init__(self) -> None:
+        require_positive(half_length=self.half_length, half_width=self.half_width)
 
     @property
+    @abstractmethod
     def area(self) -> float:
         """Area of the patch. [m2]"""
 
     @property
+    @abstractmethod
     def peak_low_peclet(self) -> float:
         """Dimensionless rise at the centre of the stationary source, Pe = 0. []"""
 
     @property
+    @abstractmethod
     def mean_low_peclet(self) -> float:
         """Dimensionless mean rise under the stationary source, Pe = 0. []"""
 
-    @property
-    def peak_high_peclet(self) -> float:
-        """Dimensionless peak rise times the square root of the Peclet number, for Pe to infinity. []"""
-
-    @property
-    def mean_to_peak_high_peclet(self) -> float:
-        """Mean over peak rise for Pe to infinity. []"""
-
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class EllipticSource:
+class EllipticSource(HeatSource):
     r"""Uniform heat flux over an ellipse with one axis along the sliding; a circle where both axes are equal.
 
     Parameters
@@ -97,11 +110,8 @@ class EllipticSource:
     .. [1] H. S. Carslaw, J. C. Jaeger, Conduction of Heat in Solids, 2nd ed., Oxford (1959), chapters 8 and 10.
     """
 
-    half_length: float
-    half_width: float
-
-    def __post_init__(self) -> None:
-        require_positive(half_length=self.half_length, half_width=self.half_width)
+    peak_high_peclet: ClassVar[float] = _PEAK_HIGH_PECLET_UNIFORM
+    mean_to_peak_high_peclet: ClassVar[float] = _MEAN_TO_PEAK_ELLIPSE
 
     @property
     def area(self) -> float:
@@ -119,19 +129,9 @@ class EllipticSource:
         """Dimensionless mean rise under the stationary source, Pe = 0. []"""
         return float(_MEAN_TO_CENTRE_ELLIPSE * self.peak_low_peclet)
 
-    @property
-    def peak_high_peclet(self) -> float:
-        """Dimensionless peak rise times the square root of the Peclet number, for Pe to infinity. []"""
-        return _PEAK_HIGH_PECLET_UNIFORM
-
-    @property
-    def mean_to_peak_high_peclet(self) -> float:
-        """Mean over peak rise for Pe to infinity. []"""
-        return _MEAN_TO_PEAK_ELLIPSE
-
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class HertzianSource:
+class HertzianSource(HeatSource):
     r"""Heat flux in proportion to the Hertzian pressure on an ellipse: the parabolic source of Tian and Kennedy.
 
     Parameters
@@ -166,11 +166,8 @@ class HertzianSource:
     .. [2] K. L. Johnson, Contact Mechanics, Cambridge (1985), section 3.5. doi:10.1017/CBO9781139171731
     """
 
-    half_length: float
-    half_width: float
-
-    def __post_init__(self) -> None:
-        require_positive(half_length=self.half_length, half_width=self.half_width)
+    peak_high_peclet: ClassVar[float] = _PEAK_HIGH_PECLET_HERTZ
+    mean_to_peak_high_peclet: ClassVar[float] = _MEAN_TO_PEAK_HERTZ
 
     @property
     def area(self) -> float:
@@ -188,19 +185,9 @@ class HertzianSource:
         """Dimensionless mean rise under the stationary source, Pe = 0. []"""
         return _MEAN_TO_CENTRE_HERTZ * self.peak_low_peclet
 
-    @property
-    def peak_high_peclet(self) -> float:
-        """Dimensionless peak rise times the square root of the Peclet number, for Pe to infinity. []"""
-        return _PEAK_HIGH_PECLET_HERTZ
-
-    @property
-    def mean_to_peak_high_peclet(self) -> float:
-        """Mean over peak rise for Pe to infinity. []"""
-        return _MEAN_TO_PEAK_HERTZ
-
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class RectangularSource:
+class RectangularSource(HeatSource):
     r"""Uniform heat flux over a rectangle with one side along the sliding; a square where both sides are equal.
 
     Parameters
@@ -238,11 +225,8 @@ class RectangularSource:
     .. [1] J. C. Jaeger, J. Proc. R. Soc. N.S.W. 76, 203 (1942).
     """
 
-    half_length: float
-    half_width: float
-
-    def __post_init__(self) -> None:
-        require_positive(half_length=self.half_length, half_width=self.half_width)
+    peak_high_peclet: ClassVar[float] = _PEAK_HIGH_PECLET_UNIFORM
+    mean_to_peak_high_peclet: ClassVar[float] = _MEAN_TO_PEAK_RECTANGLE
 
     @property
     def area(self) -> float:
@@ -261,13 +245,3 @@ class RectangularSource:
         r = self.half_width / self.half_length
         corner = (1 + r**3 - np.hypot(1, r) ** 3) / (3 * r)
         return float(2 / np.pi * (r * np.arcsinh(1 / r) + np.arcsinh(r) + corner))
-
-    @property
-    def peak_high_peclet(self) -> float:
-        """Dimensionless peak rise times the square root of the Peclet number, for Pe to infinity. []"""
-        return _PEAK_HIGH_PECLET_UNIFORM
-
-    @property
-    def mean_to_peak_high_peclet(self) -> float:
-        """Mean over peak rise for Pe to infinity. []"""
-        return _MEAN_TO_PEAK_RECTANGLE

@@ -12,7 +12,7 @@ import numpy as np
 
 from sonolube.validation.fitting import Fit, fit_variant, root_mean_square, select_tests
 from sonolube.validation.model_variant import ModelVariant
-from sonolube.validation.published_tests import MeasuredConditions
+from sonolube.validation.published_tests import MeasuredConditions, Tests
 
 SETS_WITHOUT_POWER_MAP: Final = "ACDEFG"
 """Fitted sets of D without Table 4.2."""
@@ -87,9 +87,7 @@ class Assessment:
     information: InformationCriteria | None
 
 
-def assess_variant(
-    variant: ModelVariant, sets: str, *, tests: tuple[MeasuredConditions, ...] | None = None
-) -> Assessment:
+def assess_variant(variant: ModelVariant, sets: str, *, tests: Tests | None = None) -> Assessment:
     """Return the assessment of a model variant on some sets.
 
     Parameters
@@ -133,23 +131,19 @@ def error_statistics(predicted: Iterable[tuple[MeasuredConditions, float | None]
     )
 
 
-def leave_one_set_out_fits(
-    variant: ModelVariant, sets: str, *, tests: tuple[MeasuredConditions, ...] | None = None
-) -> tuple[Fit, ...]:
+def leave_one_set_out_fits(variant: ModelVariant, sets: str, *, tests: Tests | None = None) -> tuple[Fit, ...]:
     """Return for each set, in order, the fit to all the others, which starts from the fit to all."""
     initial = fit_variant(variant, sets, tests=tests).values
     return tuple(fit_variant(variant, sets.replace(one, ""), initial=initial, tests=tests) for one in sets)
 
 
-def cross_validation_errors(
-    variant: ModelVariant, sets: str, *, tests: tuple[MeasuredConditions, ...] | None = None
-) -> ErrorStatistics:
+def cross_validation_errors(variant: ModelVariant, sets: str, *, tests: Tests | None = None) -> ErrorStatistics:
     """Return the error statistics with each set predicted by a fit to the others."""
     fits = zip(sets, leave_one_set_out_fits(variant, sets, tests=tests), strict=True)
     return error_statistics((test, fit.predict(test)) for one, fit in fits for test in select_tests(one, tests))
 
 
-def information_criteria(fit: Fit, tests: tuple[MeasuredConditions, ...]) -> InformationCriteria | None:
+def information_criteria(fit: Fit, tests: Tests) -> InformationCriteria | None:
     """Return the information criteria of a fit on some tests; None where one is outside the range of the model."""
     errors = prediction_errors(fit, tests)
     if errors.out_of_range:

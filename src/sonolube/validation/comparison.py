@@ -24,7 +24,12 @@ from sonolube.validation.fitting import Fit, profile_likelihood_interval, select
 from sonolube.validation.free_parameters import FreeParameter
 from sonolube.validation.friction_model_variants import FRICTION_MODEL_VARIANTS
 from sonolube.validation.model_variant import ModelVariant
-from sonolube.validation.published_tests import IN_PLANE_VIBRATION_SETS, NORMAL_VIBRATION_SETS, MeasuredConditions
+from sonolube.validation.published_tests import (
+    IN_PLANE_VIBRATION_SETS,
+    NORMAL_VIBRATION_SETS,
+    MeasuredConditions,
+    Tests,
+)
 from sonolube.validation.rig_conditions import VibratedRig
 
 Advance = Callable[[str, int, int], None]
@@ -205,7 +210,7 @@ def compared_models(names: Iterable[str] = ()) -> tuple[ModelVariant, ...]:
 def compare_models(
     models: tuple[ModelVariant, ...] = COMPARED_MODELS,
     *,
-    tests: tuple[MeasuredConditions, ...] | None = None,
+    tests: Tests | None = None,
     advance: Advance = lambda name, done, total: None,
 ) -> tuple[ComparedFit, ...]:
     """Return model variants fitted to and assessed on the tests that have their required inputs.
@@ -255,7 +260,7 @@ def predict_rig(fits: tuple[ComparedFit, ...], rig: VibratedRig) -> tuple[RigPre
     return tuple(sorted((_rig_prediction(one, rig) for one in fits), key=_rig_rank))
 
 
-def _compared_fit(model: ModelVariant, tests: tuple[MeasuredConditions, ...] | None) -> ComparedFit:
+def _compared_fit(model: ModelVariant, tests: Tests | None) -> ComparedFit:
     """Return one variant fitted to, and assessed on, the sets whose tests have its required inputs."""
     selected = select_tests("".join(DATA_SETS), tests)
     applicable = {test.set_name for test in selected if model.inapplicability(test) is None}
@@ -279,9 +284,7 @@ def _compared_fit(model: ModelVariant, tests: tuple[MeasuredConditions, ...] | N
     )
 
 
-def _fitted_parameters(
-    fit: Fit, left_out: dict[str, Fit], tests: tuple[MeasuredConditions, ...] | None
-) -> tuple[FittedParameter, ...]:
+def _fitted_parameters(fit: Fit, left_out: dict[str, Fit], tests: Tests | None) -> tuple[FittedParameter, ...]:
     """Return the fitted parameters with intervals and ranges over the fits with one set left out."""
     parameters, found = fit.variant.parameters, []
     for index, (parameter, value) in enumerate(zip(parameters, fit.values, strict=True)):

@@ -12,20 +12,10 @@ from functools import cache
 from math import pi
 from typing import Final
 
+from sonolube import friction
+from sonolube.checks import Floats
 from sonolube.contact import RoughContact, normal_stiffness, separation
 from sonolube.errors import ModelRangeWarning, OutsideRange
-from sonolube.friction import (
-    SpringContact,
-    approximate_normal_ratio,
-    combined_oscillation_ratio,
-    critical_speed,
-    elliptical_traction_ratio,
-    load_balanced_approach,
-    longitudinal_oscillation_ratio,
-    normal_oscillation_ratio,
-    oblique_vibration_ratio,
-    parallel_vibration_ratio,
-)
 from sonolube.validation.free_parameters import APPROACH, IN_PLANE_MOTION, MINDLIN_RATIO, VIBRATION_DIRECTION, per_rig
 from sonolube.validation.model_variant import NORMAL_VIBRATION, ModelVariant
 from sonolube.validation.published_tests import FrictionTest, InPlaneTest
@@ -39,123 +29,109 @@ def load_over_stiffness(contact: RoughContact, load: float) -> float:
     return load / float(normal_stiffness(contact, separation=at_rest))
 
 
-def _coulomb_in_plane(test: InPlaneTest) -> float:
+def _coulomb_in_plane(test: InPlaneTest) -> Floats:
     """Return the friction ratio by Coulomb friction under the measured in-plane vibration. []"""
-    return float(
-        oblique_vibration_ratio(
-            sliding_speed=test.sliding_speed,
-            vibration_velocity=test.vibration_velocity,
-            vibration_direction=test.vibration_direction,
-        )
+    return friction.oblique_vibration_ratio(
+        sliding_speed=test.sliding_speed,
+        vibration_velocity=test.vibration_velocity,
+        vibration_direction=test.vibration_direction,
     )
 
 
-def _coulomb_longitudinal(test: FrictionTest, in_plane_fraction: float) -> float:
+def _coulomb_longitudinal(test: FrictionTest, in_plane_fraction: float) -> Floats:
     """Return the friction ratio by Coulomb friction under vibration along the sliding. []"""
-    return float(
-        parallel_vibration_ratio(
-            sliding_speed=test.sliding_speed, vibration_velocity=in_plane_fraction * _peak_velocity(test)
-        )
+    return friction.parallel_vibration_ratio(
+        sliding_speed=test.sliding_speed, vibration_velocity=in_plane_fraction * _peak_velocity(test)
     )
 
 
-def _coulomb_oblique(test: FrictionTest, in_plane_fraction: float, vibration_direction: float) -> float:
+def _coulomb_oblique(test: FrictionTest, in_plane_fraction: float, vibration_direction: float) -> Floats:
     """Return the friction ratio by Coulomb friction under vibration oblique to the sliding. []"""
-    return float(
-        oblique_vibration_ratio(
-            sliding_speed=test.sliding_speed,
-            vibration_velocity=in_plane_fraction * _peak_velocity(test),
-            vibration_direction=vibration_direction,
-        )
+    return friction.oblique_vibration_ratio(
+        sliding_speed=test.sliding_speed,
+        vibration_velocity=in_plane_fraction * _peak_velocity(test),
+        vibration_direction=vibration_direction,
     )
 
 
-def _spring_flat(test: FrictionTest, approach: float | None = None, mindlin_ratio: float | None = None) -> float:
+def _spring_flat(test: FrictionTest, approach: float | None = None, mindlin_ratio: float | None = None) -> Floats:
     """Return the friction ratio by springs of constant stiffness, the profile of a flat punch. []"""
     springs = _springs(test, mindlin_ratio)
     at_rest = load_over_stiffness(test.contact, test.normal_load) if approach is None else approach
     return _under_normal_oscillation(test, springs, at_rest)
 
 
-def _spring_parabolic(test: FrictionTest) -> float:
+def _spring_parabolic(test: FrictionTest) -> Floats:
     """Return the friction ratio by springs of a parabolic profile with the load and stiffness of the contact. []"""
     springs = replace(_springs(test, None), profile="parabolic")
     hertz = 1.5 * load_over_stiffness(test.contact, test.normal_load)  # F_N = 2/3 k_z u
     return _under_normal_oscillation(test, springs, hertz)
 
 
-def _under_normal_oscillation(test: FrictionTest, springs: SpringContact, at_rest: float) -> float:
+def _under_normal_oscillation(test: FrictionTest, springs: friction.SpringContact, at_rest: float) -> Floats:
     """Return the friction ratio of a spring-coupled contact about the load-balanced approach. []"""
     a = test.vibration_amplitude
-    return float(
-        normal_oscillation_ratio(
-            springs,
-            approach=load_balanced_approach(springs, approach=at_rest, normal_amplitude=a),
-            normal_amplitude=a,
-            frequency=test.frequency,
-            sliding_speed=test.sliding_speed,
-        )
+    return friction.normal_oscillation_ratio(
+        springs,
+        approach=friction.load_balanced_approach(springs, approach=at_rest, normal_amplitude=a),
+        normal_amplitude=a,
+        frequency=test.frequency,
+        sliding_speed=test.sliding_speed,
     )
 
 
-def _spring_approximate(test: FrictionTest) -> float:
+def _spring_approximate(test: FrictionTest) -> Floats:
     """Return the friction ratio by the published approximation for springs of constant stiffness. []"""
     springs, a = _springs(test, None), test.vibration_amplitude
-    critical = critical_speed(springs, frequency=test.frequency, normal_amplitude=a)
+    critical = friction.critical_speed(springs, frequency=test.frequency, normal_amplitude=a)
     with _range_warnings_as_errors():
-        return float(
-            approximate_normal_ratio(
-                springs,
-                approach=load_over_stiffness(test.contact, test.normal_load),
-                normal_amplitude=a,
-                velocity_ratio=test.sliding_speed / critical,
-            )
+        return friction.approximate_normal_ratio(
+            springs,
+            approach=load_over_stiffness(test.contact, test.normal_load),
+            normal_amplitude=a,
+            velocity_ratio=test.sliding_speed / critical,
         )
 
 
 def _spring_in_plane(
     test: FrictionTest, mindlin_ratio: float, in_plane_fraction: float = 0.0, in_plane_phase: float = 0.0
-) -> float:
+) -> Floats:
     """Return the friction ratio by springs of constant stiffness under normal and in-plane motion. []"""
     if in_plane_fraction == 0:
         return _spring_flat(test, mindlin_ratio=mindlin_ratio)
     springs, a = _springs(test, mindlin_ratio), test.vibration_amplitude
     with _range_warnings_as_errors():
-        return float(
-            combined_oscillation_ratio(
-                springs,
-                approach=load_balanced_approach(
-                    springs, approach=load_over_stiffness(test.contact, test.normal_load), normal_amplitude=a
-                ),
-                frequency=test.frequency,
-                sliding_speed=test.sliding_speed,
-                normal_amplitude=a,
-                in_plane_amplitude=in_plane_fraction * a,
-                in_plane_phase=in_plane_phase,
-                steps=128,
-            )
+        return friction.combined_oscillation_ratio(
+            springs,
+            approach=friction.load_balanced_approach(
+                springs, approach=load_over_stiffness(test.contact, test.normal_load), normal_amplitude=a
+            ),
+            frequency=test.frequency,
+            sliding_speed=test.sliding_speed,
+            normal_amplitude=a,
+            in_plane_amplitude=in_plane_fraction * a,
+            in_plane_phase=in_plane_phase,
+            steps=128,
         )
 
 
-def _spring_longitudinal(rig: VibratedRig) -> float:
+def _spring_longitudinal(rig: VibratedRig) -> Floats:
     """Return the friction ratio by springs of constant stiffness under the measured motion along the sliding. []"""
     assert rig.in_plane_amplitude is not None
     assert rig.frequency is not None
-    return float(
-        longitudinal_oscillation_ratio(
-            _springs(rig, None),
-            approach=load_over_stiffness(rig.contact, rig.normal_load),
-            in_plane_amplitude=rig.in_plane_amplitude,
-            frequency=rig.frequency,
-            sliding_speed=rig.sliding_speed,
-        )
+    return friction.longitudinal_oscillation_ratio(
+        _springs(rig, None),
+        approach=load_over_stiffness(rig.contact, rig.normal_load),
+        in_plane_amplitude=rig.in_plane_amplitude,
+        frequency=rig.frequency,
+        sliding_speed=rig.sliding_speed,
     )
 
 
 def _elliptical(test: FrictionTest, in_plane_fraction: float, in_plane_phase: float) -> float:
     """Return the friction ratio by rigid Coulomb friction on an elliptical path. []"""
     return -float(
-        elliptical_traction_ratio(
+        friction.elliptical_traction_ratio(
             normal_load=test.normal_load,
             normal_stiffness=test.normal_load / load_over_stiffness(test.contact, test.normal_load),
             normal_amplitude=test.vibration_amplitude,
@@ -183,9 +159,9 @@ def _peak_velocity(test: FrictionTest) -> float:
     return 2 * pi * test.frequency * test.vibration_amplitude
 
 
-def _springs(test: FrictionTest | VibratedRig, mindlin_ratio: float | None) -> SpringContact:
+def _springs(test: FrictionTest | VibratedRig, mindlin_ratio: float | None) -> friction.SpringContact:
     """Return a spring-coupled contact with a ratio of tangential to normal stiffness, that of Mindlin if None."""
-    return SpringContact(
+    return friction.SpringContact(
         friction_coefficient=test.friction_coefficient,
         mindlin_ratio=test.contact.pair.mindlin_ratio if mindlin_ratio is None else mindlin_ratio,
     )

@@ -6,15 +6,9 @@ from typing import Final
 
 import numpy as np
 
+from sonolube import friction
+from sonolube.checks import Floats
 from sonolube.contact import RoughContact, separation
-from sonolube.friction import (
-    DahlFriction,
-    Holder,
-    LuGreFriction,
-    dahl_under_vibration,
-    lugre_under_vibration,
-    spring_driven_slider_force,
-)
 from sonolube.validation.coulomb_and_spring_variants import LONGITUDINAL_VIBRATION, load_over_stiffness
 from sonolube.validation.free_parameters import IN_PLANE_MOTION, MINDLIN_RATIO, STRIBECK_CURVE, per_rig
 from sonolube.validation.friction_model_variants import balanced_motion
@@ -28,7 +22,7 @@ _DAMPING_RATIO: Final = 0.2  # of the driven holder
 
 def _dahl(test: FrictionTest, in_plane_fraction: float = 0.0, in_plane_phase: float = 0.0) -> float:
     """Return the friction ratio by the law of Dahl with the stiffness of the cube, D 3.10 and 3.11. []"""
-    mean_force = dahl_under_vibration(
+    mean_force = friction.dahl_under_vibration(
         test.contact,
         separation=_balanced_separation(test.contact, test.normal_load, test.vibration_amplitude, test.frequency),
         friction_coefficient=test.friction_coefficient,
@@ -49,11 +43,11 @@ def _lugre(
     stribeck_velocity: float = 1.0,
     in_plane_fraction: float = 0.0,
     in_plane_phase: float = 0.0,
-) -> float:
+) -> Floats:
     """Return the friction ratio by the law of LuGre, the sliding friction of the test on its Stribeck curve. []"""
     static_excess = (static_friction_ratio - 1) * exp(-((test.sliding_speed / stribeck_velocity) ** 2))
     sliding = test.friction_coefficient * test.normal_load / (1 + static_excess)
-    law = LuGreFriction(
+    law = friction.LuGreFriction(
         coulomb_friction_force=sliding,
         static_friction_force=static_friction_ratio * sliding,
         stribeck_velocity=stribeck_velocity,
@@ -63,10 +57,8 @@ def _lugre(
     )
     motion = balanced_motion(test.contact, test.normal_load, test.vibration_amplitude, test.frequency)
     speed = test.sliding_speed
-    return float(
-        lugre_under_vibration(
-            law, motion, sliding_speed=speed, in_plane_fraction=in_plane_fraction, in_plane_phase=in_plane_phase
-        )
+    return friction.lugre_under_vibration(
+        law, motion, sliding_speed=speed, in_plane_fraction=in_plane_fraction, in_plane_phase=in_plane_phase
     )
 
 
@@ -80,9 +72,9 @@ def _dahl_driven(rig: VibratedRig) -> float:
     stiffness = rig.contact.pair.mindlin_ratio * rig.normal_load / load_over_stiffness(rig.contact, rig.normal_load)
     natural = sqrt(rig.holder_stiffness / rig.holder_mass)
     damping = 2 * _DAMPING_RATIO * rig.holder_mass * natural
-    slide = spring_driven_slider_force(
-        DahlFriction(coulomb_friction_force=steady, contact_stiffness=stiffness),
-        Holder(holder_stiffness=rig.holder_stiffness, holder_damping=damping, holder_mass=rig.holder_mass),
+    slide = friction.spring_driven_slider_force(
+        friction.DahlFriction(coulomb_friction_force=steady, contact_stiffness=stiffness),
+        friction.Holder(holder_stiffness=rig.holder_stiffness, holder_damping=damping, holder_mass=rig.holder_mass),
         sliding_speed=rig.sliding_speed,
         frequency=rig.frequency,
         vibration_amplitude=rig.in_plane_amplitude,

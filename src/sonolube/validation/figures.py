@@ -1,6 +1,6 @@
 """Figures of the comparison: predicted against measured ratios, ratios over speed and amplitude, and those of a rig."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
@@ -26,7 +26,7 @@ _LOW, _HIGH = -0.1, 1.15  # limits of the ratios drawn
 _HIGHEST_OF_RIG: Final = 1.5
 
 
-def comparison_figures(compared: Callable[[], tuple[ComparedFit, ...]]) -> tuple[ReportFigure, ...]:
+def comparison_figures(compared: Callable[[], tuple[ComparedFit, ...]]) -> Iterator[ReportFigure]:
     """Return the figures of a comparison.
 
     Parameters
@@ -36,29 +36,27 @@ def comparison_figures(compared: Callable[[], tuple[ComparedFit, ...]]) -> tuple
 
     Returns
     -------
-    tuple of ReportFigure
+    iterator of ReportFigure
     """
 
     def assessed() -> list[ComparedFit]:
         return [one for one in compared() if one.assessment is not None]
 
-    return (
-        ReportFigure(
-            name="models-predicted-against-measured",
-            title="Models of friction under vibration: predicted against measured",
-            caption="Filled: by the fit to all sets A to G. Open: each set by a fit to the others, where "
-            "that differs; set H by the fit to all. On the line both would agree; ratios outside the frame are drawn "
-            "at its edge. k fitted parameters, rms errors of the fit and of the cross-validation (CV). The "
-            f"{_PANELS} models of the lowest corrected Akaike criterion.",
-            draw=lambda: _predicted_against_measured(assessed()[:_PANELS]),
-        ),
-        ReportFigure(
-            name="models-over-speed-and-amplitude",
-            title="Models of friction under vibration over speed and amplitude",
-            caption="Points and scatter: Tables 2.3 and 4.2. Lines: models fitted to all sets, of each family the one "
-            "of the lowest corrected Akaike criterion.",
-            draw=lambda: _over_speed_and_amplitude(_best_of_each_family(assessed())[:_CURVES]),
-        ),
+    yield ReportFigure(
+        name="models-predicted-against-measured",
+        title="Models of friction under vibration: predicted against measured",
+        caption="Filled: by the fit to all sets A to G. Open: each set by a fit to the others, where "
+        "that differs; set H by the fit to all. On the line both would agree; ratios outside the frame are drawn "
+        "at its edge. k fitted parameters, rms errors of the fit and of the cross-validation (CV). The "
+        f"{_PANELS} models of the lowest corrected Akaike criterion.",
+        draw=lambda: _predicted_against_measured(assessed()[:_PANELS]),
+    )
+    yield ReportFigure(
+        name="models-over-speed-and-amplitude",
+        title="Models of friction under vibration over speed and amplitude",
+        caption="Points and scatter: Tables 2.3 and 4.2. Lines: models fitted to all sets, of each family the one "
+        "of the lowest corrected Akaike criterion.",
+        draw=lambda: _over_speed_and_amplitude(_best_of_each_family(assessed())[:_CURVES]),
     )
 
 
@@ -134,16 +132,9 @@ def draw_measured(
     fmt, color : str
         Marker and colour.
     """
-    axes.errorbar(
-        [abscissa(test) for test in tests],
-        [test.friction_ratio for test in tests],
-        yerr=[test.uncertainty or 0.0 for test in tests],
-        fmt=fmt,
-        color=color,
-        capsize=3,
-        zorder=5,
-        label=label,
-    )
+    x, ratios = [abscissa(test) for test in tests], [test.friction_ratio for test in tests]
+    errors = [test.uncertainty or 0.0 for test in tests]
+    axes.errorbar(x, ratios, yerr=errors, fmt=fmt, color=color, capsize=3, zorder=5, label=label)
 
 
 def _predicted_against_measured(fits: list[ComparedFit]) -> "Figure":
@@ -187,10 +178,8 @@ def _panel(axes: "Axes", one: ComparedFit) -> None:
                 place = prediction.test.friction_ratio, min(max(ratio, _LOW), _HIGH)
                 axes.plot(*place, ls="", marker=marker, color=colour, mfc=face, ms=4.5, clip_on=False)
     fit, cross_validation = one.assessment.fit_errors.rms, one.assessment.cross_validation_errors.rms
-    axes.set_title(
-        f"{one.model.name.replace('-', ' ')}\nk = {len(one.parameters)}, rms {fit:.2f}, CV {cross_validation:.2f}",
-        fontsize=8,
-    )
+    statistics = f"k = {len(one.parameters)}, rms {fit:.2f}, CV {cross_validation:.2f}"
+    axes.set_title(f"{one.model.name.replace('-', ' ')}\n{statistics}", fontsize=8)
     axes.set(xlim=(0, _HIGH), ylim=(_LOW, _HIGH), aspect="equal", xticks=(0, 0.5, 1), yticks=(0, 0.5, 1))
 
 

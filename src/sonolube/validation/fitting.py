@@ -12,7 +12,7 @@ from scipy.optimize import brentq, least_squares
 from sonolube.checks import Floats
 from sonolube.validation.free_parameters import FreeParameter
 from sonolube.validation.model_variant import ModelVariant
-from sonolube.validation.published_tests import Conditions, MeasuredConditions, friction_tests, in_plane_tests
+from sonolube.validation.published_tests import Conditions, Tests, friction_tests, in_plane_tests
 
 _OUT_OF_RANGE_RESIDUAL: Final = 1.0  # residual of a test outside the range of the model, in fits only
 _CHI_SQUARED_95: Final = 3.841  # 95 % quantile of chi squared with one degree of freedom
@@ -40,19 +40,15 @@ class Fit:
         return self.variant.predict(conditions, *self.values)
 
 
-def select_tests(sets: str, tests: tuple[MeasuredConditions, ...] | None = None) -> tuple[MeasuredConditions, ...]:
+def select_tests(sets: str, tests: Tests | None = None) -> Tests:
     """Return the tests that belong to the sets of the given letters, from all published tests if None are given."""
-    everything: tuple[MeasuredConditions, ...] = (*friction_tests(), *in_plane_tests()) if tests is None else tests
+    everything: Tests = (*friction_tests(), *in_plane_tests()) if tests is None else tests
     return tuple(test for test in everything if test.set_name in sets)
 
 
 @cache
 def fit_variant(
-    variant: ModelVariant,
-    sets: str,
-    *,
-    initial: tuple[float, ...] | None = None,
-    tests: tuple[MeasuredConditions, ...] | None = None,
+    variant: ModelVariant, sets: str, *, initial: tuple[float, ...] | None = None, tests: Tests | None = None
 ) -> Fit:
     r"""Return a model variant fitted by least squares to the measured friction ratios of some sets.
 
@@ -88,9 +84,7 @@ def fit_variant(
     return Fit(variant=variant, sets=sets if free else "", values=tuple(values.tolist()))
 
 
-def profile_likelihood_interval(
-    fit: Fit, index: int, *, tests: tuple[MeasuredConditions, ...] | None = None
-) -> tuple[float, float]:
+def profile_likelihood_interval(fit: Fit, index: int, *, tests: Tests | None = None) -> tuple[float, float]:
     r"""Return the 95 % profile likelihood interval of one parameter, truncated at its bounds.
 
     Parameters
@@ -140,7 +134,7 @@ def root_mean_square(residuals: ArrayLike) -> float:
     return float(np.sqrt(np.mean(squares))) if squares.size else float("inf")
 
 
-def _initial_guess(variant: ModelVariant, tests: tuple[MeasuredConditions, ...]) -> Floats:
+def _initial_guess(variant: ModelVariant, tests: Tests) -> Floats:
     """Return the best initial values of each group of parameters with the same sets, the common group first."""
     values = np.array([parameter.default for parameter in variant.parameters])
     for group in sorted({parameter.applicable_sets for parameter in variant.parameters}):
@@ -156,7 +150,7 @@ def _initial_guess(variant: ModelVariant, tests: tuple[MeasuredConditions, ...])
     return values
 
 
-def _minimise(variant: ModelVariant, tests: tuple[MeasuredConditions, ...], free: list[int], start: Floats) -> Floats:
+def _minimise(variant: ModelVariant, tests: Tests, free: list[int], start: Floats) -> Floats:
     """Return the start with the parameters of some indices fitted by bounded least squares (dogbox)."""
     if not free:
         return start
@@ -194,7 +188,7 @@ def _with_values(values: Floats, indices: list[int], replaced: Floats) -> Floats
     return changed
 
 
-def _residuals(variant: ModelVariant, tests: tuple[MeasuredConditions, ...], values: ArrayLike) -> Floats:
+def _residuals(variant: ModelVariant, tests: Tests, values: ArrayLike) -> Floats:
     """Return predicted minus measured friction ratios. []"""
     predicted = (variant.predict(test, *np.asarray(values).tolist()) for test in tests)
     return np.array(

@@ -40,7 +40,7 @@ class FreeParameter:
     """
 
     name: str
-    unit: str
+    unit: str = ""
     default: float
     initial_values: tuple[float, ...]
     low: float
@@ -65,7 +65,6 @@ def per_rig(parameters: tuple[FreeParameter, ...], *rigs: str) -> tuple[FreePara
 
 NOMINAL_AREA_FACTOR: Final = FreeParameter(
     name="nominal_area_factor",
-    unit="",
     default=1.0,
     initial_values=(0.5, 2.0),
     low=0.1,
@@ -75,7 +74,6 @@ NOMINAL_AREA_FACTOR: Final = FreeParameter(
 )
 FRICTION_COEFFICIENT_FACTOR: Final = FreeParameter(
     name="friction_coefficient_factor",
-    unit="",
     default=1.0,
     initial_values=(0.9, 1.1),
     low=0.8,
@@ -84,7 +82,6 @@ FRICTION_COEFFICIENT_FACTOR: Final = FreeParameter(
 )
 AMPLITUDE_FRACTION: Final = FreeParameter(
     name="amplitude_fraction",
-    unit="",
     default=1.0,
     initial_values=(0.3,),
     low=0.05,
@@ -112,7 +109,6 @@ HOLDER_COMPLIANCE: Final = FreeParameter(
 IN_PLANE_MOTION: Final = (
     FreeParameter(
         name="in_plane_fraction",
-        unit="",
         default=0.0,
         initial_values=(0.1, 0.3),
         low=0.0,
@@ -150,7 +146,6 @@ APPROACH: Final = FreeParameter(
 )
 MINDLIN_RATIO: Final = FreeParameter(
     name="mindlin_ratio",
-    unit="",
     default=0.82,
     initial_values=(0.1, 0.4, 0.82),
     low=0.02,
@@ -161,7 +156,6 @@ MINDLIN_RATIO: Final = FreeParameter(
 STRIBECK_CURVE: Final = (
     FreeParameter(
         name="static_friction_ratio",
-        unit="",
         default=1.0,
         initial_values=(1.2, 2.0),
         low=1.0,

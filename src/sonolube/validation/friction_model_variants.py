@@ -4,18 +4,9 @@ from dataclasses import asdict, replace
 from functools import cache
 from typing import Final
 
+from sonolube import friction
+from sonolube.checks import Floats
 from sonolube.contact import GapMotion, RoughContact, decay_length, load_balanced_motion, separation, sinusoidal_motion
-from sonolube.friction import (
-    AsperityStickSlip,
-    BristleWithHolder,
-    Dong2015FullPeriod,
-    Dong2015HalfPeriod,
-    Dong2015LoadBalanced,
-    Holder,
-    Kinematic,
-    mindlin_memory_length,
-    sine_stick_slip_ratio,
-)
 from sonolube.validation.free_parameters import (
     AMPLITUDE_FRACTION,
     FITTED_RIGS,
@@ -38,7 +29,7 @@ def balanced_motion(contact: RoughContact, load: float, amplitude: float, freque
 
 def asperity_stick_slip(
     test: FrictionTest, *, memory_length: float, in_plane_fraction: float = 0.0, in_plane_phase: float = 0.0
-) -> float:
+) -> Floats:
     """Return the friction ratio of a test by asperity stick-slip about the load-balanced mean gap. []
 
     Parameters
@@ -57,24 +48,22 @@ def asperity_stick_slip(
     """
     if in_plane_fraction == 0:
         at_rest = separation(test.contact, normal_load=test.normal_load)
-        return float(
-            sine_stick_slip_ratio(
-                decay_length=decay_length(test.contact, separation=at_rest),
-                vibration_amplitude=test.vibration_amplitude,
-                frequency=test.frequency,
-                sliding_speed=test.sliding_speed,
-                memory_length=memory_length,
-            )
+        return friction.sine_stick_slip_ratio(
+            decay_length=decay_length(test.contact, separation=at_rest),
+            vibration_amplitude=test.vibration_amplitude,
+            frequency=test.frequency,
+            sliding_speed=test.sliding_speed,
+            memory_length=memory_length,
         )
-    model = AsperityStickSlip(
+    model = friction.AsperityStickSlip(
         memory_length=memory_length, in_plane_fraction=in_plane_fraction, in_plane_phase=in_plane_phase
     )
-    return float(model.ratio(test.contact, _balanced(test), sliding_speed=test.sliding_speed))
+    return model.ratio(test.contact, _balanced(test), sliding_speed=test.sliding_speed)
 
 
-def mindlin_stick_slip(test: FrictionTest, friction_coefficient_factor: float = 1.0) -> float:
+def mindlin_stick_slip(test: FrictionTest, friction_coefficient_factor: float = 1.0) -> Floats:
     """Return the friction ratio of a test by asperity stick-slip with the memory length of Mindlin. []"""
-    length = mindlin_memory_length(
+    length = friction.mindlin_memory_length(
         test.contact,
         friction_coefficient=friction_coefficient_factor * test.friction_coefficient,
         normal_load=test.normal_load,
@@ -84,40 +73,37 @@ def mindlin_stick_slip(test: FrictionTest, friction_coefficient_factor: float = 
 
 def _full_period(test: FrictionTest) -> float:
     """Return the friction ratio by the cube over the full period, D 3.46 to 3.48. []"""
-    return float(Dong2015FullPeriod().ratio(test.contact, _unbalanced(test), sliding_speed=test.sliding_speed))
+    return float(friction.Dong2015FullPeriod().ratio(test.contact, _unbalanced(test), sliding_speed=test.sliding_speed))
 
 
 def _half_period(test: FrictionTest) -> float:
     """Return the friction ratio by the cube over the separating half period, D 3.15. []"""
-    return float(Dong2015HalfPeriod().ratio(test.contact, _unbalanced(test), sliding_speed=test.sliding_speed))
+    return float(friction.Dong2015HalfPeriod().ratio(test.contact, _unbalanced(test), sliding_speed=test.sliding_speed))
 
 
 def _load_balanced(test: FrictionTest, nominal_area_factor: float = 1.0) -> float:
     """Return the friction ratio by the cube over the full period about the load-balanced mean gap. []"""
     contact = replace(test.contact, nominal_area=nominal_area_factor * test.contact.nominal_area)
     motion = _harmonic_motion(contact, test.normal_load, test.vibration_amplitude, test.frequency)
-    return float(Dong2015LoadBalanced().ratio(contact, motion, sliding_speed=test.sliding_speed))
+    return float(friction.Dong2015LoadBalanced().ratio(contact, motion, sliding_speed=test.sliding_speed))
 
 
 def _kinematic(test: FrictionTest, amplitude_fraction: float = 1.0) -> float:
     """Return the friction ratio by the direction of the relative velocity, D 3.46. []"""
-    model = Kinematic(amplitude_fraction=amplitude_fraction)
+    model = friction.Kinematic(amplitude_fraction=amplitude_fraction)
     return float(model.ratio(test.contact, _unbalanced(test), sliding_speed=test.sliding_speed))
 
 
 def _bristle_with_holder(
     test: FrictionTest, holder_compliance: float = 0.0, in_plane_fraction: float = 0.0, in_plane_phase: float = 0.0
-) -> float:
+) -> Floats:
     """Return the friction ratio by a bristle of Mindlin's stiffness on a rigid or compliant holder. []"""
-    holder = Holder(holder_stiffness=1 / holder_compliance) if holder_compliance > 0 else Holder()
-    model = BristleWithHolder(**asdict(holder), in_plane_fraction=in_plane_fraction, in_plane_phase=in_plane_phase)
-    return float(
-        model.ratio(
-            test.contact,
-            _balanced(test),
-            sliding_speed=test.sliding_speed,
-            friction_coefficient=test.friction_coefficient,
-        )
+    holder = friction.Holder(holder_stiffness=1 / holder_compliance) if holder_compliance > 0 else friction.Holder()
+    model = friction.BristleWithHolder(
+        **asdict(holder), in_plane_fraction=in_plane_fraction, in_plane_phase=in_plane_phase
+    )
+    return model.ratio(
+        test.contact, _balanced(test), sliding_speed=test.sliding_speed, friction_coefficient=test.friction_coefficient
     )
 
 

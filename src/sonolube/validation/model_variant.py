@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from types import MappingProxyType
-from typing import Final
+from typing import Final, SupportsFloat
 
 from sonolube.errors import OutsideRange
 from sonolube.validation.free_parameters import FreeParameter
@@ -56,7 +56,7 @@ class ModelVariant:
 
     name: str
     description: str
-    ratio: Callable[..., float]
+    ratio: Callable[..., SupportsFloat]
     parameters: tuple[FreeParameter, ...] = ()
     required_inputs: tuple[str, ...] = NORMAL_VIBRATION_AND_FRICTION
     source: str = "this program"
@@ -88,7 +88,7 @@ class ModelVariant:
 
 @lru_cache(maxsize=2**16)
 def _cached_ratio(
-    ratio: Callable[..., float], conditions: Conditions, values: tuple[tuple[str, float], ...]
+    ratio: Callable[..., SupportsFloat], conditions: Conditions, values: tuple[tuple[str, float], ...]
 ) -> float | str:
     """Return a friction ratio, or the reason why the conditions are outside the range of the model."""
     try:

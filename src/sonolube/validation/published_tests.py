@@ -130,6 +130,10 @@ class InPlaneTest:
         return self.label[0]
 
 
+Tests = tuple[MeasuredConditions, ...]
+"""Tests of one kind or another, in a sequence that can be cached."""
+
+
 def friction_tests(sets: str = "".join(NORMAL_VIBRATION_SETS)) -> tuple[FrictionTest, ...]:
     """Return the tests with vibration along the normal in order, A-1 to H-2.
 

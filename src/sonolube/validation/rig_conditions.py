@@ -7,6 +7,8 @@ from sonolube.contact import RoughContact
 from sonolube.errors import InvalidInput
 from sonolube.rig import Rig
 
+_FIELDS_OF_RIG = ("contact", "normal_load", "friction_coefficient", "sliding_speed", "vibration_amplitude")
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class VibratedRig:
@@ -87,11 +89,7 @@ def vibrated_rig(rig: Rig) -> VibratedRig:
     fraction, stiffness = getattr(model, "in_plane_fraction", 0.0), getattr(model, "holder_stiffness", inf)
     return VibratedRig(
         label=rig.title,
-        contact=rig.contact,
-        normal_load=rig.normal_load,
-        friction_coefficient=rig.friction_coefficient,
-        sliding_speed=rig.sliding_speed,
-        vibration_amplitude=rig.vibration_amplitude,
+        **{name: getattr(rig, name) for name in _FIELDS_OF_RIG},
         frequency=None if rig.drive is None else rig.drive.frequency,
         in_plane_amplitude=fraction * rig.vibration_amplitude if fraction else None,
         holder_stiffness=stiffness if isfinite(stiffness) else None,

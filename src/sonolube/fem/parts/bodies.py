@@ -1,6 +1,6 @@
 """Parametric bodies: blocks, bars, rings, hexagons, horns and boosters, as solids of the CAD kernel."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -78,8 +78,7 @@ def block(
         raise InvalidInput(f"edge_radius must be below half the smallest size, got {edge_radius!r} m")
     x, half, end_half, z = (size / MILLIMETRE / 2 for size in (length, width, end, thickness))
     occ = cad_kernel()
-    outline = occ.WorkPlane(occ.Axes((0, 0, -z), n=occ.Z, h=occ.X)).MoveTo(-x, -half)
-    shape = outline.LineTo(x, -end_half).LineTo(x, end_half).LineTo(-x, half).Close().Face().Extrude(2 * z)
+    shape = extruded_polygon([(-x, -half), (x, -end_half), (x, end_half), (-x, half)], foot=-z, height=2 * z)
     if edge_radius:
         shape = _filleted(shape, shape.edges, edge_radius)
     for slot in slots:
@@ -160,12 +159,9 @@ def hexagon(*, width: float, length: float, inner_radius: float = 0.0) -> Geomet
         raise InvalidInput(
             f"the wall has no thickness: inner_radius {inner_radius!r} m, width {width!r} m across flats"
         )
-    occ, corner = cad_kernel(), width / MILLIMETRE / np.sqrt(3)
-    angles = np.arange(6) * np.pi / 3
-    outline = occ.WorkPlane().MoveTo(corner, 0.0)
-    for angle in angles[1:]:
-        outline = outline.LineTo(float(corner * np.cos(angle)), float(corner * np.sin(angle)))
-    shape = outline.Close().Face().Extrude(length / MILLIMETRE)
+    corner, angles = width / MILLIMETRE / np.sqrt(3), np.arange(6) * np.pi / 3
+    corners = [(corner * np.cos(angle), corner * np.sin(angle)) for angle in angles]
+    shape = extruded_polygon(corners, foot=0.0, height=length / MILLIMETRE)
     if inner_radius:
         shape = shape - cylinder(radius=inner_radius, length=length).shape
     return single_body(shape, "hexagon")
@@ -294,6 +290,30 @@ PARTS: Mapping[str, Callable[..., Geometry]] = {
     "stepped_horn": stepped_horn,
 }
 """The parametric bodies by name."""
+
+
+def extruded_polygon(corners: Iterable[tuple[float, float]], *, foot: float, height: float) -> Any:
+    """Prism along z in the CAD kernel.
+
+    Parameters
+    ----------
+    corners : iterable of pairs of float
+        Corners of its outline, in mm.
+    foot : float
+        Height of the outline, in mm.
+    height : float
+        Height of the prism, in mm.
+
+    Returns
+    -------
+    solid of the kernel
+    """
+    occ = cad_kernel()
+    first, *others = ((float(x), float(y)) for x, y in corners)
+    outline = occ.WorkPlane(occ.Axes((0, 0, foot), n=occ.Z, h=occ.X)).MoveTo(*first)
+    for corner in others:
+        outline = outline.LineTo(*corner)
+    return outline.Close().Face().Extrude(height)
 
 
 def body_of_revolution(outline: list[tuple[float, float]], name: str, smooth: tuple[int, int] = (0, 0)) -> Geometry:

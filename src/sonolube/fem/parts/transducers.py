@@ -36,16 +36,16 @@ class SourcedDimension:
         Parameter of the function that builds the transducer.
     value : float
         Value in SI units.
-    printed : bool
-        Whether the value is printed in the source; assumed where not.
     source : str
         Where it is printed, or from what it is inferred.
+    printed : bool
+        Whether the value is printed in the source; assumed where not.
     """
 
     name: str
     value: float
-    printed: bool
     source: str
+    printed: bool = False
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

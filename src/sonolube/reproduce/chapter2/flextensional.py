@@ -62,12 +62,11 @@ def _pulling_force() -> Row:
     """Return the pulling force over the friction of one plate from the balance of forces."""
     test = _slow_test()
     friction = test.friction_coefficient * test.normal_load
-    return comparison_row(
-        "2.2.2-pulling-force-factor",
-        (friction + friction) / friction,
+    note = (
         "Balance of forces: either plate presses with the same load and rubs with the same coefficient; the actuator's "
-        "own weight is left out.",
+        "own weight is left out."
     )
+    return comparison_row("2.2.2-pulling-force-factor", (friction + friction) / friction, note)
 
 
 def _powers() -> Iterator[Row]:
@@ -90,16 +89,10 @@ def _velocities() -> Iterator[Row]:
         float(peak_vibration_velocity(frequency=test.frequency, vibration_amplitude=amplitude))
         for amplitude in (test.vibration_amplitude, 2 * test.vibration_amplitude)
     )
-    yield comparison_row(
-        "2.2.5-vibration-velocity",
-        of_amplitude,
-        f"2 pi f a, a half the stroke at this voltage; the whole stroke gives {1e3 * of_stroke:.0f} mm/s.",
-    )
-    yield comparison_row(
-        "2.2.5-speed-of-no-reduction",
-        of_amplitude,
-        "Equal speeds of sliding and vibration; of the vibration only the stroke far from resonance is printed.",
-    )
+    note = f"2 pi f a, a half the stroke at this voltage; the whole stroke gives {1e3 * of_stroke:.0f} mm/s."
+    yield comparison_row("2.2.5-vibration-velocity", of_amplitude, note)
+    note = "Equal speeds of sliding and vibration; of the vibration only the stroke far from resonance is printed."
+    yield comparison_row("2.2.5-speed-of-no-reduction", of_amplitude, note)
 
 
 def _saturation() -> Iterator[Row]:
@@ -107,14 +100,12 @@ def _saturation() -> Iterator[Row]:
     yield undetermined_row("2.2.4-reduction", "the friction forces, which are only plotted, and the roughness.")
     test, gain = _slow_test(), gain_of_slow_test()
     for level in (1, 2, 3):
-        yield comparison_row(
-            "2.2.6-reduction",
-            1 - _ratio(test),
+        note = (
             f"Asperity stick-slip at {1e3 * test.sliding_speed:g} mm/s, without gain at resonance. Level {level} has "
             f"the stroke of the others, for all have 4 V peak to peak: saturation is the only difference. A gain of "
-            f"{gain:.2g} would give the measured reduction.",
-            suffix=f"level-{level}",
+            f"{gain:.2g} would give the measured reduction."
         )
+        yield comparison_row("2.2.6-reduction", 1 - _ratio(test), note, suffix=f"level-{level}")
 
 
 def _vanishing_reduction() -> Iterator[Row]:
@@ -127,15 +118,10 @@ def _vanishing_reduction() -> Iterator[Row]:
     yield comparison_row(
         "2.2.5-speed-of-no-reduction",
         gain * velocity_ratio * velocity,
-        "Asperity stick-slip, speed from which it has no reduction, with the gain at resonance of "
-        f"{gain:.2g} of its reduction at {1e3 * test.sliding_speed:g} mm/s, with which it still has "
-        f"{100 * reduction:.0f} % at {1e3 * fast.sliding_speed:g} mm/s; without gain "
-        f"{1e3 * velocity_ratio * velocity:.0f} mm/s.",
+        f"Asperity stick-slip, speed from which it has no reduction, with the gain at resonance of {gain:.2g} of its "
+        f"reduction at {1e3 * test.sliding_speed:g} mm/s, with which it still has {100 * reduction:.0f} % at "
+        f"{1e3 * fast.sliding_speed:g} mm/s; without gain {1e3 * velocity_ratio * velocity:.0f} mm/s.",
         suffix="asperity-stick-slip",
     )
-    yield comparison_row(
-        "2.2.5-littmann-ratio",
-        velocity_ratio,
-        "Asperity stick-slip: memory length over decay length, at any amplitude and frequency.",
-        suffix="asperity-stick-slip",
-    )
+    note = "Asperity stick-slip: memory length over decay length, at any amplitude and frequency."
+    yield comparison_row("2.2.5-littmann-ratio", velocity_ratio, note, suffix="asperity-stick-slip")

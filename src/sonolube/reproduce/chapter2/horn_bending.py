@@ -4,24 +4,15 @@ A block that slides away from the middle climbs the slope of the bent face, so t
 sliding. Distance and stiffness of the pads are not printed: 4 in, half an inch long, of a soft plastic, are assumed.
 """
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cache, partial
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sonolube import fem
 from sonolube.checks import Floats
-from sonolube.fem import (
-    FaceSpring,
-    FixedSupport,
-    Model,
-    Output,
-    add_face_patch,
-    box_mesh,
-    forced_response,
-    isotropic_medium,
-)
 from sonolube.reproduce.chapter2.poisson_horn import HornShape, HornSolid
 
 PAD_DISTANCE: Final = 4 * 0.0254
@@ -70,7 +61,7 @@ def bending_line(shape: HornShape, solid: HornSolid, *, normal_load: float) -> B
     BendingLine
     """
     cells = round(shape.length / _CELL)
-    mesh = box_mesh(
+    mesh = fem.box_mesh(
         length=shape.length, width=shape.width / 2, thickness=shape.thickness, divisions=(cells, _ACROSS, _THROUGH)
     )
     for name, face, centre, half_length in (
@@ -78,18 +69,15 @@ def bending_line(shape: HornShape, solid: HornSolid, *, normal_load: float) -> B
         ("right pad", "+z", PAD_DISTANCE / 2, _PAD_LENGTH / 2),
         ("contact", "-z", 0.0, _CELL),
     ):
-        mesh = add_face_patch(mesh, name, of=face, where=partial(_within, centre=centre, half_length=half_length))
-    medium = isotropic_medium(
-        youngs_modulus=solid.youngs_modulus, poisson_ratio=solid.poisson_ratio, density=solid.density
-    )
+        mesh = fem.add_face_patch(mesh, name, of=face, where=partial(_within, centre=centre, half_length=half_length))
     pads = tuple(
         # half the stiffness of each pad for the modelled half of the horn
-        FaceSpring(face=f"{side} pad", spring_stiffness=PAD_STIFFNESS / 2, along=(0.0, 0.0, 1.0))
+        fem.FaceSpring(face=f"{side} pad", spring_stiffness=PAD_STIFFNESS / 2, along=(0.0, 0.0, 1.0))
         for side in ("left", "right")
     )
-    supports = (FixedSupport(face="-y", along="y"), FixedSupport(face="left pad", along="x"))
-    model = Model(mesh=mesh, media={"block": medium}, fixed=supports, springs=pads)
-    moves = forced_response(model, load=Output(face="contact", along="z"), frequency=0.0).real * normal_load / 2
+    supports = (fem.FixedSupport(face="-y", along="y"), fem.FixedSupport(face="left pad", along="x"))
+    model = fem.Model(mesh=mesh, media={"block": fem.isotropic_medium(**asdict(solid))}, fixed=supports, springs=pads)
+    moves = fem.forced_response(model, load=fem.Output(face="contact", along="z"), frequency=0.0).real * normal_load / 2
     line = np.flatnonzero(np.isclose(mesh.nodes[:, 1], -shape.width / 4) & np.isclose(mesh.nodes[:, 2], 0.0, atol=1e-9))
     line = line[np.argsort(mesh.nodes[line, 0])]
     x, z = mesh.nodes[line, 0], moves[line, 2]

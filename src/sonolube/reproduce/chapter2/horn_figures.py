@@ -1,6 +1,7 @@
 """Figures of the Poisson horn by finite elements: sensitivity, paths of surface points, friction along the face."""
 
-from typing import TYPE_CHECKING, Final
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -25,46 +26,44 @@ _HORN_NOTE: Final = (
 )
 
 
-def horn_figures() -> tuple[ReportFigure, ...]:
+def horn_figures() -> Iterator[ReportFigure]:
     """Return the figures of the horn."""
-    return (
-        ReportFigure(
-            name="figure-2-3-horn-assumptions",
-            title="First axial mode under single assumptions",
-            caption="Computed, plain steel block with the constants of Table 3.1. Bands: change from either plain "
-            "block to the printed 20.8 kHz and 20.6 kHz of D 2.1.3; no single shape gives both, for the moduli and "
-            "densities put steel 2 % below aluminium, and D prints it 1 % above.",
-            draw=_assumptions,
-        ),
-        ReportFigure(
-            name="figure-2-4-loci-by-elements",
-            title="Paths of three points on the horns' surfaces, by finite elements",
-            caption=f"Computed. {_HORN_NOTE} All paths are lines but for a hundredth of their length: losses of the "
-            "horn do not open them to the ellipses of D 3.25.",
-            draw=_paths,
-        ),
-        ReportFigure(
-            name="figure-2-4-ellipses-along-the-face",
-            title="Semi-axes of the paths and phase along the horns' faces",
-            caption=f"Computed. {_HORN_NOTE} Points turn the same way all along the face, as energy flows one "
-            "way; D 3.25 has a lag of a quarter turn.",
-            draw=_ellipses,
-        ),
-        ReportFigure(
-            name="table-2-1-friction-along-the-face",
-            title="Friction of a block that slides towards the node, along the horns' faces",
-            caption=f"Computed at 5 mm/s. {_HORN_NOTE} Springs of the contact of Table 3.1 with Mindlin's ratio. Below "
-            "zero the face drives the block: the motor region. Bands: transition regions of Table 2.1.",
-            draw=_friction,
-        ),
-        ReportFigure(
-            name="table-2-1-node-of-the-steel-horn",
-            title="Node of the steel horn under single asymmetries",
-            caption="Computed, steel horn of the printed first mode; drives act on its right end. Band: transition "
-            "region of Table 2.1. A symmetric horn on its resonance has its node in the middle; driven below it, the "
-            "node moves towards the drive.",
-            draw=_nodes,
-        ),
+    yield ReportFigure(
+        name="figure-2-3-horn-assumptions",
+        title="First axial mode under single assumptions",
+        caption="Computed, plain steel block with the constants of Table 3.1. Bands: change from either plain "
+        "block to the printed 20.8 kHz and 20.6 kHz of D 2.1.3; no single shape gives both, for the moduli and "
+        "densities put steel 2 % below aluminium, and D prints it 1 % above.",
+        draw=_assumptions,
+    )
+    yield ReportFigure(
+        name="figure-2-4-loci-by-elements",
+        title="Paths of three points on the horns' surfaces, by finite elements",
+        caption=f"Computed. {_HORN_NOTE} All paths are lines but for a hundredth of their length: losses of the "
+        "horn do not open them to the ellipses of D 3.25.",
+        draw=_paths,
+    )
+    yield ReportFigure(
+        name="figure-2-4-ellipses-along-the-face",
+        title="Semi-axes of the paths and phase along the horns' faces",
+        caption=f"Computed. {_HORN_NOTE} Points turn the same way all along the face, as energy flows one "
+        "way; D 3.25 has a lag of a quarter turn.",
+        draw=_ellipses,
+    )
+    yield ReportFigure(
+        name="table-2-1-friction-along-the-face",
+        title="Friction of a block that slides towards the node, along the horns' faces",
+        caption=f"Computed at 5 mm/s. {_HORN_NOTE} Springs of the contact of Table 3.1 with Mindlin's ratio. Below "
+        "zero the face drives the block: the motor region. Bands: transition regions of Table 2.1.",
+        draw=_friction,
+    )
+    yield ReportFigure(
+        name="table-2-1-node-of-the-steel-horn",
+        title="Node of the steel horn under single asymmetries",
+        caption="Computed, steel horn of the printed first mode; drives act on its right end. Band: transition "
+        "region of Table 2.1. A symmetric horn on its resonance has its node in the middle; driven below it, the "
+        "node moves towards the drive.",
+        draw=_nodes,
     )
 
 
@@ -94,14 +93,8 @@ def _paths() -> "Figure":
     for axes, place, title in zip(panels, (-inch, 0.0, inch), ("point -1", "point 0", "point +1"), strict=True):
         for index, horn in enumerate(HORNS):
             u, v = _motion(horn).at(place)
-            axes.plot(
-                1e6 * (u * turn).real,
-                1e6 * (v * turn).real,
-                marker=MARKERS[index],
-                markevery=180,  # both ends
-                color=COLOURS[index],
-                label=f"{horn} horn, computed",
-            )
+            style: dict[str, Any] = {"color": COLOURS[index], "marker": MARKERS[index], "markevery": 180}  # both ends
+            axes.plot(1e6 * (u * turn).real, 1e6 * (v * turn).real, **style, label=f"{horn} horn, computed")
         axes.set(title=title.replace("-", "−"), xlabel="Axial displacement [µm]", xlim=(-6, 6), ylim=(-1.1, 1.1))
         axes.title.set_fontsize(9)
     panels[0].set(ylabel="Normal displacement\nout of the face [µm]")
@@ -124,11 +117,8 @@ def _ellipses() -> "Figure":
         below.plot(1e3 * position, np.degrees(path.phase), **line_style(index), label=horn)
     above.set(ylabel="Semi-axis [µm]", ylim=(1e-4, 30))
     above.legend(loc="center", ncols=2, fontsize=7)
-    below.set(
-        xlabel="Position along the horn [mm]",
-        ylabel="Lag of the normal behind\nthe axial motion [degrees]",
-        yticks=(0, 45, 90, 135, 180),
-    )
+    below.set(xlabel="Position along the horn [mm]")
+    below.set(ylabel="Lag of the normal behind\nthe axial motion [degrees]", yticks=(0, 45, 90, 135, 180))
     below.legend(loc="lower right")
     return figure
 
@@ -141,10 +131,8 @@ def _friction() -> "Figure":
         _draw_transition_region(axes, horn, color="0.8")
         axes.plot(friction.position / _INCH, 100 * friction.ratio, **line_style(index))
         axes.axhline(0, color="black", lw=0.8)
-        axes.set(
-            title=f"{horn} horn", xlabel="Position along the face [in]", xlim=(-FACE_END / _INCH, FACE_END / _INCH)
-        )
-        axes.title.set_fontsize(9)
+        axes.set(xlabel="Position along the face [in]", xlim=(-FACE_END / _INCH, FACE_END / _INCH))
+        axes.set_title(f"{horn} horn", fontsize=9)
     panels[0].set(ylabel="Friction over that at rest [%]", ylim=(-50, 100))
     band, *_ = panels[0].get_legend_handles_labels()[0]
     lines = [axes.lines[0] for axes in panels]

@@ -15,14 +15,7 @@ from sonolube.checks import Floats
 from sonolube.contact import decay_length
 from sonolube.friction import SpringContact, combined_oscillation_ratio
 from sonolube.published import si_value
-from sonolube.reproduce.chapter2.poisson_horn import (
-    ASSUMED_SOLIDS,
-    ELASTIC_LOSS,
-    FaceMotion,
-    assumed_shape,
-    face_motion,
-    node_position,
-)
+from sonolube.reproduce.chapter2 import poisson_horn
 from sonolube.reproduce.cube import Horn
 from sonolube.validation.contacts import Bodies, poisson_contact
 
@@ -56,7 +49,9 @@ class FaceFriction:
         return float(np.interp(position, self.position, self.ratio))
 
 
-def driven_face(horn: Horn, *, frequency: float, elastic_loss: float = ELASTIC_LOSS) -> FaceMotion:
+def driven_face(
+    horn: Horn, *, frequency: float, elastic_loss: float = poisson_horn.ELASTIC_LOSS
+) -> poisson_horn.FaceMotion:
     """Return the motion of the face of a horn at the full amplitude of the welder, by the assumed shape and solid.
 
     Parameters
@@ -72,9 +67,9 @@ def driven_face(horn: Horn, *, frequency: float, elastic_loss: float = ELASTIC_L
     -------
     FaceMotion
     """
-    return face_motion(
-        assumed_shape(),
-        ASSUMED_SOLIDS[horn],
+    return poisson_horn.face_motion(
+        poisson_horn.assumed_shape(),
+        poisson_horn.ASSUMED_SOLIDS[horn],
         frequency=frequency,
         axial_amplitude=si_value("2.1.2-welder-amplitude"),
         elastic_loss=elastic_loss,
@@ -106,7 +101,7 @@ def friction_on_face(horn: Horn, *, frequency: float) -> FaceFriction:
     return friction_along(driven_face(horn, frequency=frequency), contact, approach=approach)
 
 
-def friction_along(motion: FaceMotion, contact: SpringContact, *, approach: float) -> FaceFriction:
+def friction_along(motion: poisson_horn.FaceMotion, contact: SpringContact, *, approach: float) -> FaceFriction:
     """Return the friction of a block that slides along a moving face towards its node at the speed of D 2.1.2.
 
     Parameters
@@ -120,7 +115,7 @@ def friction_along(motion: FaceMotion, contact: SpringContact, *, approach: floa
     -------
     FaceFriction
     """
-    node = node_position(position=motion.position, axial=motion.axial.real)
+    node = poisson_horn.node_position(position=motion.position, axial=motion.axial.real)
     sides = [np.linspace(-FACE_END, node, _POSITIONS), np.linspace(node, FACE_END, _POSITIONS)[1:]]
     position = np.concatenate(sides)
     axial, normal = motion.at(position)

@@ -4,14 +4,8 @@ from collections.abc import Iterator
 from typing import Final
 
 from sonolube.published import si_value
+from sonolube.reproduce.chapter2 import horn_friction
 from sonolube.reproduce.chapter2.horn_bending import PAD_DISTANCE, bending_line
-from sonolube.reproduce.chapter2.horn_friction import (
-    driven_face,
-    friction_along,
-    friction_on_face,
-    spring_contact,
-    transition_region,
-)
 from sonolube.reproduce.chapter2.poisson_horn import (
     ASSUMED_SOLIDS,
     assumed_shape,
@@ -67,16 +61,14 @@ def _transition_regions() -> Iterator[Row]:
             ("", si_value("2.1.2-welder-frequency"), "driven on its right end at 20 kHz, below its own resonance"),
             ("on-resonance", resonance, f"driven at its own {resonance / 1e3:.1f} kHz"),
         ):
-            friction = friction_on_face(horn, frequency=frequency)
-            for side, limit in zip(("start", "end"), transition_region(friction), strict=True):
-                yield comparison_row(
-                    f"table-2.1-{side}-{REGION_ROWS[horn]}",
-                    limit,
+            friction = horn_friction.friction_on_face(horn, frequency=frequency)
+            for side, limit in zip(("start", "end"), horn_friction.transition_region(friction), strict=True):
+                note = (
                     "Position at which the friction of a block at 5 mm/s towards the node reverses: finite elements, "
                     f"the horn of the printed mode ({_ASSUMED}), {drive}; springs of the contact of Table 3.1 with "
-                    f"Mindlin's ratio. The node lies at {friction.node / _INCH:+.2f} in.",
-                    suffix=suffix,
+                    f"Mindlin's ratio. The node lies at {friction.node / _INCH:+.2f} in."
                 )
+                yield comparison_row(f"table-2.1-{side}-{REGION_ROWS[horn]}", limit, note, suffix=suffix)
 
 
 def _friction() -> Iterator[Row]:
@@ -88,17 +80,15 @@ def _friction() -> Iterator[Row]:
     )
     inch = si_value("2.1.3-outer-points")
     for published, horn, bodies in tests:
-        motion = driven_face(horn, frequency=si_value("2.1.2-welder-frequency"))
-        contact, approach = spring_contact(horn, bodies=bodies)
-        friction = friction_along(motion, contact, approach=approach)
+        motion = horn_friction.driven_face(horn, frequency=si_value("2.1.2-welder-frequency"))
+        contact, approach = horn_friction.spring_contact(horn, bodies=bodies)
+        friction = horn_friction.friction_along(motion, contact, approach=approach)
         driving = ", ".join(f"{-100 * friction.at(x):.0f} % at {name}" for name, x in (("-1", -inch), ("+1", inch)))
-        yield comparison_row(
-            published,
-            1 - friction.at(friction.node),
+        note = (
             "Springs of the contact of Table 3.1 with Mindlin's ratio, at the node of the motion by finite elements, "
-            f"the same at every load. The motor force over the intrinsic friction is {driving}.",
-            suffix="springs",
+            f"the same at every load. The motor force over the intrinsic friction is {driving}."
         )
+        yield comparison_row(published, 1 - friction.at(friction.node), note, suffix="springs")
 
 
 def _bending() -> Row:
@@ -110,9 +100,8 @@ def _bending() -> Row:
     return comparison_row(
         "2.1.5-coefficient-off",
         si_value("3.1.4-coefficient-2") + slopes["aluminium"] - slopes["steel"],
-        f"Coefficient of the steel horn with the contribution of bending between the pads, by which section 2.1.6 "
-        f"explains the difference: the bent face rises by {1e6 * slopes['aluminium']:.0f} um/m under "
-        f"{_BENDING_LOAD:g} N, that of steel by {1e6 * slopes['steel']:.0f}; pads {1e3 * PAD_DISTANCE:.1f} mm apart "
-        "are assumed.",
+        "Coefficient of the steel horn with the contribution of bending between the pads, by which section 2.1.6 "
+        f"explains the difference: the bent face rises by {1e6 * slopes['aluminium']:.0f} um/m under {_BENDING_LOAD:g} "
+        f"N, that of steel by {1e6 * slopes['steel']:.0f}; pads {1e3 * PAD_DISTANCE:.1f} mm apart are assumed.",
         suffix="bending",
     )

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from operator import mul
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from sonolube.reproduce import formulas
 from sonolube.reproduce.chapter2.tribometer import reductions_of_table_2_3, wear_reductions
 from sonolube.reproduce.chapter2.welder import welder_friction_reductions
 from sonolube.reproduce.plots import single_axes
-from sonolube.reproduce.row import Row, comparison_row, undetermined_row
+from sonolube.reproduce.row import Row, comparison_row, formula_row, undetermined_row
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -27,15 +27,13 @@ def material_pair_rows() -> Iterator[Row]:
     yield from _summary()
 
 
-def material_pair_figures() -> tuple[ReportFigure, ...]:
+def material_pair_figures() -> Iterator[ReportFigure]:
     """Return the figures of section 2.5."""
-    return (
-        ReportFigure(
-            name="table-2-14-pairs",
-            title="Reductions of friction and wear for six pairs of materials",
-            caption="Pin on disc, as printed in Table 2.14. Where titanium takes part, wear did not fall.",
-            draw=_pairs,
-        ),
+    yield ReportFigure(
+        name="table-2-14-pairs",
+        title="Reductions of friction and wear for six pairs of materials",
+        caption="Pin on disc, as printed in Table 2.14. Where titanium takes part, wear did not fall.",
+        draw=_pairs,
     )
 
 
@@ -51,33 +49,27 @@ def _settings() -> Iterator[Row]:
     for table_id, row in _TESTS:
         v, n, d = (f"table-{table_id}-{column}-{row}" for column in ("sliding_speed", "revolutions", "groove_diameter"))
         time = as_setting(f"table-{table_id}-running_time-{row}")
-        distance = propagate_rounding(mul, v, time)
-        yield comparison_row(f"table-{table_id}-sliding_distance-{row}", distance, "Speed times running time.")
-        yield comparison_row(n, propagate_rounding(turns, v, time, d), "Distance over the length of the groove.")
-        yield comparison_row(v, propagate_rounding(speed, n, time, d), "Turns over time, times the groove's length.")
+        yield formula_row(f"table-{table_id}-sliding_distance-{row}", "Speed times running time.", mul, v, time)
+        yield formula_row(n, "Distance over the length of the groove.", turns, v, time, d)
+        yield formula_row(v, "Turns over time, times the groove's length.", speed, n, time, d)
     yield undetermined_row("table-2.13-nominal_pressure-1", "the radius of the pins' tips, or the first contact area.")
 
 
 def _friction() -> Iterator[Row]:
     """Yield the friction reductions of the text from forces."""
     for section, pair in (("2.5.2", "titanium"), ("2.5.4", "ceramic")):
-        reduction = propagate_rounding(
-            formulas.friction_reduction, f"{section}-friction-{pair}-off", f"{section}-friction-{pair}-on"
-        )
-        yield comparison_row(f"{section}-friction-reduction", reduction, "D 2.1 from the mean forces.")
-    yield comparison_row(
-        "2.5.5-friction-m50-on",
-        propagate_rounding(
-            lambda force, reduction: force * (1 - reduction), "2.5.5-friction-m50-off", "2.5.5-friction-reduction"
-        ),
-        "Force without vibration, less the stated reduction.",
-    )
+        reduction, forces = f"{section}-friction-reduction", (f"{section}-friction-{pair}-{x}" for x in ("off", "on"))
+        yield formula_row(reduction, "D 2.1 from the mean forces.", formulas.friction_reduction, *forces)
+
+    def reduced(force: float, reduction: float) -> float:
+        return force * (1 - reduction)
+
+    note, inputs = "Force without vibration, less the stated reduction.", ("friction-m50-off", "friction-reduction")
+    yield formula_row("2.5.5-friction-m50-on", note, reduced, *(f"2.5.5-{name}" for name in inputs))
     yield undetermined_row("2.5.5-friction-reduction", "the force with vibration: that without is printed twice.")
     for amplitude in ("2.5um", "1um"):
-        yield undetermined_row(
-            f"2.5.3-friction-reduction-{amplitude}",
-            "the forces, and of the titanium surfaces the summit radius and density.",
-        )
+        note = "the forces, and of the titanium surfaces the summit radius and density."
+        yield undetermined_row(f"2.5.3-friction-reduction-{amplitude}", note)
 
 
 def _summary() -> Iterator[Row]:
@@ -86,14 +78,12 @@ def _summary() -> Iterator[Row]:
         propagate_rounding(formulas.friction_reduction, f"{pair}-off", f"{pair}-on")
         for pair in ("2.5.2-friction-titanium", "2.5.4-friction-ceramic")
     )
+    welder_reductions = welder_friction_reductions(1) + welder_friction_reductions(2)
     titanium_on_titanium = (propagate_rounding(float, f"2.5.3-friction-reduction-{size}") for size in ("2.5um", "1um"))
     for row, (reduction, note) in enumerate(
         (
             (max(reductions_of_table_2_3("friction_force")), "The largest that the forces of Table 2.3 give."),
-            (
-                max(welder_friction_reductions(1) + welder_friction_reductions(2)),
-                "The largest that the forces of Table 2.9 give.",
-            ),
+            (max(welder_reductions), "The largest that the forces of Table 2.9 give."),
             (titanium, "Forces of section 2.5.2."),
             (max(titanium_on_titanium), "The larger of section 2.5.3."),
             (ceramic, "Forces of section 2.5.4."),
@@ -102,12 +92,9 @@ def _summary() -> Iterator[Row]:
         start=1,
     ):
         yield comparison_row(f"table-2.14-friction_reduction-{row}", reduction, note)
-    yield comparison_row(
-        "table-2.14-wear_reduction-1", max(wear_reductions("2.5")), "The largest that the rates of Table 2.5 give."
-    )
-    yield comparison_row(
-        "table-2.14-wear_reduction-2", propagate_rounding(float, "2.4.5-wear-reduction"), "Section 2.4.5."
-    )
+    note = "The largest that the rates of Table 2.5 give."
+    yield comparison_row("table-2.14-wear_reduction-1", max(wear_reductions("2.5")), note)
+    yield formula_row("table-2.14-wear_reduction-2", "Section 2.4.5.", float, "2.4.5-wear-reduction")
     for row in (5, 6):
         yield undetermined_row(f"table-2.14-wear_reduction-{row}", "the worn volumes, shown only as profiles.")
     for measure in ("friction", "wear"):
@@ -122,20 +109,12 @@ def _pairs() -> "Figure":
     places = np.arange(len(columns["pin"].printed))[::-1]
     for name, offset, hatch, colour in (("friction", 0.2, "", COLOURS[0]), ("wear", -0.2, "////", COLOURS[1])):
         values = 100 * columns[f"{name}_reduction"].values
-        bars = axes.barh(
-            places + offset,
-            np.nan_to_num(values),
-            height=0.38,
-            label=f"{name}, Table 2.14",
-            facecolor=colour if not hatch else "white",
-            edgecolor=colour,
-            hatch=hatch,
-        )
+        style: dict[str, Any] = {"facecolor": "white" if hatch else colour, "edgecolor": colour, "hatch": hatch}
+        bars = axes.barh(places + offset, np.nan_to_num(values), height=0.38, label=f"{name}, Table 2.14", **style)
         axes.bar_label(bars, [f"{value:.0f}" if value > 0 else "no reduction" for value in values], padding=3, size=8)
     pairs = zip(columns["pin"].printed, columns["disc"].printed, strict=True)
-    axes.set(
-        xlabel="Reduction [%]", xlim=(0, 100), yticks=places, yticklabels=[f"{pin}\non {disc}" for pin, disc in pairs]
-    )
+    axes.set(xlabel="Reduction [%]", xlim=(0, 100))
+    axes.set_yticks(places, labels=[f"{pin}\non {disc}" for pin, disc in pairs])
     axes.grid(False, axis="y")
     figure.legend(loc="outside lower center", ncols=2)
     return figure

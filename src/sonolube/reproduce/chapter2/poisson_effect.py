@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from sonolube.actuator import BarWaveguide, free_bar_frequency, surface_trajectory
+from sonolube.actuator import free_bar_frequency, surface_trajectory
 from sonolube.checks import Floats
 from sonolube.figure import COLOURS, LINES, ReportFigure
 from sonolube.materials import material
@@ -15,7 +15,7 @@ from sonolube.published import propagate_rounding, si_value
 from sonolube.reproduce import formulas
 from sonolube.reproduce.chapter2.horn_figures import horn_figures
 from sonolube.reproduce.chapter2.horn_rows import horn_rows
-from sonolube.reproduce.cube import HORNS, STEEL_ON_STEEL_NOTE, Horn, poisson_friction_ratio
+from sonolube.reproduce.cube import HORNS, STEEL_ON_STEEL_NOTE, Horn, poisson_friction_ratio, poisson_waveguide
 from sonolube.reproduce.plots import axes_row
 from sonolube.reproduce.row import Row, comparison_row
 from sonolube.validation.contacts import Bodies
@@ -34,22 +34,19 @@ def poisson_effect_rows() -> Iterator[Row]:
     yield from _friction_reductions()
 
 
-def poisson_effect_figures() -> tuple[ReportFigure, ...]:
+def poisson_effect_figures() -> Iterator[ReportFigure]:
     """Return the figures of section 2.1."""
-    return (
-        ReportFigure(
-            name="figure-2-4-loci",
-            title="Paths of three points on the waveguide's surface",
-            caption="Computed, D 3.22 and 3.25 at the amplitude of section 2.1.2: one inch left of the centre, at the "
-            "centre, one inch right of it. Full: a horn driven on one end, whose normal motion has no delay to the "
-            "axial one, so that the lag is zero on one side and half a turn on the other, and paths are lines. Broken: "
-            "normal motion a quarter turn ahead, the lag of D 3.25, which such a horn does not have, with the sign "
-            "with which the surface moves towards the centre while it is lowest, as the block did; the arrow shows the "
-            "sense of motion.",
-            draw=_paths,
-        ),
-        *horn_figures(),
+    yield ReportFigure(
+        name="figure-2-4-loci",
+        title="Paths of three points on the waveguide's surface",
+        caption="Computed, D 3.22 and 3.25 at the amplitude of section 2.1.2: one inch left of the centre, at the "
+        "centre, one inch right of it. Full: a horn driven on one end, whose normal motion has no delay to the axial "
+        "one, so that the lag is zero on one side and half a turn on the other, and paths are lines. Broken: normal "
+        "motion a quarter turn ahead, the lag of D 3.25, which such a horn does not have, with the sign with which the "
+        "surface moves towards the centre while it is lowest, as the block did; the arrow shows the sense of motion.",
+        draw=_paths,
     )
+    yield from horn_figures()
 
 
 def _uniform_bar_modes() -> Iterator[Row]:
@@ -90,23 +87,22 @@ def _friction_reductions() -> Iterator[Row]:
             1 - float(poisson_friction_ratio(bodies=bodies, horn=horn, normal_load=load, axial_amplitude=amplitude))
             for amplitude in (si_value("2.1.2-welder-amplitude"), si_value("4.3.5-waveguide-amplitude"))
         )
-        yield comparison_row(
-            published,
-            at_welder_amplitude,
+        note = (
             f"Cube, D 3.15, {load:g} N, amplitude of D 2.1.2; with that of D 4.3.5 "
-            f"{100 * at_waveguide_amplitude:.1f} %.{remark}",
-            suffix=suffix,
+            f"{100 * at_waveguide_amplitude:.1f} %.{remark}"
         )
+        yield comparison_row(published, at_welder_amplitude, note, suffix=suffix)
 
 
 def _paths() -> "Figure":
     """Draw the paths of three surface points of both horns for both lags."""
     figure, panels = axes_row(3, (7.2, 2.7), sharex=True, sharey=True)
     inch = si_value("2.1.3-outer-points")
+    drive = {"axial_amplitude": si_value("2.1.2-welder-amplitude"), "frequency": si_value("2.1.2-welder-frequency")}
     for axes, place, title in zip(panels, (-inch, 0.0, inch), ("point -1", "point 0", "point +1"), strict=True):
         for index, horn in enumerate(HORNS):
             for line, (phase, lag) in zip(LINES, _PHASES.items(), strict=False):
-                path = surface_trajectory(_waveguide(horn), position=place, phase=phase)
+                path = surface_trajectory(poisson_waveguide(horn, **drive), position=place, phase=phase)
                 u, v = 1e6 * path.axial_displacement, 1e6 * path.normal_displacement
                 axes.plot(u, v, linestyle=line, color=COLOURS[index], label=f"{horn} horn, {lag}")
                 if index == 0 and phase and place:
@@ -116,17 +112,6 @@ def _paths() -> "Figure":
     panels[0].set(ylabel="Normal displacement\ninto the bar [µm]", ylim=(-1.1, 1.1), xlim=(-6, 6))
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
     return figure
-
-
-def _waveguide(horn: Horn) -> BarWaveguide:
-    """Return the waveguide of section 2.1.2."""
-    return BarWaveguide(
-        length=si_value("2.1.2-waveguide-length"),
-        thickness=si_value("2.1.2-waveguide-thickness"),
-        poisson_ratio=si_value(f"table-3.1-poisson_ratio_{horn}-1"),
-        axial_amplitude=si_value("2.1.2-welder-amplitude"),
-        frequency=si_value("2.1.2-welder-frequency"),
-    )
 
 
 def _draw_sense_of_motion(axes: "Axes", u: Floats, v: Floats) -> None:

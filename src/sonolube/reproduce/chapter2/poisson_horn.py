@@ -6,7 +6,7 @@ of assumptions that has both printed frequencies. A quarter of the horn is meshe
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from functools import cache
 from typing import Final
 
@@ -14,25 +14,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
 
+from sonolube import fem
 from sonolube.checks import Complexes, Floats
-from sonolube.fem import (
-    FixedSupport,
-    Mesh,
-    Model,
-    Output,
-    box_mesh,
-    edge_nodes,
-    forced_response,
-    isotropic_medium,
-    natural_modes,
-    transform_nodes,
-)
 from sonolube.materials import material
 from sonolube.published import si_value
 from sonolube.reproduce.cube import Horn
 
 _ALLOYS: Final = {"aluminium": "aluminium_2024", "steel": "stainless_steel_316"}
-_SYMMETRY: Final = (FixedSupport(face="-y", along="y"), FixedSupport(face="+z", along="z"))
+_SYMMETRY: Final = (fem.FixedSupport(face="-y", along="y"), fem.FixedSupport(face="+z", along="z"))
 _TAPER_CELLS: Final = 2  # elements along either taper
 _DIVISIONS: Final = (10, 2, 2)
 _MODE_COUNT: Final = 5  # elastic modes of this symmetry; the first axial one is among the lowest three
@@ -159,7 +148,7 @@ class FaceMotion:
 
 def horn_model(
     shape: HornShape, solid: HornSolid, *, elastic_loss: float = 0.0, divisions: tuple[int, int, int] = _DIVISIONS
-) -> Model:
+) -> fem.Model:
     """Return the finite-element model of a quarter of a horn.
 
     Parameters
@@ -176,13 +165,8 @@ def horn_model(
     Model
         The sliding face is "-z", its middle line the edge with "-y".
     """
-    medium = isotropic_medium(
-        youngs_modulus=solid.youngs_modulus,
-        poisson_ratio=solid.poisson_ratio,
-        density=solid.density,
-        elastic_loss=elastic_loss,
-    )
-    return Model(mesh=_quarter(shape, divisions), media={"block": medium}, fixed=_SYMMETRY)
+    medium = fem.isotropic_medium(**asdict(solid), elastic_loss=elastic_loss)
+    return fem.Model(mesh=_quarter(shape, divisions), media={"block": medium}, fixed=_SYMMETRY)
 
 
 @cache
@@ -203,15 +187,15 @@ def axial_mode(shape: HornShape, solid: HornSolid, *, divisions: tuple[int, int,
     return axial_mode_of(horn_model(shape, solid, divisions=divisions))
 
 
-def axial_mode_of(model: Model) -> AxialMode:
+def axial_mode_of(model: fem.Model) -> AxialMode:
     """Return the first axial mode of the model of a quarter of a horn."""
-    modes = natural_modes(model, count=_MODE_COUNT)
+    modes = fem.natural_modes(model, count=_MODE_COUNT)
     x = model.mesh.nodes[:, 0]
     stretch = np.sign(x - x.mean())
     elastic = modes.shapes[modes.rigid_body_count :]
     axial_fractions = np.abs((elastic[:, :, 0] * stretch).mean(axis=1)) / np.sqrt((elastic**2).sum(axis=2).mean(axis=1))
     best = int(np.argmax(axial_fractions))
-    line = edge_nodes(model.mesh, "-z", "-y", along="x")
+    line = fem.edge_nodes(model.mesh, "-z", "-y", along="x")
     shape = elastic[best] / elastic[best][line[-1], 0]
     return AxialMode(
         natural_frequency=float(modes.elastic_frequency[best]),
@@ -243,9 +227,9 @@ def face_motion(
     FaceMotion
     """
     model = horn_model(shape, solid, elastic_loss=elastic_loss)
-    displacement = forced_response(model, load=Output(face="+x", along="x"), frequency=frequency)
+    displacement = fem.forced_response(model, load=fem.Output(face="+x", along="x"), frequency=frequency)
     end = displacement[model.mesh.face_nodes("+x"), 0].mean()
-    line = edge_nodes(model.mesh, "-z", "-y", along="x")
+    line = fem.edge_nodes(model.mesh, "-z", "-y", along="x")
     scaled = displacement[line] * axial_amplitude / end
     return FaceMotion(frequency=frequency, position=model.mesh.nodes[line, 0], axial=scaled[:, 0], normal=-scaled[:, 2])
 
@@ -267,7 +251,7 @@ def node_position(*, position: Floats, axial: Floats) -> float:
     return float(min(CubicSpline(position, axial).roots(extrapolate=False), key=abs))
 
 
-def _quarter(shape: HornShape, divisions: tuple[int, int, int]) -> Mesh:
+def _quarter(shape: HornShape, divisions: tuple[int, int, int]) -> fem.Mesh:
     """Return the mesh of a quarter of a horn: a box mapped to tapers and wedge."""
     half, step = shape.length / 2, shape.length / divisions[0]
     flat = half - shape.taper_length
@@ -281,5 +265,5 @@ def _quarter(shape: HornShape, divisions: tuple[int, int, int]) -> Mesh:
         z = (nodes[:, 2] - shape.thickness / 4) * np.interp(x, corners, [ends, 1.0, 1.0, ends])
         return np.column_stack([x, y, z])
 
-    block = box_mesh(length=shape.length, width=shape.width / 2, thickness=shape.thickness / 2, divisions=divisions)
-    return transform_nodes(block, tapered)
+    block = fem.box_mesh(length=shape.length, width=shape.width / 2, thickness=shape.thickness / 2, divisions=divisions)
+    return fem.transform_nodes(block, tapered)

@@ -7,7 +7,7 @@ from typing import Final
 from sonolube.friction import dong_2015_half_period_ratio
 from sonolube.published import ComputedValue, as_exact, as_setting, propagate_rounding, published_number, si_value
 from sonolube.reproduce import formulas
-from sonolube.reproduce.row import Row, comparison_row, range_rows
+from sonolube.reproduce.row import Row, comparison_row, formula_row, range_rows
 from sonolube.validation.contacts import wear_contact
 
 _SPEEDS: Final = ("20.3", "40.6", "87")  # one to a row of Tables 2.2 and 2.5, one to two rows of Tables 2.3 and 2.4
@@ -62,13 +62,9 @@ def _settings_of_first_study() -> Iterator[Row]:
         return formulas.sliding_speed(rotation, formulas.groove_diameter(distance, turns))
 
     for row, rotation in enumerate(_ROTATIONS, start=1):
-        yield comparison_row(
-            f"table-2.2-sliding_speed-{row}",
-            propagate_rounding(speed, rotation, _DISTANCE, turns),
-            "Rotation of appendix A times distance per turn.",
-        )
-        time = propagate_rounding(truediv, _DISTANCE, f"table-2.2-sliding_speed-{row}")
-        yield comparison_row(f"table-2.2-running_time-{row}", time, "Distance over speed.")
+        speed_id, note = f"table-2.2-sliding_speed-{row}", "Rotation of appendix A times distance per turn."
+        yield formula_row(speed_id, note, speed, rotation, _DISTANCE, turns)
+        yield formula_row(f"table-2.2-running_time-{row}", "Distance over speed.", truediv, _DISTANCE, speed_id)
 
 
 def _protocol() -> Iterator[Row]:
@@ -80,13 +76,10 @@ def _protocol() -> Iterator[Row]:
         "Half the diameter that follows from distance and turns of Table 2.2.",
     )
     for row, rotation in enumerate(_ROTATIONS, start=1):
-        computed = propagate_rounding(truediv, turns, as_setting(f"table-2.2-running_time-{row}"))
-        yield comparison_row(rotation, computed, "Turns over running time of Table 2.2.")
-    yield comparison_row(
-        "A.3.1.10-duration-87",
-        propagate_rounding(truediv, _DISTANCE, _HIGHEST_SPEED),
-        "Distance over speed of Table 2.2.",
-    )
+        time = as_setting(f"table-2.2-running_time-{row}")
+        yield formula_row(rotation, "Turns over running time of Table 2.2.", truediv, turns, time)
+    note = "Distance over speed of Table 2.2."
+    yield formula_row("A.3.1.10-duration-87", note, truediv, _DISTANCE, _HIGHEST_SPEED)
 
 
 def _friction() -> Iterator[Row]:
@@ -117,11 +110,10 @@ def _friction() -> Iterator[Row]:
 def _surfaces() -> Iterator[Row]:
     """Yield the rows of Table 2.4 and of the hardness."""
     for row in range(1, 8):
-        height = propagate_rounding(add, f"table-2.4-maximum_peak_height-{row}", f"table-2.4-maximum_pit_depth-{row}")
-        yield comparison_row(f"table-2.4-total_height-{row}", height, "R_p + R_v.")
-    for metal, row in (("steel", 2), ("aluminium", 1)):
-        hardness = propagate_rounding(float, f"table-2.15-hardness-{row}")
-        yield comparison_row(f"2.3.4-hardness-{metal}", hardness, "The same alloy in Table 2.15.")
+        parts = f"table-2.4-maximum_peak_height-{row}", f"table-2.4-maximum_pit_depth-{row}"
+        yield formula_row(f"table-2.4-total_height-{row}", "R_p + R_v.", add, *parts)
+    for metal, hardness in (("steel", "table-2.15-hardness-2"), ("aluminium", "table-2.15-hardness-1")):
+        yield formula_row(f"2.3.4-hardness-{metal}", "The same alloy in Table 2.15.", float, hardness)
 
 
 def _wear_of_first_study() -> Iterator[Row]:
@@ -129,12 +121,11 @@ def _wear_of_first_study() -> Iterator[Row]:
     reductions = wear_reductions("2.5")
     for row, reduction in enumerate(reductions, start=1):
         rates = f"table-2.5-intrinsic_wear_rate-{row}", f"table-2.5-reduced_wear_rate-{row}"
-        drop = propagate_rounding(sub, *rates)
-        yield comparison_row(f"table-2.5-wear_rate_drop-{row}", drop, "Difference of the rates.")
+        yield formula_row(f"table-2.5-wear_rate_drop-{row}", "Difference of the rates.", sub, *rates)
         yield comparison_row(f"table-2.5-wear_reduction-{row}", reduction, "D 2.3 from the rates.")
+        count, frequency = f"table-2.5-vibration_contact_count-{row}", f"table-2.2-frequency-{row}"
         time = as_setting(f"table-2.2-running_time-{row}")
-        count = propagate_rounding(formulas.contact_count, f"table-2.2-frequency-{row}", time)
-        yield comparison_row(f"table-2.5-vibration_contact_count-{row}", count, "f times running time.")
+        yield formula_row(count, "f times running time.", formulas.contact_count, frequency, time)
     smallest, largest = (f"D 2.3 from the rates of Table 2.5, the {which}." for which in ("smallest", "largest"))
     yield from range_rows("2.3.5-wear-reduction", min(reductions), max(reductions), smallest, high_note=largest)
     yield comparison_row("2.3.7-wear-reduction", max(reductions), largest)
@@ -145,11 +136,8 @@ def _marks() -> Iterator[Row]:
     period = as_exact("2.3.4-stick-slip-period")
     dots = propagate_rounding(formulas.dot_spacing, _HIGHEST_SPEED, "table-2.2-frequency-3")
     yield comparison_row("2.3.4-dots-calculated", dots, "v over f.")
-    yield comparison_row(
-        "2.3.4-dots-measured",
-        dots,
-        "v over f, the length of one cycle; D states no scatter of the measurement in one image.",
-    )
+    note = "v over f, the length of one cycle; D states no scatter of the measurement in one image."
+    yield comparison_row("2.3.4-dots-measured", dots, note)
     for row, printed in enumerate(_SPEEDS, start=1):
         needed = si_value(f"2.3.4-indentation-{printed}") / si_value(f"table-2.2-sliding_speed-{row}")
         yield comparison_row(
@@ -160,34 +148,31 @@ def _marks() -> Iterator[Row]:
     at_highest_speed = propagate_rounding(formulas.indentation_spacing, _HIGHEST_SPEED, period)
     yield comparison_row("2.3.4-indentation-measured", at_highest_speed, "D 2.4.")
     yield comparison_row("2.3.7-indentations", at_highest_speed, "D 2.4.")
-    yield comparison_row(
-        "2.3.7-stick-slip-frequency",
-        propagate_rounding(truediv, _HIGHEST_SPEED, "2.3.4-indentation-measured"),
-        "v over the measured distance of indentations.",
-    )
+    note = "v over the measured distance of indentations."
+    yield formula_row("2.3.7-stick-slip-frequency", note, truediv, _HIGHEST_SPEED, "2.3.4-indentation-measured")
 
 
 def _settings_of_second_study() -> Iterator[Row]:
     """Yield the rows of Table 2.6, and of the revolutions of the second study, from running times."""
     times = [as_setting(f"table-2.6-running_time-{row}") for row in (1, 2, 3)]
     for row, time in enumerate(times, start=1):
-        speed = propagate_rounding(truediv, f"table-2.6-sliding_distance-{row}", time)
-        yield comparison_row(f"table-2.6-sliding_speed-{row}", speed, "Distance over running time.")
+        speed, distance = f"table-2.6-sliding_speed-{row}", f"table-2.6-sliding_distance-{row}"
+        yield formula_row(speed, "Distance over running time.", truediv, distance, time)
 
     def in_proportion(whole: float, part_time: float, whole_time: float) -> float:
         return whole * part_time / whole_time
 
-    longest = published_number("table-2.6-sliding_distance-3"), as_setting("table-2.6-revolutions-3")
-    for published, quantity, whole, row in (
-        ("table-2.6-sliding_distance-1", "Distance", longest[0], 1),
-        ("table-2.6-sliding_distance-2", "Distance", longest[0], 2),
-        ("table-2.6-revolutions-1", "Turns", longest[1], 1),
-        ("table-2.6-revolutions-2", "Turns", longest[1], 2),
-        ("table-2.7-revolutions-1", "Turns", longest[1], 1),
-        ("2.3.6-revolutions-1", "Turns", longest[1], 1),
+    way, turns = published_number("table-2.6-sliding_distance-3"), as_setting("table-2.6-revolutions-3")
+    for published, quantity, whole, time in (
+        ("table-2.6-sliding_distance-1", "Distance", way, times[0]),
+        ("table-2.6-sliding_distance-2", "Distance", way, times[1]),
+        ("table-2.6-revolutions-1", "Turns", turns, times[0]),
+        ("table-2.6-revolutions-2", "Turns", turns, times[1]),
+        ("table-2.7-revolutions-1", "Turns", turns, times[0]),
+        ("2.3.6-revolutions-1", "Turns", turns, times[0]),
     ):
-        computed = propagate_rounding(in_proportion, whole, times[row - 1], times[2])
-        yield comparison_row(published, computed, f"{quantity} of the longest test, in proportion to time.")
+        note = f"{quantity} of the longest test, in proportion to time."
+        yield formula_row(published, note, in_proportion, whole, time, times[2])
 
 
 def _wear_of_second_study() -> Iterator[Row]:
@@ -195,6 +180,6 @@ def _wear_of_second_study() -> Iterator[Row]:
     for row, reduction in enumerate(wear_reductions("2.7"), start=1):
         distance = f"table-2.6-sliding_distance-{row}"
         for state in ("intrinsic", "reduced"):
-            rate = propagate_rounding(formulas.wear_rate, f"table-2.7-{state}_wear_volume-{row}", distance)
-            yield comparison_row(f"table-2.7-{state}_wear_rate-{row}", rate, "D 2.2 with the distance of Table 2.6.")
+            rate, volume = f"table-2.7-{state}_wear_rate-{row}", f"table-2.7-{state}_wear_volume-{row}"
+            yield formula_row(rate, "D 2.2 with the distance of Table 2.6.", formulas.wear_rate, volume, distance)
         yield comparison_row(f"table-2.7-wear_reduction-{row}", reduction, "D 2.3 from the rates.")

@@ -7,7 +7,7 @@ from typing import Final
 from sonolube.contact import SphereOnFlat, hertz_mean_pressure, hertz_peak_pressure, tip_radius_for_pressure
 from sonolube.published import ComputedValue, as_exact, as_setting, propagate_rounding, published_number, si_value
 from sonolube.reproduce import formulas
-from sonolube.reproduce.row import Row, comparison_row, range_rows, undetermined_row
+from sonolube.reproduce.row import Row, comparison_row, formula_row, range_rows, undetermined_row
 from sonolube.validation.contacts import poisson_contact
 
 _ROUND_TIP: Final = 1  # first row of either tip in Table 2.8
@@ -86,9 +86,8 @@ def _motion() -> Iterator[Row]:
         ("table-2.10-sliding_distance-2", _ROUND_TIP),
         ("table-2.10-sliding_distance-3", _FLAT_TIP),
     ):
-        turns = as_setting(f"table-2.8-revolutions-{row}")
-        distance = propagate_rounding(formulas.sliding_distance, turns, f"table-2.8-groove_diameter-{row}")
-        yield comparison_row(published, distance, "Pi times turns times groove diameter.")
+        factors = as_setting(f"table-2.8-revolutions-{row}"), f"table-2.8-groove_diameter-{row}"
+        yield formula_row(published, "Pi times turns times groove diameter.", formulas.sliding_distance, *factors)
 
 
 def _friction() -> Iterator[Row]:
@@ -118,9 +117,8 @@ def _currents() -> Iterator[Row]:
 def _wear() -> Iterator[Row]:
     """Yield wear volumes per turn and wear rates of Table 2.10, and the wear of the flat over that of the round tip."""
     for row, tip in ((2, _ROUND_TIP), (3, _FLAT_TIP)):
-        turns = as_setting(f"table-2.8-revolutions-{tip}")
-        per_turn = propagate_rounding(truediv, f"table-2.10-wear_volume-{row}", turns)
-        yield comparison_row(f"table-2.10-wear_volume_per_turn-{row}", per_turn, "Volume over turns.")
+        volume, turns = f"table-2.10-wear_volume-{row}", as_setting(f"table-2.8-revolutions-{tip}")
+        yield formula_row(f"table-2.10-wear_volume_per_turn-{row}", "Volume over turns.", truediv, volume, turns)
         yield comparison_row(f"table-2.10-wear_rate-{row}", _wear_rate(row), "Volume over distance.")
     yield undetermined_row("2.4.5-wear-reduction", "the worn volumes of the two tests with the round tip.")
     round_tip, flat_tip = _wear_rate(2), _wear_rate(3)

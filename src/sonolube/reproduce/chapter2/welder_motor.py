@@ -11,13 +11,7 @@ from collections.abc import Iterator
 from math import pi
 from typing import Final
 
-from sonolube.metrics import (
-    DCMotor,
-    friction_from_current,
-    motor_current_under_friction,
-    motor_from_two_operating_points,
-    motor_speed,
-)
+from sonolube import metrics
 from sonolube.published import si_value
 from sonolube.reproduce.row import Row, comparison_row
 
@@ -31,9 +25,9 @@ def welder_motor_rows() -> Iterator[Row]:
         yield from _rows_of_tip(tip)
 
 
-def welder_motor(tip: int) -> DCMotor:
+def welder_motor(tip: int) -> metrics.DCMotor:
     """Return the motor identified from the test with a tip: 1 round, 2 flat."""
-    return motor_from_two_operating_points(
+    return metrics.motor_from_two_operating_points(
         motor_voltage=si_value("2.4.2-motor-voltage"),
         motor_current=list(_currents(tip)),
         rotation_speed=[si_value(f"table-2.8-rotation_speed-{row}") for row in (2 * tip - 1, 2 * tip)],
@@ -44,7 +38,7 @@ def friction_drop_from_current(tip: int) -> float:
     """Return the drop of friction that corresponds to the drop of the current with a tip. [N]"""
     off, on = _currents(tip)
     return float(
-        friction_from_current(
+        metrics.friction_from_current(
             torque_constant=welder_motor(3 - tip).torque_constant,
             motor_current=off,
             idle_current=on,
@@ -60,26 +54,22 @@ def _rows_of_tip(tip: int) -> Iterator[Row]:
     off, on = (si_value(f"table-2.9-{state}_friction_force-{tip}") for state in ("intrinsic", "reduced"))
     voltage, constant = si_value("2.4.2-motor-voltage"), welder_motor(other).torque_constant
     speed = si_value(f"table-2.8-rotation_speed-{2 * tip - 1}")
-    motor = DCMotor(
+    motor = metrics.DCMotor(
         motor_voltage=voltage, torque_constant=constant, resistance=(voltage - constant * 2 * pi * speed) / current
     )
     reduced_current = float(
-        motor_current_under_friction(
+        metrics.motor_current_under_friction(
             motor, friction_force=on - off, idle_current=current, groove_diameter=_groove_diameter(tip)
         )
     )
     note = f"DC motor at {voltage:g} V, {constant:.3f} N m/A at the disc from the test with the {_TIPS[other]} tip; "
     fall = f"friction falls by {off - on:.2f} N (middles of Table 2.9)."
-    reduced_speed = float(motor_speed(motor, motor_current=reduced_current))
+    reduced_speed = float(metrics.motor_speed(motor, motor_current=reduced_current))
     yield comparison_row("2.4.2-rotation-on", reduced_speed, note + fall, suffix=f"{name}-motor")
     yield comparison_row("2.4.4-current-drop", current - reduced_current, note + fall, suffix=f"{name}-motor")
     drop = friction_drop_from_current(tip)
-    yield comparison_row(
-        f"table-2.9-friction_reduction-{tip}",
-        drop / off,
-        f"{note}the drop of the current corresponds to {drop:.2f} N of {off:.2f} N.",
-        suffix="motor",
-    )
+    note = f"{note}the drop of the current corresponds to {drop:.2f} N of {off:.2f} N."
+    yield comparison_row(f"table-2.9-friction_reduction-{tip}", drop / off, note, suffix="motor")
 
 
 def _currents(tip: int) -> tuple[float, float]:

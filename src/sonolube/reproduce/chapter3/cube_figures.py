@@ -1,6 +1,6 @@
 """Sections 3.1 and 3.2: figures of contact, friction and wear of the cube."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -33,53 +33,51 @@ if TYPE_CHECKING:
 _PAIRS: tuple[tuple[str, Bodies], ...] = (("aluminium on steel", "aluminium_steel"), ("steel on steel", "steel_steel"))
 
 
-def cube_figures() -> tuple[ReportFigure, ...]:
+def cube_figures() -> Iterator[ReportFigure]:
     """Return the figures of sections 3.1 and 3.2."""
-    return (
-        ReportFigure(
-            name="figure-3-2a-separation",
-            title="Separation against load",
-            caption="Yielding asperities let the surfaces come closer. Under exponential heights the difference of "
-            "the models is the same at every load: 6.8 um for aluminium on steel, 9.0 um for steel on steel. "
-            "Computed from Table 3.1; circles: separations stated in section 3.1.4 at 40 N.",
-            draw=_separations,
-        ),
-        ReportFigure(
-            name="figure-3-2b-real-area",
-            title="Real contact area against load",
-            caption="In both models the area is proportional to the load, so that it grows sixfold from 40 to 240 N. "
-            "Computed from Table 3.1.",
-            draw=_areas,
-        ),
-        ReportFigure(
-            name="figure-3-4-friction-reduction",
-            title="Friction reduction of the Poisson-effect tests",
-            caption="Lines: the cube over the separating half period at the amplitude that section 2.1.2 states, and "
-            "at the one that section 4.3.5 gives for the same welder. Bands: the ranges that the text states for the "
-            "tests, whose single points are not available.",
-            draw=_reductions,
-        ),
-        ReportFigure(
-            name="height-laws",
-            title="Load against separation under four laws",
-            caption="The surfaces of Table 3.1 under exponential and Gaussian heights, elastic and elastic-plastic. "
-            "Shaded: range in which the exponential law agrees with the Gaussian one within a factor of two.",
-            draw=_height_laws,
-        ),
-        ReportFigure(
-            name="tables-3-3-and-3-4-wear",
-            title="Wear rates of test and model",
-            caption="Points: Tables 3.3 and 3.4. Lines: the cube with Table 3.2 and 2.5 um, which depends on "
-            "neither speed nor number of revolutions.",
-            draw=_wear_rates,
-        ),
-        ReportFigure(
-            name="friction-ratio-against-amplitude",
-            title="Friction ratio of the cube against amplitude, and of the tests",
-            caption="The cube's friction ratio depends on amplitude alone; the tests at 2.5 um (Table 2.3, with "
-            "the scatter stated there) depend on the sliding speed, which only a time-dependent model can reproduce.",
-            draw=_ratio_against_amplitude,
-        ),
+    yield ReportFigure(
+        name="figure-3-2a-separation",
+        title="Separation against load",
+        caption="Yielding asperities let the surfaces come closer. Under exponential heights the difference of "
+        "the models is the same at every load: 6.8 um for aluminium on steel, 9.0 um for steel on steel. "
+        "Computed from Table 3.1; circles: separations stated in section 3.1.4 at 40 N.",
+        draw=_separations,
+    )
+    yield ReportFigure(
+        name="figure-3-2b-real-area",
+        title="Real contact area against load",
+        caption="In both models the area is proportional to the load, so that it grows sixfold from 40 to 240 N. "
+        "Computed from Table 3.1.",
+        draw=_areas,
+    )
+    yield ReportFigure(
+        name="figure-3-4-friction-reduction",
+        title="Friction reduction of the Poisson-effect tests",
+        caption="Lines: the cube over the separating half period at the amplitude that section 2.1.2 states, and "
+        "at the one that section 4.3.5 gives for the same welder. Bands: the ranges that the text states for the "
+        "tests, whose single points are not available.",
+        draw=_reductions,
+    )
+    yield ReportFigure(
+        name="height-laws",
+        title="Load against separation under four laws",
+        caption="The surfaces of Table 3.1 under exponential and Gaussian heights, elastic and elastic-plastic. "
+        "Shaded: range in which the exponential law agrees with the Gaussian one within a factor of two.",
+        draw=_height_laws,
+    )
+    yield ReportFigure(
+        name="tables-3-3-and-3-4-wear",
+        title="Wear rates of test and model",
+        caption="Points: Tables 3.3 and 3.4. Lines: the cube with Table 3.2 and 2.5 um, which depends on "
+        "neither speed nor number of revolutions.",
+        draw=_wear_rates,
+    )
+    yield ReportFigure(
+        name="friction-ratio-against-amplitude",
+        title="Friction ratio of the cube against amplitude, and of the tests",
+        caption="The cube's friction ratio depends on amplitude alone; the tests at 2.5 um (Table 2.3, with "
+        "the scatter stated there) depend on the sliding speed, which only a time-dependent model can reproduce.",
+        draw=_ratio_against_amplitude,
     )
 
 
@@ -145,10 +143,8 @@ def _height_laws() -> "Figure":
     """Draw load against separation for exponential and Gaussian heights."""
     figure, axes = single_axes((4.8, 3.5))
     exponential = poisson_contact(bodies="aluminium_steel")
-    gaussian = replace(
-        exponential,
-        heights=GaussianHeights.from_roughness_parameter(roughness_parameter=exponential.roughness.roughness_parameter),
-    )
+    eta = exponential.roughness.roughness_parameter
+    gaussian = replace(exponential, heights=GaussianHeights.from_roughness_parameter(roughness_parameter=eta))
     Rq = exponential.roughness.rms_height  # noqa: N806
     gaps = np.linspace(0.2, 5, 200) * Rq
     for index, (label, contact) in enumerate((("exponential", exponential), ("Gaussian", gaussian))):
@@ -179,12 +175,8 @@ def _wear_rates() -> "Figure":
         columns = table(table_id).columns
         for index, condition in enumerate(("off", "on")):
             chosen = np.array([printed == condition for printed in columns["ultrasound"].printed])
-            axes.plot(
-                factor * columns[along].values[chosen],
-                1e9 * columns["test"].values[chosen],
-                **point_style(index),
-                label=f"test {names[condition]}",
-            )
+            x, measured = factor * columns[along].values[chosen], 1e9 * columns["test"].values[chosen]
+            axes.plot(x, measured, **point_style(index), label=f"test {names[condition]}")
             axes.axhline(1e9 * rates[condition], **line_style(index), label=f"cube {names[condition]}")
         axes.set(xlabel=label, title=f"Table {table_id}", ylim=(0, 0.03))
     panels[0].set_ylabel("Wear rate [mm³/m]")

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from itertools import product
 from typing import Final
 
 import numpy as np
@@ -17,7 +18,7 @@ from sonolube.contact import (
 )
 from sonolube.published import propagate_rounding, published_number, published_value, si_value, table
 from sonolube.reproduce.cube import STEEL_ON_STEEL_NOTE, Horn, poisson_friction_ratio, without_yielding
-from sonolube.reproduce.row import Row, comparison_row, undetermined_row
+from sonolube.reproduce.row import Row, comparison_row, formula_row, undetermined_row
 from sonolube.validation.contacts import Bodies, poisson_contact, wear_contact
 from sonolube.wear import cube_wear_rate, full_period_wear_ratio, vibrating_cube_wear_rate
 
@@ -63,17 +64,12 @@ def _contact() -> Iterator[Row]:
         ("3.1.4-load-count-1", (high - low) / step + 1, "From 40 to 240 N in steps of 20 N."),
     ):
         yield comparison_row(published, float(computed), note)
-    yield comparison_row(
+    constants = product(("youngs_modulus", "poisson_ratio"), ("aluminium", "steel"))
+    yield formula_row(
         "table-3.2-effective_modulus-1",
-        propagate_rounding(
-            lambda e1, e2, n1, n2: 1 / ((1 - n1**2) / e1 + (1 - n2**2) / e2),
-            *(
-                f"table-3.1-{name}_{metal}-1"
-                for name in ("youngs_modulus", "poisson_ratio")
-                for metal in ("aluminium", "steel")
-            ),
-        ),
         "1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 with Table 3.1.",
+        lambda e1, e2, n1, n2: 1 / ((1 - n1**2) / e1 + (1 - n2**2) / e2),
+        *(f"table-3.1-{name}_{metal}-1" for name, metal in constants),
     )
 
 
@@ -81,19 +77,15 @@ def _friction() -> Iterator[Row]:
     """Yield the friction reductions of section 3.1.4 by the cube."""
     for published, bodies, horn, remark in _REDUCTIONS:
         at_welder_amplitude, at_waveguide_amplitude = (
-            1
-            - poisson_friction_ratio(
-                bodies=bodies, horn=horn, normal_load=_loads(), axial_amplitude=si_value(amplitude)
-            )
-            for amplitude in ("2.1.2-welder-amplitude", "4.3.5-waveguide-amplitude")
+            1 - poisson_friction_ratio(bodies=bodies, horn=horn, normal_load=_loads(), axial_amplitude=amplitude)
+            for amplitude in map(si_value, ("2.1.2-welder-amplitude", "4.3.5-waveguide-amplitude"))
         )
-        yield comparison_row(
-            published,
-            float(np.mean(at_welder_amplitude)),
+        note = (
             "Cube over the separating half period (D 3.15), mean over the loads at the 8.5 um of D 2.1.2, "
             f"{_percent_range(at_welder_amplitude)}; at the 11.24 um of D 4.3.5 "
-            f"{_percent_range(at_waveguide_amplitude)}. The test falls with load, the cube rises slightly.{remark}",
+            f"{_percent_range(at_waveguide_amplitude)}. The test falls with load, the cube rises slightly.{remark}"
         )
+        yield comparison_row(published, float(np.mean(at_welder_amplitude)), note)
     yield undetermined_row("3.1.4-error", "the measured points of figure 3.4, which are not available as data.")
 
 
@@ -129,11 +121,12 @@ def _wear() -> Iterator[Row]:
 
 def _coupling_factor() -> Row:
     """Return the coupling factor of Table 3.5 from its other constants."""
-    coupling = propagate_rounding(
+    return formula_row(
+        "table-3.5-coupling_factor-1",
+        "k^2 = (N d33)^2 k_p/C with C free.",
         lambda n, d33, k, c: n * d33 * math.sqrt(k / c),
         *(f"table-3.5-{name}-1" for name in ("stack_layers", "charge_constant_33", "stack_stiffness", "capacitance")),
     )
-    return comparison_row("table-3.5-coupling_factor-1", coupling, "k^2 = (N d33)^2 k_p/C with C free.")
 
 
 def _loss_of_contact() -> Row:
@@ -146,12 +139,11 @@ def _loss_of_contact() -> Row:
     stiffness = float(
         cube_tangential_stiffness(contact, separation=gap) / cube_tangential_stiffness(contact, separation=at_rest)
     )
-    return comparison_row(
-        printed,
-        float(decay_length(contact)) * math.log(1 / LOST_CONTACT),
+    note = (
         f"Displacement at which F_n falls to {LOST_CONTACT:.0%} of the load; an exponential height law never parts the "
-        f"surfaces. At 3.8 um F_n/F_N = {force:.2f}, k_t/k_t0 = {stiffness:.3f}.",
+        f"surfaces. At 3.8 um F_n/F_N = {force:.2f}, k_t/k_t0 = {stiffness:.3f}."
     )
+    return comparison_row(printed, float(decay_length(contact)) * math.log(1 / LOST_CONTACT), note)
 
 
 def _loads() -> Floats:

@@ -7,16 +7,7 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.published import si_value
-from sonolube.reproduce.chapter3.tribometer_response import (
-    envelope,
-    least_power_over_frequency,
-    resonance,
-    response_over_frequency,
-    response_over_speed,
-    response_over_voltage,
-    response_over_waveform,
-    start_up_from_rest,
-)
+from sonolube.reproduce.chapter3 import tribometer_response
 from sonolube.reproduce.row import Row, comparison_row
 from sonolube.reproduce.tribometer_rigs import IDENTIFIED_NOTE, tribometer_rig
 from sonolube.rig import operating_points
@@ -40,25 +31,18 @@ def parametric_study_rows() -> Iterator[Row]:
 
 def _start_up() -> Iterator[Row]:
     """Yield settling time, residual frequency and amplitude of the start-up."""
-    started = start_up_from_rest()
-    upper = envelope(displacement=started.trajectory.contact.displacement)
+    started = tribometer_response.start_up_from_rest()
+    upper = tribometer_response.envelope(displacement=started.trajectory.contact.displacement)
     unsettled = np.abs(upper.high - upper.high[-1]) > _SETTLED * started.vibration_amplitude
-    yield comparison_row(
-        "3.3.4-settling-time",
-        float(upper.time[np.flatnonzero(unsettled)[-1]]),
+    note = (
         "From rest, until the upper envelope of the tip stays within 2 % of the amplitude. The stack itself settles in "
-        f"{started.settling_time * 1e3:.1f} ms; the rest is the arm, whose damping no published fact determines.",
+        f"{started.settling_time * 1e3:.1f} ms; the rest is the arm, whose damping no published fact determines."
     )
-    yield comparison_row(
-        "3.3.4-residual-frequency",
-        started.beat_frequency,
-        f"Slow oscillation of the start-up, damped; in this model it decays, in D it persists. {_ONE_OF_THE_FACTS}",
-    )
-    yield comparison_row(
-        "3.3.4-amplitude",
-        float(operating_points(tribometer_rig()).vibration_amplitude),
-        f"At the tests' 28.02 V and 22 kHz. {_ONE_OF_THE_FACTS}",
-    )
+    yield comparison_row("3.3.4-settling-time", float(upper.time[np.flatnonzero(unsettled)[-1]]), note)
+    note = f"Slow oscillation of the start-up, damped; in this model it decays, in D it persists. {_ONE_OF_THE_FACTS}"
+    yield comparison_row("3.3.4-residual-frequency", started.beat_frequency, note)
+    note = f"At the tests' 28.02 V and 22 kHz. {_ONE_OF_THE_FACTS}"
+    yield comparison_row("3.3.4-amplitude", float(operating_points(tribometer_rig()).vibration_amplitude), note)
 
 
 def _friction_errors() -> Iterator[Row]:
@@ -87,32 +71,27 @@ def _voltage() -> Iterator[Row]:
     """Yield knee, order and saturation of friction over the voltage."""
     volts, ratios = _voltages_and_ratios("asperity_stick_slip")
     knees = {model: _knee(*_voltages_and_ratios(model)) for model in ("kinematic", _AS_PRINTED)}
-    yield comparison_row(
-        "3.3.5-voltage-knee",
-        _knee(volts, ratios),
+    note = (
         "Voltage at which the curve of figure 3.15 (e) is farthest below its chord from 0 to 200 V, by asperity "
         f"stick-slip. The friction model governs it: kinematic {knees['kinematic']:.0f} V; as printed friction is "
-        f"least near {knees[_AS_PRINTED]:.0f} V and grows beyond.",
+        f"least near {knees[_AS_PRINTED]:.0f} V and grows beyond."
     )
-    yield comparison_row(
-        "3.3.5-voltage-order",
-        _largest_step(ratios),
+    yield comparison_row("3.3.5-voltage-knee", _knee(volts, ratios), note)
+    note = (
         "Largest of all steps of 2 V from 0 to 200 V. As printed, D 3.46 to 3.48 would raise friction beyond "
-        f"{knees[_AS_PRINTED]:.0f} V, to {_voltages_and_ratios(_AS_PRINTED)[1][-1]:.2f} at 200 V.",
+        f"{knees[_AS_PRINTED]:.0f} V, to {_voltages_and_ratios(_AS_PRINTED)[1][-1]:.2f} at 200 V."
     )
+    yield comparison_row("3.3.5-voltage-order", _largest_step(ratios), note)
     knee = int(np.searchsorted(volts, si_value("3.3.5-voltage-knee")))
     fall = np.array([ratios[0] - ratios[knee], ratios[knee] - ratios[-1]])
     slopes = fall / np.array([volts[knee], volts[-1] - volts[knee]])
-    yield comparison_row(
-        "3.3.5-voltage-saturation",
-        float(slopes[1] / slopes[0]),
-        f"Friction ratio {ratios[knee]:.3f} at 20 V, {ratios[-1]:.3f} at 200 V, by asperity stick-slip.",
-    )
+    note = f"Friction ratio {ratios[knee]:.3f} at 20 V, {ratios[-1]:.3f} at 200 V, by asperity stick-slip."
+    yield comparison_row("3.3.5-voltage-saturation", float(slopes[1] / slopes[0]), note)
 
 
 def _voltages_and_ratios(friction_model: str) -> tuple[Floats, Floats]:
     """Return voltages in V and friction ratios by a friction model."""
-    response = response_over_voltage(friction_model)
+    response = tribometer_response.response_over_voltage(friction_model)
     return response["voltage_peak_to_peak"].values, np.round(response["friction_ratio"].values, _DECIMALS)
 
 
@@ -124,7 +103,7 @@ def _knee(volts: Floats, ratios: Floats) -> float:
 
 def _speed() -> Iterator[Row]:
     """Yield the orders of friction over speed and voltage."""
-    ratios = np.round(response_over_speed()["friction_ratio"].values, _DECIMALS)
+    ratios = np.round(tribometer_response.response_over_speed()["friction_ratio"].values, _DECIMALS)
     note = f"Largest of all steps, 1 mm/s to 1 m/s at {_curves()}, by asperity stick-slip; 1 without any reduction."
     yield comparison_row("3.3.5-speed-order", _largest_step(ratios[:, ::-1].T), note)
     yield comparison_row("3.3.5-speed-voltage-order", _largest_step(ratios), note)
@@ -132,15 +111,14 @@ def _speed() -> Iterator[Row]:
 
 def _frequency() -> Iterator[Row]:
     """Yield friction at resonance over that elsewhere, and its order over the voltage."""
-    response, peak = response_over_frequency(), resonance()
+    response, peak = tribometer_response.response_over_frequency(), tribometer_response.resonance()
     f, ratios = response["frequency"].values, np.round(response["friction_ratio"].values, _DECIMALS)
     at_peak, elsewhere = ratios[:, peak.nearest(f)], ratios[:, peak.outside(f)].min(axis=1)
-    yield comparison_row(
-        "3.3.5-resonance-friction",
-        float((at_peak / elsewhere).max()),
+    note = (
         f"At {peak.natural_frequency / 1e3:.2f} kHz over the least outside its half-power bandwidth, 1 to 100 kHz; "
-        f"largest of {_curves()}, by asperity stick-slip.",
+        f"largest of {_curves()}, by asperity stick-slip."
     )
+    yield comparison_row("3.3.5-resonance-friction", float((at_peak / elsewhere).max()), note)
     yield comparison_row(
         "3.3.5-resonance-voltage-order",
         _largest_step(ratios.min(axis=1)),
@@ -150,7 +128,7 @@ def _frequency() -> Iterator[Row]:
 
 def _power() -> Row:
     """Return the amplifier's power at resonance over the least elsewhere, for one reduction of friction."""
-    study, peak = least_power_over_frequency(), resonance()
+    study, peak = tribometer_response.least_power_over_frequency(), tribometer_response.resonance()
     f, amplifier, dissipated = (study[name].values for name in ("frequency", "actuator_power", "dissipated_power"))
     at_peak, possible = peak.nearest(f), ~np.isnan(amplifier)
     least = int(np.nanargmin(dissipated))
@@ -179,7 +157,7 @@ def _waveforms() -> Iterator[Row]:
 
 def _waveform_ratios(friction_model: str) -> dict[str, float]:
     """Return the friction ratio of each waveform by a friction model. []"""
-    response = response_over_waveform(friction_model)
+    response = tribometer_response.response_over_waveform(friction_model)
     names = [str(name) for name in response["waveform"].values]
     return dict(zip(names, response["friction_ratio"].values.tolist(), strict=True))
 
@@ -196,7 +174,7 @@ def _largest_step(ratios: Floats) -> float:
 
 def _curves() -> str:
     """Return the voltages of the curves as text."""
-    volts = response_over_speed()["voltage_peak_to_peak"].values
+    volts = tribometer_response.response_over_speed()["voltage_peak_to_peak"].values
     return f"{', '.join(f'{u:g}' for u in volts[:-1])} and {volts[-1]:g} V"
 
 

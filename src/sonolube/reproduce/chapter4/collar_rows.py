@@ -71,26 +71,19 @@ def collar_rows() -> Iterator[Row]:
 
 def _stack() -> Iterator[Row]:
     """Yield coupling factor and capacitance of the stack, Table 4.7."""
-    stiffness, length, charge_constant, relative_permittivity, outer, inner = (
-        si_value(f"table-4.7-{name}-1")
-        for name in (
-            "stack_stiffness",
-            "length",
-            "charge_constant_33",
-            "relative_permittivity",
-            "outer_diameter",
-            "inner_diameter",
-        )
+    stiffness, length, outer, inner = (
+        si_value(f"table-4.7-{name}-1") for name in ("stack_stiffness", "length", "outer_diameter", "inner_diameter")
     )
+    charge_constant = si_value("table-4.7-charge_constant_33-1")
+    relative_permittivity = si_value("table-4.7-relative_permittivity-1")
     area = float(np.pi / 4 * (outer**2 - inner**2))
     modulus, permittivity = stiffness * length / area, relative_permittivity * float(epsilon_0)
     needed = si_value("table-4.7-coupling_factor-1") ** 2 * permittivity / charge_constant**2
-    yield comparison_row(
-        "table-4.7-coupling_factor-1",
-        charge_constant * float(np.sqrt(modulus / permittivity)),
+    note = (
         f"d33 sqrt(E/eps) with E = k_p L/A = {modulus * 1e-9:.3g} GPa, as of ceramic alone; the printed factor"
-        f" needs {needed * 1e-9:.3g} GPa; end pieces and glue, which soften a stack, would account for the difference",
+        f" needs {needed * 1e-9:.3g} GPa; end pieces and glue, which soften a stack, would account for the difference"
     )
+    yield comparison_row("table-4.7-coupling_factor-1", charge_constant * float(np.sqrt(modulus / permittivity)), note)
     layers = np.sqrt(si_value("table-4.7-capacitance-1") / (permittivity * area / length))
     missing = f"number of layers; C = N^2 eps A/L, ceramic over the whole length, would take {layers:.1f} of them"
     yield undetermined_row("table-4.7-capacitance-1", missing)
@@ -104,14 +97,13 @@ def _first_design() -> Iterator[Row]:
     at_least = replace(published, number=replace(published.number, low=least, high=max(least, oval.value)))
     mean_radius = (FIRST_COLLAR.ring_width + FIRST_COLLAR.bore_diameter) / 4
     radial = float(np.sqrt(200e9 / 8000.0)) / (2 * np.pi * mean_radius)
-    yield comparison_row(
-        at_least,
-        oval,
+    note = (
         "Mode in which the bore becomes oval along the stacks, hexagon and hexagonal hole across flats; "
         f"{_ASSUMED}. Proper breathing, uniform widening of the bore, lies near {radial * 1e-3:.0f} kHz by the theory "
         "of thin rings, and the 27 kHz of the revised designs would take a ring of 59 mm: D's breathing is taken for "
-        "the oval mode (erratum N16)",
+        "the oval mode (erratum N16)"
     )
+    yield comparison_row(at_least, oval, note)
     yield comparison_row(
         "4.5.2-torsional-mode-first",
         _on_mesh(mode_frequency(FIRST_COLLAR, BoreMotion.DIAGONAL_OVAL)),
@@ -137,17 +129,13 @@ def _revised_designs() -> Iterator[Row]:
 def _final_design() -> Iterator[Row]:
     """Yield the resonances of the final design."""
     for statement_id, open_top in (("4.5.3-mode-closed-top", False), ("4.5.3-mode-open-top", True)):
-        for suffix, collar, note in (
+        for suffix, collar, origin in (
             ("tuned", FINAL_COLLAR, "assumed dimensions fitted to this and the other frequency, none by more than 9 %"),
             ("guess", NOMINAL_COLLAR, "round inches for what D does not print, nothing fitted"),
         ):
             found = main_resonance(response_model(collar, open_top=open_top))
-            yield comparison_row(
-                statement_id,
-                _on_mesh(found.series_frequency),
-                f"Resonance of the largest k_eff, {found.coupling_factor:.2f}, between 15 and 40 kHz; {note}",
-                suffix=suffix,
-            )
+            note = f"Resonance of the largest k_eff, {found.coupling_factor:.2f}, between 15 and 40 kHz; {origin}"
+            yield comparison_row(statement_id, _on_mesh(found.series_frequency), note, suffix=suffix)
 
 
 def _pulled_rod() -> Iterator[Row]:
@@ -158,11 +146,8 @@ def _pulled_rod() -> Iterator[Row]:
     yield from range_rows("4.5.4-reduction", float(low), float(high), note)
     work = rod.work_reduction
     exact = float(np.interp(-si_value("4.5.4-work-reduction"), -work, rod.sliding_speed))
-    yield comparison_row(
-        "4.5.4-work-reduction",
-        float(np.interp(PULL_SPEED, rod.sliding_speed, work)),
-        f"{_PULLED}. At {1e3 * exact:.0f} mm/s it would be the printed number",
-    )
+    note = f"{_PULLED}. At {1e3 * exact:.0f} mm/s it would be the printed number"
+    yield comparison_row("4.5.4-work-reduction", float(np.interp(PULL_SPEED, rod.sliding_speed, work)), note)
 
 
 def _on_mesh(frequency: float) -> ComputedValue:

@@ -5,41 +5,16 @@ from typing import Final
 
 import numpy as np
 
+from sonolube import thermal
 from sonolube.checks import Floats
 from sonolube.materials import material
 from sonolube.published import column_numbers, si_value
-from sonolube.reproduce.chapter4.temperature_tests import (
-    ASSUMED,
-    EXAMPLE_FRICTION_RATIO,
-    POWDER_COATING,
-    ROOM_TEMPERATURE,
-    TemperatureTest,
-    dry_heat,
-    example_heat,
-    heated_contact,
-    history,
-    loads,
-    slow_friction_ratio,
-    speeds,
-    vibration_heat,
-    vibration_heat_fraction,
-    vibration_heat_window,
-    voltages,
-)
+from sonolube.reproduce.chapter4 import temperature_tests as tests
 from sonolube.reproduce.row import Row, comparison_row
-from sonolube.thermal import (
-    adiabatic_heat_rate,
-    flash_rise,
-    half_wave_bar_energy,
-    interface_conductance,
-    layer_conductance,
-    superimposed_heat_rate,
-    vibration_loss_heat_rate,
-)
 
 _FRICTION_NOTE: Final = (
-    f"Friction kept at {EXAMPLE_FRICTION_RATIO:g} of its dry value at every voltage: in the text it falls further "
-    "beyond 10.3 V, by an amount that is only drawn (Fig. 4.33), and that could only cool"
+    f"Friction kept at {tests.EXAMPLE_FRICTION_RATIO:g} of its dry value at every voltage: in the text it falls "
+    "further beyond 10.3 V, by an amount that is only drawn (Fig. 4.33), and that could only cool"
 )
 _CERAMIC: Final = "pic255"  # soft, as in stacks; D does not print the material
 
@@ -57,20 +32,20 @@ def contact_temperature_rows() -> Iterator[Row]:
 
 def _slopes() -> Row:
     """Return the slope of the temperature over speed at 26 MPa over that at 52 MPa."""
-    rises = np.array([[_at_vibration_start(load, speed) for speed in speeds()] for load in loads()])
-    low, high = (float(np.polyfit(speeds(), rise, 1)[0]) for rise in rises)
-    per_speed = rises[0] / speeds()
+    rises = np.array([[_at_vibration_start(load, speed) for speed in tests.speeds()] for load in tests.loads()])
+    low, high = (float(np.polyfit(tests.speeds(), rise, 1)[0]) for rise in rises)
+    per_speed = rises[0] / tests.speeds()
     note = (
         f"Least-squares slopes of the rise at 12 s without vibration. Heat of friction is proportional to the load; "
         f"the rise per speed falls by {100 * (1 - per_speed[-1] / per_speed[0]):.0f} % from the lowest to the highest "
-        f"speed, nearly a straight line. {ASSUMED}."
+        f"speed, nearly a straight line. {tests.ASSUMED}."
     )
     return comparison_row("4.3.4-slope-ratio", low / high, note)
 
 
 def _at_vibration_start(load: float, speed: float) -> float:
     """Return the temperature rise at the start of the vibration. [K]"""
-    record = history(TemperatureTest(normal_load=load, sliding_speed=speed, vibrated=False))
+    record = tests.history(tests.TemperatureTest(normal_load=load, sliding_speed=speed, vibrated=False))
     return float(np.interp(si_value("4.3.3-vibration-start"), record.time, record.temperature_rise))
 
 
@@ -78,23 +53,27 @@ def _example_by_superimposed_speed() -> Iterator[Row]:
     """Yield the temperatures of the example by friction times superimposed speed."""
     speed = si_value("4.3.4-example-speed")
     peaks = np.array([peak.value for peak in column_numbers("4.4", "vibration_velocity").values()])
-    heat = superimposed_heat_rate(friction_force=EXAMPLE_FRICTION_RATIO, sliding_speed=speed, vibration_velocity=peaks)
+    heat = thermal.superimposed_heat_rate(
+        friction_force=tests.EXAMPLE_FRICTION_RATIO, sliding_speed=speed, vibration_velocity=peaks
+    )
     note = f"Explanation of D: heat is proportional to friction times superimposed speed of Table 4.5. {_FRICTION_NOTE}"
     yield from _example(heat / speed, "by-superimposed-speed", note)
 
 
 def _example_by_vibration_heat() -> Iterator[Row]:
     """Yield the temperatures of the example by frictional heat and a fraction of the actuator's power."""
-    low, high = vibration_heat_window()
+    low, high = tests.vibration_heat_window()
     note = (
         "Heat of friction and a fraction of the actuator's power (D 1.9) in the contact. The fraction is not printed: "
         f"these four statements limit it to {1e2 * low:.2f} to {1e2 * high:.2f} %, and "
-        f"{1e2 * vibration_heat_fraction():.2f} %, their geometric mean, is taken: the rows show its existence, not "
-        f"its value. {_FRICTION_NOTE}; a fall by more than {100 * (1 - EXAMPLE_FRICTION_RATIO) * high / low:.0f} % at "
-        f"20.7 V would leave none. A stack of {_CERAMIC} would lose {100 * np.pi / 4 * _loss_tangent():.1f} % of that "
-        "power in its ceramic"
+        f"{1e2 * tests.vibration_heat_fraction():.2f} %, their geometric mean, is taken: the rows show its existence, "
+        f"not its value. {_FRICTION_NOTE}; a fall by more than "
+        f"{100 * (1 - tests.EXAMPLE_FRICTION_RATIO) * high / low:.0f} % at 20.7 V would leave none. A stack of "
+        f"{_CERAMIC} would lose {100 * np.pi / 4 * _loss_tangent():.1f} % of that power in its ceramic"
     )
-    yield from _example(EXAMPLE_FRICTION_RATIO + vibration_heat() / example_heat(), "by-vibration-heat", note)
+    yield from _example(
+        tests.EXAMPLE_FRICTION_RATIO + tests.vibration_heat() / tests.example_heat(), "by-vibration-heat", note
+    )
 
 
 def _loss_tangent() -> float:
@@ -104,7 +83,7 @@ def _loss_tangent() -> float:
 
 def _example(ratios: Floats, suffix: str, note: str) -> Iterator[Row]:
     """Yield the rows of the example at four voltages from heat with vibration over heat without."""
-    for voltage, ratio in zip(voltages(), ratios, strict=True):
+    for voltage, ratio in zip(tests.voltages(), ratios, strict=True):
         if voltage < 15:
             yield comparison_row(f"4.3.4-example-cooler-{voltage:g}V", float(ratio), note, suffix=suffix)
         elif voltage > 20:
@@ -113,8 +92,10 @@ def _example(ratios: Floats, suffix: str, note: str) -> Iterator[Row]:
 
 def _low_speed() -> Row:
     """Return the temperature without vibration over that with it at the lowest speed."""
-    slowest = float(speeds()[0])
-    ratios = slow_friction_ratio() + vibration_heat() / dry_heat(normal_load=float(loads()[0]), sliding_speed=slowest)
+    slowest = float(tests.speeds()[0])
+    ratios = tests.slow_friction_ratio() + tests.vibration_heat() / tests.dry_heat(
+        normal_load=float(tests.loads()[0]), sliding_speed=slowest
+    )
     listed = ", ".join(f"{ratio:.2f}" for ratio in ratios)
     note = (
         f"At {1e3 * slowest:g} mm/s and 26 MPa, the voltage of the least warming. Friction by asperity stick-slip, "
@@ -126,17 +107,19 @@ def _low_speed() -> Row:
 
 def _tribometer_peak() -> Row:
     """Return the highest temperature of the tests on the tribometer."""
-    load, speed = float(loads()[-1]), float(speeds()[-1])
-    record = history(TemperatureTest(normal_load=load, sliding_speed=speed))
-    peak = ROOM_TEMPERATURE + float(record.temperature_rise.max())
-    contact = heated_contact()
+    load, speed = float(tests.loads()[-1]), float(tests.speeds()[-1])
+    record = tests.history(tests.TemperatureTest(normal_load=load, sliding_speed=speed))
+    peak = tests.ROOM_TEMPERATURE + float(record.temperature_rise.max())
+    contact = tests.heated_contact()
     flux = record.heat_rate.max() / contact.source.area
-    alone = flash_rise(POWDER_COATING, contact.source, heat_flux=flux, sliding_speed=speed).mean_temperature_rise
+    alone = thermal.flash_rise(
+        tests.POWDER_COATING, contact.source, heat_flux=flux, sliding_speed=speed
+    ).mean_temperature_rise
     note = (
         f"Highest of the computed tests, 52 MPa, 220 mm/s and 25.9 V, {1e3 * record.heat_rate.max():.0f} mW of heat of "
-        f"which {100 * record.heat_partition[record.heat_rate.argmax()]:.0f} % enter the pin. {ASSUMED}. With an "
+        f"which {100 * record.heat_partition[record.heat_rate.argmax()]:.0f} % enter the pin. {tests.ASSUMED}. With an "
         f"insulating adhesive of the thermocouple, the coating alone would give "
-        f"{ROOM_TEMPERATURE - 273.15 + float(alone):.0f} degC: the measured peak lies between, "
+        f"{tests.ROOM_TEMPERATURE - 273.15 + float(alone):.0f} degC: the measured peak lies between, "
         "depending on the bond of the thermocouple"
     )
     return comparison_row("4.3.5-tribometer-temperature-peak", peak, note)
@@ -150,16 +133,18 @@ def _waveguide_peak() -> Row:
     capacity = volume * density * aluminium.value("specific_heat_capacity")
     first, peak = (si_value(f"4.3.5-temperature-{state}") for state in ("first", "peak"))
     duration = si_value("4.3.5-vibration-duration")
-    needed = float(adiabatic_heat_rate(heat_capacity=capacity, temperature_rise=peak - first, duration=duration))
+    needed = float(
+        thermal.adiabatic_heat_rate(heat_capacity=capacity, temperature_rise=peak - first, duration=duration)
+    )
     power = si_value("2.1.2-welder-power")
-    energy = half_wave_bar_energy(
+    energy = thermal.half_wave_bar_energy(
         density=density,
         cross_section=width * thickness,
         length=length,
         frequency=si_value("2.1.2-welder-frequency"),
         axial_amplitude=si_value("4.3.5-waveguide-amplitude"),
     )
-    at_one = vibration_loss_heat_rate(
+    at_one = thermal.vibration_loss_heat_rate(
         stored_energy=energy, frequency=si_value("2.1.2-welder-frequency"), quality_factor=1.0
     )
     note = (
@@ -177,14 +162,14 @@ def _foil_peak() -> Row:
     first, peak = (si_value(f"4.3.5-temperature-{state}") for state in ("first", "peak"))
     sheltered = si_value("4.3.5-foil-temperature-peak")
     foil = float(
-        layer_conductance(
+        thermal.layer_conductance(
             thermal_conductivity=material("aluminium_2024").value("thermal_conductivity"),
             thickness=si_value("4.3.5-foil-thickness"),
         )
     )
     onward = 100.0  # W/(m2 K), tape and air
     joint = float(
-        interface_conductance(
+        thermal.interface_conductance(
             temperature_rise=peak - first, rise_behind_interface=sheltered - first, convection_coefficient=onward
         )
     )

@@ -36,35 +36,29 @@ def load_rows() -> Iterator[Row]:
         response[name].values for name in ("normal_load", "friction_reduction", "natural_frequency")
     )
     middle = (si_value("4.1.2-peak-load-1") + si_value("4.1.2-peak-load-2")) / 2
-    yield comparison_row(
-        "4.1.2-arm-frequency",
-        float(np.interp(middle, loads, arm)),
+    note = (
         f"Natural frequency of the arm with the weights for {middle:g} N; {arm.min():.0f} to {arm.max():.0f} Hz over "
-        f"all loads. {IDENTIFIED_NOTE}, of which this is one.",
+        f"all loads. {IDENTIFIED_NOTE}, of which this is one."
     )
+    yield comparison_row("4.1.2-arm-frequency", float(np.interp(middle, loads, arm)), note)
     spread = float(np.ptp(reduction))
-    yield comparison_row(
-        "4.1.2-arm-extra-reduction",
-        spread,
-        f"Largest minus smallest reduction from 3 to 9 N at 25.9 V and 65.5 mm/s. {_NO_EXCITATION}",
-    )
+    note = f"Largest minus smallest reduction from 3 to 9 N at 25.9 V and 65.5 mm/s. {_NO_EXCITATION}"
+    yield comparison_row("4.1.2-arm-extra-reduction", spread, note)
     best = float(loads[np.argmax(reduction)])
     for published in ("4.1.2-peak-load-1", "4.1.2-peak-load-2"):
         note = f"The computed reduction is constant to {100 * spread:.2g} %. {_NO_EXCITATION}"
         yield comparison_row(published, best, note)
 
 
-def load_figures() -> tuple[ReportFigure, ...]:
+def load_figures() -> Iterator[ReportFigure]:
     """Return the figure of section 4.1.2 on load."""
-    return (
-        ReportFigure(
-            name="figure-4-7-load",
-            title="Normal load, hung on the arm",
-            caption="The reduction does not depend on the load: force and its decay length keep their proportion. The "
-            "arm's natural frequency passes 100 Hz near 6.5 N, where the text has the largest reduction, but nothing "
-            "in the model excites the arm. Band: loads of the maximum in the text.",
-            draw=_load,
-        ),
+    yield ReportFigure(
+        name="figure-4-7-load",
+        title="Normal load, hung on the arm",
+        caption="The reduction does not depend on the load: force and its decay length keep their proportion. The "
+        "arm's natural frequency passes 100 Hz near 6.5 N, where the text has the largest reduction, but nothing "
+        "in the model excites the arm. Band: loads of the maximum in the text.",
+        draw=_load,
     )
 
 

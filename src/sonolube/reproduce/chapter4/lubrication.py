@@ -8,18 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
+from sonolube import friction
 from sonolube.checks import Floats
 from sonolube.figure import ReportFigure
-from sonolube.friction import (
-    BoundaryLubricant,
-    LubricationCoefficients,
-    LubricationMethod,
-    best_lubrication_method,
-    lubrication_coefficients,
-    sine_stick_slip_ratio,
-)
 from sonolube.published import column_numbers, published_number, published_value, si_value
-from sonolube.reproduce.chapter4.power_rows import nominal_pressure_rows, power_with_note
+from sonolube.reproduce.chapter4.power_rows import nominal_pressure_rows, power_row
 from sonolube.reproduce.plots import axes_row, line_style
 from sonolube.reproduce.row import Row, comparison_row, undetermined_row
 
@@ -42,7 +35,7 @@ _INFERRED: Final = (
 def lubrication_rows() -> Iterator[Row]:
     """Yield the rows of section 4.2."""
     yield from nominal_pressure_rows("4.3")
-    yield comparison_row("table-4.3-actuator_power-1", *power_with_note(si_value("table-4.3-voltage_peak_to_peak-1")))
+    yield power_row("table-4.3-actuator_power-1", si_value("table-4.3-voltage_peak_to_peak-1"))
     yield undetermined_row(
         _LIMIT,
         "friction under Molykote, which is only drawn (Figs. 4.24 to 4.27); by asperity stick-slip and load sharing a "
@@ -60,20 +53,17 @@ def lubrication_rows() -> Iterator[Row]:
     yield comparison_row(from_zero, highest, note)
 
 
-def lubrication_figures() -> tuple[ReportFigure, ...]:
+def lubrication_figures() -> Iterator[ReportFigure]:
     """Return the figures of section 4.2."""
-    return (
-        ReportFigure(
-            name="figure-4-27-lubrication-regimes",
-            title="Best method of lubrication over speed and stress",
-            caption="Left: friction over that of the dry contact at 48 MPa. Right: method of the lowest friction; "
-            f"vibration counts in addition to a lubricant if it reduces friction by {100 * _SMALLEST_GAIN:g} %. Load "
-            "sharing with asperity stick-slip; the friction of the film is inferred from the 90 mm/s of D; that "
-            f"fraction and the stress at which asperities carry all, {1e-6 * _FULL_ASPERITY_PRESSURE:g} MPa, are "
-            "assumed. Below 90 mm/s vibration is best at every stress, above it both together, unless the stress is "
-            "low: as in D.",
-            draw=_method_map,
-        ),
+    yield ReportFigure(
+        name="figure-4-27-lubrication-regimes",
+        title="Best method of lubrication over speed and stress",
+        caption="Left: friction over that of the dry contact at 48 MPa. Right: method of the lowest friction; "
+        f"vibration counts in addition to a lubricant if it reduces friction by {100 * _SMALLEST_GAIN:g} %. Load "
+        "sharing with asperity stick-slip; the friction of the film is inferred from the 90 mm/s of D; that fraction "
+        f"and the stress at which asperities carry all, {1e-6 * _FULL_ASPERITY_PRESSURE:g} MPa, are assumed. Below 90 "
+        "mm/s vibration is best at every stress, above it both together, unless the stress is low: as in D.",
+        draw=_method_map,
     )
 
 
@@ -89,7 +79,7 @@ def vibrated_ratio(*, sliding_speed: ArrayLike) -> Floats:
     -------
     ndarray, shape of `sliding_speed`
     """
-    return sine_stick_slip_ratio(
+    return friction.sine_stick_slip_ratio(
         decay_length=_DECAY_LENGTH,
         vibration_amplitude=si_value("table-4.3-vibration_amplitude-1"),
         frequency=si_value("table-4.3-frequency-1"),
@@ -97,13 +87,13 @@ def vibrated_ratio(*, sliding_speed: ArrayLike) -> Floats:
     )
 
 
-def molykote() -> BoundaryLubricant:
+def molykote() -> friction.BoundaryLubricant:
     """Return the lubricant whose film has the friction of the vibrated contact at the printed speed."""
     at_limit = float(vibrated_ratio(sliding_speed=si_value(_LIMIT)))
-    return BoundaryLubricant(film_coefficient=at_limit * _DRY, full_asperity_pressure=_FULL_ASPERITY_PRESSURE)
+    return friction.BoundaryLubricant(film_coefficient=at_limit * _DRY, full_asperity_pressure=_FULL_ASPERITY_PRESSURE)
 
 
-def coefficients(*, sliding_speed: ArrayLike, nominal_pressure: ArrayLike) -> LubricationCoefficients:
+def coefficients(*, sliding_speed: ArrayLike, nominal_pressure: ArrayLike) -> friction.LubricationCoefficients:
     """Return the coefficients of friction of the four methods over that of the dry contact.
 
     Parameters
@@ -117,7 +107,7 @@ def coefficients(*, sliding_speed: ArrayLike, nominal_pressure: ArrayLike) -> Lu
     -------
     LubricationCoefficients
     """
-    return lubrication_coefficients(
+    return friction.lubrication_coefficients(
         molykote(),
         friction_coefficient=_DRY,
         friction_ratio=vibrated_ratio(sliding_speed=sliding_speed),
@@ -155,21 +145,14 @@ def _method_map() -> "Figure":
     left.set(xlabel="Sliding speed [mm/s]", ylabel="Friction over dry friction [1]", ylim=(0.4, 1.05))
     left.legend(loc="lower right")
     stresses = np.linspace(5e6, 80e6, 151)
-    best = best_lubrication_method(
+    best = friction.best_lubrication_method(
         coefficients(sliding_speed=speeds[np.newaxis, :], nominal_pressure=stresses[:, np.newaxis]),
         smallest_gain=_SMALLEST_GAIN,
     )
-    names = [str(method) for method in LubricationMethod]
+    names = [str(method) for method in friction.LubricationMethod]
     numbers = np.vectorize(names.index)(best)
-    right.pcolormesh(
-        1e3 * speeds,
-        1e-6 * stresses,
-        numbers,
-        cmap=ListedColormap(["0.6", "#9ecae1", "#fdd0a2", "#c7e9c0"]),
-        vmin=-0.5,
-        vmax=3.5,
-        rasterized=True,
-    )
+    colours = ListedColormap(["0.6", "#9ecae1", "#fdd0a2", "#c7e9c0"])
+    right.pcolormesh(1e3 * speeds, 1e-6 * stresses, numbers, cmap=colours, vmin=-0.5, vmax=3.5, rasterized=True)
     for name in np.unique(best):
         rows, columns = np.nonzero(best == name)
         speed, stress = float(speeds[int(np.median(columns))]), float(stresses[int(np.median(rows))])

@@ -14,13 +14,7 @@ from sonolube.checks import Floats
 from sonolube.design import map_figure, velocity_power_map, velocity_stress_map
 from sonolube.figure import COLOURS, LINES, MARKERS, ReportFigure
 from sonolube.published import column_numbers, published_number, si_value
-from sonolube.reproduce.chapter4.power_map import (
-    example_points,
-    example_test,
-    line_end,
-    line_friction,
-    sufficient_power,
-)
+from sonolube.reproduce.chapter4 import power_map
 from sonolube.reproduce.plots import draw_printed, single_axes
 from sonolube.reproduce.row import Row, comparison_row, undetermined_row
 from sonolube.reproduce.tribometer_rigs import IDENTIFIED_NOTE, plate_rig
@@ -57,12 +51,8 @@ def map_rows() -> Iterator[Row]:
     reduction = stress_maps()["friction_reduction"]
     lowest, highest = reduction.isel(voltage_peak_to_peak=0), reduction.isel(voltage_peak_to_peak=-1)
     speed = 1e3 * float(reduction["sliding_speed"][0])
-    yield comparison_row(
-        "4.1.2-reduction-lowest-voltage",
-        float(lowest.max()),
-        f"Largest at any speed and load; the model gives {float(lowest.max()):.1%}. {_MODEL}",
-        suffix=_BY_THE_MODEL,
-    )
+    note = f"Largest at any speed and load; the model gives {float(lowest.max()):.1%}. {_MODEL}"
+    yield comparison_row("4.1.2-reduction-lowest-voltage", float(lowest.max()), note, suffix=_BY_THE_MODEL)
     yield comparison_row(
         "4.1.2-reduction-highest-voltage",
         float(highest.isel(sliding_speed=0).max()),
@@ -75,51 +65,48 @@ def map_rows() -> Iterator[Row]:
     yield from (undetermined_row(name, missing) for name, missing in _NOT_COMPUTABLE.items())
 
 
-def map_figures() -> tuple[ReportFigure, ...]:
+def map_figures() -> Iterator[ReportFigure]:
     """Return the figures of the maps."""
-    return (
-        ReportFigure(
-            name="figure-4-9-stress-maps",
-            title="Friction reduction over sliding speed and stress",
-            caption="As D figures 4.9 and 4.10, by the multi-scale model on uncoated steel, at the five voltages of "
-            "Table 4.1. Contours are vertical: the stress has no effect, as in the text except at the arm's "
-            "resonance. For coated steel no parameter but hardness, thickness and roughness is printed.",
-            draw=lambda: map_figure(stress_maps()),
-        ),
-        ReportFigure(
-            name="figure-4-20-power-maps",
-            title="Friction reduction over sliding speed and power",
-            caption="As D figures 4.11, 4.12, 4.20 and B.1 to B.6, by the multi-scale model, for all seven loads. More "
-            "power and less speed reduce friction more, as in the text; no ridge lies within the powers of the "
-            "tests.",
-            draw=lambda: map_figure(power_maps()),
-        ),
-        ReportFigure(
-            name="figure-4-21-reduction-over-speed",
-            title="Model and test over sliding speed",
-            caption="As D figure 4.21. Solid: multi-scale model; curves of 3 and of 9 N coincide in print. "
-            "Dashed: D's efficiency line (D 4.4), which measured runs were fitted to. Points: Table 4.2, the one test "
-            "printed. D's own model met the tests at low speeds; its structure is not printed. With the structure "
-            "identified, and nothing fitted to friction, a third of the reduction comes out at the highest voltage, "
-            "and less of it below. In-plane motion of the pin, which was not measured, could explain most of the rest.",
-            draw=_reduction_over_speed,
-        ),
-        ReportFigure(
-            name="figure-4-11-ridge",
-            title="Power beyond which friction falls no further",
-            caption="The model at 5 N, up to 200 V, far beyond the tests (dash-dotted: their highest power). Dashed: "
-            "power whose doubling reduces friction by less than another 5 %. Dotted: the power of zero friction on "
-            f"D's efficiency line (D 4.3), which has no meaning from {1e3 * line_end():.0f} mm/s on. Both rise with "
-            "the speed, as does the optimum at low speeds of the text; that of the model is some ten times higher.",
-            draw=_ridge,
-        ),
+    yield ReportFigure(
+        name="figure-4-9-stress-maps",
+        title="Friction reduction over sliding speed and stress",
+        caption="As D figures 4.9 and 4.10, by the multi-scale model on uncoated steel, at the five voltages of "
+        "Table 4.1. Contours are vertical: the stress has no effect, as in the text except at the arm's "
+        "resonance. For coated steel no parameter but hardness, thickness and roughness is printed.",
+        draw=lambda: map_figure(stress_maps()),
+    )
+    yield ReportFigure(
+        name="figure-4-20-power-maps",
+        title="Friction reduction over sliding speed and power",
+        caption="As D figures 4.11, 4.12, 4.20 and B.1 to B.6, by the multi-scale model, for all seven loads. More "
+        "power and less speed reduce friction more, as in the text; no ridge lies within the powers of the tests.",
+        draw=lambda: map_figure(power_maps()),
+    )
+    yield ReportFigure(
+        name="figure-4-21-reduction-over-speed",
+        title="Model and test over sliding speed",
+        caption="As D figure 4.21. Solid: multi-scale model; curves of 3 and of 9 N coincide in print. "
+        "Dashed: D's efficiency line (D 4.4), which measured runs were fitted to. Points: Table 4.2, the one test "
+        "printed. D's own model met the tests at low speeds; its structure is not printed. With the structure "
+        "identified, and nothing fitted to friction, a third of the reduction comes out at the highest voltage, "
+        "and less of it below. In-plane motion of the pin, which was not measured, could explain most of the rest.",
+        draw=_reduction_over_speed,
+    )
+    yield ReportFigure(
+        name="figure-4-11-ridge",
+        title="Power beyond which friction falls no further",
+        caption="The model at 5 N, up to 200 V, far beyond the tests (dash-dotted: their highest power). Dashed: power "
+        "whose doubling reduces friction by less than another 5 %. Dotted: the power of zero friction on D's "
+        f"efficiency line (D 4.3), which has no meaning from {1e3 * power_map.line_end():.0f} mm/s on. Both rise with "
+        "the speed, as does the optimum at low speeds of the text; that of the model is some ten times higher.",
+        draw=_ridge,
     )
 
 
 @cache
 def stress_maps() -> "xr.Dataset":
     """Return the friction reduction over the speeds and loads of Table 4.1 at its voltages."""
-    voltages = [point.voltage_peak_to_peak for point in example_points()]
+    voltages = [point.voltage_peak_to_peak for point in power_map.example_points()]
     return velocity_stress_map(
         plate_rig(), sliding_speed=_speeds(), normal_load=_loads(), voltage_peak_to_peak=voltages
     )
@@ -128,7 +115,7 @@ def stress_maps() -> "xr.Dataset":
 @cache
 def power_maps() -> "xr.Dataset":
     """Return the friction reduction over the speeds and powers of Table 4.1 under its loads."""
-    voltages = np.linspace(1.0, example_points()[-1].voltage_peak_to_peak, 26)
+    voltages = np.linspace(1.0, power_map.example_points()[-1].voltage_peak_to_peak, 26)
     return velocity_power_map(plate_rig(), sliding_speed=_speeds(), voltage_peak_to_peak=voltages, normal_load=_loads())
 
 
@@ -139,7 +126,7 @@ def extended_power_map() -> "xr.Dataset":
         plate_rig(),
         sliding_speed=_speeds(),
         voltage_peak_to_peak=np.linspace(2.0, published_number("3.3.5-voltage").high, 100),
-        normal_load=[example_test()["normal_load"]],
+        normal_load=[power_map.example_test()["normal_load"]],
     )
 
 
@@ -174,28 +161,26 @@ def _hardness() -> Row:
 def _reduction_over_speed() -> "Figure":
     """Draw the friction reduction over speed of the model, the efficiency line and Table 4.2."""
     figure, axes = single_axes((6.4, 4.0))
-    found, test = stress_maps(), example_test()
+    found, test = stress_maps(), power_map.example_test()
     speeds = found["sliding_speed"].values
     fine = np.linspace(speeds[0], speeds[-1], 301)
     reductions = list(column_numbers("4.2", "friction_reduction").values())
     off = test["intrinsic_friction_force"]
-    for index, (point, measured) in enumerate(zip(example_points(), reductions, strict=True)):
+    for index, (point, measured) in enumerate(zip(power_map.example_points(), reductions, strict=True)):
         colour, reduction = COLOURS[index], 100 * found["friction_reduction"].isel(voltage_peak_to_peak=index).values
         axes.fill_between(1e3 * speeds, reduction.min(axis=0), reduction.max(axis=0), color=colour, linewidth=1.6)
         power = point.actuator_power
-        friction = [float(line_friction(test | {"sliding_speed": float(v)}, actuator_power=power)) for v in fine]
+        friction = [
+            float(power_map.line_friction(test | {"sliding_speed": float(v)}, actuator_power=power)) for v in fine
+        ]
         axes.plot(1e3 * fine, 100 * (1 - np.array(friction) / off), LINES[1], color=colour, linewidth=1.0)
         style = {"fmt": MARKERS[index], "color": colour, "markeredgecolor": "black", "capsize": 2, "zorder": 4}
         label = f"{point.voltage_peak_to_peak:g} V, {power:.2f} W"
         draw_printed(axes, [1e3 * test["sliding_speed"]], [measured], 100, **style, label=label)
     axes.plot([], [], color="0.3", label="multi-scale model")
     axes.plot([], [], LINES[1], color="0.3", linewidth=1.0, label="efficiency line")
-    axes.set(
-        xlabel="Sliding speed [mm/s]",
-        ylabel="Friction reduction [%]",
-        xlim=(1e3 * speeds[0] - 2, 1e3 * speeds[-1]),
-        ylim=(-3, 108),
-    )
+    axes.set(xlabel="Sliding speed [mm/s]", xlim=(1e3 * speeds[0] - 2, 1e3 * speeds[-1]))
+    axes.set(ylabel="Friction reduction [%]", ylim=(-3, 108))
     handles, labels = axes.get_legend_handles_labels()  # curves come before points
     figure.legend(
         handles[2:] + handles[:2], labels[2:] + labels[:2], loc="outside right center", title="Table 4.2, 5 N"
@@ -210,17 +195,11 @@ def _ridge() -> "Figure":
     figure = map_figure(extended_power_map())
     axes = figure.axes[0]
     speeds = _speeds()
-    sufficient = [sufficient_power(example_test() | {"sliding_speed": float(v)}) for v in speeds]
+    sufficient = [power_map.sufficient_power(power_map.example_test() | {"sliding_speed": float(v)}) for v in speeds]
     halo = [Stroke(linewidth=3.6, foreground="white"), Normal()]
     axes.plot(1e3 * speeds, sufficient, ":", color=COLOURS[1], lw=2, path_effects=halo, label="all friction, D 4.3")
-    axes.axhline(
-        example_points()[-1].actuator_power,
-        color="0.2",
-        ls="-.",
-        lw=1.2,
-        path_effects=halo,
-        label="highest of the tests",
-    )
+    highest = power_map.example_points()[-1].actuator_power
+    axes.axhline(highest, color="0.2", ls="-.", lw=1.2, path_effects=halo, label="highest of the tests")
     axes.set(yscale="log", ylim=(0.2, None))
     axes.yaxis.set_major_formatter("{x:g}")
     for legend in figure.legends:

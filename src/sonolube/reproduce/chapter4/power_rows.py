@@ -8,26 +8,17 @@ from sonolube.metrics import power_for_friction
 from sonolube.published import (
     ComputedValue,
     PrintedNumber,
+    PublishedValue,
     column_numbers,
     propagate_rounding,
     published_number,
+    published_value,
     si_value,
 )
 from sonolube.reproduce import formulas
-from sonolube.reproduce.chapter4.power_map import (
-    ExamplePoint,
-    actuator_power,
-    cube_friction,
-    example_points,
-    example_test,
-    line_efficiency,
-    line_end,
-    line_friction,
-    point_efficiency,
-    sufficient_power,
-)
+from sonolube.reproduce.chapter4 import power_map
 from sonolube.reproduce.cube import STEEL_ON_STEEL_NOTE
-from sonolube.reproduce.row import Row, comparison_row, range_rows
+from sonolube.reproduce.row import Row, comparison_row, formula_row
 from sonolube.validation.efficiency import efficiency_line
 
 _UNIT_OF_LINE = 1e-9  # mW mm2/(N W) in m2/N
@@ -37,19 +28,19 @@ def power_map_rows() -> Iterator[Row]:
     """Yield the rows of section 4.1 on settings and example test."""
     yield from nominal_pressure_rows("4.1")
     for row, voltage in column_numbers("4.1", "voltage_peak_to_peak").items():
-        yield comparison_row(f"table-4.1-actuator_power-{row}", *power_with_note(voltage.value))
+        yield power_row(f"table-4.1-actuator_power-{row}", voltage.value)
     yield from amplitude_rows("4.1")
     yield _highest_amplitude()
     yield from _settings_of_the_text()
     yield from _example_test()
-    for point in example_points():
+    for point in power_map.example_points():
         yield _reduction_of_mean_forces(point)
         yield _cube_friction(point)
         yield _efficiency(point)
         yield _line_friction(point)
         yield _line_power(point)
-    slowest = example_test() | {"sliding_speed": published_number("table-4.1-sliding_speed-1").low}
-    first, *_, last = example_points()
+    slowest = power_map.example_test() | {"sliding_speed": published_number("table-4.1-sliding_speed-1").low}
+    first, *_, last = power_map.example_points()
     yield line_reduction_row("4.1.2-reduction-lowest-voltage", slowest, actuator_power=first.actuator_power)
     yield line_reduction_row("4.1.2-reduction-highest-voltage", slowest, actuator_power=last.actuator_power)
     yield _intrinsic_friction()
@@ -59,7 +50,7 @@ def nominal_pressure_rows(table_id: str) -> Iterator[Row]:
     """Yield the nominal pressures of a table from its loads and its nominal area."""
     area = published_number(f"table-{table_id}-nominal_area-1")
     for row, load in column_numbers(table_id, "normal_load").items():
-        yield comparison_row(f"table-{table_id}-nominal_pressure-{row}", *_pressure_with_note(load.value, area))
+        yield _pressure_row(f"table-{table_id}-nominal_pressure-{row}", load.value, area)
 
 
 def amplitude_rows(table_id: str) -> Iterator[Row]:
@@ -71,14 +62,15 @@ def amplitude_rows(table_id: str) -> Iterator[Row]:
     note = f"{amplitude.value / highest.value * 1e6:.4f} um per volt peak to peak, from {highest.text} V"
     for row, voltage in voltages.items():
         if 0 < voltage.value < highest.value:
-            computed = propagate_rounding(lambda a, u_highest, u: a / u_highest * u, amplitude, highest, voltage)
-            yield comparison_row(f"table-{table_id}-vibration_amplitude-{row}", computed, note)
+            published = f"table-{table_id}-vibration_amplitude-{row}"
+            yield formula_row(published, note, lambda a, highest, u: a / highest * u, amplitude, highest, voltage)
 
 
-def power_with_note(voltage: float) -> tuple[float, str]:
-    """Return the actuator power at a voltage peak to peak in V, in W, with the note of its row."""
-    power = float(actuator_power(voltage_peak_to_peak=voltage))
-    return power, f"C U_max U_pp f (D 1.9) with U_max = U_pp; U_max = U_pp/2 would give {power / 2:.3g} W"
+def power_row(published: PublishedValue | str, voltage: float) -> Row:
+    """Return the row of a published actuator power at a voltage peak to peak in V."""
+    power = float(power_map.actuator_power(voltage_peak_to_peak=voltage))
+    note = f"C U_max U_pp f (D 1.9) with U_max = U_pp; U_max = U_pp/2 would give {power / 2:.3g} W"
+    return comparison_row(published, power, note)
 
 
 def line_reduction_row(published: str, test: dict[str, float], *, actuator_power: float) -> Row:
@@ -97,19 +89,18 @@ def line_reduction_row(published: str, test: dict[str, float], *, actuator_power
     -------
     Row
     """
-    off, on = test["intrinsic_friction_force"], float(line_friction(test, actuator_power=actuator_power))
+    off, on = test["intrinsic_friction_force"], float(power_map.line_friction(test, actuator_power=actuator_power))
     note = (
-        f"efficiency line at {actuator_power:.3g} W, {test['normal_load']:g} N and"
-        f" {test['sliding_speed'] * 1e3:g} mm/s, from {off:.3g} N; the line ends at"
-        f" {line_end() * 1e3:.0f} mm/s, where it crosses zero"
+        f"efficiency line at {actuator_power:.3g} W, {test['normal_load']:g} N and {test['sliding_speed'] * 1e3:g} "
+        f"mm/s, from {off:.3g} N; the line ends at {power_map.line_end() * 1e3:.0f} mm/s, where it crosses zero"
     )
     return comparison_row(published, formulas.friction_reduction(off, on), note)
 
 
-def _pressure_with_note(load: float, area: PrintedNumber) -> tuple[ComputedValue, str]:
-    """Return the nominal pressure of a load in N on a printed area, with the note of its row."""
-    pressure = propagate_rounding(partial(truediv, load), area)
-    return pressure, f"{load:g} N over {area.text} mm2, the load taken as exact"
+def _pressure_row(published: PublishedValue | str, load: float, area: PrintedNumber) -> Row:
+    """Return the row of a published nominal pressure of a load in N on a printed area."""
+    note = f"{load:g} N over {area.text} mm2, the load taken as exact"
+    return formula_row(published, note, partial(truediv, load), area)
 
 
 def _highest_amplitude() -> Row:
@@ -129,15 +120,13 @@ def _settings_of_the_text() -> Iterator[Row]:
     for nth in (1, 2):
         inches = published_number(f"4.1.3-groove-diameter-{nth}")
         yield comparison_row(f"4.1.1-diameter-{nth}", inches.value, f"{inches.text} in of section 4.1.3")
-    area = published_number("4.1.1-nominal-area")
-    (low, low_note), (high, high_note) = (
-        _pressure_with_note(load.value, area) for load in published_number("4.1.1-normal-load").limits()
-    )
-    yield from range_rows("4.1.1-stress", low, high, low_note, high_note=high_note)
-    yield comparison_row("4.1.2-efficiency-stress", high, high_note)
-    first, *_, last = example_points()
-    (lowest, low_note), (highest, high_note) = (power_with_note(point.voltage_peak_to_peak) for point in (first, last))
-    yield from range_rows("4.1.1-power", lowest, highest, low_note, high_note=high_note)
+    area, load = published_number("4.1.1-nominal-area"), published_number("4.1.1-normal-load")
+    for limit, newtons in zip(published_value("4.1.1-stress").limits(), (load.low, load.high), strict=True):
+        yield _pressure_row(limit, newtons, area)
+    yield _pressure_row("4.1.2-efficiency-stress", load.high, area)
+    first, *_, last = power_map.example_points()
+    for limit, point in zip(published_value("4.1.1-power").limits(), (first, last), strict=True):
+        yield power_row(limit, point.voltage_peak_to_peak)
 
 
 def _example_test() -> Iterator[Row]:
@@ -148,7 +137,7 @@ def _example_test() -> Iterator[Row]:
 
     rounded = speed(si_value("4.1.2-turn-duration"), si_value("4.1.1-diameter-1"))
     note = f"pi times 1.1 in over the time of a turn; with the rounded 28 mm {rounded * 1e3:.1f} mm/s"
-    yield comparison_row("4.1.2-sliding-speed", propagate_rounding(speed, "4.1.2-turn-duration"), note)
+    yield formula_row("4.1.2-sliding-speed", note, speed, "4.1.2-turn-duration")
 
     levels, level = si_value("4.1.1-voltage-count"), si_value("4.1.2-level-duration")
     duration = si_value("4.1.2-vibration-start") + levels * level
@@ -156,22 +145,21 @@ def _example_test() -> Iterator[Row]:
     yield comparison_row("4.1.2-duration", duration, note)
 
     off, on, *_ = column_numbers("4.2", "friction_force").values()
-    drop = propagate_rounding(sub, off, on)
-    yield comparison_row("4.1.2-friction-drop", drop, f"{off.value:g} N less {on.value:g} N")
+    yield formula_row("4.1.2-friction-drop", f"{off.value:g} N less {on.value:g} N", sub, off, on)
 
 
-def _reduction_of_mean_forces(point: ExamplePoint) -> Row:
+def _reduction_of_mean_forces(point: power_map.ExamplePoint) -> Row:
     """Return the friction reduction of the mean forces of Table 4.2 at a voltage."""
-    off, on = example_test()["intrinsic_friction_force"], point.friction.value
+    off, on = power_map.example_test()["intrinsic_friction_force"], point.friction.value
     note = f"D 2.1 from the mean forces, {off:g} N and {on:g} N"
     # compared within the scatter of D alone: the rounding of the forces would hide that D averaged otherwise, E17
     return comparison_row(f"table-4.2-friction_reduction-{point.row}", formulas.friction_reduction(off, on), note)
 
 
-def _cube_friction(point: ExamplePoint) -> Row:
+def _cube_friction(point: power_map.ExamplePoint) -> Row:
     """Return the friction of the cube at a voltage."""
-    off = example_test()["intrinsic_friction_force"]
-    friction = float(cube_friction(voltage_peak_to_peak=point.voltage_peak_to_peak))
+    off = power_map.example_test()["intrinsic_friction_force"]
+    friction = float(power_map.cube_friction(voltage_peak_to_peak=point.voltage_peak_to_peak))
     note = (
         f"cube, D 3.15: ratio {friction / off:.3f} of {off:g} N; roughness of Table 3.2; {STEEL_ON_STEEL_NOTE};"
         " neither sliding speed nor in-plane motion of the tip enters"
@@ -179,46 +167,40 @@ def _cube_friction(point: ExamplePoint) -> Row:
     return comparison_row(f"table-4.2-friction_force-{point.row}", friction, note, suffix="by-the-cube")
 
 
-def _efficiency(point: ExamplePoint) -> Row:
+def _efficiency(point: power_map.ExamplePoint) -> Row:
     """Return the intercept of the efficiency line from the efficiency coefficient at a voltage."""
-    line, speed = efficiency_line(), example_test()["sliding_speed"]
+    line, speed = efficiency_line(), power_map.example_test()["sliding_speed"]
     to_zero_speed = -line.slope * speed
-    coefficient = point_efficiency(point, friction=point.friction.value)
-    on_line = float(line_efficiency(sliding_speed=speed))
+    coefficient = power_map.point_efficiency(point, friction=point.friction.value)
+    on_line = float(power_map.line_efficiency(sliding_speed=speed))
     note = (
         f"D 4.1 at {point.voltage_peak_to_peak:g} V gives {coefficient / _UNIT_OF_LINE:.3f}, the line"
         f" {on_line / _UNIT_OF_LINE:.3f} mW mm2/(N W); carried to zero speed by the printed slope"
     )
     intercept = _over_scatter(
-        lambda friction: point_efficiency(point, friction=friction) + to_zero_speed, point.friction
+        lambda friction: power_map.point_efficiency(point, friction=friction) + to_zero_speed, point.friction
     )
-    return comparison_row(
-        "4.1.2-efficiency-intercept",
-        intercept,
-        note + _surplus_power_note(point),
-        suffix=f"at-{point.voltage_peak_to_peak:g}V",
-    )
+    note, suffix = note + _surplus_power_note(point), f"at-{point.voltage_peak_to_peak:g}V"
+    return comparison_row("4.1.2-efficiency-intercept", intercept, note, suffix=suffix)
 
 
-def _line_friction(point: ExamplePoint) -> Row:
+def _line_friction(point: power_map.ExamplePoint) -> Row:
     """Return the friction on the efficiency line at a voltage."""
-    test = example_test()
-    as_printed = test["intrinsic_friction_force"] * (1 + point.actuator_power / sufficient_power(test))
+    test = power_map.example_test()
+    as_printed = test["intrinsic_friction_force"] * (1 + point.actuator_power / power_map.sufficient_power(test))
     note = (
         f"D 4.4 solved for the reduced friction, at {point.actuator_power:.3g} W; "
-        f"as printed it would rise to {as_printed:.3g} N"
+        f"as printed it would rise to {as_printed:.3g} N{_surplus_power_note(point)}"
     )
-    friction = float(line_friction(test, actuator_power=point.actuator_power))
-    return comparison_row(
-        f"table-4.2-friction_force-{point.row}", friction, note + _surplus_power_note(point), suffix="by-the-line"
-    )
+    friction = float(power_map.line_friction(test, actuator_power=point.actuator_power))
+    return comparison_row(f"table-4.2-friction_force-{point.row}", friction, note, suffix="by-the-line")
 
 
-def _line_power(point: ExamplePoint) -> Row:
+def _line_power(point: power_map.ExamplePoint) -> Row:
     """Return the power on the efficiency line for the friction at a voltage."""
 
     def power(friction: float) -> float:
-        return float(power_for_friction(efficiency_line(), reduced_friction_force=friction, **example_test()))
+        return float(power_for_friction(efficiency_line(), reduced_friction_force=friction, **power_map.example_test()))
 
     voltages = column_numbers("4.1", "voltage_peak_to_peak")
     row = next(row for row, voltage in voltages.items() if voltage.value == point.voltage_peak_to_peak)
@@ -227,9 +209,9 @@ def _line_power(point: ExamplePoint) -> Row:
     return comparison_row(f"table-4.1-actuator_power-{row}", power_over_scatter, note, suffix="by-the-line")
 
 
-def _surplus_power_note(point: ExamplePoint) -> str:
+def _surplus_power_note(point: power_map.ExamplePoint) -> str:
     """Return the note on power beyond the sufficient one; empty below it."""
-    sufficient = sufficient_power(example_test())
+    sufficient = power_map.sufficient_power(power_map.example_test())
     if point.actuator_power <= sufficient:
         return ""
     return (
@@ -240,7 +222,7 @@ def _surplus_power_note(point: ExamplePoint) -> str:
 
 def _intrinsic_friction() -> Row:
     """Return the friction without vibration of section 4.1.3 from Table 4.2."""
-    test = example_test()
+    test = power_map.example_test()
     off, load = test["intrinsic_friction_force"], test["normal_load"]
     note = f"friction of Table 4.2 at {load:g} N; over that load a coefficient of {off / load:.3f}"
     return comparison_row("4.1.3-friction-uncoated", off, note)

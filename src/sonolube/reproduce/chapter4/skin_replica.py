@@ -15,17 +15,10 @@ from scipy.optimize import minimize_scalar
 from sonolube.checks import Floats
 from sonolube.figure import COLOURS, MARKERS, ReportFigure
 from sonolube.friction import FaceVibrationMode, exponential_layer_ratio, linear_layer_ratio
-from sonolube.published import (
-    PrintedNumber,
-    column_numbers,
-    propagate_rounding,
-    published_number,
-    published_value,
-    si_value,
-)
+from sonolube.published import PrintedNumber, column_numbers, published_number, published_value, si_value
 from sonolube.reproduce import formulas
 from sonolube.reproduce.plots import single_axes
-from sonolube.reproduce.row import Row, comparison_row
+from sonolube.reproduce.row import Row, comparison_row, formula_row
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -68,16 +61,14 @@ def skin_replica_rows() -> Iterator[Row]:
     yield from _soft_layers()
 
 
-def skin_replica_figures() -> tuple[ReportFigure, ...]:
+def skin_replica_figures() -> Iterator[ReportFigure]:
     """Return the figure of section 4.4."""
-    return (
-        ReportFigure(
-            name="section-4-4-skin-replica",
-            title="Friction coefficient on the skin replica",
-            caption="Steel cutter head on a skin replica, 44.3 mm/s and 20 kHz. Filled: coefficients as section 4.4.3 "
-            "prints them. Rings: its forces over the loads of Table 4.6. Arrows: reductions of those forces.",
-            draw=_friction_coefficients,
-        ),
+    yield ReportFigure(
+        name="section-4-4-skin-replica",
+        title="Friction coefficient on the skin replica",
+        caption="Steel cutter head on a skin replica, 44.3 mm/s and 20 kHz. Filled: coefficients as section 4.4.3 "
+        "prints them. Rings: its forces over the loads of Table 4.6. Arrows: reductions of those forces.",
+        draw=_friction_coefficients,
     )
 
 
@@ -123,11 +114,11 @@ def _measured_friction() -> Iterator[Row]:
         off, on = _force("off", load), _force("on", load)
         coefficients.append(on.value / load.value)
         for state, friction in (("off", off), ("on", on)):
-            coefficient = propagate_rounding(lambda force, load=load.value: force / load, friction)
+            coefficient = f"4.4.3-coefficient-{state}-{load.text}N"
             note = f"{friction.text} N over {load.text} N, the load taken as exact"
-            yield comparison_row(f"4.4.3-coefficient-{state}-{load.text}N", coefficient, note)
-        reduction = propagate_rounding(formulas.friction_reduction, off, on)
-        yield comparison_row(f"4.4.3-reduction-{load.text}N", reduction, f"D 2.1 from {off.text} N and {on.text} N")
+            yield formula_row(coefficient, note, lambda force, load=load.value: force / load, friction)
+        note = f"D 2.1 from {off.text} N and {on.text} N"
+        yield formula_row(f"4.4.3-reduction-{load.text}N", note, formulas.friction_reduction, off, on)
     mean = float(np.mean(coefficients))
     yield comparison_row("4.4.3-coefficient-on", mean, "mean over the three loads of force over load")
     lowest, *higher = (load.value for load in _loads())

@@ -1,5 +1,6 @@
 """Section 4.3: figures of contact temperature over time, heat over voltage, and superimposed speed over voltage."""
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -8,20 +9,8 @@ from sonolube.checks import Floats
 from sonolube.figure import ReportFigure
 from sonolube.metrics import peak_vibration_velocity, superimposed_speed
 from sonolube.published import si_value, table
+from sonolube.reproduce.chapter4 import temperature_tests as tests
 from sonolube.reproduce.chapter4.power_map import actuator_power, vibration_amplitude
-from sonolube.reproduce.chapter4.temperature_tests import (
-    ASSUMED,
-    EXAMPLE_FRICTION_RATIO,
-    ROOM_TEMPERATURE,
-    TemperatureTest,
-    example_heat,
-    history,
-    loads,
-    speeds,
-    vibration_heat_fraction,
-    vibration_heat_window,
-    voltages,
-)
 from sonolube.reproduce.plots import axes_row, curve_style, line_style, point_style, single_axes
 from sonolube.thermal import superimposed_heat_rate
 
@@ -32,49 +21,43 @@ if TYPE_CHECKING:
 _VOLTAGE: Final = "Drive voltage, peak to peak [V]"
 
 
-def temperature_figures() -> tuple[ReportFigure, ...]:
+def temperature_figures() -> Iterator[ReportFigure]:
     """Return the figures of section 4.3."""
-    return (
-        ReportFigure(
-            name="figure-4-30-contact-temperature",
-            title="Computed temperature of the contact in time",
-            caption=f"Tests of Table 4.4: sliding from 2 s, five voltages from 12 s on, rest from 32 s. {ASSUMED}; "
-            f"friction {100 * (1 - EXAMPLE_FRICTION_RATIO):.0f} % lower under vibration at every speed, which is "
-            f"printed for 220 mm/s only; {100 * vibration_heat_fraction():.2f} % of the actuator's power in the "
-            "contact. D measured up to 53 degC.",
-            draw=_temperature_over_time,
-        ),
-        ReportFigure(
-            name="figure-4-34-two-factors",
-            title="Heat of the example with vibration over heat without",
-            caption="220 mm/s and 26 MPa; friction 10 % lower at every voltage, while in the text it falls further. "
-            "Friction times superimposed speed, the explanation of D, stays below one at every voltage of the tests. "
-            "With a fraction of the actuator's power, taken from these very statements, the contact cools and warms as "
-            "in D. Triangles point to the temperature in D: below or above that without vibration.",
-            draw=_heat_over_voltage,
-        ),
-        ReportFigure(
-            name="figure-4-32-superimposed-speed",
-            title="Sliding speed with the vibration superimposed",
-            caption="Curves: the resultant of sliding speed and half-wave mean of the vibration velocity, the "
-            "amplitude in proportion to the voltage. Points: Table 4.5, with one misprinted cell, 110 for 112 mm/s.",
-            draw=_superimposed_speeds,
-        ),
+    yield ReportFigure(
+        name="figure-4-30-contact-temperature",
+        title="Computed temperature of the contact in time",
+        caption=f"Tests of Table 4.4: sliding from 2 s, five voltages from 12 s on, rest from 32 s. {tests.ASSUMED}; "
+        f"friction {100 * (1 - tests.EXAMPLE_FRICTION_RATIO):.0f} % lower under vibration at every speed, which is "
+        f"printed for 220 mm/s only; {100 * tests.vibration_heat_fraction():.2f} % of the actuator's power in the "
+        "contact. D measured up to 53 degC.",
+        draw=_temperature_over_time,
+    )
+    yield ReportFigure(
+        name="figure-4-34-two-factors",
+        title="Heat of the example with vibration over heat without",
+        caption="220 mm/s and 26 MPa; friction 10 % lower at every voltage, while in the text it falls further. "
+        "Friction times superimposed speed, the explanation of D, stays below one at every voltage of the tests. "
+        "With a fraction of the actuator's power, taken from these very statements, the contact cools and warms as "
+        "in D. Triangles point to the temperature in D: below or above that without vibration.",
+        draw=_heat_over_voltage,
+    )
+    yield ReportFigure(
+        name="figure-4-32-superimposed-speed",
+        title="Sliding speed with the vibration superimposed",
+        caption="Curves: the resultant of sliding speed and half-wave mean of the vibration velocity, the "
+        "amplitude in proportion to the voltage. Points: Table 4.5, with one misprinted cell, 110 for 112 mm/s.",
+        draw=_superimposed_speeds,
     )
 
 
 def _temperature_over_time() -> "Figure":
     """Draw the computed temperature of the contact over time at both loads."""
     figure, panels = axes_row(2, (7.8, 3.6), sharey=True)
-    for axes, load in zip(panels, loads(), strict=True):
-        for index, speed in enumerate(speeds()):
-            record = history(TemperatureTest(normal_load=float(load), sliding_speed=float(speed)))
-            axes.plot(
-                record.time,
-                ROOM_TEMPERATURE - 273.15 + record.temperature_rise,
-                **line_style(index),
-                label=f"{1e3 * speed:.0f} mm/s",
-            )
+    for axes, load in zip(panels, tests.loads(), strict=True):
+        for index, speed in enumerate(tests.speeds()):
+            record = tests.history(tests.TemperatureTest(normal_load=float(load), sliding_speed=float(speed)))
+            celsius = tests.ROOM_TEMPERATURE - 273.15 + record.temperature_rise
+            axes.plot(record.time, celsius, **line_style(index), label=f"{1e3 * speed:.0f} mm/s")
         pressure = load / si_value("table-4.4-nominal_area-1")
         axes.set(xlabel="Time [s]", ylabel="Temperature of the contact [°C]", xlim=(0, 50))
         axes.text(0.97, 0.93, f"{1e-6 * pressure:.0f} MPa", transform=axes.transAxes, ha="right")
@@ -88,28 +71,18 @@ def _heat_over_voltage() -> "Figure":
     figure, axes = single_axes()
     swing = np.linspace(0.0, 28.0, 141)
     speed = si_value("4.3.4-example-speed")
-    published = superimposed_heat_rate(
-        friction_force=EXAMPLE_FRICTION_RATIO, sliding_speed=speed, vibration_velocity=_peak_velocity(swing)
-    )
+    ratio, fraction = tests.EXAMPLE_FRICTION_RATIO, tests.vibration_heat_fraction()
+    peaks = _peak_velocity(swing)
+    published = superimposed_heat_rate(friction_force=ratio, sliding_speed=speed, vibration_velocity=peaks)
     axes.plot(swing, published / speed, **line_style(1), label="friction × superimposed speed (D)")
-    supplied = actuator_power(voltage_peak_to_peak=swing) / example_heat()
-    low, high = vibration_heat_window()
-    axes.fill_between(
-        swing,
-        EXAMPLE_FRICTION_RATIO + low * supplied,
-        EXAMPLE_FRICTION_RATIO + high * supplied,
-        color="0.85",
-        label="limits of the fraction",
-    )
-    axes.plot(
-        swing,
-        EXAMPLE_FRICTION_RATIO + vibration_heat_fraction() * supplied,
-        **line_style(0),
-        label=f"friction + {100 * vibration_heat_fraction():.2f} % of the power",
-    )
+    supplied = actuator_power(voltage_peak_to_peak=swing) / tests.example_heat()
+    low, high = (ratio + limit * supplied for limit in tests.vibration_heat_window())
+    axes.fill_between(swing, low, high, color="0.85", label="limits of the fraction")
+    label = f"friction + {100 * fraction:.2f} % of the power"
+    axes.plot(swing, ratio + fraction * supplied, **line_style(0), label=label)
     for sense, marker, places, height in (
-        ("below one", "v", voltages()[:2], 0.985),
-        ("above one", "^", voltages()[3:], 1.015),
+        ("below one", "v", tests.voltages()[:2], 0.985),
+        ("above one", "^", tests.voltages()[3:], 1.015),
     ):
         axes.plot(places, np.full(places.size, height), marker, color="black", label=f"{sense}, section 4.3.4")
     axes.axhline(1.0, color="0.4", linewidth=0.8)

@@ -5,18 +5,12 @@ from operator import sub
 
 import numpy as np
 
-from sonolube.metrics import peak_vibration_velocity
-from sonolube.published import column_numbers, propagate_rounding, published_value, si_value
+from sonolube.published import as_exact, column_numbers, propagate_rounding, published_value, si_value
 from sonolube.reproduce import formulas
 from sonolube.reproduce.chapter4.contact_temperature_rows import contact_temperature_rows
 from sonolube.reproduce.chapter4.power_map import example_points
-from sonolube.reproduce.chapter4.power_rows import (
-    amplitude_rows,
-    line_reduction_row,
-    nominal_pressure_rows,
-    power_with_note,
-)
-from sonolube.reproduce.row import Row, comparison_row
+from sonolube.reproduce.chapter4.power_rows import amplitude_rows, line_reduction_row, nominal_pressure_rows, power_row
+from sonolube.reproduce.row import Row, comparison_row, formula_row
 
 
 def temperature_rows() -> Iterator[Row]:
@@ -33,15 +27,13 @@ def _settings() -> Iterator[Row]:
     """Yield the rows of Table 4.4 and of the durations in the text."""
     yield from nominal_pressure_rows("4.4")
     yield from amplitude_rows("4.4")
-    frequency = si_value("table-4.4-frequency-1")
+    frequency = as_exact("table-4.4-frequency-1")
     for row, amplitude in column_numbers("4.4", "vibration_amplitude").items():
-        peak = propagate_rounding(
-            lambda a: float(peak_vibration_velocity(frequency=frequency, vibration_amplitude=a)), amplitude
-        )
-        yield comparison_row(f"table-4.4-vibration_velocity-{row}", peak, f"2 pi f a with {amplitude.text} um")
+        velocity, note = f"table-4.4-vibration_velocity-{row}", f"2 pi f a with {amplitude.text} um"
+        yield formula_row(velocity, note, formulas.peak_vibration_velocity, frequency, amplitude)
     voltages = column_numbers("4.4", "voltage_peak_to_peak")
     highest = published_value("table-4.4-actuator_power-1").limits()[1]
-    yield comparison_row(highest, *power_with_note(voltages[max(voltages)].value))
+    yield power_row(highest, voltages[max(voltages)].value)
 
     dry = si_value("4.3.3-motor-start") + si_value("4.3.3-dry-duration")
     yield comparison_row("4.3.3-vibration-start", dry, "start of the motor and rotation without vibration")
@@ -60,9 +52,9 @@ def _superimposed_speeds() -> Iterator[Row]:
             mean = propagate_rounding(lambda v_1: v_1 / np.pi, peak)
             note = f"peak over pi, the half-wave mean; the mean of the modulus would be {2 * mean.value * 1e3:.0f} mm/s"
             yield comparison_row(f"table-4.5-mean_vibration_velocity-{row}", mean, note)
-        speed = propagate_rounding(formulas.superimposed_speed, speeds[row], peak)
+        speed = f"table-4.5-superimposed_speed-{row}"
         note = f"sqrt(v_r^2 + (v_1/pi)^2) with {speeds[row].text} and {peak.text} mm/s"
-        yield comparison_row(f"table-4.5-superimposed_speed-{row}", speed, note)
+        yield formula_row(speed, note, formulas.superimposed_speed, speeds[row], peak)
 
 
 def _raised_speed() -> Row:
@@ -74,7 +66,7 @@ def _raised_speed() -> Row:
         f" {formulas.superimposed_speed(slowest.value, peak.value) * 1e3:.0f} mm/s; the peak velocity itself is"
         f" {peak.text} mm/s"
     )
-    return comparison_row("4.3.4-raised-speed", propagate_rounding(formulas.superimposed_speed, second, peak), note)
+    return formula_row("4.3.4-raised-speed", note, formulas.superimposed_speed, second, peak)
 
 
 def _speed_rises() -> Iterator[Row]:
@@ -83,10 +75,9 @@ def _speed_rises() -> Iterator[Row]:
     rows = [row for row, speed in column_numbers("4.5", "sliding_speed").items() if speed.value == example]
     raised, peaks = (column_numbers("4.5", name) for name in ("superimposed_speed", "vibration_velocity"))
     for name, row in (("low", rows[2]), ("high", rows[-1])):
-        rise = propagate_rounding(sub, raised[row], raised[rows[0]])
         unrounded = formulas.superimposed_speed(example, peaks[row].value) - example
         note = f"{raised[row].text} less {raised[rows[0]].text} mm/s of Table 4.5; unrounded {unrounded * 1e3:.1f} mm/s"
-        yield comparison_row(f"4.3.4-example-speed-rise-{name}", rise, note)
+        yield formula_row(f"4.3.4-example-speed-rise-{name}", note, sub, raised[row], raised[rows[0]])
 
 
 def _example_reduction() -> Row:

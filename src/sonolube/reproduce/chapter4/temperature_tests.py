@@ -5,20 +5,12 @@ from typing import Final
 
 import numpy as np
 
+from sonolube import thermal
 from sonolube.checks import Floats
 from sonolube.friction import sine_stick_slip_ratio
-from sonolube.materials import material
 from sonolube.published import column_numbers, si_value
 from sonolube.reproduce.chapter4.power_map import actuator_power
-from sonolube.thermal import (
-    ContactTemperatureHistory,
-    EllipticSource,
-    HeatedContact,
-    ThermalNetwork,
-    ThermalSolid,
-    contact_temperature_history,
-    frictional_heat_rate,
-)
+from sonolube.rig import thermal_solid
 
 ROOM_TEMPERATURE: Final = 294.15
 """Room temperature, that of the other tests of D, 21 degC. [K]"""
@@ -27,10 +19,10 @@ EXAMPLE_FRICTION_RATIO: Final = 0.9
 """Friction with vibration over friction without in the example: 10 % less at 5.1 and 10.3 V, beyond which it falls
 further by an unprinted amount. Kept at 10 % at every voltage, the case of the least cooling. []"""
 
-POWDER_COATING: Final = ThermalSolid(thermal_conductivity=0.25, density=1500.0, specific_heat_capacity=1200.0)
+POWDER_COATING: Final = thermal.ThermalSolid(thermal_conductivity=0.25, density=1500.0, specific_heat_capacity=1200.0)
 """Coating of the disc, assumed: a filled thermoset, of which D prints only thickness and hardness."""
 
-_NUT: Final = ThermalNetwork(heat_capacity=(1.5,), links=(), losses=(0.05,))  # 3 g of steel on a thread
+_NUT: Final = thermal.ThermalNetwork(heat_capacity=(1.5,), links=(), losses=(0.05,))  # 3 g of steel on a thread
 _DECAY_LENGTH: Final = 2e-6  # m, of the contact of Table 3.2
 
 ASSUMED: Final = (
@@ -89,7 +81,7 @@ def dry_heat(*, normal_load: float, sliding_speed: float) -> float:
     float
     """
     friction = si_value("4.1.3-friction-coated-last") * normal_load  # a coefficient: erratum E18
-    return float(frictional_heat_rate(friction_force=friction, sliding_speed=sliding_speed))
+    return float(thermal.frictional_heat_rate(friction_force=friction, sliding_speed=sliding_speed))
 
 
 def example_heat() -> float:
@@ -134,19 +126,16 @@ def slow_friction_ratio() -> Floats:
     )
 
 
-def heated_contact(*, disc: ThermalSolid = POWDER_COATING) -> HeatedContact:
+def heated_contact(*, disc: thermal.ThermalSolid = POWDER_COATING) -> thermal.HeatedContact:
     """Return the contact of the thermocouple's tip with the disc."""
-    steel = material("stainless_steel_304")
-    pin = ThermalSolid(
-        thermal_conductivity=steel.value("thermal_conductivity"),
-        density=steel.value("density"),
-        specific_heat_capacity=steel.value("specific_heat_capacity"),
-    )
+    pin = thermal_solid("stainless_steel_304")
     radius = float(np.sqrt(si_value("table-4.4-nominal_area-1") / np.pi))
-    return HeatedContact(pin=pin, disc=disc, source=EllipticSource(half_length=radius, half_width=radius), network=_NUT)
+    return thermal.HeatedContact(
+        pin=pin, disc=disc, source=thermal.EllipticSource(half_length=radius, half_width=radius), network=_NUT
+    )
 
 
-def history(test: TemperatureTest, *, step: float = 0.25) -> ContactTemperatureHistory:
+def history(test: TemperatureTest, *, step: float = 0.25) -> thermal.ContactTemperatureHistory:
     """Return the computed temperature history of a test.
 
     Parameters
@@ -168,7 +157,7 @@ def history(test: TemperatureTest, *, step: float = 0.25) -> ContactTemperatureH
     shaken = turning & (middle > dry) & test.vibrated
     at_level = np.clip((middle - dry) // level, 0, voltages().size - 1).astype(int)
     friction = si_value("4.1.3-friction-coated-last") * test.normal_load * np.where(shaken, EXAMPLE_FRICTION_RATIO, 1.0)
-    return contact_temperature_history(
+    return thermal.contact_temperature_history(
         heated_contact(),
         time=moments,
         friction_force=np.where(turning, friction, 0.0),

@@ -91,19 +91,16 @@ def computed_motion_rows() -> Iterator[Row]:
         )
 
 
-def computed_motion_figures() -> tuple[ReportFigure, ...]:
+def computed_motion_figures() -> Iterator[ReportFigure]:
     """Return the figure of friction on computed motions."""
-    return (
-        ReportFigure(
-            name="friction-models-on-computed-motion",
-            title="Friction on computed motions and on a prescribed sine",
-            caption="Left: measured ratios of Tables 2.3 (A) and 4.2 (B), and both friction models with nothing fitted "
-            "on the steady motion of the identified tribometer. Right: change of the ratio against that on a "
-            "prescribed sine: "
-            + "; ".join(f"{name.replace('-', ' ')}, {motion}" for name, motion in MOTIONS.items())
-            + ".",
-            draw=_ratios_and_changes,
-        ),
+    yield ReportFigure(
+        name="friction-models-on-computed-motion",
+        title="Friction on computed motions and on a prescribed sine",
+        caption="Left: measured ratios of Tables 2.3 (A) and 4.2 (B), and both friction models with nothing fitted on "
+        "the steady motion of the identified tribometer. Right: change of the ratio against that on a prescribed sine: "
+        + "; ".join(f"{name.replace('-', ' ')}, {motion}" for name, motion in MOTIONS.items())
+        + ".",
+        draw=_ratios_and_changes,
     )
 
 

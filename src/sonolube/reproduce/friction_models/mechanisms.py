@@ -127,20 +127,17 @@ def mechanism_rows() -> Iterator[Row]:
             )
 
 
-def mechanism_figures() -> tuple[ReportFigure, ...]:
+def mechanism_figures() -> Iterator[ReportFigure]:
     """Return the figure of the mechanisms."""
-    return (
-        ReportFigure(
-            name="mechanisms-of-tables-2-3-and-4-2",
-            title="Mechanisms that could explain both Table 2.3 and Table 4.2",
-            caption="Points and scatter: measured. Lines: mechanisms fitted to both tables at once, with the number k "
-            "of fitted parameters and the corrected Akaike criterion, lower being better. Normal vibration cannot: "
-            "with the memory length of Mindlin it has no effect above "
-            f"{1e3 * speeds_of_no_reduction().max():.0f} mm/s in Table 4.2. In-plane motion can, if it is nearly as "
-            "large as the normal one and absent in Table 2.3; a zero error of the string can only if it is as large "
-            "as the friction itself.",
-            draw=_mechanisms_on_both_tables,
-        ),
+    yield ReportFigure(
+        name="mechanisms-of-tables-2-3-and-4-2",
+        title="Mechanisms that could explain both Table 2.3 and Table 4.2",
+        caption="Points and scatter: measured. Lines: mechanisms fitted to both tables at once, with the number k of "
+        "fitted parameters and the corrected Akaike criterion, lower being better. Normal vibration cannot: with the "
+        f"memory length of Mindlin it has no effect above {1e3 * speeds_of_no_reduction().max():.0f} mm/s in Table "
+        "4.2. In-plane motion can, if it is nearly as large as the normal one and absent in Table 2.3; a zero error of "
+        "the string can only if it is as large as the friction itself.",
+        draw=_mechanisms_on_both_tables,
     )
 
 
@@ -159,7 +156,7 @@ def _with_zero_error(
     zero_error: float = 0.0,
     in_plane_fraction: float = 0.0,
     in_plane_phase: float = 0.0,
-) -> float:
+) -> Floats:
     """Return the ratio of two force readings that both lack the same zero error. []"""
     ratio = asperity_stick_slip(
         test, memory_length=memory_length, in_plane_fraction=in_plane_fraction, in_plane_phase=in_plane_phase
@@ -168,7 +165,7 @@ def _with_zero_error(
     return (ratio * (reading + zero_error) - zero_error) / reading
 
 
-def _with_slack_string(test: FrictionTest, memory_length: float) -> float:
+def _with_slack_string(test: FrictionTest, memory_length: float) -> Floats:
     """Return the ratio of two force readings by a string that is slack on the rig of Table 4.2. []"""
     return _with_zero_error(test, memory_length, SLACK if test.set_name in RIGS["power map"] else 0.0)
 
@@ -182,14 +179,9 @@ def _mechanisms_on_both_tables() -> "Figure":
         label = f"{fit.variant.description}: k = {criteria.parameter_count}, AICc = {criteria.aicc:.0f}"
         for axes, letter in ((speeds, "A"), (amplitudes, "B")):
             tests = friction_tests(letter)
-            axes.plot(
-                [1e3 * test.sliding_speed if letter == "A" else 1e6 * test.vibration_amplitude for test in tests],
-                np.array([fit.predict(test) for test in tests], dtype=np.float64),
-                **curve_style(index),
-                ms=4,
-                mfc="white",
-                label=label if letter == "A" else None,
-            )
+            x = [1e3 * test.sliding_speed if letter == "A" else 1e6 * test.vibration_amplitude for test in tests]
+            ratios = np.array([fit.predict(test) for test in tests], dtype=np.float64)
+            axes.plot(x, ratios, **curve_style(index), ms=4, mfc="white", label=label if letter == "A" else None)
     figure.legend(loc="outside lower center", ncols=1, title="k parameters fitted to both tables")
     return figure
 

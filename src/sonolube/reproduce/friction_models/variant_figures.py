@@ -1,22 +1,14 @@
 """Figures of the variants of the friction models: over speed, against measured ratios, and errors by test."""
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from sonolube import friction
 from sonolube.checks import Floats
 from sonolube.contact import load_balanced_motion, sinusoidal_motion
 from sonolube.figure import COLOURS, MARKERS, ReportFigure
-from sonolube.friction import (
-    AsperityStickSlip,
-    BristleWithHolder,
-    Dong2015FullPeriod,
-    Dong2015HalfPeriod,
-    Dong2015LoadBalanced,
-    Kinematic,
-    mindlin_memory_length,
-)
 from sonolube.reproduce.friction_models.variant_rows import DEFAULT, reported_fits
 from sonolube.reproduce.plots import line_style, single_axes
 from sonolube.validation.assessment import (
@@ -39,36 +31,34 @@ _HIGHEST: Final = 1.3  # ratios above it are drawn at the edge
 _LARGEST_ERROR: Final = 0.5  # limit of the colour scale
 
 
-def variant_figures() -> tuple[ReportFigure, ...]:
+def variant_figures() -> Iterator[ReportFigure]:
     """Return the figures of the variants of the friction models."""
-    return (
-        ReportFigure(
-            name="friction-models-against-speed",
-            title="Friction ratio against sliding speed, by friction model",
-            caption="Points and scatter: Table 2.3 (3 N, 2.5 um, 22 kHz). Lines: each friction model for these "
-            "settings and the contact of Table 3.2; only those marked as fitted have a fitted value. The ratio grows "
-            "with speed in all but the cube over the half period; over the full period it soon exceeds 1.",
-            draw=_against_speed,
-        ),
-        ReportFigure(
-            name="friction-models-predicted-against-measured",
-            title="Predicted against measured friction ratio, by friction model",
-            caption="; ".join(f"{letter}: {content}" for letter, content in NORMAL_VIBRATION_SETS.items())
-            + ". Grey band: within 0.1 of the measured ratio. Open triangles at the edge: predicted above "
-            f"{_HIGHEST:g}; tests outside the range of a model are not drawn. The error is that over sets A and C to "
-            "G; set B requires motion along the surface, and of set H the amplitude is uncertain.",
-            draw=_predicted_against_measured,
-        ),
-        ReportFigure(
-            name="friction-models-errors-by-test",
-            title="Error of every friction model in every test",
-            caption="Cells: predicted minus measured friction ratio in hundredths, the measured ratio above its "
-            "column; empty outside the range of a model. All variants are fitted to all seven sets. Right: number of "
-            "fitted parameters k, rms error, median of the relative error, the same of the leave-one-set-out "
-            "cross-validation (CV), and the corrected Akaike (AICc) and Bayesian (BIC) information criteria, lower "
-            f"being better, where every test is in range. {_default_model_text()}",
-            draw=_errors_by_test,
-        ),
+    yield ReportFigure(
+        name="friction-models-against-speed",
+        title="Friction ratio against sliding speed, by friction model",
+        caption="Points and scatter: Table 2.3 (3 N, 2.5 um, 22 kHz). Lines: each friction model for these "
+        "settings and the contact of Table 3.2; only those marked as fitted have a fitted value. The ratio grows "
+        "with speed in all but the cube over the half period; over the full period it soon exceeds 1.",
+        draw=_against_speed,
+    )
+    yield ReportFigure(
+        name="friction-models-predicted-against-measured",
+        title="Predicted against measured friction ratio, by friction model",
+        caption="; ".join(f"{letter}: {content}" for letter, content in NORMAL_VIBRATION_SETS.items())
+        + ". Grey band: within 0.1 of the measured ratio. Open triangles at the edge: predicted above "
+        f"{_HIGHEST:g}; tests outside the range of a model are not drawn. The error is that over sets A and C to "
+        "G; set B requires motion along the surface, and of set H the amplitude is uncertain.",
+        draw=_predicted_against_measured,
+    )
+    yield ReportFigure(
+        name="friction-models-errors-by-test",
+        title="Error of every friction model in every test",
+        caption="Cells: predicted minus measured friction ratio in hundredths, the measured ratio above its "
+        "column; empty outside the range of a model. All variants are fitted to all seven sets. Right: number of "
+        "fitted parameters k, rms error, median of the relative error, the same of the leave-one-set-out "
+        "cross-validation (CV), and the corrected Akaike (AICc) and Bayesian (BIC) information criteria, lower "
+        f"being better, where every test is in range. {_default_model_text()}",
+        draw=_errors_by_test,
     )
 
 
@@ -108,24 +98,28 @@ def _curves(speeds: Floats) -> Iterator[tuple[str, Floats]]:
     balanced = load_balanced_motion(contact, unbalanced)
     fits = {fit.variant.name: fit for fit in reported_fits()}
     fraction, memory = fits["kinematic-fitted"].values[0], fits[DEFAULT].values[0]
-    mindlin = float(mindlin_memory_length(contact, friction_coefficient=mu, normal_load=test.normal_load))
+    mindlin = float(friction.mindlin_memory_length(contact, friction_coefficient=mu, normal_load=test.normal_load))
     for label, model, motion in (
-        ("cube, full period", Dong2015FullPeriod(), unbalanced),
-        ("cube, separating half period", Dong2015HalfPeriod(), unbalanced),
-        ("cube, load balanced", Dong2015LoadBalanced(), unbalanced),
-        ("kinematic", Kinematic(), balanced),
-        (f"kinematic, {fraction:.2f} of the\namplitude (fitted)", Kinematic(amplitude_fraction=fraction), balanced),
+        ("cube, full period", friction.Dong2015FullPeriod(), unbalanced),
+        ("cube, separating half period", friction.Dong2015HalfPeriod(), unbalanced),
+        ("cube, load balanced", friction.Dong2015LoadBalanced(), unbalanced),
+        ("kinematic", friction.Kinematic(), balanced),
+        (
+            f"kinematic, {fraction:.2f} of the\namplitude (fitted)",
+            friction.Kinematic(amplitude_fraction=fraction),
+            balanced,
+        ),
         (
             f"asperity stick-slip, $D_c$ = {1e6 * mindlin:.2f} µm\n(Mindlin, µ = {mu:.2f})",
-            AsperityStickSlip(memory_length=mindlin),
+            friction.AsperityStickSlip(memory_length=mindlin),
             balanced,
         ),
         (
             f"asperity stick-slip, $D_c$ = {1e6 * memory:.2f} µm\n(fitted)",
-            AsperityStickSlip(memory_length=memory),
+            friction.AsperityStickSlip(memory_length=memory),
             balanced,
         ),
-        ("bristle with rigid holder", BristleWithHolder(), balanced),
+        ("bristle with rigid holder", friction.BristleWithHolder(), balanced),
     ):
         yield label, model.ratio(contact, motion, sliding_speed=speeds, friction_coefficient=mu)
 
@@ -156,17 +150,10 @@ def _panel(axes: "Axes", fit: Fit) -> None:
         in_range = [(test, ratio) for test, ratio in predicted if ratio is not None]
         inside = [(test, ratio) for test, ratio in in_range if ratio <= _HIGHEST]
         colour, marker = COLOURS[index % 7], MARKERS[index % 7]
-        axes.errorbar(
-            [test.friction_ratio for test, _ in inside],
-            [ratio for _, ratio in inside],
-            xerr=[test.uncertainty or 0.0 for test, _ in inside],
-            fmt=marker,
-            color=colour,
-            mfc=colour if index < 7 else "white",
-            ms=4.5,
-            elinewidth=0.7,
-            label=letter,
-        )
+        measured, ratios = [test.friction_ratio for test, _ in inside], [ratio for _, ratio in inside]
+        style: dict[str, Any] = {"color": colour, "mfc": colour if index < 7 else "white", "ms": 4.5, "elinewidth": 0.7}
+        scatter = [test.uncertainty or 0.0 for test, _ in inside]
+        axes.errorbar(measured, ratios, xerr=scatter, fmt=marker, **style, label=letter)
         beyond = [test.friction_ratio for test, ratio in in_range if ratio > _HIGHEST]
         axes.plot(beyond, [_HIGHEST - 0.04] * len(beyond), "^", color=colour, mfc="white", ms=5)
     errors = prediction_errors(fit, friction_tests(SETS_WITHOUT_POWER_MAP))
