@@ -90,7 +90,7 @@ def test_a_refused_sample_keeps_its_reason(tmp_path: Path) -> None:
     refused = found["highest_voltage"].values < 28
     assert np.array_equal(np.isnan(found["friction_ratio"].values), refused)
     reasons = found["reason_text"].values[found["reason"].values[refused]]
-    assert all("the highest voltage of the stack" in str(reason) for reason in reasons)
+    assert all("the highest admissible voltage is" in str(reason) for reason in reasons)
     assert outcome_statistics(found).valid_samples == np.sum(~refused)
 
 

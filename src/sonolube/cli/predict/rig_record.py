@@ -35,7 +35,7 @@ class RigRecord(Answer):
         """Load, quantities with the meaning and unit of the vocabulary, and text but for the status."""
         known = quantities()
         rows = [(known[name].meaning, format_si(value, known[name].unit)) for name, value in self._values()]
-        rows += [(name, text) for name, text in self._texts() if name != "status"]
+        rows += [(name.replace("_", " "), text) for name, text in self._texts() if name != "status"]
         return [f"{self.rig.title}, {format_si(self.rig.normal_load, 'N')}", *aligned(rows)]
 
     def object(self) -> dict[str, Any]:

@@ -125,7 +125,7 @@ class SlidingSection(Section):
 
 
 class DriveSection(Section):
-    """The voltage on the actuator, and how it comes up when switched on."""
+    """Voltage on the actuator, with its ramp at switch-on."""
 
     voltage_peak_to_peak: float | None = None
     voltage_offset: float = 0.0
@@ -137,7 +137,7 @@ class DriveSection(Section):
 
 
 class ActuatorSection(Section):
-    """What turns voltage into vibration."""
+    """Amplitude and capacitance of an actuator."""
 
     capacitance: float | None = None
     amplitude_per_volt: float | None = None
