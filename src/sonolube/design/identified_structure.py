@@ -21,7 +21,7 @@ class IdentifiedStructure:
     Parameters
     ----------
     posterior : Posterior
-    unidentifiable_directions : tuple of Direction
+    unidentifiable_directions : tuple of SingularDirection
     """
 
     posterior: Posterior

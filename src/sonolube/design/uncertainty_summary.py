@@ -59,7 +59,7 @@ class RankedEntry:
     ----------
     key : str
         Of the rig file.
-    first, total : Estimated
+    first, total : IntervalEstimate
         First-order and total Sobol index with their 95 % intervals.
     deviation_if_known : float
         Standard deviation of the outcome that would remain were the entry known, SI.

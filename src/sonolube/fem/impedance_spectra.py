@@ -29,7 +29,7 @@ class SupportedSpectrum:
 
     Parameters
     ----------
-    port : Port
+    port : ElectromechanicalModel
         Reduced electromechanical model.
     response : HarmonicResponse
     """

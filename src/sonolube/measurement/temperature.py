@@ -40,13 +40,13 @@ class TemperatureResponse:
 
     Parameters
     ----------
-    final_temperature : Interval
+    final_temperature : ConfidenceInterval
         Asymptotic temperature, in kelvin.
-    temperature_change : Interval
+    temperature_change : ConfidenceInterval
         Final less initial temperature, in kelvin.
-    time_constants : tuple of Interval
+    time_constants : tuple of ConfidenceInterval
         In seconds, the shorter first.
-    temperature_changes : tuple of Interval
+    temperature_changes : tuple of ConfidenceInterval
         Contribution of each exponential to the change, in kelvin.
     temperature_deviation : float
         Standard deviation of the samples about the curve. [K]

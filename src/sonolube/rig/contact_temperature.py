@@ -116,7 +116,7 @@ def temperature_point(
 
     Returns
     -------
-    HeatPoint
+    TemperaturePoint
 
     Raises
     ------

@@ -78,7 +78,7 @@ def response_figure(rig: Rig, result: FrequencyResponse) -> "Figure":
     Parameters
     ----------
     rig : Rig
-    result : Response
+    result : FrequencyResponse
         Result of `linear_response` for the same rig.
 
     Returns
@@ -152,7 +152,7 @@ def temperature_figure(rig: Rig, result: TemperaturePoint) -> "Figure":
     Parameters
     ----------
     rig : Rig
-    result : HeatPoint
+    result : TemperaturePoint
         Result of `heat_point` for the same rig.
 
     Returns
@@ -184,9 +184,9 @@ def lubrication_figure(rig: Rig, result: LubricationPoint, surroundings: Lubrica
     Parameters
     ----------
     rig : Rig
-    result : RegimePoint
+    result : LubricationPoint
         Result of `regime_point` for the same rig.
-    surroundings : RegimeMap
+    surroundings : LubricationMap
         Result of `regime_map` for the same rig and lubricant.
 
     Returns

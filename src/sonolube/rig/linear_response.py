@@ -51,7 +51,7 @@ def frequency_response(rig: Rig, *, frequency: ArrayLike) -> FrequencyResponse:
 
     Returns
     -------
-    Response
+    FrequencyResponse
 
     Raises
     ------

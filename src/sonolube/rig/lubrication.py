@@ -89,7 +89,7 @@ def lubrication_point(rig: Rig, *, lubricant: BoundaryLubricant, smallest_gain: 
 
     Returns
     -------
-    RegimePoint
+    LubricationPoint
 
     Raises
     ------
@@ -123,7 +123,7 @@ def lubrication_map(rig: Rig, *, lubricant: BoundaryLubricant, smallest_gain: fl
 
     Returns
     -------
-    RegimeMap
+    LubricationMap
 
     Raises
     ------

@@ -53,7 +53,7 @@ def response_dataset(rig: Rig, result: FrequencyResponse) -> "xr.Dataset":
     Parameters
     ----------
     rig : Rig
-    result : Response
+    result : FrequencyResponse
         Result of `linear_response` for the same rig.
 
     Returns

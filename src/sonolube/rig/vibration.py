@@ -89,7 +89,7 @@ def steady_vibration(rig: Rig) -> SteadyVibration:
 
     Returns
     -------
-    SteadyMotion
+    SteadyVibration
 
     Raises
     ------

@@ -143,7 +143,7 @@ def named_horn(
 
     Returns
     -------
-    Body
+    TunableBody
     """
     from sonolube.design.horn_shapes import body_from_geometry, horn_body
 

@@ -19,7 +19,7 @@ def closed_loop_figure(study: ControlDesign) -> "Figure":
 
     Parameters
     ----------
-    study : ControlStudy
+    study : ControlDesign
 
     Returns
     -------
@@ -57,7 +57,7 @@ def control_design_figure(study: ControlDesign) -> "Figure":
 
     Parameters
     ----------
-    study : ControlStudy
+    study : ControlDesign
 
     Returns
     -------

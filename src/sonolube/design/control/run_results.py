@@ -36,7 +36,7 @@ def final_state(run: ClosedLoopRun) -> FinalState:
 
     Parameters
     ----------
-    run : ControlRun
+    run : ClosedLoopRun
 
     Returns
     -------
@@ -54,7 +54,7 @@ def lost_resonance(study: ControlDesign) -> bool:
 
     Parameters
     ----------
-    study : ControlStudy
+    study : ControlDesign
 
     Returns
     -------
@@ -70,7 +70,7 @@ def control_dataset(study: ControlDesign, *, title: str) -> "xr.Dataset":
 
     Parameters
     ----------
-    study : ControlStudy
+    study : ControlDesign
     title : str
 
     Returns

@@ -35,7 +35,7 @@ class StickSlipSuppression:
 
     Parameters
     ----------
-    still, vibrating : DraggedMotion
+    still, vibrating : StickSlipMotion
         Without and with vibration.
     voltage_peak_to_peak : float
         Drive voltage of `vibrating`. [V]
@@ -56,7 +56,7 @@ def stick_slip_suppression(rig: Rig, study: ControlDesign) -> StickSlipSuppressi
     ----------
     rig : Rig
         With a stack and a structure.
-    study : ControlStudy
+    study : ControlDesign
         Gives the commanded friction and the voltage for it.
 
     Returns

@@ -126,7 +126,7 @@ def limits_figure(point: DesignPoint) -> "Figure":
 
     Parameters
     ----------
-    point : Point
+    point : DesignPoint
 
     Returns
     -------
@@ -153,7 +153,7 @@ def power_factor_figure(optimum: Optimum, electric: DriveElectronics) -> "Figure
     Parameters
     ----------
     optimum : Optimum
-    electric : Electrical
+    electric : DriveElectronics
         Of its best design.
 
     Returns

@@ -193,7 +193,7 @@ def compare_means(first: ArrayLike, second: ArrayLike, *, confidence_level: floa
 
     Returns
     -------
-    Difference
+    MeanDifference
 
     Raises
     ------
