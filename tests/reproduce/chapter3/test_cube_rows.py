@@ -74,7 +74,7 @@ def statement_relation(row: Row) -> str:
     return "" if row.id.startswith("table") else statement(row.id).relation
 
 
-@pytest.mark.parametrize("figure", cube_figures(), ids=lambda figure: figure.name)
+@pytest.mark.parametrize("figure", [*cube_figures()], ids=lambda figure: figure.name)
 def test_every_axis_has_a_unit_or_a_ratio(figure: ReportFigure) -> None:
     import matplotlib.pyplot as plt
 

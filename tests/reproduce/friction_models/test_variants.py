@@ -20,7 +20,7 @@ def test_each_reported_variant_has_a_row_for_every_reduction_in_its_range() -> N
     assert row.note.endswith("measured 0.370.")
 
 
-@pytest.mark.parametrize("figure", variant_figures(), ids=lambda figure: str(figure.name))
+@pytest.mark.parametrize("figure", [*variant_figures()], ids=lambda figure: str(figure.name))
 def test_figures_are_drawn_with_units(figure: ReportFigure) -> None:
     from matplotlib import pyplot as plt
 
