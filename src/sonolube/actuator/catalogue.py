@@ -10,8 +10,8 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from sonolube.actuator.stack import PiezoStack, require_voltage_limits
-from sonolube.checks import require_positive
+from sonolube.actuator.stack import PiezoStack
+from sonolube.checks import require_finite, require_positive
 from sonolube.errors import InvalidInput, MissingProperty, UnknownName
 
 ACTUATOR_KINDS = ("stack", "flextensional")
@@ -83,7 +83,10 @@ class CatalogueActuator:
         names = ("stroke", "stroke_voltage", "free_capacitance", "resonance_frequency", "blocked_force")
         limits = ("actuator_mass", "tension_limit", "preload_limit")
         require_positive(**{name: getattr(self, name) for name in (*names, *limits) if getattr(self, name) is not None})
-        require_voltage_limits(lowest_voltage=self.lowest_voltage, highest_voltage=self.highest_voltage)
+        low, high = self.lowest_voltage, self.highest_voltage
+        require_finite(lowest_voltage=low or 0.0, highest_voltage=high or 0.0)
+        if low is not None and high is not None and low >= high:
+            raise InvalidInput(f"lowest_voltage must lie below highest_voltage, {high!r} V, got {low!r} V")
         if self.kind not in ACTUATOR_KINDS:
             raise UnknownName.among(ACTUATOR_KINDS, kind="kind of actuator", name=self.kind)
 

@@ -93,8 +93,15 @@ class PiezoStack:
         require_non_negative(stack_damping=self.stack_damping, stack_mass=self.stack_mass)
         if self.preload is not None:
             require_non_negative(preload=self.preload)
-        require_voltage_limits(lowest_voltage=self.lowest_voltage, highest_voltage=self.highest_voltage)
+        self._check_limits()
         self._check_coupling()
+
+    def _check_limits(self) -> None:
+        """Refuse voltage limits in the wrong order."""
+        low, high = self.lowest_voltage, self.highest_voltage
+        require_finite(lowest_voltage=low or 0.0, highest_voltage=high or 0.0)
+        if low is not None and high is not None and low >= high:
+            raise InvalidInput(f"lowest_voltage must lie below highest_voltage, {high!r} V, got {low!r} V")
 
     def _check_coupling(self) -> None:
         """Refuse a derived coupling factor above one, and warn of a stated one that differs."""
@@ -123,26 +130,6 @@ class PiezoStack:
     def clamped_capacitance(self) -> float:
         """Capacitance with the ends blocked, C_S = C_T (1 - k^2), in F."""
         return self.free_capacitance - self.charge_per_elongation * self.free_stroke_per_volt
-
-
-def require_voltage_limits(*, lowest_voltage: float | None, highest_voltage: float | None) -> None:
-    """Refuse limits of the drive voltage that are not finite or in the wrong order.
-
-    Parameters
-    ----------
-    lowest_voltage, highest_voltage : float or None
-        Limits, if any. [V]
-
-    Raises
-    ------
-    InvalidInput
-        If a limit is not finite, or the lowest does not lie below the highest.
-    """
-    require_finite(lowest_voltage=lowest_voltage or 0.0, highest_voltage=highest_voltage or 0.0)
-    if lowest_voltage is not None and highest_voltage is not None and lowest_voltage >= highest_voltage:
-        raise InvalidInput(
-            f"lowest_voltage must lie below highest_voltage, {highest_voltage!r} V, got {lowest_voltage!r} V"
-        )
 
 
 def free_stroke(stack: PiezoStack, *, stack_voltage: ArrayLike) -> Floats:

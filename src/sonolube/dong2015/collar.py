@@ -222,7 +222,7 @@ def _inner_ring(collar: Collar) -> tuple[Any, Any]:
     body = outside - hole
     reach = 2 * flat
     corners = [(0.0, axis), (-reach, axis - reach), (reach, axis - reach)]
-    wedge = extruded_polygon(corners, foot=-depth, height=2 * depth)
+    wedge = extruded_polygon(corners, foot=-depth, top=depth)
     return body * wedge, body - wedge
 
 
@@ -239,7 +239,7 @@ def _hexagonal_prism(width: float, axis: float, depth: float) -> Any:
     """Hexagonal prism along z of a width across flats, with its axis at a height y; all in mm."""
     corner, angles = width / np.sqrt(3.0), np.arange(6) * np.pi / 3
     corners = [(corner * np.cos(a), axis + corner * np.sin(a)) for a in angles]
-    return extruded_polygon(corners, foot=-depth / 2, height=depth)
+    return extruded_polygon(corners, foot=-depth / 2, top=depth / 2)
 
 
 def _circular_cylinder(radius: float, axis: float, depth: float) -> Any:

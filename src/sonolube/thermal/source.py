@@ -43,9 +43,9 @@ class HeatSource(ABC):
     Attributes
     ----------
     peak_high_peclet : float
-        Dimensionless peak rise times the square root of the Peclet number, for Pe to infinity. []
+        Dimensionless peak rise times the square root of the Peclet number, for Pe to infinity.
     mean_to_peak_high_peclet : float
-        Mean over peak rise for Pe to infinity. []
+        Mean over peak rise for Pe to infinity.
     """
 
     half_length: float

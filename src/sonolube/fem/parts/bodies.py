@@ -78,7 +78,7 @@ def block(
         raise InvalidInput(f"edge_radius must be below half the smallest size, got {edge_radius!r} m")
     x, half, end_half, z = (size / MILLIMETRE / 2 for size in (length, width, end, thickness))
     occ = cad_kernel()
-    shape = extruded_polygon([(-x, -half), (x, -end_half), (x, end_half), (-x, half)], foot=-z, height=2 * z)
+    shape = extruded_polygon([(-x, -half), (x, -end_half), (x, end_half), (-x, half)], foot=-z, top=z)
     if edge_radius:
         shape = _filleted(shape, shape.edges, edge_radius)
     for slot in slots:
@@ -161,7 +161,7 @@ def hexagon(*, width: float, length: float, inner_radius: float = 0.0) -> Geomet
         )
     corner, angles = width / MILLIMETRE / np.sqrt(3), np.arange(6) * np.pi / 3
     corners = [(corner * np.cos(angle), corner * np.sin(angle)) for angle in angles]
-    shape = extruded_polygon(corners, foot=0.0, height=length / MILLIMETRE)
+    shape = extruded_polygon(corners, foot=0.0, top=length / MILLIMETRE)
     if inner_radius:
         shape = shape - cylinder(radius=inner_radius, length=length).shape
     return single_body(shape, "hexagon")
@@ -292,17 +292,15 @@ PARTS: Mapping[str, Callable[..., Geometry]] = {
 """The parametric bodies by name."""
 
 
-def extruded_polygon(corners: Iterable[tuple[float, float]], *, foot: float, height: float) -> Any:
+def extruded_polygon(corners: Iterable[tuple[float, float]], *, foot: float, top: float) -> Any:
     """Prism along z in the CAD kernel.
 
     Parameters
     ----------
     corners : iterable of pairs of float
         Corners of its outline, in mm.
-    foot : float
-        Height of the outline, in mm.
-    height : float
-        Height of the prism, in mm.
+    foot, top : float
+        Positions of its ends along z, in mm.
 
     Returns
     -------
@@ -313,7 +311,7 @@ def extruded_polygon(corners: Iterable[tuple[float, float]], *, foot: float, hei
     outline = occ.WorkPlane(occ.Axes((0, 0, foot), n=occ.Z, h=occ.X)).MoveTo(*first)
     for corner in others:
         outline = outline.LineTo(*corner)
-    return outline.Close().Face().Extrude(height)
+    return outline.Close().Face().Extrude(top - foot)
 
 
 def body_of_revolution(outline: list[tuple[float, float]], name: str, smooth: tuple[int, int] = (0, 0)) -> Geometry:
