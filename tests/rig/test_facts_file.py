@@ -1,12 +1,14 @@
 """Files of facts: the example is the published facts, and every mistake is refused in one clear line."""
 
+import re
+import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
 from pytest import approx, raises
 
-from sonolube.errors import InvalidInput, SonolubeError
+from sonolube.errors import InvalidInput, SonolubeError, UnknownName
 from sonolube.identification import identify, pin_on_disc_model
 from sonolube.rig import read_rig, with_tables
 from sonolube.rig.facts_file import identified_tables, read_facts, rig_forward_model
@@ -46,6 +48,52 @@ tolerance = "50 Hz"
 rank = 1
 source = "impedance"
 """
+
+
+CHAIN = """
+[structure]
+kind = "chain"
+stack_between = ["tip", "reaction"]
+contact = "tip"
+loaded = "arm"
+
+[structure.masses]
+tip = "0.1093 kg"
+reaction = "2.41 kg"
+arm = "0.602 kg"
+
+[[structure.springs]]
+between = ["reaction", "arm"]
+spring_stiffness = "4.56e5 N/m"
+
+[[structure.dampers]]
+between = ["reaction", "arm"]
+viscous_damping = "90 N s/m"
+
+[[structure.dampers]]
+between = ["tip", "ground"]
+viscous_damping = "702 N s/m"
+
+"""
+CHAIN_ENTRIES = {
+    "tip_mass": "masses.tip",
+    "reaction_mass": "masses.reaction",
+    "arm_mass": "masses.arm",
+    "arm_stiffness": "springs.0.spring_stiffness",
+    "arm_damping": "dampers.0.viscous_damping",
+    "tip_damping": "dampers.1.viscous_damping",
+}
+
+
+def as_chain(folder: Path, facts: str) -> tuple[Path, Path]:
+    """The tribometer's file with its structure as a chain, and a file of facts with the names of its entries."""
+    before, _, rest = RIG.read_text(encoding="utf-8").partition("[structure]")
+    rig = folder / "chain.toml"
+    rig.write_text(before + CHAIN + rest[rest.index("[assumptions]") :], encoding="utf-8")
+    for name, entry in CHAIN_ENTRIES.items():
+        facts = re.sub(rf"^{name} =", f'"{entry}" =', facts, flags=re.MULTILINE)
+        facts = re.sub(rf'(observable|added_to) = "([^"]*)\b{name}\b', rf'\1 = "\g<2>{entry}', facts)
+    return rig, written(folder, re.sub(r'"(masses\.\w+)/(\w+)_mass"', r'"\1/masses.\2"', facts))
 
 
 def written(folder: Path, text: str) -> Path:
@@ -198,3 +246,39 @@ def test_a_missing_file_or_a_folder_is_refused(tmp_path: Path) -> None:
         read_facts(tmp_path / "nowhere.toml")
     with raises(InvalidInput, match="cannot be read"):
         read_facts(tmp_path)
+
+
+def test_facts_of_a_chain_have_the_forward_model_of_the_same_pin_on_disc_rig(tmp_path: Path) -> None:
+    rig, facts = as_chain(tmp_path, FACTS.read_text(encoding="utf-8"))
+    problem, bounds = read_facts(facts), tribometer_problem().bounds
+    assert dict(problem.bounds) == {CHAIN_ENTRIES[name]: ends for name, ends in bounds.items()}
+    logarithms = np.log(list(bounds.values()))
+    points = np.exp((logarithms[:, 0] + np.diff(logarithms).T[0] * np.random.default_rng(1).random((50, 6))).T)
+    found = rig_forward_model(rig, problem)(dict(zip(problem.bounds, points, strict=True)))
+    expected = pin_on_disc_model(tribometer_test())(dict(zip(bounds, points, strict=True)))
+    assert set(found) == set(expected)
+    for name, values in expected.items():
+        assert found[name] == approx(values, rel=1e-9), name
+
+
+def test_a_chain_is_identified_and_written_back_with_its_comments(tmp_path: Path) -> None:
+    rig, facts = as_chain(tmp_path, SMALL)
+    problem = read_facts(facts)
+    found = identify(rig_forward_model(rig, problem), facts=problem.facts, bounds=problem.bounds)
+    text = with_tables(rig.read_text(encoding="utf-8"), identified_tables(rig, found))
+    path = tmp_path / "identified.toml"
+    path.write_text(text, encoding="utf-8")
+    structure = tomllib.loads(text)["structure"]
+    assert float(structure["masses"]["tip"].removesuffix(" kg")) == approx(0.12, abs=2e-3)
+    assert structure["masses"]["reaction"] == "2.41 kg"
+    assert structure["springs"] == [{"between": ["reaction", "arm"], "spring_stiffness": "4.56e+05 N/m"}]
+    assert [each["viscous_damping"] for each in structure["dampers"]] == ["90 N s/m", "702 N s/m"]
+    assert "masses.tip: 0.12 kg for 0.12 kg +- 0.001 kg, satisfied" in text
+    assert read_rig(path).structure is not None
+
+
+def test_a_parameter_that_the_rig_lacks_is_refused_with_the_closest_entry(tmp_path: Path) -> None:
+    rig, facts = as_chain(tmp_path, SMALL)
+    facts.write_text(facts.read_text(encoding="utf-8").replace("masses.tip", "masses.tup"), encoding="utf-8")
+    with raises(UnknownName, match=r"masses\.tup.*did you mean masses\.tip"):
+        rig_forward_model(rig, read_facts(facts))

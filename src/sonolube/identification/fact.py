@@ -8,6 +8,7 @@ import numpy as np
 
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput, UnknownName
+from sonolube.vocabulary import unit_of
 
 ForwardModel = Callable[[Mapping[str, Floats]], Mapping[str, Floats]]
 """Observables of n systems, by name, from arrays of shape (n,) of their parameters, by name."""
@@ -16,6 +17,22 @@ Bounds = Mapping[str, tuple[float, float]]
 """Lower and upper bound of each free parameter, by name, in SI."""
 
 Relation = Literal["=", ">=", "<="]
+
+
+def parameter_unit(name: str) -> str:
+    """SI unit of a free parameter: of the last word of its name in the vocabulary, kilograms for an entry of `masses`.
+
+    Parameters
+    ----------
+    name : str
+        Such as "tip_mass", "masses.tip" or "springs.0.spring_stiffness".
+
+    Returns
+    -------
+    str
+    """
+    table, _, key = name.rpartition(".")
+    return "kg" if table == "masses" else unit_of(key)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

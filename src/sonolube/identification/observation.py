@@ -5,11 +5,10 @@ from dataclasses import dataclass, field
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.identification.fact import Bounds, Fact, ForwardModel
+from sonolube.identification.fact import Bounds, Fact, ForwardModel, parameter_unit
 from sonolube.identification.observables import OBSERVABLES, Observable, observable_named
 from sonolube.identification.small_vibration import Conditions, SmallVibration
 from sonolube.identification.structure_parametrisation import ParametricStructure
-from sonolube.vocabulary import unit_of
 
 _Evaluate = Callable[[Mapping[str, Floats], Mapping[Conditions, SmallVibration]], Floats]
 
@@ -115,11 +114,11 @@ def observable_unit(observable: str, parameters: Mapping[str, object]) -> str:
     """
     names = observable.split("/")
     if len(names) == 2 and set(names) <= set(parameters):
-        first, second = map(unit_of, names)
+        first, second = map(parameter_unit, names)
         if first != second:
             raise InvalidInput(f"{observable} is a ratio of {first} and {second}; take two parameters of one unit")
         return ""
-    return unit_of(observable) if observable in parameters else _observable(observable, parameters).unit
+    return parameter_unit(observable) if observable in parameters else _observable(observable, parameters).unit
 
 
 def _evaluator(observation: Observation, parameters: tuple[str, ...], *, fact: str) -> _Evaluate:

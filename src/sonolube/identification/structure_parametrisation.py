@@ -10,8 +10,7 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.dynamics import Structure
 from sonolube.errors import InvalidInput
-from sonolube.identification.fact import Bounds
-from sonolube.vocabulary import unit_of
+from sonolube.identification.fact import Bounds, parameter_unit
 
 StructureBuilder = Callable[[Mapping[str, float]], Structure]
 """Structure from the values of its free parameters in SI, by name."""
@@ -125,9 +124,11 @@ def reference_parameters(build: StructureBuilder, *, bounds: Bounds) -> dict[str
         try:
             build(values)
         except InvalidInput as refusal:
-            at = ", ".join(f"{name} {value:.4g} {unit_of(name)}".rstrip() for name, value in values.items())
+            at = ", ".join(f"{name} {value:.4g} {parameter_unit(name)}".rstrip() for name, value in values.items())
             raise InvalidInput(f"bounds must allow possible structures only, but at {at}: {refusal}") from None
-    return {name: _MECHANICAL.get(unit_of(name), math.sqrt(lower * upper)) for name, (lower, upper) in bounds.items()}
+    return {
+        name: _MECHANICAL.get(parameter_unit(name), math.sqrt(lower * upper)) for name, (lower, upper) in bounds.items()
+    }
 
 
 def _affine_arrays(build: StructureBuilder, reference: Mapping[str, float]) -> _Arrays | None:

@@ -1,19 +1,26 @@
 """Identified parameters as the tables `stack` and `structure` of a rig file, with the verdict on each fact."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict
 
 from sonolube.actuator import PiezoStack
-from sonolube.identification.fact import Fact
+from sonolube.identification.fact import Fact, parameter_unit
 from sonolube.identification.result import Identification, ParameterEstimate
-from sonolube.vocabulary import unit_of
 
 _SHOWN_EXPONENT = 0.1  # least exponent of a direction that is written
 
 
+StructureLines = Callable[[Callable[[str], tuple[str, str]]], list[str]]
+"""Lines of a table `structure`, from a function that gives value and comment of an entry, both as TOML, by its name."""
+
+
 def rig_tables(
-    identification: Identification, stack: PiezoStack, *, structure: Mapping[str, float] | None = None
+    identification: Identification,
+    stack: PiezoStack,
+    *,
+    structure: Mapping[str, float] | None = None,
+    structure_lines: StructureLines | None = None,
 ) -> str:
     """Tables `stack` and `structure` of a rig file from an identification.
 
@@ -26,6 +33,8 @@ def rig_tables(
     structure : mapping of str to float, optional
         Entries of the table `structure` in SI, in the order in which to write them; identified ones are replaced.
         Without it the table holds the identified entries alone.
+    structure_lines : callable, optional
+        Writes the table `structure`; one line an entry of that name by default.
 
     Returns
     -------
@@ -37,24 +46,20 @@ def rig_tables(
     known = {name: float(value) for name, value in asdict(stack).items() if value is not None}
     entries = structure if structure is not None else [name for name in estimates if name not in known]
     fixed = {**known, **(structure or {})}
-    lines = [
-        "[stack]",
-        *(_line(name, fixed, estimates) for name in known),
-        "",
-        *_comments(identification),
-        "[structure]",
-        *(_line(name, fixed, estimates) for name in entries),
-    ]
-    return "\n".join(lines) + "\n"
 
+    def entry(name: str) -> tuple[str, str]:
+        """Value of an entry, and a comment with the feasible interval where it was identified."""
+        unit = parameter_unit(name)
+        if name in estimates:
+            return f'"{_quantity(estimates[name].value, unit)}"', f"  # {_interval(name, estimates[name])}"
+        digits = 5 if math.isclose(float(f"{fixed[name]:.5g}"), fixed[name], rel_tol=1e-12) else 12
+        return f'"{_quantity(fixed[name], unit, digits=digits)}"', ""
 
-def _line(name: str, fixed: Mapping[str, float], estimates: Mapping[str, ParameterEstimate]) -> str:
-    """One entry, with the feasible interval where it was identified."""
-    unit = unit_of(name)
-    if name in estimates:
-        return f'{name} = "{_quantity(estimates[name].value, unit)}"  # {_interval(name, estimates[name])}'
-    digits = 5 if math.isclose(float(f"{fixed[name]:.5g}"), fixed[name], rel_tol=1e-12) else 12
-    return f'{name} = "{_quantity(fixed[name], unit, digits=digits)}"'
+    def line(name: str) -> str:
+        return f"{name} = {''.join(entry(name))}"
+
+    lines = structure_lines(entry) if structure_lines else [line(name) for name in entries]
+    return "\n".join(["[stack]", *map(line, known), "", *_comments(identification), "[structure]", *lines]) + "\n"
 
 
 def _quantity(value: float, unit: str, *, digits: int = 5) -> str:
@@ -64,7 +69,7 @@ def _quantity(value: float, unit: str, *, digits: int = 5) -> str:
 
 def _interval(name: str, estimate: ParameterEstimate) -> str:
     """Feasible interval as text, with the ends that are only bounds of the search marked."""
-    lower, upper = (_quantity(end, unit_of(name)) for end in (estimate.lower, estimate.upper))
+    lower, upper = (_quantity(end, parameter_unit(name)) for end in (estimate.lower, estimate.upper))
     if estimate.lower_is_bound and estimate.upper_is_bound:
         return f"not limited by any fact from {lower} to {upper}"
     at_lower, at_upper = " (bound)" * estimate.lower_is_bound, " (bound)" * estimate.upper_is_bound

@@ -1,5 +1,6 @@
 """Files of facts for the identification of a rig: TOML tables to an identification problem and its forward model."""
 
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
@@ -8,19 +9,18 @@ from typing import Annotated, Any
 from pydantic import Field
 
 from sonolube.actuator import PiezoStack
-from sonolube.dynamics import Structure, chain_structure, pin_on_disc_chain
+from sonolube.dynamics import Structure
 from sonolube.errors import InvalidInput, UnknownName, suggestion
 from sonolube.identification import Conditions, Identification, parametric_structure, reference_parameters, rig_tables
-from sonolube.identification.fact import Bounds, Fact, ForwardModel, Relation
+from sonolube.identification.fact import Bounds, Fact, ForwardModel, Relation, parameter_unit
 from sonolube.identification.observation import IdentificationProblem, Observation, observable_unit, structure_model
 from sonolube.rig.file.plausible import plausible_si
 from sonolube.rig.file.reader import rig_content, rig_from
 from sonolube.rig.file.section import Section
 from sonolube.rig.file.sections import RigFile, StackSection, Text
-from sonolube.rig.file.structures import PinOnDiscSection
+from sonolube.rig.file.structures import ChainSection, ModesSection, PinOnDiscSection
 from sonolube.rig.file.toml_file import prefixed, toml_of, validated
 from sonolube.units import to_si, unit_description
-from sonolube.vocabulary import unit_of
 
 _MOST_FACTS = 16
 _LEAST_NUMBER, _LARGEST_NUMBER = 1e-9, 1e9  # of a pure number
@@ -30,6 +30,9 @@ _FREE = [
     for name, field in section.model_fields.items()
     if field.annotation is float
 ]
+
+
+_CHAIN_ENTRY = re.compile(r"masses\.\w+|springs\.\d+\.spring_stiffness|dampers\.\d+\.viscous_damping")
 
 
 class ConditionsSection(Section):
@@ -74,8 +77,9 @@ def read_facts(path: str | Path) -> IdentificationProblem:
     ----------
     path : str or Path
         File with `title`, `source`, and the tables `parameters` (lower and upper bound of each free entry of a rig
-        file's tables `structure` and `stack`), `conditions` (of all observations) and `facts` (an array of tables, in
-        the order of trust among equals of rank). Quantities are text with a unit.
+        file's tables `structure` and `stack`; of a chain "masses.NAME", "springs.INDEX.spring_stiffness" and
+        "dampers.INDEX.viscous_damping" with the index from 0), `conditions` (of all observations) and `facts` (an array
+        of tables, in the order of trust among equals of rank). Quantities are text with a unit.
 
     Returns
     -------
@@ -114,13 +118,16 @@ def rig_forward_model(path: str | Path, problem: IdentificationProblem) -> Forwa
         observable requires is missing.
     """
     stack, structure = _stack_and_structure(path)
+    entries = structure.entries()
+    for name in problem.bounds:
+        if name not in stack and name not in entries:
+            raise UnknownName.among([*entries, *stack], kind="entry of the tables structure and stack", name=name)
 
     def build(parameters: Mapping[str, float]) -> Structure:
-        own_stack, own_structure = (
-            {name: parameters.get(name, value) for name, value in table.items()} for table in (stack, structure)
-        )
+        own_stack = {name: parameters.get(name, value) for name, value in stack.items()}
         own_stack["coupling_factor"] = None  # the stated one belongs to the file's stack
-        return chain_structure(pin_on_disc_chain(PiezoStack(**own_stack), **own_structure))
+        own = {name: value for name, value in parameters.items() if name in entries}
+        return structure.with_entries(own).structure(PiezoStack(**own_stack))
 
     reference = reference_parameters(build, bounds=problem.bounds)
     return structure_model(parametric_structure(build, reference=reference), problem.observations)
@@ -147,20 +154,22 @@ def identified_tables(path: str | Path, identification: Identification) -> str:
         As `read_rig`, or if the file lacks the tables.
     """
     stack, structure = _stack_and_structure(path)
-    return rig_tables(identification, PiezoStack(**stack), structure=structure)
+    return rig_tables(
+        identification, PiezoStack(**stack), structure=structure.entries(), structure_lines=structure.lines
+    )
 
 
-def _stack_and_structure(path: str | Path) -> tuple[dict[str, Any], dict[str, float]]:
-    """Entries of both tables of a rig's file, checked, in SI."""
+def _stack_and_structure(path: str | Path) -> tuple[dict[str, Any], PinOnDiscSection | ChainSection]:
+    """Entries of the table stack and the table structure of a rig's file, checked, in SI."""
     content = rig_content(path)
     with prefixed(str(path)):
         rig_from(content)
         file = RigFile.model_validate(content)
         if file.stack is None or file.structure is None:
             raise InvalidInput("the tables stack and structure are missing; give both to identify their entries")
-        if not isinstance(file.structure, PinOnDiscSection):
-            raise InvalidInput(f'structure.kind: "{file.structure.kind}" has no entries to identify; "pin_on_disc" has')
-        return file.stack.model_dump(), file.structure.entries()
+        if isinstance(file.structure, ModesSection):
+            raise InvalidInput('structure.kind: "modes" has no entries to identify; "pin_on_disc" and "chain" have')
+        return file.stack.model_dump(), file.structure
 
 
 def _problem(file: FactsFile) -> IdentificationProblem:
@@ -215,12 +224,12 @@ def _quantity(key: str, value: str | float, unit: str) -> float:
 
 def _bounds(name: str, ends: Sequence[str]) -> tuple[float, float]:
     """Lower and upper bound of a free parameter, in SI."""
-    if name not in _FREE:
+    if name not in _FREE and not _CHAIN_ENTRY.fullmatch(name):
         close = suggestion(name, _FREE)
         raise InvalidInput(f"parameters.{name}: no entry of the tables structure and stack; {close}".removesuffix("; "))
     if len(ends) != 2:
         raise InvalidInput(f"parameters.{name}: must be a lower and an upper bound, got {len(ends)} values")
-    lower, upper = (plausible_si(end, unit=unit_of(name), name=f"parameters.{name}") for end in ends)
+    lower, upper = (plausible_si(end, unit=parameter_unit(name), name=f"parameters.{name}") for end in ends)
     if not 0 < lower < upper:
         raise InvalidInput(f"parameters.{name}: bounds must be positive and rise, got {ends[0]} and {ends[1]}")
     return lower, upper

@@ -5,7 +5,7 @@ import tomllib
 
 from sonolube.rig.file.reader import rig_from
 
-_HEADING = re.compile(r"^\[([\w.]+)\]", re.MULTILINE)
+_HEADING = re.compile(r"^\[\[?([\w.]+)\]", re.MULTILINE)
 
 
 def with_tables(text: str, tables: str) -> str:
@@ -16,7 +16,8 @@ def with_tables(text: str, tables: str) -> str:
     text : str
         The file.
     tables : str
-        The tables that take the place of those of the same name, or come last before `assumptions`.
+        The tables that take the place of those of the same name with their subtables, or come last before
+        `assumptions`.
 
     Returns
     -------
@@ -28,7 +29,9 @@ def with_tables(text: str, tables: str) -> str:
         If what comes out is no rig.
     """
     replaced = set(_HEADING.findall(tables))
-    kept = [(name, part) for name, part in _parts(text) if name not in replaced]
+    kept = [
+        (name, part) for name, part in _parts(text) if name.partition(".")[0] not in replaced and name not in replaced
+    ]
     last = [part for name, part in kept if name == "assumptions"]
     rest = [part for name, part in kept if name != "assumptions"]
     result = "".join([*(part.rstrip() + "\n\n" for part in rest), tables.rstrip() + "\n\n", *last]).rstrip() + "\n"

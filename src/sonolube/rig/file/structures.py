@@ -1,5 +1,7 @@
 """Structures of a rig file: the pin-on-disc chain, any chain of masses, springs and dampers, and modes."""
 
+import json
+from collections.abc import Callable, Mapping, Sequence
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
@@ -11,6 +13,7 @@ from sonolube.rig.file.section import Section, quantity_in_si
 
 Name = Annotated[str, Field(min_length=1)]
 Ends = Annotated[list[Name], Field(min_length=2, max_length=2)]
+EntryText = Callable[[str], tuple[str, str]]  # value and comment of an entry, as TOML, by its name
 
 
 class PinOnDiscSection(Section):
@@ -31,6 +34,14 @@ class PinOnDiscSection(Section):
     def entries(self) -> dict[str, float]:
         """Return masses, stiffness and damping by key, in SI."""
         return self.model_dump(exclude={"kind"})
+
+    def with_entries(self, values: Mapping[str, float]) -> Self:
+        """Return the section with some of its entries replaced, in SI."""
+        return self.model_copy(update=dict(values))
+
+    def lines(self, entry: EntryText) -> list[str]:
+        """Return the table as lines of TOML."""
+        return [f"{name} = {''.join(entry(name))}" for name in self.entries()]
 
 
 class SpringSection(Section):
@@ -64,6 +75,53 @@ class ChainSection(Section):
         if not isinstance(table, dict):
             return table
         return {name: quantity_in_si(value, unit="kg") for name, value in table.items()}
+
+    def entries(self) -> dict[str, float]:
+        """Return masses, stiffnesses and dampings in SI: "masses.tip", "springs.0.spring_stiffness" and so on."""
+        return {
+            **{f"masses.{name}": mass for name, mass in self.masses.items()},
+            **{f"springs.{index}.spring_stiffness": each.spring_stiffness for index, each in enumerate(self.springs)},
+            **{f"dampers.{index}.viscous_damping": each.viscous_damping for index, each in enumerate(self.dampers)},
+        }
+
+    def with_entries(self, values: Mapping[str, float]) -> Self:
+        """Return the section with some of its entries replaced, in SI."""
+        known = {**self.entries(), **values}
+        return self.model_copy(
+            update={
+                "masses": {name: known[f"masses.{name}"] for name in self.masses},
+                "springs": [
+                    each.model_copy(update={"spring_stiffness": known[f"springs.{index}.spring_stiffness"]})
+                    for index, each in enumerate(self.springs)
+                ],
+                "dampers": [
+                    each.model_copy(update={"viscous_damping": known[f"dampers.{index}.viscous_damping"]})
+                    for index, each in enumerate(self.dampers)
+                ],
+            }
+        )
+
+    def lines(self, entry: EntryText) -> list[str]:
+        """Return the table as lines of TOML."""
+
+        def elements(key: str, each_key: str, ends: Sequence[Sequence[str]]) -> list[str]:
+            rows = ((json.dumps(list(pair)), *entry(f"{key}.{index}.{each_key}")) for index, pair in enumerate(ends))
+            return [
+                f"{key} = [",
+                *(f"  {{ between = {pair}, {each_key} = {value} }},{comment}" for pair, value, comment in rows),
+                "]",
+            ]
+
+        masses = ((name if name.isidentifier() else json.dumps(name), *entry(f"masses.{name}")) for name in self.masses)
+        return [
+            'kind = "chain"',
+            *(f"masses.{name} = {value}{comment}" for name, value, comment in masses),
+            *elements("springs", "spring_stiffness", [each.between for each in self.springs]),
+            *elements("dampers", "viscous_damping", [each.between for each in self.dampers]),
+            f"stack_between = {json.dumps(self.stack_between)}",
+            f"contact = {json.dumps(self.contact)}",
+            *([f"loaded = {json.dumps(self.loaded)}"] if self.loaded else []),
+        ]
 
     def structure(self, stack: PiezoStack) -> Structure:
         """Return the structure with a stack in it."""
