@@ -256,9 +256,8 @@ def test_facts_of_a_chain_have_the_forward_model_of_the_same_pin_on_disc_rig(tmp
     points = np.exp((logarithms[:, 0] + np.diff(logarithms).T[0] * np.random.default_rng(1).random((50, 6))).T)
     found = rig_forward_model(rig, problem)(dict(zip(problem.bounds, points, strict=True)))
     expected = pin_on_disc_model(tribometer_test())(dict(zip(bounds, points, strict=True)))
-    assert set(found) == set(expected)
     for name, values in expected.items():
-        assert found[name] == approx(values, rel=1e-9), name
+        assert found[CHAIN_ENTRIES.get(name, name)] == approx(values, rel=1e-9), name
 
 
 def test_a_chain_is_identified_and_written_back_with_its_comments(tmp_path: Path) -> None:
