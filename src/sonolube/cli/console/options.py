@@ -55,6 +55,10 @@ class TypedNumber(float):
     def __str__(self) -> str:
         return self.text
 
+    def __reduce__(self) -> tuple[type[float], tuple[float]]:
+        """Copy as a plain number."""
+        return float, (float(self),)
+
 
 def si_option(unit: str, text: str, *names: str, metavar: str = "") -> Any:
     """Option that is typed as a number with its unit and taken as a `TypedNumber`.
