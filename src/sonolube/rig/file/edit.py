@@ -16,8 +16,7 @@ def with_tables(text: str, tables: str) -> str:
     text : str
         The file.
     tables : str
-        The tables that take the place of those of the same name with their subtables, or come last before
-        `assumptions`.
+        The tables that take the place of those of the same name, or come last before `assumptions`.
 
     Returns
     -------
@@ -29,9 +28,9 @@ def with_tables(text: str, tables: str) -> str:
         If what comes out is no rig.
     """
     replaced = set(_HEADING.findall(tables))
-    kept = [
-        (name, part) for name, part in _parts(text) if name.partition(".")[0] not in replaced and name not in replaced
-    ]
+    if "structure" in replaced:  # a table of one kind leaves nothing of another kind behind
+        replaced |= {name for name, _ in _parts(text) if name.startswith("structure.")}
+    kept = [(name, part) for name, part in _parts(text) if name not in replaced]
     last = [part for name, part in kept if name == "assumptions"]
     rest = [part for name, part in kept if name != "assumptions"]
     result = "".join([*(part.rstrip() + "\n\n" for part in rest), tables.rstrip() + "\n\n", *last]).rstrip() + "\n"
