@@ -136,7 +136,7 @@ STUDY_FIGURES: Mapping[str, Callable[["xr.Dataset"], "Figure"]] = MappingProxyTy
         "load": load_figure,
     }
 )
-"""What draws each study; takes its dataset."""
+"""Function that draws the dataset of each study."""
 
 
 def _panels(rows: int, columns: int, *, size: tuple[float, float], **shared: bool) -> "tuple[Figure, list[list[Axes]]]":

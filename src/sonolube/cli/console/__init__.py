@@ -1,1 +1,1 @@
-"""What commands share: answers and their delivery, options, progress, and the reading of ranges and sizes."""
+"""Shared parts of commands: answers and their delivery, options, progress, ranges and sizes."""

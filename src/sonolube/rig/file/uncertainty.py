@@ -23,7 +23,7 @@ EXAMPLES = (
     "lognormal 20 %",
     "lognormal factor 2",
 )
-"""How distributions are written in a rig file."""
+"""Notation of distributions in a rig file."""
 
 _ENTRY = re.compile(r"(normal|lognormal|uniform)\s+(\S.*)")
 _ENDS = re.compile(r"(.+?)\s+to\s+(.+)")
