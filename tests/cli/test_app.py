@@ -4,7 +4,6 @@ import inspect
 import os
 import re
 import shutil
-import signal
 import subprocess
 import sys
 from collections.abc import Callable
@@ -180,23 +179,3 @@ def test_a_command_is_added_by_one_file_and_one_line_of_the_table(tmp_path: Path
     assert run("greet", "--times", "2").stdout == "hello\nhello\n"
     assert '"times": 1' in run("greet", "--json").stdout
     assert_refused(run("greet", "--times", "7"), "sonolube greet: Invalid value for '--times'")
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such signal")
-def test_an_interruption_that_is_lost_ends_the_program_all_the_same() -> None:
-    program = (
-        "import time, sonolube.cli.lookup.materials as module\n"
-        "from sonolube.cli import main\n"
-        "def deaf():\n"
-        "    print('ready', flush=True)\n"
-        "    while True:\n"
-        "        try: time.sleep(60)\n"
-        "        except KeyboardInterrupt: pass\n"
-        "module.materials = deaf\n"
-        "main(['materials'])"
-    )
-    with subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE) as run:
-        assert run.stdout
-        assert run.stdout.readline() == b"ready\n"
-        run.send_signal(signal.SIGINT)
-        assert run.wait(30) == 130

@@ -303,7 +303,10 @@ def test_heights_beyond_any_surface_are_refused(desk: Path, capsys: CaptureFixtu
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such signal")
 def test_a_run_that_is_killed_leaves_nothing_half_written(desk: Path) -> None:
-    program = "from sonolube.cli import main; print('ready', flush=True); main()"
+    program = (
+        "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"  # a background job ignores it
+        "from sonolube.cli import main; print('ready', flush=True); main()"
+    )
     command = [sys.executable, "-c", program, "uncertainty", UNCERTAIN, "--samples", "65536"]
     with subprocess.Popen(command, cwd=desk, stdout=subprocess.PIPE) as run:
         assert run.stdout

@@ -1,11 +1,8 @@
 """Program `sonolube`: its commands from their table, exit codes, and the one line of a refusal."""
 
 import os
-import signal
 import sys
-import threading
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 
 import typer
 
@@ -15,7 +12,6 @@ from sonolube.errors import SonolubeError
 from sonolube.threads import threads_running
 
 _BAD_INPUT, _INTERRUPTED = 2, 130  # exit codes
-_GRACE = 5.0  # s from an interruption to the end of the process
 _LONGEST = 1200  # characters of a refusal, which may quote the input
 _HELP = (
     "Ultrasonic lubrication: friction and wear of two surfaces of which one vibrates.\n\n"
@@ -75,8 +71,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     try:
         if command in MOVED_COMMANDS:
             raise SonolubeError(MOVED_COMMANDS[command])
-        with _interruptible():
-            code = program(arguments)(args=arguments, prog_name="sonolube", standalone_mode=False)
+        code = program(arguments)(args=arguments, prog_name="sonolube", standalone_mode=False)
     except (SonolubeError, OSError) as refusal:
         code = _refuse(command, str(refusal))
     except typer.TyperException as refusal:
@@ -89,33 +84,6 @@ def main(arguments: Sequence[str] | None = None) -> None:
         sys.stdout.flush()
         os._exit(_INTERRUPTED)
     sys.exit(code if isinstance(code, int) else 0)
-
-
-@contextmanager
-def _interruptible() -> Iterator[None]:
-    """End the process some seconds after an interruption that is lost, as in a callback of the kernels' compiler.
-
-    Files appear whole or not at all, so that nothing is half-written.
-    """
-    own = signal.getsignal(signal.SIGINT) is signal.default_int_handler  # neither ignored nor the caller's
-    if not own or threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    deadlines: list[threading.Timer] = []
-
-    def interrupt(*_: object) -> None:
-        deadlines.append(threading.Timer(_GRACE, os._exit, (_INTERRUPTED,)))
-        deadlines[-1].daemon = True
-        deadlines[-1].start()
-        raise KeyboardInterrupt
-
-    signal.signal(signal.SIGINT, interrupt)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
-        for deadline in deadlines:
-            deadline.cancel()
 
 
 def _function(command: Command, words: Sequence[str]) -> Callable[..., None]:
