@@ -11,7 +11,14 @@ from pydantic import Field
 from sonolube.actuator import PiezoStack
 from sonolube.dynamics import Structure
 from sonolube.errors import InvalidInput, UnknownName, suggestion
-from sonolube.identification import Conditions, Identification, parametric_structure, reference_parameters, rig_tables
+from sonolube.identification import (
+    Conditions,
+    Identification,
+    identify,
+    parametric_structure,
+    reference_parameters,
+    rig_tables,
+)
 from sonolube.identification.fact import Bounds, Fact, ForwardModel, Relation, parameter_unit
 from sonolube.identification.observation import IdentificationProblem, Observation, observable_unit, structure_model
 from sonolube.rig.file.plausible import plausible_si
@@ -157,6 +164,35 @@ def identified_tables(path: str | Path, identification: Identification) -> str:
     return rig_tables(
         identification, PiezoStack(**stack), structure=structure.entries(), structure_lines=structure.lines
     )
+
+
+def identify_from_facts(
+    path: str | Path, facts: str | Path, *, seed: int = 0
+) -> tuple[Identification, PiezoStack, str]:
+    """Identification of a rig from a file of facts, the rig's stack, and the identified tables.
+
+    Parameters
+    ----------
+    path : str or Path
+        The rig's file, with the tables `stack` and `structure`.
+    facts : str or Path
+        The file of facts; see `read_facts`.
+    seed : int
+        Of the search; equal seeds give equal results.
+
+    Returns
+    -------
+    tuple of Identification, PiezoStack and str
+        The last as `identified_tables`.
+
+    Raises
+    ------
+    InvalidInput
+        As `read_facts` and `rig_forward_model`.
+    """
+    problem = read_facts(facts)
+    found = identify(rig_forward_model(path, problem), facts=problem.facts, bounds=problem.bounds, seed=seed)
+    return found, PiezoStack(**_stack_and_structure(path)[0]), identified_tables(path, found)
 
 
 def _stack_and_structure(path: str | Path) -> tuple[dict[str, Any], PinOnDiscSection | ChainSection]:

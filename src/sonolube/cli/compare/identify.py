@@ -12,9 +12,9 @@ from sonolube.cli.console.answer import Answer, deliver, si
 from sonolube.cli.console.options import Json
 from sonolube.cli.console.progress import progress
 from sonolube.errors import InvalidInput
-from sonolube.identification import Identification, identify, rig_tables
+from sonolube.identification import Identification, rig_tables
 from sonolube.rig import read_rig, with_tables
-from sonolube.rig.facts_file import identified_tables, read_facts, rig_forward_model
+from sonolube.rig.facts_file import identify_from_facts
 from sonolube.validation.tribometer import tribometer_identification, tribometer_stack
 from sonolube.vocabulary import quantities
 
@@ -39,19 +39,14 @@ def identify_rig(
     """
     if facts is not None and base is None:
         raise InvalidInput("--facts needs the rig they are of: sonolube identify rig RIG.toml --facts FACTS.toml")
-    rig = None if base is None else read_rig(base)
+    if base is not None:
+        read_rig(base)
     with progress("identifying"):
         if facts is None or base is None:
             identification, stack = tribometer_identification(seed=seed), tribometer_stack()
             tables = rig_tables(identification, stack)
         else:
-            problem = read_facts(facts)
-            model = rig_forward_model(base, problem)
-            identification = identify(model, facts=problem.facts, bounds=problem.bounds, seed=seed)
-            tables = identified_tables(base, identification)
-            assert rig is not None
-            assert rig.stack is not None
-            stack = rig.stack
+            identification, stack, tables = identify_from_facts(base, facts, seed=seed)
     text = tables if base is None else with_tables(base.read_text(encoding="utf-8-sig"), tables)
     answer = IdentificationAnswer(
         identification=identification, stack=stack, text=text, file_name=None if out is None else out.name
