@@ -7,7 +7,7 @@ RUN := OPENBLAS_NUM_THREADS=1 MPLBACKEND=Agg
 OUT := out
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint docs bench fuzz lock clean
+.PHONY: help demo test lint docs bench fuzz reliability lock clean
 
 help: ## list the targets
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1\t/' | expand -t 16
@@ -39,6 +39,9 @@ bench: $(VENV)/bench ## measure speed, each benchmark beside its rival
 fuzz: $(VENV)/test ## read 100,000 damaged surface and impedance files of each format
 	$(RUN) $(BIN)/python tests/measurement/surface_files/test_fuzzed_files.py 100000
 	$(RUN) $(BIN)/python tests/measurement/impedance/test_fuzzed_files.py 100000
+
+reliability: $(VENV)/test ## run every study of reliability in full, resuming, and write docs/reliability.md
+	$(RUN) $(BIN)/python -m reliability
 
 lock: $(VENV)/uv ## pin and hash every dependency for Python 3.11 to 3.13
 	$(BIN)/uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-annotate \
