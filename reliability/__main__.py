@@ -1,8 +1,8 @@
 """Run studies in full: ``python -m reliability [NAME ...] [--trials N] [--workers N]``.
 
-Records are appended to out/reliability/NAME-HASH.jsonl as trials end; a run continues where an earlier one stopped, unless
-the code that the study names as its sources has changed. A complete study writes its measures to docs/reliability/NAME.json,
-from which docs/reliability.md is written.
+Records are appended to out/reliability/NAME-HASH.jsonl as trials end; a run continues where an earlier one stopped,
+unless the code that the study names as its sources has changed. A complete study writes its measures to
+docs/reliability/NAME.json, from which docs/reliability.md is written.
 """
 
 import argparse
