@@ -45,8 +45,8 @@ from sonolube.dynamics.kernels.simd import (
 OMEGA, LOAD, DECAY_LENGTH, EQUILIBRIUM, STATIC_DISPLACEMENT, STEP_NORM, MOTION_NORM = range(7)
 CONVERGED, DIVERGED, NEEDS_HARMONICS, NEEDS_SAMPLES = 0, 1, 2, 3
 """Outcomes of a point. []"""
-# Over the tolerance, relative to the amplitude: the truncated harmonics, the step of Newton's method at which a point is
-# left as it is, and the last step of a point that ran out of iterations.
+# Over the tolerance, relative to the amplitude: the truncated harmonics, the step of Newton's method at which a point
+# is left as it is, and the last step of a point that ran out of iterations.
 TAIL, _FINAL_STEP, _LAST_STEP = 0.3, 0.001, 0.01
 _LARGEST_STEP = 2.0  # norm of a Newton step, in decay lengths
 
