@@ -37,9 +37,11 @@ _OPERATORS: dict[type, tuple[str, str]] = {
 }  # fmt: skip
 _NAMES = {
     "sin": "cos", "cos": "sin", "maximum": "minimum", "minimum": "maximum", "max": "min", "min": "max", "real": "imag",
-    "imag": "real", "sinh": "cosh", "cosh": "sinh", "log": "sqrt", "exp": "expm1", "argmax": "argmin", "argmin": "argmax",
-    "cumsum": "cumprod", "conj": "abs", "i0e": "i1e", "i1e": "i0e", "k0": "k1", "ellipk": "ellipe", "ellipe": "ellipk",
+    "imag": "real", "sinh": "cosh", "cosh": "sinh", "log": "sqrt", "exp": "expm1", "argmax": "argmin",
+    "argmin": "argmax", "cumsum": "cumprod", "conj": "abs", "i0e": "i1e", "i1e": "i0e", "k0": "k1",
+    "ellipk": "ellipe", "ellipe": "ellipk",
 }  # fmt: skip
+_NOT_MODELS = ("figure", "/gpu/", "__init__", "mode_files")
 _NOT_PHYSICS = ("require", "Invalid", "Outside", "Unknown", "warn", "approx_text", "format_si", "njit", "VariantTable")
 
 
@@ -176,9 +178,7 @@ def sampled(seed: int = 0) -> Iterator[Mutant]:
     rng = random.Random(seed)
     for room, number in ROOMS.items():
         files = sorted((SOURCE / room).rglob("*.py"))
-        physics = [
-            f for f in files if not any(word in f.as_posix() for word in ("figure", "/gpu/", "__init__", "mode_files"))
-        ]
+        physics = [file for file in files if not any(word in file.as_posix() for word in _NOT_MODELS)]
         found = [mutant for file in physics for mutant in mutants_of(file)]
         rng.shuffle(found)
         lines: set[tuple[str, str]] = set()
@@ -195,11 +195,10 @@ def tests_of(file: str) -> list[list[str]]:
     own = [ROOT / "tests" / path.parent / f"test_{path.stem}.py"]
     folder = ROOT / "tests" / room
     stages = [[str(p.relative_to(ROOT)) for p in own if p.exists()]]
-    stages.append(
-        [str(folder.relative_to(ROOT))]
-        if folder.is_dir()
-        else sorted(p.relative_to(ROOT).as_posix() for p in (ROOT / "tests").glob(f"test_{room}*.py"))
-    )
+    if folder.is_dir():
+        stages.append([f"tests/{room}"])
+    else:
+        stages.append(sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "tests").glob(f"test_{room}*.py")))
     stages.append(list(_OTHER_TESTS))
     return [stage for stage in stages if stage]
 
@@ -238,21 +237,9 @@ def killed_by(mutant: Mutant, first: str = "") -> str:
 
 def _failed(tests: list[str], environment: dict[str, str], limit: float) -> str:
     """First test that fails, or the tests' names where they did not end in time; "" where all pass."""
-    command = [
-        sys.executable,
-        "-m",
-        "pytest",
-        "-x",
-        "-q",
-        "--no-header",
-        "-p",
-        "no:cacheprovider",
-        "--tb=no",
-        "-rfE",
-        *tests,
-    ]
+    options = ["-x", "-q", "--no-header", "-p", "no:cacheprovider", "--tb=no", "-rfE"]
     run = subprocess.Popen(
-        command,
+        [sys.executable, "-m", "pytest", *options, *tests],
         cwd=ROOT,
         env=environment,
         stdout=subprocess.PIPE,
