@@ -7,6 +7,7 @@ import ast
 import json
 import os
 import random
+import re
 import shutil
 import signal
 import subprocess
@@ -30,7 +31,8 @@ _OTHER_TESTS = (
     "tests/dong2015",
     "tests/measurement",
 )
-_LIMITS = (200, 500, 1200)  # s, of the tests of the module, of its room, and of the rooms above
+_LIMIT = 900.0  # s, of the tests of a stage
+_DEFINITIONS = (ast.FunctionDef, ast.ClassDef)
 _OPERATORS: dict[type, tuple[str, str]] = {
     ast.Add: ("+", "-"), ast.Sub: ("-", "+"), ast.Mult: ("*", "/"), ast.Div: ("/", "*"), ast.Pow: ("**", "*"),
     ast.Lt: ("<", ">"), ast.Gt: (">", "<"), ast.LtE: ("<=", ">"), ast.GtE: (">=", "<"),
@@ -189,18 +191,20 @@ def sampled(seed: int = 0) -> Iterator[Mutant]:
 
 
 def tests_of(file: str) -> list[list[str]]:
-    """Tests to run against a module in turn: its own file, then its room's, then those of the rooms above."""
+    """Tests to run against a module in turn: its own, those that name what it defines, its room's, those above."""
     path = Path(file)
-    room = path.parts[0]
-    own = [ROOT / "tests" / path.parent / f"test_{path.stem}.py"]
-    folder = ROOT / "tests" / room
-    stages = [[str(p.relative_to(ROOT)) for p in own if p.exists()]]
-    if folder.is_dir():
-        stages.append([f"tests/{room}"])
-    else:
-        stages.append(sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "tests").glob(f"test_{room}*.py")))
-    stages.append(list(_OTHER_TESTS))
-    return [stage for stage in stages if stage]
+    tests = sorted((ROOT / "tests").rglob("test_*.py"))
+    own = [test for test in tests if test.stem == f"test_{path.stem}" and path.parts[0] in test.as_posix()]
+    defined = [
+        node.name
+        for node in ast.parse((SOURCE / file).read_text(encoding="utf-8")).body
+        if isinstance(node, _DEFINITIONS)
+    ]
+    named = re.compile(rf"\b({'|'.join(name for name in defined if not name.startswith('_'))})\b")
+    naming = [test for test in tests if test not in own and named.search(test.read_text(encoding="utf-8"))]
+    room = [test for test in tests if path.parts[0] in test.relative_to(ROOT / "tests").parts[0]]
+    stages = [[test.relative_to(ROOT).as_posix() for test in stage] for stage in (own, naming, room)]
+    return [stage for stage in [*stages, list(_OTHER_TESTS)] if stage]
 
 
 def killed_by(mutant: Mutant, first: str = "") -> str:
@@ -227,15 +231,13 @@ def killed_by(mutant: Mutant, first: str = "") -> str:
         # compiled callers of a changed kernel would run what they were compiled with
         cache = {"NUMBA_CACHE_DIR": f"{folder}/numba"} if "numba" in changed else {}
         environment = {**os.environ, "PYTHONPATH": folder, "OPENBLAS_NUM_THREADS": "1", "MPLBACKEND": "Agg", **cache}
-        stages = list(zip(tests_of(mutant.file), _LIMITS[-len(tests_of(mutant.file)) :], strict=True))
-        for tests, limit in [([first], _LIMITS[0])] * bool(first) + stages:
-            failed = _failed(tests, environment, limit)
-            if failed:
+        for tests in [[first]] * bool(first) + tests_of(mutant.file):
+            if failed := _failed(tests, environment):
                 return failed
     return ""
 
 
-def _failed(tests: list[str], environment: dict[str, str], limit: float) -> str:
+def _failed(tests: list[str], environment: dict[str, str]) -> str:
     """First test that fails, or the tests' names where they did not end in time; "" where all pass."""
     options = ["-x", "-q", "--no-header", "-p", "no:cacheprovider", "--tb=no", "-rfE"]
     run = subprocess.Popen(
@@ -248,11 +250,11 @@ def _failed(tests: list[str], environment: dict[str, str], limit: float) -> str:
         start_new_session=True,
     )
     try:
-        output, _ = run.communicate(timeout=limit)
+        output, _ = run.communicate(timeout=_LIMIT)
     except subprocess.TimeoutExpired:
         os.killpg(run.pid, signal.SIGKILL)
         run.communicate()
-        return f"{' '.join(tests)} did not end within {limit} s"
+        return f"{' '.join(tests)} did not end within {_LIMIT:.0f} s"
     if run.returncode in (0, 5):
         return ""
     named = [line.split()[1] for line in output.splitlines() if line.startswith(("FAILED ", "ERROR "))]
