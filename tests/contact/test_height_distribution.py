@@ -64,3 +64,12 @@ def test_the_table_names_each_height_law_by_its_own_name() -> None:
         "exponential": "exponential",
         "gaussian": "gaussian",
     }
+
+
+def test_the_deviation_of_exponential_heights_is_that_of_the_exponential_law() -> None:
+    decay = 3.0
+    z = np.linspace(0, 20, 200_001)
+    density = decay * np.exp(-decay * z)
+    mean = np.trapezoid(z * density, z)
+    deviation = np.sqrt(np.trapezoid((z - mean) ** 2 * density, z))
+    assert ExponentialHeights(decay=decay).standard_deviation == approx(deviation, rel=1e-6)

@@ -3,7 +3,16 @@
 import numpy as np
 from pytest import approx
 
-from sonolube.contact import ASPERITY_LAWS, ContactPair, RoughContact, mindlin_tangential_stiffness, separation
+from sonolube.contact import (
+    ASPERITY_LAWS,
+    ContactPair,
+    ElasticBody,
+    RoughContact,
+    contact_pair,
+    mindlin_tangential_stiffness,
+    separation,
+)
+from sonolube.contact.pair import identical_materials_mindlin_ratio
 from sonolube.surfaces import Roughness
 
 # D, Table 3.2
@@ -19,3 +28,18 @@ def test_mindlin_stiffness_is_the_mindlin_ratio_times_the_slope_of_the_load() ->
     # under exponential heights that slope is lambda F/Rq
     d = separation(PUBLISHED, normal_load=np.array([3.0, 40.0]))
     assert mindlin_tangential_stiffness(PUBLISHED, separation=d) == approx(0.8 * 3 * np.array([3.0, 40.0]) / 6e-6)
+
+
+def test_the_mindlin_ratio_of_unlike_bodies_is_that_of_johnson() -> None:
+    # Johnson (1985), 7.43 and 4.23: k_t/k_n = 4 G*/E* of steel, 200 GPa and 0.3, on aluminium, 70 GPa and 0.33
+    steel, aluminium = (ElasticBody(youngs_modulus=E, poisson_ratio=nu) for E, nu in ((200e9, 0.3), (70e9, 0.33)))
+    pair = contact_pair(softer=aluminium, harder=steel, yield_strength=1e8)
+    shear = 1 / (1.67 * 2 * 1.33 / 70e9 + 1.70 * 2 * 1.30 / 200e9)
+    modulus = 1 / (0.8911 / 70e9 + 0.91 / 200e9)
+    assert pair.mindlin_ratio == approx(4 * shear / modulus)
+
+
+def test_the_mindlin_ratio_of_like_bodies_is_its_closed_form() -> None:
+    body = ElasticBody(youngs_modulus=200e9, poisson_ratio=0.29)
+    pair = contact_pair(softer=body, harder=body, yield_strength=1e8)
+    assert pair.mindlin_ratio == approx(identical_materials_mindlin_ratio(poisson_ratio=0.29))

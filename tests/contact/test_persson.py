@@ -136,3 +136,15 @@ def test_a_spectrum_with_unsorted_wavenumbers_is_refused() -> None:
 def test_a_load_that_closes_the_gap_completely_is_refused() -> None:
     with raises(OutsideRange, match="closes the gap"):
         persson_stiffness(CONTACT, normal_load=1e9)
+
+
+def test_a_spectrum_that_is_zero_at_some_wavenumbers_is_taken_and_one_that_is_zero_at_all_refused() -> None:
+    k = np.geomspace(1e3, 1e5, 50)
+    somewhere = RadialSpectrum(wavenumber=k, areal_spectral_density=np.where(k > 5e3, 1e-20, 0.0))
+    assert PerssonContact(spectrum=somewhere, effective_modulus=E_STAR, nominal_area=AREA).rms_gradient > 0
+    with raises(InvalidInput, match="somewhere positive"):
+        PerssonContact(
+            spectrum=RadialSpectrum(wavenumber=k, areal_spectral_density=np.zeros(50)),
+            effective_modulus=E_STAR,
+            nominal_area=AREA,
+        )

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, strategies as st
 from pytest import approx, raises
 
-from sonolube.contact.separating_half_period import separating_half_period_mean
+from sonolube.contact.separating_half_period import sampled_separating_mean, separating_half_period_mean
 from sonolube.errors import InvalidInput
 
 
@@ -43,3 +43,18 @@ def test_empty_arguments_give_empty_results() -> None:
 def test_a_separation_that_is_not_positive_is_refused() -> None:
     with raises(InvalidInput, match=r"separation must be positive, got 0\.0 m"):
         separating_half_period_mean(lambda d: d, separation=0.0, vibration_amplitude=0.0)
+
+
+@pytest.mark.parametrize("mean", [0.0, 0.3, -0.6, 1.5, -2.0])
+def test_a_sampled_sine_about_any_mean_averages_over_the_time_above_rest(mean: float) -> None:
+    # of x = mean + sin theta, above zero between -b and pi + b with sin b = mean
+    x = mean + np.sin(2 * np.pi * np.arange(4000) / 4000)
+    b = np.arcsin(np.clip(mean, -1, 1))
+    expected = mean + 2 * np.cos(b) / (np.pi + 2 * b) if mean > -1 else 0.0
+    assert sampled_separating_mean(lambda d: 3 + d, displacement=x) == approx(3 + expected, rel=1e-5)
+
+
+def test_a_motion_at_rest_has_the_value_at_rest_and_a_constant_opening_its_own() -> None:
+    assert sampled_separating_mean(lambda d: 5 + d, displacement=np.zeros(8)) == 5
+    assert sampled_separating_mean(lambda d: 5 + d, displacement=np.full(8, 2.0)) == 7
+    assert sampled_separating_mean(lambda d: 5 + d, displacement=np.full(8, -2.0)) == 5

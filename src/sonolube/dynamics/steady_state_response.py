@@ -70,7 +70,7 @@ def steady_state(
         Least number of harmonics of the contact, from 1 to 64, all coupled; more than the points require makes
         neighbouring points comparable to the last digit.
     relative_tolerance : float
-        Largest error of amplitude and mean force relative to the exact solution of the equations, from 1e-6 to 1e-3; a
+        Largest error of amplitude and mean force relative to the exact solution of the equations, from 1e-8 to 1e-3; a
         looser one takes fewer harmonics.
     stability : bool
         Whether to compute stability, which takes about as long as the vibration itself.
@@ -181,8 +181,8 @@ def solve_steady_states(
     """
     if not 1 <= minimum_harmonics <= MOST_HARMONICS:
         raise InvalidInput(f"minimum_harmonics must lie between 1 and {MOST_HARMONICS}, got {minimum_harmonics!r}")
-    if not 1e-6 <= relative_tolerance <= 1e-3:
-        raise InvalidInput(f"relative_tolerance must lie between 1e-6 and 1e-3, got {relative_tolerance!r}")
+    if not 1e-8 <= relative_tolerance <= 1e-3:
+        raise InvalidInput(f"relative_tolerance must lie between 1e-8 and 1e-3, got {relative_tolerance!r}")
     load, f = require_positive(normal_load=normal_load), require_positive(frequency=frequency)
     offset = require_finite(voltage_offset=voltage_offset)
     rest = np.asarray(np.inf) if separation is None else require_positive(separation=separation)

@@ -195,7 +195,7 @@ def contact_motion(states: SteadyStates, point: int | tuple[int, ...], *, sample
         raise InvalidInput(f"samples must be at least 2, got {samples!r}")
     if states.status[point] == Status.NOT_CONVERGED:
         raise InvalidInput(f"point {point} has no motion: {states.reason(point)}")
-    harmonics = states.harmonics[point]
+    harmonics = states.harmonics[point][: int(states.harmonic_count[point])]
     orders = np.arange(1, harmonics.size + 1)
     basis = np.exp(2j * np.pi * np.multiply.outer(np.arange(samples) / samples, orders))
     omega = 2 * np.pi * states.frequency[point]

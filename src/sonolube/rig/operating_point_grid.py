@@ -251,7 +251,11 @@ def friction_and_power(rig: DrivenRig, columns: Floats, *, friction_ratio: Float
 
 
 def steady_states(
-    rig: Rig, *, voltage_peak_to_peak: ArrayLike | None = None, voltage_offset: ArrayLike | None = None
+    rig: Rig,
+    *,
+    voltage_peak_to_peak: ArrayLike | None = None,
+    voltage_offset: ArrayLike | None = None,
+    relative_tolerance: float = 1e-6,
 ) -> SteadyStates:
     """Return the steady vibrations of a rig under some voltages, harmonics and all.
 
@@ -263,6 +267,8 @@ def steady_states(
         Swing of the drive, of one axis. [V]
     voltage_offset : array_like, optional
         Mean voltage of the drive. [V]
+    relative_tolerance : float
+        Largest relative error of amplitude and mean force, from 1e-8 to 1e-3.
 
     Returns
     -------
@@ -271,12 +277,13 @@ def steady_states(
     Raises
     ------
     InvalidInput
-        If the rig has no structure or a setting has no meaning.
+        If the rig has no structure, a setting has no meaning, or the tolerance is out of its range.
     """
     rig = driven_rig(rig)
     columns, _ = conditions_of(rig, (voltage_peak_to_peak, voltage_offset, None, None, None))
     settings = OperatingConditions.of_columns(columns.reshape(4, -1))
-    return steady_states_of(rig, settings, separation(rig.contact, normal_load=settings.normal_load))
+    rest = separation(rig.contact, normal_load=settings.normal_load)
+    return steady_states_of(rig, settings, rest, relative_tolerance=relative_tolerance)
 
 
 def conditions_of(rig: DrivenRig, given: Sequence[ArrayLike | None]) -> tuple[Floats, Floats]:
@@ -321,7 +328,11 @@ def _refusals(rig: DrivenRig, settings: OperatingConditions, rest: Floats) -> li
 
 
 def steady_states_of(
-    rig: DrivenRig, settings: OperatingConditions, rest: Floats, backend: Backend = "cpu"
+    rig: DrivenRig,
+    settings: OperatingConditions,
+    rest: Floats,
+    backend: Backend = "cpu",
+    relative_tolerance: float = 1e-6,
 ) -> SteadyStates:
     """Return the steady vibrations of a rig under drives and loads, given the separations at rest."""
     return steady_state(
@@ -332,6 +343,7 @@ def steady_states_of(
         voltage_harmonics=voltage_harmonics(rig.drive, voltage_peak_to_peak=settings.voltage_peak_to_peak),
         voltage_offset=settings.voltage_offset,
         separation=rest,
+        relative_tolerance=relative_tolerance,
         backend=backend,
     )
 

@@ -16,7 +16,7 @@ from sonolube.dynamics.gap_laws.protocol import CONTACT_LOSS_THRESHOLD, GapLaw, 
 _WEAK_HARMONICS = 0.7  # sum of k^2 |X_k|, k > 1, over |X_1| up to which a motion certainly has two extrema
 _CLEAR = 0.99  # level over amplitude, at most, from which the search for its crossing starts
 _SLOW = 0.05  # velocity over its peak below which a minimum of the speed is nearly an extremum
-_SAMPLES_PER_HARMONIC, _FEWEST_SAMPLES = 16, 256  # to find the extrema of any other motion
+_SAMPLES_PER_HARMONIC, _SAMPLES = 16, (256, 512, 1024)  # to find the extrema of any other motion
 _SAMPLES_AT_ONCE = 2**18
 _NEWTON_STEPS, _CROSSING_STEPS = 20, 5
 
@@ -73,20 +73,22 @@ def response_measures(
     measures = ResponseMeasures(*(np.full((points, 2) if i == 1 else points, np.nan) for i in range(6)))
     maximum = np.conj(rows[0]) / (size + 1e-300)  # exp(i phase), of the first harmonic
     minimum = -maximum
-    for own in _chunks(np.flatnonzero(~weak), most):
-        maximum[own], minimum[own] = _extremum_estimates(motions.select(own))
+    for own, samples in _chunks(np.flatnonzero(~weak), count):
+        maximum[own], minimum[own] = _extremum_estimates(motions.select(own), samples)
     has_two_extrema = ~np.isnan(maximum)
     _measure_between_extrema(gap_law, motions, maximum, minimum, has_two_extrema, measures)
-    for own in _chunks(np.flatnonzero(~has_two_extrema | (gap_law.force_damping > 0.0)), most):
-        _measure_by_samples(gap_law, motions.select(own), own, has_two_extrema[own], measures)
+    for own, samples in _chunks(np.flatnonzero(~has_two_extrema | (gap_law.force_damping > 0.0)), count):
+        _measure_by_samples(gap_law, motions.select(own), samples, own, has_two_extrema[own], measures)
     return measures
 
 
-def _chunks(points: NDArray[np.intp], harmonics: int) -> Iterator[NDArray[np.intp]]:
-    """Yield points a few at a time, to bound the memory of their samples."""
-    step = max(_SAMPLES_AT_ONCE // max(_SAMPLES_PER_HARMONIC * harmonics, _FEWEST_SAMPLES), 1)
-    for start in range(0, points.size, step):
-        yield points[start : start + step]
+def _chunks(points: NDArray[np.intp], count: Integers) -> Iterator[tuple[NDArray[np.intp], int]]:
+    """Yield points and the number of samples that they require, a few points at a time to bound the memory."""
+    required = np.searchsorted(_SAMPLES, _SAMPLES_PER_HARMONIC * count[points])
+    for index, samples in enumerate(_SAMPLES):
+        own, step = points[required == index], _SAMPLES_AT_ONCE // samples
+        for start in range(0, own.size, step):
+            yield own[start : start + step], samples
 
 
 def _acceleration(rows: Complexes, *, first: int) -> Floats:
@@ -98,15 +100,16 @@ def _acceleration(rows: Complexes, *, first: int) -> Floats:
 
 
 def _phase_derivatives(harmonics: Complexes, z: Complexes) -> tuple[Floats, Floats, Floats]:
-    """Return displacement about the mean and its first two derivatives by phase, by Horner's scheme."""
+    """Return displacement about the mean and its first two derivatives by phase, by Horner's scheme.
+
+    Products are not formed in place: numpy rounds those of a single element otherwise than those of many.
+    """
     value = harmonics[-1].copy()
     slope, bend = np.zeros_like(z), np.zeros_like(z)  # z P' and z^2 P''/2
     for k in range(len(harmonics) - 1, -1, -1):
-        bend += slope
-        bend *= z
-        slope += value
-        slope *= z
-        value *= z
+        bend = (bend + slope) * z
+        slope = (slope + value) * z
+        value = value * z
         if k > 0:
             value += harmonics[k - 1]
     return value.real, -slope.imag, -(slope + 2 * bend).real
@@ -116,9 +119,8 @@ def _displacement_and_slope(harmonics: Complexes, z: Complexes) -> tuple[Floats,
     """Return displacement about the mean and its derivative by phase, by Horner's scheme."""
     value, slope = harmonics[-1].copy(), np.zeros_like(z)
     for k in range(len(harmonics) - 1, -1, -1):
-        slope += value
-        slope *= z
-        value *= z
+        slope = (slope + value) * z
+        value = value * z
         if k > 0:
             value += harmonics[k - 1]
     return value.real, -slope.imag
@@ -167,7 +169,7 @@ def _extremum(harmonics: Complexes, near: Complexes) -> tuple[Floats, Floats]:
         x, slope, bend = _phase_derivatives(harmonics[:, left], z[left])
         step = slope / bend
         # back by 2 arctan(step/2), which stays on the unit circle
-        z[left] *= _rotation(-step)
+        z[left] = z[left] * _rotation(-step)
         displacement[left] = x - 0.5 * slope * step
         far = np.abs(step) >= 1e-4  # the error of the displacement is then of the third order
         if not far.any():
@@ -209,7 +211,7 @@ def _newton_crossing(harmonics: Complexes, level: Floats, near: Complexes) -> tu
     for _ in range(_CROSSING_STEPS):
         x, slope = _displacement_and_slope(harmonics[:, left], z[left])
         step = (x - level[left]) / slope
-        z[left] *= _rotation(-step)
+        z[left] = z[left] * _rotation(-step)
         far = np.abs(step) >= 1e-4
         slope_there[left] = np.where(far, np.nan, slope)
         if not far.any():
@@ -239,20 +241,19 @@ def _bracketed_crossing(harmonics: Complexes, level: Floats, upper: Floats, lowe
     return np.asarray(phase)
 
 
-def _samples(motions: _Motions) -> tuple[Floats, Floats]:
+def _samples(motions: _Motions, count: int) -> tuple[Floats, Floats]:
     """Return displacement about the mean and its derivative by phase at equally spaced phases, one row per motion."""
-    most = len(motions.harmonics)
-    count = max(_SAMPLES_PER_HARMONIC * most, _FEWEST_SAMPLES)
     spectra = np.zeros((2, motions.mean.size, count // 2 + 1), dtype=np.complex128)
-    spectra[0, :, 1 : most + 1] = motions.harmonics.T * (count / 2)
+    harmonics = motions.harmonics[: count // _SAMPLES_PER_HARMONIC]
+    spectra[0, :, 1 : len(harmonics) + 1] = harmonics.T * (count / 2)
     spectra[1] = 1j * np.arange(count // 2 + 1) * spectra[0]
     x, slope = np.fft.irfft(spectra, count)
     return x, slope
 
 
-def _extremum_estimates(motions: _Motions) -> tuple[Complexes, Complexes]:
+def _extremum_estimates(motions: _Motions, samples: int) -> tuple[Complexes, Complexes]:
     """Return estimates exp(i phase) of maximum and minimum; NaN for motions with more, or nearly more, extrema."""
-    here = _samples(motions)[1]
+    here = _samples(motions, samples)[1]
     before, after = np.roll(here, 1, axis=1), np.roll(here, -1, axis=1)
     slow = _SLOW * np.abs(here).max(axis=1, keepdims=True)
     downward, upward = (before > 0) & (here <= 0), (before <= 0) & (here > 0)
@@ -273,12 +274,13 @@ def _extremum_estimates(motions: _Motions) -> tuple[Complexes, Complexes]:
 def _measure_by_samples(
     gap_law: GapLaw,
     motions: _Motions,
+    samples: int,
     own: NDArray[np.intp],
     has_two_extrema: NDArray[np.bool_],
     measures: ResponseMeasures,
 ) -> None:
     """Write the measures of motions with many extrema, or with a damped force, by samples and parabolas."""
-    x, slope = _samples(motions)
+    x, slope = _samples(motions, samples)
     x += motions.mean[:, np.newaxis]
     load, v = motions.load[:, np.newaxis], motions.omega[:, np.newaxis] * slope
     force = damped_force(gap_law, x, v, load)

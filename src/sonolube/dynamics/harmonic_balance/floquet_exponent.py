@@ -8,11 +8,12 @@ from sonolube.dynamics.gap_laws.protocol import GapLaw
 from sonolube.dynamics.gap_laws.table import kernel_law
 from sonolube.dynamics.harmonic_balance.floquet_kernel import SQUARINGS, monodromy_power_norms, period_workspace
 from sonolube.dynamics.harmonic_balance.receptance import PoleResidueModel
-from sonolube.dynamics.kernels.simd import LANES
+from sonolube.dynamics.kernels.simd import uniform_blocks
 
 STABILITY_THRESHOLD = 1e-6
 """Floquet exponent per period above which a motion counts as unstable, beyond rounding. []"""
 _KICKS_PER_RADIAN = 8  # of the structure's fastest mode
+_HARMONICS_STEP = 4  # to which numbers of harmonics are rounded up
 _MOST_KICKS = 2**22  # per period, which take seconds
 
 
@@ -72,9 +73,8 @@ def floquet_exponents(
     variant, law = kernel_law(gap_law)
     needed = np.where(stability_undetermined(model, omega), 0.0, np.ceil(_KICKS_PER_RADIAN * _fastest(model) / omega))
     kicks = np.maximum(samples, needed.astype(np.int64))
-    chosen = np.lexsort((count, kicks))
-    first = np.arange(0, chosen.size, LANES)  # of each block, whose points all take the same number of kicks
-    kicks[chosen] = np.repeat(np.maximum.reduceat(kicks[chosen], first), LANES)[: chosen.size]
+    kicks, count = _rounded_up(kicks), -(-count // _HARMONICS_STEP) * _HARMONICS_STEP  # so that few are alone
+    chosen = uniform_blocks(np.arange(omega.size), count, kicks)
     settings = np.stack([omega, load, gap_law.equilibrium_coordinate(load), mean], axis=1)
     drift = _transition_matrices(model, 2 * np.pi / (kicks * omega))
     work = period_workspace(2 * model.trace.size, int(count.max(initial=0)))
@@ -83,6 +83,12 @@ def floquet_exponents(
     powers, norms = np.empty((2, omega.size))
     monodromy_power_norms(*variant, law, pairs, settings, drift, parts, count, kicks, chosen, work, powers, norms)
     return np.asarray((powers * np.log(2.0) + 0.5 * np.log(norms)) / 2.0 ** (SQUARINGS - 1))
+
+
+def _rounded_up(kicks: Integers) -> Integers:
+    """Return numbers of kicks rounded up to three binary digits."""
+    unit = 2 ** np.maximum(np.floor(np.log2(kicks)) - 2, 0).astype(np.int64)
+    return np.asarray(-(-kicks // unit) * unit)
 
 
 def _fastest(model: PoleResidueModel) -> float:

@@ -34,7 +34,6 @@ from sonolube.dynamics.kernels.simd import (
     KERNEL,
     LANES,
     add_absolute,
-    block_maximum,
     gather,
     linear_combination,
     subtract_product,
@@ -46,8 +45,9 @@ from sonolube.dynamics.kernels.simd import (
 OMEGA, LOAD, DECAY_LENGTH, EQUILIBRIUM, STATIC_DISPLACEMENT, STEP_NORM, MOTION_NORM = range(7)
 CONVERGED, DIVERGED, NEEDS_HARMONICS, NEEDS_SAMPLES = 0, 1, 2, 3
 """Outcomes of a point. []"""
-# Over the tolerance, relative to the amplitude: the truncated harmonics, and the last step of Newton's method.
-TAIL, _LAST_STEP = 0.3, 0.01
+# Over the tolerance, relative to the amplitude: the truncated harmonics, the step of Newton's method at which a point
+# is left as it is, and the last step of a point that ran out of iterations.
+TAIL, _FINAL_STEP, _LAST_STEP = 0.3, 0.001, 0.01
 _LARGEST_STEP = 2.0  # norm of a Newton step, in decay lengths
 
 
@@ -141,9 +141,9 @@ def newton_solve(
     law : LawParameters
     iterates : Iterates
     truncation : ndarray of int, shape (3, p)
-        Rows as the fields of `Truncation`; the numbers of harmonics used are written.
+        Rows as the fields of `Truncation`.
     chosen : ndarray of int
-        Points to solve, sorted by truncation: a block is resolved as finely as its most demanding point.
+        Points to solve; those of a block have one truncation: see `uniform_blocks`.
     tolerance : float
         Largest relative error of amplitude and force.
     iterations : int
@@ -191,8 +191,7 @@ def _solve_block(
     lanes, receptances, motions, waves = work.lanes, work.receptances, work.motions, work.waves
     sums, spectra, scratch = work.sums, work.spectra, work.scratch
     unknown, step, free, velocity = motions[0], motions[1], motions[2], motions[3]
-    h, n = block_maximum(truncation[0], block), block_maximum(truncation[1], block)
-    count = block_maximum(truncation[2], block)
+    h, n, count = truncation[0, block[0]], truncation[1, block[0]], truncation[2, block[0]]
     gather(iterates.settings, block, lanes)
     gather(iterates.mean, block, unknown[:1])
     gather(iterates.harmonics, block, unknown[1 : 2 * h + 1])
@@ -213,13 +212,13 @@ def _solve_block(
             _stiffness_from_force(law.parameter, 2 * (h + n) + 1, spectra)
         _residual(static_stiffness, unknown, receptances, free, spectra[0], lanes, h, step)
         newton_step(damped, static_stiffness, receptances, spectra, lanes[OMEGA], h, n, work.matrix, step)
-        if _update(unknown, step, 2 * h + 1, lanes, scratch[0], _LAST_STEP * tolerance):
+        if _update(unknown, step, 2 * h + 1, lanes, scratch[0], _FINAL_STEP * tolerance):
             break
     # Aliasing: the samples add harmonic count - h to harmonic h. The harmonics of an exponential force decay ever
     # faster, which bounds that one by the highest one that is resolved: a_(count - h) <= a_k^((count - h)/k), a_0 = 1.
     aliased = tolerance ** ((0.5 * count - 1) / (count - h)) if quantities == 1 else tolerance
     _assess(poles, block, h, count, waves, sums[0], spectra[0, 0], lanes, tolerance, aliased, scratch, outcome)
-    _scatter(iterates, truncation[0], block, h, unknown, spectra[0], outcome)
+    _scatter(iterates, block, h, unknown, spectra[0], outcome)
 
 
 @numba.njit(**INNER)
@@ -319,22 +318,24 @@ def _residual(
 def _update(unknown: Floats, step: Floats, rows: int, lanes: Floats, factor: Floats, allowed: float) -> bool:
     """Subtract the Newton step, limited to a few decay lengths; return whether all steps were within the allowed norm.
 
-    Norms are sums of magnitudes over the rows; that of the motion excludes the mean, and a step is compared with it.
+    Norms are sums of magnitudes over the rows; that of the motion excludes the mean, and a step is compared with it. A
+    point whose step is within the allowed norm stays where it is, so that it has the same motion and force whether or
+    not other points of its block go on.
     """
     size, scale = lanes[STEP_NORM], lanes[MOTION_NORM]
     for lane in range(LANES):
         size[lane], scale[lane] = 0.0, 1e-3 * lanes[DECAY_LENGTH, lane]
     for row in range(rows):
         add_absolute(step[row], size)
-    for lane in range(LANES):
-        factor[lane] = min(1.0, _LARGEST_STEP * lanes[DECAY_LENGTH, lane] / size[lane])
-    for row in range(rows):
-        subtract_product(factor, step[row], unknown[row])
         if row > 0:
             add_absolute(unknown[row], scale)
     small = 0
     for lane in range(LANES):
-        small += size[lane] <= allowed * scale[lane]  # false for NaN
+        found = size[lane] <= allowed * scale[lane]  # false for NaN
+        factor[lane] = 0.0 if found else min(1.0, _LARGEST_STEP * lanes[DECAY_LENGTH, lane] / size[lane])
+        small += found
+    for row in range(rows):
+        subtract_product(factor, step[row], unknown[row])
     return small == LANES
 
 
@@ -380,16 +381,13 @@ def _assess(
 
 
 @numba.njit(**INNER)
-def _scatter(
-    iterates: Iterates, used: Integers, block: Integers, h: int, unknown: Floats, spectrum: Floats, outcome: Integers
-) -> None:
+def _scatter(iterates: Iterates, block: Integers, h: int, unknown: Floats, spectrum: Floats, outcome: Integers) -> None:
     """Write mean, harmonics and force harmonics of the points of a block that did not diverge."""
     mean, harmonics, force = iterates.mean, iterates.harmonics, iterates.force_harmonics
     for lane in range(block.size):
         point = block[lane]
         if outcome[point] == DIVERGED:
             continue
-        used[point] = h
         mean[point, 0] = unknown[0, lane]
         for part in range(2 * h):
             harmonics[point, part] = unknown[part + 1, lane]

@@ -171,16 +171,18 @@ def _regula_falsi(  # type: ignore[no-untyped-def]
     function, lower: Floats, lower_value: Floats, upper: Floats, upper_value: Floats, *, tolerance: Floats
 ) -> Floats:
     """Return the bracketed roots of a function by false position (Illinois variant)."""
-    middle, above = upper, np.zeros(upper.size, dtype=bool)
+    middle, above, found = upper, np.zeros(upper.size, dtype=bool), np.zeros(upper.size, dtype=bool)
     for _ in range(12):
-        middle = (lower * upper_value - upper * lower_value) / np.maximum(upper_value - lower_value, _TINY)
+        secant = (lower * upper_value - upper * lower_value) / np.maximum(upper_value - lower_value, _TINY)
+        middle = np.where(found, middle, secant)
         value = function(middle)
         high = value > 0
         halved_lower, halved_upper = np.where(above, 0.5, 1.0) * lower_value, np.where(above, 1.0, 0.5) * upper_value
         lower, lower_value = np.where(high, lower, middle), np.where(high, halved_lower, value)
         upper, upper_value = np.where(high, middle, upper), np.where(high, value, halved_upper)
         above = high
-        if np.all(np.abs(value) < tolerance):
+        found |= np.abs(value) < tolerance
+        if found.all():
             break
     return middle
 
@@ -261,4 +263,4 @@ def _force_moments(motions: _SinusoidalMotions, mean: Floats, amplitude: Floats)
     cosines = _ABSCISSAE if motions.gap_law.has_corner else _FEWER_ABSCISSAE
     x, load = mean[:, np.newaxis] + np.multiply.outer(amplitude, cosines), motions.load[:, np.newaxis]
     force, slope = motions.gap_law.force(x, load), motions.gap_law.stiffness(x, load)
-    return force.mean(axis=1), -2 * (force @ cosines) / cosines.size, slope.mean(axis=1)
+    return force.mean(axis=1), -2 * (force * cosines).mean(axis=1), slope.mean(axis=1)

@@ -26,6 +26,7 @@ from sonolube.dynamics.harmonic_balance.harmonic_kernel import (
 )
 from sonolube.dynamics.harmonic_balance.initial_guess import InitialGuess, initial_guess
 from sonolube.dynamics.harmonic_balance.receptance import CHARGE_PER_VOLT, CONTACT_PER_VOLT, receptance
+from sonolube.dynamics.kernels.simd import uniform_blocks
 
 MOST_HARMONICS = 64
 """Largest number of harmonics of the contact. []"""
@@ -113,15 +114,12 @@ def _refine(problem: BatchProblem, iterates: Iterates, truncation: Truncation) -
     pending = np.arange(points)
     for attempt in range(_REFINEMENTS):
         iterates = _with_capacity(iterates, int(truncation.harmonics[pending].max(initial=0)))
-        # sorted by demand, since a block of points is resolved as finely as its most demanding one
-        demand = truncation.samples[pending] // 2 * MOST_HARMONICS + truncation.harmonics[pending] - MOST_HARMONICS - 1
-        chosen = pending[np.argsort(demand.astype(np.uint16), kind="stable")]  # radix sort, in linear time
+        chosen = uniform_blocks(pending, *truncation)
         work = harmonic_workspace(*(int(values[chosen].max()) for values in truncation))
         numbers, steps = np.array(truncation), _ITERATIONS + 4 * attempt
         newton_solve(
             *variant, poles, stiffness, law, iterates, numbers, chosen, problem.tolerance, steps, outcome, work
         )
-        truncation.harmonics[:] = numbers[0]
         pending = np.flatnonzero(outcome != CONVERGED)
         pending = pending[_refine_truncation(truncation, pending, outcome[pending])]
         if not pending.size:

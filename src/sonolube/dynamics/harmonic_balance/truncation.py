@@ -55,8 +55,10 @@ def sinusoidal_truncation(
     """
     beta = amplitude / decay_lengths
     force_order = np.searchsorted(_order_thresholds(tolerance), beta)
-    bound = _receptance_bound(model, omega.min(), _MOST_HARMONICS * omega.max())
-    place = np.log(omega / omega.min()) / np.log1p(_FREQUENCY_STEP)
+    place = np.log(omega) / np.log1p(_FREQUENCY_STEP)
+    first = int(np.floor(place.min()))
+    bound = _receptance_bound(model, first, _MOST_HARMONICS * omega.max())
+    place -= first
     truncated, coupling = 0.25 * tolerance * amplitude / load, 0.5 * _COUPLING * decay_lengths / load
     share, least = np.ones_like(beta), np.minimum(truncated, coupling)
     harmonics, coupled = np.zeros((2, beta.size), dtype=np.uint8)
@@ -106,10 +108,15 @@ def default_truncation(points: int, drive_harmonics: int) -> Truncation:
     return Truncation(uniform(harmonics), uniform(min(harmonics, 8)), uniform(max(64, 4 * harmonics)))
 
 
-def _receptance_bound(model: PoleResidueModel, lowest: float, highest: float) -> Floats:
-    """Return upper bounds of the contact receptance at and above each of a geometric series of frequencies, in m/N."""
-    count = int(np.log(highest / lowest) / np.log1p(_FREQUENCY_STEP)) + 2
-    w = lowest * np.exp(np.log1p(_FREQUENCY_STEP) * np.arange(count + 1))[:, np.newaxis]
+def _receptance_bound(model: PoleResidueModel, first: int, highest: float) -> Floats:
+    """Return upper bounds of the contact receptance at and above each of a geometric series of frequencies, in m/N.
+
+    The series are the powers, from the first on, of one ratio, and end beyond the highest natural frequency, so that
+    the bound at a frequency does not depend on the other points of a batch.
+    """
+    natural = float(np.sqrt(np.abs(model.determinant).max()))
+    last = int(np.log(max(highest, 2 * natural)) / np.log1p(_FREQUENCY_STEP)) + 2
+    w = np.exp(np.log1p(_FREQUENCY_STEP) * np.arange(first, last + 1))[:, np.newaxis]
     constant, slope = model.numerator_constant[CONTACT_PER_FORCE], model.numerator_slope[CONTACT_PER_FORCE]
     numerator = np.abs(constant) + np.abs(slope) * w[1:]
     detuning = model.determinant - np.square(w)

@@ -44,6 +44,30 @@ _SCALE = 2.0**-_HALVINGS
 _LARGEST_EXPONENT = 700.0
 
 
+def uniform_blocks(chosen: Integers, *keys: Integers) -> Integers:
+    """Return points in blocks of `LANES`, those of a block with equal keys, so that no result depends on other points.
+
+    Parameters
+    ----------
+    chosen : ndarray of int, shape (c,)
+        Points of a batch.
+    keys : ndarrays of int, shape (p,)
+        Of all points of the batch; the last one sorts first.
+
+    Returns
+    -------
+    ndarray of int, shape (c + padding,)
+        The points, sorted by their keys; the last point of each key is repeated until its block is full.
+    """
+    own = [key[chosen] for key in keys]
+    order = np.lexsort(own)
+    changed = np.any([np.diff(key[order]) != 0 for key in own], axis=0)
+    ends = np.r_[np.flatnonzero(changed) + 1, chosen.size][: chosen.size]
+    repeats = np.ones(chosen.size, dtype=np.int64)
+    repeats[ends[:-1] - 1] += -np.diff(ends, prepend=0)[:-1] % LANES
+    return np.asarray(np.repeat(chosen[order], repeats))
+
+
 @numba.njit(**INNER)
 def block_maximum(values: Integers, block: Integers) -> int:
     """Return the largest of the values at the points of a block."""
