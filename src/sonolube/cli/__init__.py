@@ -1,8 +1,14 @@
 """The command `sonolube`: its entry, which imports nothing heavy before it can be interrupted."""
 
-from collections.abc import Sequence
+import sys
 
-from sonolube.interruption import end_program_at_signals
+try:
+    from collections.abc import Sequence
+
+    from sonolube.interruption import end_program_at_signals
+except KeyboardInterrupt:  # the handler of signals is not yet in place
+    sys.stderr.write("sonolube: interrupted\n")
+    raise SystemExit(130) from None
 
 __all__ = ["main"]
 
