@@ -6,6 +6,7 @@ import stat
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
+from fnmatch import fnmatchcase
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -174,9 +175,11 @@ def expect_files(folder: Path, patterns: Sequence[str]) -> None:
     """
     for place in dict.fromkeys((folder, *(folder / Path(pattern).parent for pattern in patterns))):
         _require_writable(place, place)
-    for pattern in patterns:
-        for path in sorted(folder.glob(pattern)):
-            expect_target(path)
+    for pattern in map(folder.joinpath, patterns):
+        inside = sorted(pattern.parent.iterdir()) if pattern.parent.is_dir() else []
+        for path in inside:
+            if fnmatchcase(path.name, pattern.name):
+                expect_target(path)
 
 
 def remove_file(path: Path) -> None:

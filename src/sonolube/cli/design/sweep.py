@@ -88,7 +88,7 @@ def sweep(
             help="Folder for report, figures and data; out by default. With --over also for finished chunks, from which"
             " an interrupted run continues; then a folder of its own in out by default."
         ),
-        OutputFolder(),
+        OutputFolder(f"{' '.join(_FILES)} {{rig}}-{{of}}.*"),
     ] = None,
     json: Json = False,
 ) -> None:
