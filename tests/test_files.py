@@ -1,11 +1,10 @@
 """Files are replaced whole or not at all; what is no regular file, or is an input, is never replaced."""
 
 import os
-import resource
 import subprocess
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
+from contextlib import AbstractContextManager
 from pathlib import Path
 
 import pytest
@@ -23,16 +22,7 @@ from sonolube.files import (
 )
 from sonolube.targets import command_files, expect_target, record_input
 
-
-@contextmanager
-def largest_file(size: int) -> Iterator[None]:
-    """Let no file of this process grow beyond a size, as a full disk does."""
-    before = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+LargestFile = Callable[[int], AbstractContextManager[None]]
 
 
 def names(folder: Path) -> list[str]:
@@ -191,7 +181,9 @@ def test_an_error_inside_leaves_the_old_content_and_no_other_file(tmp_path: Path
 
 
 @mark.parametrize("size", [0, 1, 4095, 99_999])
-def test_a_full_disk_is_one_line_and_leaves_the_old_content(tmp_path: Path, size: int) -> None:
+def test_a_full_disk_is_one_line_and_leaves_the_old_content(
+    tmp_path: Path, size: int, largest_file: LargestFile
+) -> None:
     path = tmp_path / "page.html"
     path.write_text("old")
     with largest_file(size), raises(InvalidInput) as refused:
