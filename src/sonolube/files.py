@@ -289,7 +289,7 @@ def _lock_handle(place: Path) -> int | None:
     """Handle of a locked file of this name; None where another process has locked it."""
     while True:
         handle = os.open(place, _FLAGS, 0o666)
-        if not _lock(handle):
+        if _lock(handle) is False:
             os.close(handle)
             return None
         with suppress(FileNotFoundError):
@@ -298,8 +298,8 @@ def _lock_handle(place: Path) -> int | None:
         os.close(handle)  # removed by the process that had it locked
 
 
-def _lock(handle: int, *, wait: bool = False) -> bool:
-    """Whether a file could be locked; file systems without locks lock every file."""
+def _lock(handle: int, *, wait: bool = False) -> bool | None:
+    """Whether a file could be locked; None on a file system without locks."""
     try:
         if sys.platform == "win32":
             msvcrt.locking(handle, msvcrt.LK_NBLCK, 1)
@@ -308,7 +308,7 @@ def _lock(handle: int, *, wait: bool = False) -> bool:
     except (BlockingIOError, PermissionError):
         return False
     except OSError:
-        return True
+        return None
     return True
 
 

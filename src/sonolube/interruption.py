@@ -42,9 +42,12 @@ def end_program_at_signals() -> None:
     except OSError:
         terminal = None
 
+    process = os.getpid()
+
     def end(number: int, frame: FrameType | None) -> None:
-        for undo in list(_UNDO.values()):
-            undo()
+        if os.getpid() == process:  # what a forked process began is in its parent's hands
+            for undo in list(_UNDO.values()):
+                undo()
         if terminal is not None:
             line = f"sonolube: {_MEANINGS[signal.Signals(number).name]}\n".encode()
             with suppress(OSError):  # nobody may read it
@@ -54,4 +57,5 @@ def end_program_at_signals() -> None:
     for name in _MEANINGS:
         number = getattr(signal, name, None)  # Windows has no SIGHUP
         if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
-            signal.signal(number, end)
+            with suppress(ValueError):  # only the main thread of a process handles signals
+                signal.signal(number, end)

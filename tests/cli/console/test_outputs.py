@@ -1,47 +1,28 @@
 """Targets that must not be replaced are refused by every command that writes, in one line, before it computes."""
 
-import os
 from collections.abc import Callable
 from functools import wraps
-from glob import escape
 from pathlib import Path
 from typing import Any
 
 import pytest
 from pytest import CaptureFixture, MonkeyPatch, mark, raises
+from reliability.studies.output_targets import (
+    ARGUMENTS,
+    KINDS_INSIDE,
+    KINDS_OF_FILE,
+    KINDS_OF_FOLDER,
+    hostile,
+    names_inside,
+    snapshot,
+    writers,
+)
 
 from sonolube.cli import main
 from sonolube.cli.commands import COMMANDS, Command
 from sonolube.cli.console.outputs import OutputFile, output_marks
 
-ARGUMENTS = {  # of every command that writes: the least that it takes, in.dat being an input
-    "simulate": ("in.dat",),
-    "response": ("in.dat",),
-    "transient": ("in.dat",),
-    "thermal": ("in.dat", "--pin", "m50", "--disc", "m50"),
-    "regime": ("in.dat", "--film-coefficient", "0.2", "--asperity-pressure", "10MPa"),
-    "modes": ("in.dat",),
-    "impedance compute": ("stack", "--measured", "in.dat"),
-    "sweep": ("in.dat", "--of", "speed"),
-    "map": ("in.dat",),
-    "uncertainty": ("in.dat",),
-    "optimise": ("in.dat", "--target-friction", "0.15"),
-    "control": ("in.dat",),
-    "efficiency": ("in.dat", "--rig", "rig.toml"),
-    "horn design": ("--frequency", "20kHz", "--material", "titanium_6al4v", "--shape", "in.dat"),
-    "measure friction": ("in.dat",),
-    "measure rotation": ("in.dat", "--groove-diameter", "50mm"),
-    "measure calibration": ("in.dat",),
-    "measure surface": ("in.dat",),
-    "measure groove": ("in.dat",),
-    "measure impedance": ("in.dat",),
-    "measure vibration": ("in.dat", "--frequency", "22kHz"),
-    "compare": ("in.dat",),
-    "identify rig": ("in.dat",),
-    "literature": ("in.dat",),
-    "reproduce": (),
-}
-WRITERS = {command.name: command for command in COMMANDS if output_marks(command.function)}
+WRITERS = {command.name: command for command in COMMANDS if command.name in writers()}
 TO_A_FILE = [
     (name, argument)
     for name, command in WRITERS.items()
@@ -70,15 +51,6 @@ def desk(tmp_path: Path, monkeypatch: MonkeyPatch) -> Path:
     return tmp_path
 
 
-def snapshot() -> dict[Path, tuple[int, int, int, int]]:
-    """Every file and link of the desk with what changes when it is replaced or written; folders by name alone."""
-    found = {path: path.lstat() for path in Path().rglob("*")}
-    return {
-        path: (0, 0, 0, 0) if path.is_dir() else (each.st_ino, each.st_mode, each.st_size, each.st_mtime_ns)
-        for path, each in found.items()
-    }
-
-
 def refusal(capfd: CaptureFixture[str], *arguments: str) -> str:
     """The one line of a refusal after which all files are as before."""
     before = snapshot()
@@ -92,35 +64,12 @@ def refusal(capfd: CaptureFixture[str], *arguments: str) -> str:
     return err
 
 
-def hostile(kind: str, path: Path) -> Path:
-    """Path of a target of this kind: the path given, except for a device."""
-    if kind == "device":
-        return Path("/dev/null")
-    if kind == "link to an input":
-        path.symlink_to(Path("in.dat").absolute())
-    elif kind == "second name of an input":
-        path.hardlink_to("in.dat")
-    elif kind == "pipe":
-        os.mkfifo(path)
-    elif kind == "folder":
-        path.mkdir()
-    elif kind == "dangling link":
-        path.symlink_to("nowhere")
-    return {"input": Path("in.dat"), "below a file": Path("in.dat/page.html")}.get(kind, path)
-
-
-KINDS = (
-    *("input", "link to an input", "second name of an input", "pipe", "device", "folder", "dangling link"),
-    "below a file",
-)
-
-
 def test_every_command_that_writes_is_tried_here() -> None:
     assert set(ARGUMENTS) == set(WRITERS)
 
 
 @mark.usefixtures("desk")
-@mark.parametrize("kind", KINDS)
+@mark.parametrize("kind", KINDS_OF_FILE)
 @mark.parametrize(("name", "argument"), TO_A_FILE, ids=[name for name, _ in TO_A_FILE])
 def test_a_file_that_must_not_be_replaced_is_refused(
     name: str, argument: str, kind: str, capfd: CaptureFixture[str]
@@ -131,7 +80,7 @@ def test_a_file_that_must_not_be_replaced_is_refused(
 
 
 @mark.usefixtures("desk")
-@mark.parametrize("kind", ["input", "pipe", "device", "dangling link", "below a file"])
+@mark.parametrize("kind", KINDS_OF_FOLDER)
 @mark.parametrize("name", TO_A_FOLDER)
 def test_a_folder_that_is_none_is_refused(name: str, kind: str, capfd: CaptureFixture[str]) -> None:
     target = hostile(kind, Path("target"))
@@ -139,22 +88,16 @@ def test_a_folder_that_is_none_is_refused(name: str, kind: str, capfd: CaptureFi
 
 
 @mark.usefixtures("desk")
-@mark.parametrize("kind", ["link to an input", "second name of an input", "pipe", "folder", "dangling link"])
+@mark.parametrize("kind", [kind for kind in KINDS_INSIDE if kind != "link to a pipe"])
 @mark.parametrize("name", TO_A_FOLDER)
 def test_a_file_in_the_folder_that_must_not_be_replaced_is_refused(
     name: str, kind: str, capfd: CaptureFixture[str]
 ) -> None:
     if name == "reproduce" and "input" in kind:
         pytest.skip("it reads no file")
-    if name == "impedance compute":
-        stems = {"part": "stack"}
-    else:
-        stems = dict.fromkeys(("rig", "part", "shape", "runs"), "in") | {"of": "speed", "kind": "velocity-power"}
-    folder_mark = output_marks(WRITERS[name].function)["out"]
-    assert not isinstance(folder_mark, OutputFile)
-    for number, pattern in enumerate(folder_mark.names.split()):
+    for number, inside in enumerate(names_inside(name)):
         folder = Path(f"out{number}")
-        path = folder / pattern.format_map({key: escape(stem) for key, stem in stems.items()}).replace("*", "x")
+        path = folder / inside
         path.parent.mkdir(parents=True)
         hostile(kind, path)
         line = refusal(capfd, *name.split(), *ARGUMENTS[name], "--out", str(folder))
