@@ -1,6 +1,5 @@
 """Shared settings and fixtures: hypothesis without deadlines, and a copy of the package that a test may extend."""
 
-import resource
 import shutil
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
@@ -24,6 +23,7 @@ def copied_package(tmp_path: Path) -> Path:
 @contextmanager
 def _largest_file(size: int) -> Iterator[None]:
     """Let no file of this process grow beyond a size."""
+    resource = pytest.importorskip("resource")  # Windows has none
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
     try:
