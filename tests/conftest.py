@@ -1,6 +1,8 @@
 """Shared settings and fixtures: hypothesis without deadlines, and a copy of the package that a test may extend."""
 
 import shutil
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 
 import pytest
@@ -16,3 +18,21 @@ _PACKAGE = Path(__file__).parents[1] / "src" / "sonolube"
 def copied_package(tmp_path: Path) -> Path:
     """Copy of the package, with its compiled kernels, to extend and run in a subprocess with PYTHONPATH=tmp_path."""
     return Path(shutil.copytree(_PACKAGE, tmp_path / "sonolube", ignore=shutil.ignore_patterns("*.pyc")))
+
+
+@contextmanager
+def _largest_file(size: int) -> Iterator[None]:
+    """Let no file of this process grow beyond a size."""
+    resource = pytest.importorskip("resource")  # Windows has none
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+@pytest.fixture
+def largest_file() -> Callable[[int], AbstractContextManager[None]]:
+    """Context in which no file of this process grows beyond a size in bytes: writing then fails as on a full disk."""
+    return _largest_file

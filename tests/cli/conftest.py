@@ -1,15 +1,18 @@
 """Run of the program in this process, for the tests of commands."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import pytest
-from pytest import CaptureFixture, raises
+from pytest import CaptureFixture, MonkeyPatch, raises
 
 from sonolube.cli import main
+from sonolube.cli.console import answer
+from sonolube.cli.console.outputs import OutputFolder
+from sonolube.targets import expect_target
 
 ROOT = Path(__file__).parents[2]
 
@@ -51,6 +54,25 @@ def sonolube(capfd: CaptureFixture[str]) -> Program:
         return Run(code=int(end.value.code or 0), out=out, err=err)
 
     return run
+
+
+@pytest.fixture(autouse=True)
+def only_foreseen_files(monkeypatch: MonkeyPatch) -> None:
+    """Hold every command to the names of files that its option declares, which are checked before it computes."""
+    foreseen: list[tuple[Path, str]] = []
+    expect_names = OutputFolder.expect
+
+    def names(mark: OutputFolder, path: Path, stems: Mapping[str, str]) -> None:
+        foreseen.extend((path, name.format_map(stems)) for name in mark.names.split())
+        expect_names(mark, path, stems)
+
+    def one(path: Path) -> Path:
+        inside = [(folder, name) for folder, name in foreseen if folder in path.parents]
+        assert not inside or any(path.relative_to(folder).match(name) for folder, name in inside), path
+        return expect_target(path)
+
+    monkeypatch.setattr(OutputFolder, "expect", names)
+    monkeypatch.setattr(answer, "expect_target", one)
 
 
 @pytest.fixture(scope="session")

@@ -1,5 +1,35 @@
-"""The command `sonolube`."""
+"""The command `sonolube`: its entry, which imports nothing heavy before it can be interrupted."""
 
-from sonolube.cli.app import main
+import sys
+
+try:
+    from collections.abc import Sequence
+
+    from sonolube.interruption import end_program_at_signals
+except KeyboardInterrupt:  # the handler of signals is not yet in place
+    sys.stderr.write("sonolube: interrupted\n")
+    raise SystemExit(130) from None
 
 __all__ = ["main"]
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the program and exit: 0 after success, 1 after files refused, 2 after bad input.
+
+    A program of its own, which this is without `arguments`, ends with 130 after SIGINT, and 143 after SIGTERM.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        Command with its arguments; those of the process where absent.
+
+    Raises
+    ------
+    SystemExit
+        Always.
+    """
+    if arguments is None:
+        end_program_at_signals()
+    from sonolube.cli.app import run
+
+    run(arguments)

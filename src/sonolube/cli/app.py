@@ -8,6 +8,7 @@ import typer
 
 from sonolube import __version__
 from sonolube.cli.commands import COMMANDS, GROUPS, MOVED_COMMANDS, RENAMED_OPTIONS, Command
+from sonolube.cli.console.outputs import with_checked_files
 from sonolube.errors import SonolubeError
 from sonolube.threads import threads_running
 
@@ -53,7 +54,7 @@ def program(arguments: Sequence[str]) -> typer.Typer:
     return app
 
 
-def main(arguments: Sequence[str] | None = None) -> None:
+def run(arguments: Sequence[str] | None = None) -> None:
     """Run the program and exit: 0 after success, 1 after files refused, 2 after bad input, 130 after an interruption.
 
     Parameters
@@ -90,7 +91,7 @@ def _function(command: Command, words: Sequence[str]) -> Callable[..., None]:
     """Function of a command that is called; for others one with the same help, whose module is not imported."""
     name = command.name.split()
     if list(words[: len(name)]) == name:
-        return command.function
+        return with_checked_files(command.function)
 
     def not_called() -> None:
         pass

@@ -3,16 +3,19 @@
 import hashlib
 import io
 import json
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from sonolube.errors import InvalidInput
-from sonolube.files import write_atomically
+from sonolube.files import clear_unfinished, locked_folder, remove_file, write_atomically
 from sonolube.rig import NUMBERS, PointBatch
 
 _MANIFEST = "sweep.json"
+_EARLIER = (".sweep.nc.*", ".sweep.json.*", ".chunk-*.npz.*")  # unfinished files of earlier versions
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -38,28 +41,19 @@ class ChunkStore:
     digest: str
     chunk_points: int
 
-    def open(self) -> None:
-        """Create the folder with its manifest, or check that an existing one is of the same sweep.
+    @contextmanager
+    def opened(self) -> Iterator[None]:
+        """Lock the folder inside a `with` block; create its manifest, or check that it is of the same sweep.
 
         Raises
         ------
         InvalidInput
-            If the folder holds another sweep.
+            If another process sweeps into the folder, or it holds another sweep.
         """
-        manifest = self.folder / _MANIFEST
-        expected = {"sweep": self.digest, "chunk_points": self.chunk_points}
-        if manifest.exists():
-            try:
-                found = json.loads(manifest.read_text(encoding="utf-8"))
-            except ValueError:
-                found = None
-            if found != expected:
-                raise InvalidInput(
-                    f"{self.folder}: holds another sweep, of another rig, other values or another version;"
-                    " name another folder, or remove this one"
-                )
-        else:
-            write_atomically(manifest, json.dumps(expected))
+        with locked_folder(self.folder, purpose="sweep"):
+            self._check_manifest()
+            clear_unfinished(self.folder, *_EARLIER)
+            yield
 
     def read(self, chunk: int) -> PointBatch | None:
         """Chunk of an index, or None where it is missing or damaged; damaged files are removed."""
@@ -69,7 +63,7 @@ class ChunkStore:
             if path.name == _file_name(chunk, content):
                 batch = _decoded(content)
             else:
-                path.unlink()
+                remove_file(path)
         return batch
 
     def write(self, chunk: int, batch: PointBatch) -> None:
@@ -82,6 +76,23 @@ class ChunkStore:
         """
         content = _encoded(batch)
         write_atomically(self.folder / _file_name(chunk, content), content)
+
+    def _check_manifest(self) -> None:
+        """Create the manifest, or check that an existing one is of the same sweep."""
+        manifest = self.folder / _MANIFEST
+        expected = {"sweep": self.digest, "chunk_points": self.chunk_points}
+        if not manifest.exists():
+            write_atomically(manifest, json.dumps(expected))
+            return
+        try:
+            found = json.loads(manifest.read_text(encoding="utf-8"))
+        except (OSError, ValueError):
+            found = None
+        if found != expected:
+            raise InvalidInput(
+                f"{self.folder}: holds another sweep, of another rig, other values or another version;"
+                " name another folder, or remove this one"
+            )
 
 
 def _file_name(chunk: int, content: bytes) -> str:

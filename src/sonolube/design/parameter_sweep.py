@@ -64,7 +64,8 @@ def sweep(
     Raises
     ------
     InvalidInput
-        If the rig has no structure, the folder holds another sweep, or Dask is missing.
+        If the rig has no structure, the folder holds another sweep or another process sweeps into it, the disk is full,
+        or Dask is missing.
 
     Warns
     -----
@@ -89,13 +90,13 @@ def sweep(
     if folder is not None:
         digest = plan.digest + ("-gpu" if device else "")
         store = ChunkStore(folder=Path(folder), digest=digest, chunk_points=chunk_points)
-        store.open()
     count = -(-plan.points // chunk_points)
     with (
+        nullcontext() if store is None else store.opened(),
         nullcontext(MemoryDatasetWriter(plan, device))
         if store is None
-        else NetCDFDatasetWriter(plan, store.folder, device)
-    ) as writer:
+        else NetCDFDatasetWriter(plan, store.folder, device) as writer,
+    ):
         done = 0
         missing = []
         for chunk in range(count):

@@ -1,8 +1,7 @@
 """Labelled dataset of a sweep, assembled chunk by chunk in memory or in a netCDF file."""
 
-import os
-import tempfile
 from collections.abc import Iterator
+from contextlib import ExitStack
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
@@ -12,6 +11,7 @@ from numpy.typing import NDArray
 
 from sonolube import __version__
 from sonolube.design.sweep_plan import SweepPlan
+from sonolube.files import unfinished_file
 from sonolube.rig import NUMBERS, STATUSES, PointBatch
 from sonolube.rig.datasets import labels
 from sonolube.vocabulary import quantities
@@ -97,10 +97,21 @@ class NetCDFDatasetWriter:
     def __enter__(self) -> Self:
         import h5netcdf
 
-        handle, name = tempfile.mkstemp(dir=self._path.parent, prefix=".sweep.nc.")
-        os.close(handle)
-        self._unfinished = Path(name)
-        self._file: Any = h5netcdf.File(name, "w")
+        with ExitStack() as stack:
+            self._unfinished = stack.enter_context(unfinished_file(self._path))
+            self._file: Any = stack.enter_context(h5netcdf.File(self._unfinished, "w"))
+            self._define_variables()
+            self._open = stack.pop_all()
+        return self
+
+    def __exit__(self, kind: type | None, value: BaseException | None, trace: TracebackType | None) -> None:
+        try:
+            self._open.close()
+        finally:
+            self._unfinished.check()  # tells more than what HDF5 makes of it
+
+    def _define_variables(self) -> None:
+        """Write the coordinates, and define the variables of the points."""
         self._file.dimensions = dict(zip(_dimensions(self._plan), self._plan.shape, strict=True))
         self._file.attrs.update(_attributes(self._plan, self._device))
         for name, (dimension, array, attributes) in _coordinates(self._plan).items():
@@ -108,20 +119,23 @@ class NetCDFDatasetWriter:
         for name in (*NUMBERS, *_CODES):
             variable = self._file.create_variable(name, _dimensions(self._plan), _CODES.get(name, np.float64))
             variable.attrs.update(_labels(name))
-        return self
-
-    def __exit__(self, kind: type | None, value: BaseException | None, trace: TracebackType | None) -> None:
-        if self._file is not None:
-            self._file.close()
-        self._unfinished.unlink(missing_ok=True)
 
     def write(self, start: int, batch: PointBatch) -> None:
-        """Write a chunk from a flat index on."""
+        """Write a chunk from a flat index on.
+
+        Raises
+        ------
+        InvalidInput
+            If the disk is full.
+        """
         codes: dict[str, NDArray[Any]] = {"status": batch.status, "reason": self._reasons.codes(batch)}
         columns = {**batch.numbers, **codes}
-        for block, part in _blocks(self._plan.shape, start, start + batch.status.size):
-            for name, column in columns.items():
-                self._file[name][block] = column[part].reshape([axis.stop - axis.start for axis in block])
+        try:
+            for block, part in _blocks(self._plan.shape, start, start + batch.status.size):
+                for name, column in columns.items():
+                    self._file[name][block] = column[part].reshape([axis.stop - axis.start for axis in block])
+        finally:
+            self._unfinished.check()
 
     def dataset(self) -> "xr.Dataset":
         """Dataset of all chunks, read lazily from the completed file."""
@@ -130,9 +144,7 @@ class NetCDFDatasetWriter:
         self._file.dimensions["reasons"] = len(self._reasons.code_of)
         self._write_variable("reason_text", ("reasons",), np.array(list(self._reasons.code_of)), _labels("reason_text"))
         self._file.close()
-        self._file = None
-        self._unfinished.chmod(0o644)
-        self._unfinished.replace(self._path)
+        self._unfinished.complete()
         return xr.open_dataset(self._path, engine="h5netcdf")
 
     def _write_variable(self, name: str, dims: tuple[str, ...], array: NDArray[Any], attrs: dict[str, Any]) -> None:

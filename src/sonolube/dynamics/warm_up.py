@@ -18,6 +18,7 @@ from sonolube.dynamics.friction_average.elliptic_quadrature import elliptic_node
 from sonolube.dynamics.harmonic_balance.floquet_kernel import monodromy_power_norms, period_workspace
 from sonolube.dynamics.harmonic_balance.harmonic_kernel import newton_solve
 from sonolube.dynamics.kernels.contact_kernel import KernelVariant, LawParameters
+from sonolube.interruption import undone_at_signal
 
 
 class CompileProcess(Listener):
@@ -82,7 +83,7 @@ def compile_in_parallel(variant: KernelVariant, *, stability: bool, tolerance: f
         yield process  # not listening, and hence never started
         return
     try:
-        with install_listener("numba:compile", process):
+        with undone_at_signal(process.stop), install_listener("numba:compile", process):
             yield process
         process.wait()
     finally:

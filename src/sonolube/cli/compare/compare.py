@@ -11,6 +11,7 @@ import xarray as xr
 
 from sonolube.cli.console.answer import Answer, deliver
 from sonolube.cli.console.options import OUT, Changes, Json, Out
+from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
 from sonolube.errors import InvalidInput
 from sonolube.report import Drawing
@@ -42,7 +43,7 @@ def compare(
         list[str] | None, typer.Option("--model", metavar="NAME", help="Only this model; may come again.")
     ] = None,
     changes: Changes = None,
-    out: Out = OUT,
+    out: Annotated[Out, OutputFolder("models.csv models.nc models-*.*")] = OUT,
     json: Json = False,
 ) -> None:
     """Models of friction under vibration against every published test: fitted, cross-validated, and on your rig.

@@ -10,6 +10,7 @@ import typer
 from sonolube.actuator import PiezoStack
 from sonolube.cli.console.answer import Answer, deliver, si
 from sonolube.cli.console.options import Json
+from sonolube.cli.console.outputs import OutputFile
 from sonolube.cli.console.progress import progress
 from sonolube.errors import InvalidInput
 from sonolube.identification import Identification, rig_tables
@@ -29,7 +30,7 @@ def identify_rig(
             metavar="FACTS.toml", help="Facts about the rig; those of the dissertation's tribometer by default."
         ),
     ] = None,
-    out: Annotated[Path | None, typer.Option(help="File to write; standard output by default.")] = None,
+    out: Annotated[Path | None, typer.Option(help="File to write; standard output by default."), OutputFile()] = None,
     seed: Annotated[int, typer.Option(help="Seed of the search; equal seeds give equal results.", min=0)] = 0,
     json: Json = False,
 ) -> None:

@@ -9,6 +9,7 @@ import typer
 
 from sonolube.cli.console.answer import Answer, deliver, si
 from sonolube.cli.console.options import OUT, Changes, Json, Out
+from sonolube.cli.console.outputs import OutputFolder
 from sonolube.errors import InvalidInput
 from sonolube.published import PreviousStudy, Statement, previous_studies
 from sonolube.report import Drawing
@@ -23,7 +24,7 @@ def literature(
         Path | None, typer.Argument(metavar="RIG.toml", help="A rig to draw among the studies; none by default.")
     ] = None,
     changes: Changes = None,
-    out: Out = OUT,
+    out: Annotated[Out, OutputFolder("map-of-studies.*")] = OUT,
     json: Json = False,
 ) -> None:
     """Earlier studies the dissertation reviews, as a list and a map over speed and pressure, with your rig on it.

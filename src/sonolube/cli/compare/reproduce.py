@@ -8,6 +8,7 @@ import typer
 
 from sonolube.cli.console.answer import Answer, deliver
 from sonolube.cli.console.options import OUT, Json, Out
+from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
 from sonolube.report import reproduction_files, summary_lines, validation_object
 from sonolube.reproduce import Reproduction, reproduction
@@ -15,7 +16,7 @@ from sonolube.reproduce import Reproduction, reproduction
 
 def reproduce(
     chapter: Annotated[int | None, typer.Option(help="Only this chapter: 2, 3 or 4.", min=2, max=4)] = None,
-    out: Out = OUT,
+    out: Annotated[Out, OutputFolder("reproduction.html validation.json figures/*")] = OUT,
     json: Json = False,
 ) -> None:
     """Every published number beside the one computed, as a report with figures.

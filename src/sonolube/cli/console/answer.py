@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 import typer
 
+from sonolube.errors import InvalidInput
+from sonolube.targets import expect_target
 from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:
@@ -81,13 +83,13 @@ def deliver(
     Raises
     ------
     InvalidInput
-        If a file cannot be written. Everything is rendered before the first file is written.
+        If a file, or standard output, cannot be written. Everything is rendered before the first file is written.
     """
     written = _write(answer, folder, context)
     if as_json:
-        typer.echo(json.dumps(_json_object(answer, written), indent=2, allow_nan=False))
+        _print(json.dumps(_json_object(answer, written), indent=2, allow_nan=False))
     elif lines := [*answer.lines(), *_closing_lines(answer), *_file_lines(written, folder)]:
-        typer.echo("\n".join(lines))
+        _print("\n".join(lines))
 
 
 def si(values: Mapping[str, float | None], *, unit: str | None = None) -> dict[str, Any]:
@@ -144,6 +146,9 @@ def _write(answer: Answer, folder: Path, context: typer.Context | None) -> list[
         with progress("drawing") as advance:
             contents |= rendered_files(drawings, page=page, notes=notes, advance=advance)
     contents |= answer.files()
+    for name, content in contents.items():
+        if not isinstance(content, Path):
+            expect_target(folder / name)
     return [_written(folder / name, content) for name, content in contents.items()]
 
 
@@ -158,6 +163,16 @@ def _written(path: Path, content: "Content") -> Path:
     from sonolube.rig import write_netcdf
 
     return write_netcdf(content, path=path)
+
+
+def _print(text: str) -> None:
+    """Print text on standard output, which may be a file on a full disk."""
+    try:
+        typer.echo(text)
+    except BrokenPipeError:
+        raise  # the reader has seen enough
+    except OSError as failure:
+        raise InvalidInput(f"standard output: cannot be written: {failure.strerror}") from None
 
 
 def _json_object(answer: Answer, written: Sequence[Path]) -> dict[str, Any]:

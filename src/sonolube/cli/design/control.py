@@ -13,6 +13,7 @@ import xarray as xr
 
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
 from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath, TypedNumber, si_option
+from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
 from sonolube.cli.console.rig_text import operating_point, rig_settings
 from sonolube.design.control import (
@@ -86,7 +87,7 @@ def control(
     ] = False,
     run_time: Annotated[float, si_option("s", "Duration of the run.", "--duration")] = TypedNumber("0.2s", "s"),
     changes: Changes = None,
-    out: Out = OUT,
+    out: Annotated[Out, OutputFolder("control.html {rig}-control.* {rig}-control-*.*")] = OUT,
     json: Json = False,
 ) -> None:
     """Friction control: a tuned controller, its run in closed loop, its C source and its lookup table.

@@ -10,6 +10,7 @@ import xarray as xr
 
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
 from sonolube.cli.console.options import OUT, Changes, Json, Out, si_option
+from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.rig_text import rig_settings
 from sonolube.design.efficiency import EfficiencyCalibration, calibrate_efficiency, efficiency_dataset
 from sonolube.design.efficiency_figures import efficiency_figure
@@ -37,7 +38,7 @@ def efficiency(
     speed: Annotated[float | None, si_option("m/s", "Sliding speed of that target.")] = None,
     level: Annotated[float, typer.Option(help="Confidence level.", min=0.5, max=0.9999)] = 0.95,
     changes: Changes = None,
-    out: Out = OUT,
+    out: Annotated[Out, OutputFolder("efficiency.html {runs}-efficiency.*")] = OUT,
     json: Json = False,
 ) -> None:
     """Efficiency line from measured runs (D 4.1 to 4.3), and the power that a friction takes.

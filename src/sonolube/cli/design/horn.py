@@ -10,6 +10,7 @@ import typer
 from sonolube import materials
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
 from sonolube.cli.console.options import OUT, Json, Out, TypedNumber, si_option
+from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.parts import named_horn
 from sonolube.cli.console.progress import progress
 from sonolube.design.horn import HornDesign, amplitude_limits, loaded_frequency, tuned_horn
@@ -44,7 +45,7 @@ def design(
     ] = None,
     tool: Annotated[float, si_option("kg", "Of a tool on the working face.", "--tool-mass")] = TypedNumber("10g", "kg"),
     tolerance: Annotated[float, typer.Option(metavar="RATIO", help="Largest relative error of the frequency.")] = 0.003,
-    out: Out = OUT,
+    out: Annotated[Out, OutputFolder("horn-{shape}-axis.* horn-{shape}-mode.*")] = OUT,
     json: Json = False,
 ) -> None:
     """Tune a horn's length to a frequency, and compute its gain, node, stress, face and neighbouring modes.

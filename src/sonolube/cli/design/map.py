@@ -14,6 +14,7 @@ from sonolube.checks import Floats
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
 from sonolube.cli.console.backend import Backend, BackendName, gpu_warning
 from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath
+from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
 from sonolube.cli.console.ranges import values_by_key
 from sonolube.cli.console.rig_text import friction_model_text, rig_settings
@@ -75,7 +76,7 @@ def map(  # noqa: A001 - the command's name
     ] = None,
     changes: Changes = None,
     backend: BackendName = Backend.CPU,
-    out: Out = OUT,
+    out: Annotated[Out, OutputFolder("map.html {rig}-{kind}.* {rig}-{kind}-measured.*")] = OUT,
     json: Json = False,
 ) -> None:
     """Map of friction reduction: over sliding speed and stress, speed and power, or drive frequency and voltage.

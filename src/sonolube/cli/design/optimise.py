@@ -9,6 +9,7 @@ import typer
 from sonolube.checks import require_positive
 from sonolube.cli.console.answer import deliver
 from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath, TypedNumber, si_option
+from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
 from sonolube.cli.design import optimisation_options as options
 from sonolube.cli.design.optimisation_answer import OptimisationAnswer
@@ -83,7 +84,7 @@ def optimise(
         si_option("ohm", "To match by two elements, such as 50ohm.", "--source-resistance", metavar="RESISTANCE"),
     ] = None,
     changes: Changes = None,
-    out: Out = OUT,
+    out: Annotated[Out, OutputFolder("optimise.html {rig}-optimum.* {rig}-optimum-*.*")] = OUT,
     json: Json = False,
 ) -> None:
     """Design: actuator, frequency, waveform and masses that give a friction for least power, heat or voltage.

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from glob import escape
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -13,6 +14,7 @@ from sonolube import design
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
 from sonolube.cli.console.backend import Backend, BackendName, gpu_warning
 from sonolube.cli.console.options import OUT, Changes, Json, RigPath
+from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
 from sonolube.cli.console.ranges import ends_by_key, values_by_key
 from sonolube.cli.design.parametric_study import OUTCOMES, Parameter, parametric_study
@@ -21,6 +23,7 @@ from sonolube.design import SweepPlan, grid_plan, latin_hypercube_plan, list_pla
 from sonolube.design.point_statistics import extreme_place, extreme_point, failure_counts, status_counts
 from sonolube.dynamics.backend import usable_backend
 from sonolube.errors import InvalidInput
+from sonolube.files import expect_files
 from sonolube.report import Drawing, Page
 from sonolube.units import format_si
 from sonolube.vocabulary import unit_of
@@ -31,6 +34,7 @@ _CLOUD_CAPTION = (
     " and the interval of 90 %."
 )
 _OVER_ONLY = ("sample", "seed", "workers", "scheduler", "chunk", "backend")  # options without meaning for --of
+_FILES = ("sweep.nc", "sweep.json", "sweep.html", "sweep.png", "sweep.svg")
 _OF_ONLY = ("lowest", "highest", "voltages")  # options without meaning for --over
 
 
@@ -84,6 +88,7 @@ def sweep(
             help="Folder for report, figures and data; out by default. With --over also for finished chunks, from which"
             " an interrupted run continues; then a folder of its own in out by default."
         ),
+        OutputFolder(f"{' '.join(_FILES)} {{rig}}-{{of}}.*"),
     ] = None,
     json: Json = False,
 ) -> None:
@@ -95,6 +100,7 @@ def sweep(
         raise InvalidInput("needs either --over, keys with their values, or --of, one quantity over its usual range")
     if of is not None:
         _require_unset(context, _OVER_ONLY, purpose="--of")
+        expect_files(out or OUT, (f"{escape(rig.stem)}-{of.value}.*",))
         study = parametric_study(
             rig, of=of.value, lowest=lowest, highest=highest, points=points, voltages=voltages, changes=changes
         )
@@ -124,6 +130,7 @@ def _sweep_over(
     with gpu_warning():
         chosen = usable_backend(backend)
     folder = folder or OUT / f"{rig_file.stem}-sweep-{plan.digest[:8]}{'-gpu' if chosen == 'gpu' else ''}"
+    expect_files(folder, _FILES)
     with gpu_warning(), progress("sweeping") as advance:
         result = design.sweep(
             plan, folder=folder, advance=lambda done, total: advance("points", done, total), backend=chosen, **options

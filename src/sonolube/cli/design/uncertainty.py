@@ -13,6 +13,7 @@ import xarray as xr
 from sonolube.checks import Floats
 from sonolube.cli.console.answer import Answer, aligned, deliver
 from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath
+from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
 from sonolube.cli.console.ranges import values_by_key
 from sonolube.cli.console.rig_text import rig_settings
@@ -80,8 +81,9 @@ def uncertainty(
     keep: Annotated[
         Path | None,
         typer.Option(metavar="FOLDER", help="Keep finished parts here, so that an interrupted run goes on."),
+        OutputFolder("sweep.nc sweep.json"),
     ] = None,
-    out: Out = OUT,
+    out: Annotated[Out, OutputFolder("uncertainty.html {rig}-uncertainty-*.*")] = OUT,
     json: Json = False,
 ) -> None:
     """Uncertainty of an outcome from the distributions in the rig's file, and which entry to measure better.

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from sonolube.cli.console.answer import Answer, deliver
+from sonolube.cli.console.outputs import OutputFile
 from sonolube.cli.console.progress import progress
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.measurement.recordings.mapping import RecordingMapping, read_mapping
@@ -25,7 +26,7 @@ Files = Annotated[list[Path], typer.Argument(metavar="FILES...", help="Files, or
 Mapped = Annotated[
     Path | None, typer.Option("--mapping", metavar="MAPPING.toml", help="Meaning of the columns of the files.")
 ]
-Report = Annotated[Path | None, typer.Option(metavar="PAGE.html", help="Self-contained page to write.")]
+Report = Annotated[Path | None, typer.Option(metavar="PAGE.html", help="Self-contained page to write."), OutputFile()]
 Test = Annotated[
     Path | None, typer.Option("--test-sheet", metavar="TEST.toml", help="Conditions of the test, for the page.")
 ]

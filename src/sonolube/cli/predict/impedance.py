@@ -12,6 +12,7 @@ import xarray as xr
 from sonolube.checks import require_positive
 from sonolube.cli.console.answer import Answer, deliver, si
 from sonolube.cli.console.options import OUT, Json, Out, Sizes, TypedNumber, si_option
+from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.parts import longest_axis, named_transducer, starting_size
 from sonolube.cli.console.progress import progress
 from sonolube.errors import InvalidInput
@@ -23,6 +24,8 @@ from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 from sonolube.report import Drawing
 from sonolube.rig import dataset
 from sonolube.units import format_si
+
+_FILES = "{part}-impedance.* {part}-impedance-free.* {part}-impedance-clamped.* {part}-modes-*.vtu"
 
 
 def compute(
@@ -47,7 +50,9 @@ def compute(
         float, typer.Option(metavar="RATIO", help="Largest change of a coupled resonance from mesh to mesh.")
     ] = 0.02,
     vtu: Annotated[bool, typer.Option("--vtu", help="Write the coupled modes for ParaView too.")] = False,
-    out: Out = OUT,
+    out: Annotated[
+        Out, OutputFolder("{part}-impedance.* {part}-impedance-free.* {part}-impedance-clamped.* {part}-modes-*.vtu")
+    ] = OUT,
     json: Json = False,
 ) -> None:
     """Electrical impedance of a transducer, free and clamped: resonances, coupling and motion per volt.

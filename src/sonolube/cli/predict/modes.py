@@ -12,6 +12,7 @@ from sonolube.checks import Floats
 from sonolube.cli.console import parts
 from sonolube.cli.console.answer import Answer, deliver, si
 from sonolube.cli.console.options import OUT, Json, Out, Sizes
+from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
 from sonolube.fem import ConvergedModes, Electrodes, FixedSupport, Model, converged_modes, generate_mesh, mode_names
 from sonolube.fem.figures import mode_figure
@@ -39,7 +40,7 @@ def modes(
     ] = None,
     vtu: Annotated[bool, typer.Option("--vtu", help="Write the modes for ParaView too.")] = False,
     animate: Annotated[bool, typer.Option("--animate", help="Draw each mode as an animated GIF too.")] = False,
-    out: Out = OUT,
+    out: Annotated[Out, OutputFolder("{part}-*.png {part}-*.gif {part}-shapes.csv {part}-modes.vtu")] = OUT,
     json: Json = False,
 ) -> None:
     """Natural modes of a part: frequencies with their errors, names and pictures.

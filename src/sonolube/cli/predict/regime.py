@@ -8,6 +8,7 @@ import typer
 
 from sonolube.cli.console.answer import Answer, deliver, si
 from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath
+from sonolube.cli.console.outputs import OutputFolder
 from sonolube.errors import InvalidInput
 from sonolube.friction import BoundaryLubricant
 from sonolube.materials import material
@@ -44,7 +45,7 @@ def regime(
     pin: Annotated[str | None, typer.Option(metavar="MATERIAL", help="Material of the pin, for its wear.")] = None,
     disc: Annotated[str | None, typer.Option(metavar="MATERIAL", help="Material of the disc, for its wear.")] = None,
     changes: Changes = None,
-    out: Out = OUT,
+    out: Annotated[Out, OutputFolder("{rig}-regime.*")] = OUT,
     json: Json = False,
 ) -> None:
     """Lubrication regime: dry, vibrated, lubricated or both, and the kind of wear to expect.

@@ -9,6 +9,7 @@ import xarray as xr
 from sonolube.checks import Floats
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
 from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath, TypedNumber, si_option
+from sonolube.cli.console.outputs import OutputFolder
 from sonolube.dynamics import modes
 from sonolube.errors import InvalidInput
 from sonolube.report import Drawing
@@ -23,7 +24,7 @@ def response(
     lowest: Annotated[float, si_option("Hz", "Lowest frequency.", "--from")] = TypedNumber("1kHz", "Hz"),
     highest: Annotated[float, si_option("Hz", "Highest frequency.", "--to")] = TypedNumber("100kHz", "Hz"),
     changes: Changes = None,
-    out: Out = OUT,
+    out: Annotated[Out, OutputFolder("{rig}-response.*")] = OUT,
     json: Json = False,
 ) -> None:
     """Linear response: tip amplitude per volt and electrical impedance over frequency.

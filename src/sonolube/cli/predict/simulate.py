@@ -1,8 +1,11 @@
 """Command `simulate`: steady vibration of a rig's drive, structure and contact, with the friction and wear under it."""
 
+from typing import Annotated
+
 from sonolube import rig as rigs
 from sonolube.cli.console.answer import deliver
 from sonolube.cli.console.options import OUT, Changes, Json, Load, Out, RigPath, loaded_rig
+from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
 from sonolube.cli.predict.rig_record import RigRecord
 from sonolube.report import Drawing
@@ -10,7 +13,13 @@ from sonolube.rig.figures import simulation_figure
 from sonolube.rig.result_datasets import simulation_dataset
 
 
-def simulate(rig: RigPath, load: Load = None, changes: Changes = None, out: Out = OUT, json: Json = False) -> None:
+def simulate(
+    rig: RigPath,
+    load: Load = None,
+    changes: Changes = None,
+    out: Annotated[Out, OutputFolder("{rig}-simulation.*")] = OUT,
+    json: Json = False,
+) -> None:
     """Multi-scale model: drive, structure and contact in one steady vibration, and the friction and wear under it.
 
     Example: sonolube simulate examples/rigs/tribometer.toml --set drive.voltage_peak_to_peak=25.9V

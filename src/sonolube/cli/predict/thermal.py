@@ -6,6 +6,7 @@ import typer
 
 from sonolube.cli.console.answer import deliver
 from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath
+from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.predict.rig_record import RigRecord
 from sonolube.report import Drawing
 from sonolube.rig import read_rig, temperature_point, thermal_solid
@@ -26,7 +27,7 @@ def thermal(
     ] = "0.05W/K",
     vibration_heat: Annotated[str, typer.Option(metavar="POWER", help="Heat of the vibration in the contact.")] = "0W",
     changes: Changes = None,
-    out: Out = OUT,
+    out: Annotated[Out, OutputFolder("{rig}-thermal.*")] = OUT,
     json: Json = False,
 ) -> None:
     """Heat of friction and vibration: flash, bulk and their share in each body.

@@ -8,6 +8,7 @@ import xarray as xr
 
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
 from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath, TypedNumber, si_option
+from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
 from sonolube.report import Drawing
 from sonolube.rig import Rig, StartUp, read_rig, start_up
@@ -22,7 +23,7 @@ def transient(
     rig: RigPath,
     run_time: Annotated[float, si_option("s", "Time that is integrated.", "--duration")] = TypedNumber("0.1s", "s"),
     changes: Changes = None,
-    out: Out = OUT,
+    out: Annotated[Out, OutputFolder("{rig}-transient.*")] = OUT,
     json: Json = False,
 ) -> None:
     """Start-up from rest: settling of the tip's vibration, step by step.

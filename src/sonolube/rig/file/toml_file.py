@@ -12,6 +12,7 @@ from sonolube.errors import InvalidInput, SonolubeError, suggestion
 from sonolube.rig.file.json_schema import tables_of
 from sonolube.rig.file.section import Section
 from sonolube.rig.file.structures import STRUCTURES
+from sonolube.targets import record_input
 
 _LARGEST_FILE = 1_000_000  # bytes; a rig is a page of text, hundreds of modes are some 20 kB
 _Content = TypeVar("_Content", bound=Section)
@@ -58,8 +59,9 @@ def text_of(path: Path, *, kind: str) -> str:
     Raises
     ------
     InvalidInput
-        If the file cannot be read, is no UTF-8 text or larger than 1 MB.
+        If the file cannot be read, is no UTF-8 text or larger than 1 MB, or the running command is to write to it.
     """
+    record_input(path)
     try:
         if path.stat().st_size > _LARGEST_FILE:
             raise InvalidInput(f"larger than {kind} can be (1 MB)")
