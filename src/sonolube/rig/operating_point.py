@@ -278,7 +278,13 @@ def wear_point(rig: Rig, *, model: str = DEFAULT_WEAR_MODEL) -> WearPoint:
 
 
 def wear_under(
-    rig: Rig, *, ratio: float, model: str, vibration_amplitude: float, caveats: tuple[str, ...], reason: str | None = None
+    rig: Rig,
+    *,
+    ratio: float,
+    model: str,
+    vibration_amplitude: float,
+    caveats: tuple[str, ...],
+    reason: str | None = None,
 ) -> WearPoint:
     """Return the wear of a rig at a wear ratio.
 

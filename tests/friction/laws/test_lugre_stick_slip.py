@@ -1,4 +1,4 @@
-"""Stick-slip of a pulled mass with LuGre friction against rigid Coulomb stick-slip, an integrator and the authors' case."""
+"""Stick-slip of a pulled mass with LuGre friction: rigid Coulomb stick-slip, another integrator, the authors' case."""
 
 from dataclasses import replace
 
@@ -43,9 +43,7 @@ def test_stiff_bristles_have_the_closed_form_of_rigid_coulomb_stick_slip(
     )
     assert found.kind is SlidingKind.STICK_SLIP
     assert found.period == approx(period, rel=2e-3)
-    assert found.first_slip_time == approx(
-        breakaway + np.arctan(stiffness * speed / (drop * omega)) / omega, rel=2e-3
-    )
+    assert found.first_slip_time == approx(breakaway + np.arctan(stiffness * speed / (drop * omega)) / omega, rel=2e-3)
     assert found.peak_friction_force == approx(F_S, rel=3e-3)
     assert found.peak_spring_force == approx(F_C + np.hypot(drop, np.sqrt(stiffness * mass) * speed), rel=2e-3)
     assert found.peak_velocity == approx(speed + np.hypot(speed, drop / np.sqrt(stiffness * mass)), rel=2e-3)

@@ -1,4 +1,4 @@
-"""Range of validity of friction models: no contact transmits more than mu F_N, and what a formula says beyond is withheld."""
+"""Range of validity of friction models: no contact transmits more than mu F_N; a formula beyond that is withheld."""
 
 import numpy as np
 import pytest
