@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -67,7 +68,7 @@ def _computed(rig: Rig, rng: random.Random) -> dict[str, int]:
     assert rig.drive is not None
     volts = np.array([10 ** rng.uniform(-1, 0.6) for _ in range(_POINTS)]) * (rig.drive.voltage_peak_to_peak or 1.0)
     speeds = rig.sliding_speed * np.array([10 ** rng.uniform(-1, 1) for _ in range(_POINTS)])
-    settings = {
+    settings: Any = {
         "voltage_peak_to_peak": volts,
         "voltage_offset": rig.drive.offset_ratio * volts,
         "sliding_speed": speeds,
