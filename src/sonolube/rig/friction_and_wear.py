@@ -3,8 +3,9 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
+from sonolube.checks import Floats
 from sonolube.contact import GapMotion, load_balanced_motion, sinusoidal_motion
-from sonolube.errors import InvalidInput, OutsideRange
+from sonolube.errors import InvalidInput, OutsideRange, SonolubeError
 from sonolube.friction.models import MeanGap
 from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio, model_friction
 from sonolube.rig.record import Rig
@@ -40,6 +41,36 @@ def friction_ratios(rig: Rig, motion: GapMotion, *, sliding_speed: ArrayLike) ->
         motion,
         sliding_speed=sliding_speed,
         friction_coefficient=rig.friction_coefficient,
+    )
+
+
+def friction_at_speeds(rig: Rig, moving: GapMotion, speeds: Floats) -> CheckedRatio:
+    """Return the friction ratio at each of some sliding speeds, and the reason where there is none.
+
+    Parameters
+    ----------
+    rig : Rig
+    moving : GapMotion
+        Motion of the gap of its contact.
+    speeds : ndarray, shape (n,)
+        Macroscopic relative speeds, in m/s.
+
+    Returns
+    -------
+    CheckedRatio
+        NaN also at speeds that the model refuses, such as zero.
+    """
+    try:
+        return friction_ratios(rig, moving, sliding_speed=speeds)
+    except SonolubeError as refusal:
+        if speeds.size == 1:
+            none = np.full(1, np.nan)
+            return CheckedRatio(friction_ratio=none, raw_friction_ratio=none, reason=np.array([str(refusal)]))
+    every = [friction_at_speeds(rig, moving, speed) for speed in speeds[:, np.newaxis]]
+    return CheckedRatio(
+        friction_ratio=np.concatenate([one.friction_ratio for one in every]),
+        raw_friction_ratio=np.concatenate([one.raw_friction_ratio for one in every]),
+        reason=np.concatenate([one.reason for one in every]),
     )
 
 

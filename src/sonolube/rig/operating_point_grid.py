@@ -8,14 +8,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from sonolube.actuator.stack import require_allowed_voltage
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
-from sonolube.contact import GapMotion, separation
+from sonolube.contact import separation
 from sonolube.dynamics import Status, SteadyStates, steady_state
 from sonolube.dynamics.backend import Backend
 from sonolube.errors import InvalidInput, SonolubeError
-from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio
+from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE
 from sonolube.rig.driven_rig import DrivenRig, driven_rig
 from sonolube.rig.excitation import amplifier_power, voltage_harmonics, voltage_range
-from sonolube.rig.friction_and_wear import friction_ratios
+from sonolube.rig.friction_and_wear import friction_at_speeds
 from sonolube.rig.linear_response import gap_law_of
 from sonolube.rig.record import Rig
 from sonolube.rig.vibration import gap_motion
@@ -394,19 +394,3 @@ def friction_status(objection: str) -> str:
     if not objection:
         return ""
     return OUTSIDE_MODEL_RANGE if objection.startswith(OUTSIDE_MODEL_RANGE) else REFUSED
-
-
-def friction_at_speeds(rig: Rig, moving: GapMotion, speeds: Floats) -> CheckedRatio:
-    """Return the friction ratio at each sliding speed, and the reason where there is none."""
-    try:
-        return friction_ratios(rig, moving, sliding_speed=speeds)
-    except SonolubeError as refusal:
-        if speeds.size == 1:
-            none = np.full(1, np.nan)
-            return CheckedRatio(friction_ratio=none, raw_friction_ratio=none, reason=np.array([str(refusal)]))
-    every = [friction_at_speeds(rig, moving, speed) for speed in speeds[:, np.newaxis]]
-    return CheckedRatio(
-        friction_ratio=np.concatenate([one.friction_ratio for one in every]),
-        raw_friction_ratio=np.concatenate([one.raw_friction_ratio for one in every]),
-        reason=np.concatenate([one.reason for one in every]),
-    )

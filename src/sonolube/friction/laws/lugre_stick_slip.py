@@ -46,9 +46,9 @@ class StickSlipHistory:
     displacement : ndarray, shape (n,)
         Displacement of the mass. [m]
     velocity : ndarray, shape (n,)
-        Velocity of the mass. [m/s]
+        Velocity of the mass, in m/s.
     spring_force : ndarray, shape (n,)
-        Force of spring and damper on the mass. [N]
+        Force of spring and damper on the mass, in N.
     friction_force : ndarray, shape (n,)
         Friction force on the mass, against its motion. [N]
     kind : SlidingKind
@@ -57,15 +57,15 @@ class StickSlipHistory:
         Meaning of the kind, and advice where the motion has not settled.
     first_slip_time : float
         Time at which the mass first overtakes the pulled end, where the spring force passes its first maximum; NaN if
-        it never does. [s]
+        it never does, in s.
     period : float
         Time between the last two such overtakings; NaN unless the motion repeats. [s]
     peak_spring_force : float
-        Highest spring force within the last period, within the last quarter for steady sliding. [N]
+        Highest spring force within the last period, within the last quarter for steady sliding, in N.
     peak_friction_force : float
-        Highest friction force within the same time, that at breakaway. [N]
+        Highest friction force within the same time, that at breakaway, in N.
     peak_velocity : float
-        Highest velocity of the mass within the same time. [m/s]
+        Highest velocity of the mass within the same time, in m/s.
     """
 
     time: Floats

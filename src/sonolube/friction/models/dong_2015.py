@@ -32,7 +32,7 @@ class _CubeModel(FrictionModel):
         Parameters
         ----------
         mean_force_ratio : ndarray, any shape
-            Without effect in this model, whose deformation is that under the load at rest. []
+            Without effect in this model, whose deformation is that under the load at rest.
 
         Returns
         -------

@@ -202,7 +202,7 @@ class FrictionModel(ABC):
         Parameters
         ----------
         mean_force_ratio : ndarray, any shape
-            Mean normal force of the motion over the load. []
+            Mean normal force of the motion over the load.
 
         Returns
         -------

@@ -61,9 +61,9 @@ def checked_ratio(
     ----------
     model : FrictionModel
     raw : array_like, any shape
-        Friction ratios by the formula of the model. []
+        Friction ratios by the formula of the model.
     mean_force_ratio : array_like, broadcast against `raw`
-        Mean normal force of the motion over the load. []
+        Mean normal force of the motion over the load.
     gap_closed : array_like of bool, broadcast against `raw`
         Whether the mean planes meet within the period.
 
