@@ -58,9 +58,49 @@ def test_below_the_onset_of_yielding_every_law_is_that_of_hertz(law: AsperityLaw
     assert area(law, ratio) == approx(math.pi * RADIUS * w, rel=1e-12, abs=0)
 
 
-def test_the_critical_interference_of_chang_etsion_and_bogy_is_the_hand_computed_one() -> None:
+def test_the_critical_interference_is_the_hand_computed_one() -> None:
     # C_nu = 1.234 + 1.256 * 0.3 = 1.6108; (pi * 1.6108 * 400 MPa / 220 GPa)^2 * 10 um = 0.84651 nm
     assert onset(ASPERITY_LAWS["chang_etsion_bogy"]) == approx(0.84651e-9, rel=1e-4, abs=0)
+
+
+NU, Y, E_STAR = 0.3, 400e6, 110e9
+PUBLISHED_ONSETS = {
+    # over R: Chang, Etsion and Bogy 1987, (pi K H/2E)^2 with K = 0.6 and H = 2.8 Y
+    "chang_etsion_bogy_1987": (math.pi * 0.6 * 2.8 * Y / (2 * E_STAR)) ** 2,
+    # Kogut and Etsion 2002, the same with K = 0.454 + 0.41 nu
+    "kogut_etsion": (math.pi * (0.454 + 0.41 * NU) * 2.8 * Y / (2 * E_STAR)) ** 2,
+    # Jackson and Green 2005, (pi C S_y/2E')^2 with C = 1.295 exp(0.736 nu)
+    "jackson_green": (math.pi * 1.295 * math.exp(0.736 * NU) * Y / (2 * E_STAR)) ** 2,
+    # Brizmer, Kligerman and Etsion 2006, [pi/2 C_nu (1 - nu^2) Y/E]^2 of a sphere of modulus E on a rigid flat
+    "chang_etsion_bogy": (math.pi / 2 * (1.234 + 1.256 * NU) * (1 - NU**2) * Y / (E_STAR * (1 - NU**2))) ** 2,
+    # D 3.1 as printed, the same over E* of both bodies
+    "dong_2015": (math.pi / 2 * (1.234 + 1.256 * NU) * (1 - NU**2) * Y / E_STAR) ** 2,
+}
+
+
+@mark.parametrize("law", YIELDING, ids=lambda law: law.name)
+def test_the_critical_interference_of_each_law_is_that_of_its_own_publication(law: AsperityLaw) -> None:
+    assert onset(law) == approx(PUBLISHED_ONSETS[law.name] * RADIUS, rel=1e-12, abs=0)
+
+
+@given(poisson_ratio=st.floats(0.2, 0.45))
+def test_onsets_that_depend_on_poissons_ratio_are_those_of_von_mises_on_the_axis_of_hertz(poisson_ratio: float) -> None:
+    # stresses on the axis at the depth z a over the peak pressure, Johnson, Contact Mechanics (1985), 3.45
+    z = np.linspace(0.05, 1.5, 3000)
+    radial = -(1 + poisson_ratio) * (1 - z * np.arctan(1 / z)) + 1 / (2 * (1 + z**2))
+    axial = -1 / (1 + z**2)
+    coefficient = 1 / np.max(np.abs(radial - axial))
+    bodies = pair(poisson_ratio=poisson_ratio)
+    for name, error in (("jackson_green", 0.01), ("chang_etsion_bogy", 0.01), ("kogut_etsion", 0.025)):
+        assert ASPERITY_LAWS[name].yield_pressure(bodies) == approx(coefficient * Y, rel=error), name
+
+
+def test_the_onset_of_1987_has_no_poisson_ratio_and_meets_the_later_ones_at_0_356() -> None:
+    early = ASPERITY_LAWS["chang_etsion_bogy_1987"]
+    assert early.yield_pressure(pair(poisson_ratio=0.1)) == early.yield_pressure(pair(poisson_ratio=0.45))
+    met = pair(poisson_ratio=0.356)
+    for name in ("kogut_etsion", "chang_etsion_bogy"):
+        assert ASPERITY_LAWS[name].yield_pressure(met) == approx(early.yield_pressure(met), rel=1e-3), name
 
 
 def test_the_law_of_dong_2015_counts_the_poisson_factor_twice() -> None:
@@ -77,7 +117,7 @@ def test_the_laws_agree_on_the_onset_of_yielding_within_six_percent(poisson_rati
     assert max(onsets) / min(onsets) < 1.06
 
 
-@mark.parametrize("name", ["dong_2015", "chang_etsion_bogy"])
+@mark.parametrize("name", ["dong_2015", "chang_etsion_bogy", "chang_etsion_bogy_1987"])
 def test_at_the_onset_of_yielding_the_mean_pressure_jumps_from_two_thirds_to_the_whole(name: str) -> None:
     law = ASPERITY_LAWS[name]
     pressure = law.yield_pressure(STEEL)
@@ -86,7 +126,7 @@ def test_at_the_onset_of_yielding_the_mean_pressure_jumps_from_two_thirds_to_the
     assert jumps(law, 1.0) == approx((0.5, 0.0), abs=1e-9)
 
 
-@mark.parametrize("name", ["dong_2015", "chang_etsion_bogy"])
+@mark.parametrize("name", ["dong_2015", "chang_etsion_bogy", "chang_etsion_bogy_1987"])
 def test_a_yielded_asperity_of_constant_volume_spreads_to_twice_the_geometric_section(name: str) -> None:
     law = ASPERITY_LAWS[name]
     w = 1e6 * onset(law)

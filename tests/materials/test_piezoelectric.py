@@ -76,6 +76,39 @@ def test_open_circuit_stiffening_gives_the_thickness_coupling_factor(name: str) 
     assert coupling_factors(ceramic)["coupling_factor_thickness"] ** 2 == approx(squared)
 
 
+@every_ceramic
+def test_all_coupling_factors_of_one_set_are_those_of_its_own_open_circuit_constants(name: str) -> None:
+    # k^2 = 1 - s^D/s^E for length, face and width modes, 1 - c^E/c^D for the thickness, s^D = s^E - d^T (eps^T)^-1 d
+    ceramic = piezo_ceramic(name)
+    s, d, e = ceramic.compliance_short_circuit, ceramic.charge_constants, ceramic.stress_constants
+    c = ceramic.stiffness_short_circuit
+    s_open = s - d.T @ np.diag(1 / ceramic.permittivity_free) @ d
+    c_open = c + e.T @ np.diag(1 / ceramic.permittivity_clamped) @ e
+    assert s_open @ c_open == approx(np.eye(6), abs=1e-9)
+    plane, plane_open = s[0, 0] + s[0, 1], s_open[0, 0] + s_open[0, 1]
+    squares = {
+        "coupling_factor_31": 1 - s_open[0, 0] / s[0, 0],
+        "coupling_factor_33": 1 - s_open[2, 2] / s[2, 2],
+        "coupling_factor_15": 1 - s_open[4, 4] / s[4, 4],
+        "coupling_factor_planar": 1 - plane_open / plane,
+        "coupling_factor_thickness": 1 - c[2, 2] / c_open[2, 2],
+    }
+    assert coupling_factors(ceramic) == approx({key: np.sqrt(square) for key, square in squares.items()}, rel=1e-9)
+
+
+def test_the_two_tables_of_one_source_are_two_sets_with_couplings_of_their_own() -> None:
+    # Berlincourt prints k31 0.334, k33 0.70, k15 0.71, kt 0.513 and kp 0.58, measured on resonators
+    printed = {"31": 0.334, "33": 0.70, "15": 0.71, "thickness": 0.513, "planar": 0.58}
+    by_compliance, by_stiffness = (coupling_factors(piezo_ceramic(name)) for name in ("pzt4", "pzt4_stress_charge"))
+    for key, value in printed.items():
+        name = f"coupling_factor_{key}"
+        assert 1.01 < by_stiffness[name] / by_compliance[name] < 1.02, name
+        assert by_compliance[name] < by_stiffness[name] < value, name
+        assert by_stiffness[name] == approx(value, rel=0.015), name
+    assert "pzt4_stress_charge" in piezo_ceramic("pzt4").note
+    assert "pzt4" in piezo_ceramic("pzt4_stress_charge").note
+
+
 def test_either_form_returns_the_ceramic_it_was_computed_from() -> None:
     original = piezo_ceramic("pzt5h")
     c, e = original.stiffness_short_circuit, original.stress_constants

@@ -2,6 +2,7 @@ from .asperity import (
     ASPERITY_LAWS as ASPERITY_LAWS,
     AsperityLaw as AsperityLaw,
     ChangEtsionBogy as ChangEtsionBogy,
+    ChangEtsionBogy1987 as ChangEtsionBogy1987,
     Dong2015Asperity as Dong2015Asperity,
     ElasticAsperity as ElasticAsperity,
     JacksonGreen as JacksonGreen,

@@ -116,15 +116,19 @@ class Dong2015Asperity:
 
     Notes
     -----
-    .. math:: p_Y = C_\nu (1 - \nu^2)\, Y_0, \qquad C_\nu = 1.234 + 1.256\,\nu
+    .. math::
 
-    Otherwise as `ChangEtsionBogy`, including the jump of the force. The factor 1 - nu^2 is already part of E*; counted
-    again it weakens the softer body by 11 % at nu = 0.33. It is kept because the published wear rates follow from it to
-    four digits.
+        w_c = \left( \frac{\pi C_\nu (1 - \nu^2)\, Y_0}{2 E^*} \right)^2 R_s, \qquad C_\nu = 1.234 + 1.256\,\nu
+
+    Otherwise as `ChangEtsionBogy`, including the jump of the force. Brizmer, Kligerman and Etsion [2]_ print the factor
+    1 - nu^2 over the Young's modulus of the sphere, not over E*, of which it is part already; counted again it weakens
+    the softer body by 11 % at nu = 0.33. It is kept because the published wear rates follow from it to four digits.
 
     References
     ----------
     .. [1] D 3.1, 3.4, 3.5, 3.7, 3.8
+    .. [2] V. Brizmer, Y. Kligerman and I. Etsion, Int. J. Solids Struct. 43, 5736 (2006).
+       doi:10.1016/j.ijsolstr.2005.07.034
     """
 
     name: ClassVar[str] = "dong_2015"
@@ -146,7 +150,7 @@ class Dong2015Asperity:
 
 @dataclass(frozen=True, slots=True)
 class ChangEtsionBogy:
-    r"""Law of Chang, Etsion and Bogy: beyond the onset of yielding a constant pressure and conserved asperity volume.
+    r"""Law of Chang, Etsion and Bogy beyond yielding, whose onset is that of Brizmer, Kligerman and Etsion.
 
     Notes
     -----
@@ -155,21 +159,63 @@ class ChangEtsionBogy:
         p_Y = C_\nu Y_0, \quad C_\nu = 1.234 + 1.256\,\nu, \qquad
         a = \pi R_s (2 w - w_c), \quad f = p_Y\, a \quad \text{for } w \ge w_c
 
+    A constant pressure and conserved asperity volume beyond the onset [1]_. The critical interference
+    :math:`w_c = (\pi C_\nu Y_0 / 2 E^*)^2 R_s` is not that of 1987, which `ChangEtsionBogy1987` has, but follows from
+    von Mises' criterion for any Poisson's ratio [2]_, as D 3.1 takes it; both agree at nu = 0.355.
+
     The area is continuous at the onset of yielding. The mean pressure jumps there from 2/3 of C_nu Y_0 to C_nu Y_0, and
     with it the force by a half.
 
     References
     ----------
     .. [1] W. R. Chang, I. Etsion and D. B. Bogy, J. Tribol. 109, 257 (1987). doi:10.1115/1.3261348
+    .. [2] V. Brizmer, Y. Kligerman and I. Etsion, Int. J. Solids Struct. 43, 5736 (2006).
+       doi:10.1016/j.ijsolstr.2005.07.034
     """
 
     name: ClassVar[str] = "chang_etsion_bogy"
-    citation: ClassVar[str] = "W. R. Chang, I. Etsion and D. B. Bogy, J. Tribol. 109, 257 (1987)"
+    citation: ClassVar[str] = (
+        "W. R. Chang, I. Etsion and D. B. Bogy, J. Tribol. 109, 257 (1987), with the onset of yielding of V. Brizmer,"
+        " Y. Kligerman and I. Etsion, Int. J. Solids Struct. 43, 5736 (2006)"
+    )
     breakpoints: ClassVar[tuple[float, ...]] = (1.0,)
 
     def yield_pressure(self, pair: ContactPair) -> float:
         """Return the peak contact pressure at the onset of yielding, C_nu Y_0. [Pa]"""
         return _hardness_coefficient(pair) * pair.yield_strength
+
+    def force_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
+        """Return the force over that of an elastic asperity. []"""
+        return _constant_volume_force_ratio(interference_ratio)
+
+    def area_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
+        """Return the contact area over that of an elastic asperity. []"""
+        return _constant_volume_area_ratio(interference_ratio)
+
+
+@dataclass(frozen=True, slots=True)
+class ChangEtsionBogy1987:
+    r"""Law of Chang, Etsion and Bogy with its own onset of yielding, at six tenths of the hardness.
+
+    Notes
+    -----
+    .. math:: w_c = \left( \frac{\pi K H}{2 E^*} \right)^2 R_s, \qquad K = 0.6, \quad H = 2.8\, Y_0
+
+    for any Poisson's ratio; otherwise as `ChangEtsionBogy`. Later publications of the authors take K = 0.454 + 0.41 nu,
+    as `KogutEtsion` does, which is 0.6 at nu = 0.356.
+
+    References
+    ----------
+    .. [1] W. R. Chang, I. Etsion and D. B. Bogy, J. Tribol. 109, 257 (1987). doi:10.1115/1.3261348
+    """
+
+    name: ClassVar[str] = "chang_etsion_bogy_1987"
+    citation: ClassVar[str] = "W. R. Chang, I. Etsion and D. B. Bogy, J. Tribol. 109, 257 (1987), K = 0.6"
+    breakpoints: ClassVar[tuple[float, ...]] = (1.0,)
+
+    def yield_pressure(self, pair: ContactPair) -> float:
+        """Return the peak contact pressure at the onset of yielding, 0.6 H with the hardness H = 2.8 Y_0. [Pa]"""
+        return 0.6 * 2.8 * pair.yield_strength
 
     def force_ratio(self, pair: ContactPair, interference_ratio: Floats) -> Floats:
         """Return the force over that of an elastic asperity. []"""
@@ -325,6 +371,7 @@ ASPERITY_LAWS: VariantTable[AsperityLaw] = VariantTable(
         "elastic": "sonolube.contact.asperity:ElasticAsperity",
         "dong_2015": "sonolube.contact.asperity:Dong2015Asperity",
         "chang_etsion_bogy": "sonolube.contact.asperity:ChangEtsionBogy",
+        "chang_etsion_bogy_1987": "sonolube.contact.asperity:ChangEtsionBogy1987",
         "kogut_etsion": "sonolube.contact.asperity:KogutEtsion",
         "jackson_green": "sonolube.contact.asperity:JacksonGreen",
     },

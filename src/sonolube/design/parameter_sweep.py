@@ -17,6 +17,7 @@ from sonolube.design.sweep_plan import OPERATING_CONDITIONS, SweepPlan
 from sonolube.dynamics.backend import Backend, device_name, usable_backend
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.rig import NUMBERS, STATUSES, PointBatch, point_batch
+from sonolube.rig.operating_point_grid import REFUSED
 from sonolube.threads import thread_pool
 
 if TYPE_CHECKING:
@@ -157,7 +158,7 @@ def _points_of_one_rig(
     except SonolubeError as refusal:
         return PointBatch(
             numbers={name: np.full(count, np.nan) for name in NUMBERS},
-            status=np.full(count, len(STATUSES) - 1, dtype=np.int8),
+            status=np.full(count, STATUSES.index(REFUSED), dtype=np.int8),
             reason=np.zeros(count, dtype=np.int16),
             reasons=(str(refusal),),
         )

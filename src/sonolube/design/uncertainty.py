@@ -15,9 +15,11 @@ from sonolube.design.progress import ProgressCallback
 from sonolube.design.sobol import SUBSEQUENCES, saltelli_sample, sobol_sample
 from sonolube.design.sweep_plan import SweepPlan, list_plan
 from sonolube.errors import InvalidInput, SonolubeError, UnknownName
+from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE
 from sonolube.rig import NUMBERS, Rig, read_rig
 from sonolube.rig.datasets import labels
 from sonolube.rig.operating_point import (
+    COMPUTED,
     ContactPoint,
     FrictionPoint,
     WearPoint,
@@ -25,6 +27,7 @@ from sonolube.rig.operating_point import (
     friction_point,
     wear_point,
 )
+from sonolube.rig.operating_point_grid import REFUSED
 from sonolube.vocabulary import quantities
 
 if TYPE_CHECKING:
@@ -36,7 +39,8 @@ _POINT_MODELS: tuple[tuple[Any, Callable[[Rig], Any]], ...] = (
     (WearPoint, wear_point),
     (ContactPoint, contact_point),
 )
-_COMPUTED, _REFUSED = 0, 1
+_STATUSES = (COMPUTED, REFUSED, OUTSIDE_MODEL_RANGE)
+_COMPUTED, _REFUSED, _OUTSIDE = range(3)
 _POINTS_PER_REPORT = 64
 _NOT_SAMPLED = ("uncertainty", "assumptions")  # tables of the file that a sample does not need
 
@@ -191,15 +195,18 @@ def _point_by_point(plan: SweepPlan, outcome: str, advance: ProgressCallback | N
     for point in range(plan.points):
         row = {key: array[0] for key, array in plan.rows(point, point + 1).items()}
         try:
-            value = getattr(model(plan.rig(row)), outcome)
+            result = model(plan.rig(row))
+            value = getattr(result, outcome)
             if value is None:
                 raise InvalidInput(f"{outcome} cannot be computed: the rig file lacks an entry that it needs")
             values[point] = value
+            if np.isnan(value):
+                status[point], reason[point] = _OUTSIDE, texts.setdefault(result.reason, len(texts))
         except SonolubeError as refusal:
             status[point], reason[point] = _REFUSED, texts.setdefault(str(refusal), len(texts))
         if advance is not None and not (point + 1) % _POINTS_PER_REPORT:
             advance(point + 1, plan.points)
-    flags = {"flag_values": np.arange(2, dtype=np.int8), "flag_meanings": "computed refused"}
+    flags = {"flag_values": np.arange(len(_STATUSES), dtype=np.int8), "flag_meanings": " ".join(_STATUSES)}
     return xr.Dataset(
         {
             outcome: ("point", values, labels(outcome)),

@@ -25,6 +25,11 @@ from .laws.lugre import (
     lugre_friction_history as lugre_friction_history,
     lugre_steady_friction as lugre_steady_friction,
 )
+from .laws.lugre_stick_slip import (
+    SlidingKind as SlidingKind,
+    StickSlipHistory as StickSlipHistory,
+    lugre_stick_slip as lugre_stick_slip,
+)
 from .laws.lugre_under_vibration import lugre_under_vibration as lugre_under_vibration
 from .laws.spring_driven_slider import (
     DriveForce as DriveForce,

@@ -8,7 +8,7 @@ import numpy as np
 from sonolube.checks import require_non_negative, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.materials import material
-from sonolube.rig.friction_and_wear import friction_ratio, prescribed_sine
+from sonolube.rig.friction_and_wear import stated_friction_ratios
 from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.record import Rig
 from sonolube.thermal import EllipticSource, HeatedContact, ThermalNetwork, ThermalSolid, contact_rise, peclet_number
@@ -123,7 +123,7 @@ def temperature_point(
     InvalidInput
         If the rig does not slide, has no frequency, or a value is not positive.
     OutsideRange
-        If the load leaves no separation.
+        If the load leaves no separation, or the vibration is outside the range of the friction model.
     """
     if rig.sliding_speed <= 0:
         raise InvalidInput("sliding.sliding_speed must be positive for heat of friction")
@@ -134,7 +134,8 @@ def temperature_point(
     source = EllipticSource(half_length=radius, half_width=radius)
     network = ThermalNetwork(heat_capacity=(heat_capacity,), links=(), losses=(thermal_conductance,))
     contact = HeatedContact(pin=pin, disc=disc, source=source, network=network)
-    intrinsic, ratio = rig.friction_coefficient * rig.normal_load, friction_ratio(rig, prescribed_sine(rig))
+    found = stated_friction_ratios(rig, sliding_speed=rig.sliding_speed)
+    intrinsic, ratio = rig.friction_coefficient * rig.normal_load, float(found.require_within_range())
     times = np.linspace(0.0, duration, _STEPS + 1)
     history = partial(contact_temperature_history, contact, time=times, sliding_speed=rig.sliding_speed)
     without = history(friction_force=intrinsic, vibration_heat_rate=0.0)

@@ -5,36 +5,16 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats
 from sonolube.contact import GapMotion, load_balanced_motion, sinusoidal_motion
-from sonolube.errors import InvalidInput
+from sonolube.errors import InvalidInput, OutsideRange, SonolubeError
 from sonolube.friction.models import MeanGap
+from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio, model_friction
 from sonolube.rig.record import Rig
 from sonolube.wear import DEFAULT_WEAR_MODEL, WEAR_MODELS
 
 _ANY_FREQUENCY = 1.0  # Hz; of models that are not rate-dependent
 
 
-def friction_ratio(rig: Rig, motion: GapMotion) -> float:
-    """Return friction with vibration over friction without, by the rig's friction model at its sliding speed. []
-
-    Parameters
-    ----------
-    rig : Rig
-    motion : GapMotion
-        Motion of the gap of its contact.
-
-    Returns
-    -------
-    float
-
-    Raises
-    ------
-    InvalidInput
-        If the model does not hold for the motion.
-    """
-    return float(friction_ratios(rig, motion, sliding_speed=rig.sliding_speed))
-
-
-def friction_ratios(rig: Rig, motion: GapMotion, *, sliding_speed: ArrayLike) -> Floats:
+def friction_ratios(rig: Rig, motion: GapMotion, *, sliding_speed: ArrayLike) -> CheckedRatio:
     """Return friction with vibration over friction without, by the rig's friction model at some sliding speeds. []
 
     Parameters
@@ -47,16 +27,79 @@ def friction_ratios(rig: Rig, motion: GapMotion, *, sliding_speed: ArrayLike) ->
 
     Returns
     -------
-    ndarray, shape of `sliding_speed`
+    CheckedRatio
+        Of the shape of `sliding_speed`, NaN with a reason where a ratio is outside the range of the model.
 
     Raises
     ------
     InvalidInput
-        If a speed is not positive, or the model does not hold for the motion.
+        If a speed is not positive.
     """
-    model = rig.friction_model
-    ratio = model.ratio(rig.contact, motion, sliding_speed=sliding_speed, friction_coefficient=rig.friction_coefficient)
-    return np.asarray(ratio)
+    return model_friction(
+        rig.friction_model,
+        rig.contact,
+        motion,
+        sliding_speed=sliding_speed,
+        friction_coefficient=rig.friction_coefficient,
+    )
+
+
+def friction_at_speeds(rig: Rig, moving: GapMotion, speeds: Floats) -> CheckedRatio:
+    """Return the friction ratio at each of some sliding speeds, and the reason where there is none.
+
+    Parameters
+    ----------
+    rig : Rig
+    moving : GapMotion
+        Motion of the gap of its contact.
+    speeds : ndarray, shape (n,)
+        Macroscopic relative speeds, in m/s.
+
+    Returns
+    -------
+    CheckedRatio
+        NaN also at speeds that the model refuses, such as zero.
+    """
+    try:
+        return friction_ratios(rig, moving, sliding_speed=speeds)
+    except SonolubeError as refusal:
+        if speeds.size == 1:
+            none = np.full(1, np.nan)
+            return CheckedRatio(friction_ratio=none, raw_friction_ratio=none, reason=np.array([str(refusal)]))
+    every = [friction_at_speeds(rig, moving, speed) for speed in speeds[:, np.newaxis]]
+    return CheckedRatio(
+        friction_ratio=np.concatenate([one.friction_ratio for one in every]),
+        raw_friction_ratio=np.concatenate([one.raw_friction_ratio for one in every]),
+        reason=np.concatenate([one.reason for one in every]),
+    )
+
+
+def stated_friction_ratios(rig: Rig, *, sliding_speed: ArrayLike) -> CheckedRatio:
+    """Return the friction ratios of a rig under its stated vibration, taken for a sine, at some sliding speeds. []
+
+    Parameters
+    ----------
+    rig : Rig
+    sliding_speed : array_like, any shape
+        Macroscopic relative speed. [m/s]
+
+    Returns
+    -------
+    CheckedRatio
+        Of the shape of `sliding_speed`.
+
+    Raises
+    ------
+    InvalidInput
+        If a speed is not positive, or the model depends on the rate of the motion and the rig has no frequency.
+    """
+    try:
+        motion = prescribed_sine(rig)
+    except OutsideRange as refusal:
+        none = np.full(np.shape(sliding_speed), np.nan)
+        reason = np.full(none.shape, f"{OUTSIDE_MODEL_RANGE}: {refusal}")
+        return CheckedRatio(friction_ratio=none, raw_friction_ratio=none, reason=reason)
+    return friction_ratios(rig, motion, sliding_speed=sliding_speed)
 
 
 def prescribed_sine(rig: Rig) -> GapMotion:

@@ -74,7 +74,7 @@ def least_power_study(
     log_volts = np.full(f.shape, np.log(highest))
     log_volts[reached] = _search(rig, f[reached], target, top.friction_ratio[reached], np.log(highest), advance)
     found = _points(rig, f, np.exp(log_volts))
-    missed = ~reached & ~top.failed
+    missed, reached = ~reached & ~top.failed, reached & ~found.failed
     numbers = {
         name: np.where(reached, getattr(found, name), np.nan)
         for name in (
@@ -109,7 +109,7 @@ def _search(rig: DrivenRig, f: Floats, target: float, at_top: Floats, top: float
             break
         span, a, b = high[going] - low[going], above[going], below[going]
         guess = low[going] + span * np.clip(a / (a - b), _CLOSE / 3, 1 - _CLOSE / 3)
-        miss = _points(rig, f[going], np.exp(guess)).friction_ratio - target
+        miss = _points(rig, f[going], np.exp(guess)).raw_friction_ratio - target
         left = miss > 0
         low[going], high[going] = np.where(left, guess, low[going]), np.where(left, high[going], guess)
         # Illinois: the value at an end that stays twice is halved

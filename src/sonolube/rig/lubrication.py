@@ -15,7 +15,7 @@ from sonolube.friction import (
     lubrication_coefficients,
 )
 from sonolube.materials import Material
-from sonolube.rig.friction_and_wear import friction_ratios, prescribed_sine
+from sonolube.rig.friction_and_wear import stated_friction_ratios
 from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.record import Rig
 from sonolube.wear import CrystalStructure, WearMechanismAssessment, WearPairBody, assess_wear_mechanism
@@ -95,6 +95,8 @@ def lubrication_point(rig: Rig, *, lubricant: BoundaryLubricant, smallest_gain: 
     ------
     InvalidInput
         If the rig does not slide or has no frequency, or the gain does not lie between 0 and 1.
+    OutsideRange
+        If the vibration is outside the range of the friction model at a speed.
     """
     rest_separation(rig)
     pressure = rig.normal_load / rig.contact.nominal_area
@@ -129,6 +131,8 @@ def lubrication_map(rig: Rig, *, lubricant: BoundaryLubricant, smallest_gain: fl
     ------
     InvalidInput
         If the rig does not slide or has no frequency, or the gain does not lie between 0 and 1.
+    OutsideRange
+        If the vibration is outside the range of the friction model at a speed.
 
     Notes
     -----
@@ -174,6 +178,6 @@ def _coefficients(
     return lubrication_coefficients(
         lubricant,
         friction_coefficient=rig.friction_coefficient,
-        friction_ratio=friction_ratios(rig, prescribed_sine(rig), sliding_speed=sliding_speed),
+        friction_ratio=stated_friction_ratios(rig, sliding_speed=sliding_speed).require_within_range(),
         nominal_pressure=nominal_pressure,
     )

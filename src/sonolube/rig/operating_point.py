@@ -5,11 +5,15 @@ from dataclasses import dataclass, replace
 from sonolube.contact import contact_caveats, cube_tangential_stiffness, sinusoidal_motion
 from sonolube.contact.rough import contact_count, normal_stiffness, real_contact_area
 from sonolube.friction.models import FRICTION_MODELS, FrictionModel
+from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio
 from sonolube.rig.excitation import amplifier_power
-from sonolube.rig.friction_and_wear import friction_ratio, prescribed_sine
+from sonolube.rig.friction_and_wear import stated_friction_ratios
 from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.record import Rig
 from sonolube.wear import DEFAULT_WEAR_MODEL, WEAR_MODELS, cube_wear_rate, vibrating_cube_wear_rate
+
+COMPUTED = "computed"
+"""Status of a result within the range of its model."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -60,8 +64,15 @@ class FrictionPoint:
         Friction force without vibration. [N]
     friction_ratio : float
         Friction with vibration over friction without. []
+    raw_friction_ratio : float
+        That ratio by the formula of the model, also outside its range; NaN where the formula has none. []
     friction_reduction : float
-        One minus that ratio. []
+        One minus the friction ratio. []
+    status : str
+        "computed"; "outside_model_range" where the model has no meaning, and force, coefficient, ratio and reduction
+        are NaN.
+    reason : str or None
+        Why the result is outside the range of the model, and advice.
     friction_model : str
         Name of the friction model.
     citation : str
@@ -78,7 +89,10 @@ class FrictionPoint:
     friction_coefficient: float
     intrinsic_friction_force: float
     friction_ratio: float
+    raw_friction_ratio: float
     friction_reduction: float
+    status: str
+    reason: str | None
     friction_model: str
     citation: str
     vibration_amplitude: float
@@ -98,8 +112,15 @@ class WearPoint:
         Volume per sliding distance without vibration. [m2]
     wear_rate_ratio : float
         The one over the other. []
+    raw_wear_rate_ratio : float
+        That ratio by the formula of the model, also outside its range. []
     wear_reduction : float
-        One minus that ratio. []
+        One minus the ratio. []
+    status : str
+        "computed"; "outside_model_range" where the model has no meaning, and rate, ratio and reduction with vibration
+        are NaN.
+    reason : str or None
+        Why the result is outside the range of the model, and advice.
     wear_model : str
         Name of the wear model.
     vibration_amplitude : float
@@ -111,7 +132,10 @@ class WearPoint:
     wear_rate: float
     intrinsic_wear_rate: float
     wear_rate_ratio: float
+    raw_wear_rate_ratio: float
     wear_reduction: float
+    status: str
+    reason: str | None
     wear_model: str
     vibration_amplitude: float
     caveats: tuple[str, ...]
@@ -164,23 +188,23 @@ def friction_point(rig: Rig, *, model: str | None = None) -> FrictionPoint:
     chosen = rig if model is None else replace(rig, friction_model=_model_of(rig, model))
     return friction_under(
         chosen,
-        ratio=friction_ratio(chosen, prescribed_sine(chosen)),
+        ratio=stated_friction_ratios(chosen, sliding_speed=rig.sliding_speed),
         vibration_amplitude=rig.vibration_amplitude,
         actuator_power=_actuator_power(rig),
-        caveats=_caveats(rig, gap),
+        caveats=contact_caveats(rig.contact, separation=gap),
     )
 
 
 def friction_under(
-    rig: Rig, *, ratio: float, vibration_amplitude: float, actuator_power: float | None, caveats: tuple[str, ...]
+    rig: Rig, *, ratio: CheckedRatio, vibration_amplitude: float, actuator_power: float | None, caveats: tuple[str, ...]
 ) -> FrictionPoint:
     """Return the friction of a rig at a friction ratio.
 
     Parameters
     ----------
     rig : Rig
-    ratio : float
-        Friction with vibration over friction without, dimensionless.
+    ratio : CheckedRatio, shape ()
+        Friction with vibration over friction without.
     vibration_amplitude : float
         Vibration normal to the contact, zero to peak. [m]
     actuator_power : float or None
@@ -192,13 +216,16 @@ def friction_under(
     -------
     FrictionPoint
     """
-    intrinsic = rig.friction_coefficient * rig.normal_load
+    intrinsic, valid = rig.friction_coefficient * rig.normal_load, float(ratio.friction_ratio)
     return FrictionPoint(
-        friction_force=ratio * intrinsic,
-        friction_coefficient=ratio * rig.friction_coefficient,
+        friction_force=valid * intrinsic,
+        friction_coefficient=valid * rig.friction_coefficient,
         intrinsic_friction_force=intrinsic,
-        friction_ratio=ratio,
-        friction_reduction=1 - ratio,
+        friction_ratio=valid,
+        raw_friction_ratio=float(ratio.raw_friction_ratio),
+        friction_reduction=1 - valid,
+        status=OUTSIDE_MODEL_RANGE if ratio.reason else COMPUTED,
+        reason=str(ratio.reason) or None,
         friction_model=rig.friction_model.name,
         citation=rig.friction_model.citation,
         vibration_amplitude=vibration_amplitude,
@@ -239,14 +266,25 @@ def wear_point(rig: Rig, *, model: str = DEFAULT_WEAR_MODEL) -> WearPoint:
     .. [1] D 3.26 to 3.29 as they were evaluated, for the default model.
     """
     gap = rest_separation(rig)
+    caveats = contact_caveats(rig.contact, separation=gap)
+    if rig.vibration_amplitude >= gap:
+        caveats = (
+            *caveats,
+            f"vibration amplitude {rig.vibration_amplitude:.3g} m reaches the separation at rest, {gap:.3g} m: the "
+            "surfaces must ride higher under vibration than this model lets them; take a smaller amplitude",
+        )
     ratio = _wear_ratio(rig, model)
-    return wear_under(
-        rig, ratio=ratio, model=model, vibration_amplitude=rig.vibration_amplitude, caveats=_caveats(rig, gap)
-    )
+    return wear_under(rig, ratio=ratio, model=model, vibration_amplitude=rig.vibration_amplitude, caveats=caveats)
 
 
 def wear_under(
-    rig: Rig, *, ratio: float, model: str, vibration_amplitude: float, caveats: tuple[str, ...]
+    rig: Rig,
+    *,
+    ratio: float,
+    model: str,
+    vibration_amplitude: float,
+    caveats: tuple[str, ...],
+    reason: str | None = None,
 ) -> WearPoint:
     """Return the wear of a rig at a wear ratio.
 
@@ -261,17 +299,23 @@ def wear_under(
         Vibration normal to the contact, zero to peak. [m]
     caveats : tuple of str
         Reasons for caution about the numbers.
+    reason : str or None
+        Why the ratio is outside the range of the model; None inside it.
 
     Returns
     -------
     WearPoint
     """
     still = float(cube_wear_rate(rig.contact, normal_load=rig.normal_load))
+    valid = float("nan") if reason else ratio
     return WearPoint(
-        wear_rate=ratio * still,
+        wear_rate=valid * still,
         intrinsic_wear_rate=still,
-        wear_rate_ratio=ratio,
-        wear_reduction=1 - ratio,
+        wear_rate_ratio=valid,
+        raw_wear_rate_ratio=ratio,
+        wear_reduction=1 - valid,
+        status=OUTSIDE_MODEL_RANGE if reason else COMPUTED,
+        reason=reason,
         wear_model=model,
         vibration_amplitude=vibration_amplitude,
         caveats=caveats,
@@ -286,17 +330,6 @@ def _wear_ratio(rig: Rig, model: str) -> float:
     frequency = 1.0 if rig.drive is None else rig.drive.frequency  # without effect on wear models
     sine = sinusoidal_motion(rig.contact, normal_load=load, vibration_amplitude=amplitude, frequency=frequency)
     return float(WEAR_MODELS.named(model)(rig.contact, sine))
-
-
-def _caveats(rig: Rig, gap: float) -> tuple[str, ...]:
-    caveats = contact_caveats(rig.contact, separation=gap)
-    if rig.vibration_amplitude < gap:
-        return caveats
-    return (
-        *caveats,
-        f"vibration amplitude {rig.vibration_amplitude:.3g} m reaches the separation at rest, {gap:.3g} m: the "
-        "surfaces must ride higher under vibration than this model lets them; take a smaller amplitude",
-    )
 
 
 def _actuator_power(rig: Rig) -> float | None:

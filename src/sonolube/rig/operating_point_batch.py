@@ -11,21 +11,24 @@ from sonolube.dynamics import Status, SteadyStates
 from sonolube.dynamics.backend import Backend
 from sonolube.dynamics.kernels.peak_velocity import peak_velocities
 from sonolube.errors import SonolubeError
+from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio, checked_ratio
 from sonolube.rig.driven_rig import DrivenRig, driven_rig
 from sonolube.rig.excitation import voltage_range
+from sonolube.rig.friction_and_wear import friction_at_speeds
 from sonolube.rig.operating_point_grid import (
+    REFUSED,
     VIBRATION_NUMBERS,
     OperatingConditions,
     conditions_of,
     friction_and_power,
-    friction_at_speeds,
+    friction_status,
     points_by_vibration,
     steady_states_of,
 )
 from sonolube.rig.record import Rig
 from sonolube.rig.vibration import gap_motion
 
-STATUSES = (*(status.name.lower() for status in Status), "refused")
+STATUSES = (*(status.name.lower() for status in Status), REFUSED, OUTSIDE_MODEL_RANGE)
 """Statuses of an operating point, by code."""
 
 NUMBERS = (
@@ -33,6 +36,7 @@ NUMBERS = (
     "friction_reduction",
     "friction_coefficient",
     "friction_force",
+    "raw_friction_ratio",
     "vibration_amplitude",
     "vibration_velocity",
     "mean_displacement",
@@ -42,7 +46,7 @@ NUMBERS = (
 )
 """Numbers of an operating point, the columns of a batch."""
 
-_REFUSED = len(STATUSES) - 1
+_REFUSED = STATUSES.index(REFUSED)
 _REASONS = {
     "periodic": "the vibration repeats with the drive",
     "unstable": "the vibration repeats with the drive, but small disturbances grow; simulate the point for the"
@@ -60,7 +64,8 @@ class PointBatch:
     Parameters
     ----------
     numbers : dict of str to ndarray, shape (n,)
-        Columns by the names of `NUMBERS`, in SI; NaN for a point that was refused or did not converge.
+        Columns by the names of `NUMBERS`, in SI; NaN for a point that was refused or did not converge,
+        those of friction also outside the range of the friction model.
     status : ndarray of int, shape (n,)
         Indices into `STATUSES`.
     reason : ndarray of int, shape (n,)
@@ -134,9 +139,8 @@ def point_batch(
     refusal, reasons = _refusals(rig, settings, rest)
     status, reason = np.full(first.size, _REFUSED, dtype=np.int8), refusal
     numbers = np.full((5, first.size), np.nan)
-    ratio = np.full(speeds.size, np.nan)
+    friction = _no_friction(speeds.size)
     possible = np.flatnonzero(refusal == 0)
-    failures: dict[int, str] = {}
     if possible.size:
         states = steady_states_of(
             rig, OperatingConditions.of_columns(columns[:, first[possible]]), rest[possible], backend
@@ -146,14 +150,17 @@ def point_batch(
         numbers[:, possible] = _measures(states)
         place = np.full(first.size, -1)
         place[possible] = np.where(states.status == Status.NOT_CONVERGED, -1, np.arange(possible.size))
-        ratio, failures = _friction(rig, states, place[which], speeds)
+        friction = _friction(rig, states, place[which], speeds)
     reasons = (*_REASONS.values(), *reasons)
     point_status, point_reason = status[which], _shifted(reason, refusal)[which]
-    for point, text in failures.items():
-        if text not in reasons:
-            reasons = (*reasons, text)
-        point_status[point], point_reason[point] = _REFUSED, reasons.index(text)
-    found = friction_and_power(rig, columns, friction_ratio=ratio)
+    for text in np.unique(friction.reason[friction.reason != ""]):
+        members = friction.reason == text
+        point_status[members] = STATUSES.index(friction_status(str(text)))
+        point_reason[members] = len(reasons)
+        reasons = (*reasons, str(text))
+    found = friction_and_power(
+        rig, columns, friction_ratio=friction.friction_ratio, raw_friction_ratio=friction.raw_friction_ratio
+    )
     found |= dict(zip(VIBRATION_NUMBERS, numbers[:, which], strict=True))
     return PointBatch(
         numbers={name: found[name] for name in NUMBERS}, status=point_status, reason=point_reason, reasons=reasons
@@ -203,33 +210,48 @@ def _measures(states: SteadyStates) -> Floats:
     return np.stack([velocity if name == "vibration_velocity" else getattr(states, name) for name in VIBRATION_NUMBERS])
 
 
-def _friction(rig: Rig, states: SteadyStates, place: NDArray[np.intp], speeds: Floats) -> tuple[Floats, dict[int, str]]:
+def _no_friction(count: int) -> CheckedRatio:
+    """Return as many points without a friction ratio, to be filled in."""
+    ratio, raw = np.full((2, count), np.nan)
+    return CheckedRatio(friction_ratio=ratio, raw_friction_ratio=raw, reason=np.full(count, "", dtype=object))
+
+
+def _friction(rig: Rig, states: SteadyStates, place: NDArray[np.intp], speeds: Floats) -> CheckedRatio:
     """Return the friction ratio at each point, and the reason of points that vibrate but have none."""
-    ratio = np.full(speeds.size, np.nan)
-    failures: dict[int, str] = {}
+    found = _no_friction(speeds.size)
     open_points = np.flatnonzero(place >= 0)
     moving = open_points[speeds[open_points] > 0]
-    known = states.status != Status.NOT_CONVERGED
     if moving.size:
-        motions = GapMotionBatch(
-            mean_displacement=states.mean_displacement[known],
-            harmonics=states.harmonics[known],
-            frequency=states.frequency[known],
-        )
-        row = np.cumsum(known) - 1
-        ratio[moving] = rig.friction_model.batched_ratio(
-            rig.contact,
-            motions,
-            sliding_speed=speeds[moving],
-            motion=row[place[moving]],
-            friction_coefficient=rig.friction_coefficient,
-        )
-        open_points = open_points[np.isnan(ratio[open_points])]
+        _fill(found, moving, _batched_friction(rig, states, place[moving], speeds[moving]))
+        open_points = open_points[np.isnan(found.raw_friction_ratio[open_points])]
     for members in points_by_vibration(open_points, place):
         try:
             moving_gap = gap_motion(states, int(place[members[0]]))
-            ratio[members], texts = friction_at_speeds(rig, moving_gap, speeds[members])
+            _fill(found, members, friction_at_speeds(rig, moving_gap, speeds[members]))
         except SonolubeError as refusal:
-            texts = [str(refusal)] * members.size
-        failures |= {int(point): text for point, text in zip(members, texts, strict=True) if text}
-    return ratio, failures
+            found.reason[members] = str(refusal)
+    return found
+
+
+def _fill(found: CheckedRatio, members: NDArray[np.intp], part: CheckedRatio) -> None:
+    """Place the friction of some points."""
+    for name in ("friction_ratio", "raw_friction_ratio", "reason"):
+        getattr(found, name)[members] = getattr(part, name)
+
+
+def _batched_friction(rig: Rig, states: SteadyStates, place: NDArray[np.intp], speeds: Floats) -> CheckedRatio:
+    """Return the friction ratio at each of some moving points by the model's batched form; NaN where it has none."""
+    known = states.status != Status.NOT_CONVERGED
+    motions = GapMotionBatch(
+        mean_displacement=states.mean_displacement[known],
+        harmonics=states.harmonics[known],
+        frequency=states.frequency[known],
+    )
+    row = np.cumsum(known) - 1
+    raw = rig.friction_model.batched_ratio(
+        rig.contact, motions, sliding_speed=speeds, motion=row[place], friction_coefficient=rig.friction_coefficient
+    )
+    mean_force_ratio = (states.mean_normal_force / states.normal_load)[place]
+    return checked_ratio(
+        rig.friction_model, raw, mean_force_ratio=mean_force_ratio, gap_closed=states.gap_closed[place]
+    )

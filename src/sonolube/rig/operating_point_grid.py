@@ -8,19 +8,20 @@ from numpy.typing import ArrayLike, NDArray
 
 from sonolube.actuator.stack import require_allowed_voltage
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
-from sonolube.contact import GapMotion, separation
+from sonolube.contact import separation
 from sonolube.dynamics import Status, SteadyStates, steady_state
 from sonolube.dynamics.backend import Backend
 from sonolube.errors import InvalidInput, SonolubeError
+from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE
 from sonolube.rig.driven_rig import DrivenRig, driven_rig
 from sonolube.rig.excitation import amplifier_power, voltage_harmonics, voltage_range
-from sonolube.rig.friction_and_wear import friction_ratios
+from sonolube.rig.friction_and_wear import friction_at_speeds
 from sonolube.rig.linear_response import gap_law_of
 from sonolube.rig.record import Rig
 from sonolube.rig.vibration import gap_motion
 
 REFUSED = "refused"
-"""Status of an operating point that a limit of the stack, the contact or the friction model rules out."""
+"""Status of an operating point that a limit of the stack or the contact rules out."""
 
 CONDITIONS = ("voltage_peak_to_peak", "voltage_offset", "frequency", "normal_load")
 """Settings of a point apart from its sliding speed, in the order of the rows that hold them."""
@@ -41,7 +42,8 @@ Advance = Callable[[int, int], None]
 class OperatingPoints:
     """Operating points of a rig; every array has the shape of the broadcast settings.
 
-    The numbers of a point that was refused or did not converge are NaN, and `reason` holds the cause.
+    The numbers of a point that was refused or did not converge are NaN, and `reason` holds the cause; outside the range
+    of the friction model those of friction are.
 
     Parameters
     ----------
@@ -56,7 +58,8 @@ class OperatingPoints:
     sliding_speed : ndarray
         Macroscopic relative speed. [m/s]
     status : ndarray of str
-        "periodic", "unstable", "multistable" or "not_converged" by harmonic balance, or "refused".
+        "periodic", "unstable", "multistable" or "not_converged" by harmonic balance; "refused" by a limit of stack or
+        contact; "outside_model_range" where the friction model has no meaning for the vibration.
     reason : ndarray of str
         Meaning of the status, and advice.
     vibration_amplitude : ndarray
@@ -69,8 +72,10 @@ class OperatingPoints:
         Share of the period in which the contact carries less than a hundredth of the load. []
     friction_ratio : ndarray
         Friction with vibration over friction without, by the rig's friction model. []
+    raw_friction_ratio : ndarray
+        That ratio by the formula of the model, also outside its range. []
     friction_reduction : ndarray
-        One minus that ratio. []
+        One minus the friction ratio. []
     friction_coefficient : ndarray
         Mean friction force over the normal load. []
     friction_force : ndarray
@@ -95,6 +100,7 @@ class OperatingPoints:
     mean_displacement: Floats
     contact_loss_fraction: Floats
     friction_ratio: Floats
+    raw_friction_ratio: Floats
     friction_reduction: Floats
     friction_coefficient: Floats
     friction_force: Floats
@@ -129,7 +135,7 @@ class _Outcome:
 
     status: list[str]
     reason: list[str]
-    numbers: Floats  # five of the vibration, whether the gap closes, and the friction ratio
+    numbers: Floats  # five of the vibration, whether the gap closes, friction ratio and raw friction ratio
 
 
 def operating_points(
@@ -197,7 +203,7 @@ def operating_points(
     place = np.cumsum(possible) - 1
 
     status, reason = np.full((2, speeds.size), REFUSED, dtype=object)
-    numbers = np.full((7, speeds.size), np.nan)
+    numbers = np.full((8, speeds.size), np.nan)
     for setting, members in enumerate(points_by_vibration(np.arange(speeds.size), which.ravel())):
         if states is not None and possible[setting]:
             found = _outcome(rig, states, int(place[setting]), speeds[members])
@@ -207,19 +213,21 @@ def operating_points(
         if advance is not None:
             advance(setting + 1, possible.size)
     columns = columns.reshape(4, *shape)
-    *vibration, closed, ratio = numbers.reshape(7, *shape)
+    *vibration, closed, ratio, raw = numbers.reshape(8, *shape)
     return OperatingPoints(
         **dict(zip(CONDITIONS, columns, strict=True)),
         sliding_speed=speeds.reshape(shape),
         status=status.astype(np.str_).reshape(shape),
         reason=reason.astype(np.str_).reshape(shape),
         **dict(zip(VIBRATION_NUMBERS, vibration, strict=True)),
-        **friction_and_power(rig, columns, friction_ratio=ratio),
+        **friction_and_power(rig, columns, friction_ratio=ratio, raw_friction_ratio=raw),
         gap_closed=closed == 1,
     )
 
 
-def friction_and_power(rig: DrivenRig, columns: Floats, *, friction_ratio: Floats) -> dict[str, Floats]:
+def friction_and_power(
+    rig: DrivenRig, columns: Floats, *, friction_ratio: Floats, raw_friction_ratio: Floats
+) -> dict[str, Floats]:
     """Return friction force, coefficient, reduction and amplifier power from friction ratio and settings, by name.
 
     Parameters
@@ -229,6 +237,8 @@ def friction_and_power(rig: DrivenRig, columns: Floats, *, friction_ratio: Float
         Settings as `conditions_of` returns them.
     friction_ratio : ndarray
         At each point. []
+    raw_friction_ratio : ndarray
+        By the formula of the model, also outside its range. []
 
     Returns
     -------
@@ -237,6 +247,7 @@ def friction_and_power(rig: DrivenRig, columns: Floats, *, friction_ratio: Float
     u, offset, f, load = columns
     return {
         "friction_ratio": friction_ratio,
+        "raw_friction_ratio": raw_friction_ratio,
         "friction_reduction": 1 - friction_ratio,
         "friction_coefficient": friction_ratio * rig.friction_coefficient,
         "friction_force": friction_ratio * rig.friction_coefficient * load,
@@ -369,11 +380,11 @@ def points_by_vibration(points: NDArray[np.intp], vibration: NDArray[np.intp]) -
 
 def _outcome(rig: Rig, states: SteadyStates, point: int, speeds: Floats) -> _Outcome:
     known, reason = Status(int(states.status[point])), states.reason(point)
-    status, numbers = known.name.lower(), np.full((7, speeds.size), np.nan)
+    status, numbers = known.name.lower(), np.full((8, speeds.size), np.nan)
     if known is Status.NOT_CONVERGED:
         return _Outcome(status=[status] * speeds.size, reason=[reason] * speeds.size, numbers=numbers)
     moving = gap_motion(states, point)
-    numbers[:-1].T[:] = (
+    numbers[:-2].T[:] = (
         states.vibration_amplitude[point],
         np.abs(moving.velocity).max(),
         states.mean_displacement[point],
@@ -381,20 +392,17 @@ def _outcome(rig: Rig, states: SteadyStates, point: int, speeds: Floats) -> _Out
         states.dissipated_power[point],
         states.gap_closed[point],
     )
-    numbers[-1], refusals = friction_at_speeds(rig, moving, speeds)
+    found = friction_at_speeds(rig, moving, speeds)
+    numbers[-2], numbers[-1] = found.friction_ratio, found.raw_friction_ratio
     return _Outcome(
-        status=[REFUSED if refusal else status for refusal in refusals],
-        reason=[refusal or reason for refusal in refusals],
+        status=[friction_status(objection) or status for objection in found.reason],
+        reason=[objection or reason for objection in found.reason],
         numbers=numbers,
     )
 
 
-def friction_at_speeds(rig: Rig, moving: GapMotion, speeds: Floats) -> tuple[Floats, list[str]]:
-    """Return the friction ratio at each sliding speed, and the reason where there is none."""
-    try:
-        return friction_ratios(rig, moving, sliding_speed=speeds), [""] * speeds.size
-    except SonolubeError as refusal:
-        if speeds.size == 1:
-            return np.full(1, np.nan), [str(refusal)]
-    ratios, refusals = zip(*(friction_at_speeds(rig, moving, speed) for speed in speeds[:, np.newaxis]), strict=True)
-    return np.concatenate(ratios), [text for texts in refusals for text in texts]
+def friction_status(objection: str) -> str:
+    """Return the status of a point without friction from the reason, empty where there is friction."""
+    if not objection:
+        return ""
+    return OUTSIDE_MODEL_RANGE if objection.startswith(OUTSIDE_MODEL_RANGE) else REFUSED

@@ -35,8 +35,8 @@ def simulation_dataset(rig: Rig, result: Simulation) -> "xr.Dataset":
     values = {"time": time, "displacement": motion.displacement, "normal_force": motion.normal_force}
     labelled = dataset(values, along="time", title=f"Steady motion of {rig.title}")
     labelled.attrs |= {
-        "status": vibration.status,
-        "reason": vibration.reason,
+        "status": result.status,
+        "reason": result.reason,
         "attractor": vibration.attractor,
         "repetition_periods": vibration.repetition_periods,
         "normal_load_N": motion.normal_load,

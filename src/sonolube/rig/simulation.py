@@ -1,16 +1,16 @@
 """Multi-scale simulation of a rig: steady vibration of structure and contact, and friction and wear under it."""
 
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
 from sonolube.actuator import stack_caveats
 from sonolube.contact import GapMotion, contact_caveats
+from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio
 from sonolube.rig.driven_rig import DrivenRig, driven_rig
 from sonolube.rig.excitation import amplifier_power, voltage_harmonics, voltage_range
-from sonolube.rig.friction_and_wear import friction_ratio, wear_model_of, wear_rate_ratio
+from sonolube.rig.friction_and_wear import friction_ratios, wear_model_of, wear_rate_ratio
 from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.operating_point import FrictionPoint, WearPoint, friction_under, wear_under
 from sonolube.rig.record import Rig
@@ -23,6 +23,10 @@ class Simulation:
 
     Parameters
     ----------
+    status : str
+        Status of the vibration; "outside_model_range" where the friction model has no meaning for it.
+    reason : str
+        Meaning of the status, and description of the motion.
     vibration : SteadyVibration
         Steady vibration of the tip: status, kind, amplitudes and sampled motion.
     friction : FrictionPoint
@@ -33,6 +37,8 @@ class Simulation:
         Reasons for caution about the numbers, one line each.
     """
 
+    status: str
+    reason: str
     vibration: SteadyVibration
     friction: FrictionPoint
     wear: WearPoint
@@ -66,29 +72,42 @@ def simulate(rig: Rig) -> Simulation:
     gap = rest_separation(rig)
     vibration = steady_vibration(rig)
     caveats = (*contact_caveats(rig.contact, separation=gap), *_caveats(rig, vibration))
+    friction = friction_under(
+        rig,
+        ratio=_mean_friction(rig, vibration.motions),
+        vibration_amplitude=vibration.vibration_amplitude,
+        actuator_power=float(amplifier_power(rig.drive, capacitance=rig.stack.free_capacitance)),
+        caveats=caveats,
+    )
     return Simulation(
+        status=OUTSIDE_MODEL_RANGE if friction.reason else vibration.status,
+        reason=friction.reason or vibration.reason,
         vibration=vibration,
-        friction=friction_under(
-            rig,
-            ratio=_mean(partial(friction_ratio, rig), vibration.motions),
-            vibration_amplitude=vibration.vibration_amplitude,
-            actuator_power=float(amplifier_power(rig.drive, capacitance=rig.stack.free_capacitance)),
-            caveats=caveats,
-        ),
+        friction=friction,
         wear=wear_under(
             rig,
-            ratio=_mean(partial(wear_rate_ratio, rig), vibration.motions),
+            ratio=_mean([wear_rate_ratio(rig, motion) for motion in vibration.motions], vibration.motions),
             model=wear_model_of(rig),
             vibration_amplitude=vibration.vibration_amplitude,
             caveats=caveats,
+            reason=friction.reason if wear_model_of(rig) == friction.friction_model else None,
         ),
         caveats=caveats,
     )
 
 
-def _mean(of: Callable[[GapMotion], float], motions: tuple[GapMotion, ...]) -> float:
+def _mean_friction(rig: DrivenRig, motions: tuple[GapMotion, ...]) -> CheckedRatio:
+    """Return the mean friction ratio over several motions; that of the first outside the model's range withholds it."""
+    every = [friction_ratios(rig, motion, sliding_speed=rig.sliding_speed) for motion in motions]
+    raw = _mean([float(one.raw_friction_ratio) for one in every], motions)
+    reason = next((str(one.reason) for one in every if one.reason), "")
+    valid = np.asarray(np.nan if reason else raw)
+    return CheckedRatio(friction_ratio=valid, raw_friction_ratio=np.asarray(raw), reason=np.asarray(reason))
+
+
+def _mean(values: Sequence[float], motions: tuple[GapMotion, ...]) -> float:
     """Return the mean over time of a quantity of several motions of unequal duration."""
-    return float(np.average([of(motion) for motion in motions], weights=[1 / motion.frequency for motion in motions]))
+    return float(np.average(values, weights=[1 / motion.frequency for motion in motions]))
 
 
 def _caveats(rig: DrivenRig, vibration: SteadyVibration) -> tuple[str, ...]:

@@ -107,7 +107,8 @@ class Prediction:
     cross_validated : float or None
         Friction ratio by the fit to the other sets.
     reason : str or None
-        Reason why the variant does not apply to the test.
+        Reason why the variant does not apply to the test, or why its ratio, here always that of the formula, is outside
+        the range of the friction model.
     """
 
     test: MeasuredConditions
@@ -166,6 +167,8 @@ class RigPrediction:
     model : ModelVariant
     friction_ratio : float or None
         Friction with vibration over friction without; None where the variant does not apply. []
+    raw_friction_ratio : float or None
+        That ratio by the formula, also outside the range of the friction model. []
     uncertainty : float or None
         Root mean square cross-validation error; None where the variant was assessed on fewer than two sets, or some
         of their tests are outside its range.
@@ -175,6 +178,7 @@ class RigPrediction:
 
     model: ModelVariant
     friction_ratio: float | None
+    raw_friction_ratio: float | None
     uncertainty: float | None
     reason: str | None
 
@@ -310,25 +314,29 @@ def _prediction(test: MeasuredConditions, fit: Fit, left_out: Fit) -> Prediction
     missing = fit.variant.inapplicability(test)
     if missing:
         return Prediction(test=test, fitted=None, cross_validated=None, reason=missing)
+    fitted = fit.predict(test)
     return Prediction(
         test=test,
-        fitted=fit.predict(test),
+        fitted=fitted,
         cross_validated=left_out.predict(test),
-        reason=fit.variant.range_violation(test, *fit.values),
+        reason=fit.variant.range_violation(test, *fit.values) or fit.variant.range_objection(test, fitted),
     )
 
 
 def _rig_prediction(one: ComparedFit, rig: VibratedRig) -> RigPrediction:
     """Return the friction ratio of a rig by one fitted variant, its cross-validation error as the uncertainty."""
     missing = one.model.inapplicability(rig)
-    ratio = None if missing else one.fit.predict(rig)
+    raw = None if missing else one.fit.predict(rig)
+    objection = one.model.range_objection(rig, raw)
+    ratio = None if objection else raw
     errors = one.assessment.cross_validation_errors if one.assessment else None
     known = errors is not None and not errors.out_of_range and len(one.sets) > 1 and ratio is not None
     return RigPrediction(
         model=one.model,
         friction_ratio=ratio,
+        raw_friction_ratio=raw,
         uncertainty=errors.rms if errors and known else None,
-        reason=missing or one.model.range_violation(rig, *one.fit.values),
+        reason=missing or objection or one.model.range_violation(rig, *one.fit.values),
     )
 
 

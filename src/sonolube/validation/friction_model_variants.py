@@ -134,6 +134,7 @@ FRICTION_MODEL_VARIANTS: Final = (
         _full_period,
         required_inputs=NORMAL_VIBRATION,
         source="D 3.46 to 3.48",
+        friction_model=friction.Dong2015FullPeriod,
     ),
     ModelVariant(
         "dong-2015-half-period",
@@ -141,6 +142,7 @@ FRICTION_MODEL_VARIANTS: Final = (
         _half_period,
         required_inputs=NORMAL_VIBRATION,
         source="D 3.15",
+        friction_model=friction.Dong2015HalfPeriod,
     ),
     ModelVariant(
         "dong-2015-load-balanced",
@@ -148,6 +150,7 @@ FRICTION_MODEL_VARIANTS: Final = (
         _load_balanced,
         required_inputs=NORMAL_VIBRATION,
         source=_MEAN_GAP_CORRECTED,
+        friction_model=friction.Dong2015LoadBalanced,
     ),
     ModelVariant(
         "dong-2015-load-balanced-per-rig",
@@ -156,6 +159,7 @@ FRICTION_MODEL_VARIANTS: Final = (
         per_rig((NOMINAL_AREA_FACTOR,), *FITTED_RIGS),
         required_inputs=NORMAL_VIBRATION,
         source=_MEAN_GAP_CORRECTED,
+        friction_model=friction.Dong2015LoadBalanced,
     ),
     ModelVariant(
         "kinematic", "cos(theta) alone", _kinematic, required_inputs=NORMAL_VIBRATION, source=_KINEMATIC_SOURCE

@@ -6,7 +6,10 @@ from functools import lru_cache
 from types import MappingProxyType
 from typing import Final, SupportsFloat
 
+from sonolube.contact import separation
 from sonolube.errors import OutsideRange
+from sonolube.friction import FrictionModel, MeanGap
+from sonolube.friction.models.range_check import checked_ratio
 from sonolube.validation.free_parameters import FreeParameter
 from sonolube.validation.published_tests import Conditions
 
@@ -52,6 +55,8 @@ class ModelVariant:
         Inputs that the conditions must have, keys of `REQUIRED_INPUTS`.
     source : str
         Publication of the model.
+    friction_model : type of FrictionModel, optional
+        Friction model of the program whose range of validity the variant has.
     """
 
     name: str
@@ -60,6 +65,7 @@ class ModelVariant:
     parameters: tuple[FreeParameter, ...] = ()
     required_inputs: tuple[str, ...] = NORMAL_VIBRATION_AND_FRICTION
     source: str = "this program"
+    friction_model: type[FrictionModel] | None = None
 
     def inapplicability(self, conditions: Conditions) -> str | None:
         """Return the required inputs that the conditions lack, as a sentence; None if they lack none."""
@@ -75,6 +81,29 @@ class ModelVariant:
         """Return the reason why the conditions are outside the range of the model; None inside it."""
         result = self._evaluate(conditions, values)
         return result if isinstance(result, str) else None
+
+    def range_objection(self, conditions: Conditions, ratio: float | None) -> str | None:
+        """Return why a ratio of the formula is beyond what the friction model can mean; None where it is not.
+
+        Parameters
+        ----------
+        conditions : Conditions
+        ratio : float or None
+            Friction ratio as `predict` returns it. []
+
+        Returns
+        -------
+        str or None
+        """
+        if self.friction_model is None or ratio is None:
+            return None
+        contact, load, amplitude = (
+            getattr(conditions, name) for name in ("contact", "normal_load", "vibration_amplitude")
+        )
+        about_rest = self.friction_model.mean_gap is MeanGap.AT_REST
+        closed = about_rest and amplitude >= float(separation(contact, normal_load=load))
+        found = checked_ratio(self.friction_model(), ratio, mean_force_ratio=1.0, gap_closed=closed)
+        return str(found.reason) or None
 
     def _evaluate(self, conditions: Conditions, values: tuple[float, ...]) -> float | str:
         """Return the friction ratio, or the reason why the conditions are outside the range of the model."""

@@ -32,7 +32,7 @@ from sonolube.validation.figures import comparison_figures, rig_figure
 from sonolube.validation.rig_conditions import vibrated_rig
 from sonolube.validation.tables import comparison_csv, comparison_dataset, parameter_text
 
-_PREDICTED = ("friction_ratio", "uncertainty", "reason")
+_PREDICTED = ("friction_ratio", "raw_friction_ratio", "uncertainty", "reason")
 
 
 def compare(

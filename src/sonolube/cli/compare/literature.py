@@ -31,20 +31,23 @@ def literature(
 
     Example: sonolube literature examples/rigs/tribometer.toml
     """
-    known = point = None
+    known = point = outside = None
     if rig is not None:
         known = read_rig(rig, changes=changes or ())
         speed = known.sliding_speed
         if not speed > 0:
             raise InvalidInput(f"{rig}: the map needs a sliding.sliding_speed above 0")
+        friction = friction_point(known)
+        outside = friction.reason
         point = StudyPoint(
             label=rig.stem,
             direction="perpendicular",
-            friction_reduction=friction_point(known).friction_reduction,
+            friction_reduction=friction.friction_reduction,
             sliding_speed=(speed, speed),
             nominal_pressure=known.normal_load / known.contact.nominal_area,
         )
-    deliver(LiteratureAnswer(studies=previous_studies(), rig=known, point=point), folder=out, as_json=json)
+    answer = LiteratureAnswer(studies=previous_studies(), rig=known, point=point, outside=outside)
+    deliver(answer, folder=out, as_json=json)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,14 +57,15 @@ class LiteratureAnswer(Answer):
     studies: tuple[PreviousStudy, ...]
     rig: Rig | None
     point: StudyPoint | None
+    outside: str | None
 
     def lines(self) -> list[str]:
         """Studies with their text and numbers, and the rig."""
         lines = [line for study in self.studies for line in _study_lines(study)]
         for point in [self.point] if self.point else []:
             place = f"{format_si(_speed(point), 'm/s')}, {format_si(point.nominal_pressure or 0.0, 'Pa')}"
-            reduction = 100 * point.friction_reduction
-            lines.append(f"{point.label}: {place}, computed friction reduction {reduction:.0f} %")
+            reduction = self.outside or f"computed friction reduction {100 * point.friction_reduction:.0f} %"
+            lines.append(f"{point.label}: {place}, {reduction}")
         return lines
 
     def object(self) -> dict[str, Any]:
@@ -72,14 +76,15 @@ class LiteratureAnswer(Answer):
                 {
                     "sliding_speed": _speed(self.point),
                     "nominal_pressure": self.point.nominal_pressure,
-                    "friction_reduction": self.point.friction_reduction,
+                    "friction_reduction": None if self.outside else self.point.friction_reduction,
                 }
-            )
+            ) | {"reason": self.outside}
         return content
 
     def figures(self) -> Mapping[str, Drawing]:
         """Friction reduction of the studies over sliding speed and nominal pressure."""
-        return {"map-of-studies": Drawing(draw=lambda: study_map(self.point))}
+        point = None if self.outside else self.point
+        return {"map-of-studies": Drawing(draw=lambda: study_map(point))}
 
 
 def _speed(point: StudyPoint) -> float:

@@ -1,8 +1,9 @@
 """Parts, horns and transducers from a name or a STEP file and sizes such as length=127mm."""
 
 import inspect
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -32,6 +33,9 @@ if TYPE_CHECKING:
 
 ALL_TRANSDUCERS = {**TRANSDUCERS, **DONG_2015_TRANSDUCERS}
 """General transducers and those of the dissertation, by name."""
+
+PART_WIRING: Mapping[str, str] = MappingProxyType({"ceramic": "pic255", "poled": "z", "drive": "+z", "ground": "-z"})
+"""Ceramic, poling and electrodes of a part that is no transducer, where the options are absent."""
 
 _LARGEST = 1e6  # m; the CAD kernel fails on larger parts with messages of its own
 _ELEMENTS_ACROSS = 1.6  # of a part as thick as a cube of its volume would be
@@ -100,7 +104,7 @@ def named_media(part: str, sizes: Sequence[str], material_name: str) -> dict[str
     return dict.fromkeys(named_part(part, sizes).regions, medium_from_material(solid))
 
 
-def named_transducer(part: str, sizes: Sequence[str], **wiring: str) -> Transducer:
+def named_transducer(part: str, sizes: Sequence[str], **wiring: str | None) -> Transducer:
     """Transducer by its name and sizes, or a part or STEP file of one ceramic between two electrodes.
 
     Parameters
@@ -109,17 +113,58 @@ def named_transducer(part: str, sizes: Sequence[str], **wiring: str) -> Transduc
         A name of `ALL_TRANSDUCERS` or `PARTS`, or a path that ends in .step or .stp.
     sizes : sequence of str
         Such as "length=12mm".
-    **wiring : str
-        Of a part that is no transducer: `ceramic`, `along`, `driven` and `grounded`.
+    **wiring : str or None
+        `ceramic`, `poled`, `drive` and `ground` of a part that is no transducer, those of `PART_WIRING` where None; of
+        a transducer, those that it takes.
 
     Returns
     -------
     Transducer
+
+    Raises
+    ------
+    InvalidInput
+        If a transducer does not take an option.
+    MissingProperty
+        If the ceramic has no complete set of constants.
+    UnknownName
+        If there is no such ceramic; the closest one is suggested.
     """
+    given = {option: value for option, value in wiring.items() if value is not None}
     if part not in ALL_TRANSDUCERS:
-        return poled_part(named_part(part, sizes), **wiring)
+        known = {**PART_WIRING, **given}
+        return poled_part(
+            named_part(part, sizes),
+            ceramic=known["ceramic"],
+            along=known["poled"],
+            driven=known["drive"],
+            grounded=known["ground"],
+        )
     function = ALL_TRANSDUCERS[part]
-    return function(**sizes_in_si(part, function, sizes))
+    taken = inspect.signature(function).parameters
+    for option, value in given.items():
+        if option not in taken:
+            raise InvalidInput(f"--{option} {value}: {part} has its own; leave it out, or take another part")
+    return function(**sizes_in_si(part, function, sizes), **given)
+
+
+def ceramic_of(part: str, ceramic: str | None) -> str:
+    """Name of the ceramic of a transducer, or of a part between two electrodes.
+
+    Parameters
+    ----------
+    part : str
+        As in `named_transducer`.
+    ceramic : str or None
+        As given; None for that of the part.
+
+    Returns
+    -------
+    str
+    """
+    if ceramic is not None or part not in ALL_TRANSDUCERS:
+        return ceramic or PART_WIRING["ceramic"]
+    return str(inspect.signature(ALL_TRANSDUCERS[part]).parameters["ceramic"].default)
 
 
 def named_horn(

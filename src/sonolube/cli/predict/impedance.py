@@ -13,7 +13,7 @@ from sonolube.checks import require_positive
 from sonolube.cli.console.answer import Answer, deliver, si
 from sonolube.cli.console.options import OUT, Json, Out, Sizes, TypedNumber, si_option
 from sonolube.cli.console.outputs import OutputFolder
-from sonolube.cli.console.parts import longest_axis, named_transducer, starting_size
+from sonolube.cli.console.parts import ceramic_of, longest_axis, named_transducer, starting_size
 from sonolube.cli.console.progress import progress
 from sonolube.errors import InvalidInput
 from sonolube.fem import Transducer
@@ -39,10 +39,15 @@ def compute(
     clamp: Annotated[
         list[str] | None, typer.Option(metavar="FACE", help="A face held still for a second spectrum, such as back.-z.")
     ] = None,
-    ceramic: Annotated[str, typer.Option(metavar="NAME", help="Ceramic of a part that is no transducer.")] = "pic255",
-    poled: Annotated[str, typer.Option(metavar="x|y|z", help="Direction in which such a part is poled.")] = "z",
-    drive: Annotated[str, typer.Option(metavar="FACE", help="Its driven electrode.")] = "+z",
-    ground: Annotated[str, typer.Option(metavar="FACE", help="Its grounded electrode.")] = "-z",
+    ceramic: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="Ceramic of the stack or of a part that is no transducer; pic255."),
+    ] = None,
+    poled: Annotated[
+        str | None, typer.Option(metavar="x|y|z", help="Direction in which such a part is poled; z.")
+    ] = None,
+    drive: Annotated[str | None, typer.Option(metavar="FACE", help="Its driven electrode; +z.")] = None,
+    ground: Annotated[str | None, typer.Option(metavar="FACE", help="Its grounded electrode; -z.")] = None,
     measured: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Spectrum to draw over it, as `measure impedance` reads it.")
     ] = None,
@@ -63,7 +68,7 @@ def compute(
         raise InvalidInput(f"--from must lie below --to, got {lowest} and {highest}")
     frequency = np.linspace(float(require_positive(frequency=lowest)), highest, count)
     reference = None if measured is None else read_impedance(measured)
-    transducer = named_transducer(part, sizes or [], ceramic=ceramic, along=poled, driven=drive, grounded=ground)
+    transducer = named_transducer(part, sizes or [], ceramic=ceramic, poled=poled, drive=drive, ground=ground)
     with progress("meshing and solving") as advance:
         spectra = supported_spectra(
             transducer,
@@ -74,7 +79,14 @@ def compute(
             relative_tolerance=tolerance,
             advance=advance,
         )
-    answer = ImpedanceAnswer(part=part, transducer=transducer, spectra=spectra, measured=reference, with_modes=vtu)
+    answer = ImpedanceAnswer(
+        part=part,
+        ceramic=ceramic_of(part, ceramic),
+        transducer=transducer,
+        spectra=spectra,
+        measured=reference,
+        with_modes=vtu,
+    )
     deliver(answer, folder=out, as_json=json)
 
 
@@ -83,6 +95,7 @@ class ImpedanceAnswer(Answer):
     """Impedance spectra of a transducer with their coupled modes, beside a measured spectrum where there is one."""
 
     part: str
+    ceramic: str
     transducer: Transducer
     spectra: Mapping[str, SupportedSpectrum]
     measured: ImpedanceSpectrum | None
@@ -90,7 +103,7 @@ class ImpedanceAnswer(Answer):
 
     def lines(self) -> list[str]:
         """Capacitance and coupled modes of each spectrum, and the least impedance measured."""
-        lines = [f"{self.part}: {', '.join(self.transducer.electrodes.driven)} driven"]
+        lines = [f"{self.part} of {self.ceramic}: {', '.join(self.transducer.electrodes.driven)} driven"]
         for name, spectrum in self.spectra.items():
             port, lowest = spectrum.port, float(spectrum.response.frequency[0])
             lines.append(
@@ -117,6 +130,7 @@ class ImpedanceAnswer(Answer):
         electrodes, measured = self.transducer.electrodes, self.measured
         return {
             "part": self.part,
+            "ceramic": self.ceramic,
             "electrodes": {"driven": list(electrodes.driven), "grounded": list(electrodes.grounded)},
             "spectra": {name: _spectrum_object(spectrum) for name, spectrum in self.spectra.items()},
             "dimensions": [

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass
+from math import isnan
 from typing import Any
 
 import xarray as xr
@@ -21,7 +22,8 @@ class RigRecord(Answer):
     ----------
     rig : Rig
     result : dataclass
-        Its fields named in the vocabulary, and those of records within it, are the quantities; None is left out.
+        Its fields named in the vocabulary, and those of records within it, are the quantities; None is left out, NaN
+        stands for a value outside the range of a model, null in JSON.
     drawings : mapping of str to Drawing
     datasets : mapping of str to xarray.Dataset
     """
@@ -33,8 +35,13 @@ class RigRecord(Answer):
 
     def lines(self) -> list[str]:
         """Load, quantities with the meaning and unit of the vocabulary, and text but for the status."""
-        known = quantities()
-        rows = [(known[name].meaning, format_si(value, known[name].unit)) for name, value in self._values()]
+        known, values = quantities(), self._values()
+        if all(value is not None for _, value in values):
+            values = [(name, value) for name, value in values if not name.startswith("raw_")]  # equal to the valid ones
+        rows = [
+            (known[name].meaning, "none" if value is None else format_si(value, known[name].unit))
+            for name, value in values
+        ]
         rows += [(name.replace("_", " "), text) for name, text in self._texts() if name != "status"]
         return [f"{self.rig.title}, {format_si(self.rig.normal_load, 'N')}", *aligned(rows)]
 
@@ -55,10 +62,14 @@ class RigRecord(Answer):
         """Datasets of the record."""
         return self.datasets
 
-    def _values(self) -> list[tuple[str, float]]:
-        """Fields that are quantities of the vocabulary, with their values in SI."""
+    def _values(self) -> list[tuple[str, float | None]]:
+        """Fields that are quantities of the vocabulary, with their values in SI; None outside the range of a model."""
         fields = _flat(self.result).items()
-        return [(name, value) for name, value in fields if name in quantities() and isinstance(value, int | float)]
+        return [
+            (name, None if isnan(value) else value)
+            for name, value in fields
+            if name in quantities() and isinstance(value, int | float)
+        ]
 
     def _texts(self) -> list[tuple[str, str]]:
         """Fields that are text, such as the friction model."""

@@ -8,10 +8,10 @@ from numpy.typing import ArrayLike
 from sonolube.checks import Floats, require_non_negative
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.metrics import EfficiencyLine, friction_at_power, power_for_friction
-from sonolube.rig import Rig, friction_ratios, operating_points
+from sonolube.rig import Rig, operating_points
 from sonolube.rig.driven_rig import require_drive
 from sonolube.rig.excitation import amplifier_power
-from sonolube.rig.friction_and_wear import prescribed_sine
+from sonolube.rig.friction_and_wear import stated_friction_ratios
 
 _RESOLUTION = 1e-6  # of the intrinsic friction force, by which neighbouring points must differ
 
@@ -241,11 +241,7 @@ def _sine_ratios(rig: Rig, volts: Floats) -> Floats:
     ratios = np.ones(volts.size)
     for i in range(1, volts.size):
         vibrating = replace(rig, vibration_amplitude=amplitude_per_volt * volts[i])
-        try:
-            motion = prescribed_sine(vibrating)
-            ratios[i] = friction_ratios(vibrating, motion, sliding_speed=rig.sliding_speed)
-        except OutsideRange:
-            ratios[i] = np.nan
+        ratios[i] = stated_friction_ratios(vibrating, sliding_speed=rig.sliding_speed).friction_ratio
     return ratios
 
 

@@ -14,7 +14,7 @@ from sonolube.dynamics import Status
 from sonolube.dynamics.sensitivities import StructureChange, steady_state_sensitivities
 from sonolube.rig import steady_states
 from sonolube.rig.driven_rig import DrivenRig
-from sonolube.rig.friction_and_wear import friction_ratio, prescribed_sine
+from sonolube.rig.friction_and_wear import stated_friction_ratios
 
 _STEP = 1e-4  # relative, of the finite differences along the surface of constant friction
 _FRICTION_STEP = 1e-3  # relative, of the finite differences of the friction ratio
@@ -321,7 +321,7 @@ def _friction_derivatives(rig: DrivenRig, amplitude: float) -> tuple[float, floa
 
     def ratio(a: float, f: float) -> float:
         changed = replace(rig, vibration_amplitude=a, drive=replace(drive, frequency=f))
-        return friction_ratio(changed, prescribed_sine(changed))
+        return float(stated_friction_ratios(changed, sliding_speed=rig.sliding_speed).raw_friction_ratio)
 
     h = _FRICTION_STEP
     a, f = amplitude, drive.frequency

@@ -180,7 +180,7 @@ def _illinois_root(residual: Callable[[float], float], low: float, high: float, 
 
 
 def _friction_ratios(rig: DrivenRig, frequency: Floats, swing: Floats) -> Floats:
-    """Friction ratio of a rig at the broadcast frequencies and peak-to-peak voltages."""
+    """Friction ratio of a rig by its model's formula at the broadcast frequencies and peak-to-peak voltages."""
     f, volts = np.broadcast_arrays(frequency, swing)
     points = point_batch(rig, frequency=f, voltage_peak_to_peak=volts, voltage_offset=rig.drive.offset_ratio * volts)
-    return np.asarray(points.numbers["friction_ratio"].reshape(f.shape))
+    return np.asarray(points.numbers["raw_friction_ratio"].reshape(f.shape))

@@ -16,9 +16,34 @@ from sonolube.friction.models.kinematic import kinematic_mean
 from sonolube.friction.models.model import FrictionModel, MeanGap
 
 
+class _CubeModel(FrictionModel):
+    """Friction as stiffness of the cube times the deformation at rest: an elastic force, below the limit of slip."""
+
+    __slots__ = ()
+
+    range_note: ClassVar[str] = (
+        "the stiffness of the cube times the deformation at rest exceeds mu F_N, at which the contact slips; lower the"
+        " amplitude or the sliding speed, or use asperity_stick_slip"
+    )
+
+    def ratio_bounds(self, *, mean_force_ratio: Floats) -> tuple[Floats, Floats]:
+        """Return the lowest and the highest friction ratio that the model can mean: 0 and 1, no more than mu F_N. []
+
+        Parameters
+        ----------
+        mean_force_ratio : ndarray, any shape
+            Without effect in this model, whose deformation is that under the load at rest.
+
+        Returns
+        -------
+        tuple of ndarray, each of the shape of `mean_force_ratio`
+        """
+        return np.zeros_like(mean_force_ratio), np.ones_like(mean_force_ratio)
+
+
 @final
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Dong2015FullPeriod(FrictionModel):
+class Dong2015FullPeriod(_CubeModel):
     r"""Stiffness of the cube times the kinematic factor, averaged over the full period, as the dissertation prints it.
 
     Notes
@@ -27,7 +52,8 @@ class Dong2015FullPeriod(FrictionModel):
 
     The tangential deformation is that at rest, and the component of friction along the sliding direction is averaged.
     The stiffness of the cube is proportional to the square of the area, so that vibration about the separation at rest
-    increases friction.
+    increases friction. Where the mean exceeds 1 the elastic force exceeds mu F_N, at which the contact slips; such
+    ratios are the formula's, and `model_friction` withholds them.
 
     See Also
     --------
@@ -78,7 +104,7 @@ class Dong2015FullPeriod(FrictionModel):
 
 @final
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Dong2015HalfPeriod(FrictionModel):
+class Dong2015HalfPeriod(_CubeModel):
     r"""Stiffness of the cube averaged over the half period in which the gap is wider than at rest.
 
     Notes
@@ -144,7 +170,7 @@ class Dong2015HalfPeriod(FrictionModel):
 
 @final
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Dong2015LoadBalanced(FrictionModel):
+class Dong2015LoadBalanced(_CubeModel):
     """Stiffness of the cube times the kinematic factor, about the mean gap at which the mean force equals the load.
 
     Notes
@@ -163,6 +189,7 @@ class Dong2015LoadBalanced(FrictionModel):
 
     name: ClassVar[str] = "dong_2015_load_balanced"
     citation: ClassVar[str] = "D 3.46 to 3.48, about the mean gap that balances the load"
+    needs_open_gap: ClassVar[bool] = False  # of the motion given; `ratio` refuses one that closes the balanced gap
 
     def ratio(
         self,

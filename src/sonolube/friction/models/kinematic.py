@@ -50,6 +50,8 @@ class Kinematic(FrictionModel):
     name: ClassVar[str] = "kinematic"
     citation: ClassVar[str] = "D 3.46, with the resultant velocity where v_1 is printed"
 
+    needs_open_gap: ClassVar[bool] = False
+
     amplitude_fraction: float = parameter(1.0, positive=True)
 
     def ratio(

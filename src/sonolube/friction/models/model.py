@@ -112,6 +112,10 @@ class FrictionModel(ABC):
         Mean gap about which a prescribed sine is taken for this model.
     rate_dependent : bool
         Whether frequency and sliding speed enter; where not, a prescribed sine of any frequency gives the same.
+    needs_open_gap : bool
+        Whether the model loses its meaning where the mean planes meet within the period.
+    range_note : str
+        Why a ratio beyond `ratio_bounds` has no meaning in the model, and advice.
     """
 
     __slots__ = ()
@@ -120,6 +124,11 @@ class FrictionModel(ABC):
     citation: ClassVar[str]
     mean_gap: ClassVar[MeanGap] = MeanGap.LOAD_BALANCED
     rate_dependent: ClassVar[bool] = True
+    needs_open_gap: ClassVar[bool] = True
+    range_note: ClassVar[str] = (
+        "no contact transmits more than the friction coefficient times its normal force; the parameters of the model"
+        " do not hold for this motion"
+    )
 
     def __post_init__(self) -> None:
         """Check every parameter against its range."""
@@ -186,6 +195,32 @@ class FrictionModel(ABC):
         OutsideRange
             If the model does not hold for the motion.
         """
+
+    def ratio_bounds(self, *, mean_force_ratio: Floats) -> tuple[Floats, Floats]:
+        r"""Return the lowest and the highest friction ratio that the model can mean. []
+
+        Parameters
+        ----------
+        mean_force_ratio : ndarray, any shape
+            Mean normal force of the motion over the load.
+
+        Returns
+        -------
+        tuple of ndarray, each broadcastable to the shape of `mean_force_ratio`
+
+        See Also
+        --------
+        sonolube.friction.models.range_check.model_friction : Applies the bounds.
+
+        Notes
+        -----
+        Coulomb's limit at every instant, :math:`|F(t)| \le \mu F_n(t)`, bounds the mean,
+
+        .. math:: \left|\frac{F_1}{F_0}\right| \le \frac{\langle F_n \rangle}{F_N},
+
+        which is 1 under a dead load. Negative ratios are those of a vibration that drives the slider.
+        """
+        return -mean_force_ratio, mean_force_ratio
 
     def batched_ratio(
         self,

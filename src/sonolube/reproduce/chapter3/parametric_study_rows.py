@@ -63,8 +63,8 @@ def _errors(friction_model: str) -> Floats:
         np.array([si_value(f"table-2.3-{column}-{row}") for row in (first, first + 2, first + 4)])
         for column, first in (("sliding_speed", 2), ("friction_force", 1), ("friction_force", 2))
     )
-    ratios = operating_points(tribometer_rig(friction_model=friction_model), sliding_speed=speeds).friction_ratio
-    return np.asarray(ratios * off / on - 1)
+    points = operating_points(tribometer_rig(friction_model=friction_model), sliding_speed=speeds)
+    return np.asarray(points.raw_friction_ratio * off / on - 1)
 
 
 def _voltage() -> Iterator[Row]:
@@ -92,7 +92,7 @@ def _voltage() -> Iterator[Row]:
 def _voltages_and_ratios(friction_model: str) -> tuple[Floats, Floats]:
     """Return voltages in V and friction ratios by a friction model."""
     response = tribometer_response.response_over_voltage(friction_model)
-    return response["voltage_peak_to_peak"].values, np.round(response["friction_ratio"].values, _DECIMALS)
+    return response["voltage_peak_to_peak"].values, np.round(response["raw_friction_ratio"].values, _DECIMALS)
 
 
 def _knee(volts: Floats, ratios: Floats) -> float:
@@ -103,7 +103,7 @@ def _knee(volts: Floats, ratios: Floats) -> float:
 
 def _speed() -> Iterator[Row]:
     """Yield the orders of friction over speed and voltage."""
-    ratios = np.round(tribometer_response.response_over_speed()["friction_ratio"].values, _DECIMALS)
+    ratios = np.round(tribometer_response.response_over_speed()["raw_friction_ratio"].values, _DECIMALS)
     note = f"Largest of all steps, 1 mm/s to 1 m/s at {_curves()}, by asperity stick-slip; 1 without any reduction."
     yield comparison_row("3.3.5-speed-order", _largest_step(ratios[:, ::-1].T), note)
     yield comparison_row("3.3.5-speed-voltage-order", _largest_step(ratios), note)
@@ -112,7 +112,7 @@ def _speed() -> Iterator[Row]:
 def _frequency() -> Iterator[Row]:
     """Yield friction at resonance over that elsewhere, and its order over the voltage."""
     response, peak = tribometer_response.response_over_frequency(), tribometer_response.resonance()
-    f, ratios = response["frequency"].values, np.round(response["friction_ratio"].values, _DECIMALS)
+    f, ratios = response["frequency"].values, np.round(response["raw_friction_ratio"].values, _DECIMALS)
     at_peak, elsewhere = ratios[:, peak.nearest(f)], ratios[:, peak.outside(f)].min(axis=1)
     note = (
         f"At {peak.natural_frequency / 1e3:.2f} kHz over the least outside its half-power bandwidth, 1 to 100 kHz; "
@@ -159,7 +159,7 @@ def _waveform_ratios(friction_model: str) -> dict[str, float]:
     """Return the friction ratio of each waveform by a friction model. []"""
     response = tribometer_response.response_over_waveform(friction_model)
     names = [str(name) for name in response["waveform"].values]
-    return dict(zip(names, response["friction_ratio"].values.tolist(), strict=True))
+    return dict(zip(names, response["raw_friction_ratio"].values.tolist(), strict=True))
 
 
 def _listed(ratios: dict[str, float]) -> str:

@@ -1,0 +1,75 @@
+"""Commands on friction outside the range of its model: null beside a status, a reason and the raw value."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+Program = Callable[..., Any]
+FAST = "sliding.sliding_speed=1m/s"
+PRINTED = "friction.model=dong_2015_full_period"
+OUTSIDE = "outside_model_range"
+
+
+def friction_of(answer: dict[str, Any]) -> list[float | None]:
+    names = ("friction_ratio", "friction_force", "friction_coefficient", "friction_reduction")
+    return [answer[name]["value"] for name in names]
+
+
+@pytest.mark.parametrize("command", ["friction", "simulate"])
+def test_friction_without_meaning_is_null_with_a_reason(
+    sonolube: Program, rigs: Path, tmp_path: Path, command: str
+) -> None:
+    volts = ["--set", "drive.voltage_peak_to_peak=100V", "--out", tmp_path] if command == "simulate" else []
+    rig = rigs / "tribometer.toml"
+    answer = sonolube(command, rig, "--set", FAST, "--set", PRINTED, *volts, "--json").answer
+    assert answer["status"] == OUTSIDE
+    assert answer["reason"].startswith(OUTSIDE)
+    assert friction_of(answer) == [None] * 4
+    assert answer["raw_friction_ratio"]["value"] > 1
+    assert answer["intrinsic_friction_force"]["value"] > 0
+
+
+def test_the_text_has_no_number_for_it_but_the_raw_one(sonolube: Program, rigs: Path) -> None:
+    lines = sonolube("friction", rigs / "tribometer.toml", "--set", FAST, "--set", PRINTED).out.splitlines()
+    assert [line.split()[-1] for line in lines if line.startswith("  Friction reduction")] == ["none"]
+    raw = [float(line.split()[-1]) for line in lines if "also outside its range" in line]
+    assert len(raw) == 1
+    assert raw[0] > 1
+    assert any("use asperity_stick_slip" in line for line in lines)
+
+
+def test_within_the_range_the_text_has_the_ratio_once(sonolube: Program, rigs: Path) -> None:
+    out = sonolube("friction", rigs / "tribometer.toml").out
+    assert "also outside its range" not in out
+    assert "none" not in out
+
+
+def test_the_map_of_studies_has_no_point_for_it(sonolube: Program, rigs: Path, tmp_path: Path) -> None:
+    options = ("--set", FAST, "--set", PRINTED, "--out", tmp_path)
+    assert sonolube("literature", rigs / "tribometer.toml", *options, "--json").answer["rig"]["friction_reduction"] == {
+        "value": None,
+        "unit": "",
+    }
+    assert "use asperity_stick_slip" in sonolube("literature", rigs / "tribometer.toml", *options).out
+
+
+def test_compared_on_a_rig_formulae_beyond_mu_times_the_load_are_raw(
+    sonolube: Program, rigs: Path, tmp_path: Path
+) -> None:
+    options = ("--set", FAST, "--model", "dong-2015-full-period", "--model", "kinematic", "--out", tmp_path)
+    answer = sonolube("compare", rigs / "tribometer.toml", *options, "--json").answer
+    found = {one["model"]: one for one in answer["rig"]["predictions"]}
+    printed = found["dong-2015-full-period"]
+    assert printed["friction_ratio"] is None
+    assert printed["raw_friction_ratio"] > 1
+    assert printed["reason"].startswith(OUTSIDE)
+    assert found["kinematic"]["friction_ratio"] == found["kinematic"]["raw_friction_ratio"]
+
+
+def test_a_sweep_counts_the_points_outside(sonolube: Program, rigs: Path, tmp_path: Path) -> None:
+    options = ("--over", "sliding.sliding_speed=0.01m/s,3m/s", "--set", "drive.voltage_peak_to_peak=100V")
+    answer = sonolube("sweep", rigs / "tribometer.toml", "--set", PRINTED, *options, "--out", tmp_path, "--json").answer
+    assert answer["statuses"] == {"periodic": 1, OUTSIDE: 1}
+    assert answer["without_result"][0]["reason"].startswith(OUTSIDE)
