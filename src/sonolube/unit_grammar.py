@@ -10,8 +10,8 @@
     power    = ( "^" | "**" ) exponent | integer after a symbol without a space | superscripts | "squared" | "cubed"
     exponent = [ sign ] integer | [ sign ] decimal | "(" [ sign ] integer "/" integer ")"
 
-Operators are taken from left to right, so that "J/kg K" is (J/kg) K. A unit has at most 60 characters and 12 symbols; no
-power, nor the product of powers of nested brackets, is beyond 9. Examples: "um", "mm/s", "1/min", "N s/m",
+Operators are taken from left to right, so that "J/kg K" is (J/kg) K. A unit has at most 60 characters and 12 symbols;
+no power, nor the product of powers of nested brackets, is beyond 9. Examples: "um", "mm/s", "1/min", "N s/m",
 "W/(m2 K)", "kg·m⁻³", "V/Hz^(1/2)", "°C".
 """
 

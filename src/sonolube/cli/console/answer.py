@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 import typer
 
+from sonolube.printable_text import printable
 from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:
@@ -87,7 +88,7 @@ def deliver(
     if as_json:
         typer.echo(json.dumps(_json_object(answer, written), indent=2, allow_nan=False))
     elif lines := [*answer.lines(), *_closing_lines(answer), *_file_lines(written, folder)]:
-        typer.echo("\n".join(lines))
+        typer.echo(printable("\n".join(lines)))
 
 
 def si(values: Mapping[str, float | None], *, unit: str | None = None) -> dict[str, Any]:

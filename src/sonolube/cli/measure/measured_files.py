@@ -11,6 +11,7 @@ from sonolube.cli.console.answer import Answer, deliver
 from sonolube.cli.console.progress import progress
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.measurement.recordings.mapping import RecordingMapping, read_mapping
+from sonolube.printable_text import printable
 from sonolube.report import (
     MeasurementReport,
     measurement_caveats,
@@ -117,7 +118,7 @@ def deliver_sheets(
     folder = Path() if page is None else page.parent
     deliver(MeasuredFiles(report=report, page_name=None if page is None else page.name), folder=folder, as_json=as_json)
     for reason in refused.values():
-        typer.echo(f"sonolube measure: {reason}", err=True)
+        typer.echo(printable(f"sonolube measure: {reason}"), err=True)
     if refused:
         raise typer.Exit(2 if not sheets else 1)
 
