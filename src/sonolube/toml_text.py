@@ -98,8 +98,8 @@ def toml_content(text: str) -> dict[str, Any]:
         raise InvalidInput(f"not valid TOML: {failure}") from None
     except RecursionError:
         raise InvalidInput("not valid TOML: nested too deeply") from None
-    except ValueError:  # of int(), which has a limit of digits, and of dates such as 30 February
-        raise InvalidInput("not valid TOML: an integer of too many digits, or a date that does not exist") from None
+    except ValueError:  # of int(), which has a limit of digits
+        raise InvalidInput("not valid TOML: an integer of too many digits") from None
     require_plain_content(content)
     return content
 

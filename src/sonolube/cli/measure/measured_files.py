@@ -8,6 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from sonolube.cli.console.answer import Answer, deliver
+from sonolube.cli.console.options import refuse_unused
 from sonolube.cli.console.progress import progress
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.measurement.recordings.mapping import RecordingMapping, read_mapping
@@ -108,6 +109,8 @@ def deliver_sheets(
     typer.Exit
         If files were refused.
     """
+    if page is None and not as_json:
+        refuse_unused(context, "test", because="without --report or --json, which list its conditions")
     report = MeasurementReport(
         title=title,
         settings=_settings(context),

@@ -74,6 +74,7 @@ def rig_content(path: str | Path, *, changes: Sequence[str] = ()) -> dict[str, A
     path = Path(path)
     with prefixed(str(path)):
         content = read_toml(path, kind="a rig file")
+        _refuse_repeated(changes)
         for change in changes:
             _apply(change, content)
         require_plain_content(content)
@@ -151,6 +152,13 @@ def _with_modes(content: dict[str, Any], folder: Path) -> dict[str, Any]:
             raise InvalidInput(f"structure: give either the file of the modes or their lists, got file and {clash}")
         return content | {"structure": rest | modes}
     return content
+
+
+def _refuse_repeated(changes: Sequence[str]) -> None:
+    keys = [change.partition("=")[0].strip() for change in changes]
+    for place, key in enumerate(keys):
+        if key in keys[:place]:
+            raise InvalidInput(f"{key} is to be replaced twice, the second time by {changes[place]!r}; give it once")
 
 
 def _apply(change: str, content: dict[str, Any]) -> None:
