@@ -106,6 +106,8 @@ def optimise(
     content = rig_content(rig, changes=changes or ())
     refuse_replaced(changes, over)
     _refuse_unused(context, actuator or [], catalogue)
+    if not any(entry.strip().startswith("structure.") for entry in over or ()):
+        refuse_unused(context, "samples", because="unless --over gives an entry of structure, whose values are drawn")
     if share is not None and robust is None:
         raise InvalidInput("--quantile needs --robust, the tolerance")
     if warming_limit is not None and conductance is None:

@@ -47,7 +47,7 @@ def groove(
     if diameter is not None and slid is not None:
         ring = RingSettings(groove_diameter=diameter, sliding_distance=slid, tip_radius=tip)
     elif diameter or slid or without:
-        raise InvalidInput("a ring needs --groove-diameter and --sliding-distance")
+        raise InvalidInput("a ring needs --groove-diameter and --sliding-distance; --without-vibration is another ring")
     if ring is None and not pin:
         refuse_unused(context, "tip", because="without a ring or --pin, whose wear volume it is for")
     sheets: list[Sheet] = []
