@@ -7,11 +7,12 @@ from functools import cache, lru_cache
 from typing import Any
 
 from sonolube.errors import InvalidInput
+from sonolube.unit_grammar import canonical_unit
 
-_PLAIN_POWER = re.compile(r"(?<=[A-Za-zµμ])(-?\d+)")
 _ANGLES = ("radian", "degree", "revolution", "turn", "cycle")
 _MINIMUM_MM3 = 1e-14  # m3; smaller volumes are written in um3
-_NUMBER_AND_UNIT = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+_LONGEST_QUOTE = 80  # characters of a text that an error quotes
 
 _KINDS = {
     "N": "a force, such as 40N",
@@ -43,7 +44,7 @@ def to_si(text: str, *, unit: str, name: str) -> float:
     Parameters
     ----------
     text : str
-        A number and its unit, such as "8 um" or "4.7e10/m2".
+        A number and its unit, such as "8 um" or "4.7e10/m2"; units follow the grammar of `sonolube.unit_grammar`.
     unit : str
         SI unit of the result; empty for a pure number.
     name : str
@@ -62,15 +63,16 @@ def to_si(text: str, *, unit: str, name: str) -> float:
     -----
     Rates in 1/s are in turns per second: 60 rpm and 360 deg/s are 1/s.
     """
-    match = _NUMBER_AND_UNIT.fullmatch(text)
-    if match is None:
-        raise InvalidInput(f"{name} {text!r} is not a number with a unit; expected {unit_description(unit)}")
-    number, written_unit = float(match[1]), match[2]
+    parts = _number_and_unit(text)
+    shown = _shortened(text)
+    if parts is None:
+        raise InvalidInput(f"{name} {shown!r} is not a number with a unit; expected {unit_description(unit)}")
+    number, written_unit = parts
     if not written_unit and unit:
-        raise InvalidInput(f"{name} {text} has no unit; expected {unit_description(unit)}")
-    value = _converted(number, written_unit, unit, name=name, text=text)
+        raise InvalidInput(f"{name} {shown} has no unit; expected {unit_description(unit)}")
+    value = _converted(number, written_unit, unit, name=name, text=shown)
     if not math.isfinite(value):
-        raise InvalidInput(f"{name} {text} is not finite")
+        raise InvalidInput(f"{name} {shown} is not finite")
     return value
 
 
@@ -94,8 +96,8 @@ def temperature_difference_to_si(text: str, *, name: str) -> float:
         As `to_si`, or if the unit belongs to a scale with an offset, such as degC.
     """
     value = to_si(text, unit="K", name=name)
-    match = _NUMBER_AND_UNIT.fullmatch(text)
-    if match is not None and _converted(0.0, match[2], "K", name=name, text=text) != 0:
+    parts = _number_and_unit(text)
+    if parts is not None and _converted(0.0, parts[1], "K", name=name, text=text) != 0:
         raise InvalidInput(f"{name} {text} is a temperature; expected a temperature difference, such as 40K")
     return value
 
@@ -153,21 +155,38 @@ def format_si(value: float, unit: str, *, digits: int = 3) -> str:
     return f"{number} {prefix}{unit}"
 
 
+def _number_and_unit(text: str) -> tuple[float, str] | None:
+    """Return the number that a text begins with and what follows; None for a text of another form."""
+    text = text.strip()
+    match = _NUMBER.match(text)
+    return None if match is None else (float(match[0]), text[match.end() :].strip())
+
+
+def _shortened(text: str) -> str:
+    """Return a text as an error quotes it."""
+    return text if len(text) <= _LONGEST_QUOTE else f"{text[: _LONGEST_QUOTE // 2]}...{text[-_LONGEST_QUOTE // 2 :]}"
+
+
 def _converted(number: float, written_unit: str, unit: str, *, name: str, text: str) -> float:
     """Return a number in another unit; the errors quote the name and the text of the value."""
+    import numpy as np
     import pint
 
     registry = _registry()
     try:
         written = _unit(written_unit)
-    except Exception:  # pint raises errors of its tokenizer and parser of many kinds
-        raise InvalidInput(f"{name} {text}: unknown unit {written_unit!r}; expected {unit_description(unit)}") from None
+    except Exception:  # pint raises errors of many kinds
+        shown = _shortened(written_unit)
+        raise InvalidInput(f"{name} {text}: unknown unit {shown!r}; expected {unit_description(unit)}") from None
     target = _unit(unit)
     try:
-        value = float(registry.Quantity(number, written).to(target).magnitude)
+        with np.errstate(over="raise"):  # of logarithmic units
+            value = float(registry.Quantity(number, written).to(target).magnitude)
     except pint.DimensionalityError:
         kind = _kind_of_dimension(written)
         raise InvalidInput(f"{name} {text} is {kind}; expected {unit_description(unit)}") from None
+    except (ArithmeticError, pint.PintError, TypeError, ValueError):  # products of scales with an offset, overflow
+        raise InvalidInput(f"{name} {text} has no value in {unit or 'pure numbers'}") from None
     if target.dimensionality != {"[time]": -1}:
         return value
     return value * (2 * math.pi) ** (_has_angle(target) - _has_angle(written))
@@ -183,7 +202,7 @@ def _kind_of_dimension(written: Any) -> str:
     if written.dimensionless:
         return "an angle" if _has_angle(written) else "a pure number"
     for unit, kind in _KINDS.items():
-        if written.dimensionality == _registry().Unit(_pint_spelling(unit)).dimensionality:
+        if written.dimensionality == _unit(unit).dimensionality:
             return kind.split(",")[0]
     return f"in {written:~}"
 
@@ -199,12 +218,4 @@ def _registry() -> Any:
 @lru_cache(1024)
 def _unit(written: str) -> Any:
     """Return the unit of pint for a unit as users write it."""
-    return _registry().Unit(_pint_spelling(written))
-
-
-def _pint_spelling(unit: str) -> str:
-    """Return a unit in the spelling of pint, with ** before exponents."""
-    spelled = unit.strip()
-    if spelled.startswith("/"):
-        spelled = "1" + spelled
-    return _PLAIN_POWER.sub(r"**\1", spelled) or "dimensionless"
+    return _registry().Unit(canonical_unit(written))

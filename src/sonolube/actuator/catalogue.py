@@ -13,6 +13,7 @@ from typing import Any
 from sonolube.actuator.stack import PiezoStack
 from sonolube.checks import require_finite, require_positive
 from sonolube.errors import InvalidInput, MissingProperty, UnknownName
+from sonolube.toml_text import read_toml
 
 ACTUATOR_KINDS = ("stack", "flextensional")
 """Kinds of actuators in the catalogue."""
@@ -173,10 +174,8 @@ def read_catalogue(path: str | Path) -> Mapping[str, CatalogueActuator]:
         If the file cannot be read or an entry is not valid; the message names file and entry.
     """
     try:
-        found = _actuators(Path(path).read_text(encoding="utf-8-sig"))
-    except (OSError, UnicodeDecodeError) as failure:
-        raise InvalidInput(f"{path}: cannot be read: {getattr(failure, 'strerror', None) or failure}") from None
-    except (tomllib.TOMLDecodeError, InvalidInput, UnknownName) as failure:
+        found = _actuators(read_toml(Path(path), kind="a catalogue"))
+    except (InvalidInput, UnknownName) as failure:
         raise InvalidInput(f"{path}: {failure}") from None
     if not found:
         raise InvalidInput(f"{path}: holds no actuator; give each one a table of its own")
@@ -240,13 +239,15 @@ def catalogue_stack(
 @cache
 def _built_in() -> Mapping[str, CatalogueActuator]:
     """Actuators of the built-in catalogue."""
-    return _actuators(files("sonolube.actuator").joinpath("catalogue.toml").read_text(encoding="utf-8"))
+    text = files("sonolube.actuator").joinpath("catalogue.toml").read_text(encoding="utf-8")
+    return _actuators(tomllib.loads(text))
 
 
-def _actuators(text: str) -> Mapping[str, CatalogueActuator]:
-    """Actuators of the text of a catalogue file."""
-    content = tomllib.loads(text)
+def _actuators(content: dict[str, Any]) -> Mapping[str, CatalogueActuator]:
+    """Actuators of the content of a catalogue file."""
     sources = content.pop("sources", {})
+    if not isinstance(sources, dict):
+        raise InvalidInput("sources: must be a table")
     return MappingProxyType({name: _actuator(name, entry, sources) for name, entry in content.items()})
 
 
@@ -260,6 +261,9 @@ def _actuator(name: str, entry: Any, sources: Mapping[str, str]) -> CatalogueAct
     needed = ("title", "kind", "source", "stroke", "stroke_voltage", "free_capacitance", "resonance_frequency")
     if missing := [key for key in needed if key not in entry]:
         raise InvalidInput(f"{name}.{missing[0]}: missing")
+    for key in ("title", "kind", "source"):
+        if not isinstance(entry[key], str):
+            raise InvalidInput(f"{name}.{key}: must be text, got {entry[key]!r}")
     try:
         actuator = CatalogueActuator(name=name, **entry)
     except (InvalidInput, UnknownName) as refusal:

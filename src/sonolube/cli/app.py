@@ -1,5 +1,6 @@
 """Program `sonolube`: its commands from their table, exit codes, and the one line of a refusal."""
 
+import io
 import os
 import sys
 from collections.abc import Callable, Sequence
@@ -10,6 +11,7 @@ from sonolube import __version__
 from sonolube.cli.commands import COMMANDS, GROUPS, MOVED_COMMANDS, RENAMED_OPTIONS, Command
 from sonolube.cli.console.outputs import with_checked_files
 from sonolube.errors import SonolubeError
+from sonolube.printable_text import printable
 from sonolube.threads import threads_running
 
 _BAD_INPUT, _INTERRUPTED = 2, 130  # exit codes
@@ -68,6 +70,7 @@ def run(arguments: Sequence[str] | None = None) -> None:
         Always.
     """
     arguments = list(sys.argv[1:] if arguments is None else arguments)
+    _print_everything()
     command = next((word for word in arguments[:1] if not word.startswith("-")), "")
     try:
         if command in MOVED_COMMANDS:
@@ -85,6 +88,13 @@ def run(arguments: Sequence[str] | None = None) -> None:
         sys.stdout.flush()
         os._exit(_INTERRUPTED)
     sys.exit(code if isinstance(code, int) else 0)
+
+
+def _print_everything() -> None:
+    """Have characters that a terminal cannot show, such as bytes of a file name, printed as escapes."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
 
 
 def _function(command: Command, words: Sequence[str]) -> Callable[..., None]:
@@ -127,9 +137,9 @@ def _usage_error(command: str, refusal: typer.TyperException) -> str:
 
 def _refuse(command: str, reason: str) -> int:
     """Print a refusal as one line on standard error, and return the exit code of bad input."""
-    text = " ".join(reason.replace("Value error, ", "").split())
+    text = printable(" ".join(reason.replace("Value error, ", "").split()))
     if len(text) > _LONGEST:
         text = f"{text[: _LONGEST // 2]} ... {text[-_LONGEST // 2 :]}"
     if text:
-        typer.echo(f"{' '.join(['sonolube', command]).strip()}: {text}", err=True)
+        typer.echo(f"{' '.join(['sonolube', printable(command)]).strip()}: {text}", err=True)
     return _BAD_INPUT

@@ -12,7 +12,7 @@ from sonolube.fem.solver.convergence import ConvergedModes
 from sonolube.fem.solver.model import DIRECTIONS
 from sonolube.fem.solver.postprocessing import interpolate_at_points
 from sonolube.fem.vtk_export import vtu_text
-from sonolube.figure import publication_style
+from sonolube.figure import render_figure
 
 _FRAMES = 16  # of one period
 _FRAME_DURATION = 60  # ms
@@ -102,8 +102,7 @@ def mode_animation(found: ConvergedModes, shape: Floats, *, title: str) -> bytes
     frames = []
     for phase in 2 * np.pi * np.arange(_FRAMES) / _FRAMES:
         figure = mode_figure(found.model.mesh, shape, title=title, amplitude=float(np.cos(phase)))
-        with publication_style():
-            figure.savefig(picture := io.BytesIO(), format="png", dpi=_RESOLUTION)
+        picture = io.BytesIO(render_figure(figure, "png", resolution=_RESOLUTION))
         frames.append(Image.open(picture).convert("RGB").quantize(palette=palette, dither=Image.Dither.NONE))
     content = io.BytesIO()
     frames[0].save(content, format="GIF", save_all=True, append_images=frames[1:], duration=_FRAME_DURATION, loop=0)

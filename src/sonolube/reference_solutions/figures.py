@@ -71,7 +71,7 @@ def comparison_figure(comparison: LawComparison) -> "Figure":
             panel.plot(comparison.reduced_pressure, values, label=_TITLES[name], **style)
     labels = ("Mean gap / rms height", "Real / nominal contact area", "Stiffness × rms height / load")
     for panel, label in zip(axes, labels, strict=True):
-        panel.set(xscale="log", xlabel="Nominal pressure $p/(E^* h')$", ylabel=label)
+        panel.set(xscale="log", xlabel="Nominal pressure p / (E* h')", ylabel=label)
     axes[0].axhline(0, color="0.6", lw=0.8)
     axes[1].set_yscale("log")
     axes[2].set_ylim(0, 5)

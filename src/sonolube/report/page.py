@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from sonolube import __version__
 from sonolube.figure import publication_style, render_figure
+from sonolube.printable_text import printable
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -148,7 +149,7 @@ def embedded(png: bytes) -> str:
 
 
 def html(template: str, **values: Any) -> str:
-    """Text of a page from one of the templates of this package, all values escaped.
+    """Text of a page from one of the templates of this package, all values escaped and without control characters.
 
     Parameters
     ----------
@@ -166,7 +167,7 @@ def html(template: str, **values: Any) -> str:
     environment = Environment(
         loader=PackageLoader("sonolube.report"), autoescape=True, undefined=StrictUndefined, trim_blocks=True
     )
-    return environment.get_template(template).render(**values)
+    return printable(environment.get_template(template).render(**values))
 
 
 def _versions() -> str:

@@ -1,12 +1,12 @@
 """Conditions and results of a pin-on-disc test in the order of ASTM G99, read from TOML and filled by measurements."""
 
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from sonolube.errors import InvalidInput, suggestion
 from sonolube.report.measured.sheet import Sheet, Value
+from sonolube.toml_text import read_toml
 from sonolube.units import format_si, to_si
 from sonolube.vocabulary import quantities
 
@@ -72,10 +72,8 @@ def read_pin_on_disc_sheet(path: Path) -> PinOnDiscSheet:
         Naming the file and the key, if the file cannot be read or a key or value is not valid.
     """
     try:
-        content = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except OSError as failure:
-        raise InvalidInput(f"{path}: cannot be read: {failure.strerror}") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as failure:
+        content = read_toml(path, kind="a sheet of conditions")
+    except InvalidInput as failure:
         raise InvalidInput(f"{path}: {failure}") from None
     for section, entries in content.items():
         _require_known(path, section, _SECTIONS, "")

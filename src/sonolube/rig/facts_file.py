@@ -26,7 +26,8 @@ from sonolube.rig.file.reader import rig_content, rig_from
 from sonolube.rig.file.section import Section
 from sonolube.rig.file.sections import RigFile, StackSection, Text
 from sonolube.rig.file.structures import ChainSection, ModesSection, PinOnDiscSection
-from sonolube.rig.file.toml_file import prefixed, toml_of, validated
+from sonolube.rig.file.toml_file import prefixed, validated
+from sonolube.toml_text import read_toml
 from sonolube.units import to_si, unit_description
 
 _MOST_FACTS = 16
@@ -101,7 +102,7 @@ def read_facts(path: str | Path) -> IdentificationProblem:
     """
     path = Path(path)
     with prefixed(str(path)):
-        return _problem(validated(FactsFile, toml_of(path, kind="a file of facts")))
+        return _problem(validated(FactsFile, read_toml(path, kind="a file of facts")))
 
 
 def rig_forward_model(path: str | Path, problem: IdentificationProblem) -> ForwardModel:

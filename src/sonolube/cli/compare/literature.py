@@ -31,6 +31,8 @@ def literature(
 
     Example: sonolube literature examples/rigs/tribometer.toml
     """
+    if rig is None and changes:
+        raise InvalidInput("--set changes a rig: name one, such as examples/rigs/tribometer.toml")
     known = point = outside = None
     if rig is not None:
         known = read_rig(rig, changes=changes or ())

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 import typer
 
 from sonolube.errors import InvalidInput
+from sonolube.printable_text import printable
 from sonolube.targets import expect_target
 from sonolube.vocabulary import quantity
 
@@ -89,7 +90,7 @@ def deliver(
     if as_json:
         _print(json.dumps(_json_object(answer, written), indent=2, allow_nan=False))
     elif lines := [*answer.lines(), *_closing_lines(answer), *_file_lines(written, folder)]:
-        _print("\n".join(lines))
+        _print(printable("\n".join(lines)))
 
 
 def si(values: Mapping[str, float | None], *, unit: str | None = None) -> dict[str, Any]:

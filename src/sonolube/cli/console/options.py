@@ -1,11 +1,12 @@
 """Options that several commands share, and quantities given as options."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Self
 
 import typer
 
+from sonolube.errors import InvalidInput
 from sonolube.units import temperature_difference_to_si, to_si, unit_description
 
 if TYPE_CHECKING:
@@ -80,6 +81,43 @@ def si_option(unit: str, text: str, *names: str, metavar: str = "") -> Any:
     """
     kind = unit_description(unit).partition(",")[0].partition(" ")[2].upper()
     return typer.Option(*names, parser=str, callback=_reader(unit), metavar=metavar or kind, help=text)
+
+
+def refuse_unused(context: typer.Context, *names: str, because: str) -> None:
+    """Refuse options that were given and that the command would not use beside the others.
+
+    Parameters
+    ----------
+    context : typer.Context
+        Of the running command.
+    *names : str
+        Arguments of its function whose options have no meaning here.
+    because : str
+        Where they have none, and where they apply, such as "for --of; it is for --over".
+
+    Raises
+    ------
+    InvalidInput
+        For the first of them that was given.
+    """
+    for option in context.command.params:
+        given = getattr(context.get_parameter_source(option.name or ""), "name", "DEFAULT") != "DEFAULT"
+        if option.name in names and given:
+            raise InvalidInput(f"{option.opts[0]} has no meaning {because}")
+
+
+def refuse_replaced(changes: Sequence[str] | None, over: Sequence[str] | None) -> None:
+    """Refuse an entry of `--set` whose key takes the values of `--over`.
+
+    Raises
+    ------
+    InvalidInput
+        For the first such key.
+    """
+    swept = {entry.partition("=")[0].strip() for entry in over or ()}
+    for key in (change.partition("=")[0].strip() for change in changes or ()):
+        if key in swept:
+            raise InvalidInput(f"--set {key}: takes the values of --over {key}; give it once")
 
 
 def _reader(unit: str) -> Callable[..., TypedNumber | None]:

@@ -63,7 +63,7 @@ def named_part(part: str, sizes: Sequence[str]) -> Geometry:
     InvalidInput
         If a size is missing or not a length.
     """
-    if _is_step(part):
+    if is_step(part):
         return _step_part(part, sizes)
     if part in ALL_TRANSDUCERS:
         return named_transducer(part, sizes).geometry
@@ -192,10 +192,10 @@ def named_horn(
     """
     from sonolube.design.horn_shapes import body_from_geometry, horn_body
 
-    if _is_step(shape):
+    if is_step(shape):
         geometry = _step_part(shape, sizes)
         return body_from_geometry(geometry, axis=axis or longest_axis(generate_mesh(geometry, element_size=_COARSE)))
-    lengths = {name: to_si(text, unit="m", name=name) for name, text in map(_split, sizes)}
+    lengths = {name: to_si(text, unit="m", name=name) for name, text in _texts_by_name(sizes).items()}
     speed = (solid.value("youngs_modulus") / solid.value("density")) ** 0.5
     return horn_body(shape, frequency=frequency, wave_speed=speed, sizes=lengths, tune=tune)
 
@@ -226,7 +226,7 @@ def sizes_in_si(part: str, function: Callable[..., Any], sizes: Sequence[str]) -
     parameters = inspect.signature(function).parameters
     known = {name: entry for name, entry in parameters.items() if name in quantities()}
     values = {}
-    for name, text in map(_split, sizes):
+    for name, text in _texts_by_name(sizes).items():
         if name not in known:
             raise UnknownName.among(known, kind=f"size of a {part}", name=name)
         values[name] = to_si(text, unit=quantities()[name].unit, name=name)
@@ -269,13 +269,18 @@ def points_in_metres(path: Path) -> Floats:
     return np.asarray(1e-3 * points)
 
 
-def _split(entry: str) -> tuple[str, str]:
-    """Name and value of NAME=VALUE."""
-    name, _, text = entry.partition("=")
-    return name, text
+def _texts_by_name(sizes: Sequence[str]) -> dict[str, str]:
+    """Text of each size of entries NAME=VALUE."""
+    texts: dict[str, str] = {}
+    for entry in sizes:
+        name, _, text = entry.partition("=")
+        if name in texts:
+            raise InvalidInput(f"--set {name} was given twice")
+        texts[name] = text
+    return texts
 
 
-def _is_step(part: str) -> bool:
+def is_step(part: str) -> bool:
     """Whether a part is given as a STEP file."""
     return Path(part).suffix.lower() in {".step", ".stp"}
 

@@ -6,6 +6,8 @@ from contextlib import contextmanager
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
+from sonolube.printable_text import printable
+
 Advance = Callable[[str, int, int], None]
 
 
@@ -24,7 +26,9 @@ def progress(title: str) -> Iterator[Advance]:
         Called with what is done now, the number done and their total.
     """
     console = Console(stderr=True)
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    columns = (TextColumn("{task.description}", markup=False), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
         task = bar.add_task(title, total=None)
-        yield lambda what, done, total: bar.update(task, description=f"{title}: {what}", completed=done, total=total)
+        yield lambda what, done, total: bar.update(
+            task, description=printable(f"{title}: {what}"), completed=done, total=total
+        )

@@ -1,5 +1,6 @@
 """Reading of KEY=VALUES options, such as drive.frequency=20kHz:24kHz:50: keys of a rig file with their values."""
 
+import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -12,6 +13,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Values = NDArray[np.float64] | NDArray[np.str_]
+
+
+_COUNT = re.compile(r"\d{1,18}")
 
 
 def values_by_key(entries: Sequence[str] | None) -> "dict[str, Values]":
@@ -84,7 +88,7 @@ def _values(key: str, text: str) -> "Values":
             return np.array(items, dtype=np.str_)
         return np.array([_number(key, item) for item in items])
     first, last, *rest = text.split(":")
-    if not 1 <= len(rest) <= 2 or not rest[0].strip().isdecimal() or rest[1:] not in ([], ["log"]):
+    if not 1 <= len(rest) <= 2 or not _COUNT.fullmatch(rest[0].strip()) or rest[1:] not in ([], ["log"]):
         raise InvalidInput(f"--over {key}={text} must look like {key}=first:last:count, with :log for even ratios")
     low, high, count = _number(key, first), _number(key, last), int(rest[0])
     if count < 2 or low >= high or (rest[1:] and low <= 0):

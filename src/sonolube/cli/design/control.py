@@ -12,7 +12,7 @@ import typer
 import xarray as xr
 
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
-from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath, TypedNumber, si_option
+from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath, TypedNumber, refuse_unused, si_option
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
 from sonolube.cli.console.rig_text import operating_point, rig_settings
@@ -99,6 +99,12 @@ def control(
         raise InvalidInput(f"--rate {rate} and --duration {run_time} must be positive")
     if delay > run_time:
         raise InvalidInput(f"--delay {delay} must not exceed --duration {run_time}")
+    if feed_forward is not FeedForward.EFFICIENCY:
+        refuse_unused(context, "efficiency", because=f"for --feed-forward {feed_forward}; it is for efficiency")
+    if known.structure is not None:
+        refuse_unused(context, "quality", "coupling", because="for a rig whose file has the table structure")
+    if warming == 0:
+        refuse_unused(context, "warming_constant", because="without --warming")
     swing = known.drive.voltage_peak_to_peak if known.drive is not None else None
     settings = ControlSettings(
         friction_force=friction,

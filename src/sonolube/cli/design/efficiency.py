@@ -9,7 +9,7 @@ import typer
 import xarray as xr
 
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
-from sonolube.cli.console.options import OUT, Changes, Json, Out, si_option
+from sonolube.cli.console.options import OUT, Changes, Json, Out, refuse_unused, si_option
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.rig_text import rig_settings
 from sonolube.design.efficiency import EfficiencyCalibration, calibrate_efficiency, efficiency_dataset
@@ -45,6 +45,8 @@ def efficiency(
 
     Example: sonolube efficiency examples/efficiency-runs.csv --rig examples/rigs/power_map.toml
     """
+    if friction is None:
+        refuse_unused(context, "speed", because="without --target-friction, whose power is at this speed")
     known = read_rig(rig, changes=changes or ())
     calibration = calibrate_efficiency(
         known, read_runs(runs), friction_force=friction, sliding_speed=speed, confidence_level=level

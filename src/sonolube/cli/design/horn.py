@@ -9,9 +9,9 @@ import typer
 
 from sonolube import materials
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
-from sonolube.cli.console.options import OUT, Json, Out, TypedNumber, si_option
+from sonolube.cli.console.options import OUT, Json, Out, TypedNumber, refuse_unused, si_option
 from sonolube.cli.console.outputs import OutputFolder
-from sonolube.cli.console.parts import named_horn
+from sonolube.cli.console.parts import is_step, named_horn
 from sonolube.cli.console.progress import progress
 from sonolube.design.horn import HornDesign, amplitude_limits, loaded_frequency, tuned_horn
 from sonolube.design.horn_figures import horn_axis_figure
@@ -28,6 +28,7 @@ _QUANTITIES = ("displacement_gain", "node_position", "face_uniformity", "face_as
 
 
 def design(
+    context: typer.Context,
     target: Annotated[float, si_option("Hz", "Frequency of the tuned mode, such as 20kHz.", "--frequency")],
     material: Annotated[str, typer.Option(metavar="NAME", help="Material of the horn.")],
     shape: Annotated[
@@ -52,6 +53,10 @@ def design(
 
     Example: sonolube horn design --frequency 20kHz --material titanium_6al4v --set end_radius=10mm
     """
+    if is_step(shape):
+        refuse_unused(context, "tune", because="for a STEP file, which is cut off or extended at its far end")
+    else:
+        refuse_unused(context, "axis", because=f"for the shape {shape}; it is for STEP files")
     solid = materials.material(material)
     body = named_horn(shape, sizes or [], frequency=target, solid=solid, tune=tune, axis=axis)
     with progress("tuning") as advance:

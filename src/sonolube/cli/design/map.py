@@ -13,7 +13,7 @@ from sonolube import design
 from sonolube.checks import Floats
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
 from sonolube.cli.console.backend import Backend, BackendName, gpu_warning
-from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath
+from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath, refuse_replaced
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
 from sonolube.cli.console.ranges import values_by_key
@@ -84,6 +84,7 @@ def map(  # noqa: A001 - the command's name
     Example: sonolube map examples/rigs/power_map.toml --kind velocity-power
     """
     known = read_rig(rig, changes=changes or ())
+    refuse_replaced(changes, over)
     axes = _axes(known, kind.value, over)
     runs = None if measured is None else read_runs(measured)
     if runs is not None:

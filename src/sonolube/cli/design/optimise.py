@@ -1,14 +1,26 @@
 """Command `optimise`: actuator, frequency, waveform and masses for a friction at least power, heat or voltage."""
 
+from collections.abc import Sequence
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from sonolube.actuator import read_catalogue
 from sonolube.checks import require_positive
 from sonolube.cli.console.answer import deliver
-from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath, TypedNumber, si_option
+from sonolube.cli.console.options import (
+    OUT,
+    Changes,
+    Json,
+    Out,
+    RigPath,
+    TypedNumber,
+    refuse_replaced,
+    refuse_unused,
+    si_option,
+)
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
 from sonolube.cli.design import optimisation_options as options
@@ -93,6 +105,10 @@ def optimise(
     """
     known = read_rig(rig, changes=changes or ())
     content = rig_content(rig, changes=changes or ())
+    refuse_replaced(changes, over)
+    _refuse_unused(context, actuator or [], catalogue)
+    if not any(entry.strip().startswith("structure.") for entry in over or ()):
+        refuse_unused(context, "samples", because="unless --over gives an entry of structure, whose values are drawn")
     if share is not None and robust is None:
         raise InvalidInput("--quantile needs --robust, the tolerance")
     if warming_limit is not None and conductance is None:
@@ -127,10 +143,23 @@ def optimise(
         optimum = optimisation.optimise(
             problem,
             minimise=minimise.value,
-            second_objective=None if pareto is None or pareto == minimise else pareto.value,
+            second_objective=None if pareto is None else pareto.value,
             samples=samples,
             advance=lambda done, total: advance("structures", done, total),
         )
         electric = optimisation.required_electronics(problem, optimum.best, source_resistance=source)
     answer = OptimisationAnswer(rig_file=rig, content=content, optimum=optimum, electric=electric)
     deliver(answer, folder=out, as_json=json, context=context)
+
+
+def _refuse_unused(context: typer.Context, actuators: Sequence[str], catalogue: Path | None) -> None:
+    """Refuse options for actuators, bolts and a second objective that the others leave without effect."""
+    further = {"catalogue", *(() if catalogue is None else read_catalogue(catalogue))}
+    if not further & set(actuators):
+        refuse_unused(context, "catalogue", because="unless --actuator names one of its actuators, or is catalogue")
+    if set(actuators) <= {optimisation.OWN_ACTUATOR}:
+        refuse_unused(context, "quality", because="for the rig's own actuator; it is for those of the catalogue")
+    if context.params["bolt"] is None:
+        refuse_unused(context, "bolt_strength", because="without --bolt")
+    if context.params["pareto"] == context.params["minimise"]:
+        refuse_unused(context, "pareto", because="for the quantity that is minimised; name another")

@@ -13,7 +13,7 @@ import xarray as xr
 from sonolube import design
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
 from sonolube.cli.console.backend import Backend, BackendName, gpu_warning
-from sonolube.cli.console.options import OUT, Changes, Json, RigPath
+from sonolube.cli.console.options import OUT, Changes, Json, RigPath, refuse_replaced, refuse_unused
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
 from sonolube.cli.console.ranges import ends_by_key, values_by_key
@@ -99,13 +99,18 @@ def sweep(
     if (of is None) == (not over):
         raise InvalidInput("needs either --over, keys with their values, or --of, one quantity over its usual range")
     if of is not None:
-        _require_unset(context, _OVER_ONLY, purpose="--of")
+        refuse_unused(context, *_OVER_ONLY, because="for --of")
         expect_files(out or OUT, (f"{escape(rig.stem)}-{of.value}.*",))
         study = parametric_study(
             rig, of=of.value, lowest=lowest, highest=highest, points=points, voltages=voltages, changes=changes
         )
         return deliver(study, folder=out or OUT, as_json=json)
-    _require_unset(context, _OF_ONLY, purpose="--over")
+    refuse_unused(context, *_OF_ONLY, because="for --over")
+    refuse_replaced(changes, over)
+    if sample is not Sample.LHS:
+        refuse_unused(context, "seed", because=f"for --sample {sample}, which draws nothing; it is for lhs")
+    if scheduler not in (None, "local"):
+        refuse_unused(context, "workers", because="for a --scheduler at an address, which has its own")
     return _sweep_over(
         context,
         _plan(rig, over or [], sample, points, seed, changes),
@@ -242,11 +247,3 @@ def _plan(
     if points is not None:
         raise InvalidInput(f"--points has no meaning for --sample {sample}; it is for lhs, and for --of")
     return (grid_plan if sample is Sample.GRID else list_plan)(rig, over=values_by_key(over), changes=changes or ())
-
-
-def _require_unset(context: typer.Context, names: tuple[str, ...], *, purpose: str) -> None:
-    """Raise for options that were given and have no meaning beside --of or --over."""
-    for option in context.command.params:
-        given = getattr(context.get_parameter_source(option.name or ""), "name", "DEFAULT") != "DEFAULT"
-        if option.name in names and given:
-            raise InvalidInput(f"{option.opts[0]} has no meaning for {purpose}")

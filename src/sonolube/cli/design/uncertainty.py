@@ -12,7 +12,7 @@ import xarray as xr
 
 from sonolube.checks import Floats
 from sonolube.cli.console.answer import Answer, aligned, deliver
-from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath
+from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath, refuse_replaced
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
 from sonolube.cli.console.ranges import values_by_key
@@ -92,6 +92,7 @@ def uncertainty(
     """
     if sobol and (over or identified):
         raise InvalidInput("--sobol needs independent entries and one outcome each: leave out --over and --identified")
+    refuse_replaced(changes, over)
     known = read_rig(rig, changes=changes or ())
     axes = _axes(over)
     structure = None

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from sonolube.cli.console.options import Json, TypedNumber, si_option
+from sonolube.cli.console.options import Json, TypedNumber, refuse_unused, si_option
 from sonolube.cli.measure.measured_files import Files, Mapped, Report, Test, column_mapping, deliver_sheets, each_file
 from sonolube.errors import InvalidInput
 from sonolube.report.measured.calibration import (
@@ -38,6 +38,8 @@ def calibration(
 
     Example: sonolube measure calibration loops.csv --apply test.csv --report gauge.html
     """
+    if not applied:
+        refuse_unused(context, "uncertainty", because="without --apply, whose forces it makes uncertain")
     settings = CalibrationSettings(
         mapping=column_mapping(mapping), degree=degree, levels=levels, displacement_uncertainty=uncertainty
     )

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from sonolube.cli.console.options import Json, TypedNumber, si_option
+from sonolube.cli.console.options import Json, TypedNumber, refuse_unused, si_option
 from sonolube.cli.measure.measured_files import Files, Mapped, Report, Test, column_mapping, deliver_sheets, each_file
 from sonolube.errors import InvalidInput
 from sonolube.measurement.friction.motor_current import MotorCalibration
@@ -45,6 +45,8 @@ def friction(
         if idle is None or diameter is None:
             raise InvalidInput("--torque-constant needs --idle-current and --groove-diameter")
         motor = MotorCalibration(torque_constant=torque, idle_current=idle, groove_diameter=diameter)
+    else:
+        refuse_unused(context, "idle", "diameter", because="without --torque-constant, for the force by the current")
     settings = FrictionSettings(
         mapping=column_mapping(mapping), window_duration=window, sliding_speed=speed, rotation_speed=turns, motor=motor
     )

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from sonolube.cli.console.options import Json, si_option
+from sonolube.cli.console.options import Json, refuse_unused, si_option
 from sonolube.cli.measure.measured_files import Files, Report, Test, deliver_sheets, each_file
 from sonolube.cli.measure.surface import Spacing, Unit, spacings
 from sonolube.errors import InvalidInput, NoGroove
@@ -47,7 +47,9 @@ def groove(
     if diameter is not None and slid is not None:
         ring = RingSettings(groove_diameter=diameter, sliding_distance=slid, tip_radius=tip)
     elif diameter or slid or without:
-        raise InvalidInput("a ring needs --groove-diameter and --sliding-distance")
+        raise InvalidInput("a ring needs --groove-diameter and --sliding-distance; --without-vibration is another ring")
+    if ring is None and not pin:
+        refuse_unused(context, "tip", because="without a ring or --pin, whose wear volume it is for")
     sheets: list[Sheet] = []
     refused: dict[str, str] = {}
     rings: list[WearTrack] = []

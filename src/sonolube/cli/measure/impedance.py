@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from sonolube.cli.console.options import Json, si_option
+from sonolube.cli.console.options import Json, refuse_unused, si_option
 from sonolube.cli.measure.measured_files import Files, Report, Test, deliver_sheets, each_file
 from sonolube.report.measured.impedance import ImpedanceSettings, StackInStructure, impedance_sheet
 from sonolube.rig import structure_by_stack
@@ -42,6 +42,8 @@ def impedance(
 
     Example: sonolube measure impedance transducer.csv --residual linear-magnitude --report transducer.html
     """
+    if rig is not None:
+        refuse_unused(context, "branches", "leads", because="for --stack-of; it is for an equivalent circuit")
     settings = ImpedanceSettings(
         branches=branches,
         residual=residual.value,

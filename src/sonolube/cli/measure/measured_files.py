@@ -8,10 +8,12 @@ from typing import Annotated, Any
 import typer
 
 from sonolube.cli.console.answer import Answer, deliver
+from sonolube.cli.console.options import refuse_unused
 from sonolube.cli.console.outputs import OutputFile
 from sonolube.cli.console.progress import progress
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.measurement.recordings.mapping import RecordingMapping, read_mapping
+from sonolube.printable_text import printable
 from sonolube.report import (
     MeasurementReport,
     measurement_caveats,
@@ -108,6 +110,8 @@ def deliver_sheets(
     typer.Exit
         If files were refused.
     """
+    if page is None and not as_json:
+        refuse_unused(context, "test", because="without --report or --json, which list its conditions")
     report = MeasurementReport(
         title=title,
         settings=_settings(context),
@@ -118,7 +122,7 @@ def deliver_sheets(
     folder = Path() if page is None else page.parent
     deliver(MeasuredFiles(report=report, page_name=None if page is None else page.name), folder=folder, as_json=as_json)
     for reason in refused.values():
-        typer.echo(f"sonolube measure: {reason}", err=True)
+        typer.echo(printable(f"sonolube measure: {reason}"), err=True)
     if refused:
         raise typer.Exit(2 if not sheets else 1)
 

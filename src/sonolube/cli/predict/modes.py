@@ -11,7 +11,7 @@ import typer
 from sonolube.checks import Floats
 from sonolube.cli.console import parts
 from sonolube.cli.console.answer import Answer, deliver, si
-from sonolube.cli.console.options import OUT, Json, Out, Sizes
+from sonolube.cli.console.options import OUT, Json, Out, Sizes, refuse_unused
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
 from sonolube.fem import ConvergedModes, Electrodes, FixedSupport, Model, converged_modes, generate_mesh, mode_names
@@ -21,6 +21,7 @@ from sonolube.report import Drawing
 
 
 def modes(
+    context: typer.Context,
     part: Annotated[
         str, typer.Argument(metavar="PART", help="A part such as block, a transducer such as stack, or a STEP file.")
     ],
@@ -49,6 +50,10 @@ def modes(
     """
     parts.require_axis(axis=axis, toward=toward)
     is_transducer = part in parts.ALL_TRANSDUCERS
+    if is_transducer:
+        refuse_unused(context, "material", because=f"for {part}, which has its own; it is for other parts")
+    if points is None:
+        refuse_unused(context, "toward", because="without --points, at which the component is written")
     geometry = parts.named_part(part, sizes or [])
     media = parts.named_media(part, sizes or [], material)
     electrodes = parts.named_transducer(part, sizes or []).electrodes if is_transducer else Electrodes()

@@ -18,7 +18,7 @@ from sonolube.vocabulary import quantities, unit_of
 if TYPE_CHECKING:
     import xarray as xr
 
-_LABEL_AND_UNIT = re.compile(r"^(.*?)\s*(?:\[([^\[\]]*)\]|\(([^()]*)\))\s*$", re.DOTALL)
+_UNIT_OF_LABEL = re.compile(r"(?:\[([^\[\]]*)\]|\(([^()]*)\))\Z")
 _LARGEST_READING = 1e30  # in any unit; keeps powers of samples within the range of a float
 _TIME_LABELS = {"time", "t", "x_value", "timestamp", "elapsed_time"}
 
@@ -115,8 +115,10 @@ def _channel_sources(table: RawTable, path: Path, mapping: RecordingMapping | No
 
 def _name_and_unit(column: RawColumn) -> tuple[str, str | None]:
     """Return the name of a channel from the label of its column, and the unit stated for it."""
-    match = _LABEL_AND_UNIT.match(column.label)
-    label, unit = (match[1], match[2] if match[2] is not None else match[3]) if match else (column.label, None)
+    label = column.label.strip()
+    unit = None
+    if match := _UNIT_OF_LABEL.search(label):
+        label, unit = label[: match.start()], match[1] if match[1] is not None else match[2]
     name = re.sub(r"\W+", "_", label.strip().lower()).strip("_") or "channel"
     return name, column.unit if column.unit is not None else unit
 

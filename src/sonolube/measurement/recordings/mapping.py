@@ -1,6 +1,5 @@
 """Mapping of an instrument's columns to vocabulary quantities: column, unit, calibration and text layout (TOML)."""
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -9,7 +8,7 @@ from typing import Any
 
 from sonolube.checks import require_finite, require_positive
 from sonolube.errors import InvalidInput, UnknownName, suggestion
-from sonolube.measurement.file_format import refuse_unreadable
+from sonolube.toml_text import read_toml
 from sonolube.units import to_si
 from sonolube.vocabulary import quantity
 
@@ -158,12 +157,7 @@ def read_mapping(path: Path) -> RecordingMapping:
         Naming the file and the key, if the file is missing, is no TOML, or a key or a value is invalid.
     """
     try:
-        with refuse_unreadable(path):
-            content = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as failure:
-        raise InvalidInput(f"{path}: {failure}") from None
-    try:
-        return _mapping(content)
+        return _mapping(read_toml(path, kind="a mapping"))
     except UnknownName as failure:
         raise InvalidInput(f"{path}: channels: {failure}") from None
     except (InvalidInput, TypeError) as failure:

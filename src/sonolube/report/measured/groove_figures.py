@@ -97,7 +97,7 @@ def ring(worn: WearTrack) -> "Figure":
     axes.axhspan(low, high, color=COLOURS[5], alpha=0.4, linewidth=0, label="95 %")
     axes.axhline(float(area.mean()), color=COLOURS[0], linewidth=1.2, label="mean")
     axes.plot(place, area, MARKERS[1], color=COLOURS[1], label="scans")
-    axes.set(xlabel="scan", ylabel="section (um$^2$)", xticks=place)
+    axes.set(xlabel="scan", ylabel="section (um²)", xticks=place)
     figure.legend(loc="outside upper center", ncols=3)
     return figure
 
@@ -118,7 +118,7 @@ def marks(track: TrackMarks) -> "Figure":
     axes.loglog(k, background, "--", color=COLOURS[1], label="background")
     if track.dot_spacing is not None:
         axes.axvline(1 / track.dot_spacing, color="0.4", linewidth=0.8, linestyle=":")
-    axes.set(xlabel="wavenumber (1/m)", ylabel="power spectral density (m$^3$)")
+    axes.set(xlabel="wavenumber (1/m)", ylabel="power spectral density (m³)")
     axes.legend()
     return figure
 

@@ -106,7 +106,7 @@ def spectrum(radial: RadialSpectrum) -> "Figure":
     figure, axes = plt.subplots(figsize=(4.6, 3.2))
     inner = radial.wavenumber > 0
     axes.loglog(radial.wavenumber[inner], radial.areal_spectral_density[inner])
-    axes.set(xlabel="wavenumber (1/m)", ylabel="power spectral density (m$^4$)")
+    axes.set(xlabel="wavenumber (1/m)", ylabel="power spectral density (m⁴)")
     above = axes.secondary_xaxis("top", functions=(_wavelength, _wavelength))
     above.set_xlabel("wavelength (um)")
     return figure

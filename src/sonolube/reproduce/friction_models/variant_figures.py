@@ -110,12 +110,12 @@ def _curves(speeds: Floats) -> Iterator[tuple[str, Floats]]:
             balanced,
         ),
         (
-            f"asperity stick-slip, $D_c$ = {1e6 * mindlin:.2f} µm\n(Mindlin, µ = {mu:.2f})",
+            f"asperity stick-slip, D_c = {1e6 * mindlin:.2f} µm\n(Mindlin, µ = {mu:.2f})",
             friction.AsperityStickSlip(memory_length=mindlin),
             balanced,
         ),
         (
-            f"asperity stick-slip, $D_c$ = {1e6 * memory:.2f} µm\n(fitted)",
+            f"asperity stick-slip, D_c = {1e6 * memory:.2f} µm\n(fitted)",
             friction.AsperityStickSlip(memory_length=memory),
             balanced,
         ),

@@ -6,7 +6,8 @@ from pathlib import Path
 
 from sonolube.errors import InvalidInput, suggestion
 from sonolube.rig.file.structures import MODE_LISTS
-from sonolube.rig.file.toml_file import prefixed, text_of
+from sonolube.rig.file.toml_file import prefixed
+from sonolube.toml_text import text_of
 from sonolube.units import convert
 
 _UNITS = {"natural_frequency": "Hz", "damping_ratio": "", "drive_participation": "N/V", "contact_participation": ""}

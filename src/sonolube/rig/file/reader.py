@@ -20,10 +20,11 @@ from sonolube.rig.file.modes_file import read_modes
 from sonolube.rig.file.renamed import refuse_former_names
 from sonolube.rig.file.sections import BodySection, ContactSection, RigFile
 from sonolube.rig.file.structures import ModesSection, PinOnDiscSection
-from sonolube.rig.file.toml_file import prefixed, toml_of, validated
+from sonolube.rig.file.toml_file import prefixed, validated
 from sonolube.rig.file.uncertainty import distributions_of
 from sonolube.rig.record import Rig
 from sonolube.surfaces import Roughness
+from sonolube.toml_text import read_toml, require_plain_content
 
 
 def read_rig(path: str | Path, *, changes: Sequence[str] = ()) -> Rig:
@@ -72,9 +73,11 @@ def rig_content(path: str | Path, *, changes: Sequence[str] = ()) -> dict[str, A
     """
     path = Path(path)
     with prefixed(str(path)):
-        content = toml_of(path, kind="a rig file")
+        content = read_toml(path, kind="a rig file")
+        _refuse_repeated(changes)
         for change in changes:
             _apply(change, content)
+        require_plain_content(content)
         return _with_modes(content, path.parent)
 
 
@@ -149,6 +152,13 @@ def _with_modes(content: dict[str, Any], folder: Path) -> dict[str, Any]:
             raise InvalidInput(f"structure: give either the file of the modes or their lists, got file and {clash}")
         return content | {"structure": rest | modes}
     return content
+
+
+def _refuse_repeated(changes: Sequence[str]) -> None:
+    keys = [change.partition("=")[0].strip() for change in changes]
+    for place, key in enumerate(keys):
+        if key in keys[:place]:
+            raise InvalidInput(f"{key} is to be replaced twice, the second time by {changes[place]!r}; give it once")
 
 
 def _apply(change: str, content: dict[str, Any]) -> None:

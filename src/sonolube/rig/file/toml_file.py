@@ -1,9 +1,7 @@
-"""Text files of bounded size, TOML, and refusals of its content in one line that names the key."""
+"""Refusals of the content of a TOML file in one line that names the key."""
 
-import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from pathlib import Path
 from typing import Any, TypeVar
 
 from pydantic import ValidationError
@@ -12,9 +10,7 @@ from sonolube.errors import InvalidInput, SonolubeError, suggestion
 from sonolube.rig.file.json_schema import tables_of
 from sonolube.rig.file.section import Section
 from sonolube.rig.file.structures import STRUCTURES
-from sonolube.targets import record_input
 
-_LARGEST_FILE = 1_000_000  # bytes; a rig is a page of text, hundreds of modes are some 20 kB
 _Content = TypeVar("_Content", bound=Section)
 
 
@@ -40,65 +36,6 @@ def prefixed(place: str) -> Iterator[None]:
         yield
     except SonolubeError as refusal:
         raise InvalidInput(f"{place}: {refusal}") from None
-
-
-def text_of(path: Path, *, kind: str) -> str:
-    """Return the text of a file.
-
-    Parameters
-    ----------
-    path : Path
-        UTF-8, with or without a byte order mark.
-    kind : str
-        What the file is, such as "a rig file".
-
-    Returns
-    -------
-    str
-
-    Raises
-    ------
-    InvalidInput
-        If the file cannot be read, is no UTF-8 text or larger than 1 MB, or the running command is to write to it.
-    """
-    record_input(path)
-    try:
-        if path.stat().st_size > _LARGEST_FILE:
-            raise InvalidInput(f"larger than {kind} can be (1 MB)")
-        return path.read_text(encoding="utf-8-sig")
-    except FileNotFoundError:
-        raise InvalidInput("no such file") from None
-    except OSError as failure:
-        raise InvalidInput(f"cannot be read: {failure.strerror}") from None
-    except UnicodeDecodeError as failure:
-        raise InvalidInput(f"not UTF-8 text: byte {failure.object[failure.start]:#04x} at {failure.start}") from None
-
-
-def toml_of(path: Path, *, kind: str) -> dict[str, Any]:
-    """Return the content of a TOML file.
-
-    Parameters
-    ----------
-    path : Path
-    kind : str
-        What the file is, such as "a rig file".
-
-    Returns
-    -------
-    dict
-
-    Raises
-    ------
-    InvalidInput
-        If the file cannot be read or is no TOML.
-    """
-    text = text_of(path, kind=kind)
-    try:
-        return tomllib.loads(text)
-    except tomllib.TOMLDecodeError as failure:
-        raise InvalidInput(f"not valid TOML: {failure}") from None
-    except RecursionError:
-        raise InvalidInput("not valid TOML: nested too deeply") from None
 
 
 def validated(file: type[_Content], content: Mapping[str, Any]) -> _Content:

@@ -100,7 +100,7 @@ def _value(file: RigFile, key: str) -> float | None:
 
 def _distribution(known: Quantity, text: str, value: float | None) -> Distribution:
     name, unit = known.name, known.unit
-    match = _ENTRY.fullmatch(text.strip())
+    match = _ENTRY.fullmatch(" ".join(text.split()))
     if match is None:
         raise InvalidInput(f"{text!r} is no distribution; write it like {', '.join(EXAMPLES[:4])} or {EXAMPLES[-1]}")
     kind, rest = match[1], match[2].strip()

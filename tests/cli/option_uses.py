@@ -1,0 +1,435 @@
+"""Uses of every command with a value for each of its options, and the files that they read."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+ROOT = Path(__file__).parents[2]
+RIGS = ROOT / "examples" / "rigs"
+RIG = str(RIGS / "tribometer.toml")
+COLLAR = str(RIGS / "collar.toml")
+LOADED = {"--load": "2N", "--set": "contact.normal_load=2N"}
+SIZES = ("--set", "length=20mm", "--set", "width=10mm", "--set", "thickness=5mm")
+RUNS = str(ROOT / "examples" / "efficiency-runs.csv")
+OVER = ("--over", "sliding.sliding_speed=20mm/s,50mm/s")
+STUDY = {"--over": OVER[1], "--of": "waveform", "--from": "", "--to": "", "--points": "4", "--voltage": "10V"}
+DRAWN = {"--sample": "lhs", "--seed": "1", "--workers": "1", "--scheduler": "local", "--chunk": "7", "--backend": "gpu"}
+SWEEP = STUDY | DRAWN | {"--set": "contact.normal_load=2N"}
+SHEETS = {"--test-sheet": "FOLDER/sheet.toml", "--report": "OUT/page.html"}
+MAP = ("--over", "sliding.sliding_speed=10mm/s,20mm/s", "--over", "drive.voltage_peak_to_peak=5V,10V")
+
+# Options that say how an answer is computed or kept: the answer stays the same.
+EXECUTION = {"--workers", "--scheduler", "--chunk", "--backend", "--keep"}
+# Options of the place of files, which every run here gives.
+PLACES = {"--out", "--json", "--help"}
+# Their answers are compared by tests of their own, since a run takes a minute.
+TESTED_ELSEWHERE = {("reproduce", "--chapter"), ("uncertainty", "--identified")}
+
+
+@dataclass(frozen=True)
+class Mode:
+    """One use of a command, and a value for each of its options; of a pair, the first is replaced by the second."""
+
+    command: str
+    base: Sequence[str]
+    values: Mapping[str, str | tuple[str, str]] = field(default_factory=dict)
+    flags: Sequence[str] = ()
+
+
+MODES = {
+    "contact": Mode("contact", (RIG,), LOADED),
+    "friction": Mode("friction", (RIG,), LOADED | {"--model": "kinematic"}),
+    "wear": Mode("wear", (RIG,), LOADED),
+    "simulate": Mode("simulate", (RIG,), LOADED),
+    "response": Mode("response", (RIG,), {"--from": "30kHz", "--to": "20kHz", "--set": "contact.normal_load=2N"}),
+    "transient": Mode(
+        "transient", (RIG, "--duration", "0.02s"), {"--duration": "0.03s", "--set": "contact.normal_load=2N"}
+    ),
+    "thermal": Mode(
+        "thermal",
+        (RIG, "--pin", "stainless_steel_316", "--disc", "aluminium_2024"),
+        {
+            "--pin": "m50",
+            "--disc": "m50",
+            "--duration": "70s",
+            "--heat-capacity": "2J/K",
+            "--conductance": "0.1W/K",
+            "--vibration-heat": "1W",
+            "--set": "contact.normal_load=2N",
+        },
+    ),
+    "regime": Mode(
+        "regime",
+        (RIG, "--film-coefficient", "0.1", "--asperity-pressure", "10MPa"),
+        {
+            "--film-coefficient": "0.2",
+            "--asperity-pressure": "2MPa",
+            "--smallest-gain": "0.9",
+            "--pin": "m50",
+            "--disc": "m50",
+            "--set": "contact.normal_load=2N",
+        },
+    ),
+    "regime with wear": Mode(
+        "regime",
+        (RIG, "--film-coefficient", "0.1", "--asperity-pressure", "10MPa", "--pin", "m50", "--disc", "m50"),
+        {"--pin": "aluminium_2024", "--disc": "aluminium_2024"},
+    ),
+    "modes of a part": Mode(
+        "modes",
+        ("block", *SIZES, "--count", "1", "--tolerance", "0.5"),
+        {
+            "--set": ("thickness=5mm", "thickness=6mm"),
+            "--material": "aluminium_2024",
+            "--count": "2",
+            "--clamp": "-x",
+            "--axis": "y",
+            "--tolerance": "0.0005",
+            "--points": "FOLDER/points.csv",
+            "--toward": "y",
+        },
+        ("--vtu", "--animate"),
+    ),
+    "modes at points": Mode(
+        "modes",
+        ("block", *SIZES, "--count", "1", "--tolerance", "0.5", "--points", "FOLDER/points.csv"),
+        {"--toward": "y"},
+    ),
+    "modes of a transducer": Mode(
+        "modes", ("stack", "--count", "1", "--tolerance", "0.5"), {"--material": "aluminium_2024"}
+    ),
+    "impedance of a part": Mode(
+        "impedance compute",
+        ("block", *SIZES, "--points", "5", "--tolerance", "0.5", "--to", "300kHz"),
+        {
+            "--set": ("thickness=5mm", "thickness=6mm"),
+            "--from": "2kHz",
+            "--to": "400kHz",
+            "--points": "6",
+            "--clamp": "-z",
+            "--ceramic": "pic151",
+            "--poled": "x",
+            "--drive": "+x",
+            "--ground": "-x",
+            "--measured": "FOLDER/spectrum.csv",
+            "--tolerance": "0.01",
+        },
+        ("--vtu",),
+    ),
+    "impedance of a transducer": Mode(
+        "impedance compute",
+        ("stack", "--points", "5", "--tolerance", "0.9"),
+        {"--ceramic": "nonsense", "--poled": "x", "--drive": "+x", "--ground": "-x"},
+    ),
+    "sweep on a grid": Mode(
+        "sweep", (RIG, *OVER), SWEEP | {"--over": (OVER[1], "sliding.sliding_speed=20mm/s,60mm/s"), "--from": "1V"}
+    ),
+    "sweep of a list": Mode(
+        "sweep", (RIG, *OVER, "--sample", "list"), SWEEP | {"--over": "contact.normal_load=2N,3N", "--to": "1V"}
+    ),
+    "sweep of points drawn": Mode(
+        "sweep",
+        (RIG, "--over", "sliding.sliding_speed=20mm/s:50mm/s", "--sample", "lhs", "--points", "4"),
+        SWEEP
+        | {"--over": "contact.normal_load=2N:3N", "--points": "5", "--sample": "grid", "--from": "1V", "--to": "1V"},
+    ),
+    "sweep at an address": Mode("sweep", (RIG, *OVER, "--scheduler", "tcp://nowhere:1"), {"--workers": "1"}),
+    "sweep of a swept key": Mode("sweep", (RIG, *OVER), {"--set": "sliding.sliding_speed=30mm/s"}),
+    "sweep of voltage": Mode(
+        "sweep", (RIG, "--of", "voltage", "--points", "3"), SWEEP | {"--from": "5V", "--to": "20V"}
+    ),
+    "sweep of speed": Mode(
+        "sweep", (RIG, "--of", "speed", "--points", "3"), SWEEP | {"--from": "5mm/s", "--to": "50mm/s"}
+    ),
+    "sweep of frequency": Mode(
+        "sweep", (RIG, "--of", "frequency", "--points", "3"), SWEEP | {"--from": "5kHz", "--to": "21kHz"}
+    ),
+    "sweep of power": Mode(
+        "sweep", (RIG, "--of", "power", "--points", "3"), SWEEP | {"--from": "22kHz", "--to": "30kHz"}
+    ),
+    "sweep of waveforms": Mode("sweep", (RIG, "--of", "waveform"), SWEEP | {"--from": "5V", "--to": "20V"}),
+    "sweep of load": Mode("sweep", (RIG, "--of", "load", "--points", "3"), STUDY | {"--from": "2N", "--to": "5N"}),
+    "map": Mode(
+        "map",
+        (str(RIGS / "power_map.toml"), *MAP),
+        {
+            "--over": "contact.normal_load=3N",
+            "--measured": RUNS,
+            "--form": "svg",
+            "--set": "contact.roughness.rms_height=1um",
+            "--backend": "gpu",
+        },
+    ),
+    "map of a kind": Mode(
+        "map",
+        (str(RIGS / "power_map.toml"), "--over", "drive.voltage_peak_to_peak=5V,10V"),
+        {"--kind": "frequency-voltage"},
+    ),
+    "uncertainty": Mode(
+        "uncertainty",
+        (str(RIGS / "tribometer_uncertain.toml"), "--samples", "32"),
+        {
+            "--of": "vibration_amplitude",
+            "--samples": "64",
+            "--over": "sliding.sliding_speed=20mm/s,50mm/s",
+            "--seed": "1",
+            "--workers": "1",
+            "--set": "contact.normal_load=2N",
+            "--keep": "OUT/keep",
+        },
+        ("--sobol",),
+    ),
+    "optimise": Mode(
+        "optimise",
+        (RIG, "--target-friction", "0.15"),
+        {
+            "--target-friction": "0.2",
+            "--over": "structure.tip_mass=80g:120g",
+            "--actuator": "catalogue",
+            "--catalogue": "FOLDER/catalogue.toml",
+            "--minimise": "voltage",
+            "--pareto": "voltage",
+            "--robust": "0.02",
+            "--quantile": "0.9",
+            "--samples": "8",
+            "--voltage-limit": "100V",
+            "--current-limit": "10A",
+            "--slew-limit": "10V/us",
+            "--stress-limit": "100MPa",
+            "--temperature-limit": "1K",
+            "--conductance": "1W/K",
+            "--horn": "titanium_6al4v",
+            "--horn-limit": "1MPa",
+            "--bolt": "M6x40mm",
+            "--preload": "1kN",
+            "--bolt-strength": "800MPa",
+            "--quality": "200",
+            "--source-resistance": "50ohm",
+            "--set": "sliding.sliding_speed=30mm/s",
+        },
+    ),
+    "optimise masses": Mode(
+        "optimise",
+        (RIG, "--target-friction", "0.15", "--samples", "2", "--over", "structure.tip_mass=80g:120g"),
+        {"--samples": "4"},
+    ),
+    "optimise for power twice": Mode("optimise", (RIG, "--target-friction", "0.15"), {"--pareto": "power"}),
+    "control": Mode(
+        "control",
+        (RIG, "--duration", "0.05s"),
+        {
+            "--friction": "0.6N",
+            "--feed-forward": "none",
+            "--efficiency": "1e-9m2/N",
+            "--delay": "2ms",
+            "--rate": "4kHz",
+            "--noise": "0.01N",
+            "--factor": "1.1",
+            "--closed-loop": "5ms",
+            "--voltage-limit": "20V",
+            "--current-limit": "4A",
+            "--slew-limit": "1V/us",
+            "--warming": "40K",
+            "--warming-time": "0.01s",
+            "--quality": "100",
+            "--coupling": "0.3",
+            "--duration": "0.06s",
+            "--set": "contact.normal_load=2N",
+        },
+        ("--no-track", "--stick-slip"),
+    ),
+    "control in the warm": Mode(
+        "control", (RIG, "--duration", "0.05s", "--warming", "40K"), {"--warming-time": "0.01s"}, ("--no-track",)
+    ),
+    "control by the efficiency": Mode(
+        "control", (RIG, "--duration", "0.05s", "--feed-forward", "efficiency"), {"--efficiency": "1e-9m2/N"}
+    ),
+    "control of a device without structure": Mode(
+        "control", (COLLAR, "--duration", "0.05s"), {"--quality": "100", "--coupling": "0.3"}
+    ),
+    "efficiency": Mode(
+        "efficiency",
+        (RUNS, "--rig", str(RIGS / "power_map.toml")),
+        {
+            "--rig": RIG,
+            "--target-friction": "0.5N",
+            "--speed": "40mm/s",
+            "--level": "0.9",
+            "--set": "contact.nominal_area=1mm2",
+        },
+    ),
+    "efficiency for a target": Mode(
+        "efficiency", (RUNS, "--rig", str(RIGS / "power_map.toml"), "--target-friction", "0.8N"), {"--speed": "50mm/s"}
+    ),
+    "horn": Mode(
+        "horn design",
+        ("--frequency", "20kHz", "--material", "titanium_6al4v", "--shape", "cylinder", "--tolerance", "0.3"),
+        {
+            "--frequency": "30kHz",
+            "--material": "aluminium_2024",
+            "--shape": "conical",
+            "--set": "radius=10mm",
+            "--tune": "radius",
+            "--mode": "axial 2",
+            "--axis": "x",
+            "--tool-mass": "50g",
+            "--tolerance": "0.002",
+        },
+    ),
+    "friction of recordings": Mode(
+        "measure friction",
+        ("FOLDER/friction.csv",),
+        {
+            "--mapping": "FOLDER/friction.toml",
+            "--without-vibration": "FOLDER/other.csv",
+            "--sliding-speed": "20mm/s",
+            "--window": "1s",
+            "--rotation-speed": "1/s",
+            "--torque-constant": "0.5 N m/A",
+            "--idle-current": "0.1A",
+            "--groove-diameter": "50mm",
+        }
+        | SHEETS,
+    ),
+    "rotation": Mode(
+        "measure rotation",
+        ("FOLDER/hall.csv", "--groove-diameter", "50mm"),
+        {"--groove-diameter": "40mm", "--magnets": "2", "--prominence": "0.9", "--mapping": "FOLDER/hall.toml"}
+        | SHEETS,
+    ),
+    "calibration": Mode(
+        "measure calibration",
+        ("FOLDER/gauge.csv",),
+        {
+            "--apply": "FOLDER/applied.csv",
+            "--mapping": "FOLDER/gauge.toml",
+            "--degree": "1",
+            "--levels": "8",
+            "--displacement-uncertainty": "1um",
+        }
+        | SHEETS,
+    ),
+    "calibration applied": Mode(
+        "measure calibration",
+        ("FOLDER/gauge.csv", "--apply", "FOLDER/applied.csv"),
+        {"--displacement-uncertainty": "1um"},
+    ),
+    "surface": Mode(
+        "measure surface",
+        ("FOLDER/plate.npy", "--spacing", "1um"),
+        {"--spacing": "2um", "--length-unit": "um", "--form": "2", "--short-cutoff": "5um", "--long-cutoff": "20um"}
+        | SHEETS,
+        ("--robust",),
+    ),
+    "groove": Mode(
+        "measure groove",
+        ("FOLDER/groove.npy", "--spacing", "1um"),
+        {
+            "--groove-diameter": "50mm",
+            "--sliding-distance": "10m",
+            "--without-vibration": "FOLDER/groove.npy",
+            "--tip-radius": "3mm",
+            "--pin": "FOLDER/plate.npy",
+            "--spacing": "2um",
+            "--length-unit": "mm",
+        }
+        | SHEETS,
+    ),
+    "ring": Mode(
+        "measure groove",
+        ("FOLDER/ring", "--spacing", "1um", "--groove-diameter", "50mm", "--sliding-distance", "10m"),
+        {"--without-vibration": "FOLDER/deeper", "--tip-radius": "3mm", "--sliding-distance": "20m"},
+    ),
+    "impedance of a file": Mode(
+        "measure impedance",
+        ("FOLDER/spectrum.csv",),
+        {
+            "--branches": "2",
+            "--residual": "linear-magnitude",
+            "--series-resistance": "3ohm",
+            "--sweep": "memory",
+            "--stack-of": RIG,
+        }
+        | SHEETS,
+    ),
+    "impedance of a stack": Mode(
+        "measure impedance",
+        ("FOLDER/spectrum.csv", "--stack-of", RIG),
+        {"--branches": "2", "--series-resistance": "3ohm"},
+    ),
+    "vibration": Mode(
+        "measure vibration",
+        ("FOLDER/tip.csv", "--frequency", "1kHz"),
+        {"--frequency": "1.1kHz", "--modes": "FOLDER/shapes.csv", "--mapping": "FOLDER/tip.toml"} | SHEETS,
+    ),
+    "compare": Mode(
+        "compare",
+        (RIG, "--model", "kinematic"),
+        {"--model": "asperity-stick-slip", "--set": "sliding.sliding_speed=50mm/s"},
+    ),
+    "compare without a rig": Mode("compare", ("--model", "kinematic"), {"--set": "contact.normal_load=2N"}),
+    "identify": Mode(
+        "identify rig", (RIG,), {"--facts": str(ROOT / "examples" / "facts" / "tribometer.toml"), "--seed": "1"}
+    ),
+    "literature": Mode("literature", (RIG,), {"--set": "contact.normal_load=2N"}),
+    "literature without a rig": Mode("literature", (), {"--set": "contact.normal_load=2N"}),
+}
+
+
+def write_inputs(place: Path) -> None:
+    """Write files of every kind that commands measure or read."""
+    rng = np.random.default_rng(0)
+    time = np.arange(0, 20, 0.01)
+    force = 0.4 + 0.02 * np.sin(2 * np.pi * time) + 0.01 * rng.standard_normal(time.size)
+    _table(place / "friction.csv", "time (s),friction_force (N)", time, force)
+    _table(place / "other.csv", "time (s),friction_force (N)", time, 2 * force)
+    pulse = np.exp(-(((0.8 * time % 1 - 0.5) / 0.03) ** 2)) + 0.4 * np.exp(-(((0.8 * time % 1 - 0.1) / 0.03) ** 2))
+    _table(place / "hall.csv", "time (s),magnetic_flux_density (mT)", time, pulse)
+    loop = 1e-5 * (1 - np.cos(2 * np.pi * time / 20))
+    load = 1e5 * loop + 0.05 * np.sin(2 * np.pi * time / 20) + 0.001 * rng.standard_normal(time.size)
+    _table(place / "gauge.csv", "time (s),displacement (m),applied_force (N)", time, loop, load)
+    _table(place / "applied.csv", "time (s),displacement (m)", time, 0.5 * loop)
+    fast = np.arange(0, 0.2, 5e-5)
+    tips = [np.sin(2 * np.pi * 1000 * fast + phase) for phase in (0.0, 0.3)]
+    _table(place / "tip.csv", "time (s),left (um),right (um)", fast, *tips)
+    for name, quantity, gain in (
+        ("friction", "friction_force", 2.0),
+        ("hall", "magnetic_flux_density", 1.0),
+        ("gauge", "applied_force", 2.0),
+        ("tip", "displacement", 2.0),
+    ):
+        column = {"friction": "friction_force (N)", "hall": "magnetic_flux_density (mT)", "gauge": "applied_force (N)"}
+        unit = {"friction": "N", "hall": "mT", "gauge": "N", "tip": "um"}[name]
+        more = '[channels.displacement]\ncolumn = "displacement (m)"\nunit = "m"\n' if name == "gauge" else ""
+        (place / f"{name}.toml").write_text(
+            f'[axis]\ncolumn = "time (s)"\nunit = "s"\ngain = 2.0\n{more}[channels.{quantity}]\n'
+            f'column = "{column.get(name, "left (um)")}"\nunit = "{unit}"\ngain = {gain}\n'
+        )
+    (place / "points.csv").write_text("0,0,0\n5,1,0\n")
+    (place / "shapes.csv").write_text("1,0\n0.5,1\n")
+    (place / "sheet.toml").write_bytes((ROOT / "examples" / "test-sheet.toml").read_bytes())
+    f = np.linspace(15e3, 30e3, 400)
+    w = 2 * np.pi * f
+    z = 1 / (1j * w * 1e-8 + 1 / (20 + 1j * w * 0.1 + 1 / (1j * w * 6e-10))) + 0.01 * rng.standard_normal(f.size)
+    _table(place / "spectrum.csv", "frequency (Hz),|Z| (ohm),phase (deg)", f, np.abs(z), np.degrees(np.angle(z)))
+    x = np.arange(96.0)
+    plate = 1e-6 * (np.sin(x / 3)[:, np.newaxis] + np.cos(x / 7) + 0.3 * rng.standard_normal((96, 96)))
+    np.save(place / "plate.npy", plate - 1e-9 * (x - 48) ** 2)
+    valley = -4e-5 * np.clip(1 - ((x - 48) / 12) ** 2, 0, None) + 1e-7 * rng.standard_normal((96, 96))
+    np.save(place / "groove.npy", valley)
+    for name, depth in (("ring", 1.0), ("deeper", 2.0)):
+        (place / name).mkdir()
+        for scan in range(3):
+            np.save(place / name / f"{scan}.npy", depth * (1 + 0.1 * scan) * valley)
+    (place / "catalogue.toml").write_text(
+        '[mine]\ntitle = "T"\nkind = "stack"\nsource = "own"\nstroke = 2e-5\n'
+        "stroke_voltage = 100.0\nblocked_force = 800.0\n"
+        "free_capacitance = 1e-6\nresonance_frequency = 4e4\nlowest_voltage = -20.0\nhighest_voltage = 130.0\n"
+    )
+
+
+def _table(path: Path, heads: str, *columns: "np.ndarray[Any, np.dtype[np.float64]]") -> None:
+    np.savetxt(path, np.stack(columns, 1), delimiter=",", header=heads, comments="", fmt="%.9g")
