@@ -116,7 +116,8 @@ def _of_group(entries: Sequence[ChannelEntry], group: str, path: Path) -> list[i
     """Return the indices of the channels in a group; refuse an unknown one, listing all."""
     found = [index for index, entry in enumerate(entries) if entry.group == group]
     if not found:
-        groups = list(dict.fromkeys(entry.group for entry in entries if entry.group))
+        paths = (entry.group or re.sub(r"(?:^|[/.])[^/.]*$", "", entry.label) for entry in entries)
+        groups = [known for known in dict.fromkeys(paths) if known]
         if not groups:
             raise InvalidInput(f"{path}: has no groups of channels, so that none is {group!r}")
         hint = suggestion(group, groups) or "it has " + ", ".join(groups[:_MOST_LISTED])

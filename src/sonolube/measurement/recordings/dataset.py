@@ -80,7 +80,12 @@ def recording_dataset(
 
 def _selected(table: RawTable, mapping: RecordingMapping, path: Path) -> RawTable:
     """Return the columns that the selection of a mapping chooses."""
-    chosen = chosen_channels(_entries(table.columns), mapping.selection, path)
+    group = mapping.selection.group
+    entries = [
+        entry if entry.group or not entry.label.startswith((f"{group}/", f"{group}.")) else replace(entry, group=group)
+        for entry in _entries(table.columns)
+    ]
+    chosen = chosen_channels(entries, mapping.selection, path)
     if len(chosen) == len(table.columns) and not mapping.selection.group:
         return table
     columns = tuple(replace(table.columns[index], label=label) for index, label in chosen)
