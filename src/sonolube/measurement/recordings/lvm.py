@@ -53,7 +53,9 @@ class _Parser:
             elif line.startswith(_SIGNATURE):
                 self._file_header()
             elif self._continues(line, after_blank=after_blank):
-                self.segments[-1].rows.append((number, self._cells(line)))
+                segment, cells = self.segments[-1], self._cells(line)
+                if segment.x_columns == "No" or any(cells[: len(segment.labels)]):  # else only a comment
+                    segment.rows.append((number, cells))
                 after_blank = False
                 self.at += 1
             else:
