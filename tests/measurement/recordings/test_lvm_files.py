@@ -88,7 +88,9 @@ def test_a_file_without_a_stated_decimal_sign_is_read_by_its_numbers(tmp_path: P
     assert recording["time"].to_numpy().tolist() == [0, 0.5]
 
 
-@pytest.mark.parametrize("repeated", ["", "X_Value\tfriction_force\tdrive\tComment\n", None], ids=["rows", "labels", "all"])
+@pytest.mark.parametrize(
+    "repeated", ["", "X_Value\tfriction_force\tdrive\tComment\n", None], ids=["rows", "labels", "all"]
+)
 def test_rows_appended_after_blank_lines_or_repeated_headers_continue_the_recording(
     tmp_path: Path, repeated: str | None
 ) -> None:
@@ -149,5 +151,7 @@ def test_a_spectrum_is_no_recording_over_time(tmp_path: Path) -> None:
 
 def test_a_comment_without_values_is_no_sample(tmp_path: Path) -> None:
     text = file_header(columns="One") + segment_header(TWO) + "X_Value\tfriction_force\tdrive\tComment\n"
-    recording = read_recording(write(tmp_path / "comment.lvm", text + "0\t1\t1\tstart\n\t\t\tpaused\n0.5\t2\t2\n\t\t\tstopped\n"))
+    recording = read_recording(
+        write(tmp_path / "comment.lvm", text + "0\t1\t1\tstart\n\t\t\tpaused\n0.5\t2\t2\n\t\t\tstopped\n")
+    )
     assert np.array_equal(recording["drive"], [1, 2])
