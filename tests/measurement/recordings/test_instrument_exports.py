@@ -167,7 +167,8 @@ def test_an_unknown_mapping_is_refused_with_the_closest_name(tmp_path: Path) -> 
 def test_a_mapping_file_states_units_row_comments_header_and_sections(tmp_path: Path) -> None:
     (tmp_path / "lab.toml").write_text(
         "[axis]\ncolumn = 'clock'\n[text]\nheader = '^clock'\nunits_row = true\ncomment = '%'\n"
-        "section = '^Phase (.+)$'\nseparator = ';'\ndecimal_sign = ','\nencoding = 'cp1252'\n[selection]\nsections = ['running in', 'wear']\n"
+        "section = '^Phase (.+)$'\nseparator = ';'\ndecimal_sign = ','\nencoding = 'cp1252'\n"
+        "[selection]\nsections = ['running in', 'wear']\n"
         "[channels.friction_force]\ncolumn = 'F'\n[channels.displacement]\ncolumn = 'x'\n"
     )
     phase = "Phase {}\nnotes\nclock;F;x\nms;mN;µm\n{}\n% end\n"

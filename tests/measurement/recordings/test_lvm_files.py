@@ -1,6 +1,6 @@
 """LVM files of LabVIEW against the values, units and times they were written with, by NI's specification."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +22,7 @@ def file_header(*, columns: str, sign: str = ".", headings: str = "Yes") -> str:
     return FILE_HEADER.format(columns=columns, sign=sign, headings=headings)
 
 
-def segment_header(keys: dict[str, Sequence[str]], *, gap: str = "\t") -> str:
+def segment_header(keys: Mapping[str, Sequence[str]], *, gap: str = "\t") -> str:
     """Keys with one cell a channel; in files with several time columns `gap` is two tabs."""
     lines = [key + "\t" + gap.join(cells) + "\t\n" for key, cells in keys.items()]
     return f"Channels\t{len(next(iter(keys.values())))}\n" + "".join(lines) + "***End_of_Header***\t\n"
@@ -125,7 +125,7 @@ def test_channels_of_different_rates_are_read_one_at_a_time(tmp_path: Path) -> N
 
 
 def test_one_time_column_is_not_taken_for_channels_of_another_step(tmp_path: Path) -> None:
-    keys = {**TWO, "Delta_X": ("0.5", "1.0")}
+    keys = {**TWO, "Samples": ("3", "2"), "Delta_X": ("0.5", "1.0")}
     text = file_header(columns="One") + segment_header(keys) + "X_Value\tfriction_force\tdrive\tComment\n"
     path = write(tmp_path / "one.lvm", text + "0\t1\t10\n0.5\t2\t20\n1\t3\t\n")
     with raises(InvalidInput, match="different times"):
@@ -155,3 +155,11 @@ def test_a_comment_without_values_is_no_sample(tmp_path: Path) -> None:
         write(tmp_path / "comment.lvm", text + "0\t1\t1\tstart\n\t\t\tpaused\n0.5\t2\t2\n\t\t\tstopped\n")
     )
     assert np.array_equal(recording["drive"], [1, 2])
+
+
+def test_a_sample_without_values_keeps_its_place_in_time(tmp_path: Path) -> None:
+    keys = {**TWO, "Samples": ("4", "4")}
+    text = file_header(columns="No") + segment_header(keys) + "X_Value\tfriction_force\tdrive\tComment\n"
+    recording = read_recording(write(tmp_path / "gap.lvm", text + "\t1\t1\n\t\t\n\t3\t3\n\t\t\n\n"))
+    assert recording["drive"].to_numpy() == approx([1, np.nan, 3, np.nan], nan_ok=True)
+    assert recording["time"].to_numpy().tolist() == [0, 0.5, 1, 1.5]

@@ -55,6 +55,8 @@ def recognised_mapping(path: Path) -> RecordingMapping | None:
     """
     head = read_head(path)
     encoding = "utf-16" if head[:2] in (b"\xff\xfe", b"\xfe\xff") else "latin-1"  # patterns are ASCII
-    text = head.decode(encoding, errors="ignore").replace("\r\n", "\n").replace("\r", "\n")
+    text = (
+        head.removeprefix(b"\xef\xbb\xbf").decode(encoding, errors="ignore").replace("\r\n", "\n").replace("\r", "\n")
+    )
     fitting = (known for known in instrument_mappings().values() if known.recognised_by)
     return next((known for known in fitting if re.search(known.recognised_by, text)), None)

@@ -47,12 +47,12 @@ class _Parser:
         after_blank = True
         while self.at < len(self.lines):
             number, line = self.lines[self.at]
-            if not line.strip(" \t,"):
+            if not line.strip(" \t,") and not self._is_row_of_missing_values(line):
                 after_blank = True
                 self.at += 1
             elif line.startswith(_SIGNATURE):
                 self._file_header()
-            elif self._continues(line, after_blank=after_blank):
+            elif self._continues(line, after_blank=after_blank) or not line.strip(" \t,"):
                 segment, cells = self.segments[-1], self._cells(line)
                 if segment.x_columns == "No" or any(cells[: len(segment.labels)]):  # else only a comment
                     segment.rows.append((number, cells))
@@ -61,6 +61,12 @@ class _Parser:
             else:
                 self._segment_header()
                 after_blank = False
+
+    def _is_row_of_missing_values(self, line: str) -> bool:
+        """Return whether a line of separators is a sample of a segment without times that has not ended."""
+        if not self.segments or self.segments[-1].x_columns != "No" or self.separator not in line:
+            return False
+        return len(self.segments[-1].rows) < self.segments[-1].stated_samples
 
     def _cells(self, line: str) -> list[str]:
         """Return the cells of a line."""

@@ -55,6 +55,12 @@ class LvmSegment:
         """Date and time at which the segment begins, as the header states it."""
         return f"{self.header.text('Date', '')} {self.header.text('Time', '')}".strip()
 
+    @property
+    def stated_samples(self) -> int:
+        """Largest number of samples that the header states for a channel; 0 where it states none."""
+        cells = self.header.keys.get("Samples", [])
+        return max((int(cell) for cell in cells if cell.isascii() and cell.isdigit() and len(cell) < 12), default=0)
+
     def cells_of_channels(self, key: str) -> list[str]:
         """Return the cell of a key for each channel.
 
@@ -204,7 +210,7 @@ def _abscissae(segment: LvmSegment, values: Sequence[Floats], decimal_sign: str,
         if label == _X_LABEL
     }
     written_ones = [index for index, column in time_columns.items() if np.isfinite(column).any()]
-    units = segment.cells_of_channels("X_Unit_Label")
+    units, counts = segment.cells_of_channels("X_Unit_Label"), segment.cells_of_channels("Samples")
     first = next((channel for channel, own in enumerate(values) if np.isfinite(own).any()), 0)
     found = []
     for channel, (index, _) in enumerate(segment.channels):
@@ -222,6 +228,9 @@ def _abscissae(segment: LvmSegment, values: Sequence[Floats], decimal_sign: str,
             raise InvalidInput(
                 f"{path}: line {segment.header.line}: X0 and Delta_X must give the times of every channel"
             )
+        if written is None and samples:
+            stated = counts[channel]
+            samples = max(samples, min(int(stated), len(segment.rows))) if stated.isdecimal() else samples
         if written is not None and samples:
             samples = max(samples, int(np.flatnonzero(np.isfinite(written))[-1]) + 1)
         found.append(_Abscissa(start=start * scale, step=step * scale, written=written, samples=samples))
