@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from sonolube.errors import InvalidInput, suggestion
+from sonolube.measurement.file_format import refuse_unreadable
 from sonolube.report.measured.sheet import Sheet, Value
 from sonolube.units import format_si, to_si
 from sonolube.vocabulary import quantities
@@ -72,9 +73,8 @@ def read_pin_on_disc_sheet(path: Path) -> PinOnDiscSheet:
         Naming the file and the key, if the file cannot be read or a key or value is not valid.
     """
     try:
-        content = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except OSError as failure:
-        raise InvalidInput(f"{path}: cannot be read: {failure.strerror}") from None
+        with refuse_unreadable(path):
+            content = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as failure:
         raise InvalidInput(f"{path}: {failure}") from None
     for section, entries in content.items():
