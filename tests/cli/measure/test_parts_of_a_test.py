@@ -74,6 +74,14 @@ def test_a_group_is_measured_and_a_wrong_one_refused(tmp_path: Path, capsys: pyt
     measured(capsys, path, "--group", "medium", code=2)
 
 
+def test_settings_list_the_options_that_were_given(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = reciprocating(tmp_path, restart=False, files=1)[0]
+    with pytest.raises(SystemExit):
+        main(["measure", "friction", str(path), "--channel", "friction_force (N)", "--json"])
+    settings = json.loads(capsys.readouterr().out)["settings"]
+    assert settings == {"window": "2s", "channel": "friction_force (N)"}
+
+
 def test_an_unknown_mapping_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = reciprocating(tmp_path, restart=False, files=1)[0]
     with pytest.raises(SystemExit) as ended:

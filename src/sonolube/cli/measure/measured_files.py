@@ -27,7 +27,9 @@ Files = Annotated[list[Path], typer.Argument(metavar="FILES...", help="Files, or
 Mapped = Annotated[
     str | None,
     typer.Option(
-        "--mapping", metavar="NAME|MAPPING.toml", help="Meaning of the columns: umt, anton-paar, t-11, rtec, or a file."
+        "--mapping",
+        metavar="NAME|MAPPING.toml",
+        help="Of the columns: umt, anton-paar, t-11, rtec, pin-on-disc, or a file.",
     ),
 ]
 Group = Annotated[str | None, typer.Option(metavar="GROUP", help="Of the channels, in TDMS, HDF5 and MATLAB files.")]
@@ -182,7 +184,7 @@ def _settings(context: typer.Context) -> dict[str, str]:
     settings = {}
     for option in context.command.params:
         value = context.params[option.name or ""]
-        if option.name not in _UNLISTED and value is not None and value is not False:
+        if option.name not in _UNLISTED and value is not None and value is not False and value not in ((), []):
             name = _SETTINGS.get(option.opts[0]) or option.opts[0].removeprefix("--").replace("-", " ")
             settings[name] = _setting(value)
     return settings
@@ -190,7 +192,7 @@ def _settings(context: typer.Context) -> dict[str, str]:
 
 def _setting(value: object) -> str:
     """Value of an option as text; of files their names."""
-    if isinstance(value, list):
+    if isinstance(value, (list, tuple)):
         return ", ".join(each.name if isinstance(each, Path) else str(each) for each in value)
     return str(value)
 

@@ -197,8 +197,9 @@ def _axis(
             return _axis_column(column, table, path, quantity, ChannelSource(column=column.label, unit=unit))
     time_bases = {(column.start or 0.0, column.interval) for column in used if column.interval is not None}
     if len(time_bases) != 1:
-        problem = "its channels have different time bases" if time_bases else "no column or property gives the time"
-        raise InvalidInput(f"{path}: {problem}; choose with --group or --channel, or name one with a mapping (axis)")
+        several = "its channels have different time bases; choose with --group or --channel, or"
+        problem = several if time_bases else "no column or property gives the time;"
+        raise InvalidInput(f"{path}: {problem} name one with a mapping: axis.column or axis.sample_rate")
     start, interval = next(iter(time_bases))
     if interval is None or not (np.isfinite(start) and np.isfinite(interval) and interval > 0):
         raise InvalidInput(f"{path}: the time between samples is {interval!r} s")

@@ -30,7 +30,7 @@ def time_shifts(times: Sequence[Floats], starts: Sequence[datetime | None]) -> t
     Parameters
     ----------
     times : sequence of ndarray
-        Times of each part, increasing, none empty. [s]
+        Times of each part in seconds, increasing, none empty.
     starts : sequence of datetime or None
         Date and time at the zero of the times of each part; None where it is not stated.
 
@@ -39,7 +39,7 @@ def time_shifts(times: Sequence[Floats], starts: Sequence[datetime | None]) -> t
     shifts : list of float
         Zero where the times of every part continue those of the one before; the difference of the starts where the
         times restart and the parts then follow each other; else what places each part one sample interval after the
-        one before. [s]
+        one before, in seconds.
     assumed : bool
         Whether the parts were placed one sample interval apart because no start tells their distance.
     """
