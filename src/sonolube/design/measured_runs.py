@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from sonolube.errors import InvalidInput
+from sonolube.measurement.file_format import refuse_unreadable
 from sonolube.units import to_si
 from sonolube.vocabulary import quantities
 
@@ -57,10 +58,8 @@ def read_runs(path: Path) -> "xr.Dataset":
 def _rows(path: Path) -> list[list[str]]:
     """Header and rows of a CSV file, empty rows left out, no row longer than the header."""
     try:
-        with path.open(newline="", encoding="utf-8-sig") as stream:
+        with refuse_unreadable(path), path.open(newline="", encoding="utf-8-sig") as stream:
             rows = [row for row in csv.reader(stream) if any(cell.strip() for cell in row)]
-    except OSError as failure:
-        raise InvalidInput(f"{path}: cannot be read: {failure.strerror}") from None
     except (UnicodeDecodeError, csv.Error):
         raise InvalidInput(f"{path}: not a table of comma-separated values") from None
     if len(rows) < 2:

@@ -71,9 +71,15 @@ from .recordings.formats import (
     RecordingFormat as RecordingFormat,
     StreamedRecordingFormat as StreamedRecordingFormat,
 )
+from .recordings.instrument_mappings import (
+    instrument_mappings as instrument_mappings,
+    mapping_by_name as mapping_by_name,
+)
+from .recordings.joined_recording import join_recordings as join_recordings
 from .recordings.mapping import (
     ChannelSource as ChannelSource,
     RecordingMapping as RecordingMapping,
+    Selection as Selection,
     TextLayout as TextLayout,
     read_mapping as read_mapping,
 )

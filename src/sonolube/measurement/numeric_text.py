@@ -1,10 +1,37 @@
 """Parsing of numbers in text with either decimal sign."""
 
 import math
+import re
+from collections.abc import Iterable
 
 import numpy as np
 
 from sonolube.checks import Floats
+
+_DECIMAL_NUMBER = re.compile(r"(?=[-+]?[.,]?\d)[-+]?\d*([.,])\d*(?:[eE][-+]?\d+)?", re.ASCII)
+_EVIDENCE = 50  # decimal numbers by which the sign is told
+
+
+def detected_decimal_sign(cells: Iterable[str]) -> str:
+    """Return the decimal sign, "." or ",", that the first decimal numbers among cells of text have more often.
+
+    Parameters
+    ----------
+    cells : iterable of str
+        As written; those that are no decimal numbers count for neither.
+
+    Returns
+    -------
+    str
+        "." where no cell has a decimal sign.
+    """
+    commas = points = 0
+    for cell in cells:
+        if ("," in cell or "." in cell) and (match := _DECIMAL_NUMBER.fullmatch(cell.strip())):
+            commas, points = commas + (match[1] == ","), points + (match[1] == ".")
+            if commas + points >= _EVIDENCE:
+                break
+    return "," if commas > points else "."
 
 
 def parse_number(cell: str, *, decimal_sign: str) -> float | None:

@@ -7,17 +7,36 @@ from typing import Annotated
 import typer
 
 from sonolube.cli.console.options import Json, TypedNumber, refuse_unused, si_option
-from sonolube.cli.measure.measured_files import Files, Mapped, Report, Test, column_mapping, deliver_sheets, each_file
-from sonolube.errors import InvalidInput
+from sonolube.cli.measure.measured_files import (
+    Channels,
+    Files,
+    Group,
+    Mapped,
+    Report,
+    Sections,
+    Test,
+    column_mapping,
+    deliver_sheets,
+    each_file,
+    files_of,
+)
+from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.measurement.friction.motor_current import MotorCalibration
 from sonolube.report.measured.friction import FrictionSettings, friction_sheet
 from sonolube.report.measured.friction_comparison import comparison_sheet
+from sonolube.report.measured.joined_friction import joined_friction_sheet
 
 
 def friction(
     context: typer.Context,
     files: Files,
     mapping: Mapped = None,
+    group: Group = None,
+    channels: Channels = None,
+    sections: Sections = None,
+    join: Annotated[
+        bool, typer.Option("--join", help="The files are one test, in this order: measure it too.")
+    ] = False,
     without: Annotated[
         list[Path] | None,
         typer.Option("--without-vibration", metavar="FILE", help="A test without vibration; may come again."),
@@ -48,13 +67,25 @@ def friction(
     else:
         refuse_unused(context, "idle", "diameter", because="without --torque-constant, for the force by the current")
     settings = FrictionSettings(
-        mapping=column_mapping(mapping), window_duration=window, sliding_speed=speed, rotation_speed=turns, motor=motor
+        mapping=column_mapping(mapping, group=group, channels=channels, sections=sections),
+        window_duration=window,
+        sliding_speed=speed,
+        rotation_speed=turns,
+        motor=motor,
     )
     measure = partial(friction_sheet, settings=settings)
     sheets, refused = each_file(files, measure, title="measuring")
+    joined = []
+    if join and not refused:
+        try:
+            joined = [joined_friction_sheet(files_of(files), settings=settings)]
+        except SonolubeError as failure:
+            refused["all files as one test"] = " ".join(str(failure).split())
     if without:
         others, others_refused = each_file(without, measure, title="measuring without vibration")
         refused |= others_refused
-        compared = [comparison_sheet(sheets, others)] if sheets and others else []
-        sheets = [*sheets, *others, *compared]
+        compared = [comparison_sheet(joined or sheets, others)] if sheets and others else []
+        sheets = [*sheets, *joined, *others, *compared]
+    else:
+        sheets += joined
     deliver_sheets(context, "friction", sheets, refused, page=report, test=test, as_json=json)

@@ -1,7 +1,8 @@
 """Measurement of many files by one function, options that all its commands share, and their answer."""
 
+import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -12,7 +13,8 @@ from sonolube.cli.console.options import refuse_unused
 from sonolube.cli.console.outputs import OutputFile
 from sonolube.cli.console.progress import progress
 from sonolube.errors import InvalidInput, SonolubeError
-from sonolube.measurement.recordings.mapping import RecordingMapping, read_mapping
+from sonolube.measurement.recordings.instrument_mappings import mapping_by_name
+from sonolube.measurement.recordings.mapping import RecordingMapping, Selection
 from sonolube.printable_text import printable
 from sonolube.report import (
     MeasurementReport,
@@ -26,7 +28,19 @@ from sonolube.report.measured.sheet import Sheet
 
 Files = Annotated[list[Path], typer.Argument(metavar="FILES...", help="Files, or folders whose files are taken.")]
 Mapped = Annotated[
-    Path | None, typer.Option("--mapping", metavar="MAPPING.toml", help="Meaning of the columns of the files.")
+    str | None,
+    typer.Option(
+        "--mapping",
+        metavar="NAME|MAPPING.toml",
+        help="Of the columns: umt, anton-paar, t-11, rtec, pin-on-disc, or a file.",
+    ),
+]
+Group = Annotated[str | None, typer.Option(metavar="GROUP", help="Of the channels, in TDMS, HDF5 and MATLAB files.")]
+Channels = Annotated[
+    list[str] | None, typer.Option("--channel", metavar="LABEL", help="To read, as labelled; may come again.")
+]
+Sections = Annotated[
+    list[str] | None, typer.Option("--section", metavar="NUMBER|NAME", help="To read, such as a step; may come again.")
 ]
 Report = Annotated[Path | None, typer.Option(metavar="PAGE.html", help="Self-contained page to write."), OutputFile()]
 Test = Annotated[
@@ -34,6 +48,7 @@ Test = Annotated[
 ]
 Measure = Callable[[Path], "Sheet"]
 
+_PATTERN = re.compile(r"[*?[]")  # of a shell, where it did not replace the pattern itself
 _UNLISTED = ("files", "test", "report", "json")  # arguments that are listed otherwise, or that change no number
 _SETTINGS = {"--apply": "applied to"}  # names of settings that are not those of their options
 
@@ -44,7 +59,7 @@ def each_file(paths: Sequence[Path], measure: Measure, *, title: str) -> tuple[l
     Parameters
     ----------
     paths : sequence of Path
-        Files and folders; of a folder all files but hidden ones, by name.
+        Files, folders and patterns; of a folder all files but hidden ones, by name.
     measure : callable
         Returns the sheet of one file.
     title : str
@@ -61,7 +76,7 @@ def each_file(paths: Sequence[Path], measure: Measure, *, title: str) -> tuple[l
     InvalidInput
         If a folder is empty.
     """
-    files = _files(paths)
+    files = files_of(paths)
     sheets, refused = [], {}
     with progress(title) as advance:
         for done, path in enumerate(files):
@@ -73,9 +88,24 @@ def each_file(paths: Sequence[Path], measure: Measure, *, title: str) -> tuple[l
     return sheets, refused
 
 
-def column_mapping(path: Path | None) -> RecordingMapping | None:
-    """Meaning of the columns from a mapping file; None where it was not given."""
-    return None if path is None else read_mapping(path)
+def column_mapping(
+    mapping: str | None,
+    *,
+    group: str | None = None,
+    channels: Sequence[str] | None = None,
+    sections: Sequence[str] | None = None,
+) -> RecordingMapping | None:
+    """Meaning of the columns by the name or file of a mapping, with the parts to read; None where none was given."""
+    found = None if mapping is None else mapping_by_name(mapping)
+    if not (group or channels or sections):
+        return found
+    own = found or RecordingMapping(channels={})
+    selection = Selection(
+        group=group or own.selection.group,
+        channels=tuple(channels or own.selection.channels),
+        sections=tuple(sections or own.selection.sections),
+    )
+    return replace(own, selection=selection)
 
 
 def deliver_sheets(
@@ -159,21 +189,44 @@ def _settings(context: typer.Context) -> dict[str, str]:
     settings = {}
     for option in context.command.params:
         value = context.params[option.name or ""]
-        if option.name not in _UNLISTED and value is not None and value is not False:
+        if option.name not in _UNLISTED and value is not None and value is not False and value not in ((), []):
             name = _SETTINGS.get(option.opts[0]) or option.opts[0].removeprefix("--").replace("-", " ")
-            settings[name] = ", ".join(path.name for path in value) if isinstance(value, list) else str(value)
+            settings[name] = _setting(value)
     return settings
 
 
-def _files(paths: Sequence[Path]) -> list[Path]:
-    """Files, folders replaced by their files."""
+def _setting(value: object) -> str:
+    """Value of an option as text; of files their names."""
+    if isinstance(value, (list, tuple)):
+        return ", ".join(each.name if isinstance(each, Path) else str(each) for each in value)
+    return str(value)
+
+
+def files_of(paths: Sequence[Path]) -> list[Path]:
+    """Files, folders and patterns replaced by their files in the order of their names, numbers by their size.
+
+    Raises
+    ------
+    InvalidInput
+        If a folder is empty.
+    """
     files: list[Path] = []
     for path in paths:
+        matches = sorted(path.parent.glob(path.name), key=_by_numbers) if _PATTERN.search(path.name) else []
+        if matches and not path.exists():
+            files += matches
+            continue
         if not path.is_dir():
             files.append(path)
             continue
-        inside = sorted(each for each in path.iterdir() if each.is_file() and not each.name.startswith("."))
+        inside = [each for each in path.iterdir() if each.is_file() and not each.name.startswith(".")]
+        inside.sort(key=_by_numbers)
         if not inside:
             raise InvalidInput(f"{path}: holds no file")
         files += inside
     return files
+
+
+def _by_numbers(path: Path) -> list[tuple[int, str]]:
+    """Sort key of a name by which part-2 comes before part-10."""
+    return [(int(piece), "") if piece.isdecimal() else (-1, piece) for piece in re.split(r"(\d{1,18})", path.name)]

@@ -1,7 +1,7 @@
 """Assembly of a recording (xarray dataset) from raw columns: vocabulary names, SI units, one axis and provenance."""
 
-import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,36 +10,22 @@ import numpy as np
 from sonolube import __version__
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, suggestion
+from sonolube.measurement.recordings.channel_choice import (
+    TIME_LABELS,
+    ChannelEntry,
+    chosen_channels,
+    name_and_unit,
+    require_common_length,
+)
 from sonolube.measurement.recordings.mapping import ChannelSource, RecordingMapping
-from sonolube.measurement.recordings.raw_table import RawColumn, RawTable, common_length
-from sonolube.units import convert
+from sonolube.measurement.recordings.raw_table import RawColumn, RawTable
+from sonolube.measurement.recordings.written_units import convert_to_si, si_conversion
 from sonolube.vocabulary import quantities, unit_of
 
 if TYPE_CHECKING:
     import xarray as xr
 
-_UNIT_OF_LABEL = re.compile(r"(?:\[([^\[\]]*)\]|\(([^()]*)\))\Z")
 _LARGEST_READING = 1e30  # in any unit; keeps powers of samples within the range of a float
-_TIME_LABELS = {"time", "t", "x_value", "timestamp", "elapsed_time"}
-
-# Unit spellings of instruments, as (factor, unit): pint reads rpm as an angular speed and gauss in another unit system.
-_UNIT_SPELLINGS = {
-    "newtons": (1.0, "N"),
-    "volts": (1.0, "V"),
-    "amps": (1.0, "A"),
-    "amperes": (1.0, "A"),
-    "seconds": (1.0, "s"),
-    "sec": (1.0, "s"),
-    "deg c": (1.0, "degC"),
-    "°c": (1.0, "degC"),
-    "celsius": (1.0, "degC"),
-    "g": (1e-4, "T"),
-    "gauss": (1e-4, "T"),
-    "rpm": (1 / 60, "1/s"),
-    "u/min": (1 / 60, "1/s"),
-    "1": (1.0, ""),
-    "-": (1.0, ""),
-}
 
 
 def recording_dataset(
@@ -72,8 +58,11 @@ def recording_dataset(
     """
     import xarray as xr
 
-    sources = _channel_sources(table, path, mapping)
+    if mapping is not None:
+        table = _selected(table, mapping, path)
+        mapping = mapping.for_labels([column.label for column in table.columns])
     quantity = _axis_quantity(table, mapping)
+    sources = _channel_sources(table, path, mapping, quantity)
     axis = _axis(table, path, mapping, sources, quantity)
     if axis.size == 0:
         raise InvalidInput(f"{path}: holds no samples")
@@ -89,23 +78,45 @@ def recording_dataset(
     )
 
 
+def _selected(table: RawTable, mapping: RecordingMapping, path: Path) -> RawTable:
+    """Return the columns that the selection of a mapping chooses."""
+    group = mapping.selection.group
+    entries = [
+        entry if entry.group or not entry.label.startswith((f"{group}/", f"{group}.")) else replace(entry, group=group)
+        for entry in _entries(table.columns)
+    ]
+    chosen = chosen_channels(entries, mapping.selection, path)
+    if len(chosen) == len(table.columns) and not mapping.selection.group:
+        return table
+    columns = tuple(replace(table.columns[index], label=label) for index, label in chosen)
+    return replace(table, columns=columns)
+
+
+def _entries(columns: Iterable[RawColumn]) -> list[ChannelEntry]:
+    """Return label, group and length of columns."""
+    return [ChannelEntry(column.label, column.group, column.values.size) for column in columns]
+
+
 def _axis_quantity(table: RawTable, mapping: RecordingMapping | None) -> str:
     """Return the quantity of the axis: that of the mapping, else revolutions where no column is a time, else time."""
     if mapping is not None:
         return mapping.axis_quantity
     names = {_name_and_unit(column)[0] for column in table.columns}
-    timed = names & _TIME_LABELS or any(column.interval is not None for column in table.columns)
+    timed = names & TIME_LABELS or any(column.interval is not None for column in table.columns)
     return "revolutions" if "revolutions" in names and not timed else "time"
 
 
-def _channel_sources(table: RawTable, path: Path, mapping: RecordingMapping | None) -> dict[str, ChannelSource]:
+def _channel_sources(
+    table: RawTable, path: Path, mapping: RecordingMapping | None, quantity: str
+) -> dict[str, ChannelSource]:
     """Return the source of each channel, by the mapping or by the labels of the columns."""
     if mapping is not None and mapping.channels:
         return dict(mapping.channels)
+    axis = mapping.axis.column if mapping is not None and mapping.axis is not None else None
     sources: dict[str, ChannelSource] = {}
     for column in table.columns:
         name, unit = _name_and_unit(column)
-        if name in _TIME_LABELS or name == _axis_quantity(table, mapping):
+        if name in TIME_LABELS or name == quantity or column.label == axis:
             continue
         if name in sources:
             raise InvalidInput(f"{path}: two columns have the label {column.label!r}; choose one with a mapping")
@@ -115,20 +126,16 @@ def _channel_sources(table: RawTable, path: Path, mapping: RecordingMapping | No
 
 def _name_and_unit(column: RawColumn) -> tuple[str, str | None]:
     """Return the name of a channel from the label of its column, and the unit stated for it."""
-    label = column.label.strip()
-    unit = None
-    if match := _UNIT_OF_LABEL.search(label):
-        label, unit = label[: match.start()], match[1] if match[1] is not None else match[2]
-    name = re.sub(r"\W+", "_", label.strip().lower()).strip("_") or "channel"
+    name, unit = name_and_unit(column.label)
     return name, column.unit if column.unit is not None else unit
 
 
 def _column(table: RawTable, path: Path, label: str) -> RawColumn:
     """Return the column of a label; refuse one that is not there, with the closest."""
-    for column in table.columns:
-        if column.label == label:
-            return column
-    labels = [column.label for column in table.columns]
+    column = table.by_label.get(label)
+    if column is not None:
+        return column
+    labels = list(table.by_label)
     hint = suggestion(label, labels) or "it has " + ", ".join(labels[:12])
     raise InvalidInput(f"{path}: has no column {label!r}; {hint}")
 
@@ -150,71 +157,49 @@ def _channel(
     known = quantities().get(name)
     calibrated = values if (source.gain, source.offset) == (1.0, 0.0) else values * source.gain + source.offset
     unit = known.unit if known else (stated or "")
+    understood = stated
     if known and stated is not None:
-        calibrated = convert_to_si(calibrated, written_unit=stated, unit=unit, name=f"{path}: {column.label!r}")
+        gain, offset, understood = si_conversion(stated, unit=unit, name=f"{path}: {column.label!r}")
+        calibrated = calibrated if (gain, offset) == (1.0, 0.0) else calibrated * gain + offset
     return calibrated, {
         "units": unit or "1",
         "long_name": known.meaning if known else column.label,
         "source_column": column.label,
-        "source_unit": "not stated, taken as SI" if stated is None else stated,
+        "source_unit": _source_unit(stated, understood),
         "calibration_gain": source.gain,
         "calibration_offset": source.offset,
     }
 
 
-def convert_to_si(values: Floats, *, written_unit: str, unit: str, name: str) -> Floats:
-    """Return values in an SI unit, converted from the unit in which an instrument wrote them.
-
-    Parameters
-    ----------
-    values : ndarray
-        As written.
-    written_unit : str
-        In the spelling of instruments; "rpm" is revolutions per minute, "G" is gauss.
-    unit : str
-        The SI unit of the result.
-    name : str
-        Name of the values in error messages.
-
-    Returns
-    -------
-    ndarray, shape of `values`
-
-    Raises
-    ------
-    InvalidInput
-        If the unit is unknown or of another dimension.
-    """
-    written = " ".join(written_unit.split())
-    factor, spelled = _UNIT_SPELLINGS.get(written.lower(), (1.0, written))
-    if spelled == unit and factor == 1:
-        return values
-    try:
-        offset = convert(0.0, from_unit=spelled, to_unit=unit)
-        gain = (convert(1.0, from_unit=spelled, to_unit=unit) - offset) * factor
-    except InvalidInput as failure:
-        raise InvalidInput(f"{name}: {str(failure).removeprefix('value 0.0 ')}") from None
-    return values * gain + offset
+def _source_unit(stated: str | None, understood: str | None) -> str:
+    """Return the unit stated in a file, with the one as which it was understood where that differs."""
+    if stated is None:
+        return "not stated, taken as SI"
+    return stated if understood is None or stated.split() == understood.split() else f"{stated} ({understood})"
 
 
 def _axis(
     table: RawTable, path: Path, mapping: RecordingMapping | None, sources: dict[str, ChannelSource], quantity: str
 ) -> Floats:
     """Return the axis in SI: of the mapping's column or sample rate, of a time column, or of stated intervals."""
+    used = [_column(table, path, source.column) for source in sources.values()]
     if mapping is not None and mapping.axis is not None:
-        return _axis_column(_column(table, path, mapping.axis.column), table, path, quantity, mapping.axis)
-    labels = [source.column for source in sources.values()]
-    rows = common_length({label: _column(table, path, label).values.size for label in labels}, path)
+        axis = _column(table, path, mapping.axis.column)
+        require_common_length(_entries([axis, *used]), path)
+        return _axis_column(axis, table, path, quantity, mapping.axis)
+    rows = require_common_length(_entries(used), path)
     if mapping is not None and mapping.sample_rate is not None:
         return (table.first_row + np.arange(rows)) / mapping.sample_rate
     for column in table.columns:
         name, unit = _name_and_unit(column)
-        if name in _TIME_LABELS or name == quantity:
+        if name in TIME_LABELS or name == quantity:
+            require_common_length(_entries([column, *used]), path)
             return _axis_column(column, table, path, quantity, ChannelSource(column=column.label, unit=unit))
-    time_bases = {(c.start or 0.0, c.interval) for c in table.columns if c.label in labels and c.interval is not None}
+    time_bases = {(column.start or 0.0, column.interval) for column in used if column.interval is not None}
     if len(time_bases) != 1:
-        problem = "its channels have different time bases" if time_bases else "no column or property gives the time"
-        raise InvalidInput(f"{path}: {problem}; name one with a mapping: axis.column or axis.sample_rate")
+        several = "its channels have different time bases; choose with --group or --channel, or"
+        problem = several if time_bases else "no column or property gives the time;"
+        raise InvalidInput(f"{path}: {problem} name one with a mapping: axis.column or axis.sample_rate")
     start, interval = next(iter(time_bases))
     if interval is None or not (np.isfinite(start) and np.isfinite(interval) and interval > 0):
         raise InvalidInput(f"{path}: the time between samples is {interval!r} s")
@@ -273,6 +258,10 @@ def _attributes(
     attributes |= {f"original_{name}": value for name, value in table.origin.items()}
     if table.begun:
         attributes["begun"] = table.begun
+    if mapping is not None and mapping.name:
+        attributes["mapping"] = mapping.name
+    if table.caveats:
+        attributes["caveats"] = "\n".join(table.caveats)
     if table.incomplete:
         attributes["incomplete"] = "the file ends before the data it announces"
     if time is not None and time.size > 1:

@@ -1,24 +1,24 @@
 """Delimited text with one row per sample: CSV, and exports of tribometer software."""
 
-import csv
-import io
-from collections.abc import Iterator
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import ClassVar, final
 
 import numpy as np
 
-from sonolube.checks import Floats
-from sonolube.errors import InvalidInput, suggestion
-from sonolube.measurement.file_format import refuse_unreadable
-from sonolube.measurement.numeric_text import parse_number, parse_numbers
+from sonolube.errors import InvalidInput
+from sonolube.measurement.numeric_text import detected_decimal_sign
+from sonolube.measurement.recordings.channel_choice import TIME_LABELS, name_and_unit
+from sonolube.measurement.recordings.joining import begun_at, time_shifts
 from sonolube.measurement.recordings.mapping import RecordingMapping, TextLayout
-from sonolube.measurement.recordings.raw_table import RawColumn, RawTable, one_line
+from sonolube.measurement.recordings.raw_table import RawColumn, RawTable
+from sonolube.measurement.recordings.text_columns import column_index, column_values, is_text
+from sonolube.measurement.recordings.text_file import decoded_text
+from sonolube.measurement.recordings.text_tables import TextTable, text_tables
+from sonolube.measurement.recordings.written_units import si_conversion
 
-_SEPARATORS = "\t;,|"
 _UTF_16_MARKS = (b"\xff\xfe", b"\xfe\xff")
-
-NumberedCells = tuple[int, list[str]]  # line on which a row begins, and its cells
 
 
 @final
@@ -46,155 +46,126 @@ class DelimitedText:
             Of the file.
         mapping : RecordingMapping or None
             The columns to read and the layout of the text. Without it every column whose first cell is a number is
-            read, and separator and decimal sign are detected.
+            read, and separator, decimal sign and encoding are detected.
 
         Returns
         -------
         RawTable
+            Of several sections, the rows one after the other, with the times of later ones shifted by the differences
+            of their stated starts where the times restart.
 
         Raises
         ------
         InvalidInput
             Naming the file and the line, if the text cannot be decoded, a row has too few or too many cells, a cell is
-            neither a number nor a missing-value text, or a requested column or row is missing.
+            neither a number nor a missing-value text, or a requested column, row or section is missing.
         """
         layout = mapping.text if mapping else TextLayout()
-        text = decoded_text(path, encoding=layout.encoding)
-        separator = layout.separator or _detected_separator(text, layout.lines_to_skip)
-        rows = _rows(text, separator, path, layout.lines_to_skip)
-        header_line, header = next(rows, (1, []))
-        labels = [one_line(label) for label in header]
-        if not any(labels):
-            raise InvalidInput(f"{path}: line {header_line}: no column names")
-        required = dict(mapping.rows) if mapping else {}
-        body = [row for row in _rows_of_width(rows, len(labels), path) if _is_selected(row, labels, required, path)]
-        if not body:
-            raise InvalidInput(f"{path}: holds no rows" + (f" with {required}" if required else ""))
-        decimal_sign = layout.decimal_sign or _detected_decimal_sign(body, separator)
-        columns = _columns(body, labels, _requested_labels(mapping), decimal_sign, frozenset(layout.missing), path)
-        return RawTable(columns=columns, format_name=self.name, lines=np.array([line for line, _ in body]))
+        text, caveats = decoded_text(path, encoding=layout.encoding)
+        tables = text_tables(text, layout, mapping.selection.sections if mapping else (), path)
+        sign = layout.decimal_sign or _detected_decimal_sign(tables)
+        parts = [_part(table, mapping, sign, frozenset(layout.missing), path) for table in tables]
+        _require_same_columns(tables, parts, path)
+        columns, assumed = _joined(tables, parts, mapping, path)
+        unread = sum(table.unread for table in tables)
+        if unread:
+            caveats += (f"{unread} lines after the end of a table are not read",)
+        if assumed:
+            caveats += ("the times restart in a later section without a stated start: each follows the one before",)
+        return RawTable(
+            columns=columns,
+            format_name=self.name,
+            lines=np.array([line for table in tables for line, _ in table.rows], dtype=np.int64),
+            begun=tables[0].begun,
+            caveats=caveats,
+        )
 
 
-def decoded_text(path: Path, *, encoding: str) -> str:
-    """Return the text of a file, with its line ends as they are.
-
-    Raises
-    ------
-    InvalidInput
-        Naming the file and the line, if the file is missing, empty, or not of this encoding.
-    """
-    with refuse_unreadable(path):
-        content = path.read_bytes()
-    try:
-        text = content.decode(encoding)
-    except UnicodeDecodeError as failure:
-        line = content[: failure.start].count(b"\n") + 1
-        raise InvalidInput(f"{path}: line {line}: not {encoding} text; give text.encoding in a mapping") from None
-    except (LookupError, UnicodeError) as failure:
-        raise InvalidInput(f"{path}: {failure}") from None
-    if not text.strip():
-        raise InvalidInput(f"{path}: is empty")
-    return text
+def _detected_decimal_sign(tables: Sequence[TextTable]) -> str:
+    """Return the decimal sign of the numbers; a point where cells are separated by commas."""
+    if tables[0].separator == ",":
+        return "."
+    return detected_decimal_sign(cell for table in tables for _, cells in table.rows for cell in cells)
 
 
-def _detected_separator(text: str, lines_to_skip: int) -> str:
-    """Return the separator that occurs most often in the line of labels."""
-    lines = text.splitlines()[lines_to_skip : lines_to_skip + 1] or [""]
-    return max(_SEPARATORS, key=lambda separator: (lines[0].count(separator), -_SEPARATORS.index(separator)))
+def _part(
+    table: TextTable, mapping: RecordingMapping | None, sign: str, missing: frozenset[str], path: Path
+) -> list[RawColumn]:
+    """Return the columns of one table: those that the mapping requests, or all numeric ones."""
+    indices = {label: index for index, label in reversed(list(enumerate(table.labels)))}
+    required = dict(mapping.rows) if mapping else {}
+    for label, cell in required.items():
+        index = column_index(indices, label, path)
+        table.rows[:] = [row for row in table.rows if row[1][index].strip() == cell]
+    if not table.rows:
+        raise InvalidInput(f"{path}: holds no rows" + (f" with {required}" if required else ""))
+    requested = _requested_labels(mapping, table.labels)
+    columns = []
+    for place, label in enumerate(table.labels if requested is None else requested):
+        index = place if requested is None else column_index(indices, label, path)
+        if requested is None and (not label or is_text(table.rows, index, sign, missing)):
+            continue
+        values = column_values(table.rows, index, label, sign, missing, path)
+        unit = table.units[index] if index < len(table.units) else ""
+        columns.append(RawColumn(label=label, values=values, unit=unit or None))
+    if not columns:
+        raise InvalidInput(f"{path}: line {table.rows[0][0]}: no column holds numbers")
+    return columns
 
 
-def _rows(text: str, separator: str, path: Path, lines_to_skip: int) -> Iterator[NumberedCells]:
-    """Yield the rows that are not blank, with quoted cells that may span lines."""
-    stream = io.StringIO(text, newline="")
-    for _ in range(lines_to_skip):
-        stream.readline()
-    reader = csv.reader(stream, delimiter=separator, strict=True)
-    begins = lines_to_skip + 1
-    try:
-        for cells in reader:
-            if any(cell.strip() for cell in cells):
-                yield begins, cells
-            begins = lines_to_skip + reader.line_num + 1
-    except csv.Error as failure:
-        raise InvalidInput(f"{path}: line {begins}: {failure}") from None
-
-
-def _rows_of_width(rows: Iterator[NumberedCells], width: int, path: Path) -> Iterator[NumberedCells]:
-    """Yield rows; refuse one with fewer cells than columns or with surplus cells that are not blank."""
-    for line, cells in rows:
-        surplus = [cell for cell in cells[width:] if cell.strip()]
-        if len(cells) < width or surplus:
-            raise InvalidInput(f"{path}: line {line}: has {len(cells)} cells where {width} columns are named")
-        yield line, cells
-
-
-def _is_selected(row: NumberedCells, labels: list[str], required: dict[str, str], path: Path) -> bool:
-    """Return whether a row has the required cell in each of the columns given by label."""
-    return all(row[1][_index(labels, label, path)].strip() == cell for label, cell in required.items())
-
-
-def _index(labels: list[str], label: str, path: Path) -> int:
-    """Return the place of a label among the columns; refuse one that is not there, with the closest."""
-    try:
-        return labels.index(label)
-    except ValueError:
-        hint = suggestion(label, labels) or "it has " + ", ".join(labels[:12])
-        raise InvalidInput(f"{path}: has no column {label!r}; {hint}") from None
-
-
-def _requested_labels(mapping: RecordingMapping | None) -> list[str] | None:
+def _requested_labels(mapping: RecordingMapping | None, labels: list[str]) -> list[str] | None:
     """Return the labels of the columns that the mapping names, None where it names no channels."""
     if mapping is None or not mapping.channels:
         return None
-    labels = [source.column for source in mapping.channels.values()]
-    return list(dict.fromkeys([mapping.axis.column, *labels] if mapping.axis else labels))
+    named = mapping.for_labels(labels)
+    columns = [source.column for source in named.channels.values()]
+    return list(dict.fromkeys([named.axis.column, *columns] if named.axis else columns))
 
 
-def _detected_decimal_sign(body: list[NumberedCells], separator: str) -> str:
-    """Return the decimal sign that occurs more often in the first twenty rows."""
-    if separator == ",":
-        return "."
-    sample = [cell for _, cells in body[:20] for cell in cells]
-    return "," if sum("," in cell for cell in sample) > sum("." in cell for cell in sample) else "."
+def _require_same_columns(tables: Sequence[TextTable], parts: Sequence[list[RawColumn]], path: Path) -> None:
+    """Refuse sections whose columns or units differ from those of the first."""
+    first = [(column.label, column.unit) for column in parts[0]]
+    for table, columns in zip(tables[1:], parts[1:], strict=True):
+        if [(column.label, column.unit) for column in columns] != first:
+            raise InvalidInput(
+                f"{path}: line {table.line}: section {table.section!r} has other columns or units than"
+                f" {tables[0].section!r}; choose with --section"
+            )
 
 
-def _columns(
-    body: list[NumberedCells],
-    labels: list[str],
-    requested: list[str] | None,
-    decimal_sign: str,
-    missing: frozenset[str],
-    path: Path,
-) -> tuple[RawColumn, ...]:
-    """Return the requested columns, or all numeric ones."""
-    columns = []
-    for label in requested if requested is not None else labels:
-        index = _index(labels, label, path)
-        cells = [row[index] for _, row in body]
-        if requested is None and (not label or _is_text(cells, decimal_sign, missing)):
-            continue
-        columns.append(RawColumn(label=label, values=column_values(body, index, label, decimal_sign, missing, path)))
-    if not columns:
-        raise InvalidInput(f"{path}: line {body[0][0]}: no column holds numbers")
-    return tuple(columns)
+def _joined(
+    tables: Sequence[TextTable], parts: Sequence[list[RawColumn]], mapping: RecordingMapping | None, path: Path
+) -> tuple[tuple[RawColumn, ...], bool]:
+    """Return the columns of all sections joined, the times shifted, and whether a distance was assumed."""
+    if len(parts) == 1:
+        return tuple(parts[0]), False
+    shifts, assumed = [0.0] * len(parts), False
+    at = _time_column(parts[0], mapping)
+    if at is not None:
+        scale = _seconds(parts[0][at], mapping, path)
+        times = [part[at].values * scale for part in parts]
+        if all(np.isfinite(time).all() for time in times):
+            seconds, assumed = time_shifts(times, [begun_at(table.begun) for table in tables])
+            shifts = [shift / scale for shift in seconds]
+    joined = []
+    for index, column in enumerate(parts[0]):
+        added = shifts if index == at else [0.0] * len(parts)
+        values = [part[index].values + shift for part, shift in zip(parts, added, strict=True)]
+        joined.append(replace(column, values=np.concatenate(values)))
+    return tuple(joined), assumed
 
 
-def column_values(
-    rows: list[NumberedCells], index: int, label: str, decimal_sign: str, missing: frozenset[str], path: Path
-) -> Floats:
-    """Return the numbers of one column; cells beyond the end of a row are missing values."""
-    cells = [row[index] if index < len(row) else "" for _, row in rows]
-    values, invalid_row = parse_numbers(cells, decimal_sign=decimal_sign, missing=missing)
-    if invalid_row is not None:
-        line = rows[invalid_row][0]
-        raise InvalidInput(f"{path}: line {line}: {label!r} is {cells[invalid_row][:40]!r}, which is not a number")
-    return values
+def _time_column(columns: Sequence[RawColumn], mapping: RecordingMapping | None) -> int | None:
+    """Return the index of the column that holds the time; None where there is none."""
+    if mapping is not None and mapping.axis is not None:
+        labels = mapping.axis.labels if mapping.axis_quantity == "time" else ()
+        return next((index for index, column in enumerate(columns) if column.label in labels), None)
+    return next((i for i, column in enumerate(columns) if name_and_unit(column.label)[0] in TIME_LABELS), None)
 
 
-def _is_text(cells: list[str], decimal_sign: str, missing: frozenset[str]) -> bool:
-    """Return whether the first cell that is not missing is no number."""
-    for cell in cells:
-        text = cell.strip()
-        if text and text not in missing:
-            return parse_number(text, decimal_sign=decimal_sign) is None
-    return True
+def _seconds(column: RawColumn, mapping: RecordingMapping | None, path: Path) -> float:
+    """Return the seconds in one unit of the time column."""
+    axis = mapping.axis if mapping is not None else None
+    stated = axis.unit if axis is not None and axis.unit is not None else column.unit or name_and_unit(column.label)[1]
+    gain = 1.0 if axis is None else axis.gain
+    return gain * (si_conversion(stated, unit="s", name=f"{path}: {column.label!r}")[0] if stated else 1.0)

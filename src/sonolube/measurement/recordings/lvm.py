@@ -1,57 +1,150 @@
 """LabVIEW's text recordings (LVM): a file header of keys, then segments, each with a header and columns of its own."""
 
-import re
 from collections.abc import Iterator
-from dataclasses import dataclass
-from datetime import datetime, timedelta
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import ClassVar, final
 
-import numpy as np
-from numpy.typing import NDArray
-
-from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.measurement.file_format import first_lines
-from sonolube.measurement.numeric_text import parse_numbers
-from sonolube.measurement.recordings.delimited import column_values, decoded_text
+from sonolube.measurement.limits import require_channels
+from sonolube.measurement.numeric_text import detected_decimal_sign, parse_number
+from sonolube.measurement.recordings.lvm_segments import Header, LvmSegment, joined_segments
 from sonolube.measurement.recordings.mapping import RecordingMapping
-from sonolube.measurement.recordings.raw_table import RawColumn, RawTable
+from sonolube.measurement.recordings.raw_table import RawTable
+from sonolube.measurement.recordings.text_file import decoded_text
 
 _SIGNATURE = "LabVIEW Measurement"
 _END_OF_HEADER = "***End_of_Header***"
 _START_SPECIAL = "***Start_Special***"
 _END_SPECIAL = "***End_Special***"
-_X_LABEL = "X_Value"
-_TIMESTAMP = re.compile(r"(\d{4})/(\d{1,2})/(\d{1,2}) (\d{1,2}):(\d{1,2}):(\d{1,2})(?:[.,](\d{1,30}))?", re.ASCII)
-_MISSING = frozenset({"NaN", "-NaN", "nan"})
+_COMMENT = "Comment"
+_SEGMENT_KEYS = frozenset(
+    {"Channels", "Samples", "Date", "Time", "Notes", "X_Dimension", "X0", "Delta_X", "Y_Unit_Label", _END_OF_HEADER}
+)
+"""Keys with which the header of a segment can begin, beside others that only follow a blank line."""
 
 NumberedLine = tuple[int, str]
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class _Header:
-    """The keys of a header, each with its cells, and the line on which the header ends."""
+@dataclass(slots=True)
+class _Parser:
+    """State of the reading of one file: the separator, decimal sign and header of the file, and the segments so far."""
 
-    keys: dict[str, list[str]]
-    line: int
+    path: Path
+    lines: list[NumberedLine]
+    at: int = 0
+    separator: str = "\t"
+    decimal_sign: str = ""
+    header: Header = field(default_factory=lambda: Header(keys={}, line=1))
+    segments: list[LvmSegment] = field(default_factory=list)
 
-    def text(self, key: str, default: str) -> str:
-        """Return the first cell of a key that is not empty."""
-        return next((cell for cell in self.keys.get(key, []) if cell), default)
+    def parse(self) -> None:
+        """Read all headers and segments; a header of the file may occur again where recordings were appended."""
+        first = self.lines[0] if self.lines else (1, "")
+        if not first[1].startswith(_SIGNATURE):
+            raise InvalidInput(f"{self.path}: line 1: an LVM file begins with {_SIGNATURE!r}, got {first[1][:40]!r}")
+        after_blank = True
+        while self.at < len(self.lines):
+            number, line = self.lines[self.at]
+            if not line.strip(" \t,") and not self._is_row_of_missing_values(line):
+                after_blank = True
+                self.at += 1
+            elif line.startswith(_SIGNATURE):
+                self._file_header()
+            elif self._continues(line, after_blank=after_blank) or not line.strip(" \t,"):
+                segment, cells = self.segments[-1], self._cells(line)
+                if segment.x_columns == "No" or any(cells[: len(segment.labels)]):  # else only a comment
+                    segment.rows.append((number, cells))
+                after_blank = False
+                self.at += 1
+            else:
+                self._segment_header()
+                after_blank = False
 
+    def _is_row_of_missing_values(self, line: str) -> bool:
+        """Return whether a line of separators is a sample of a segment without times that has not ended."""
+        if not self.segments or self.segments[-1].x_columns != "No" or self.separator not in line:
+            return False
+        return len(self.segments[-1].rows) < self.segments[-1].stated_samples
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class _NumberStyle:
-    """Separator of cells and decimal sign of a file."""
+    def _cells(self, line: str) -> list[str]:
+        """Return the cells of a line."""
+        return [cell.strip() for cell in line.split(self.separator)]
 
-    separator: str
-    decimal_sign: str
+    def _continues(self, line: str, *, after_blank: bool) -> bool:
+        """Return whether a line is a row of the segment before it, not the beginning of a header."""
+        if not self.segments or line.startswith("***"):
+            return False
+        cells = self._cells(line)
+        if not after_blank:
+            return cells[0] not in _SEGMENT_KEYS
+        value = next((cell for cell in cells if cell), "")
+        return parse_number(value, decimal_sign=self._sign_of(value)) is not None
+
+    def _sign_of(self, cell: str) -> str:
+        """Return the decimal sign of the file, or that of a cell where the file does not state it."""
+        return self.decimal_sign or ("," if "," in cell else ".")
+
+    def _file_header(self) -> None:
+        """Read a header of the file; the first one gives separator, decimal sign and start."""
+        begins = self.at
+        self.at += 1
+        header = self._header("the header")
+        if header.text("Separator", "Tab").strip().lower() == "comma" or "," in self.lines[begins][1]:
+            self.separator, self.at = ",", begins + 1  # the header is written with the same separator
+            header = self._header("the header")
+        sign = header.text("Decimal_Separator", "." if self.separator == "," else "")
+        if sign not in (".", ",", "") or sign == self.separator:
+            raise InvalidInput(f"{self.path}: line {header.line}: Decimal_Separator is {sign[:20]!r}")
+        self.decimal_sign = sign
+        if not self.header.keys:
+            self.header = header
+
+    def _header(self, kind: str) -> Header:
+        """Return the keys up to the next end of a header."""
+        keys: dict[str, list[str]] = {}
+        begins = self.lines[min(self.at, len(self.lines)) - 1][0]
+        while self.at < len(self.lines):
+            number, line = self.lines[self.at]
+            self.at += 1
+            if line.startswith(_END_OF_HEADER):
+                return Header(keys=keys, line=number)
+            key, *cells = self._cells(line)
+            if key:
+                keys[key] = cells
+        raise InvalidInput(f"{self.path}: line {begins}: {kind} has no {_END_OF_HEADER}")
+
+    def _segment_header(self) -> None:
+        """Read the header of a segment and its line of labels; begin a segment."""
+        header = self._header("a header")
+        while self.at < len(self.lines) and not self.lines[self.at][1].strip():
+            self.at += 1
+        if self.at == len(self.lines):
+            raise InvalidInput(f"{self.path}: line {header.line}: no column names follow the header")
+        number, line = self.lines[self.at]
+        labels = self._cells(line)
+        self.at += 1
+        while labels and not labels[-1]:
+            labels.pop()
+        if labels and labels[-1] == _COMMENT:
+            labels.pop()
+        require_channels(len(labels), self.path, kind="columns")
+        self.segments.append(LvmSegment(header=header, labels=labels, line=number, x_columns=self._x_columns()))
+
+    def _x_columns(self) -> str:
+        """Return which times the file holds: No, One or Multi."""
+        return self.header.text("X_Columns", "One").capitalize()
 
 
 @final
 class LabviewText:
-    """LabVIEW's text recordings (LVM) of any number of segments."""
+    """LabVIEW's text recordings (LVM) of any number of segments.
+
+    References
+    ----------
+    .. [1] NI, Specification for the LabVIEW Measurement File (.lvm), tutorial 4139.
+    """
 
     name: ClassVar[str] = "LabVIEW measurement text"
     suffixes: ClassVar[tuple[str, ...]] = (".lvm",)
@@ -68,37 +161,39 @@ class LabviewText:
         path : Path
             Of the file.
         mapping : RecordingMapping or None
-            Only its `text.encoding` is used here.
+            Its `text.encoding` is used, and the channels that it names or selects, where channels differ in time.
 
         Returns
         -------
         RawTable
-            Times are those written, with later segments shifted by the difference of the start times in their headers.
-            Where every channel has times of its own they must agree.
+            Times are those written, with later segments shifted by the difference of the start times in their headers
+            where they restart. Channels without any value are left out.
 
         Raises
         ------
         InvalidInput
             Naming the file and the line, if the first line is not that of an LVM file, a header has no end, counts
-            contradict the columns, a cell is no number, segments have different channels, or channels different times.
+            contradict the columns, a cell is no number, segments have different channels, the channels to read have
+            different times, or their abscissa is not the time.
         """
-        text = decoded_text(path, encoding=mapping.text.encoding if mapping else "utf-8-sig")
-        lines = _lines(text)
-        first = next(lines, (1, ""))
-        if not first[1].startswith(_SIGNATURE):
-            raise InvalidInput(f"{path}: line 1: an LVM file begins with {_SIGNATURE!r}, got {first[1][:40]!r}")
-        header = _header(lines, path, first[0], "\t", may_end=False)
-        if header is None:
-            raise InvalidInput(f"{path}: line {first[0]}: the header has no {_END_OF_HEADER}")
-        separator = "," if header.text("Separator", "Tab").strip().lower() == "comma" else "\t"
-        if separator == ",":  # the header is written with the same separator
-            lines = _lines(text)
-            header = _header(lines, path, next(lines)[0], separator, may_end=False) or header
-        style = _NumberStyle(separator=separator, decimal_sign=_decimal_sign(header, path))
-        segments = list(_segments(lines, header, style, path))
-        if not segments:
+        text, caveats = decoded_text(path, encoding=mapping.text.encoding if mapping else "")
+        parser = _Parser(path=path, lines=list(_lines(text)))
+        parser.parse()
+        header = parser.header
+        if not parser.segments:
             raise InvalidInput(f"{path}: line {header.line}: no segment follows the header")
-        return _concatenated(segments, path, begun=f"{header.text('Date', '')} {header.text('Time', '')}".strip())
+        sign = parser.decimal_sign or detected_decimal_sign(
+            cell for segment in parser.segments for _, cells in segment.rows for cell in cells[: len(segment.labels)]
+        )
+        return joined_segments(
+            parser.segments,
+            path,
+            decimal_sign=sign,
+            mapping=mapping,
+            format_name=self.name,
+            begun=f"{header.text('Date', '')} {header.text('Time', '')}".strip(),
+            caveats=caveats,
+        )
 
 
 def _lines(text: str) -> Iterator[NumberedLine]:
@@ -111,152 +206,3 @@ def _lines(text: str) -> Iterator[NumberedLine]:
             yield at, line
         if line.startswith(_END_SPECIAL):
             special = False
-
-
-def _decimal_sign(header: _Header, path: Path) -> str:
-    """Return the decimal sign stated in the header of the file."""
-    sign = header.text("Decimal_Separator", ".")
-    if sign not in (".", ","):
-        raise InvalidInput(f"{path}: line {header.line}: Decimal_Separator is {sign[:20]!r}")
-    return sign
-
-
-def _header(lines: Iterator[NumberedLine], path: Path, at: int, separator: str, *, may_end: bool) -> _Header | None:
-    """Return the next header; None at the end of the file where it may end."""
-    keys: dict[str, list[str]] = {}
-    for at, line in lines:
-        if line.startswith(_END_OF_HEADER):
-            return _Header(keys=keys, line=at)
-        key, *cells = line.split(separator)
-        if key.strip():
-            keys[key.strip()] = [cell.strip() for cell in cells]
-    if keys or not may_end:
-        raise InvalidInput(f"{path}: line {at}: a header has no {_END_OF_HEADER}")
-    return None
-
-
-def _segments(lines: Iterator[NumberedLine], header: _Header, style: _NumberStyle, path: Path) -> Iterator[RawTable]:
-    """Yield the segments after the header of the file."""
-    at = header.line
-    while (segment := _header(lines, path, at, style.separator, may_end=True)) is not None:
-        count = _channel_count(segment, path)
-        at, labels = _labels(lines, segment, path, style)
-        rows, ended_by_blank_line = [], False
-        for at, line in lines:
-            if not line.strip():
-                ended_by_blank_line = True
-                break
-            rows.append((at, [cell.strip() for cell in line.split(style.separator)]))
-        yield _segment(rows, labels, segment, count, style, path)
-        if not ended_by_blank_line:
-            return
-
-
-def _labels(lines: Iterator[NumberedLine], segment: _Header, path: Path, style: _NumberStyle) -> tuple[int, list[str]]:
-    """Return the column labels of a segment, and the line on which they stand."""
-    for at, line in lines:
-        if line.strip():
-            return at, [cell.strip() for cell in line.split(style.separator)]
-    raise InvalidInput(f"{path}: line {segment.line}: no column names follow the header")
-
-
-def _channel_count(segment: _Header, path: Path) -> int:
-    """Return the number of channels stated in the header of a segment."""
-    text = segment.text("Channels", "")
-    if not (text.isascii() and text.isdigit() and 0 < len(text) < 7 and int(text) > 0):
-        raise InvalidInput(f"{path}: line {segment.line}: Channels is {text[:40]!r}, not a count")
-    return int(text)
-
-
-def _segment(
-    rows: list[tuple[int, list[str]]], labels: list[str], segment: _Header, count: int, style: _NumberStyle, path: Path
-) -> RawTable:
-    """Return the columns of one segment: its time and its channels."""
-    named = [(index, label) for index, label in enumerate(labels) if label and label != "Comment"]
-    channels = [(index, label) for index, label in named if label != _X_LABEL]
-    if len(channels) != count:
-        at = segment.line + 1
-        raise InvalidInput(f"{path}: line {at}: names {len(channels)} channels where the header has {count}")
-    lines = np.array([line for line, _ in rows], dtype=np.int64)
-    table = {index: column_values(rows, index, label, style.decimal_sign, _MISSING, path) for index, label in named}
-    time = _time(table, named, segment, len(rows), style, path, lines)
-    units = segment.keys.get("Y_Unit_Label", [])
-    columns = [RawColumn(label=_X_LABEL, values=time, unit="s")]
-    for channel, (index, label) in enumerate(channels):
-        unit = units[channel] if channel < len(units) and units[channel] else None
-        columns.append(RawColumn(label=label, values=table[index], unit=unit))
-    begun = f"{segment.text('Date', '')} {segment.text('Time', '')}".strip()
-    return RawTable(columns=tuple(columns), format_name=LabviewText.name, lines=lines, begun=begun)
-
-
-def _time(
-    table: dict[int, Floats],
-    named: list[tuple[int, str]],
-    segment: _Header,
-    rows: int,
-    style: _NumberStyle,
-    path: Path,
-    lines: NDArray[np.int64],
-) -> Floats:
-    """Return the time of a segment: that of its time columns, which must agree, else that of X0 and Delta_X."""
-    written = [table[index] for index, label in named if label == _X_LABEL and np.isfinite(table[index]).any()]
-    if not written:
-        starts, steps = (_header_numbers(segment, key, style, path) for key in ("X0", "Delta_X"))
-        if len(set(starts)) > 1 or len(set(steps)) != 1:
-            raise InvalidInput(f"{path}: line {segment.line}: X0 and Delta_X must give all channels one time")
-        return (starts[0] if starts else 0.0) + steps[0] * np.arange(rows, dtype=np.float64)
-    for other in written[1:]:
-        differs = ~((other == written[0]) | np.isnan(other))
-        if differs.any():
-            line = lines[int(np.argmax(differs))]
-            raise InvalidInput(f"{path}: line {line}: channels have different times; export them separately")
-    return np.asarray(written[0])
-
-
-def _header_numbers(segment: _Header, key: str, style: _NumberStyle, path: Path) -> list[float]:
-    """Return the finite numbers of a key in the header of a segment."""
-    cells = [cell for cell in segment.keys.get(key, []) if cell]
-    values, invalid_row = parse_numbers(cells, decimal_sign=style.decimal_sign, missing=frozenset())
-    if invalid_row is not None or not np.isfinite(values).all():
-        cell = cells[invalid_row or 0][:40]
-        raise InvalidInput(f"{path}: line {segment.line}: {key} is {cell!r}, which is not a number")
-    return [float(value) for value in values]
-
-
-def _timestamp(text: str) -> datetime | None:
-    """Return the date and time of a header; None for text that is none."""
-    match = _TIMESTAMP.match(text)
-    if match is None:
-        return None
-    try:
-        year, month, day, hour, minute, second = (int(part) for part in match.groups()[:6])
-        return datetime(year, month, day, hour, minute, second) + timedelta(seconds=float(f"0.{match[7] or 0}"))
-    except (ValueError, OverflowError):
-        return None
-
-
-def _concatenated(segments: list[RawTable], path: Path, *, begun: str) -> RawTable:
-    """Return all segments as one table, their times shifted to the start of the first."""
-    first = segments[0]
-    labels = [column.label for column in first.columns]
-    for segment in segments[1:]:
-        if [column.label for column in segment.columns] != labels:
-            line = "" if segment.lines is None or not segment.lines.size else f"line {segment.lines[0]}: "
-            raise InvalidInput(f"{path}: {line}this segment has other channels than the first")
-    starts = [_timestamp(segment.begun) for segment in segments]
-    shifts = [0.0 if at is None or starts[0] is None else (at - starts[0]).total_seconds() for at in starts]
-    columns = tuple(
-        RawColumn(
-            label=column.label,
-            values=np.concatenate(
-                [
-                    segment.columns[index].values + (0.0 if index else shift)
-                    for segment, shift in zip(segments, shifts, strict=True)
-                ]
-            ),
-            unit=column.unit,
-        )
-        for index, column in enumerate(first.columns)
-    )
-    lines = np.concatenate([segment.lines for segment in segments if segment.lines is not None])
-    return RawTable(columns=columns, format_name=LabviewText.name, lines=lines, begun=begun)

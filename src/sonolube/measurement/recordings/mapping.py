@@ -1,7 +1,8 @@
 """Mapping of an instrument's columns to vocabulary quantities: column, unit, calibration and text layout (TOML)."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+import re
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -15,10 +16,34 @@ from sonolube.vocabulary import quantity
 AXIS_QUANTITIES = ("time", "revolutions")
 """Quantities that can be the axis of a recording."""
 
-_KEYS = {"title", "axis", "text", "channels", "rows"}
+_KEYS = {"title", "recognised_by", "selection", "axis", "text", "channels", "rows"}
+_SELECTION_KEYS = {"group", "channels", "sections"}
 _AXIS_KEYS = {"quantity", "column", "unit", "gain", "offset", "sample_rate"}
-_TEXT_KEYS = {"separator", "decimal_sign", "lines_to_skip", "missing", "encoding"}
-_CHANNEL_KEYS = {"column", "unit", "gain", "offset"}
+_TEXT_KEYS = {
+    "separator", "decimal_sign", "lines_to_skip", "missing", "encoding", "header", "units_row", "comment", "section",
+    "section_start", "section_start_format", "ends_at_blank_line",
+}  # fmt: skip
+_CHANNEL_KEYS = {"column", "unit", "gain", "offset", "optional"}
+_MOST_PATTERN = 1000  # characters of a regular expression
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Selection:
+    """Choice among the channels and sections of a file.
+
+    Parameters
+    ----------
+    group : str
+        Group of channels (TDMS, HDF5, structure of MATLAB); empty for all.
+    channels : tuple of str
+        Channels by label, or by name where only one group has it; empty for all. Columns of the time come along.
+    sections : tuple of str
+        Sections of a text export, by name or by number from 1, joined in the order of the file; empty for all.
+    """
+
+    group: str = ""
+    channels: tuple[str, ...] = ()
+    sections: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -33,6 +58,10 @@ class ChannelSource:
         Unit of the calibrated value; None for the unit stated in the file.
     gain, offset : float
         Calibration: value = gain * reading + offset.
+    other_columns : tuple of str
+        Labels that stand in its place in other files of the kind; the first one that a file has is read.
+    optional : bool
+        Whether the channel is left out of a file without such a column, instead of refusing the file.
 
     Raises
     ------
@@ -44,6 +73,13 @@ class ChannelSource:
     unit: str | None = None
     gain: float = 1.0
     offset: float = 0.0
+    other_columns: tuple[str, ...] = ()
+    optional: bool = False
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """Labels of the column, in order of precedence."""
+        return (self.column, *self.other_columns)
 
     def __post_init__(self) -> None:
         require_finite(gain=self.gain, offset=self.offset)
@@ -53,7 +89,7 @@ class ChannelSource:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class TextLayout:
-    """Layout of a text export: separator, decimal sign, skipped lines, missing-value texts and encoding.
+    """Layout of a text export: separator, decimal sign, encoding, and where its tables begin and end.
 
     Parameters
     ----------
@@ -66,21 +102,49 @@ class TextLayout:
     missing : tuple of str
         Texts that stand for a missing value, beside empty cells.
     encoding : str
-        Character encoding, by its Python name.
+        Character encoding, by its Python name; empty to detect UTF-8 and UTF-16, with Windows-1252 as fallback.
+    header : str
+        Regular expression found in the line of column labels; what stands before it is skipped. Empty where the first
+        line, or the first one after `lines_to_skip`, holds the labels.
+    units_row : bool
+        Whether the row after the labels holds the units.
+    comment : str
+        Text with which lines begin that are no data.
+    section : str
+        Regular expression found in the line with which a section begins, such as a step of a test. Its first group, or
+        all of the match, is the name of the section. Each section has a table of its own; they are joined in order.
+    section_start : str
+        Regular expression whose first group is the date and time at which a section began.
+    section_start_format : str
+        Format of that date and time, as `datetime.strptime` reads it.
+    ends_at_blank_line : bool
+        Whether a table ends at the first blank line after a row of data; what follows it is not read.
 
     Raises
     ------
     InvalidInput
-        If the separator is longer than one character, the decimal sign is neither "." nor ",", or both are the same.
+        If the separator is longer than one character, the decimal sign is neither "." nor ",", both are the same, or a
+        regular expression is invalid.
     """
 
     separator: str = ""
     decimal_sign: str = ""
     lines_to_skip: int = 0
     missing: tuple[str, ...] = ("NA", "N/A", "NaN", "nan", "-", "#N/A", "null")
-    encoding: str = "utf-8-sig"
+    encoding: str = ""
+    header: str = ""
+    units_row: bool = False
+    comment: str = ""
+    section: str = ""
+    section_start: str = ""
+    section_start_format: str = ""
+    ends_at_blank_line: bool = False
 
     def __post_init__(self) -> None:
+        for setting in fields(self):
+            value = getattr(self, setting.name)
+            if type(value) is not type(setting.default):
+                raise InvalidInput(f"{setting.name} must be a {type(setting.default).__name__}, got {value!r}")
         if len(self.separator) > 1 or self.separator in ('"', "\n", "\r"):
             raise InvalidInput(f"separator must be one character, got {self.separator!r}")
         if self.decimal_sign not in ("", ".", ","):
@@ -89,6 +153,8 @@ class TextLayout:
             raise InvalidInput(f"separator and decimal_sign are both {self.separator!r}")
         if self.lines_to_skip < 0:
             raise InvalidInput(f"lines_to_skip must not be negative, got {self.lines_to_skip}")
+        for name in ("header", "section", "section_start"):
+            _require_pattern(name, getattr(self, name))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -111,6 +177,12 @@ class RecordingMapping:
         Required cell by column label; only matching rows are read, such as one test out of a file of many.
     title : str
         Title of the recording.
+    selection : Selection
+        Group, channels and sections to read.
+    name : str
+        Of the mapping: of the file that holds it, or of the instrument for the ones of the package.
+    recognised_by : str
+        Regular expression by which the beginning of a file tells that the mapping fits; empty for none.
 
     Raises
     ------
@@ -127,16 +199,56 @@ class RecordingMapping:
     text: TextLayout = field(default_factory=TextLayout)
     rows: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
     title: str = ""
+    selection: Selection = field(default_factory=Selection)
+    name: str = ""
+    recognised_by: str = ""
 
     def __post_init__(self) -> None:
         for name in self.channels:
             quantity(name)
+        _require_pattern("recognised_by", self.recognised_by)
         if self.axis_quantity not in AXIS_QUANTITIES:
             raise InvalidInput(f"axis.quantity must be one of {', '.join(AXIS_QUANTITIES)}, got {self.axis_quantity!r}")
         if self.sample_rate is not None:
             require_positive(sample_rate=self.sample_rate)
             if self.axis is not None:
                 raise InvalidInput("axis: give a column or a sample_rate, not both")
+
+    def for_labels(self, labels: Collection[str]) -> "RecordingMapping":
+        """Return the mapping with the columns that a file of these labels has, without its absent optional channels."""
+        if not (self.channels or self.axis):
+            return self
+        known = set(labels)
+        channels = {name: _present(source, known) for name, source in self.channels.items()}
+        kept = {
+            name: source for name, source in channels.items() if not (source.optional and source.column not in known)
+        }
+        return replace(
+            self,
+            channels=MappingProxyType(kept or channels),
+            axis=None if self.axis is None else _present(self.axis, known),
+        )
+
+    @property
+    def only_selects(self) -> bool:
+        """Whether nothing is set but the selection."""
+        return self == RecordingMapping(channels=self.channels, selection=self.selection) and not self.channels
+
+
+def _present(source: ChannelSource, known: Collection[str]) -> ChannelSource:
+    """Return a source with the first of its labels that is known as its only one, the first of all where none is."""
+    column = next((label for label in source.labels if label in known), source.column)
+    return replace(source, column=column, other_columns=())
+
+
+def _require_pattern(name: str, pattern: str) -> None:
+    """Refuse text that is no regular expression."""
+    if not isinstance(pattern, str) or len(pattern) > _MOST_PATTERN:
+        raise InvalidInput(f"{name} must be a regular expression of at most {_MOST_PATTERN} characters")
+    try:
+        re.compile(pattern)
+    except (re.error, OverflowError, RecursionError) as failure:
+        raise InvalidInput(f"{name} is {pattern!r}, which is no regular expression: {failure}") from None
 
 
 def read_mapping(path: Path) -> RecordingMapping:
@@ -145,7 +257,8 @@ def read_mapping(path: Path) -> RecordingMapping:
     Parameters
     ----------
     path : Path
-        Sections `axis`, `text`, `rows` and one `channels.NAME` per channel, NAME being a quantity of the vocabulary.
+        Sections `axis`, `text`, `selection`, `rows` and one `channels.NAME` per channel, NAME being a quantity of the
+        vocabulary.
 
     Returns
     -------
@@ -157,7 +270,7 @@ def read_mapping(path: Path) -> RecordingMapping:
         Naming the file and the key, if the file is missing, is no TOML, or a key or a value is invalid.
     """
     try:
-        return _mapping(read_toml(path, kind="a mapping"))
+        return replace(_mapping(read_toml(path, kind="a mapping")), name=path.stem)
     except UnknownName as failure:
         raise InvalidInput(f"{path}: channels: {failure}") from None
     except (InvalidInput, TypeError) as failure:
@@ -172,18 +285,39 @@ def _mapping(content: dict[str, Any]) -> RecordingMapping:
     axis_quantity = axis.pop("quantity", "time")
     rate = axis.pop("sample_rate", None)
     if "missing" in text:
-        text["missing"] = tuple(text["missing"])
+        text["missing"] = _texts(text["missing"], "text.missing")
+    selection = _section(content, "selection", _SELECTION_KEYS)
+    for key in ("channels", "sections"):
+        selection[key] = _texts(selection.get(key, []), f"selection.{key}")
     return RecordingMapping(
         title=str(content.get("title", "")),
+        recognised_by=content.get("recognised_by", ""),
+        selection=Selection(**selection),
         channels=MappingProxyType(
-            {name: ChannelSource(**_section(channels, name, _CHANNEL_KEYS, "channels.")) for name in channels}
+            {name: _source(_section(channels, name, _CHANNEL_KEYS, "channels."), name) for name in channels}
         ),
-        axis=ChannelSource(**axis) if axis else None,
+        axis=_source(axis, "axis") if axis else None,
         axis_quantity=axis_quantity,
         sample_rate=to_si(rate, unit="Hz", name="axis.sample_rate") if isinstance(rate, str) else rate,
         text=TextLayout(**text),
         rows=MappingProxyType({name: str(value) for name, value in _section(content, "rows", None).items()}),
     )
+
+
+def _source(keys: dict[str, Any], name: str) -> ChannelSource:
+    """Return the source of a channel, whose column may be a list of labels in order of precedence."""
+    first, *others = _texts(keys.pop("column", ()), f"{name}.column") or (None,)
+    if first is None:
+        raise InvalidInput(f"{name}.column is missing")
+    return ChannelSource(column=first, other_columns=tuple(label for label in others if label), **keys)
+
+
+def _texts(value: Any, name: str) -> tuple[str, ...]:
+    """Return a text or a list of texts as a tuple."""
+    texts = [value] if isinstance(value, str) else value
+    if not isinstance(texts, (list, tuple)) or not all(isinstance(text, str) for text in texts):
+        raise InvalidInput(f"{name} must be a text or a list of texts, got {value!r}")
+    return tuple(texts)
 
 
 def _section(content: Mapping[str, Any], name: str, known: set[str] | None, prefix: str = "") -> dict[str, Any]:

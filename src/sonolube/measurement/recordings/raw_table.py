@@ -1,5 +1,6 @@
 """Columns of a recording as a file reader returns them: labels and units of the file, before names and SI units."""
 
+import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -29,6 +30,8 @@ class RawColumn:
         Time of the first value in seconds, where the file states it beside the values.
     interval : float or None
         Time between values in seconds, where the file states it beside the values.
+    group : str
+        Group of channels that holds it, with which its label may begin; empty where the file has no groups.
     """
 
     label: str
@@ -36,6 +39,7 @@ class RawColumn:
     unit: str | None = None
     start: float | None = None
     interval: float | None = None
+    group: str = ""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "label", one_line(self.label))
@@ -61,6 +65,10 @@ class RawTable:
         Whether the file ends before the data that it announces.
     origin : mapping of str to str
         Of a recording written by `write_recording`: title, name, format and SHA-256 of the original file.
+    caveats : tuple of str
+        What speaks against the values, one line each: assumptions of the reader and complaints of its library.
+    by_label : mapping of str to RawColumn
+        The columns by label, the first one where several have the same.
     """
 
     columns: tuple[RawColumn, ...]
@@ -70,18 +78,15 @@ class RawTable:
     first_row: int = 0
     incomplete: bool = False
     origin: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
+    caveats: tuple[str, ...] = ()
+    by_label: Mapping[str, RawColumn] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "by_label", {column.label: column for column in reversed(self.columns)})
 
     def place(self, row: int) -> str:
         """Return the sample or line number of a row in the file, for messages."""
         return f"sample {self.first_row + row}" if self.lines is None else f"line {self.lines[row]}"
-
-
-def common_length(lengths: Mapping[str, int], path: Path) -> int:
-    """Return the number of samples that all channels have, by label; refuse channels of different lengths."""
-    if len(set(lengths.values())) > 1:
-        text = ", ".join(f"{label} {size}" for label, size in lengths.items())
-        raise InvalidInput(f"{path}: channels have different numbers of samples ({text[:200]}); choose with a mapping")
-    return next(iter(lengths.values()), 0)
 
 
 def one_line(label: str) -> str:
@@ -115,3 +120,19 @@ def refuse_library_errors(path: Path, *, format_name: str, offset: Callable[[], 
         place = f"byte {offset()}: " if offset is not None else ""
         reason = f"{type(failure).__name__}: {failure}".splitlines()[0]
         raise InvalidInput(f"{path}: {place}cannot be read as {format_name} ({reason[:200]})") from None
+
+
+@contextmanager
+def recorded_warnings() -> Iterator[list[str]]:
+    """Context in which warnings are not printed but collected, each text once.
+
+    Yields
+    ------
+    list of str
+        One line each; complete when the context ends without an error.
+    """
+    texts: list[str] = []
+    with warnings.catch_warnings(record=True) as issued:
+        warnings.simplefilter("always")
+        yield texts
+    texts += dict.fromkeys(one_line(str(warning.message)) for warning in issued)

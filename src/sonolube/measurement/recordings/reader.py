@@ -3,6 +3,7 @@
 import hashlib
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,7 +13,9 @@ from sonolube.errors import InvalidInput
 from sonolube.files import write_atomically
 from sonolube.measurement.recordings.dataset import recording_dataset, require_increasing_axis
 from sonolube.measurement.recordings.formats import StreamedRecordingFormat, recording_format
+from sonolube.measurement.recordings.instrument_mappings import recognised_mapping
 from sonolube.measurement.recordings.mapping import RecordingMapping, read_mapping
+from sonolube.measurement.recordings.raw_table import RawTable, recorded_warnings
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -26,14 +29,16 @@ def read_recording(path: Path, *, mapping: RecordingMapping | Path | None = None
     path : Path
         In any format of `RECORDING_FORMATS`, which is detected by content and then by suffix.
     mapping : RecordingMapping, Path or None
-        Assignment of the columns, or the TOML file that holds it. Without it columns are assigned by their labels.
+        Assignment of the columns, or the TOML file that holds it. Without it a mapping of the package is taken where
+        the file is unmistakably an export of its instrument, else columns are assigned by their labels.
 
     Returns
     -------
     xarray.Dataset
         One variable per channel along `time`, or along `revolutions` for exports with one row per cycle. Variables have
         the attributes `units`, `long_name`, and the column, unit and calibration they come from; the dataset has
-        `sample_rate`, `dropped_samples`, `file_name`, `file_format`, `sha256` and the version of the software.
+        `sample_rate`, `dropped_samples`, `file_name`, `file_format`, `sha256`, the version of the software, and
+        `mapping` and `caveats` where there are any.
 
     Raises
     ------
@@ -45,8 +50,11 @@ def read_recording(path: Path, *, mapping: RecordingMapping | Path | None = None
     recording_blocks : the same in blocks, for files larger than memory.
     write_recording : the inverse, as netCDF.
     """
-    columns = _mapping(mapping)
-    table = recording_format(path).read(path, mapping=columns)
+    file_format = recording_format(path)
+    columns = _mapping(mapping, path)
+    with recorded_warnings() as complaints:
+        table = file_format.read(path, mapping=columns)
+    table = replace(table, caveats=(*table.caveats, *complaints))
     return recording_dataset(table, path=path, mapping=columns, digest=_sha256(path))
 
 
@@ -81,8 +89,8 @@ def recording_blocks(
     """
     if block_samples < 1:
         raise InvalidInput(f"block_samples must be positive, got {block_samples}")
-    columns = _mapping(mapping)
     file_format = recording_format(path)
+    columns = _mapping(mapping, path)
     if not isinstance(file_format, StreamedRecordingFormat):
         whole = read_recording(path, mapping=columns)
         axis = next(iter(whole.sizes))
@@ -90,7 +98,7 @@ def recording_blocks(
             yield whole.isel({axis: slice(first, first + block_samples)})
         return
     digest, last = _sha256(path), -math.inf
-    for table in file_format.read_blocks(path, mapping=columns, block_samples=block_samples):
+    for table in _recorded(file_format.read_blocks(path, mapping=columns, block_samples=block_samples)):
         block = recording_dataset(table, path=path, mapping=columns, digest=digest, partial=True)
         quantity = str(next(iter(block.sizes)))
         values = block[quantity].to_numpy()
@@ -98,6 +106,16 @@ def recording_blocks(
         require_increasing_axis(joint, quantity=quantity, path=path, place=place)
         last = values[-1]
         yield block
+
+
+def _recorded(blocks: Iterator[RawTable]) -> Iterator[RawTable]:
+    """Yield blocks with the warnings that their reading issued as caveats."""
+    while True:
+        with recorded_warnings() as complaints:
+            table = next(blocks, None)
+        if table is None:
+            return
+        yield replace(table, caveats=(*table.caveats, *complaints))
 
 
 def write_recording(recording: "xr.Dataset", *, path: Path) -> Path:
@@ -144,9 +162,15 @@ def recording_format_name(path: Path) -> str:
     return recording_format(path).name
 
 
-def _mapping(mapping: RecordingMapping | Path | None) -> RecordingMapping | None:
-    """Return a mapping, read from its file where a path is given."""
-    return read_mapping(mapping) if isinstance(mapping, Path) else mapping
+def _mapping(mapping: RecordingMapping | Path | None, path: Path) -> RecordingMapping | None:
+    """Return a mapping: read from its file where a path is given, else the one by which the file is recognised."""
+    given = read_mapping(mapping) if isinstance(mapping, Path) else mapping
+    if given is not None and not given.only_selects:
+        return given
+    found = recognised_mapping(path)
+    if given is None or found is None:
+        return found or given
+    return replace(found, selection=given.selection)
 
 
 def _sha256(path: Path) -> str:

@@ -1,7 +1,11 @@
 """LabVIEW's binary recordings (TDMS), streamed by segment chunks so that memory holds one chunk and one block."""
 
+import logging
+import re
 import struct
+from collections import Counter
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, BinaryIO, ClassVar, final
@@ -10,21 +14,20 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.recordings.mapping import RecordingMapping
-from sonolube.measurement.recordings.raw_table import (
-    RawColumn,
-    RawTable,
-    common_length,
-    one_line,
-    refuse_library_errors,
-)
+from sonolube.measurement.limits import ClippedReader, most_unpacked_bytes, require_channels
+from sonolube.measurement.recordings.channel_choice import ChannelEntry, chosen_channels, require_common_length
+from sonolube.measurement.recordings.mapping import RecordingMapping, Selection
+from sonolube.measurement.recordings.raw_table import RawColumn, RawTable, one_line, refuse_library_errors
 
 TDMS_FORMAT = "TDMS"
 """Name of the format in results."""
 
+MOST_SEGMENTS = 100_000
+"""Segments of a file, whose headers npTDMS reads at about 20,000 a second."""
+
 _SIGNATURE = b"TDSm"
 _LEAD_IN = 28  # bytes before the metadata of a segment
-_UNCHECKED_READ = 1 << 16  # bytes; larger reads are limited to what the file holds
+_CHUNK_MESSAGE = re.compile(r"[Dd]ata size (\d+) is not a multiple of the chunk size (\d+)")  # of npTDMS
 _UNFINISHED = 0xFFFFFFFFFFFFFFFF  # length of a segment that was not closed
 _BIG_ENDIAN = 1 << 6
 
@@ -100,49 +103,85 @@ class Tdms:
         """Yield blocks of rows, or one block with all rows where `block_samples` is None."""
         from nptdms import TdmsFile
 
-        with path.open("rb") as stream:
+        with ClippedReader(path) as stream:
             incomplete = _check_lead_ins(stream, path)
             stream.seek(0)
-            with refuse_library_errors(path, format_name=self.name, offset=stream.tell):
-                file = TdmsFile.open(_LimitedStream(stream))
+            with refuse_library_errors(path, format_name=self.name, offset=stream.tell), _collected_log() as log:
+                file = TdmsFile.open(stream)
+            caveats = _checked(log, path, incomplete=incomplete)
             channels = _selected_channels(file, path, mapping)
             columns = {label: _empty_column(label, channel) for label, channel in channels.items()}
             if not incomplete:
-                common_length({label: len(channel) for label, channel in channels.items()}, path)
-            with refuse_library_errors(path, format_name=self.name, offset=stream.tell):
-                rows = 0
-                for values in _blocks(file, channels, block_samples):
-                    filled = tuple(replace(column, values=values[label]) for label, column in columns.items())
-                    yield RawTable(
-                        columns=filled,
-                        format_name=self.name,
-                        begun=_start_time(channels),
-                        first_row=rows,
-                        incomplete=incomplete,
-                    )
-                    rows += filled[0].values.size
+                require_common_length(
+                    [ChannelEntry(label, channel.group_name, len(channel)) for label, channel in channels.items()], path
+                )
+            blocks = _blocks(file, channels, block_samples)
+            rows = 0
+            while True:
+                with refuse_library_errors(path, format_name=self.name, offset=stream.tell), _collected_log() as log:
+                    values = next(blocks, None)
+                if values is None:
+                    return
+                caveats += _checked(log, path, incomplete=incomplete)
+                filled = tuple(replace(column, values=values[label]) for label, column in columns.items())
+                yield RawTable(
+                    columns=filled,
+                    format_name=self.name,
+                    begun=_start_time(channels),
+                    first_row=rows,
+                    incomplete=incomplete,
+                    caveats=caveats,
+                )
+                rows += filled[0].values.size
 
 
-class _LimitedStream:
-    """Binary stream whose reads never request more bytes than the file holds, whatever length a damaged file states."""
+@contextmanager
+def _collected_log() -> Iterator[list[str]]:
+    """Context in which what npTDMS logs is collected instead of printed."""
+    from nptdms.log import log_manager
 
-    def __init__(self, stream: BinaryIO) -> None:
-        self._stream = stream
-        self._size = stream.seek(0, 2)
-        self.seek, self.tell, self.readinto = stream.seek, stream.tell, stream.readinto  # type: ignore[attr-defined]
-        stream.seek(0)
+    messages: list[str] = []
 
-    def read(self, size: int = -1) -> bytes:
-        if 0 <= size <= _UNCHECKED_READ:
-            return self._stream.read(size)
-        available = max(self._size - self._stream.tell(), 0)
-        return self._stream.read(available if size < 0 else min(size, available))
+    def collect(record: logging.LogRecord) -> bool:
+        messages.append(one_line(record.getMessage()))
+        return False
+
+    handler = log_manager.console_handler
+    handler.addFilter(collect)
+    try:
+        yield messages
+    finally:
+        handler.removeFilter(collect)
+
+
+def _checked(messages: list[str], path: Path, *, incomplete: bool) -> tuple[str, ...]:
+    """Return what npTDMS logged as caveats; refuse what makes values wrong.
+
+    That is data in another amount than the index announces, but for an incomplete last segment, and unknown scaling.
+    """
+    caveats = []
+    for message in dict.fromkeys(messages):
+        sizes = _CHUNK_MESSAGE.search(message)
+        if sizes is not None and (not incomplete or int(sizes[2]) > most_unpacked_bytes(path)):
+            raise InvalidInput(
+                f"{path}: a segment with {sizes[1]} bytes of data announces chunks of {sizes[2]} bytes; it is damaged"
+            )
+        if "scale type" in message:
+            raise InvalidInput(f"{path}: its samples cannot be scaled ({message[:200]})")
+        if sizes is None and not incomplete:
+            caveats.append(f"npTDMS: {message[:200]}")
+    return tuple(caveats)
 
 
 def _check_lead_ins(stream: BinaryIO, path: Path) -> bool:
     """Validate the lead-ins of all segments; return whether the last segment is incomplete."""
-    size, position = stream.seek(0, 2), 0
+    size, position, segments = stream.seek(0, 2), 0, 0
     while position + _LEAD_IN <= size:
+        segments += 1
+        if segments > MOST_SEGMENTS:
+            raise InvalidInput(
+                f"{path}: has more than {MOST_SEGMENTS} segments; defragment it (TDMS Defragment in LabVIEW)"
+            )
         stream.seek(position)
         lead_in = stream.read(_LEAD_IN)
         if lead_in[:4] != _SIGNATURE:
@@ -168,21 +207,32 @@ def _check_lead_ins(stream: BinaryIO, path: Path) -> bool:
 
 
 def _selected_channels(file: Any, path: Path, mapping: RecordingMapping | None) -> dict[str, Any]:
-    """Return the numeric channels with samples that the mapping names, or all, by unique labels."""
-    by_full_name = {one_line(f"{group.name}/{each.name}"): each for group in file.groups() for each in group.channels()}
-    names = [channel.name for channel in by_full_name.values()]
-    labelled = {
-        (one_line(channel.name) if names.count(channel.name) == 1 else full_name): channel
-        for full_name, channel in by_full_name.items()
+    """Return the numeric channels with samples that the mapping selects and names, or all, by unique labels."""
+    channels = [channel for group in file.groups() for channel in group.channels()]
+    require_channels(len(channels), path)
+    counts = Counter(one_line(channel.name) for channel in channels)
+    entries = {
+        ChannelEntry(_label(channel, counts), one_line(channel.group_name), len(channel)): channel
+        for channel in channels
+        if _is_numeric(channel) and len(channel) > 0
     }
-    numeric = {label: channel for label, channel in labelled.items() if _is_numeric(channel) and len(channel) > 0}
+    selection = mapping.selection if mapping is not None else Selection()
+    found = list(entries.values())
+    numeric = {label: found[index] for index, label in chosen_channels(list(entries), selection, path)}
     if mapping is not None and mapping.channels:
-        requested = {source.column for source in mapping.channels.values()}
-        requested |= {mapping.axis.column} if mapping.axis else set()
+        named = mapping.for_labels(numeric)
+        requested = {source.column for source in named.channels.values()}
+        requested |= {named.axis.column} if named.axis else set()
         numeric = {label: channel for label, channel in numeric.items() if label in requested}
     if not numeric:
         raise InvalidInput(f"{path}: holds no channel of numbers" + (" that the mapping names" if mapping else ""))
     return numeric
+
+
+def _label(channel: Any, counts: Counter[str]) -> str:
+    """Return the name of a channel, with its group where several channels have the name."""
+    name = one_line(channel.name)
+    return name if counts[name] == 1 else one_line(f"{channel.group_name}/{name}")
 
 
 def _is_numeric(channel: Any) -> bool:
@@ -201,6 +251,7 @@ def _empty_column(label: str, channel: Any) -> RawColumn:
         unit=str(unit) if unit else None,
         start=float(start) if isinstance(start, (int, float)) else 0.0,
         interval=float(interval) if isinstance(interval, (int, float)) and interval else None,
+        group=one_line(channel.group_name),
     )
 
 

@@ -106,10 +106,28 @@ def friction_sheet(path: Path, *, settings: FrictionSettings) -> sheet.Sheet:
     """
     if path.is_file() and path.stat().st_size > _LARGE and recording_format_name(path) == TDMS:
         return _streamed(path, settings)
-    recording = read_recording(path, mapping=settings.mapping)
+    return recording_sheet(read_recording(path, mapping=settings.mapping), title=path.name, settings=settings)
+
+
+def recording_sheet(recording: "xr.Dataset", *, title: str, settings: FrictionSettings) -> sheet.Sheet:
+    """Friction in a recording that was read, as `friction_sheet`."""
     motor = settings.motor
     sections = _sections(recording, settings) if motor is None else [_motor(recording, settings, motor)]
-    return sheet.joined(sections, title=path.name, source=recording_source(recording))
+    sections.append(sheet.Sheet(caveats=recording_caveats(recording)))
+    return sheet.joined(sections, title=title, source=recording_source(recording))
+
+
+def recording_caveats(recording: "xr.Dataset") -> tuple[str, ...]:
+    """Caveats of the reading of a recording: assumptions of the reader, and what its library complained of."""
+    return tuple(str(recording.attrs.get("caveats", "")).splitlines())
+
+
+def friction_channel(recording: "xr.Dataset") -> str:
+    """Name of the channel that holds friction: the force, else the coefficient; refuse a recording of neither."""
+    found = next((name for name in _CHANNELS if name in recording.variables), None)
+    if found is None:
+        channel_values(recording, _CHANNELS[0])  # says which channels there are
+    return found or _CHANNELS[0]
 
 
 def recording_source(recording: "xr.Dataset") -> dict[str, str]:
@@ -119,6 +137,7 @@ def recording_source(recording: "xr.Dataset") -> dict[str, str]:
     return {
         "format": str(attributes.get("file_format", "")),
         "title": str(attributes.get("title", "")),
+        "mapping": str(attributes.get("mapping", "")),
         "samples": f"{next(iter(recording.sizes.values()))}",
         "sample rate": format_si(float(rate), "Hz") if rate else "",
         "dropped samples": f"{dropped}" if dropped else "",
@@ -128,10 +147,7 @@ def recording_source(recording: "xr.Dataset") -> dict[str, str]:
 
 def _sections(recording: "xr.Dataset", settings: FrictionSettings) -> list[sheet.Sheet]:
     """Sections of a recording of friction, as far as its channels allow."""
-    channels = [name for name in _CHANNELS if name in recording.variables]
-    if not channels:
-        channel_values(recording, "friction_force")  # says which channels there are
-    name = channels[0]
+    name = friction_channel(recording)
     sections = [_level(recording, name)]
     if "time" not in recording.variables:
         return [*sections, sheet.Sheet(figures=(_cycle_figure(recording, name),))]

@@ -12,9 +12,9 @@ import numpy as np
 from sonolube.checks import Complexes, Floats, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.measurement.friction_analysis import channel_values
-from sonolube.measurement.recordings.dataset import convert_to_si
 from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.measurement.recordings.reader import read_recording
+from sonolube.measurement.recordings.written_units import convert_to_si
 from sonolube.measurement.vibration import (
     OperatingDeflectionShape,
     amplitude_per_volt,

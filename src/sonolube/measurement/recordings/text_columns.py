@@ -1,0 +1,48 @@
+"""Columns of numbers from rows of text cells."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from sonolube.checks import Floats
+from sonolube.errors import InvalidInput, suggestion
+from sonolube.measurement.numeric_text import parse_number, parse_numbers
+
+NumberedCells = tuple[int, list[str]]
+"""Line on which a row begins, and its cells."""
+
+
+def column_values(
+    rows: Sequence[NumberedCells], index: int, label: str, decimal_sign: str, missing: frozenset[str], path: Path
+) -> Floats:
+    """Return the numbers of one column; cells beyond the end of a row are missing values.
+
+    Raises
+    ------
+    InvalidInput
+        Naming the file, the line, the label and the cell that is neither a number nor a missing-value text.
+    """
+    cells = [row[index] if index < len(row) else "" for _, row in rows]
+    values, invalid_row = parse_numbers(cells, decimal_sign=decimal_sign, missing=missing)
+    if invalid_row is not None:
+        line = rows[invalid_row][0]
+        raise InvalidInput(f"{path}: line {line}: {label!r} is {cells[invalid_row][:40]!r}, which is not a number")
+    return values
+
+
+def column_index(indices: Mapping[str, int], label: str, path: Path) -> int:
+    """Return the place of a label among the columns; refuse one that is not there, with the closest."""
+    try:
+        return indices[label]
+    except KeyError:
+        labels = [known for known in indices if known]
+        hint = suggestion(label, labels) or "it has " + ", ".join(labels[:12])
+        raise InvalidInput(f"{path}: has no column {label!r}; {hint}") from None
+
+
+def is_text(rows: Sequence[NumberedCells], index: int, decimal_sign: str, missing: frozenset[str]) -> bool:
+    """Return whether the first cell of a column that is not missing is no number."""
+    for _, row in rows:
+        text = row[index].strip() if index < len(row) else ""
+        if text and text not in missing:
+            return parse_number(text, decimal_sign=decimal_sign) is None
+    return True

@@ -1,0 +1,230 @@
+"""Tables within a text export: found by the line of labels, in sections such as the steps of a test."""
+
+import csv
+import io
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+
+from sonolube.errors import InvalidInput
+from sonolube.measurement.limits import require_channels
+from sonolube.measurement.recordings.mapping import TextLayout
+from sonolube.measurement.recordings.raw_table import one_line
+from sonolube.measurement.recordings.text_columns import NumberedCells
+
+_SEPARATORS = "\t;,|"
+_MOST_LISTED = 12
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class TextTable:
+    """One table of a text export.
+
+    Parameters
+    ----------
+    section : str
+        Name of the section that holds it; empty where the file has none.
+    begun : str
+        Date and time at which the section began, in ISO 8601; empty where not stated.
+    line : int
+        Of the labels.
+    labels : list of str
+        Of the columns, without empty ones at the end.
+    units : list of str
+        Of the columns; empty where the layout has no row of units.
+    rows : list of (int, list of str)
+        Line and cells of each row.
+    unread : int
+        Number of lines with text after the end of the table.
+    separator : str
+        Between cells.
+    """
+
+    section: str
+    begun: str
+    line: int
+    labels: list[str]
+    units: list[str]
+    rows: list[NumberedCells]
+    unread: int
+    separator: str
+
+
+def text_tables(text: str, layout: TextLayout, sections: tuple[str, ...], path: Path) -> list[TextTable]:
+    """Return the tables of a text export in order: one, or one per section.
+
+    Parameters
+    ----------
+    text : str
+        All of the file.
+    layout : TextLayout
+        How to find the tables.
+    sections : tuple of str
+        The sections to return, by name or number; empty for all that hold rows.
+    path : Path
+        Of the file, for messages.
+
+    Returns
+    -------
+    list of TextTable
+        At least one, with rows.
+
+    Raises
+    ------
+    InvalidInput
+        Naming the file and the line, if no line of labels is found, a row has another number of cells than there are
+        labels, or a section is not there; sections are listed.
+    """
+    lines = list(io.StringIO(text, newline=""))
+    parts = _sections(lines, layout)
+    if not layout.section and sections:
+        raise InvalidInput(
+            f"{path}: has no sections, so that none is {sections[0]!r}; text.section of a mapping tells them"
+        )
+    if layout.section and not parts:
+        raise InvalidInput(f"{path}: has no section, a line with {layout.section!r}")
+    chosen = [parts[index] for index in _chosen([name for name, _, _ in parts], sections, path)]
+    tables = [_table(name, lines, first, end, layout, path) for name, first, end in chosen]
+    if sections and (empty := next((table for table in tables if not table.rows), None)):
+        raise InvalidInput(f"{path}: line {empty.line}: section {empty.section!r} holds no rows")
+    return [table for table in tables if table.rows] or tables[:1]
+
+
+def _sections(lines: list[str], layout: TextLayout) -> list[tuple[str, int, int]]:
+    """Return name, first line and end of each section, as indices of lines; one without name where there are none."""
+    if not layout.section:
+        return [("", layout.lines_to_skip, len(lines))]
+    pattern = re.compile(layout.section)
+    begins = [(index, match) for index, line in enumerate(lines) if (match := pattern.search(line))]
+    ends = [index for index, _ in begins[1:]] + [len(lines)]
+    return [
+        (one_line(match[1] if match.re.groups and match[1] else match[0]), index + 1, end)
+        for (index, match), end in zip(begins, ends, strict=True)
+    ]
+
+
+def _chosen(names: list[str], sections: tuple[str, ...], path: Path) -> list[int]:
+    """Return the indices of the requested sections, in the order of the file."""
+    if not sections:
+        return list(range(len(names)))
+    indices = set()
+    for section in sections:
+        found = [index for index, name in enumerate(names) if name.casefold() == section.strip().casefold()]
+        if not found and section.strip().isdecimal() and 0 < int(section) <= len(names):
+            found = [int(section) - 1]
+        if not found:
+            known = ", ".join(names[:_MOST_LISTED]) + (", ..." if len(names) > _MOST_LISTED else "")
+            raise InvalidInput(f"{path}: has no section {section!r}; its {len(names)} are {known}")
+        indices.update(found)
+    return sorted(indices)
+
+
+def _table(name: str, lines: list[str], first: int, end: int, layout: TextLayout, path: Path) -> TextTable:
+    """Return the table between two lines."""
+    header = _header_line(lines, first, end, layout, path)
+    separator = layout.separator or _detected_separator(lines[header : header + 1])
+    rows = _rows(lines, header, end, separator, layout, path)
+    line, cells = _next_row(rows, header + 1)
+    labels = [one_line(label) for label in cells]
+    while labels and not labels[-1]:
+        labels.pop()
+    if not labels:
+        raise InvalidInput(f"{path}: line {line}: no column names")
+    require_channels(len(labels), path, kind="columns")
+    units = [one_line(cell) for cell in _next_row(rows, line + 1)[1]] if layout.units_row else []
+    body, unread = _body(rows, len(labels), layout, path)
+    return TextTable(
+        section=name,
+        begun=_begun("".join(lines[first - 1 if layout.section else 0 : header]), layout, path)
+        if layout.section_start
+        else "",
+        line=line,
+        labels=labels,
+        units=units,
+        rows=body,
+        unread=unread,
+        separator=separator,
+    )
+
+
+def _header_line(lines: list[str], first: int, end: int, layout: TextLayout, path: Path) -> int:
+    """Return the index of the line of labels: the first one, or the first that has the pattern of the layout."""
+    if not layout.header:
+        return next((index for index in range(first, end) if _is_row(lines[index], layout)), first)
+    pattern = re.compile(layout.header)
+    found = next((index for index in range(first, end) if pattern.search(lines[index])), None)
+    if found is None:
+        raise InvalidInput(f"{path}: line {first + 1}: no line of labels, with {layout.header!r}, follows")
+    return found
+
+
+def _is_row(line: str, layout: TextLayout) -> bool:
+    """Return whether a line is neither blank nor a comment."""
+    text = line.strip()
+    return bool(text) and not (layout.comment and text.startswith(layout.comment))
+
+
+def _next_row(rows: Iterator[NumberedCells | None], line: int) -> NumberedCells:
+    """Return the next row; one without cells, on the line given, where there is none."""
+    return next((row for row in rows if row is not None), (line, []))
+
+
+def _detected_separator(lines: list[str]) -> str:
+    """Return the separator that occurs most often in the line of labels."""
+    line = lines[0] if lines else ""
+    return max(_SEPARATORS, key=lambda separator: (line.count(separator), -_SEPARATORS.index(separator)))
+
+
+def _rows(
+    lines: list[str], first: int, end: int, separator: str, layout: TextLayout, path: Path
+) -> Iterator[NumberedCells | None]:
+    """Yield the rows with quoted cells that may span lines; None for a blank line after the first row.
+
+    Comments are passed over; blank lines only count where they end a table.
+    """
+    reader = csv.reader(io.StringIO("".join(lines[first:end]), newline=""), delimiter=separator, strict=True)
+    begins = first + 1
+    seen = False
+    try:
+        for cells in reader:
+            if any(cell.strip() for cell in cells):
+                if not (layout.comment and cells[0].lstrip().startswith(layout.comment)):
+                    seen = True
+                    yield begins, cells
+            elif seen and layout.ends_at_blank_line:
+                yield None
+            begins = first + reader.line_num + 1
+    except csv.Error as failure:
+        raise InvalidInput(f"{path}: line {begins}: {failure}") from None
+
+
+def _body(
+    rows: Iterator[NumberedCells | None], width: int, layout: TextLayout, path: Path
+) -> tuple[list[NumberedCells], int]:
+    """Return the rows of a table up to its end, and the number of rows that follow it."""
+    body: list[NumberedCells] = []
+    for row in rows:
+        if row is None:
+            if body:
+                break
+            continue
+        line, cells = row
+        if len(cells) < width or any(cell.strip() for cell in cells[width:]):
+            raise InvalidInput(f"{path}: line {line}: has {len(cells)} cells where {width} columns are named")
+        body.append(row)
+    return body, sum(row is not None for row in rows)
+
+
+def _begun(preamble: str, layout: TextLayout, path: Path) -> str:
+    """Return the start that the lines before a table state, in ISO 8601; empty where they do not."""
+    match = re.search(layout.section_start, preamble)
+    if match is None or not match.re.groups or not match[1]:
+        return ""
+    try:
+        return datetime.strptime(match[1].strip(), layout.section_start_format).isoformat(" ")
+    except ValueError:
+        raise InvalidInput(
+            f"{path}: the start {match[1].strip()[:40]!r} does not have the format {layout.section_start_format!r}"
+        ) from None
