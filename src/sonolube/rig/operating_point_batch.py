@@ -15,14 +15,12 @@ from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRat
 from sonolube.rig.driven_rig import DrivenRig, driven_rig
 from sonolube.rig.excitation import voltage_range
 from sonolube.rig.friction_and_wear import friction_at_speeds
+from sonolube.rig.operating_conditions import OperatingConditions, conditions_of, points_by_vibration
 from sonolube.rig.operating_point_grid import (
     REFUSED,
     VIBRATION_NUMBERS,
-    OperatingConditions,
-    conditions_of,
     friction_and_power,
     friction_status,
-    points_by_vibration,
     steady_states_of,
 )
 from sonolube.rig.record import Rig

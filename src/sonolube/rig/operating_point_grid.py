@@ -1,30 +1,28 @@
 """Operating points of one rig over arrays of settings: vibrations solved in one batch, friction and status each."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sonolube.actuator.stack import require_allowed_voltage
-from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
+from sonolube.checks import Floats
 from sonolube.contact import separation
 from sonolube.dynamics import Status, SteadyStates, steady_state
 from sonolube.dynamics.backend import Backend
-from sonolube.errors import InvalidInput, SonolubeError
+from sonolube.errors import SonolubeError
 from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE
 from sonolube.rig.driven_rig import DrivenRig, driven_rig
 from sonolube.rig.excitation import amplifier_power, voltage_harmonics, voltage_range
 from sonolube.rig.friction_and_wear import friction_at_speeds
 from sonolube.rig.linear_response import gap_law_of
+from sonolube.rig.operating_conditions import CONDITIONS, OperatingConditions, conditions_of, points_by_vibration
 from sonolube.rig.record import Rig
 from sonolube.rig.vibration import gap_motion
 
 REFUSED = "refused"
 """Status of an operating point that a limit of the stack or the contact rules out."""
-
-CONDITIONS = ("voltage_peak_to_peak", "voltage_offset", "frequency", "normal_load")
-"""Settings of a point apart from its sliding speed, in the order of the rows that hold them."""
 
 VIBRATION_NUMBERS = (
     "vibration_amplitude",
@@ -112,21 +110,6 @@ class OperatingPoints:
     def failed(self) -> NDArray[np.bool_]:
         """Points without a friction ratio."""
         return np.isnan(self.friction_ratio)
-
-
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class OperatingConditions:
-    """Drives and loads of a batch, arrays of one axis."""
-
-    voltage_peak_to_peak: Floats
-    voltage_offset: Floats
-    frequency: Floats
-    normal_load: Floats
-
-    @classmethod
-    def of_columns(cls, columns: Floats) -> "OperatingConditions":
-        """Return settings from their rows, in the order of the fields."""
-        return cls(**dict(zip(CONDITIONS, columns, strict=True)))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -297,29 +280,6 @@ def steady_states(
     return steady_states_of(rig, settings, rest, relative_tolerance=relative_tolerance)
 
 
-def conditions_of(rig: DrivenRig, given: Sequence[ArrayLike | None]) -> tuple[Floats, Floats]:
-    """Return the settings of points as rows of `OperatingConditions` and sliding speeds, checked and broadcast.
-
-    Given are peak-to-peak voltage, offset and frequency of the drive, load and sliding speed; None is the rig's own.
-    """
-    voltage, offset, f, load, speed = given
-    settings = (
-        require_non_negative(voltage_peak_to_peak=rig.voltage_peak_to_peak if voltage is None else voltage),
-        require_finite(voltage_offset=rig.drive.voltage_offset if offset is None else offset),
-        require_positive(frequency=rig.drive.frequency if f is None else f),
-        require_positive(normal_load=rig.normal_load if load is None else load),
-        require_non_negative(sliding_speed=rig.sliding_speed if speed is None else speed),
-    )
-    try:
-        every = np.broadcast_arrays(*settings)
-    except ValueError:
-        shapes = ", ".join(str(array.shape) for array in settings)
-        raise InvalidInput(
-            f"voltage, offset, frequency, load and speed must have matching shapes, got {shapes}"
-        ) from None
-    return np.stack(every[:-1]), every[-1].copy()
-
-
 def _refusals(rig: DrivenRig, settings: OperatingConditions, rest: Floats) -> list[str]:
     """Return the reason against each drive and load that the stack or the contact rules out, else empty text."""
     refusals = []
@@ -357,25 +317,6 @@ def steady_states_of(
         relative_tolerance=relative_tolerance,
         backend=backend,
     )
-
-
-def points_by_vibration(points: NDArray[np.intp], vibration: NDArray[np.intp]) -> list[NDArray[np.intp]]:
-    """Return the indices of the points of each vibration, in the order of the vibrations.
-
-    Parameters
-    ----------
-    points : ndarray of int, shape (k,)
-    vibration : ndarray of int, shape (n,)
-        Vibration of every point.
-
-    Returns
-    -------
-    list of ndarray of int
-    """
-    if not points.size:
-        return []
-    order = points[np.argsort(vibration[points], kind="stable")]
-    return np.split(order, np.flatnonzero(np.diff(vibration[order])) + 1)
 
 
 def _outcome(rig: Rig, states: SteadyStates, point: int, speeds: Floats) -> _Outcome:

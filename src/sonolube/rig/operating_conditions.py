@@ -1,0 +1,71 @@
+"""Drives and loads of many operating points: broadcast, checked, and grouped by the vibration that they share."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
+from sonolube.errors import InvalidInput
+from sonolube.rig.driven_rig import DrivenRig
+
+CONDITIONS = ("voltage_peak_to_peak", "voltage_offset", "frequency", "normal_load")
+"""Settings of a point apart from its sliding speed, in the order of the rows that hold them."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class OperatingConditions:
+    """Drives and loads of a batch, arrays of one axis."""
+
+    voltage_peak_to_peak: Floats
+    voltage_offset: Floats
+    frequency: Floats
+    normal_load: Floats
+
+    @classmethod
+    def of_columns(cls, columns: Floats) -> "OperatingConditions":
+        """Return settings from their rows, in the order of the fields."""
+        return cls(**dict(zip(CONDITIONS, columns, strict=True)))
+
+
+def conditions_of(rig: DrivenRig, given: Sequence[ArrayLike | None]) -> tuple[Floats, Floats]:
+    """Return the settings of points as rows of `OperatingConditions` and sliding speeds, checked and broadcast.
+
+    Given are peak-to-peak voltage, offset and frequency of the drive, load and sliding speed; None is the rig's own.
+    """
+    voltage, offset, f, load, speed = given
+    settings = (
+        require_non_negative(voltage_peak_to_peak=rig.voltage_peak_to_peak if voltage is None else voltage),
+        require_finite(voltage_offset=rig.drive.voltage_offset if offset is None else offset),
+        require_positive(frequency=rig.drive.frequency if f is None else f),
+        require_positive(normal_load=rig.normal_load if load is None else load),
+        require_non_negative(sliding_speed=rig.sliding_speed if speed is None else speed),
+    )
+    try:
+        every = np.broadcast_arrays(*settings)
+    except ValueError:
+        shapes = ", ".join(str(array.shape) for array in settings)
+        raise InvalidInput(
+            f"voltage, offset, frequency, load and speed must have matching shapes, got {shapes}"
+        ) from None
+    return np.stack(every[:-1]), every[-1].copy()
+
+
+def points_by_vibration(points: NDArray[np.intp], vibration: NDArray[np.intp]) -> list[NDArray[np.intp]]:
+    """Return the indices of the points of each vibration, in the order of the vibrations.
+
+    Parameters
+    ----------
+    points : ndarray of int, shape (k,)
+    vibration : ndarray of int, shape (n,)
+        Vibration of every point.
+
+    Returns
+    -------
+    list of ndarray of int
+    """
+    if not points.size:
+        return []
+    order = points[np.argsort(vibration[points], kind="stable")]
+    return np.split(order, np.flatnonzero(np.diff(vibration[order])) + 1)
