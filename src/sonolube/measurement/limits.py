@@ -1,0 +1,134 @@
+"""Limits on what a measured file may hold, checked against the sizes that it states before anything is read.
+
+A file states the sizes of its arrays, and a reader allocates what is stated. Without limits a damaged or hostile file of
+a few kilobytes takes all memory: by shapes without stored values, by compressed zeros, by very many small arrays. The
+limits keep every file below 10 MB within about 1 GB and 10 s, and grow with the size of larger ones. What is stored
+without compression always lies within them.
+"""
+
+import io
+from pathlib import Path
+
+from sonolube.errors import InvalidInput
+
+MOST_VALUES = 20_000_000
+"""Numbers that a file of any size may hold: 160 MB as floats, about 1 GB with the copies of unit conversion and checks."""
+
+MOST_VALUES_PER_BYTE = 2
+"""Numbers that a byte of a large file may hold: a sampled signal with noise of one step of its converter keeps at least
+two to three bits a sample however well it is compressed, and the other channels more. Compressed zeros have 1000 a byte."""
+
+MOST_CHANNELS = 10_000
+"""Columns, channels, variables or data sets of one file."""
+
+
+def most_values(path: Path) -> int:
+    """Return how many numbers a file may hold: `MOST_VALUES`, or `MOST_VALUES_PER_BYTE` where that is more."""
+    return max(MOST_VALUES, MOST_VALUES_PER_BYTE * path.stat().st_size)
+
+
+def require_values(count: int, path: Path, *, part: str = "") -> None:
+    """Refuse a file that states more values than one of its size may hold.
+
+    Parameters
+    ----------
+    count : int
+        Values that the file, or all parts of it up to this one, states to hold.
+    path : Path
+        Of the file.
+    part : str
+        Of the file, for the message, such as "data set 'force'".
+
+    Raises
+    ------
+    InvalidInput
+        With what the file states, the limit and the remedy.
+    """
+    limit = most_values(path)
+    if count > limit:
+        raise InvalidInput(
+            f"{path}: {part + ': ' if part else ''}states {_amount(count)} values, but a file of"
+            f" {path.stat().st_size} bytes may hold {limit}; save it in parts or without compression"
+        )
+
+
+def require_channels(count: int, path: Path, *, kind: str = "channels") -> None:
+    """Refuse a file with more channels (columns, variables, data sets) than `MOST_CHANNELS`.
+
+    Parameters
+    ----------
+    count : int
+        Channels that the file states or that were counted so far.
+    path : Path
+        Of the file.
+    kind : str
+        What is counted, in the plural, for the message.
+
+    Raises
+    ------
+    InvalidInput
+        With what the file states, the limit and the remedy.
+    """
+    if count > MOST_CHANNELS:
+        raise InvalidInput(
+            f"{path}: has {_amount(count)} {kind} or more, but at most {MOST_CHANNELS} are read; save those needed alone"
+        )
+
+
+def require_unpacked_bytes(count: int, path: Path, *, part: str = "") -> None:
+    """Refuse a compressed file that unpacks to more bytes than the values of `most_values` take as doubles.
+
+    Parameters
+    ----------
+    count : int
+        Bytes that the file, or all parts of it up to this one, unpacks to.
+    path : Path
+        Of the file.
+    part : str
+        Of the file, for the message.
+
+    Raises
+    ------
+    InvalidInput
+        With what the file states, the limit and the remedy.
+    """
+    limit = most_unpacked_bytes(path)
+    if count > limit:
+        raise InvalidInput(
+            f"{path}: {part + ': ' if part else ''}unpacks to {_amount(count)} bytes or more, but a file of"
+            f" {path.stat().st_size} bytes may unpack to {limit}; save it in parts or without compression"
+        )
+
+
+def most_unpacked_bytes(path: Path) -> int:
+    """Return to how many bytes a compressed file may unpack: doubles of `most_values`."""
+    return 8 * most_values(path)
+
+
+class ClippedReader(io.BufferedReader):
+    """A file open for reading, whose reads allocate no more than the rest of the file, whatever a caller requests.
+
+    Parameters
+    ----------
+    path : Path
+        Of the file.
+
+    Notes
+    -----
+    ``read(n)`` of Python allocates n bytes before it reads, so that a length stated in a damaged file takes as much
+    memory, even where the file ends at once.
+    """
+
+    def __init__(self, path: Path) -> None:
+        super().__init__(io.FileIO(path))
+        self._size = path.stat().st_size
+
+    def read(self, size: int | None = -1, /) -> bytes:
+        """Return up to `size` bytes, all of the rest where it is negative or None."""
+        rest = max(0, self._size - self.tell())
+        return super().read(rest if size is None or size < 0 else min(size, rest))
+
+
+def _amount(count: int) -> str:
+    """Return a count in digits, in powers of ten where it is long."""
+    return str(count) if count < 10**12 else f"{float(min(count, 10**300)):.3g}"
