@@ -1,8 +1,8 @@
 """Limits on what a measured file may hold, checked against the sizes that it states before anything is read.
 
-A file states the sizes of its arrays, and a reader allocates what is stated. Without limits a damaged or hostile file of
-a few kilobytes takes all memory: by shapes without stored values, by compressed zeros, by very many small arrays. The
-limits keep every file below 10 MB within about 1 GB and 10 s, and grow with the size of larger ones. What is stored
+A file states the sizes of its arrays, and a reader allocates what is stated. Without limits a damaged or hostile file
+of a few kilobytes takes all memory: by shapes without stored values, by compressed zeros, by very many small arrays.
+The limits keep every file below 10 MB within about 1 GB and 10 s, and grow with the size of larger ones. What is stored
 without compression always lies within them.
 """
 
@@ -12,11 +12,12 @@ from pathlib import Path
 from sonolube.errors import InvalidInput
 
 MOST_VALUES = 20_000_000
-"""Numbers that a file of any size may hold: 160 MB as floats, about 1 GB with the copies of unit conversion and checks."""
+"""Numbers that a file of any size may hold: 160 MB as floats, below 1 GB with the copies of conversion and checks."""
 
 MOST_VALUES_PER_BYTE = 2
-"""Numbers that a byte of a large file may hold: a sampled signal with noise of one step of its converter keeps at least
-two to three bits a sample however well it is compressed, and the other channels more. Compressed zeros have 1000 a byte."""
+"""Numbers that a byte of a large file may hold. A sampled signal with noise of a few steps of its converter has four
+bits a sample however well it is compressed, and a number stored without compression a byte or more; compressed zeros
+have a thousand numbers a byte."""
 
 MOST_CHANNELS = 10_000
 """Columns, channels, variables or data sets of one file."""
@@ -71,7 +72,8 @@ def require_channels(count: int, path: Path, *, kind: str = "channels") -> None:
     """
     if count > MOST_CHANNELS:
         raise InvalidInput(
-            f"{path}: has {_amount(count)} {kind} or more, but at most {MOST_CHANNELS} are read; save those needed alone"
+            f"{path}: has {_amount(count)} {kind} or more, but at most {MOST_CHANNELS} are read;"
+            " save only those that are needed"
         )
 
 

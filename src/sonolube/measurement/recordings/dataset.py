@@ -77,6 +77,8 @@ def recording_dataset(
     axis = _axis(table, path, mapping, sources, quantity)
     if axis.size == 0:
         raise InvalidInput(f"{path}: holds no samples")
+    lengths = {source.column: _column(table, path, source.column).values.size for source in sources.values()}
+    common_length({quantity: axis.size} | lengths, path)
     require_increasing_axis(axis, quantity=quantity, path=path, place=table.place)
     variables = {name: (quantity, *_channel(name, table, path, source, partial)) for name, source in sources.items()}
     if not variables:
@@ -102,10 +104,11 @@ def _channel_sources(table: RawTable, path: Path, mapping: RecordingMapping | No
     """Return the source of each channel, by the mapping or by the labels of the columns."""
     if mapping is not None and mapping.channels:
         return dict(mapping.channels)
+    axis_quantity = _axis_quantity(table, mapping)
     sources: dict[str, ChannelSource] = {}
     for column in table.columns:
         name, unit = _name_and_unit(column)
-        if name in _TIME_LABELS or name == _axis_quantity(table, mapping):
+        if name in _TIME_LABELS or name == axis_quantity:
             continue
         if name in sources:
             raise InvalidInput(f"{path}: two columns have the label {column.label!r}; choose one with a mapping")
@@ -123,9 +126,8 @@ def _name_and_unit(column: RawColumn) -> tuple[str, str | None]:
 
 def _column(table: RawTable, path: Path, label: str) -> RawColumn:
     """Return the column of a label; refuse one that is not there, with the closest."""
-    for column in table.columns:
-        if column.label == label:
-            return column
+    if label in table.by_label:
+        return table.by_label[label]
     labels = [column.label for column in table.columns]
     hint = suggestion(label, labels) or "it has " + ", ".join(labels[:12])
     raise InvalidInput(f"{path}: has no column {label!r}; {hint}")
@@ -201,7 +203,7 @@ def _axis(
     """Return the axis in SI: of the mapping's column or sample rate, of a time column, or of stated intervals."""
     if mapping is not None and mapping.axis is not None:
         return _axis_column(_column(table, path, mapping.axis.column), table, path, quantity, mapping.axis)
-    labels = [source.column for source in sources.values()]
+    labels = dict.fromkeys(source.column for source in sources.values())
     rows = common_length({label: _column(table, path, label).values.size for label in labels}, path)
     if mapping is not None and mapping.sample_rate is not None:
         return (table.first_row + np.arange(rows)) / mapping.sample_rate

@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, SonolubeError
 
+_MOST_LISTED = 8  # channels named with their numbers of samples in a refusal; of more, one of each number
+
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class RawColumn:
@@ -48,7 +50,6 @@ class RawTable:
     Parameters
     ----------
     columns : tuple of RawColumn
-        All of one length.
     format_name : str
         Name of the file's format.
     lines : ndarray of int, shape (rows,), or None
@@ -61,6 +62,11 @@ class RawTable:
         Whether the file ends before the data that it announces.
     origin : mapping of str to str
         Of a recording written by `write_recording`: title, name, format and SHA-256 of the original file.
+
+    Attributes
+    ----------
+    by_label : mapping of str to RawColumn
+        The first column of each label.
     """
 
     columns: tuple[RawColumn, ...]
@@ -70,6 +76,11 @@ class RawTable:
     first_row: int = 0
     incomplete: bool = False
     origin: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
+    by_label: Mapping[str, RawColumn] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        by_label = {column.label: column for column in reversed(self.columns)}
+        object.__setattr__(self, "by_label", MappingProxyType(by_label))
 
     def place(self, row: int) -> str:
         """Return the sample or line number of a row in the file, for messages."""
@@ -79,7 +90,9 @@ class RawTable:
 def common_length(lengths: Mapping[str, int], path: Path) -> int:
     """Return the number of samples that all channels have, by label; refuse channels of different lengths."""
     if len(set(lengths.values())) > 1:
-        text = ", ".join(f"{label} {size}" for label, size in lengths.items())
+        first = {size: label for label, size in reversed(list(lengths.items()))}
+        listed = {first[size]: size for size in reversed(first)} if len(lengths) > _MOST_LISTED else lengths
+        text = ", ".join(f"{label} {size}" for label, size in listed.items())
         raise InvalidInput(f"{path}: channels have different numbers of samples ({text[:200]}); choose with a mapping")
     return next(iter(lengths.values()), 0)
 
