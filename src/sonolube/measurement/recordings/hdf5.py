@@ -5,13 +5,13 @@ from typing import ClassVar, final
 
 import numpy as np
 
+from sonolube.measurement.hdf5_datasets import attributes_of, numeric_datasets
 from sonolube.measurement.recordings.attributes import (
     COLUMN_ATTRIBUTES,
     FILE_ATTRIBUTES,
     column_from_attributes,
     table_from_attributes,
 )
-from sonolube.measurement.recordings.hdf5_datasets import attributes_of, numeric_datasets
 from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.measurement.recordings.raw_table import RawTable, refuse_library_errors
 
