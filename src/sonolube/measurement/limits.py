@@ -22,6 +22,9 @@ have a thousand numbers a byte."""
 MOST_CHANNELS = 10_000
 """Columns, channels, variables or data sets of one file."""
 
+MOST_POINTS = 500_000
+"""Points of one impedance sweep, ten times as many as any analyser measures."""
+
 
 def most_values(path: Path) -> int:
     """Return how many numbers a file may hold: `MOST_VALUES`, or `MOST_VALUES_PER_BYTE` where that is more."""
@@ -99,6 +102,15 @@ def require_unpacked_bytes(count: int, path: Path, *, part: str = "") -> None:
         raise InvalidInput(
             f"{path}: {part + ': ' if part else ''}unpacks to {_amount(count)} bytes or more, but a file of"
             f" {path.stat().st_size} bytes may unpack to {limit}; save it in parts or without compression"
+        )
+
+
+def require_points(count: int, path: Path, *, line: int) -> None:
+    """Refuse an impedance file with more points than `MOST_POINTS`, naming the line that has or ends them."""
+    if count > MOST_POINTS:
+        raise InvalidInput(
+            f"{path}: line {line}: is one of {count} lines or values, but a sweep has at most {MOST_POINTS} points;"
+            " save the range about the resonance"
         )
 
 

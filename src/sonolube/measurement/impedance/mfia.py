@@ -11,6 +11,7 @@ from sonolube.errors import InvalidInput
 from sonolube.measurement.file_format import first_lines
 from sonolube.measurement.impedance.column_headings import impedance_from_parts
 from sonolube.measurement.impedance.spectrum import ImpedanceSweep
+from sonolube.measurement.limits import require_points
 from sonolube.measurement.numeric_text import parse_number
 
 _LEADING_CELLS = 4  # cells before the values: chunk, timestamp, size, fieldname
@@ -53,6 +54,7 @@ class Mfia:
         separator = ";" if ";" in lines[0] else ","
         chunks: dict[str, dict[str, tuple[int, Floats]]] = {}
         for at, line in enumerate(lines[1:], start=2):
+            require_points(line.count(separator), path, line=at)
             cells = [cell.strip() for cell in line.split(separator)]
             if not line.strip() or cells[0] == "chunk":
                 continue

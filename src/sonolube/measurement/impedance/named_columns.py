@@ -13,6 +13,7 @@ from sonolube.measurement.impedance.column_headings import (
     parse_heading,
 )
 from sonolube.measurement.impedance.spectrum import ImpedanceSweep
+from sonolube.measurement.limits import require_channels
 from sonolube.measurement.numeric_text import parse_number
 
 _COMMENTS = ("#", "!", "%")
@@ -59,6 +60,7 @@ class NamedColumns:
         if not numbered:
             raise InvalidInput(f"{path}: line {len(lines)}: holds no row")
         separator = next((sign for sign in "\t;," if sign in numbered[0][1]), ",")
+        require_channels(numbered[0][1].count(separator) + 1, path, kind="columns")
         rows = [(at, line.split(separator)) for at, line in numbered]
         at, labels = rows[0]
         decimal_sign = "," if separator != "," and any("," in cell for _, row in rows[1:9] for cell in row) else "."

@@ -16,6 +16,7 @@ from sonolube.measurement.numeric_text import parse_number
 _FREQUENCY_UNITS = {"HZ": 1.0, "KHZ": 1e3, "MHZ": 1e6, "GHZ": 1e9}
 _PARAMETERS = ("S", "Y", "Z")
 _NUMBER_FORMATS = ("DB", "MA", "RI")
+_MOST_OPTIONS = 16  # words of an option line; it needs five
 _SKIPPED_KEYWORDS = ("[number of frequencies]", "[network data]", "[two-port data order]", "[matrix format]")
 
 
@@ -133,6 +134,8 @@ def _statements(lines: list[str]) -> Iterator[tuple[int, str]]:
 def _options(path: Path, at: int, words: list[str]) -> _Options:
     """Return the options of an option line."""
     options = _Options()
+    if len(words) > _MOST_OPTIONS:
+        raise InvalidInput(f"{path}: line {at}: has {len(words)} options; write such as '# Hz S RI R 50'")
     remaining = [word.upper() for word in words]
     while remaining:
         word = remaining.pop(0)
