@@ -48,7 +48,7 @@ def read_runs(path: Path) -> "xr.Dataset":
         name, unit = found[1], found[2] or ""
         if name in columns:
             raise InvalidInput(f"{path}: two columns are named {name}")
-        place_of_unit = f"{path}: column {name}"
+        place_of_unit = f"{path}: line 2: {name}"
         zero, one = (to_si(f"{at} {unit}", unit=quantities()[name].unit, name=place_of_unit) for at in (0, 1))
         numbers = (_number(path, line, row, place, name) for line, row in enumerate(rows, 2))
         columns[name] = [zero + (one - zero) * number for number in numbers]

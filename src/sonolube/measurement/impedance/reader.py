@@ -27,6 +27,7 @@ def read_impedance(path: Path, *, sweep: str | None = None) -> ImpedanceSpectrum
     Returns
     -------
     ImpedanceSpectrum
+        Of a file that holds magnitudes only, its `has_phase` is False.
 
     Raises
     ------
@@ -44,6 +45,7 @@ def read_impedance(path: Path, *, sweep: str | None = None) -> ImpedanceSpectrum
     return ImpedanceSpectrum(
         frequency=selected.frequency,
         impedance=selected.impedance,
+        has_phase=selected.has_phase,
         sweep=name,
         file_name=path.name,
         file_format=file_format.name,
