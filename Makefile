@@ -7,7 +7,7 @@ RUN := OPENBLAS_NUM_THREADS=1 MPLBACKEND=Agg
 OUT := out
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint docs bench fuzz reliability lock clean
+.PHONY: help demo test lint docs bench reliability lock clean
 
 help: ## list the targets
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1\t/' | expand -t 16
@@ -35,10 +35,6 @@ docs: $(VENV)/docs ## build the documentation into out/docs
 
 bench: $(VENV)/bench ## measure speed, each benchmark beside its rival
 	$(RUN) $(BIN)/python -m pytest benchmarks --benchmark-only --benchmark-columns=min,median,iqr,rounds
-
-fuzz: $(VENV)/test ## read 100,000 damaged surface and impedance files of each format
-	$(RUN) $(BIN)/python tests/measurement/surface_files/test_fuzzed_files.py 100000
-	$(RUN) $(BIN)/python tests/measurement/impedance/test_fuzzed_files.py 100000
 
 reliability: $(VENV)/test ## run every study of reliability in full, resuming, and write docs/reliability.md
 	$(RUN) $(BIN)/python -m reliability

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 _COLUMN = re.compile(r"(\w+)\s*(?:\[([^\]]*)\])?")
 _LARGEST = 1e30  # in any unit; keeps squares of quantities within the range of floats
+_MOST_RUNS = 100_000
 _QUOTED = 40  # characters of a cell in an error message
 
 
@@ -48,7 +49,10 @@ def read_runs(path: Path) -> "xr.Dataset":
         name, unit = found[1], found[2] or ""
         if name in columns:
             raise InvalidInput(f"{path}: two columns are named {name}")
-        columns[name] = [_number(path, line, row, place, name, unit) for line, row in enumerate(rows, 2)]
+        place_of_unit = f"{path}: line 2: {name}"
+        zero, one = (to_si(f"{at} {unit}", unit=quantities()[name].unit, name=place_of_unit) for at in (0, 1))
+        numbers = (_number(path, line, row, place, name) for line, row in enumerate(rows, 2))
+        columns[name] = [zero + (one - zero) * number for number in numbers]
     if "friction_reduction" not in columns:
         raise InvalidInput(f"{path}: needs a column friction_reduction [%]")
     data = {name: ("run", values) for name, values in columns.items()}
@@ -62,6 +66,8 @@ def _rows(path: Path) -> list[list[str]]:
             rows = [row for row in csv.reader(stream) if any(cell.strip() for cell in row)]
     except (UnicodeDecodeError, csv.Error):
         raise InvalidInput(f"{path}: not a table of comma-separated values") from None
+    if len(rows) > _MOST_RUNS:
+        raise InvalidInput(f"{path}: has {len(rows)} rows, but at most {_MOST_RUNS} runs are read")
     if len(rows) < 2:
         raise InvalidInput(f"{path}: needs a head and at least one run")
     for line, row in enumerate(rows[1:], 2):
@@ -70,16 +76,16 @@ def _rows(path: Path) -> list[list[str]]:
     return rows
 
 
-def _number(path: Path, line: int, row: list[str], place: int, name: str, unit: str) -> float:
-    """Cell of a row in SI."""
+def _number(path: Path, line: int, row: list[str], place: int, name: str) -> float:
+    """Number in a cell of a row, in the unit of its column."""
     cell = row[place].strip() if place < len(row) else ""
     try:
         number = float(cell)
     except ValueError:
         raise InvalidInput(f"{path}: line {line}: {name} {_quoted(cell)} is no number") from None
-    if abs(number) > _LARGEST:
+    if not abs(number) <= _LARGEST:
         raise InvalidInput(f"{path}: line {line}: {name} {_quoted(cell)} lies beyond any run")
-    return to_si(f"{number!r} {unit}", unit=quantities()[name].unit, name=f"{path}: line {line}: {name}")
+    return number
 
 
 def _quoted(cell: str) -> str:

@@ -16,7 +16,9 @@ from sonolube.actuator import (
 )
 from sonolube.checks import Complexes, Floats, require_non_negative, require_within
 from sonolube.errors import InvalidInput
-from sonolube.identification.spectral_residual import LOG_COMPLEX, residual_named
+from sonolube.identification.minimum_phase import admittance_with_phase
+from sonolube.identification.spectral_residual import LOG_COMPLEX, caveats_of_spectrum, residual_for, residual_named
+from sonolube.measurement.impedance.passivity import passive_spectrum
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 from sonolube.measurement.statistics.log_parameter_fit import (
     ConfidenceInterval,
@@ -33,6 +35,8 @@ _ROUNDING = 1e-9  # current of a branch over the total, below which it is roundi
 _MOST_CANDIDATES = 3  # fitted for the next branch
 _CORRELATED = 3.0  # residuals over independent ones, from which on a warning is given
 _POINTS_PER_BRANCH = 4
+_INDUCTIVE_SHARE = 0.05  # of the points
+_MOSTLY = 0.5  # of the points
 _LARGEST_ERROR = 0.5  # standard error of the logarithm of a parameter
 
 
@@ -118,8 +122,9 @@ def fit_circuit(
     branches : int or None
         Number of branches (modes); None takes as many as lower the Bayesian information criterion.
     residual : str
-        "log-complex" or "linear-magnitude" (see `residual_named`); they give different quality factors where the
-        circuit does not describe the spectrum fully.
+        "log-complex", "log-magnitude" or "linear-magnitude" (see `residual_named`); they give different quality factors
+        where the circuit does not describe the spectrum fully. Without a measured phase "log-complex" is replaced by
+        "log-magnitude".
     series_resistance : float
         Known resistance of the leads. [ohm]
     confidence_level : float
@@ -152,7 +157,10 @@ def fit_circuit(
     difference between measured and fitted admittance, within the sweep and with a quality factor of 3 or more. The
     candidates that explain most are fitted together with all earlier branches, and the best fit is taken. This
     selection minimises the log-complex residual, in which weak modes have weight; a branch of which a parameter has a
-    standard error above a factor of e^0.5 is rejected. Another residual is minimised only at the end.
+    standard error above a factor of e^0.5 is rejected. Another residual is minimised only at the end. Where only the
+    magnitude was measured, candidates come from the phase that belongs to it (`minimum_phase_admittance`), and every
+    sum of squares is of the logarithm of the magnitude. A spectrum of negative conductance is turned by 180 degrees
+    (`passive_spectrum`).
 
     Confidence intervals are of first order and widened for the correlation of residuals. They account for noise, not
     for dielectric losses and other properties that the circuit leaves out.
@@ -171,16 +179,20 @@ def fit_circuit(
         raise InvalidInput(f"spectrum must have at least {2 * _POINTS_PER_BRANCH} points, got {points}")
     if branches is not None and not 1 <= branches <= most:
         raise InvalidInput(f"branches must lie between 1 and {most} for {points} points, got {branches}")
-    log_complex = _Spectrum(
+    spectrum, turned = passive_spectrum(spectrum)
+    logarithmic = _Spectrum(
         frequency=spectrum.frequency,
-        admittance=spectrum.admittance,
+        admittance=admittance_with_phase(spectrum),
         series_resistance=series_resistance,
-        residual=LOG_COMPLEX,
+        residual=residual_for(spectrum, LOG_COMPLEX),
     )
-    fits = _fits_by_branches(log_complex, most if branches is None else branches, by_criterion=branches is None)
-    measured = replace(log_complex, residual=residual)
-    chosen = fits[-1] if residual == LOG_COMPLEX else fit_log_parameters(measured.residuals, fits[-1].logarithms)
-    return _circuit_fit(measured, chosen, fits, branches, confidence_level)
+    fits = _fits_by_branches(logarithmic, most if branches is None else branches, by_criterion=branches is None)
+    measured = replace(logarithmic, residual=residual_for(spectrum, residual))
+    is_selected = measured.residual == logarithmic.residual
+    chosen = fits[-1] if is_selected else fit_log_parameters(measured.residuals, fits[-1].logarithms)
+    found = _circuit_fit(measured, chosen, fits, branches, confidence_level)
+    of_spectrum = (*turned, *caveats_of_spectrum(spectrum, found.intervals), *_inductive(spectrum, found.circuit))
+    return replace(found, caveats=(*of_spectrum, *found.caveats))
 
 
 def _fits_by_branches(spectrum: _Spectrum, most: int, *, by_criterion: bool) -> list[LogParameterFit]:
@@ -194,9 +206,7 @@ def _fits_by_branches(spectrum: _Spectrum, most: int, *, by_criterion: bool) -> 
         fits.append(fit)
         logarithms = fit.logarithms
     if not fits:
-        raise InvalidInput(
-            "no resonance found in the spectrum; sweep over one with more points, and check the sign of the phase"
-        )
+        raise InvalidInput(_reason_without_resonance(spectrum))
     return fits
 
 
@@ -206,14 +216,27 @@ def _is_accepted(spectrum: _Spectrum, fit: LogParameterFit, simpler: LogParamete
     return bool(determined) and (not by_criterion or fit.information_criterion < simpler.information_criterion)
 
 
+def _reason_without_resonance(spectrum: _Spectrum) -> str:
+    """What a spectrum holds in which no resonance of a capacitive part is found."""
+    f, inductive = spectrum.frequency, float(np.mean(spectrum.admittance.imag < 0))
+    found = f"no resonance of a transducer found among {f.size} points from {f[0]:.6g} to {f[-1]:.6g} Hz:"
+    if inductive > _MOSTLY:
+        return (
+            f"{found} the impedance is inductive at {inductive:.0%} of them, where a transducer is capacitive; a coil"
+            " in series or parallel, or a phase or reactance written with the opposite sign"
+        )
+    return (
+        f"{found} the impedance is that of a capacitance; a resonance f_s of quality factor Q shows in a sweep over it"
+        " with steps below f_s/Q"
+    )
+
+
 def _capacitance(spectrum: _Spectrum) -> float:
     """Median capacitance behind the leads where it is positive, the initial parallel capacitance. [F]"""
     y = spectrum.admittance / (1 - spectrum.series_resistance * spectrum.admittance)
     capacitance = np.imag(y) / (2 * np.pi * spectrum.frequency)
     if not np.any(capacitance > 0):
-        raise InvalidInput(
-            "the current leads the voltage at no frequency, as it does in a capacitance; check the sign of the phase"
-        )
+        raise InvalidInput(_reason_without_resonance(spectrum))
     return float(np.median(capacitance[capacitance > 0]))
 
 
@@ -296,6 +319,21 @@ def _quantities(logarithms: Floats) -> dict[str, float]:
             f"coupling_factor_{index + 1}": float(found.coupling_factor[index]),
         }
     return named
+
+
+def _inductive(spectrum: ImpedanceSpectrum, circuit: ButterworthVanDyke) -> tuple[str, ...]:
+    """Warning about a part of the sweep in which the spectrum is inductive and the fitted circuit capacitive."""
+    f = spectrum.frequency
+    inductive = spectrum.admittance.imag < 0
+    apart = inductive & (circuit_admittance(circuit, frequency=f).imag > 0)
+    if np.mean(inductive) > _MOSTLY:
+        apart = inductive
+    if not np.mean(apart) > _INDUCTIVE_SHARE:
+        return ()
+    return (
+        f"the impedance is inductive at {np.mean(apart):.0%} of the points, from {f[apart][0]:.6g} to"
+        f" {f[apart][-1]:.6g} Hz, where a transducer is capacitive: leads or a coil in series, which the circuit lacks",
+    )
 
 
 def _circuit_fit(

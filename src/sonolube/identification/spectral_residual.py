@@ -7,8 +7,13 @@ import numpy as np
 
 from sonolube.checks import Complexes, Floats
 from sonolube.errors import UnknownName
+from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
+from sonolube.measurement.statistics.log_parameter_fit import ConfidenceInterval
+
+_HARDLY_DETERMINED = 4.0  # upper end of an interval over the lower
 
 LOG_COMPLEX = "log-complex"
+LOG_MAGNITUDE = "log-magnitude"
 LINEAR_MAGNITUDE = "linear-magnitude"
 
 
@@ -18,6 +23,11 @@ def _log_complex(model: Complexes, measured: Complexes) -> Floats:
     return np.concatenate([ratio.real, ratio.imag])
 
 
+def _log_magnitude(model: Complexes, measured: Complexes) -> Floats:
+    """Logarithms of the magnitude ratio, shape (n,)."""
+    return np.asarray(np.log(np.abs(model) / np.abs(measured)))
+
+
 def _linear_magnitude(model: Complexes, measured: Complexes) -> Floats:
     """Differences of the magnitudes over the largest measured one, shape (n,)."""
     magnitude = np.abs(measured)
@@ -25,8 +35,22 @@ def _linear_magnitude(model: Complexes, measured: Complexes) -> Floats:
 
 
 RESIDUALS: Mapping[str, Callable[[Complexes, Complexes], Floats]] = MappingProxyType(
-    {LOG_COMPLEX: _log_complex, LINEAR_MAGNITUDE: _linear_magnitude}
+    {LOG_COMPLEX: _log_complex, LOG_MAGNITUDE: _log_magnitude, LINEAR_MAGNITUDE: _linear_magnitude}
 )
+
+
+def residual_for(spectrum: ImpedanceSpectrum, name: str) -> str:
+    """Name of the residual for a spectrum: "log-magnitude" in place of "log-complex" where no phase was measured."""
+    return LOG_MAGNITUDE if name == LOG_COMPLEX and not spectrum.has_phase else name
+
+
+def caveats_of_spectrum(spectrum: ImpedanceSpectrum, intervals: Mapping[str, ConfidenceInterval]) -> tuple[str, ...]:
+    """Warnings about a spectrum of magnitudes only, and about parameters that a spectrum hardly determines."""
+    loose = [name for name, found in intervals.items() if not found.upper < _HARDLY_DETERMINED * found.lower]
+    named = f"hardly determined: {', '.join(loose)}" if loose else "it determines every parameter"
+    if not spectrum.has_phase:
+        return (f"the spectrum has no phase, so the fit is to the magnitude of the admittance alone; {named}",)
+    return (f"{named}; the spectrum is not that of the model",) if loose else ()
 
 
 def residual_named(name: str) -> Callable[[Complexes, Complexes], Floats]:
@@ -35,7 +59,7 @@ def residual_named(name: str) -> Callable[[Complexes, Complexes], Floats]:
     Parameters
     ----------
     name : str
-        "log-complex" or "linear-magnitude".
+        "log-complex", "log-magnitude" or "linear-magnitude".
 
     Returns
     -------
@@ -52,7 +76,7 @@ def residual_named(name: str) -> Callable[[Complexes, Complexes], Floats]:
 
     .. math:: \left(\operatorname{Re} \ln \frac{Y_i}{\hat Y_i},\ \operatorname{Im} \ln \frac{Y_i}{\hat Y_i}\right),
 
-    which gives every point the same relative weight, and "linear-magnitude" is
+    which gives every point the same relative weight, "log-magnitude" its first part, and "linear-magnitude" is
 
     .. math:: \frac{|Y_i| - |\hat Y_i|}{\max_j |\hat Y_j|},
 

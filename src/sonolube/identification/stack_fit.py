@@ -10,7 +10,9 @@ from sonolube.actuator import PiezoStack
 from sonolube.checks import Complexes, Floats, require_within
 from sonolube.dynamics.structure import Structure, electrical_admittance
 from sonolube.errors import InvalidInput
-from sonolube.identification.spectral_residual import LOG_COMPLEX, residual_named
+from sonolube.identification.minimum_phase import admittance_with_phase
+from sonolube.identification.spectral_residual import LOG_COMPLEX, caveats_of_spectrum, residual_for, residual_named
+from sonolube.measurement.impedance.passivity import passive_spectrum
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 from sonolube.measurement.statistics.log_parameter_fit import (
     ConfidenceInterval,
@@ -79,7 +81,8 @@ def fit_stack(
     in_structure : callable
         Structure for a given stack; everything else about the structure is known.
     residual : str
-        "log-complex" or "linear-magnitude"; see `residual_named`.
+        "log-complex", "log-magnitude" or "linear-magnitude"; see `residual_named`. Without a measured phase
+        "log-complex" is replaced by "log-magnitude".
     confidence_level : float
         Of the intervals. []
 
@@ -114,17 +117,21 @@ def fit_stack(
     ----------
     .. [1] D 3.3.4, figure 3.12, where the parameters were found by matching the curves by eye.
     """
-    compare = residual_named(residual)
+    residual_named(residual)
     require_within(0.5, 0.9999, confidence_level=confidence_level)
     if spectrum.frequency.size < _FEWEST_POINTS:
         raise InvalidInput(f"spectrum must have at least {_FEWEST_POINTS} points, got {spectrum.frequency.size}")
+
+    spectrum, turned = passive_spectrum(spectrum)
+    residual = residual_for(spectrum, residual)
+    compare, admittance = residual_named(residual), admittance_with_phase(spectrum)
 
     def model(candidate: PiezoStack) -> Complexes:
         return electrical_admittance(in_structure(candidate), frequency=spectrum.frequency)
 
     initial = _initial_stack(spectrum, replace(stack, coupling_factor=None), model)
     fit = fit_log_parameters(
-        lambda logarithms: compare(model(_stack(initial, logarithms)), spectrum.admittance), _logarithms(initial)
+        lambda logarithms: compare(model(_stack(initial, logarithms)), admittance), _logarithms(initial)
     )
     correlation = residual_inefficiency(fit, rows=fit.residuals.size // spectrum.frequency.size)
     known = confidence_intervals(
@@ -141,7 +148,11 @@ def fit_stack(
         residual_rms=float(np.sqrt(fit.sum_of_squares / spectrum.frequency.size)),
         residual_correlation=correlation,
         confidence_level=confidence_level,
-        caveats=_caveats(fit.converged, correlation, known["stack_stiffness"]),
+        caveats=(
+            *turned,
+            *(caveats_of_spectrum(spectrum, known) if not spectrum.has_phase else ()),
+            *_caveats(fit.converged, correlation, known["stack_stiffness"]),
+        ),
     )
 
 
@@ -149,7 +160,7 @@ def _initial_stack(
     spectrum: ImpedanceSpectrum, stack: PiezoStack, model: Callable[[PiezoStack], Complexes]
 ) -> PiezoStack:
     """Initial values: best of a grid of stiffnesses and dampings, capacitance and stroke by linear least squares."""
-    omega, measured = 2 * np.pi * spectrum.frequency, spectrum.admittance
+    omega, measured = 2 * np.pi * spectrum.frequency, admittance_with_phase(spectrum)
     best, least = None, np.inf
     for stiffness in stack.stack_stiffness * _STIFFNESS_FACTORS:
         for damping in (stack.stack_damping or _light_damping(stack)) * np.array(_DAMPING_FACTORS):

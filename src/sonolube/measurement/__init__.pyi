@@ -64,6 +64,7 @@ from .gauge.preisach import (
     relay_fractions as relay_fractions,
 )
 from .impedance.formats import IMPEDANCE_FORMATS as IMPEDANCE_FORMATS, ImpedanceFormat as ImpedanceFormat
+from .impedance.passivity import passive_spectrum as passive_spectrum
 from .impedance.reader import read_impedance as read_impedance
 from .impedance.spectrum import ImpedanceSpectrum as ImpedanceSpectrum
 from .recordings.formats import (

@@ -97,7 +97,7 @@ WRONG = {
     "zero.csv": ("f,R,X\n1,1,1\n2,0,0\n", r"line 3: the impedance is zero or not finite"),
     "unsorted.csv": ("f,R,X\n1,1,1\n3,1,1\n2,1,1\n4,1,1\n", r"line 4: the frequency is not monotonic"),
     "negative.csv": ("f,R,X\n-1,1,1\n", r"line 2: the frequency must be positive"),
-    "phase.csv": ("f,|Z|,phase\n1,1,1\n", r"line 1: names no columns of frequency and impedance"),
+    "phase.csv": ("f,|Z|,phase\n1,1,1\n", r"line 1: 'phase' needs a unit, 'phase \(deg\)'"),
     "cut.csv": ("!Keysight Technologies,E4990A\nFrequency(Hz), R(Ohm)-data, X(Ohm)-data\n1,2,3\n", "ends without END"),
     "no-options.s1p": ("1 2 3\n", r"line 1: values before the option line"),
     "two-ports.s1p": ("# HZ S RI R 50\n1 2 3 4 5 6 7 8 9\n", r"line 2: a point of one port is three numbers"),
@@ -150,3 +150,19 @@ def test_an_invalid_spectrum_is_refused() -> None:
         ImpedanceSpectrum(frequency=np.array([1.0, 2.0]), impedance=np.array([1.0, 0j]))
     with raises(InvalidInput, match="one-dimensional and equal in length"):
         ImpedanceSpectrum(frequency=np.array([1.0, 2.0]), impedance=np.array([1.0 + 0j]))
+
+
+def test_a_table_of_magnitudes_is_a_spectrum_without_phase(tmp_path: Path) -> None:
+    path = tmp_path / "magnitude.csv"
+    path.write_text("frequency (kHz),|Y| (mS)\n20,1\n21,2\n")
+    found = read_impedance(path)
+    assert not found.has_phase
+    assert found.impedance == approx([1000, 500])
+
+
+@mark.parametrize(("name", "ports"), [("device.s2p", "2"), ("device.S4P", "4"), ("device.ts", "2")])
+def test_a_network_of_several_ports_is_refused_with_what_it_is(name: str, ports: str, tmp_path: Path) -> None:
+    path = tmp_path / name
+    path.write_text("[Version] 2.0\n# Hz S RI R 50\n[Number of Ports] 2\n1 0 0 0 0 0 0 0 0\n")
+    with raises(InvalidInput, match=f"is a network of {ports} ports, and an impedance has one.*save it as .s1p"):
+        read_impedance(path)

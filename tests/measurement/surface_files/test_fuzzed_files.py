@@ -1,11 +1,6 @@
-"""Damaged surface files are read or refused with one line that names the file.
-
-Run as a program it does the same at length: ``python tests/measurement/surface_files/test_fuzzed_files.py 100000``.
-"""
+"""Damaged surface files are read or refused with one line that names the file."""
 
 import random
-import struct
-import sys
 import tempfile
 import warnings
 from collections import Counter
@@ -13,57 +8,17 @@ from pathlib import Path
 
 from hypothesis import given, settings, strategies as st
 from pytest import mark
+from reliability.damage import mutated
 
 from sonolube.errors import InvalidInput
 from sonolube.measurement.surface_files.reader import read_height_map
 
 CORPUS = Path(__file__).parent / "corpus"
 SUFFIXES = (".opd", ".xyz", ".npy")
-NUMBERS = (0, 1, 2, 4, 24, 255, 32766, 32767, 65535, 2**31 - 1, 2**31, 2**32 - 1)
-WORDS = (
-    b"nan",
-    b"-inf",
-    b"1e308",
-    b"1e-320",
-    b"No Data",
-    b"0 0 0\n",
-    b"\n",
-    b"\0",
-    b"Directory",
-    b"Mult",
-    b"#",
-    b"1_0",
-)
 
 
 def seeds(suffix: str) -> list[bytes]:
     return [path.read_bytes() for path in sorted(CORPUS.glob(f"*{suffix}"))]
-
-
-def mutated(content: bytes, others: list[bytes], rng: random.Random) -> bytes:
-    data = bytearray(content)
-    for _ in range(rng.choice((1, 1, 2, 3, 8))):
-        at = rng.randrange(len(data) + 1)
-        span = rng.choice((1, 2, 4, 24))
-        match rng.randrange(8):
-            case 0:
-                data[at : at + 1] = bytes([rng.randrange(256)])
-            case 1 if at < len(data):
-                data[at] ^= 1 << rng.randrange(8)
-            case 2:
-                del data[at:]
-            case 3:
-                del data[at : at + span]
-            case 4:
-                data[at:at] = data[at : at + span]
-            case 5:
-                data[at : at + 4] = struct.pack("<I", rng.choice(NUMBERS))
-            case 6:
-                data[at : at + 2] = struct.pack("<H", rng.choice(NUMBERS) & 0xFFFF)
-            case _:
-                insert = rng.choice(WORDS) if rng.random() < 0.7 else rng.choice(others)[at:]
-                data[at : at + rng.choice((0, len(insert)))] = insert
-    return bytes(data)
 
 
 def outcome(content: bytes, path: Path) -> str:
@@ -90,7 +45,7 @@ def fuzz(suffix: str, inputs: int, folder: Path, seed: int = 0) -> Counter[str]:
     corpus = seeds(suffix)
     counts: Counter[str] = Counter()
     for _ in range(inputs):
-        counts[outcome(mutated(rng.choice(corpus), corpus, rng), folder / f"input{suffix}")] += 1
+        counts[outcome(mutated(rng.choice(corpus), rng, others=corpus), folder / f"input{suffix}")] += 1
     return counts
 
 
@@ -119,10 +74,3 @@ def test_any_bytes_are_read_or_refused_as_a_surface(content: bytes, suffix: str)
 def test_any_text_is_read_or_refused(text: str) -> None:
     with tempfile.TemporaryDirectory() as folder:
         outcome(text.encode(), Path(folder) / "input.xyz")
-
-
-if __name__ == "__main__":
-    wanted, first = int(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 0
-    with tempfile.TemporaryDirectory() as scratch:
-        for each in SUFFIXES:
-            sys.stdout.write(f"{each}: {dict(fuzz(each, wanted, Path(scratch), first))}\n")

@@ -17,6 +17,7 @@ class Residual(StrEnum):
     """Residual that a fit minimises."""
 
     LOG_COMPLEX = "log-complex"
+    LOG_MAGNITUDE = "log-magnitude"
     LINEAR_MAGNITUDE = "linear-magnitude"
 
 

@@ -49,8 +49,12 @@ _IMPEDANCE: Mapping[tuple[str, str], Callable[[Floats, Floats, Floats], Floats |
         ("Cs", "Rs"): lambda w, c, r: r + 1 / (1j * w * c),
         ("Lp", "Rp"): lambda w, inductance, r: 1 / (1 / r + 1 / (1j * w * inductance)),
         ("Cp", "Rp"): lambda w, c, r: 1 / (1 / r + 1j * w * c),
+        ("|Z|", "|Z|"): lambda w, z, _: z,
+        ("|Y|", "|Y|"): lambda w, y, _: 1 / y,
     }
 )
+MAGNITUDES = (("|Z|", "|Z|"), ("|Y|", "|Y|"))
+"""Of `IMPEDANCE_PARTS` those that define the magnitude only."""
 IMPEDANCE_PARTS = tuple(_IMPEDANCE)
 """Pairs of column symbols that define an impedance, in order of preference."""
 
@@ -82,6 +86,10 @@ def parse_heading(text: str) -> ColumnHeading | None:
     Returns
     -------
     ColumnHeading or None
+
+    See Also
+    --------
+    is_phase_without_unit : Why a heading may be None.
     """
     label = text.strip().strip('"').strip()
     for split in (_BRACKETED, _DIVIDED):
@@ -90,6 +98,14 @@ def parse_heading(text: str) -> ColumnHeading | None:
             return ColumnHeading(symbol, scale) if scale is not None else None
     symbol = _SYMBOL.get(label.lower(), "")
     return ColumnHeading(symbol, 1.0) if symbol and not symbol.startswith("theta") else None
+
+
+def is_phase_without_unit(text: str) -> bool:
+    """Return whether the heading of a column names a phase and states no unit, or one that is no angle."""
+    label = text.strip().strip('"').strip()
+    found = _BRACKETED.fullmatch(label) or _DIVIDED.fullmatch(label)
+    names_phase = _SYMBOL.get((found[1] if found else label).lower(), "").startswith("theta")
+    return names_phase and parse_heading(text) is None
 
 
 def impedance_from_parts(columns: Mapping[str, Floats], pair: tuple[str, str]) -> Complexes:

@@ -8,6 +8,7 @@ from sonolube.measurement.file_format import first_lines
 from sonolube.measurement.impedance.column_headings import ColumnHeading, parse_heading
 from sonolube.measurement.impedance.named_columns import sweep_from_columns
 from sonolube.measurement.impedance.spectrum import ImpedanceSweep
+from sonolube.measurement.limits import require_channels
 
 
 @final
@@ -50,6 +51,7 @@ class KeysightE4990A:
             if line.strip() and not line.startswith("!") and not line.startswith("BEGIN")
         ]
         at, labels = rows[0] if rows else (last + 1, [])
+        require_channels(len(labels), path, kind="columns")
         split_labels = [label.strip().rpartition("-") for label in labels]
         sweeps = {}
         for sweep, suffix in (("data", "data"), ("memory", "mem")):

@@ -9,13 +9,18 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.measurement.file_format import first_lines
-from sonolube.measurement.impedance.column_headings import impedance_from_parts
+from sonolube.measurement.impedance.column_headings import MAGNITUDES, impedance_from_parts
 from sonolube.measurement.impedance.spectrum import ImpedanceSweep
+from sonolube.measurement.limits import require_points
 from sonolube.measurement.numeric_text import parse_number
 
 _LEADING_CELLS = 4  # cells before the values: chunk, timestamp, size, fieldname
 _FREQUENCY_FIELDS = ("frequency", "grid")
-_IMPEDANCE_FIELDS = (("realz", "imagz"), ("absz", "phasez"))
+_IMPEDANCE_FIELDS = {
+    ("realz", "imagz"): ("R", "X"),
+    ("absz", "phasez"): ("|Z|", "theta_Z"),
+    ("absz", "absz"): ("|Z|", "|Z|"),
+}
 
 
 @final
@@ -53,6 +58,7 @@ class Mfia:
         separator = ";" if ";" in lines[0] else ","
         chunks: dict[str, dict[str, tuple[int, Floats]]] = {}
         for at, line in enumerate(lines[1:], start=2):
+            require_points(line.count(separator), path, line=at)
             cells = [cell.strip() for cell in line.split(separator)]
             if not line.strip() or cells[0] == "chunk":
                 continue
@@ -81,10 +87,13 @@ def _chunk_sweep(path: Path, chunk: str, fields: dict[str, tuple[int, Floats]]) 
     measured = ~(np.isnan(f) | np.isnan(one) | np.isnan(two))
     if not measured.any():
         raise InvalidInput(f"{path}: line {at}: chunk {chunk[:20]!r} holds no finished point")
-    parts = ("R", "X") if pair[0] == "realz" else ("|Z|", "theta_Z")
+    parts = _IMPEDANCE_FIELDS[pair]
     columns = {"f": f[measured], parts[0]: one[measured], parts[1]: two[measured]}
     return ImpedanceSweep(
-        frequency=columns["f"], impedance=impedance_from_parts(columns, parts), lines=np.full(int(measured.sum()), at)
+        frequency=columns["f"],
+        impedance=impedance_from_parts(columns, parts),
+        lines=np.full(int(measured.sum()), at),
+        has_phase=parts not in MAGNITUDES,
     )
 
 

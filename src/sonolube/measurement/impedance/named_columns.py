@@ -8,11 +8,14 @@ import numpy as np
 from sonolube.errors import InvalidInput
 from sonolube.measurement.impedance.column_headings import (
     IMPEDANCE_PARTS,
+    MAGNITUDES,
     ColumnHeading,
     impedance_from_parts,
+    is_phase_without_unit,
     parse_heading,
 )
 from sonolube.measurement.impedance.spectrum import ImpedanceSweep
+from sonolube.measurement.limits import require_channels
 from sonolube.measurement.numeric_text import parse_number
 
 _COMMENTS = ("#", "!", "%")
@@ -59,11 +62,22 @@ class NamedColumns:
         if not numbered:
             raise InvalidInput(f"{path}: line {len(lines)}: holds no row")
         separator = next((sign for sign in "\t;," if sign in numbered[0][1]), ",")
+        require_channels(numbered[0][1].count(separator) + 1, path, kind="columns")
         rows = [(at, line.split(separator)) for at, line in numbered]
         at, labels = rows[0]
         decimal_sign = "," if separator != "," and any("," in cell for _, row in rows[1:9] for cell in row) else "."
         headings = [parse_heading(label) for label in labels]
+        _require_units_of_phases(path, at, labels, headings)
         return {"": sweep_from_columns(path, at, headings, rows[1:], decimal_sign=decimal_sign)}
+
+
+def _require_units_of_phases(path: Path, line: int, labels: list[str], headings: list[ColumnHeading | None]) -> None:
+    """Refuse a phase without unit where without it the table would define magnitudes only."""
+    symbols = {heading.symbol for heading in headings if heading}
+    complete = any({*pair} <= symbols for pair in IMPEDANCE_PARTS if pair not in MAGNITUDES)
+    label = next((label for label in labels if is_phase_without_unit(label)), None)
+    if label is not None and not complete:
+        raise InvalidInput(f"{path}: line {line}: {label.strip()[:40]!r} needs a unit, 'phase (deg)' or '(rad)'")
 
 
 def sweep_from_columns(
@@ -87,7 +101,8 @@ def sweep_from_columns(
     Returns
     -------
     ImpedanceSweep
-        Of the first column of each quantity, and the first pair of `IMPEDANCE_PARTS` that the table has.
+        Of the first column of each quantity, and the first pair of `IMPEDANCE_PARTS` that the table has: the magnitude
+        alone only where there is nothing else.
 
     Raises
     ------
@@ -113,6 +128,7 @@ def sweep_from_columns(
         frequency=columns["f"],
         impedance=impedance_from_parts(columns, pair),
         lines=np.array([line for line, _ in rows]),
+        has_phase=pair not in MAGNITUDES,
     )
 
 

@@ -8,6 +8,7 @@ from sonolube.errors import InvalidInput, UnknownName
 from sonolube.measurement.file_format import HEAD_SIZE, detect_format, refuse_unreadable
 from sonolube.measurement.impedance.formats import IMPEDANCE_FORMATS
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum, ImpedanceSweep, sorted_by_frequency
+from sonolube.measurement.limits import require_points
 
 _LARGEST_FILE = 1 << 28  # bytes; far above any sweep
 
@@ -26,6 +27,7 @@ def read_impedance(path: Path, *, sweep: str | None = None) -> ImpedanceSpectrum
     Returns
     -------
     ImpedanceSpectrum
+        Of a file that holds magnitudes only, its `has_phase` is False.
 
     Raises
     ------
@@ -43,6 +45,7 @@ def read_impedance(path: Path, *, sweep: str | None = None) -> ImpedanceSpectrum
     return ImpedanceSpectrum(
         frequency=selected.frequency,
         impedance=selected.impedance,
+        has_phase=selected.has_phase,
         sweep=name,
         file_name=path.name,
         file_format=file_format.name,
@@ -63,7 +66,9 @@ def _content_and_lines(path: Path) -> tuple[bytes, list[str]]:
         raise InvalidInput(f"{path}: line {line}: is not UTF-8 text") from None
     if not text.strip():
         raise InvalidInput(f"{path}: is empty")
-    return content, text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    require_points(len(lines), path, line=len(lines))
+    return content, lines
 
 
 def _selected_name(path: Path, sweeps: Mapping[str, ImpedanceSweep], requested: str | None) -> str:

@@ -20,7 +20,9 @@ class ImpedanceSpectrum:
     frequency : ndarray, shape (n,)
         Increasing. [Hz]
     impedance : ndarray, shape (n,)
-        Complex, not zero. [ohm]
+        Complex, not zero; the magnitude where only that was measured. [ohm]
+    has_phase : bool
+        Whether the phase was measured.
     sweep : str
         Name of the sweep in its file.
     file_name : str
@@ -38,6 +40,7 @@ class ImpedanceSpectrum:
 
     frequency: Floats
     impedance: Complexes
+    has_phase: bool = True
     sweep: str = ""
     file_name: str = ""
     file_format: str = ""
@@ -56,7 +59,7 @@ class ImpedanceSpectrum:
 
     @property
     def admittance(self) -> Complexes:
-        """Electrical admittance 1/Z, complex, in siemens."""
+        """Electrical admittance 1/Z, complex, in siemens; its magnitude where the phase was not measured."""
         return np.asarray(1 / self.impedance)
 
 
@@ -72,11 +75,14 @@ class ImpedanceSweep:
         As written, in SI. [ohm]
     lines : ndarray of int, shape (n,)
         Line number of each point in the file.
+    has_phase : bool
+        Whether the file holds the phase.
     """
 
     frequency: Floats
     impedance: Complexes
     lines: NDArray[np.int64]
+    has_phase: bool = True
 
 
 def sorted_by_frequency(sweep: ImpedanceSweep, *, path: Path) -> ImpedanceSweep:
@@ -106,7 +112,7 @@ def sorted_by_frequency(sweep: ImpedanceSweep, *, path: Path) -> ImpedanceSweep:
     _refuse(np.concatenate([[False], np.diff(f) <= 0]), "the frequency is not monotonic", lines, path)
     usable = np.isfinite(z) & (np.abs(z) > np.finfo(float).tiny) & (np.abs(z) < 1 / np.finfo(float).tiny)
     _refuse(~usable, "the impedance is zero or not finite", lines, path)
-    return ImpedanceSweep(frequency=f, impedance=z, lines=lines)
+    return ImpedanceSweep(frequency=f, impedance=z, lines=lines, has_phase=sweep.has_phase)
 
 
 def _refuse(invalid: NDArray[np.bool_], reason: str, lines: NDArray[np.int64], path: Path) -> None:

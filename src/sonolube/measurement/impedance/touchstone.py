@@ -1,5 +1,6 @@
 """Touchstone files of one port, versions 1 and 2."""
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -16,6 +17,8 @@ from sonolube.measurement.numeric_text import parse_number
 _FREQUENCY_UNITS = {"HZ": 1.0, "KHZ": 1e3, "MHZ": 1e6, "GHZ": 1e9}
 _PARAMETERS = ("S", "Y", "Z")
 _NUMBER_FORMATS = ("DB", "MA", "RI")
+_MULTIPORT = re.compile(r"\.s([2-9]|[1-9][0-9]+)p")
+_MOST_OPTIONS = 16  # words of an option line; it needs five
 _SKIPPED_KEYWORDS = ("[number of frequencies]", "[network data]", "[two-port data order]", "[matrix format]")
 
 
@@ -47,8 +50,11 @@ class Touchstone:
     suffixes: ClassVar[tuple[str, ...]] = (".s1p", ".ts")
 
     def recognises(self, head: bytes, path: Path) -> bool:
-        """Return whether the suffix is that of a touchstone file, or the first line states the version."""
-        return path.suffix.lower() in self.suffixes or first_lines(head)[0].lower().startswith("[version]")
+        """Return whether the suffix is that of touchstone, of any number of ports, or line 1 states the version."""
+        is_multiport = _MULTIPORT.fullmatch(path.suffix.lower()) is not None
+        return (
+            is_multiport or path.suffix.lower() in self.suffixes or first_lines(head)[0].lower().startswith("[version]")
+        )
 
     def read(self, path: Path, lines: list[str]) -> dict[str, ImpedanceSweep]:
         r"""Return the one sweep of a touchstone file of one port, under an empty name.
@@ -83,6 +89,8 @@ class Touchstone:
         ----------
         .. [1] IBIS Open Forum, Touchstone File Format Specification, version 2.0 (2009).
         """
+        if several := _MULTIPORT.fullmatch(path.suffix.lower()):
+            raise InvalidInput(_several_ports(path, 1, several[1]))
         options: _Options | None = None
         is_version_2, reference, rows, row_lines = False, None, [], []
         for at, text in _statements(lines):
@@ -133,6 +141,8 @@ def _statements(lines: list[str]) -> Iterator[tuple[int, str]]:
 def _options(path: Path, at: int, words: list[str]) -> _Options:
     """Return the options of an option line."""
     options = _Options()
+    if len(words) > _MOST_OPTIONS:
+        raise InvalidInput(f"{path}: line {at}: has {len(words)} options; write such as '# Hz S RI R 50'")
     remaining = [word.upper() for word in words]
     while remaining:
         word = remaining.pop(0)
@@ -156,10 +166,18 @@ def _reference(path: Path, at: int, keyword: str, value: str, reference: float |
     if keyword == "[version]" and not value.startswith("2"):
         raise InvalidInput(f"{path}: line {at}: version {value[:20]!r} is not known; known: 1 and 2")
     if keyword == "[number of ports]" and value != "1":
-        raise InvalidInput(f"{path}: line {at}: has {value[:20]!r} ports; an impedance has one")
+        raise InvalidInput(_several_ports(path, at, value[:20]))
     if keyword not in (*_SKIPPED_KEYWORDS, "[version]", "[number of ports]"):
         raise InvalidInput(f"{path}: line {at}: the keyword {keyword[:40]!r} is not known")
     return reference
+
+
+def _several_ports(path: Path, at: int, ports: str) -> str:
+    """Refusal of a file of several ports, none of whose parameters is the impedance of the transducer by itself."""
+    return (
+        f"{path}: line {at}: is a network of {ports} ports, and an impedance has one: S11 sees the instrument at the"
+        " other ports as well; measure the transducer at one port alone and save it as .s1p, or its Z as a table"
+    )
 
 
 def _resistance(path: Path, at: int, text: str) -> float:

@@ -11,6 +11,12 @@ from sonolube.measurement.recordings.raw_table import RawColumn, RawTable
 
 _ORIGIN_KEYS = ("title", "file_name", "file_format", "sha256", "begun")
 
+COLUMN_ATTRIBUTES = ("units", "unit", "sample_rate", "_FillValue")
+"""Attributes of a variable that are read."""
+
+FILE_ATTRIBUTES = ("sample_rate", *_ORIGIN_KEYS, *(f"original_{key}" for key in _ORIGIN_KEYS))
+"""Attributes of a file that are read."""
+
 
 def column_from_attributes(label: str, values: Any, attributes: Mapping[str, Any], file_rate: Any) -> RawColumn:
     """Return a column with unit, sample interval and missing values by the attributes of its variable.
@@ -34,7 +40,7 @@ def column_from_attributes(label: str, values: Any, attributes: Mapping[str, Any
     rate = attributes.get("sample_rate", file_rate)
     rate = float(np.ravel(rate)[0]) if rate is not None else 0.0
     fill = attributes.get("_FillValue")
-    numbers = values.astype(np.float64)
+    numbers = values.astype(np.float64, copy=False)
     if fill is not None and np.ravel(fill).size == 1:
         numbers = np.where(values == np.ravel(fill)[0], np.nan, numbers)
     return RawColumn(

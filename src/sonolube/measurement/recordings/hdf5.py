@@ -1,13 +1,19 @@
 """HDF5 and netCDF 4 files, among them the recordings written by `write_recording`."""
 
 from pathlib import Path
-from typing import Any, ClassVar, final
+from typing import ClassVar, final
 
 import numpy as np
 
-from sonolube.measurement.recordings.attributes import column_from_attributes, table_from_attributes
+from sonolube.measurement.hdf5_datasets import attributes_of, numeric_datasets
+from sonolube.measurement.recordings.attributes import (
+    COLUMN_ATTRIBUTES,
+    FILE_ATTRIBUTES,
+    column_from_attributes,
+    table_from_attributes,
+)
 from sonolube.measurement.recordings.mapping import RecordingMapping
-from sonolube.measurement.recordings.raw_table import RawColumn, RawTable, refuse_library_errors
+from sonolube.measurement.recordings.raw_table import RawTable, refuse_library_errors
 
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
@@ -42,17 +48,20 @@ class Hdf5:
         Raises
         ------
         InvalidInput
-            Naming the file, if it cannot be read or holds no vector of numbers.
+            Naming the file, if it cannot be read, holds no vector of numbers, refers to other files, or states to hold
+            more than a file of its size may.
         """
         import h5py
 
-        columns: list[RawColumn] = []
         with refuse_library_errors(path, format_name=self.name), h5py.File(path, "r") as file:
-            rate = file.attrs.get("sample_rate")
-
-            def visit(label: str, item: Any) -> None:
-                if isinstance(item, h5py.Dataset) and item.dtype.kind in "fiub" and item.ndim == 1:
-                    columns.append(column_from_attributes(label, np.asarray(item[()]), dict(item.attrs), rate))
-
-            file.visititems(visit)
-            return table_from_attributes(columns, file.attrs, path, self.name)
+            attributes = attributes_of(file, FILE_ATTRIBUTES, path)
+            columns = [
+                column_from_attributes(
+                    label,
+                    np.asarray(dataset[()]),
+                    attributes_of(dataset, COLUMN_ATTRIBUTES, path),
+                    attributes.get("sample_rate"),
+                )
+                for label, dataset in numeric_datasets(file, path, wanted=lambda label, dataset: dataset.ndim == 1)
+            ]
+            return table_from_attributes(columns, attributes, path, self.name)

@@ -1,13 +1,17 @@
-"""MATLAB files: versions 4 to 7 through scipy, version 7.3, which is HDF5, through h5py."""
+"""MATLAB files: versions 4 to 7 by their own elements, version 7.3, which is HDF5, through h5py."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any, ClassVar, final
 
 import numpy as np
 
+from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
+from sonolube.measurement.hdf5_datasets import attributes_of, numeric_datasets
+from sonolube.measurement.limits import require_channels, require_values
 from sonolube.measurement.recordings.mapping import RecordingMapping
+from sonolube.measurement.recordings.matlab_elements import MatlabArray, matlab_arrays
 from sonolube.measurement.recordings.raw_table import RawColumn, RawTable, refuse_library_errors
 
 _SIGNATURE = b"MATLAB "
@@ -48,50 +52,49 @@ class Matlab:
         Raises
         ------
         InvalidInput
-            Naming the file, if it is no MATLAB file or holds no vector of numbers.
+            Naming the file, if it is no MATLAB file, is damaged, holds no vector of numbers, or states to hold more
+            than a file of its size may.
         """
         with refuse_library_errors(path, format_name=self.name):
             with path.open("rb") as stream:
                 is_hdf5 = b"MATLAB 7.3" in stream.read(128)
-            arrays = dict(_arrays_of_version_7_3(path) if is_hdf5 else _arrays_before_version_7_3(path))
-        rates = [float(arrays[name].flat[0]) for name in _RATE_NAMES if name in arrays and arrays[name].size == 1]
+            arrays = _within_limits(_arrays_of_version_7_3(path) if is_hdf5 else matlab_arrays(path), path)
+        rates = [float(arrays[name][0]) for name in _RATE_NAMES if name in arrays and arrays[name].size == 1]
         interval = 1 / rates[0] if rates and rates[0] > 0 else None
         columns = tuple(
-            RawColumn(label=name, values=array.ravel().astype(np.float64), interval=interval, start=0.0)
+            RawColumn(label=name, values=array, interval=interval, start=0.0)
             for name, array in arrays.items()
-            if array.size > 1 and max(array.shape) == array.size
+            if array.size > 1
         )
         if not columns:
             raise InvalidInput(f"{path}: holds no vector of numbers")
         return RawTable(columns=columns, format_name=self.name)
 
 
-def _arrays_before_version_7_3(path: Path) -> Mapping[str, Any]:
-    """Return the numeric arrays of a file of version 4 to 7, and those of its structures."""
-    from scipy.io import loadmat
-
-    arrays: dict[str, Any] = {}
-    for name, value in loadmat(path, struct_as_record=True, squeeze_me=True).items():
-        array = np.asarray(value)
-        if array.dtype.names:
-            fields = {f"{name}.{key}": np.asarray(array[key].item()) for key in array.dtype.names if array.size == 1}
-            arrays |= {key: field for key, field in fields.items() if field.dtype.kind in "fiub"}
-        elif not name.startswith("__") and array.dtype.kind in "fiub":
-            arrays[name] = array
-    return arrays
+def _within_limits(arrays: Iterable[MatlabArray], path: Path) -> dict[str, Floats]:
+    """Return arrays by name, the last of each name; refuse more values or vectors than a file may hold."""
+    found: dict[str, Floats] = {}
+    values = 0
+    for name, array in arrays:
+        values += array.size
+        require_values(values, path, part=f"variable {name!r}")
+        if array.size > 1 or name in _RATE_NAMES:
+            found[name] = array
+            require_channels(len(found), path, kind="vectors")
+    return found
 
 
-def _arrays_of_version_7_3(path: Path) -> Mapping[str, Any]:
-    """Return the numeric arrays of a file of version 7.3, and those of its structures."""
+def _arrays_of_version_7_3(path: Path) -> Iterator[MatlabArray]:
+    """Yield the numeric vectors of a file of version 7.3, and those of its structures."""
     import h5py
 
-    arrays: dict[str, Any] = {}
-
-    def visit(name: str, item: Any) -> None:
-        is_numeric = isinstance(item, h5py.Dataset) and item.dtype.kind in "fiub" and not name.startswith("#")
-        if is_numeric and item.attrs.get("MATLAB_class") != b"char" and not item.attrs.get("MATLAB_empty", 0):
-            arrays[name.replace("/", ".")] = np.asarray(item[()])
-
     with h5py.File(path, "r") as file:
-        file.visititems(visit)
-    return arrays
+        for label, dataset in numeric_datasets(file, path, wanted=_is_vector):
+            yield MatlabArray(label.replace("/", "."), np.asarray(dataset[()]).ravel().astype(np.float64, copy=False))
+
+
+def _is_vector(label: str, dataset: Any) -> bool:
+    """Return whether a dataset is a vector or a number of MATLAB, neither text nor an empty array."""
+    kind = attributes_of(dataset, ("MATLAB_class", "MATLAB_empty"), Path(dataset.file.filename))
+    is_number = kind.get("MATLAB_class") != b"char" and not kind.get("MATLAB_empty", 0)
+    return is_number and max(dataset.shape, default=1) == dataset.size

@@ -52,7 +52,6 @@ class RawTable:
     Parameters
     ----------
     columns : tuple of RawColumn
-        All of one length.
     format_name : str
         Name of the file's format.
     lines : ndarray of int, shape (rows,), or None

@@ -1,11 +1,13 @@
 """Universal files (UFF), data set 58, as vibrometers and modal analysis software export them."""
 
+from collections import Counter
 from pathlib import Path
 from typing import Any, ClassVar, final
 
 import numpy as np
 
 from sonolube.errors import InvalidInput
+from sonolube.measurement.limits import require_channels
 from sonolube.measurement.recordings.mapping import RecordingMapping
 from sonolube.measurement.recordings.raw_table import RawColumn, RawTable, refuse_library_errors
 
@@ -49,9 +51,12 @@ class UniversalFile:
         with refuse_library_errors(path, format_name=self.name):
             file = pyuff.UFF(str(path))
             types = np.atleast_1d(file.get_set_types())
-            sets = [file.read_sets(int(index)) for index in np.flatnonzero(types == 58)]
+            functions = np.flatnonzero(types == 58)
+            require_channels(functions.size, path, kind="data sets")
+            sets = [file.read_sets(int(index)) for index in functions]
             responses = [one for one in sets if one["func_type"] in _TIME_TYPES and not np.iscomplexobj(one["data"])]
-            columns = [_column(data, responses) for data in responses]
+            labels = Counter(_text(data, "ordinate_axis_lab") for data in responses)
+            columns = [_column(data, labels) for data in responses]
         if not columns:
             raise InvalidInput(f"{path}: holds no time response (data set 58, function type 1)")
         for data in responses:
@@ -65,10 +70,10 @@ class UniversalFile:
         return RawTable(columns=tuple(columns), format_name=self.name)
 
 
-def _column(data: dict[str, Any], responses: list[dict[str, Any]]) -> RawColumn:
+def _column(data: dict[str, Any], labels: Counter[str]) -> RawColumn:
     """Return the column of one response, labelled uniquely among all responses."""
     label = _text(data, "ordinate_axis_lab")
-    if not label or sum(_text(other, "ordinate_axis_lab") == label for other in responses) > 1:
+    if not label or labels[label] > 1:
         label = f"{label or 'response'} node {data['rsp_node']} direction {data['rsp_dir']}"
     unit = _text(data, "ordinate_axis_units_lab")
     evenly_sampled = data["abscissa_spacing"] == 1

@@ -1,6 +1,8 @@
 """All formats of the SurfaceTopography library, with the extra ``surfaces``."""
 
+import math
 import warnings
+from collections.abc import Sequence
 from datetime import datetime
 from pathlib import Path
 from typing import Any, BinaryIO, ClassVar, final
@@ -8,8 +10,14 @@ from typing import Any, BinaryIO, ClassVar, final
 import numpy as np
 
 from sonolube.errors import InvalidInput
+from sonolube.measurement.limits import require_values
+from sonolube.measurement.surface_files.stated_sizes import require_stated_sizes
 from sonolube.measurement.surface_files.surface_reading import SurfaceReading
+from sonolube.measurement.surface_files.text_layout import text_readers
 
+_HEAD_OF_LIBRARY = 512  # bytes from which its readers tell their formats
+_TEXTS = ("xyz", "asc")
+_BY_SUFFIX = ("hgt", "nms")  # formats that any bytes of a suitable number are
 _TITLE_KEYS = ("Title", "DataSetName", "object_name")
 
 
@@ -19,7 +27,8 @@ class SurfaceTopographyFormats:
 
     Notes
     -----
-    The fallback: SurfaceTopography detects the format itself.
+    The fallback: the readers of SurfaceTopography are tried in their order, without those whose signature the file does
+    not have. HGT and NMS have none and need their suffix; readers of text are tried where the text is a table.
 
     References
     ----------
@@ -51,32 +60,53 @@ class SurfaceTopographyFormats:
         Raises
         ------
         InvalidInput
-            If the library is not installed, does not recognise the format, or fails on the file.
+            If the library is not installed, does not recognise the format, or fails on the file, or the file states
+            to hold more points than one of its size may.
         """
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of the library's dependencies, about missing optional parts
             try:
-                import SurfaceTopography
-                from SurfaceTopography.Exceptions import CannotDetectFileFormat
+                from SurfaceTopography.IO import readers
             except ImportError:
                 raise InvalidInput(
                     f"{path}: neither Wyko OPD, NPY nor XYZ text; for other formats: "
                     'pip install "sonolube[surfaces]", which brings SurfaceTopography'
                 ) from None
             try:
-                return _reading(SurfaceTopography.open_topography(str(path)), path=path)
+                require_stated_sizes(path)
+                return _reading(_opened(readers, path), path=path)
             except InvalidInput:
                 raise
-            except CannotDetectFileFormat:
-                raise InvalidInput(f"{path}: damaged, or of no format of SurfaceTopography") from None
             except Exception as failure:  # its readers raise exceptions of any type
                 cause = " ".join(str(failure).split()) or type(failure).__name__
                 raise InvalidInput(f"{path}: SurfaceTopography cannot read it: {cause[:200]}") from None
 
 
+def _opened(readers: Sequence[Any], path: Path) -> Any:
+    """Return the first reader of the library that can open the file."""
+    from SurfaceTopography.IO import MagicMatch
+
+    with path.open("rb") as stream:
+        head = stream.read(_HEAD_OF_LIBRARY)
+    possible = [reader for reader in readers if reader.can_read(head) != MagicMatch.NO]
+    texts = text_readers(path) if {*_TEXTS} & {reader.format() for reader in possible} else ()
+    for reader in possible:
+        name = reader.format()
+        if name in _BY_SUFFIX and path.suffix.lower() != f".{name}":
+            continue
+        if name in _TEXTS and name not in texts:
+            continue
+        try:
+            return reader(str(path))
+        except Exception:  # of any type where the file has another format
+            continue
+    raise InvalidInput(f"{path}: damaged, or of no format of SurfaceTopography")
+
+
 def _reading(reader: Any, *, path: Path) -> SurfaceReading:
     """Return the default channel of an open reader of the library."""
     channel = reader.default_channel
+    require_values(math.prod(channel.nb_grid_pts), path, part=f"{channel.nb_grid_pts} points")
     states_unit, states_size = channel.unit is not None, channel.physical_sizes is not None
     assumed: dict[str, Any] = {} if states_unit else {"unit": "m"}
     if not states_size:

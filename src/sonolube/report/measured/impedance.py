@@ -1,15 +1,16 @@
 """Sheets of impedance spectra: fitted equivalent circuit, or the fitted stack of a structure."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
 from sonolube.actuator import PiezoStack
 from sonolube.dynamics import Structure
 from sonolube.identification.circuit_fit import fit_circuit
-from sonolube.identification.spectral_residual import LOG_COMPLEX
+from sonolube.identification.spectral_residual import LOG_COMPLEX, residual_for
 from sonolube.identification.stack_fit import fit_stack
+from sonolube.measurement.impedance.passivity import passive_spectrum
 from sonolube.measurement.impedance.reader import read_impedance
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 from sonolube.measurement.statistics.log_parameter_fit import ConfidenceInterval
@@ -35,7 +36,7 @@ class ImpedanceSettings:
     branches : int or None
         How many modes; None takes as many as a criterion bears out.
     residual : str
-        "log-complex" or "linear-magnitude".
+        "log-complex", "log-magnitude" or "linear-magnitude".
     series_resistance : float
         Of the leads, as known. [ohm]
     sweep : str or None
@@ -69,7 +70,7 @@ def impedance_sheet(path: Path, *, settings: ImpedanceSettings) -> sheet.Sheet:
     InvalidInput
         If the file cannot be read, or nothing fits it.
     """
-    spectrum = read_impedance(path, sweep=settings.sweep)
+    spectrum, turned = passive_spectrum(read_impedance(path, sweep=settings.sweep))
     section = _circuit(spectrum, settings) if settings.stack is None else _stack(spectrum, settings, settings.stack)
     frequency = spectrum.frequency
     ends = " to ".join(format_si(float(end), "Hz", digits=6) for end in (frequency[0], frequency[-1]))
@@ -77,9 +78,10 @@ def impedance_sheet(path: Path, *, settings: ImpedanceSettings) -> sheet.Sheet:
         "format": spectrum.file_format,
         "sweep": spectrum.sweep,
         "points": f"{frequency.size}, {ends}",
-        "residual": settings.residual,
+        "residual": residual_for(spectrum, settings.residual),
         "sha256": spectrum.sha256,
     }
+    section = replace(section, caveats=(*turned, *section.caveats))
     return sheet.joined([section], title=path.name, source=source)
 
 
@@ -94,9 +96,9 @@ def _circuit(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings) -> sheet.
         " radians in phase.",
         draw=partial(figures.circuit, spectrum, fit.circuit),
     )
-    circle = figures.admittance_circle(spectrum, fit.circuit)
+    circles = (figures.admittance_circle(spectrum, fit.circuit),) if spectrum.has_phase else ()
     values = (*_values(fit.intervals), _rms(fit.residual_rms, fit.residual))
-    return sheet.Sheet(values=values, figures=(figure, circle), caveats=fit.caveats)
+    return sheet.Sheet(values=values, figures=(figure, *circles), caveats=fit.caveats)
 
 
 def _stack(spectrum: ImpedanceSpectrum, settings: ImpedanceSettings, initial: StackInStructure) -> sheet.Sheet:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sonolube.actuator import ButterworthVanDyke, circuit_admittance
-from sonolube.checks import Complexes
+from sonolube.checks import Complexes, Floats
 from sonolube.dynamics.structure import Structure, electrical_admittance
 from sonolube.figure import COLOURS
 from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
@@ -47,15 +47,22 @@ def _fit(spectrum: ImpedanceSpectrum, model: Complexes) -> "Figure":
 
     f = spectrum.frequency / 1e3
     figure, (top, middle, bottom) = plt.subplots(3, 1, figsize=(6.4, 5.4), sharex=True, height_ratios=(2, 1.5, 1))
-    for axes, of in ((top, np.abs), (middle, lambda z: np.degrees(np.angle(z)))):
-        axes.plot(f, of(spectrum.impedance), ".", color="0.45", markersize=3, label="measured")
+    for axes, of, is_measured in ((top, np.abs, True), (middle, _degrees, spectrum.has_phase)):
+        if is_measured:
+            axes.plot(f, of(spectrum.impedance), ".", color="0.45", markersize=3, label="measured")
         axes.plot(f, of(1 / model), color=COLOURS[1], linewidth=1.2, label="fitted")
     left_over = np.log(model / spectrum.admittance)
     bottom.plot(f, left_over.real, color=COLOURS[0], linewidth=1, label="magnitude")
-    bottom.plot(f, left_over.imag, "--", color=COLOURS[2], linewidth=1, label="phase")
+    if spectrum.has_phase:
+        bottom.plot(f, left_over.imag, "--", color=COLOURS[2], linewidth=1, label="phase")
     top.set(yscale="log", ylabel="impedance (ohm)")
     middle.set(ylabel="phase (deg)", ylim=(-100, 100), yticks=[-90, 0, 90])
     bottom.set(xlabel="frequency (kHz)", ylabel="residual")
     top.legend()
     bottom.legend(ncols=2)
     return figure
+
+
+def _degrees(impedance: Complexes) -> Floats:
+    """Phase in degrees."""
+    return np.degrees(np.angle(impedance))

@@ -39,7 +39,10 @@ def read_modes(path: Path) -> dict[str, list[float]]:
 
 def _modes(text: str) -> dict[str, list[float]]:
     kept = "\n".join(line for line in text.splitlines() if line.strip() and not line.startswith("#"))
-    heads, *rows = list(csv.reader(io.StringIO(kept))) or [[]]
+    try:
+        heads, *rows = list(csv.reader(io.StringIO(kept))) or [[]]
+    except csv.Error as failure:
+        raise InvalidInput(f"not a table of comma-separated values: {failure}") from None
     columns = [_column(head) for head in heads]
     missing = [name for name in MODE_LISTS if name not in (known for known, _ in columns)]
     if missing:
