@@ -60,7 +60,9 @@ def _second(height: Floats, spacing: float, cutoff: float) -> dict[str, float]:
 def _measures(records: Sequence[Record]) -> list[Measure]:
     return [
         _worst(records, "sine", "greatest deviation of Ra, Rq and Rsm of a tilted sine from its closed form", 0.01),
-        _worst(records, "second", "greatest deviation of Ra, Rq, Rz, Rt and Rku of sine and noise from plain sums", 1e-9),
+        _worst(
+            records, "second", "greatest deviation of Ra, Rq, Rz, Rt and Rku of sine and noise from plain sums", 1e-9
+        ),
     ]
 
 
@@ -71,11 +73,11 @@ def _worst(records: Sequence[Record], key: str, label: str, bar: float) -> Measu
 
 STUDY = Study(
     title="Parameters of line profiles",
-    question="Sines of random height, length, tilt and noise have the parameters of their closed form after the filter of"
-    " ISO 16610-21, and those of a second computation by plain sums.",
+    question="Sines of random height, length, tilt and noise have the parameters of their closed form after the filter"
+    " of ISO 16610-21, and those of a second computation by plain sums.",
     sources=("surfaces/profile_evaluation.py", "surfaces/roughness_profile.py", "surfaces/gaussian_filter.py"),
-    trials=2000,
-    sample=30,
+    trials=1000,
+    sample=15,
     trial=_trial,
     measures=_measures,
 )

@@ -108,4 +108,4 @@ def test_the_setting_classes_are_those_of_the_standard() -> None:
 )
 def test_cutoffs_that_do_not_fit_are_refused(arguments: dict[str, float], said: str) -> None:
     with raises(InvalidInput, match=said):
-        evaluate_profile(height=wave(1e-6, 50e-6, length=8e-3), spacing=SPACING, **arguments)
+        evaluate_profile(height=wave(1e-6, 50e-6, length=8e-3), spacing=SPACING, **arguments)  # type: ignore[arg-type]
