@@ -97,8 +97,8 @@ def named_media(
     Raises
     ------
     InvalidInput
-        If properties are given for a transducer, whose materials are its own, one of them is impossible, or the material
-        is a ceramic, which has no modes before it is poled and wired.
+        If properties are given for a transducer, whose materials are its own, one of them is impossible, or the
+        material is a ceramic, which has no modes before it is poled and wired.
     """
     if part in ALL_TRANSDUCERS:
         if properties:

@@ -29,13 +29,14 @@ def modes(
     material: Annotated[
         str, typer.Option(metavar="NAME", help="Material of the part; transducers have their own.")
     ] = "stainless_steel_304",
-    young_modulus: Annotated[
+    stiffness: Annotated[
         float | None, si_option("Pa", "Young's modulus instead of the material's.", "--young-modulus")
     ] = None,
-    poisson_ratio: Annotated[
-        float | None, typer.Option(metavar="RATIO", help="Poisson's ratio instead of the material's.")
+    contraction: Annotated[
+        float | None,
+        typer.Option("--poisson-ratio", metavar="RATIO", help="Instead of the material's Poisson's ratio."),
     ] = None,
-    density: Annotated[float | None, si_option("kg/m3", "Density instead of the material's.", "--density")] = None,
+    mass: Annotated[float | None, si_option("kg/m3", "Density instead of the material's.", "--density")] = None,
     count: Annotated[int, typer.Option(metavar="NUMBER", help="Number of elastic modes.")] = 6,
     clamp: Annotated[list[str] | None, typer.Option(metavar="FACE", help="A face held still, such as -x.")] = None,
     axis: Annotated[str | None, typer.Option(metavar="x|y|z", help="The part's axis; its longest by default.")] = None,
@@ -58,7 +59,7 @@ def modes(
     parts.require_axis(axis=axis, toward=toward)
     is_transducer = part in parts.ALL_TRANSDUCERS
     geometry = parts.named_part(part, sizes or [])
-    given = dict(zip(parts.ELASTIC_PROPERTIES, (young_modulus, poisson_ratio, density), strict=True))
+    given = dict(zip(parts.ELASTIC_PROPERTIES, (stiffness, contraction, mass), strict=True))
     properties = {name: value for name, value in given.items() if value is not None}
     media = parts.named_media(part, sizes or [], material, properties=properties)
     electrodes = parts.named_transducer(part, sizes or []).electrodes if is_transducer else Electrodes()
