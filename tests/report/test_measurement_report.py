@@ -151,10 +151,32 @@ def test_cutoffs_in_the_wrong_order_are_refused(plate: Path) -> None:
         surface_sheet(plate, settings=settings)
 
 
-def test_a_profile_has_no_areal_parameters_and_is_refused_by_name(tmp_path: Path) -> None:
-    np.save(tmp_path / "line.npy", np.sin(np.arange(200.0))[np.newaxis])
-    with raises(InvalidInput, match="at least 2 rows"):
-        surface_sheet(tmp_path / "line.npy", settings=NPY)
+@pytest.mark.parametrize("column", [False, True])
+def test_a_row_or_a_column_is_a_profile_with_parameters_and_spectrum(tmp_path: Path, column: bool) -> None:
+    line = 1e-6 * np.sin(2 * np.pi * np.arange(6000.0) / 50)[np.newaxis]  # waves of 50 um
+    np.save(tmp_path / "line.npy", line.T if column else line)
+    found = surface_sheet(tmp_path / "line.npy", settings=NPY)
+    assert values(found)["arithmetic_mean_height"] == approx(2e-6 / np.pi, rel=2e-3)
+    assert values(found)["rms_height"] == approx(1e-6 / np.sqrt(2), rel=2e-3)
+    assert values(found)["mean_profile_element_spacing"] == approx(50e-6, rel=1e-4)
+    assert found.values[0].label.startswith("Ra,")
+    assert [figure.title for figure in found.figures] == ["Profile", "Power spectrum"]
+    assert found.source["setting class"] == "Sc3 of ISO 21920-3"
+    assert found.source["length"] == "6 mm"
+    assert "no S-filter" in found.caveats[0]
+
+
+def test_a_scan_says_its_lateral_unit_and_where_it_is_from_in_text_json_and_page(plate: Path, tmp_path: Path) -> None:
+    report = report_of(surface_sheet(plate, settings=NPY))
+    stated = "m, given by the user as the distance of pixels"
+    assert f"  lateral unit: {stated}" in measurement_lines(report)
+    assert measurement_object(report)["results"][0]["source"]["lateral unit"] == stated
+    assert stated in write_measurement_report(report, path=tmp_path / "page.html").read_text(encoding="utf-8")
+
+
+def test_a_field_of_metres_has_a_caveat_on_its_sheet(plate: Path) -> None:
+    metres = SurfaceSettings(spacing_x=0.01, spacing_y=0.01)
+    assert any("beyond the 0.5 m" in caveat for caveat in surface_sheet(plate, settings=metres).caveats)
 
 
 @pytest.mark.skipif(not RB5100.is_file(), reason="RB5100.txt is not beside the project; see shared/data")

@@ -1,6 +1,7 @@
 """Contents of files of natural modes: VTK grid, table of shapes at points, and animated GIF."""
 
 import io
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -25,8 +26,19 @@ def elastic_rows(found: ConvergedModes) -> range:
 
 
 def mode_title(found: ConvergedModes, names: Sequence[str], row: int) -> str:
-    """Name and natural frequency of a mode, such as "axial 1, 20012 Hz"."""
-    return f"{names[row]}, {found.natural_frequency[row]:.0f} Hz"
+    """Name and natural frequency of a mode with its error, such as "axial 1, 20.01 kHz ± 6 Hz"."""
+    return f"{names[row]}, {frequency_text(found, row)}"
+
+
+def frequency_text(found: ConvergedModes, row: int) -> str:
+    """Natural frequency of a mode with its error and the digits that this leaves a meaning: "20.01 kHz ± 6 Hz"."""
+    frequency = float(found.natural_frequency[row])
+    error = frequency * float(found.frequency_error[row])
+    place = math.floor(math.log10(max(2 * error, 1e-9 * frequency, 1e-3)))  # power of ten of the last digit
+    unit, power = ("kHz", 3) if frequency >= 1e3 else ("Hz", 0)
+    number = f"{round(frequency, -place) / 10**power:.{max(0, power - place)}f} {unit}"
+    scaled, error_unit = (error / 1e3, "kHz") if error >= 1e3 else (error, "Hz")
+    return f"{number} ± {scaled:.1g} {error_unit}"
 
 
 def modes_grid(found: ConvergedModes, names: Sequence[str]) -> str:

@@ -157,10 +157,14 @@ def _finite(cell: float | str | None) -> float | str | None:
     return None if isinstance(cell, float) and cell - cell != 0 else cell
 
 
+_SIZE = ("field", "length", "lateral unit", "setting class")  # origins of a scan that text gives as well as the page
+
+
 def _sheet_lines(sheet: Sheet) -> list[str]:
     """Sheet as lines of text, caveats apart."""
     width = max((len(value.label) for value in sheet.values), default=0)
-    lines = [sheet.title, *(f"  {value.label:<{width}}  {value.text}" for value in sheet.values)]
+    size = [f"  {name}: {text}" for name, text in sheet.source.items() if name in _SIZE]
+    lines = [sheet.title, *size, *(f"  {value.label:<{width}}  {value.text}" for value in sheet.values)]
     for table in sheet.tables:
         lines += ["", f"  {table.title}", *_table_lines(table)]
     return [*lines, *(f"  not found: {reason}" for reason in sheet.not_found)]

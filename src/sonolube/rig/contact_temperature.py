@@ -17,6 +17,7 @@ from sonolube.thermal.contact_history import (
     contact_temperature_history,
     frictional_heat_rate,
 )
+from sonolube.thermal.flash_models import FLASH_MODELS
 
 _STEPS = 200
 
@@ -95,6 +96,7 @@ def temperature_point(
     thermal_conductance: float,
     duration: float,
     vibration_heat_rate: float = 0.0,
+    flash_model: str = "quadrature",
 ) -> TemperaturePoint:
     """Return the temperature of the rig's contact, taken as circular, over a test from ambient temperature.
 
@@ -113,6 +115,8 @@ def temperature_point(
         Length of the test. [s]
     vibration_heat_rate : float
         Heat of the vibration in the contact. [W]
+    flash_model : str
+        Of `sonolube.thermal.flash_models.FLASH_MODELS`.
 
     Returns
     -------
@@ -132,8 +136,9 @@ def temperature_point(
     require_non_negative(vibration_heat_rate=vibration_heat_rate)
     radius = float(np.sqrt(rig.contact.nominal_area / np.pi))
     source = EllipticSource(half_length=radius, half_width=radius)
+    moving_rise = FLASH_MODELS.named(flash_model)
     network = ThermalNetwork(heat_capacity=(heat_capacity,), links=(), losses=(thermal_conductance,))
-    contact = HeatedContact(pin=pin, disc=disc, source=source, network=network)
+    contact = HeatedContact(pin=pin, disc=disc, source=source, network=network, moving_rise=moving_rise)
     found = stated_friction_ratios(rig, sliding_speed=rig.sliding_speed)
     intrinsic, ratio = rig.friction_coefficient * rig.normal_load, float(found.require_within_range())
     times = np.linspace(0.0, duration, _STEPS + 1)
@@ -142,7 +147,7 @@ def temperature_point(
     vibrated = history(friction_force=ratio * intrinsic, vibration_heat_rate=vibration_heat_rate)
     of_friction = float(frictional_heat_rate(friction_force=ratio * intrinsic, sliding_speed=rig.sliding_speed))
     heat = of_friction + vibration_heat_rate
-    shared = contact_rise(pin, disc, source, heat_rate=heat, sliding_speed=rig.sliding_speed)
+    shared = contact_rise(pin, disc, source, heat_rate=heat, sliding_speed=rig.sliding_speed, moving_rise=moving_rise)
     return TemperaturePoint(
         frictional_heat_rate=of_friction,
         vibration_heat_rate=vibration_heat_rate,

@@ -53,6 +53,11 @@ from .material_ratio import (
     functional_parameters as functional_parameters,
     material_ratio_curve as material_ratio_curve,
 )
+from .profile_evaluation import (
+    ProfileEvaluation as ProfileEvaluation,
+    SettingClass as SettingClass,
+    evaluate_profile as evaluate_profile,
+)
 from .random_surface import (
     GaussianCorrelationSpectrum as GaussianCorrelationSpectrum,
     HeightSpectrum as HeightSpectrum,

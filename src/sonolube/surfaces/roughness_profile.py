@@ -34,8 +34,13 @@ class ProfileParameters:
         Lowest point below the mean line over the whole profile, Rvt, as a positive depth. [m]
     total_height : float
         Total height Rt = Rpt + Rvt. [m]
+    mean_section_peak_height : float
+        Mean peak height Rp: highest point of a section above the mean line, mean over the sections. [m]
+    mean_section_pit_depth : float
+        Mean pit depth Rv: lowest point of a section below the mean line, mean over the sections. [m]
     mean_section_height : float
-        Maximum height Rz: height from the lowest to the highest point of a section, mean over the sections. [m]
+        Maximum height Rz = Rp + Rv: height from the lowest to the highest point of a section, mean over the
+        sections. [m]
     skewness : float
         Third moment over the cube of the root mean square, Rsk. []
     kurtosis : float
@@ -49,6 +54,8 @@ class ProfileParameters:
     maximum_peak_height: float
     maximum_pit_depth: float
     total_height: float
+    mean_section_peak_height: float
+    mean_section_pit_depth: float
     mean_section_height: float
     skewness: float
     kurtosis: float
@@ -78,7 +85,7 @@ class ProfileStatistics:
 
 
 def profile_parameters(*, height: ArrayLike, spacing: float, section_length: float | None = None) -> ProfileParameters:
-    r"""Profile parameters Ra, Rq, Rpt, Rvt, Rt, Rz, Rsk, Rku and Rsm of ISO 21920-2.
+    r"""Profile parameters Ra, Rq, Rpt, Rvt, Rt, Rp, Rv, Rz, Rsk, Rku and Rsm of ISO 21920-2.
 
     Parameters
     ----------
@@ -87,8 +94,8 @@ def profile_parameters(*, height: ArrayLike, spacing: float, section_length: flo
     spacing : float
         Distance of neighbouring points of a profile. [m]
     section_length : float, optional
-        Section length for Rz. By default a profile of 50 points or more is divided into five equal sections; a shorter
-        one is one section. [m]
+        Section length for Rp, Rv and Rz. By default a profile of 50 points or more is divided into five equal
+        sections; a shorter one is one section. [m]
 
     Returns
     -------
@@ -102,6 +109,7 @@ def profile_parameters(*, height: ArrayLike, spacing: float, section_length: flo
 
     See Also
     --------
+    sonolube.surfaces.profile_evaluation.evaluate_profile : A measured profile, with the filters of ISO 21920-3.
     profile_statistics : Mean and standard deviation over the profiles of a height map.
     sonolube.surfaces.areal_parameters.height_parameters : The areal counterparts.
 
@@ -112,10 +120,9 @@ def profile_parameters(*, height: ArrayLike, spacing: float, section_length: flo
     .. math:: R_a = \frac1n \sum |z|, \quad R_q^2 = \frac1n \sum z^2, \quad
         R_{sk} = \frac{1}{n R_q^3} \sum z^3, \quad R_{ku} = \frac{1}{n R_q^4} \sum z^4 .
 
-    All but Rz refer to the whole profile; ISO 4287 took means of Rp and Rv over five sampling lengths. Sections without
-    a measured height are left out of Rz. A profile element of Rsm extends from one upward crossing of the mean line to
-    the next, or from one downward crossing to the next, with a peak and a pit of at least a tenth of Rz; gaps are
-    interpolated linearly.
+    All but Rp, Rv and Rz refer to the whole profile. Sections without a measured height are left out of these three. A
+    profile element of Rsm extends from one upward crossing of the mean line to the next, or from one downward crossing
+    to the next, with a peak and a pit of at least a tenth of Rz; gaps are interpolated linearly.
 
     References
     ----------
@@ -135,16 +142,19 @@ def profile_parameters(*, height: ArrayLike, spacing: float, section_length: flo
     z -= z[measured].mean()
     deviation = z[measured]
     section = _section_points(z.size, spacing, section_length)
-    heights = [np.ptp(part) for part in _sections(z, section) if part.size]
+    extremes = np.array([(part.max(), -part.min()) for part in _sections(z, section) if part.size])
     square = deviation**2
     rms = math.sqrt(square.mean())
-    section_height, position = float(np.mean(heights)), spacing * np.flatnonzero(measured).astype(np.float64)
+    section_peak, section_pit = (float(value) for value in extremes.mean(axis=0))
+    section_height, position = section_peak + section_pit, spacing * np.flatnonzero(measured).astype(np.float64)
     return ProfileParameters(
         arithmetic_mean_height=float(np.abs(deviation).mean()),
         rms_height=rms,
         maximum_peak_height=float(deviation.max()),
         maximum_pit_depth=float(-deviation.min()),
         total_height=float(np.ptp(deviation)),
+        mean_section_peak_height=section_peak,
+        mean_section_pit_depth=section_pit,
         mean_section_height=section_height,
         skewness=float((square * deviation).mean() / rms**3),
         kurtosis=float((square**2).mean() / rms**4),

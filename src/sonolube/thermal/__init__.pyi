@@ -17,13 +17,16 @@ from .contact_history import (
 from .flash import (
     ContactRise as ContactRise,
     FlashRise as FlashRise,
+    MovingRise as MovingRise,
     blok_partition as blok_partition,
     contact_rise as contact_rise,
     flash_rise as flash_rise,
     high_peclet_rise as high_peclet_rise,
     low_peclet_rise as low_peclet_rise,
+    moving_ellipse_rise as moving_ellipse_rise,
     peclet_number as peclet_number,
 )
+from .flash_models import FLASH_MODELS as FLASH_MODELS
 from .jaeger import moving_band_rise as moving_band_rise, moving_rectangle_rise as moving_rectangle_rise
 from .network import ThermalNetwork as ThermalNetwork, network_rise as network_rise
 from .solid import ThermalSolid as ThermalSolid

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from sonolube.checks import Floats, require_non_negative
 from sonolube.errors import InvalidInput
 from sonolube.metrics import superimposed_speed
-from sonolube.thermal.flash import contact_rise
+from sonolube.thermal.flash import MovingRise, contact_rise, flash_rise
 from sonolube.thermal.network import ThermalNetwork, network_rise
 from sonolube.thermal.solid import ThermalSolid
 from sonolube.thermal.source import HeatSource
@@ -28,12 +28,15 @@ class HeatedContact:
         The contact.
     network : ThermalNetwork
         The pin, as its first body, and the bodies joined to it.
+    moving_rise : MovingRise
+        Model of the flash temperature of the disc.
     """
 
     pin: ThermalSolid
     disc: ThermalSolid
     source: HeatSource
     network: ThermalNetwork
+    moving_rise: MovingRise = flash_rise
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -192,7 +195,14 @@ def contact_temperature_history(
             f"friction_force must hold one value for each interval of time, {times.size - 1}, got shape {heat.shape}"
         )
     heat = np.broadcast_to(heat, (times.size - 1,))
-    flash = contact_rise(contact.pin, contact.disc, contact.source, heat_rate=heat, sliding_speed=sliding_speed)
+    flash = contact_rise(
+        contact.pin,
+        contact.disc,
+        contact.source,
+        heat_rate=heat,
+        sliding_speed=sliding_speed,
+        moving_rise=contact.moving_rise,
+    )
     into_bodies = np.zeros((heat.size, len(contact.network.heat_capacity)))
     into_bodies[:, 0] = flash.heat_partition * heat
     bulk = network_rise(contact.network, time=times, heat_rate=into_bodies)[:, 0]

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from pytest import approx
 
 pytest.importorskip("netgen.occ", reason="netgen-mesher is not installed")
 
+from sonolube.fem.mode_files import frequency_text
 from sonolube.measurement.vibration import modal_assurance_criterion
 
 Program = Callable[..., Any]
@@ -28,6 +30,35 @@ def test_a_steel_bar_has_the_axial_mode_of_bar_theory(tmp_path: Path, sonolube: 
     assert len(answer["files"]) == 6
 
 
+def test_free_elastic_constants_replace_those_of_the_material(tmp_path: Path, sonolube: Program) -> None:
+    sizes = ("--set", "length=60mm", "--set", "radius=6mm", "--count", "6", "--tolerance", "0.02")
+    free = ("--young-modulus", "50GPa", "--poisson-ratio", "0.2", "--density", "2000kg/m3")
+    answer = sonolube("modes", "cylinder", *sizes, *free, "--out", tmp_path, "--json").answer
+    found = {mode["name"]: mode for mode in answer["modes"]}
+    assert found["torsional 1"]["natural_frequency"]["value"] == approx(np.sqrt(50e9 / 2.4 / 2000) / 0.12, rel=5e-3)
+    assert "youngs modulus 50 GPa, poisson ratio 0.2, density 2000 kg/m3" in answer["material"]
+    for mode in found.values():
+        frequency, error = mode["natural_frequency"]["value"], mode["uncertainty"]["value"]
+        number, _, rest = mode["text"].partition(" kHz ± ")
+        assert abs(1e3 * float(number) - frequency) <= max(error, 0.05)
+        assert float(rest.removesuffix(" Hz")) == approx(error, rel=0.5, abs=0.05)
+
+
+@pytest.mark.parametrize(
+    ("frequency", "relative", "text"),
+    [
+        (20012.3, 3e-4, "20.01 kHz ± 6 Hz"),
+        (20000.4, 3e-4, "20.00 kHz ± 6 Hz"),
+        (20012.34, 6e-5, "20.012 kHz ± 1 Hz"),
+        (812.34, 1e-3, "812 Hz ± 0.8 Hz"),
+        (20012.3, 0.2, "20 kHz ± 4 kHz"),
+    ],
+)
+def test_a_frequency_has_the_digits_that_its_error_leaves(frequency: float, relative: float, text: str) -> None:
+    found = SimpleNamespace(natural_frequency=np.array([frequency]), frequency_error=np.array([relative]))
+    assert frequency_text(found, 0) == text  # type: ignore[arg-type]
+
+
 BLOCK = ("block", "--set", "length=60mm", "--set", "width=20mm", "--set", "thickness=10mm")
 
 
@@ -39,6 +70,8 @@ BLOCK = ("block", "--set", "length=60mm", "--set", "width=20mm", "--set", "thick
         (("block", "--set", "lenght=1mm"), "unknown size of a block 'lenght'; did you mean length?"),
         (("block", "--set", "length=3N"), "length=3N"),
         ((*BLOCK, "--material", "pzt_4"), "--material pzt_4: a piezoelectric ceramic needs its poling and electrodes"),
+        (("stack", "--density", "8000kg/m3"), "stack has its own materials; leave density out"),
+        ((*BLOCK, "--poisson-ratio", "0.7"), "poisson_ratio"),
         ((*BLOCK, "--axis", "w"), "--axis must be x, y or z, got 'w'"),
         ((*BLOCK, "--toward", "xy"), "--toward must be x, y or z, got 'xy'"),
         ((*BLOCK, "--tolerance", "1e-12"), "relative_tolerance must be at least 1e-08, got 1e-12"),

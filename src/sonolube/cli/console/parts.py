@@ -20,6 +20,7 @@ from sonolube.fem import (
     Mesh,
     Transducer,
     generate_mesh,
+    isotropic_medium,
     medium_from_material,
     poled_part,
     read_step,
@@ -72,7 +73,13 @@ def named_part(part: str, sizes: Sequence[str]) -> Geometry:
     return PARTS[part](**sizes_in_si(part, PARTS[part], sizes))
 
 
-def named_media(part: str, sizes: Sequence[str], material_name: str) -> dict[str, Medium]:
+ELASTIC_PROPERTIES = ("youngs_modulus", "poisson_ratio", "density")
+"""Properties of a material that its natural modes depend on."""
+
+
+def named_media(
+    part: str, sizes: Sequence[str], material_name: str, *, properties: Mapping[str, float] = MappingProxyType({})
+) -> dict[str, Medium]:
     """Medium of each region of a part: one material, or those of a transducer.
 
     Parameters
@@ -83,6 +90,8 @@ def named_media(part: str, sizes: Sequence[str], material_name: str) -> dict[str
         As in `named_part`.
     material_name : str
         Material of a part that is no transducer.
+    properties : mapping of str to float
+        Of youngs_modulus, poisson_ratio and density those that replace the material's, in SI.
 
     Returns
     -------
@@ -91,9 +100,12 @@ def named_media(part: str, sizes: Sequence[str], material_name: str) -> dict[str
     Raises
     ------
     InvalidInput
-        If the material is a ceramic, which has no modes before it is poled and wired.
+        If properties are given for a transducer, whose materials are its own, one of them is impossible, or the
+        material is a ceramic, which has no modes before it is poled and wired.
     """
     if part in ALL_TRANSDUCERS:
+        if properties:
+            raise InvalidInput(f"{part} has its own materials; leave {', '.join(properties)} out")
         return dict(named_transducer(part, sizes).media)
     solid = material(material_name)
     if solid.name in piezo_ceramic_names():
@@ -101,7 +113,10 @@ def named_media(part: str, sizes: Sequence[str], material_name: str) -> dict[str
             f"--material {material_name}: a piezoelectric ceramic needs its poling and electrodes; take `sonolube "
             f"impedance compute {part} --ceramic {material_name}`, whose resonances are its modes, or a metal here"
         )
-    return dict.fromkeys(named_part(part, sizes).regions, medium_from_material(solid))
+    if not properties:
+        return dict.fromkeys(named_part(part, sizes).regions, medium_from_material(solid))
+    elastic = {name: properties[name] if name in properties else solid.value(name) for name in ELASTIC_PROPERTIES}
+    return dict.fromkeys(named_part(part, sizes).regions, isotropic_medium(**elastic))
 
 
 def named_transducer(part: str, sizes: Sequence[str], **wiring: str | None) -> Transducer:

@@ -11,13 +11,15 @@ import typer
 from sonolube.checks import Floats
 from sonolube.cli.console import parts
 from sonolube.cli.console.answer import Answer, deliver, si
-from sonolube.cli.console.options import OUT, Json, Out, Sizes, refuse_unused
+from sonolube.cli.console.options import OUT, Json, Out, Sizes, refuse_unused, si_option
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
 from sonolube.fem import ConvergedModes, Electrodes, FixedSupport, Model, converged_modes, generate_mesh, mode_names
 from sonolube.fem.figures import mode_figure
-from sonolube.fem.mode_files import elastic_rows, mode_animation, mode_title, modes_grid, shapes_table
+from sonolube.fem.mode_files import elastic_rows, frequency_text, mode_animation, mode_title, modes_grid, shapes_table
 from sonolube.report import Drawing
+from sonolube.units import format_si
+from sonolube.vocabulary import quantity
 
 
 def modes(
@@ -29,6 +31,14 @@ def modes(
     material: Annotated[
         str, typer.Option(metavar="NAME", help="Material of the part; transducers have their own.")
     ] = "stainless_steel_304",
+    stiffness: Annotated[
+        float | None, si_option("Pa", "Young's modulus instead of the material's.", "--young-modulus")
+    ] = None,
+    contraction: Annotated[
+        float | None,
+        typer.Option("--poisson-ratio", metavar="RATIO", help="Instead of the material's Poisson's ratio."),
+    ] = None,
+    mass: Annotated[float | None, si_option("kg/m3", "Density instead of the material's.", "--density")] = None,
     count: Annotated[int, typer.Option(metavar="NUMBER", help="Number of elastic modes.")] = 6,
     clamp: Annotated[list[str] | None, typer.Option(metavar="FACE", help="A face held still, such as -x.")] = None,
     axis: Annotated[str | None, typer.Option(metavar="x|y|z", help="The part's axis; its longest by default.")] = None,
@@ -55,7 +65,9 @@ def modes(
     if points is None:
         refuse_unused(context, "toward", because="without --points, at which the component is written")
     geometry = parts.named_part(part, sizes or [])
-    media = parts.named_media(part, sizes or [], material)
+    given = dict(zip(parts.ELASTIC_PROPERTIES, (stiffness, contraction, mass), strict=True))
+    properties = {name: value for name, value in given.items() if value is not None}
+    media = parts.named_media(part, sizes or [], material, properties=properties)
     electrodes = parts.named_transducer(part, sizes or []).electrodes if is_transducer else Electrodes()
     fixed = tuple(FixedSupport(face=face) for face in clamp or ())
     scanned = None if points is None else parts.points_in_metres(points)
@@ -75,7 +87,7 @@ def modes(
     along = axis or parts.longest_axis(found.model.mesh)
     answer = ModesAnswer(
         part=part,
-        material="its own materials" if is_transducer else material,
+        material="its own materials" if is_transducer else _described(material, properties),
         found=found,
         names=mode_names(found.model, found.modes, axis=along),
         points=scanned,
@@ -84,6 +96,15 @@ def modes(
         with_animations=animate,
     )
     deliver(answer, folder=out, as_json=json)
+
+
+def _described(material: str, properties: Mapping[str, float]) -> str:
+    """Material and what replaces its properties, such as "brass with density 8.4e+03 kg/m3"."""
+    replaced = [
+        f"{name.replace('_', ' ')} {format_si(value, quantity(name).unit, digits=4)}"
+        for name, value in properties.items()
+    ]
+    return material if not replaced else f"{material} with {', '.join(replaced)}"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,18 +121,14 @@ class ModesAnswer(Answer):
     with_animations: bool
 
     def lines(self) -> list[str]:
-        """Name, natural frequency and relative error of every elastic mode."""
+        """Name and natural frequency with its error of every elastic mode."""
         found, rigid = self.found, self.found.modes.rigid_body_count
         width = max(len(self.names[row]) for row in self._rows())
         support = f"{rigid} rigid motions, " if rigid else "held, "
         nodes = f"{found.nodes[-1]} nodes in the last of {len(found.nodes)} meshes"
         return [
             f"{self.part} of {self.material}: {support}{nodes}",
-            *[
-                f"  {self.names[row]:<{width}}  {found.natural_frequency[row]:>10.1f} Hz  "
-                f"+-{found.frequency_error[row]:.2g}"
-                for row in self._rows()
-            ],
+            *[f"  {self.names[row]:<{width}}  {frequency_text(found, row)}" for row in self._rows()],
         ]
 
     def object(self) -> dict[str, Any]:
@@ -125,6 +142,11 @@ class ModesAnswer(Answer):
             "modes": [
                 {
                     "name": self.names[row],
+                    "text": frequency_text(found, row),
+                    "uncertainty": {
+                        "value": float(found.natural_frequency[row] * found.frequency_error[row]),
+                        "unit": "Hz",
+                    },
                     **si(
                         {
                             "natural_frequency": float(found.natural_frequency[row]),

@@ -12,6 +12,7 @@ from sonolube.report import Drawing
 from sonolube.rig import read_rig, temperature_point, thermal_solid
 from sonolube.rig.figures import temperature_figure
 from sonolube.rig.file.plausible import plausible_si
+from sonolube.thermal.flash_models import FLASH_MODELS
 
 
 def thermal(
@@ -26,6 +27,9 @@ def thermal(
         str, typer.Option(metavar="CONDUCTANCE", help="Thermal conductance from the pin to its surroundings.")
     ] = "0.05W/K",
     vibration_heat: Annotated[str, typer.Option(metavar="POWER", help="Heat of the vibration in the contact.")] = "0W",
+    flash_model: Annotated[
+        str, typer.Option(metavar="MODEL", help=f"Model of the flash temperature: {', '.join(FLASH_MODELS)}.")
+    ] = "quadrature",
     changes: Changes = None,
     out: Annotated[Out, OutputFolder("{rig}-thermal.*")] = OUT,
     json: Json = False,
@@ -43,6 +47,7 @@ def thermal(
         thermal_conductance=plausible_si(conductance, unit="W/K", name="--conductance"),
         duration=plausible_si(test_time, unit="s", name="--duration"),
         vibration_heat_rate=plausible_si(vibration_heat, unit="W", name="--vibration-heat"),
+        flash_model=flash_model,
     )
     drawing = Drawing(draw=lambda: temperature_figure(known, result))
     answer = RigRecord(rig=known, result=result, drawings={f"{rig.stem}-thermal": drawing})

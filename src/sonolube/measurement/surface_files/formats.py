@@ -40,6 +40,7 @@ SURFACE_FORMATS: VariantTable[SurfaceFormat] = VariantTable(
     "surface format",
     {
         "Wyko OPD": "sonolube.measurement.surface_files.wyko:WykoOpd",
+        "NanoFocus NMS": "sonolube.measurement.surface_files.nms:NanoFocusNms",
         "NPY": "sonolube.measurement.surface_files.npy:Npy",
         "XYZ text": "sonolube.measurement.surface_files.xyz:XyzText",
         "SurfaceTopography": "sonolube.measurement.surface_files.surface_topography:SurfaceTopographyFormats",

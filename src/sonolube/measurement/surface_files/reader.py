@@ -8,7 +8,8 @@ from pathlib import Path
 from sonolube.errors import InvalidInput
 from sonolube.measurement.file_format import detect_format, read_head, refuse_unreadable
 from sonolube.measurement.surface_files.formats import SURFACE_FORMATS
-from sonolube.measurement.surface_files.surface_reading import SurfaceReading
+from sonolube.measurement.surface_files.plausible_size import size_caveats
+from sonolube.measurement.surface_files.surface_reading import ASSUMED_METRES, GIVEN_BY_USER, SurfaceReading
 from sonolube.surfaces import HeightMap
 from sonolube.units import convert
 
@@ -34,6 +35,10 @@ class SurfaceFile:
         As the file states them; empty where it does not.
     measured_at : datetime or None
         Time of the measurement by the instrument's clock; None where the file does not state it.
+    lateral_unit : str
+        Unit of the lengths along the surface and how it is known, such as "um, stated in the file".
+    caveats : tuple of str
+        What was done to the heights in reading, and what is implausible about their size.
     """
 
     height_map: HeightMap
@@ -43,6 +48,8 @@ class SurfaceFile:
     title: str = ""
     instrument: str = ""
     measured_at: datetime | None = None
+    lateral_unit: str = ""
+    caveats: tuple[str, ...] = ()
 
 
 def read_surface_file(
@@ -53,9 +60,9 @@ def read_surface_file(
     Parameters
     ----------
     path : Path or str
-        In any format of `SURFACE_FORMATS`, which is detected by content and then by suffix: Wyko OPD, NPY or XYZ text;
-        with the extra ``surfaces`` also SUR, X3P, SDF, PLU, VK, AL3D, GWY, OPDx, MetroPro and the other formats of
-        SurfaceTopography.
+        In any format of `SURFACE_FORMATS`, which is detected by content and then by suffix: Wyko OPD, NanoFocus NMS,
+        NPY or XYZ text (of a profile also in two columns); with the extra ``surfaces`` also SUR, X3P, SDF, PLU, VK,
+        AL3D, GWY, OPDx, MetroPro and the other formats of SurfaceTopography.
     spacing_x, spacing_y : float, optional
         Distance of neighbouring columns and rows, only for a file that does not state it, such as NPY. [m]
     length_unit : str, optional
@@ -65,6 +72,7 @@ def read_surface_file(
     Returns
     -------
     SurfaceFile
+        A profile is a map of one row.
         Heights in metres. Columns follow x and rows follow y as in the file: where it holds a picture the first row is
         the top, where it holds positions (XYZ text) the first row has the smallest y.
 
@@ -76,7 +84,7 @@ def read_surface_file(
 
     Notes
     -----
-    For OPD, NPY and XYZ files memory stays within a small multiple of the file's size, whatever size the file states.
+    For OPD, NMS, NPY and XYZ files memory stays within a small multiple of the file's size, whatever size it states.
     """
     place = Path(path)
     formats = tuple(SURFACE_FORMATS.values())
@@ -85,6 +93,10 @@ def read_surface_file(
         digest = hashlib.file_digest(stream, "sha256").hexdigest()
         reading = file_format.read(stream, place)
     height_map = _height_map(reading, place, spacing_x=spacing_x, spacing_y=spacing_y, length_unit=length_unit)
+    unit = _lateral_unit(reading, length_unit, spacing_x)
+    sizes = size_caveats(
+        height=height_map.height, spacing_x=height_map.spacing_x, spacing_y=height_map.spacing_y, unit=unit
+    )
     return SurfaceFile(
         height_map=height_map,
         path=place,
@@ -93,6 +105,8 @@ def read_surface_file(
         title=reading.title,
         instrument=reading.instrument,
         measured_at=reading.measured_at,
+        lateral_unit=unit,
+        caveats=(*reading.notes, *sizes),
     )
 
 
@@ -124,6 +138,15 @@ def read_height_map(
     read_surface_file : the same with provenance.
     """
     return read_surface_file(path, spacing_x=spacing_x, spacing_y=spacing_y, length_unit=length_unit).height_map
+
+
+def _lateral_unit(reading: SurfaceReading, length_unit: str | None, spacing_x: float | None) -> str:
+    """Return the unit of lengths along the surface and how it is known."""
+    if spacing_x is not None:
+        return f"m, {GIVEN_BY_USER} as the distance of pixels"
+    if length_unit is not None:
+        return f"{length_unit}, {GIVEN_BY_USER}"
+    return f"{reading.lateral_unit}, {reading.unit_origin}" if reading.states_unit else f"m, {ASSUMED_METRES}"
 
 
 def _height_map(

@@ -9,16 +9,28 @@ from typing import Any, BinaryIO, ClassVar, final
 
 import numpy as np
 
+from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
 from sonolube.measurement.limits import require_values
+from sonolube.measurement.surface_files.regular_grid import even_profile
 from sonolube.measurement.surface_files.stated_sizes import require_stated_sizes
-from sonolube.measurement.surface_files.surface_reading import SurfaceReading
+from sonolube.measurement.surface_files.surface_reading import LIBRARY_DEFAULT, STATED_BY_FILE, SurfaceReading
 from sonolube.measurement.surface_files.text_layout import text_readers
 
 _HEAD_OF_LIBRARY = 512  # bytes from which its readers tell their formats
 _TEXTS = ("xyz", "asc")
 _BY_SUFFIX = ("hgt", "nms")  # formats that any bytes of a suitable number are
 _TITLE_KEYS = ("Title", "DataSetName", "object_name")
+
+UNIT_BY_LIBRARY = frozenset(  # as of version 1.27.1
+    (
+        *("al3d", "frt", "lext", "metropro", "nms", "opd", "os3d", "plu", "plux"),
+        *("ps", "qep", "sdf", "tmd", "vk", "x3p", "zmg", "zon"),
+    )
+)
+"""Formats whose lateral unit is a constant of SurfaceTopography's reader; the others state it in the file or not."""
+
+_MISREAD = {"nms": "its lateral unit is misread by SurfaceTopography, and the version OM_MS_2.0, read here, is not it"}
 
 
 @final
@@ -55,13 +67,14 @@ class SurfaceTopographyFormats:
         Returns
         -------
         SurfaceReading
-            Rows and columns as SurfaceTopography orders y and x. A profile becomes one row of square pixels.
+            Rows and columns as SurfaceTopography orders y and x. A profile becomes one row of square pixels, its
+            heights interpolated at even steps where its positions are uneven.
 
         Raises
         ------
         InvalidInput
-            If the library is not installed, does not recognise the format, or fails on the file, or the file states
-            to hold more points than one of its size may.
+            If the library is not installed, does not recognise the format, finds no heights in the file, or fails on
+            it, or the file states to hold more points than one of its size may.
         """
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of the library's dependencies, about missing optional parts
@@ -69,17 +82,19 @@ class SurfaceTopographyFormats:
                 from SurfaceTopography.IO import readers
             except ImportError:
                 raise InvalidInput(
-                    f"{path}: neither Wyko OPD, NPY nor XYZ text; for other formats: "
+                    f"{path}: neither Wyko OPD, NanoFocus NMS, NPY nor XYZ text; for other formats: "
                     'pip install "sonolube[surfaces]", which brings SurfaceTopography'
                 ) from None
+            format_name = ""
             try:
                 require_stated_sizes(path)
-                return _reading(_opened(readers, path), path=path)
+                reader = _opened(readers, path)
+                format_name = str(reader.name())
+                return _reading(reader, path=path)
             except InvalidInput:
                 raise
             except Exception as failure:  # its readers raise exceptions of any type
-                cause = " ".join(str(failure).split()) or type(failure).__name__
-                raise InvalidInput(f"{path}: SurfaceTopography cannot read it: {cause[:200]}") from None
+                raise InvalidInput(f"{path}: {_cause(failure, format_name)}") from None
 
 
 def _opened(readers: Sequence[Any], path: Path) -> Any:
@@ -103,8 +118,25 @@ def _opened(readers: Sequence[Any], path: Path) -> Any:
     raise InvalidInput(f"{path}: damaged, or of no format of SurfaceTopography")
 
 
+def _cause(failure: Exception, format_name: str) -> str:
+    """Return why the library fails on a file: its own sentence, or what an exception of its code without one means."""
+    said = " ".join(str(failure).split())
+    if said and not isinstance(failure, (LookupError, TypeError, AttributeError, AssertionError, UnicodeError)):
+        return f"SurfaceTopography cannot read it: {said[:200]}"
+    kind = f"{format_name} file" if format_name else "file"
+    return (
+        f"a damaged {kind}, or a variant of it that SurfaceTopography does not read (its reader stops with"
+        f" {type(failure).__name__})"
+    )
+
+
 def _reading(reader: Any, *, path: Path) -> SurfaceReading:
     """Return the default channel of an open reader of the library."""
+    known_as = str(reader.format())
+    if known_as in _MISREAD:
+        raise InvalidInput(f"{path}: looks like {reader.name()}: {_MISREAD[known_as]}")
+    if not reader.channels:
+        raise InvalidInput(f"{path}: SurfaceTopography takes it for {reader.name()}, but finds no heights in it")
     channel = reader.default_channel
     require_values(math.prod(channel.nb_grid_pts), path, part=f"{channel.nb_grid_pts} points")
     states_unit, states_size = channel.unit is not None, channel.physical_sizes is not None
@@ -112,21 +144,31 @@ def _reading(reader: Any, *, path: Path) -> SurfaceReading:
     if not states_size:
         assumed["physical_sizes"] = channel.nb_grid_pts
     topography = reader.topography(channel_index=channel.index, **assumed).to_unit("m")
-    if not topography.is_uniform:
-        raise InvalidInput(f"{path}: a profile of uneven steps, which makes no height map")
-    by_column = np.ma.filled(np.ma.asarray(topography.heights(), dtype=np.float64), np.nan)
-    steps = np.atleast_1d(topography.pixel_size)
+    height, spacing_x, spacing_y, notes = _heights(topography)
     info = topography.info
     return SurfaceReading(
-        height=np.atleast_2d(by_column.T),
+        height=height,
         format_name=str(reader.name()),
-        spacing_x=float(steps[0]) if states_size else None,
-        spacing_y=float(steps[-1]) if states_size else None,
+        spacing_x=spacing_x if states_size else None,
+        spacing_y=spacing_y if states_size else None,
         states_unit=states_unit,
+        lateral_unit=str(channel.unit).replace("µ", "u") if states_unit else "",
+        unit_origin=(LIBRARY_DEFAULT if known_as in UNIT_BY_LIBRARY else STATED_BY_FILE) if states_unit else "",
         title=next((str(found) for key in _TITLE_KEYS if (found := info.get("raw_metadata", {}).get(key))), ""),
         instrument=_instrument(info.get("instrument", {})),
         measured_at=_measured_at(info.get("acquisition_time")),
+        notes=notes,
     )
+
+
+def _heights(topography: Any) -> tuple[Floats, float, float, tuple[str, ...]]:
+    """Return the heights of a topography or line scan with the distances of its columns and rows."""
+    by_column = np.ma.filled(np.ma.asarray(topography.heights(), dtype=np.float64), np.nan)
+    if not topography.is_uniform:
+        row, step, notes = even_profile(np.asarray(topography.positions(), dtype=np.float64), by_column)
+        return row, step, step, notes
+    steps = np.atleast_1d(topography.pixel_size)
+    return np.atleast_2d(by_column.T), float(steps[0]), float(steps[-1]), ()
 
 
 def _instrument(known: dict[str, Any]) -> str:

@@ -16,7 +16,7 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
-from sonolube.measurement.surface_files.surface_reading import SurfaceReading
+from sonolube.measurement.surface_files.surface_reading import FIXED_BY_FORMAT, SurfaceReading
 
 _SIGNATURE = b"Directory"  # at byte 2
 
@@ -98,6 +98,8 @@ class WykoOpd:
             format_name=self.name,
             spacing_x=None if pixel_size is None else 1e-3 * pixel_size,
             spacing_y=None if pixel_size is None else 1e-3 * pixel_size * aspect,
+            lateral_unit="mm",
+            unit_origin=FIXED_BY_FORMAT,
             title=_text(stream, blocks, "Title", path) or _text(stream, blocks, "DataSetName", path),
             measured_at=_measured_at(_text(stream, blocks, "Date", path) + " " + _text(stream, blocks, "Time", path)),
         )

@@ -78,7 +78,7 @@ def groove_sheet(path: Path, *, settings: SurfaceSettings) -> tuple[sheet.Sheet,
         values.append(
             sheet.quantity_value("groove_diameter", groove.track.groove_diameter, label="Diameter of the track's arc")
         )
-    caveats = (groove.caveat,) if groove.caveat else ()
+    caveats = (*file.caveats, *((groove.caveat,) if groove.caveat else ()))
     sections = [
         sheet.Sheet(values=tuple(values), figures=_figures(groove), caveats=caveats),
         sheet.attempted(partial(_marks, groove), what="marks along the track"),
@@ -194,7 +194,8 @@ def cap_sheet(path: Path, *, settings: SurfaceSettings, tip_radius: float | None
     )
     scar_map = figures.height_map(cap.levelled, cap.worn)
     figure = replace(scar_map, title="Scar of the pin", caption="Heights over the ball; the line goes round the scar.")
-    return sheet.joined([sheet.Sheet(values=values, figures=(figure,))], title=path.name, source=surface_source(file))
+    part = sheet.Sheet(values=values, figures=(figure,), caveats=file.caveats)
+    return sheet.joined([part], title=path.name, source=surface_source(file))
 
 
 def _figures(groove: Groove) -> tuple[sheet.Figure, ...]:

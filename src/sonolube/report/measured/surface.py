@@ -1,4 +1,4 @@
-"""Sheets of height maps: parameters of ISO 25178-2 and of profiles, spectra, summits for the contact models."""
+"""Sheets of surface files: parameters of ISO 25178-2 and of profiles, spectra, summits for the contact models."""
 
 import math
 from dataclasses import dataclass, fields
@@ -9,6 +9,7 @@ from sonolube import surfaces
 from sonolube.errors import InvalidInput
 from sonolube.measurement.surface_files.reader import SurfaceFile, read_surface_file
 from sonolube.report.measured import sheet, surface_figures as figures
+from sonolube.report.measured.profile import is_profile, profile_sheet
 from sonolube.units import format_si
 
 _LABELS = {
@@ -39,10 +40,12 @@ _LABELS = {
 _PROFILE_LABELS = {
     "arithmetic_mean_height": "Ra",
     "rms_height": "Rq",
-    "maximum_peak_height": "Rp",
-    "maximum_pit_depth": "Rv",
-    "total_height": "Rt",
+    "mean_section_peak_height": "Rp",
+    "mean_section_pit_depth": "Rv",
     "mean_section_height": "Rz",
+    "maximum_peak_height": "Rpt",
+    "maximum_pit_depth": "Rvt",
+    "total_height": "Rt",
 }
 _SAMPLING_LABELS = {
     "sampling_interval": "Interval",
@@ -83,7 +86,7 @@ class SurfaceSettings:
 
 
 def surface_sheet(path: Path, *, settings: SurfaceSettings) -> sheet.Sheet:
-    """Areal and profile parameters, spectra and summits of a surface file.
+    """Areal and profile parameters, spectra and summits of a surface file, or profile parameters of one profile.
 
     Parameters
     ----------
@@ -101,9 +104,18 @@ def surface_sheet(path: Path, *, settings: SurfaceSettings) -> sheet.Sheet:
         If the file cannot be read, levelled or filtered as asked, or its heights have no parameters.
     """
     file = surface_file(path, settings)
+    if is_profile(file.height_map):
+        return profile_sheet(
+            file,
+            source=surface_source(file),
+            degree=settings.degree,
+            robust=settings.robust,
+            short_cutoff_length=settings.short_cutoff_length,
+            long_cutoff_length=settings.long_cutoff_length,
+        )
     levelled = surfaces.remove_form(file.height_map, degree=settings.degree, robust=settings.robust)
     surface = _filtered(levelled, settings)
-    sections = [_part(surfaces.height_parameters(surface))]
+    sections = [sheet.Sheet(caveats=file.caveats), _part(surfaces.height_parameters(surface))]
     for measure in (
         surfaces.hybrid_parameters,
         surfaces.spatial_parameters,
@@ -130,19 +142,29 @@ def surface_file(path: Path, settings: SurfaceSettings) -> SurfaceFile:
 
 
 def surface_source(file: SurfaceFile) -> dict[str, str]:
-    """Origin of a height map: format, instrument, pixels, field and digest."""
+    """Origin of a height map: format, instrument, pixels, field, lateral unit and digest."""
     rows, columns = file.height_map.height.shape
-    step_x, step_y = file.height_map.spacing_x, file.height_map.spacing_y
+    steps = file.height_map.spacing_x, file.height_map.spacing_y
     return {
         "format": file.format_name,
         "title": file.title,
         "instrument": file.instrument,
         "measured": f"{file.measured_at:%Y-%m-%d %H:%M}" if file.measured_at else "",
-        "pixels": f"{columns} x {rows}, {format_si(step_x, 'm', digits=4)} x {format_si(step_y, 'm', digits=4)}",
-        "field": f"{format_si(columns * step_x, 'm', digits=4)} x {format_si(rows * step_y, 'm', digits=4)}",
+        **_grid((columns, rows), steps),
+        "lateral unit": file.lateral_unit,
         "not measured": f"{file.height_map.missing_fraction:.2%}",
         "sha256": file.sha256,
     }
+
+
+def _grid(points: tuple[int, int], steps: tuple[float, float]) -> dict[str, str]:
+    """Pixels and field of a map, or points and length of a profile."""
+    sizes = [format_si(count * step, "m", digits=4) for count, step in zip(points, steps, strict=True)]
+    distances = [format_si(step, "m", digits=4) for step in steps]
+    if 1 not in points:
+        return {"pixels": f"{points[0]} x {points[1]}, {' x '.join(distances)}", "field": " x ".join(sizes)}
+    along = 0 if points[1] == 1 else 1
+    return {"points": f"{points[along]}, {distances[along]} apart", "length": sizes[along]}
 
 
 def _filtered(levelled: surfaces.HeightMap, settings: SurfaceSettings) -> surfaces.HeightMap:

@@ -107,12 +107,12 @@ def spectrum(radial: RadialSpectrum) -> "Figure":
     inner = radial.wavenumber > 0
     axes.loglog(radial.wavenumber[inner], radial.areal_spectral_density[inner])
     axes.set(xlabel="wavenumber (1/m)", ylabel="power spectral density (m⁴)")
-    above = axes.secondary_xaxis("top", functions=(_wavelength, _wavelength))
+    above = axes.secondary_xaxis("top", functions=(wavelength, wavelength))
     above.set_xlabel("wavelength (um)")
     return figure
 
 
-def _wavelength(other: Any) -> Any:
+def wavelength(other: Any) -> Any:
     """Wavelength in um of a wavenumber in 1/m, and the inverse."""
     return 1e6 / np.maximum(np.asarray(other, dtype=np.float64), 1e-9)
 
