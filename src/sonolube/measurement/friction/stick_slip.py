@@ -159,16 +159,24 @@ def stick_slip_of_parts(
     -------
     list of StickSlipEstimate
 
+    Raises
+    ------
+    InvalidInput
+        If a part has fewer than 64 samples.
+
     Notes
     -----
     The spectrum of the noise in a part is the lower, at each frequency, of that of the part and the median of all.
     """
+    fewest = min(force.size for force in forces)
+    if fewest < _FEWEST_SAMPLES:
+        raise InvalidInput(f"friction_force has {fewest} samples; stick-slip needs at least {_FEWEST_SAMPLES}")
     signals = [np.asarray(detrend(force)) for force in forces]
     common = noise_spectrum(signals, sample_interval=sample_interval)
     estimates = []
     for t, force, signal in zip(times, forces, signals, strict=True):
         if not np.std(signal) > 1e-12 * float(np.max(np.abs(force))):
-            estimates.append(_not_detected("the friction is constant", 0.0))
+            estimates.append(not_detected("the friction is constant", 0.0))
             continue
         own = noise_spectrum([signal], sample_interval=sample_interval)
         bins = np.linspace(0, 0.5, own.size)
@@ -189,9 +197,9 @@ def _estimate(
         found = _by_line(t, signal, frequency)
     else:
         reason = f"falls of the force recur no more than noise explains (score {chain.score:.3g} of {DETECTION_SCORE:g})"
-        return _not_detected(f"{reason}; the spectrum peaks at {frequency:.3g} Hz", frequency)
+        return not_detected(f"{reason}; the spectrum peaks at {frequency:.3g} Hz", frequency)
     if not found.stick_slip_amplitude > minimum:
-        return _not_detected(f"the force falls by {found.stick_slip_amplitude:.3g} N only", frequency)
+        return not_detected(f"the force falls by {found.stick_slip_amplitude:.3g} N only", frequency)
     return found
 
 
@@ -290,8 +298,8 @@ def _by_line(t: Floats, signal: Floats, frequency: float) -> StickSlipEstimate:
     )
 
 
-def _not_detected(reason: str, spectral_frequency: float) -> StickSlipEstimate:
-    """Return the estimate for a signal without recurring falls."""
+def not_detected(reason: str, spectral_frequency: float) -> StickSlipEstimate:
+    """Return the estimate for a signal without recurring falls, with the reason and the frequency of its spectrum."""
     return StickSlipEstimate(
         detected=False,
         reason=reason,
