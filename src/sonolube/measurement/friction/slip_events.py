@@ -23,6 +23,7 @@ _GAPS = 0.6, 1.6  # shortest and longest time between slips over the period of t
 _LARGEST_RESPONSE = 8.0  # counted of one slip, in standard deviations, so that no single step makes a chain
 _LEAST_RESPONSE = 1.5
 _EVENT_COST = 1.0  # beyond that of the largest rise in a period
+_RISE_SPREAD = 6.0  # square of a rise over the further cost, against the random walk of scores of large symmetric waves
 _RISE_RATIO = 1.5  # of the scores of falls and rises, which are equal for whatever is symmetric in time
 _FEWEST = 4  # slips in a chain
 _FLOOR = 1e-4  # least power of the noise over that of the signal, where a recording is free of noise
@@ -48,25 +49,27 @@ class SlipChain:
     score: float
 
 
-def noise_spectrum(parts: Sequence[Floats], *, sample_interval: float) -> Floats:
-    """Return the smoothed power spectrum of parts of a signal by medians over segments of half a second.
+def noise_spectra(parts: Sequence[Floats], *, sample_interval: float) -> list[Floats]:
+    """Return the power spectrum of the noise in each part of a signal, smoothed.
 
     Parameters
     ----------
     parts : sequence of ndarray
-        Evenly spaced, each of at least eight samples.
+        Evenly spaced, each of at least 64 samples.
     sample_interval : float
         Time between samples. [s]
 
     Returns
     -------
-    ndarray, shape (segment // 2 + 1,)
+    list of ndarray, shape (segment // 2 + 1,)
         In units of the signal squared per sample, over frequencies up to half the sampling rate. What lies below the
         first bin is raised thirtyfold, so that drift has no weight.
 
     Notes
     -----
-    Medians over segments and over neighbouring frequencies leave out bursts and lines, such as stick-slip itself.
+    Medians over segments of half a second and over neighbouring frequencies leave out bursts and lines, such as
+    stick-slip itself. The spectrum of a part is the lower, at each frequency, of its own and of the median over all
+    parts, each scaled to the median of the part over frequencies: noise may differ between parts in strength.
     """
     size = int(min(min(part.size for part in parts) // 4, max(16, round(_SEGMENT / sample_interval))))
     window = np.hanning(size + 2)[1:-1]
@@ -74,16 +77,23 @@ def noise_spectrum(parts: Sequence[Floats], *, sample_interval: float) -> Floats
     for part in parts:
         segments = np.lib.stride_tricks.sliding_window_view(part, size)[:: max(1, size // 2)]
         segments = segments - segments.mean(axis=1, keepdims=True)
-        power.append(np.abs(np.fft.rfft(segments * window, axis=1)) ** 2 / (window @ window))
-    median = np.median(np.concatenate(power), axis=0) / np.log(2)
-    floor = _FLOOR * float(np.max([np.mean(part**2) for part in parts]))
-    logs = np.log(np.maximum(median, floor))
+        floor = max(_FLOOR * float(np.mean(part**2)), 1e-300)
+        power.append(np.maximum(np.abs(np.fft.rfft(segments * window, axis=1)) ** 2 / (window @ window), floor))
+    own = [_smoothed(np.log(np.median(one, axis=0) / np.log(2))) for one in power]
+    scales = [float(np.median(logs)) for logs in own]
+    scaled = [one / np.exp(scale) for one, scale in zip(power, scales, strict=True)]
+    common = _smoothed(np.log(np.median(np.concatenate(scaled), axis=0) / np.log(2)))
+    return [np.exp(np.minimum(logs, common + scale)) for logs, scale in zip(own, scales, strict=True)]
+
+
+def _smoothed(logs: Floats) -> Floats:
+    """Return the logarithm of a spectrum smoothed over neighbouring frequencies."""
     smooth = uniform_filter1d(median_filter(logs, 2 * _SMOOTHING + 1, mode="nearest"), 7, mode="nearest")
     for k in range(min(2 * _SMOOTHING + 1, logs.size)):  # narrower where the spectrum of drift is steep
         half = min(max(k // 2, 1), _SMOOTHING)
         smooth[k] = np.median(logs[max(1, k - half) : k + half + 1])
     smooth[0] = smooth[min(1, smooth.size - 1)] + np.log(30.0)
-    return np.asarray(np.exp(smooth))
+    return np.asarray(smooth)
 
 
 def find_slips(signal: Floats, *, spectrum: Floats, sample_interval: float) -> SlipChain:
@@ -94,7 +104,7 @@ def find_slips(signal: Floats, *, spectrum: Floats, sample_interval: float) -> S
     signal : ndarray, shape (samples,)
         Evenly spaced, of zero mean.
     spectrum : ndarray
-        From `noise_spectrum`.
+        From `noise_spectra`.
     sample_interval : float
         Time between samples. [s]
 
@@ -158,7 +168,8 @@ def _chain_of_period(weighted: Floats, weight: Floats, samples: int, size: int, 
     if periods < _FEWEST - 1:
         return none
     largest_rise = float(np.median(-response[: periods * period].reshape(periods, period).min(axis=1)))
-    cost = max(largest_rise, _LEAST_RESPONSE) ** 2 / 2 + _EVENT_COST
+    rise = max(largest_rise, _LEAST_RESPONSE) ** 2
+    cost = rise / 2 + max(_EVENT_COST, rise / _RISE_SPREAD)
     score, chain = _best_chain(response, period, cost)
     if chain.size < _FEWEST:
         return none

@@ -11,7 +11,7 @@ from scipy.stats import t as student
 
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.measurement.friction.slip_events import DETECTION_SCORE, Indices, find_slips, noise_spectrum
+from sonolube.measurement.friction.slip_events import DETECTION_SCORE, Indices, find_slips, noise_spectra
 from sonolube.measurement.time_series import require_time_series, uniform_sample_interval
 
 _FEWEST_SAMPLES = 64
@@ -19,6 +19,7 @@ _PADDING = 4  # zero padding of the spectrum, in lengths of the signal
 _UNRESOLVED = 1 / 8  # of the sampling rate, above which a period has too few samples to show a sawtooth
 _LINE_SHARE = 0.5  # of the variance, in a spectral line of unresolved stick-slip
 _CLEAR = 8.0  # falls over the noise from which the duration of a slip is measured
+_OVERSHOOT = 0.8  # of the fall below its middle
 _PROFILE = 0.25  # of a period, before and after a slip
 
 
@@ -164,24 +165,21 @@ def stick_slip_of_parts(
     InvalidInput
         If a part has fewer than 64 samples.
 
-    Notes
-    -----
-    The spectrum of the noise in a part is the lower, at each frequency, of that of the part and the median of all.
+    See Also
+    --------
+    noise_spectra : the noise that is common to the parts.
     """
     fewest = min(force.size for force in forces)
     if fewest < _FEWEST_SAMPLES:
         raise InvalidInput(f"friction_force has {fewest} samples; stick-slip needs at least {_FEWEST_SAMPLES}")
     signals = [np.asarray(detrend(force)) for force in forces]
-    common = noise_spectrum(signals, sample_interval=sample_interval)
+    spectra = noise_spectra(signals, sample_interval=sample_interval)
     estimates = []
-    for t, force, signal in zip(times, forces, signals, strict=True):
-        if not np.std(signal) > 1e-12 * float(np.max(np.abs(force))):
+    for t, force, signal, spectrum in zip(times, forces, signals, spectra, strict=True):
+        if np.std(signal) > 1e-12 * float(np.max(np.abs(force))):
+            estimates.append(_estimate(t, force, signal, spectrum, sample_interval, minimum_drop))
+        else:
             estimates.append(not_detected("the friction is constant", 0.0))
-            continue
-        own = noise_spectrum([signal], sample_interval=sample_interval)
-        bins = np.linspace(0, 0.5, own.size)
-        spectrum = np.minimum(own, np.interp(bins, np.linspace(0, 0.5, common.size), common))
-        estimates.append(_estimate(t, force, signal, spectrum, sample_interval, minimum_drop))
     return estimates
 
 
@@ -262,6 +260,8 @@ def _slip_duration(signal: Floats, bursts: Sequence[Indices], fall: float) -> fl
     profile = np.mean(signal[slips[:, None] + np.arange(-reach, reach)], axis=0)
     middle = (np.median(profile[: reach // 2]) + np.median(profile[-(reach // 2) :])) / 2
     relative = (profile - middle) / fall
+    if relative.min() < -_OVERSHOOT:  # of a sensor that rings, whose reading takes longer than the slip
+        return 0.0
     below = np.flatnonzero(relative < -0.3)
     end = int(below[0]) if below.size else reach
     above = np.flatnonzero(relative[:end] > 0.3)

@@ -163,26 +163,18 @@ def friction_at_voltage_steps(
     ----------
     .. [1] D 2.1, D 4.1.2, figure 4.3 and Table 4.2.
     """
-    require_positive(shortest_step=shortest_step, tolerance=tolerance)
-    require_non_negative(settling_time=settling_time)
     t, f, u = require_time_series(time=time, friction_force=friction_force, voltage_peak_to_peak=voltage_peak_to_peak)
-    threshold = tolerance * float(np.nanmax(u) - np.nanmin(u))
-    least = max(shortest_step, 2 * settling_time)
-    levels_held = _constant_levels(t, u, threshold, shortest_step)
-    steps = [(first, last) for first, last in levels_held if t[last - 1] - t[first] > least]
-    if not steps:
-        raise InvalidInput(f"voltage_peak_to_peak is constant nowhere for {least:.3g} s")
-    onset = _sliding_onset(t, f, *steps[0])
-    settled = [_settled_part(t, max(first, onset), last, settling_time) for first, last in steps]
-    levels = [float(np.nanmedian(u[part])) for part in settled]
-    without = np.array([level <= threshold for level in levels])
+    found = _found_steps(t, f, u, shortest_step=shortest_step, settling_time=settling_time, tolerance=tolerance)
+    without = np.array([level <= found.threshold for level in found.levels])
     if not any(without):
-        raise InvalidInput(f"voltage_peak_to_peak has no step without voltage; the lowest is {min(levels):.3g} V")
+        lowest = min(found.levels)
+        raise InvalidInput(f"voltage_peak_to_peak has no step without voltage; the lowest is {lowest:.3g} V")
+    settled, levels = found.settled, found.levels
     parts = sampled_parts(t, f, settled)
     turned = None if revolutions is None else _revolutions_of_parts(f, require_finite(revolutions=revolutions), settled)
     waves = wobble_columns(parts, revolutions=turned, harmonics=harmonics)[0]
     stick_slip = _stick_slip(parts, without_wobble(parts, waves))
-    means = mean_of_parts(parts, waves=waves, stick_slip=stick_slip, onset=float(t[onset]))
+    means = mean_of_parts(parts, waves=waves, stick_slip=stick_slip, onset=float(t[found.onset]))
     reductions = _reductions(means, without, np.array([part.size for part in parts.times]))
     return tuple(
         VoltageStep(
@@ -196,8 +188,72 @@ def friction_at_voltage_steps(
             friction_reduction_uncertainty=None if without[j] else reductions[j][1],
             stick_slip=stick_slip[j],
         )
-        for j, (first, last) in enumerate(steps)
+        for j, (first, last) in enumerate(found.steps)
     )
+
+
+def rotation_speed_at_voltage_steps(
+    *, time: ArrayLike, friction_force: ArrayLike, voltage_peak_to_peak: ArrayLike, harmonics: int = 3
+) -> float | None:
+    """Return the rotational speed of the disc by the wobble in its friction; None where none stands out. [1/s]
+
+    Parameters
+    ----------
+    time : array_like, shape (samples,)
+        Increasing. [s]
+    friction_force : array_like, shape (samples,)
+        NaN is left out. [N]
+    voltage_peak_to_peak : array_like, shape (samples,)
+        Whose steps change the friction. [V]
+    harmonics : int
+        Number of harmonics of the rotation.
+
+    Returns
+    -------
+    float or None
+
+    Raises
+    ------
+    InvalidInput
+        If no step is long enough.
+
+    See Also
+    --------
+    find_rotation_speed : of parts of any recording.
+    """
+    t, f, u = require_time_series(time=time, friction_force=friction_force, voltage_peak_to_peak=voltage_peak_to_peak)
+    found = _found_steps(t, f, u, shortest_step=1.0, settling_time=0.5, tolerance=0.05)
+    parts = sampled_parts(t, f, found.settled)
+    return wobble_columns(parts, revolutions=None, harmonics=harmonics)[1] or None
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _FoundSteps:
+    """Steps of a voltage: sample ranges, settled parts, levels, the change that begins one, and the begin of sliding."""
+
+    steps: list[tuple[int, int]]
+    settled: list[slice]
+    levels: list[float]
+    threshold: float
+    onset: int
+
+
+def _found_steps(
+    t: Floats, f: Floats, u: Floats, *, shortest_step: float, settling_time: float, tolerance: float
+) -> _FoundSteps:
+    """Return the steps of a voltage that are long enough."""
+    require_positive(shortest_step=shortest_step, tolerance=tolerance)
+    require_non_negative(settling_time=settling_time)
+    threshold = tolerance * float(np.nanmax(u) - np.nanmin(u))
+    least = max(shortest_step, 2 * settling_time)
+    levels_held = _constant_levels(t, u, threshold, shortest_step)
+    steps = [(first, last) for first, last in levels_held if t[last - 1] - t[first] > least]
+    if not steps:
+        raise InvalidInput(f"voltage_peak_to_peak is constant nowhere for {least:.3g} s")
+    onset = _sliding_onset(t, f, *steps[0])
+    settled = [_settled_part(t, max(first, onset), last, settling_time) for first, last in steps]
+    levels = [float(np.nanmedian(u[part])) for part in settled]
+    return _FoundSteps(steps=steps, settled=settled, levels=levels, threshold=threshold, onset=onset)
 
 
 def _sliding_onset(t: Floats, f: Floats, first: int, last: int) -> int:
