@@ -25,6 +25,7 @@ _LEAST_RESPONSE = 1.5
 _EVENT_COST = 1.0  # beyond that of the largest rise in a period
 _RISE_SPREAD = 6.0  # square of a rise over the further cost, against the random walk of scores of large symmetric waves
 _RISE_RATIO = 1.5  # of the scores of falls and rises, which are equal for whatever is symmetric in time
+_WEAKEST = 0.5  # of the median response of a chain, below which its first and last slips are noise
 _FEWEST = 4  # slips in a chain
 _FLOOR = 1e-4  # least power of the noise over that of the signal, where a recording is free of noise
 _SMOOTHING = 4  # bins on either side over which the spectrum is smoothed
@@ -185,7 +186,8 @@ def _bursts(response: Floats, period: int, cost: float, first: Indices, half: in
     remaining, chains, chain = response.copy(), [], first
     score = DETECTION_SCORE
     while chain.size >= _FEWEST and score >= DETECTION_SCORE:
-        chains.append(chain + half)
+        strong = np.flatnonzero(response[chain] >= _WEAKEST * np.median(response[chain]))
+        chains.append(chain[strong[0] : strong[-1] + 1] + half)
         remaining[max(0, chain[0] - period // 2) : chain[-1] + period // 2 + 1] = 0.0
         score, chain = _best_chain(remaining, period, cost)
     return tuple(sorted(chains, key=lambda indices: int(indices[0])))

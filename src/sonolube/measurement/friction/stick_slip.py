@@ -19,6 +19,7 @@ _PADDING = 4  # zero padding of the spectrum, in lengths of the signal
 _UNRESOLVED = 1 / 8  # of the sampling rate, above which a period has too few samples to show a sawtooth
 _LINE_SHARE = 0.5  # of the variance, in a spectral line of unresolved stick-slip
 _CLEAR = 8.0  # falls over the noise from which the duration of a slip is measured
+_HALF = 0.5  # of the median fall, from which a slip at the end of a burst is one
 _OVERSHOOT = 0.8  # of the fall below its middle
 _PROFILE = 0.25  # of a period, before and after a slip
 
@@ -65,7 +66,7 @@ class StickSlipEstimate:
     force_drops : int
         Number of slips found.
     stick_slip_fraction : float
-        Share of the time in which slips recur.
+        Share of the time in which slips recur. []
     bursts : tuple of StickSlipBurst
         When they do.
     slip_time : ndarray, shape (force_drops,)
@@ -118,7 +119,7 @@ def estimate_stick_slip(
     ten slips of fifty samples a period. The fall of each slip is the rise of the force over the stick phase after it, the
     slope of a line fitted with weights :math:`(1 - x^2)^2` that vanish at the slips, times its duration: a difference of
     maximum and minimum would add the range of the noise, and the weights leave out the ringing of the sensor. The
-    interval is Student's of the mean over the stick phases.
+    interval is Student's of the mean over the stick phases, with the covariance of neighbours, which share a slip.
 
     A period of fewer than eight samples does not show its shape: there a spectral line of half the variance passes for
     stick-slip, its fall being the peak-to-peak value; D's 400 Hz resolve its 100 Hz by no more than four samples.
@@ -204,12 +205,15 @@ def _estimate(
 def _by_slips(t: Floats, signal: Floats, bursts: Sequence[Indices], spectral: float) -> StickSlipEstimate:
     """Return the estimate from the slips of all bursts."""
     falls, noise = _falls(signal, bursts)
+    if noise * _CLEAR < np.median(falls):
+        bursts = [_without_false_ends(signal, burst, _HALF * float(np.median(falls))) for burst in bursts]
+        falls, noise = _falls(signal, bursts)
     gaps = np.concatenate([np.diff(burst) for burst in bursts])
     if noise * _CLEAR < np.mean(falls):
         falls = falls * (1 - _slip_duration(signal, bursts, float(np.mean(falls))) / gaps)
     interval = float(t[-1] - t[0]) / (t.size - 1)
     period = float(np.mean(gaps)) * interval
-    mean, error = float(np.mean(falls)), float(np.std(falls, ddof=1) / np.sqrt(falls.size))
+    mean, error = float(np.mean(falls)), _standard_error(falls)
     reach = float(student.ppf(0.975, falls.size - 1)) * error
     spans = tuple(
         StickSlipBurst(
@@ -248,6 +252,20 @@ def _falls(signal: Floats, bursts: Sequence[Indices]) -> tuple[Floats, float]:
             inner = residual[np.abs(x) < 0.5]
             squares, count = squares + float(inner @ inner), count + inner.size
     return np.array(rises), float(np.sqrt(squares / max(count, 1)))
+
+
+def _without_false_ends(signal: Floats, burst: Indices, least: float) -> Indices:
+    """Return a burst without slips at its ends whose stick phase rises too little, such as the ringing of the last."""
+    enough = np.flatnonzero(_falls(signal, [burst])[0] >= least)
+    return burst[enough[0] : enough[-1] + 2] if enough.size > 1 else burst
+
+
+def _standard_error(falls: Floats) -> float:
+    """Return the standard error of the mean of rises, of which neighbours share the slip between them."""
+    residual = falls - falls.mean()
+    variance = float(residual @ residual) / (falls.size - 1)
+    shared = float(residual[:-1] @ residual[1:]) / (falls.size - 1) + variance / falls.size
+    return float(np.sqrt((variance + 2 * max(shared, 0.0)) / falls.size))
 
 
 def _slip_duration(signal: Floats, bursts: Sequence[Indices], fall: float) -> float:
