@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.random import Generator
@@ -86,7 +87,7 @@ def stick_slip(rng: Generator, t: Samples, burst: Sawtooth) -> Samples:
     knots = [slips[0] - periods[0] / 2, *slips, slips[-1] + periods[-1] / 2]
     force = np.zeros(t.size)
     level = 0.0
-    for number, (first, last) in enumerate(zip(knots[:-1], knots[1:], strict=True)):
+    for number, (first, last) in enumerate(pairwise(knots)):
         inside = (t >= first) & (t < last)
         top = falls[number] / 2 if number < burst.slips else 0.0
         force[inside] = level + (top - level) * (t[inside] - first) / (last - first)
@@ -103,4 +104,4 @@ def stick_slip(rng: Generator, t: Samples, burst: Sawtooth) -> Samples:
 
 def burst_duration(slips: int, frequency: float) -> float:
     """Longest time that a burst is likely to take."""
-    return (slips + 0.5 * np.sqrt(slips) + 0.5) / frequency
+    return float((slips + 0.5 * np.sqrt(slips) + 0.5) / frequency)

@@ -23,7 +23,7 @@ def _trial(seed: int) -> Record:
     room = (*plan.starts[1:], plan.end)[step] - plan.starts[step] - 0.7
     slowest = 13 / room
     frequency = float(np.exp(rng.uniform(np.log(slowest), np.log(rate / _SAMPLES_OF_PERIOD))))
-    slips = int(rng.integers(10, max(11, min(60, 0.8 * room * frequency))))
+    slips = int(rng.integers(10, max(11, min(60, int(0.8 * room * frequency)))))
     spare = max(0.0, room - made.burst_duration(slips, frequency))
     burst = made.Sawtooth(
         start=plan.starts[step] + 0.6 + float(rng.uniform(0, spare)),
@@ -115,8 +115,8 @@ def _sample_measures(records: Sequence[Record]) -> list[Measure]:
 
 STUDY = Study(
     title="Detection of stick-slip at voltage steps",
-    question="Ten to sixty slips of 160 mN at one step, with wobble and a ringing sensor, are detected up to a noise of half "
-    "the fall, with the fall within its interval. Periods have fifty samples at least and scatter by 10 %.",
+    question="Ten to sixty slips of 160 mN at one step, with wobble and a ringing sensor, are detected up to a noise of "
+    "half the fall, with the fall within its interval. Periods have fifty samples at least and scatter by 10 %.",
     sources=("measurement/friction/*.py",),
     trials=480,
     sample=6,

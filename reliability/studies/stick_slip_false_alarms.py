@@ -13,7 +13,9 @@ _KINDS = ("white", "red", "white and red", "uneven", "hum and resonance")
 
 def _noise(kind: str, rng: np.random.Generator, plan: made.Layout, t: made.Samples) -> made.Samples:
     white = 0.01 * rng.standard_normal(t.size)
-    red = made.red_noise(rng, t, deviation=0.01 * 10 ** rng.uniform(-1, 0.5), time_constant=10 ** rng.uniform(-2.5, -0.3))
+    red = made.red_noise(
+        rng, t, deviation=0.01 * 10 ** rng.uniform(-1, 0.5), time_constant=10 ** rng.uniform(-2.5, -0.3)
+    )
     if kind == "white":
         return white
     if kind == "red":
@@ -25,7 +27,8 @@ def _noise(kind: str, rng: np.random.Generator, plan: made.Layout, t: made.Sampl
 
         pole = np.exp((-0.02 + 1j) * 2 * np.pi * 200 * (t[1] - t[0]))
         ringing = lfilter([1.0], [1.0, -2 * pole.real, abs(pole) ** 2], rng.standard_normal(t.size))
-        return white + 0.01 * ringing / np.std(ringing) + rng.uniform(0.005, 0.05) * np.sin(2 * np.pi * 50 * t)
+        hum = rng.uniform(0.005, 0.05) * np.sin(2 * np.pi * 50 * t)
+        return np.asarray(white + 0.01 * ringing / np.std(ringing) + hum)
     return white + red
 
 
@@ -36,7 +39,8 @@ def _trial(seed: int) -> Record:
     t = made.times(plan, float(rng.choice([1000, 2000])))
     force = made.held(plan, t, plan.levels) + rng.uniform(0, 0.08) * np.exp(-(t - made.MOTOR_ON) / rng.uniform(0.5, 3))
     speed = float(rng.uniform(0.2, 3))
-    amplitudes = rng.uniform(0, 0.06, int(rng.integers(1, 6))) / np.arange(1, 6)[: int(rng.integers(1, 6))].size
+    orders = np.arange(1, int(rng.integers(2, 7)))
+    amplitudes = rng.uniform(0, 0.06, orders.size) / orders
     force += made.wobble(rng, t, speed=speed, amplitudes=tuple(amplitudes))
     force[t < made.MOTOR_ON] = 0.0
     force += _noise(kind, rng, plan, t)
@@ -65,8 +69,8 @@ def _measures(records: Sequence[Record]) -> list[Measure]:
 
 STUDY = Study(
     title="False alarms of stick-slip",
-    question="In recordings with wobble of one to five harmonics, run-in, voltage steps and noise, white, red, uneven between "
-    "steps, or with hum and a resonance, no stick-slip is found.",
+    question="In recordings with wobble of one to five harmonics, run-in, voltage steps and noise, white, red, uneven "
+    "between steps, or with hum and a resonance, no stick-slip is found.",
     sources=("measurement/friction/*.py",),
     trials=1000,
     sample=5,

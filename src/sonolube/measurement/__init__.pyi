@@ -19,11 +19,7 @@ from .friction.rotation import (
     revolutions_at as revolutions_at,
 )
 from .friction.running_in import SteadyStateOnset as SteadyStateOnset, steady_state_onset as steady_state_onset
-from .friction.slip_events import (
-    SlipChain as SlipChain,
-    find_slips as find_slips,
-    noise_spectra as noise_spectra,
-)
+from .friction.slip_events import SlipChain as SlipChain, find_slips as find_slips, noise_spectra as noise_spectra
 from .friction.step_means import (
     SampledParts as SampledParts,
     StepMeans as StepMeans,

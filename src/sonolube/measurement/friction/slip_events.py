@@ -1,4 +1,4 @@
-"""Slips in a friction force: matched filter of a sawtooth against noise of any colour, and chains of recurring slips."""
+"""Slips in a friction force: matched filter of a sawtooth in noise of any colour, and chains of recurring slips."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -116,15 +116,15 @@ def find_slips(signal: Floats, *, spectrum: Floats, sample_interval: float) -> S
 
     Notes
     -----
-    A slip is a sudden fall between two slow rises of half a period. Its matched filter, with the Fourier transforms Y of
-    the signal and H of the template and the spectrum S of the noise, responds in standard deviations by
+    A slip is a sudden fall between two slow rises of half a period. With the Fourier transforms Y of the signal and H
+    of the template and the spectrum S of the noise, its matched filter responds in standard deviations by
 
     .. math:: z(t) = \frac{\mathcal{F}^{-1}[Y H^* / S]}{\sqrt{\sum |H|^2 / S}} .
 
-    A chain of slips, with gaps of 0.6 to 1.6 periods, scores :math:`\sum (z^2/2 - c)`, found by dynamic programming, for
-    periods from eight samples to a quarter of the signal. What is symmetric in time (Gaussian noise of any colour,
-    wobble, hum) scores equally for rises, :math:`-z`; their largest response in a median period gives the cost c, and
-    their score is deducted.
+    A chain of slips, with gaps of 0.6 to 1.6 periods, scores :math:`\sum (z^2/2 - c)`, found by dynamic programming,
+    for periods from eight samples to a quarter of the signal, and last for the median gap. What is symmetric in time
+    (Gaussian noise of any colour, wobble, hum) scores equally for rises, :math:`-z`; their largest response in a median
+    period gives the cost c, and their score is deducted.
 
     References
     ----------
@@ -141,7 +141,11 @@ def find_slips(signal: Floats, *, spectrum: Floats, sample_interval: float) -> S
         chain = _chain_of_period(weighted, weight, signal.size, size, period)
         if chain.score > best.score:
             best = chain
-    return best
+    if not best.bursts:
+        return best
+    gap = round(float(np.median(np.concatenate([np.diff(burst) for burst in best.bursts]))))
+    matched = _chain_of_period(weighted, weight, signal.size, size, min(max(gap, periods[0]), periods[-1]))
+    return matched if matched.bursts else best
 
 
 def _periods(samples: int, interval: float) -> list[int]:

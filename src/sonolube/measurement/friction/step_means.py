@@ -140,8 +140,8 @@ def mean_of_parts(
     .. math:: F = \mu_j + \sum_k (a_k \cos k\theta + b_k \sin k\theta) + c\,e^{-(t - t_0)/\tau} + d\,t + s_j(t) ,
 
     with a level for each part j, the harmonics of the rotation, run-in and drift where they exceed 3.5 standard errors,
-    and the sawteeth :math:`s_j` of the bursts of stick-slip with their shift of the level. The mean of a part is its level
-    with drift and with the share of the bursts' shifts, without run-in and wobble. Its standard error follows from
+    and the sawteeth :math:`s_j` of the bursts of stick-slip with their shift of the level. The mean of a part is its
+    level with drift and with the share of the bursts' shifts, without run-in and wobble. Its standard error follows from
     `correlated_regression` of what remains, weighted where the noise differs between parts.
     """
     values = parts.averaged(parts.forces)
@@ -183,7 +183,7 @@ def _fitted(
 def _fixed_columns(
     parts: SampledParts, waves: Sequence[Floats] | None, nuisances: Sequence[tuple[Floats, Floats]]
 ) -> tuple[list[Floats], int]:
-    """Return the averaged columns of levels, wobble, sawteeth and shifts, one matrix a part, and the number of shifts."""
+    """Return the averaged columns of levels, wobble, sawteeth and shifts, a matrix a part, and the number of shifts."""
     count = len(parts.times)
     teeth, shifts = (sum(own[k].shape[1] for own in nuisances) for k in range(2))
     columns, tooth, shift = [], 0, 0
@@ -225,7 +225,7 @@ def _burst_columns(t: Floats, stick_slip: StickSlipEstimate) -> tuple[Floats, Fl
 def _drift_columns(
     parts: SampledParts, values: Sequence[Floats], fixed: Sequence[Floats], onset: float
 ) -> list[Floats]:
-    """Return the averaged columns of linear drift, and of the run-in that fits best with its change by time constant."""
+    """Return the averaged columns of linear drift, of the run-in that fits best, and of its change by time constant."""
     times = parts.averaged(parts.times)
     first, last = times[0][0], times[-1][-1]
     linear = [(t - (first + last) / 2) / (last - first) for t in times]

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -115,11 +116,11 @@ def estimate_stick_slip(
 
     Notes
     -----
-    Slips are found by `find_slips`: a matched filter, which at a standard deviation of the noise of half the fall detects
-    ten slips of fifty samples a period. The fall of each slip is the rise of the force over the stick phase after it, the
-    slope of a line fitted with weights :math:`(1 - x^2)^2` that vanish at the slips, times its duration: a difference of
-    maximum and minimum would add the range of the noise, and the weights leave out the ringing of the sensor. The
-    interval is Student's of the mean over the stick phases, with the covariance of neighbours, which share a slip.
+    Slips are found by `find_slips`: a matched filter, which at a standard deviation of the noise of half the fall
+    detects ten slips of fifty samples a period. The fall is the mean rise of the force over the stick phases between
+    slips: the slope of a line fitted with weights :math:`(1 - x^2)^2` that vanish at the slips, times the duration. A
+    difference of maximum and minimum would add the range of the noise; the weights leave out the ringing of the sensor.
+    The interval is Student's of the mean over the stick phases, with the covariance of neighbours, which share a slip.
 
     A period of fewer than eight samples does not show its shape: there a spectral line of half the variance passes for
     stick-slip, its fall being the peak-to-peak value; D's 400 Hz resolve its 100 Hz by no more than four samples.
@@ -195,7 +196,9 @@ def _estimate(
     elif frequency * interval > _UNRESOLVED and share > _LINE_SHARE:
         found = _by_line(t, signal, frequency)
     else:
-        reason = f"falls of the force recur no more than noise explains (score {chain.score:.3g} of {DETECTION_SCORE:g})"
+        reason = (
+            f"falls of the force recur no more than noise explains (score {chain.score:.3g} of {DETECTION_SCORE:g})"
+        )
         return not_detected(f"{reason}; the spectrum peaks at {frequency:.3g} Hz", frequency)
     if not found.stick_slip_amplitude > minimum:
         return not_detected(f"the force falls by {found.stick_slip_amplitude:.3g} N only", frequency)
@@ -242,7 +245,7 @@ def _falls(signal: Floats, bursts: Sequence[Indices]) -> tuple[Floats, float]:
     """Return the rise over each stick phase between slips, and the standard deviation of the noise about the lines."""
     rises, squares, count = [], 0.0, 0
     for burst in bursts:
-        for first, last in zip(burst[:-1], burst[1:], strict=True):
+        for first, last in pairwise(burst):
             part = signal[first:last]
             x = (2 * np.arange(part.size) + 1) / part.size - 1
             weight = (1 - x**2) ** 2

@@ -229,7 +229,7 @@ def rotation_speed_at_voltage_steps(
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class _FoundSteps:
-    """Steps of a voltage: sample ranges, settled parts, levels, the change that begins one, and the begin of sliding."""
+    """Steps of a voltage: sample ranges, settled parts, levels, the change that begins one, and the sliding onset."""
 
     steps: list[tuple[int, int]]
     settled: list[slice]
@@ -257,7 +257,7 @@ def _found_steps(
 
 
 def _sliding_onset(t: Floats, f: Floats, first: int, last: int) -> int:
-    """Return the sample of the first step at which sliding begins: the first where the force stays above half its level."""
+    """Return the sample of the first step from which the force stays above half its level."""
     part = np.where(np.isfinite(f[first:last]), f[first:last], 0.0)
     size = max(1, part.size // _ONSET_SECTIONS)
     sections = np.median(part[: part.size // size * size].reshape(-1, size), axis=1)

@@ -44,10 +44,10 @@ def find_rotation_speed(times: Sequence[Floats], forces: Sequence[Floats], *, ha
 
     Notes
     -----
-    At each frequency the power P is that explained by cosine and sine beside the means of the parts, and the noise S its
-    running median. The sum of :math:`P/S` over the harmonics must exceed 50, and the wobble must improve the fit in parts
-    of 70 % of the time with one amplitude and phase: stick-slip keeps no phase over a recording. Of equally good speeds
-    the highest is taken, since subharmonics explain as much. Sought are 2 turns per recording to 5 turns per second.
+    At each frequency the power P is that explained by cosine and sine beside the means of the parts, and the noise S
+    its running median. The sum of :math:`P/S` over the harmonics must exceed 50, and the wobble must improve the fit in
+    70 % of the time with one amplitude and phase: stick-slip keeps no phase over a recording. Of equally good speeds the
+    highest is taken, since subharmonics explain as much. Sought are 2 turns per recording to 5 turns per second.
     """
     t, y = np.concatenate(times), np.concatenate([force - force.mean() for force in forces])
     duration = float(t[-1] - t[0])
@@ -61,7 +61,7 @@ def find_rotation_speed(times: Sequence[Floats], forces: Sequence[Floats], *, ha
         return None
     index = np.arange(slowest, fastest)
     total = np.sum([relative[order * index] for order in range(1, harmonics + 1)], axis=0)
-    candidates = []
+    candidates: list[float] = []
     while len(candidates) < _CANDIDATES and total.max() > _SIGNIFICANCE:
         best = int(np.argmax(total))
         candidates.append(refined_speed(times, forces, float(frequency[index[best]]), harmonics=harmonics))

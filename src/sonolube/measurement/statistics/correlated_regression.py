@@ -91,7 +91,7 @@ def correlated_regression(values: Sequence[Floats], designs: Sequence[Floats]) -
     innovations = tuple(part[:, 0] - part[:, 1:] @ solution for part in white)
     variance = sum(float(e @ e) for e in innovations) / (rows - columns)
     return CorrelatedRegression(
-        coefficients=solution,
+        coefficients=np.asarray(solution, dtype=np.float64),
         covariance=variance * np.linalg.inv(whole[:, 1:].T @ whole[:, 1:]),
         autoregression=phi,
         moving_average=theta,

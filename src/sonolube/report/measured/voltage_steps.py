@@ -91,8 +91,8 @@ def _unknown_rotation(steps: Sequence[VoltageStep]) -> str:
     """Caveat that no wobble was taken off."""
     duration = format_si(steps[-1].end_time - steps[0].start_time, "s")
     return (
-        f"no rotation was found in the friction over {duration}, and no wobble taken off: give the rotational speed if the "
-        "disc turns slower than twice in that time"
+        f"no rotation was found in the friction over {duration}, and no wobble taken off: give the rotational speed "
+        "if the disc turns fewer than twice in that time"
     )
 
 
