@@ -115,8 +115,8 @@ def _sample_measures(records: Sequence[Record]) -> list[Measure]:
 
 STUDY = Study(
     title="Detection of stick-slip at voltage steps",
-    question="Ten to sixty slips of 160 mN at one step, with wobble and a ringing sensor, are detected up to a noise of "
-    "half the fall, with the fall within its interval. Periods have fifty samples at least and scatter by 10 %.",
+    question="Ten to sixty slips of 160 mN at one step, with wobble and a ringing sensor, are detected up to a noise "
+    "of half the fall, with the fall within its interval. Periods have fifty samples at least and scatter by 10 %.",
     sources=("measurement/friction/*.py",),
     trials=480,
     sample=6,

@@ -141,7 +141,7 @@ def mean_of_parts(
 
     with a level for each part j, the harmonics of the rotation, run-in and drift where they exceed 3.5 standard errors,
     and the sawteeth :math:`s_j` of the bursts of stick-slip with their shift of the level. The mean of a part is its
-    level with drift and with the share of the bursts' shifts, without run-in and wobble. Its standard error follows from
+    level with drift and with the share of the bursts' shifts, without run-in and wobble. Its standard error is from
     `correlated_regression` of what remains, weighted where the noise differs between parts.
     """
     values = parts.averaged(parts.forces)

@@ -46,8 +46,8 @@ def find_rotation_speed(times: Sequence[Floats], forces: Sequence[Floats], *, ha
     -----
     At each frequency the power P is that explained by cosine and sine beside the means of the parts, and the noise S
     its running median. The sum of :math:`P/S` over the harmonics must exceed 50, and the wobble must improve the fit in
-    70 % of the time with one amplitude and phase: stick-slip keeps no phase over a recording. Of equally good speeds the
-    highest is taken, since subharmonics explain as much. Sought are 2 turns per recording to 5 turns per second.
+    70 % of the time with one amplitude and phase: stick-slip keeps no phase over a recording. Of equally good speeds
+    the highest is taken, since subharmonics explain as much. Sought are 2 turns per recording to 5 turns per second.
     """
     t, y = np.concatenate(times), np.concatenate([force - force.mean() for force in forces])
     duration = float(t[-1] - t[0])
