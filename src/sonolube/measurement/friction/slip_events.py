@@ -25,6 +25,8 @@ _LEAST_RESPONSE = 1.5
 _EVENT_COST = 1.0  # beyond that of the largest rise in a period
 _RISE_SPREAD = 6.0  # square of a rise over the further cost, against the random walk of scores of large symmetric waves
 _RISE_RATIO = 1.5  # of the scores of falls and rises, which are equal for whatever is symmetric in time
+_FILLED = 0.7  # of the signal, by slips that are sought without a spectrum of the noise
+_CLEAR_GAIN = 15.0  # score of each of them; noise with memory stays below
 _WEAKEST = 0.5  # of the median response of a chain, below which its first and last slips are noise
 _FEWEST = 4  # slips in a chain
 _FLOOR = 1e-4  # least power of the noise over that of the signal, where a recording is free of noise
@@ -124,16 +126,29 @@ def find_slips(signal: Floats, *, spectrum: Floats, sample_interval: float) -> S
     A chain of slips, with gaps of 0.6 to 1.6 periods, scores :math:`\sum (z^2/2 - c)`, found by dynamic programming,
     for periods from eight samples to a quarter of the signal, and last for the median gap. What is symmetric in time
     (Gaussian noise of any colour, wobble, hum) scores equally for rises, :math:`-z`; their largest response in a median
-    period gives the cost c, and their score is deducted.
+    period gives the cost c, and their score is deducted. Where nothing is found, S is taken as flat, for clear
+    stick-slip that fills the signal and would be part of its own noise.
 
     References
     ----------
     .. [1] G. L. Turin, IRE Trans. Inf. Theory 6, 311 (1960). doi:10.1109/TIT.1960.1057571
     """
-    best = SlipChain(bursts=(), period=0, score=0.0)
     periods = _periods(signal.size, sample_interval)
     if not periods:
+        return SlipChain(bursts=(), period=0, score=0.0)
+    flat = np.full(spectrum.size, np.median(spectrum[spectrum.size // 2 :]))
+    best = _best_of_periods(signal, spectrum, periods)
+    if best.bursts:
         return best
+    clear = _best_of_periods(signal, flat, periods)
+    slips = sum(burst.size for burst in clear.bursts)
+    span = sum(int(burst[-1] - burst[0]) for burst in clear.bursts)
+    return clear if span >= _FILLED * signal.size and clear.score >= _CLEAR_GAIN * slips else best
+
+
+def _best_of_periods(signal: Floats, spectrum: Floats, periods: Sequence[int]) -> SlipChain:
+    """Return the chains of the template with the highest score, and then of that for their median gap."""
+    best = SlipChain(bursts=(), period=0, score=0.0)
     size = 1 << int(np.ceil(np.log2(signal.size + 2 * periods[-1])))
     weight = 1 / np.interp(np.fft.rfftfreq(size), np.linspace(0, 0.5, spectrum.size), spectrum)
     weighted = np.fft.rfft(signal, size) * weight

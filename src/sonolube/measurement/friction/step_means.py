@@ -199,10 +199,10 @@ def _fixed_columns(
 
 
 def _burst_columns(t: Floats, stick_slip: StickSlipEstimate) -> tuple[Floats, Floats]:
-    """Return the sawtooth of the bursts of a part, that of the cycles at their ends, and the time within them."""
+    """Return the sawtooth of the bursts of a part, that of the cycles at each end, and the time within them."""
     times = [stick_slip.slip_time[(stick_slip.slip_time <= burst.end_time)] for burst in stick_slip.bursts]
     times = [s[s >= burst.start_time] for s, burst in zip(times, stick_slip.bursts, strict=True)]
-    whole, ends, within = np.zeros(t.size), np.zeros(t.size), np.zeros(t.size)
+    whole, before, after, within = np.zeros((4, t.size))
     for slips in times:
         if slips.size < 2:
             continue
@@ -212,11 +212,12 @@ def _burst_columns(t: Floats, stick_slip: StickSlipEstimate) -> tuple[Floats, Fl
         inside = (cycle >= 0) & (cycle < knots.size - 1)
         start, end = knots[cycle[inside]], knots[cycle[inside] + 1]
         rise = (t[inside] - start) / (end - start) - 0.5
-        outer = (cycle[inside] == 0) | (cycle[inside] == knots.size - 2)
-        whole[inside] = np.where(outer, 0.0, rise)
-        ends[inside] = np.where(outer, rise, 0.0)
+        first, last = cycle[inside] == 0, cycle[inside] == knots.size - 2
+        whole[inside] = np.where(first | last, 0.0, rise)
+        before[inside] = np.where(first, rise, 0.0)
+        after[inside] = np.where(last, rise, 0.0)
         within[inside] = 1.0
-    teeth = [column for column in (whole, ends) if np.any(column)]
+    teeth = [column for column in (whole, before, after) if np.any(column)]
     share = float(within.mean())
     shift = [within] if _LEAST_SHARE < share < 1 - _LEAST_SHARE else []
     return np.reshape(teeth, (-1, t.size)).T, np.reshape(shift, (-1, t.size)).T

@@ -21,6 +21,7 @@ _UNRESOLVED = 1 / 8  # of the sampling rate, above which a period has too few sa
 _LINE_SHARE = 0.5  # of the variance, in a spectral line of unresolved stick-slip
 _CLEAR = 8.0  # falls over the noise from which the duration of a slip is measured
 _HALF = 0.5  # of the median fall, from which a slip at the end of a burst is one
+_TIMING = 20  # of a gap, over which a slip may be moved to where the force falls
 _OVERSHOOT = 0.8  # of the fall below its middle
 _PROFILE = 0.25  # of a period, before and after a slip
 
@@ -210,6 +211,7 @@ def _by_slips(t: Floats, signal: Floats, bursts: Sequence[Indices], spectral: fl
     falls, noise = _falls(signal, bursts)
     if noise * _CLEAR < np.median(falls):
         bursts = [_without_false_ends(signal, burst, _HALF * float(np.median(falls))) for burst in bursts]
+        bursts = [_at_steepest(signal, burst) for burst in bursts]
         falls, noise = _falls(signal, bursts)
     gaps = np.concatenate([np.diff(burst) for burst in bursts])
     if noise * _CLEAR < np.mean(falls):
@@ -261,6 +263,20 @@ def _without_false_ends(signal: Floats, burst: Indices, least: float) -> Indices
     """Return a burst without slips at its ends whose stick phase rises too little, such as the ringing of the last."""
     enough = np.flatnonzero(_falls(signal, [burst])[0] >= least)
     return burst[enough[0] : enough[-1] + 2] if enough.size > 1 else burst
+
+
+def _at_steepest(signal: Floats, burst: Indices) -> Indices:
+    """Return the slips of a burst moved to the middle of the fall between the lines before and after it."""
+    gap = int(np.median(np.diff(burst)))
+    reach, half = max(2, gap // _TIMING), gap // 4
+    position = np.arange(-half, half) + 0.5
+    shape = np.sign(-position) / 2 + position / gap
+    moved = burst.copy()
+    for number, slip in enumerate(burst):
+        if reach + half <= slip <= signal.size - reach - half:
+            match = np.correlate(signal[slip - reach - half : slip + reach + half] - signal[slip], shape, "valid")
+            moved[number] = slip - reach + int(np.argmax(match))
+    return moved
 
 
 def _standard_error(falls: Floats) -> float:
