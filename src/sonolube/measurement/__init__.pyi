@@ -6,6 +6,7 @@ from .friction.loops import (
 )
 from .friction.motor_current import (
     MotorCalibration as MotorCalibration,
+    MotorFrictionTrace as MotorFrictionTrace,
     friction_from_motor_current as friction_from_motor_current,
 )
 from .friction.reduction import (
@@ -54,7 +55,6 @@ from .friction.wobble_search import (
 )
 from .friction_analysis import (
     FrictionCycles as FrictionCycles,
-    MotorFrictionTrace as MotorFrictionTrace,
     RunningIn as RunningIn,
     analyse_cycles as analyse_cycles,
     analyse_motor_current as analyse_motor_current,

@@ -6,7 +6,11 @@ from typing import TYPE_CHECKING
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, suggestion
 from sonolube.measurement.friction.loops import FrictionLoops, FrictionWork, friction_loops, friction_work
-from sonolube.measurement.friction.motor_current import MotorCalibration, friction_from_motor_current
+from sonolube.measurement.friction.motor_current import (
+    MotorCalibration,
+    MotorFrictionTrace,
+    friction_from_motor_current,
+)
 from sonolube.measurement.friction.rotation import DiscRotation, disc_rotation, hall_pulse_times, revolutions_at
 from sonolube.measurement.friction.running_in import SteadyStateOnset, steady_state_onset
 from sonolube.measurement.friction.stick_slip import StickSlipEstimate, estimate_stick_slip
@@ -56,25 +60,6 @@ class FrictionCycles:
 
     work: FrictionWork
     loops: FrictionLoops | None
-
-
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class MotorFrictionTrace:
-    """Friction force over time from the motor current.
-
-    Parameters
-    ----------
-    time : ndarray, shape (windows,)
-        Middle of each window. [s]
-    friction_force : ndarray, shape (windows,)
-        Mean in each window. [N]
-    friction_force_uncertainty : ndarray, shape (windows,)
-        Standard uncertainty, including the scatter of the current in the window. [N]
-    """
-
-    time: Floats
-    friction_force: Floats
-    friction_force_uncertainty: Floats
 
 
 def channel_values(recording: "xr.Dataset", name: str) -> Floats:

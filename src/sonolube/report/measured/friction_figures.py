@@ -7,10 +7,10 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.figure import COLOURS, MARKERS
+from sonolube.measurement.friction.motor_current import MotorFrictionTrace
 from sonolube.measurement.friction.running_in import SteadyStateOnset
 from sonolube.measurement.friction.voltage_steps import VoltageStep
 from sonolube.measurement.friction.windows import WindowStatistics
-from sonolube.measurement.friction_analysis import MotorFrictionTrace
 from sonolube.report.measured.sheet import captioned
 from sonolube.vocabulary import quantities
 
