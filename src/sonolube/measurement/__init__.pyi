@@ -6,6 +6,7 @@ from .friction.loops import (
 )
 from .friction.motor_current import (
     MotorCalibration as MotorCalibration,
+    MotorFrictionTrace as MotorFrictionTrace,
     friction_from_motor_current as friction_from_motor_current,
 )
 from .friction.reduction import (
@@ -19,10 +20,25 @@ from .friction.rotation import (
     revolutions_at as revolutions_at,
 )
 from .friction.running_in import SteadyStateOnset as SteadyStateOnset, steady_state_onset as steady_state_onset
-from .friction.stick_slip import StickSlipEstimate as StickSlipEstimate, estimate_stick_slip as estimate_stick_slip
+from .friction.slip_events import SlipChain as SlipChain, find_slips as find_slips, noise_spectra as noise_spectra
+from .friction.step_means import (
+    SampledParts as SampledParts,
+    StepMeans as StepMeans,
+    mean_of_parts as mean_of_parts,
+    sampled_parts as sampled_parts,
+    without_wobble as without_wobble,
+    wobble_columns as wobble_columns,
+)
+from .friction.stick_slip import (
+    StickSlipBurst as StickSlipBurst,
+    StickSlipEstimate as StickSlipEstimate,
+    estimate_stick_slip as estimate_stick_slip,
+    stick_slip_of_parts as stick_slip_of_parts,
+)
 from .friction.voltage_steps import (
     VoltageStep as VoltageStep,
     friction_at_voltage_steps as friction_at_voltage_steps,
+    rotation_speed_at_voltage_steps as rotation_speed_at_voltage_steps,
     voltage_envelope as voltage_envelope,
 )
 from .friction.windows import (
@@ -32,13 +48,18 @@ from .friction.windows import (
     window_statistics as window_statistics,
 )
 from .friction.wobble import WobbleCorrection as WobbleCorrection, remove_wobble as remove_wobble
+from .friction.wobble_search import (
+    find_rotation_speed as find_rotation_speed,
+    harmonic_columns as harmonic_columns,
+    refined_speed as refined_speed,
+)
 from .friction_analysis import (
     FrictionCycles as FrictionCycles,
-    MotorFrictionTrace as MotorFrictionTrace,
     RunningIn as RunningIn,
     analyse_cycles as analyse_cycles,
     analyse_motor_current as analyse_motor_current,
     analyse_rotation as analyse_rotation,
+    analyse_rotation_speed as analyse_rotation_speed,
     analyse_running_in as analyse_running_in,
     analyse_stick_slip as analyse_stick_slip,
     analyse_voltage_steps as analyse_voltage_steps,
@@ -95,6 +116,10 @@ from .statistics.autocorrelation import (
     correlated_mean as correlated_mean,
     correlation_time as correlation_time,
     statistical_inefficiency as statistical_inefficiency,
+)
+from .statistics.correlated_regression import (
+    CorrelatedRegression as CorrelatedRegression,
+    correlated_regression as correlated_regression,
 )
 from .statistics.log_parameter_fit import (
     ConfidenceInterval as ConfidenceInterval,

@@ -6,11 +6,20 @@ from typing import TYPE_CHECKING
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, suggestion
 from sonolube.measurement.friction.loops import FrictionLoops, FrictionWork, friction_loops, friction_work
-from sonolube.measurement.friction.motor_current import MotorCalibration, friction_from_motor_current
+from sonolube.measurement.friction.motor_current import (
+    MotorCalibration,
+    MotorFrictionTrace,
+    friction_from_motor_current,
+)
 from sonolube.measurement.friction.rotation import DiscRotation, disc_rotation, hall_pulse_times, revolutions_at
 from sonolube.measurement.friction.running_in import SteadyStateOnset, steady_state_onset
 from sonolube.measurement.friction.stick_slip import StickSlipEstimate, estimate_stick_slip
-from sonolube.measurement.friction.voltage_steps import VoltageStep, friction_at_voltage_steps, voltage_envelope
+from sonolube.measurement.friction.voltage_steps import (
+    VoltageStep,
+    friction_at_voltage_steps,
+    rotation_speed_at_voltage_steps,
+    voltage_envelope,
+)
 from sonolube.measurement.friction.windows import DEFAULT_WINDOW_DURATION, WindowStatistics, window_statistics
 from sonolube.measurement.friction.wobble import WobbleCorrection, remove_wobble
 
@@ -51,25 +60,6 @@ class FrictionCycles:
 
     work: FrictionWork
     loops: FrictionLoops | None
-
-
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class MotorFrictionTrace:
-    """Friction force over time from the motor current.
-
-    Parameters
-    ----------
-    time : ndarray, shape (windows,)
-        Middle of each window. [s]
-    friction_force : ndarray, shape (windows,)
-        Mean in each window. [N]
-    friction_force_uncertainty : ndarray, shape (windows,)
-        Standard uncertainty, including the scatter of the current in the window. [N]
-    """
-
-    time: Floats
-    friction_force: Floats
-    friction_force_uncertainty: Floats
 
 
 def channel_values(recording: "xr.Dataset", name: str) -> Floats:
@@ -163,9 +153,14 @@ def analyse_running_in(
 
 
 def analyse_voltage_steps(
-    recording: "xr.Dataset", *, shortest_step: float = 1.0, settling_time: float = 0.5
+    recording: "xr.Dataset",
+    *,
+    shortest_step: float = 1.0,
+    settling_time: float = 0.5,
+    rotation: DiscRotation | None = None,
+    rotation_speed: float | None = None,
 ) -> tuple[VoltageStep, ...]:
-    """Return the friction and its reduction at each step of the drive voltage.
+    """Return friction, its reduction and stick-slip at each step of the drive voltage.
 
     Parameters
     ----------
@@ -175,10 +170,19 @@ def analyse_voltage_steps(
         Duration in seconds below which a level is a transition, not a step.
     settling_time : float
         Left out at the beginning of each step. [s]
+    rotation : DiscRotation or None
+        From `analyse_rotation`, to take off the wobble of the disc.
+    rotation_speed : float or None
+        Instead of it, where the speed is constant; found in the friction without both. [1/s]
 
     Returns
     -------
     tuple of VoltageStep
+
+    Raises
+    ------
+    InvalidInput
+        If both `rotation` and `rotation_speed` are given, or as `friction_at_voltage_steps`.
 
     See Also
     --------
@@ -189,14 +193,49 @@ def analyse_voltage_steps(
     .. [1] D 4.1.2, figure 4.3, Table 4.2.
     """
     t = channel_values(recording, "time")
-    if "voltage_peak_to_peak" in recording:
-        u = channel_values(recording, "voltage_peak_to_peak")
-    else:
-        u = voltage_envelope(time=t, stack_voltage=channel_values(recording, "stack_voltage"))
-    f = channel_values(recording, "friction_force")
+    if rotation is not None and rotation_speed is not None:
+        raise InvalidInput("give either rotation, from the pulses, or a constant rotation_speed")
+    revolutions = None if rotation is None else revolutions_at(rotation, time=t)
     return friction_at_voltage_steps(
-        time=t, friction_force=f, voltage_peak_to_peak=u, shortest_step=shortest_step, settling_time=settling_time
+        time=t,
+        friction_force=channel_values(recording, "friction_force"),
+        voltage_peak_to_peak=_voltage(recording),
+        shortest_step=shortest_step,
+        settling_time=settling_time,
+        revolutions=revolutions if rotation_speed is None else rotation_speed * (t - t[0]),
     )
+
+
+def analyse_rotation_speed(recording: "xr.Dataset") -> float | None:
+    """Return the rotational speed of the disc by the wobble in its friction at voltage steps; None where unknown. [1/s]
+
+    Parameters
+    ----------
+    recording : xarray.Dataset
+        With `friction_force`, and `voltage_peak_to_peak` or the alternating `stack_voltage`.
+
+    Returns
+    -------
+    float or None
+
+    See Also
+    --------
+    rotation_speed_at_voltage_steps : of arrays.
+    analyse_rotation : from a Hall probe.
+    """
+    return rotation_speed_at_voltage_steps(
+        time=channel_values(recording, "time"),
+        friction_force=channel_values(recording, "friction_force"),
+        voltage_peak_to_peak=_voltage(recording),
+    )
+
+
+def _voltage(recording: "xr.Dataset") -> Floats:
+    """Return the peak-to-peak voltage of a recording, from the alternating voltage where it is not recorded."""
+    if "voltage_peak_to_peak" in recording:
+        return channel_values(recording, "voltage_peak_to_peak")
+    stack_voltage = channel_values(recording, "stack_voltage")
+    return voltage_envelope(time=channel_values(recording, "time"), stack_voltage=stack_voltage)
 
 
 def analyse_cycles(recording: "xr.Dataset") -> FrictionCycles:
@@ -230,14 +269,14 @@ def analyse_cycles(recording: "xr.Dataset") -> FrictionCycles:
 
 
 def analyse_stick_slip(recording: "xr.Dataset", *, minimum_drop: float | None = None) -> StickSlipEstimate:
-    """Return frequency and amplitude of stick-slip.
+    """Return whether there is stick-slip, its frequency, the fall of the force in a slip, and when it happens.
 
     Parameters
     ----------
     recording : xarray.Dataset
         With `friction_force`, without gaps.
     minimum_drop : float or None
-        Smallest force drop, in N, that counts as a slip.
+        Smallest mean fall, in N, that counts as stick-slip.
 
     Returns
     -------
@@ -246,6 +285,7 @@ def analyse_stick_slip(recording: "xr.Dataset", *, minimum_drop: float | None = 
     See Also
     --------
     estimate_stick_slip : of arrays.
+    analyse_voltage_steps : in a recording with steps of the voltage.
 
     References
     ----------

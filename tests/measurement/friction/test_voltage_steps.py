@@ -5,7 +5,12 @@ import xarray as xr
 from pytest import approx, raises
 
 from sonolube.errors import InvalidInput
-from sonolube.measurement.friction.voltage_steps import friction_at_voltage_steps, voltage_envelope
+from sonolube.measurement.friction.voltage_steps import (
+    VoltageStep,
+    friction_at_voltage_steps,
+    rotation_speed_at_voltage_steps,
+    voltage_envelope,
+)
 from sonolube.measurement.friction_analysis import analyse_voltage_steps
 
 RATE = 400.0  # Hz, D 2.3.2
@@ -68,3 +73,63 @@ def test_the_envelope_of_a_sine_is_its_peak_to_peak_value() -> None:
     t = seconds(2, 10_000)
     envelope = voltage_envelope(time=t, stack_voltage=3 + 4 * np.sin(2 * np.pi * 331 * t))
     assert envelope == approx(8.0, rel=1e-2)
+
+
+def stepped(
+    seed: int, *, speed: float = 1 / 1.34, noise: float = 0.005, revolutions: bool = False
+) -> list[VoltageStep]:
+    """Steps of D 4.1.2 with a wobble of 60 and 24 mN and two bursts of stick-slip of 160 mN, at 1 kHz."""
+    t, force, volts = published_voltage_steps(1000.0)
+    force = force + 0.060 * np.cos(2 * np.pi * speed * t + seed) + 0.024 * np.cos(4 * np.pi * speed * t)
+    for start, end in ((17.5, 19.0), (25.5, 27.0)):
+        force += np.where((t >= start) & (t < end), 0.160 * ((10 * (t - start)) % 1 - 0.5), 0.0)
+    force += noise * np.random.default_rng(seed).standard_normal(t.size)
+    turned = speed * t if revolutions else None
+    return list(friction_at_voltage_steps(time=t, friction_force=force, voltage_peak_to_peak=volts, revolutions=turned))
+
+
+def test_means_and_reductions_under_wobble_and_stick_slip_err_by_as_much_as_is_stated() -> None:
+    means, reductions = [], []
+    for seed in range(12):
+        steps = stepped(seed, revolutions=seed % 2 == 0)
+        means += [(s.friction_force - f) / s.friction_force_uncertainty for s, f in zip(steps, FORCES, strict=True)]
+        reductions += [
+            ((s.friction_reduction or 0) - 1 + f / FORCES[0]) / (s.friction_reduction_uncertainty or 1)
+            for s, f in zip(steps[1:], FORCES[1:], strict=True)
+        ]
+    assert np.sqrt(np.mean(np.square(means))) == approx(1.0, abs=0.3)
+    assert np.sqrt(np.mean(np.square(reductions))) == approx(1.0, abs=0.3)
+
+
+def test_stick_slip_is_found_at_the_steps_that_have_it_and_when() -> None:
+    steps = stepped(1, noise=0.01)
+    assert [step.stick_slip.detected for step in steps] == [False, False, True, False, True, False]
+    (burst,) = steps[2].stick_slip.bursts
+    assert burst.start_time == approx(17.5, abs=0.11)  # a period
+    assert burst.end_time == approx(19.0, abs=0.11)
+    assert steps[4].stick_slip.stick_slip_frequency == approx(10, rel=0.01)
+    assert steps[4].stick_slip.stick_slip_fraction == approx(1.5 / 3.45, abs=0.05)
+
+
+def test_a_step_shorter_than_a_turn_is_less_certain() -> None:
+    slow, fast = stepped(2, speed=0.11, revolutions=True), stepped(2, revolutions=True)
+    assert slow[1].friction_force_uncertainty > 1.05 * fast[1].friction_force_uncertainty
+    assert slow[1].friction_force == approx(0.85, abs=5 * slow[1].friction_force_uncertainty)
+
+
+def test_rest_before_the_motor_starts_and_a_run_in_leave_the_steady_mean() -> None:
+    t, force, volts = published_voltage_steps(1000.0)
+    force = np.where(t < 0.9, 0.0, force + 0.2 * np.exp(-(t - 0.9) / 1.5))
+    force += 0.005 * np.random.default_rng(3).standard_normal(t.size)
+    first = friction_at_voltage_steps(time=t, friction_force=force, voltage_peak_to_peak=volts)[0]
+    assert first.friction_force == approx(0.89, abs=4 * first.friction_force_uncertainty)
+    assert first.friction_force_uncertainty < 1e-3
+
+
+def test_the_speed_of_the_disc_is_found_in_the_friction() -> None:
+    t, force, volts = published_voltage_steps()
+    wobbling = force + 0.03 * np.sin(2 * np.pi * t / 1.34)
+    found = rotation_speed_at_voltage_steps(time=t, friction_force=wobbling, voltage_peak_to_peak=volts)
+    assert found == approx(1 / 1.34, rel=1e-3)
+    noise = force + 0.03 * np.random.default_rng(4).standard_normal(t.size)
+    assert rotation_speed_at_voltage_steps(time=t, friction_force=noise, voltage_peak_to_peak=volts) is None

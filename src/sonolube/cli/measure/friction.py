@@ -43,7 +43,10 @@ def friction(
     ] = None,
     speed: Annotated[float | None, si_option("m/s", "For the distance to the steady state.", "--sliding-speed")] = None,
     window: Annotated[float, si_option("s", "Duration of the windows.")] = TypedNumber("2s", "s"),
-    turns: Annotated[float | None, si_option("1/s", "Of the disc, to remove its wobble.", "--rotation-speed")] = None,
+    turns: Annotated[
+        float | None,
+        si_option("1/s", "Of the disc, to remove its wobble; without it found at voltage steps.", "--rotation-speed"),
+    ] = None,
     torque: Annotated[
         float | None, si_option("N m/A", "Of the motor, such as '0.5 N m/A'.", "--torque-constant", metavar="QUANTITY")
     ] = None,

@@ -47,6 +47,25 @@ class MotorCalibration:
         )
 
 
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class MotorFrictionTrace:
+    """Friction force over time from the motor current.
+
+    Parameters
+    ----------
+    time : ndarray, shape (windows,)
+        Middle of each window. [s]
+    friction_force : ndarray, shape (windows,)
+        Mean in each window. [N]
+    friction_force_uncertainty : ndarray, shape (windows,)
+        Standard uncertainty, including the scatter of the current in the window. [N]
+    """
+
+    time: Floats
+    friction_force: Floats
+    friction_force_uncertainty: Floats
+
+
 def friction_from_motor_current(
     motor: MotorCalibration, *, motor_current: ArrayLike, motor_current_uncertainty: ArrayLike = 0.0
 ) -> tuple[Floats, Floats]:

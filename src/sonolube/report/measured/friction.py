@@ -19,7 +19,6 @@ from sonolube.measurement.friction_analysis import (
     analyse_motor_current,
     analyse_running_in,
     analyse_stick_slip,
-    analyse_voltage_steps,
     analyse_windows,
     analyse_wobble,
     channel_values,
@@ -29,6 +28,7 @@ from sonolube.measurement.recordings.reader import read_recording, recording_for
 from sonolube.measurement.recordings.tdms import TDMS_FORMAT as TDMS
 from sonolube.measurement.statistics.autocorrelation import correlated_mean
 from sonolube.report.measured import friction_figures as figures, sheet
+from sonolube.report.measured.voltage_steps import step_sheet
 from sonolube.units import format_si
 
 if TYPE_CHECKING:
@@ -36,16 +36,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _LARGE = 1 << 29  # bytes of a TDMS file beyond which it is read in blocks, for its windows only
-_STEP_LABELS = {
-    "voltage_peak_to_peak": "Voltage",
-    "start_time": "From",
-    "end_time": "To",
-    "friction_force": "Friction",
-    "friction_force_deviation": "Deviation",
-    "friction_force_uncertainty": "Standard error",
-    "friction_reduction": "Reduction",
-    "friction_reduction_uncertainty": "Uncertainty",
-}
 _CHANNELS = ("friction_force", "friction_coefficient")
 
 
@@ -161,9 +151,7 @@ def _sections(recording: "xr.Dataset", settings: FrictionSettings) -> list[sheet
         )
         steady = _steady_state_or_none(windows, settings.sliding_speed)
     sections.append(_windows(recording, windows, steady))
-    if {"voltage_peak_to_peak", "stack_voltage"} & set(map(str, recording.variables)):
-        sections.append(sheet.attempted(partial(_voltage_steps, recording), what="steps of the voltage"))
-    sections.append(sheet.attempted(partial(_stick_slip, recording, settings.rotation_speed), what="stick-slip"))
+    sections += _steps_or_stick_slip(recording, settings.rotation_speed)
     if "relative_velocity" in recording.variables:
         sections.append(sheet.attempted(partial(_cycles, recording), what="work of friction"))
     if settings.rotation_speed is not None:
@@ -250,17 +238,13 @@ def _steady_part(friction: SteadyStateOnset, fluctuation: SteadyStateOnset) -> s
     return sheet.Sheet(values=tuple(values), not_found=(f"steady fluctuation: {fluctuation.reason}",))
 
 
-def _voltage_steps(recording: "xr.Dataset") -> sheet.Sheet:
-    """Friction at each step of the voltage, and its reduction."""
-    steps = analyse_voltage_steps(recording)
-    table = sheet.Table(
-        name="steps",
-        title="Friction at each step of the voltage",
-        columns=sheet.quantity_columns(_STEP_LABELS),
-        rows=tuple(tuple(getattr(step, name) for name in _STEP_LABELS) for step in steps),
-    )
-    figure = figures.voltage_steps(steps)
-    return sheet.Sheet(tables=(table,), figures=(figure,))
+def _steps_or_stick_slip(recording: "xr.Dataset", rotation_speed: float | None) -> list[sheet.Sheet]:
+    """Friction and stick-slip at the steps of a voltage; stick-slip of the whole recording where there are none."""
+    whole = sheet.attempted(partial(_stick_slip, recording, rotation_speed), what="stick-slip")
+    if not {"voltage_peak_to_peak", "stack_voltage"} & set(map(str, recording.variables)):
+        return [whole]
+    steps = sheet.attempted(partial(step_sheet, recording, rotation_speed), what="steps of the voltage")
+    return [steps] if steps.tables else [steps, whole]
 
 
 def _stick_slip(recording: "xr.Dataset", rotation_speed: float | None) -> sheet.Sheet:
@@ -271,12 +255,18 @@ def _stick_slip(recording: "xr.Dataset", rotation_speed: float | None) -> sheet.
     stick_slip = analyse_stick_slip(recording)
     if not stick_slip.detected:
         return sheet.Sheet(not_found=(f"stick-slip: {stick_slip.reason}",))
-    amplitude = sheet.quantity_value(
-        "stick_slip_amplitude", stick_slip.stick_slip_amplitude, uncertainty=stick_slip.stick_slip_amplitude_uncertainty
+    values = (
+        sheet.quantity_value("stick_slip_frequency", stick_slip.stick_slip_frequency),
+        sheet.quantity_value(
+            "stick_slip_amplitude",
+            stick_slip.stick_slip_amplitude,
+            uncertainty=stick_slip.stick_slip_amplitude_uncertainty,
+            interval=stick_slip.stick_slip_amplitude_interval,
+        ),
+        sheet.quantity_value("stick_slip_fraction", stick_slip.stick_slip_fraction),
+        sheet.Value("force_drops", "Slips found", float(stick_slip.force_drops), ""),
     )
-    return sheet.Sheet(
-        values=(sheet.quantity_value("stick_slip_frequency", stick_slip.stick_slip_frequency), amplitude)
-    )
+    return sheet.Sheet(values=values)
 
 
 def _cycles(recording: "xr.Dataset") -> sheet.Sheet:

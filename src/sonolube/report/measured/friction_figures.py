@@ -7,10 +7,10 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.figure import COLOURS, MARKERS
+from sonolube.measurement.friction.motor_current import MotorFrictionTrace
 from sonolube.measurement.friction.running_in import SteadyStateOnset
 from sonolube.measurement.friction.voltage_steps import VoltageStep
 from sonolube.measurement.friction.windows import WindowStatistics
-from sonolube.measurement.friction_analysis import MotorFrictionTrace
 from sonolube.report.measured.sheet import captioned
 from sonolube.vocabulary import quantities
 
@@ -87,6 +87,36 @@ def voltage_steps(steps: Sequence[VoltageStep]) -> "Figure":
     right.set(xlabel="voltage, peak to peak (V)", ylabel="friction reduction (%)")
     for axes in (left, right):
         axes.set(xlim=(0, None), ylim=(min(0.0, axes.get_ylim()[0]), 1.06 * axes.get_ylim()[1]))
+    return figure
+
+
+@captioned(
+    "Stick-slip at the steps of the voltage",
+    "Samples in grey with the bursts of stick-slip shaded; mean fall of the force in a slip with its 95 % interval.",
+)
+def stick_slip(time: Floats, force: Floats, steps: Sequence[VoltageStep]) -> "Figure":
+    """Friction over time with the bursts of stick-slip, and the fall in a slip over the voltage."""
+    import matplotlib.pyplot as plt
+
+    figure, (left, right) = plt.subplots(1, 2, figsize=_WIDE, width_ratios=(2, 1))
+    middle, low, high = _envelope(time, force)
+    left.fill_between(middle, low, high, color="0.7", linewidth=0.4)
+    found = [step for step in steps if step.stick_slip.detected]
+    for burst in (burst for step in found for burst in step.stick_slip.bursts):
+        left.axvspan(burst.start_time, burst.end_time, color=COLOURS[1], alpha=0.35, linewidth=0)
+    falls = np.array([1e3 * step.stick_slip.stick_slip_amplitude for step in found])
+    ends = np.array([step.stick_slip.stick_slip_amplitude_interval for step in found]).T * 1e3
+    right.errorbar(
+        [step.voltage_peak_to_peak for step in found],
+        falls,
+        yerr=np.abs(ends - falls),
+        marker=MARKERS[1],
+        color=COLOURS[1],
+        linestyle="none",
+        capsize=2,
+    )
+    left.set(xlabel="time (s)", ylabel="friction force (N)")
+    right.set(xlabel="voltage, peak to peak (V)", ylabel="fall in a slip (mN)", xlim=(0, None), ylim=(0, None))
     return figure
 
 

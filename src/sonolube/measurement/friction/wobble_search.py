@@ -1,0 +1,153 @@
+"""Rotation of the disc found in the friction force: harmonics of a constant speed in the spectrum."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.ndimage import median_filter
+from scipy.optimize import minimize_scalar
+
+from sonolube.checks import Floats
+
+FASTEST_ROTATION = 5.0
+"""Highest rotational speed that is sought, in turns per second."""
+
+_FEWEST_TURNS = 2.0
+_NOISE_BAND = 1.0  # Hz on either side, of the running median
+_OVERSAMPLING = 8
+_SIGNIFICANCE = 50.0  # of the sum over harmonics of power over noise, chi-squared with two degrees each
+_CANDIDATES = 6
+_COHERENT_SHARE = 0.7  # of the time, in parts in which one wobble of constant phase explains the force better
+_AS_GOOD = 0.98  # of the best explained power, at which a faster rotation is preferred to its subharmonics
+
+
+def harmonic_columns(revolutions: Floats, harmonics: int) -> Floats:
+    """Return cosines and sines of the harmonics of the rotation, shape (samples, 2 * harmonics)."""
+    angle = 2 * np.pi * np.multiply.outer(revolutions, np.arange(1, harmonics + 1))
+    return np.concatenate([np.cos(angle), np.sin(angle)], axis=1)
+
+
+def find_rotation_speed(times: Sequence[Floats], forces: Sequence[Floats], *, harmonics: int = 3) -> float | None:
+    r"""Return the rotational speed whose harmonics stand out in a friction force; None where none does. [1/s]
+
+    Parameters
+    ----------
+    times : sequence of ndarray
+        Of the samples of each part of constant level, in the order of time. [s]
+    forces : sequence of ndarray
+        Friction force; the mean of each part is free. [N]
+    harmonics : int
+        Number of harmonics.
+
+    Returns
+    -------
+    float or None
+
+    Notes
+    -----
+    At each frequency the power P is that explained by cosine and sine beside the means of the parts, and the noise S
+    its running median. The sum of :math:`P/S` over the harmonics must exceed 50, and the wobble must improve the fit in
+    70 % of the time with one amplitude and phase: stick-slip keeps no phase over a recording. Of equally good speeds
+    the highest is taken, since subharmonics explain as much. Sought are 2 turns per recording to 5 turns per second.
+    """
+    t, y = np.concatenate(times), np.concatenate([force - force.mean() for force in forces])
+    duration = float(t[-1] - t[0])
+    frequency, power = _explained_power(times, forces)
+    width = int(2 * _NOISE_BAND / frequency[1])
+    noise = median_filter(power, width | 1, mode="reflect") / np.log(2)
+    relative = power / np.maximum(noise, 1e-300)
+    slowest = int(np.ceil(_FEWEST_TURNS / duration / frequency[1]))
+    fastest = int(min(FASTEST_ROTATION / frequency[1], (frequency.size - 1) / harmonics))
+    if fastest <= slowest:
+        return None
+    index = np.arange(slowest, fastest)
+    total = np.sum([relative[order * index] for order in range(1, harmonics + 1)], axis=0)
+    candidates: list[float] = []
+    while len(candidates) < _CANDIDATES and total.max() > _SIGNIFICANCE:
+        best = int(np.argmax(total))
+        candidates.append(refined_speed(times, forces, float(frequency[index[best]]), harmonics=harmonics))
+        total[max(0, best - _OVERSAMPLING) : best + _OVERSAMPLING + 1] = 0.0
+    if not candidates:
+        return None
+    explained = [float(y @ y) - _misfit(times, forces, speed, harmonics) for speed in candidates]
+    speed = max(s for s, gain in zip(candidates, explained, strict=True) if gain >= _AS_GOOD * max(explained))
+    return speed if _coherent(times, forces, speed, harmonics) else None
+
+
+def refined_speed(
+    times: Sequence[Floats], forces: Sequence[Floats], rotation_speed: float, *, harmonics: int = 3
+) -> float:
+    """Return the rotational speed of least misfit within half a turn per recording of a given one. [1/s]
+
+    Parameters
+    ----------
+    times, forces
+        As in `find_rotation_speed`.
+    rotation_speed : float
+        Near the speed. [1/s]
+    harmonics : int
+        Number of harmonics.
+
+    Returns
+    -------
+    float
+    """
+    reach = 0.5 / float(times[-1][-1] - times[0][0])
+    bounds = max(rotation_speed - reach, rotation_speed / 2), rotation_speed + reach
+    found = minimize_scalar(
+        lambda speed: _misfit(times, forces, float(speed), harmonics), bounds=bounds, method="bounded"
+    )
+    return float(found.x)
+
+
+def _explained_power(times: Sequence[Floats], forces: Sequence[Floats]) -> tuple[Floats, Floats]:
+    """Return frequencies and the power that each explains beside the means of the parts."""
+    start, interval = times[0][0], float(np.median(np.concatenate([np.diff(t) for t in times])))
+    places = [np.round((t - start) / interval).astype(np.int64) for t in times]
+    size = 1 << int(np.ceil(np.log2(_OVERSAMPLING * (places[-1][-1] + 1))))
+    signal, known = np.zeros(size), np.zeros(size)
+    cosines, sines, products = np.zeros(size // 2 + 1), np.zeros(size // 2 + 1), np.zeros(size // 2 + 1)
+    for place, force in zip(places, forces, strict=True):
+        signal[place] = force - force.mean()
+        part = np.zeros(size)
+        part[place] = 1.0
+        known += part
+        mean = np.fft.rfft(part) / np.sqrt(place.size)
+        cosines, sines, products = cosines + mean.real**2, sines + mean.imag**2, products + mean.real * mean.imag
+    wave, double = np.fft.rfft(signal), np.fft.rfft(known)
+    half = np.arange(size // 4 + 1)  # the Gram matrix of a frequency has its double
+    cosine = (known.sum() + double[2 * half].real) / 2 - cosines[half]
+    sine = (known.sum() - double[2 * half].real) / 2 - sines[half]
+    cross = double[2 * half].imag / 2 - products[half]
+    determinant = cosine * sine - cross**2
+    a, b = wave[half].real, wave[half].imag
+    power = (a**2 * sine - 2 * a * b * cross + b**2 * cosine) / np.where(determinant > 1e-9, determinant, np.inf)
+    return half / (size * interval), np.asarray(power)
+
+
+def _residuals(times: Sequence[Floats], forces: Sequence[Floats], speed: float, harmonics: int) -> list[Floats]:
+    """Return the residuals of the fit of levels and harmonics in each part."""
+    waves = [harmonic_columns(speed * t, harmonics) for t in times]
+    centred = np.concatenate([wave - wave.mean(axis=0) for wave in waves])
+    y = np.concatenate([force - force.mean() for force in forces])
+    solution, _, _, _ = np.linalg.lstsq(centred, y)
+    ends = np.cumsum([t.size for t in times])[:-1]
+    return np.split(y - centred @ solution, ends)
+
+
+def _misfit(times: Sequence[Floats], forces: Sequence[Floats], speed: float, harmonics: int) -> float:
+    """Return the sum of squares that levels and harmonics leave."""
+    return sum(float(e @ e) for e in _residuals(times, forces, speed, harmonics))
+
+
+def _coherent(times: Sequence[Floats], forces: Sequence[Floats], speed: float, harmonics: int) -> bool:
+    """Return whether one wobble improves the fit in most of the time."""
+    residuals = _residuals(times, forces, speed, harmonics)
+    size = max(1, min(t.size for t in times))
+    better, pieces = 0, 0
+    for e, f in zip(residuals, forces, strict=True):
+        y = f - f.mean()
+        for piece in range(max(1, f.size // size)):
+            part = slice(piece * size, (piece + 1) * size)
+            better += float(e[part] @ e[part]) < float(y[part] @ y[part])
+            pieces += 1
+    return better >= _COHERENT_SHARE * pieces
