@@ -9,6 +9,7 @@ from scipy.ndimage import uniform_filter
 from sonolube.checks import Floats
 from sonolube.errors import NoGroove
 from sonolube.surfaces.grooves.detection import detect_groove
+from sonolube.surfaces.grooves.groove_intervals import GrooveErrors, section_estimates
 from sonolube.surfaces.grooves.sections import (
     CrossSections,
     GrooveExtent,
@@ -79,6 +80,9 @@ class Groove:
     cross_sections: CrossSections
     groove_width: float
     groove_depth: float
+    groove_width_interval: tuple[float, float]
+    groove_depth_interval: tuple[float, float]
+    wear_volume_interval: tuple[float, float]
     cross_section_area: float
     track_length: float
     wear_volume: float
@@ -146,14 +150,21 @@ def measure_groove(surface: HeightMap) -> Groove:
     middle = (edges.left + edges.right) / 2
     track = replace(track, track_offset=track.track_offset + middle)
     section = replace(section, transverse=section.transverse - middle)
-    return _measured(levelled, reference, track, section, edges.shifted(-middle))
+    return _measured(levelled, surface, reference, track, section, edges.shifted(-middle), excluded)
 
 
 def _measured(
-    levelled: HeightMap, reference: UnwornReference, track: GrooveTrack, section: MeanCrossSection, edges: GrooveExtent
+    levelled: HeightMap, surface: HeightMap, reference: UnwornReference, track: GrooveTrack, section: MeanCrossSection, edges: GrooveExtent,
+    excluded: Mask
 ) -> Groove:
     """Groove between known edges, its volumes and their uncertainty."""
     transverse, _ = track.curvilinear_coordinates(levelled)
+    errors = GrooveErrors.of(levelled, surface, reference, transverse, section, edges, levelled.measured & ~excluded)
+    estimates = section_estimates(errors, edges)
+    assert estimates is not None
+    curve, width_estimate, depth_estimate = estimates
+    edges = edges._replace(left=curve.left if edges.left_in_field else edges.left, right=curve.right if edges.right_in_field else edges.right)
+    edges = edges._replace(left_foot=min(edges.left, edges.left_foot), right_foot=max(edges.right, edges.right_foot))
     pixel = levelled.spacing_x * levelled.spacing_y
     inside = (transverse > edges.left) & (transverse < edges.right)
     beside = (transverse < edges.left_foot) | (transverse > edges.right_foot)
@@ -166,11 +177,11 @@ def _measured(
     residual = levelled.height[inside & levelled.measured] - section.at(transverse[inside & levelled.measured])
     area = pixel * np.count_nonzero(inside)
     wear_volume = -float(height[worn].sum()) * pixel
-    uncertainty = math.hypot(
-        reference.volume_uncertainty(inside),
-        deviation * math.sqrt(_WINDOW**2 * pixel * area),
-        float(np.std(residual)) * math.sqrt(np.count_nonzero(missing)) * pixel,
-    )
+    bins = errors.bins
+    all_of_bin, known_of_bin = np.bincount(bins[inside]), np.bincount(bins[inside & levelled.measured], minlength=int(bins[inside].max()) + 1)
+    share = (all_of_bin / np.maximum(known_of_bin, 1))[np.where(inside, bins, 0)]
+    volume_weights = np.where(inside & levelled.measured, share * pixel, 0.0)
+    uncertainty, half = errors.half_width(volume_weights)
     return Groove(
         track=track,
         levelled=levelled,
@@ -181,8 +192,11 @@ def _measured(
         cross_sections=cross_sections(
             levelled, track, reach=(edges.left_foot - _BESIDE * width, edges.right_foot + _BESIDE * width)
         ),
-        groove_width=width,
-        groove_depth=-float(np.nanmin(section.height)),
+        groove_width=width_estimate.value,
+        groove_depth=depth_estimate.value,
+        groove_width_interval=(width_estimate.value - width_estimate.half_width, width_estimate.value + width_estimate.half_width),
+        groove_depth_interval=(depth_estimate.value - depth_estimate.half_width, depth_estimate.value + depth_estimate.half_width),
+        wear_volume_interval=(wear_volume - half, wear_volume + half),
         cross_section_area=_mean_section_area(height, worn, inside, transverse, section.step),
         track_length=area / width,
         wear_volume=wear_volume,

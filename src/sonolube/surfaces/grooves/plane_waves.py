@@ -104,7 +104,7 @@ class _Search:
     @classmethod
     def of(cls, blocks: BlockAverages, noise: tuple[float, ...], form_terms: int) -> "_Search":
         """Search with the blocks weighted by their noise."""
-        root = np.sqrt(blocks.weight / np.repeat(noise, [part.stop - part.start for part in blocks.parts]))[:, None]
+        root = np.sqrt(blocks.weight / blocks.per_part(noise))[:, None]
         linear = root * np.concatenate([blocks.form(form_terms), blocks.section], axis=1)
         basis = np.linalg.qr(linear)[0]
         height = root[:, 0] * blocks.mean_height
@@ -158,14 +158,13 @@ class _Search:
         return cost + float(np.sum(np.log(self.blocks.weight))) + (self.form_terms + 4 * len(modes)) * math.log(count)
 
     def model(self, fit: _Fit) -> WavinessModel:
-        """Waviness model of a fit, with form, section and covariance."""
+        """Waviness model of a fit, with form, section and response."""
         waves = self.waves(fit.modes)
         sum_of_waves = np.concatenate(waves, axis=1) @ fit.amplitudes
         linear = _least_squares(self.linear, self.root[:, 0] * self.blocks.mean_height - sum_of_waves)
         jacobian = np.concatenate([self.linear, *waves, *self.derivatives(*waves, fit.amplitudes)], axis=1)
         size = np.maximum(np.linalg.norm(jacobian, axis=0), np.finfo(float).tiny)
-        covariance = np.linalg.pinv((jacobian / size).T @ (jacobian / size)) / np.outer(size, size)
-        covariance *= float(fit.residual @ fit.residual) / max(len(jacobian) - jacobian.shape[1], 1)
+        inverse = np.linalg.pinv((jacobian / size).T @ (jacobian / size)) / np.outer(size, size)
         kept = np.concatenate([np.arange(self.form_terms), np.arange(linear.size, jacobian.shape[1])])
         cosine, sine = fit.amplitudes.reshape(2, -1)
         return WavinessModel(
@@ -175,7 +174,7 @@ class _Search:
             cosine=cosine,
             sine=sine,
             section=linear[self.form_terms :],
-            covariance=covariance[np.ix_(kept, kept)],
+            response=inverse[kept] @ (self.root * jacobian).T,
             noise=(),
             cost=fit.cost,
             random=False,

@@ -10,7 +10,6 @@ from sonolube.surfaces.grooves.blocks import HEIGHT_RESOLUTION, BlockAverages
 from sonolube.surfaces.grooves.waviness_model import WavinessModel
 
 _RINGS = 6  # of wavenumber, each with a spectral density of its own
-_UNCERTAINTY_FACTOR = 1.7  # actual over nominal uncertainty for a spectrum estimated from the same map
 _MOST_ITERATIONS = 40
 _CONVERGED = 0.02  # change of the logarithm of a spectral density
 _LEAST_VARIANCE = 1e-10  # of a mode over that of the noise
@@ -32,8 +31,7 @@ def fit_random_field(blocks: BlockAverages) -> WavinessModel:
     Notes
     -----
     The spectral density is constant over rings of wavenumber and estimated with the noise by MacKay's fixed-point
-    iteration of the evidence [1]_. Because it is estimated from the same map, nominal uncertainties are too small, by
-    factors of 1.3 to 2.2 on synthetic maps; they are multiplied by 1.7.
+    iteration of the evidence [1]_.
 
     References
     ----------
@@ -78,7 +76,7 @@ def fit_random_field(blocks: BlockAverages) -> WavinessModel:
         cosine=mean[-2 * count : -count],
         sine=mean[-count:],
         section=mean[3:free],
-        covariance=_UNCERTAINTY_FACTOR**2 * covariance[np.ix_(kept, kept)],
+        response=covariance[kept] @ (design * (blocks.weight / blocks.per_part(used_noise))[:, None]).T,
         noise=tuple(noise.tolist()),
         cost=cost,
         random=True,
