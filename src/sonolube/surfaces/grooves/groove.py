@@ -10,6 +10,7 @@ from sonolube.checks import Floats
 from sonolube.errors import NoGroove
 from sonolube.surfaces.grooves.detection import detect_groove
 from sonolube.surfaces.grooves.groove_intervals import GrooveErrors, section_estimates
+from sonolube.surfaces.grooves.outliers import without_outliers
 from sonolube.surfaces.grooves.sections import (
     CrossSections,
     GrooveExtent,
@@ -131,6 +132,7 @@ def measure_groove(surface: HeightMap) -> Groove:
     roughness is not rectified into volume. A shallow groove is accepted only if a reference with a free section has
     greater evidence than waviness alone.
     """
+    surface = without_outliers(surface)
     detected = detect_groove(surface)
     track, band = detected.track, detected.worn_band
     excluded: Mask | None = None

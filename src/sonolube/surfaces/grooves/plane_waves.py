@@ -19,11 +19,11 @@ _LEAST_NOISE = 1e-6  # over the standard deviation of the unworn blocks
 _ROUNDING = 1e-12
 _IMPROBABLE = 12.0  # cost above the least: a likelihood ratio of 1/400
 _DEVIATION_OVER_MEDIAN = 1.4826  # standard deviation over median absolute deviation of Gaussian heights
-_STARTS = 6  # local maxima of the explained misfit from which a further wave is refined
+_STARTS = 6  # local maxima of the explained misfit from which a further wave is refined, by default
 
 
 def fit_plane_waves(
-    blocks: BlockAverages, *, noise: tuple[float, ...] | None = None, form_terms: int = 3
+    blocks: BlockAverages, *, noise: tuple[float, ...] | None = None, form_terms: int = 3, starts: int = _STARTS
 ) -> tuple[list[WavinessModel], bool]:
     """Waviness models of up to four plane waves of any direction and length, with the number chosen by evidence.
 
@@ -35,6 +35,8 @@ def fit_plane_waves(
         default.
     form_terms : int
         Terms of the form: 3 for a plane, 6 for a form of second degree.
+    starts : int
+        Local maxima of the explained misfit from which each further wave is refined.
 
     Returns
     -------
@@ -61,7 +63,7 @@ def fit_plane_waves(
         sufficient = bool(gain.max() < 2 * math.log(best.residual.size))
         if sufficient or len(best.modes) == _MOST_WAVES:
             break
-        extended = [search.refined(np.vstack([best.modes, mode])) for mode in _local_maxima(candidates, gain)]
+        extended = [search.refined(np.vstack([best.modes, mode])) for mode in _local_maxima(candidates, gain)[:starts]]
         fits += extended
         most_probable = min(extended, key=lambda fit: fit.cost)
         if most_probable.cost >= best.cost:
@@ -198,10 +200,10 @@ def _misfit_reduction(cosine: Floats, sine: Floats, residual: Floats) -> Floats:
 
 
 def _local_maxima(candidates: Floats, gain: Floats) -> Floats:
-    """Modes whose reduction exceeds that of all neighbours, the largest of them."""
+    """Modes whose reduction exceeds that of all neighbours, the largest first."""
     spacing = np.min(np.ptp(candidates, axis=0) / np.maximum([len(np.unique(k)) - 1 for k in candidates.T], 1))
     distance = np.hypot(*(candidates[:, None] - candidates[None, :]).T)
     opposite = np.hypot(*(candidates[:, None] + candidates[None, :]).T)
     near = np.minimum(distance, opposite) < 1.5 * spacing
     maxima = np.flatnonzero(gain >= np.max(np.where(near, gain[None, :], -np.inf), axis=1))
-    return candidates[maxima[np.argsort(-gain[maxima])][:_STARTS]]
+    return candidates[maxima[np.argsort(-gain[maxima])]]

@@ -12,10 +12,12 @@ _FLANK = 0.06  # of the depth, above which points near the edges are left out of
 _PASSES = 3
 _LEAST_POINTS = 5
 _DRAWS, _SEED = 300, 20_250_101
-_REACH = 0.35  # of the fitted width, beyond which no edge is sought
+_LEAST_SLOPE, _LARGEST_SLOPE = 0.6, 2.5  # of a flank at its edge, over its mean
 _FINE = 161  # points of the curve
+_FLANK_END = 0.75  # of the depth, down to which points belong to the flank
+_LEAST_FLANK = 8  # points
+_CORRECTIONS = 2  # of the depth for the excess of the deepest of noisy points, by the draws; one leaves half of it
 _JITTER = 1e-6  # of the variance
-_MOST_POINTS = 160
 
 
 class SectionCurve(NamedTuple):
@@ -62,28 +64,83 @@ def section_curve(
     ----------
     .. [1] G. Wahba, Ann. Stat. 13, 1378 (1985). doi:10.1214/aos/1176349743
     """
-    inside = (s > edges[0]) & (s < edges[1])
-    depth = -float(z[inside].min()) if inside.any() else 0.0
     noise = math.sqrt(float(np.median(np.diag(covariance))))
     left, right = edges
     found = None
     for _ in range(_PASSES):
         inside = (s > left) & (s < right)
         if np.count_nonzero(inside) < _LEAST_POINTS:
-            return found
+            break
         fit = _Spline.of(s[inside], z[inside], covariance[np.ix_(inside, inside)])
-        found = _features(fit, left, right, cut)
+        heights = fit.at(s[inside])
+        depth = -float(heights.min())
+        ends = [
+            None if cut[0] else _edge(s[inside], heights, z[inside], covariance[np.ix_(inside, inside)], depth),
+            None
+            if cut[1]
+            else _edge(
+                -s[inside][::-1],
+                heights[::-1],
+                z[inside][::-1],
+                covariance[np.ix_(inside, inside)][::-1, ::-1],
+                depth,
+            ),
+        ]
+        found = _curve(fit, s[inside], ends)
         level = -min(_FLANK * depth + noise, depth / 3)
-        fine = np.linspace(found.left, found.right, _FINE)
-        low = fine[fit.at(fine) < level]
-        low = low[(low >= s[0]) & (low <= s[-1])]
+        points = np.linspace(found.left, found.right, _FINE)
+        low = points[fit.at(points) < level]
         if low.size < 2:
-            return found
-        left = -math.inf if cut[0] else float(low[0])
-        right = math.inf if cut[1] else float(low[-1])
-        left, right = max(left, edges[0] if cut[0] else left), min(right, edges[1] if cut[1] else right)
-        depth = found.depth
+            break
+        left = edges[0] if cut[0] else max(float(low[0]), s[0] - 1e-12)
+        right = edges[1] if cut[1] else min(float(low[-1]), s[-1] + 1e-12)
     return found
+
+
+class _Edge(NamedTuple):
+    """Zero of a flank, with its standard deviation and slope; distances count inwards."""
+
+    place: float
+    deviation: float
+    slope: float
+
+
+def _edge(s: Floats, heights: Floats, z: Floats, covariance: Floats, depth: float) -> _Edge:
+    """Edge before the first of the points, by a spline through those of its flank."""
+    deep = np.flatnonzero(heights < -_FLANK_END * depth)
+    count = max(min(_LEAST_FLANK, s.size), int(deep[0]) + 1 if deep.size else s.size)
+    flank = _Spline.of(s[:count], z[:count], covariance[:count, :count])
+    secant = float(heights[0] - heights[count - 1]) / float(s[count - 1] - s[0])
+    outermost = s[0] + heights[0] / (_LEAST_SLOPE * secant)
+    outwards = np.linspace(float(s[count - 1]), outermost, _FINE)
+    curves = np.concatenate([flank.at(outwards)[None], flank.draws(outwards)])
+    places = _crossing(outwards, curves)
+    lost = places <= outermost  # a parabola that turns back: its tangent at the last point instead
+    at_end = np.array([np.interp(float(s[0]), outwards[::-1], curve[::-1]) for curve in curves[lost]])
+    places[lost] = s[0] + at_end / secant
+    step = float(s[1] - s[0])
+    slope = abs(float(np.diff(flank.at(places[0] + np.array([0.0, 2 * step])))[0])) / (2 * step)
+    slope = min(max(slope, _LEAST_SLOPE * secant), _LARGEST_SLOPE * secant)
+    return _Edge(float(places[0]), _deviation(places[1:]), slope)
+
+
+def _curve(fit: "_Spline", s: Floats, ends: list[_Edge | None]) -> SectionCurve:
+    """Edges and depth from the spline of the whole section and those of its flanks."""
+    fine = np.linspace(float(s[0]), float(s[-1]), _FINE)
+    mean = fit.at(fine)
+    depths = -fit.draws(fine).min(axis=1)
+    excess = float(depths.mean() + mean.min())
+    left, right = ends
+    return SectionCurve(
+        left=float(s[0]) if left is None else left.place,
+        right=float(s[-1]) if right is None else -right.place,
+        depth=-float(mean.min()) - _CORRECTIONS * excess,
+        deepest=float(fine[np.argmin(mean)]),
+        width_deviation=math.hypot(*(end.deviation for end in ends if end is not None)),
+        depth_deviation=math.hypot(_deviation(depths), excess),
+        left_slope=math.inf if left is None else left.slope,
+        right_slope=math.inf if right is None else right.slope,
+    )
 
 
 class _Spline(NamedTuple):
@@ -104,7 +161,7 @@ class _Spline(NamedTuple):
         """Spline through points with correlated errors."""
         middle, scale = float(s[0]), float(np.ptp(s)) / 2
         u = (s - middle) / scale
-        line = np.stack([np.ones_like(u), u], axis=1)
+        line = _parabolas(u)
         variance = float(np.mean(np.diag(covariance)))
         noise = covariance + _JITTER * variance * np.eye(u.size)
         prior = _kernel(u, u)
@@ -120,7 +177,7 @@ class _Spline(NamedTuple):
         """Posterior mean of the heights in m at distances in m."""
         u = (s - self.middle) / self.scale
         return np.asarray(
-            self.coefficients[0] + self.coefficients[1] * u + self.power * _kernel(u, self.points) @ self.weights
+            _parabolas(u) @ self.coefficients + self.power * _kernel(u, self.points) @ self.weights
         )
 
     def draws(self, s: Floats) -> Floats:
@@ -128,7 +185,7 @@ class _Spline(NamedTuple):
         u = (s - self.middle) / self.scale
         cross = self.power * _kernel(u, self.points)
         solved = cho_solve(self.inverse, cross.T)
-        rest = np.stack([np.ones_like(u), u], axis=1) - cross @ cho_solve(self.inverse, self.line)
+        rest = _parabolas(u) - cross @ cho_solve(self.inverse, self.line)
         covariance = self.power * _kernel(u, u) - cross @ solved + rest @ self.line_covariance @ rest.T
         values, vectors = eigh(covariance)
         normal = np.random.default_rng(_SEED).standard_normal((_DRAWS // 2, u.size))
@@ -136,18 +193,23 @@ class _Spline(NamedTuple):
         return np.asarray(self.at(s) + (normal * np.sqrt(np.maximum(values, 0.0))) @ vectors.T)
 
 
+def _parabolas(u: Floats) -> Floats:
+    """Powers that the prior leaves free, shape (n, 3)."""
+    return np.stack([np.ones_like(u), u, u**2], axis=1)
+
+
 def _kernel(u: Floats, v: Floats) -> Floats:
-    """Covariance of a twice integrated white noise, that of a cubic spline, two-sided about the first point."""
+    """Covariance of white noise integrated three times, that of a quintic spline, on both sides of the first point."""
     a, b = u[:, None], v[None, :]
     same = np.sign(a) == np.sign(b)
     low, high = np.minimum(np.abs(a), np.abs(b)), np.maximum(np.abs(a), np.abs(b))
-    return np.asarray(np.where(same, low**2 * (3 * high - low) / 6, 0.0))
+    return np.asarray(np.where(same, low**5 / 20 + (high - low) * low**4 / 8 + (high - low) ** 2 * low**3 / 12, 0.0))
 
 
 def _most_likely_power(noise: Floats, prior: Floats, line: Floats, z: Floats, variance: float) -> float:
     """Power of the spline's prior of greatest restricted likelihood."""
     root = cholesky(noise, lower=True)
-    q = np.linalg.qr(solve_triangular(root, line, lower=True), mode="complete")[0][:, 2:]
+    q = np.linalg.qr(solve_triangular(root, line, lower=True), mode="complete")[0][:, 3:]
     whitened = solve_triangular(root, solve_triangular(root, prior, lower=True).T, lower=True)
     values, vectors = eigh(q.T @ whitened @ q)
     values = np.maximum(values, 0.0)
@@ -158,35 +220,6 @@ def _most_likely_power(noise: Floats, prior: Floats, line: Floats, z: Floats, va
     return float(powers[int(np.argmin(cost))])
 
 
-def _features(fit: _Spline, left: float, right: float, cut: tuple[bool, bool]) -> SectionCurve:
-    """Edges and depth of a spline, with their scatter over draws."""
-    first, last = fit.middle, fit.middle + 2 * fit.scale
-    reach = _REACH * (last - first)
-    s = np.linspace(first if cut[0] else first - reach, last if cut[1] else last + reach, _FINE)
-    mean = fit.at(s)
-    within = (s >= min(first, left if math.isfinite(left) else first)) & (s <= last)
-    at = int(np.flatnonzero(within)[np.argmin(mean[within])])
-    curves = np.concatenate([mean[None], fit.draws(s)])
-    lefts = np.full(len(curves), first) if cut[0] else _crossing(s[at::-1], curves[:, at::-1])
-    rights = np.full(len(curves), last) if cut[1] else _crossing(s[at:], curves[:, at:])
-    depths = -curves[:, within].min(axis=1)
-    step = s[1] - s[0]
-
-    def slope(place: float) -> float:
-        return abs(float(np.diff(fit.at(np.array([place - step, place + step])))[0])) / (2 * step)
-
-    return SectionCurve(
-        left=float(lefts[0]),
-        right=float(rights[0]),
-        depth=float(depths[0]),
-        deepest=float(s[at]),
-        width_deviation=_deviation((rights - lefts)[1:]),
-        depth_deviation=_deviation(depths[1:]),
-        left_slope=math.inf if cut[0] else slope(float(lefts[0])),
-        right_slope=math.inf if cut[1] else slope(float(rights[0])),
-    )
-
-
 def _deviation(values: Floats) -> float:
     """Standard deviation of a normal distribution with the same central 95 %."""
     low, high = np.quantile(values, [0.025, 0.975])
@@ -194,11 +227,11 @@ def _deviation(values: Floats) -> float:
 
 
 def _crossing(s: Floats, curves: Floats) -> Floats:
-    """First zero of each curve along the points, that of its last line where there is none."""
+    """First zero of each curve along the points, their last where there is none."""
     above = curves >= 0
     above[:, 0] = False
     index = np.where(above.any(axis=1), np.argmax(above, axis=1), s.size - 1)
     rows = np.arange(len(curves))
     before, after = curves[rows, index - 1], curves[rows, index]
-    share = np.clip(-before / np.where(after > before, after - before, 1.0), 0.0, 1.0)
-    return np.asarray(s[index - 1] + np.where(after > before, share, 1.0) * (s[index] - s[index - 1]))
+    share = np.where(after >= 0, np.clip(-before / np.where(after > before, after - before, 1.0), 0.0, 1.0), 1.0)
+    return np.asarray(s[index - 1] + share * (s[index] - s[index - 1]))

@@ -17,6 +17,7 @@ from sonolube.surfaces.height_map import HeightMap, Mask
 
 
 _NEGLIGIBLE = 1e-3  # probability of a model
+_HOPELESS = 60.0  # cost of the quickly found plane waves above that of the random field: a search is not worth it
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -152,11 +153,14 @@ def unworn_reference(
 
 def _models(blocks: BlockAverages) -> list[WavinessModel]:
     """Waviness models of the blocks, the most probable first; plane waves alone where they are sufficient."""
-    plane_waves, sufficient = fit_plane_waves(blocks)
-    if sufficient:
-        return plane_waves
+    if fit_plane_waves(blocks, starts=1)[1]:
+        plane_waves, sufficient = fit_plane_waves(blocks)
+        if sufficient:
+            return plane_waves
     random = fit_random_field(blocks)
     found = [random]
     for terms in (3, 6):
-        found += fit_plane_waves(blocks, noise=random.noise, form_terms=terms)[0]
+        quick = fit_plane_waves(blocks, noise=random.noise, form_terms=terms, starts=1)[0]
+        if quick[0].cost < random.cost + _HOPELESS:
+            found += fit_plane_waves(blocks, noise=random.noise, form_terms=terms)[0]
     return sorted(found, key=lambda model: model.cost)
