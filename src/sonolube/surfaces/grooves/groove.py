@@ -7,8 +7,8 @@ import numpy as np
 from scipy.ndimage import uniform_filter
 
 from sonolube.checks import Floats
-from sonolube.errors import NoGroove
-from sonolube.surfaces.grooves.detection import detect_groove
+from sonolube.errors import InvalidInput, NoGroove, SeveralGrooves
+from sonolube.surfaces.grooves.field_tracks import FieldTracks, field_tracks, without_tracks
 from sonolube.surfaces.grooves.groove_intervals import GrooveErrors, section_estimates
 from sonolube.surfaces.grooves.outliers import without_outliers
 from sonolube.surfaces.grooves.sections import (
@@ -70,6 +70,10 @@ class Groove:
         Whether both edges lie in the field.
     caveat : str
         Warnings about the result; empty where there are none.
+    track_number : int
+        Number of the track among those in the field, from the left or from the innermost radius.
+    track_count : int
+        Number of wear tracks in the field.
     """
 
     track: GrooveTrack
@@ -91,6 +95,8 @@ class Groove:
     pile_up_volume: float
     complete: bool
     caveat: str
+    track_number: int = 1
+    track_count: int = 1
 
     @property
     def net_volume(self) -> float:
@@ -98,13 +104,15 @@ class Groove:
         return self.wear_volume - self.pile_up_volume
 
 
-def measure_groove(surface: HeightMap) -> Groove:
+def measure_groove(surface: HeightMap, *, track_number: int | None = None) -> Groove:
     r"""Wear groove of a scan: detection, unworn reference, and volumes by integration over pixels.
 
     Parameters
     ----------
     surface : HeightMap
         As measured, not levelled; the form of a ball or cylinder removed beforehand.
+    track_number : int, optional
+        Which of several tracks to measure, from 1: from the left or, for circular tracks, from the innermost radius.
 
     Returns
     -------
@@ -113,9 +121,11 @@ def measure_groove(surface: HeightMap) -> Groove:
     Raises
     ------
     NoGroove
-        If no groove is detected, waviness alone has the greater evidence, or the groove fills the field.
+        If no track crosses the field, waviness alone has the greater evidence, or the groove fills the field.
+    SeveralGrooves
+        If there are several tracks and no number, with their positions, widths and depths.
     InvalidInput
-        If too little of the field was measured.
+        If too little of the field was measured, or there is no track of that number.
 
     See Also
     --------
@@ -133,7 +143,11 @@ def measure_groove(surface: HeightMap) -> Groove:
     greater evidence than waviness alone.
     """
     surface = without_outliers(surface)
-    detected = detect_groove(surface)
+    field = field_tracks(surface)
+    number = _chosen(field, track_number)
+    others = [track for place, track in enumerate(field.tracks, start=1) if place != number]
+    surface = without_tracks(field.masked, others)
+    detected = field.tracks[number - 1].detected
     track, band = detected.track, detected.worn_band
     excluded: Mask | None = None
     for iteration in range(_MOST_ITERATIONS):
@@ -152,7 +166,22 @@ def measure_groove(surface: HeightMap) -> Groove:
     middle = (edges.left + edges.right) / 2
     track = replace(track, track_offset=track.track_offset + middle)
     section = replace(section, transverse=section.transverse - middle)
-    return _measured(levelled, surface, reference, track, section, edges.shifted(-middle), excluded)
+    measured = _measured(levelled, surface, reference, track, section, edges.shifted(-middle), excluded)
+    caveat = "; ".join(part for part in (measured.caveat, *field.others) if part)
+    return replace(measured, track_number=number, track_count=len(field.tracks), caveat=caveat)
+
+
+def _chosen(field: FieldTracks, number: int | None) -> int:
+    """Number of the track to measure."""
+    count = len(field.tracks)
+    if number is None:
+        if count > 1:
+            raise SeveralGrooves(f"{field.listed()}; choose one by its number (--track)")
+        return 1
+    if not 1 <= number <= count:
+        there = field.listed() if count > 1 else "one wear track in the field"
+        raise InvalidInput(f"track_number must be 1 to {count}, got {number}: {there}")
+    return number
 
 
 def _measured(

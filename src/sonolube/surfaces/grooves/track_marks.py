@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import fft
+from scipy import fft, special
 
 from sonolube.checks import Floats, require_within
 from sonolube.errors import InvalidInput
@@ -18,7 +18,11 @@ _POINTS_PER_PERIOD = 2.5
 _LEAST_MEASURED = 0.5  # fraction of the profiles at a point
 _CANDIDATES = 8  # local maxima of the spectrum that are compared
 _LOBE = 2.0  # width of a peak of the spectrum over the resolution
-_SIGNIFICANT = 8.0  # power over that of the background; noise reaches half of it in a single profile
+_FALSE_ALARMS = 0.01  # probability of a spacing where there are no marks
+_TRIALS_PER_RESOLUTION = 2.0  # independent heights of a spectrum of tapered profiles, per resolution
+_CURVED = 24  # resolutions, from which on the background may be curved
+_LEAST_FREEDOM, _LARGEST_FREEDOM = 0.5, 300.0  # of the background's Gamma distribution
+_DEVIATION_OVER_MEDIAN = 1.4826  # standard deviation over median absolute deviation of Gaussian values
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -33,6 +37,8 @@ class TrackMarks:
         Standard uncertainty of the spacing. [m]
     prominence : float
         Power of the most prominent peak over that of the background.
+    false_alarm_probability : float
+        Probability of a peak as prominent, at any of the wavenumbers searched, where there are no marks.
     reason : str
         Reason why no spacing is given; empty where one is.
     wavenumber : ndarray, shape (n,)
@@ -40,12 +46,13 @@ class TrackMarks:
     profile_spectral_density : ndarray, shape (n,)
         Mean power spectral density of the longitudinal profiles. [m3]
     background : ndarray, shape (n,)
-        Power law fitted to it, in m3.
+        Smooth spectrum fitted to it, in m3.
     """
 
     dot_spacing: float | None
     dot_spacing_uncertainty: float | None
     prominence: float
+    false_alarm_probability: float
     reason: str
     wavenumber: Floats
     profile_spectral_density: Floats
@@ -76,7 +83,9 @@ def track_marks(groove: Groove, *, width_fraction: float = 0.6, averaged_points:
     -----
     The mean cross-section is subtracted from the heights, and mean and trend from each profile; missing points are set
     to zero, and a Hann window is applied. The spectra of the profiles are averaged, so that marks of different profiles
-    need not be in phase. A peak is significant if its power is 8 times that of the power law fitted beside it. Spacings
+    need not be in phase. The background is a parabola (over short tracks a line) in double logarithmic scale, and the
+    power over it a Gamma variate, whose freedom follows from the scatter of the spectrum itself. A spacing is given
+    where a peak as high would appear at any of the wavenumbers searched with a probability below 1 % [3]_. Spacings
     from 2.5 points to half the track can be found. With the length :math:`L` of the track and the prominence :math:`p`
     the standard uncertainty of the spacing :math:`s` is the Cramer-Rao bound [2]_ of a single profile
 
@@ -89,6 +98,7 @@ def track_marks(groove: Groove, *, width_fraction: float = 0.6, averaged_points:
     ----------
     .. [1] D 2.4 and figures 2.25 and 2.26.
     .. [2] D. C. Rife and R. R. Boorstyn, IEEE Trans. Inf. Theory 20, 591 (1974). doi:10.1109/TIT.1974.1055282
+    .. [3] J. D. Scargle, Astrophys. J. 263, 835 (1982), section III. doi:10.1086/160554
     """
     require_within(0.05, 1.0, width_fraction=width_fraction)
     profiles, step = _longitudinal_profiles(groove, width_fraction, averaged_points)
@@ -104,18 +114,24 @@ def track_marks(groove: Groove, *, width_fraction: float = 0.6, averaged_points:
         raise InvalidInput(f"{track} is too short or too flat for a spectrum")
     maxima = 1 + np.flatnonzero((power[1:-1] > power[:-2]) & (power[1:-1] >= power[2:]))
     candidates = maxima[np.argsort(-(power * k)[maxima])][:_CANDIDATES]
-    backgrounds = [_power_law(k, power, np.abs(k - k[index]) > _LOBE / length) for index in candidates]
-    prominences = [float((power / level)[index]) for index, level in zip(candidates, backgrounds, strict=True)]
-    best = int(np.argmax(prominences)) if candidates.size else 0
-    top, prominence = (int(candidates[best]), prominences[best]) if candidates.size else (0, 0.0)
-    background = backgrounds[best] if candidates.size else _power_law(k, power, np.ones(k.size, dtype=np.bool_))
-    significant = prominence >= _SIGNIFICANT
+    backgrounds = [_background(k, power, np.abs(k - k[index]) > _LOBE / length, length) for index in candidates]
+    alarms = [
+        _false_alarm(k, power / level, int(index), length) for index, level in zip(candidates, backgrounds, strict=True)
+    ]
+    best = int(np.argmin(alarms)) if candidates.size else 0
+    top, alarm = (int(candidates[best]), alarms[best]) if candidates.size else (0, 1.0)
+    background = (
+        backgrounds[best] if candidates.size else _background(k, power, np.ones(k.size, dtype=np.bool_), length)
+    )
+    prominence = float(power[top] / background[top]) if candidates.size else 0.0
+    significant = alarm < _FALSE_ALARMS
     spacing = 1 / _interpolated_maximum(k, power, top) if significant else None
-    weak = f"no peak of the spectrum along the track exceeds {prominence:.1f} times the power of the background"
+    weak = f"no periodic marks found (largest peak {prominence:.1f} times the background, p = {alarm:.2g})"
     return TrackMarks(
         dot_spacing=spacing,
         dot_spacing_uncertainty=None if spacing is None else _uncertainty(spacing, length, prominence),
         prominence=prominence,
+        false_alarm_probability=alarm,
         reason="" if significant else weak,
         wavenumber=k,
         profile_spectral_density=power,
@@ -148,11 +164,28 @@ def _longitudinal_profiles(groove: Groove, width_fraction: float, averaged_point
     return profiles - trend * t, float(sections.arc_length[1] - sections.arc_length[0])
 
 
-def _power_law(k: Floats, power: Floats, beside: NDArray[np.bool_]) -> Floats:
-    """Power law fitted to a spectrum at some wavenumbers, with equal weight per octave."""
-    x, y = np.log(k[beside]), np.log(np.maximum(power[beside], power.max() * 1e-12))
-    slope, level = np.polyfit(x, y, 1, w=1 / np.sqrt(k[beside]))
-    return np.asarray(np.exp(slope * np.log(k) + level))
+def _background(k: Floats, power: Floats, beside: NDArray[np.bool_], length: float) -> Floats:
+    """Smooth spectrum fitted at some wavenumbers in double logarithmic scale, with equal weight per octave."""
+    x, y = np.log(k), np.log(np.maximum(power, power.max() * 1e-12))
+    degree = 2 if np.count_nonzero(beside) * (k[1] - k[0]) * length > _CURVED else 1
+    fitted = np.polyfit(x[beside], y[beside], degree, w=1 / np.sqrt(k[beside]))
+    return np.asarray(np.exp(np.polyval(fitted, x)))
+
+
+def _false_alarm(k: Floats, ratio: Floats, top: int, length: float) -> float:
+    """Probability of a peak as high anywhere, from the scatter of the spectrum about its background."""
+    logarithm = np.log(np.maximum(ratio, 1e-12))
+    beside = np.abs(k - k[top]) > _LOBE / length
+    if np.count_nonzero(beside) < _PADDING:
+        return 1.0
+    middle = float(np.median(logarithm[beside]))
+    deviation = _DEVIATION_OVER_MEDIAN * float(np.median(np.abs(logarithm[beside] - middle)))
+    freedoms = np.geomspace(_LEAST_FREEDOM, _LARGEST_FREEDOM, 400)  # trigamma(n) is the variance of the logarithm
+    freedom = float(np.interp(-(deviation**2), -special.polygamma(1, freedoms), freedoms))
+    height = math.exp(float(logarithm[top]) - middle) * float(special.gammaincinv(freedom, 0.5))
+    single = float(special.gammaincc(freedom, height))
+    searched = _TRIALS_PER_RESOLUTION * float(k[-1] - k[0]) * length
+    return -math.expm1(searched * math.log1p(-min(single, 1 - 1e-12)))
 
 
 def _interpolated_maximum(k: Floats, power: Floats, top: int) -> float:
