@@ -10,7 +10,6 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, NoGroove
 from sonolube.surfaces.grooves.detection import DetectedGroove, detect_groove
-from sonolube.surfaces.grooves.track import GrooveTrack
 from sonolube.surfaces.height_map import HeightMap, Mask
 
 _MOST_TRACKS = 8
@@ -23,6 +22,7 @@ _SEGMENTS = 12  # along a track
 _PRESENT = 0.25  # depth of a segment over the upper quartile of all
 _LEAST_PRESENT = 0.8  # fraction of the segments of a track
 _NARROWEST = 0.03  # width of a track over the longer side of the field
+_LEAST_LENGTH = 0.5  # of a further track over the shorter side of the field: a corner shows too little of one
 _MASKED = 0.25  # of the width, left out on either side of a feature
 
 
@@ -109,6 +109,8 @@ def field_tracks(surface: HeightMap) -> FieldTracks:
         deepest = max([trough.depth for trough in troughs] + [track.groove_depth for track in found])
         for trough in troughs:
             if trough.depth < _LEAST_DEPTH * deepest:
+                continue
+            if (found or others) and _length(rest, transverse, arc_length, trough) < _LEAST_LENGTH:
                 continue
             feature = _other_feature(rest, transverse, arc_length, trough)
             if feature:
@@ -239,6 +241,15 @@ def _other_feature(surface: HeightMap, transverse: Floats, arc_length: Floats, t
         return ""
     length = present / _SEGMENTS * (stop - start)
     return f"{size} is only {1e3 * length:.2g} mm long, where a track crosses the field: a scratch or a pit"
+
+
+def _length(surface: HeightMap, transverse: Floats, arc_length: Floats, trough: _Trough) -> float:
+    """Length in the field of the middle of a trough, over the shorter side of the field."""
+    rows, columns = surface.height.shape
+    near = np.abs(transverse - (trough.left + trough.right) / 2) < (trough.right - trough.left) / 4
+    near &= surface.measured
+    shorter = min(rows * surface.spacing_y, columns * surface.spacing_x)
+    return float(np.ptp(arc_length[near])) / shorter if near.any() else 0.0
 
 
 def _plane_above(surface: HeightMap, transverse: Floats, arc_length: Floats, beside: Mask) -> Floats:

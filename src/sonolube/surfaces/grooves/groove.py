@@ -1,6 +1,5 @@
 """Wear groove of a scan: width, depth, wear and pile-up volume with uncertainty, against the unworn reference."""
 
-import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -53,17 +52,26 @@ class Groove:
     cross_sections : CrossSections
         Single cross-sections along the track.
     groove_width : float
-        Distance of the edges, where the mean cross-section meets the unworn surface. [m]
+        Distance of the edges, where the mean cross-section meets the unworn surface; where an edge lies outside the
+        field, to the far corner of the field. [m]
+    groove_width_interval : tuple of float
+        95 % interval of the width, in m.
     groove_depth : float
         Greatest depth of the mean cross-section. [m]
+    groove_depth_interval : tuple of float
+        95 % interval of the depth, in m.
     cross_section_area : float
         Area of the mean cross-section below the unworn surface: volume per length of track. [m2]
+    cross_section_area_interval : tuple of float
+        95 % interval of the area, in m2.
     track_length : float
         Length of track in the field: area of the groove over its width. [m]
     wear_volume : float
         Volume below the unworn surface within the field. [m3]
     wear_volume_uncertainty : float
-        Standard uncertainty from the reference under the groove, roughness and missing pixels. [m3]
+        Standard uncertainty from the reference under the groove and the roughness. [m3]
+    wear_volume_interval : tuple of float
+        95 % interval of the wear volume, in m3.
     pile_up_volume : float
         Volume of ridges and projections above the unworn surface within the field. [m3]
     complete : bool
@@ -84,14 +92,15 @@ class Groove:
     mean_cross_section: MeanCrossSection
     cross_sections: CrossSections
     groove_width: float
-    groove_depth: float
     groove_width_interval: tuple[float, float]
+    groove_depth: float
     groove_depth_interval: tuple[float, float]
-    wear_volume_interval: tuple[float, float]
     cross_section_area: float
+    cross_section_area_interval: tuple[float, float]
     track_length: float
     wear_volume: float
     wear_volume_uncertainty: float
+    wear_volume_interval: tuple[float, float]
     pile_up_volume: float
     complete: bool
     caveat: str
@@ -166,9 +175,10 @@ def measure_groove(surface: HeightMap, *, track_number: int | None = None) -> Gr
     middle = (edges.left + edges.right) / 2
     track = replace(track, track_offset=track.track_offset + middle)
     section = replace(section, transverse=section.transverse - middle)
-    measured = _measured(levelled, surface, reference, track, section, edges.shifted(-middle), excluded)
-    caveat = "; ".join(part for part in (measured.caveat, *field.others) if part)
-    return replace(measured, track_number=number, track_count=len(field.tracks), caveat=caveat)
+    counted = levelled.measured & ~excluded
+    found = _measured(levelled, surface, reference, track, section, edges.shifted(-middle), counted)
+    caveat = "; ".join(part for part in (found.caveat, *field.others) if part)
+    return replace(found, track_number=number, track_count=len(field.tracks), caveat=caveat)
 
 
 def _chosen(field: FieldTracks, number: int | None) -> int:
@@ -185,34 +195,37 @@ def _chosen(field: FieldTracks, number: int | None) -> int:
 
 
 def _measured(
-    levelled: HeightMap, surface: HeightMap, reference: UnwornReference, track: GrooveTrack, section: MeanCrossSection, edges: GrooveExtent,
-    excluded: Mask
+    levelled: HeightMap,
+    surface: HeightMap,
+    reference: UnwornReference,
+    track: GrooveTrack,
+    section: MeanCrossSection,
+    first_edges: GrooveExtent,
+    counted: Mask,
 ) -> Groove:
-    """Groove between known edges, its volumes and their uncertainty."""
+    """Groove about a known track, with its intervals."""
     transverse, _ = track.curvilinear_coordinates(levelled)
-    errors = GrooveErrors.of(levelled, surface, reference, transverse, section, edges, levelled.measured & ~excluded)
-    estimates = section_estimates(errors, edges)
-    assert estimates is not None
-    curve, width_estimate, depth_estimate = estimates
-    edges = edges._replace(left=curve.left if edges.left_in_field else edges.left, right=curve.right if edges.right_in_field else edges.right)
-    edges = edges._replace(left_foot=min(edges.left, edges.left_foot), right_foot=max(edges.right, edges.right_foot))
+    errors = GrooveErrors.of(levelled, surface, reference, transverse, section, first_edges, counted)
+    estimates = section_estimates(errors, first_edges)
+    if estimates is None:
+        raise NoGroove(
+            f"no groove found: a trough {(first_edges.right - first_edges.left) / section.step:.0f} pixels wide is too"
+            " narrow to be measured; scan it at a higher magnification"
+        )
+    edges, width_estimate, depth_estimate = estimates
     pixel = levelled.spacing_x * levelled.spacing_y
     inside = (transverse > edges.left) & (transverse < edges.right)
     beside = (transverse < edges.left_foot) | (transverse > edges.right_foot)
-    deviation = float(np.std(_smooth(levelled)[beside]))
     projection = _projections(levelled, transverse, (edges.left, edges.right))
     worn, piled_up = inside & ~projection, projection | ~(inside | beside)
     height = np.where(levelled.measured, levelled.height, section.at(transverse))
     width = edges.right - edges.left
-    missing = inside & ~levelled.measured
-    residual = levelled.height[inside & levelled.measured] - section.at(transverse[inside & levelled.measured])
     area = pixel * np.count_nonzero(inside)
     wear_volume = -float(height[worn].sum()) * pixel
-    bins = errors.bins
-    all_of_bin, known_of_bin = np.bincount(bins[inside]), np.bincount(bins[inside & levelled.measured], minlength=int(bins[inside].max()) + 1)
-    share = (all_of_bin / np.maximum(known_of_bin, 1))[np.where(inside, bins, 0)]
-    volume_weights = np.where(inside & levelled.measured, share * pixel, 0.0)
-    uncertainty, half = errors.half_width(volume_weights)
+    volume_estimate = errors.sum_over(worn, wear_volume)
+    section_area = _mean_section_area(height, worn, inside, transverse, section.step)
+    relative = volume_estimate.half_width / wear_volume
+    missing = np.count_nonzero(inside & ~levelled.measured) / np.count_nonzero(inside)
     return Groove(
         track=track,
         levelled=levelled,
@@ -224,17 +237,18 @@ def _measured(
             levelled, track, reach=(edges.left_foot - _BESIDE * width, edges.right_foot + _BESIDE * width)
         ),
         groove_width=width_estimate.value,
+        groove_width_interval=width_estimate.interval,
         groove_depth=depth_estimate.value,
-        groove_width_interval=(width_estimate.value - width_estimate.half_width, width_estimate.value + width_estimate.half_width),
-        groove_depth_interval=(depth_estimate.value - depth_estimate.half_width, depth_estimate.value + depth_estimate.half_width),
-        wear_volume_interval=(wear_volume - half, wear_volume + half),
-        cross_section_area=_mean_section_area(height, worn, inside, transverse, section.step),
+        groove_depth_interval=depth_estimate.interval,
+        cross_section_area=section_area,
+        cross_section_area_interval=(section_area * (1 - relative), section_area * (1 + relative)),
         track_length=area / width,
         wear_volume=wear_volume,
-        wear_volume_uncertainty=uncertainty,
+        wear_volume_uncertainty=volume_estimate.uncertainty,
+        wear_volume_interval=volume_estimate.interval,
         pile_up_volume=float(height[piled_up].sum()) * pixel,
         complete=edges.left_in_field and edges.right_in_field,
-        caveat=_caveat(edges, uncertainty / wear_volume, np.count_nonzero(missing) / np.count_nonzero(inside)),
+        caveat=_caveat(edges, volume_estimate.uncertainty / wear_volume, missing),
     )
 
 

@@ -8,8 +8,13 @@ import numpy as np
 from scipy.linalg import toeplitz
 
 from sonolube.checks import Floats
-from sonolube.surfaces.grooves.roughness_covariance import Cells, RoughnessCovariance, coverage_factor, roughness_covariance
-from sonolube.surfaces.grooves.section_curve import SectionCurve, section_curve
+from sonolube.surfaces.grooves.roughness_covariance import (
+    Cells,
+    RoughnessCovariance,
+    coverage_factor,
+    roughness_covariance,
+)
+from sonolube.surfaces.grooves.section_curve import section_curve
 from sonolube.surfaces.grooves.sections import GrooveExtent, MeanCrossSection
 from sonolube.surfaces.grooves.unworn_reference import UnwornReference
 from sonolube.surfaces.height_map import HeightMap, Mask
@@ -25,6 +30,11 @@ class Estimate(NamedTuple):
     value: float
     uncertainty: float
     half_width: float
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """Ends of the 95 % interval."""
+        return self.value - self.half_width, self.value + self.half_width
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -71,13 +81,7 @@ class GrooveErrors:
         floor, outer = (_mean_square(cells, residual, counted & part) for part in (worn, beside))
         scale = math.sqrt(floor / outer) if outer > 0 and floor > 0 else 1.0
         return cls(
-            levelled,
-            reference,
-            transverse,
-            section,
-            cells,
-            covariance,
-            min(max(scale, _LEAST_SCALE), _LARGEST_SCALE),
+            levelled, reference, transverse, section, cells, covariance, min(max(scale, _LEAST_SCALE), _LARGEST_SCALE)
         )
 
     def half_width(self, direct: Floats, *further: float) -> tuple[float, float]:
@@ -92,6 +96,14 @@ class GrooveErrors:
         """
         weights = self.floor_scale * direct - self.reference.pixel_weights(direct)
         return self._combined(weights, self.reference.deviation_between_models(direct), *further)
+
+    def sum_over(self, worn: Mask, volume: float) -> Estimate:
+        """Volume below the reference over worn pixels with its uncertainty; a missing one weighs on those of its bin."""
+        measured = worn & self.levelled.measured
+        whole, known = (np.bincount(self.bins[mask], minlength=self.section.pixels.size) for mask in (worn, measured))
+        share = (whole / np.maximum(known, 1))[self.bins]
+        pixel = self.levelled.spacing_x * self.levelled.spacing_y
+        return Estimate(volume, *self.half_width(np.where(measured, share * pixel, 0.0)))
 
     def of_reference(self, direct: Floats, *further: float) -> tuple[float, float]:
         """The same of the reference alone."""
@@ -136,11 +148,13 @@ class GrooveErrors:
     def bins(self) -> Floats:
         """Number of the section's bin of each pixel."""
         first = self.section.transverse[0] - self.section.step / 2
-        return np.clip(np.floor((self.transverse - first) / self.section.step).astype(np.intp), 0, self.section.pixels.size - 1)
+        return np.clip(
+            np.floor((self.transverse - first) / self.section.step).astype(np.intp), 0, self.section.pixels.size - 1
+        )
 
 
-def section_estimates(errors: GrooveErrors, edges: GrooveExtent) -> tuple[SectionCurve, Estimate, Estimate] | None:
-    """Curve of the mean section, and width and depth with their uncertainty; None where too few points lie within."""
+def section_estimates(errors: GrooveErrors, edges: GrooveExtent) -> tuple[GrooveExtent, Estimate, Estimate] | None:
+    """Edges, width and depth of the mean section with their uncertainty; None where too few points lie within."""
     section = errors.section
     chosen = (section.pixels >= _LEAST_PIXELS * section.pixels.max()) & np.isfinite(section.height)
     margin = 3 * section.step
@@ -164,8 +178,9 @@ def section_estimates(errors: GrooveErrors, edges: GrooveExtent) -> tuple[Sectio
     extremes = float(across.min()), float(across.max())
     left = extremes[0] if cut[0] else curve.left
     right = extremes[1] if cut[1] else curve.right
+    found = edges._replace(left=edges.left if cut[0] else curve.left, right=edges.right if cut[1] else curve.right)
     return (
-        curve,
+        found._replace(left_foot=min(found.left, edges.left_foot), right_foot=max(found.right, edges.right_foot)),
         Estimate(right - left, *errors.of_reference(at_edges, curve.width_deviation)),
         Estimate(curve.depth, *errors.of_reference(strip(curve.deepest), curve.depth_deviation)),
     )

@@ -193,10 +193,7 @@ def roughness_covariance(cells: Cells, height: Floats, counted: Mask) -> Roughne
             best = found
     assert best is not None
     return RoughnessCovariance(
-        parameters=best[1],
-        parameter_covariance=best[2],
-        spacing=cells.spacing,
-        pixels_per_cell=cells.pixels_per_cell,
+        parameters=best[1], parameter_covariance=best[2], spacing=cells.spacing, pixels_per_cell=cells.pixels_per_cell
     )
 
 

@@ -79,11 +79,7 @@ def section_curve(
             None
             if cut[1]
             else _edge(
-                -s[inside][::-1],
-                heights[::-1],
-                z[inside][::-1],
-                covariance[np.ix_(inside, inside)][::-1, ::-1],
-                depth,
+                -s[inside][::-1], heights[::-1], z[inside][::-1], covariance[np.ix_(inside, inside)][::-1, ::-1], depth
             ),
         ]
         found = _curve(fit, s[inside], ends)
@@ -176,9 +172,7 @@ class _Spline(NamedTuple):
     def at(self, s: Floats) -> Floats:
         """Posterior mean of the heights in m at distances in m."""
         u = (s - self.middle) / self.scale
-        return np.asarray(
-            _parabolas(u) @ self.coefficients + self.power * _kernel(u, self.points) @ self.weights
-        )
+        return np.asarray(_parabolas(u) @ self.coefficients + self.power * _kernel(u, self.points) @ self.weights)
 
     def draws(self, s: Floats) -> Floats:
         """Draws from the posterior at distances in m, shape (draws, points)."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import fft, special
+from scipy import fft, stats
 
 from sonolube.checks import Floats, require_within
 from sonolube.errors import InvalidInput
@@ -20,9 +20,9 @@ _CANDIDATES = 8  # local maxima of the spectrum that are compared
 _LOBE = 2.0  # width of a peak of the spectrum over the resolution
 _FALSE_ALARMS = 0.01  # probability of a spacing where there are no marks
 _TRIALS_PER_RESOLUTION = 2.0  # independent heights of a spectrum of tapered profiles, per resolution
-_CURVED = 24  # resolutions, from which on the background may be curved
-_LEAST_FREEDOM, _LARGEST_FREEDOM = 0.5, 300.0  # of the background's Gamma distribution
-_DEVIATION_OVER_MEDIAN = 1.4826  # standard deviation over median absolute deviation of Gaussian values
+_ROLL_OFFS = 24  # lengths of the background's roll-off that are tried
+_NEIGHBOURS, _LEAST_NEIGHBOURS = 12, 6  # resolutions beside a peak that give the freedom of the spectrum
+_RESOLUTIONS_PER_HEIGHT = 1.5  # of a spectrum of tapered profiles
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -83,8 +83,8 @@ def track_marks(groove: Groove, *, width_fraction: float = 0.6, averaged_points:
     -----
     The mean cross-section is subtracted from the heights, and mean and trend from each profile; missing points are set
     to zero, and a Hann window is applied. The spectra of the profiles are averaged, so that marks of different profiles
-    need not be in phase. The background is a parabola (over short tracks a line) in double logarithmic scale, and the
-    power over it a Gamma variate, whose freedom follows from the scatter of the spectrum itself. A spacing is given
+    need not be in phase. The background is a power law with a roll-off, and the
+    power over it an F variate, whose freedom follows from the coherence of the profiles about the peak. A spacing is given
     where a peak as high would appear at any of the wavenumbers searched with a probability below 1 % [3]_. Spacings
     from 2.5 points to half the track can be found. With the length :math:`L` of the track and the prominence :math:`p`
     the standard uncertainty of the spacing :math:`s` is the Cramer-Rao bound [2]_ of a single profile
@@ -105,10 +105,11 @@ def track_marks(groove: Groove, *, width_fraction: float = 0.6, averaged_points:
     length = profiles.shape[1] * step
     size = fft.next_fast_len(_PADDING * profiles.shape[1])
     window = np.hanning(profiles.shape[1] + 2)[1:-1]
-    power = np.mean(np.abs(fft.rfft(profiles * window, size, axis=1)) ** 2, axis=0) * step / np.sum(window**2)
+    spectra = fft.rfft(profiles * window, size, axis=1) * math.sqrt(step / float(np.sum(window**2)))
+    power = np.mean(np.abs(spectra) ** 2, axis=0)
     k = fft.rfftfreq(size, step)
     resolved = (k >= _LEAST_PERIODS / length) & (k <= 1 / (_POINTS_PER_PERIOD * step))
-    k, power = k[resolved], power[resolved]
+    k, power, spectra = k[resolved], power[resolved], spectra[:, resolved]
     if k.size < 3 * _PADDING or not np.any(power > 0):
         track = f"a track of {length:.2g} m with points every {step:.2g} m"
         raise InvalidInput(f"{track} is too short or too flat for a spectrum")
@@ -116,7 +117,8 @@ def track_marks(groove: Groove, *, width_fraction: float = 0.6, averaged_points:
     candidates = maxima[np.argsort(-(power * k)[maxima])][:_CANDIDATES]
     backgrounds = [_background(k, power, np.abs(k - k[index]) > _LOBE / length, length) for index in candidates]
     alarms = [
-        _false_alarm(k, power / level, int(index), length) for index, level in zip(candidates, backgrounds, strict=True)
+        _false_alarm(k, power / level, spectra / np.sqrt(level), int(index), length)
+        for index, level in zip(candidates, backgrounds, strict=True)
     ]
     best = int(np.argmin(alarms)) if candidates.size else 0
     top, alarm = (int(candidates[best]), alarms[best]) if candidates.size else (0, 1.0)
@@ -165,25 +167,37 @@ def _longitudinal_profiles(groove: Groove, width_fraction: float, averaged_point
 
 
 def _background(k: Floats, power: Floats, beside: NDArray[np.bool_], length: float) -> Floats:
-    """Smooth spectrum fitted at some wavenumbers in double logarithmic scale, with equal weight per octave."""
-    x, y = np.log(k), np.log(np.maximum(power, power.max() * 1e-12))
-    degree = 2 if np.count_nonzero(beside) * (k[1] - k[0]) * length > _CURVED else 1
-    fitted = np.polyfit(x[beside], y[beside], degree, w=1 / np.sqrt(k[beside]))
-    return np.asarray(np.exp(np.polyval(fitted, x)))
+    """Power law with a roll-off fitted at some wavenumbers in double logarithmic scale."""
+    y = np.log(np.maximum(power, power.max() * 1e-12))
+    weight = np.ones(k.size)[beside]
+    best: tuple[float, Floats] | None = None
+    for roll_off in np.geomspace(1 / length, 1 / k[-1], _ROLL_OFFS):
+        falling = np.log1p((2 * math.pi * roll_off * k) ** 2)
+        design = np.stack([np.ones(k.size), falling], axis=1)
+        fitted = np.linalg.lstsq(design[beside] * weight[:, None], y[beside] * weight, rcond=None)[0]
+        model = design @ fitted
+        misfit = float(np.sum(np.square((y - model)[beside] * weight)))
+        if best is None or misfit < best[0]:
+            best = misfit, model
+    assert best is not None
+    return np.asarray(np.exp(best[1]))
 
 
-def _false_alarm(k: Floats, ratio: Floats, top: int, length: float) -> float:
-    """Probability of a peak as high anywhere, from the scatter of the spectrum about its background."""
-    logarithm = np.log(np.maximum(ratio, 1e-12))
-    beside = np.abs(k - k[top]) > _LOBE / length
-    if np.count_nonzero(beside) < _PADDING:
+def _false_alarm(k: Floats, ratio: Floats, spectra: Floats, top: int, length: float) -> float:
+    """Probability of a peak as high anywhere, from the freedom of the averaged spectra about the peak."""
+    away = np.abs(k - k[top]) * length
+    beside = np.flatnonzero(away > _LOBE)
+    near = np.sort(beside[np.argsort(np.abs(np.log(k[beside] / k[top])))][: _NEIGHBOURS * _PADDING])
+    if near.size < _LEAST_NEIGHBOURS * _PADDING:
         return 1.0
-    middle = float(np.median(logarithm[beside]))
-    deviation = _DEVIATION_OVER_MEDIAN * float(np.median(np.abs(logarithm[beside] - middle)))
-    freedoms = np.geomspace(_LEAST_FREEDOM, _LARGEST_FREEDOM, 400)  # trigamma(n) is the variance of the logarithm
-    freedom = float(np.interp(-(deviation**2), -special.polygamma(1, freedoms), freedoms))
-    height = math.exp(float(logarithm[top]) - middle) * float(special.gammaincinv(freedom, 0.5))
-    single = float(special.gammaincc(freedom, height))
+    count = near.size / _PADDING / _RESOLUTIONS_PER_HEIGHT  # independent ones
+    normal = spectra[:, near]
+    products = normal @ np.conj(normal.T) / near.size
+    squared_trace = float(np.trace(products).real) ** 2
+    inverse_freedom = (float(np.sum(np.abs(products) ** 2)) / squared_trace - 1 / count) / (1 - 1 / count**2)
+    freedom = 1 / min(max(inverse_freedom, 1 / len(spectra)), 1.0)
+    height = float(ratio[top] / np.mean(ratio[near]))
+    single = float(stats.f.sf(height, 2 * freedom, 2 * freedom * count))
     searched = _TRIALS_PER_RESOLUTION * float(k[-1] - k[0]) * length
     return -math.expm1(searched * math.log1p(-min(single, 1 - 1e-12)))
 

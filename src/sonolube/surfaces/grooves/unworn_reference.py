@@ -15,7 +15,7 @@ from sonolube.surfaces.grooves.track import GrooveTrack
 from sonolube.surfaces.grooves.waviness_model import WavinessModel, model_probabilities
 from sonolube.surfaces.height_map import HeightMap, Mask
 
-
+_FORM_TERMS = 6  # a curvature that roughness hides is still there below the groove
 _NEGLIGIBLE = 1e-3  # probability of a model
 _HOPELESS = 60.0  # cost of the quickly found plane waves above that of the random field: a search is not worth it
 
@@ -153,8 +153,8 @@ def unworn_reference(
 
 def _models(blocks: BlockAverages) -> list[WavinessModel]:
     """Waviness models of the blocks, the most probable first; plane waves alone where they are sufficient."""
-    if fit_plane_waves(blocks, starts=1)[1]:
-        plane_waves, sufficient = fit_plane_waves(blocks)
+    if fit_plane_waves(blocks, form_terms=_FORM_TERMS, starts=1)[1]:
+        plane_waves, sufficient = fit_plane_waves(blocks, form_terms=_FORM_TERMS)
         if sufficient:
             return plane_waves
     random = fit_random_field(blocks)
