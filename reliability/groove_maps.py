@@ -78,10 +78,8 @@ def drawn_groove(seed: int, *, shape: tuple[int, int] = (180, 240)) -> Drawn:
     sq = 1e-6 if shallow else rng.uniform(0.2e-6, 1e-6)
     angle = rng.uniform(0, 2 * math.pi)
     s, reach = _distance(x, y, angle, rng, kind)
-    if cut:  # the middle of the groove near the side of the field
-        s = s - reach
-    else:
-        s = s - rng.uniform(-0.25e-3, 0.25e-3)
+    # cut by the field: the middle of the groove near its side
+    s = s - reach if cut else s - rng.uniform(-0.25e-3, 0.25e-3)
     depth_at, ridge = _section(s, width, depth, rng, kind)
     t = rng.uniform(-2e-6, 2e-6, 6)
     u, v = x / 1.2e-3, y / 1.2e-3

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, NoGroove
@@ -95,38 +96,29 @@ def field_tracks(surface: HeightMap) -> FieldTracks:
     found: list[FieldTrack] = []
     others: list[str] = []
     rest, masked = surface, surface
-    reason: NoGroove | None = None
     for _ in range(_MOST_TRACKS):
         try:
             detected = detect_groove(rest)
-        except (NoGroove, InvalidInput) as refusal:
+        except (NoGroove, InvalidInput):
             if not found and not others:
                 raise
-            reason = refusal if isinstance(refusal, NoGroove) else None
             break
         transverse, arc_length = detected.track.curvilinear_coordinates(surface)
         troughs = _troughs(detected)
         deepest = max([trough.depth for trough in troughs] + [track.groove_depth for track in found])
         for trough in troughs:
-            if trough.depth < _LEAST_DEPTH * deepest:
+            if not _counts(rest, transverse, arc_length, trough, deepest, first=not (found or others)):
                 continue
-            if (found or others) and _length(rest, transverse, arc_length, trough) < _LEAST_LENGTH:
-                continue
-            feature = _other_feature(rest, transverse, arc_length, trough)
-            if feature:
+            if feature := _other_feature(rest, transverse, arc_length, trough):
                 others.append(feature)
                 masked = _without(masked, transverse, trough)
             else:
                 found.append(_track(detected, trough, alone=len(troughs) == 1))
-        remaining = rest
         for trough in troughs:
-            remaining = _without(remaining, transverse, trough, wider=detected.worn_band)
-        if np.count_nonzero(remaining.measured) in (0, np.count_nonzero(rest.measured)):
-            break
-        rest = remaining
+            rest = _without(rest, transverse, trough, wider=True)
     if not found:
         what = "; ".join(others)
-        raise NoGroove(f"no groove found: {what}") from reason
+        raise NoGroove(f"no groove found: {what}")
     return FieldTracks(tuple(sorted(found, key=_order)), tuple(others), masked)
 
 
@@ -243,6 +235,14 @@ def _other_feature(surface: HeightMap, transverse: Floats, arc_length: Floats, t
     return f"{size} is only {1e3 * length:.2g} mm long, where a track crosses the field: a scratch or a pit"
 
 
+def _counts(
+    surface: HeightMap, transverse: Floats, arc_length: Floats, trough: _Trough, deepest: float, *, first: bool
+) -> bool:
+    """Whether a trough is deep enough beside the deepest and, after the first, long enough in the field."""
+    long = first or _length(surface, transverse, arc_length, trough) >= _LEAST_LENGTH
+    return long and trough.depth >= _LEAST_DEPTH * deepest
+
+
 def _length(surface: HeightMap, transverse: Floats, arc_length: Floats, trough: _Trough) -> float:
     """Length in the field of the middle of a trough, over the shorter side of the field."""
     rows, columns = surface.height.shape
@@ -261,21 +261,19 @@ def _plane_above(surface: HeightMap, transverse: Floats, arc_length: Floats, bes
     return np.asarray(np.tensordot(coefficients, terms, 1))
 
 
-def _segment_means(values: Floats, segment: Floats, counted: Mask) -> Floats:
+def _segment_means(values: Floats, segment: NDArray[np.intp], counted: Mask) -> Floats:
     """Mean of the counted pixels of each segment, NaN where there are few."""
-    numbers = np.asarray(segment[counted], dtype=np.intp)
+    numbers = segment[counted]
     count = np.bincount(numbers, minlength=_SEGMENTS)
     total = np.bincount(numbers, values[counted], minlength=_SEGMENTS)
     return np.where(count > count.max() / 20, total / np.maximum(count, 1), np.nan)
 
 
-def _without(
-    surface: HeightMap, transverse: Floats, trough: _Trough, wider: tuple[float, float] | None = None
-) -> HeightMap:
+def _without(surface: HeightMap, transverse: Floats, trough: _Trough, wider: bool = False) -> HeightMap:
     """Scan with a trough and a margin as missing pixels."""
     margin = _MASKED * (trough.right - trough.left)
     low, high = trough.left - margin, trough.right + margin
-    if wider is not None and math.isfinite(sum(trough.band)):
+    if wider and math.isfinite(sum(trough.band)):
         low, high = min(low, trough.band[0]), max(high, trough.band[1])
     return _masked(surface, (transverse > low) & (transverse < high))
 

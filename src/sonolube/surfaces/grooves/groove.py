@@ -158,7 +158,7 @@ def measure_groove(surface: HeightMap, *, track_number: int | None = None) -> Gr
     surface = without_tracks(field.masked, others)
     detected = field.tracks[number - 1].detected
     track, band = detected.track, detected.worn_band
-    excluded: Mask | None = None
+    excluded = np.zeros(surface.height.shape, dtype=np.bool_)
     for iteration in range(_MOST_ITERATIONS):
         reference = unworn_reference(surface, track=track, worn_band=band, excluded=excluded)
         levelled = surface.with_height(surface.height - reference.surface.height)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import toeplitz
 
 from sonolube.checks import Floats
@@ -98,7 +99,7 @@ class GrooveErrors:
         return self._combined(weights, self.reference.deviation_between_models(direct), *further)
 
     def sum_over(self, worn: Mask, volume: float) -> Estimate:
-        """Volume below the reference over worn pixels with its uncertainty; a missing one weighs on those of its bin."""
+        """Volume below the reference over worn pixels; a missing one weighs on those of its bin."""
         measured = worn & self.levelled.measured
         whole, known = (np.bincount(self.bins[mask], minlength=self.section.pixels.size) for mask in (worn, measured))
         share = (whole / np.maximum(known, 1))[self.bins]
@@ -145,12 +146,11 @@ class GrooveErrors:
         return np.asarray(self.floor_scale**2 * (vectors * values) @ vectors.T)
 
     @property
-    def bins(self) -> Floats:
+    def bins(self) -> NDArray[np.intp]:
         """Number of the section's bin of each pixel."""
         first = self.section.transverse[0] - self.section.step / 2
-        return np.clip(
-            np.floor((self.transverse - first) / self.section.step).astype(np.intp), 0, self.section.pixels.size - 1
-        )
+        number = np.floor((self.transverse - first) / self.section.step).astype(np.intp)
+        return np.asarray(np.clip(number, 0, self.section.pixels.size - 1))
 
 
 def section_estimates(errors: GrooveErrors, edges: GrooveExtent) -> tuple[GrooveExtent, Estimate, Estimate] | None:

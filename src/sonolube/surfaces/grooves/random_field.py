@@ -14,6 +14,7 @@ _MOST_ITERATIONS = 40
 _CONVERGED = 0.02  # change of the logarithm of a spectral density
 _LEAST_VARIANCE = 1e-10  # of a mode over that of the noise
 _NEGLIGIBLE = 1e-6  # variance of a mode over that of the noise, below which it need not converge
+_VAGUE = 100.0  # variance of the square terms of the form over that of the blocks: a curvature is not shrunk
 _ROUNDING = 1e-12
 
 
@@ -44,9 +45,10 @@ def fit_random_field(blocks: BlockAverages) -> WavinessModel:
     parts = [_Part.of(blocks, design, part) for part in blocks.parts]
     wavenumber = np.hypot(*modes.T)
     ring = np.minimum((wavenumber / wavenumber.max() * _RINGS).astype(np.intp), _RINGS - 1)
-    rings = np.concatenate([np.full(3, _RINGS), ring, ring])  # the square terms of the form have a density of their own
+    rings = np.concatenate([np.full(3, _RINGS), ring, ring])  # the square terms of the form are free
     scale = blocks.deviation
     density = np.full(_RINGS + 1, scale**2 / count)
+    density[_RINGS] = _VAGUE * scale**2
     noise = np.array([part.square / part.blocks for part in parts])  # worn blocks may vary more: unworn ones dominate
     noise[0] = scale**2 / 10
     bound = np.arange(free, design.shape[1])
@@ -61,6 +63,7 @@ def fit_random_field(blocks: BlockAverages) -> WavinessModel:
         freedom = np.bincount(rings, 1 - prior * np.diag(covariance)[free:], minlength=_RINGS)
         power = np.bincount(rings, mean[free:] ** 2, minlength=_RINGS)
         density = np.maximum(power / np.maximum(freedom, 1e-9), _LEAST_VARIANCE * noise[0])
+        density[_RINGS] = _VAGUE * scale**2
         effective = [float(np.sum(covariance * part.gram)) / variance for part, variance in pairs]
         noise = np.array([part.variance(mean, used, scale) for part, used in zip(parts, effective, strict=True)])
         if np.all(np.abs(np.log(density / previous))[previous > _NEGLIGIBLE * noise[0]] < _CONVERGED):

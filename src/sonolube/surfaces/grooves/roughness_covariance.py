@@ -1,6 +1,7 @@
 """Covariance of the unworn roughness by the debiased Whittle likelihood, and the variance of sums over heights."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -197,7 +198,14 @@ def roughness_covariance(cells: Cells, height: Floats, counted: Mask) -> Roughne
     )
 
 
-def _scored(start, expected, periodogram, weight, floor, least_noise):  # type: ignore[no-untyped-def]
+def _scored(
+    start: Floats,
+    expected: Callable[[Floats], Floats],
+    periodogram: Floats,
+    weight: Floats,
+    floor: float,
+    least_noise: float,
+) -> tuple[float, Floats, Floats]:
     """Minus log-likelihood, parameters and covariance, by Fisher's scoring from a start."""
 
     def cost(parameters: Floats) -> tuple[float, Floats]:
@@ -231,7 +239,7 @@ def _scored(start, expected, periodogram, weight, floor, least_noise):  # type: 
         theta, value, mean, damping = trial, tried, tried_mean, damping / 10
         if moved < _CONVERGED or gained < 1e-2:
             break
-    return value, theta, np.linalg.pinv(information + 1e-6 * np.eye(6))
+    return value, theta, np.asarray(np.linalg.pinv(information + 1e-6 * np.eye(6)), dtype=np.float64)
 
 
 def _padded(shape: tuple[int, ...]) -> tuple[int, int]:

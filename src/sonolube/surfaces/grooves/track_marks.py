@@ -83,8 +83,8 @@ def track_marks(groove: Groove, *, width_fraction: float = 0.6, averaged_points:
     -----
     The mean cross-section is subtracted from the heights, and mean and trend from each profile; missing points are set
     to zero, and a Hann window is applied. The spectra of the profiles are averaged, so that marks of different profiles
-    need not be in phase. The background is a power law with a roll-off, and the
-    power over it an F variate, whose freedom follows from the coherence of the profiles about the peak. A spacing is given
+    need not be in phase. The background is a power law with a roll-off, and the power over it an F variate, whose
+    freedom follows from the coherence of the profiles about the peak. A spacing is given
     where a peak as high would appear at any of the wavenumbers searched with a probability below 1 % [3]_. Spacings
     from 2.5 points to half the track can be found. With the length :math:`L` of the track and the prominence :math:`p`
     the standard uncertainty of the spacing :math:`s` is the Cramer-Rao bound [2]_ of a single profile
