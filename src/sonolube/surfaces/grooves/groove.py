@@ -1,5 +1,6 @@
 """Wear groove of a scan: width, depth, wear and pile-up volume with uncertainty, against the unworn reference."""
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -7,6 +8,7 @@ from scipy.ndimage import uniform_filter
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, NoGroove, SeveralGrooves
+from sonolube.surfaces.grooves.detection import DetectedGroove
 from sonolube.surfaces.grooves.field_tracks import FieldTracks, field_tracks, without_tracks
 from sonolube.surfaces.grooves.groove_intervals import GrooveErrors, section_estimates
 from sonolube.surfaces.grooves.outliers import without_outliers
@@ -24,6 +26,7 @@ from sonolube.surfaces.grooves.unworn_reference import UnwornReference, unworn_r
 from sonolube.surfaces.height_map import HeightMap, Mask
 
 _MOST_ITERATIONS = 3
+_SHOULDER = 0.3  # of the width of the worn band, left out of the reference on either side
 _SPIKE = 8.0  # height of debris and dust over the standard deviation of the unworn surface
 _WINDOW = 5  # pixels, of the smoothing in which projections are detected
 _PROJECTION = 5.0  # height of a projection over the standard deviation of the smoothed unworn surface
@@ -157,7 +160,7 @@ def measure_groove(surface: HeightMap, *, track_number: int | None = None) -> Gr
     others = [track for place, track in enumerate(field.tracks, start=1) if place != number]
     surface = without_tracks(field.masked, others)
     detected = field.tracks[number - 1].detected
-    track, band = detected.track, detected.worn_band
+    track, band = detected.track, _with_shoulders(surface, detected)
     excluded = np.zeros(surface.height.shape, dtype=np.bool_)
     for iteration in range(_MOST_ITERATIONS):
         reference = unworn_reference(surface, track=track, worn_band=band, excluded=excluded)
@@ -179,6 +182,17 @@ def measure_groove(surface: HeightMap, *, track_number: int | None = None) -> Gr
     found = _measured(levelled, surface, reference, track, section, edges.shifted(-middle), counted)
     caveat = "; ".join(part for part in (found.caveat, *field.others) if part)
     return replace(found, track_number=number, track_count=len(field.tracks), caveat=caveat)
+
+
+def _with_shoulders(surface: HeightMap, detected: DetectedGroove) -> tuple[float, float]:
+    """Worn band with room for low ridges, which would lift the reference, up to half of what is unworn beside it."""
+    transverse, _ = detected.track.curvilinear_coordinates(surface)
+    left, right = detected.worn_band
+    wide = _SHOULDER * (right - left) if math.isfinite(right - left) else 0.0
+    return (
+        left - min(wide, max(0.0, left - float(transverse.min())) / 2),
+        right + min(wide, max(0.0, float(transverse.max()) - right) / 2),
+    )
 
 
 def _chosen(field: FieldTracks, number: int | None) -> int:
