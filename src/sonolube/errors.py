@@ -25,6 +25,10 @@ class NoGroove(SonolubeError):
     """A scan without a detectable wear groove or scar; the text gives what was detected instead."""
 
 
+class SeveralGrooves(SonolubeError):
+    """Several wear tracks lie in a scan, and none was chosen."""
+
+
 class UnknownName(SonolubeError, LookupError):
     """A name that is in no table."""
 

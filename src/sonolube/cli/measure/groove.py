@@ -31,6 +31,10 @@ def groove(
     pin: Annotated[
         list[Path] | None, typer.Option("--pin", metavar="FILE", help="Scan of the pin's tip; may come again.")
     ] = None,
+    track: Annotated[
+        int | None,
+        typer.Option("--track", min=1, metavar="N", help="Of several tracks: from the left, or the innermost radius."),
+    ] = None,
     pixel: Spacing = None,
     unit: Unit = None,
     test: Test = None,
@@ -54,7 +58,7 @@ def groove(
     refused: dict[str, str] = {}
     rings: list[WearTrack] = []
     for title, paths in (("the ring", files), ("the ring without vibration", without or [])):
-        ring_sheets, ring_refused, found = _ring(title, paths, settings, ring)
+        ring_sheets, ring_refused, found = _ring(title, paths, settings, ring, track)
         sheets += ring_sheets
         refused |= ring_refused
         rings += found
@@ -69,14 +73,14 @@ def groove(
 
 
 def _ring(
-    title: str, paths: Sequence[Path], settings: SurfaceSettings, ring: RingSettings | None
+    title: str, paths: Sequence[Path], settings: SurfaceSettings, ring: RingSettings | None, track: int | None
 ) -> tuple[list[Sheet], dict[str, str], list[WearTrack]]:
     """Sheets of scans and of their ring, reasons of the files refused, and the ring where there is one."""
     grooves: list[tuple[str, Groove | str]] = []
 
     def measure(path: Path) -> Sheet:
         try:
-            sheet, found = groove_sheet(path, settings=settings)
+            sheet, found = groove_sheet(path, settings=settings, track_number=track)
         except NoGroove as reason:
             grooves.append((path.name, str(reason)))
             raise

@@ -41,7 +41,9 @@ class RingSettings:
     tip_radius: float | None = None
 
 
-def groove_sheet(path: Path, *, settings: SurfaceSettings) -> tuple[sheet.Sheet, Groove]:
+def groove_sheet(
+    path: Path, *, settings: SurfaceSettings, track_number: int | None = None
+) -> tuple[sheet.Sheet, Groove]:
     """Wear groove in a scan: width, depth, volumes and pile-up.
 
     Parameters
@@ -50,6 +52,8 @@ def groove_sheet(path: Path, *, settings: SurfaceSettings) -> tuple[sheet.Sheet,
         In any format of `read_surface_file`, as measured.
     settings : SurfaceSettings
         Of which spacing and unit are taken.
+    track_number : int, optional
+        Which of several tracks, from 1: from the left, or from the innermost radius.
 
     Returns
     -------
@@ -60,20 +64,42 @@ def groove_sheet(path: Path, *, settings: SurfaceSettings) -> tuple[sheet.Sheet,
     ------
     NoGroove
         If nothing stands out of the scan as a groove.
+    SeveralGrooves
+        If there are several tracks and no number.
     InvalidInput
         If the file cannot be read or too little was measured.
     """
     file = surface_file(path, settings)
-    groove = measure_groove(file.height_map)
+    groove = measure_groove(file.height_map, track_number=track_number)
     values = [
-        sheet.quantity_value("wear_volume", groove.wear_volume, uncertainty=groove.wear_volume_uncertainty),
+        sheet.Value("track_count", "Wear tracks in the field", groove.track_count, ""),
+        sheet.quantity_value(
+            "wear_volume",
+            groove.wear_volume,
+            uncertainty=groove.wear_volume_uncertainty,
+            interval=groove.wear_volume_interval,
+        ),
         sheet.Value("pile_up_volume", "Volume of ridges and projections", groove.pile_up_volume, "m3"),
         sheet.Value("net_volume", "Net volume lost in the field", groove.net_volume, "m3"),
-        sheet.quantity_value("groove_width", groove.groove_width),
-        sheet.Value("groove_depth", "Greatest depth of the mean section", groove.groove_depth, "m"),
-        sheet.Value("cross_section_area", "Area of the mean section", groove.cross_section_area, "m2"),
+        sheet.quantity_value("groove_width", groove.groove_width, interval=groove.groove_width_interval),
+        sheet.Value(
+            "groove_depth",
+            "Greatest depth of the mean section",
+            groove.groove_depth,
+            "m",
+            interval=groove.groove_depth_interval,
+        ),
+        sheet.Value(
+            "cross_section_area",
+            "Area of the mean section",
+            groove.cross_section_area,
+            "m2",
+            interval=groove.cross_section_area_interval,
+        ),
         sheet.Value("track_length", "Length of track in the field", groove.track_length, "m"),
     ]
+    if groove.track_count > 1:
+        values.insert(1, sheet.Value("track_number", "The one measured", groove.track_number, ""))
     if groove.track.groove_diameter < _STRAIGHT * groove.track_length:
         values.append(
             sheet.quantity_value("groove_diameter", groove.track.groove_diameter, label="Diameter of the track's arc")

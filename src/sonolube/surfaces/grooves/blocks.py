@@ -1,9 +1,11 @@
 """Block averages of a worn scan, to which waviness models are fitted: worn blocks less the mean cross-section."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 
 from sonolube.checks import Floats
@@ -51,6 +53,8 @@ class BlockAverages:
         Number of unworn blocks.
     field : tuple of float
         Lengths of the field along x and y, in m.
+    labels : int array, shape of the heights
+        Number of the block that each pixel belongs to; -1 for pixels of none.
     """
 
     x: Floats
@@ -61,6 +65,7 @@ class BlockAverages:
     section: Floats
     unworn: int
     field: tuple[float, float]
+    labels: NDArray[np.intp]
 
     @property
     def longer_side(self) -> float:
@@ -77,6 +82,15 @@ class BlockAverages:
     def deviation(self) -> float:
         """Standard deviation of the unworn blocks. [m]"""
         return max(float(np.std(self.mean_height[: self.unworn])), HEIGHT_RESOLUTION)
+
+    def per_part(self, values: Sequence[float] | Floats) -> Floats:
+        """A value of the unworn and one of the worn blocks, for each block."""
+        return np.repeat(values, [part.stop - part.start for part in self.parts])
+
+    def pixel_weights(self, weights: Floats) -> Floats:
+        """Weights of the pixels in a sum of block means with given weights, shape of the heights."""
+        count = np.bincount(self.labels[self.labels >= 0], minlength=self.x.size)
+        return np.where(self.labels >= 0, (weights / np.maximum(count, 1))[self.labels], 0.0)
 
     def modes(self) -> Floats:
         """Wavenumbers of the Fourier modes of a box around the field, one of each pair k, -k, in 1/m, shape (n, 2)."""
@@ -154,7 +168,8 @@ def block_averages(
     unworn, groove = (block_means(fields, mask, edges) for mask in (counted & ~inside, worn))
     if unworn.shape[1] < _LEAST_UNWORN:
         raise InvalidInput(f"only {unworn.shape[1]} blocks of {longer / _BLOCKS:.2g} m are unworn; scan a wider field")
-    groove = groove[:, np.abs(groove[2]) < _OUTLIER * _block_deviation(unworn[2], groove[2])]
+    kept = np.abs(groove[2]) < _OUTLIER * _block_deviation(unworn[2], groove[2])
+    groove = groove[:, kept]
     free = np.empty((0, 0))
     if groove.size:
         hats, modulations = _hat_functions(groove[4], _KNOT * longer), _modulations(groove[3], groove[7] / longer)
@@ -169,7 +184,23 @@ def block_averages(
         section=np.concatenate([np.zeros((unworn.shape[1], free.shape[1])), free]),
         unworn=unworn.shape[1],
         field=field,
+        labels=_labels((counted & ~inside, worn), kept, edges, unworn.shape[1]),
     )
+
+
+def _labels(masks: tuple[Mask, Mask], kept: Mask, edges: list[NDArray[np.intp]], unworn: int) -> NDArray[np.intp]:
+    """Number of the block of each pixel, of the unworn blocks and then of the worn ones that are kept."""
+    rows, columns = (
+        np.searchsorted(edge, np.arange(count), side="right") - 1
+        for edge, count in zip(edges, masks[0].shape, strict=True)
+    )
+    cell = rows[:, None] * edges[1].size + columns
+    labels = np.full(masks[0].shape, -1, dtype=np.intp)
+    for mask, numbers in zip(masks, (np.arange(unworn), np.where(kept, unworn + np.cumsum(kept) - 1, -1)), strict=True):
+        of_cell = np.full(edges[0].size * edges[1].size, -1, dtype=np.intp)
+        of_cell[np.unique(cell[mask])] = numbers
+        labels[mask] = of_cell[cell[mask]]
+    return labels
 
 
 def _block_deviation(unworn: Floats, groove: Floats) -> float:

@@ -26,7 +26,7 @@ _MARGIN = 0.05  # of the worn width, on either side of it
 _REGULARIZATION = 1e-9
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class DetectedGroove:
     """Position of a detected wear groove, before the unworn reference is fitted.
 
@@ -39,11 +39,18 @@ class DetectedGroove:
         field ends within.
     contrast : float
         Greatest depth of the mean section over the standard deviation of the mean section beside the groove.
+    deviation : float
+        That standard deviation. [m]
+    section_transverse, section_height : ndarray, shape (n,)
+        Mean section over the line through its unworn ends: distance from the track and height, in m.
     """
 
     track: GrooveTrack
     worn_band: tuple[float, float]
     contrast: float
+    deviation: float
+    section_transverse: Floats
+    section_height: Floats
 
 
 def detect_groove(surface: HeightMap) -> DetectedGroove:
@@ -98,6 +105,9 @@ def detect_groove(surface: HeightMap) -> DetectedGroove:
         track=replace(track, track_offset=float(middle)),
         worn_band=(float(left - middle - left_margin), float(right - middle + right_margin)),
         contrast=depth / deviation,
+        deviation=deviation,
+        section_transverse=section.transverse - float(middle),
+        section_height=residual,
     )
 
 

@@ -7,8 +7,11 @@ import numpy as np
 from scipy.ndimage import uniform_filter
 
 from sonolube.checks import Floats
-from sonolube.errors import NoGroove
-from sonolube.surfaces.grooves.detection import detect_groove
+from sonolube.errors import InvalidInput, NoGroove, SeveralGrooves
+from sonolube.surfaces.grooves.detection import DetectedGroove
+from sonolube.surfaces.grooves.field_tracks import FieldTracks, field_tracks, without_tracks
+from sonolube.surfaces.grooves.groove_intervals import GrooveErrors, section_estimates
+from sonolube.surfaces.grooves.outliers import without_outliers
 from sonolube.surfaces.grooves.sections import (
     CrossSections,
     GrooveExtent,
@@ -23,6 +26,7 @@ from sonolube.surfaces.grooves.unworn_reference import UnwornReference, unworn_r
 from sonolube.surfaces.height_map import HeightMap, Mask
 
 _MOST_ITERATIONS = 3
+_SHOULDER = 0.3  # of the width of the worn band, left out of the reference on either side
 _SPIKE = 8.0  # height of debris and dust over the standard deviation of the unworn surface
 _WINDOW = 5  # pixels, of the smoothing in which projections are detected
 _PROJECTION = 5.0  # height of a projection over the standard deviation of the smoothed unworn surface
@@ -51,23 +55,36 @@ class Groove:
     cross_sections : CrossSections
         Single cross-sections along the track.
     groove_width : float
-        Distance of the edges, where the mean cross-section meets the unworn surface. [m]
+        Distance of the edges, where the mean cross-section meets the unworn surface; where an edge lies outside the
+        field, to the far corner of the field. [m]
+    groove_width_interval : tuple of float
+        95 % interval of the width, in m.
     groove_depth : float
         Greatest depth of the mean cross-section. [m]
+    groove_depth_interval : tuple of float
+        95 % interval of the depth, in m.
     cross_section_area : float
         Area of the mean cross-section below the unworn surface: volume per length of track. [m2]
+    cross_section_area_interval : tuple of float
+        95 % interval of the area, in m2.
     track_length : float
         Length of track in the field: area of the groove over its width. [m]
     wear_volume : float
         Volume below the unworn surface within the field. [m3]
     wear_volume_uncertainty : float
-        Standard uncertainty from the reference under the groove, roughness and missing pixels. [m3]
+        Standard uncertainty from the reference under the groove and the roughness. [m3]
+    wear_volume_interval : tuple of float
+        95 % interval of the wear volume, in m3.
     pile_up_volume : float
         Volume of ridges and projections above the unworn surface within the field. [m3]
     complete : bool
         Whether both edges lie in the field.
     caveat : str
         Warnings about the result; empty where there are none.
+    track_number : int
+        Number of the track among those in the field, from the left or from the innermost radius.
+    track_count : int
+        Number of wear tracks in the field.
     """
 
     track: GrooveTrack
@@ -78,14 +95,20 @@ class Groove:
     mean_cross_section: MeanCrossSection
     cross_sections: CrossSections
     groove_width: float
+    groove_width_interval: tuple[float, float]
     groove_depth: float
+    groove_depth_interval: tuple[float, float]
     cross_section_area: float
+    cross_section_area_interval: tuple[float, float]
     track_length: float
     wear_volume: float
     wear_volume_uncertainty: float
+    wear_volume_interval: tuple[float, float]
     pile_up_volume: float
     complete: bool
     caveat: str
+    track_number: int = 1
+    track_count: int = 1
 
     @property
     def net_volume(self) -> float:
@@ -93,13 +116,15 @@ class Groove:
         return self.wear_volume - self.pile_up_volume
 
 
-def measure_groove(surface: HeightMap) -> Groove:
+def measure_groove(surface: HeightMap, *, track_number: int | None = None) -> Groove:
     r"""Wear groove of a scan: detection, unworn reference, and volumes by integration over pixels.
 
     Parameters
     ----------
     surface : HeightMap
         As measured, not levelled; the form of a ball or cylinder removed beforehand.
+    track_number : int, optional
+        Which of several tracks to measure, from 1: from the left or, for circular tracks, from the innermost radius.
 
     Returns
     -------
@@ -108,9 +133,11 @@ def measure_groove(surface: HeightMap) -> Groove:
     Raises
     ------
     NoGroove
-        If no groove is detected, waviness alone has the greater evidence, or the groove fills the field.
+        If no track crosses the field, waviness alone has the greater evidence, or the groove fills the field.
+    SeveralGrooves
+        If there are several tracks and no number, with their positions, widths and depths.
     InvalidInput
-        If too little of the field was measured.
+        If too little of the field was measured, or there is no track of that number.
 
     See Also
     --------
@@ -127,9 +154,14 @@ def measure_groove(surface: HeightMap) -> Groove:
     roughness is not rectified into volume. A shallow groove is accepted only if a reference with a free section has
     greater evidence than waviness alone.
     """
-    detected = detect_groove(surface)
-    track, band = detected.track, detected.worn_band
-    excluded: Mask | None = None
+    surface = without_outliers(surface)
+    field = field_tracks(surface)
+    number = _chosen(field, track_number)
+    others = [track for place, track in enumerate(field.tracks, start=1) if place != number]
+    surface = without_tracks(field.masked, others)
+    detected = field.tracks[number - 1].detected
+    track, band = detected.track, _with_shoulders(surface, detected)
+    excluded = np.zeros(surface.height.shape, dtype=np.bool_)
     for iteration in range(_MOST_ITERATIONS):
         reference = unworn_reference(surface, track=track, worn_band=band, excluded=excluded)
         levelled = surface.with_height(surface.height - reference.surface.height)
@@ -146,31 +178,68 @@ def measure_groove(surface: HeightMap) -> Groove:
     middle = (edges.left + edges.right) / 2
     track = replace(track, track_offset=track.track_offset + middle)
     section = replace(section, transverse=section.transverse - middle)
-    return _measured(levelled, reference, track, section, edges.shifted(-middle))
+    counted = levelled.measured & ~excluded
+    found = _measured(levelled, surface, reference, track, section, edges.shifted(-middle), counted)
+    caveat = "; ".join(part for part in (found.caveat, *field.others) if part)
+    return replace(found, track_number=number, track_count=len(field.tracks), caveat=caveat)
+
+
+def _with_shoulders(surface: HeightMap, detected: DetectedGroove) -> tuple[float, float]:
+    """Worn band with room for low ridges, which would lift the reference, up to half of what is unworn beside it."""
+    transverse, _ = detected.track.curvilinear_coordinates(surface)
+    left, right = detected.worn_band
+    wide = _SHOULDER * (right - left) if math.isfinite(right - left) else 0.0
+    return (
+        left - min(wide, max(0.0, left - float(transverse.min())) / 2),
+        right + min(wide, max(0.0, float(transverse.max()) - right) / 2),
+    )
+
+
+def _chosen(field: FieldTracks, number: int | None) -> int:
+    """Number of the track to measure."""
+    count = len(field.tracks)
+    if number is None:
+        if count > 1:
+            raise SeveralGrooves(f"{field.listed()}; choose one by its number (--track)")
+        return 1
+    if not 1 <= number <= count:
+        there = field.listed() if count > 1 else "one wear track in the field"
+        raise InvalidInput(f"track_number must be 1 to {count}, got {number}: {there}")
+    return number
 
 
 def _measured(
-    levelled: HeightMap, reference: UnwornReference, track: GrooveTrack, section: MeanCrossSection, edges: GrooveExtent
+    levelled: HeightMap,
+    surface: HeightMap,
+    reference: UnwornReference,
+    track: GrooveTrack,
+    section: MeanCrossSection,
+    first_edges: GrooveExtent,
+    counted: Mask,
 ) -> Groove:
-    """Groove between known edges, its volumes and their uncertainty."""
+    """Groove about a known track, with its intervals."""
     transverse, _ = track.curvilinear_coordinates(levelled)
+    errors = GrooveErrors.of(levelled, surface, reference, transverse, section, first_edges, counted)
+    estimates = section_estimates(errors, first_edges)
+    if estimates is None:
+        raise NoGroove(
+            f"no groove found: a trough {(first_edges.right - first_edges.left) / section.step:.0f} pixels wide is too"
+            " narrow to be measured; scan it at a higher magnification"
+        )
+    edges, width_estimate, depth_estimate = estimates
     pixel = levelled.spacing_x * levelled.spacing_y
     inside = (transverse > edges.left) & (transverse < edges.right)
     beside = (transverse < edges.left_foot) | (transverse > edges.right_foot)
-    deviation = float(np.std(_smooth(levelled)[beside]))
     projection = _projections(levelled, transverse, (edges.left, edges.right))
     worn, piled_up = inside & ~projection, projection | ~(inside | beside)
     height = np.where(levelled.measured, levelled.height, section.at(transverse))
     width = edges.right - edges.left
-    missing = inside & ~levelled.measured
-    residual = levelled.height[inside & levelled.measured] - section.at(transverse[inside & levelled.measured])
     area = pixel * np.count_nonzero(inside)
     wear_volume = -float(height[worn].sum()) * pixel
-    uncertainty = math.hypot(
-        reference.volume_uncertainty(inside),
-        deviation * math.sqrt(_WINDOW**2 * pixel * area),
-        float(np.std(residual)) * math.sqrt(np.count_nonzero(missing)) * pixel,
-    )
+    volume_estimate = errors.sum_over(worn, wear_volume)
+    section_area = _mean_section_area(height, worn, inside, transverse, section.step)
+    relative = volume_estimate.half_width / wear_volume
+    missing = np.count_nonzero(inside & ~levelled.measured) / np.count_nonzero(inside)
     return Groove(
         track=track,
         levelled=levelled,
@@ -181,15 +250,19 @@ def _measured(
         cross_sections=cross_sections(
             levelled, track, reach=(edges.left_foot - _BESIDE * width, edges.right_foot + _BESIDE * width)
         ),
-        groove_width=width,
-        groove_depth=-float(np.nanmin(section.height)),
-        cross_section_area=_mean_section_area(height, worn, inside, transverse, section.step),
+        groove_width=width_estimate.value,
+        groove_width_interval=width_estimate.interval,
+        groove_depth=depth_estimate.value,
+        groove_depth_interval=depth_estimate.interval,
+        cross_section_area=section_area,
+        cross_section_area_interval=(section_area * (1 - relative), section_area * (1 + relative)),
         track_length=area / width,
         wear_volume=wear_volume,
-        wear_volume_uncertainty=uncertainty,
+        wear_volume_uncertainty=volume_estimate.uncertainty,
+        wear_volume_interval=volume_estimate.interval,
         pile_up_volume=float(height[piled_up].sum()) * pixel,
         complete=edges.left_in_field and edges.right_in_field,
-        caveat=_caveat(edges, uncertainty / wear_volume, np.count_nonzero(missing) / np.count_nonzero(inside)),
+        caveat=_caveat(edges, volume_estimate.uncertainty / wear_volume, missing),
     )
 
 

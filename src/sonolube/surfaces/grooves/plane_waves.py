@@ -19,11 +19,11 @@ _LEAST_NOISE = 1e-6  # over the standard deviation of the unworn blocks
 _ROUNDING = 1e-12
 _IMPROBABLE = 12.0  # cost above the least: a likelihood ratio of 1/400
 _DEVIATION_OVER_MEDIAN = 1.4826  # standard deviation over median absolute deviation of Gaussian heights
-_STARTS = 6  # local maxima of the explained misfit from which a further wave is refined
+_STARTS = 6  # local maxima of the explained misfit from which a further wave is refined, by default
 
 
 def fit_plane_waves(
-    blocks: BlockAverages, *, noise: tuple[float, ...] | None = None, form_terms: int = 3
+    blocks: BlockAverages, *, noise: tuple[float, ...] | None = None, form_terms: int = 3, starts: int = _STARTS
 ) -> tuple[list[WavinessModel], bool]:
     """Waviness models of up to four plane waves of any direction and length, with the number chosen by evidence.
 
@@ -35,6 +35,8 @@ def fit_plane_waves(
         default.
     form_terms : int
         Terms of the form: 3 for a plane, 6 for a form of second degree.
+    starts : int
+        Local maxima of the explained misfit from which each further wave is refined.
 
     Returns
     -------
@@ -61,7 +63,7 @@ def fit_plane_waves(
         sufficient = bool(gain.max() < 2 * math.log(best.residual.size))
         if sufficient or len(best.modes) == _MOST_WAVES:
             break
-        extended = [search.refined(np.vstack([best.modes, mode])) for mode in _local_maxima(candidates, gain)]
+        extended = [search.refined(np.vstack([best.modes, mode])) for mode in _local_maxima(candidates, gain)[:starts]]
         fits += extended
         most_probable = min(extended, key=lambda fit: fit.cost)
         if most_probable.cost >= best.cost:
@@ -104,7 +106,7 @@ class _Search:
     @classmethod
     def of(cls, blocks: BlockAverages, noise: tuple[float, ...], form_terms: int) -> "_Search":
         """Search with the blocks weighted by their noise."""
-        root = np.sqrt(blocks.weight / np.repeat(noise, [part.stop - part.start for part in blocks.parts]))[:, None]
+        root = np.sqrt(blocks.weight / blocks.per_part(noise))[:, None]
         linear = root * np.concatenate([blocks.form(form_terms), blocks.section], axis=1)
         basis = np.linalg.qr(linear)[0]
         height = root[:, 0] * blocks.mean_height
@@ -158,14 +160,13 @@ class _Search:
         return cost + float(np.sum(np.log(self.blocks.weight))) + (self.form_terms + 4 * len(modes)) * math.log(count)
 
     def model(self, fit: _Fit) -> WavinessModel:
-        """Waviness model of a fit, with form, section and covariance."""
+        """Waviness model of a fit, with form, section and response."""
         waves = self.waves(fit.modes)
         sum_of_waves = np.concatenate(waves, axis=1) @ fit.amplitudes
         linear = _least_squares(self.linear, self.root[:, 0] * self.blocks.mean_height - sum_of_waves)
         jacobian = np.concatenate([self.linear, *waves, *self.derivatives(*waves, fit.amplitudes)], axis=1)
         size = np.maximum(np.linalg.norm(jacobian, axis=0), np.finfo(float).tiny)
-        covariance = np.linalg.pinv((jacobian / size).T @ (jacobian / size)) / np.outer(size, size)
-        covariance *= float(fit.residual @ fit.residual) / max(len(jacobian) - jacobian.shape[1], 1)
+        inverse = np.linalg.pinv((jacobian / size).T @ (jacobian / size)) / np.outer(size, size)
         kept = np.concatenate([np.arange(self.form_terms), np.arange(linear.size, jacobian.shape[1])])
         cosine, sine = fit.amplitudes.reshape(2, -1)
         return WavinessModel(
@@ -175,7 +176,7 @@ class _Search:
             cosine=cosine,
             sine=sine,
             section=linear[self.form_terms :],
-            covariance=covariance[np.ix_(kept, kept)],
+            response=inverse[kept] @ (self.root * jacobian).T,
             noise=(),
             cost=fit.cost,
             random=False,
@@ -199,10 +200,10 @@ def _misfit_reduction(cosine: Floats, sine: Floats, residual: Floats) -> Floats:
 
 
 def _local_maxima(candidates: Floats, gain: Floats) -> Floats:
-    """Modes whose reduction exceeds that of all neighbours, the largest of them."""
+    """Modes whose reduction exceeds that of all neighbours, the largest first."""
     spacing = np.min(np.ptp(candidates, axis=0) / np.maximum([len(np.unique(k)) - 1 for k in candidates.T], 1))
     distance = np.hypot(*(candidates[:, None] - candidates[None, :]).T)
     opposite = np.hypot(*(candidates[:, None] + candidates[None, :]).T)
     near = np.minimum(distance, opposite) < 1.5 * spacing
     maxima = np.flatnonzero(gain >= np.max(np.where(near, gain[None, :], -np.inf), axis=1))
-    return candidates[maxima[np.argsort(-gain[maxima])][:_STARTS]]
+    return candidates[maxima[np.argsort(-gain[maxima])]]

@@ -10,11 +10,11 @@ from sonolube.surfaces.grooves.blocks import HEIGHT_RESOLUTION, BlockAverages
 from sonolube.surfaces.grooves.waviness_model import WavinessModel
 
 _RINGS = 6  # of wavenumber, each with a spectral density of its own
-_UNCERTAINTY_FACTOR = 1.7  # actual over nominal uncertainty for a spectrum estimated from the same map
 _MOST_ITERATIONS = 40
 _CONVERGED = 0.02  # change of the logarithm of a spectral density
 _LEAST_VARIANCE = 1e-10  # of a mode over that of the noise
 _NEGLIGIBLE = 1e-6  # variance of a mode over that of the noise, below which it need not converge
+_VAGUE = 100.0  # variance of the square terms of the form over that of the blocks: a curvature is not shrunk
 _ROUNDING = 1e-12
 
 
@@ -32,8 +32,7 @@ def fit_random_field(blocks: BlockAverages) -> WavinessModel:
     Notes
     -----
     The spectral density is constant over rings of wavenumber and estimated with the noise by MacKay's fixed-point
-    iteration of the evidence [1]_. Because it is estimated from the same map, nominal uncertainties are too small, by
-    factors of 1.3 to 2.2 on synthetic maps; they are multiplied by 1.7.
+    iteration of the evidence [1]_.
 
     References
     ----------
@@ -46,9 +45,10 @@ def fit_random_field(blocks: BlockAverages) -> WavinessModel:
     parts = [_Part.of(blocks, design, part) for part in blocks.parts]
     wavenumber = np.hypot(*modes.T)
     ring = np.minimum((wavenumber / wavenumber.max() * _RINGS).astype(np.intp), _RINGS - 1)
-    rings = np.concatenate([np.full(3, _RINGS), ring, ring])  # the square terms of the form have a density of their own
+    rings = np.concatenate([np.full(3, _RINGS), ring, ring])  # the square terms of the form are free
     scale = blocks.deviation
     density = np.full(_RINGS + 1, scale**2 / count)
+    density[_RINGS] = _VAGUE * scale**2
     noise = np.array([part.square / part.blocks for part in parts])  # worn blocks may vary more: unworn ones dominate
     noise[0] = scale**2 / 10
     bound = np.arange(free, design.shape[1])
@@ -63,6 +63,7 @@ def fit_random_field(blocks: BlockAverages) -> WavinessModel:
         freedom = np.bincount(rings, 1 - prior * np.diag(covariance)[free:], minlength=_RINGS)
         power = np.bincount(rings, mean[free:] ** 2, minlength=_RINGS)
         density = np.maximum(power / np.maximum(freedom, 1e-9), _LEAST_VARIANCE * noise[0])
+        density[_RINGS] = _VAGUE * scale**2
         effective = [float(np.sum(covariance * part.gram)) / variance for part, variance in pairs]
         noise = np.array([part.variance(mean, used, scale) for part, used in zip(parts, effective, strict=True)])
         if np.all(np.abs(np.log(density / previous))[previous > _NEGLIGIBLE * noise[0]] < _CONVERGED):
@@ -78,7 +79,7 @@ def fit_random_field(blocks: BlockAverages) -> WavinessModel:
         cosine=mean[-2 * count : -count],
         sine=mean[-count:],
         section=mean[3:free],
-        covariance=_UNCERTAINTY_FACTOR**2 * covariance[np.ix_(kept, kept)],
+        response=covariance[kept] @ (design * (blocks.weight / blocks.per_part(used_noise))[:, None]).T,
         noise=tuple(noise.tolist()),
         cost=cost,
         random=True,

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import fft
+from scipy import fft, stats
 
 from sonolube.checks import Floats, require_within
 from sonolube.errors import InvalidInput
@@ -18,7 +18,11 @@ _POINTS_PER_PERIOD = 2.5
 _LEAST_MEASURED = 0.5  # fraction of the profiles at a point
 _CANDIDATES = 8  # local maxima of the spectrum that are compared
 _LOBE = 2.0  # width of a peak of the spectrum over the resolution
-_SIGNIFICANT = 8.0  # power over that of the background; noise reaches half of it in a single profile
+_FALSE_ALARMS = 0.01  # probability of a spacing where there are no marks
+_TRIALS_PER_RESOLUTION = 2.0  # independent heights of a spectrum of tapered profiles, per resolution
+_ROLL_OFFS = 24  # lengths of the background's roll-off that are tried
+_NEIGHBOURS, _LEAST_NEIGHBOURS = 12, 6  # resolutions beside a peak that give the freedom of the spectrum
+_RESOLUTIONS_PER_HEIGHT = 1.5  # of a spectrum of tapered profiles
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -33,6 +37,8 @@ class TrackMarks:
         Standard uncertainty of the spacing. [m]
     prominence : float
         Power of the most prominent peak over that of the background.
+    false_alarm_probability : float
+        Probability of a peak as prominent, at any of the wavenumbers searched, where there are no marks.
     reason : str
         Reason why no spacing is given; empty where one is.
     wavenumber : ndarray, shape (n,)
@@ -40,12 +46,13 @@ class TrackMarks:
     profile_spectral_density : ndarray, shape (n,)
         Mean power spectral density of the longitudinal profiles. [m3]
     background : ndarray, shape (n,)
-        Power law fitted to it, in m3.
+        Smooth spectrum fitted to it, in m3.
     """
 
     dot_spacing: float | None
     dot_spacing_uncertainty: float | None
     prominence: float
+    false_alarm_probability: float
     reason: str
     wavenumber: Floats
     profile_spectral_density: Floats
@@ -76,7 +83,9 @@ def track_marks(groove: Groove, *, width_fraction: float = 0.6, averaged_points:
     -----
     The mean cross-section is subtracted from the heights, and mean and trend from each profile; missing points are set
     to zero, and a Hann window is applied. The spectra of the profiles are averaged, so that marks of different profiles
-    need not be in phase. A peak is significant if its power is 8 times that of the power law fitted beside it. Spacings
+    need not be in phase. The background is a power law with a roll-off, and the power over it an F variate, whose
+    freedom follows from the coherence of the profiles about the peak. A spacing is given
+    where a peak as high would appear at any of the wavenumbers searched with a probability below 1 % [3]_. Spacings
     from 2.5 points to half the track can be found. With the length :math:`L` of the track and the prominence :math:`p`
     the standard uncertainty of the spacing :math:`s` is the Cramer-Rao bound [2]_ of a single profile
 
@@ -89,33 +98,42 @@ def track_marks(groove: Groove, *, width_fraction: float = 0.6, averaged_points:
     ----------
     .. [1] D 2.4 and figures 2.25 and 2.26.
     .. [2] D. C. Rife and R. R. Boorstyn, IEEE Trans. Inf. Theory 20, 591 (1974). doi:10.1109/TIT.1974.1055282
+    .. [3] J. D. Scargle, Astrophys. J. 263, 835 (1982), section III. doi:10.1086/160554
     """
     require_within(0.05, 1.0, width_fraction=width_fraction)
     profiles, step = _longitudinal_profiles(groove, width_fraction, averaged_points)
     length = profiles.shape[1] * step
     size = fft.next_fast_len(_PADDING * profiles.shape[1])
     window = np.hanning(profiles.shape[1] + 2)[1:-1]
-    power = np.mean(np.abs(fft.rfft(profiles * window, size, axis=1)) ** 2, axis=0) * step / np.sum(window**2)
+    spectra = fft.rfft(profiles * window, size, axis=1) * math.sqrt(step / float(np.sum(window**2)))
+    power = np.mean(np.abs(spectra) ** 2, axis=0)
     k = fft.rfftfreq(size, step)
     resolved = (k >= _LEAST_PERIODS / length) & (k <= 1 / (_POINTS_PER_PERIOD * step))
-    k, power = k[resolved], power[resolved]
+    k, power, spectra = k[resolved], power[resolved], spectra[:, resolved]
     if k.size < 3 * _PADDING or not np.any(power > 0):
         track = f"a track of {length:.2g} m with points every {step:.2g} m"
         raise InvalidInput(f"{track} is too short or too flat for a spectrum")
     maxima = 1 + np.flatnonzero((power[1:-1] > power[:-2]) & (power[1:-1] >= power[2:]))
     candidates = maxima[np.argsort(-(power * k)[maxima])][:_CANDIDATES]
-    backgrounds = [_power_law(k, power, np.abs(k - k[index]) > _LOBE / length) for index in candidates]
-    prominences = [float((power / level)[index]) for index, level in zip(candidates, backgrounds, strict=True)]
-    best = int(np.argmax(prominences)) if candidates.size else 0
-    top, prominence = (int(candidates[best]), prominences[best]) if candidates.size else (0, 0.0)
-    background = backgrounds[best] if candidates.size else _power_law(k, power, np.ones(k.size, dtype=np.bool_))
-    significant = prominence >= _SIGNIFICANT
+    backgrounds = [_background(k, power, np.abs(k - k[index]) > _LOBE / length, length) for index in candidates]
+    alarms = [
+        _false_alarm(k, power / level, spectra / np.sqrt(level), int(index), length)
+        for index, level in zip(candidates, backgrounds, strict=True)
+    ]
+    best = int(np.argmin(alarms)) if candidates.size else 0
+    top, alarm = (int(candidates[best]), alarms[best]) if candidates.size else (0, 1.0)
+    background = (
+        backgrounds[best] if candidates.size else _background(k, power, np.ones(k.size, dtype=np.bool_), length)
+    )
+    prominence = float(power[top] / background[top]) if candidates.size else 0.0
+    significant = alarm < _FALSE_ALARMS
     spacing = 1 / _interpolated_maximum(k, power, top) if significant else None
-    weak = f"no peak of the spectrum along the track exceeds {prominence:.1f} times the power of the background"
+    weak = f"no periodic marks found (largest peak {prominence:.1f} times the background, p = {alarm:.2g})"
     return TrackMarks(
         dot_spacing=spacing,
         dot_spacing_uncertainty=None if spacing is None else _uncertainty(spacing, length, prominence),
         prominence=prominence,
+        false_alarm_probability=alarm,
         reason="" if significant else weak,
         wavenumber=k,
         profile_spectral_density=power,
@@ -148,11 +166,40 @@ def _longitudinal_profiles(groove: Groove, width_fraction: float, averaged_point
     return profiles - trend * t, float(sections.arc_length[1] - sections.arc_length[0])
 
 
-def _power_law(k: Floats, power: Floats, beside: NDArray[np.bool_]) -> Floats:
-    """Power law fitted to a spectrum at some wavenumbers, with equal weight per octave."""
-    x, y = np.log(k[beside]), np.log(np.maximum(power[beside], power.max() * 1e-12))
-    slope, level = np.polyfit(x, y, 1, w=1 / np.sqrt(k[beside]))
-    return np.asarray(np.exp(slope * np.log(k) + level))
+def _background(k: Floats, power: Floats, beside: NDArray[np.bool_], length: float) -> Floats:
+    """Power law with a roll-off fitted at some wavenumbers in double logarithmic scale."""
+    y = np.log(np.maximum(power, power.max() * 1e-12))
+    weight = np.ones(k.size)[beside]
+    best: tuple[float, Floats] | None = None
+    for roll_off in np.geomspace(1 / length, 1 / k[-1], _ROLL_OFFS):
+        falling = np.log1p((2 * math.pi * roll_off * k) ** 2)
+        design = np.stack([np.ones(k.size), falling], axis=1)
+        fitted = np.linalg.lstsq(design[beside] * weight[:, None], y[beside] * weight, rcond=None)[0]
+        model = design @ fitted
+        misfit = float(np.sum(np.square((y - model)[beside] * weight)))
+        if best is None or misfit < best[0]:
+            best = misfit, model
+    assert best is not None
+    return np.asarray(np.exp(best[1]))
+
+
+def _false_alarm(k: Floats, ratio: Floats, spectra: Floats, top: int, length: float) -> float:
+    """Probability of a peak as high anywhere, from the freedom of the averaged spectra about the peak."""
+    away = np.abs(k - k[top]) * length
+    beside = np.flatnonzero(away > _LOBE)
+    near = np.sort(beside[np.argsort(np.abs(np.log(k[beside] / k[top])))][: _NEIGHBOURS * _PADDING])
+    if near.size < _LEAST_NEIGHBOURS * _PADDING:
+        return 1.0
+    count = near.size / _PADDING / _RESOLUTIONS_PER_HEIGHT  # independent ones
+    normal = spectra[:, near]
+    products = normal @ np.conj(normal.T) / near.size
+    squared_trace = float(np.trace(products).real) ** 2
+    inverse_freedom = (float(np.sum(np.abs(products) ** 2)) / squared_trace - 1 / count) / (1 - 1 / count**2)
+    freedom = 1 / min(max(inverse_freedom, 1 / len(spectra)), 1.0)
+    height = float(ratio[top] / np.mean(ratio[near]))
+    single = float(stats.f.sf(height, 2 * freedom, 2 * freedom * count))
+    searched = _TRIALS_PER_RESOLUTION * float(k[-1] - k[0]) * length
+    return -math.expm1(searched * math.log1p(-min(single, 1 - 1e-12)))
 
 
 def _interpolated_maximum(k: Floats, power: Floats, top: int) -> float:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from sonolube.checks import Floats
 from sonolube.surfaces.form_removal import fit_form
 from sonolube.surfaces.grooves.blocks import BlockAverages, block_averages
 from sonolube.surfaces.grooves.plane_coordinates import centred_coordinates
@@ -13,6 +14,10 @@ from sonolube.surfaces.grooves.random_field import fit_random_field
 from sonolube.surfaces.grooves.track import GrooveTrack
 from sonolube.surfaces.grooves.waviness_model import WavinessModel, model_probabilities
 from sonolube.surfaces.height_map import HeightMap, Mask
+
+_FORM_TERMS = 6  # a curvature that roughness hides is still there below the groove
+_NEGLIGIBLE = 1e-3  # probability of a model
+_HOPELESS = 60.0  # cost of the quickly found plane waves above that of the random field: a search is not worth it
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -64,25 +69,39 @@ class UnwornReference:
         free_section = self.blocks.section.shape[1] * math.log(self.blocks.x.size)
         return bool(self.models[0].cost + free_section < wavy.cost)
 
-    def volume_uncertainty(self, region: Mask) -> float:
-        """Standard uncertainty of the volume between reference and surface over a region.
+    def pixel_weights(self, weights: Floats) -> Floats:
+        """Derivatives of a weighted sum of the reference's heights with respect to the heights of the scan.
 
         Parameters
         ----------
-        region : bool array, shape of the heights
+        weights : ndarray, shape of the heights
 
         Returns
         -------
-        float
-            In m3, from the covariance within each model and the variance between the models.
+        ndarray, shape of the heights
         """
         x, y = centred_coordinates(self.surface)
-        weight = model_probabilities(self.models)
-        volume = np.array([float(model.heights(x, y)[region].sum()) for model in self.models])
-        gradients = [model.height_sum_gradient(x, y, region) for model in self.models]
-        within = np.array([float(g @ model.covariance @ g) for g, model in zip(gradients, self.models, strict=True)])
-        variance = float(weight @ (np.maximum(within, 0.0) + (volume - weight @ volume) ** 2))
-        return math.sqrt(variance) * self.surface.spacing_x * self.surface.spacing_y
+        probable = model_probabilities(self.models)
+        of_blocks = sum(
+            probability * (model.height_sum_gradient(x, y, weights) @ model.response)
+            for probability, model in zip(probable, self.models, strict=True)
+            if probability > _NEGLIGIBLE
+        )
+        return self.blocks.pixel_weights(np.asarray(of_blocks))
+
+    def deviation_between_models(self, weights: Floats) -> float:
+        """Standard deviation between the waviness models of a weighted sum of the reference's heights."""
+        x, y = centred_coordinates(self.surface)
+        probable = model_probabilities(self.models)
+        total = np.array([float(np.sum(model.heights(x, y) * weights)) for model in self.models])
+        return math.sqrt(float(probable @ (total - probable @ total) ** 2))
+
+    def random_part(self, surface: HeightMap) -> Floats:
+        """Heights of a scan less what of the reference is not random: its form, and plane waves."""
+        x, y = centred_coordinates(self.surface)
+        model = self.models[0]
+        waves = model.heights(x, y) - model.form_alone(x, y)
+        return surface.height - self.surface.height + (waves if model.random else 0.0)
 
 
 def unworn_reference(
@@ -134,11 +153,14 @@ def unworn_reference(
 
 def _models(blocks: BlockAverages) -> list[WavinessModel]:
     """Waviness models of the blocks, the most probable first; plane waves alone where they are sufficient."""
-    plane_waves, sufficient = fit_plane_waves(blocks)
-    if sufficient:
-        return plane_waves
+    if fit_plane_waves(blocks, form_terms=_FORM_TERMS, starts=1)[1]:
+        plane_waves, sufficient = fit_plane_waves(blocks, form_terms=_FORM_TERMS)
+        if sufficient:
+            return plane_waves
     random = fit_random_field(blocks)
     found = [random]
     for terms in (3, 6):
-        found += fit_plane_waves(blocks, noise=random.noise, form_terms=terms)[0]
+        quick = fit_plane_waves(blocks, noise=random.noise, form_terms=terms, starts=1)[0]
+        if quick[0].cost < random.cost + _HOPELESS:
+            found += fit_plane_waves(blocks, noise=random.noise, form_terms=terms)[0]
     return sorted(found, key=lambda model: model.cost)

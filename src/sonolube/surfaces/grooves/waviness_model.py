@@ -27,8 +27,9 @@ class WavinessModel:
         Amplitudes in m, with phase zero at the centre of the field.
     section : ndarray, shape (functions,)
         Coefficients of the basis functions `BlockAverages.section`.
-    covariance : ndarray, shape (p, p)
-        Covariance of form, cosines and sines and, where wavenumbers were fitted, of their components along x, then y.
+    response : ndarray, shape (p, blocks)
+        Derivatives with respect to the blocks' heights of form, cosines and sines and, where wavenumbers were fitted,
+        of their components along x, then y.
     noise : tuple of float
         Variances in m2 of the means of unworn and of worn blocks about the model.
     cost : float
@@ -48,7 +49,7 @@ class WavinessModel:
     cosine: Floats
     sine: Floats
     section: Floats
-    covariance: Floats
+    response: Floats
     noise: tuple[float, ...]
     cost: float
     random: bool
@@ -64,18 +65,18 @@ class WavinessModel:
         waves = (along_y * (self.cosine - 1j * self.sine)) @ along_x.T
         return np.asarray(self.form_alone(x, y) + waves.real)
 
-    def height_sum_gradient(self, x: Floats, y: Floats, region: NDArray[np.bool_]) -> Floats:
-        """Gradient of the sum of the heights over a region with respect to the fitted parameters, shape (p,)."""
+    def height_sum_gradient(self, x: Floats, y: Floats, weights: Floats) -> Floats:
+        """Gradient of a weighted sum of the heights with respect to the fitted parameters, shape (p,)."""
         terms = monomials(x / self.half_side, y / self.half_side, self.form.size)
-        form = [float(np.sum(np.broadcast_to(power, region.shape)[region])) for power in terms]
+        form = [float(np.sum(power * weights)) for power in terms]
         x, y = x.ravel(), y.ravel()
         along_x, along_y = self._complex_waves(x, y)
-        in_rows = region.astype(np.float64) @ along_x  # (rows, n)
+        in_rows = weights @ along_x  # (rows, n)
         waves = np.sum(along_y * in_rows, axis=0)
         sums = [np.array(form), waves.real, waves.imag]
         if not self.random:  # d/dk of c cos + s sin = 2 pi x (-c sin + s cos)
             amplitude = 2 * math.pi * (self.sine + 1j * self.cosine)
-            by_x = np.sum(along_y * (region @ (x[:, None] * along_x)), axis=0)
+            by_x = np.sum(along_y * (weights @ (x[:, None] * along_x)), axis=0)
             by_y = np.sum(y[:, None] * along_y * in_rows, axis=0)
             sums += [(amplitude * by_x).real, (amplitude * by_y).real]
         return np.concatenate(sums)

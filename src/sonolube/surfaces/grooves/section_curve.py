@@ -1,0 +1,231 @@
+"""Smooth mean cross-section between the edges, by a spline of greatest likelihood in correlated noise."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve, cholesky, eigh, solve_triangular
+
+from sonolube.checks import Floats
+
+_FLANK = 0.06  # of the depth, above which points near the edges are left out of the fit
+_PASSES = 3
+_LEAST_POINTS = 5
+_DRAWS, _SEED = 300, 20_250_101
+_LEAST_SLOPE, _LARGEST_SLOPE = 0.6, 2.5  # of a flank at its edge, over its mean
+_FINE = 161  # points of the curve
+_FLANK_END = 0.75  # of the depth, down to which points belong to the flank
+_LEAST_FLANK = 8  # points
+_CORRECTIONS = 2  # of the depth for the excess of the deepest of noisy points, by the draws; one leaves half of it
+_JITTER = 1e-6  # of the variance
+
+
+class SectionCurve(NamedTuple):
+    """Edges and greatest depth of a smooth section, with the standard deviations of each, in m."""
+
+    left: float
+    right: float
+    depth: float
+    deepest: float
+    width_deviation: float
+    depth_deviation: float
+    left_slope: float  # per metre, of the flank at the edge; infinite where cut
+    right_slope: float
+
+
+def section_curve(
+    s: Floats, z: Floats, covariance: Floats, edges: tuple[float, float], cut: tuple[bool, bool]
+) -> SectionCurve | None:
+    """Edges and depth of the smooth section through mean heights with correlated errors.
+
+    Parameters
+    ----------
+    s, z : ndarray, shape (n,)
+        Distances and mean heights, in m.
+    covariance : ndarray, shape (n, n)
+        Of the errors of the mean heights, in m2.
+    edges : tuple of float
+        First estimates of the edges, in m.
+    cut : tuple of bool
+        Whether the groove extends beyond the field at the left and at the right; its end is taken as it is there.
+
+    Returns
+    -------
+    SectionCurve or None
+        None where fewer than five points lie between the edges.
+
+    Notes
+    -----
+    The section is a cubic smoothing spline, whose smoothness is that of greatest restricted likelihood [1]_ under the
+    given covariance. Its edges are its zeros, extrapolated from the flanks, so that neither noise nor a ridge beyond
+    the edge shifts them. Standard deviations are those of draws from its posterior distribution.
+
+    References
+    ----------
+    .. [1] G. Wahba, Ann. Stat. 13, 1378 (1985). doi:10.1214/aos/1176349743
+    """
+    noise = math.sqrt(float(np.median(np.diag(covariance))))
+    left, right = edges
+    found = None
+    for _ in range(_PASSES):
+        inside = (s > left) & (s < right)
+        if np.count_nonzero(inside) < _LEAST_POINTS:
+            break
+        fit = _Spline.of(s[inside], z[inside], covariance[np.ix_(inside, inside)])
+        heights = fit.at(s[inside])
+        depth = -float(heights.min())
+        ends = [
+            None if cut[0] else _edge(s[inside], heights, z[inside], covariance[np.ix_(inside, inside)], depth),
+            None
+            if cut[1]
+            else _edge(
+                -s[inside][::-1], heights[::-1], z[inside][::-1], covariance[np.ix_(inside, inside)][::-1, ::-1], depth
+            ),
+        ]
+        found = _curve(fit, s[inside], ends)
+        level = -min(_FLANK * depth + noise, depth / 3)
+        points = np.linspace(found.left, found.right, _FINE)
+        low = points[fit.at(points) < level]
+        if low.size < 2:
+            break
+        left = edges[0] if cut[0] else max(float(low[0]), s[0] - 1e-12)
+        right = edges[1] if cut[1] else min(float(low[-1]), s[-1] + 1e-12)
+    return found
+
+
+class _Edge(NamedTuple):
+    """Zero of a flank, with its standard deviation and slope; distances count inwards."""
+
+    place: float
+    deviation: float
+    slope: float
+
+
+def _edge(s: Floats, heights: Floats, z: Floats, covariance: Floats, depth: float) -> _Edge:
+    """Edge before the first of the points, by a spline through those of its flank."""
+    deep = np.flatnonzero(heights < -_FLANK_END * depth)
+    count = max(min(_LEAST_FLANK, s.size), int(deep[0]) + 1 if deep.size else s.size)
+    flank = _Spline.of(s[:count], z[:count], covariance[:count, :count])
+    secant = float(heights[0] - heights[count - 1]) / float(s[count - 1] - s[0])
+    outermost = s[0] + heights[0] / (_LEAST_SLOPE * secant)
+    outwards = np.linspace(float(s[count - 1]), outermost, _FINE)
+    curves = np.concatenate([flank.at(outwards)[None], flank.draws(outwards)])
+    places = _crossing(outwards, curves)
+    lost = places <= outermost  # a parabola that turns back: its tangent at the last point instead
+    at_end = np.array([np.interp(float(s[0]), outwards[::-1], curve[::-1]) for curve in curves[lost]])
+    places[lost] = s[0] + at_end / secant
+    step = float(s[1] - s[0])
+    slope = abs(float(np.diff(flank.at(places[0] + np.array([0.0, 2 * step])))[0])) / (2 * step)
+    slope = min(max(slope, _LEAST_SLOPE * secant), _LARGEST_SLOPE * secant)
+    return _Edge(float(places[0]), _deviation(places[1:]), slope)
+
+
+def _curve(fit: "_Spline", s: Floats, ends: list[_Edge | None]) -> SectionCurve:
+    """Edges and depth from the spline of the whole section and those of its flanks."""
+    fine = np.linspace(float(s[0]), float(s[-1]), _FINE)
+    mean = fit.at(fine)
+    depths = -fit.draws(fine).min(axis=1)
+    excess = float(depths.mean() + mean.min())
+    left, right = ends
+    return SectionCurve(
+        left=float(s[0]) if left is None else left.place,
+        right=float(s[-1]) if right is None else -right.place,
+        depth=-float(mean.min()) - _CORRECTIONS * excess,
+        deepest=float(fine[np.argmin(mean)]),
+        width_deviation=math.hypot(*(end.deviation for end in ends if end is not None)),
+        depth_deviation=math.hypot(_deviation(depths), excess),
+        left_slope=math.inf if left is None else left.slope,
+        right_slope=math.inf if right is None else right.slope,
+    )
+
+
+class _Spline(NamedTuple):
+    """Posterior of a cubic smoothing spline."""
+
+    middle: float
+    scale: float
+    points: Floats
+    inverse: tuple[Floats, bool]  # Cholesky factor of noise and prior
+    line: Floats  # of the points, (n, 2)
+    line_covariance: Floats
+    coefficients: Floats
+    weights: Floats
+    power: float
+
+    @classmethod
+    def of(cls, s: Floats, z: Floats, covariance: Floats) -> "_Spline":
+        """Spline through points with correlated errors."""
+        middle, scale = float(s[0]), float(np.ptp(s)) / 2
+        u = (s - middle) / scale
+        line = _parabolas(u)
+        variance = float(np.mean(np.diag(covariance)))
+        noise = covariance + _JITTER * variance * np.eye(u.size)
+        prior = _kernel(u, u)
+        power = _most_likely_power(noise, prior, line, z, variance)
+        factor = cho_factor(noise + power * prior, lower=True)
+        solved = cho_solve(factor, line)
+        line_covariance = np.linalg.inv(line.T @ solved)
+        coefficients = line_covariance @ (solved.T @ z)
+        weights = cho_solve(factor, z - line @ coefficients)
+        return cls(middle, scale, u, factor, line, line_covariance, coefficients, weights, power)
+
+    def at(self, s: Floats) -> Floats:
+        """Posterior mean of the heights in m at distances in m."""
+        u = (s - self.middle) / self.scale
+        return np.asarray(_parabolas(u) @ self.coefficients + self.power * _kernel(u, self.points) @ self.weights)
+
+    def draws(self, s: Floats) -> Floats:
+        """Draws from the posterior at distances in m, shape (draws, points)."""
+        u = (s - self.middle) / self.scale
+        cross = self.power * _kernel(u, self.points)
+        solved = cho_solve(self.inverse, cross.T)
+        rest = _parabolas(u) - cross @ cho_solve(self.inverse, self.line)
+        covariance = self.power * _kernel(u, u) - cross @ solved + rest @ self.line_covariance @ rest.T
+        values, vectors = eigh(covariance)
+        normal = np.random.default_rng(_SEED).standard_normal((_DRAWS // 2, u.size))
+        normal = np.concatenate([normal, -normal])
+        return np.asarray(self.at(s) + (normal * np.sqrt(np.maximum(values, 0.0))) @ vectors.T)
+
+
+def _parabolas(u: Floats) -> Floats:
+    """Powers that the prior leaves free, shape (n, 3)."""
+    return np.stack([np.ones_like(u), u, u**2], axis=1)
+
+
+def _kernel(u: Floats, v: Floats) -> Floats:
+    """Covariance of white noise integrated three times, that of a quintic spline, on both sides of the first point."""
+    a, b = u[:, None], v[None, :]
+    same = np.sign(a) == np.sign(b)
+    low, high = np.minimum(np.abs(a), np.abs(b)), np.maximum(np.abs(a), np.abs(b))
+    return np.asarray(np.where(same, low**5 / 20 + (high - low) * low**4 / 8 + (high - low) ** 2 * low**3 / 12, 0.0))
+
+
+def _most_likely_power(noise: Floats, prior: Floats, line: Floats, z: Floats, variance: float) -> float:
+    """Power of the spline's prior of greatest restricted likelihood."""
+    root = cholesky(noise, lower=True)
+    q = np.linalg.qr(solve_triangular(root, line, lower=True), mode="complete")[0][:, 3:]
+    whitened = solve_triangular(root, solve_triangular(root, prior, lower=True).T, lower=True)
+    values, vectors = eigh(q.T @ whitened @ q)
+    values = np.maximum(values, 0.0)
+    squares = np.square(vectors.T @ (q.T @ solve_triangular(root, z, lower=True)))
+    powers = variance * np.logspace(-4, 12, 129)
+    total = 1 + powers[:, None] * values
+    cost = np.sum(np.log(total) + squares / total, axis=1)
+    return float(powers[int(np.argmin(cost))])
+
+
+def _deviation(values: Floats) -> float:
+    """Standard deviation of a normal distribution with the same central 95 %."""
+    low, high = np.quantile(values, [0.025, 0.975])
+    return float(high - low) / (2 * 1.96)
+
+
+def _crossing(s: Floats, curves: Floats) -> Floats:
+    """First zero of each curve along the points, their last where there is none."""
+    above = curves >= 0
+    above[:, 0] = False
+    index = np.where(above.any(axis=1), np.argmax(above, axis=1), s.size - 1)
+    rows = np.arange(len(curves))
+    before, after = curves[rows, index - 1], curves[rows, index]
+    share = np.where(after >= 0, np.clip(-before / np.where(after > before, after - before, 1.0), 0.0, 1.0), 1.0)
+    return np.asarray(s[index - 1] + share * (s[index] - s[index - 1]))
