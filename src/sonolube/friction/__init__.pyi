@@ -84,6 +84,11 @@ from .models.dong_2015_sine import (
     steady_deformation as steady_deformation,
 )
 from .models.kinematic import Kinematic as Kinematic
+from .models.range_check import (
+    CheckedRatio as CheckedRatio,
+    checked_ratio as checked_ratio,
+    model_friction as model_friction,
+)
 from .oscillating_contact.approximations import (
     approximate_guided_ratio as approximate_guided_ratio,
     approximate_longitudinal_ratio as approximate_longitudinal_ratio,
