@@ -414,7 +414,7 @@ def write_inputs(place: Path) -> None:
     f = np.linspace(15e3, 30e3, 400)
     w = 2 * np.pi * f
     z = 1 / (1j * w * 1e-8 + 1 / (20 + 1j * w * 0.1 + 1 / (1j * w * 6e-10))) + 0.01 * rng.standard_normal(f.size)
-    _table(place / "spectrum.csv", "frequency (Hz),|Z| (ohm),phase (deg)", f, abs(z), np.degrees(np.angle(z)))
+    _table(place / "spectrum.csv", "frequency (Hz),|Z| (ohm),phase (deg)", f, np.abs(z), np.degrees(np.angle(z)))
     x = np.arange(96.0)
     plate = 1e-6 * (np.sin(x / 3)[:, np.newaxis] + np.cos(x / 7) + 0.3 * rng.standard_normal((96, 96)))
     np.save(place / "plate.npy", plate - 1e-9 * (x - 48) ** 2)
