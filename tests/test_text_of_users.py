@@ -75,7 +75,6 @@ def test_a_page_shows_hostile_text_as_it_is_written() -> None:
     ("text", "line"),
     [
         ("a = " + "9" * 5000, "an integer of too many digits"),
-        ("a = " + "9" * 400, "a: an integer beyond 1e300"),
         (".".join("a" * 20_000) + " = 1", "a key of more than 32 parts"),
         ("[" + " . ".join(["'a'"] * 20_000) + "]", "a key of more than 32 parts"),
         ("a = " + "[" * 5000 + "]" * 5000, "nested too deeply"),
@@ -85,7 +84,7 @@ def test_a_page_shows_hostile_text_as_it_is_written() -> None:
         ('a.b = ["\\u001b[2J"]', "a.b: holds the control character U+001B; leave it out"),
         ('"\\u202e" = 1', "holds the control character U+202E; leave it out"),
     ],
-    ids=range(10),
+    ids=range(9),
 )
 def test_toml_without_end_or_with_control_characters_is_refused(text: str, line: str) -> None:
     with pytest.raises(InvalidInput, match=re.escape(line)):

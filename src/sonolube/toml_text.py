@@ -12,7 +12,6 @@ from sonolube.targets import record_input
 
 _LARGEST_FILE = 1_000_000  # bytes; a rig is a page of text, hundreds of modes are some 20 kB
 _DEEPEST = 32  # tables, arrays and parts of a dotted key, one within the other
-_LARGEST_INTEGER = 10**300  # a float holds it
 _PART = r"""(?:[\w-]+|"[^"\n]*"|'[^'\n]*')"""
 _LONG_KEY = re.compile(rf"(?<![\w-]){_PART}(?:[ \t]*\.[ \t]*{_PART}){{{_DEEPEST},}}")
 
@@ -85,7 +84,8 @@ def toml_content(text: str) -> dict[str, Any]:
     Raises
     ------
     InvalidInput
-        If the text is no TOML, nested more than 32 deep, or holds an integer beyond 1e300 or a control character.
+        If the text is no TOML, nested more than 32 deep, holds an integer of thousands of digits or a control
+        character.
 
     Notes
     -----
@@ -107,7 +107,7 @@ def toml_content(text: str) -> dict[str, Any]:
 
 
 def require_plain_content(content: Mapping[str, Any]) -> None:
-    """Refuse content of a file that is nested too deeply or holds what is neither text nor a number of usual size.
+    """Refuse content of a file that is nested too deeply or holds what is not plain text.
 
     Parameters
     ----------
@@ -117,14 +117,11 @@ def require_plain_content(content: Mapping[str, Any]) -> None:
     Raises
     ------
     InvalidInput
-        With the key, for the first entry that is nested more than 32 deep, an integer beyond 1e300, or text with a
-        control character.
+        With the key, for the first entry that is nested more than 32 deep or is text with a control character.
     """
     for key, depth, value in _entries(content):
         if depth > _DEEPEST:
             raise InvalidInput(f"{key}: nested too deeply, at most {_DEEPEST} tables and arrays")
-        if isinstance(value, int) and abs(value) > _LARGEST_INTEGER:
-            raise InvalidInput(f"{key}: an integer beyond 1e300")
         if isinstance(value, str) and (found := active_character(value)):
             raise InvalidInput(f"{key}: holds the control character {found}; leave it out")
 

@@ -82,6 +82,9 @@ class ChannelSource:
         return (self.column, *self.other_columns)
 
     def __post_init__(self) -> None:
+        for key, text in (("column", self.column), ("unit", self.unit or "")):
+            if not isinstance(text, str):
+                raise InvalidInput(f"{key} must be text, got {text!r}")
         require_finite(gain=self.gain, offset=self.offset)
         if self.gain == 0:
             raise InvalidInput(f"gain of column {self.column!r} must not be zero")
