@@ -182,3 +182,10 @@ def test_units_with_a_second_meaning_take_the_one_of_the_quantity(
     path = tmp_path / "unit.csv"
     path.write_text(f"time [s],{quantity} [{unit}]\n0,1\n1,1\n")
     assert read_recording(path)[quantity].to_numpy()[0] == approx(value)
+
+
+def test_among_many_channels_one_of_each_length_is_listed(tmp_path: Path) -> None:
+    content = {f"c{index}": np.ones(5) for index in range(40)} | {"odd": np.ones(6), "fs": 1.0}
+    scipy.io.savemat(tmp_path / "many.mat", content)
+    with raises(InvalidInput, match=r"\(c0 5, odd 6 and 39 more\)"):
+        read_recording(tmp_path / "many.mat")

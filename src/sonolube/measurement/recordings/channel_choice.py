@@ -100,11 +100,13 @@ def require_common_length(entries: Sequence[ChannelEntry], path: Path) -> int:
 def listed_channels(entries: Sequence[ChannelEntry]) -> str:
     """Return the channels with their numbers of samples by group, for a message of one line."""
     groups: dict[str, list[str]] = {}
-    for entry in entries[:_MOST_LISTED]:
+    first_of_each = {(entry.group, entry.samples): entry for entry in reversed(entries)}
+    listed = entries if len(entries) <= _MOST_LISTED else list(reversed(first_of_each.values()))[:_MOST_LISTED]
+    for entry in listed:
         groups.setdefault(entry.group, []).append(f"{entry.name} {entry.samples}")
     named = len(groups) > 1
     text = "; ".join((f"{group}: " if named else "") + ", ".join(names) for group, names in groups.items())
-    more = len(entries) - _MOST_LISTED
+    more = len(entries) - len(listed)
     return " ".join(text.split()) + (f" and {more} more" if more > 0 else "")
 
 
