@@ -284,7 +284,7 @@ MODES = {
             "--mode": "axial 2",
             "--axis": "x",
             "--tool-mass": "50g",
-            "--tolerance": "0.00001",
+            "--tolerance": "-1",
         },
     ),
     "friction of recordings": Mode(
