@@ -104,7 +104,7 @@ def test_a_folder_that_cannot_be_made_is_refused_by_its_path(
         (("--over", "drive.waveform=blob"), "'blob' is none of sine, square, triangle, sawtooth"),
         (("--temperature-limit", "40degC", "--conductance", "1W/K"), "--temperature-limit 40degC is a temperature"),
         (("--catalogue", "empty"), "empty: holds no actuator"),
-        (("--catalogue", "garbage"), "garbage: cannot be read"),
+        (("--catalogue", "garbage"), "garbage: not UTF-8 text: byte 0x80 at 128"),
         (("--actuator", "nope"), "unknown actuator 'nope'"),
         (("--bolt", "M10x60mm"), "--bolt and --preload belong together"),
         (("--robust", "nan"), "Invalid value for '--robust'"),
