@@ -179,11 +179,6 @@ def analyse_voltage_steps(
     -------
     tuple of VoltageStep
 
-    Raises
-    ------
-    InvalidInput
-        If both `rotation` and `rotation_speed` are given, or as `friction_at_voltage_steps`.
-
     See Also
     --------
     friction_at_voltage_steps : of arrays.
@@ -217,11 +212,6 @@ def analyse_rotation_speed(recording: "xr.Dataset") -> float | None:
     Returns
     -------
     float or None
-
-    See Also
-    --------
-    rotation_speed_at_voltage_steps : of arrays.
-    analyse_rotation : from a Hall probe.
     """
     return rotation_speed_at_voltage_steps(
         time=channel_values(recording, "time"),

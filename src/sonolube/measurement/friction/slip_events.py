@@ -41,14 +41,14 @@ class SlipChain:
     ----------
     bursts : tuple of ndarray of int
         Indices of the samples after each fall, one array per burst of consecutive slips.
-    period : int
+    template_period : int
         Period of the template, in samples.
     score : float
         Of the highest-scoring burst; stick-slip from `DETECTION_SCORE` on.
     """
 
     bursts: tuple[Indices, ...]
-    period: int
+    template_period: int
     score: float
 
 
@@ -135,7 +135,7 @@ def find_slips(signal: Floats, *, spectrum: Floats, sample_interval: float) -> S
     """
     periods = _periods(signal.size, sample_interval)
     if not periods:
-        return SlipChain(bursts=(), period=0, score=0.0)
+        return SlipChain(bursts=(), template_period=0, score=0.0)
     flat = np.full(spectrum.size, np.median(spectrum[spectrum.size // 2 :]))
     best = _best_of_periods(signal, spectrum, periods)
     if best.bursts:
@@ -148,7 +148,7 @@ def find_slips(signal: Floats, *, spectrum: Floats, sample_interval: float) -> S
 
 def _best_of_periods(signal: Floats, spectrum: Floats, periods: Sequence[int]) -> SlipChain:
     """Return the chains of the template with the highest score, and then of that for their median gap."""
-    best = SlipChain(bursts=(), period=0, score=0.0)
+    best = SlipChain(bursts=(), template_period=0, score=0.0)
     size = 1 << int(np.ceil(np.log2(signal.size + 2 * periods[-1])))
     weight = 1 / np.interp(np.fft.rfftfreq(size), np.linspace(0, 0.5, spectrum.size), spectrum)
     weighted = np.fft.rfft(signal, size) * weight
@@ -184,7 +184,7 @@ def _chain_of_period(weighted: Floats, weight: Floats, samples: int, size: int, 
     strongest = np.sort(np.abs(response[1:-1][_maxima(np.abs(response))]))[-_FEWEST:]
     response *= min(1.0, _LARGEST_RESPONSE / max(float(strongest[0]), 1.0)) if strongest.size else 1.0
     periods = response.size // period
-    none = SlipChain(bursts=(), period=period, score=0.0)
+    none = SlipChain(bursts=(), template_period=period, score=0.0)
     if periods < _FEWEST - 1:
         return none
     largest_rise = float(np.median(-response[: periods * period].reshape(periods, period).min(axis=1)))
@@ -196,8 +196,8 @@ def _chain_of_period(weighted: Floats, weight: Floats, samples: int, size: int, 
     rises = _best_chain(-response, period, cost)[0]
     excess = min(score - rises, 2 * (score - _RISE_RATIO * rises))
     if excess < DETECTION_SCORE:
-        return SlipChain(bursts=(), period=period, score=max(0.0, excess))
-    return SlipChain(bursts=_bursts(response, period, cost, chain, half), period=period, score=excess)
+        return SlipChain(bursts=(), template_period=period, score=max(0.0, excess))
+    return SlipChain(bursts=_bursts(response, period, cost, chain, half), template_period=period, score=excess)
 
 
 def _bursts(response: Floats, period: int, cost: float, first: Indices, half: int) -> tuple[Indices, ...]:

@@ -29,7 +29,7 @@ class StepMeans:
     friction_force : ndarray, shape (parts,)
         Mean of each part without wobble, run-in, and incomplete cycles of stick-slip. [N]
     covariance : ndarray, shape (parts, parts)
-        Of these means. [N2]
+        Of these means, in N2.
     """
 
     friction_force: Floats
@@ -43,9 +43,9 @@ class SampledParts:
     Parameters
     ----------
     times : tuple of ndarray
-        Of the samples of each part with a known force. [s]
+        Of the samples of each part with a known force, in s.
     forces : tuple of ndarray
-        Friction force. [N]
+        Friction force, in N.
     block_samples : int
         Samples of a block; the rest at the end of a part is left out.
     """
@@ -59,8 +59,22 @@ class SampledParts:
         return [_block_means(column, self.block_samples) for column in columns]
 
 
-def sampled_parts(time: Floats, friction_force: Floats, parts: Sequence[slice]) -> SampledParts:
-    """Return the parts of a recording with blocks short against the parts and against the turns of a disc."""
+def sampled_parts(parts: Sequence[slice], *, time: Floats, friction_force: Floats) -> SampledParts:
+    """Return the parts of a recording with blocks short against the parts and against the turns of a disc.
+
+    Parameters
+    ----------
+    parts : sequence of slice
+        Of the samples.
+    time : ndarray, shape (samples,)
+        Increasing. [s]
+    friction_force : ndarray, shape (samples,)
+        NaN is left out. [N]
+
+    Returns
+    -------
+    SampledParts
+    """
     known = [np.isfinite(friction_force[part]) for part in parts]
     times = tuple(time[part][mask] for part, mask in zip(parts, known, strict=True))
     forces = tuple(friction_force[part][mask] for part, mask in zip(parts, known, strict=True))
@@ -80,7 +94,7 @@ def wobble_columns(
     ----------
     parts : SampledParts
     revolutions : sequence of ndarray or None
-        At the samples of each part; found in the force without it.
+        At the samples of each part; found in the force without it. []
     harmonics : int
         Number of harmonics.
 
@@ -97,10 +111,10 @@ def wobble_columns(
     if revolutions is None:
         speed = find_rotation_speed(places, values, harmonics=harmonics) or 0.0
     else:
-        speed = refined_speed(places, values, 1.0, harmonics=harmonics)
+        speed = refined_speed(places, values, rotation_speed=1.0, harmonics=harmonics)
     if not speed or speed * float(places[-1][-1] - places[0][0]) < 1:
         return None, 0.0
-    return [harmonic_columns(speed * place, harmonics) for place in sought], speed
+    return [harmonic_columns(revolutions=speed * place, harmonics=harmonics) for place in sought], speed
 
 
 def without_wobble(parts: SampledParts, waves: Sequence[Floats] | None) -> list[Floats]:
@@ -127,7 +141,7 @@ def mean_of_parts(
     stick_slip : sequence of StickSlipEstimate
         Of each part.
     onset : float
-        Time at which sliding begins, from which the run-in decays. [s]
+        Time in s at which sliding begins, from which the run-in decays.
 
     Returns
     -------

@@ -72,7 +72,7 @@ class StickSlipEstimate:
     bursts : tuple of StickSlipBurst
         When they do.
     slip_time : ndarray, shape (force_drops,)
-        Time of each slip. [s]
+        Time of each slip, in s.
     """
 
     detected: bool
@@ -151,13 +151,13 @@ def stick_slip_of_parts(
     Parameters
     ----------
     times : sequence of ndarray
-        Of the samples of each part, evenly spaced, at least 64. [s]
+        Of the samples of each part, evenly spaced, at least 64, in s.
     forces : sequence of ndarray
-        Friction force in each part, without missing values and wobble. [N]
+        Friction force in each part, without missing values and wobble, in N.
     sample_interval : float
         Time between samples. [s]
     minimum_drop : float
-        Smallest mean fall that counts. [N]
+        Smallest mean fall that counts, in N.
 
     Returns
     -------

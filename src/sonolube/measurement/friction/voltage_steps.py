@@ -170,7 +170,7 @@ def friction_at_voltage_steps(
         lowest = min(found.levels)
         raise InvalidInput(f"voltage_peak_to_peak has no step without voltage; the lowest is {lowest:.3g} V")
     settled, levels = found.settled, found.levels
-    parts = sampled_parts(t, f, settled)
+    parts = sampled_parts(settled, time=t, friction_force=f)
     turned = None if revolutions is None else _revolutions_of_parts(f, require_finite(revolutions=revolutions), settled)
     waves = wobble_columns(parts, revolutions=turned, harmonics=harmonics)[0]
     stick_slip = _stick_slip(parts, without_wobble(parts, waves))
@@ -223,7 +223,7 @@ def rotation_speed_at_voltage_steps(
     """
     t, f, u = require_time_series(time=time, friction_force=friction_force, voltage_peak_to_peak=voltage_peak_to_peak)
     found = _found_steps(t, f, u, shortest_step=1.0, settling_time=0.5, tolerance=0.05)
-    parts = sampled_parts(t, f, found.settled)
+    parts = sampled_parts(found.settled, time=t, friction_force=f)
     return wobble_columns(parts, revolutions=None, harmonics=harmonics)[1] or None
 
 

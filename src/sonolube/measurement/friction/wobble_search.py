@@ -20,8 +20,20 @@ _COHERENT_SHARE = 0.7  # of the time, in parts in which one wobble of constant p
 _AS_GOOD = 0.98  # of the best explained power, at which a faster rotation is preferred to its subharmonics
 
 
-def harmonic_columns(revolutions: Floats, harmonics: int) -> Floats:
-    """Return cosines and sines of the harmonics of the rotation, shape (samples, 2 * harmonics)."""
+def harmonic_columns(*, revolutions: Floats, harmonics: int) -> Floats:
+    """Return cosines and sines of the harmonics of the rotation.
+
+    Parameters
+    ----------
+    revolutions : ndarray, shape (samples,)
+        Revolutions made until each sample. []
+    harmonics : int
+        Number of harmonics.
+
+    Returns
+    -------
+    ndarray, shape (samples, 2 * harmonics)
+    """
     angle = 2 * np.pi * np.multiply.outer(revolutions, np.arange(1, harmonics + 1))
     return np.concatenate([np.cos(angle), np.sin(angle)], axis=1)
 
@@ -32,9 +44,9 @@ def find_rotation_speed(times: Sequence[Floats], forces: Sequence[Floats], *, ha
     Parameters
     ----------
     times : sequence of ndarray
-        Of the samples of each part of constant level, in the order of time. [s]
+        Of the samples of each part of constant level, in the order of time, in s.
     forces : sequence of ndarray
-        Friction force; the mean of each part is free. [N]
+        Friction force; the mean of each part is free, in N.
     harmonics : int
         Number of harmonics.
 
@@ -64,7 +76,9 @@ def find_rotation_speed(times: Sequence[Floats], forces: Sequence[Floats], *, ha
     candidates: list[float] = []
     while len(candidates) < _CANDIDATES and total.max() > _SIGNIFICANCE:
         best = int(np.argmax(total))
-        candidates.append(refined_speed(times, forces, float(frequency[index[best]]), harmonics=harmonics))
+        candidates.append(
+            refined_speed(times, forces, rotation_speed=float(frequency[index[best]]), harmonics=harmonics)
+        )
         total[max(0, best - _OVERSAMPLING) : best + _OVERSAMPLING + 1] = 0.0
     if not candidates:
         return None
@@ -74,7 +88,7 @@ def find_rotation_speed(times: Sequence[Floats], forces: Sequence[Floats], *, ha
 
 
 def refined_speed(
-    times: Sequence[Floats], forces: Sequence[Floats], rotation_speed: float, *, harmonics: int = 3
+    times: Sequence[Floats], forces: Sequence[Floats], *, rotation_speed: float, harmonics: int = 3
 ) -> float:
     """Return the rotational speed of least misfit within half a turn per recording of a given one. [1/s]
 
@@ -126,7 +140,7 @@ def _explained_power(times: Sequence[Floats], forces: Sequence[Floats]) -> tuple
 
 def _residuals(times: Sequence[Floats], forces: Sequence[Floats], speed: float, harmonics: int) -> list[Floats]:
     """Return the residuals of the fit of levels and harmonics in each part."""
-    waves = [harmonic_columns(speed * t, harmonics) for t in times]
+    waves = [harmonic_columns(revolutions=speed * t, harmonics=harmonics) for t in times]
     centred = np.concatenate([wave - wave.mean(axis=0) for wave in waves])
     y = np.concatenate([force - force.mean() for force in forces])
     solution, _, _, _ = np.linalg.lstsq(centred, y)

@@ -243,7 +243,7 @@ def _steps_or_stick_slip(recording: "xr.Dataset", rotation_speed: float | None) 
     whole = sheet.attempted(partial(_stick_slip, recording, rotation_speed), what="stick-slip")
     if not {"voltage_peak_to_peak", "stack_voltage"} & set(map(str, recording.variables)):
         return [whole]
-    steps = sheet.attempted(partial(step_sheet, recording, rotation_speed), what="steps of the voltage")
+    steps = sheet.attempted(partial(step_sheet, recording, rotation_speed=rotation_speed), what="steps of the voltage")
     return [steps] if steps.tables else [steps, whole]
 
 

@@ -94,12 +94,12 @@ def voltage_steps(steps: Sequence[VoltageStep]) -> "Figure":
     "Stick-slip at the steps of the voltage",
     "Samples in grey with the bursts of stick-slip shaded; mean fall of the force in a slip with its 95 % interval.",
 )
-def stick_slip(time: Floats, force: Floats, steps: Sequence[VoltageStep]) -> "Figure":
+def stick_slip(t: Floats, force: Floats, steps: Sequence[VoltageStep]) -> "Figure":
     """Friction over time with the bursts of stick-slip, and the fall in a slip over the voltage."""
     import matplotlib.pyplot as plt
 
     figure, (left, right) = plt.subplots(1, 2, figsize=_WIDE, width_ratios=(2, 1))
-    middle, low, high = _envelope(time, force)
+    middle, low, high = _envelope(t, force)
     left.fill_between(middle, low, high, color="0.7", linewidth=0.4)
     found = [step for step in steps if step.stick_slip.detected]
     for burst in (burst for step in found for burst in step.stick_slip.bursts):

@@ -39,7 +39,7 @@ _BURST_COLUMNS = (
 )
 
 
-def step_sheet(recording: "xr.Dataset", rotation_speed: float | None) -> sheet.Sheet:
+def step_sheet(recording: "xr.Dataset", *, rotation_speed: float | None) -> sheet.Sheet:
     """Friction, its reduction and stick-slip at each step of the voltage of a recording.
 
     Parameters
