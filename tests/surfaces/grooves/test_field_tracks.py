@@ -25,7 +25,7 @@ DEEP, SHALLOW = parabola(ACROSS - 0.4e-3, 0.4e-3, 10e-6), parabola(ACROSS + 0.3e
 
 
 def test_two_tracks_are_listed_and_not_measured_as_one() -> None:
-    with raises(SeveralGrooves, match="2 wear tracks in the field: 1 at .* wide, 8 um deep; 2 at .* 10 um deep"):
+    with raises(SeveralGrooves, match=r"2 wear tracks in the field: 1 at .* wide, 8 um deep; 2 at .* 10 um deep"):
         measure_groove(scan(DEEP, SHALLOW))
 
 

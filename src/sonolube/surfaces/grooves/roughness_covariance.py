@@ -86,7 +86,7 @@ class RoughnessCovariance:
 
     @property
     def noise_of_pixel(self) -> float:
-        """Variance of the white noise of a pixel. [m2]"""
+        """Variance of the white noise of a pixel, in m2."""
         return math.exp(float(self.parameters[5])) * self.pixels_per_cell
 
     def uncertainty(self, variance: float, derivative: Floats) -> float:
