@@ -40,7 +40,7 @@ class DetectedGroove:
     contrast : float
         Greatest depth of the mean section over the standard deviation of the mean section beside the groove.
     deviation : float
-        That standard deviation. [m]
+        That standard deviation, in m.
     section_transverse, section_height : ndarray, shape (n,)
         Mean section over the line through its unworn ends: distance from the track and height, in m.
     """

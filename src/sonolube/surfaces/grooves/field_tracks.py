@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, NoGroove
+from sonolube.surfaces.form_removal import fit_form
 from sonolube.surfaces.grooves.detection import DetectedGroove, detect_groove
 from sonolube.surfaces.height_map import HeightMap, Mask
 
@@ -116,6 +117,7 @@ def field_tracks(surface: HeightMap) -> FieldTracks:
                 found.append(_track(detected, trough, alone=len(troughs) == 1))
         for trough in troughs:
             rest = _without(rest, transverse, trough, wider=True)
+        rest = rest.with_height(rest.height - fit_form(rest, degree=2).height)  # a hollow of the form is no track
     if not found:
         what = "; ".join(others)
         raise NoGroove(f"no groove found: {what}")

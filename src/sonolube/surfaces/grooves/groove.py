@@ -26,7 +26,7 @@ from sonolube.surfaces.grooves.unworn_reference import UnwornReference, unworn_r
 from sonolube.surfaces.height_map import HeightMap, Mask
 
 _MOST_ITERATIONS = 3
-_SHOULDER = 0.3  # of the width of the worn band, left out of the reference on either side
+_SHOULDER = 0.25  # of the width of the worn band, left out of the reference on either side
 _SPIKE = 8.0  # height of debris and dust over the standard deviation of the unworn surface
 _WINDOW = 5  # pixels, of the smoothing in which projections are detected
 _PROJECTION = 5.0  # height of a projection over the standard deviation of the smoothed unworn surface

@@ -36,7 +36,7 @@ class RoughnessCovariance:
         the variance of the noise of a cell in m2.
     parameter_covariance : ndarray, shape (6, 6)
         Their covariance, from Fisher's information.
-    spacing : tuple of float
+    cell_sides : tuple of float
         Sides of a cell along y and x, in m.
     pixels_per_cell : float
 
@@ -48,7 +48,7 @@ class RoughnessCovariance:
 
     parameters: Floats
     parameter_covariance: Floats
-    spacing: tuple[float, float]
+    cell_sides: tuple[float, float]
     pixels_per_cell: float
 
     def products(self, first: Floats, second: Floats) -> tuple[Floats, Floats]:
@@ -71,7 +71,7 @@ class RoughnessCovariance:
         theta = self.parameters
 
         def value(parameters: Floats) -> Floats:
-            density = _density(parameters, shape, self.spacing)
+            density = _density(parameters, shape, self.cell_sides)
             return np.asarray(np.einsum("nij,ij->n", weight, density) / math.prod(shape))
 
         base = value(theta)
@@ -81,12 +81,12 @@ class RoughnessCovariance:
     def smeared(self, weights: Floats) -> Floats:
         """Covariance with the height of each cell of a weighted sum over cells, without the noise, in m2."""
         shape = _padded(weights.shape)
-        spread = fft.irfft2(fft.rfft2(weights, shape) * _density(self.parameters, shape, self.spacing), shape)
+        spread = fft.irfft2(fft.rfft2(weights, shape) * _density(self.parameters, shape, self.cell_sides), shape)
         return np.asarray(spread[: weights.shape[0], : weights.shape[1]])
 
     @property
     def noise_of_pixel(self) -> float:
-        """Variance of the white noise of a pixel. [m2]"""
+        """Variance of the white noise of a pixel, in m2."""
         return math.exp(float(self.parameters[5])) * self.pixels_per_cell
 
     def uncertainty(self, variance: float, derivative: Floats) -> float:
@@ -109,7 +109,7 @@ class Cells:
         self._edges = block_edges(surface, longer / _CELLS)
         self._shape = surface.height.shape
         sizes = [int(edge[1]) if edge.size > 1 else surface.height.shape[axis] for axis, edge in enumerate(self._edges)]
-        self.spacing = (sizes[0] * surface.spacing_y, sizes[1] * surface.spacing_x)
+        self.cell_sides = (sizes[0] * surface.spacing_y, sizes[1] * surface.spacing_x)
         self.pixels_per_cell = float(math.prod(sizes))
 
     def sums(self, weights: Floats) -> Floats:
@@ -133,13 +133,13 @@ class Cells:
         return np.where(filled, total / np.maximum(count, 1.0), 0.0), filled
 
 
-def roughness_covariance(cells: Cells, height: Floats, counted: Mask) -> RoughnessCovariance:
+def roughness_covariance(cells: Cells, random_part: Floats, counted: Mask) -> RoughnessCovariance:
     """Covariance of the roughness from the unworn pixels of a map, by maximum likelihood.
 
     Parameters
     ----------
     cells : Cells
-    height : ndarray, shape (rows, columns)
+    random_part : ndarray, shape (rows, columns)
         Heights above form and waves, in m.
     counted : bool array, shape of the heights
         Unworn pixels.
@@ -158,7 +158,7 @@ def roughness_covariance(cells: Cells, height: Floats, counted: Mask) -> Roughne
     ----------
     .. [1] A. P. Guillaumin et al., J. R. Stat. Soc. B 84, 1526 (2022). doi:10.1111/rssb.12539
     """
-    mean, mask = cells.means(height, counted)
+    mean, mask = cells.means(random_part, counted)
     mean = np.where(mask, mean - mean[mask].mean(), 0.0)
     shape = _padded(mean.shape)
     window = mask.astype(np.float64)
@@ -172,7 +172,7 @@ def roughness_covariance(cells: Cells, height: Floats, counted: Mask) -> Roughne
     variance = max(float(np.sum(mean**2)) / total, np.finfo(float).tiny)
 
     def expected(parameters: Floats) -> Floats:
-        covariance = fft.irfft2(_density(parameters, shape, cells.spacing), shape)
+        covariance = fft.irfft2(_density(parameters, shape, cells.cell_sides), shape)
         covariance[0, 0] += math.exp(parameters[5])
         return np.asarray(fft.rfft2(covariance * overlap).real)
 
@@ -182,7 +182,7 @@ def roughness_covariance(cells: Cells, height: Floats, counted: Mask) -> Roughne
         start = np.array(
             [
                 math.log(variance),
-                math.log(length * math.sqrt(math.prod(cells.spacing))),
+                math.log(length * math.sqrt(math.prod(cells.cell_sides))),
                 0.0,
                 0.0,
                 math.log(_EXPONENT),
@@ -194,7 +194,10 @@ def roughness_covariance(cells: Cells, height: Floats, counted: Mask) -> Roughne
             best = found
     assert best is not None
     return RoughnessCovariance(
-        parameters=best[1], parameter_covariance=best[2], spacing=cells.spacing, pixels_per_cell=cells.pixels_per_cell
+        parameters=best[1],
+        parameter_covariance=best[2],
+        cell_sides=cells.cell_sides,
+        pixels_per_cell=cells.pixels_per_cell,
     )
 
 
