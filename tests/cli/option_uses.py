@@ -64,6 +64,7 @@ MODES = {
             "--heat-capacity": "2J/K",
             "--conductance": "0.1W/K",
             "--vibration-heat": "1W",
+            "--flash-model": "tian_kennedy_1994",
             "--set": "contact.normal_load=2N",
         },
     ),
@@ -90,6 +91,9 @@ MODES = {
         {
             "--set": ("thickness=5mm", "thickness=6mm"),
             "--material": "aluminium_2024",
+            "--young-modulus": "70GPa",
+            "--poisson-ratio": "0.4",
+            "--density": "2700kg/m3",
             "--count": "2",
             "--clamp": "-x",
             "--axis": "y",
@@ -127,8 +131,8 @@ MODES = {
     ),
     "impedance of a transducer": Mode(
         "impedance compute",
-        ("stack", "--points", "5", "--tolerance", "0.9"),
-        {"--ceramic": "nonsense", "--poled": "x", "--drive": "+x", "--ground": "-x"},
+        ("stack", "--points", "5", "--tolerance", "0.9", "--to", "200kHz"),
+        {"--ceramic": "pzt4", "--poled": "x", "--drive": "+x", "--ground": "-x"},
     ),
     "sweep on a grid": Mode(
         "sweep", (RIG, *OVER), SWEEP | {"--over": (OVER[1], "sliding.sliding_speed=20mm/s,60mm/s"), "--from": "1V"}
@@ -299,8 +303,14 @@ MODES = {
             "--torque-constant": "0.5 N m/A",
             "--idle-current": "0.1A",
             "--groove-diameter": "50mm",
+            "--group": "run",
+            "--channel": "friction",
+            "--section": "2",
         }
         | SHEETS,
+    ),
+    "friction of a test in several files": Mode(
+        "measure friction", ("FOLDER/friction.csv", "FOLDER/other.csv"), flags=("--join",)
     ),
     "rotation": Mode(
         "measure rotation",
@@ -341,6 +351,7 @@ MODES = {
             "--without-vibration": "FOLDER/groove.npy",
             "--tip-radius": "3mm",
             "--pin": "FOLDER/plate.npy",
+            "--track": "2",
             "--spacing": "2um",
             "--length-unit": "mm",
         }

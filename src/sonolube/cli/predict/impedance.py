@@ -11,9 +11,9 @@ import xarray as xr
 
 from sonolube.checks import require_positive
 from sonolube.cli.console.answer import Answer, deliver, si
-from sonolube.cli.console.options import OUT, Json, Out, Sizes, TypedNumber, refuse_unused, si_option
+from sonolube.cli.console.options import OUT, Json, Out, Sizes, TypedNumber, si_option
 from sonolube.cli.console.outputs import OutputFolder
-from sonolube.cli.console.parts import ALL_TRANSDUCERS, ceramic_of, longest_axis, named_transducer, starting_size
+from sonolube.cli.console.parts import ceramic_of, longest_axis, named_transducer, starting_size
 from sonolube.cli.console.progress import progress
 from sonolube.errors import InvalidInput
 from sonolube.fem import Transducer
@@ -29,7 +29,6 @@ _FILES = "{part}-impedance.* {part}-impedance-free.* {part}-impedance-clamped.* 
 
 
 def compute(
-    context: typer.Context,
     part: Annotated[
         str, typer.Argument(metavar="PART", help="stack, tribometer_actuator, cutter_head, or a part or STEP file.")
     ],
@@ -68,9 +67,6 @@ def compute(
     if not lowest < highest:
         raise InvalidInput(f"--from must lie below --to, got {lowest} and {highest}")
     frequency = np.linspace(float(require_positive(frequency=lowest)), highest, count)
-    if part in ALL_TRANSDUCERS:
-        because = f"for {part}, which has its own; it is for other parts and STEP files"
-        refuse_unused(context, "ceramic", "poled", "drive", "ground", because=because)
     reference = None if measured is None else read_impedance(measured)
     transducer = named_transducer(part, sizes or [], ceramic=ceramic, poled=poled, drive=drive, ground=ground)
     with progress("meshing and solving") as advance:
