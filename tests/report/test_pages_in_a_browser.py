@@ -29,7 +29,7 @@ DESIGNS = {
     "sweep": ("tribometer", "--over", f"{VOLTS}=14V:28V:5", "--set", "contact.normal_load=4N"),
     "map": ("power_map", "--over", f"{VOLTS}=5V:25V:3", "--over", "contact.normal_load=3N,5N"),
     "uncertainty": ("tribometer_uncertain", "--samples", "32", "--sobol"),
-    "optimise": ("tribometer", "--target-friction", "0.15", "--samples", "2", "--voltage-limit", "100V"),
+    "optimise": ("tribometer", "--target-friction", "0.15", "--voltage-limit", "100V"),
     "control": ("collar", "--friction", "1.5N", "--duration", "40ms"),
 }
 

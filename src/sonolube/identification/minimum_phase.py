@@ -21,7 +21,7 @@ def minimum_phase_admittance(magnitude: Floats, *, frequency: Floats) -> Complex
     Parameters
     ----------
     magnitude : ndarray, shape (n,)
-        Of the admittance, positive. [S]
+        Of the admittance in S, positive.
     frequency : ndarray, shape (n,)
         Increasing. [Hz]
 

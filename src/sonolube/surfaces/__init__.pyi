@@ -37,7 +37,12 @@ from .grooves.ball_on_disc import (
     wear_scar as wear_scar,
 )
 from .grooves.detection import DetectedGroove as DetectedGroove, detect_groove as detect_groove
-from .grooves.field_tracks import FieldTrack as FieldTrack, FieldTracks as FieldTracks, field_tracks as field_tracks
+from .grooves.field_tracks import (
+    FieldTrack as FieldTrack,
+    FieldTracks as FieldTracks,
+    field_tracks as field_tracks,
+    without_tracks as without_tracks,
+)
 from .grooves.groove import Groove as Groove, measure_groove as measure_groove
 from .grooves.synthetic import (
     GrooveShape as GrooveShape,

@@ -160,11 +160,11 @@ def _duration(path: Path) -> float:
     return time.perf_counter() - begun
 
 
-def test_warnings_of_a_library_become_caveats(tmp_path: Path) -> None:
+def test_a_variable_that_is_stored_twice_is_a_caveat(tmp_path: Path) -> None:
     path = tmp_path / "twice.mat"
     scipy.io.savemat(path, {"friction_force": np.ones(4), "fs": 10.0})
     content = path.read_bytes()
-    path.write_bytes(content + content[128:])  # variables twice, of which scipy warns
+    path.write_bytes(content + content[128:])
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         recording = read_recording(path)

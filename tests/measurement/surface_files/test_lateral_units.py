@@ -133,10 +133,16 @@ def test_an_implausible_size_is_a_caveat(spacing: float, said: str | None, tmp_p
 
 
 def test_a_reader_that_stops_in_its_own_code_is_told_as_a_damaged_file(tmp_path: Path, monkeypatch: Any) -> None:
-    library = importorskip("SurfaceTopography", exc_type=ImportError)
+    library = importorskip("SurfaceTopography.IO", exc_type=ImportError)
 
     class Reader:
-        channels = ()
+        channels: Any = ()
+
+        def __init__(self, path: str) -> None: ...
+
+        @staticmethod
+        def can_read(head: bytes) -> Any:
+            return library.MagicMatch.YES
 
         @staticmethod
         def name() -> str:
@@ -146,12 +152,15 @@ def test_a_reader_that_stops_in_its_own_code_is_told_as_a_damaged_file(tmp_path:
         def format() -> str:
             return "mat"
 
+    class Stopping(Reader):
+        channels = property(lambda self: [][0])
+
     (tmp_path / "plate.sur").write_bytes(bytes(100))
-    monkeypatch.setattr(library, "open_topography", lambda path: Reader)
+    monkeypatch.setattr(library, "readers", [Reader])
     with raises(InvalidInput, match="SurfaceTopography takes it for MATLAB, but finds no heights in it"):
         read_surface_file(tmp_path / "plate.sur")
-    monkeypatch.setattr(library, "open_topography", lambda path: [][0])
-    with raises(InvalidInput, match=r"a damaged file, or a variant of it .* stops with IndexError\)"):
+    monkeypatch.setattr(library, "readers", [Stopping])
+    with raises(InvalidInput, match=r"a damaged MATLAB file, or a variant of it .* stops with IndexError\)"):
         read_surface_file(tmp_path / "plate.sur")
 
 

@@ -58,7 +58,7 @@ class Matlab:
         with refuse_library_errors(path, format_name=self.name):
             with path.open("rb") as stream:
                 is_hdf5 = b"MATLAB 7.3" in stream.read(128)
-            arrays = _within_limits(_arrays_of_version_7_3(path) if is_hdf5 else matlab_arrays(path), path)
+            arrays, repeated = _within_limits(_arrays_of_version_7_3(path) if is_hdf5 else matlab_arrays(path), path)
         rates = [float(arrays[name][0]) for name in _RATE_NAMES if name in arrays and arrays[name].size == 1]
         interval = 1 / rates[0] if rates and rates[0] > 0 else None
         columns = tuple(
@@ -68,20 +68,24 @@ class Matlab:
         )
         if not columns:
             raise InvalidInput(f"{path}: holds no vector of numbers")
-        return RawTable(columns=columns, format_name=self.name)
+        caveats = tuple(f"variable {name} is stored more than once; the last is read" for name in repeated)
+        return RawTable(columns=columns, format_name=self.name, caveats=caveats)
 
 
-def _within_limits(arrays: Iterable[MatlabArray], path: Path) -> dict[str, Floats]:
-    """Return arrays by name, the last of each name; refuse more values or vectors than a file may hold."""
+def _within_limits(arrays: Iterable[MatlabArray], path: Path) -> tuple[dict[str, Floats], tuple[str, ...]]:
+    """Return arrays by name, the last of each name, and names of several; refuse more than a file may hold."""
     found: dict[str, Floats] = {}
+    repeated: dict[str, None] = {}
     values = 0
     for name, array in arrays:
         values += array.size
         require_values(values, path, part=f"variable {name!r}")
         if array.size > 1 or name in _RATE_NAMES:
+            if name in found:
+                repeated[name] = None
             found[name] = array
             require_channels(len(found), path, kind="vectors")
-    return found
+    return found, tuple(repeated)
 
 
 def _arrays_of_version_7_3(path: Path) -> Iterator[MatlabArray]:
