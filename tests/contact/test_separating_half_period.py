@@ -58,3 +58,11 @@ def test_a_motion_at_rest_has_the_value_at_rest_and_a_constant_opening_its_own()
     assert sampled_separating_mean(lambda d: 5 + d, displacement=np.zeros(8)) == 5
     assert sampled_separating_mean(lambda d: 5 + d, displacement=np.full(8, 2.0)) == 7
     assert sampled_separating_mean(lambda d: 5 + d, displacement=np.full(8, -2.0)) == 5
+
+
+def test_a_coarse_period_is_interpolated_between_neighbouring_samples() -> None:
+    # steps -1 to 1, 1 to 3, 3 to -1: parts 1/2, 1 and 3/4 lie above rest; the quantity, 0 below rest, is linear between
+    # samples, with means 3/4, 2 and 15/8 over these parts
+    x = np.array([1.0, 3.0, -1.0, -1.0])
+    expected = (0.5 * 0.75 + 2.0 + 0.75 * 1.875) / 2.25
+    assert sampled_separating_mean(lambda d: d, displacement=x) == approx(expected, rel=1e-12)

@@ -20,6 +20,8 @@ from sonolube.surfaces.grooves.sections import GrooveExtent, MeanCrossSection
 from sonolube.surfaces.grooves.unworn_reference import UnwornReference
 from sonolube.surfaces.height_map import HeightMap, Mask
 
+__all__: list[str] = []  # used in this room only
+
 _LEAST_SCALE, _LARGEST_SCALE = 0.1, 4.0  # of the floor's roughness over that of the surface
 _LEAST_EIGENVALUE = 1e-3  # of a covariance over the mean of them
 _LEAST_PIXELS = 0.15  # of a bin, over those of the fullest, to count in the section

@@ -11,6 +11,8 @@ from sonolube.checks import Floats
 from sonolube.surfaces.grooves.plane_coordinates import block_edges
 from sonolube.surfaces.height_map import HeightMap, Mask
 
+__all__: list[str] = []  # used in this room only
+
 _CELLS = 110  # along the longer side
 _LEAST_FILLED = 0.5  # fraction of a cell's pixels
 _LOWEST = 1.01  # periods in the field, of the waves that the removal of the form takes away

@@ -8,6 +8,8 @@ from scipy.linalg import cho_factor, cho_solve, cholesky, eigh, solve_triangular
 
 from sonolube.checks import Floats
 
+__all__: list[str] = []  # used in this room only
+
 _FLANK = 0.06  # of the depth, above which points near the edges are left out of the fit
 _PASSES = 3
 _LEAST_POINTS = 5
