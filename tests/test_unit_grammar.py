@@ -142,3 +142,8 @@ def test_a_quantity_of_any_text_is_a_number_or_refused(text: str, unit: str) -> 
 def test_what_no_scale_can_express_is_refused(text: str, unit: str) -> None:
     with pytest.raises(InvalidInput, match=f"^x {text} "):
         to_si(text, unit=unit, name="x")
+
+
+def test_a_product_with_a_logarithmic_unit_has_no_value() -> None:
+    with pytest.raises(InvalidInput, match="1e3%dB has no value in m"):
+        to_si("1e3%dB", unit="m", name="x")

@@ -199,6 +199,7 @@ def _checked(
     if record["tolerance"] == 1e-6:  # 64 harmonics are too few for the closer one
         states = steady_states(rig_from(own))
     equations = _Equations(own, load, frequency, volts / 2)
+    record["stable"] = not states.reason(0).startswith("unstable")
     start, contact, velocities, power = equations.motion(float(states.mean_displacement[0]), states.harmonics[0])
     end, marched, multipliers = equations.integrated(start)
     size = float(states.vibration_amplitude[0])
@@ -220,9 +221,9 @@ def _measures(records: Sequence[Record]) -> list[Measure]:
     points: list[Any] = [point for record in records for point in record["points"]]  # type: ignore[attr-defined]
     solved = [p for p in points if "return" in p]
     kinds = Counter(p["status"] for p in points)
-    hard = sum(p["status"] in ("unstable", "multistable") or p["loses_contact"] for p in solved)
+    hard = sum(not p["stable"] or p["status"] == "multistable" or p["loses_contact"] for p in solved)
     growth = [p for p in solved if abs(p["exponent"]) > _CLEAR]
-    wrong = sum((p["exponent"] > 0) != (p["status"] == "unstable") for p in growth)
+    wrong = sum((p["exponent"] > 0) == p["stable"] for p in growth)
     least_hard = len(points) // 10
 
     close = [p for p in solved if p["tolerance"] == 1e-8]

@@ -30,7 +30,10 @@ def peak_velocities(omega: Floats, harmonics: Complexes, peak: Floats) -> None:
     from those of the first harmonic. Any other motion is sampled.
     """
     for point in range(omega.size):
-        own, higher = harmonics[point], 0.0
+        size, higher = harmonics.shape[1], 0.0
+        while size > 1 and harmonics[point, size - 1] == 0:  # so that the samples do not depend on other points
+            size -= 1
+        own = harmonics[point, :size]
         for k in range(2, own.size + 1):
             higher += k**3 * abs(own[k - 1])
         fastest = 0.0
