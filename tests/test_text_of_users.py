@@ -14,6 +14,7 @@ from sonolube.errors import InvalidInput
 from sonolube.figure import render_figure
 from sonolube.printable_text import active_character, printable
 from sonolube.report.page import Page, rendered_files
+from sonolube.rig import read_rig
 from sonolube.toml_text import require_plain_content, toml_content
 
 HOSTILE = "$x_{$ \x1b[2J \x00 \u202e \udcff <b> & {{ 7 }} 漢字"
@@ -158,3 +159,12 @@ def test_a_change_is_refused_as_the_file_would_be(change: str, rig: Callable[[st
     with pytest.raises(InvalidInput) as refusal:
         read_rig(rig("x"), changes=[change])
     assert "\n" not in str(refusal.value)
+
+
+def test_a_title_of_many_lines_is_refused_by_its_length(tmp_path: Path) -> None:
+    rig = tmp_path / "rig.toml"
+    text = (Path(__file__).parents[1] / "examples" / "rigs" / "tribometer.toml").read_text(encoding="utf-8")
+    rig.write_text(text.replace("Modified pin-on-disc", "x" * 1500), encoding="utf-8")
+    with pytest.raises(InvalidInput, match="title") as refusal:
+        read_rig(rig)
+    assert len(str(refusal.value)) < 400

@@ -16,6 +16,7 @@ from sonolube.threads import threads_running
 
 _BAD_INPUT, _INTERRUPTED = 2, 130  # exit codes
 _LONGEST = 1200  # characters of a refusal, which may quote the input
+_LONGEST_COMMAND = 60  # characters of a name of a command
 _HELP = (
     "Ultrasonic lubrication: friction and wear of two surfaces of which one vibrates.\n\n"
     "Example: sonolube friction examples/rigs/tribometer.toml"
@@ -137,9 +138,13 @@ def _usage_error(command: str, refusal: typer.TyperException) -> str:
 
 def _refuse(command: str, reason: str) -> int:
     """Print a refusal as one line on standard error, and return the exit code of bad input."""
-    text = printable(" ".join(reason.replace("Value error, ", "").split()))
-    if len(text) > _LONGEST:
-        text = f"{text[: _LONGEST // 2]} ... {text[-_LONGEST // 2 :]}"
+    text = _shortened(printable(" ".join(reason.replace("Value error, ", "").split())), _LONGEST)
     if text:
-        typer.echo(f"{' '.join(['sonolube', printable(command)]).strip()}: {text}", err=True)
+        named = _shortened(printable(" ".join(command.split())), _LONGEST_COMMAND)
+        typer.echo(f"{f'sonolube {named}'.strip()}: {text}", err=True)
     return _BAD_INPUT
+
+
+def _shortened(text: str, longest: int) -> str:
+    """Text without its middle where it is longer than that."""
+    return text if len(text) <= longest else f"{text[: longest // 2]} ... {text[-longest // 2 :]}"

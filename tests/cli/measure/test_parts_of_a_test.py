@@ -88,3 +88,10 @@ def test_an_unknown_mapping_is_one_line(tmp_path: Path, capsys: pytest.CaptureFi
         main(["measure", "friction", str(path), "--mapping", "pin-on-disk"])
     assert ended.value.code == 2
     assert "did you mean pin-on-disc?" in capsys.readouterr().err
+
+
+def test_a_name_that_is_no_pattern_is_refused_as_a_file(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["measure", "friction", "9**9**9"])
+    assert ended.value.code == 2
+    assert "No such file" in capsys.readouterr().err

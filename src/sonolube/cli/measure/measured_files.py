@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from fnmatch import fnmatch
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -212,9 +213,10 @@ def files_of(paths: Sequence[Path]) -> list[Path]:
     """
     files: list[Path] = []
     for path in paths:
-        matches = sorted(path.parent.glob(path.name), key=_by_numbers) if _PATTERN.search(path.name) else []
-        if matches and not path.exists():
-            files += matches
+        is_pattern = _PATTERN.search(path.name) and path.parent.is_dir() and not path.exists()
+        matches = [each for each in path.parent.iterdir() if fnmatch(each.name, path.name)] if is_pattern else []
+        if matches:
+            files += sorted(matches, key=_by_numbers)
             continue
         if not path.is_dir():
             files.append(path)

@@ -11,7 +11,7 @@ from sonolube.rig.file.section import NameIn, Section
 from sonolube.rig.file.structures import StructureSection
 from sonolube.vocabulary import Quantity
 
-Text = Annotated[str, Field(min_length=1)]
+Text = Annotated[str, Field(min_length=1, max_length=1000)]
 
 
 class RoughnessSection(Section):
