@@ -133,7 +133,7 @@ def test_a_friction_that_no_vibration_gives_is_refused(friction: str, capsys: Ca
         ("", "needs a head and at least one run"),
         (HEAD, "needs a head and at least one run"),
         (RUNS.replace(",", ";"), "separate columns by commas"),
-        (RUNS.replace("mm/s", "%"), "% is a pure number; expected a speed"),
+        (RUNS.replace("mm/s", "%"), "sliding_speed 40.0 % is a pure number; expected a speed"),
         (RUNS.replace("mm/s", "furlong"), "is a length; expected a speed"),
         ("\n".join([HEAD, *(f"{row},3" for row in ROWS)]), "line 2: has 5 cells where 4 columns are named"),
         ("\n".join([f"{HEAD},{HEAD}", *(f"{row},{row}" for row in ROWS)]), "two columns are named sliding_speed"),

@@ -50,8 +50,9 @@ def read_runs(path: Path) -> "xr.Dataset":
         if name in columns:
             raise InvalidInput(f"{path}: two columns are named {name}")
         place_of_unit = f"{path}: line 2: {name}"
-        zero, one = (to_si(f"{at} {unit}", unit=quantities()[name].unit, name=place_of_unit) for at in (0, 1))
-        numbers = (_number(path, line, row, place, name) for line, row in enumerate(rows, 2))
+        numbers = [_number(path, line, row, place, name) for line, row in enumerate(rows, 2)]
+        known = (numbers[0], 0, 1)  # a wrong unit is told with the first value
+        _, zero, one = (to_si(f"{at} {unit}", unit=quantities()[name].unit, name=place_of_unit) for at in known)
         columns[name] = [zero + (one - zero) * number for number in numbers]
     if "friction_reduction" not in columns:
         raise InvalidInput(f"{path}: needs a column friction_reduction [%]")
