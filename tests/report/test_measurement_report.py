@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 import numpy as np
 import pytest
-from pytest import approx, raises
+from pytest import approx, mark, raises
 
 from sonolube.errors import InvalidInput
 from sonolube.report import (
@@ -21,7 +21,7 @@ from sonolube.report import (
 from sonolube.report.measured.friction import FrictionSettings, friction_sheet
 from sonolube.report.measured.friction_comparison import comparison_sheet
 from sonolube.report.measured.impedance import ImpedanceSettings, impedance_sheet
-from sonolube.report.measured.sheet import Sheet, quantity_value
+from sonolube.report.measured.sheet import Sheet, Value, quantity_value
 from sonolube.report.measured.surface import SurfaceSettings, surface_sheet
 from sonolube.surfaces import GaussianCorrelationSpectrum, gaussian_surface
 
@@ -216,3 +216,11 @@ def test_a_misspelt_key_of_a_test_sheet_is_answered_with_the_right_one(tmp_path:
     (tmp_path / "test.toml").write_text('[parameters]\nnormal_lod = "2N"\n', encoding="utf-8")
     with raises(InvalidInput, match=r"parameters\.normal_lod: unknown key; did you mean normal_load\?"):
         read_pin_on_disc_sheet(tmp_path / "test.toml")
+
+
+@mark.parametrize(
+    ("value", "uncertainty", "text"),
+    [(0.705, 0.138, "705 ± 140 mN"), (0.705, 0.0044, "705 ± 4.4 mN"), (2.5, 0.013, "2.5 ± 0.013 N")],
+)
+def test_an_uncertainty_is_printed_in_plain_digits(value: float, uncertainty: float, text: str) -> None:
+    assert Value("friction_force", "Friction", value, "N", uncertainty=uncertainty).text == text

@@ -116,7 +116,9 @@ def stick_slip(t: Floats, force: Floats, steps: Sequence[VoltageStep]) -> "Figur
         capsize=2,
     )
     left.set(xlabel="time (s)", ylabel="friction force (N)")
-    right.set(xlabel="voltage, peak to peak (V)", ylabel="fall in a slip (mN)", xlim=(0, None), ylim=(0, None))
+    right.set(xlabel="voltage, peak to peak (V)", ylabel="fall in a slip (mN)")
+    right.set_xlim(0, 1.05 * max(step.voltage_peak_to_peak for step in steps))
+    right.set_ylim(0, 1.15 * float(ends.max()))
     return figure
 
 

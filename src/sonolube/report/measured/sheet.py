@@ -54,7 +54,9 @@ class Value:
         number, _, unit = rounded.partition(" ")
         scale = 10.0 ** round(math.log10(self.value / float(number))) if float(number) else 1.0
         if self.uncertainty is not None:
-            return f"{number} ± {self.uncertainty / scale:.2g} {unit}".rstrip()
+            rounded = f"{self.uncertainty / scale:.2g}"
+            plain = f"{float(rounded):.0f}" if "e+" in rounded else rounded
+            return f"{number} ± {plain} {unit}".rstrip()
         if self.interval is not None:
             lower, upper = (end / scale for end in self.interval)
             return f"{number} {unit}".rstrip() + f" ({lower:.4g} to {upper:.4g})"
