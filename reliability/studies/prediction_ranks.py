@@ -95,9 +95,9 @@ def _sample_measures(records: Sequence[Record]) -> list[Measure]:
 
 STUDY = Study(
     title="Ranks in posteriors of generated friction tests",
-    question="Hyperparameters are drawn from the prior and friction tests generated at the published conditions; the"
-    " rank of each true value in its posterior, and of an unseen test in its prediction, fails where it is not uniform.",
-    sources=("prediction/*.py",),
+    question="Hyperparameters are drawn from the prior and friction tests generated at the published conditions."
+    " The rank of each true value in its posterior, and of an unseen test in its prediction, fails where not uniform.",
+    sources=tuple(f"prediction/{name}.py" for name in ("closures", "evidence", "hierarchy", "predictive", "stacking")),
     trials=300,
     sample=1,
     trial=_trial,
