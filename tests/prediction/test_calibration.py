@@ -4,8 +4,9 @@ import numpy as np
 from pytest import approx
 from scipy.stats import norm
 
-from sonolube.prediction.calibration import PROBABILITIES, Calibration, calibrations
+from sonolube.prediction.calibration import Calibration, calibrations
 from sonolube.prediction.scores import (
+    PROBABILITIES,
     binomial_interval,
     central_interval,
     continuous_ranked_probability_score,

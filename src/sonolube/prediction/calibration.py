@@ -21,9 +21,6 @@ from sonolube.prediction.scores import (
     interval_score,
 )
 
-PROBABILITIES: Final = (0.5, 0.8, 0.95)
-"""Of the intervals whose coverage is judged."""
-
 _DRAWS: Final = 4000
 _MEMORY_LENGTHS: Final = (1e-6, 2e-6)  # m, uniform: as examples/rigs/tribometer_uncertain.toml has it
 _ROUGHNESS_SPREAD: Final = 0.1  # likewise
@@ -39,7 +36,7 @@ class UnseenPrediction:
     rig : str
         Name of the rig.
     friction_ratio, uncertainty : float
-        Measured friction ratio and its standard uncertainty. []
+        Measured friction ratio and its standard uncertainty.
     draws : ndarray, shape (draws,)
         Predicted measured ratio: with the uncertainty of the measurement. []
     """

@@ -51,7 +51,7 @@ class UncertainConditions:
     decay_length_spread, amplitude_spread : float
         Standard deviation of the logarithm of the factor by which all decay lengths, or amplitudes, may be off.
     amplitude_factor : float
-        Median of that factor for the amplitudes. []
+        Median of that factor for the amplitudes.
     """
 
     conditions: Conditions

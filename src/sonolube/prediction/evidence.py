@@ -37,7 +37,7 @@ class TestedRig:
     friction_ratio : ndarray, shape (n,)
         Friction with vibration over friction without. []
     uncertainty : ndarray, shape (n,)
-        Standard uncertainty of the ratios. []
+        Standard uncertainty of the ratios.
     """
 
     __test__ = False

@@ -6,15 +6,16 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.figure import COLOURS
-from sonolube.prediction.calibration import PROBABILITIES, Calibration
+from sonolube.prediction.calibration import Calibration
 from sonolube.prediction.evidence import published_rigs
+from sonolube.prediction.scores import PROBABILITIES
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_SHADES: Final = ((0.95, 0.15), (0.8, 0.25), (0.5, 0.4))  # probability and opacity of a band, the widest first
+_OPACITIES: Final = (0.15, 0.25, 0.4)  # of the bands, the widest first
 _AXES: Final = (
     ("amplitude", "vibration_amplitude", 1e6, "vibration amplitude (µm)"),
     ("speed", "sliding_speed", 1e3, "sliding speed (mm/s)"),
@@ -39,7 +40,7 @@ def prediction_figure(prediction: "xr.Dataset") -> "Figure":
     for axes, (name, condition, scale, label) in zip(panels, _AXES, strict=True):
         places = scale * prediction[f"curve_{name}"].to_numpy()
         curves = prediction[f"friction_ratio_over_{name}"]
-        _bands(axes, places, curves)
+        draw_bands(axes, places, curves.to_numpy())
         _points(axes, condition, scale, prediction)
         axes.axvline(scale * prediction.attrs[condition], color="0.4", lw=0.8, ls=":")
         axes.set(xlabel=label, xscale="log", xlim=(places[0], places[-1]), ylim=(-0.05, 1.15))
@@ -49,14 +50,23 @@ def prediction_figure(prediction: "xr.Dataset") -> "Figure":
     return figure
 
 
-def _bands(axes: "Axes", places: Floats, curves: "xr.DataArray") -> None:
-    """Draw median and central intervals along one axis."""
-    for probability, opacity in _SHADES:
-        low, high = (curves.sel(level=(1 + sign * probability) / 2, method="nearest") for sign in (-1, 1))
+def draw_bands(axes: "Axes", places: Floats, quantiles: Floats) -> None:
+    """Draw median and central intervals along one axis.
+
+    Parameters
+    ----------
+    axes : Axes
+    places : ndarray, shape (n,)
+        In the unit of the axis.
+    quantiles : ndarray, shape (7, n)
+        Of the probabilities `LEVELS`.
+    """
+    for row, (probability, opacity) in enumerate(zip(PROBABILITIES[::-1], _OPACITIES, strict=True)):
+        label = f"{100 * probability:.0f} % interval"
         axes.fill_between(
-            places, low, high, color=COLOURS[0], alpha=opacity, lw=0, label=f"{100 * probability:.0f} % interval"
+            places, quantiles[row], quantiles[-1 - row], color=COLOURS[0], alpha=opacity, lw=0, label=label
         )
-    axes.plot(places, curves.sel(level=0.5), color=COLOURS[0], label="median")
+    axes.plot(places, quantiles[len(PROBABILITIES)], color=COLOURS[0], label="median")
 
 
 def _points(axes: "Axes", condition: str, scale: float, prediction: "xr.Dataset") -> None:

@@ -39,7 +39,7 @@ class Input:
     value : float
         Median, in SI.
     spread : float
-        Standard deviation of its logarithm. []
+        Standard deviation of its logarithm.
     reason : str
         Why the spread is what it is.
     remedy : str
@@ -63,8 +63,12 @@ class RigInputs:
         Root mean square height, vibration amplitude and intrinsic coefficient of friction: the uncertain ones.
     decay_length : float
         Of the contact at the median roughness. [m]
-    frequency, sliding_speed, normal_load : float
-        [Hz], [m/s], [N]
+    frequency : float
+        Of the vibration. [Hz]
+    sliding_speed : float
+        Mean sliding speed. [m/s]
+    normal_load : float
+        Force pressing the bodies together. [N]
     voltage_peak_to_peak : float or None
         Of the drive, where it is known. [V]
     """

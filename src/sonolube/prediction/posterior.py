@@ -34,7 +34,7 @@ class Posterior:
     ----------
     closure : Closure
     weight : float
-        Of the closure, sum 1 over all. []
+        Of the closure, sum 1 over all.
     hyperparameters : ndarray, shape (h, 5)
         Draws, equally probable: logarithms, in the order of `HYPERPARAMETERS`.
     """
@@ -136,15 +136,16 @@ def prior_draws(closure: Closure) -> Floats:
     return means + deviations * standard_normals(PRIOR_DRAWS, columns=len(HYPERPARAMETERS), seed=2)
 
 
+@cache
 def rig_log_likelihoods(
-    closures: Sequence[Closure] = CLOSURES, *, rigs: Sequence[TestedRig] | None = None
+    closures: tuple[Closure, ...] = CLOSURES, *, rigs: tuple[TestedRig, ...] | None = None
 ) -> dict[str, Floats]:
     """Logarithm of the likelihood of each rig at each draw from the prior, by name of the closure.
 
     Parameters
     ----------
-    closures : sequence of Closure
-    rigs : sequence of TestedRig, optional
+    closures : tuple of Closure
+    rigs : tuple of TestedRig, optional
         The published ones where absent.
 
     Returns

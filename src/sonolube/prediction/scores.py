@@ -1,9 +1,17 @@
 """Scores of predictive distributions given as draws: coverage, CRPS and interval score."""
 
+from typing import Final
+
 import numpy as np
 from scipy.stats import binomtest
 
 from sonolube.checks import Floats
+
+PROBABILITIES: Final = (0.5, 0.8, 0.95)
+"""Of the predictive intervals that are told and judged."""
+
+LEVELS: Final = (0.025, 0.1, 0.25, 0.5, 0.75, 0.9, 0.975)
+"""Ends of these intervals and the median, as probabilities, in rising order."""
 
 
 def central_interval(draws: Floats, probability: float) -> tuple[Floats, Floats]:
@@ -13,7 +21,7 @@ def central_interval(draws: Floats, probability: float) -> tuple[Floats, Floats]
     ----------
     draws : ndarray, shape (draws, ...)
     probability : float
-        Within the interval. []
+        Within the interval.
 
     Returns
     -------
@@ -58,7 +66,7 @@ def interval_score(draws: Floats, measured: float, *, probability: float = 0.8) 
     draws : ndarray, shape (draws,)
     measured : float
     probability : float
-        Within the interval. []
+        Within the interval.
 
     Returns
     -------

@@ -30,7 +30,7 @@ class WearPair:
     wear_rate_ratio : ndarray, shape (n,)
         Of each test. []
     uncertainty : float
-        Standard uncertainty of its logarithm as printed. []
+        Standard uncertainty of its logarithm as printed.
     source : str
     """
 

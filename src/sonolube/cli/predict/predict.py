@@ -13,7 +13,8 @@ from sonolube.cli.console.options import OUT, Changes, Json, Load, Out, RigPath,
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.measurement.measured_runs import read_runs
 from sonolube.prediction.figures import prediction_figure
-from sonolube.prediction.predict import PROBABILITIES, interval, predict as predicted
+from sonolube.prediction.rig_prediction import interval, predict as predicted
+from sonolube.prediction.scores import PROBABILITIES
 from sonolube.report import Drawing
 from sonolube.rig import Rig
 from sonolube.units import format_si

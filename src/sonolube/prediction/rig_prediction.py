@@ -12,7 +12,7 @@ from sonolube.prediction.inputs import Input, RigInputs, rig_inputs
 from sonolube.prediction.own_runs import OwnRuns, own_runs
 from sonolube.prediction.posterior import learned
 from sonolube.prediction.predictive import RatioDraws, ratio_draws
-from sonolube.prediction.scores import central_interval
+from sonolube.prediction.scores import LEVELS, central_interval
 from sonolube.rig import Rig, friction_point, thermal_solid
 from sonolube.thermal import EllipticSource, contact_rise
 from sonolube.vocabulary import quantity
@@ -20,14 +20,8 @@ from sonolube.vocabulary import quantity
 if TYPE_CHECKING:
     import xarray as xr
 
-PROBABILITIES: Final = (0.5, 0.8, 0.95)
-"""Of the predictive intervals."""
-
 _CURVE: Final = 33  # points of a curve
 _KNOWN_WELL: Final = {"rms_height": 0.05, "vibration_amplitude": 0.02}
-_LEVELS: Final = tuple(
-    sorted({0.5, *((1 + sign * probability) / 2 for probability in PROBABILITIES for sign in (-1, 1))})
-)
 
 
 def predict(
@@ -91,7 +85,7 @@ def predict(
             "interval_share_left": ("input", list(least_known.values())),
         },
         coords={
-            "level": list(_LEVELS),
+            "level": list(LEVELS),
             "curve_amplitude": amplitudes,
             "curve_speed": speeds,
             "input": list(least_known),
@@ -115,7 +109,7 @@ def interval(prediction: "xr.Dataset", name: str, probability: float = 0.8) -> t
     name : str
         A variable over `draw`.
     probability : float
-        Within the interval. []
+        Within the interval.
 
     Returns
     -------
@@ -229,7 +223,7 @@ def _quantiles(inputs: RigInputs, own: OwnRuns | None, **along: Floats) -> Float
     """Quantiles of the friction ratio along a curve, shape (levels, points)."""
     tested = None if own is None else own.tested
     found = ratio_draws(learned().friction, inputs.at(**along), count=2000, own=tested)
-    return np.quantile(found.friction_ratio, _LEVELS, axis=0)
+    return np.quantile(found.friction_ratio, LEVELS, axis=0)
 
 
 def _shares_left(inputs: RigInputs, own: OwnRuns | None, *, draws: int, seed: int) -> Mapping[str, float]:
