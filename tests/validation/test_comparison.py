@@ -13,7 +13,7 @@ from scipy.special import i0
 
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.friction import sine_stick_slip_ratio
-from sonolube.rig import read_rig
+from sonolube.rig import read_rig, steady_vibration
 from sonolube.validation.assessment import FITTED_SETS
 from sonolube.validation.comparison import COMPARED_MODELS, ComparedFit, compare_models, compared_models, predict_rig
 from sonolube.validation.fitting import Fit
@@ -224,7 +224,7 @@ def test_the_error_on_a_single_set_is_no_uncertainty_of_a_rig(published: tuple[C
     known = read_rig(ROOT / "examples/rigs/tribometer.toml", changes=["friction.in_plane_fraction=0.2"])
     predicted = {one.model.name: one for one in predict_rig(published, vibrated_rig(known))}
     coulomb = predicted["coulomb-in-plane"]
-    zeta = 20.3e-3 / (0.2 * 2 * pi * 22e3 * known.vibration_amplitude)
+    zeta = 20.3e-3 / (0.2 * 2 * pi * 22e3 * steady_vibration(known).vibration_amplitude)
     assert coulomb.friction_ratio == approx(2 / pi * np.arcsin(zeta))
     assert coulomb.uncertainty is None
     assert list(predicted)[-1] != "coulomb-in-plane"  # those that do not apply come last

@@ -235,7 +235,7 @@ def _computed_map(rig: DrivenRig, kind: str, backend: Backend, **axes: ArrayLike
             if upper <= lower:
                 raise InvalidInput(f"{name} must increase from value to value, got {lower:g} before {upper:g}")
     shape = tuple(array.size for array in values.values())
-    mesh = dict(zip(values, np.meshgrid(*values.values(), indexing="ij"), strict=True))
+    mesh: dict[str, Any] = dict(zip(values, np.meshgrid(*values.values(), indexing="ij"), strict=True))
     offset = rig.drive.offset_ratio * mesh["voltage_peak_to_peak"]
     points = point_batch(rig, **mesh, voltage_offset=offset, backend=backend)
     columns: dict[str, NDArray[Any]] = {name: points.numbers[name].reshape(shape) for name in NUMBERS}
