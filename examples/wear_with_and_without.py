@@ -16,10 +16,7 @@ still = cube_wear_rate(rig.contact, normal_load=loads)
 amplitude = steady_vibration(rig).vibration_amplitude
 vibrating = vibrating_cube_wear_rate(rig.contact, normal_load=loads, vibration_amplitude=amplitude)
 
-lines = [
-    f"{rig.title}, {1e6 * amplitude:.2g} um",
-    "load [N]   still [mm3/km]   vibrating [mm3/km]   reduction",
-]
+lines = [f"{rig.title}, {1e6 * amplitude:.2g} um", "load [N]   still [mm3/km]   vibrating [mm3/km]   reduction"]
 for load, before, after in zip(loads, 1e12 * still, 1e12 * vibrating, strict=True):  # m2 to mm3/km
     lines.append(f"{load:8.1f}   {before:14.2f}   {after:18.2f}   {1 - after / before:9.1%}")
 print("\n".join(lines))

@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.dynamics.backend import Backend, device_name, usable_backend
 from sonolube.errors import InvalidInput
-from sonolube.rig import NUMBERS, STATUSES, Rig, gridded, point_batch
-from sonolube.rig.driven_rig import DrivenRig, driven_rig, require_drive
+from sonolube.rig import NUMBERS, STATUSES, Rig, amplitude_labels, gridded, point_batch
+from sonolube.rig.driven_rig import require_drive
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -35,7 +35,7 @@ def velocity_stress_map(
     Parameters
     ----------
     rig : Rig
-        With a stack, a structure and a drive voltage.
+        With a drive voltage; its vibration is by the source of its amplitude.
     sliding_speed : array_like, shape (n,)
         Macroscopic relative speeds. [m/s]
     normal_load : array_like, shape (m,)
@@ -54,7 +54,7 @@ def velocity_stress_map(
     Raises
     ------
     InvalidInput
-        If the rig has no structure, or values are not positive and increasing.
+        If the rig has no drive voltage or amplitude, or values are not positive and increasing.
 
     Warns
     -----
@@ -70,7 +70,7 @@ def velocity_stress_map(
     .. [1] D figures 4.9 and 4.10.
     """
     return _computed_map(
-        driven_rig(rig),
+        rig,
         "velocity-stress",
         backend,
         voltage_peak_to_peak=voltage_peak_to_peak,
@@ -92,7 +92,7 @@ def velocity_power_map(
     Parameters
     ----------
     rig : Rig
-        With a stack, a structure and a drive voltage.
+        With a drive voltage; its vibration is by the source of its amplitude.
     sliding_speed : array_like, shape (n,)
         Macroscopic relative speeds. [m/s]
     voltage_peak_to_peak : array_like, shape (m,)
@@ -112,7 +112,7 @@ def velocity_power_map(
     Raises
     ------
     InvalidInput
-        If the rig has no structure, or values are not positive and increasing.
+        If the rig has no drive voltage or amplitude, or values are not positive and increasing.
 
     Warns
     -----
@@ -128,7 +128,7 @@ def velocity_power_map(
     .. [1] D figures 4.11, 4.12, 4.20 and B.1 to B.6.
     """
     computed = _computed_map(
-        driven_rig(rig),
+        rig,
         "velocity-power",
         backend,
         normal_load=normal_load,
@@ -149,7 +149,7 @@ def frequency_voltage_map(
     Parameters
     ----------
     rig : Rig
-        With a stack, a structure and a drive voltage.
+        With a drive voltage; its vibration is by the source of its amplitude.
     frequency : array_like, shape (n,)
         Drive frequencies. [Hz]
     voltage_peak_to_peak : array_like, shape (m,)
@@ -165,7 +165,7 @@ def frequency_voltage_map(
     Raises
     ------
     InvalidInput
-        If the rig has no structure, or values are not positive and increasing.
+        If the rig has no drive voltage or amplitude, or values are not positive and increasing.
 
     Warns
     -----
@@ -177,7 +177,7 @@ def frequency_voltage_map(
     velocity_power_map, velocity_stress_map
     """
     return _computed_map(
-        driven_rig(rig), "frequency-voltage", backend, voltage_peak_to_peak=voltage_peak_to_peak, frequency=frequency
+        rig, "frequency-voltage", backend, voltage_peak_to_peak=voltage_peak_to_peak, frequency=frequency
     )
 
 
@@ -224,7 +224,7 @@ def saturation_power(*, friction_reduction: ArrayLike, actuator_power: ArrayLike
     return saturation
 
 
-def _computed_map(rig: DrivenRig, kind: str, backend: Backend, **axes: ArrayLike) -> "xr.Dataset":
+def _computed_map(rig: Rig, kind: str, backend: Backend, **axes: ArrayLike) -> "xr.Dataset":
     """Operating points on the grid of some axes as a dataset, with amplifier power and nominal pressure."""
     backend = usable_backend(backend)
     values = {name: np.atleast_1d(require_positive(**{name: array})) for name, array in axes.items()}
@@ -236,13 +236,17 @@ def _computed_map(rig: DrivenRig, kind: str, backend: Backend, **axes: ArrayLike
                 raise InvalidInput(f"{name} must increase from value to value, got {lower:g} before {upper:g}")
     shape = tuple(array.size for array in values.values())
     mesh: dict[str, Any] = dict(zip(values, np.meshgrid(*values.values(), indexing="ij"), strict=True))
-    offset = rig.drive.offset_ratio * mesh["voltage_peak_to_peak"]
+    offset = require_drive(rig).offset_ratio * mesh["voltage_peak_to_peak"]
     points = point_batch(rig, **mesh, voltage_offset=offset, backend=backend)
     columns: dict[str, NDArray[Any]] = {name: points.numbers[name].reshape(shape) for name in NUMBERS}
     columns["status"] = np.array(STATUSES)[points.status].reshape(shape)
     columns["reason"] = np.array(points.reasons)[points.reason].reshape(shape)
     power = columns.pop("actuator_power")
-    about = {"rig": rig.title, "map": kind} | ({"device": device_name(backend)} if backend == "gpu" else {})
+    about = (
+        {"rig": rig.title, "map": kind}
+        | amplitude_labels(rig)
+        | ({"device": device_name(backend)} if backend == "gpu" else {})
+    )
     computed = gridded(columns, axes=values, title=f"Friction reduction, {rig.title}", about=about)
     labels = {"units": "W", "long_name": "Power of a linear amplifier, D 1.9"}
     if "frequency" in values:

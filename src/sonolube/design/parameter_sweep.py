@@ -85,8 +85,8 @@ def sweep(
     A point without a result does not end the sweep: it has a status, a reason and NaN. Each chunk depends on its own
     points alone, so threads, clusters and interruptions change no bit of the result. Another chunk size groups points
     into other simultaneous solves and changes the result by less than 1e-6, as does a GPU, whose sweeps therefore have
-    folders of their own. Friction ratios of asperity stick-slip are those of a single point up to 200,000 points, within
-    1e-4 of them beyond.
+    folders of their own. Friction ratios of asperity stick-slip are those of a single point up to 200,000 points,
+    within 1e-4 of them beyond.
     """
     if chunk_points < 1 or workers < 1:
         raise InvalidInput(f"chunk_points and workers must be at least 1, got {chunk_points} and {workers}")

@@ -1,5 +1,6 @@
 from .amplitude_source import (
     ResolvedVibration as ResolvedVibration,
+    amplitude_labels as amplitude_labels,
     available_sources as available_sources,
     resolved_vibration as resolved_vibration,
 )
@@ -67,6 +68,7 @@ from .record import (
 from .simulation import (
     Simulation as Simulation,
     friction_point as friction_point,
+    operating_caveats as operating_caveats,
     simulate as simulate,
     wear_point as wear_point,
 )

@@ -7,7 +7,7 @@ import numpy as np
 
 from sonolube.contact import separation
 from sonolube.dynamics import Status, steady_state
-from sonolube.errors import InvalidInput
+from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.rig.driven_rig import DrivenRig, driven_rig
 from sonolube.rig.excitation import voltage_harmonics
 from sonolube.rig.linear_response import gap_law_of
@@ -36,18 +36,20 @@ class ResolvedVibration:
         Rig whose structure gives the motion; for a measured amplitude with its drive scaled to that amplitude.
     sine_amplitude : float or None
         Amplitude of the sine at the rig's own drive, where no structure gives the motion. [m]
+    per_volt : float or None
+        That amplitude over the voltage peak to peak, where it changes with the voltage. [m/V]
     """
 
     source: AmplitudeSource
     text: str
     driven: DrivenRig | None
     sine_amplitude: float | None
+    per_volt: float | None = None
 
-    def amplitude_at(self, rig: Rig, voltage_peak_to_peak: float) -> float:
+    def amplitude_at(self, voltage_peak_to_peak: float) -> float:
         """Return the amplitude of the sine at a drive voltage, proportional to it where the rig has one. [m]"""
         assert self.sine_amplitude is not None
-        own = None if rig.drive is None else rig.drive.voltage_peak_to_peak
-        return self.sine_amplitude * voltage_peak_to_peak / own if own else self.sine_amplitude
+        return self.sine_amplitude if self.per_volt is None else self.per_volt * voltage_peak_to_peak
 
 
 def available_sources(rig: Rig) -> tuple[AmplitudeSource, ...]:
@@ -91,8 +93,8 @@ def resolved_vibration(rig: Rig) -> ResolvedVibration:
     -----
     A measured amplitude of a rig with a structure fixes the scale of its drive: force and charge per volt are
     multiplied by the factor at which the computed amplitude, under voltage, frequency and load of the measurement, is
-    the measured one; a measurement whose drive is stated was under a sine. Shape, mean gap and their change with voltage, frequency and load are computed. Without a
-    structure the vibration is a sine, proportional to the voltage.
+    the measured one; a measurement whose drive is stated was under a sine. Shape, mean gap and their change with
+    voltage, frequency and load are computed. Without a structure the vibration is a sine, proportional to the voltage.
     """
     sources = available_sources(rig)
     source = rig.amplitude_source or next(iter(sources), None)
@@ -104,6 +106,15 @@ def resolved_vibration(rig: Rig) -> ResolvedVibration:
     if source not in sources:
         raise InvalidInput(f"{rig.title}: no amplitude {source}: {_MISSING[source](rig)}; it has {_listed(sources)}")
     return _RESOLVED[source](rig)
+
+
+def amplitude_labels(rig: Rig) -> dict[str, str]:
+    """Return the source of a rig's amplitude and the same in words, by name; empty where it has none."""
+    try:
+        used = resolved_vibration(rig)
+    except SonolubeError:
+        return {}
+    return {"amplitude_source": used.source, "amplitude_origin": used.text}
 
 
 def moved_rig(rig: Rig) -> DrivenRig:
@@ -145,13 +156,13 @@ def source_caveats(rig: Rig) -> tuple[str, ...]:
     -------
     tuple of str
     """
-    taken = rig.amplitude_source or next(iter(available_sources(rig)))
-    found = {source: _amplitude_by(rig, source) for source in {taken: 0, **dict.fromkeys(available_sources(rig))}}
+    taken = resolved_vibration(rig).source
+    found = {source: _amplitude_by(rig, source) for source in available_sources(rig)}
     own = found.pop(taken)
     others = [
-        f"{source} {format_si(value, 'm')}"
-        for source, value in found.items()
-        if abs(value - own) > AMPLITUDE_ERROR * max(value, own)
+        f"{source} {format_si(found[source], 'm')}"
+        for source in AMPLITUDE_SOURCES
+        if source in found and abs(found[source] - own) > AMPLITUDE_ERROR * max(found[source], own)
     ]
     if not others:
         return ()
@@ -164,14 +175,17 @@ def source_caveats(rig: Rig) -> tuple[str, ...]:
 def _measured(rig: Rig) -> ResolvedVibration:
     assert rig.vibration_amplitude is not None
     under = _conditions(rig)
-    at = [
+    stated = [
         format_si(value, unit, digits=4)
         for value, unit in ((under.voltage_peak_to_peak, "V"), (under.frequency, "Hz"))
         if value is not None
     ]
-    text = f"measured, {format_si(rig.vibration_amplitude, 'm')}" + (f" at {', '.join(at)}" if at else "")
+    text = f"measured, {format_si(rig.vibration_amplitude, 'm')}" + (f" at {', '.join(stated)}" if stated else "")
     if rig.structure is None:
-        return ResolvedVibration(source="measured", text=text, driven=None, sine_amplitude=_measured_sine(rig))
+        at, volts = under.voltage_peak_to_peak, None if rig.drive is None else rig.drive.voltage_peak_to_peak
+        per_volt = rig.vibration_amplitude / at if at and volts is not None else None
+        amplitude = rig.vibration_amplitude if per_volt is None or volts is None else per_volt * volts
+        return ResolvedVibration(source="measured", text=text, driven=None, sine_amplitude=amplitude, per_volt=per_volt)
     driven = _calibrated(driven_rig(rig))
     text += f"; it scales the drive of the computed motion by {driven.calibration:.4g}"
     return ResolvedVibration(source="measured", text=text, driven=driven, sine_amplitude=None)
@@ -191,8 +205,10 @@ def _per_volt(rig: Rig) -> ResolvedVibration:
     assert rig.drive.voltage_peak_to_peak is not None
     volts = rig.drive.voltage_peak_to_peak
     text = f"per volt, {format_si(rig.amplitude_per_volt, 'm/V')} times {format_si(volts, 'V')} peak to peak"
-    amplitude = rig.amplitude_per_volt * volts
-    return ResolvedVibration(source="per-volt", text=text, driven=None, sine_amplitude=amplitude)
+    per_volt = rig.amplitude_per_volt
+    return ResolvedVibration(
+        source="per-volt", text=text, driven=None, sine_amplitude=per_volt * volts, per_volt=per_volt
+    )
 
 
 _RESOLVED: dict[AmplitudeSource, Callable[[Rig], ResolvedVibration]] = {
@@ -236,14 +252,6 @@ def _measured_here(rig: Rig) -> bool:
     under = _conditions(rig)
     own = None if rig.drive is None else rig.drive.frequency
     return own is None or under.frequency is None or abs(own - under.frequency) <= _SAME_FREQUENCY * own
-
-
-def _measured_sine(rig: Rig) -> float:
-    """Return the amplitude at the rig's own voltage, proportional to that of the measurement. [m]"""
-    assert rig.vibration_amplitude is not None
-    at = _conditions(rig).voltage_peak_to_peak
-    own = None if rig.drive is None else rig.drive.voltage_peak_to_peak
-    return rig.vibration_amplitude * (own / at if at and own is not None else 1.0)
 
 
 def _amplitude_by(rig: Rig, source: AmplitudeSource) -> float:

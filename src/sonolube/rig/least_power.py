@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_positive, require_within
-from sonolube.rig.amplitude_source import moved_rig
+from sonolube.rig.amplitude_source import amplitude_labels, moved_rig
 from sonolube.rig.datasets import gridded
 from sonolube.rig.driven_rig import DrivenRig
 from sonolube.rig.operating_point_grid import Advance, OperatingPoints, operating_points
@@ -93,7 +93,7 @@ def least_power_study(
         {"status": status.astype(np.str_), "reason": reason.astype(np.str_)} | numbers,
         axes={"frequency": f},
         title=f"Voltage and power for a friction ratio of {target:g}, {rig.title}",
-        about={"rig": rig.title, "friction_model": rig.friction_model.name},
+        about={"rig": rig.title, "friction_model": rig.friction_model.name} | amplitude_labels(rig),
     )
 
 

@@ -138,8 +138,8 @@ def point_batch(
     used = resolved_vibration(rig)
     given = (voltage_peak_to_peak, voltage_offset, frequency, normal_load, sliding_speed)
     if used.driven is None:
-        settings: dict[str, Any] = dict(zip(SETTINGS, given, strict=True))
-        return _columns(operating_points(rig, **settings))
+        stated: dict[str, Any] = dict(zip(SETTINGS, given, strict=True))
+        return _columns(operating_points(rig, **stated))
     rig = used.driven
     columns, speeds = conditions_of(rig, given)
     columns, speeds = columns.reshape(4, -1), speeds.ravel()

@@ -385,7 +385,7 @@ def _stated_vibrations(rig: Rig, used: ResolvedVibration, distinct: Floats) -> _
             return _Vibration(
                 status=REFUSED, reason=f"the amplitude {used.source} holds at {own} only: choose the amplitude computed"
             )
-        amplitude = used.amplitude_at(rig, volts)
+        amplitude = used.amplitude_at(volts)
         try:
             rest = float(separation(rig.contact, normal_load=load))
             motion = prescribed_sine(rig, vibration_amplitude=amplitude, frequency=f, normal_load=load)

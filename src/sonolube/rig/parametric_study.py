@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.dynamics import WAVEFORMS, Status, contact_motion, modes
 from sonolube.errors import InvalidInput
-from sonolube.rig.amplitude_source import moved_rig
+from sonolube.rig.amplitude_source import amplitude_labels, moved_rig
 from sonolube.rig.datasets import gridded
 from sonolube.rig.driven_rig import DrivenRig, require_drive
 from sonolube.rig.linear_response import structure_in_contact
@@ -273,5 +273,5 @@ def _slowest(rig: Rig) -> float:
 
 
 def _study(rig: Rig, title: str, values: Mapping[str, NDArray[Any]], **axes: NDArray[Any]) -> "xr.Dataset":
-    about = {"rig": rig.title, "friction_model": rig.friction_model.name}
+    about = {"rig": rig.title, "friction_model": rig.friction_model.name} | amplitude_labels(rig)
     return gridded(values, axes=axes, title=f"Friction {title}, {rig.title}", about=about)

@@ -119,7 +119,7 @@ class Rig:
             value = getattr(self, name)
             if value is not None:
                 require_non_negative(**{name: value})
-        if self.amplitude_source not in (None, *AMPLITUDE_SOURCES):
+        if self.amplitude_source is not None and self.amplitude_source not in AMPLITUDE_SOURCES:
             raise UnknownName.among(list(AMPLITUDE_SOURCES), kind="source of the amplitude", name=self.amplitude_source)
         if self.capacitance is not None:
             require_positive(capacitance=self.capacitance)

@@ -214,6 +214,24 @@ def vibrated_friction(rig: Rig, *, sliding_speed: ArrayLike) -> VibratedFriction
     )
 
 
+def operating_caveats(rig: Rig) -> tuple[str, ...]:
+    """Return the caveats of a rig at its own operating point, for results over many points about it.
+
+    Parameters
+    ----------
+    rig : Rig
+
+    Returns
+    -------
+    tuple of str
+        Of contact, amplitude, stack and gap; empty where the rig has no operating point.
+    """
+    try:
+        return _caveats(rig, resolved_vibration(rig), steady_vibration(rig))
+    except SonolubeError:
+        return ()
+
+
 def _friction_point(
     rig: Rig, vibration: SteadyVibration, origin: VibrationOrigin, caveats: tuple[str, ...]
 ) -> FrictionPoint:
@@ -246,7 +264,9 @@ def _wear_ratio(rig: Rig, vibration: SteadyVibration, model: str) -> tuple[float
     holding = [(value, name) for name, value, gap in others if gap > 0]
     amplitude, rest = format_si(vibration.vibration_amplitude, "m"), format_si(rest_separation(rig), "m")
     if vibration.prescribed and model != _RISING_WEAR_MODEL:
-        why = f"the amplitude of {amplitude} exceeds the gap at rest of {rest}, about which a dead load holds no surface"
+        why = (
+            f"the amplitude {amplitude} exceeds the gap at rest {rest}, about which no dead load can hold the surfaces"
+        )
     else:
         why = f"the mean planes meet under the amplitude of {amplitude}, where the cube has no height"
     reason = f"{OUTSIDE_MODEL_RANGE}: {why}; wear model {model} has no meaning"

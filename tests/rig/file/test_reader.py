@@ -10,7 +10,16 @@ from hypothesis import given, settings, strategies as st
 from pytest import approx
 
 from sonolube.errors import InvalidInput
-from sonolube.rig import Rig, contact_point, friction_point, read_rig, rig_from, rig_schema, steady_vibration, wear_point
+from sonolube.rig import (
+    Rig,
+    contact_point,
+    friction_point,
+    read_rig,
+    rig_from,
+    rig_schema,
+    steady_vibration,
+    wear_point,
+)
 from sonolube.rig.file.json_schema import tables_of
 
 RIGS = Path(__file__).parents[3] / "examples" / "rigs"
@@ -103,7 +112,7 @@ def test_a_load_that_closes_the_gap_is_refused_with_the_remedy() -> None:
 
 def test_a_rig_without_any_vibration_is_refused() -> None:
     content = tomllib.loads((RIGS / "cutter_head.toml").read_text())
-    with pytest.raises(InvalidInput, match="no vibration: give vibration.vibration_amplitude"):
+    with pytest.raises(InvalidInput, match=r"no vibration: give vibration\.vibration_amplitude"):
         rig_from({key: value for key, value in content.items() if key not in ("vibration", "assumptions")})
 
 

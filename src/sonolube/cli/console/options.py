@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from sonolube.rig import Rig
 
 
-
 class AmplitudeSource(StrEnum):
     """Where the amplitude of a vibration comes from."""
 
