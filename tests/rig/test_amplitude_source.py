@@ -61,9 +61,8 @@ def test_friction_simulate_and_many_points_agree(name: str, source: str) -> None
     assert simulate(rig).friction.friction_ratio == approx(expected, rel=CLOSE)
     assert float(operating_points(rig).friction_ratio) == approx(expected, rel=CLOSE)
     assert point_batch(rig).numbers["friction_ratio"][0] == approx(expected, rel=CLOSE)
-    assert float(vibrated_friction(rig, sliding_speed=rig.sliding_speed).ratio.friction_ratio) == approx(
-        expected, rel=CLOSE
-    )
+    vibrated = vibrated_friction(rig, sliding_speed=rig.sliding_speed)
+    assert float(vibrated.ratio.friction_ratio) == approx(expected, rel=CLOSE)
 
 
 @pytest.mark.parametrize(("name", "source"), USES)
@@ -71,7 +70,8 @@ def test_regime_and_thermal_take_the_friction_of_friction(name: str, source: str
     rig, expected = chosen(name, source), ratio_of(name, source)
     steel = thermal_solid("stainless_steel_316")
     warm = temperature_point(rig, pin=steel, disc=steel, heat_capacity=1.5, thermal_conductance=0.05, duration=1.0)
-    assert (warm.friction_ratio, warm.amplitude_source) == (approx(expected, rel=CLOSE), source)
+    assert warm.friction_ratio == approx(expected, rel=CLOSE)
+    assert warm.amplitude_source == source
     oil = BoundaryLubricant(film_coefficient=0.1, full_asperity_pressure=1e7)
     wet = lubrication_point(rig, lubricant=oil)
     assert wet.coefficients.ultrasonic / wet.coefficients.dry == approx(expected, rel=CLOSE)
@@ -149,9 +149,7 @@ def test_a_stated_amplitude_holds_at_its_own_frequency_only() -> None:
 
 
 def test_a_source_that_the_rig_lacks_is_refused_with_those_that_it_has() -> None:
-    with raises(
-        InvalidInput, match=r"no amplitude computed: give the tables stack and structure, or waveguide; it has per-volt"
-    ):
+    with raises(InvalidInput, match=r"no amplitude computed: give the tables stack and structure.*; it has per-volt"):
         friction_point(chosen("collar", "computed"))
     with raises(InvalidInput, match=r"no amplitude measured: give vibration\.vibration_amplitude"):
         friction_point(chosen("collar", "measured"))

@@ -21,8 +21,7 @@ def operating_point(rig: "Rig") -> str:
 
 
 def rig_settings(rig: "Rig", path: Path) -> list[tuple[str, str]]:
-    """Rig of a page: title with its file, source, load, speed, friction without vibration, friction model and
-    source of the amplitude.
+    """Rig of a page: title, file, source, load, speed, friction without vibration, friction model and amplitude.
 
     Parameters
     ----------

@@ -276,7 +276,11 @@ class ControlAnswer(Answer):
         study, process, gains = self.study, self.study.controller.process, self.study.controller.gains
         margins, response, energy = study.margins, study.response, study.energy
         late = process.dead_time_samples * process.sample_interval
-        amplifier = "" if energy.amplifier_energy is None else f"{format_si(energy.amplifier_energy, 'J')} (D 1.9), "
+        amplifier = (
+            ""
+            if energy.amplifier_energy is None
+            else f"{format_si(energy.amplifier_energy, 'J')} for the capacitance alone (D 1.9), "
+        )
         facts = {
             "target friction": f"{format_si(study.friction_force, 'N')} of {study.plant.highest_force:.3g} N; "
             f"least within reach {study.plant.lowest_force:.3g} N",
@@ -291,7 +295,7 @@ class ControlAnswer(Answer):
             "step": f"rise {_time(response.rise_time)}, within 5 % after {_time(response.settling_time)}, "
             f"overshoot {100 * response.overshoot:.2g} %",
             "tracking error": f"{format_si(response.tracking_error, 'N')} rms once settled",
-            "energy": f"amplifier {amplifier}motion {format_si(energy.electrical_energy, 'J')}, "
+            "energy": f"amplifier {amplifier}heat of the motion {format_si(energy.electrical_energy, 'J')}, "
             f"work of friction saved {format_si(energy.saved_work, 'J')}",
         }
         if study.fixed_frequency_run is not None:

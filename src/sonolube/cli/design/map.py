@@ -21,7 +21,7 @@ from sonolube.cli.console.rig_text import amplitude_object, amplitude_rows, fric
 from sonolube.cli.design.status_tables import status_tables
 from sonolube.design import MAP_LAYOUTS, map_figure, map_page, measured_map_figure
 from sonolube.design.gaussian_process import FEWEST_RUNS
-from sonolube.design.maps import default_axes
+from sonolube.design.maps import default_axes, panels_text
 from sonolube.design.measured_runs import read_runs
 from sonolube.design.point_statistics import extreme_point, failure_counts
 from sonolube.design.runs_map import require_mappable, runs_map
@@ -128,6 +128,7 @@ class MapAnswer(Answer):
             "map": self._kind,
             "friction_model": self.rig.friction_model.name,
             **amplitude_object(self.rig),
+            "same_panels": bool(panels_text(self.mapped)),
             "points": int(self.mapped["status"].size),
             "without_result": int(self.mapped["friction_reduction"].isnull().sum()),
             "most_reduction": si(_greatest(self.mapped)),
@@ -184,7 +185,7 @@ class MapAnswer(Answer):
 
     def _facts(self) -> list[tuple[str, str]]:
         """Greatest reduction, and the ridge where the map has one."""
-        facts = []
+        facts = [("panels", text)] if (text := panels_text(self.mapped)) else []
         values = [format_si(value, quantity(name).unit) for name, value in _greatest(self.mapped).items()]
         if values:
             facts.append(("most reduction", f"{values[0]} at {', '.join(values[1:])}"))
@@ -248,8 +249,8 @@ def _ridge(mapped: xr.Dataset) -> str:
 
 
 def _panel_tables(mapped: xr.Dataset, panel: str | None) -> list[PageTable]:
-    """Greatest reduction at each load or voltage, and the ridge where the map has one."""
-    if panel is None:
+    """Greatest reduction at each load or voltage, and the ridge where the map has one; none where all are the same."""
+    if panel is None or panels_text(mapped):
         return []
     rows = []
     for index in range(mapped.sizes[panel]):

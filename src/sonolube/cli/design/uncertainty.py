@@ -179,7 +179,7 @@ class UncertaintyAnswer(Answer):
         return content
 
     def caveats(self) -> Sequence[str]:
-        """Those of the rig at its own operating point, too few samples, and draws of the structure that have not converged."""
+        """Those of the rig at its own operating point, too few samples, and draws that have not converged."""
         caveats = list(operating_caveats(self.rig))
         if not self._swept and not self._statistics.has_converged:
             caveats.append(self._convergence())
