@@ -327,7 +327,7 @@ def panels_text(computed: "xr.Dataset") -> str:
     reduction = computed["friction_reduction"]
     apart = float(np.nanmax(np.abs(reduction - reduction.isel({panel: 0}))))
     name = quantity(str(panel)).meaning.partition(",")[0].lower()
-    return f"the same at each {name} from {low} to {high}, within {100 * max(apart, 1e-4):.1g} % of the reduction"
+    return f"the same at each {name} from {low} to {high}, within {100 * max(apart, 1e-4):.1g} percentage points"
 
 
 def default_axes(rig: Rig, *, kind: str) -> dict[str, Floats]:

@@ -186,7 +186,7 @@ FRICTION_MODEL_VARIANTS: Final = (
     ),
     ModelVariant(
         "asperity-stick-slip",
-        "asperity stick-slip with the memory length that the package has by default",
+        "asperity stick-slip with the default memory length of 1.5 um, which was fitted to all sets but B",
         _default_stick_slip,
     ),
     ModelVariant(

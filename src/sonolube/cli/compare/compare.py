@@ -148,6 +148,7 @@ def _rig_lines(rig: Rig, own: FrictionPoint, predictions: tuple[RigPrediction, .
         f"{format_si(own.vibration_amplitude, 'm')}: {own.amplitude_origin}"
     )
     name = f"{own.friction_model}, its own"
+    width = max(width, len(name))
     if own.reason:
         yield f"  {name:<{width}}  {own.reason}"
     else:

@@ -276,11 +276,9 @@ class ControlAnswer(Answer):
         study, process, gains = self.study, self.study.controller.process, self.study.controller.gains
         margins, response, energy = study.margins, study.response, study.energy
         late = process.dead_time_samples * process.sample_interval
-        amplifier = (
-            ""
-            if energy.amplifier_energy is None
-            else f"{format_si(energy.amplifier_energy, 'J')} for the capacitance alone (D 1.9), "
-        )
+        amplifier = ""
+        if energy.amplifier_energy is not None:
+            amplifier = f"{format_si(energy.amplifier_energy, 'J')} for the capacitance alone (D 1.9), "
         facts = {
             "target friction": f"{format_si(study.friction_force, 'N')} of {study.plant.highest_force:.3g} N; "
             f"least within reach {study.plant.lowest_force:.3g} N",
