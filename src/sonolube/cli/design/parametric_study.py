@@ -288,9 +288,14 @@ def _best_points(study: xr.Dataset) -> Iterator[xr.Dataset]:
 
 def _point_object(point: xr.Dataset) -> dict[str, Any]:
     """Coordinates and outcomes of a point, for JSON."""
-    names = [str(name) for name in (*point.coords, *OUTCOMES) if point[name].ndim == 0]
+    names = [str(name) for name in (*point.coords, *OUTCOMES) if point[name].ndim == 0 and not _missing(point, name)]
     waveform = {"waveform": str(point["waveform"].values)} if "waveform" in names else {}
     return waveform | si({name: float(point[name]) for name in names if name != "waveform"})
+
+
+def _missing(point: xr.Dataset, name: Any) -> bool:
+    """Whether a number of a point is not known, as heat of a sine that no structure gives."""
+    return bool(point[name].dtype.kind == "f" and np.isnan(point[name]))
 
 
 def _text(point: xr.Dataset, name: str, *, digits: int = 3) -> str:

@@ -7,6 +7,7 @@ from glob import escape
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
+import numpy as np
 import typer
 import xarray as xr
 
@@ -246,7 +247,7 @@ class SweepAnswer(Answer):
         if place is None or point is None:
             return {}
         swept = {key: values[0].item() for key, values in self.plan.rows(place, place + 1).items()}
-        return swept | si({name: float(point[name]) for name in OUTCOMES})
+        return swept | si({name: float(point[name]) for name in OUTCOMES if np.isfinite(point[name])})
 
     def _least_texts(self) -> list[tuple[str, str]]:
         """The same as text."""
