@@ -1,6 +1,6 @@
 """Drive electronics of a design: amplifier requirements, and matching networks that compensate the reactive power."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -82,8 +82,7 @@ def design_rig(problem: DesignProblem, point: DesignPoint) -> DrivenRig:
     -------
     DrivenRig
     """
-    rig = rig_at_design_point(candidate_rig(problem.space, point.candidate), point)
-    return replace(rig, amplitude_source="computed")
+    return rig_at_design_point(candidate_rig(problem.space, point.candidate), point)
 
 
 def stack_admittance(rig: DrivenRig, *, frequency: Floats, capacitance_change: float = 0.0) -> Complexes:
