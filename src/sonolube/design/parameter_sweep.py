@@ -18,7 +18,7 @@ from sonolube.dynamics.backend import Backend, device_name, usable_backend
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.friction import SINE_TOLERANCE
 from sonolube.rig import NUMBERS, STATUSES, PointBatch, point_batch
-from sonolube.rig.operating_point_grid import REFUSED
+from sonolube.rig.operating_vibrations import REFUSED
 from sonolube.threads import thread_pool
 
 if TYPE_CHECKING:

@@ -35,9 +35,9 @@ class ResolvedVibration:
     driven : DrivenRig or None
         Rig whose structure gives the motion; for a measured amplitude with its drive scaled to that amplitude.
     sine_amplitude : float or None
-        Amplitude of the sine at the rig's own drive, where no structure gives the motion. [m]
+        Amplitude of the sine at the rig's own drive, where no structure gives the motion, in m.
     per_volt : float or None
-        That amplitude over the voltage peak to peak, where it changes with the voltage. [m/V]
+        That amplitude over the voltage peak to peak, where it changes with the voltage, in m/V.
     """
 
     source: AmplitudeSource

@@ -20,7 +20,7 @@ class VibrationOrigin:
     Parameters
     ----------
     amplitude : float
-        Zero to peak. [m]
+        Zero to peak, in m.
     source : {"measured", "computed", "per-volt"}
     text : str
         The source in words.

@@ -19,14 +19,13 @@ from sonolube.rig.excitation import voltage_range
 from sonolube.rig.friction_and_wear import friction_at_speeds
 from sonolube.rig.operating_conditions import SETTINGS, OperatingConditions, conditions_of, points_by_vibration
 from sonolube.rig.operating_point_grid import (
-    REFUSED,
     VIBRATION_NUMBERS,
     OperatingPoints,
     friction_and_power,
     friction_status,
     operating_points,
-    steady_states_of,
 )
+from sonolube.rig.operating_vibrations import REFUSED, steady_states_of
 from sonolube.rig.record import Rig
 from sonolube.rig.vibration import gap_motion
 
@@ -112,7 +111,7 @@ def point_batch(
     backend : {"cpu", "gpu"}
         Whether an NVIDIA GPU solves the vibrations that it supports.
     friction_tolerance : float
-        Largest error of a friction ratio by the batched form of a friction model; 8e-5 is five times as fast. []
+        Largest error of a friction ratio by the batched form of a friction model; 8e-5 is five times as fast.
 
     Returns
     -------

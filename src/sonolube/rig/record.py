@@ -71,11 +71,11 @@ class Rig:
     amplitude_per_volt : float or None
         Amplitude per volt peak to peak, where it is known. [m/V]
     waveguide_amplitude : float or None
-        Amplitude computed from the waveguide, where the rig has one. [m]
+        Amplitude computed from the waveguide, where the rig has one, in m.
     amplitude_source : {"measured", "computed", "per-volt"} or None
         Source of the amplitude; the first of these that the rig has where None.
     calibration : float or None
-        Factor by which the drive of the structure was scaled to the measured amplitude, where it was. []
+        Factor by which the drive of the structure was scaled to the measured amplitude, where it was.
     drive : Drive or None
         Electrical drive of the actuator, where it is known.
     capacitance : float or None

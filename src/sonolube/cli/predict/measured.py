@@ -48,7 +48,7 @@ def measured_on(rig: Rig, *, vibration_amplitude: float) -> tuple[Measurement, .
     ----------
     rig : Rig
     vibration_amplitude : float
-        Its amplitude, in m.
+        Its amplitude, zero to peak. [m]
 
     Returns
     -------

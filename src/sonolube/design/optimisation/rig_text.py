@@ -52,6 +52,7 @@ def design_text(text: str, content: Mapping[str, Any], problem: DesignProblem, p
             )
             assumptions["actuator.amplitude_per_volt"] = "computed at this drive"
     if "vibration" in content:
+        assumptions = {key: text for key, text in assumptions.items() if not key.startswith("vibration.")}
         changed["vibration"] = {"amplitude_source": "computed"}  # what was measured was another design
     if point.candidate.actuator != OWN_ACTUATOR:
         assumptions["stack"] = (

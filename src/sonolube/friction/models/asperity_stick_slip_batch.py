@@ -60,7 +60,7 @@ def batched_stick_slip_ratio(
     memory_length : float
         Sliding distance D_c in which an asperity pressed by one decay length reaches its friction limit. [m]
     tolerance : float
-        Largest error of a ratio by neglecting higher harmonics; the table of sines is used from 8e-5 on. []
+        Largest error of a ratio by neglecting higher harmonics; the table of sines is used from 8e-5 on.
 
     Returns
     -------
