@@ -53,7 +53,9 @@ def compare(
     Example: sonolube compare examples/rigs/tribometer.toml --model asperity-stick-slip --model kinematic
     """
     if rig is None and (changes or amplitude):
-        raise InvalidInput("--set and --amplitude are of a rig: name one, such as examples/rigs/tribometer.toml")
+        raise InvalidInput(
+            "--set changes a rig, and --amplitude is of one: name one, such as examples/rigs/tribometer.toml"
+        )
     known = None if rig is None else loaded_rig(rig, changes=changes, amplitude=amplitude)
     point = None if known is None else vibrated_rig(known)
     with progress("comparing") as advance:

@@ -33,7 +33,9 @@ def literature(
     Example: sonolube literature examples/rigs/tribometer.toml
     """
     if rig is None and (changes or amplitude):
-        raise InvalidInput("--set and --amplitude are of a rig: name one, such as examples/rigs/tribometer.toml")
+        raise InvalidInput(
+            "--set changes a rig, and --amplitude is of one: name one, such as examples/rigs/tribometer.toml"
+        )
     known = point = outside = None
     if rig is not None:
         known = loaded_rig(rig, changes=changes, amplitude=amplitude)
