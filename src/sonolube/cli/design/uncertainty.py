@@ -179,13 +179,13 @@ class UncertaintyAnswer(Answer):
         return content
 
     def caveats(self) -> Sequence[str]:
-        """Those of the rig at its own operating point, too few samples, and draws that have not converged."""
-        caveats = list(operating_caveats(self.rig))
+        """Too few samples, draws that have not converged, and those of the rig at its own operating point."""
+        caveats: list[str] = []
         if not self._swept and not self._statistics.has_converged:
             caveats.append(self._convergence())
         if self.structure is not None and not self.structure.posterior.has_converged:
             caveats.append(agreement(self.structure))
-        return caveats
+        return [*caveats, *operating_caveats(self.rig)]
 
     def figures(self) -> Mapping[str, Drawing]:
         """Histogram or band of the outcome, and the ranking of the entries."""
