@@ -7,18 +7,16 @@ from pathlib import Path
 
 import numpy as np
 
-from sonolube.rig import read_rig
+from sonolube.rig import read_rig, steady_vibration
 from sonolube.wear import cube_wear_rate, vibrating_cube_wear_rate
 
 rig = read_rig(Path(__file__).parent / "rigs" / "tribometer.toml")
 loads = np.array([1.0, 2.0, 3.0, 4.0, 5.0])
 still = cube_wear_rate(rig.contact, normal_load=loads)
-vibrating = vibrating_cube_wear_rate(rig.contact, normal_load=loads, vibration_amplitude=rig.vibration_amplitude)
+amplitude = steady_vibration(rig).vibration_amplitude
+vibrating = vibrating_cube_wear_rate(rig.contact, normal_load=loads, vibration_amplitude=amplitude)
 
-lines = [
-    f"{rig.title}, {1e6 * rig.vibration_amplitude:.2g} um",
-    "load [N]   still [mm3/km]   vibrating [mm3/km]   reduction",
-]
+lines = [f"{rig.title}, {1e6 * amplitude:.2g} um", "load [N]   still [mm3/km]   vibrating [mm3/km]   reduction"]
 for load, before, after in zip(loads, 1e12 * still, 1e12 * vibrating, strict=True):  # m2 to mm3/km
     lines.append(f"{load:8.1f}   {before:14.2f}   {after:18.2f}   {1 - after / before:9.1%}")
 print("\n".join(lines))

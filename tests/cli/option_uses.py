@@ -11,7 +11,9 @@ ROOT = Path(__file__).parents[2]
 RIGS = ROOT / "examples" / "rigs"
 RIG = str(RIGS / "tribometer.toml")
 COLLAR = str(RIGS / "collar.toml")
+AMPLITUDE = {"--amplitude": "per-volt"}
 LOADED = {"--load": "2N", "--set": "contact.normal_load=2N"}
+VIBRATED = LOADED | AMPLITUDE
 SIZES = ("--set", "length=20mm", "--set", "width=10mm", "--set", "thickness=5mm")
 BAR = ("--set", "length=10mm", "--set", "width=4mm", "--set", "thickness=20mm")
 RUNS = str(ROOT / "examples" / "efficiency-runs.csv")
@@ -19,7 +21,7 @@ OWN_RUNS = str(ROOT / "examples" / "tribometer-runs.csv")
 OVER = ("--over", "sliding.sliding_speed=20mm/s,50mm/s")
 STUDY = {"--over": OVER[1], "--of": "waveform", "--from": "", "--to": "", "--points": "4", "--voltage": "10V"}
 DRAWN = {"--sample": "lhs", "--seed": "1", "--workers": "1", "--scheduler": "local", "--chunk": "7", "--backend": "gpu"}
-SWEEP = STUDY | DRAWN | {"--set": "contact.normal_load=2N"}
+SWEEP = STUDY | DRAWN | {"--set": "contact.normal_load=2N", "--amplitude": "computed"}
 SHEETS = {"--test-sheet": "FOLDER/sheet.toml", "--report": "OUT/page.html"}
 MAP = ("--over", "sliding.sliding_speed=10mm/s,20mm/s", "--over", "drive.voltage_peak_to_peak=5V,10V")
 
@@ -51,14 +53,16 @@ MODES = {
     "predict": Mode(
         "predict",
         (RIG, "--runs", OWN_RUNS, "--pin", "m50", "--disc", "m50"),
-        {"--runs": RUNS, "--pin": "aluminium_2024", "--disc": "aluminium_2024", "--seed": "1", **LOADED},
+        {"--runs": RUNS, "--pin": "aluminium_2024", "--disc": "aluminium_2024", "--seed": "1", **VIBRATED},
     ),
-    "friction": Mode("friction", (RIG,), LOADED | {"--model": "kinematic"}),
-    "wear": Mode("wear", (RIG,), LOADED),
-    "simulate": Mode("simulate", (RIG,), LOADED),
+    "friction": Mode("friction", (RIG,), VIBRATED | {"--model": "kinematic"}),
+    "wear": Mode("wear", (RIG,), VIBRATED),
+    "simulate": Mode("simulate", (RIG,), VIBRATED),
     "response": Mode("response", (RIG,), {"--from": "30kHz", "--to": "20kHz", "--set": "contact.normal_load=2N"}),
     "transient": Mode(
-        "transient", (RIG, "--duration", "0.02s"), {"--duration": "0.03s", "--set": "contact.normal_load=2N"}
+        "transient",
+        (RIG, "--duration", "0.02s"),
+        {"--duration": "0.03s", "--amplitude": "computed", "--set": "contact.normal_load=2N"},
     ),
     "thermal": Mode(
         "thermal",
@@ -71,6 +75,7 @@ MODES = {
             "--conductance": "0.1W/K",
             "--vibration-heat": "1W",
             "--flash-model": "tian_kennedy_1994",
+            "--amplitude": "per-volt",
             "--set": "contact.normal_load=2N",
         },
     ),
@@ -83,6 +88,7 @@ MODES = {
             "--smallest-gain": "0.9",
             "--pin": "m50",
             "--disc": "m50",
+            "--amplitude": "per-volt",
             "--set": "contact.normal_load=2N",
         },
     ),
@@ -177,6 +183,7 @@ MODES = {
             "--over": "contact.normal_load=3N",
             "--measured": RUNS,
             "--form": "svg",
+            "--amplitude": "per-volt",
             "--set": "contact.roughness.rms_height=1um",
             "--backend": "gpu",
         },
@@ -196,6 +203,7 @@ MODES = {
             "--seed": "1",
             "--workers": "1",
             "--set": "contact.normal_load=2N",
+            "--amplitude": "per-volt",
             "--keep": "OUT/keep",
         },
         ("--sobol",),
@@ -255,6 +263,7 @@ MODES = {
             "--quality": "100",
             "--coupling": "0.3",
             "--duration": "0.06s",
+            "--amplitude": "per-volt",
             "--set": "contact.normal_load=2N",
         },
         ("--no-track", "--stick-slip"),
@@ -393,11 +402,11 @@ MODES = {
     "compare": Mode(
         "compare",
         (RIG, "--model", "kinematic"),
-        {"--model": "asperity-stick-slip", "--set": "sliding.sliding_speed=50mm/s"},
+        {"--model": "asperity-stick-slip", "--set": "sliding.sliding_speed=50mm/s"} | AMPLITUDE,
     ),
-    "compare without a rig": Mode("compare", ("--model", "kinematic"), {"--set": "contact.normal_load=2N"}),
-    "literature": Mode("literature", (RIG,), {"--set": "contact.normal_load=2N"}),
-    "literature without a rig": Mode("literature", (), {"--set": "contact.normal_load=2N"}),
+    "compare without a rig": Mode("compare", ("--model", "kinematic"), {"--set": "contact.normal_load=2N"} | AMPLITUDE),
+    "literature": Mode("literature", (RIG,), {"--set": "contact.normal_load=2N"} | AMPLITUDE),
+    "literature without a rig": Mode("literature", (), {"--set": "contact.normal_load=2N"} | AMPLITUDE),
 }
 
 

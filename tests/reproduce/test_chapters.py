@@ -9,5 +9,5 @@ def test_the_reproduction_of_a_chapter_has_its_rows_and_figures_only() -> None:
     assert {figure.chapter for figure in result.figures} == {2}
     # section 2.2, and reductions of Table 2.5 by the friction models of chapter 3
     identifiers = {row.id for row in result.rows}
-    assert {"2.2.5-speed-of-no-reduction", "friction-model-asperity-stick-slip-A-1"} <= identifiers
-    assert "friction-model-asperity-stick-slip-B-1" not in identifiers
+    assert {"2.2.5-speed-of-no-reduction", "friction-model-asperity-stick-slip-fitted-A-1"} <= identifiers
+    assert "friction-model-asperity-stick-slip-fitted-B-1" not in identifiers

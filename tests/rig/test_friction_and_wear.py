@@ -9,7 +9,7 @@ from scipy.special import i0
 
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.friction import dong_2015_half_period_ratio, sine_stick_slip_ratio
-from sonolube.rig import Rig, friction_point, read_rig, simulate
+from sonolube.rig import Rig, friction_point, read_rig, simulate, steady_vibration
 from sonolube.wear import cube_wear_rate
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"
@@ -35,15 +35,15 @@ def undriven() -> Rig:
 
 def test_a_shorter_memory_leaves_less_of_the_sine_to_gain() -> None:
     for length in (0.5e-6, 1.5e-6, 5e-6):
-        rig = tribometer(f"friction.memory_length={length}m")
+        rig = tribometer(f"friction.memory_length={length}m", "vibration.amplitude_source=per-volt")
         expected = sine_stick_slip_ratio(
             decay_length=2e-6,
-            vibration_amplitude=rig.vibration_amplitude,
+            vibration_amplitude=steady_vibration(rig).vibration_amplitude,
             frequency=22e3,
             sliding_speed=20.3e-3,
             memory_length=length,
         )
-        assert friction_point(rig).friction_ratio == approx(float(expected), rel=1e-4)
+        assert friction_point(rig).friction_ratio == approx(float(expected), rel=1e-9)
 
 
 def test_a_soft_holder_lets_slow_sliding_keep_what_the_widest_gap_carries() -> None:
@@ -51,7 +51,7 @@ def test_a_soft_holder_lets_slow_sliding_keep_what_the_widest_gap_carries() -> N
     soft = tribometer(
         "friction.model=bristle_with_holder", "friction.holder_stiffness=1e4N/m", "sliding.sliding_speed=1um/s"
     )
-    beta = soft.vibration_amplitude / 2e-6
+    beta = steady_vibration(soft).vibration_amplitude / 2e-6
     assert friction_point(soft).friction_ratio == approx(np.exp(-beta) / i0(beta), rel=1e-3)
 
 
@@ -98,10 +98,10 @@ def test_wear_follows_the_friction_model_where_it_has_one_of_its_name() -> None:
 
 
 def test_friction_is_by_the_rigs_own_model_unless_another_is_named() -> None:
-    rig = tribometer("friction.model=kinematic")
+    rig = tribometer("friction.model=kinematic", "vibration.amplitude_source=per-volt")
     assert friction_point(rig).friction_model == "kinematic"
     cube = dong_2015_half_period_ratio(
-        rig.contact, normal_load=rig.normal_load, vibration_amplitude=rig.vibration_amplitude
+        rig.contact, normal_load=rig.normal_load, vibration_amplitude=steady_vibration(rig).vibration_amplitude
     )
     assert friction_point(rig, model="dong_2015_half_period").friction_ratio == approx(float(cube), rel=1e-4)
     with raises(UnknownName, match="did you mean asperity_stick_slip"):

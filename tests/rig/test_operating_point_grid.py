@@ -130,5 +130,5 @@ def test_what_has_no_meaning_is_refused_by_name() -> None:
         operating_points(TRIBOMETER, normal_load=-1.0)
     with pytest.raises(InvalidInput, match="matching shapes"):
         operating_points(TRIBOMETER, frequency=[1e3, 2e3], normal_load=[1.0, 2.0, 3.0])
-    with pytest.raises(InvalidInput, match="stack and structure are missing"):
-        operating_points(read_rig(RIGS / "collar.toml"))
+    with pytest.raises(InvalidInput, match=r"drive\.voltage_peak_to_peak is missing; give it to vary the voltage"):
+        operating_points(read_rig(RIGS / "cutter_head.toml"), voltage_peak_to_peak=10.0)

@@ -19,6 +19,7 @@ from sonolube.rig.linear_response import gap_law_of
 from sonolube.rig.vibration import steady_vibration
 
 TRIBOMETER = Path(__file__).parents[2] / "examples" / "rigs" / "tribometer.toml"
+COMPUTED = "vibration.amplitude_source=computed"
 BEATING = (
     "contact.normal_load=61.209N",
     "drive.frequency=22436.58Hz",
@@ -73,7 +74,7 @@ def test_a_load_beside_which_the_tip_beats_is_still_carried_on_the_mean() -> Non
 
 
 def test_of_two_vibrations_the_one_that_the_ramp_reaches_is_taken_and_the_other_told() -> None:
-    result = simulated(*DOUBLE, "drive.ramp_duration=200ms", "drive.ramp_shape=cosine").vibration
+    result = simulated(*DOUBLE, COMPUTED, "drive.ramp_duration=200ms", "drive.ramp_shape=cosine").vibration
     assert result.status == "multistable"
     assert result.vibration_amplitude == approx(1.740e-6, rel=1e-3)
     assert result.coexisting_amplitude == approx(11.82e-6, rel=1e-3)

@@ -17,6 +17,7 @@ from .cube import cube_axial_stiffness as cube_axial_stiffness, cube_tangential_
 from .gap_motion import (
     GapMotion as GapMotion,
     GapMotionBatch as GapMotionBatch,
+    gap_harmonics as gap_harmonics,
     load_balanced_motion as load_balanced_motion,
     sinusoidal_motion as sinusoidal_motion,
 )

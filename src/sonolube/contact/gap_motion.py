@@ -128,6 +128,27 @@ class GapMotionBatch:
             object.__setattr__(self, name, value)
 
 
+def gap_harmonics(motion: GapMotion) -> GapMotionBatch:
+    """Return the Fourier coefficients of one motion, as a batch of one.
+
+    Parameters
+    ----------
+    motion : GapMotion
+
+    Returns
+    -------
+    GapMotionBatch
+        Of every harmonic below half the number of phases.
+    """
+    n = motion.displacement.size
+    coefficients = np.fft.rfft(motion.displacement) / n
+    return GapMotionBatch(
+        mean_displacement=np.array([coefficients[0].real]),
+        harmonics=2 * coefficients[np.newaxis, 1 : (n + 1) // 2],
+        frequency=np.array([motion.frequency]),
+    )
+
+
 def sinusoidal_motion(
     contact: RoughContact,
     *,

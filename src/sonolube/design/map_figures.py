@@ -1,11 +1,12 @@
 """Figures of maps: contours of friction reduction with measured runs, and interactive pages of the same."""
 
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.design.maps import MAP_LAYOUTS
+from sonolube.design.maps import MAP_LAYOUTS, panels_text, same_panels
 from sonolube.errors import InvalidInput
 from sonolube.units import format_si
 
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _STEP = 5  # percent between two contour levels
+_TITLE_WIDTH = 60  # characters of a line above the one panel
 _RUNS_LABEL = "measured, reduction in %"
 _SATURATION_LABEL = "above it doubling the power gains less than 5 %"
 _AXES = {
@@ -27,7 +29,7 @@ _AXES = {
 
 
 def map_figure(computed: "xr.Dataset", *, measured: "xr.Dataset | None" = None) -> "Figure":
-    """Contours of friction reduction, one panel for each voltage or load.
+    """Contours of friction reduction, one panel for each voltage or load, or one where all are the same.
 
     Parameters
     ----------
@@ -48,7 +50,7 @@ def map_figure(computed: "xr.Dataset", *, measured: "xr.Dataset | None" = None) 
     from matplotlib.figure import Figure
 
     x_name, y_name, panel = MAP_LAYOUTS[computed.attrs["map"]]
-    parts = _panels(computed, panel)
+    parts, panel = _panels(computed, panel)
     columns = _columns(len(parts))
     rows = -(-len(parts) // columns)
     levels = _levels(computed, measured)
@@ -69,6 +71,8 @@ def map_figure(computed: "xr.Dataset", *, measured: "xr.Dataset | None" = None) 
             axes.set_ylabel(_AXES[y_name][1])
     for axes in list(grid.flat)[len(parts) :]:
         axes.set_axis_off()
+    if text := panels_text(computed):
+        grid[0, 0].set_title("\n".join(wrap(text[:1].upper() + text[1:], _TITLE_WIDTH)), fontsize=8)
     assert filled is not None
     figure.colorbar(filled, ax=grid, label="Friction reduction [%]", ticks=levels[::4])
     handles, labels = _legend_entries(grid.flat)
@@ -148,7 +152,7 @@ def map_page(computed: "xr.Dataset") -> str:
             "an interactive map needs Plotly, which is not installed: pip install 'sonolube[web]', or take PNG or PDF"
         ) from None
     x_name, y_name, panel = MAP_LAYOUTS[computed.attrs["map"]]
-    parts = _panels(computed, panel)
+    parts, panel = _panels(computed, panel)
     columns = _columns(len(parts))
     titles = None if panel is None else [_panel_title(part, panel) for part in parts]
     page = make_subplots(rows=-(-len(parts) // columns), cols=columns, subplot_titles=titles)
@@ -169,7 +173,7 @@ def map_page(computed: "xr.Dataset") -> str:
         page.add_trace(contour, row=row, col=column)
         page.update_xaxes(title_text=_AXES[x_name][1], row=row, col=column)
         page.update_yaxes(title_text=_AXES[y_name][1], row=row, col=column)
-    page.update_layout(title=computed.attrs["title"])
+    page.update_layout(title=", ".join(filter(None, (computed.attrs["title"], panels_text(computed)))))
     return str(page.to_html(include_plotlyjs=True, full_html=True))
 
 
@@ -235,9 +239,13 @@ def _levels(computed: "xr.Dataset", measured: "xr.Dataset | None") -> Floats:
     return np.arange(0.0, 20 * max(np.ceil(5 * min(largest, 1.0)), 1) + 1, _STEP)
 
 
-def _panels(computed: "xr.Dataset", panel: str | None) -> "list[xr.Dataset]":
-    """Parts of a map, one for each value of the quantity of its panels."""
-    return [computed] if panel is None else [computed.isel({panel: index}) for index in range(computed.sizes[panel])]
+def _panels(computed: "xr.Dataset", panel: str | None) -> "tuple[list[xr.Dataset], str | None]":
+    """Parts of a map, one for each value of the quantity of its panels, and that; one part where all are the same."""
+    if panel is None:
+        return [computed], None
+    if same_panels(computed):
+        return [computed.isel({panel: 0})], None
+    return [computed.isel({panel: index}) for index in range(computed.sizes[panel])], panel
 
 
 def _surface(part: "xr.Dataset", x_name: str, y_name: str) -> tuple[Floats, Floats, Floats]:

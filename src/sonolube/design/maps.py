@@ -12,14 +12,18 @@ from numpy.typing import ArrayLike, NDArray
 from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.dynamics.backend import Backend, device_name, usable_backend
 from sonolube.errors import InvalidInput
-from sonolube.rig import NUMBERS, STATUSES, Rig, gridded, point_batch
-from sonolube.rig.driven_rig import DrivenRig, driven_rig, require_drive
+from sonolube.rig import NUMBERS, STATUSES, Rig, amplitude_labels, gridded, point_batch
+from sonolube.rig.driven_rig import require_drive
+from sonolube.units import format_si
+from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:
     import xarray as xr
 
 SATURATION_GAIN = 0.05
 """Additional friction reduction per doubling of the power below which the reduction counts as saturated. []"""
+
+_SAME_PANELS = 0.005  # of the friction reduction, which nobody sees in contours of 5 %
 
 
 def velocity_stress_map(
@@ -35,7 +39,7 @@ def velocity_stress_map(
     Parameters
     ----------
     rig : Rig
-        With a stack, a structure and a drive voltage.
+        With a drive voltage; its vibration is by the source of its amplitude.
     sliding_speed : array_like, shape (n,)
         Macroscopic relative speeds. [m/s]
     normal_load : array_like, shape (m,)
@@ -54,7 +58,7 @@ def velocity_stress_map(
     Raises
     ------
     InvalidInput
-        If the rig has no structure, or values are not positive and increasing.
+        If the rig has no drive voltage or amplitude, or values are not positive and increasing.
 
     Warns
     -----
@@ -70,7 +74,7 @@ def velocity_stress_map(
     .. [1] D figures 4.9 and 4.10.
     """
     return _computed_map(
-        driven_rig(rig),
+        rig,
         "velocity-stress",
         backend,
         voltage_peak_to_peak=voltage_peak_to_peak,
@@ -92,7 +96,7 @@ def velocity_power_map(
     Parameters
     ----------
     rig : Rig
-        With a stack, a structure and a drive voltage.
+        With a drive voltage; its vibration is by the source of its amplitude.
     sliding_speed : array_like, shape (n,)
         Macroscopic relative speeds. [m/s]
     voltage_peak_to_peak : array_like, shape (m,)
@@ -112,7 +116,7 @@ def velocity_power_map(
     Raises
     ------
     InvalidInput
-        If the rig has no structure, or values are not positive and increasing.
+        If the rig has no drive voltage or amplitude, or values are not positive and increasing.
 
     Warns
     -----
@@ -128,7 +132,7 @@ def velocity_power_map(
     .. [1] D figures 4.11, 4.12, 4.20 and B.1 to B.6.
     """
     computed = _computed_map(
-        driven_rig(rig),
+        rig,
         "velocity-power",
         backend,
         normal_load=normal_load,
@@ -149,7 +153,7 @@ def frequency_voltage_map(
     Parameters
     ----------
     rig : Rig
-        With a stack, a structure and a drive voltage.
+        With a drive voltage; its vibration is by the source of its amplitude.
     frequency : array_like, shape (n,)
         Drive frequencies. [Hz]
     voltage_peak_to_peak : array_like, shape (m,)
@@ -165,7 +169,7 @@ def frequency_voltage_map(
     Raises
     ------
     InvalidInput
-        If the rig has no structure, or values are not positive and increasing.
+        If the rig has no drive voltage or amplitude, or values are not positive and increasing.
 
     Warns
     -----
@@ -177,7 +181,7 @@ def frequency_voltage_map(
     velocity_power_map, velocity_stress_map
     """
     return _computed_map(
-        driven_rig(rig), "frequency-voltage", backend, voltage_peak_to_peak=voltage_peak_to_peak, frequency=frequency
+        rig, "frequency-voltage", backend, voltage_peak_to_peak=voltage_peak_to_peak, frequency=frequency
     )
 
 
@@ -224,7 +228,7 @@ def saturation_power(*, friction_reduction: ArrayLike, actuator_power: ArrayLike
     return saturation
 
 
-def _computed_map(rig: DrivenRig, kind: str, backend: Backend, **axes: ArrayLike) -> "xr.Dataset":
+def _computed_map(rig: Rig, kind: str, backend: Backend, **axes: ArrayLike) -> "xr.Dataset":
     """Operating points on the grid of some axes as a dataset, with amplifier power and nominal pressure."""
     backend = usable_backend(backend)
     values = {name: np.atleast_1d(require_positive(**{name: array})) for name, array in axes.items()}
@@ -235,14 +239,18 @@ def _computed_map(rig: DrivenRig, kind: str, backend: Backend, **axes: ArrayLike
             if upper <= lower:
                 raise InvalidInput(f"{name} must increase from value to value, got {lower:g} before {upper:g}")
     shape = tuple(array.size for array in values.values())
-    mesh = dict(zip(values, np.meshgrid(*values.values(), indexing="ij"), strict=True))
-    offset = rig.drive.offset_ratio * mesh["voltage_peak_to_peak"]
+    mesh: dict[str, Any] = dict(zip(values, np.meshgrid(*values.values(), indexing="ij"), strict=True))
+    offset = require_drive(rig).offset_ratio * mesh["voltage_peak_to_peak"]
     points = point_batch(rig, **mesh, voltage_offset=offset, backend=backend)
     columns: dict[str, NDArray[Any]] = {name: points.numbers[name].reshape(shape) for name in NUMBERS}
     columns["status"] = np.array(STATUSES)[points.status].reshape(shape)
     columns["reason"] = np.array(points.reasons)[points.reason].reshape(shape)
     power = columns.pop("actuator_power")
-    about = {"rig": rig.title, "map": kind} | ({"device": device_name(backend)} if backend == "gpu" else {})
+    about = (
+        {"rig": rig.title, "map": kind}
+        | amplitude_labels(rig)
+        | ({"device": device_name(backend)} if backend == "gpu" else {})
+    )
     computed = gridded(columns, axes=values, title=f"Friction reduction, {rig.title}", about=about)
     labels = {"units": "W", "long_name": "Power of a linear amplifier, D 1.9"}
     if "frequency" in values:
@@ -273,6 +281,53 @@ MAP_LAYOUTS: Mapping[str, tuple[str, str, str | None]] = MappingProxyType(
     }
 )
 """Quantities along the x axis, along the y axis, and of the panels of each kind of map."""
+
+
+def same_panels(computed: "xr.Dataset") -> bool:
+    """Whether every panel of a map shows the same friction reduction.
+
+    Parameters
+    ----------
+    computed : xarray.Dataset
+        Result of a function of `MAPS`.
+
+    Returns
+    -------
+    bool
+        True where the panels, of which there are several, differ nowhere by more than 0.005, a tenth of a contour step,
+        and lack a result at the same points.
+    """
+    panel = MAP_LAYOUTS[computed.attrs["map"]][2]
+    if panel is None or computed.sizes[panel] < 2:
+        return False
+    reduction = computed["friction_reduction"]
+    missing = reduction.isnull()
+    if bool((missing != missing.isel({panel: 0})).any()) or bool(missing.all()):
+        return False
+    return float(np.nanmax(np.abs(reduction - reduction.isel({panel: 0})))) <= _SAME_PANELS
+
+
+def panels_text(computed: "xr.Dataset") -> str:
+    """Sentence that stands for the panels of a map where all are the same; empty where they differ.
+
+    Parameters
+    ----------
+    computed : xarray.Dataset
+        Result of a function of `MAPS`.
+
+    Returns
+    -------
+    str
+    """
+    if not same_panels(computed):
+        return ""
+    panel = MAP_LAYOUTS[computed.attrs["map"]][2]
+    values, unit = computed[panel].values, quantity(str(panel)).unit
+    low, high = (format_si(float(value), unit) for value in (values[0], values[-1]))
+    reduction = computed["friction_reduction"]
+    apart = float(np.nanmax(np.abs(reduction - reduction.isel({panel: 0}))))
+    name = quantity(str(panel)).meaning.partition(",")[0].lower()
+    return f"the same at each {name} from {low} to {high}, within {100 * max(apart, 1e-4):.1g} percentage points"
 
 
 def default_axes(rig: Rig, *, kind: str) -> dict[str, Floats]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from sonolube import __version__
 from sonolube.design.sweep_plan import SweepPlan
 from sonolube.files import unfinished_file
-from sonolube.rig import NUMBERS, STATUSES, PointBatch
+from sonolube.rig import NUMBERS, STATUSES, PointBatch, amplitude_labels, operating_caveats
 from sonolube.rig.datasets import labels
 from sonolube.vocabulary import quantities
 
@@ -194,6 +194,11 @@ def _attributes(plan: SweepPlan, device: str) -> dict[str, str]:
     """Attributes of the dataset: title, rig, program version, digest of the plan and device."""
     title = str(plan.content["title"])
     attributes = {"title": f"Sweep of {title}", "rig": title, "source": f"sonolube {__version__}", "sweep": plan.digest}
+    assumed: dict[str, str] = plan.content.get("assumptions", {})
+    attributes["assumptions"] = "\n".join(f"{key}: {reason}" for key, reason in assumed.items())
+    if (rig := plan.own_rig()) is not None:
+        attributes |= amplitude_labels(rig)
+        attributes["caveats"] = "\n".join(operating_caveats(rig))
     return attributes | ({"device": device} if device else {})
 
 

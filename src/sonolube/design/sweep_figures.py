@@ -80,6 +80,9 @@ def _curves(swept: "xr.Dataset", name: str) -> "Figure":
         grid.flat, {_OUTCOME: "Friction ratio", **_FURTHER_OUTCOMES}.items(), strict=True
     ):
         values = swept[outcome].values
+        if not np.isfinite(values).any():
+            axes.text(0.5, 0.5, f"{title.lower()} is not known here", ha="center", transform=axes.transAxes, fontsize=8)
+            continue
         scale, label = scaled_label(outcome, values)
         x = _set_x_axis(axes, swept, name)
         line = "none" if _is_text(swept, name) else "-"

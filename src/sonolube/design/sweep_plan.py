@@ -93,6 +93,13 @@ class SweepPlan:
             table[name] = _file_value(key, value)
         return rig_from(content)
 
+    def own_rig(self) -> Rig | None:
+        """Rig of the file as it stands; None where the file describes one only with the swept values."""
+        try:
+            return self.rig({})
+        except SonolubeError:
+            return None
+
     @property
     def names(self) -> dict[str, str]:
         """Name of each key in the resulting dataset: its last word, or the whole key where that is ambiguous."""

@@ -18,16 +18,9 @@ from sonolube.errors import InvalidInput, SonolubeError, UnknownName
 from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE
 from sonolube.rig import NUMBERS, Rig, read_rig
 from sonolube.rig.datasets import labels
-from sonolube.rig.operating_point import (
-    COMPUTED,
-    ContactPoint,
-    FrictionPoint,
-    WearPoint,
-    contact_point,
-    friction_point,
-    wear_point,
-)
-from sonolube.rig.operating_point_grid import REFUSED
+from sonolube.rig.operating_point import COMPUTED, ContactPoint, FrictionPoint, WearPoint, contact_point
+from sonolube.rig.operating_vibrations import REFUSED
+from sonolube.rig.simulation import friction_point, wear_point
 from sonolube.vocabulary import quantities
 
 if TYPE_CHECKING:

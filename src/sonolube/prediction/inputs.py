@@ -11,21 +11,20 @@ from sonolube.contact import decay_length
 from sonolube.errors import InvalidInput
 from sonolube.prediction.closures import Conditions, UncertainConditions
 from sonolube.prediction.evidence import MEASURED_SPREAD
-from sonolube.rig import Distribution, Rig, friction_point
+from sonolube.rig import Distribution, FrictionPoint, Rig, friction_point
 from sonolube.rig.linear_response import rest_separation
 
 _ROUGHNESS_KEY: Final = "contact.roughness.rms_height"
 _FRICTION_KEY: Final = "friction.friction_coefficient"
 _GIVEN_ROUGHNESS: Final = 0.1
 _ASSUMED_ROUGHNESS: Final = 0.5
-_UNMEASURED_AMPLITUDE: Final = 0.15
+_AMPLITUDE_SPREADS: Final = {"measured": MEASURED_SPREAD, "computed": 0.15, "per-volt": 0.1}
 _GIVEN_FRICTION: Final = 0.1
-_AMPLITUDE_KEYS: Final = (
-    "vibration.vibration_amplitude",
-    "actuator.amplitude_per_volt",
-    "stack.free_stroke_per_volt",
-    "structure.tip_damping",
-)
+_AMPLITUDE_KEYS: Final = {
+    "measured": ("vibration.vibration_amplitude",),
+    "computed": ("stack.free_stroke_per_volt",),
+    "per-volt": ("actuator.amplitude_per_volt",),
+}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -71,6 +70,8 @@ class RigInputs:
         Force pressing the bodies together. [N]
     voltage_peak_to_peak : float or None
         Of the drive, where it is known. [V]
+    point : FrictionPoint
+        Friction by the rig's own model.
     """
 
     roughness: Input
@@ -81,6 +82,7 @@ class RigInputs:
     sliding_speed: float
     normal_load: float
     voltage_peak_to_peak: float | None
+    point: FrictionPoint
 
     def at(
         self, *, vibration_amplitude: ArrayLike | None = None, sliding_speed: ArrayLike | None = None
@@ -121,20 +123,21 @@ def rig_inputs(rig: Rig) -> RigInputs:
         raise InvalidInput(f"{rig.title}: a prediction needs a frequency; give drive.frequency")
     if not rig.sliding_speed > 0:
         raise InvalidInput(f"{rig.title}: a prediction needs a sliding speed above 0; give sliding.sliding_speed")
-    amplitude = friction_point(rig).vibration_amplitude
-    if not amplitude > 0:
-        raise InvalidInput(f"{rig.title}: a prediction needs vibration; the vibration amplitude is {amplitude:g} m")
+    point = friction_point(rig)
+    if not point.vibration_amplitude > 0:
+        raise InvalidInput(f"{rig.title}: a prediction needs vibration; the vibration amplitude is 0 m")
     roughness = _roughness(rig)
     factor = roughness.value / rig.contact.roughness.rms_height
     return RigInputs(
         roughness=roughness,
-        amplitude=_amplitude(rig, amplitude),
+        amplitude=_amplitude(rig, point),
         friction=_friction(rig),
         decay_length=factor * float(decay_length(rig.contact, separation=rest_separation(rig))),
         frequency=rig.drive.frequency,
         sliding_speed=rig.sliding_speed,
         normal_load=rig.normal_load,
         voltage_peak_to_peak=rig.drive.voltage_peak_to_peak,
+        point=point,
     )
 
 
@@ -154,24 +157,20 @@ def _roughness(rig: Rig) -> Input:
     return Input(name="rms_height", value=rig.contact.roughness.rms_height, spread=spread, reason=reason, remedy=remedy)
 
 
-def _amplitude(rig: Rig, value: float) -> Input:
-    """Vibration amplitude, by the source that the rig's commands take it from."""
-    remedy = "a vibrometer on the running rig"
-    for key in _AMPLITUDE_KEYS:
+def _amplitude(rig: Rig, point: FrictionPoint) -> Input:
+    """Vibration amplitude, by the source that all commands take it from."""
+    spread, reason = _AMPLITUDE_SPREADS[point.amplitude_source], point.amplitude_origin
+    for key in _AMPLITUDE_KEYS[point.amplitude_source]:
         own = rig.uncertainty.get(key)
         if own is not None:
-            spread = _lognormal(own)[1]
-            return Input(
-                name="vibration_amplitude", value=value, spread=spread, reason=f"{key} {own.text}", remedy=remedy
-            )
-    source = _amplitude_source(rig)
-    spread = MEASURED_SPREAD if source == "measured" else _UNMEASURED_AMPLITUDE
-    return Input(name="vibration_amplitude", value=value, spread=spread, reason=source, remedy=remedy)
-
-
-def _amplitude_source(rig: Rig) -> str:
-    """Source of the amplitude in a word."""
-    return "measured" if rig.structure is None else "computed"
+            spread, reason = _lognormal(own)[1], f"{reason}; {key} {own.text}"
+    return Input(
+        name="vibration_amplitude",
+        value=point.vibration_amplitude,
+        spread=spread,
+        reason=reason,
+        remedy="a vibrometer on the running rig",
+    )
 
 
 def _friction(rig: Rig) -> Input:

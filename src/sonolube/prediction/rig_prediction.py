@@ -13,7 +13,7 @@ from sonolube.prediction.own_runs import OwnRuns, own_runs
 from sonolube.prediction.posterior import learned
 from sonolube.prediction.predictive import RatioDraws, ratio_draws
 from sonolube.prediction.scores import LEVELS, central_interval
-from sonolube.rig import Rig, friction_point, thermal_solid
+from sonolube.rig import Rig, thermal_solid
 from sonolube.thermal import EllipticSource, contact_rise
 from sonolube.vocabulary import quantity
 
@@ -250,7 +250,7 @@ def _width(inputs: RigInputs, own: OwnRuns | None, *, draws: int, seed: int) -> 
 
 def _attributes(rig: Rig, inputs: RigInputs, own: OwnRuns | None, found: RatioDraws) -> dict[str, object]:
     """Title, caveats, assumptions, weights of closures and numbers without a distribution."""
-    point = friction_point(rig)
+    point = inputs.point
     caveats = list(point.caveats)
     if own is not None and not found.explained:
         caveats.append(

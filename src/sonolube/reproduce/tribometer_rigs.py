@@ -46,6 +46,7 @@ def tribometer_rig(*, friction_model: str = "asperity_stick_slip") -> DrivenRig:
         friction_coefficient=si_value("table-2.3-friction_force-1") / load,
         sliding_speed=si_value("table-2.3-sliding_speed-1"),
         vibration_amplitude=si_value("2.3.1-amplitude"),
+        amplitude_source="computed",
         drive=Drive(frequency=si_value("4.1.1-frequency"), voltage_peak_to_peak=voltage, voltage_offset=voltage / 2),
         capacitance=stack.free_capacitance,
         stack=stack,

@@ -1,3 +1,9 @@
+from .amplitude_source import (
+    ResolvedVibration as ResolvedVibration,
+    amplitude_labels as amplitude_labels,
+    available_sources as available_sources,
+    resolved_vibration as resolved_vibration,
+)
 from .contact_temperature import (
     TemperaturePoint as TemperaturePoint,
     temperature_point as temperature_point,
@@ -34,8 +40,6 @@ from .operating_point import (
     FrictionPoint as FrictionPoint,
     WearPoint as WearPoint,
     contact_point as contact_point,
-    friction_point as friction_point,
-    wear_point as wear_point,
 )
 from .operating_point_batch import (
     NUMBERS as NUMBERS,
@@ -55,8 +59,23 @@ from .parametric_study import (
     voltage_study as voltage_study,
     waveform_study as waveform_study,
 )
-from .record import Rig as Rig
-from .simulation import Simulation as Simulation, simulate as simulate
+from .record import (
+    AMPLITUDE_SOURCES as AMPLITUDE_SOURCES,
+    AmplitudeSource as AmplitudeSource,
+    MeasuredUnder as MeasuredUnder,
+    Rig as Rig,
+)
+from .simulation import (
+    Simulation as Simulation,
+    friction_point as friction_point,
+    operating_caveats as operating_caveats,
+    simulate as simulate,
+    wear_point as wear_point,
+)
 from .start_up_transient import StartUp as StartUp, start_up as start_up
 from .study_figures import STUDY_FIGURES as STUDY_FIGURES
-from .vibration import gap_motion as gap_motion
+from .vibration import (
+    SteadyVibration as SteadyVibration,
+    gap_motion as gap_motion,
+    steady_vibration as steady_vibration,
+)

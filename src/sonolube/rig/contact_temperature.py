@@ -8,9 +8,9 @@ import numpy as np
 from sonolube.checks import require_non_negative, require_positive
 from sonolube.errors import InvalidInput
 from sonolube.materials import material
-from sonolube.rig.friction_and_wear import stated_friction_ratios
 from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.record import Rig
+from sonolube.rig.simulation import vibrated_friction
 from sonolube.thermal import EllipticSource, HeatedContact, ThermalNetwork, ThermalSolid, contact_rise, peclet_number
 from sonolube.thermal.contact_history import (
     ContactTemperatureHistory,
@@ -48,6 +48,12 @@ class TemperaturePoint:
         Friction with vibration over friction without. []
     friction_model : str
         Name of the friction model.
+    vibration_amplitude : float
+        Vibration normal to the contact, zero to peak. [m]
+    amplitude_source : {"measured", "computed", "per-volt"}
+        Where the amplitude comes from.
+    amplitude_origin : str
+        The same in words, with the numbers behind it.
     caveats : tuple of str
         What speaks against trusting the numbers, each in one line.
     with_vibration, without_vibration : ContactTemperatureHistory
@@ -64,6 +70,9 @@ class TemperaturePoint:
     temperature_rise_ratio: float
     friction_ratio: float
     friction_model: str
+    vibration_amplitude: float
+    amplitude_source: str
+    amplitude_origin: str
     caveats: tuple[str, ...]
     with_vibration: ContactTemperatureHistory
     without_vibration: ContactTemperatureHistory
@@ -139,12 +148,13 @@ def temperature_point(
     moving_rise = FLASH_MODELS.named(flash_model)
     network = ThermalNetwork(heat_capacity=(heat_capacity,), links=(), losses=(thermal_conductance,))
     contact = HeatedContact(pin=pin, disc=disc, source=source, network=network, moving_rise=moving_rise)
-    found = stated_friction_ratios(rig, sliding_speed=rig.sliding_speed)
+    vibrated = vibrated_friction(rig, sliding_speed=rig.sliding_speed)
+    found = vibrated.ratio
     intrinsic, ratio = rig.friction_coefficient * rig.normal_load, float(found.require_within_range())
     times = np.linspace(0.0, duration, _STEPS + 1)
     history = partial(contact_temperature_history, contact, time=times, sliding_speed=rig.sliding_speed)
     without = history(friction_force=intrinsic, vibration_heat_rate=0.0)
-    vibrated = history(friction_force=ratio * intrinsic, vibration_heat_rate=vibration_heat_rate)
+    warmed = history(friction_force=ratio * intrinsic, vibration_heat_rate=vibration_heat_rate)
     of_friction = float(frictional_heat_rate(friction_force=ratio * intrinsic, sliding_speed=rig.sliding_speed))
     heat = of_friction + vibration_heat_rate
     shared = contact_rise(pin, disc, source, heat_rate=heat, sliding_speed=rig.sliding_speed, moving_rise=moving_rise)
@@ -155,12 +165,15 @@ def temperature_point(
         peclet_number=float(peclet_number(disc, source, sliding_speed=rig.sliding_speed)),
         peak_temperature_rise=float(shared.peak_temperature_rise),
         mean_temperature_rise=float(shared.mean_temperature_rise),
-        temperature_rise=float(vibrated.temperature_rise[-1]),
-        temperature_rise_ratio=float(vibrated.temperature_rise[-1] / without.temperature_rise[-1]),
+        temperature_rise=float(warmed.temperature_rise[-1]),
+        temperature_rise_ratio=float(warmed.temperature_rise[-1] / without.temperature_rise[-1]),
         friction_ratio=ratio,
         friction_model=rig.friction_model.name,
-        caveats=_caveats(network, vibration_heat_rate),
-        with_vibration=vibrated,
+        vibration_amplitude=vibrated.vibration.amplitude,
+        amplitude_source=vibrated.vibration.source,
+        amplitude_origin=vibrated.vibration.text,
+        caveats=(*vibrated.caveats, *_caveats(network, vibration_heat_rate)),
+        with_vibration=warmed,
         without_vibration=without,
     )
 

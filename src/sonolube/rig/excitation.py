@@ -11,6 +11,7 @@ from sonolube.checks import Complexes, Floats, require_non_negative
 from sonolube.dynamics import WAVEFORMS, Sine, StartUpRamp, Waveform
 from sonolube.dynamics.waveform import fourier_coefficients, sampled_waveform, waveform_extremes
 from sonolube.rig.driven_rig import DrivenRig
+from sonolube.rig.record import Rig
 
 _VOLTAGE_HARMONICS = 64  # the 65th of a square wave moves the tip by less than 1e-5 of the first
 
@@ -91,6 +92,11 @@ def voltage_range(
     offset = np.asarray(drive.voltage_offset if voltage_offset is None else voltage_offset, dtype=np.float64)
     swing, (lowest, highest) = _swing(drive, voltage_peak_to_peak), waveform_extremes(waveform_of(drive))
     return offset + swing * lowest, offset + swing * highest
+
+
+def actuator_capacitance(rig: Rig) -> float | None:
+    """Return the capacitance that an amplifier drives: that of the stack, else of the actuator. [F]"""
+    return rig.capacitance if rig.stack is None else rig.stack.free_capacitance
 
 
 def amplifier_power(

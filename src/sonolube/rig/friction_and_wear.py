@@ -1,17 +1,20 @@
 """Friction and wear ratios of a rig under a motion of its gap, by the rig's own models."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats
 from sonolube.contact import GapMotion, load_balanced_motion, sinusoidal_motion
-from sonolube.errors import InvalidInput, OutsideRange, SonolubeError
+from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.friction.models import MeanGap
-from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio, model_friction
+from sonolube.friction.models.range_check import CheckedRatio, model_friction
 from sonolube.rig.record import Rig
 from sonolube.wear import DEFAULT_WEAR_MODEL, WEAR_MODELS
 
-_ANY_FREQUENCY = 1.0  # Hz; of models that are not rate-dependent
+ANY_FREQUENCY = 1.0
+"""Frequency of a sine where nothing depends on it. [Hz]"""
 
 
 def friction_ratios(rig: Rig, motion: GapMotion, *, sliding_speed: ArrayLike) -> CheckedRatio:
@@ -74,40 +77,20 @@ def friction_at_speeds(rig: Rig, moving: GapMotion, speeds: Floats) -> CheckedRa
     )
 
 
-def stated_friction_ratios(rig: Rig, *, sliding_speed: ArrayLike) -> CheckedRatio:
-    """Return the friction ratios of a rig under its stated vibration, taken for a sine, at some sliding speeds. []
+def prescribed_sine(
+    rig: Rig, *, vibration_amplitude: float, frequency: float | None = None, normal_load: float | None = None
+) -> GapMotion:
+    """Return a sine of the gap of a rig, about the mean that its friction model is meant for.
 
     Parameters
     ----------
     rig : Rig
-    sliding_speed : array_like, any shape
-        Macroscopic relative speed. [m/s]
-
-    Returns
-    -------
-    CheckedRatio
-        Of the shape of `sliding_speed`.
-
-    Raises
-    ------
-    InvalidInput
-        If a speed is not positive, or the model depends on the rate of the motion and the rig has no frequency.
-    """
-    try:
-        motion = prescribed_sine(rig)
-    except OutsideRange as refusal:
-        none = np.full(np.shape(sliding_speed), np.nan)
-        reason = np.full(none.shape, f"{OUTSIDE_MODEL_RANGE}: {refusal}")
-        return CheckedRatio(friction_ratio=none, raw_friction_ratio=none, reason=reason)
-    return friction_ratios(rig, motion, sliding_speed=sliding_speed)
-
-
-def prescribed_sine(rig: Rig) -> GapMotion:
-    """Return the rig's stated vibration as a sine of the gap, about the mean that its friction model is meant for.
-
-    Parameters
-    ----------
-    rig : Rig
+    vibration_amplitude : float
+        Zero to peak. [m]
+    frequency : float, optional
+        Frequency instead of that of its drive. [Hz]
+    normal_load : float, optional
+        Load instead of its own. [N]
 
     Returns
     -------
@@ -121,13 +104,14 @@ def prescribed_sine(rig: Rig) -> GapMotion:
         If the amplitude leaves the range of the height law.
     """
     model = rig.friction_model
-    if rig.drive is None and model.rate_dependent:
+    if rig.drive is None and frequency is None and model.rate_dependent:
         raise InvalidInput(f"{rig.title}: drive.frequency is missing; friction model {model.name} needs it")
+    own = ANY_FREQUENCY if rig.drive is None else rig.drive.frequency
     motion = sinusoidal_motion(
         rig.contact,
-        normal_load=rig.normal_load,
-        vibration_amplitude=rig.vibration_amplitude,
-        frequency=_ANY_FREQUENCY if rig.drive is None else rig.drive.frequency,
+        normal_load=rig.normal_load if normal_load is None else normal_load,
+        vibration_amplitude=vibration_amplitude,
+        frequency=own if frequency is None else frequency,
     )
     return motion if model.mean_gap is MeanGap.AT_REST else load_balanced_motion(rig.contact, motion)
 
@@ -138,21 +122,32 @@ def wear_model_of(rig: Rig) -> str:
     return name if name in WEAR_MODELS else DEFAULT_WEAR_MODEL
 
 
-def wear_rate_ratio(rig: Rig, motion: GapMotion) -> float:
-    """Return wear with vibration over wear without, by the wear model that goes with the rig's friction model. []
+def mean_friction(rig: Rig, motions: tuple[GapMotion, ...], *, sliding_speed: ArrayLike) -> CheckedRatio:
+    """Return the mean friction ratio over several motions; that of the first outside the model's range withholds it.
 
     Parameters
     ----------
     rig : Rig
-    motion : GapMotion
-        Motion of the gap of its contact.
+    motions : tuple of GapMotion
+        One after the other, each of its own duration.
+    sliding_speed : array_like, any shape
+        Macroscopic relative speed. [m/s]
 
     Returns
     -------
-    float
-
-    Notes
-    -----
-    Wear models average the worn area over the gap; memory, holder and in-plane motion do not enter.
+    CheckedRatio
+        Of the shape of `sliding_speed`.
     """
-    return float(WEAR_MODELS[wear_model_of(rig)](rig.contact, motion))
+    every = [friction_ratios(rig, motion, sliding_speed=sliding_speed) for motion in motions]
+    raw = np.asarray(mean_over_time([one.raw_friction_ratio for one in every], motions))
+    reason = every[0].reason
+    for one in every[1:]:
+        reason = np.where(reason == "", one.reason, reason)
+    return CheckedRatio(
+        friction_ratio=np.where(reason == "", raw, np.nan), raw_friction_ratio=raw, reason=np.asarray(reason)
+    )
+
+
+def mean_over_time(values: Sequence[Floats], motions: tuple[GapMotion, ...]) -> Floats:
+    """Return the mean over time of a quantity of several motions of unequal duration."""
+    return np.asarray(np.average(np.stack(values), axis=0, weights=[1 / motion.frequency for motion in motions]))

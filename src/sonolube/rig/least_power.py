@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_positive, require_within
+from sonolube.rig.amplitude_source import amplitude_labels, moved_rig
 from sonolube.rig.datasets import gridded
-from sonolube.rig.driven_rig import DrivenRig, driven_rig
+from sonolube.rig.driven_rig import DrivenRig
 from sonolube.rig.operating_point_grid import Advance, OperatingPoints, operating_points
 from sonolube.rig.record import Rig
 
@@ -65,7 +66,7 @@ def least_power_study(
     ----------
     .. [1] D 3.3.5, figure 3.17 (b).
     """
-    rig = driven_rig(rig)
+    rig = moved_rig(rig)
     f = np.atleast_1d(require_positive(frequency=frequency))
     target = float(require_within(0.0, 1.0, friction_ratio=friction_ratio))
     highest = float(require_positive(voltage_maximum=voltage_maximum))
@@ -92,7 +93,7 @@ def least_power_study(
         {"status": status.astype(np.str_), "reason": reason.astype(np.str_)} | numbers,
         axes={"frequency": f},
         title=f"Voltage and power for a friction ratio of {target:g}, {rig.title}",
-        about={"rig": rig.title, "friction_model": rig.friction_model.name},
+        about={"rig": rig.title, "friction_model": rig.friction_model.name} | amplitude_labels(rig),
     )
 
 

@@ -15,9 +15,9 @@ from sonolube.friction import (
     lubrication_coefficients,
 )
 from sonolube.materials import Material
-from sonolube.rig.friction_and_wear import stated_friction_ratios
 from sonolube.rig.linear_response import rest_separation
 from sonolube.rig.record import Rig
+from sonolube.rig.simulation import VibratedFriction, vibrated_friction
 from sonolube.wear import CrystalStructure, WearMechanismAssessment, WearPairBody, assess_wear_mechanism
 
 _SPAN = 10.0  # how far the map reaches to either side of the rig's point, as a factor
@@ -44,6 +44,12 @@ class LubricationPoint:
         Method with the least friction.
     friction_model : str
         Name of the friction model.
+    vibration_amplitude : float
+        Vibration normal to the contact, zero to peak. [m]
+    amplitude_source : {"measured", "computed", "per-volt"}
+        Where the amplitude comes from.
+    amplitude_origin : str
+        The same in words, with the numbers behind it.
     caveats : tuple of str
         What speaks against trusting the numbers, each in one line.
     """
@@ -55,6 +61,9 @@ class LubricationPoint:
     coefficients: LubricationCoefficients
     best: str
     friction_model: str
+    vibration_amplitude: float
+    amplitude_source: str
+    amplitude_origin: str
     caveats: tuple[str, ...]
 
 
@@ -100,7 +109,9 @@ def lubrication_point(rig: Rig, *, lubricant: BoundaryLubricant, smallest_gain: 
     """
     rest_separation(rig)
     pressure = rig.normal_load / rig.contact.nominal_area
-    found = _coefficients(rig, lubricant, sliding_speed=rig.sliding_speed, nominal_pressure=pressure)
+    require_positive(sliding_speed=rig.sliding_speed)
+    vibrated = vibrated_friction(rig, sliding_speed=rig.sliding_speed)
+    found = _coefficients(rig, lubricant, vibrated, nominal_pressure=pressure)
     return LubricationPoint(
         sliding_speed=rig.sliding_speed,
         nominal_pressure=pressure,
@@ -109,7 +120,13 @@ def lubrication_point(rig: Rig, *, lubricant: BoundaryLubricant, smallest_gain: 
         coefficients=found,
         best=str(best_lubrication_method(found, smallest_gain=smallest_gain)),
         friction_model=rig.friction_model.name,
-        caveats=("load sharing in proportion to the pressure: the simplest law that D Fig. 4.28 allows",),
+        vibration_amplitude=vibrated.vibration.amplitude,
+        amplitude_source=vibrated.vibration.source,
+        amplitude_origin=vibrated.vibration.text,
+        caveats=(
+            *vibrated.caveats,
+            "load sharing in proportion to the pressure: the simplest law that D Fig. 4.28 allows",
+        ),
     )
 
 
@@ -141,7 +158,8 @@ def lubrication_map(rig: Rig, *, lubricant: BoundaryLubricant, smallest_gain: fl
     require_positive(sliding_speed=rig.sliding_speed)
     factors = np.geomspace(1 / _SPAN, _SPAN, _RESOLUTION)
     speeds, pressures = rig.sliding_speed * factors, rig.normal_load / rig.contact.nominal_area * factors
-    found = _coefficients(rig, lubricant, sliding_speed=speeds, nominal_pressure=pressures[:, np.newaxis])
+    vibrated = vibrated_friction(rig, sliding_speed=speeds)
+    found = _coefficients(rig, lubricant, vibrated, nominal_pressure=pressures[:, np.newaxis])
     return LubricationMap(
         sliding_speed=speeds,
         nominal_pressure=pressures,
@@ -172,12 +190,11 @@ def _wearing(body: Material) -> WearPairBody:
 
 
 def _coefficients(
-    rig: Rig, lubricant: BoundaryLubricant, *, sliding_speed: ArrayLike, nominal_pressure: ArrayLike
+    rig: Rig, lubricant: BoundaryLubricant, vibrated: VibratedFriction, *, nominal_pressure: ArrayLike
 ) -> LubricationCoefficients:
-    require_positive(sliding_speed=sliding_speed)
     return lubrication_coefficients(
         lubricant,
         friction_coefficient=rig.friction_coefficient,
-        friction_ratio=stated_friction_ratios(rig, sliding_speed=sliding_speed).require_within_range(),
+        friction_ratio=vibrated.ratio.require_within_range(),
         nominal_pressure=nominal_pressure,
     )

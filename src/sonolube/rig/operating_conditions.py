@@ -6,12 +6,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sonolube.actuator.drive import Drive
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
 from sonolube.errors import InvalidInput
-from sonolube.rig.driven_rig import DrivenRig
+from sonolube.rig.friction_and_wear import ANY_FREQUENCY
+from sonolube.rig.record import Rig
 
 CONDITIONS = ("voltage_peak_to_peak", "voltage_offset", "frequency", "normal_load")
 """Settings of a point apart from its sliding speed, in the order of the rows that hold them."""
+
+SETTINGS = (*CONDITIONS, "sliding_speed")
+"""All settings of a point."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -29,16 +34,20 @@ class OperatingConditions:
         return cls(**dict(zip(CONDITIONS, columns, strict=True)))
 
 
-def conditions_of(rig: DrivenRig, given: Sequence[ArrayLike | None]) -> tuple[Floats, Floats]:
+def conditions_of(rig: Rig, given: Sequence[ArrayLike | None]) -> tuple[Floats, Floats]:
     """Return the settings of points as rows of `OperatingConditions` and sliding speeds, checked and broadcast.
 
-    Given are peak-to-peak voltage, offset and frequency of the drive, load and sliding speed; None is the rig's own.
+    Given are peak-to-peak voltage, offset and frequency of the drive, load and sliding speed; None is the rig's own. A
+    rig without a drive voltage has 0 V, and one without a drive any frequency.
     """
     voltage, offset, f, load, speed = given
+    drive = rig.drive or Drive(frequency=ANY_FREQUENCY)
+    if drive.voltage_peak_to_peak is None and not (voltage is None and offset is None):
+        raise InvalidInput(f"{rig.title}: drive.voltage_peak_to_peak is missing; give it to vary the voltage")
     settings = (
-        require_non_negative(voltage_peak_to_peak=rig.voltage_peak_to_peak if voltage is None else voltage),
-        require_finite(voltage_offset=rig.drive.voltage_offset if offset is None else offset),
-        require_positive(frequency=rig.drive.frequency if f is None else f),
+        require_non_negative(voltage_peak_to_peak=(drive.voltage_peak_to_peak or 0.0) if voltage is None else voltage),
+        require_finite(voltage_offset=drive.voltage_offset if offset is None else offset),
+        require_positive(frequency=drive.frequency if f is None else f),
         require_positive(normal_load=rig.normal_load if load is None else load),
         require_non_negative(sliding_speed=rig.sliding_speed if speed is None else speed),
     )

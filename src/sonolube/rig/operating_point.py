@@ -1,19 +1,34 @@
-"""Contact, friction and wear of a rig at its operating point, the stated vibration taken for a sine."""
+"""Contact of a rig at its operating point, and records of its friction and wear under a vibration."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
-from sonolube.contact import contact_caveats, cube_tangential_stiffness, sinusoidal_motion
+from sonolube.contact import contact_caveats, cube_tangential_stiffness
 from sonolube.contact.rough import contact_count, normal_stiffness, real_contact_area
-from sonolube.friction.models import FRICTION_MODELS, FrictionModel
 from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio
-from sonolube.rig.excitation import amplifier_power
-from sonolube.rig.friction_and_wear import stated_friction_ratios
 from sonolube.rig.linear_response import rest_separation
-from sonolube.rig.record import Rig
-from sonolube.wear import DEFAULT_WEAR_MODEL, WEAR_MODELS, cube_wear_rate, vibrating_cube_wear_rate
+from sonolube.rig.record import AmplitudeSource, Rig
+from sonolube.wear import cube_wear_rate
 
 COMPUTED = "computed"
 """Status of a result within the range of its model."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class VibrationOrigin:
+    """Amplitude of a vibration and where it comes from.
+
+    Parameters
+    ----------
+    amplitude : float
+        Zero to peak, in m.
+    source : {"measured", "computed", "per-volt"}
+    text : str
+        The source in words.
+    """
+
+    amplitude: float
+    source: AmplitudeSource
+    text: str
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -79,6 +94,10 @@ class FrictionPoint:
         Source of the friction model.
     vibration_amplitude : float
         Vibration normal to the contact, zero to peak. [m]
+    amplitude_source : {"measured", "computed", "per-volt"}
+        Where the amplitude comes from.
+    amplitude_origin : str
+        The same in words, with the numbers behind it.
     actuator_power : float or None
         Power a linear amplifier supplies, D 1.9, where drive and capacitance are known. [W]
     caveats : tuple of str
@@ -96,6 +115,8 @@ class FrictionPoint:
     friction_model: str
     citation: str
     vibration_amplitude: float
+    amplitude_source: AmplitudeSource
+    amplitude_origin: str
     actuator_power: float | None
     caveats: tuple[str, ...]
 
@@ -125,6 +146,10 @@ class WearPoint:
         Name of the wear model.
     vibration_amplitude : float
         Vibration normal to the contact, zero to peak. [m]
+    amplitude_source : {"measured", "computed", "per-volt"}
+        Where the amplitude comes from.
+    amplitude_origin : str
+        The same in words, with the numbers behind it.
     caveats : tuple of str
         Reasons for caution about the numbers, one line each.
     """
@@ -138,6 +163,8 @@ class WearPoint:
     reason: str | None
     wear_model: str
     vibration_amplitude: float
+    amplitude_source: AmplitudeSource
+    amplitude_origin: str
     caveats: tuple[str, ...]
 
 
@@ -162,41 +189,14 @@ def contact_point(rig: Rig) -> ContactPoint:
     )
 
 
-def friction_point(rig: Rig, *, model: str | None = None) -> FrictionPoint:
-    """Return the friction of the rig under its stated vibration, taken for a sine.
-
-    Parameters
-    ----------
-    rig : Rig
-    model : str, optional
-        Name of a friction model instead of the rig's own; it takes over those of the rig's parameters that it has.
-
-    Returns
-    -------
-    FrictionPoint
-
-    Raises
-    ------
-    InvalidInput
-        If the rig has no frequency, or no sliding speed, and the model needs it.
-    OutsideRange
-        If the surfaces would be pressed through each other, so that no separation is left.
-    UnknownName
-        If there is no such model.
-    """
-    gap = rest_separation(rig)
-    chosen = rig if model is None else replace(rig, friction_model=_model_of(rig, model))
-    return friction_under(
-        chosen,
-        ratio=stated_friction_ratios(chosen, sliding_speed=rig.sliding_speed),
-        vibration_amplitude=rig.vibration_amplitude,
-        actuator_power=_actuator_power(rig),
-        caveats=contact_caveats(rig.contact, separation=gap),
-    )
-
-
 def friction_under(
-    rig: Rig, *, ratio: CheckedRatio, vibration_amplitude: float, actuator_power: float | None, caveats: tuple[str, ...]
+    rig: Rig,
+    *,
+    ratio: CheckedRatio,
+    vibration: VibrationOrigin,
+    actuator_power: float | None,
+    caveats: tuple[str, ...],
+    others: str = "",
 ) -> FrictionPoint:
     """Return the friction of a rig at a friction ratio.
 
@@ -205,12 +205,14 @@ def friction_under(
     rig : Rig
     ratio : CheckedRatio, shape ()
         Friction with vibration over friction without.
-    vibration_amplitude : float
-        Vibration normal to the contact, zero to peak. [m]
+    vibration : VibrationOrigin
+        Amplitude and where it comes from.
     actuator_power : float or None
         Power drawn by the actuator, where it is known. [W]
     caveats : tuple of str
         Reasons for caution about the numbers.
+    others : str
+        Range of the models that hold where this one does not.
 
     Returns
     -------
@@ -225,56 +227,15 @@ def friction_under(
         raw_friction_ratio=float(ratio.raw_friction_ratio),
         friction_reduction=1 - valid,
         status=OUTSIDE_MODEL_RANGE if ratio.reason else COMPUTED,
-        reason=str(ratio.reason) or None,
+        reason="; ".join(text for text in (str(ratio.reason), others) if text) or None,
         friction_model=rig.friction_model.name,
         citation=rig.friction_model.citation,
-        vibration_amplitude=vibration_amplitude,
+        vibration_amplitude=vibration.amplitude,
+        amplitude_source=vibration.source,
+        amplitude_origin=vibration.text,
         actuator_power=actuator_power,
         caveats=caveats,
     )
-
-
-def _model_of(rig: Rig, name: str) -> FrictionModel:
-    """Return the friction model of a name, with those parameters of the rig's model that it has too."""
-    model = FRICTION_MODELS.named(name)
-    shared = {each.name for each in model.parameters()} & {each.name for each in rig.friction_model.parameters()}
-    return model(**{key: getattr(rig.friction_model, key) for key in shared})
-
-
-def wear_point(rig: Rig, *, model: str = DEFAULT_WEAR_MODEL) -> WearPoint:
-    """Return the wear of the rig with and without its stated vibration, taken for a sine about the gap at rest.
-
-    Parameters
-    ----------
-    rig : Rig
-    model : str
-        Name of the wear model.
-
-    Returns
-    -------
-    WearPoint
-
-    Raises
-    ------
-    OutsideRange
-        If the surfaces would be pressed through each other, so that no separation is left.
-    UnknownName
-        If there is no such model.
-
-    References
-    ----------
-    .. [1] D 3.26 to 3.29 as they were evaluated, for the default model.
-    """
-    gap = rest_separation(rig)
-    caveats = contact_caveats(rig.contact, separation=gap)
-    if rig.vibration_amplitude >= gap:
-        caveats = (
-            *caveats,
-            f"vibration amplitude {rig.vibration_amplitude:.3g} m reaches the separation at rest, {gap:.3g} m: the "
-            "surfaces must ride higher under vibration than this model lets them; take a smaller amplitude",
-        )
-    ratio = _wear_ratio(rig, model)
-    return wear_under(rig, ratio=ratio, model=model, vibration_amplitude=rig.vibration_amplitude, caveats=caveats)
 
 
 def wear_under(
@@ -282,7 +243,7 @@ def wear_under(
     *,
     ratio: float,
     model: str,
-    vibration_amplitude: float,
+    vibration: VibrationOrigin,
     caveats: tuple[str, ...],
     reason: str | None = None,
 ) -> WearPoint:
@@ -295,8 +256,8 @@ def wear_under(
         Wear rate with vibration over that without, dimensionless.
     model : str
         Name of the wear model.
-    vibration_amplitude : float
-        Vibration normal to the contact, zero to peak. [m]
+    vibration : VibrationOrigin
+        Amplitude and where it comes from.
     caveats : tuple of str
         Reasons for caution about the numbers.
     reason : str or None
@@ -317,22 +278,8 @@ def wear_under(
         status=OUTSIDE_MODEL_RANGE if reason else COMPUTED,
         reason=reason,
         wear_model=model,
-        vibration_amplitude=vibration_amplitude,
+        vibration_amplitude=vibration.amplitude,
+        amplitude_source=vibration.source,
+        amplitude_origin=vibration.text,
         caveats=caveats,
     )
-
-
-def _wear_ratio(rig: Rig, model: str) -> float:
-    load, amplitude = rig.normal_load, rig.vibration_amplitude
-    if model == DEFAULT_WEAR_MODEL:  # by quadrature of the sine itself
-        still = cube_wear_rate(rig.contact, normal_load=load)
-        return float(vibrating_cube_wear_rate(rig.contact, normal_load=load, vibration_amplitude=amplitude) / still)
-    frequency = 1.0 if rig.drive is None else rig.drive.frequency  # without effect on wear models
-    sine = sinusoidal_motion(rig.contact, normal_load=load, vibration_amplitude=amplitude, frequency=frequency)
-    return float(WEAR_MODELS.named(model)(rig.contact, sine))
-
-
-def _actuator_power(rig: Rig) -> float | None:
-    if rig.drive is None or rig.drive.voltage_peak_to_peak is None or rig.capacitance is None:
-        return None
-    return float(amplifier_power(rig.drive, capacitance=rig.capacitance))

@@ -6,23 +6,23 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sonolube.actuator.stack import require_allowed_voltage
 from sonolube.checks import Floats
 from sonolube.contact import separation
-from sonolube.dynamics import Status, SteadyStates, steady_state
+from sonolube.dynamics import SteadyStates
 from sonolube.dynamics.backend import Backend
-from sonolube.errors import SonolubeError
 from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE
-from sonolube.rig.driven_rig import DrivenRig, driven_rig
-from sonolube.rig.excitation import amplifier_power, voltage_harmonics, voltage_range
+from sonolube.rig.amplitude_source import moved_rig, resolved_vibration
+from sonolube.rig.excitation import actuator_capacitance, amplifier_power
 from sonolube.rig.friction_and_wear import friction_at_speeds
-from sonolube.rig.linear_response import gap_law_of
 from sonolube.rig.operating_conditions import CONDITIONS, OperatingConditions, conditions_of, points_by_vibration
-from sonolube.rig.record import Rig
-from sonolube.rig.vibration import gap_motion
-
-REFUSED = "refused"
-"""Status of an operating point that a limit of the stack or the contact rules out."""
+from sonolube.rig.operating_vibrations import (
+    REFUSED,
+    PointVibration,
+    computed_vibrations,
+    stated_vibrations,
+    steady_states_of,
+)
+from sonolube.rig.record import AmplitudeSource, Rig
 
 VIBRATION_NUMBERS = (
     "vibration_amplitude",
@@ -84,6 +84,10 @@ class OperatingPoints:
         Mean electrical power that stays in stack, dampers and contact. [W]
     gap_closed : ndarray of bool
         Whether the mean planes touch within the period, where the contact model no longer holds.
+    amplitude_source : {"measured", "computed", "per-volt"}
+        Where the amplitude comes from.
+    amplitude_origin : str
+        The same in words.
     """
 
     voltage_peak_to_peak: Floats
@@ -105,6 +109,8 @@ class OperatingPoints:
     actuator_power: Floats
     dissipated_power: Floats
     gap_closed: NDArray[np.bool_]
+    amplitude_source: AmplitudeSource
+    amplitude_origin: str
 
     @property
     def failed(self) -> NDArray[np.bool_]:
@@ -137,13 +143,13 @@ def operating_points(
     Parameters
     ----------
     rig : Rig
-        With a stack, a structure and a drive voltage.
+        Its vibration is by the source of its amplitude: of a structure, or a sine.
     voltage_peak_to_peak : array_like, optional
         Peak-to-peak voltage of the drive. [V]
     voltage_offset : array_like, optional
         Mean voltage of the drive. [V]
     frequency : array_like, optional
-        Frequency of the drive. [Hz]
+        Frequency of the drive; a stated amplitude holds at the rig's own only. [Hz]
     normal_load : array_like, optional
         Force pressing the bodies together; the structure stays as it is. [N]
     sliding_speed : array_like, optional
@@ -160,7 +166,7 @@ def operating_points(
     Raises
     ------
     InvalidInput
-        If the rig has no structure, a setting has no meaning or shapes do not match.
+        If the rig has no amplitude, a setting has no meaning or shapes do not match.
         Not for a point that is impossible, which has its status.
 
     Warns
@@ -172,29 +178,23 @@ def operating_points(
     -----
     Steady vibrations are found in one batch, each drive and load once, whatever the number of sliding speeds.
     """
-    rig = driven_rig(rig)
+    used = resolved_vibration(rig)
     columns, speeds = conditions_of(rig, (voltage_peak_to_peak, voltage_offset, frequency, normal_load, sliding_speed))
     shape = speeds.shape
     distinct, which = np.unique(columns.reshape(4, -1), axis=1, return_inverse=True)
-    settings, speeds = OperatingConditions.of_columns(distinct), speeds.ravel()
-    rest = separation(rig.contact, normal_load=settings.normal_load)
-    refusals = _refusals(rig, settings, rest)
-    possible = np.array([not text for text in refusals], dtype=bool)
-    states = None
-    if possible.any():
-        states = steady_states_of(rig, OperatingConditions.of_columns(distinct[:, possible]), rest[possible], backend)
-    place = np.cumsum(possible) - 1
+    speeds = speeds.ravel()
+    vibration_at = stated_vibrations(rig, used, distinct)
+    if used.driven is not None:
+        rig = used.driven
+        vibration_at = computed_vibrations(used.driven, distinct, backend)
 
     status, reason = np.full((2, speeds.size), REFUSED, dtype=object)
     numbers = np.full((8, speeds.size), np.nan)
     for setting, members in enumerate(points_by_vibration(np.arange(speeds.size), which.ravel())):
-        if states is not None and possible[setting]:
-            found = _outcome(rig, states, int(place[setting]), speeds[members])
-            status[members], reason[members], numbers[:, members] = found.status, found.reason, found.numbers
-        else:
-            reason[members] = refusals[setting]
+        found = _outcome(rig, vibration_at(setting), speeds[members])
+        status[members], reason[members], numbers[:, members] = found.status, found.reason, found.numbers
         if advance is not None:
-            advance(setting + 1, possible.size)
+            advance(setting + 1, distinct.shape[1])
     columns = columns.reshape(4, *shape)
     *vibration, closed, ratio, raw = numbers.reshape(8, *shape)
     return OperatingPoints(
@@ -205,11 +205,13 @@ def operating_points(
         **dict(zip(VIBRATION_NUMBERS, vibration, strict=True)),
         **friction_and_power(rig, columns, friction_ratio=ratio, raw_friction_ratio=raw),
         gap_closed=closed == 1,
+        amplitude_source=used.source,
+        amplitude_origin=used.text,
     )
 
 
 def friction_and_power(
-    rig: DrivenRig, columns: Floats, *, friction_ratio: Floats, raw_friction_ratio: Floats
+    rig: Rig, columns: Floats, *, friction_ratio: Floats, raw_friction_ratio: Floats
 ) -> dict[str, Floats]:
     """Return friction force, coefficient, reduction and amplifier power from friction ratio and settings, by name.
 
@@ -234,14 +236,16 @@ def friction_and_power(
         "friction_reduction": 1 - friction_ratio,
         "friction_coefficient": friction_ratio * rig.friction_coefficient,
         "friction_force": friction_ratio * rig.friction_coefficient * load,
-        "actuator_power": amplifier_power(
-            rig.drive,
-            capacitance=rig.stack.free_capacitance,
-            voltage_peak_to_peak=u,
-            voltage_offset=offset,
-            frequency=f,
-        ),
+        "actuator_power": _supplied_power(rig, voltage_peak_to_peak=u, voltage_offset=offset, frequency=f),
     }
+
+
+def _supplied_power(rig: Rig, **drive: Floats) -> Floats:
+    """Return the power of a linear amplifier, NaN where voltage or capacitance is not known. [W]"""
+    capacitance = actuator_capacitance(rig)
+    if rig.drive is None or rig.drive.voltage_peak_to_peak is None or capacitance is None:
+        return np.full(drive["voltage_peak_to_peak"].shape, np.nan)
+    return amplifier_power(rig.drive, capacitance=capacitance, **drive)
 
 
 def steady_states(
@@ -273,67 +277,19 @@ def steady_states(
     InvalidInput
         If the rig has no structure, a setting has no meaning, or the tolerance is out of its range.
     """
-    rig = driven_rig(rig)
+    rig = moved_rig(rig)
     columns, _ = conditions_of(rig, (voltage_peak_to_peak, voltage_offset, None, None, None))
     settings = OperatingConditions.of_columns(columns.reshape(4, -1))
     rest = separation(rig.contact, normal_load=settings.normal_load)
     return steady_states_of(rig, settings, rest, relative_tolerance=relative_tolerance)
 
 
-def _refusals(rig: DrivenRig, settings: OperatingConditions, rest: Floats) -> list[str]:
-    """Return the reason against each drive and load that the stack or the contact rules out, else empty text."""
-    refusals = []
-    extremes = voltage_range(
-        rig.drive, voltage_peak_to_peak=settings.voltage_peak_to_peak, voltage_offset=settings.voltage_offset
-    )
-    for voltages, load, gap in zip(np.transpose(extremes), settings.normal_load, rest, strict=True):
-        refusal = ""
-        try:
-            require_allowed_voltage(rig.stack, stack_voltage=voltages)
-        except SonolubeError as beyond:
-            refusal = str(beyond)
-        if gap <= 0:
-            refusal = f"normal_load {load:g} N leaves no separation between the surfaces: lower the load"
-        refusals.append(refusal)
-    return refusals
-
-
-def steady_states_of(
-    rig: DrivenRig,
-    settings: OperatingConditions,
-    rest: Floats,
-    backend: Backend = "cpu",
-    relative_tolerance: float = 1e-6,
-) -> SteadyStates:
-    """Return the steady vibrations of a rig under drives and loads, given the separations at rest."""
-    return steady_state(
-        rig.structure,
-        gap_law_of(rig),
-        normal_load=settings.normal_load,
-        frequency=settings.frequency,
-        voltage_harmonics=voltage_harmonics(rig.drive, voltage_peak_to_peak=settings.voltage_peak_to_peak),
-        voltage_offset=settings.voltage_offset,
-        separation=rest,
-        relative_tolerance=relative_tolerance,
-        backend=backend,
-    )
-
-
-def _outcome(rig: Rig, states: SteadyStates, point: int, speeds: Floats) -> _Outcome:
-    known, reason = Status(int(states.status[point])), states.reason(point)
-    status, numbers = known.name.lower(), np.full((8, speeds.size), np.nan)
-    if known is Status.NOT_CONVERGED:
+def _outcome(rig: Rig, vibration: PointVibration, speeds: Floats) -> _Outcome:
+    status, reason, numbers = vibration.status, vibration.reason, np.full((8, speeds.size), np.nan)
+    if vibration.motion is None:
         return _Outcome(status=[status] * speeds.size, reason=[reason] * speeds.size, numbers=numbers)
-    moving = gap_motion(states, point)
-    numbers[:-2].T[:] = (
-        states.vibration_amplitude[point],
-        np.abs(moving.velocity).max(),
-        states.mean_displacement[point],
-        states.contact_loss_fraction[point],
-        states.dissipated_power[point],
-        states.gap_closed[point],
-    )
-    found = friction_at_speeds(rig, moving, speeds)
+    numbers[:-2].T[:] = vibration.numbers
+    found = friction_at_speeds(rig, vibration.motion, speeds)
     numbers[-2], numbers[-1] = found.friction_ratio, found.raw_friction_ratio
     return _Outcome(
         status=[friction_status(objection) or status for objection in found.reason],

@@ -10,8 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.dynamics import WAVEFORMS, Status, contact_motion, modes
 from sonolube.errors import InvalidInput
+from sonolube.rig.amplitude_source import amplitude_labels, moved_rig
 from sonolube.rig.datasets import gridded
-from sonolube.rig.driven_rig import DrivenRig, driven_rig
+from sonolube.rig.driven_rig import DrivenRig, require_drive
 from sonolube.rig.linear_response import structure_in_contact
 from sonolube.rig.operating_point_batch import NUMBERS
 from sonolube.rig.operating_point_grid import Advance, OperatingPoints, operating_points, steady_states
@@ -52,6 +53,7 @@ def voltage_study(rig: Rig, *, voltage_peak_to_peak: ArrayLike, advance: Advance
     ----------
     .. [1] D 3.3.5, figure 3.15.
     """
+    rig = moved_rig(rig)
     volts = np.atleast_1d(require_non_negative(voltage_peak_to_peak=voltage_peak_to_peak))
     offset = _offset(rig, volts)
     points = operating_points(rig, voltage_peak_to_peak=volts, voltage_offset=offset, advance=advance)
@@ -158,7 +160,7 @@ def waveform_study(rig: Rig, *, advance: Advance | None = None) -> "xr.Dataset":
     ----------
     .. [1] D 3.3.5, figure 3.18.
     """
-    rig = driven_rig(rig)
+    rig = moved_rig(rig)
     drive = rig.drive
     shaped = [replace(rig, drive=replace(drive, waveform=name)) for name in WAVEFORMS]
     points = _one_by_one(shaped, operating_points, advance)
@@ -200,7 +202,7 @@ def load_study(rig: Rig, *, normal_load: ArrayLike, advance: Advance | None = No
     .. [1] D 4.1.2, figures 4.7 and 4.8.
     """
     loads = np.atleast_1d(require_positive(normal_load=normal_load))
-    rig = driven_rig(rig)
+    rig = moved_rig(rig)
     loaded = [_weighted(rig, float(load)) for load in loads]
     points = _one_by_one(loaded, operating_points, advance)
     found = points | {"natural_frequency": np.array([_slowest(one) for one in loaded])}
@@ -229,13 +231,13 @@ def _one_by_one(
 
 
 def _volts(rig: Rig, voltage: ArrayLike | None) -> Floats:
-    own = driven_rig(rig).voltage_peak_to_peak
+    own = require_drive(rig).voltage_peak_to_peak or 0.0
     return np.atleast_1d(require_positive(voltage_peak_to_peak=own if voltage is None else voltage))
 
 
 def _offset(rig: Rig, volts: Floats) -> Floats:
     """Return the voltage offset at each peak-to-peak voltage, in the rig's ratio."""
-    drive = driven_rig(rig).drive
+    drive = require_drive(rig)
     return volts * drive.offset_ratio if drive.voltage_peak_to_peak else np.full(volts.shape, drive.voltage_offset)
 
 
@@ -271,5 +273,5 @@ def _slowest(rig: Rig) -> float:
 
 
 def _study(rig: Rig, title: str, values: Mapping[str, NDArray[Any]], **axes: NDArray[Any]) -> "xr.Dataset":
-    about = {"rig": rig.title, "friction_model": rig.friction_model.name}
+    about = {"rig": rig.title, "friction_model": rig.friction_model.name} | amplitude_labels(rig)
     return gridded(values, axes=axes, title=f"Friction {title}, {rig.title}", about=about)

@@ -1,25 +1,30 @@
-"""Multi-scale simulation of a rig: steady vibration of structure and contact, and friction and wear under it."""
+"""Friction, wear and power of a rig under its vibration, by the source of its amplitude."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from sonolube.actuator import stack_caveats
-from sonolube.contact import GapMotion, contact_caveats
+from sonolube.contact import GapMotion, contact_caveats, sinusoidal_motion
+from sonolube.errors import OutsideRange, SonolubeError
+from sonolube.friction.models import FRICTION_MODELS, FrictionModel
 from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE, CheckedRatio
-from sonolube.rig.driven_rig import DrivenRig, driven_rig
-from sonolube.rig.excitation import amplifier_power, voltage_harmonics, voltage_range
-from sonolube.rig.friction_and_wear import friction_ratios, wear_model_of, wear_rate_ratio
+from sonolube.rig.amplitude_source import ResolvedVibration, resolved_vibration, source_caveats
+from sonolube.rig.driven_rig import DrivenRig
+from sonolube.rig.excitation import actuator_capacitance, amplifier_power, voltage_harmonics, voltage_range
+from sonolube.rig.friction_and_wear import mean_friction, mean_over_time, wear_model_of
 from sonolube.rig.linear_response import rest_separation
-from sonolube.rig.operating_point import FrictionPoint, WearPoint, friction_under, wear_under
+from sonolube.rig.operating_point import FrictionPoint, VibrationOrigin, WearPoint, friction_under, wear_under
 from sonolube.rig.record import Rig
 from sonolube.rig.vibration import SteadyVibration, steady_vibration
+from sonolube.units import format_si
+from sonolube.wear import DEFAULT_WEAR_MODEL, WEAR_MODELS, cube_wear_rate, vibrating_cube_wear_rate
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Simulation:
-    """Steady vibration of a rig under its drive, with friction, wear and power.
+    """Steady vibration of a rig, with friction, wear and power.
 
     Parameters
     ----------
@@ -28,11 +33,13 @@ class Simulation:
     reason : str
         Meaning of the status, and description of the motion.
     vibration : SteadyVibration
-        Steady vibration of the tip: status, kind, amplitudes and sampled motion.
+        Steady vibration of the tip: source, status, kind, amplitudes and sampled motion.
     friction : FrictionPoint
         Friction under it, and the power that a linear amplifier supplies, D 1.9.
     wear : WearPoint
         Wear under it, by the wear model of the friction model's name where there is one.
+    energy_balance : str or None
+        How the power of the amplifier and the dissipated power compare, and why, where both are known.
     caveats : tuple of str
         Reasons for caution about the numbers, one line each.
     """
@@ -42,16 +49,35 @@ class Simulation:
     vibration: SteadyVibration
     friction: FrictionPoint
     wear: WearPoint
+    energy_balance: str | None
+    caveats: tuple[str, ...]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class VibratedFriction:
+    """Friction ratios of a rig under its vibration, with where the amplitude comes from.
+
+    Parameters
+    ----------
+    ratio : CheckedRatio
+        Friction with vibration over friction without.
+    vibration : VibrationOrigin
+        Amplitude and its source.
+    caveats : tuple of str
+        Reasons for caution about the numbers, one line each.
+    """
+
+    ratio: CheckedRatio
+    vibration: VibrationOrigin
     caveats: tuple[str, ...]
 
 
 def simulate(rig: Rig) -> Simulation:
-    """Return the steady vibration of a rig under its drive, and friction and wear under it.
+    """Return the steady vibration of a rig by the source of its amplitude, and friction and wear under it.
 
     Parameters
     ----------
     rig : Rig
-        With a stack, a structure and a drive voltage.
 
     Returns
     -------
@@ -60,57 +86,303 @@ def simulate(rig: Rig) -> Simulation:
     Raises
     ------
     InvalidInput
-        If the rig has no structure, its voltage goes beyond the stack's limits, or no
-        motion was found.
+        If the rig has no amplitude by the source it names, or neither harmonic balance nor marching finds a motion.
+    OutsideRange
+        If the load leaves no separation between the surfaces, the drive is too slow beside the structure's fastest
+        mode, or a stated amplitude leaves the range of the height distribution.
 
     Notes
     -----
-    A vibration of the period of the drive is computed by harmonic balance; where that is unstable, not the only one or
-    not found, the rig is marched in time from rest (see `steady_vibration`).
+    A motion that does not repeat gives the mean over periods of the drive, segment by segment.
     """
-    rig = driven_rig(rig)
-    gap = rest_separation(rig)
-    vibration = steady_vibration(rig)
-    caveats = (*contact_caveats(rig.contact, separation=gap), *_caveats(rig, vibration))
-    friction = friction_under(
-        rig,
-        ratio=_mean_friction(rig, vibration.motions),
-        vibration_amplitude=vibration.vibration_amplitude,
-        actuator_power=float(amplifier_power(rig.drive, capacitance=rig.stack.free_capacitance)),
-        caveats=caveats,
-    )
+    rest_separation(rig)
+    used, vibration = resolved_vibration(rig), steady_vibration(rig)
+    origin, caveats = _origin(vibration), _caveats(rig, used, vibration)
+    friction = _friction_point(rig, vibration, origin, caveats)
     return Simulation(
         status=OUTSIDE_MODEL_RANGE if friction.reason else vibration.status,
         reason=friction.reason or vibration.reason,
         vibration=vibration,
         friction=friction,
-        wear=wear_under(
-            rig,
-            ratio=_mean([wear_rate_ratio(rig, motion) for motion in vibration.motions], vibration.motions),
-            model=wear_model_of(rig),
-            vibration_amplitude=vibration.vibration_amplitude,
-            caveats=caveats,
-            reason=friction.reason if wear_model_of(rig) == friction.friction_model else None,
-        ),
+        wear=_wear_point(rig, vibration, wear_model_of(rig), caveats, friction),
+        energy_balance=_energy_balance(friction.actuator_power, vibration.dissipated_power),
         caveats=caveats,
     )
 
 
-def _mean_friction(rig: DrivenRig, motions: tuple[GapMotion, ...]) -> CheckedRatio:
-    """Return the mean friction ratio over several motions; that of the first outside the model's range withholds it."""
-    every = [friction_ratios(rig, motion, sliding_speed=rig.sliding_speed) for motion in motions]
-    raw = _mean([float(one.raw_friction_ratio) for one in every], motions)
-    reason = next((str(one.reason) for one in every if one.reason), "")
-    valid = np.asarray(np.nan if reason else raw)
-    return CheckedRatio(friction_ratio=valid, raw_friction_ratio=np.asarray(raw), reason=np.asarray(reason))
+def friction_point(rig: Rig, *, model: str | None = None) -> FrictionPoint:
+    """Return the friction of a rig under its vibration, by the source of its amplitude.
+
+    Parameters
+    ----------
+    rig : Rig
+    model : str, optional
+        Name of a friction model instead of the rig's own; it takes over those of the rig's parameters that it has.
+
+    Returns
+    -------
+    FrictionPoint
+
+    Raises
+    ------
+    InvalidInput
+        If the rig has no amplitude by the source it names, or no frequency or sliding speed and the model needs it.
+    OutsideRange
+        If the surfaces would be pressed through each other, so that no separation is left.
+    UnknownName
+        If there is no such model.
+    """
+    rest_separation(rig)
+    chosen = rig if model is None else replace(rig, friction_model=_model_of(rig, model))
+    used = resolved_vibration(chosen)
+    try:
+        vibration = steady_vibration(chosen)
+    except OutsideRange as refusal:
+        if used.driven is not None:
+            raise
+        return friction_under(
+            chosen,
+            ratio=_outside(refusal, chosen.sliding_speed),
+            vibration=_stated_origin(used),
+            actuator_power=_amplifier_power(chosen),
+            caveats=contact_caveats(chosen.contact, separation=rest_separation(chosen)),
+            others=_models_that_hold(chosen),
+        )
+    return _friction_point(chosen, vibration, _origin(vibration), _caveats(chosen, used, vibration))
 
 
-def _mean(values: Sequence[float], motions: tuple[GapMotion, ...]) -> float:
-    """Return the mean over time of a quantity of several motions of unequal duration."""
-    return float(np.average(values, weights=[1 / motion.frequency for motion in motions]))
+def wear_point(rig: Rig, *, model: str | None = None) -> WearPoint:
+    """Return the wear of a rig with and without its vibration, by the source of its amplitude.
+
+    Parameters
+    ----------
+    rig : Rig
+    model : str, optional
+        Name of the wear model; that of the friction model's name where absent, else the default one.
+
+    Returns
+    -------
+    WearPoint
+
+    Raises
+    ------
+    OutsideRange
+        If the surfaces would be pressed through each other, so that no separation is left.
+    UnknownName
+        If there is no such model.
+
+    References
+    ----------
+    .. [1] D 3.26 to 3.29 as they were evaluated, for the default model.
+    """
+    rest_separation(rig)
+    name = wear_model_of(rig) if model is None else model
+    WEAR_MODELS.named(name)
+    used, vibration = resolved_vibration(rig), steady_vibration(rig)
+    return _wear_point(rig, vibration, name, _caveats(rig, used, vibration), None)
 
 
-def _caveats(rig: DrivenRig, vibration: SteadyVibration) -> tuple[str, ...]:
+def vibrated_friction(rig: Rig, *, sliding_speed: ArrayLike) -> VibratedFriction:
+    """Return the friction ratios of a rig under its vibration at some sliding speeds.
+
+    Parameters
+    ----------
+    rig : Rig
+    sliding_speed : array_like, any shape
+        Macroscopic relative speed. [m/s]
+
+    Returns
+    -------
+    VibratedFriction
+
+    Raises
+    ------
+    InvalidInput
+        If a speed is not positive, or the rig has no amplitude by the source it names.
+    """
+    used = resolved_vibration(rig)
+    try:
+        vibration = steady_vibration(rig)
+    except OutsideRange as refusal:
+        if used.driven is not None:
+            raise
+        return VibratedFriction(ratio=_outside(refusal, sliding_speed), vibration=_stated_origin(used), caveats=())
+    return VibratedFriction(
+        ratio=mean_friction(rig, vibration.motions, sliding_speed=sliding_speed),
+        vibration=_origin(vibration),
+        caveats=_caveats(rig, used, vibration),
+    )
+
+
+def operating_caveats(rig: Rig) -> tuple[str, ...]:
+    """Return the caveats of a rig at its own operating point, for results over many points about it.
+
+    Parameters
+    ----------
+    rig : Rig
+
+    Returns
+    -------
+    tuple of str
+        Of contact, amplitude, stack and gap; empty where the rig has no operating point.
+    """
+    try:
+        return _caveats(rig, resolved_vibration(rig), steady_vibration(rig))
+    except SonolubeError:
+        return ()
+
+
+def _friction_point(
+    rig: Rig, vibration: SteadyVibration, origin: VibrationOrigin, caveats: tuple[str, ...]
+) -> FrictionPoint:
+    ratio = mean_friction(rig, vibration.motions, sliding_speed=rig.sliding_speed)
+    return friction_under(
+        rig,
+        ratio=ratio,
+        vibration=origin,
+        actuator_power=_amplifier_power(rig),
+        caveats=caveats,
+        others=_models_that_hold(rig, vibration) if ratio.reason else "",
+    )
+
+
+def _wear_point(
+    rig: Rig, vibration: SteadyVibration, model: str, caveats: tuple[str, ...], friction: FrictionPoint | None
+) -> WearPoint:
+    ratio, reason = _wear_ratio(rig, vibration, model)
+    if not reason and friction is not None and friction.reason and friction.friction_model == model:
+        reason = friction.reason
+    return wear_under(rig, ratio=ratio, model=model, vibration=_origin(vibration), caveats=caveats, reason=reason)
+
+
+def _wear_ratio(rig: Rig, vibration: SteadyVibration, model: str) -> tuple[float, str | None]:
+    """Return the wear ratio of a model, and the reason for which it does not hold."""
+    ratio, smallest = _raw_wear_ratio(rig, vibration, model)
+    if smallest > 0:
+        return ratio, None
+    others = [(name, *_raw_wear_ratio(rig, vibration, name)) for name in WEAR_MODELS if name != model]
+    holding = [(value, name) for name, value, gap in others if gap > 0]
+    amplitude, rest = format_si(vibration.vibration_amplitude, "m"), format_si(rest_separation(rig), "m")
+    if vibration.prescribed and model != _RISING_WEAR_MODEL:
+        why = (
+            f"the amplitude {amplitude} exceeds the gap at rest {rest}, about which no dead load can hold the surfaces"
+        )
+    else:
+        why = f"the mean planes meet under the amplitude of {amplitude}, where the cube has no height"
+    reason = f"{OUTSIDE_MODEL_RANGE}: {why}; wear model {model} has no meaning"
+    return ratio, f"{reason}; {_range_text(holding, 'wear')}"
+
+
+def _raw_wear_ratio(rig: Rig, vibration: SteadyVibration, model: str) -> tuple[float, float]:
+    """Return the wear ratio by the formula of a model, and the smallest gap of the motion that it is for. [m]"""
+    rest, load = rest_separation(rig), rig.normal_load
+    motions = vibration.motions
+    if vibration.prescribed and model != _RISING_WEAR_MODEL:  # as D evaluated them, about the gap at rest
+        a = vibration.vibration_amplitude
+        motions = (
+            sinusoidal_motion(
+                rig.contact, normal_load=load, vibration_amplitude=a, frequency=vibration.motions[0].frequency
+            ),
+        )
+        if model == DEFAULT_WEAR_MODEL:  # by quadrature of the sine itself
+            still = cube_wear_rate(rig.contact, normal_load=load)
+            vibrating = vibrating_cube_wear_rate(rig.contact, normal_load=load, vibration_amplitude=a)
+            return float(vibrating / still), rest - a
+    smallest = rest + min(float(motion.displacement.min()) for motion in motions)
+    return _mean_wear_ratio(rig, motions, model), smallest
+
+
+def _mean_wear_ratio(rig: Rig, motions: tuple[GapMotion, ...], model: str) -> float:
+    ratio = WEAR_MODELS[model]
+    return float(mean_over_time([np.asarray(ratio(rig.contact, motion)) for motion in motions], motions))
+
+
+_RISING_WEAR_MODEL = "dong_2015_load_balanced"
+
+
+def _models_that_hold(rig: Rig, vibration: SteadyVibration | None = None) -> str:
+    """Return the range of the friction ratio by the other friction models that hold for a rig's vibration."""
+    holding = []
+    for name in FRICTION_MODELS:
+        if name == rig.friction_model.name:
+            continue
+        other = replace(rig, friction_model=_model_of(rig, name))
+        try:
+            same = vibration is not None and not vibration.prescribed
+            motions = vibration.motions if vibration is not None and same else steady_vibration(other).motions
+            found = mean_friction(other, motions, sliding_speed=rig.sliding_speed)
+        except SonolubeError:
+            continue
+        if not found.reason:
+            holding.append((float(found.friction_ratio), name))
+    return _range_text(holding, "friction")
+
+
+def _range_text(holding: list[tuple[float, str]], of: str) -> str:
+    """Return the range of ratios by the models that hold, in words."""
+    if not holding:
+        return f"no {of} model holds for this vibration"
+    (low, first), (high, last) = min(holding), max(holding)
+    if first == last:
+        return f"of the {of} models {first} holds: ratio {low:.3g}"
+    return f"the {of} models that hold give ratios from {low:.3g} ({first}) to {high:.3g} ({last})"
+
+
+def _model_of(rig: Rig, name: str) -> FrictionModel:
+    """Return the friction model of a name, with those parameters of the rig's model that it has too."""
+    model = FRICTION_MODELS.named(name)
+    shared = {each.name for each in model.parameters()} & {each.name for each in rig.friction_model.parameters()}
+    return model(**{key: getattr(rig.friction_model, key) for key in shared})
+
+
+def _outside(refusal: OutsideRange, sliding_speed: ArrayLike) -> CheckedRatio:
+    none = np.full(np.shape(sliding_speed), np.nan)
+    reason = np.full(none.shape, f"{OUTSIDE_MODEL_RANGE}: {refusal}")
+    return CheckedRatio(friction_ratio=none, raw_friction_ratio=none, reason=reason)
+
+
+def _origin(vibration: SteadyVibration) -> VibrationOrigin:
+    return VibrationOrigin(
+        amplitude=vibration.vibration_amplitude, source=vibration.amplitude_source, text=vibration.amplitude_origin
+    )
+
+
+def _stated_origin(used: ResolvedVibration) -> VibrationOrigin:
+    assert used.sine_amplitude is not None
+    return VibrationOrigin(amplitude=used.sine_amplitude, source=used.source, text=used.text)
+
+
+def _amplifier_power(rig: Rig) -> float | None:
+    capacitance = actuator_capacitance(rig)
+    if rig.drive is None or rig.drive.voltage_peak_to_peak is None or capacitance is None:
+        return None
+    return float(amplifier_power(rig.drive, capacitance=capacitance))
+
+
+def _energy_balance(supplied: float | None, dissipated: float | None) -> str | None:
+    """Return how the power of the amplifier and that of the motion compare, and why."""
+    if supplied is None or dissipated is None:
+        return None
+    capacitive, motional = format_si(supplied, "W"), format_si(dissipated, "W")
+    which = (
+        f"{capacitive} charges the actuator's capacitance alone, from the supply of a linear amplifier (D 1.9);"
+        f" {motional} is what the computed motion turns into heat in stack, dampers and contact"
+    )
+    if dissipated <= supplied:
+        return which
+    return f"{which}: D 1.9 leaves the current of the motion out, so that the amplifier must supply the larger"
+
+
+def _caveats(rig: Rig, used: ResolvedVibration, vibration: SteadyVibration) -> tuple[str, ...]:
+    """Return the caveats of contact, amplitude, stack and gap."""
+    return (
+        *contact_caveats(rig.contact, separation=rest_separation(rig)),
+        *source_caveats(rig),
+        *([] if used.driven is None else _stack_caveats(used.driven, vibration)),
+    )
+
+
+def _stack_caveats(rig: DrivenRig, vibration: SteadyVibration) -> tuple[str, ...]:
     voltage = complex(voltage_harmonics(rig.drive)[0])
     caveats = stack_caveats(
         rig.stack,

@@ -8,7 +8,7 @@ from sonolube.dynamics.attractor import beat, settling_time
 from sonolube.dynamics.trajectories import Trajectory
 from sonolube.dynamics.transient import march, trajectory
 from sonolube.errors import InvalidInput
-from sonolube.rig.driven_rig import driven_rig
+from sonolube.rig.amplitude_source import moved_rig
 from sonolube.rig.excitation import drive_and_load
 from sonolube.rig.linear_response import gap_law_of, rest_separation
 from sonolube.rig.record import Rig
@@ -71,7 +71,7 @@ def start_up(rig: Rig, *, duration: float) -> StartUp:
     -----
     D figure 3.13 in kind.
     """
-    rig = driven_rig(rig)
+    rig = moved_rig(rig)
     structure, drive = rig.structure, rig.drive
     rest_separation(rig)
     periods = math.ceil(float(require_positive(duration=duration)) * drive.frequency)

@@ -1,6 +1,6 @@
 """Steady vibration of the tip of a rig: by harmonic balance where periodic and stable, else by time marching."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -11,12 +11,17 @@ from sonolube.contact import GapMotion, separation
 from sonolube.dynamics import Status, SteadyStates, contact_motion, steady_state
 from sonolube.dynamics.long_time_response import LongTimeResponse, march_until_settled
 from sonolube.errors import OutsideRange
-from sonolube.rig.driven_rig import DrivenRig, driven_rig
+from sonolube.friction.models import MeanGap
+from sonolube.rig.amplitude_source import ResolvedVibration, resolved_vibration
+from sonolube.rig.driven_rig import DrivenRig
 from sonolube.rig.excitation import drive_and_load, voltage_harmonics
-from sonolube.rig.linear_response import gap_law_of
-from sonolube.rig.record import Rig
+from sonolube.rig.friction_and_wear import prescribed_sine
+from sonolube.rig.linear_response import gap_law_of, rest_separation
+from sonolube.rig.record import AmplitudeSource, Rig
 from sonolube.units import format_si
 
+_MEAN_GAPS = {MeanGap.AT_REST: "at rest", MeanGap.LOAD_BALANCED: "that balances the load"}
+_CONTACT_LOSS = 0.01  # force over load below which contact counts as lost
 _SAMPLES = 1024
 _SEGMENTS = 16  # of a motion whose beat is too fast or too slow to cut at
 _LONGEST_SEGMENT = 40_000  # steps between cuts, from which period averages can still be refined
@@ -29,6 +34,12 @@ class SteadyVibration:
 
     Parameters
     ----------
+    amplitude_source : {"measured", "computed", "per-volt"}
+        Where the amplitude comes from.
+    amplitude_origin : str
+        The same in words, with the numbers behind it.
+    prescribed : bool
+        Whether it is a sine of a stated amplitude about the mean gap that the friction model is meant for.
     status : str
         "periodic", "unstable", "multistable" or "not_converged", as harmonic balance found it.
     reason : str
@@ -53,14 +64,17 @@ class SteadyVibration:
         Its amplitude. [m]
     coexisting_amplitude : float or None
         Amplitude of another steady vibration under the same drive, where one was found. [m]
-    dissipated_power : float
-        Mean electrical power that stays in stack, dampers and contact. [W]
+    dissipated_power : float or None
+        Mean electrical power that stays in stack, dampers and contact; None for a prescribed sine. [W]
     elongation : complex
         First harmonic of the stack's elongation. [m]
     gap_closed : bool
         Whether the mean planes touch.
     """
 
+    amplitude_source: AmplitudeSource
+    amplitude_origin: str
+    prescribed: bool
     status: str
     reason: str
     attractor: str
@@ -74,18 +88,17 @@ class SteadyVibration:
     beat_frequency: float | None
     beat_amplitude: float | None
     coexisting_amplitude: float | None
-    dissipated_power: float
+    dissipated_power: float | None
     elongation: complex
     gap_closed: bool
 
 
 def steady_vibration(rig: Rig) -> SteadyVibration:
-    """Return the steady vibration of the tip of a rig under its drive after transients have decayed.
+    """Return the steady vibration of a rig by the source of its amplitude, after transients have decayed.
 
     Parameters
     ----------
     rig : Rig
-        With a stack, a structure and a drive voltage.
 
     Returns
     -------
@@ -94,16 +107,56 @@ def steady_vibration(rig: Rig) -> SteadyVibration:
     Raises
     ------
     InvalidInput
-        If the rig has no structure, or neither harmonic balance nor marching finds a motion.
+        If the rig has no such amplitude, or neither harmonic balance nor marching finds a motion of its structure.
     OutsideRange
-        If the drive is too slow beside the structure's fastest mode.
+        If the drive is too slow beside the structure's fastest mode, or a stated amplitude leaves the range of the
+        height distribution.
 
     Notes
     -----
-    A periodic vibration that is stable and the only one found is the answer. Otherwise the rig is marched in time from
-    rest, with the start-up ramp of its drive, until transients have decayed.
+    A periodic vibration of a structure that is stable and the only one found is the answer. Otherwise the rig is
+    marched in time from rest, with the start-up ramp of its drive, until transients have decayed.
     """
-    rig = driven_rig(rig)
+    used = resolved_vibration(rig)
+    found = _sine(rig, used) if used.driven is None else _of_structure(used.driven)
+    return replace(found, amplitude_source=used.source, amplitude_origin=used.text)
+
+
+def _sine(rig: Rig, used: ResolvedVibration) -> SteadyVibration:
+    """Return a sine of the stated amplitude, about the mean gap that the friction model is meant for."""
+    assert used.sine_amplitude is not None
+    rest_separation(rig)
+    motion = prescribed_sine(rig, vibration_amplitude=used.sine_amplitude)
+    return SteadyVibration(
+        amplitude_source=used.source,
+        amplitude_origin=used.text,
+        prescribed=True,
+        status="periodic",
+        reason=f"periodic: a sine about the mean gap {_MEAN_GAPS[rig.friction_model.mean_gap]}",
+        attractor="periodic",
+        repetition_periods=1,
+        motions=(motion,),
+        vibration_amplitude=used.sine_amplitude,
+        lowest_amplitude=None,
+        highest_amplitude=None,
+        mean_displacement=float(motion.displacement.mean()),
+        contact_loss_fraction=contact_loss_fraction(motion),
+        beat_frequency=None,
+        beat_amplitude=None,
+        coexisting_amplitude=None,
+        dissipated_power=None,
+        elongation=0j,
+        gap_closed=bool(motion.displacement.min() <= -rest_separation(rig)),
+    )
+
+
+def contact_loss_fraction(motion: GapMotion) -> float:
+    """Return the share of a period in which the contact carries less than a hundredth of the load. []"""
+    return float(np.mean(motion.normal_force < _CONTACT_LOSS * motion.normal_load))
+
+
+def _of_structure(rig: DrivenRig) -> SteadyVibration:
+    """Return the steady vibration that the structure of a rig takes up under its drive."""
     balanced = _balanced(rig, upper_branch=False)
     if balanced.status == Status.PERIODIC:
         return _of_balance(rig, balanced, balanced.reason(()))
@@ -194,6 +247,9 @@ def _of_balance(rig: DrivenRig, states: SteadyStates, reason: str) -> SteadyVibr
     charge = complex(states.current_harmonics[0]) / (2j * np.pi * drive.frequency)
     moved = charge - states.structure.clamped_capacitance * complex(states.voltage_harmonics[0])
     return SteadyVibration(
+        amplitude_source="computed",
+        amplitude_origin="",
+        prescribed=False,
         status=Status(int(states.status)).name.lower(),
         reason=reason,
         attractor="periodic",
@@ -227,6 +283,9 @@ def _of_march(rig: DrivenRig, attained: LongTimeResponse, balanced: SteadyStates
         reason += f"; friction and wear are means over {periods:.0f} periods of the drive in {len(motions)} segments"
     unstable = float(balanced.vibration_amplitude)
     return SteadyVibration(
+        amplitude_source="computed",
+        amplitude_origin="",
+        prescribed=False,
         status=Status(int(balanced.status)).name.lower(),
         reason=reason,
         attractor=str(found.kind),

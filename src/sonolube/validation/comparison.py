@@ -50,7 +50,7 @@ _FORMER_NAMES: Final = {
     "load-balanced-per-rig": "dong-2015-load-balanced-per-rig",
     "stick-slip-mindlin": "asperity-stick-slip-mindlin",
     "stick-slip-mindlin-per-rig": "asperity-stick-slip-mindlin-per-rig",
-    "stick-slip": "asperity-stick-slip",
+    "stick-slip": "asperity-stick-slip-fitted",
     "stick-slip-in-plane": "asperity-stick-slip-in-plane",
     "stick-slip-in-plane-pins": "asperity-stick-slip-in-plane-pins",
     "stick-slip-in-plane-per-rig": "asperity-stick-slip-in-plane-per-rig",

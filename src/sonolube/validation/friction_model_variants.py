@@ -61,6 +61,11 @@ def asperity_stick_slip(
     return model.ratio(test.contact, _balanced(test), sliding_speed=test.sliding_speed)
 
 
+def _default_stick_slip(test: FrictionTest) -> Floats:
+    """Return the friction ratio of a test by asperity stick-slip with the package's own memory length. []"""
+    return asperity_stick_slip(test, memory_length=friction.EMPIRICAL_MEMORY_LENGTH)
+
+
 def mindlin_stick_slip(test: FrictionTest, friction_coefficient_factor: float = 1.0) -> Floats:
     """Return the friction ratio of a test by asperity stick-slip with the memory length of Mindlin. []"""
     length = friction.mindlin_memory_length(
@@ -180,7 +185,12 @@ FRICTION_MODEL_VARIANTS: Final = (
         per_rig((FRICTION_COEFFICIENT_FACTOR,), *FITTED_RIGS),
     ),
     ModelVariant(
-        "asperity-stick-slip", "asperity stick-slip, memory length fitted", asperity_stick_slip, (MEMORY_LENGTH,)
+        "asperity-stick-slip",
+        "asperity stick-slip with the default memory length of 1.5 um, which was fitted to all sets but B",
+        _default_stick_slip,
+    ),
+    ModelVariant(
+        "asperity-stick-slip-fitted", "asperity stick-slip, memory length fitted", asperity_stick_slip, (MEMORY_LENGTH,)
     ),
     ModelVariant(
         "asperity-stick-slip-in-plane",

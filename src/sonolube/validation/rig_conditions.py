@@ -5,9 +5,9 @@ from math import inf, isfinite, pi
 
 from sonolube.contact import RoughContact
 from sonolube.errors import InvalidInput
-from sonolube.rig import Rig
+from sonolube.rig import Rig, steady_vibration
 
-_FIELDS_OF_RIG = ("contact", "normal_load", "friction_coefficient", "sliding_speed", "vibration_amplitude")
+_FIELDS_OF_RIG = ("contact", "normal_load", "friction_coefficient", "sliding_speed")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -82,7 +82,8 @@ def vibrated_rig(rig: Rig) -> VibratedRig:
     InvalidInput
         If the rig does not vibrate or does not slide.
     """
-    for name, value in (("vibration_amplitude", rig.vibration_amplitude), ("sliding_speed", rig.sliding_speed)):
+    amplitude = steady_vibration(rig).vibration_amplitude
+    for name, value in (("vibration_amplitude", amplitude), ("sliding_speed", rig.sliding_speed)):
         if value == 0:
             raise InvalidInput(f"{rig.title}: {name} is 0; models of friction under vibration need it positive")
     model = rig.friction_model
@@ -90,7 +91,8 @@ def vibrated_rig(rig: Rig) -> VibratedRig:
     return VibratedRig(
         label=rig.title,
         **{name: getattr(rig, name) for name in _FIELDS_OF_RIG},
+        vibration_amplitude=amplitude,
         frequency=None if rig.drive is None else rig.drive.frequency,
-        in_plane_amplitude=fraction * rig.vibration_amplitude if fraction else None,
+        in_plane_amplitude=fraction * amplitude if fraction else None,
         holder_stiffness=stiffness if isfinite(stiffness) else None,
     )

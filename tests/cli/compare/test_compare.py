@@ -8,13 +8,17 @@ import pytest
 from pytest import approx
 
 Program = Callable[..., Any]
-QUICK = ("--model", "asperity-stick-slip", "--model", "kinematic", "--model", "dahl-driven")
+QUICK = ("--model", "asperity-stick-slip-fitted", "--model", "kinematic", "--model", "dahl-driven")
 
 
 def test_errors_fits_and_predictions_of_a_rig_are_in_the_answer(tmp_path: Path, sonolube: Program, rigs: Path) -> None:
     answer = sonolube("compare", rigs / "tribometer.toml", *QUICK, "--json", "--out", tmp_path).answer
     stick_slip, kinematic, driven = answer["models"]
-    assert (stick_slip["name"], kinematic["name"], driven["errors"]) == ("asperity-stick-slip", "kinematic", None)
+    assert (stick_slip["name"], kinematic["name"], driven["errors"]) == (
+        "asperity-stick-slip-fitted",
+        "kinematic",
+        None,
+    )
     (memory,) = stick_slip["fitted"]
     assert memory["bounds"][0] <= memory["interval"][0] < memory["value"] < memory["interval"][1]
     predicted = {one["model"]: one for one in answer["rig"]["predictions"]}

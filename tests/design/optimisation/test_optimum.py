@@ -34,7 +34,7 @@ from sonolube.rig import Rig, least_power_study, point_batch, read_rig, rig_cont
 from sonolube.rig.driven_rig import driven_rig
 
 FILE = Path(__file__).parents[3] / "examples" / "rigs" / "tribometer.toml"
-RIG = driven_rig(read_rig(FILE))
+RIG = driven_rig(read_rig(FILE, changes=["vibration.amplitude_source=computed"]))
 ENTRIES = structure_entries(rig_content(FILE))
 CATALOGUE = {name: catalogue_actuator(name) for name in catalogue_names()}
 RATIO = 0.44

@@ -12,7 +12,7 @@ def test_each_reported_variant_has_a_row_for_every_reduction_in_its_range() -> N
     rows = {row.id: row for row in variant_rows()}
     reductions = [test for test in friction_tests() if test.published]
     assert len(rows) == len(REPORTED) * len(reductions) - 3  # the gap closes over the full period: welder, B-5
-    row = rows["friction-model-asperity-stick-slip-A-1"]
+    row = rows["friction-model-asperity-stick-slip-fitted-A-1"]
     assert (row.source, row.unit, row.published) == ("Table 2.5", "%", 62.22)
     assert row.note.startswith(
         "Asperity stick-slip, memory length fitted; fitted on sets A, C, D, E, F, G: memory_length 1.6"

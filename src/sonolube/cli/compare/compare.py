@@ -1,8 +1,9 @@
 """Command `compare`: models of friction under vibration against published tests, and on a rig."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from math import isfinite
+from itertools import combinations
+from math import hypot, isfinite
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -10,12 +11,12 @@ import typer
 import xarray as xr
 
 from sonolube.cli.console.answer import Answer, deliver
-from sonolube.cli.console.options import OUT, Changes, Json, Out
+from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, loaded_rig
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
 from sonolube.errors import InvalidInput
 from sonolube.report import Drawing
-from sonolube.rig import Rig, read_rig
+from sonolube.rig import FrictionPoint, Rig, friction_point
 from sonolube.units import format_si
 from sonolube.validation.comparison import (
     DATA_SETS,
@@ -42,6 +43,7 @@ def compare(
     models: Annotated[
         list[str] | None, typer.Option("--model", metavar="NAME", help="Only this model; may come again.")
     ] = None,
+    amplitude: Amplitude = None,
     changes: Changes = None,
     out: Annotated[Out, OutputFolder("models.csv models.nc models-*.*")] = OUT,
     json: Json = False,
@@ -50,14 +52,17 @@ def compare(
 
     Example: sonolube compare examples/rigs/tribometer.toml --model asperity-stick-slip --model kinematic
     """
-    if rig is None and changes:
-        raise InvalidInput("--set changes a rig: name one, such as examples/rigs/tribometer.toml")
-    known = None if rig is None else read_rig(rig, changes=changes or ())
+    if rig is None and (changes or amplitude):
+        raise InvalidInput(
+            "--set changes a rig, and --amplitude is of one: name one, such as examples/rigs/tribometer.toml"
+        )
+    known = None if rig is None else loaded_rig(rig, changes=changes, amplitude=amplitude)
     point = None if known is None else vibrated_rig(known)
     with progress("comparing") as advance:
         fits = compare_models(compared_models(models or ()), advance=advance)
         predictions = () if point is None else predict_rig(fits, point)
-    deliver(ComparisonAnswer(fits=fits, rig=known, predictions=predictions), folder=out, as_json=json)
+    own = None if known is None else friction_point(known)
+    deliver(ComparisonAnswer(fits=fits, rig=known, own=own, predictions=predictions), folder=out, as_json=json)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,6 +71,7 @@ class ComparisonAnswer(Answer):
 
     fits: tuple[ComparedFit, ...]
     rig: Rig | None
+    own: FrictionPoint | None
     predictions: tuple[RigPrediction, ...]
 
     def lines(self) -> list[str]:
@@ -78,7 +84,7 @@ class ComparisonAnswer(Answer):
             *[f"  {line}" for one in self.fits if one.assessment for line in _error_lines(one, width)],
             *[f"  not fitted: set {letter}: {reason}" for letter, reason in ONLY_PREDICTED.items()],
             *[f"  not reached: {line}" for one in self.fits for line in _refusals(one)],
-            *([] if self.rig is None else _rig_lines(self.rig, self.predictions, width)),
+            *([] if self.rig is None or self.own is None else _rig_lines(self.rig, self.own, self.predictions, width)),
         ]
 
     def object(self) -> dict[str, Any]:
@@ -88,7 +94,13 @@ class ComparisonAnswer(Answer):
             "only_predicted": dict(ONLY_PREDICTED),
             "models": [_model_object(one) for one in self.fits],
         }
-        return content if self.rig is None else content | {"rig": _rig_object(self.rig, self.predictions)}
+        if self.rig is None or self.own is None:
+            return content
+        return content | {"rig": _rig_object(self.rig, self.own, self.predictions)}
+
+    def caveats(self) -> Sequence[str]:
+        """Those of the rig at its operating point."""
+        return () if self.own is None else self.own.caveats
 
     def figures(self) -> Mapping[str, Drawing]:
         """Predicted against measured ratios, ratios over speed and amplitude, and the predictions of the rig."""
@@ -131,12 +143,19 @@ def _refusals(one: ComparedFit) -> Iterator[str]:
             yield f"{one.model.name}: {reason} ({', '.join(labels) if len(labels) < 6 else f'{len(labels)} tests'})"
 
 
-def _rig_lines(rig: Rig, predictions: tuple[RigPrediction, ...], width: int) -> Iterator[str]:
-    """Friction ratio and force of a rig by each applicable model."""
+def _rig_lines(rig: Rig, own: FrictionPoint, predictions: tuple[RigPrediction, ...], width: int) -> Iterator[str]:
+    """Friction ratio and force of a rig by its own model, as other commands have it, and by each applicable one."""
     yield (
         f"{rig.title}, {format_si(rig.normal_load, 'N')}, {format_si(rig.sliding_speed, 'm/s')}, "
-        f"{format_si(rig.vibration_amplitude, 'm')}"
+        f"{format_si(own.vibration_amplitude, 'm')}: {own.amplitude_origin}"
     )
+    name = f"{own.friction_model}, its own"
+    width = max(width, len(name))
+    if own.reason:
+        yield f"  {name:<{width}}  {own.reason}"
+    else:
+        yield f"  {name:<{width}}  ratio {own.friction_ratio:.3f}  friction {format_si(own.friction_force, 'N')}"
+    yield from _disagreement(predictions)
     steady = rig.friction_coefficient * rig.normal_load
     for one in predictions:
         if one.friction_ratio is None:
@@ -147,6 +166,21 @@ def _rig_lines(rig: Rig, predictions: tuple[RigPrediction, ...], width: int) -> 
     for one in predictions:
         if one.reason:
             yield f"  not applicable: {one.model.name}: {one.reason}"
+
+
+def _disagreement(predictions: tuple[RigPrediction, ...]) -> Iterator[str]:
+    """Line where the two models that differ most for their errors differ by more than these."""
+    known = [(one.friction_ratio, one.uncertainty, one.model.name) for one in predictions if one.uncertainty]
+    pairs = [
+        (abs(first[0] - second[0]) / hypot(first[1], second[1]), first, second)
+        for first, second in combinations([(r, u, name) for r, u, name in known if r is not None and u], 2)
+    ]
+    beyond, first, second = max(pairs, default=(0.0, ("", 0.0, ""), ("", 0.0, "")), key=lambda pair: pair[0])
+    if beyond > 1:
+        yield (
+            f"  models differ by more than their errors: {first[2]} {first[0]:.2f} +- {first[1]:.2f},"
+            f" {second[2]} {second[0]:.2f} +- {second[1]:.2f}"
+        )
 
 
 def _model_object(one: ComparedFit) -> dict[str, Any]:
@@ -200,10 +234,19 @@ def _prediction_object(prediction: Prediction) -> dict[str, Any]:
     }
 
 
-def _rig_object(rig: Rig, predictions: tuple[RigPrediction, ...]) -> dict[str, Any]:
+def _rig_object(rig: Rig, own: FrictionPoint, predictions: tuple[RigPrediction, ...]) -> dict[str, Any]:
     """Predictions of a rig for JSON."""
     return {
         "title": rig.title,
+        "own_model": {
+            "model": own.friction_model,
+            "friction_ratio": _finite(own.friction_ratio),
+            "reason": own.reason,
+            "amplitude_source": own.amplitude_source,
+            "amplitude_origin": own.amplitude_origin,
+            "vibration_amplitude": own.vibration_amplitude,
+        },
+        "disagreement": list(_disagreement(predictions)),
         "predictions": [
             {"model": one.model.name} | {name: getattr(one, name) for name in _PREDICTED} for one in predictions
         ],

@@ -8,12 +8,12 @@ from typing import Annotated, Any
 import typer
 
 from sonolube.cli.console.answer import Answer, deliver, si
-from sonolube.cli.console.options import OUT, Changes, Json, Out
+from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, loaded_rig
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.errors import InvalidInput
 from sonolube.published import PreviousStudy, Statement, previous_studies
 from sonolube.report import Drawing
-from sonolube.rig import Rig, friction_point, read_rig
+from sonolube.rig import Rig, friction_point
 from sonolube.units import format_si
 from sonolube.validation.previous_study_map import StudyPoint, study_map
 from sonolube.vocabulary import quantity, unit_of
@@ -23,6 +23,7 @@ def literature(
     rig: Annotated[
         Path | None, typer.Argument(metavar="RIG.toml", help="A rig to draw among the studies; none by default.")
     ] = None,
+    amplitude: Amplitude = None,
     changes: Changes = None,
     out: Annotated[Out, OutputFolder("map-of-studies.*")] = OUT,
     json: Json = False,
@@ -31,11 +32,13 @@ def literature(
 
     Example: sonolube literature examples/rigs/tribometer.toml
     """
-    if rig is None and changes:
-        raise InvalidInput("--set changes a rig: name one, such as examples/rigs/tribometer.toml")
+    if rig is None and (changes or amplitude):
+        raise InvalidInput(
+            "--set changes a rig, and --amplitude is of one: name one, such as examples/rigs/tribometer.toml"
+        )
     known = point = outside = None
     if rig is not None:
-        known = read_rig(rig, changes=changes or ())
+        known = loaded_rig(rig, changes=changes, amplitude=amplitude)
         speed = known.sliding_speed
         if not speed > 0:
             raise InvalidInput(f"{rig}: the map needs a sliding.sliding_speed above 0")

@@ -146,11 +146,19 @@ def _write(answer: Answer, folder: Path, context: typer.Context | None) -> list[
         ]
         with progress("drawing") as advance:
             contents |= rendered_files(drawings, page=page, notes=notes, advance=advance)
-    contents |= answer.files()
+    contents |= {name: _with_notes(content, answer) for name, content in answer.files().items()}
     for name, content in contents.items():
         if not isinstance(content, Path):
             expect_target(folder / name)
     return [_written(folder / name, content) for name, content in contents.items()]
+
+
+def _with_notes(content: "Content", answer: Answer) -> "Content":
+    """Content of a file; a dataset with caveats and assumptions of the answer among its attributes."""
+    if isinstance(content, str | bytes | Path):
+        return content
+    assumed = "\n".join(f"{key}: {reason}" for key, reason in answer.assumptions().items())
+    return content.assign_attrs(caveats="\n".join(answer.caveats()), assumptions=assumed)
 
 
 def _written(path: Path, content: "Content") -> Path:

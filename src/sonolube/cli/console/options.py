@@ -1,6 +1,7 @@
 """Options that several commands share, and quantities given as options."""
 
 from collections.abc import Callable, Sequence
+from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Self
 
@@ -12,6 +13,15 @@ from sonolube.units import temperature_difference_to_si, to_si, unit_description
 if TYPE_CHECKING:
     from sonolube.rig import Rig
 
+
+class AmplitudeSource(StrEnum):
+    """Where the amplitude of a vibration comes from."""
+
+    MEASURED = "measured"
+    COMPUTED = "computed"
+    PER_VOLT = "per-volt"
+
+
 RigPath = Annotated[Path, typer.Argument(metavar="RIG.toml", help="The rig, as a TOML file.")]
 Changes = Annotated[
     list[str] | None,
@@ -20,6 +30,14 @@ Changes = Annotated[
 Out = Annotated[Path, typer.Option(help="Folder for report, figures and data.")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object, all quantities in SI.")]
 Load = Annotated[str | None, typer.Option(metavar="FORCE", help="Normal load instead of the rig's, such as 40N.")]
+Amplitude = Annotated[
+    AmplitudeSource | None,
+    typer.Option(
+        "--amplitude",
+        metavar="measured|computed|per-volt",
+        help="Source of the amplitude; by default measured, else computed from stack and structure, else per volt.",
+    ),
+]
 Sizes = Annotated[
     list[str] | None, typer.Option("--set", metavar="SIZE=VALUE", help="A size of the part, such as length=127mm.")
 ]
@@ -131,8 +149,28 @@ def _reader(unit: str) -> Callable[..., TypedNumber | None]:
     return read
 
 
-def loaded_rig(path: Path, *, load: str | None, changes: list[str] | None) -> "Rig":
-    """Rig of a file with entries replaced, `--load` among them.
+def with_amplitude(changes: Sequence[str] | None, amplitude: AmplitudeSource | None) -> list[str]:
+    """Entries that replace those of a rig file, with the source of the amplitude where it was chosen.
+
+    Parameters
+    ----------
+    changes : sequence of str or None
+        Of `--set`.
+    amplitude : AmplitudeSource or None
+        Of `--amplitude`.
+
+    Returns
+    -------
+    list of str
+    """
+    chosen = [] if amplitude is None else [f"vibration.amplitude_source={amplitude.value}"]
+    return [*(changes or ()), *chosen]
+
+
+def loaded_rig(
+    path: Path, *, load: str | None = None, changes: list[str] | None, amplitude: AmplitudeSource | None = None
+) -> "Rig":
+    """Rig of a file with entries replaced, `--load` and `--amplitude` among them.
 
     Parameters
     ----------
@@ -141,6 +179,8 @@ def loaded_rig(path: Path, *, load: str | None, changes: list[str] | None) -> "R
         Normal load instead of the file's, with its unit.
     changes : list of str or None
         Entries such as "drive.frequency=22kHz".
+    amplitude : AmplitudeSource or None
+        Source of the amplitude instead of the file's.
 
     Returns
     -------
@@ -148,7 +188,7 @@ def loaded_rig(path: Path, *, load: str | None, changes: list[str] | None) -> "R
     """
     from sonolube.rig import read_rig
 
-    replaced = list(changes or ())
+    replaced = with_amplitude(changes, amplitude)
     if load is not None:
         to_si(load, unit="N", name="--load")
         replaced.append(f"contact.normal_load={load}")

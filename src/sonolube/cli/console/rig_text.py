@@ -21,7 +21,7 @@ def operating_point(rig: "Rig") -> str:
 
 
 def rig_settings(rig: "Rig", path: Path) -> list[tuple[str, str]]:
-    """Rig of a page: title with its file, source, load, speed, friction without vibration and friction model.
+    """Rig of a page: title, file, source, load, speed, friction without vibration, friction model and amplitude.
 
     Parameters
     ----------
@@ -39,4 +39,17 @@ def rig_settings(rig: "Rig", path: Path) -> list[tuple[str, str]]:
         ("load and speed", f"{format_si(rig.normal_load, 'N')}, {format_si(rig.sliding_speed, 'm/s')}"),
         ("without vibration", f"coefficient of friction {rig.friction_coefficient:.3g}"),
         ("friction model", rig.friction_model.name),
+        *amplitude_rows(rig),
     ]
+
+
+def amplitude_object(rig: "Rig") -> dict[str, str]:
+    """Source of a rig's amplitude and the same in words, for JSON; empty where the rig has none."""
+    from sonolube.rig import amplitude_labels
+
+    return amplitude_labels(rig)
+
+
+def amplitude_rows(rig: "Rig") -> list[tuple[str, str]]:
+    """The same as rows of text."""
+    return [("amplitude", text) for name, text in amplitude_object(rig).items() if name == "amplitude_origin"]

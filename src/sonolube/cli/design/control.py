@@ -12,10 +12,21 @@ import typer
 import xarray as xr
 
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
-from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath, TypedNumber, refuse_unused, si_option
+from sonolube.cli.console.options import (
+    OUT,
+    Amplitude,
+    Changes,
+    Json,
+    Out,
+    RigPath,
+    TypedNumber,
+    loaded_rig,
+    refuse_unused,
+    si_option,
+)
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
-from sonolube.cli.console.rig_text import operating_point, rig_settings
+from sonolube.cli.console.rig_text import amplitude_object, amplitude_rows, operating_point, rig_settings
 from sonolube.design.control import (
     Amplifier,
     ControlDesign,
@@ -36,7 +47,7 @@ from sonolube.design.control.stick_slip import StickSlipSuppression, stick_slip_
 from sonolube.errors import InvalidInput
 from sonolube.metrics import EfficiencyLine
 from sonolube.report import Drawing, Page, PageTable
-from sonolube.rig import Rig, read_rig
+from sonolube.rig import Rig, operating_caveats
 from sonolube.units import format_si
 from sonolube.validation.efficiency import efficiency_line
 
@@ -86,6 +97,7 @@ def control(
         bool, typer.Option("--stick-slip", help="Also compute stick-slip of the slider on an elastic holder.")
     ] = False,
     run_time: Annotated[float, si_option("s", "Duration of the run.", "--duration")] = TypedNumber("0.2s", "s"),
+    amplitude: Amplitude = None,
     changes: Changes = None,
     out: Annotated[Out, OutputFolder("control.html {rig}-control.* {rig}-control-*.*")] = OUT,
     json: Json = False,
@@ -94,7 +106,7 @@ def control(
 
     Example: sonolube control examples/rigs/tribometer.toml --friction 0.5N --factor 1.15 --warming 40K
     """
-    known = read_rig(rig, changes=changes or ())
+    known = loaded_rig(rig, changes=changes, amplitude=amplitude)
     if rate <= 0 or run_time <= 0:
         raise InvalidInput(f"--rate {rate} and --duration {run_time} must be positive")
     if delay > run_time:
@@ -150,7 +162,7 @@ class ControlAnswer(Answer):
 
     def lines(self) -> list[str]:
         """Operating point, controller, margins, step response and energy."""
-        return [operating_point(self.rig), *aligned(self._facts())]
+        return [operating_point(self.rig), *aligned([*amplitude_rows(self.rig), *self._facts()])]
 
     def object(self) -> dict[str, Any]:
         """Controller, margins, step response, energy and stick-slip."""
@@ -170,6 +182,7 @@ class ControlAnswer(Answer):
         content = {
             "rig": self.rig.title,
             "friction_model": self.rig.friction_model.name,
+            **amplitude_object(self.rig),
             "feed_forward": self.settings.feed_forward,
             "limit": study.limit,
             **si(values),
@@ -188,8 +201,8 @@ class ControlAnswer(Answer):
         }
 
     def caveats(self) -> Sequence[str]:
-        """A thin gain margin, and a resonance that tracking has lost."""
-        study, caveats = self.study, []
+        """Those of the rig at its own operating point, a thin gain margin, and a resonance that tracking has lost."""
+        study, caveats = self.study, list(operating_caveats(self.rig))
         if study.margins.gain_margin < _LEAST_GAIN_MARGIN:
             verdict = "is unstable" if study.margins.gain_margin < 1 else "is near instability"
             cause = f"real friction changes {study.plant_gain:.3g} times as the controller expects"
@@ -263,7 +276,9 @@ class ControlAnswer(Answer):
         study, process, gains = self.study, self.study.controller.process, self.study.controller.gains
         margins, response, energy = study.margins, study.response, study.energy
         late = process.dead_time_samples * process.sample_interval
-        amplifier = "" if energy.amplifier_energy is None else f"{format_si(energy.amplifier_energy, 'J')} (D 1.9), "
+        amplifier = ""
+        if energy.amplifier_energy is not None:
+            amplifier = f"{format_si(energy.amplifier_energy, 'J')} for the capacitance alone (D 1.9), "
         facts = {
             "target friction": f"{format_si(study.friction_force, 'N')} of {study.plant.highest_force:.3g} N; "
             f"least within reach {study.plant.lowest_force:.3g} N",
@@ -278,7 +293,7 @@ class ControlAnswer(Answer):
             "step": f"rise {_time(response.rise_time)}, within 5 % after {_time(response.settling_time)}, "
             f"overshoot {100 * response.overshoot:.2g} %",
             "tracking error": f"{format_si(response.tracking_error, 'N')} rms once settled",
-            "energy": f"amplifier {amplifier}motion {format_si(energy.electrical_energy, 'J')}, "
+            "energy": f"amplifier {amplifier}heat of the motion {format_si(energy.electrical_energy, 'J')}, "
             f"work of friction saved {format_si(energy.saved_work, 'J')}",
         }
         if study.fixed_frequency_run is not None:

@@ -1,6 +1,6 @@
 """Command `map`: friction reduction of a rig over two quantities, beside measured runs."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
@@ -13,22 +13,21 @@ from sonolube import design
 from sonolube.checks import Floats
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
 from sonolube.cli.console.backend import Backend, BackendName, gpu_warning
-from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath, refuse_replaced
+from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, RigPath, loaded_rig, refuse_replaced
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
 from sonolube.cli.console.ranges import values_by_key
-from sonolube.cli.console.rig_text import friction_model_text, rig_settings
+from sonolube.cli.console.rig_text import amplitude_object, amplitude_rows, friction_model_text, rig_settings
 from sonolube.cli.design.status_tables import status_tables
 from sonolube.design import MAP_LAYOUTS, map_figure, map_page, measured_map_figure
 from sonolube.design.gaussian_process import FEWEST_RUNS
-from sonolube.design.maps import default_axes
+from sonolube.design.maps import default_axes, panels_text
 from sonolube.design.point_statistics import extreme_point, failure_counts
 from sonolube.design.runs_map import require_mappable, runs_map
 from sonolube.errors import InvalidInput
 from sonolube.measurement.measured_runs import read_runs
 from sonolube.report import Drawing, Page, PageTable
-from sonolube.rig import Rig, read_rig
-from sonolube.rig.driven_rig import driven_rig
+from sonolube.rig import Rig, operating_caveats
 from sonolube.units import format_si
 from sonolube.vocabulary import quantity
 
@@ -74,6 +73,7 @@ def map(  # noqa: A001 - the command's name
     forms: Annotated[
         list[Form] | None, typer.Option("--form", help="png, pdf, svg or an interactive html; may come again.")
     ] = None,
+    amplitude: Amplitude = None,
     changes: Changes = None,
     backend: BackendName = Backend.CPU,
     out: Annotated[Out, OutputFolder("map.html {rig}-{kind}.* {rig}-{kind}-measured.*")] = OUT,
@@ -83,7 +83,7 @@ def map(  # noqa: A001 - the command's name
 
     Example: sonolube map examples/rigs/power_map.toml --kind velocity-power
     """
-    known = read_rig(rig, changes=changes or ())
+    known = loaded_rig(rig, changes=changes, amplitude=amplitude)
     refuse_replaced(changes, over)
     axes = _axes(known, kind.value, over)
     runs = None if measured is None else read_runs(measured)
@@ -118,7 +118,7 @@ class MapAnswer(Answer):
         failures = [("without result", f"{count}: {reason}") for reason, count in self._failures().items()]
         return [
             f"{self.rig.title}, {self.mapped['status'].size} points, {friction_model_text(self.rig)}",
-            *aligned([*self._facts(), *failures]),
+            *aligned([*amplitude_rows(self.rig), *self._facts(), *failures]),
         ]
 
     def object(self) -> dict[str, Any]:
@@ -127,10 +127,16 @@ class MapAnswer(Answer):
             "rig": self.rig.title,
             "map": self._kind,
             "friction_model": self.rig.friction_model.name,
+            **amplitude_object(self.rig),
+            "same_panels": bool(panels_text(self.mapped)),
             "points": int(self.mapped["status"].size),
             "without_result": int(self.mapped["friction_reduction"].isnull().sum()),
             "most_reduction": si(_greatest(self.mapped)),
         }
+
+    def caveats(self) -> Sequence[str]:
+        """Caveats of the rig at its own operating point."""
+        return operating_caveats(self.rig)
 
     def figures(self) -> Mapping[str, Drawing]:
         """Contours of the map, and those between the measured runs."""
@@ -179,7 +185,7 @@ class MapAnswer(Answer):
 
     def _facts(self) -> list[tuple[str, str]]:
         """Greatest reduction, and the ridge where the map has one."""
-        facts = []
+        facts = [("panels", text)] if (text := panels_text(self.mapped)) else []
         values = [format_si(value, quantity(name).unit) for name, value in _greatest(self.mapped).items()]
         if values:
             facts.append(("most reduction", f"{values[0]} at {', '.join(values[1:])}"))
@@ -213,7 +219,6 @@ class MapAnswer(Answer):
 
 def _axes(rig: Rig, kind: str, over: list[str] | None) -> dict[str, Floats]:
     """Values of each axis of a kind of map: those given, and the default ones of the others."""
-    rig = driven_rig(rig)
     axes = default_axes(rig, kind=kind)
     across_and_up = list(axes)[:2]
     for key, values in values_by_key(over).items():
@@ -244,8 +249,8 @@ def _ridge(mapped: xr.Dataset) -> str:
 
 
 def _panel_tables(mapped: xr.Dataset, panel: str | None) -> list[PageTable]:
-    """Greatest reduction at each load or voltage, and the ridge where the map has one."""
-    if panel is None:
+    """Greatest reduction at each load or voltage, and the ridge where the map has one; none where all are the same."""
+    if panel is None or panels_text(mapped):
         return []
     rows = []
     for index in range(mapped.sizes[panel]):

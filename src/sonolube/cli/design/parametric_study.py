@@ -1,6 +1,6 @@
 """Parametric study of `sweep --of`: friction over voltage, speed, frequency, waveform or load, or its power."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import partial
@@ -14,12 +14,12 @@ from sonolube import rig as rigs
 from sonolube.checks import Floats, require_positive
 from sonolube.cli.console.answer import Answer, aligned, si
 from sonolube.cli.console.progress import progress
-from sonolube.cli.console.rig_text import friction_model_text
+from sonolube.cli.console.rig_text import amplitude_object, amplitude_rows, friction_model_text
 from sonolube.design.point_statistics import extreme_place, extreme_point, failure_counts
 from sonolube.errors import InvalidInput
 from sonolube.report import Drawing
-from sonolube.rig import STUDY_FIGURES, Rig, frequency_grid, operating_points, read_rig
-from sonolube.rig.driven_rig import driven_rig
+from sonolube.rig import STUDY_FIGURES, Rig, frequency_grid, operating_caveats, operating_points, read_rig
+from sonolube.rig.amplitude_source import moved_rig
 from sonolube.rig.linear_response import gap_law_of
 from sonolube.units import format_si, to_si
 from sonolube.vocabulary import quantity
@@ -125,7 +125,7 @@ class ParametricStudyAnswer(Answer):
         points, load = self.study["status"].size, format_si(self.rig.normal_load, "N")
         return [
             f"{self.rig.title}, {load}, {points} points, {friction_model_text(self.rig)}",
-            *aligned(list(_ROWS[self.of](self.study))),
+            *aligned([*amplitude_rows(self.rig), *_ROWS[self.of](self.study)]),
             *[f"  without result: {count} of {points}: {reason}" for reason, count in self.failures().items()],
         ]
 
@@ -135,10 +135,15 @@ class ParametricStudyAnswer(Answer):
             "rig": self.rig.title,
             "study": self.of,
             "friction_model": self.rig.friction_model.name,
+            **amplitude_object(self.rig),
             "least_friction": [_point_object(best) for best in _best_points(self.study)],
             "points": int(self.study["status"].size),
             "without_result": [{"reason": reason, "points": count} for reason, count in self.failures().items()],
         }
+
+    def caveats(self) -> Sequence[str]:
+        """Caveats of the rig at its own operating point."""
+        return operating_caveats(self.rig)
 
     def figures(self) -> Mapping[str, Drawing]:
         """Figure of the study."""
@@ -163,7 +168,8 @@ def _study(
     rig: Rig, of: str, lowest: str | None, highest: str | None, points: int | None, voltages: list[str] | None
 ) -> Callable[..., xr.Dataset]:
     """Function that runs the study, all options read and checked; it takes `advance`."""
-    gap_law_of(driven_rig(rig))
+    if of not in ("speed",):
+        gap_law_of(moved_rig(rig))
     if of not in ("speed", "frequency") and voltages:
         raise InvalidInput(f"--voltage has no meaning for --of {of}; it is for speed and frequency")
     if of == "waveform":
@@ -282,9 +288,14 @@ def _best_points(study: xr.Dataset) -> Iterator[xr.Dataset]:
 
 def _point_object(point: xr.Dataset) -> dict[str, Any]:
     """Coordinates and outcomes of a point, for JSON."""
-    names = [str(name) for name in (*point.coords, *OUTCOMES) if point[name].ndim == 0]
+    names = [str(name) for name in (*point.coords, *OUTCOMES) if point[name].ndim == 0 and not _missing(point, name)]
     waveform = {"waveform": str(point["waveform"].values)} if "waveform" in names else {}
     return waveform | si({name: float(point[name]) for name in names if name != "waveform"})
+
+
+def _missing(point: xr.Dataset, name: Any) -> bool:
+    """Whether a number of a point is not known, as heat of a sine that no structure gives."""
+    return bool(point[name].dtype.kind == "f" and np.isnan(point[name]))
 
 
 def _text(point: xr.Dataset, name: str, *, digits: int = 3) -> str:

@@ -1,22 +1,33 @@
 """Command `sweep`: a rig over any of its parameters, on a grid, in a list or drawn, or over one standard quantity."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from glob import escape
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
+import numpy as np
 import typer
 import xarray as xr
 
 from sonolube import design
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
 from sonolube.cli.console.backend import Backend, BackendName, gpu_warning
-from sonolube.cli.console.options import OUT, Changes, Json, RigPath, refuse_replaced, refuse_unused
+from sonolube.cli.console.options import (
+    OUT,
+    Amplitude,
+    Changes,
+    Json,
+    RigPath,
+    refuse_replaced,
+    refuse_unused,
+    with_amplitude,
+)
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
 from sonolube.cli.console.ranges import ends_by_key, values_by_key
+from sonolube.cli.console.rig_text import amplitude_object, amplitude_rows
 from sonolube.cli.design.parametric_study import OUTCOMES, Parameter, parametric_study
 from sonolube.cli.design.status_tables import status_tables
 from sonolube.design import SweepPlan, grid_plan, latin_hypercube_plan, list_plan, sweep_figure, swept_variables
@@ -25,6 +36,7 @@ from sonolube.dynamics.backend import usable_backend
 from sonolube.errors import InvalidInput
 from sonolube.files import expect_files
 from sonolube.report import Drawing, Page
+from sonolube.rig import Rig, operating_caveats
 from sonolube.units import format_si
 from sonolube.vocabulary import unit_of
 
@@ -81,6 +93,7 @@ def sweep(
     ] = None,
     chunk: Annotated[int, typer.Option(help="Points computed and kept together.", min=1)] = 100_000,
     backend: BackendName = Backend.CPU,
+    amplitude: Amplitude = None,
     changes: Changes = None,
     out: Annotated[
         Path | None,
@@ -96,6 +109,7 @@ def sweep(
 
     Example: sonolube sweep examples/rigs/tribometer.toml --over drive.voltage_peak_to_peak=2V:28V:27
     """
+    changes = with_amplitude(changes, amplitude)
     if (of is None) == (not over):
         raise InvalidInput("needs either --over, keys with their values, or --of, one quantity over its usual range")
     if of is not None:
@@ -140,7 +154,7 @@ def _sweep_over(
         result = design.sweep(
             plan, folder=folder, advance=lambda done, total: advance("points", done, total), backend=chosen, **options
         )
-    answer = SweepAnswer(plan=plan, rig_file=rig_file, result=result, data_file=folder / "sweep.nc")
+    answer = SweepAnswer(plan=plan, rig_file=rig_file, result=result, data_file=folder / "sweep.nc", rig=plan.own_rig())
     deliver(answer, folder=folder, as_json=json, context=context)
 
 
@@ -152,6 +166,7 @@ class SweepAnswer(Answer):
     rig_file: Path
     result: xr.Dataset
     data_file: Path
+    rig: Rig | None = None
 
     def lines(self) -> list[str]:
         """Number of points by status, failures, and the point of least friction."""
@@ -160,7 +175,7 @@ class SweepAnswer(Answer):
         least = [f"  {line}" for line in aligned(self._least_texts())]
         return [
             f"{result.attrs['rig']}, {result['friction_ratio'].size} points{device}",
-            *aligned([(name, f"{count}") for name, count in status_counts(result).items()]),
+            *aligned([*self._amplitude(), *((name, f"{count}") for name, count in status_counts(result).items())]),
             *[f"  without result: {count}: {reason}" for reason, count in self._failures().items()],
             *(["  least friction", *least] if least else []),
         ]
@@ -170,6 +185,7 @@ class SweepAnswer(Answer):
         result = self.result
         return {
             "rig": result.attrs["rig"],
+            **({} if self.rig is None else amplitude_object(self.rig)),
             **({"device": str(result.attrs["device"])} if "device" in result.attrs else {}),
             "points": int(result["friction_ratio"].size),
             "statuses": status_counts(result),
@@ -181,6 +197,10 @@ class SweepAnswer(Answer):
         """Assumptions of the rig file."""
         assumptions: Mapping[str, str] = self.plan.content.get("assumptions", {})
         return assumptions
+
+    def caveats(self) -> Sequence[str]:
+        """Caveats of the rig at its own operating point."""
+        return () if self.rig is None else operating_caveats(self.rig)
 
     def figures(self) -> Mapping[str, Drawing]:
         """Friction over the keys that were swept."""
@@ -202,6 +222,7 @@ class SweepAnswer(Answer):
             settings=[
                 ("rig", f"{self.result.attrs['rig']} ({self.rig_file.name})"),
                 *([("source of its numbers", source)] if source else []),
+                *self._amplitude(),
             ],
             facts=[
                 ("points", f"{points}, {points - sum(failures.values())} with a result"),
@@ -210,6 +231,10 @@ class SweepAnswer(Answer):
             ],
             tables=status_tables(self.result, failures),
         )
+
+    def _amplitude(self) -> list[tuple[str, str]]:
+        """Source of the amplitude at the rig's own operating point."""
+        return [] if self.rig is None else amplitude_rows(self.rig)
 
     def _failures(self) -> dict[str, int]:
         """Number of points without a result, by the reason."""
@@ -222,7 +247,7 @@ class SweepAnswer(Answer):
         if place is None or point is None:
             return {}
         swept = {key: values[0].item() for key, values in self.plan.rows(place, place + 1).items()}
-        return swept | si({name: float(point[name]) for name in OUTCOMES})
+        return swept | si({name: float(point[name]) for name in OUTCOMES if np.isfinite(point[name])})
 
     def _least_texts(self) -> list[tuple[str, str]]:
         """The same as text."""

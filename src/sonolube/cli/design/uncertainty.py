@@ -12,11 +12,11 @@ import xarray as xr
 
 from sonolube.checks import Floats
 from sonolube.cli.console.answer import Answer, aligned, deliver
-from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath, refuse_replaced
+from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, RigPath, refuse_replaced, with_amplitude
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
 from sonolube.cli.console.ranges import values_by_key
-from sonolube.cli.console.rig_text import rig_settings
+from sonolube.cli.console.rig_text import amplitude_object, amplitude_rows, rig_settings
 from sonolube.cli.design.status_tables import status_tables
 from sonolube.cli.design.uncertain_entries import agreement, distributions, entry_rows, free_lines, posterior_object
 from sonolube.design import (
@@ -41,7 +41,7 @@ from sonolube.design.uncertainty_summary import (
 )
 from sonolube.errors import InvalidInput
 from sonolube.report import Drawing, Page, PageTable
-from sonolube.rig import Rig, read_rig
+from sonolube.rig import Rig, operating_caveats, read_rig
 from sonolube.units import format_si
 from sonolube.vocabulary import quantity, unit_of
 
@@ -77,6 +77,7 @@ def uncertainty(
     ] = False,
     seed: Annotated[int, typer.Option(help="Of the samples.", min=0)] = 0,
     workers: Annotated[int, typer.Option(help="Threads.", min=1)] = 2,
+    amplitude: Amplitude = None,
     changes: Changes = None,
     keep: Annotated[
         Path | None,
@@ -92,8 +93,9 @@ def uncertainty(
     """
     if sobol and (over or identified):
         raise InvalidInput("--sobol needs independent entries and one outcome each: leave out --over and --identified")
+    changes = with_amplitude(changes, amplitude)
     refuse_replaced(changes, over)
-    known = read_rig(rig, changes=changes or ())
+    known = read_rig(rig, changes=changes)
     axes = _axes(over)
     structure = None
     with progress("uncertainty") as advance:
@@ -107,7 +109,7 @@ def uncertainty(
             over=axes,
             joint_samples=None if structure is None else structure.draws_by_key(),
             seed=seed,
-            changes=changes or (),
+            changes=changes,
             folder=keep,
             workers=workers,
             advance=lambda done, total: advance("points", done, total),
@@ -131,7 +133,7 @@ class UncertaintyAnswer(Answer):
         """Statistics or band, statuses, uncertain entries, and their ranking."""
         return [
             f"{self.rig.title}, {self.result[self._of].size} points: {_lower(self._of)}",
-            *aligned(self._statistics_rows()),
+            *aligned([*amplitude_rows(self.rig), *self._statistics_rows()]),
             *(f"  without result: {count}: {reason}" for reason, count in self.failures().items()),
             *self._status_lines(),
             "  uncertain",
@@ -144,6 +146,7 @@ class UncertaintyAnswer(Answer):
         """Statistics or band, statuses, uncertain entries, and their ranking."""
         content: dict[str, Any] = {
             "rig": self.rig.title,
+            **amplitude_object(self.rig),
             "of": self._of,
             "unit": quantity(self._of).unit,
             "points": int(self.result[self._of].size),
@@ -176,13 +179,13 @@ class UncertaintyAnswer(Answer):
         return content
 
     def caveats(self) -> Sequence[str]:
-        """Too few samples, and draws of the structure that have not converged."""
-        caveats = []
+        """Too few samples, draws that have not converged, and those of the rig at its own operating point."""
+        caveats: list[str] = []
         if not self._swept and not self._statistics.has_converged:
             caveats.append(self._convergence())
         if self.structure is not None and not self.structure.posterior.has_converged:
             caveats.append(agreement(self.structure))
-        return caveats
+        return [*caveats, *operating_caveats(self.rig)]
 
     def figures(self) -> Mapping[str, Drawing]:
         """Histogram or band of the outcome, and the ranking of the entries."""

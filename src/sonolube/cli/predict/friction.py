@@ -5,7 +5,8 @@ from typing import Annotated
 import typer
 
 from sonolube.cli.console.answer import deliver
-from sonolube.cli.console.options import Changes, Json, Load, RigPath, loaded_rig
+from sonolube.cli.console.options import Amplitude, Changes, Json, Load, RigPath, loaded_rig
+from sonolube.cli.predict.measured import measured_on
 from sonolube.cli.predict.rig_record import RigRecord
 from sonolube.friction import FRICTION_MODELS, FrictionModel
 from sonolube.rig import friction_point
@@ -24,6 +25,7 @@ def friction(
     rig: RigPath,
     load: Load = None,
     model: Annotated[str | None, typer.Option(metavar="NAME", help=_MODEL_HELP)] = None,
+    amplitude: Amplitude = None,
     changes: Changes = None,
     json: Json = False,
 ) -> None:
@@ -31,5 +33,7 @@ def friction(
 
     Example: sonolube friction examples/rigs/collar.toml --set drive.voltage_peak_to_peak=14V
     """
-    known = loaded_rig(rig, load=load, changes=changes)
-    deliver(RigRecord(rig=known, result=friction_point(known, model=model)), as_json=json)
+    known = loaded_rig(rig, load=load, changes=changes, amplitude=amplitude)
+    result = friction_point(known, model=model)
+    measured = measured_on(known, vibration_amplitude=result.vibration_amplitude)
+    deliver(RigRecord(rig=known, result=result, measured=measured), as_json=json)

@@ -9,8 +9,9 @@ import typer
 import xarray as xr
 
 from sonolube.cli.console.answer import Answer, deliver, grid
-from sonolube.cli.console.options import OUT, Changes, Json, Load, Out, RigPath, loaded_rig
+from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Load, Out, RigPath, loaded_rig
 from sonolube.cli.console.outputs import OutputFolder
+from sonolube.cli.predict.measured import Measurement, measured_on
 from sonolube.measurement.measured_runs import read_runs
 from sonolube.prediction.figures import prediction_figure
 from sonolube.prediction.rig_prediction import interval, predict as predicted
@@ -41,6 +42,7 @@ def predict(
         str | None, typer.Option(metavar="MATERIAL", help="Material of the disc, for the temperature rise.")
     ] = None,
     load: Load = None,
+    amplitude: Amplitude = None,
     seed: Annotated[int, typer.Option(min=0, help="Of the draws.")] = 0,
     changes: Changes = None,
     out: Annotated[Out, OutputFolder("{rig}-prediction.*")] = OUT,
@@ -50,10 +52,12 @@ def predict(
 
     Example: sonolube predict examples/rigs/tribometer.toml --pin stainless_steel_316 --disc aluminium_2024
     """
-    known = loaded_rig(rig, load=load, changes=changes)
+    known = loaded_rig(rig, load=load, changes=changes, amplitude=amplitude)
     own = None if runs is None else read_runs(runs)
     result = predicted(known, runs=own, pin=pin, disc=disc, seed=seed)
-    deliver(PredictionAnswer(rig=known, prediction=result, name=f"{rig.stem}-prediction"), folder=out, as_json=json)
+    measured = measured_on(known, vibration_amplitude=result.attrs["vibration_amplitude"])
+    answer = PredictionAnswer(rig=known, prediction=result, measured=measured, name=f"{rig.stem}-prediction")
+    deliver(answer, folder=out, as_json=json)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,6 +66,7 @@ class PredictionAnswer(Answer):
 
     rig: Rig
     prediction: xr.Dataset
+    measured: Sequence[Measurement]
     name: str
 
     def lines(self) -> list[str]:
@@ -78,6 +83,7 @@ class PredictionAnswer(Answer):
             *grid([heads, *map(self._row, self._names())]),
             *(f"  input {line}" for line in attributes["inputs"].split("\n")),
             *about,
+            *(f"  measured {one.label}: {one.text}" for one in self.measured),
         ]
 
     def object(self) -> dict[str, Any]:
@@ -87,6 +93,7 @@ class PredictionAnswer(Answer):
             "statement": self.prediction.attrs["statement"].split("\n"),
             **{name: self._object(name) for name in self._names()},
             "inputs": self.prediction.attrs["inputs"].split("\n"),
+            "measured": [one.object() for one in self.measured],
             "interval_share_left": {
                 str(name): float(share) for name, share in self.prediction["interval_share_left"].to_series().items()
             },

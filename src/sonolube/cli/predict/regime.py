@@ -7,27 +7,19 @@ from typing import Annotated, Any
 import typer
 
 from sonolube.cli.console.answer import Answer, deliver, si
-from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath
+from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, RigPath, loaded_rig
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.errors import InvalidInput
 from sonolube.friction import BoundaryLubricant
 from sonolube.materials import material
 from sonolube.report import Drawing
-from sonolube.rig import (
-    LubricationMap,
-    LubricationPoint,
-    Rig,
-    lubrication_map,
-    lubrication_point,
-    read_rig,
-    wear_of_materials,
-)
+from sonolube.rig import LubricationMap, LubricationPoint, Rig, lubrication_map, lubrication_point, wear_of_materials
 from sonolube.rig.figures import lubrication_figure
 from sonolube.rig.file.plausible import plausible_si, require_plausible
 from sonolube.units import format_si
 from sonolube.wear import WearMechanismAssessment
 
-_QUANTITIES = ("sliding_speed", "nominal_pressure", "asperity_load_fraction")
+_QUANTITIES = ("vibration_amplitude", "sliding_speed", "nominal_pressure", "asperity_load_fraction")
 
 
 def regime(
@@ -44,6 +36,7 @@ def regime(
     ] = 0.0,
     pin: Annotated[str | None, typer.Option(metavar="MATERIAL", help="Material of the pin, for its wear.")] = None,
     disc: Annotated[str | None, typer.Option(metavar="MATERIAL", help="Material of the disc, for its wear.")] = None,
+    amplitude: Amplitude = None,
     changes: Changes = None,
     out: Annotated[Out, OutputFolder("{rig}-regime.*")] = OUT,
     json: Json = False,
@@ -54,7 +47,7 @@ def regime(
     """
     if (pin is None) != (disc is None):
         raise InvalidInput("--pin and --disc belong together: give both or neither")
-    known = read_rig(rig, changes=changes or ())
+    known = loaded_rig(rig, changes=changes, amplitude=amplitude)
     full = plausible_si(pressure, unit="Pa", name="--asperity-pressure")
     require_plausible(film, unit="", text=f"--film-coefficient {film:g}")
     lubricant = BoundaryLubricant(film_coefficient=film, full_asperity_pressure=full)
@@ -90,6 +83,7 @@ class RegimeAnswer(Answer):
             ],
             f"  on asperities   {100 * result.asperity_load_fraction:.3g} % of the load through the lubricant",
             f"  friction model  {result.friction_model}",
+            f"  amplitude       {format_si(result.vibration_amplitude, 'm')}: {result.amplitude_origin}",
             *([] if self.wear is None else _wear_lines(self.wear)),
         ]
 
@@ -100,6 +94,8 @@ class RegimeAnswer(Answer):
             "rig": self.rig.title,
             "best": result.best,
             "friction_model": result.friction_model,
+            "amplitude_source": result.amplitude_source,
+            "amplitude_origin": result.amplitude_origin,
             **si({name: getattr(result, name) for name in _QUANTITIES}),
             "friction_coefficient": si({name: float(value) for name, value in methods.items()}, unit=""),
             **({} if wear is None else {"wear": _wear_object(wear)}),

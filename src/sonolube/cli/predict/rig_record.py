@@ -8,10 +8,14 @@ from typing import Any
 import xarray as xr
 
 from sonolube.cli.console.answer import Answer, aligned, si
+from sonolube.cli.predict.measured import Measurement
 from sonolube.report import Drawing
 from sonolube.rig import Rig
 from sonolube.units import format_si
 from sonolube.vocabulary import quantities
+
+_UNPRINTED = ("status", "amplitude_source")  # the amplitude's origin names the source
+_LABELS = {"amplitude_origin": "amplitude", "energy_balance": "energy"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,30 +28,36 @@ class RigRecord(Answer):
     result : dataclass
         Its fields named in the vocabulary, and those of records within it, are the quantities; None is left out, NaN
         stands for a value outside the range of a model, null in JSON.
+    measured : sequence of Measurement
+        What was measured on the rig under the same conditions.
     drawings : mapping of str to Drawing
     datasets : mapping of str to xarray.Dataset
     """
 
     rig: Rig
     result: Any
+    measured: Sequence[Measurement] = ()
     drawings: Mapping[str, Drawing] = field(default_factory=dict)
     datasets: Mapping[str, xr.Dataset] = field(default_factory=dict)
 
     def lines(self) -> list[str]:
         """Load, quantities with the meaning and unit of the vocabulary, and text but for the status."""
         known, values = quantities(), self._values()
-        if all(value is not None for _, value in values):
-            values = [(name, value) for name, value in values if not name.startswith("raw_")]  # equal to the valid ones
+        values = [(name, value) for name, value in values if not name.startswith("raw_")]  # for JSON, as is what it is
         rows = [
             (known[name].meaning, "none" if value is None else format_si(value, known[name].unit))
             for name, value in values
         ]
-        rows += [(name.replace("_", " "), text) for name, text in self._texts() if name != "status"]
+        rows += [
+            (_LABELS.get(name, name.replace("_", " ")), text) for name, text in self._texts() if name not in _UNPRINTED
+        ]
+        rows += [(f"measured {one.label}", one.text) for one in self.measured]
         return [f"{self.rig.title}, {format_si(self.rig.normal_load, 'N')}", *aligned(rows)]
 
     def object(self) -> dict[str, Any]:
         """Title of the rig, text and quantities."""
-        return {"rig": self.rig.title, **dict(self._texts()), **si(dict(self._values()))}
+        content = {"rig": self.rig.title, **dict(self._texts()), **si(dict(self._values()))}
+        return content | {"measured": [one.object() for one in self.measured]} if self.measured else content
 
     def caveats(self) -> Sequence[str]:
         """Caveats of the record."""

@@ -4,9 +4,10 @@ from typing import Annotated
 
 from sonolube import rig as rigs
 from sonolube.cli.console.answer import deliver
-from sonolube.cli.console.options import OUT, Changes, Json, Load, Out, RigPath, loaded_rig
+from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Load, Out, RigPath, loaded_rig
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
+from sonolube.cli.predict.measured import measured_on
 from sonolube.cli.predict.rig_record import RigRecord
 from sonolube.report import Drawing
 from sonolube.rig.figures import simulation_figure
@@ -16,6 +17,7 @@ from sonolube.rig.result_datasets import simulation_dataset
 def simulate(
     rig: RigPath,
     load: Load = None,
+    amplitude: Amplitude = None,
     changes: Changes = None,
     out: Annotated[Out, OutputFolder("{rig}-simulation.*")] = OUT,
     json: Json = False,
@@ -24,13 +26,14 @@ def simulate(
 
     Example: sonolube simulate examples/rigs/tribometer.toml --set drive.voltage_peak_to_peak=25.9V
     """
-    known = loaded_rig(rig, load=load, changes=changes)
+    known = loaded_rig(rig, load=load, changes=changes, amplitude=amplitude)
     with progress("simulating"):
         result = rigs.simulate(known)
     name = f"{rig.stem}-simulation"
     answer = RigRecord(
         rig=known,
         result=result,
+        measured=measured_on(known, vibration_amplitude=result.vibration.vibration_amplitude),
         drawings={name: Drawing(draw=lambda: simulation_figure(known, result))},
         datasets={f"{name}.nc": simulation_dataset(known, result)},
     )

@@ -5,11 +5,11 @@ from typing import Annotated
 import typer
 
 from sonolube.cli.console.answer import deliver
-from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath
+from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, RigPath, loaded_rig
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.predict.rig_record import RigRecord
 from sonolube.report import Drawing
-from sonolube.rig import read_rig, temperature_point, thermal_solid
+from sonolube.rig import temperature_point, thermal_solid
 from sonolube.rig.figures import temperature_figure
 from sonolube.rig.file.plausible import plausible_si
 from sonolube.thermal.flash_models import FLASH_MODELS
@@ -30,6 +30,7 @@ def thermal(
     flash_model: Annotated[
         str, typer.Option(metavar="MODEL", help=f"Model of the flash temperature: {', '.join(FLASH_MODELS)}.")
     ] = "quadrature",
+    amplitude: Amplitude = None,
     changes: Changes = None,
     out: Annotated[Out, OutputFolder("{rig}-thermal.*")] = OUT,
     json: Json = False,
@@ -38,7 +39,7 @@ def thermal(
 
     Example: sonolube thermal examples/rigs/tribometer.toml --pin stainless_steel_316 --disc aluminium_2024
     """
-    known = read_rig(rig, changes=changes or ())
+    known = loaded_rig(rig, changes=changes, amplitude=amplitude)
     result = temperature_point(
         known,
         pin=thermal_solid(pin),

@@ -7,11 +7,11 @@ from typing import Annotated, Any
 import xarray as xr
 
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
-from sonolube.cli.console.options import OUT, Changes, Json, Out, RigPath, TypedNumber, si_option
+from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, RigPath, TypedNumber, loaded_rig, si_option
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
 from sonolube.report import Drawing
-from sonolube.rig import Rig, StartUp, read_rig, start_up
+from sonolube.rig import Rig, StartUp, resolved_vibration, start_up
 from sonolube.rig.figures import start_up_figure
 from sonolube.rig.result_datasets import start_up_dataset
 from sonolube.units import format_si
@@ -22,6 +22,7 @@ _QUANTITIES = ("settling_time", "vibration_amplitude", "mean_displacement", "bea
 def transient(
     rig: RigPath,
     run_time: Annotated[float, si_option("s", "Time that is integrated.", "--duration")] = TypedNumber("0.1s", "s"),
+    amplitude: Amplitude = None,
     changes: Changes = None,
     out: Annotated[Out, OutputFolder("{rig}-transient.*")] = OUT,
     json: Json = False,
@@ -30,7 +31,7 @@ def transient(
 
     Example: sonolube transient examples/rigs/tribometer.toml --duration 0.06s
     """
-    known = read_rig(rig, changes=changes or ())
+    known = loaded_rig(rig, changes=changes, amplitude=amplitude)
     with progress("marching"):
         result = start_up(known, duration=run_time)
     deliver(StartUpAnswer(rig=known, result=result, name=f"{rig.stem}-transient"), folder=out, as_json=json)
@@ -49,7 +50,7 @@ class StartUpAnswer(Answer):
         found = self.result
         rows = [
             ("amplitude settles", f"within 2 % after {format_si(found.settling_time, 's')}"),
-            ("amplitude", format_si(found.vibration_amplitude, "m")),
+            ("amplitude", f"{format_si(found.vibration_amplitude, 'm')}: {resolved_vibration(self.rig).text}"),
             ("mean displacement", format_si(found.mean_displacement, "m")),
             ("slow oscillation", format_si(found.beat_frequency, "Hz")),
             ("status", found.status + (f": {found.reason}" if found.reason else "")),
@@ -60,6 +61,7 @@ class StartUpAnswer(Answer):
         """Status, settling time, amplitude, mean displacement and frequency of the slow oscillation."""
         return {
             "rig": self.rig.title,
+            "amplitude_source": resolved_vibration(self.rig).source,
             "status": self.result.status,
             "reason": self.result.reason,
             **si({name: getattr(self.result, name) for name in _QUANTITIES}),

@@ -1,6 +1,6 @@
 """Static characteristic of the plant: steady friction force over drive voltage, and its inverse for feed-forward."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,7 +11,6 @@ from sonolube.metrics import EfficiencyLine, friction_at_power, power_for_fricti
 from sonolube.rig import Rig, operating_points
 from sonolube.rig.driven_rig import require_drive
 from sonolube.rig.excitation import amplifier_power
-from sonolube.rig.friction_and_wear import stated_friction_ratios
 
 _RESOLUTION = 1e-6  # of the intrinsic friction force, by which neighbouring points must differ
 
@@ -117,12 +116,12 @@ def voltage_for_friction(characteristic: FrictionCharacteristic, *, friction_for
 
 
 def computed_characteristic(rig: Rig, *, voltage_maximum: float, points: int = 41) -> FrictionCharacteristic:
-    """Characteristic by the rig's friction model, under its computed vibration or, without a structure, under a sine.
+    """Characteristic by the rig's friction model, under its vibration by the source of its amplitude.
 
     Parameters
     ----------
     rig : Rig
-        With a drive voltage, and either stack and structure or an amplitude.
+        With a drive voltage and an amplitude, measured, computed or per volt.
     voltage_maximum : float
         Highest peak-to-peak voltage; the offset is scaled in the rig's own ratio. [V]
     points : int
@@ -143,8 +142,7 @@ def computed_characteristic(rig: Rig, *, voltage_maximum: float, points: int = 4
     efficiency_characteristic
     """
     volts = _voltages(voltage_maximum, points)
-    ratio = _computed_ratios(rig, volts) if rig.structure is not None else _sine_ratios(rig, volts)
-    return _decreasing_part(rig, volts, ratio * rig.friction_coefficient * rig.normal_load)
+    return _decreasing_part(rig, volts, _ratios(rig, volts) * rig.friction_coefficient * rig.normal_load)
 
 
 def efficiency_characteristic(
@@ -226,23 +224,11 @@ def _voltages(highest: float, points: int) -> Floats:
     return np.linspace(0, float(require_non_negative(voltage_maximum=highest)), points)
 
 
-def _computed_ratios(rig: Rig, volts: Floats) -> Floats:
-    """Friction ratios under the computed vibration, NaN where there is none."""
-    ratio = require_drive(rig).offset_ratio
-    return operating_points(rig, voltage_peak_to_peak=volts, voltage_offset=ratio * volts).friction_ratio
-
-
-def _sine_ratios(rig: Rig, volts: Floats) -> Floats:
-    """Friction ratios under a sine whose amplitude is proportional to the voltage, NaN outside the model's range."""
-    drive = require_drive(rig)
-    if not drive.voltage_peak_to_peak or not rig.vibration_amplitude:
-        raise InvalidInput(f"{rig.title}: actuator.amplitude_per_volt and drive.voltage_peak_to_peak must be given")
-    amplitude_per_volt = rig.vibration_amplitude / drive.voltage_peak_to_peak
-    ratios = np.ones(volts.size)
-    for i in range(1, volts.size):
-        vibrating = replace(rig, vibration_amplitude=amplitude_per_volt * volts[i])
-        ratios[i] = stated_friction_ratios(vibrating, sliding_speed=rig.sliding_speed).friction_ratio
-    return ratios
+def _ratios(rig: Rig, volts: Floats) -> Floats:
+    """Friction ratios at each voltage, NaN where there is none; 1 without vibration."""
+    offset = require_drive(rig).offset_ratio * volts[1:]
+    vibrated = operating_points(rig, voltage_peak_to_peak=volts[1:], voltage_offset=offset)
+    return np.concatenate([[1.0], vibrated.friction_ratio])
 
 
 def _decreasing_part(rig: Rig, volts: Floats, force: Floats) -> FrictionCharacteristic:

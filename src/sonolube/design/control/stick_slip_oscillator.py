@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from sonolube.checks import Floats, require_non_negative, require_positive, require_within
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.rig import Rig, operating_points
-from sonolube.rig.driven_rig import driven_rig
+from sonolube.rig.driven_rig import require_drive
 
 _SPEEDS = 33  # at which the friction ratio is computed; it is interpolated between them
 _SLOWEST = 1e-3  # of the belt's speed, whose friction ratio is taken for that at rest
@@ -182,7 +182,7 @@ def mass_on_belt(
     velocity; that at rest is taken from a thousandth of the belt's speed. The ratio is a mean over periods of the
     vibration, so that stick-slip must be slow against them.
     """
-    rig = driven_rig(rig)
+    drive = require_drive(rig)
     fastest = 2 * rig.sliding_speed + static_friction_force / np.sqrt(holder_stiffness * holder_mass)
     speeds = np.geomspace(_SLOWEST * rig.sliding_speed, fastest, _SPEEDS)
     ratio = np.ones(_SPEEDS)
@@ -190,7 +190,7 @@ def mass_on_belt(
         points = operating_points(
             rig,
             voltage_peak_to_peak=voltage_peak_to_peak,
-            voltage_offset=rig.drive.offset_ratio * voltage_peak_to_peak,
+            voltage_offset=drive.offset_ratio * voltage_peak_to_peak,
             sliding_speed=speeds,
         )
         if np.any(points.failed):

@@ -1,6 +1,6 @@
 """Drive electronics of a design: amplifier requirements, and matching networks that compensate the reactive power."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -71,7 +71,7 @@ class DriveElectronics:
 
 
 def design_rig(problem: DesignProblem, point: DesignPoint) -> DrivenRig:
-    """Rig of a design point, with its drive and the computed vibration amplitude.
+    """Rig of a design point, with its drive; its amplitude is the computed one.
 
     Parameters
     ----------
@@ -82,9 +82,7 @@ def design_rig(problem: DesignProblem, point: DesignPoint) -> DrivenRig:
     -------
     DrivenRig
     """
-    amplitude = float(point.evaluation.quantities["vibration_amplitude"][0])
-    rig = rig_at_design_point(candidate_rig(problem.space, point.candidate), point)
-    return replace(rig, vibration_amplitude=amplitude)
+    return rig_at_design_point(candidate_rig(problem.space, point.candidate), point)
 
 
 def stack_admittance(rig: DrivenRig, *, frequency: Floats, capacitance_change: float = 0.0) -> Complexes:

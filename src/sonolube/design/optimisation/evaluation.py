@@ -16,7 +16,7 @@ from sonolube.dynamics import Status, SteadyStates
 from sonolube.rig.driven_rig import DrivenRig, driven_rig
 from sonolube.rig.excitation import amplifier_power, voltage_range
 from sonolube.rig.operating_conditions import OperatingConditions
-from sonolube.rig.operating_point_grid import steady_states_of
+from sonolube.rig.operating_vibrations import steady_states_of
 from sonolube.rig.record import Rig
 
 LIMITS: Mapping[str, str] = MappingProxyType(

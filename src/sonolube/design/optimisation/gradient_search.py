@@ -14,7 +14,7 @@ from sonolube.dynamics import Status
 from sonolube.dynamics.sensitivities import StructureChange, steady_state_sensitivities
 from sonolube.rig import steady_states
 from sonolube.rig.driven_rig import DrivenRig
-from sonolube.rig.friction_and_wear import stated_friction_ratios
+from sonolube.rig.friction_and_wear import friction_ratios, prescribed_sine
 
 _STEP = 1e-4  # relative, of the finite differences along the surface of constant friction
 _FRICTION_STEP = 1e-3  # relative, of the finite differences of the friction ratio
@@ -320,8 +320,8 @@ def _friction_derivatives(rig: DrivenRig, amplitude: float) -> tuple[float, floa
     drive = rig.drive
 
     def ratio(a: float, f: float) -> float:
-        changed = replace(rig, vibration_amplitude=a, drive=replace(drive, frequency=f))
-        return float(stated_friction_ratios(changed, sliding_speed=rig.sliding_speed).raw_friction_ratio)
+        sine = prescribed_sine(rig, vibration_amplitude=a, frequency=f)
+        return float(friction_ratios(rig, sine, sliding_speed=rig.sliding_speed).raw_friction_ratio)
 
     h = _FRICTION_STEP
     a, f = amplitude, drive.frequency

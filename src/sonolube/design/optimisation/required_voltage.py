@@ -1,6 +1,7 @@
 """Drive voltage required for a target friction ratio: scan over voltages, and root finding by the Illinois method."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -36,7 +37,7 @@ def maximum_swing(rig: Rig, limits: Limits) -> float:
     -------
     float
     """
-    rig = driven_rig(rig)
+    rig = replace(driven_rig(rig), amplitude_source="computed")
     drive, stack = rig.drive, rig.stack
     ends = voltage_range(drive, voltage_peak_to_peak=1.0, voltage_offset=drive.offset_ratio)
     low, high = (float(end) for end in ends)
@@ -78,7 +79,7 @@ def estimate_swings(rig: Rig, limits: Limits, *, frequency: ArrayLike, friction_
     The friction ratio at 24 voltages in geometric sequence brackets the first crossing; two steps of false position
     over the logarithm of the voltage follow.
     """
-    rig = driven_rig(rig)
+    rig = replace(driven_rig(rig), amplitude_source="computed")
     f = np.atleast_1d(np.asarray(frequency, dtype=float))
     highest = maximum_swing(rig, limits)
     if highest <= 0:
@@ -137,7 +138,7 @@ def refine_swing(rig: Rig, *, frequency: float, friction_ratio: float, near: flo
     The root is bracketed by steps from the initial estimate that double, then found by the Illinois variant of false
     position over the logarithm of the voltage.
     """
-    rig = driven_rig(rig)
+    rig = replace(driven_rig(rig), amplitude_source="computed")
 
     def residual(log_swing: float) -> float:
         ratio = _friction_ratios(rig, np.array([frequency]), np.array([np.exp(log_swing)]))

@@ -47,10 +47,13 @@ def design_text(text: str, content: Mapping[str, Any], problem: DesignProblem, p
     if "actuator" in content:
         changed["actuator"] = dict(content["actuator"]) | {"capacitance": rig.stack.free_capacitance}
         if "amplitude_per_volt" in content["actuator"]:
-            changed["actuator"]["amplitude_per_volt"] = rig.vibration_amplitude / rig.voltage_peak_to_peak
+            changed["actuator"]["amplitude_per_volt"] = (
+                float(point.evaluation.quantities["vibration_amplitude"][0]) / rig.voltage_peak_to_peak
+            )
             assumptions["actuator.amplitude_per_volt"] = "computed at this drive"
     if "vibration" in content:
-        changed["vibration"] = {"vibration_amplitude": rig.vibration_amplitude}
+        assumptions = {key: text for key, text in assumptions.items() if not key.startswith("vibration.")}
+        changed["vibration"] = {"amplitude_source": "computed"}  # what was measured was another design
     if point.candidate.actuator != OWN_ACTUATOR:
         assumptions["stack"] = (
             f"{problem.space.catalogue[point.candidate.actuator].title}, by its data sheet; quality"

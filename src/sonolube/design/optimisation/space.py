@@ -198,4 +198,11 @@ def candidate_rig(space: DesignSpace, candidate: Candidate, deviation: Deviation
     drive = space.rig.drive
     if candidate.waveform != "sampled":
         drive = replace(drive, waveform=candidate.waveform, waveform_samples=None)
-    return replace(space.rig, stack=stack, structure=structure, drive=drive, capacitance=stack.free_capacitance)
+    return replace(
+        space.rig,
+        stack=stack,
+        structure=structure,
+        drive=drive,
+        capacitance=stack.free_capacitance,
+        amplitude_source="computed",  # a measured amplitude is of another design
+    )

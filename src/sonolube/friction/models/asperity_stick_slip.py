@@ -9,7 +9,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, Integers, require_positive
-from sonolube.contact.gap_motion import GapMotion, GapMotionBatch, delayed_oscillation, richardson_period_mean
+from sonolube.contact.gap_motion import (
+    GapMotion,
+    GapMotionBatch,
+    delayed_oscillation,
+    gap_harmonics,
+    richardson_period_mean,
+)
 from sonolube.contact.height_distribution import ExponentialHeights
 from sonolube.contact.rough import RoughContact, decay_length, separation
 from sonolube.friction.models.asperity_stick_slip_batch import batched_stick_slip_ratio
@@ -17,6 +23,7 @@ from sonolube.friction.models.asperity_stick_slip_sine import EMPIRICAL_MEMORY_L
 from sonolube.friction.models.model import FrictionModel, parameter
 
 _HEIGHTS = np.polynomial.legendre.leggauss(64)
+_LONGEST_PERIOD = 8192  # phases of a motion whose harmonics are worth a try
 _NEGLIGIBLE = 40.0  # exponent beyond which the load of elements is negligible
 
 
@@ -118,6 +125,13 @@ class AsperityStickSlip(FrictionModel):
             return _sampled_ratio(widest_first / length, slides / length, steady / length, *_HEIGHTS)
 
         mean_force_ratio = float(np.mean(motion.normal_force)) / motion.normal_load
+        if motion.displacement.size <= _LONGEST_PERIOD:
+            every = np.zeros(v_r.size, dtype=np.int64)
+            closed = self.batched_ratio(
+                contact, gap_harmonics(motion), sliding_speed=v_r.ravel(), motion=every, friction_coefficient=np.nan
+            )
+            if np.isfinite(closed).all():
+                return (closed + mean_force_ratio - 1).reshape(v_r.shape)
         return mean_force_ratio * richardson_period_mean(mean_over_limit, motion).reshape(v_r.shape)
 
     def batched_ratio(
@@ -128,6 +142,7 @@ class AsperityStickSlip(FrictionModel):
         sliding_speed: Floats,
         motion: Integers,
         friction_coefficient: float,
+        tolerance: float = 1e-7,
     ) -> Floats:
         """Return the friction ratios of many pairs of motion and speed at once; NaN where `ratio` must be used. []
 
@@ -141,6 +156,8 @@ class AsperityStickSlip(FrictionModel):
             Row of `motions` at each point.
         friction_coefficient : float, optional
             Without effect in this model. []
+        tolerance : float
+            Largest error by neglecting higher harmonics. []
 
         Returns
         -------
@@ -151,7 +168,12 @@ class AsperityStickSlip(FrictionModel):
             return np.full(sliding_speed.shape, np.nan)
         length, memory = decay_length(contact), self.memory_length
         return batched_stick_slip_ratio(
-            motions, decay_length=length, sliding_speed=sliding_speed, motion=motion, memory_length=memory
+            motions,
+            decay_length=length,
+            sliding_speed=sliding_speed,
+            motion=motion,
+            memory_length=memory,
+            tolerance=tolerance,
         )
 
 

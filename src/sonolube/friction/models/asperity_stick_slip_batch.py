@@ -43,6 +43,7 @@ def batched_stick_slip_ratio(
     sliding_speed: ArrayLike,
     motion: ArrayLike,
     memory_length: ArrayLike = EMPIRICAL_MEMORY_LENGTH,
+    tolerance: float = SINE_TOLERANCE,
 ) -> Floats:
     r"""Return friction ratios by asperity stick-slip under load-balanced motions, for very many points. []
 
@@ -58,6 +59,8 @@ def batched_stick_slip_ratio(
         Row of `motions` at each speed.
     memory_length : float
         Sliding distance D_c in which an asperity pressed by one decay length reaches its friction limit. [m]
+    tolerance : float
+        Largest error of a ratio by neglecting higher harmonics; the table of sines is used from 8e-5 on.
 
     Returns
     -------
@@ -74,8 +77,9 @@ def batched_stick_slip_ratio(
     -----
     The force of an element is the minimum, over the past, of its limit at that time plus the slide since. It changes by
     no more than the gap, so that higher harmonics of the sum e change the friction of a sine about the same mean by a
-    factor between exp(-e/l) and exp(e/l). Where this is below 8e-5 of the friction without vibration they are
-    neglected, and the ratio is interpolated in a table for sines by cubics, to 3e-6.
+    factor between exp(-e/l) and exp(e/l). Where this is below the tolerance, a share of the friction without
+    vibration, they are neglected; from a tolerance of 8e-5 on the ratio is then interpolated in a table for sines by
+    cubics, to 3e-6, else it has the closed form of a sine.
 
     Otherwise the force is integrated exactly. With the height :math:`g = x + s \theta` of the gap above the slide,
     :math:`s = v_r/(2 \pi f D_c)` decay lengths per radian, an element that comes into contact in a valley of g sticks
@@ -106,7 +110,10 @@ def batched_stick_slip_ratio(
     load_ratio = i0e(beta) * np.exp(beta - mean)
     slide = 1 / (2 * np.pi * f * memory)
     ratio = np.empty(v_r.shape)
-    _write_ratios(_table(), harmonics, mean, beta, higher, closes_once, load_ratio, slide, v_r, which, *_NODES, ratio)
+    table = _table() if tolerance >= SINE_TOLERANCE else _NO_TABLE
+    _write_ratios(
+        table, tolerance, harmonics, mean, beta, higher, closes_once, load_ratio, slide, v_r, which, *_NODES, ratio
+    )
     beyond = np.flatnonzero(np.isinf(ratio))
     if beyond.size:  # sines outside the table
         own = which[beyond]
@@ -118,6 +125,9 @@ def batched_stick_slip_ratio(
             memory_length=1.0,
         )
     return ratio
+
+
+_NO_TABLE = _Table(np.empty((0, 0)), 0.0, 1.0, 0.0, 1.0)
 
 
 @cache
@@ -137,6 +147,7 @@ def _table() -> _Table:
 @numba.njit(cache=True, nogil=True, error_model="numpy")
 def _write_ratios(
     table: _Table,
+    tolerance: float,
     harmonics: Complexes,
     mean: Floats,
     beta: Floats,
@@ -155,7 +166,7 @@ def _write_ratios(
         j = which[i]
         s = v_r[i] * slide[j]
         sine = _interpolated(table, beta[j], s)
-        if min(sine * load_ratio[j], 1.0) * higher[j] <= SINE_TOLERANCE:
+        if min(sine * load_ratio[j], 1.0) * higher[j] <= tolerance:
             outside = sine == np.inf  # no element sticks where the ratio is 1
             ratio[i] = sine if outside or sine == 1.0 else min(sine * load_ratio[j], 1.0)
         elif not closes_once[j] or beta[j] > _MAXIMUM_BETA or s < _MINIMUM_SPEED * beta[j]:

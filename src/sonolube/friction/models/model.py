@@ -230,6 +230,7 @@ class FrictionModel(ABC):
         sliding_speed: Floats,
         motion: Integers,
         friction_coefficient: float,
+        tolerance: float = 1e-7,
     ) -> Floats:
         """Return the friction ratio of many pairs of motion and speed at once; NaN where `ratio` must be used. []
 
@@ -244,6 +245,8 @@ class FrictionModel(ABC):
             Row of `motions` at each point.
         friction_coefficient : float
             Coefficient of friction without vibration. []
+        tolerance : float
+            Largest error of the batched form beside `ratio`, which larger batches may trade for speed. []
 
         Returns
         -------

@@ -128,7 +128,7 @@ def _predicted_against_measured() -> "Figure":
     """Draw predicted against measured ratios, one panel for each variant."""
     from matplotlib import pyplot as plt
 
-    figure, panels = plt.subplots(3, 5, figsize=(10.5, 7.2), sharex=True, sharey=True)
+    figure, panels = plt.subplots(4, 4, figsize=(8.6, 9.4), sharex=True, sharey=True)
     for axes, fit in zip(panels.flat, reported_fits(), strict=True):
         _panel(axes, fit)
     for axes in panels[-1]:

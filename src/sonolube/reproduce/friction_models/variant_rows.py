@@ -12,7 +12,7 @@ from sonolube.validation.friction_model_variants import FRICTION_MODEL_VARIANTS
 from sonolube.validation.model_variant import ModelVariant
 from sonolube.validation.published_tests import friction_tests
 
-DEFAULT: Final = "asperity-stick-slip"
+DEFAULT: Final = "asperity-stick-slip-fitted"
 """Variant of the default friction model: the least cross-validation error of all."""
 
 REPORTED: Final = ("dong-2015-full-period", DEFAULT, "asperity-stick-slip-in-plane", "bristle-with-holder-per-rig")

@@ -22,7 +22,7 @@ from sonolube.rig.file.sections import BodySection, ContactSection, RigFile
 from sonolube.rig.file.structures import ModesSection, PinOnDiscSection
 from sonolube.rig.file.toml_file import prefixed, validated
 from sonolube.rig.file.uncertainty import distributions_of
-from sonolube.rig.record import Rig
+from sonolube.rig.record import MeasuredUnder, Rig
 from sonolube.surfaces import Roughness
 from sonolube.toml_text import read_toml, require_plain_content
 
@@ -198,7 +198,11 @@ def _rig(file: RigFile) -> Rig:
         friction_coefficient=file.friction.friction_coefficient,
         friction_model=_friction_model(file),
         sliding_speed=file.sliding.sliding_speed,
-        vibration_amplitude=_vibration_amplitude(file, drive),
+        vibration_amplitude=None if file.vibration is None else file.vibration.vibration_amplitude,
+        measured_under=_measured_under(file),
+        amplitude_per_volt=None if file.actuator is None else file.actuator.amplitude_per_volt,
+        waveguide_amplitude=_waveguide_amplitude(file, drive),
+        amplitude_source=None if file.vibration is None else file.vibration.amplitude_source,
         drive=drive,
         capacitance=file.actuator.capacitance if file.actuator else None,
         stack=stack,
@@ -265,16 +269,17 @@ def _property(section: BodySection, name: str) -> float:
     return material(section.material).value(name)
 
 
-def _vibration_amplitude(file: RigFile, drive: Drive | None) -> float:
-    if file.vibration is not None:
-        return file.vibration.vibration_amplitude
-    if file.waveguide is not None and drive is not None:
-        with prefixed("waveguide"):
-            section = file.waveguide
-            waveguide = BarWaveguide(**section.model_dump(exclude={"position"}), frequency=drive.frequency)
-            return float(normal_amplitude(waveguide, position=section.position))
-    assert drive is not None  # the file's own check
-    assert file.actuator is not None
-    assert file.actuator.amplitude_per_volt is not None
-    assert drive.voltage_peak_to_peak is not None
-    return file.actuator.amplitude_per_volt * drive.voltage_peak_to_peak
+def _measured_under(file: RigFile) -> MeasuredUnder | None:
+    if file.vibration is None or file.vibration.vibration_amplitude is None:
+        return None
+    with prefixed("vibration"):
+        return MeasuredUnder(**file.vibration.model_dump(include={"voltage_peak_to_peak", "frequency", "normal_load"}))
+
+
+def _waveguide_amplitude(file: RigFile, drive: Drive | None) -> float | None:
+    section = file.waveguide
+    if section is None or drive is None:
+        return None
+    with prefixed("waveguide"):
+        waveguide = BarWaveguide(**section.model_dump(exclude={"position"}), frequency=drive.frequency)
+        return float(normal_amplitude(waveguide, position=section.position))

@@ -9,6 +9,7 @@ from sonolube.contact import ASPERITY_LAWS, HEIGHT_DISTRIBUTIONS
 from sonolube.friction.models import FRICTION_MODELS
 from sonolube.rig.file.section import NameIn, Section
 from sonolube.rig.file.structures import StructureSection
+from sonolube.rig.record import AmplitudeSource
 from sonolube.vocabulary import Quantity
 
 Text = Annotated[str, Field(min_length=1, max_length=1000)]
@@ -168,9 +169,20 @@ class WaveguideSection(Section):
 
 
 class VibrationSection(Section):
-    """Vibration normal to the contact, as measured."""
+    """Vibration normal to the contact as measured, with drive and load of the measurement, and the source to take."""
 
-    vibration_amplitude: float
+    vibration_amplitude: float | None = None
+    voltage_peak_to_peak: float | None = None
+    frequency: float | None = None
+    normal_load: float | None = None
+    amplitude_source: AmplitudeSource | None = None
+
+    @model_validator(mode="after")
+    def _conditions_of_a_measurement(self) -> Self:
+        conditions = (self.voltage_peak_to_peak, self.frequency, self.normal_load)
+        if self.vibration_amplitude is None and any(value is not None for value in conditions):
+            raise ValueError("drive and load of a measurement need vibration_amplitude")
+        return self
 
 
 class RigFile(Section):
@@ -204,14 +216,18 @@ class RigFile(Section):
         return table
 
     @model_validator(mode="after")
-    def _one_source_of_vibration(self) -> Self:
+    def _source_of_vibration(self) -> Self:
         per_volt = self.actuator is not None and self.actuator.amplitude_per_volt is not None
         if per_volt and (self.drive is None or self.drive.voltage_peak_to_peak is None):
             raise ValueError("actuator.amplitude_per_volt needs drive.voltage_peak_to_peak")
-        if [per_volt, self.waveguide is not None, self.vibration is not None].count(True) != 1:
+        measured = self.vibration is not None and self.vibration.vibration_amplitude is not None
+        if not (per_volt or measured or self.waveguide or self.structure):
             raise ValueError(
-                "give the vibration once: vibration.vibration_amplitude, actuator.amplitude_per_volt or table waveguide"
+                "no vibration: give vibration.vibration_amplitude, actuator.amplitude_per_volt, the table waveguide or"
+                " the tables stack and structure"
             )
+        if self.waveguide is not None and self.structure is not None:
+            raise ValueError("the tables waveguide and structure both compute the vibration: give one")
         if self.waveguide is not None and self.drive is None:
             raise ValueError("the table waveguide needs drive.frequency")
         return self

@@ -1,0 +1,151 @@
+"""Vibrations of many operating points, one for each drive and load: of a structure, in one batch, or sines."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from sonolube.actuator.stack import require_allowed_voltage
+from sonolube.checks import Floats
+from sonolube.contact import GapMotion, separation
+from sonolube.dynamics import Status, SteadyStates, steady_state
+from sonolube.dynamics.backend import Backend
+from sonolube.errors import OutsideRange, SonolubeError
+from sonolube.friction.models.range_check import OUTSIDE_MODEL_RANGE
+from sonolube.rig.amplitude_source import ResolvedVibration
+from sonolube.rig.driven_rig import DrivenRig
+from sonolube.rig.excitation import voltage_harmonics, voltage_range
+from sonolube.rig.friction_and_wear import prescribed_sine
+from sonolube.rig.linear_response import gap_law_of
+from sonolube.rig.operating_conditions import OperatingConditions
+from sonolube.rig.record import Rig
+from sonolube.rig.vibration import contact_loss_fraction, gap_motion
+from sonolube.units import format_si
+
+REFUSED = "refused"
+"""Status of an operating point that a limit of the stack or the contact rules out."""
+
+_SAME_FREQUENCY = 1e-6  # relative
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class PointVibration:
+    """Vibration of the points that share one drive and load; without a motion where there is none."""
+
+    status: str
+    reason: str
+    motion: GapMotion | None = None
+    numbers: tuple[float, ...] = (np.nan,) * 6  # five of the vibration, and whether the gap closes
+
+
+VibrationAt = Callable[[int], PointVibration]
+"""Vibration of a drive and load by its number."""
+
+
+def steady_states_of(
+    rig: DrivenRig,
+    settings: OperatingConditions,
+    rest: Floats,
+    backend: Backend = "cpu",
+    relative_tolerance: float = 1e-6,
+) -> SteadyStates:
+    """Return the steady vibrations of a rig under drives and loads, given the separations at rest."""
+    return steady_state(
+        rig.structure,
+        gap_law_of(rig),
+        normal_load=settings.normal_load,
+        frequency=settings.frequency,
+        voltage_harmonics=voltage_harmonics(rig.drive, voltage_peak_to_peak=settings.voltage_peak_to_peak),
+        voltage_offset=settings.voltage_offset,
+        separation=rest,
+        relative_tolerance=relative_tolerance,
+        backend=backend,
+    )
+
+
+def computed_vibrations(rig: DrivenRig, distinct: Floats, backend: Backend) -> VibrationAt:
+    """Return the function that gives the vibration of each drive and load, all solved at once."""
+    settings = OperatingConditions.of_columns(distinct)
+    rest = separation(rig.contact, normal_load=settings.normal_load)
+    refusals = _refusals(rig, settings, rest)
+    possible = np.array([not text for text in refusals], dtype=bool)
+    states = None
+    if possible.any():
+        states = steady_states_of(rig, OperatingConditions.of_columns(distinct[:, possible]), rest[possible], backend)
+    place = np.cumsum(possible) - 1
+
+    def vibration_at(setting: int) -> PointVibration:
+        if states is None or not possible[setting]:
+            return PointVibration(status=REFUSED, reason=refusals[setting])
+        return _of_state(states, int(place[setting]))
+
+    return vibration_at
+
+
+def _of_state(states: SteadyStates, point: int) -> PointVibration:
+    known, reason = Status(int(states.status[point])), states.reason(point)
+    if known is Status.NOT_CONVERGED:
+        return PointVibration(status=known.name.lower(), reason=reason)
+    motion = gap_motion(states, point)
+    numbers = (
+        states.vibration_amplitude[point],
+        np.abs(motion.velocity).max(),
+        states.mean_displacement[point],
+        states.contact_loss_fraction[point],
+        states.dissipated_power[point],
+        states.gap_closed[point],
+    )
+    return PointVibration(status=known.name.lower(), reason=reason, motion=motion, numbers=numbers)
+
+
+def stated_vibrations(rig: Rig, used: ResolvedVibration, distinct: Floats) -> VibrationAt:
+    """Return the function that gives a sine of the stated amplitude under each drive and load."""
+
+    def vibration_at(setting: int) -> PointVibration:
+        volts, _, f, load = distinct[:, setting].tolist()
+        if rig.drive is not None and abs(f - rig.drive.frequency) > _SAME_FREQUENCY * f:
+            own = format_si(rig.drive.frequency, "Hz", digits=4)
+            return PointVibration(
+                status=REFUSED, reason=f"the amplitude {used.source} holds at {own} only: choose the amplitude computed"
+            )
+        amplitude = used.amplitude_at(volts)
+        try:
+            rest = float(separation(rig.contact, normal_load=load))
+            motion = prescribed_sine(rig, vibration_amplitude=amplitude, frequency=f, normal_load=load)
+        except OutsideRange as refusal:
+            return PointVibration(status=OUTSIDE_MODEL_RANGE, reason=f"{OUTSIDE_MODEL_RANGE}: {refusal}")
+        if rest <= 0:
+            return PointVibration(status=REFUSED, reason=_no_separation(load))
+        numbers = (
+            amplitude,
+            2 * np.pi * f * amplitude,
+            float(motion.displacement.mean()),
+            contact_loss_fraction(motion),
+            np.nan,
+            float(motion.displacement.min() <= -rest),
+        )
+        return PointVibration(status="periodic", reason="periodic: a sine", motion=motion, numbers=numbers)
+
+    return vibration_at
+
+
+def _no_separation(load: float) -> str:
+    return f"normal_load {load:g} N leaves no separation between the surfaces: lower the load"
+
+
+def _refusals(rig: DrivenRig, settings: OperatingConditions, rest: Floats) -> list[str]:
+    """Return the reason against each drive and load that the stack or the contact rules out, else empty text."""
+    refusals = []
+    extremes = voltage_range(
+        rig.drive, voltage_peak_to_peak=settings.voltage_peak_to_peak, voltage_offset=settings.voltage_offset
+    )
+    for voltages, load, gap in zip(np.transpose(extremes), settings.normal_load, rest, strict=True):
+        refusal = ""
+        try:
+            require_allowed_voltage(rig.stack, stack_voltage=voltages)
+        except SonolubeError as beyond:
+            refusal = str(beyond)
+        if gap <= 0:
+            refusal = _no_separation(load)
+        refusals.append(refusal)
+    return refusals

@@ -1,0 +1,182 @@
+"""One amplitude for every command: measured first, then computed, then per volt, and the same friction everywhere."""
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pytest import approx, raises
+
+from sonolube.design import MAPS, grid_plan, sweep
+from sonolube.design.control import computed_characteristic
+from sonolube.errors import InvalidInput
+from sonolube.friction import BoundaryLubricant
+from sonolube.rig import (
+    Rig,
+    available_sources,
+    friction_point,
+    lubrication_point,
+    operating_points,
+    point_batch,
+    read_rig,
+    resolved_vibration,
+    simulate,
+    steady_vibration,
+    temperature_point,
+    thermal_solid,
+)
+from sonolube.rig.simulation import vibrated_friction
+
+RIGS = Path(__file__).parents[2] / "examples" / "rigs"
+TRIBOMETER = RIGS / "tribometer.toml"
+USES = [(path.stem, source) for path in sorted(RIGS.glob("*.toml")) for source in available_sources(read_rig(path))]
+VARIED = [
+    (name, source)
+    for name, source in USES
+    if (drive := read_rig(RIGS / f"{name}.toml").drive) and drive.voltage_peak_to_peak
+]
+CLOSE = 1e-6
+
+
+def chosen(name: str, source: str, *changes: str) -> Rig:
+    return read_rig(RIGS / f"{name}.toml", changes=[f"vibration.amplitude_source={source}", *changes])
+
+
+@cache
+def ratio_of(name: str, source: str) -> float:
+    return friction_point(chosen(name, source)).friction_ratio
+
+
+def volts_of(rig: Rig) -> float:
+    assert rig.drive is not None
+    assert rig.drive.voltage_peak_to_peak is not None
+    return rig.drive.voltage_peak_to_peak
+
+
+@pytest.mark.parametrize(("name", "source"), USES)
+def test_friction_simulate_and_many_points_agree(name: str, source: str) -> None:
+    rig, expected = chosen(name, source), ratio_of(name, source)
+    assert 0 < expected < 1
+    assert simulate(rig).friction.friction_ratio == approx(expected, rel=CLOSE)
+    assert float(operating_points(rig).friction_ratio) == approx(expected, rel=CLOSE)
+    assert point_batch(rig).numbers["friction_ratio"][0] == approx(expected, rel=CLOSE)
+    vibrated = vibrated_friction(rig, sliding_speed=rig.sliding_speed)
+    assert float(vibrated.ratio.friction_ratio) == approx(expected, rel=CLOSE)
+
+
+@pytest.mark.parametrize(("name", "source"), USES)
+def test_regime_and_thermal_take_the_friction_of_friction(name: str, source: str) -> None:
+    rig, expected = chosen(name, source), ratio_of(name, source)
+    steel = thermal_solid("stainless_steel_316")
+    warm = temperature_point(rig, pin=steel, disc=steel, heat_capacity=1.5, thermal_conductance=0.05, duration=1.0)
+    assert warm.friction_ratio == approx(expected, rel=CLOSE)
+    assert warm.amplitude_source == source
+    oil = BoundaryLubricant(film_coefficient=0.1, full_asperity_pressure=1e7)
+    wet = lubrication_point(rig, lubricant=oil)
+    assert wet.coefficients.ultrasonic / wet.coefficients.dry == approx(expected, rel=CLOSE)
+    assert wet.amplitude_source == source
+
+
+@pytest.mark.parametrize(("name", "source"), USES)
+def test_a_sweep_at_the_rigs_own_point_has_its_friction(name: str, source: str) -> None:
+    rig = chosen(name, source)
+    plan = grid_plan(
+        RIGS / f"{name}.toml",
+        over={"sliding.sliding_speed": [rig.sliding_speed]},
+        changes=[f"vibration.amplitude_source={source}"],
+    )
+    swept = sweep(plan)
+    assert float(swept["friction_ratio"][0]) == approx(ratio_of(name, source), rel=CLOSE)
+    assert swept.attrs["amplitude_source"] == source
+    assert swept.attrs["caveats"].split("\n") == list(friction_point(rig).caveats)
+
+
+@pytest.mark.parametrize("kind", MAPS)
+@pytest.mark.parametrize(("name", "source"), VARIED)
+def test_a_map_at_the_rigs_own_point_has_its_friction(name: str, source: str, kind: str) -> None:
+    rig = chosen(name, source)
+    volts = volts_of(rig)
+    assert rig.drive is not None
+    own = {
+        "sliding_speed": [rig.sliding_speed],
+        "normal_load": [rig.normal_load],
+        "voltage_peak_to_peak": [volts],
+        "frequency": [rig.drive.frequency],
+    }
+    axes = {key: own[key] for key in own if (key == "frequency") == (kind == "frequency-voltage")}
+    mapped = MAPS[kind](rig, **axes | {"voltage_peak_to_peak": [volts]})
+    assert 1 - float(mapped["friction_reduction"].values.item()) == approx(ratio_of(name, source), rel=CLOSE)
+    assert mapped.attrs["amplitude_source"] == source
+
+
+@pytest.mark.parametrize(("name", "source"), VARIED)
+def test_the_characteristic_of_control_ends_at_the_rigs_own_friction(name: str, source: str) -> None:
+    rig = chosen(name, source)
+    plant = computed_characteristic(rig, voltage_maximum=volts_of(rig), points=2)
+    expected = ratio_of(name, source) * rig.friction_coefficient * rig.normal_load
+    assert plant.lowest_force == approx(expected, rel=CLOSE)
+
+
+def test_a_measured_amplitude_comes_first_then_a_computed_one_then_one_per_volt() -> None:
+    rig = read_rig(TRIBOMETER)
+    assert available_sources(rig) == ("measured", "computed", "per-volt")
+    assert friction_point(rig).amplitude_source == "measured"
+    assert friction_point(replace(rig, vibration_amplitude=None)).amplitude_source == "computed"
+    assert friction_point(read_rig(RIGS / "collar.toml")).amplitude_source == "per-volt"
+
+
+def test_the_computed_motion_of_a_measured_amplitude_has_that_amplitude_under_the_drive_of_the_measurement() -> None:
+    assert steady_vibration(read_rig(TRIBOMETER)).vibration_amplitude == approx(2.5e-6, rel=1e-9)
+    halved = chosen("tribometer", "measured", "vibration.vibration_amplitude=1.25um")
+    assert steady_vibration(halved).vibration_amplitude == approx(1.25e-6, rel=1e-9)
+    driven = resolved_vibration(halved).driven
+    assert driven is not None
+    assert driven.calibration == approx(0.5, rel=5e-3)  # the tip is nearly linear in the drive
+
+
+def test_a_measured_amplitude_is_proportional_to_the_voltage_where_nothing_is_computed() -> None:
+    changes = ["vibration.vibration_amplitude=2um", "vibration.voltage_peak_to_peak=28V"]
+    rig = read_rig(RIGS / "collar.toml", changes=[*changes, "drive.voltage_peak_to_peak=14V"])
+    assert friction_point(rig).vibration_amplitude == approx(1e-6)
+    assert operating_points(rig, voltage_peak_to_peak=[7.0, 28.0]).vibration_amplitude == approx([0.5e-6, 2e-6])
+
+
+def test_a_stated_amplitude_holds_at_its_own_frequency_only() -> None:
+    points = operating_points(read_rig(RIGS / "collar.toml"), frequency=[25e3, 30e3])
+    assert points.status.tolist() == ["periodic", "refused"]
+    assert "holds at 25 kHz only: choose the amplitude computed" in str(points.reason[1])
+
+
+def test_a_source_that_the_rig_lacks_is_refused_with_those_that_it_has() -> None:
+    with raises(InvalidInput, match=r"no amplitude computed: give the tables stack and structure.*; it has per-volt"):
+        friction_point(chosen("collar", "computed"))
+    with raises(InvalidInput, match=r"no amplitude measured: give vibration\.vibration_amplitude"):
+        friction_point(chosen("collar", "measured"))
+
+
+def test_amplitudes_that_differ_by_more_than_their_error_are_told_in_one_line() -> None:
+    apart = friction_point(chosen("tribometer", "computed", "actuator.amplitude_per_volt=0.2um/V")).caveats
+    (line,) = (caveat for caveat in apart if "amplitudes differ" in caveat)
+    assert "computed 2.5 um, taken here, and per-volt 5.6 um" in line
+    assert not any("amplitudes differ" in caveat for caveat in friction_point(read_rig(TRIBOMETER)).caveats)
+
+
+def test_beyond_the_gap_at_rest_wear_about_it_has_no_number_but_the_range_of_the_models_that_hold() -> None:
+    from sonolube.rig import wear_point
+
+    wear = wear_point(read_rig(RIGS / "welder_flat.toml"))
+    assert np.isnan(wear.wear_rate_ratio)
+    assert wear.status == "outside_model_range"
+    assert "exceeds the gap at rest" in (wear.reason or "")
+    assert "dong_2015_load_balanced holds: ratio 0.6" in (wear.reason or "")
+    assert "smaller amplitude" not in " ".join(wear.caveats)
+
+
+def test_the_balance_of_energy_says_which_power_is_which() -> None:
+    result = simulate(read_rig(TRIBOMETER))
+    assert result.friction.actuator_power is not None
+    assert result.vibration.dissipated_power is not None
+    assert result.vibration.dissipated_power > result.friction.actuator_power
+    assert "6.21 W charges the actuator's capacitance alone" in (result.energy_balance or "")
+    assert "must supply the larger" in (result.energy_balance or "")
