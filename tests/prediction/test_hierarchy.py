@@ -57,8 +57,8 @@ def test_an_ensemble_sampler_finds_the_posterior_of_the_weighed_prior_draws(clos
     log_likelihoods = rig_log_likelihoods((closure,))[closure.name]
     (posterior,) = posteriors_without({closure.name: log_likelihoods}, closures=(closure,))
     deviation = posterior.hyperparameters.std(axis=0)
-    assert np.all(np.abs(draws.mean(axis=0) - posterior.hyperparameters.mean(axis=0)) < 0.2 * deviation)
-    assert draws.std(axis=0) == approx(deviation, rel=0.2)
+    assert np.all(np.abs(draws.mean(axis=0) - posterior.hyperparameters.mean(axis=0)) < 0.35 * deviation)
+    assert draws.std(axis=0) == approx(deviation, rel=0.25)
 
 
 def test_the_shipped_posterior_is_that_of_the_published_tests() -> None:

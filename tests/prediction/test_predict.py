@@ -69,8 +69,8 @@ def test_the_less_the_roughness_is_known_the_wider_the_interval_and_the_more_a_s
 
 def test_the_heat_is_that_of_the_predicted_force_and_needs_both_materials() -> None:
     found = predict(rig(), pin=STEEL, disc=ALUMINIUM, draws=300)
-    ratio = found["mean_temperature_rise"] / found["friction_force"]
-    assert ratio.to_numpy() == approx(np.full(300, float(ratio[0])))
+    rise, force = found["mean_temperature_rise"].to_numpy(), found["friction_force"].to_numpy()
+    assert rise * force.max() == approx(rise.max() * force)
     assert "Heat of friction does not limit" in found.attrs["statement"]
     with raises(InvalidInput, match="both materials"):
         predict(rig(), pin=STEEL)
@@ -96,6 +96,7 @@ def test_runs_by_voltage_and_forces_are_those_by_amplitude_and_ratio(tmp_path: P
 def test_runs_that_no_closure_explains_are_said_so(tmp_path: Path) -> None:
     found = predict(rig(), runs=read_runs(runs_file(tmp_path, "0.5,20,0.2", "1.5,20,0.7", "4,20,1.4")))
     assert "no closure explains the measured runs" in found.attrs["caveats"]
+    assert width(found) > 0.2
 
 
 def test_copies_of_a_run_count_once(tmp_path: Path) -> None:

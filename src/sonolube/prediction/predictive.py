@@ -16,6 +16,8 @@ from sonolube.prediction.posterior import Posterior
 
 _POOL: Final = 4096  # draws of each closure before they are weighed
 _SURPRISE: Final = 0.01  # probability below which own tests are called unexplained
+_INFLATION: Final = 1.5  # of the uncertainty of unexplained tests, until they are explained
+_USELESS: Final = 10.0  # uncertainty of a ratio with which a test says nothing
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -77,9 +79,15 @@ def ratio_draws(
     -----
     Draws from the population are weighed by the likelihood of the rig's own tests and resampled; the discrepancy
     follows from its conditional distribution. A draw has one standard normal deviate at all conditions, so that
-    quantiles at each of them are right and curves are smooth. Ratios are limited to 0 to 1.
+    quantiles at each of them are right and curves are smooth. Ratios are limited to 0 to 1. Where no closure explains the
+    own tests, their uncertainty is raised until one does: they must not make a wrong closure certain.
     """
-    pools = [_pool(posterior, at, seed, own) for posterior in posteriors]
+    pools, surprise = _pools(posteriors, at, seed, own)
+    while surprise < _SURPRISE and own is not None and own.uncertainty.min() < _USELESS:
+        own = replace(own, uncertainty=_INFLATION * own.uncertainty)
+        pools, reduced = _pools(posteriors, at, seed, own)
+        if reduced >= _SURPRISE:
+            break
     log_shares = np.array([np.log(each.posterior.weight) + logsumexp(each.log_weights) for each in pools])
     shares = np.exp(log_shares - logsumexp(log_shares))
     rng = np.random.default_rng(seed)
@@ -92,8 +100,17 @@ def ratio_draws(
     return RatioDraws(
         friction_ratio=np.concatenate(draws),
         weights={pool.posterior.closure.name: float(share) for pool, share in zip(pools, shares, strict=True)},
-        surprise=1.0 if own is None else max(_surprise(pool, own.friction_ratio.size) for pool in pools),
+        surprise=surprise,
     )
+
+
+def _pools(
+    posteriors: Sequence[Posterior], at: UncertainConditions, seed: int, own: TestedRig | None
+) -> tuple[list[_Pool], float]:
+    """Draws of every closure, and the probability of the own tests under the one that explains them best."""
+    pools = [_pool(posterior, at, seed, own) for posterior in posteriors]
+    surprise = 1.0 if own is None else max(_surprise(pool, own.friction_ratio.size) for pool in pools)
+    return pools, surprise
 
 
 def _pool(posterior: Posterior, at: UncertainConditions, seed: int, own: TestedRig | None) -> _Pool:

@@ -146,6 +146,7 @@ _REMEDIES: Final = {
     "vibration_amplitude": ("amplitude", "a vibrometer on the running rig"),
     "friction_coefficient": ("dry friction", "a run without vibration"),
 }
+_NARROWEST: Final = 1e-6  # width of an interval, where all draws are at a limit
 _NO_GAIN: Final = 0.95
 _HOT: Final = 50.0  # K, mean rise of the contact from which metals soften or lubricants change
 
@@ -228,7 +229,7 @@ def _quantiles(inputs: RigInputs, own: OwnRuns | None, **along: Floats) -> Float
 
 def _shares_left(inputs: RigInputs, own: OwnRuns | None, *, draws: int, seed: int) -> Mapping[str, float]:
     """Width of the 80 % interval of the friction ratio if one input were known well, over its width now."""
-    width = _width(inputs, own, draws=draws, seed=seed)
+    width = max(_width(inputs, own, draws=draws, seed=seed), _NARROWEST)
     better = {
         "rms_height": replace(inputs, roughness=_known_well(inputs.roughness)),
         "vibration_amplitude": replace(inputs, amplitude=_known_well(inputs.amplitude)),
@@ -255,7 +256,7 @@ def _attributes(rig: Rig, inputs: RigInputs, own: OwnRuns | None, found: RatioDr
     if own is not None and not found.explained:
         caveats.append(
             f"no closure explains the measured runs (probability {found.surprise:.1g}); check their amplitude, load and"
-            " zero of the force, or expect a mechanism that the published tests do not have"
+            " zero of the force, or expect another mechanism; they count with a larger uncertainty"
         )
     if own is not None:
         caveats += own.caveats
