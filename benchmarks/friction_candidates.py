@@ -64,9 +64,8 @@ def population(test: FrictionTest, heights: Any, weights: Any, gap: float, memor
 
 
 def distributed(test: FrictionTest, memory_length: float, spread: float) -> float:
-    return sum(
-        w * sine(test, memory_length * np.exp(spread * g)) for g, w in zip(NODES, WEIGHTS / WEIGHTS.sum(), strict=True)
-    )
+    lengths = memory_length * np.exp(spread * NODES)
+    return float(np.average([sine(test, float(length)) for length in lengths], weights=WEIGHTS))
 
 
 def zero_error(test: FrictionTest, memory_length: float, zero_error: float = 0.0) -> float:
