@@ -199,6 +199,21 @@ def test_a_stroke_longer_than_any_preslide_is_that_of_coulombs_friction(name: st
     assert ratio(name, rig) == approx(arcsine, abs=0.02)
 
 
+def test_springs_on_roughness_slide_slowly_with_their_least_load_and_fast_as_without_vibration() -> None:
+    # an approach u of half of R_q: 1 - a/u where contact holds, and exactly 1 from omega a times slip length over u on
+    test, slip_length = friction_tests("B")[0], 2e-6
+    u = test.contact.roughness.rms_height / 2
+    assert test.vibration_amplitude < u
+    slow = replace(test, sliding_speed=1e-7)
+    assert ratio("spring-flat-on-roughness", slow, slip_length, 0.5) == approx(
+        1 - test.vibration_amplitude / u, abs=1e-3
+    )
+    critical = 2 * pi * test.frequency * test.vibration_amplitude * slip_length / u
+    fast, slower = (replace(test, sliding_speed=part * critical) for part in (1.001, 0.9))
+    assert ratio("spring-flat-on-roughness", fast, slip_length, 0.5) == approx(1.0, abs=1e-9)
+    assert ratio("spring-flat-on-roughness", slower, slip_length, 0.5) < 1 - 1e-4
+
+
 def test_a_rig_like_a_test_is_predicted_as_the_test_is(published: tuple[ComparedFit, ...]) -> None:
     test = friction_tests("A")[1]
     rig = VibratedRig(

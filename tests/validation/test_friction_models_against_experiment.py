@@ -253,6 +253,36 @@ def test_only_stick_slip_predicts_table_4_2_from_the_other_tables() -> None:
         assert ratio > 0.5
 
 
+def test_with_the_constant_of_d_the_variant_of_a_fitted_decay_constant_is_stick_slip() -> None:
+    variant = NAMED["asperity-stick-slip-decay-constant"]
+    for test in friction_tests():
+        assert variant.predict(test, 1.5e-6, 3.0) == approx(NAMED["asperity-stick-slip-fitted"].predict(test, 1.5e-6))
+    # slow sliding leaves the friction of the widest gap, exp(-beta)/I0(beta) with beta = lambda a/R_q
+    slow = replace(friction_tests("B")[0], sliding_speed=1e-7)
+    beta = 2.4 * slow.vibration_amplitude / slow.contact.roughness.rms_height
+    assert variant.predict(slow, 1.5e-6, 2.4) == approx(np.exp(-beta) / i0(beta), abs=1e-3)
+
+
+def test_other_decay_constants_predict_unseen_sets_better_only_with_the_roughness_of_the_records() -> None:
+    names = ("asperity-stick-slip-decay-constant", "asperity-stick-slip-fitted")
+    fitted, plain = (cross_validation_errors(NAMED[name], FITTED_SETS) for name in names)
+    assert fitted.rms < plain.rms
+    assert fitted.median_relative < 0.6 * plain.median_relative
+    fit = fit_variant(NAMED[names[0]], FITTED_SETS)
+    low, high = profile_likelihood_interval(fit, 1)
+    assert low < 3.0 < high
+    tests = with_printed_roughness(friction_tests())
+    fitted, plain = (cross_validation_errors(NAMED[name], FITTED_SETS, tests=tests) for name in names)
+    assert fitted.rms > plain.rms
+
+
+def test_the_stated_scatter_alone_gives_an_exact_model_a_median_error_of_six_per_cent() -> None:
+    tests = friction_tests(FITTED_SETS)
+    scatter = np.array([test.uncertainty or 0.045 for test in tests])
+    drawn = np.abs(np.random.default_rng(3).normal(scale=scatter, size=(4000, len(tests)))) / measured_ratios(tests)
+    assert np.median(np.median(drawn, axis=1)) == approx(0.063, abs=0.004)
+
+
 def test_the_information_criteria_are_hand_computed() -> None:
     fit = fit_variant(NAMED["kinematic-fitted"], SETS_WITHOUT_POWER_MAP)
     found = information_criteria(fit, friction_tests(SETS_WITHOUT_POWER_MAP))

@@ -79,8 +79,8 @@ def ratio_draws(
     -----
     Draws from the population are weighed by the likelihood of the rig's own tests and resampled; the discrepancy
     follows from its conditional distribution. A draw has one standard normal deviate at all conditions, so that
-    quantiles at each of them are right and curves are smooth. Ratios are limited to 0 to 1. Where no closure explains the
-    own tests, their uncertainty is raised until one does: they must not make a wrong closure certain.
+    quantiles at each of them are right and curves are smooth. Ratios are limited to 0 to 1. Where no closure explains
+    the own tests, their uncertainty is raised until one does: they must not make a wrong closure certain.
     """
     pools, surprise = _pools(posteriors, at, seed, own)
     while surprise < _SURPRISE and own is not None and own.uncertainty.min() < _USELESS:

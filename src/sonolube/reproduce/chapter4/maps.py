@@ -100,7 +100,7 @@ def map_figures() -> Iterator[ReportFigure]:
         caption="The model at 5 N, up to 200 V, far beyond the tests (dash-dotted: their highest power). Dashed: power "
         "whose doubling reduces friction by less than another 5 %. Dotted: the power of zero friction on D's "
         f"efficiency line (D 4.3), which has no meaning from {1e3 * power_map.line_end():.0f} mm/s on. Both rise with "
-        "the speed, as does the optimum at low speeds of the text; that of the model is some ten times higher.",
+        "the speed, as does the optimum at low speeds of the text; that of the model is about twice as high.",
         draw=_ridge,
     )
 
