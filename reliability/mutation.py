@@ -33,6 +33,7 @@ _OTHER_TESTS = (
     "tests/measurement",
 )
 _LIMIT = 900.0  # s, of the tests of a stage
+_NOT_A_FAILURE = (0, 4, 5)  # exit statuses of pytest: all pass, no such test, none collected
 _DEFINITIONS = (ast.FunctionDef, ast.ClassDef)
 _OPERATORS: dict[type, tuple[str, str]] = {
     ast.Add: ("+", "-"), ast.Sub: ("-", "+"), ast.Mult: ("*", "/"), ast.Div: ("/", "*"), ast.Pow: ("**", "*"),
@@ -204,13 +205,14 @@ def tests_of(file: str) -> list[list[str]]:
     room = [test for test in every if path.parts[0] in test.relative_to(ROOT / "tests").parts[0]]
     own = [test for test in room if test.stem == f"test_{path.stem}"]
     naming = [test for test in every if test not in room and names.search(test.read_text(encoding="utf-8"))]
-    stages = [own, [test for test in room if test not in own], naming]
+    naming.sort(key=lambda test: _OTHER_TESTS[0] not in test.as_posix())
+    stages = (own, [test for test in room if test not in own], naming)
     named = [[test.relative_to(ROOT).as_posix() for test in stage] for stage in stages]
-    return [stage for stage in [*named[:2], [*named[2], *_OTHER_TESTS]] if stage]
+    return [*named[:2], [*named[2], *_OTHER_TESTS]]
 
 
 def _public_names(file: str) -> list[str]:
-    """Names that a module defines, without those that begin with an underscore; at least that of the module."""
+    """Names that a module defines, without those that begin with an underscore; its own where there are none."""
     body = ast.parse((SOURCE / file).read_text(encoding="utf-8")).body
     defined = [node.name for node in body if isinstance(node, _DEFINITIONS) and not node.name.startswith("_")]
     constants = [
@@ -220,7 +222,7 @@ def _public_names(file: str) -> list[str]:
         for target in node.targets
         if isinstance(target, ast.Name) and not target.id.startswith("_")
     ]
-    return [Path(file).stem, *defined, *constants]
+    return [*defined, *constants] or [Path(file).stem]
 
 
 def _compiled_with(file: str) -> Iterator[str]:
@@ -268,8 +270,8 @@ def killed_by(mutant: Mutant, first: str = "", *, stages: int = 3) -> str:
             for compiled in (copy / module.parent / "__pycache__").glob(f"{module.stem}.*"):
                 compiled.unlink()
         environment = {**os.environ, "PYTHONPATH": folder, "OPENBLAS_NUM_THREADS": "1", "MPLBACKEND": "Agg"}
-        for tests in [[first]] * bool(first) + tests_of(mutant.file)[:stages]:
-            if failed := _failed(tests, environment):
+        for tests in [[first] if first else [], *tests_of(mutant.file)[:stages]]:
+            if tests and (failed := _failed(tests, environment)):
                 return failed
     return ""
 
@@ -292,7 +294,7 @@ def _failed(tests: list[str], environment: dict[str, str]) -> str:
         os.killpg(run.pid, signal.SIGKILL)
         run.communicate()
         return f"{' '.join(tests)} did not end within {_LIMIT:.0f} s"
-    if run.returncode in (0, 5):
+    if run.returncode in _NOT_A_FAILURE:
         return ""
     named = [line.split()[1] for line in output.splitlines() if line.startswith(("FAILED ", "ERROR "))]
     return named[0] if named else "collection"

@@ -69,6 +69,12 @@ def test_more_power_than_removes_all_friction_is_refused_with_the_sufficient_pow
         friction_at_power(LINE, intrinsic_friction_force=0.89, actuator_power=[1.0, 5.31], **PIN)
 
 
+def test_more_power_than_removes_a_micronewton_of_friction_is_refused_as_well() -> None:
+    sufficient = power_for_friction(LINE, intrinsic_friction_force=1e-6, reduced_friction_force=0.0, **PIN)
+    with raises(OutsideRange, match="that remove all friction"):
+        friction_at_power(LINE, intrinsic_friction_force=1e-6, actuator_power=1.01 * sufficient, **PIN)
+
+
 def test_a_target_friction_above_the_intrinsic_one_is_refused() -> None:
     with raises(
         InvalidInput, match=r"reduced_friction_force must not exceed intrinsic_friction_force, 0\.89 N, got 0\.9 N"

@@ -79,6 +79,7 @@ def test_a_sine_has_the_closed_form_ratio(log_beta: float, log_v: float) -> None
 @pytest.mark.parametrize(
     "harmonics",
     [
+        [2e-7, 8e-9 * np.exp(2j)],
         [2.5e-6, 3e-10],
         [2.5e-6 * np.exp(0.7j), 4e-8 * np.exp(2j)],
         [6e-6, 2e-7 * np.exp(-1j), 4e-8j],
@@ -118,6 +119,25 @@ def test_harmonics_change_friction_by_no_more_than_they_change_the_gap(
     about_the_same_mean = sine * i0e(beta) * np.exp(beta - balanced_mean(amplitudes) / DECAY_LENGTH)
     change = np.log(ratios(amplitudes, np.array([speed]))[0] / about_the_same_mean)
     assert abs(change) <= fraction * beta + 1e-5
+
+
+def test_a_gap_held_wider_than_balanced_transmits_friction_less_by_the_exponential_law() -> None:
+    beta, wider, speed = 1.5, 0.3, 0.02
+    sine = sine_stick_slip_ratio(
+        decay_length=DECAY_LENGTH,
+        vibration_amplitude=beta * DECAY_LENGTH,
+        frequency=FREQUENCY,
+        sliding_speed=speed,
+        memory_length=MEMORY_LENGTH,
+    )
+    found = batched_stick_slip_ratio(
+        motions([DECAY_LENGTH * (np.log(i0e(beta)) + beta + wider)], [[beta * DECAY_LENGTH + 0j]]),
+        decay_length=DECAY_LENGTH,
+        sliding_speed=[speed],
+        motion=[0],
+        memory_length=MEMORY_LENGTH,
+    )
+    assert found[0] == approx(float(sine) * np.exp(-wider), abs=5e-6)
 
 
 def test_a_motion_that_closes_twice_in_a_period_gives_nan() -> None:
