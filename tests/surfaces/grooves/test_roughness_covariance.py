@@ -12,7 +12,7 @@ VARIANCE, CELL = 4e-12, 10e-6
 
 
 def matern(distance: float, hurst: float) -> float:
-    """Return the correlation of a self-affine roughness with roll-off: the transform of (1 + k^2)^(-1 - H) in a plane."""
+    """Return the correlation of a roughness with the spectrum (1 + k^2)^(-1 - H) in a plane."""
     if distance == 0:
         return 1.0
     return float(2 ** (1 - hurst) / gamma(hurst) * distance**hurst * kv(hurst, distance))
