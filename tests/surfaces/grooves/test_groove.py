@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 from pytest import approx, mark, raises
+from scipy.ndimage import gaussian_filter
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput, NoGroove
@@ -213,6 +214,25 @@ def test_too_few_pixels_are_refused(shape: tuple[int, int]) -> None:
 def test_a_flat_surface_has_no_groove() -> None:
     with raises(NoGroove, match="flat"):
         measure_groove(HeightMap(height=np.zeros((100, 100)), spacing_x=1e-6, spacing_y=1e-6))
+
+
+def test_a_rougher_floor_widens_the_interval_of_the_depth() -> None:
+    step = 10e-6
+    y, _ = ((n - n.mean()) * step for n in np.mgrid[:120, :160].astype(float))
+    roughness = gaussian_filter(np.random.default_rng(5).standard_normal(y.shape), 1.5)
+    roughness *= 0.3e-6 / roughness.std()
+    even, rough = (
+        measure_groove(
+            HeightMap(
+                height=roughness * np.where(np.abs(y) < 0.25e-3, times, 1.0)
+                - 12e-6 * np.maximum(0.0, 1 - (y / 0.25e-3) ** 2),
+                spacing_x=step,
+                spacing_y=step,
+            )
+        )
+        for times in (1.0, 3.0)
+    )
+    assert np.ptp(rough.groove_depth_interval) > 1.3 * np.ptp(even.groove_depth_interval)
 
 
 def test_cross_sections_are_perpendicular_to_the_track() -> None:

@@ -58,6 +58,17 @@ def test_the_spectral_density_over_the_peak_of_a_wave_is_half_the_square_of_its_
     assert 2 * above == approx(amplitude**2 / 2, rel=0.05)
 
 
+def test_marks_are_sought_in_the_fraction_of_the_width_that_is_asked_for() -> None:
+    y, x = ((n - n.mean()) * 5e-6 for n in np.mgrid[:120, :240].astype(float))
+    floor, ribbon = np.maximum(0.0, 1 - (y / 0.2e-3) ** 2), np.abs(np.abs(y) - 0.105e-3) < 0.012e-3
+    noise = 0.02e-6 * np.random.default_rng(0).standard_normal(x.shape)
+    height = noise - 15e-6 * floor + 0.4e-6 * np.cos(2 * np.pi * x / 0.1e-3) * ribbon
+    groove = measure_groove(HeightMap(height=height, spacing_x=5e-6, spacing_y=5e-6))
+    wide, narrow = (track_marks(groove, width_fraction=fraction, averaged_points=4) for fraction in (0.6, 0.42))
+    assert wide.dot_spacing == approx(0.1e-3, rel=2e-3)
+    assert narrow.dot_spacing is None
+
+
 def test_an_even_groove_has_no_marks_and_the_result_a_reason() -> None:
     shape = GrooveShape(groove_width=0.7e-3, groove_depth=60e-6)
     for seed in range(4):
