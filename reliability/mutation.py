@@ -296,7 +296,11 @@ def _failed(tests: list[str], environment: dict[str, str]) -> str:
         return f"{' '.join(tests)} did not end within {_LIMIT:.0f} s"
     if run.returncode in _NOT_A_FAILURE:
         return ""
-    named = [line.split()[1] for line in output.splitlines() if line.startswith(("FAILED ", "ERROR "))]
+    named = [
+        line.partition(" ")[2].partition(" - ")[0]
+        for line in output.splitlines()
+        if line.startswith(("FAILED ", "ERROR "))
+    ]
     return named[0] if named else "collection"
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 from pytest import approx, mark
+from scipy import fft
 
 from sonolube.metrics import indentation_spacing
 from sonolube.surfaces import (
@@ -13,6 +14,7 @@ from sonolube.surfaces import (
     synthetic_groove,
     track_marks,
 )
+from sonolube.surfaces.grooves.track_marks import _false_alarm
 
 FIELD = ScannedField(field_shape=(240, 320), spacing_x=7.5e-6, spacing_y=7.5e-6)
 TRACK = GrooveTrack(track_direction=0.3, track_curvature=1 / 29e-3, track_offset=0.0)
@@ -67,6 +69,21 @@ def test_marks_are_sought_in_the_fraction_of_the_width_that_is_asked_for() -> No
     wide, narrow = (track_marks(groove, width_fraction=fraction, averaged_points=4) for fraction in (0.6, 0.42))
     assert wide.dot_spacing == approx(0.1e-3, rel=2e-3)
     assert narrow.dot_spacing is None
+
+
+def test_profiles_that_are_all_alike_count_as_one_in_the_probability_of_a_false_alarm() -> None:
+    # white noise without marks: as many alarms below a probability as it says
+    rng, points, tracks = np.random.default_rng(0), 500, 1200
+    length, size = float(points), fft.next_fast_len(8 * points)
+    window, k = np.hanning(points + 2)[1:-1], fft.rfftfreq(size)
+    searched = (k >= 2 / length) & (k <= 0.4)
+    alarms = []
+    for _ in range(tracks):
+        profile = rng.standard_normal(points) * window / np.linalg.norm(window)
+        spectra = np.tile(fft.rfft(profile, size)[searched], (6, 1))
+        power = np.abs(spectra[0]) ** 2
+        alarms.append(_false_alarm(k[searched], power, spectra, 1 + int(np.argmax(power[1:-1])), length))
+    assert np.mean(np.array(alarms) < 0.05) < 0.065
 
 
 def test_an_even_groove_has_no_marks_and_the_result_a_reason() -> None:
