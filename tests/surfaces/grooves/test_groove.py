@@ -217,6 +217,15 @@ def test_a_flat_surface_has_no_groove() -> None:
         measure_groove(HeightMap(height=np.zeros((100, 100)), spacing_x=1e-6, spacing_y=1e-6))
 
 
+def test_the_shallow_shoulders_of_a_groove_belong_to_its_width() -> None:
+    step = 5e-6
+    y, _ = ((n - n.mean()) * step for n in np.mgrid[:160, :100].astype(float))
+    section = np.interp(np.abs(y), [0, 0.12e-3, 0.17e-3, 0.25e-3], [-10e-6, -10e-6, -3e-6, 0])
+    noise = 0.03e-6 * np.random.default_rng(0).standard_normal(y.shape)
+    groove = measure_groove(HeightMap(height=section + noise, spacing_x=step, spacing_y=step))
+    assert groove.groove_width == approx(0.5e-3, rel=0.06)  # 0.34 mm by the steep flanks alone
+
+
 def test_a_rougher_floor_widens_the_interval_of_the_depth() -> None:
     step = 10e-6
     y, _ = ((n - n.mean()) * step for n in np.mgrid[:120, :160].astype(float))
