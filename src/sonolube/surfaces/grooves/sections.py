@@ -186,7 +186,7 @@ def cross_sections(
     near = (transverse >= reach[0]) & (transverse <= reach[1])
     step = max(levelled.spacing_x, levelled.spacing_y)
     start, stop = float(arc_length[near].min()), float(arc_length[near].max())
-    t = np.linspace(start, stop, sections or max(2, round((stop - start) / step)))
+    t = np.linspace(start, stop, sections or max(2, 1 + round((stop - start) / step)))
     s = np.linspace(reach[0], reach[1], max(2, round((reach[1] - reach[0]) / step)))
     row, column = (np.rint(each).astype(np.intp) for each in track.pixel_position(levelled, *np.meshgrid(s, t)))
     rows, columns = levelled.height.shape
