@@ -218,8 +218,8 @@ def _measured(
     counted: Mask,
 ) -> Groove:
     """Groove about a known track, with its intervals."""
-    transverse, _ = track.curvilinear_coordinates(levelled)
-    errors = GrooveErrors.of(levelled, surface, reference, transverse, section, first_edges, counted)
+    transverse, arc_length = track.curvilinear_coordinates(levelled)
+    errors = GrooveErrors.of(levelled, surface, reference, (transverse, arc_length), section, first_edges, counted)
     estimates = section_estimates(errors, first_edges)
     if estimates is None:
         raise NoGroove(
