@@ -49,6 +49,7 @@ class GrooveErrors:
     levelled : HeightMap
     reference : UnwornReference
     transverse, arc_length : ndarray, shape of the heights
+        Coordinates about the track, in m.
     section : MeanCrossSection
     cells : Cells
     covariance : RoughnessCovariance
@@ -117,8 +118,8 @@ class GrooveErrors:
     def of_corner(self, corner: int, strip: Floats) -> float:
         """Standard uncertainty from the track's direction and curvature of a corner's distance from a strip, in m."""
         t = self.arc_length
-        lever = tuple(float(power.flat[corner] - np.sum(strip * power)) for power in (t, t**2 / 2))
-        return self._combined(self.floor_scale * self.reference.track_pixel_weights(lever))[0]
+        rotation, bending = (float(power.flat[corner] - np.sum(strip * power)) for power in (t, t**2 / 2))
+        return self._combined(self.floor_scale * self.reference.track_pixel_weights((rotation, bending)))[0]
 
     def _combined(self, weights: Floats, *further: float) -> tuple[float, float]:
         summed = self.cells.sums(weights)[None]
@@ -187,7 +188,8 @@ def section_estimates(errors: GrooveErrors, edges: GrooveExtent) -> tuple[Groove
     corners = int(across.argmin()), int(across.argmax())
     left = float(across.flat[corners[0]]) if cut[0] else curve.left
     right = float(across.flat[corners[1]]) if cut[1] else curve.right
-    turned = [errors.of_corner(corner, strip(edge)) for corner, edge, outside in zip(corners, (curve.right, curve.left), cut, strict=True) if outside]
+    opposite = strip(curve.right), strip(curve.left)
+    turned = [errors.of_corner(corners[side], opposite[side]) for side in (0, 1) if cut[side]]
     found = edges._replace(left=edges.left if cut[0] else curve.left, right=edges.right if cut[1] else curve.right)
     return (
         found._replace(left_foot=min(found.left, edges.left_foot), right_foot=max(found.right, edges.right_foot)),
