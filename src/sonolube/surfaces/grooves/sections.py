@@ -18,7 +18,6 @@ _SIGNIFICANT = 4.0  # height over the standard deviation of the mean section bes
 _LEAST_FRACTION = 0.005  # of the depth, from which a height counts as worn or piled up
 _ROUNDING = 1e-4  # of the depth
 _GAP = 5  # pixels, largest between edge and ridge
-_MARGIN = 0.04  # of the groove width, on either side of it
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -155,12 +154,6 @@ def groove_extent(section: MeanCrossSection, worn_band: tuple[float, float]) -> 
         left_in_field=bool(first > 0),
         right_in_field=bool(last < s.size - 1),
     )
-
-
-def band_with_margin(found: GrooveExtent) -> tuple[float, float]:
-    """Distances in m that enclose groove and ridges with a margin on either side."""
-    margin = _MARGIN * (found.right - found.left)
-    return found.left_foot - margin, found.right_foot + margin
 
 
 def cross_sections(
