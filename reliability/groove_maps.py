@@ -1,10 +1,12 @@
-"""Height maps of wear grooves of known width, depth and volume, by code of its own (numpy alone)."""
+"""Height maps of wear grooves of known width, depth and volume, by code of its own (numpy and scipy alone)."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import log_ndtr
 
 Array = NDArray[np.float64]
 
@@ -22,6 +24,19 @@ CLASSES = (
 )
 """Classes of grooves; the trial with seed n is of class n modulo their number."""
 
+FAMILIES: dict[str, Callable[[Array, float], Array]] = {
+    "self-affine, round roll-off": lambda squared, hurst: (1 + squared) ** -(1 + hurst),
+    "self-affine, sharp roll-off": lambda squared, hurst: np.maximum(1.0, squared) ** -(1 + hurst),
+    "Gaussian spectrum, skewed heights": lambda squared, hurst: np.exp(-squared / 4),
+}
+"""Spectra over the squared wavenumber, in units of the roll-off, and the Hurst exponent. The analysis knows the first.
+
+The trial with seed n is of the family whose number is the integer part of n/10, modulo their number.
+"""
+
+_SKEWED = "Gaussian spectrum, skewed heights"
+_WEIBULL = 1.5  # shape of the distribution of the skewed depths below a plateau: skewness -1.07, excess kurtosis 1.39
+
 
 @dataclass(frozen=True)
 class Drawn:
@@ -31,6 +46,8 @@ class Drawn:
     ----------
     kind : str
         One of `CLASSES`.
+    family : str
+        Of the roughness, one of `FAMILIES`.
     pixel : float
         Distance of neighbouring pixels in both directions. [m]
     ground : ndarray, shape (rows, columns)
@@ -53,6 +70,7 @@ class Drawn:
     """
 
     kind: str
+    family: str
     pixel: float
     ground: Array
     relief: Array
@@ -95,6 +113,7 @@ def drawn_groove(seed: int, *, shape: tuple[int, int] = (180, 240)) -> Drawn:
     visible = min(width, float(np.max(s)) + width / 2, width / 2 - float(np.min(s))) if cut else width
     return Drawn(
         kind=kind,
+        family=list(FAMILIES)[seed // len(CLASSES) % len(FAMILIES)],
         pixel=pixel,
         ground=ground,
         relief=ridge - depth_at,
@@ -113,9 +132,9 @@ def heights(drawn: Drawn, seed: int) -> Array:
     """Heights of a drawn groove with the roughness, noise and missing pixels of a seed, NaN where missing, in m."""
     rng = np.random.default_rng([seed, 2])
     height = drawn.ground + drawn.relief
-    rough = random_field(rng, height.shape, drawn.pixel, drawn.roughness)
+    rough = random_field(rng, height.shape, drawn.pixel, drawn.roughness, drawn.family)
     if drawn.floor_factor:
-        floor = drawn.floor_factor * random_field(rng, height.shape, drawn.pixel, drawn.roughness)
+        floor = drawn.floor_factor * random_field(rng, height.shape, drawn.pixel, drawn.roughness, drawn.family)
         rough = np.where(drawn.inside, floor, rough)
     height = height + rough + drawn.roughness[5] * rng.standard_normal(height.shape)
     hit = rng.random(height.shape) < drawn.outliers
@@ -134,19 +153,24 @@ def random_field(
     shape: tuple[int, int],
     pixel: float,
     roughness: tuple[float, float, float, float, float, float],
+    family: str = "self-affine, round roll-off",
 ) -> Array:
-    """Gaussian heights of a self-affine spectrum with a roll-off, cut from a periodic map twice as large, in m."""
+    """Random heights of a family, cut from a periodic map twice as large, in m."""
     sq, along, across, lay, hurst, _ = roughness
     rows, columns = (2 * n for n in shape)
     qx = 2 * math.pi * np.fft.fftfreq(columns, pixel)[None, :]
     qy = 2 * math.pi * np.fft.fftfreq(rows, pixel)[:, None]
     ahead, beside = qx * math.cos(lay) + qy * math.sin(lay), qy * math.cos(lay) - qx * math.sin(lay)
-    power = (1 + (along * ahead) ** 2 + (across * beside) ** 2) ** -(1 + hurst)
+    power = FAMILIES[family]((along * ahead) ** 2 + (across * beside) ** 2, hurst)
     power[0, 0] = 0.0
     noise = np.fft.fft2(rng.standard_normal((rows, columns)))
     field = np.fft.ifft2(noise * np.sqrt(power)).real
-    field *= sq / math.sqrt(float(np.mean(power)))
-    return np.asarray(field[: shape[0], : shape[1]])
+    field /= math.sqrt(float(np.mean(power)))
+    if family == _SKEWED:  # each height to that of the same rank of a Weibull distribution of depths
+        depth = (-log_ndtr(field)) ** (1 / _WEIBULL)
+        mean, square = math.gamma(1 + 1 / _WEIBULL), math.gamma(1 + 2 / _WEIBULL)
+        field = (mean - depth) / math.sqrt(square - mean**2)
+    return np.asarray(sq * field[: shape[0], : shape[1]])
 
 
 def _distance(x: Array, y: Array, angle: float, rng: np.random.Generator, kind: str) -> tuple[Array, float]:

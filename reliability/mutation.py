@@ -13,9 +13,10 @@ import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 ROOT = Path(__file__).parents[1]
 SOURCE = ROOT / "src" / "sonolube"
@@ -32,6 +33,7 @@ _OTHER_TESTS = (
     "tests/measurement",
 )
 _LIMIT = 900.0  # s, of the tests of a stage
+_NOT_A_FAILURE = (0, 4, 5)  # exit statuses of pytest: all pass, no such test, none collected
 _DEFINITIONS = (ast.FunctionDef, ast.ClassDef)
 _OPERATORS: dict[type, tuple[str, str]] = {
     ast.Add: ("+", "-"), ast.Sub: ("-", "+"), ast.Mult: ("*", "/"), ast.Div: ("/", "*"), ast.Pow: ("**", "*"),
@@ -175,15 +177,15 @@ def _mutant(file: Path, lines: list[str], row: int, column: int, old: str, new: 
     )  # fmt: skip
 
 
-def sampled(seed: int = 0) -> Iterator[Mutant]:
-    """Mutants drawn from every room of models, as many as ROOMS says, at most one a line."""
+def sampled(kept: Sequence[Mutant] = (), *, seed: int = 0) -> Iterator[Mutant]:
+    """Mutants drawn from every room of models, with those kept as many as ROOMS says, at most one a line."""
     rng = random.Random(seed)
     for room, number in ROOMS.items():
         files = sorted((SOURCE / room).rglob("*.py"))
         physics = [file for file in files if not any(word in file.as_posix() for word in _NOT_MODELS)]
         found = [mutant for file in physics for mutant in mutants_of(file)]
         rng.shuffle(found)
-        lines: set[tuple[str, str]] = set()
+        lines = {(mutant.file, mutant.line) for mutant in kept if mutant.file.startswith(f"{room}/")}
         for mutant in found:
             if (mutant.file, mutant.line) not in lines and len(lines) < number:
                 lines.add((mutant.file, mutant.line))
@@ -191,23 +193,57 @@ def sampled(seed: int = 0) -> Iterator[Mutant]:
 
 
 def tests_of(file: str) -> list[list[str]]:
-    """Tests to run against a module in turn: its own, those that name what it defines, its room's, those above."""
+    """Tests to run against a module in turn: its own, its room's, and last those above.
+
+    Tests that name what the module defines stand first in their stage.
+    """
     path = Path(file)
-    tests = sorted((ROOT / "tests").rglob("test_*.py"))
-    own = [test for test in tests if test.stem == f"test_{path.stem}" and path.parts[0] in test.as_posix()]
-    defined = [
-        node.name
-        for node in ast.parse((SOURCE / file).read_text(encoding="utf-8")).body
-        if isinstance(node, _DEFINITIONS)
+    names = re.compile(rf"\b({'|'.join(_public_names(file))})\b")
+    every = sorted(
+        (ROOT / "tests").rglob("test_*.py"), key=lambda test: not names.search(test.read_text(encoding="utf-8"))
+    )
+    room = [test for test in every if path.parts[0] in test.relative_to(ROOT / "tests").parts[0]]
+    own = [test for test in room if test.stem == f"test_{path.stem}"]
+    naming = [test for test in every if test not in room and names.search(test.read_text(encoding="utf-8"))]
+    naming.sort(key=lambda test: _OTHER_TESTS[0] not in test.as_posix())
+    stages = (own, [test for test in room if test not in own], naming)
+    named = [[test.relative_to(ROOT).as_posix() for test in stage] for stage in stages]
+    return [*named[:2], [*named[2], *_OTHER_TESTS]]
+
+
+def _public_names(file: str) -> list[str]:
+    """Names that a module defines, without those that begin with an underscore; its own where there are none."""
+    body = ast.parse((SOURCE / file).read_text(encoding="utf-8")).body
+    defined = [node.name for node in body if isinstance(node, _DEFINITIONS) and not node.name.startswith("_")]
+    constants = [
+        target.id
+        for node in body
+        if isinstance(node, ast.Assign)
+        for target in node.targets
+        if isinstance(target, ast.Name) and not target.id.startswith("_")
     ]
-    named = re.compile(rf"\b({'|'.join(name for name in defined if not name.startswith('_'))})\b")
-    naming = [test for test in tests if test not in own and named.search(test.read_text(encoding="utf-8"))]
-    room = [test for test in tests if path.parts[0] in test.relative_to(ROOT / "tests").parts[0]]
-    stages = [[test.relative_to(ROOT).as_posix() for test in stage] for stage in (own, naming, room)]
-    return [stage for stage in [*stages, list(_OTHER_TESTS)] if stage]
+    return [*defined, *constants] or [Path(file).stem]
 
 
-def killed_by(mutant: Mutant, first: str = "") -> str:
+def _compiled_with(file: str) -> Iterator[str]:
+    """The module and those with compiled kernels that name something of it, or of such a module: their caches age."""
+    kernels = {
+        path.relative_to(SOURCE).as_posix(): text
+        for path in SOURCE.rglob("*.py")
+        if "numba" in (text := path.read_text(encoding="utf-8"))
+    }
+    waiting = [file]
+    while waiting:
+        yield (module := waiting.pop())
+        kernels.pop(module, None)
+        names = re.compile(rf"\b({'|'.join(_public_names(module))})\b")
+        naming = [other for other, text in kernels.items() if names.search(text)]
+        waiting += naming
+        for other in naming:
+            del kernels[other]
+
+
+def killed_by(mutant: Mutant, first: str = "", *, stages: int = 3) -> str:
     """Test that fails with the mutant, "" where all pass.
 
     Parameters
@@ -215,6 +251,8 @@ def killed_by(mutant: Mutant, first: str = "") -> str:
     mutant : Mutant
     first : str
         A test to try before the others, such as that which killed it before.
+    stages : int
+        How many stages of `tests_of` to try.
 
     Raises
     ------
@@ -222,17 +260,18 @@ def killed_by(mutant: Mutant, first: str = "") -> str:
         If the line of the mutant is no longer there.
     """
     with tempfile.TemporaryDirectory() as folder:
-        copy = Path(shutil.copytree(SOURCE, Path(folder) / "sonolube", ignore=shutil.ignore_patterns("*.pyc")))
+        copy = Path(shutil.copytree(SOURCE, Path(folder) / "sonolube"))
         file = copy / mutant.file
         changed = mutant.applied(file.read_text(encoding="utf-8"))
         if changed is None:
             raise LookupError(f"the line of a mutant is gone: {mutant}")
         file.write_text(changed, encoding="utf-8")
-        # compiled callers of a changed kernel would run what they were compiled with
-        cache = {"NUMBA_CACHE_DIR": f"{folder}/numba"} if "numba" in changed else {}
-        environment = {**os.environ, "PYTHONPATH": folder, "OPENBLAS_NUM_THREADS": "1", "MPLBACKEND": "Agg", **cache}
-        for tests in [[first]] * bool(first) + tests_of(mutant.file):
-            if failed := _failed(tests, environment):
+        for module in map(Path, _compiled_with(mutant.file)):  # callers would run what they were compiled with
+            for compiled in (copy / module.parent / "__pycache__").glob(f"{module.stem}.*"):
+                compiled.unlink()
+        environment = {**os.environ, "PYTHONPATH": folder, "OPENBLAS_NUM_THREADS": "1", "MPLBACKEND": "Agg"}
+        for tests in [[first] if first else [], *tests_of(mutant.file)[:stages]]:
+            if tests and (failed := _failed(tests, environment)):
                 return failed
     return ""
 
@@ -255,30 +294,46 @@ def _failed(tests: list[str], environment: dict[str, str]) -> str:
         os.killpg(run.pid, signal.SIGKILL)
         run.communicate()
         return f"{' '.join(tests)} did not end within {_LIMIT:.0f} s"
-    if run.returncode in (0, 5):
+    if run.returncode in _NOT_A_FAILURE:
         return ""
-    named = [line.split()[1] for line in output.splitlines() if line.startswith(("FAILED ", "ERROR "))]
+    named = [
+        line.partition(" ")[2].partition(" - ")[0]
+        for line in output.splitlines()
+        if line.startswith(("FAILED ", "ERROR "))
+    ]
     return named[0] if named else "collection"
 
 
+def entries_of(list_file: Path) -> list[dict[str, Any]]:
+    """Entries of a list whose lines are still there: mutant, the test that killed it, why it changes nothing."""
+    entries = json.loads(list_file.read_text(encoding="utf-8")) if list_file.exists() else []
+    return [entry for entry in entries if _is_there(Mutant(**entry["mutant"]))]
+
+
+def _is_there(mutant: Mutant) -> bool:
+    file = SOURCE / mutant.file
+    return file.exists() and mutant.applied(file.read_text(encoding="utf-8")) is not None
+
+
 def main(list_file: str, records: str) -> None:
-    """Run every mutant of a new sample and append its outcome to a file of records, from which a list is made.
+    """Fill a list up to the number of mutants of every room: sample those that it lacks, run and add them.
 
     Parameters
     ----------
     list_file : str
-        JSON to write in the end: mutant, the test that killed it, and "" to be filled in for those that survive.
+        JSON, written in the end; entries of survivors are to be given their reason, or a test that kills them.
     records : str
-        JSON lines, continued where an earlier run stopped.
+        JSON lines of the new entries, continued where an earlier run stopped.
     """
     path = Path(records)
     done = [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()] if path.exists() else []
+    entries = entries_of(Path(list_file)) + done
     with path.open("a", encoding="utf-8") as stream:
-        for mutant in list(sampled())[len(done) :]:
-            done.append({"mutant": asdict(mutant), "killed_by": killed_by(mutant), "equivalent": ""})
-            stream.write(json.dumps(done[-1]) + "\n")
+        for mutant in sampled([Mutant(**entry["mutant"]) for entry in entries]):
+            entries.append({"mutant": asdict(mutant), "killed_by": killed_by(mutant), "equivalent": ""})
+            stream.write(json.dumps(entries[-1]) + "\n")
             stream.flush()
-    Path(list_file).write_text(json.dumps(done, indent=1) + "\n", encoding="utf-8")
+    Path(list_file).write_text(json.dumps(entries, indent=1) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -1,8 +1,11 @@
 """The first trials of every study of reliability fail nowhere and meet its bars; its page is that of its data."""
 
+from collections import Counter
+
 from pytest import mark
+from reliability.mutation import ROOMS
 from reliability.page import PAGE, page
-from reliability.studies import NAMES, study
+from reliability.studies import NAMES, mutants_of_models, study
 from reliability.study import attempt, judged
 
 
@@ -16,3 +19,10 @@ def test_the_first_trials_of_a_study_meet_its_bars(name: str) -> None:
 
 def test_the_page_of_reliability_is_that_of_its_data() -> None:
     assert PAGE.read_text(encoding="utf-8") == page()
+
+
+def test_the_listed_mutants_are_a_whole_sample_of_which_few_survive() -> None:
+    listed = mutants_of_models.kept()
+    assert Counter(entry["mutant"]["file"].partition("/")[0] for entry in listed) == ROOMS
+    killable = [entry for entry in listed if not entry["equivalent"]]
+    assert sum(bool(entry["killed_by"]) for entry in killable) >= 0.95 * len(killable)

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from reliability.groove_maps import CLASSES, drawn_groove, heights
+from reliability.groove_maps import CLASSES, FAMILIES, drawn_groove, heights
 from reliability.study import Measure, Record, Study
 from sonolube.errors import SonolubeError
 from sonolube.surfaces import HeightMap, measure_groove
@@ -35,7 +35,8 @@ def _measured(seed: int, roughness: int) -> dict[str, object]:
 
 
 def _trial(seed: int) -> Record:
-    record = {"class": drawn_groove(seed).kind, **_measured(seed, seed)}
+    drawn = drawn_groove(seed)
+    record = {"class": drawn.kind, "family": drawn.family, **_measured(seed, seed)}
     if seed // len(CLASSES) % _REPEATED == 0:
         record["repeat"] = _measured(seed, seed + 1_000_000)
     return record
@@ -85,8 +86,9 @@ def _measures(records: Sequence[Record]) -> list[Measure]:
                 holds=bool(ratio <= _RATIO),
             )
         )
-    for kind in CLASSES:
-        of_class = [record for record in found if record["class"] == kind]
+    groups = [*(("class", kind) for kind in CLASSES), *(("family", family) for family in FAMILIES)]
+    for key, kind in groups:
+        of_class = [record for record in found if record[key] == kind]
         shares = {
             short: float(np.mean([bool(record[f"{short}_covered"]) for record in of_class])) if of_class else 0.0
             for short in _QUANTITIES.values()

@@ -14,7 +14,7 @@ LIST = Path(__file__).parents[1] / "mutants.json"
 
 @cache
 def kept() -> list[dict[str, Any]]:
-    """Entries of the list: a mutant, the test that failed with it, and why it changes nothing where it does not."""
+    """Entries of the list: a mutant, the test that failed with it, or why it changes nothing; survivors have none."""
     entries: list[dict[str, Any]] = json.loads(LIST.read_text(encoding="utf-8"))
     return entries
 

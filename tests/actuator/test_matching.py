@@ -73,6 +73,10 @@ def test_a_lossless_network_transmits_the_power_at_the_voltage_of_its_gain() -> 
         assert abs(gain) ** 2 * y.real == approx(total.real)
 
 
+def test_an_actuator_that_is_the_resistance_of_the_amplifier_needs_no_element() -> None:
+    assert l_match(admittance=1 / 64, frequency=F, source_resistance=64.0) == MatchingNetwork()
+
+
 def test_the_bandwidth_of_a_parallel_resonant_circuit_follows_from_its_quality_factor() -> None:
     # across R, C and the L that compensates C: cos phi = 1/sqrt(1 + Q^2 (x - 1/x)^2), x = f/f0
     r, c = 200.0, 360e-9

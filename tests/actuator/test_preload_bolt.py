@@ -1,7 +1,7 @@
 """Preload bolt: parallel stiffness, stresses and fatigue against hand calculation."""
 
 import numpy as np
-from pytest import approx, raises
+from pytest import approx, mark, raises
 
 from sonolube.actuator import PiezoStack, PreloadBolt, bolt_stresses, bolted_stack
 from sonolube.errors import InvalidInput
@@ -16,6 +16,15 @@ def test_an_m8_bolt_has_the_stress_area_and_endurance_limit_of_the_standards() -
     assert BOLT.stress_area == approx(36.6e-6, abs=0.05e-6)  # ISO 898-1
     assert BOLT.endurance_limit == approx(54.2e6, rel=1e-3)  # 0.85 (150/8 + 45) MPa
     assert BOLT.stiffness == approx(205e9 * 36.6e-6 / 40e-3, rel=1e-3)
+
+
+@mark.parametrize(
+    ("size", "area"),
+    [(2, 2.07), (2.5, 3.39), (3, 5.03), (4, 8.78), (5, 14.2), (6, 20.1), (8, 36.6), (10, 58.0), (12, 84.3)],
+)
+def test_coarse_threads_have_the_stress_areas_of_iso_898(size: float, area: float) -> None:
+    bolt = PreloadBolt(thread_diameter=size * 1e-3, length=0.04, youngs_modulus=2e11, yield_strength=6e8, preload=1.0)
+    assert bolt.stress_area == approx(area * 1e-6, rel=3e-3)
 
 
 def test_force_and_charge_of_a_bolted_stack_are_those_of_stack_and_bolt_in_parallel() -> None:

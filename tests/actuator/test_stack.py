@@ -75,6 +75,12 @@ def test_an_inconsistent_coupling_factor_gives_a_warning_by_name() -> None:
     assert len(caught) == 1
 
 
+@pytest.mark.parametrize("stated", [0.61, 0.69])
+def test_a_coupling_factor_off_by_more_than_five_percent_gives_a_warning(stated: float) -> None:
+    with pytest.warns(InconsistentCoupling, match="coupling_factor is stated"):
+        replace(STACK, coupling_factor=stated)
+
+
 @pytest.mark.parametrize("stated", [0.62, 0.647, 0.67])
 def test_a_coupling_factor_within_five_percent_gives_no_warning(stated: float) -> None:
     with warnings.catch_warnings():

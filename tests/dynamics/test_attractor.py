@@ -127,6 +127,11 @@ def test_constant_samples_have_no_beat() -> None:
     assert still.beat_amplitude.tolist() == [0.0] * 3
 
 
+def test_rounding_of_constant_samples_is_no_beat() -> None:
+    rounding = 1e-15 * np.cos(2 * np.pi * 0.11 * np.arange(64))
+    assert beat(displacement=4.2e-6 * (1 + rounding), interval=1.0).beat_frequency == 0.0
+
+
 def test_a_decaying_transient_is_classified_as_settling() -> None:
     _, found = settle(tribometer(c_2=400.0), frequency=22e3, voltage_peak_to_peak=16.0, periods=150)
     assert found.kind == "settling"

@@ -40,7 +40,7 @@ def test_the_efficiency_of_the_power_for_a_friction_is_that_of_the_line(reduced:
     rig = PIN | {"intrinsic_friction_force": 0.89, "reduced_friction_force": reduced, "sliding_speed": speed}
     power = power_for_friction(LINE, **rig)
     assert efficiency_coefficient(actuator_power=power, **rig) == approx(
-        float(efficiency_at(LINE, sliding_speed=speed)), rel=1e-9
+        float(efficiency_at(LINE, sliding_speed=speed)), rel=1e-9, abs=0
     )
 
 
@@ -67,6 +67,12 @@ def test_more_power_than_removes_all_friction_is_refused_with_the_sufficient_pow
     )
     with raises(OutsideRange, match=r"actuator_power of 5\.31 W is more than the 3\.06 W that remove all friction"):
         friction_at_power(LINE, intrinsic_friction_force=0.89, actuator_power=[1.0, 5.31], **PIN)
+
+
+def test_more_power_than_removes_a_micronewton_of_friction_is_refused_as_well() -> None:
+    sufficient = power_for_friction(LINE, intrinsic_friction_force=1e-6, reduced_friction_force=0.0, **PIN)
+    with raises(OutsideRange, match="that remove all friction"):
+        friction_at_power(LINE, intrinsic_friction_force=1e-6, actuator_power=1.01 * sufficient, **PIN)
 
 
 def test_a_target_friction_above_the_intrinsic_one_is_refused() -> None:

@@ -30,8 +30,8 @@ def measured() -> EfficiencyFit:
 
 def test_runs_on_a_line_are_fitted_by_that_line_without_scatter() -> None:
     fit = fit_efficiency(sliding_speed=SPEEDS, efficiency_coefficient=0.672e-9 - 2.93e-9 * SPEEDS)
-    assert fit.line.slope == approx(-2.93e-9)
-    assert fit.line.intercept == approx(0.672e-9)
+    assert fit.line.slope == approx(-2.93e-9, rel=1e-9, abs=0)
+    assert fit.line.intercept == approx(0.672e-9, rel=1e-9, abs=0)
     assert fit.efficiency_deviation == approx(0, abs=1e-22)
 
 
@@ -43,16 +43,16 @@ def test_line_and_bands_agree_with_the_normal_equations() -> None:
     variance = np.sum((eta - design @ coefficients) ** 2) / (SPEEDS.size - 2)
     covariance = variance * inverse
     fit = measured()
-    assert [fit.line.intercept, fit.line.slope] == approx(coefficients)
+    assert [fit.line.intercept, fit.line.slope] == approx(coefficients, rel=1e-9, abs=0)
     errors = [fit.intercept_uncertainty, fit.slope_uncertainty]
-    assert errors == approx(np.sqrt(np.diag(covariance)))
-    at = np.array([1.0, 0.11])
+    assert errors == approx(np.sqrt(np.diag(covariance)), rel=1e-9, abs=0)
+    at = np.array([1.0, 0.17])
     reach = student.ppf(0.975, SPEEDS.size - 2) * np.sqrt(at @ covariance @ at)
-    low, high = efficiency_confidence_band(fit, sliding_speed=0.11)
-    assert [low, high] == approx([at @ coefficients - reach, at @ coefficients + reach])
+    low, high = efficiency_confidence_band(fit, sliding_speed=0.17)
+    assert [low, high] == approx([at @ coefficients - reach, at @ coefficients + reach], rel=1e-9, abs=0)
     wide = student.ppf(0.975, SPEEDS.size - 2) * np.sqrt(variance + at @ covariance @ at)
-    low, high = efficiency_prediction_band(fit, sliding_speed=0.11)
-    assert [low, high] == approx([at @ coefficients - wide, at @ coefficients + wide])
+    low, high = efficiency_prediction_band(fit, sliding_speed=0.17)
+    assert [low, high] == approx([at @ coefficients - wide, at @ coefficients + wide], rel=1e-9, abs=0)
 
 
 def test_the_confidence_and_prediction_bands_have_their_nominal_coverage() -> None:
@@ -77,7 +77,7 @@ def test_the_estimated_power_gives_the_target_friction_and_its_interval_follows_
     for power, efficiency in ((found.lowest_power, high), (found.highest_power, low)):
         assert power is not None
         back = efficiency_coefficient(reduced_friction_force=0.4, actuator_power=power, **wanted)
-        assert back == approx(float(efficiency))
+        assert back == approx(float(efficiency), rel=1e-9, abs=0)
 
 
 def test_a_band_that_reaches_zero_efficiency_leaves_the_power_without_an_upper_limit() -> None:
@@ -86,6 +86,16 @@ def test_a_band_that_reaches_zero_efficiency_leaves_the_power_without_an_upper_l
     found = power_estimate(fit, intrinsic_friction_force=0.89, reduced_friction_force=0.4, sliding_speed=0.1, **RIG)
     assert found.highest_power is None
     assert found.lowest_power < found.actuator_power
+
+
+def test_the_slowest_and_the_fastest_run_are_within_the_runs() -> None:
+    require_fitted_speed(measured(), sliding_speed=[0.04, 0.18])
+
+
+def test_creeping_runs_have_the_line_of_runs_as_much_faster() -> None:
+    eta = 0.672e-9 - 2.93e-9 * SPEEDS + SCATTER
+    creeping = fit_efficiency(sliding_speed=1e-6 * SPEEDS, efficiency_coefficient=eta)
+    assert creeping.line.slope == approx(1e6 * measured().line.slope, rel=1e-9, abs=0)
 
 
 @pytest.mark.parametrize("speed", [0.02, 0.3])

@@ -118,6 +118,7 @@ def test_the_heat_partition_equalises_the_mean_temperatures_of_both_bodies(speed
     assert 0 < shared.heat_partition < 1
     assert pin.mean_temperature_rise == approx(disc.mean_temperature_rise)
     assert shared.mean_temperature_rise == approx(pin.mean_temperature_rise)
+    assert shared.peak_temperature_rise == approx(max(pin.peak_temperature_rise, disc.peak_temperature_rise))
     assert shared.peak_temperature_rise >= shared.mean_temperature_rise
 
 

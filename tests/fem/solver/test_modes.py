@@ -96,6 +96,15 @@ def test_a_block_on_soft_springs_vibrates_as_a_rigid_mass() -> None:
     assert natural_modes(held, count=1).elastic_frequency[0] == approx(np.sqrt(1e3 / mass) / (2 * np.pi), rel=1e-5)
 
 
+def test_a_block_on_a_soft_foundation_heaves_and_rocks_as_a_rigid_body() -> None:
+    # under the slope t the foundation returns the moment k t <x^2>, with <x^2> = L^2/12; inertia m (L^2 + T^2)/12
+    soft = box_model((3, 2, 1), springs=(FaceSpring(face="-z", spring_stiffness=1e3, along=(0.0, 0.0, 1.0)),))
+    mass = 7900.0 * BLOCK["length"] * BLOCK["width"] * BLOCK["thickness"]
+    sides = np.array([BLOCK["width"], BLOCK["length"], np.inf])  # rocking across, along, and heaving
+    expected = np.sqrt(1e3 / mass / (1 + (BLOCK["thickness"] / sides) ** 2)) / (2 * np.pi)
+    assert natural_modes(soft, count=3).elastic_frequency == approx(expected, rel=1e-5)
+
+
 @pytest.mark.parametrize(
     ("fixed", "free"),
     [

@@ -96,6 +96,27 @@ def test_a_stiff_damped_drive_slides_steadily_with_the_steady_friction() -> None
     assert found.peak_spring_force == approx(F_C + S_2 * SPEED, rel=1e-3)
 
 
+def test_stick_slip_in_which_the_force_varies_by_less_than_one_per_cent_is_no_steady_sliding() -> None:
+    drop, stiffness, mass, speed = 0.004, 200.0, 0.01, 1e-3
+    law = replace(
+        PUBLISHED,
+        static_friction_force=F_C + drop,
+        stribeck_velocity=3e-6,
+        bristle_stiffness=1e10,
+        bristle_damping=2 * np.sqrt(1e10 * mass),
+        viscous_coefficient=0.0,
+    )
+    # rigid Coulomb friction with a static limit, as above
+    omega, rate = np.sqrt(stiffness / mass), stiffness * speed
+    period = 2 * drop / rate + 2 / omega * (np.pi - np.arctan(drop * omega / rate))
+    found = lugre_stick_slip(
+        law, Holder(holder_stiffness=stiffness, holder_mass=mass), sliding_speed=speed, duration=7.0
+    )
+    assert found.kind is SlidingKind.STICK_SLIP
+    assert found.period == approx(period, rel=0.01)
+    assert found.peak_spring_force - F_C == approx(np.hypot(drop, np.sqrt(stiffness * mass) * speed), rel=0.01)
+
+
 def test_a_history_that_ends_before_it_repeats_says_so() -> None:
     found = lugre_stick_slip(PUBLISHED, DRIVE, sliding_speed=SPEED, duration=9.0)
     assert found.kind is SlidingKind.UNSETTLED

@@ -121,6 +121,45 @@ def test_harmonics_change_friction_by_no_more_than_they_change_the_gap(
     assert abs(change) <= fraction * beta + 1e-5
 
 
+def test_under_a_small_vibration_elements_carry_the_least_of_their_past_limits_and_slides() -> None:
+    # lengths in decay lengths: the force of the element in contact below gap y is min over the past of limit plus slide
+    beta, n = 0.1, 4096
+    amplitudes = DECAY_LENGTH * beta * np.array([1.0, 0.06 * np.exp(4j)])
+    phases = 2 * np.pi * np.arange(2 * n) / n
+    x = (np.exp(1j * np.outer(phases, [1, 2])) @ amplitudes).real / DECAY_LENGTH
+    nodes, weights = np.polynomial.legendre.leggauss(60)
+    half = (x.max() - x.min()) / 2
+    y = x.min() + half * (1 + nodes)
+    expected = []
+    for v in (relative_speeds := np.array([1e-3, 1e-2, 0.1])):
+        slide = beta * v * phases
+        limits = np.maximum(np.append(y, x.max())[:, np.newaxis] - x, 0.0)
+        force = (np.minimum.accumulate(limits - slide, axis=1) + slide)[:, n:].mean(axis=1)
+        always = np.exp(-x.max()) * (force[-1] + 1)  # elements that always touch carry their height above x.max() more
+        expected.append((half * weights @ (np.exp(-y) * force[:-1]) + always) / np.exp(-x).mean())
+    speeds = relative_speeds * beta * OMEGA * MEMORY_LENGTH
+    assert ratios(amplitudes, speeds) == approx(np.array(expected), abs=2e-5)
+
+
+def test_a_gap_held_wider_than_balanced_transmits_friction_less_by_the_exponential_law() -> None:
+    beta, wider, speed = 1.5, 0.3, 0.02
+    sine = sine_stick_slip_ratio(
+        decay_length=DECAY_LENGTH,
+        vibration_amplitude=beta * DECAY_LENGTH,
+        frequency=FREQUENCY,
+        sliding_speed=speed,
+        memory_length=MEMORY_LENGTH,
+    )
+    found = batched_stick_slip_ratio(
+        motions([DECAY_LENGTH * (np.log(i0e(beta)) + beta + wider)], [[beta * DECAY_LENGTH + 0j]]),
+        decay_length=DECAY_LENGTH,
+        sliding_speed=[speed],
+        motion=[0],
+        memory_length=MEMORY_LENGTH,
+    )
+    assert found[0] == approx(float(sine) * np.exp(-wider), abs=5e-6)
+
+
 def test_a_motion_that_closes_twice_in_a_period_gives_nan() -> None:
     assert np.isnan(ratios(np.array([1e-6, 2e-6]), np.array([0.05])))
 

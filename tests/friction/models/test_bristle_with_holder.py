@@ -130,10 +130,11 @@ def test_the_bristle_has_the_ratio_of_small_time_steps(exponent: Literal[0, 1], 
     assert computed == approx(small, abs=5e-4)
 
 
-def test_a_holder_with_mass_matches_small_time_steps_and_balances_the_energy() -> None:
+@pytest.mark.parametrize("exponent", [0, 1])
+def test_a_holder_with_mass_matches_small_time_steps_and_balances_the_energy(exponent: Literal[0, 1]) -> None:
     speed = 0.3 * critical_speed()
-    small = integrated(speed=speed, holder=HOLDER, periods=40, steps=4000)
-    computed = BristleWithHolder(**asdict(HOLDER)).ratio(
+    small = integrated(speed=speed, holder=HOLDER, exponent=exponent, periods=40, steps=4000)
+    computed = BristleWithHolder(**asdict(HOLDER), dahl_exponent=exponent).ratio(
         CONTACT, balanced(), sliding_speed=speed, friction_coefficient=MU
     )
     assert computed == approx(small["force"] / (MU * LOAD), abs=2e-3)

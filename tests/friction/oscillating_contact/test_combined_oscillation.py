@@ -86,6 +86,27 @@ def test_across_the_sliding_the_ratio_is_that_of_projections_onto_the_friction_c
     assert across(amplitude * SLIP, v) == approx(total / steps, abs=3e-4)
 
 
+@mark.parametrize(("stroke", "v", "steps"), [(3.0, 0.02, 16), (3.0, 0.1, 16), (1.2, 0.02, 8), (0.9, 0.6, 8)])
+def test_a_spring_dragged_along_few_straight_slides_ends_each_where_many_projections_do(
+    stroke: float, v: float, steps: int
+) -> None:
+    # the first part of a slide, in which the spring sticks, and the rest, in which it slips, are both resolved
+    parts, y = 1000, stroke * np.cos(2 * np.pi * np.arange(steps + 1) / steps)
+    p, q, vertices = 1.0, 0.0, np.zeros(steps + 1)
+    for _ in range(40):
+        start, vertices[0] = p, p
+        for k in range(steps):
+            advance, move = v * stroke * 2 * np.pi / steps / parts, float(y[k + 1] - y[k]) / parts
+            for _ in range(parts):
+                p, q = p + advance, q + move
+                if (squared := p * p + q * q) > 1:
+                    p, q = p / squared**0.5, q / squared**0.5
+            vertices[k + 1] = p
+        if abs(p - start) < 1e-6:
+            break
+    assert across(stroke * SLIP, v, steps=steps) == approx(np.trapezoid(vertices) / steps, abs=2e-3)
+
+
 @mark.parametrize("stroke", [0.2, 0.6, 0.8])
 def test_very_slow_sliding_across_an_oscillation_has_the_static_friction_ratio(stroke: float) -> None:
     # the spring slips only at the ends of its stroke: p^2 + stroke^2 = 1

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 from hypothesis import given, settings, strategies as st
 from pytest import approx, mark
+from scipy.integrate import quad
 
 from sonolube.friction import (
     SpringContact,
@@ -71,6 +72,22 @@ def test_normal_oscillation_has_the_ratio_of_springs_integrated_in_time(
     assert normal_ratio(contact, depth=depth * DEPTH, amplitude=DEPTH, v=v) == approx(
         integrated(contact, depth=depth * DEPTH, normal=DEPTH, along=0.0, speed=speed), abs=1e-3
     )
+
+
+@mark.parametrize(("depth", "v"), [(-0.95, 0.01), (-0.8, 0.1), (-0.3, 0.8), (0.2, 0.05), (0.4, 0.95), (1.5, 0.3)])
+def test_the_deficit_of_a_sphere_is_that_of_its_springs_integrated_over_their_depths(depth: float, v: float) -> None:
+    # springs at q from the centre have the mean depth d - q^2 in amplitudes, and flat profiles that of a spring
+    def limit(q: float) -> float:
+        c = depth - q * q
+        return c if c >= 1 else (c * (np.pi - np.arccos(c)) + np.sqrt(1 - c * c)) / np.pi
+
+    def deficit(q: float) -> float:
+        return limit(q) * (1 - normal_ratio(FLAT, depth=(depth - q * q) * DEPTH, amplitude=DEPTH, v=v))
+
+    outer, ends = np.sqrt(depth + 1) * (1 - 1e-12), depth + np.sqrt(1 - v * v) * np.array([-1.0, 1.0])
+    kinks = np.sqrt(ends[(ends > 0) & (ends < depth + 1)])  # springs that stick always, and never
+    whole, missing = (quad(f, 0, outer, points=kinks, epsabs=1e-10, limit=200)[0] for f in (limit, deficit))
+    assert normal_ratio(SPHERE, depth=depth * DEPTH, amplitude=DEPTH, v=v) == approx(1 - missing / whole, abs=2e-6)
 
 
 @BOTH

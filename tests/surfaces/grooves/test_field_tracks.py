@@ -66,6 +66,16 @@ def test_a_scratch_beside_a_track_does_not_change_it() -> None:
     assert groove.groove_width == approx(0.4e-3, rel=0.01)
 
 
+def test_a_few_spurious_pixels_where_a_track_was_not_measured_do_not_make_it_short() -> None:
+    track = scan(parabola(ACROSS, 0.4e-3, 15e-6)).height
+    unmeasured = (np.abs(ACROSS) < 0.25e-3) & (np.abs(ALONG) > 0.55e-3)
+    spurious = np.random.default_rng(1).random(X.shape) < 0.01
+    height = np.where(unmeasured, np.where(spurious, 0.0, np.nan), track)
+    groove = measure_groove(HeightMap(height=height, spacing_x=PIXEL, spacing_y=PIXEL))
+    assert groove.track_count == 1
+    assert groove.groove_width == approx(0.4e-3, rel=0.02)
+
+
 def test_an_even_floor_has_no_marks_and_says_how_probable_its_peak_is() -> None:
     from sonolube.surfaces import track_marks
 

@@ -16,7 +16,6 @@ from sonolube.surfaces.grooves.sections import (
     CrossSections,
     GrooveExtent,
     MeanCrossSection,
-    band_with_margin,
     cross_sections,
     groove_extent,
     mean_cross_section,
@@ -26,7 +25,8 @@ from sonolube.surfaces.grooves.unworn_reference import UnwornReference, unworn_r
 from sonolube.surfaces.height_map import HeightMap, Mask
 
 _MOST_ITERATIONS = 3
-_SHOULDER = 0.25  # of the width of the worn band, left out of the reference on either side
+_SHOULDER = 0.25  # of the width, left out of the reference on either side
+_MARGIN = 0.04  # of the width, beyond ridges
 _SPIKE = 8.0  # height of debris and dust over the standard deviation of the unworn surface
 _WINDOW = 5  # pixels, of the smoothing in which projections are detected
 _PROJECTION = 5.0  # height of a projection over the standard deviation of the smoothed unworn surface
@@ -160,7 +160,9 @@ def measure_groove(surface: HeightMap, *, track_number: int | None = None) -> Gr
     others = [track for place, track in enumerate(field.tracks, start=1) if place != number]
     surface = without_tracks(field.masked, others)
     detected = field.tracks[number - 1].detected
-    track, band = detected.track, _with_shoulders(surface, detected)
+    track = detected.track
+    transverse, _ = track.curvilinear_coordinates(surface)
+    band = _worn_band(_detected_extent(detected, transverse), transverse)
     excluded = np.zeros(surface.height.shape, dtype=np.bool_)
     for iteration in range(_MOST_ITERATIONS):
         reference = unworn_reference(surface, track=track, worn_band=band, excluded=excluded)
@@ -170,8 +172,7 @@ def measure_groove(surface: HeightMap, *, track_number: int | None = None) -> Gr
         excluded = _spikes(levelled, transverse, band) | _projections(levelled, transverse, band)
         section = mean_cross_section(levelled, transverse, levelled.measured)
         edges = groove_extent(section, band)
-        previous, enclosing = band, band_with_margin(edges)
-        band = (min(band[0], enclosing[0]), max(band[1], enclosing[1]))
+        previous, band = band, _worn_band(edges, transverse)
         if iteration and np.allclose(band, previous, rtol=0, atol=_CONVERGED * section.step):
             break
     _require_evidence(reference, depth=-float(np.nanmin(section.height)))
@@ -184,15 +185,23 @@ def measure_groove(surface: HeightMap, *, track_number: int | None = None) -> Gr
     return replace(found, track_number=number, track_count=len(field.tracks), caveat=caveat)
 
 
-def _with_shoulders(surface: HeightMap, detected: DetectedGroove) -> tuple[float, float]:
-    """Worn band with room for low ridges, which would lift the reference, up to half of what is unworn beside it."""
-    transverse, _ = detected.track.curvilinear_coordinates(surface)
-    left, right = detected.worn_band
-    wide = _SHOULDER * (right - left) if math.isfinite(right - left) else 0.0
-    return (
-        left - min(wide, max(0.0, left - float(transverse.min())) / 2),
-        right + min(wide, max(0.0, float(transverse.max()) - right) / 2),
-    )
+def _worn_band(edges: GrooveExtent, transverse: Floats) -> tuple[float, float]:
+    """Distances in m beyond which nothing is worn or piled up; infinite where the field ends within the groove.
+
+    Ridges too low to be seen would lift the reference: so a shoulder is left out on either side, at most half of what
+    is unworn beside it.
+    """
+    wide, margin = _SHOULDER * (edges.right - edges.left), _MARGIN * (edges.right - edges.left)
+    left = min(edges.left_foot - margin, edges.left - min(wide, (edges.left - float(transverse.min())) / 2))
+    right = max(edges.right_foot + margin, edges.right + min(wide, (float(transverse.max()) - edges.right) / 2))
+    return left if edges.left_in_field else -math.inf, right if edges.right_in_field else math.inf
+
+
+def _detected_extent(detected: DetectedGroove, transverse: Floats) -> GrooveExtent:
+    """Worn band of the detection as first edges."""
+    band = detected.worn_band
+    left, right = max(band[0], float(transverse.min())), min(band[1], float(transverse.max()))
+    return GrooveExtent(left, right, left, right, math.isfinite(band[0]), math.isfinite(band[1]))
 
 
 def _chosen(field: FieldTracks, number: int | None) -> int:
@@ -218,8 +227,8 @@ def _measured(
     counted: Mask,
 ) -> Groove:
     """Groove about a known track, with its intervals."""
-    transverse, _ = track.curvilinear_coordinates(levelled)
-    errors = GrooveErrors.of(levelled, surface, reference, transverse, section, first_edges, counted)
+    transverse, arc_length = track.curvilinear_coordinates(levelled)
+    errors = GrooveErrors.of(levelled, surface, reference, (transverse, arc_length), section, first_edges, counted)
     estimates = section_estimates(errors, first_edges)
     if estimates is None:
         raise NoGroove(

@@ -48,7 +48,8 @@ class GrooveErrors:
     ----------
     levelled : HeightMap
     reference : UnwornReference
-    transverse : ndarray, shape of the heights
+    transverse, arc_length : ndarray, shape of the heights
+        Coordinates about the track, in m.
     section : MeanCrossSection
     cells : Cells
     covariance : RoughnessCovariance
@@ -59,6 +60,7 @@ class GrooveErrors:
     levelled: HeightMap
     reference: UnwornReference
     transverse: Floats
+    arc_length: Floats
     section: MeanCrossSection
     cells: Cells
     covariance: RoughnessCovariance
@@ -70,22 +72,22 @@ class GrooveErrors:
         levelled: HeightMap,
         surface: HeightMap,
         reference: UnwornReference,
-        transverse: Floats,
+        coordinates: tuple[Floats, Floats],
         section: MeanCrossSection,
         edges: GrooveExtent,
         counted: Mask,
     ) -> "GrooveErrors":
         """Errors of a scan, from its unworn pixels and the residual of its groove."""
         cells = Cells(levelled)
+        transverse, arc_length = coordinates
         worn = (transverse > edges.left) & (transverse < edges.right)
         beside = (transverse < edges.left_foot) | (transverse > edges.right_foot)
         covariance = roughness_covariance(cells, reference.random_part(surface), counted & beside)
         residual = np.where(counted, levelled.height - section.at(transverse), 0.0)
         floor, outer = (_mean_square(cells, residual, counted & part) for part in (worn, beside))
         scale = math.sqrt(floor / outer) if outer > 0 and floor > 0 else 1.0
-        return cls(
-            levelled, reference, transverse, section, cells, covariance, min(max(scale, _LEAST_SCALE), _LARGEST_SCALE)
-        )
+        scale = min(max(scale, _LEAST_SCALE), _LARGEST_SCALE)
+        return cls(levelled, reference, transverse, arc_length, section, cells, covariance, scale)
 
     def half_width(self, direct: Floats, *further: float) -> tuple[float, float]:
         """Standard uncertainty and 95 % half-width of a sum of heights over the groove, above the reference.
@@ -112,6 +114,12 @@ class GrooveErrors:
         """The same of the reference alone."""
         between = self.reference.deviation_between_models(direct)
         return self._combined(-self.reference.pixel_weights(direct), between, *further)
+
+    def of_corner(self, corner: int, strip: Floats) -> float:
+        """Standard uncertainty from the track's direction and curvature of a corner's distance from a strip, in m."""
+        t = self.arc_length
+        rotation, bending = (float(power.flat[corner] - np.sum(strip * power)) for power in (t, t**2 / 2))
+        return self._combined(self.floor_scale * self.reference.track_pixel_weights((rotation, bending)))[0]
 
     def _combined(self, weights: Floats, *further: float) -> tuple[float, float]:
         summed = self.cells.sums(weights)[None]
@@ -177,13 +185,15 @@ def section_estimates(errors: GrooveErrors, edges: GrooveExtent) -> tuple[Groove
         return inside / max(int(np.count_nonzero(inside)), 1)
 
     at_edges = strip(curve.left) / curve.left_slope + strip(curve.right) / curve.right_slope
-    extremes = float(across.min()), float(across.max())
-    left = extremes[0] if cut[0] else curve.left
-    right = extremes[1] if cut[1] else curve.right
+    corners = int(across.argmin()), int(across.argmax())
+    left = float(across.flat[corners[0]]) if cut[0] else curve.left
+    right = float(across.flat[corners[1]]) if cut[1] else curve.right
+    opposite = strip(curve.right), strip(curve.left)
+    turned = [errors.of_corner(corners[side], opposite[side]) for side in (0, 1) if cut[side]]
     found = edges._replace(left=edges.left if cut[0] else curve.left, right=edges.right if cut[1] else curve.right)
     return (
         found._replace(left_foot=min(found.left, edges.left_foot), right_foot=max(found.right, edges.right_foot)),
-        Estimate(right - left, *errors.of_reference(at_edges, curve.width_deviation)),
+        Estimate(right - left, *errors.of_reference(at_edges, curve.width_deviation, *turned)),
         Estimate(curve.depth, *errors.of_reference(strip(curve.deepest), curve.depth_deviation)),
     )
 

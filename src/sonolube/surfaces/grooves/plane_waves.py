@@ -168,6 +168,7 @@ class _Search:
         size = np.maximum(np.linalg.norm(jacobian, axis=0), np.finfo(float).tiny)
         inverse = np.linalg.pinv((jacobian / size).T @ (jacobian / size)) / np.outer(size, size)
         kept = np.concatenate([np.arange(self.form_terms), np.arange(linear.size, jacobian.shape[1])])
+        response = inverse @ (self.root * jacobian).T
         cosine, sine = fit.amplitudes.reshape(2, -1)
         return WavinessModel(
             form=linear[: self.form_terms],
@@ -176,7 +177,8 @@ class _Search:
             cosine=cosine,
             sine=sine,
             section=linear[self.form_terms :],
-            response=inverse[kept] @ (self.root * jacobian).T,
+            response=response[kept],
+            section_response=response[self.form_terms : linear.size],
             noise=(),
             cost=fit.cost,
             random=False,

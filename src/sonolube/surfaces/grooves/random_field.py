@@ -72,6 +72,7 @@ def fit_random_field(blocks: BlockAverages) -> WavinessModel:
     cost = _log_noise(parts, used_noise) + misfit + float(mean[free:] ** 2 @ prior - np.sum(np.log(prior)))
     cost += float(np.linalg.slogdet(precision)[1] - np.linalg.slogdet(precision[:free, :free])[1])
     kept = np.concatenate([np.arange(3), bound])
+    response = covariance @ (design * (blocks.weight / blocks.per_part(used_noise))[:, None]).T
     return WavinessModel(
         form=mean[kept[:6]],
         half_side=blocks.longer_side / 2,
@@ -79,7 +80,8 @@ def fit_random_field(blocks: BlockAverages) -> WavinessModel:
         cosine=mean[-2 * count : -count],
         sine=mean[-count:],
         section=mean[3:free],
-        response=covariance[kept] @ (design * (blocks.weight / blocks.per_part(used_noise))[:, None]).T,
+        response=response[kept],
+        section_response=response[3:free],
         noise=tuple(noise.tolist()),
         cost=cost,
         random=True,

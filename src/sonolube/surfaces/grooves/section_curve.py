@@ -1,12 +1,14 @@
 """Smooth mean cross-section between the edges, by a spline of greatest likelihood in correlated noise."""
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve, cholesky, eigh, solve_triangular
 
 from sonolube.checks import Floats
+from sonolube.surfaces.height_map import Mask
 
 __all__: list[str] = []  # used in this room only
 
@@ -17,9 +19,13 @@ _DRAWS, _SEED = 300, 20_250_101
 _LEAST_SLOPE, _LARGEST_SLOPE = 0.6, 2.5  # of a flank at its edge, over its mean
 _FINE = 161  # points of the curve
 _FLANK_END = 0.75  # of the depth, down to which points belong to the flank
-_LEAST_FLANK = 8  # points
+_FLOOR = 0.7  # of the depth, from which points belong to the floor
+_LEAST_FLANK = 8  # points, of flank or floor
 _CORRECTIONS = 2  # of the depth for the excess of the deepest of noisy points, by the draws; one leaves half of it
 _JITTER = 1e-6  # of the variance
+
+
+_Kernel = Callable[[Floats, Floats], Floats]
 
 
 class SectionCurve(NamedTuple):
@@ -58,9 +64,10 @@ def section_curve(
 
     Notes
     -----
-    The section is a cubic smoothing spline, whose smoothness is that of greatest restricted likelihood [1]_ under the
-    given covariance. Its edges are its zeros, extrapolated from the flanks, so that neither noise nor a ridge beyond
-    the edge shifts them. Standard deviations are those of draws from its posterior distribution.
+    The section is a smoothing spline, whose smoothness is that of greatest restricted likelihood [1]_ under the given
+    covariance: quintic over the whole and over each flank, cubic over the floor. Its edges are zeros extrapolated from
+    the flanks, so that neither noise nor a ridge beyond the edge shifts them. Standard deviations are those of draws
+    from the posterior distribution; that of the depth includes the difference between floor and whole.
 
     References
     ----------
@@ -73,21 +80,19 @@ def section_curve(
         inside = (s > left) & (s < right)
         if np.count_nonzero(inside) < _LEAST_POINTS:
             break
-        fit = _Spline.of(s[inside], z[inside], covariance[np.ix_(inside, inside)])
-        heights = fit.at(s[inside])
+        points = s[inside], z[inside], covariance[np.ix_(inside, inside)]
+        mirrored = -points[0][::-1], points[1][::-1], points[2][::-1, ::-1]
+        fit = _Spline.of(*points, _integrated_thrice)
+        heights = fit.at(points[0])
         depth = -float(heights.min())
         ends = [
-            None if cut[0] else _edge(s[inside], heights, z[inside], covariance[np.ix_(inside, inside)], depth),
-            None
-            if cut[1]
-            else _edge(
-                -s[inside][::-1], heights[::-1], z[inside][::-1], covariance[np.ix_(inside, inside)][::-1, ::-1], depth
-            ),
+            None if cut[0] else _edge(*points, heights, depth),
+            None if cut[1] else _edge(*mirrored, heights[::-1], depth),
         ]
-        found = _curve(fit, s[inside], ends)
+        found = _curve(_floor(*points, heights, depth), points[0], ends, depth)
         level = -min(_FLANK * depth + noise, depth / 3)
-        points = np.linspace(found.left, found.right, _FINE)
-        low = points[fit.at(points) < level]
+        fine = np.linspace(found.left, found.right, _FINE)
+        low = fine[fit.at(fine) < level]
         if low.size < 2:
             break
         left = edges[0] if cut[0] else max(float(low[0]), s[0] - 1e-12)
@@ -103,11 +108,11 @@ class _Edge(NamedTuple):
     slope: float
 
 
-def _edge(s: Floats, heights: Floats, z: Floats, covariance: Floats, depth: float) -> _Edge:
+def _edge(s: Floats, z: Floats, covariance: Floats, heights: Floats, depth: float) -> _Edge:
     """Edge before the first of the points, by a spline through those of its flank."""
     deep = np.flatnonzero(heights < -_FLANK_END * depth)
     count = max(min(_LEAST_FLANK, s.size), int(deep[0]) + 1 if deep.size else s.size)
-    flank = _Spline.of(s[:count], z[:count], covariance[:count, :count])
+    flank = _Spline.of(s[:count], z[:count], covariance[:count, :count], _integrated_thrice)
     secant = float(heights[0] - heights[count - 1]) / float(s[count - 1] - s[0])
     outermost = s[0] + heights[0] / (_LEAST_SLOPE * secant)
     outwards = np.linspace(float(s[count - 1]), outermost, _FINE)
@@ -122,11 +127,22 @@ def _edge(s: Floats, heights: Floats, z: Floats, covariance: Floats, depth: floa
     return _Edge(float(places[0]), _deviation(places[1:]), slope)
 
 
-def _curve(fit: "_Spline", s: Floats, ends: list[_Edge | None]) -> SectionCurve:
-    """Edges and depth from the spline of the whole section and those of its flanks."""
-    fine = np.linspace(float(s[0]), float(s[-1]), _FINE)
-    mean = fit.at(fine)
-    depths = -fit.draws(fine).min(axis=1)
+def _floor(s: Floats, z: Floats, covariance: Floats, heights: Floats, depth: float) -> tuple["_Spline", Floats]:
+    """Spline of the floor, which may be less smooth than the flanks, and positions along it."""
+    deep = np.flatnonzero(heights < -_FLOOR * depth)
+    middle = (int(deep[0]) + int(deep[-1])) // 2
+    first = max(0, min(int(deep[0]), middle - _LEAST_FLANK // 2))
+    last = min(s.size, max(int(deep[-1]) + 1, middle + _LEAST_FLANK // 2))
+    part = slice(first, last)
+    spline = _Spline.of(s[part], z[part], covariance[part, part], _integrated_twice)
+    return spline, np.linspace(s[first], s[last - 1], _FINE)
+
+
+def _curve(floor: tuple["_Spline", Floats], s: Floats, ends: list[_Edge | None], of_whole: float) -> SectionCurve:
+    """Edges and depth from the splines of the floor and of the flanks, and the depth of the spline of the whole."""
+    spline, fine = floor
+    mean = spline.at(fine)
+    depths = -spline.draws(fine).min(axis=1)
     excess = float(depths.mean() + mean.min())
     left, right = ends
     return SectionCurve(
@@ -135,54 +151,55 @@ def _curve(fit: "_Spline", s: Floats, ends: list[_Edge | None]) -> SectionCurve:
         depth=-float(mean.min()) - _CORRECTIONS * excess,
         deepest=float(fine[np.argmin(mean)]),
         width_deviation=math.hypot(*(end.deviation for end in ends if end is not None)),
-        depth_deviation=math.hypot(_deviation(depths), excess),
+        depth_deviation=math.hypot(_deviation(depths), excess, of_whole + float(mean.min())),
         left_slope=math.inf if left is None else left.slope,
         right_slope=math.inf if right is None else right.slope,
     )
 
 
 class _Spline(NamedTuple):
-    """Posterior of a cubic smoothing spline."""
+    """Posterior of a smoothing spline with a free parabola."""
 
     middle: float
     scale: float
     points: Floats
     inverse: tuple[Floats, bool]  # Cholesky factor of noise and prior
-    line: Floats  # of the points, (n, 2)
+    kernel: "_Kernel"
+    line: Floats  # of the points, (n, 3)
     line_covariance: Floats
     coefficients: Floats
     weights: Floats
     power: float
 
     @classmethod
-    def of(cls, s: Floats, z: Floats, covariance: Floats) -> "_Spline":
+    def of(cls, s: Floats, z: Floats, covariance: Floats, kernel: "_Kernel") -> "_Spline":
         """Spline through points with correlated errors."""
         middle, scale = float(s[0]), float(np.ptp(s)) / 2
         u = (s - middle) / scale
         line = _parabolas(u)
         variance = float(np.mean(np.diag(covariance)))
         noise = covariance + _JITTER * variance * np.eye(u.size)
-        prior = _kernel(u, u)
+        prior = kernel(u, u)
         power = _most_likely_power(noise, prior, line, z, variance)
         factor = cho_factor(noise + power * prior, lower=True)
         solved = cho_solve(factor, line)
         line_covariance = np.linalg.inv(line.T @ solved)
         coefficients = line_covariance @ (solved.T @ z)
         weights = cho_solve(factor, z - line @ coefficients)
-        return cls(middle, scale, u, factor, line, line_covariance, coefficients, weights, power)
+        return cls(middle, scale, u, factor, kernel, line, line_covariance, coefficients, weights, power)
 
     def at(self, s: Floats) -> Floats:
         """Posterior mean of the heights in m at distances in m."""
         u = (s - self.middle) / self.scale
-        return np.asarray(_parabolas(u) @ self.coefficients + self.power * _kernel(u, self.points) @ self.weights)
+        return np.asarray(_parabolas(u) @ self.coefficients + self.power * self.kernel(u, self.points) @ self.weights)
 
     def draws(self, s: Floats) -> Floats:
         """Draws from the posterior at distances in m, shape (draws, points)."""
         u = (s - self.middle) / self.scale
-        cross = self.power * _kernel(u, self.points)
+        cross = self.power * self.kernel(u, self.points)
         solved = cho_solve(self.inverse, cross.T)
         rest = _parabolas(u) - cross @ cho_solve(self.inverse, self.line)
-        covariance = self.power * _kernel(u, u) - cross @ solved + rest @ self.line_covariance @ rest.T
+        covariance = self.power * self.kernel(u, u) - cross @ solved + rest @ self.line_covariance @ rest.T
         values, vectors = eigh(covariance)
         normal = np.random.default_rng(_SEED).standard_normal((_DRAWS // 2, u.size))
         normal = np.concatenate([normal, -normal])
@@ -194,12 +211,22 @@ def _parabolas(u: Floats) -> Floats:
     return np.stack([np.ones_like(u), u, u**2], axis=1)
 
 
-def _kernel(u: Floats, v: Floats) -> Floats:
+def _integrated_twice(u: Floats, v: Floats) -> Floats:
+    """Covariance of white noise integrated twice, that of a cubic spline, on both sides of the first point."""
+    same, low, high = _nearer_and_farther(u, v)
+    return np.asarray(np.where(same, low**2 * (3 * high - low) / 6, 0.0))
+
+
+def _integrated_thrice(u: Floats, v: Floats) -> Floats:
     """Covariance of white noise integrated three times, that of a quintic spline, on both sides of the first point."""
-    a, b = u[:, None], v[None, :]
-    same = np.sign(a) == np.sign(b)
-    low, high = np.minimum(np.abs(a), np.abs(b)), np.maximum(np.abs(a), np.abs(b))
+    same, low, high = _nearer_and_farther(u, v)
     return np.asarray(np.where(same, low**5 / 20 + (high - low) * low**4 / 8 + (high - low) ** 2 * low**3 / 12, 0.0))
+
+
+def _nearer_and_farther(u: Floats, v: Floats) -> tuple[Mask, Floats, Floats]:
+    """Whether two points lie on the same side of the first, and their distances from it, the smaller one first."""
+    a, b = u[:, None], v[None, :]
+    return np.sign(a) == np.sign(b), np.minimum(np.abs(a), np.abs(b)), np.maximum(np.abs(a), np.abs(b))
 
 
 def _most_likely_power(noise: Floats, prior: Floats, line: Floats, z: Floats, variance: float) -> float:

@@ -18,7 +18,6 @@ _SIGNIFICANT = 4.0  # height over the standard deviation of the mean section bes
 _LEAST_FRACTION = 0.005  # of the depth, from which a height counts as worn or piled up
 _ROUNDING = 1e-4  # of the depth
 _GAP = 5  # pixels, largest between edge and ridge
-_MARGIN = 0.04  # of the groove width, on either side of it
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -157,12 +156,6 @@ def groove_extent(section: MeanCrossSection, worn_band: tuple[float, float]) -> 
     )
 
 
-def band_with_margin(found: GrooveExtent) -> tuple[float, float]:
-    """Distances in m that enclose groove and ridges with a margin on either side."""
-    margin = _MARGIN * (found.right - found.left)
-    return found.left_foot - margin, found.right_foot + margin
-
-
 def cross_sections(
     levelled: HeightMap, track: GrooveTrack, *, reach: tuple[float, float], sections: int | None = None
 ) -> CrossSections:
@@ -186,7 +179,7 @@ def cross_sections(
     near = (transverse >= reach[0]) & (transverse <= reach[1])
     step = max(levelled.spacing_x, levelled.spacing_y)
     start, stop = float(arc_length[near].min()), float(arc_length[near].max())
-    t = np.linspace(start, stop, sections or max(2, round((stop - start) / step)))
+    t = np.linspace(start, stop, sections or max(2, 1 + round((stop - start) / step)))
     s = np.linspace(reach[0], reach[1], max(2, round((reach[1] - reach[0]) / step)))
     row, column = (np.rint(each).astype(np.intp) for each in track.pixel_position(levelled, *np.meshgrid(s, t)))
     rows, columns = levelled.height.shape

@@ -89,6 +89,22 @@ class UnwornReference:
         )
         return self.blocks.pixel_weights(np.asarray(of_blocks))
 
+    def track_pixel_weights(self, lever: tuple[float, float]) -> Floats:
+        """Derivatives of a distance from the track with respect to the heights of the scan.
+
+        Parameters
+        ----------
+        lever : tuple of float
+            Derivatives of that distance with respect to the rotation of the track, in m, and its curvature, in m2.
+
+        Returns
+        -------
+        ndarray, shape of the heights
+        """
+        response = self.models[0].section_response[-2:]
+        longer = self.blocks.longer_side
+        return self.blocks.pixel_weights(np.array([lever[0] / longer, lever[1] / longer**2]) @ response)
+
     def deviation_between_models(self, weights: Floats) -> float:
         """Standard deviation between the waviness models of a weighted sum of the reference's heights."""
         x, y = centred_coordinates(self.surface)

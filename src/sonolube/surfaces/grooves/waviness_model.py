@@ -30,6 +30,8 @@ class WavinessModel:
     response : ndarray, shape (p, blocks)
         Derivatives with respect to the blocks' heights of form, cosines and sines and, where wavenumbers were fitted,
         of their components along x, then y.
+    section_response : ndarray, shape (functions, blocks)
+        Derivatives of the coefficients of the section with respect to the blocks' heights.
     noise : tuple of float
         Variances in m2 of the means of unworn and of worn blocks about the model.
     cost : float
@@ -50,6 +52,7 @@ class WavinessModel:
     sine: Floats
     section: Floats
     response: Floats
+    section_response: Floats
     noise: tuple[float, ...]
     cost: float
     random: bool
