@@ -58,7 +58,7 @@ def test_an_ensemble_sampler_finds_the_posterior_of_the_weighed_prior_draws(clos
     (posterior,) = posteriors_without({closure.name: log_likelihoods}, closures=(closure,))
     deviation = posterior.hyperparameters.std(axis=0)
     assert np.all(np.abs(draws.mean(axis=0) - posterior.hyperparameters.mean(axis=0)) < 0.35 * deviation)
-    assert draws.std(axis=0) == approx(deviation, rel=0.25)
+    assert draws.std(axis=0) == approx(deviation, rel=0.4)
 
 
 def test_the_shipped_posterior_is_that_of_the_published_tests() -> None:
@@ -70,6 +70,7 @@ def test_the_shipped_posterior_is_that_of_the_published_tests() -> None:
     for one, other in zip(learned().friction, posteriors_without(log_likelihoods), strict=True):
         scatter = other.hyperparameters.std(axis=0)
         assert np.all(np.abs(one.hyperparameters.mean(axis=0) - other.hyperparameters.mean(axis=0)) < 0.2 * scatter)
+        assert one.hyperparameters.std(axis=0) == approx(scatter, rel=0.15)
 
 
 def test_stacking_prefers_the_closure_that_predicts_unseen_rigs_and_keeps_equal_ones_equal() -> None:

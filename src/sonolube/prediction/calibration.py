@@ -35,8 +35,10 @@ class UnseenPrediction:
     ----------
     rig : str
         Name of the rig.
-    friction_ratio, uncertainty : float
-        Measured friction ratio and its standard uncertainty.
+    friction_ratio : float
+        As measured. []
+    uncertainty : float
+        Standard uncertainty of that ratio.
     draws : ndarray, shape (draws,)
         Predicted measured ratio: with the uncertainty of the measurement. []
     """
