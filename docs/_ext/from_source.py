@@ -28,6 +28,8 @@ from sonolube.measurement.file_format import FileFormat
 from sonolube.measurement.impedance.formats import IMPEDANCE_FORMATS
 from sonolube.measurement.recordings.formats import RECORDING_FORMATS
 from sonolube.measurement.surface_files.formats import SURFACE_FORMATS
+from sonolube.prediction import Calibration, calibrations
+from sonolube.prediction.scores import PROBABILITIES
 from sonolube.published import errata
 from sonolube.rig import read_rig, rig_schema
 from sonolube.rig.file.json_schema import tables_of
@@ -126,6 +128,25 @@ def wear_models() -> str:
     return _grid(["Name", "Model"], [[f"`{name}`", _plain(_summary(model))] for name, model in WEAR_MODELS.items()])
 
 
+def prediction_calibration() -> str:
+    """Coverage and scores of ways to predict published tests unseen."""
+    heads = ["Prediction", *(f"{100 * each:.0f} %" for each in PROBABILITIES), "p (80 %)", "CRPS", "Score", "Width"]
+    return _grid(heads, map(_calibration_cells, calibrations()))
+
+
+def _calibration_cells(one: Calibration) -> list[str]:
+    coverages = [
+        f"{one.covered(each)}/{len(one.predictions)} ({_percent(one.coverage_interval(each))})"
+        for each in PROBABILITIES
+    ]
+    scores = [f"{one.p_value(0.8):.2f}", f"{one.crps:.3f}", f"{one.interval_score:.2f}", f"{one.median_width:.2f}"]
+    return [one.name, *coverages, *scores]
+
+
+def _percent(ends: tuple[float, float]) -> str:
+    return f"{100 * ends[0]:.0f} to {100 * ends[1]:.0f} %"
+
+
 TABLES: Mapping[str, Callable[[], str]] = {
     table.__name__: table
     for table in (
@@ -141,6 +162,7 @@ TABLES: Mapping[str, Callable[[], str]] = {
         height_distributions,
         friction_models,
         wear_models,
+        prediction_calibration,
     )
 }
 

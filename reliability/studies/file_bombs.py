@@ -21,9 +21,9 @@ from typing import Any
 import numpy as np
 
 from reliability.study import Measure, Record, Study
-from sonolube.design.measured_runs import read_runs
 from sonolube.errors import SonolubeError
 from sonolube.measurement.impedance.reader import read_impedance
+from sonolube.measurement.measured_runs import read_runs
 from sonolube.measurement.recordings.reader import read_recording
 from sonolube.measurement.surface_files.reader import read_height_map
 from sonolube.rig import read_rig
@@ -258,7 +258,7 @@ STUDY = Study(
     title="File bombs",
     question="A file below 10 MB that states huge sizes, unpacks to zeros, has thousands of datasets, cyclic or outward"
     " links, or text without end is read or refused in one line, within 10 s and 1 GB above the process that reads it.",
-    sources=("measurement/**/*.py", "design/measured_runs.py", "rig/file/*.py"),
+    sources=("measurement/**/*.py", "rig/file/*.py"),
     trials=1000,
     sample=25,
     trial=_trial,

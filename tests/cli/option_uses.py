@@ -17,6 +17,7 @@ VIBRATED = LOADED | AMPLITUDE
 SIZES = ("--set", "length=20mm", "--set", "width=10mm", "--set", "thickness=5mm")
 BAR = ("--set", "length=10mm", "--set", "width=4mm", "--set", "thickness=20mm")
 RUNS = str(ROOT / "examples" / "efficiency-runs.csv")
+OWN_RUNS = str(ROOT / "examples" / "tribometer-runs.csv")
 OVER = ("--over", "sliding.sliding_speed=20mm/s,50mm/s")
 STUDY = {"--over": OVER[1], "--of": "waveform", "--from": "", "--to": "", "--points": "4", "--voltage": "10V"}
 DRAWN = {"--sample": "lhs", "--seed": "1", "--workers": "1", "--scheduler": "local", "--chunk": "7", "--backend": "gpu"}
@@ -49,6 +50,11 @@ class Mode:
 
 MODES = {
     "contact": Mode("contact", (RIG,), LOADED),
+    "predict": Mode(
+        "predict",
+        (RIG, "--runs", OWN_RUNS, "--pin", "m50", "--disc", "m50"),
+        {"--runs": RUNS, "--pin": "aluminium_2024", "--disc": "aluminium_2024", "--seed": "1", **VIBRATED},
+    ),
     "friction": Mode("friction", (RIG,), VIBRATED | {"--model": "kinematic"}),
     "wear": Mode("wear", (RIG,), VIBRATED),
     "simulate": Mode("simulate", (RIG,), VIBRATED),

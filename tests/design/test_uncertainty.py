@@ -1,5 +1,6 @@
 """Uncertainty propagation: samples against single rigs, and outcomes whose distribution has a closed form."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -27,7 +28,8 @@ SPEED = "sliding.sliding_speed"
 
 def rig_with(tmp_path: Path, table: str, base: str = "tribometer") -> Path:
     path = tmp_path / "rig.toml"
-    path.write_text((RIGS / f"{base}.toml").read_text(encoding="utf-8") + f"\n[uncertainty]\n{table}\n")
+    text = re.sub(r"\[uncertainty\][^\[]*", "", (RIGS / f"{base}.toml").read_text(encoding="utf-8"))
+    path.write_text(f"{text}\n[uncertainty]\n{table}\n")
     return path
 
 

@@ -9,9 +9,10 @@ from operator import mul, sub, truediv
 import numpy as np
 import pytest
 from pytest import approx
+from scipy.special import i0
 
 from sonolube.errors import InvalidInput
-from sonolube.published import PrintedNumber, erratum, parse_printed, statement, statements, table
+from sonolube.published import PrintedNumber, erratum, parse_printed, si_value, statement, statements, table
 
 Place = tuple[str, str, int]
 Span = tuple[float, float]
@@ -172,3 +173,14 @@ def test_the_rings_of_the_collar_would_have_to_be_wider_than_printed_to_breathe_
     assert speed / (np.pi * revised) == approx(59e-3, rel=0.01)
     assert speed / (np.pi * revised) > 3 * statement("4.5.4-rod-diameter").number.value
     assert {"84 kHz", "59 mm", "19 mm", "43 kHz"} <= set(re.findall(r"\d+ (?:kHz|mm)", erratum("N16").evidence))
+
+
+def test_without_the_6_um_of_table_3_2_normal_vibration_can_reach_the_last_row_of_table_4_2() -> None:
+    # N17: friction carried by the widest gap of a load-balanced sine, exp(-beta)/I0(beta), beta = 3 a/R_q
+    lowest, without = (si_value(f"table-4.2-friction_force-{row}") for row in (6, 1))
+    beta = 3 * si_value("table-4.1-vibration_amplitude-15") / np.array([6e-6, 2.12e-6, 1.69e-6])
+    reached = np.exp(-beta) / i0(beta) < lowest / without
+    assert reached.tolist() == [False, True, True]
+    assert si_value("2.5.2-roughness-unworn") == si_value("table-2.4-arithmetic_mean_height-1")
+    assert 1.69 * np.sqrt(np.pi / 2) == approx(2.12, abs=5e-3)
+    assert 1.73 * np.sqrt(np.pi / 2) == approx(2.17, abs=5e-3)

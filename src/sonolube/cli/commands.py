@@ -49,6 +49,7 @@ class Command:
 
 
 COMMANDS = (
+    Command(_PREDICT, "predict", "predict.predict:predict"),
     Command(_PREDICT, "contact", "predict.contact:contact"),
     Command(_PREDICT, "friction", "predict.friction:friction"),
     Command(_PREDICT, "wear", "predict.wear:wear"),

@@ -9,7 +9,7 @@ from sonolube.dynamics import Structure, chain_structure, pin_on_disc_chain
 from sonolube.friction import FRICTION_MODELS
 from sonolube.published import si_value
 from sonolube.rig.driven_rig import DrivenRig
-from sonolube.validation.contacts import steel_on_steel_contact, wear_contact
+from sonolube.validation.contacts import uncoated_plate_contact, wear_contact
 from sonolube.validation.tribometer import IDENTIFIED, tribometer_stack
 
 IDENTIFIED_NOTE: Final = (
@@ -63,8 +63,8 @@ def plate_rig() -> DrivenRig:
     return replace(
         rig,
         title="Tribometer with uncoated steel plates",
-        source="D Tables 4.1 and 4.2",
-        contact=steel_on_steel_contact(nominal_area=si_value("table-4.1-nominal_area-1")),
+        source="D 4.1.3, Tables 4.1 and 4.2",
+        contact=uncoated_plate_contact(),
         friction_coefficient=si_value("4.1.2-friction-off") / load,
         normal_load=load,
         sliding_speed=si_value("4.1.2-sliding-speed"),

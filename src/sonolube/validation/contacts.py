@@ -1,6 +1,7 @@
 """Rough contacts of the dissertation's tests, from its tables of model parameters."""
 
 from dataclasses import replace
+from math import pi, sqrt
 from typing import Final, Literal
 
 from sonolube.contact import (
@@ -16,6 +17,9 @@ from sonolube.surfaces import Roughness
 
 STEEL_YIELD_STRENGTH: Final = 250e6
 """Yield strength of steel on steel. [Pa] Not printed; inferred from the separations stated in D 3.1.4."""
+
+RMS_OVER_ARITHMETIC_MEAN: Final = sqrt(pi / 2)
+"""R_q over R_a of Gaussian heights. []"""
 
 Bodies = Literal["aluminium_steel", "steel_steel"]
 
@@ -81,6 +85,26 @@ def steel_on_steel_contact(*, nominal_area: float) -> RoughContact:
     RoughContact
     """
     return replace(poisson_contact(bodies="steel_steel"), roughness=_roughness("3.2"), nominal_area=nominal_area)
+
+
+def uncoated_plate_contact() -> RoughContact:
+    r"""Return the contact of the steel pin on the uncoated steel plates of section 4.1.
+
+    Returns
+    -------
+    RoughContact
+
+    Notes
+    -----
+    .. math:: R_q = \sqrt{\pi/2}\, R_a = 2.12\ \mathrm{\mu m}
+
+    with the 1.69 um of D 4.1.3 as R_a, which D prints wherever it names the kind of a single roughness; as R_q it
+    would be 1.69 um. The plates did not wear measurably, so that it holds during the tests. The roughness of the pin
+    is not printed. Summit radius and density are those of Table 3.2.
+    """
+    rough = steel_on_steel_contact(nominal_area=si_value("table-4.1-nominal_area-1"))
+    height = RMS_OVER_ARITHMETIC_MEAN * si_value("4.1.3-roughness-uncoated")
+    return replace(rough, roughness=replace(rough.roughness, rms_height=height))
 
 
 def _roughness(table_id: str) -> Roughness:

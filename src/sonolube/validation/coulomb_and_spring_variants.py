@@ -16,7 +16,15 @@ from sonolube import friction
 from sonolube.checks import Floats
 from sonolube.contact import RoughContact, normal_stiffness, separation
 from sonolube.errors import ModelRangeWarning, OutsideRange
-from sonolube.validation.free_parameters import APPROACH, IN_PLANE_MOTION, MINDLIN_RATIO, VIBRATION_DIRECTION, per_rig
+from sonolube.validation.free_parameters import (
+    APPROACH,
+    APPROACH_RATIO,
+    IN_PLANE_MOTION,
+    MINDLIN_RATIO,
+    SLIP_LENGTH,
+    VIBRATION_DIRECTION,
+    per_rig,
+)
 from sonolube.validation.model_variant import NORMAL_VIBRATION, ModelVariant
 from sonolube.validation.published_tests import FrictionTest, InPlaneTest
 from sonolube.validation.rig_conditions import VibratedRig
@@ -58,6 +66,13 @@ def _spring_flat(test: FrictionTest, approach: float | None = None, mindlin_rati
     """Return the friction ratio by springs of constant stiffness, the profile of a flat punch. []"""
     springs = _springs(test, mindlin_ratio)
     at_rest = load_over_stiffness(test.contact, test.normal_load) if approach is None else approach
+    return _under_normal_oscillation(test, springs, at_rest)
+
+
+def _spring_flat_on_roughness(test: FrictionTest, slip_length: float, approach_ratio: float) -> Floats:
+    """Return the friction ratio by springs of constant stiffness, their approach in proportion to R_q. []"""
+    at_rest = approach_ratio * test.contact.roughness.rms_height
+    springs = _springs(test, test.friction_coefficient * at_rest / slip_length)
     return _under_normal_oscillation(test, springs, at_rest)
 
 
@@ -228,6 +243,13 @@ COULOMB_AND_SPRING_VARIANTS: Final = (
         "springs of constant stiffness, approach and ratio of stiffnesses fitted",
         _spring_flat,
         (APPROACH, MINDLIN_RATIO),
+        source=_POPOV_2017,
+    ),
+    ModelVariant(
+        "spring-flat-on-roughness",
+        "springs of constant stiffness, slip length and approach over R_q fitted",
+        _spring_flat_on_roughness,
+        (SLIP_LENGTH, APPROACH_RATIO),
         source=_POPOV_2017,
     ),
     ModelVariant(

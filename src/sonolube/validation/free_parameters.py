@@ -97,6 +97,32 @@ MEMORY_LENGTH: Final = FreeParameter(
     high=10e-6,
     reason="From a tenth of the length of Mindlin at the lowest coefficient to the size of a contact spot.",
 )
+DECAY_CONSTANT: Final = FreeParameter(
+    name="decay_constant",
+    default=3.0,
+    initial_values=(2.0, 3.0),
+    low=1.0,
+    high=6.0,
+    reason="R_q over decay length: from exponential heights, whose deviation is their decay length, to Gaussian ones "
+    "far out in their tail. D takes 3.",
+)
+SLIP_LENGTH: Final = FreeParameter(
+    name="slip_length",
+    unit="m",
+    default=1.5e-6,
+    initial_values=(1.5e-6, 4e-6),
+    low=0.1e-6,
+    high=10e-6,
+    reason="As the memory length.",
+)
+APPROACH_RATIO: Final = FreeParameter(
+    name="approach_ratio",
+    default=1 / 3,
+    initial_values=(0.3, 0.6),
+    low=0.05,
+    high=3.0,
+    reason="Approach over R_q: from a smooth contact to one flattened through all of its roughness.",
+)
 HOLDER_COMPLIANCE: Final = FreeParameter(
     name="holder_compliance",
     unit="m/N",

@@ -9,6 +9,7 @@ from sonolube.checks import Floats
 from sonolube.contact import GapMotion, RoughContact, decay_length, load_balanced_motion, separation, sinusoidal_motion
 from sonolube.validation.free_parameters import (
     AMPLITUDE_FRACTION,
+    DECAY_CONSTANT,
     FITTED_RIGS,
     FRICTION_COEFFICIENT_FACTOR,
     HOLDER_COMPLIANCE,
@@ -64,6 +65,17 @@ def asperity_stick_slip(
 def _default_stick_slip(test: FrictionTest) -> Floats:
     """Return the friction ratio of a test by asperity stick-slip with the package's own memory length. []"""
     return asperity_stick_slip(test, memory_length=friction.EMPIRICAL_MEMORY_LENGTH)
+
+
+def _stick_slip_with_decay_constant(test: FrictionTest, memory_length: float, decay_constant: float) -> Floats:
+    """Return the friction ratio by asperity stick-slip with a decay length of R_q over a fitted constant. []"""
+    return friction.sine_stick_slip_ratio(
+        decay_length=test.contact.roughness.rms_height / decay_constant,
+        vibration_amplitude=test.vibration_amplitude,
+        frequency=test.frequency,
+        sliding_speed=test.sliding_speed,
+        memory_length=memory_length,
+    )
 
 
 def mindlin_stick_slip(test: FrictionTest, friction_coefficient_factor: float = 1.0) -> Floats:
@@ -191,6 +203,12 @@ FRICTION_MODEL_VARIANTS: Final = (
     ),
     ModelVariant(
         "asperity-stick-slip-fitted", "asperity stick-slip, memory length fitted", asperity_stick_slip, (MEMORY_LENGTH,)
+    ),
+    ModelVariant(
+        "asperity-stick-slip-decay-constant",
+        "asperity stick-slip, memory length and decay constant of the heights fitted",
+        _stick_slip_with_decay_constant,
+        (MEMORY_LENGTH, DECAY_CONSTANT),
     ),
     ModelVariant(
         "asperity-stick-slip-in-plane",

@@ -1,5 +1,6 @@
 """Published friction tests under vibration as records: conditions, measured friction ratio and its uncertainty."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cache
 from math import hypot
@@ -7,7 +8,8 @@ from typing import Final, Protocol
 
 from sonolube.contact import RoughContact
 from sonolube.published import PublishedValue, published_number, published_value, si_value
-from sonolube.validation.contacts import steel_on_steel_contact, wear_contact
+from sonolube.validation.contacts import steel_on_steel_contact, uncoated_plate_contact, wear_contact
+from sonolube.validation.roughness_inputs import printed_rms_height, roughness_spread
 
 NORMAL_VIBRATION_SETS: Final = {
     "A": "steel on aluminium, three speeds (Table 2.3)",
@@ -61,7 +63,9 @@ class FrictionTest:
     label : str
         Set and number in the set, such as "A-1".
     contact : RoughContact
-        Contact for the models; the roughness is that of Table 3.2 in every set.
+        Contact for the models. The roughness is printed for set B; elsewhere it is that of Table 3.2.
+    roughness_spread : float
+        Standard deviation of ln R_q that the provenance of the roughness justifies, see `roughness_inputs`. []
     sliding_speed : float
         Sliding speed during vibration. [m/s]
     vibration_amplitude : float
@@ -82,6 +86,7 @@ class FrictionTest:
 
     label: str
     contact: RoughContact
+    roughness_spread: float
     sliding_speed: float
     vibration_amplitude: float
     frequency: float
@@ -149,6 +154,25 @@ def friction_tests(sets: str = "".join(NORMAL_VIBRATION_SETS)) -> tuple[Friction
     return tuple(test for test in _normal_vibration_tests() if test.set_name in sets)
 
 
+def with_printed_roughness(tests: Iterable[FrictionTest]) -> tuple[FrictionTest, ...]:
+    """Return tests with R_q as printed for the worn surface wherever it is printed: in sets B, C and G.
+
+    Parameters
+    ----------
+    tests : iterable of FrictionTest
+
+    Returns
+    -------
+    tuple of FrictionTest
+        The other tests are unchanged.
+
+    Notes
+    -----
+    Where the kind of a roughness is not named it is read as R_a. That of the counterface is not printed.
+    """
+    return tuple(_with_rms_height(test, printed_rms_height(test.label)) for test in tests)
+
+
 @cache
 def in_plane_tests() -> tuple[InPlaneTest, ...]:
     """Return the tests with vibration in the plane of contact.
@@ -205,7 +229,8 @@ def _power_map() -> list[FrictionTest]:
     return [
         FrictionTest(
             label=f"B-{level}",
-            contact=steel_on_steel_contact(nominal_area=si_value("table-4.1-nominal_area-1")),
+            contact=uncoated_plate_contact(),
+            roughness_spread=roughness_spread(f"B-{level}"),
             sliding_speed=si_value("4.1.2-sliding-speed"),
             vibration_amplitude=si_value(f"table-4.1-vibration_amplitude-{10 + level}"),
             frequency=si_value("table-4.1-frequency-1"),
@@ -238,6 +263,7 @@ def _material_pairs() -> list[FrictionTest]:
         FrictionTest(
             label=f"D-{number}",
             contact=wear_contact(),
+            roughness_spread=roughness_spread(f"D-{number}"),
             sliding_speed=si_value("table-2.12-sliding_speed-1"),
             vibration_amplitude=si_value(f"table-2.12-{size}_amplitude-1"),
             frequency=si_value("table-2.12-frequency-1"),
@@ -278,6 +304,7 @@ def _welder() -> list[FrictionTest]:
             FrictionTest(
                 label=f"G-{tip}",
                 contact=steel_on_steel_contact(nominal_area=si_value(f"table-2.8-nominal_area-{vibrating}")),
+                roughness_spread=roughness_spread(f"G-{tip}"),
                 sliding_speed=si_value(f"table-2.8-sliding_speed-{vibrating}"),
                 vibration_amplitude=si_value(f"table-2.8-vibration_amplitude-{vibrating}"),
                 frequency=si_value(f"table-2.8-frequency-{vibrating}"),
@@ -297,6 +324,7 @@ def _flextensional() -> list[FrictionTest]:
     slow = FrictionTest(
         label="H-1",
         contact=steel_on_steel_contact(nominal_area=_FLEXTENSIONAL_AREA),
+        roughness_spread=roughness_spread("H-1"),
         sliding_speed=si_value("2.2.4-sliding-speed-3.5"),
         vibration_amplitude=stroke / 2,
         frequency=si_value("2.2.2-resonance"),
@@ -316,6 +344,7 @@ def _tribometer_test(label: str, *, speed: str, off: str, on: str, published: st
     return FrictionTest(
         label=label,
         contact=wear_contact(),
+        roughness_spread=roughness_spread(label),
         sliding_speed=si_value(speed),
         vibration_amplitude=si_value("2.3.1-amplitude"),
         frequency=si_value("2.3.1-frequency"),
@@ -331,3 +360,11 @@ def _ratio_uncertainty(off: str, on: str) -> float:
     """Return the uncertainty of a ratio of published forces from their scatter, taken as independent. []"""
     relative = [(n.high - n.low) / 2 / n.value for n in (published_number(off), published_number(on))]
     return si_value(on) / si_value(off) * hypot(*relative)
+
+
+def _with_rms_height(test: FrictionTest, rms_height: float | None) -> FrictionTest:
+    """Return a test with another R_q; unchanged where there is none."""
+    if rms_height is None:
+        return test
+    roughness = replace(test.contact.roughness, rms_height=rms_height)
+    return replace(test, contact=replace(test.contact, roughness=roughness))

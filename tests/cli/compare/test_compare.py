@@ -31,7 +31,7 @@ def test_errors_fits_and_predictions_of_a_rig_are_in_the_answer(tmp_path: Path, 
 def test_the_lines_have_errors_fitted_parameters_and_tests_out_of_reach(tmp_path: Path, sonolube: Program) -> None:
     run = sonolube("compare", *QUICK, "--out", tmp_path)
     assert run.code == 0, run.err
-    assert "memory_length 3.4" in run.out
+    assert "memory_length 1.67" in run.out
     assert "not fitted: set H" in run.out
     assert "not reached: dahl-driven: needs the amplitude along the sliding" in run.out
 

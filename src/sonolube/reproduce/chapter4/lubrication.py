@@ -19,7 +19,7 @@ from sonolube.reproduce.row import Row, comparison_row, undetermined_row
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_DECAY_LENGTH: Final = 2e-6  # m, of the contact of Table 3.2
+_DECAY_LENGTH: Final = 2e-6  # m, of the contact of Table 3.2; that of the M50 disc of Table 4.3 is not printed
 _DRY: Final = 1.0  # all coefficients are over that of dry friction, which is only drawn
 _SMALLEST_GAIN: Final = 0.04  # reduction of friction for which vibration is worth its power with a lubricant; assumed
 _FULL_ASPERITY_PRESSURE: Final = 200e6  # Pa, assumed

@@ -32,8 +32,8 @@ def power_figures() -> Iterator[ReportFigure]:
         name="table-4-2-example-test",
         title="Friction and its reduction in the example test",
         caption="Table 4.2: 5 N, 65.5 mm/s, steel on steel. Squares: reductions of the printed mean forces, which "
-        "differ from those of D, whose averaging is not stated. The cube, with the roughness of Table 3.2, "
-        "has neither speed nor in-plane motion: it falls too early and too slowly. D's efficiency line, at the "
+        "differ from those of D, whose averaging is not stated. The cube, with the roughness of the "
+        "plates, has neither speed nor in-plane motion: it falls too early. D's efficiency line, at the "
         "power of D 1.9, follows the first three voltages and then takes all friction away.",
         draw=_example_test,
     )

@@ -10,7 +10,7 @@ from sonolube.checks import Floats
 from sonolube.friction import dong_2015_half_period_ratio
 from sonolube.metrics import efficiency_at, efficiency_coefficient, friction_at_power, power_for_friction
 from sonolube.published import PrintedNumber, column_numbers, published_number, si_value, table
-from sonolube.validation.contacts import steel_on_steel_contact
+from sonolube.validation.contacts import uncoated_plate_contact
 from sonolube.validation.efficiency import efficiency_line
 
 
@@ -111,7 +111,7 @@ def cube_friction(*, voltage_peak_to_peak: ArrayLike) -> Floats:
     """
     test = example_test()
     ratio = dong_2015_half_period_ratio(
-        steel_on_steel_contact(nominal_area=test["nominal_area"]),
+        uncoated_plate_contact(),
         normal_load=test["normal_load"],
         vibration_amplitude=vibration_amplitude(voltage_peak_to_peak=voltage_peak_to_peak),
     )

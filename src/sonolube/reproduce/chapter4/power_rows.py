@@ -161,8 +161,8 @@ def _cube_friction(point: power_map.ExamplePoint) -> Row:
     off = power_map.example_test()["intrinsic_friction_force"]
     friction = float(power_map.cube_friction(voltage_peak_to_peak=point.voltage_peak_to_peak))
     note = (
-        f"cube, D 3.15: ratio {friction / off:.3f} of {off:g} N; roughness of Table 3.2; {STEEL_ON_STEEL_NOTE};"
-        " neither sliding speed nor in-plane motion of the tip enters"
+        f"cube, D 3.15: ratio {friction / off:.3f} of {off:g} N; R_q = 2.12 um of the plates (D 4.1.3);"
+        f" {STEEL_ON_STEEL_NOTE}; neither sliding speed nor in-plane motion of the tip enters"
     )
     return comparison_row(f"table-4.2-friction_force-{point.row}", friction, note, suffix="by-the-cube")
 

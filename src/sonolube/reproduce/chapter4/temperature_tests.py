@@ -7,10 +7,12 @@ import numpy as np
 
 from sonolube import thermal
 from sonolube.checks import Floats
+from sonolube.contact import ExponentialHeights
 from sonolube.friction import sine_stick_slip_ratio
 from sonolube.published import column_numbers, si_value
 from sonolube.reproduce.chapter4.power_map import actuator_power
 from sonolube.rig import thermal_solid
+from sonolube.validation.contacts import RMS_OVER_ARITHMETIC_MEAN
 
 ROOM_TEMPERATURE: Final = 294.15
 """Room temperature, that of the other tests of D, 21 degC. [K]"""
@@ -23,7 +25,6 @@ POWDER_COATING: Final = thermal.ThermalSolid(thermal_conductivity=0.25, density=
 """Coating of the disc, assumed: a filled thermoset, of which D prints only thickness and hardness."""
 
 _NUT: Final = thermal.ThermalNetwork(heat_capacity=(1.5,), links=(), losses=(0.05,))  # 3 g of steel on a thread
-_DECAY_LENGTH: Final = 2e-6  # m, of the contact of Table 3.2
 
 ASSUMED: Final = (
     "Assumed, for D prints none of it: room at 21 degC, coating with 0.25 W/(m K), a coefficient of friction of 0.1 "
@@ -119,7 +120,7 @@ def vibration_heat() -> Floats:
 def slow_friction_ratio() -> Floats:
     """Return the friction ratio at the lowest speed and the five voltages by asperity stick-slip. []"""
     return sine_stick_slip_ratio(
-        decay_length=_DECAY_LENGTH,
+        decay_length=RMS_OVER_ARITHMETIC_MEAN * si_value("4.1.3-roughness-coated") / ExponentialHeights().decay,
         vibration_amplitude=_column("vibration_amplitude"),
         frequency=si_value("table-4.4-frequency-1"),
         sliding_speed=float(speeds()[0]),

@@ -47,7 +47,7 @@ def variant_figures() -> Iterator[ReportFigure]:
         caption="; ".join(f"{letter}: {content}" for letter, content in NORMAL_VIBRATION_SETS.items())
         + ". Grey band: within 0.1 of the measured ratio. Open triangles at the edge: predicted above "
         f"{_HIGHEST:g}; tests outside the range of a model are not drawn. The error is that over sets A and C to "
-        "G; set B requires motion along the surface, and of set H the amplitude is uncertain.",
+        "G; to set B only variants with a parameter of its rig are fitted, and of set H the amplitude is uncertain.",
         draw=_predicted_against_measured,
     )
     yield ReportFigure(
@@ -128,7 +128,7 @@ def _predicted_against_measured() -> "Figure":
     """Draw predicted against measured ratios, one panel for each variant."""
     from matplotlib import pyplot as plt
 
-    figure, panels = plt.subplots(4, 4, figsize=(8.6, 9.4), sharex=True, sharey=True)
+    figure, panels = plt.subplots(4, 4, figsize=(8.8, 9.2), sharex=True, sharey=True)
     for axes, fit in zip(panels.flat, reported_fits(), strict=True):
         _panel(axes, fit)
     for axes in panels[-1]:

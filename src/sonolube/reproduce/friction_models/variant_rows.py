@@ -13,7 +13,7 @@ from sonolube.validation.model_variant import ModelVariant
 from sonolube.validation.published_tests import friction_tests
 
 DEFAULT: Final = "asperity-stick-slip-fitted"
-"""Variant of the default friction model: the least error of those with correct limits and without unmeasured motion."""
+"""Variant of the default friction model: the least cross-validation error of all."""
 
 REPORTED: Final = ("dong-2015-full-period", DEFAULT, "asperity-stick-slip-in-plane", "bristle-with-holder-per-rig")
 """Variants with rows in the report; its figures show all."""

@@ -25,12 +25,13 @@ def read_runs(path: Path) -> "xr.Dataset":
     Parameters
     ----------
     path : Path
-        With a column `friction_reduction` and further columns of the vocabulary.
+        With columns of the vocabulary, among them `friction_reduction`, `friction_ratio`, or `friction_force` and
+        `intrinsic_friction_force`.
 
     Returns
     -------
     xarray.Dataset
-        Over `run`, in SI.
+        Over `run`, in SI, with a friction reduction.
 
     Raises
     ------
@@ -54,10 +55,27 @@ def read_runs(path: Path) -> "xr.Dataset":
         known = (numbers[0], 0, 1)  # a wrong unit is told with the first value
         _, zero, one = (to_si(f"{at} {unit}", unit=quantities()[name].unit, name=place_of_unit) for at in known)
         columns[name] = [zero + (one - zero) * number for number in numbers]
-    if "friction_reduction" not in columns:
-        raise InvalidInput(f"{path}: needs a column friction_reduction [%]")
+    columns.setdefault("friction_reduction", _friction_reductions(path, columns))
     data = {name: ("run", values) for name, values in columns.items()}
     return xr.Dataset(data, attrs={"title": f"{path.name}, in %"})
+
+
+def _friction_reductions(path: Path, columns: dict[str, list[float]]) -> list[float]:
+    """Friction reduction of each run, by the columns that give it."""
+    if "friction_reduction" in columns:
+        return columns["friction_reduction"]
+    if "friction_ratio" in columns:
+        return [1 - ratio for ratio in columns["friction_ratio"]]
+    if "friction_force" in columns and "intrinsic_friction_force" in columns:
+        without = columns["intrinsic_friction_force"]
+        for line, force in enumerate(without, 2):
+            if not force > 0:
+                raise InvalidInput(f"{path}: line {line}: intrinsic_friction_force must be positive, got {force:g} N")
+        return [1 - force / other for force, other in zip(columns["friction_force"], without, strict=True)]
+    raise InvalidInput(
+        f"{path}: needs a column friction_reduction [%], or friction_ratio, or friction_force [N] and"
+        " intrinsic_friction_force [N]"
+    )
 
 
 def _rows(path: Path) -> list[list[str]]:

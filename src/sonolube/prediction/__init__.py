@@ -1,0 +1,5 @@
+"""Predictions of rigs with intervals: a hierarchical model of the published tests, updated by own runs."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

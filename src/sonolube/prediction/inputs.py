@@ -1,0 +1,195 @@
+"""Inputs of a prediction from a rig: values, and how well each is known."""
+
+from dataclasses import dataclass
+from math import log
+from typing import Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sonolube.contact import decay_length
+from sonolube.errors import InvalidInput
+from sonolube.prediction.closures import Conditions, UncertainConditions
+from sonolube.prediction.evidence import MEASURED_SPREAD
+from sonolube.rig import Distribution, FrictionPoint, Rig, friction_point
+from sonolube.rig.linear_response import rest_separation
+
+_ROUGHNESS_KEY: Final = "contact.roughness.rms_height"
+_FRICTION_KEY: Final = "friction.friction_coefficient"
+_GIVEN_ROUGHNESS: Final = 0.1
+_ASSUMED_ROUGHNESS: Final = 0.5
+_AMPLITUDE_SPREADS: Final = {"measured": MEASURED_SPREAD, "computed": 0.15, "per-volt": 0.1}
+_GIVEN_FRICTION: Final = 0.1
+_AMPLITUDE_KEYS: Final = {
+    "measured": ("vibration.vibration_amplitude",),
+    "computed": ("stack.free_stroke_per_volt",),
+    "per-volt": ("actuator.amplitude_per_volt",),
+}
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Input:
+    """One input of a prediction.
+
+    Parameters
+    ----------
+    name : str
+        Of the vocabulary.
+    value : float
+        Median, in SI.
+    spread : float
+        Standard deviation of its logarithm.
+    reason : str
+        Why the spread is what it is.
+    remedy : str
+        How to know the input better.
+    """
+
+    name: str
+    value: float
+    spread: float
+    reason: str
+    remedy: str
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RigInputs:
+    """All inputs of a prediction for one rig.
+
+    Parameters
+    ----------
+    roughness, amplitude, friction : Input
+        Root mean square height, vibration amplitude and intrinsic coefficient of friction: the uncertain ones.
+    decay_length : float
+        Of the contact at the median roughness. [m]
+    frequency : float
+        Of the vibration. [Hz]
+    sliding_speed : float
+        Mean sliding speed. [m/s]
+    normal_load : float
+        Force pressing the bodies together. [N]
+    voltage_peak_to_peak : float or None
+        Of the drive, where it is known. [V]
+    point : FrictionPoint
+        Friction by the rig's own model.
+    """
+
+    roughness: Input
+    amplitude: Input
+    friction: Input
+    decay_length: float
+    frequency: float
+    sliding_speed: float
+    normal_load: float
+    voltage_peak_to_peak: float | None
+    point: FrictionPoint
+
+    def at(
+        self, *, vibration_amplitude: ArrayLike | None = None, sliding_speed: ArrayLike | None = None
+    ) -> UncertainConditions:
+        """Conditions of the rig, at other amplitudes or speeds where given; arrays of one length or numbers."""
+        amplitude = self.amplitude.value if vibration_amplitude is None else vibration_amplitude
+        speed = self.sliding_speed if sliding_speed is None else sliding_speed
+        a, v = np.broadcast_arrays(np.atleast_1d(np.asarray(amplitude, float)), np.asarray(speed, float))
+        return UncertainConditions(
+            conditions=Conditions(
+                vibration_amplitude=a,
+                frequency=np.full(a.shape, self.frequency),
+                sliding_speed=v,
+                decay_length=np.full(a.shape, self.decay_length),
+            ),
+            decay_length_spread=self.roughness.spread,
+            amplitude_spread=self.amplitude.spread,
+        )
+
+
+def rig_inputs(rig: Rig) -> RigInputs:
+    """Inputs of a prediction from a rig file: its own distributions where it has them, else usual ones.
+
+    Parameters
+    ----------
+    rig : Rig
+
+    Returns
+    -------
+    RigInputs
+
+    Raises
+    ------
+    InvalidInput
+        If the rig does not vibrate, does not slide or states no frequency.
+    """
+    if rig.drive is None:
+        raise InvalidInput(f"{rig.title}: a prediction needs a frequency; give drive.frequency")
+    if not rig.sliding_speed > 0:
+        raise InvalidInput(f"{rig.title}: a prediction needs a sliding speed above 0; give sliding.sliding_speed")
+    point = friction_point(rig)
+    if not point.vibration_amplitude > 0:
+        raise InvalidInput(f"{rig.title}: a prediction needs vibration; the vibration amplitude is 0 m")
+    roughness = _roughness(rig)
+    factor = roughness.value / rig.contact.roughness.rms_height
+    return RigInputs(
+        roughness=roughness,
+        amplitude=_amplitude(rig, point),
+        friction=_friction(rig),
+        decay_length=factor * float(decay_length(rig.contact, separation=rest_separation(rig))),
+        frequency=rig.drive.frequency,
+        sliding_speed=rig.sliding_speed,
+        normal_load=rig.normal_load,
+        voltage_peak_to_peak=rig.drive.voltage_peak_to_peak,
+        point=point,
+    )
+
+
+def _roughness(rig: Rig) -> Input:
+    """Root mean square height of the surfaces."""
+    remedy = "a scan of the worn track"
+    own = rig.uncertainty.get(_ROUGHNESS_KEY)
+    if own is not None:
+        value, spread = _lognormal(own)
+        return Input(name="rms_height", value=value, spread=spread, reason=f"{own.text} in the rig file", remedy=remedy)
+    assumed = any(_ROUGHNESS_KEY.startswith(key) for key in rig.assumptions)
+    spread, reason = (
+        (_ASSUMED_ROUGHNESS, "assumed in the rig file, not measured")
+        if assumed
+        else (_GIVEN_ROUGHNESS, "given without a distribution")
+    )
+    return Input(name="rms_height", value=rig.contact.roughness.rms_height, spread=spread, reason=reason, remedy=remedy)
+
+
+def _amplitude(rig: Rig, point: FrictionPoint) -> Input:
+    """Vibration amplitude, by the source that all commands take it from."""
+    spread, reason = _AMPLITUDE_SPREADS[point.amplitude_source], point.amplitude_origin
+    for key in _AMPLITUDE_KEYS[point.amplitude_source]:
+        own = rig.uncertainty.get(key)
+        if own is not None:
+            spread, reason = _lognormal(own)[1], f"{reason}; {key} {own.text}"
+    return Input(
+        name="vibration_amplitude",
+        value=point.vibration_amplitude,
+        spread=spread,
+        reason=reason,
+        remedy="a vibrometer on the running rig",
+    )
+
+
+def _friction(rig: Rig) -> Input:
+    """Intrinsic coefficient of friction."""
+    remedy = "a run without vibration on the same pair"
+    own = rig.uncertainty.get(_FRICTION_KEY)
+    if own is not None:
+        value, spread = _lognormal(own)
+        return Input(name="friction_coefficient", value=value, spread=spread, reason=own.text, remedy=remedy)
+    return Input(
+        name="friction_coefficient",
+        value=rig.friction_coefficient,
+        spread=_GIVEN_FRICTION,
+        reason="given without a distribution",
+        remedy=remedy,
+    )
+
+
+def _lognormal(distribution: Distribution) -> tuple[float, float]:
+    """Median of a distribution of a positive quantity, and the standard deviation of the like lognormal one."""
+    low, middle, high = (float(each) for each in distribution.quantile((0.1587, 0.5, 0.8413)))
+    return middle, log(high / max(low, 1e-3 * middle)) / 2

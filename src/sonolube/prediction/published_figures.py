@@ -1,0 +1,161 @@
+"""Figures of published tests predicted unseen, their calibration, and what own runs are worth."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import combinations
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from sonolube.checks import Floats
+from sonolube.figure import COLOURS, MARKERS, ReportFigure
+from sonolube.prediction.calibration import calibrations
+from sonolube.prediction.closures import Conditions
+from sonolube.prediction.evidence import TestedRig, published_rigs
+from sonolube.prediction.figures import calibration_figure, draw_bands
+from sonolube.prediction.posterior import Posterior, posteriors_without, rig_log_likelihoods
+from sonolube.prediction.predictive import ratio_draws
+from sonolube.prediction.scores import LEVELS, central_interval
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_PANELS: Final = (
+    ("A", "sliding_speed", 1e3, "sliding speed (mm/s)", "Table 2.3: steel on aluminium, 2.5 µm"),
+    ("B", "vibration_amplitude", 1e6, "vibration amplitude (µm)", "Table 4.2: steel on steel, 65.5 mm/s"),
+)
+_POINTS: Final = 40
+_DRAWS: Final = 2000
+_MOST_SUBSETS: Final = 6  # of own runs for each predicted test
+
+
+def published_prediction_figures() -> Iterator[ReportFigure]:
+    """Figures of the prediction of published tests.
+
+    Returns
+    -------
+    iterator of ReportFigure
+    """
+    yield ReportFigure(
+        name="prediction-of-published-tests",
+        title="Friction ratio predicted before any test on the rig",
+        caption="Bands: 50, 80 and 95 % predictive intervals, learned from the tests on all other rigs. Points: Tables"
+        " 2.3 and 4.2 with their printed scatter.",
+        draw=unseen_figure,
+    )
+    yield ReportFigure(
+        name="prediction-calibration",
+        title="Calibration of predictions on rigs left out",
+        caption="Left: share of the 17 published tests within the predictive intervals, with 95 % binomial intervals."
+        " Right: mean scores; lower is better.",
+        draw=lambda: calibration_figure(calibrations()),
+    )
+    yield ReportFigure(
+        name="prediction-width-over-runs",
+        title="What own runs are worth",
+        caption="Median width of the 80 % interval of a published test when other tests of its rig are known, and"
+        " the share of tests within; subsets of one rig's tests are not independent of each other.",
+        draw=runs_figure,
+    )
+
+
+def unseen_figure() -> "Figure":
+    """Draw Tables 2.3 and 4.2 with the prediction from the other rigs.
+
+    Returns
+    -------
+    Figure
+    """
+    from matplotlib import pyplot as plt
+
+    figure, panels = plt.subplots(1, 2, figsize=(6.85, 3.3), sharey=True)
+    for axes, (name, condition, scale, label, title) in zip(panels, _PANELS, strict=True):
+        rig, posteriors = _unseen(name)
+        places = getattr(rig.at.conditions, condition)
+        curve = np.geomspace(0.6 * places.min(), 1.5 * places.max(), _POINTS)
+        at = replace(rig.at, conditions=_along(rig.at.conditions, condition, curve))
+        ratios = ratio_draws(posteriors, at, count=_DRAWS).friction_ratio
+        draw_bands(axes, scale * curve, np.quantile(ratios, LEVELS, axis=0))
+        style = {"fmt": "o", "color": COLOURS[1], "ms": 5, "capsize": 2}
+        axes.errorbar(scale * places, rig.friction_ratio, rig.uncertainty, label="measured", **style)
+        axes.set(xlabel=label, xlim=(scale * curve[0], scale * curve[-1]), ylim=(-0.05, 1.1))
+        axes.set_title(title, fontsize=9)
+    panels[0].set_ylabel("friction ratio")
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=5)
+    return figure
+
+
+def runs_figure() -> "Figure":
+    """Draw the width of the interval of a test, and the coverage, against the number of other tests known of its rig.
+
+    Returns
+    -------
+    Figure
+    """
+    from matplotlib import pyplot as plt
+
+    counts, widths, shares = zip(*_widths_by_runs(), strict=True)
+    figure, (left, right) = plt.subplots(1, 2, figsize=(6.85, 2.9))
+    left.plot(counts, widths, MARKERS[0] + "-", color=COLOURS[0])
+    left.set(xlabel="own runs known", ylabel="median width of the 80 % interval", ylim=(0, None), xticks=counts)
+    right.plot(counts, shares, MARKERS[1] + "-", color=COLOURS[1])
+    right.axhline(0.8, color="0.4", lw=0.8, ls=":")
+    right.set(xlabel="own runs known", ylabel="share of tests within", ylim=(0, 1.05), xticks=counts)
+    return figure
+
+
+def _widths_by_runs() -> list[tuple[int, float, float]]:
+    """Number of own runs, median width and coverage of the 80 % interval, over rigs with so many tests."""
+    found: dict[int, list[tuple[float, bool]]] = {}
+    for rig in published_rigs():
+        _, posteriors = _unseen(rig.name)
+        tests = range(rig.friction_ratio.size)
+        for test in tests:
+            others = [each for each in tests if each != test]
+            for count in range(len(others) + 1):
+                for known in list(combinations(others, count))[:_MOST_SUBSETS]:
+                    found.setdefault(count, []).append(_width(rig, posteriors, test, known))
+    return [
+        (count, float(np.median([width for width, _ in rows])), float(np.mean([inside for _, inside in rows])))
+        for count, rows in sorted(found.items())
+    ]
+
+
+def _width(rig: TestedRig, posteriors: tuple[Posterior, ...], test: int, known: tuple[int, ...]) -> tuple[float, bool]:
+    """Width of the 80 % interval of one test by some others of its rig, and whether the measured ratio is within."""
+    own = _some(rig, known) if known else None
+    ratios = ratio_draws(posteriors, _some(rig, (test,)).at, count=_DRAWS, own=own).friction_ratio[:, 0]
+    noise = rig.uncertainty[test] * np.random.default_rng(4).standard_normal(ratios.size)
+    low, high = central_interval(ratios + noise, 0.8)
+    return float(high - low), bool(low <= rig.friction_ratio[test] <= high)
+
+
+def _some(rig: TestedRig, tests: tuple[int, ...]) -> TestedRig:
+    """Rig with some of its tests."""
+    rows, at = list(tests), rig.at.conditions
+    conditions = Conditions(
+        vibration_amplitude=at.vibration_amplitude[rows],
+        frequency=at.frequency[rows],
+        sliding_speed=at.sliding_speed[rows],
+        decay_length=at.decay_length[rows],
+    )
+    return replace(
+        rig,
+        at=replace(rig.at, conditions=conditions),
+        friction_ratio=rig.friction_ratio[rows],
+        uncertainty=rig.uncertainty[rows],
+    )
+
+
+def _unseen(name: str) -> tuple[TestedRig, tuple[Posterior, ...]]:
+    """A published rig, and the posteriors by all others."""
+    rigs = published_rigs()
+    index = [rig.name for rig in rigs].index(name)
+    return rigs[index], posteriors_without(rig_log_likelihoods(), left_out=(index,))
+
+
+def _along(at: Conditions, condition: str, values: Floats) -> Conditions:
+    """First of some conditions, with one of its quantities varied."""
+    names = ("vibration_amplitude", "frequency", "sliding_speed", "decay_length")
+    fixed = {each: np.full(values.size, getattr(at, each)[0]) for each in names}
+    return Conditions(**fixed | {condition: values})

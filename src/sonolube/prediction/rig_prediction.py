@@ -1,0 +1,281 @@
+"""Prediction of a rig: friction, wear, heat and power under vibration, with predictive intervals."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from sonolube.checks import Floats
+from sonolube.errors import InvalidInput
+from sonolube.prediction.inputs import Input, RigInputs, rig_inputs
+from sonolube.prediction.own_runs import OwnRuns, own_runs
+from sonolube.prediction.posterior import learned
+from sonolube.prediction.predictive import RatioDraws, ratio_draws
+from sonolube.prediction.scores import LEVELS, central_interval
+from sonolube.rig import Rig, thermal_solid
+from sonolube.thermal import EllipticSource, contact_rise
+from sonolube.vocabulary import quantity
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_CURVE: Final = 33  # points of a curve
+_KNOWN_WELL: Final = {"rms_height": 0.05, "vibration_amplitude": 0.02}
+
+
+def predict(
+    rig: Rig,
+    *,
+    runs: "xr.Dataset | None" = None,
+    pin: str | None = None,
+    disc: str | None = None,
+    draws: int = 4000,
+    seed: int = 0,
+) -> "xr.Dataset":
+    """Return what vibration does to friction and wear on a rig, with its uncertainty.
+
+    Parameters
+    ----------
+    rig : Rig
+    runs : xarray.Dataset, optional
+        Own measured runs over `run`, as `sonolube.measurement.read_runs` returns them.
+    pin, disc : str, optional
+        Materials of the catalogue, for the temperature rise of the contact.
+    draws : int
+        Equally probable outcomes.
+    seed : int
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `draw`: friction ratio, reduction, force and coefficient, wear rate ratio and reduction, and the mean
+        temperature rise of the contact where both materials are given. Over `level`: quantiles of the friction ratio
+        along `curve_amplitude` and `curve_speed`. Over `input`: spread of each uncertain input and the share of the
+        80 % interval of the friction ratio that would be left if it were known well. Attributes hold caveats,
+        assumptions, weights of closures and the statement in words.
+
+    Raises
+    ------
+    InvalidInput
+        If the rig does not vibrate or slide, or the runs cannot be those of the rig.
+    MissingProperty, UnknownName
+        For a material without thermal properties.
+    """
+    import xarray as xr
+
+    inputs = rig_inputs(rig)
+    own = None if runs is None else own_runs(runs, inputs, title=rig.title)
+    found = _ratios(inputs, own, draws=draws, seed=seed)
+    ratio = found.friction_ratio[:, 0]
+    drawn = _quantities(rig, inputs, own, ratio, pin, disc, seed)
+    amplitudes, speeds = _curve_points(inputs.amplitude.value), _curve_points(inputs.sliding_speed)
+    least_known = _shares_left(inputs, own, draws=draws, seed=seed)
+    curves = {
+        "amplitude": _quantiles(inputs, own, vibration_amplitude=amplitudes),
+        "speed": _quantiles(inputs, own, sliding_speed=speeds),
+    }
+    spreads = [each.spread for each in (inputs.roughness, inputs.amplitude, inputs.friction)]
+    result = xr.Dataset(
+        {
+            **{name: ("draw", values) for name, values in drawn.items()},
+            **{f"friction_ratio_over_{name}": (("level", f"curve_{name}"), each) for name, each in curves.items()},
+            **({} if own is None else {name: ("run", values) for name, values in _measured(own).items()}),
+            "input_spread": ("input", spreads),
+            "interval_share_left": ("input", list(least_known.values())),
+        },
+        coords={
+            "level": list(LEVELS),
+            "curve_amplitude": amplitudes,
+            "curve_speed": speeds,
+            "input": list(least_known),
+        },
+        attrs=_attributes(rig, inputs, own, found),
+    )
+    for name in drawn:
+        entry = quantity(name)
+        result[name].attrs |= {"units": entry.unit or "1", "long_name": entry.meaning}
+    result.attrs["statement"] = "\n".join(statement(result))
+    return result
+
+
+def interval(prediction: "xr.Dataset", name: str, probability: float = 0.8) -> tuple[float, float]:
+    """Return the central predictive interval of a quantity.
+
+    Parameters
+    ----------
+    prediction : xarray.Dataset
+        By `predict`.
+    name : str
+        A variable over `draw`.
+    probability : float
+        Within the interval.
+
+    Returns
+    -------
+    low, high : float
+        In the unit of the quantity.
+    """
+    low, high = central_interval(prediction[name].to_numpy(), probability)
+    return float(low), float(high)
+
+
+def statement(prediction: "xr.Dataset") -> tuple[str, str, str]:
+    """Return the prediction in three sentences: the outcome, what to measure, and what limits it.
+
+    Parameters
+    ----------
+    prediction : xarray.Dataset
+
+    Returns
+    -------
+    tuple of str
+    """
+    low, high = (100 * each for each in interval(prediction, "friction_reduction"))
+    shares = prediction["interval_share_left"].to_series()
+    least = str(shares.idxmin())
+    what, remedy = _REMEDIES[least]
+    advice = f"The least known input is the {what}; {remedy} would narrow the interval to {100 * shares[least]:.0f} %."
+    if shares[least] > _NO_GAIN:
+        advice = "No input measured better would narrow the interval much; runs with vibration would."
+    return (f"Friction falls by {max(low, 0):.0f} to {high:.0f} % (80 %).", advice, _limits(prediction))
+
+
+_REMEDIES: Final = {
+    "rms_height": ("roughness", "a scan of the worn track"),
+    "vibration_amplitude": ("amplitude", "a vibrometer on the running rig"),
+    "friction_coefficient": ("dry friction", "a run without vibration"),
+}
+_NARROWEST: Final = 1e-6  # width of an interval, where all draws are at a limit
+_NO_GAIN: Final = 0.95
+_HOT: Final = 50.0  # K, mean rise of the contact from which metals soften or lubricants change
+
+
+def _limits(prediction: "xr.Dataset") -> str:
+    """Sentence on heat and power."""
+    parts = []
+    if "mean_temperature_rise" in prediction:
+        high = interval(prediction, "mean_temperature_rise")[1]
+        parts.append(f"Heat of friction {'limits' if high > _HOT else 'does not limit'}: at most {high:.2g} K (80 %)")
+    else:
+        parts.append("Heat is not computed: name the materials of pin and disc")
+    power = prediction.attrs.get("actuator_power")
+    unknown = "power is not known: capacitance or voltage is missing"
+    parts.append(unknown if power is None else f"the amplifier supplies {power:.3g} W")
+    return "; ".join(parts) + "."
+
+
+def _ratios(inputs: RigInputs, own: OwnRuns | None, *, draws: int, seed: int) -> RatioDraws:
+    """Draws of the friction ratio at the operating point."""
+    tested = None if own is None else own.tested
+    return ratio_draws(learned().friction, inputs.at(), count=draws, seed=seed, own=tested)
+
+
+def _quantities(
+    rig: Rig, inputs: RigInputs, own: OwnRuns | None, ratio: Floats, pin: str | None, disc: str | None, seed: int
+) -> dict[str, Floats]:
+    """Draws of all quantities that follow from the friction ratio, and of wear."""
+    rng = np.random.default_rng(seed + 1)
+    friction = inputs.friction if own is None or own.friction is None else own.friction
+    intrinsic = friction.value * np.exp(friction.spread * rng.standard_normal(ratio.size))
+    measured = np.empty(0) if own is None else own.wear_rate_ratio
+    wear = learned().wear.wear_rate_ratios(ratio.size, measured=measured, seed=seed)
+    found = {
+        "friction_ratio": ratio,
+        "friction_reduction": 1 - ratio,
+        "friction_coefficient": ratio * intrinsic,
+        "friction_force": ratio * intrinsic * rig.normal_load,
+        "wear_rate_ratio": wear,
+        "wear_reduction": 1 - wear,
+    }
+    if pin is not None and disc is not None:
+        per_watt = _rise_per_watt(rig, pin, disc)
+        found["mean_temperature_rise"] = per_watt * found["friction_force"] * rig.sliding_speed
+    elif pin is not None or disc is not None:
+        raise InvalidInput("the temperature rise needs both materials; give pin and disc, or neither")
+    return found
+
+
+def _measured(own: OwnRuns) -> dict[str, Floats]:
+    """Own runs as they entered the prediction."""
+    tested = own.tested
+    return {
+        "measured_friction_ratio": tested.friction_ratio,
+        "measured_uncertainty": tested.uncertainty,
+        "measured_vibration_amplitude": tested.at.conditions.vibration_amplitude,
+        "measured_sliding_speed": tested.at.conditions.sliding_speed,
+    }
+
+
+def _rise_per_watt(rig: Rig, pin: str, disc: str) -> float:
+    """Mean temperature rise of the contact, taken as circular, for a watt of friction. [K/W]"""
+    radius = float(np.sqrt(rig.contact.nominal_area / np.pi))
+    source = EllipticSource(half_length=radius, half_width=radius)
+    rise = contact_rise(thermal_solid(pin), thermal_solid(disc), source, heat_rate=1.0, sliding_speed=rig.sliding_speed)
+    return float(rise.mean_temperature_rise)
+
+
+def _curve_points(value: float) -> Floats:
+    """Points of a curve about a value, to a tenth and to three times it."""
+    return value * np.geomspace(0.1, 3.0, _CURVE)
+
+
+def _quantiles(inputs: RigInputs, own: OwnRuns | None, **along: Floats) -> Floats:
+    """Quantiles of the friction ratio along a curve, shape (levels, points)."""
+    tested = None if own is None else own.tested
+    found = ratio_draws(learned().friction, inputs.at(**along), count=2000, own=tested)
+    return np.quantile(found.friction_ratio, LEVELS, axis=0)
+
+
+def _shares_left(inputs: RigInputs, own: OwnRuns | None, *, draws: int, seed: int) -> Mapping[str, float]:
+    """Width of the 80 % interval of the friction ratio if one input were known well, over its width now."""
+    width = max(_width(inputs, own, draws=draws, seed=seed), _NARROWEST)
+    better = {
+        "rms_height": replace(inputs, roughness=_known_well(inputs.roughness)),
+        "vibration_amplitude": replace(inputs, amplitude=_known_well(inputs.amplitude)),
+    }
+    shares = {name: _width(each, own, draws=draws, seed=seed) / width for name, each in better.items()}
+    return shares | {"friction_coefficient": 1.0}  # on which the ratio does not depend
+
+
+def _known_well(known: Input) -> Input:
+    """Input as a careful measurement gives it."""
+    return replace(known, spread=min(known.spread, _KNOWN_WELL[known.name]))
+
+
+def _width(inputs: RigInputs, own: OwnRuns | None, *, draws: int, seed: int) -> float:
+    """Width of the 80 % interval of the friction ratio at the operating point."""
+    low, high = central_interval(_ratios(inputs, own, draws=draws, seed=seed).friction_ratio[:, 0], 0.8)
+    return float(high - low)
+
+
+def _attributes(rig: Rig, inputs: RigInputs, own: OwnRuns | None, found: RatioDraws) -> dict[str, object]:
+    """Title, caveats, assumptions, weights of closures and numbers without a distribution."""
+    point = inputs.point
+    caveats = list(point.caveats)
+    if own is not None and not found.explained:
+        caveats.append(
+            f"no closure explains the measured runs (probability {found.surprise:.1g}); check their amplitude, load and"
+            " zero of the force, or expect another mechanism; they count with a larger uncertainty"
+        )
+    if own is not None:
+        caveats += own.caveats
+    attributes: dict[str, object] = {
+        "title": rig.title,
+        "caveats": "\n".join(caveats),
+        "assumptions": "\n".join(f"{key}: {reason}" for key, reason in rig.assumptions.items()),
+        "closures": ", ".join(f"{name} {100 * weight:.0f} %" for name, weight in found.weights.items()),
+        "inputs": "\n".join(
+            f"{each.name}: {each.value:.4g}, {100 * each.spread:.0f} % ({each.reason})"
+            for each in (inputs.roughness, inputs.amplitude, inputs.friction)
+        ),
+        "vibration_amplitude": inputs.amplitude.value,
+        "sliding_speed": inputs.sliding_speed,
+        "runs": 0 if own is None else own.tested.friction_ratio.size,
+    }
+    if point.actuator_power is not None:
+        attributes["actuator_power"] = point.actuator_power
+    if np.isfinite(point.friction_ratio):
+        attributes["friction_ratio_by_the_rigs_model"] = point.friction_ratio
+        attributes["friction_model"] = point.friction_model
+    return attributes

@@ -1,0 +1,158 @@
+"""Prediction of a rig: what comes out, what narrows it, what is refused, and by which means."""
+
+import json
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from pytest import approx, mark, raises
+
+from sonolube.errors import InvalidInput
+from sonolube.measurement.measured_runs import read_runs
+from sonolube.prediction import interval, predict, prediction_figure
+from sonolube.rig import Distribution, LogNormal, Rig, friction_point, read_rig
+
+RIGS = Path(__file__).parents[2] / "examples" / "rigs"
+COLUMNS = "vibration_amplitude [um],sliding_speed [mm/s],friction_ratio"
+STEEL, ALUMINIUM = "stainless_steel_316", "aluminium_2024"
+
+
+def rig() -> Rig:
+    return read_rig(RIGS / "tribometer.toml")
+
+
+def runs_file(
+    path: Path, *rows: str, head: str = "vibration_amplitude [um],sliding_speed [mm/s],friction_ratio"
+) -> Path:
+    (path / "runs.csv").write_text("\n".join([head, *rows]) + "\n", encoding="utf-8")
+    return path / "runs.csv"
+
+
+def width(prediction: xr.Dataset) -> float:
+    low, high = interval(prediction, "friction_ratio")
+    return high - low
+
+
+def test_the_measured_ratio_of_the_reference_rig_lies_within_its_80_percent_interval() -> None:
+    low, high = interval(predict(rig()), "friction_ratio")
+    assert low < 0.379 / 1.024 < high  # N, Table 2.3
+
+
+def test_force_coefficient_and_reduction_are_those_of_each_draw() -> None:
+    found = predict(rig(), draws=500)
+    assert found["friction_reduction"].to_numpy() == approx(1 - found["friction_ratio"].to_numpy())
+    assert found["friction_force"].to_numpy() == approx(3.0 * found["friction_coefficient"].to_numpy())
+    assert found["wear_reduction"].to_numpy() == approx(1 - found["wear_rate_ratio"].to_numpy())
+    assert found["friction_force"].attrs["units"] == "N"
+
+
+def test_wider_intervals_contain_narrower_ones() -> None:
+    found = predict(rig())
+    ends = [interval(found, "friction_ratio", probability) for probability in (0.5, 0.8, 0.95)]
+    assert ends[2][0] < ends[1][0] < ends[0][0] < ends[0][1] < ends[1][1] < ends[2][1]
+
+
+def test_the_less_the_roughness_is_known_the_wider_the_interval_and_the_more_a_scan_would_help() -> None:
+    widths, shares = [], []
+    for factor in (1.05, 1.5, 2.5):
+        known = Distribution(law=LogNormal(median=6e-6, factor=factor), lowest=0.0, text=f"within {factor}")
+        found = predict(replace(rig(), uncertainty={"contact.roughness.rms_height": known}))
+        widths.append(width(found))
+        shares.append(float(found["interval_share_left"].sel(input="rms_height")))
+    assert widths == sorted(widths)
+    assert shares == sorted(shares, reverse=True)
+    assert "roughness" in found.attrs["statement"]
+
+
+def test_the_heat_is_that_of_the_predicted_force_and_needs_both_materials() -> None:
+    found = predict(rig(), pin=STEEL, disc=ALUMINIUM, draws=300)
+    rise, force = found["mean_temperature_rise"].to_numpy(), found["friction_force"].to_numpy()
+    assert rise * force.max() == approx(rise.max() * force)
+    assert "Heat of friction does not limit" in found.attrs["statement"]
+    with raises(InvalidInput, match="both materials"):
+        predict(rig(), pin=STEEL)
+
+
+def test_own_runs_narrow_the_interval_the_more_the_more_there_are(tmp_path: Path) -> None:
+    rows = ["2.5,20.3,0.4", "2.5,60,0.63", "1.2,20.3,0.75", "2,20.3,0.5", "2.5,10,0.35", "1.8,40,0.62"]
+    runs = [None, *(read_runs(runs_file(tmp_path, *rows[:count])) for count in (1, 3, 6))]
+    widths = [width(predict(rig(), runs=some)) for some in runs]
+    assert widths == sorted(widths, reverse=True)
+    assert widths[-1] < 0.5 * widths[0]
+
+
+def test_runs_by_voltage_and_forces_are_those_by_amplitude_and_ratio(tmp_path: Path) -> None:
+    amplitude = friction_point(rig()).vibration_amplitude
+    head = "voltage_peak_to_peak [V],friction_force [mN],intrinsic_friction_force [N]"
+    by_force = predict(rig(), runs=read_runs(runs_file(tmp_path, "14,600,1", head=head)))
+    head = "vibration_amplitude [m],friction_reduction [%]"
+    by_ratio = predict(rig(), runs=read_runs(runs_file(tmp_path, f"{amplitude / 2!r},40", head=head)))
+    assert by_force["friction_ratio"].to_numpy() == approx(by_ratio["friction_ratio"].to_numpy(), abs=1e-9)
+
+
+def test_runs_that_no_closure_explains_are_said_so(tmp_path: Path) -> None:
+    found = predict(rig(), runs=read_runs(runs_file(tmp_path, "0.5,20,0.2", "1.5,20,0.7", "4,20,1.4")))
+    assert "no closure explains the measured runs" in found.attrs["caveats"]
+    assert width(found) > 0.2
+
+
+def test_copies_of_a_run_count_once(tmp_path: Path) -> None:
+    once = predict(rig(), runs=read_runs(runs_file(tmp_path, "2,20,0.5")))
+    thrice = predict(rig(), runs=read_runs(runs_file(tmp_path, *["2,20,0.5"] * 3)))
+    assert np.array_equal(once["friction_ratio"], thrice["friction_ratio"])
+    assert "2 of 3 runs equal another in every digit" in thrice.attrs["caveats"]
+
+
+def test_the_scatter_of_repeats_is_taken_for_the_uncertainty_of_each_run(tmp_path: Path) -> None:
+    rows = [f"2.5,20.3,{ratio}" for ratio in (0.40, 0.44, 0.36, 0.42, 0.38)]
+    found = predict(rig(), runs=read_runs(runs_file(tmp_path, *rows)))
+    assert found["measured_uncertainty"].to_numpy() == approx(np.std([0.40, 0.44, 0.36, 0.42, 0.38], ddof=1))
+
+
+@mark.parametrize(
+    ("rows", "message"),
+    [
+        (["2,20,3.5"], "friction ratio of 3.5"),
+        (["0,20,0.5"], "vibration_amplitude of run 1 must be positive"),
+        (["2,-20,0.5"], "sliding_speed of run 1 must be positive"),
+    ],
+)
+def test_runs_that_cannot_be_are_refused_in_one_line(tmp_path: Path, rows: list[str], message: str) -> None:
+    with raises(InvalidInput, match=message) as refusal:
+        predict(rig(), runs=read_runs(runs_file(tmp_path, *rows)))
+    assert "\n" not in str(refusal.value)
+
+
+def test_runs_without_friction_are_refused_with_the_columns_that_would_do(tmp_path: Path) -> None:
+    with raises(InvalidInput, match=r"needs a column friction_reduction \[%\], or friction_ratio"):
+        read_runs(runs_file(tmp_path, "2,20", head="vibration_amplitude [um],sliding_speed [mm/s]"))
+
+
+@mark.parametrize(
+    ("change", "message"),
+    [({"drive": None}, "needs a frequency"), ({"sliding_speed": 0.0}, "needs a sliding speed above 0")],
+)
+def test_a_rig_that_cannot_be_predicted_is_refused(change: dict[str, object], message: str) -> None:
+    with raises(InvalidInput, match=message):
+        predict(replace(read_rig(RIGS / "welder_round.toml"), **change))  # type: ignore[arg-type]
+
+
+def test_the_figure_shows_bands_published_tests_and_own_runs(tmp_path: Path) -> None:
+    figure = prediction_figure(predict(rig(), runs=read_runs(runs_file(tmp_path, "2,20,0.5"))))
+    (legend,) = figure.legends
+    labels = [text.get_text() for text in legend.get_texts()]
+    assert labels[:3] == ["95 % interval", "80 % interval", "50 % interval"]
+    assert "own runs" in labels
+
+
+def test_no_sampler_is_imported_for_a_prediction() -> None:
+    program = (
+        "import sys, json\nfrom sonolube.prediction import predict\nfrom sonolube.rig import read_rig\n"
+        f"predict(read_rig({str(RIGS / 'tribometer.toml')!r}), draws=200)\n"
+        "print(json.dumps(sorted({name.split('.')[0] for name in sys.modules})))"
+    )
+    found = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert not {"emcee", "numpyro", "jax", "pymc", "blackjax"} & set(json.loads(found.stdout))
