@@ -40,7 +40,7 @@ class UnseenPrediction:
     uncertainty : float
         Standard uncertainty of that ratio.
     draws : ndarray, shape (draws,)
-        Predicted measured ratio: with the uncertainty of the measurement. []
+        Predicted measured ratio: with the uncertainty of the measurement.
     """
 
     rig: str
