@@ -9,7 +9,7 @@ from sonolube import friction
 from sonolube.checks import Floats
 from sonolube.contact import load_balanced_motion, sinusoidal_motion
 from sonolube.figure import COLOURS, MARKERS, ReportFigure
-from sonolube.reproduce.friction_models.variant_rows import DEFAULT, reported_fits
+from sonolube.reproduce.friction_models.variant_predictions import DEFAULT, reported_fits
 from sonolube.reproduce.plots import line_style, single_axes
 from sonolube.validation.assessment import (
     FITTED_SETS,
