@@ -117,8 +117,20 @@ def verdict_of(rows: Sequence[Row]) -> ClaimVerdict:
 
 
 def numbers(rows: Sequence[Row]) -> tuple[str, str]:
-    """Return the printed and the computed numbers of rows as text, those of one unit together."""
-    return _by_unit(rows, _printed), _by_unit(rows, _computed)
+    """Return the printed and the computed numbers of rows as text, those of one unit together.
+
+    Parameters
+    ----------
+    rows : sequence of Row
+
+    Returns
+    -------
+    tuple of str
+        The second says how many of the rows are met trivially, if any.
+    """
+    trivial = sum(row.verdict is Verdict.TRIVIALLY_MET for row in rows)
+    found = _by_unit(rows, _computed)
+    return _by_unit(rows, _printed), f"{found}; {trivial} met trivially" if trivial else found
 
 
 def counts(rows: Sequence[Row]) -> tuple[str, str]:

@@ -14,8 +14,8 @@ CLAIMS: Final = (
         statement="The cube model errs by less than 20 % of friction on average",
         source="D 3.1.4, 3.1.5, 5.1.2",
         judged="Mean error over the loads of each test, at the amplitude of the waveguide in D 2.1.2; at that of D "
-        "4.3.5 as the alternative beside each row. Of the tests only the range of the reduction is printed, so that it is "
-        "taken to fall in proportion to the load.",
+        "4.3.5 as the alternative beside each row. Of the tests only the range of the reduction is printed, so that it "
+        "is taken to fall in proportion to the load.",
         decisive=("3.1.5-error-1-2", "3.1.5-error-3"),
         supporting=("3.1.4-reduction-1-2", "3.1.4-reduction-3", "3.1.4-error"),
         summary=numbers,
