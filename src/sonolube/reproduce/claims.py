@@ -42,8 +42,8 @@ CLAIMS: Final = (
         id="friction-over-speed",
         statement="Vibration reduces friction by 62, 36 and 29 % at 20.3, 40.6 and 87 mm/s",
         source="D 2.3.5, Tables 2.3 and 2.5",
-        judged="Asperity stick-slip against the test, within the printed scatter of the forces; its memory length was "
-        "fitted to this and five other sets of tests.",
+        judged="Asperity stick-slip against the test, within the printed scatter of the forces; its memory length is "
+        "fitted to the sets of tests that the note of each row names, this one among them.",
         decisive=tuple(f"{_DEFAULT}-A-{n}" for n in (1, 2, 3)),
         supporting=(
             *(f"table-2.5-friction-reduction-{n}" for n in (1, 2, 3)),
@@ -78,8 +78,8 @@ CLAIMS: Final = (
         id="power-map",
         statement="The example test loses 3 to 100 % of its friction from 5 to 26 V",
         source="D 4.1.2, Table 4.2",
-        judged="Asperity stick-slip against the test, within the printed scatter of the forces; its memory length was "
-        "fitted to the other sets of tests.",
+        judged="Asperity stick-slip against the test, within the printed scatter of the forces; its memory length is "
+        "fitted to the sets of tests that the note of each row names.",
         decisive=tuple(f"{_DEFAULT}-B-{n}" for n in range(1, 6)),
         supporting=(
             *(f"table-4.2-friction-reduction-{n}" for n in range(2, 7)),
