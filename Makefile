@@ -12,7 +12,7 @@ OUT := out
 help: ## list the targets
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1\t/' | expand -t 16
 
-demo: $(VENV)/runtime ## operate the reference rig and write the reproduction report to out/
+demo: $(VENV)/demo ## operate the reference rig and judge the dissertation's claims; the report goes to out/
 	$(BIN)/sonolube friction examples/rigs/tribometer.toml
 	$(BIN)/sonolube wear examples/rigs/tribometer.toml
 	$(RUN) $(BIN)/sonolube reproduce --out $(OUT)
@@ -43,7 +43,9 @@ lock: $(VENV)/uv ## pin and hash every dependency for Python 3.11 to 3.13
 	$(BIN)/uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-annotate \
 	    pyproject.toml -o requirements/runtime.txt
 	$(BIN)/uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-annotate \
-	    pyproject.toml --group test -c requirements/runtime.txt -o requirements/test.txt
+	    pyproject.toml --extra fem -c requirements/runtime.txt -o requirements/demo.txt
+	$(BIN)/uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-annotate \
+	    pyproject.toml --group test -c requirements/demo.txt -o requirements/test.txt
 	$(BIN)/uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-annotate \
 	    pyproject.toml --group test --group docs -c requirements/test.txt -o requirements/docs.txt
 	$(BIN)/uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-annotate \
@@ -64,6 +66,10 @@ $(VENV)/uv: requirements/uv.txt
 $(VENV)/runtime: $(VENV)/uv requirements/runtime.txt pyproject.toml
 	$(INSTALL) --require-hashes -r requirements/runtime.txt
 	$(INSTALL) --no-deps --editable .
+	@touch $@
+
+$(VENV)/demo: $(VENV)/runtime requirements/demo.txt
+	$(INSTALL) --require-hashes -r requirements/demo.txt
 	@touch $@
 
 $(VENV)/test: $(VENV)/runtime requirements/test.txt

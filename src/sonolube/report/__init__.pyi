@@ -14,7 +14,7 @@ from .pin_on_disc_sheet import (
 )
 from .reproduction import (
     reproduction_files as reproduction_files,
-    summary_lines as summary_lines,
     validation_object as validation_object,
     write_report as write_report,
 )
+from .reproduction_text import summary_lines as summary_lines

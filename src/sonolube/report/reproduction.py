@@ -1,8 +1,6 @@
-"""Reproduction report: published numbers beside computed ones as a page with figures, as JSON and as lines."""
+"""Reproduction report: claims, and published numbers beside computed ones, as a page with figures and as JSON."""
 
 import json
-from collections import Counter
-from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -11,7 +9,8 @@ from sonolube import __version__
 from sonolube.files import write_atomically
 from sonolube.published import errata
 from sonolube.report.page import Advance, Drawing, drawn, embedded, html
-from sonolube.reproduce import Reproduction, Row, Verdict
+from sonolube.report.reproduction_text import KIND_NAMES, counts, counts_by_kind
+from sonolube.reproduce import Finding, Reproduction, Row
 
 
 def reproduction_files(
@@ -72,51 +71,52 @@ def write_report(
 
 
 def validation_object(result: Reproduction) -> dict[str, Any]:
-    """Rows of a reproduction and their number by verdict, for JSON."""
+    """Claims with their findings, rows, and the number of rows by verdict and class, for JSON."""
     return {
         "version": __version__,
+        "claims": [_claim_object(one) for one in result.findings],
         "count": len(result.rows),
-        "verdicts": _counts(result.rows),
+        "verdicts": counts(result.rows),
+        "verdicts_by_kind": counts_by_kind(result.rows),
         "rows": [_row_object(row) for row in result.rows],
     }
 
 
-def summary_lines(result: Reproduction) -> list[str]:
-    """Number of rows by verdict, and every row whose model disagrees, as lines of text."""
-    counts = _counts(result.rows)
-    width = max(map(len, counts))
-    return [
-        f"{len(result.rows)} published numbers beside computed ones",
-        *[f"  {verdict:<{width}}  {count:4d}" for verdict, count in counts.items()],
-        *[
-            f"  {row.source}: {row.id}: {row.published:.4g} published, {row.computed:.4g} computed"
-            for row in result.rows
-            if row.verdict is Verdict.MODEL_DISAGREES
-        ],
-    ]
-
-
-def _counts(rows: Sequence[Row]) -> dict[str, int]:
-    """Number of rows of each verdict, verdicts without rows included."""
-    counted = Counter(row.verdict for row in rows)
-    return {verdict.value: counted[verdict] for verdict in Verdict}
+def _claim_object(one: Finding) -> dict[str, Any]:
+    """Claim with its finding and the ids of its rows, for JSON."""
+    claim = one.claim
+    return {
+        "id": claim.id,
+        "statement": claim.statement,
+        "source": claim.source,
+        "claimed": one.claimed,
+        "found": one.found,
+        "verdict": one.verdict.value,
+        "judged": claim.judged,
+        "decisive_rows": list(claim.decisive),
+        "supporting_rows": list(claim.supporting),
+    }
 
 
 def _row_object(row: Row) -> dict[str, Any]:
     """Row with its relative error and verdict, for JSON."""
-    entry = asdict(row) | {"relative_error": row.relative_error, "verdict": row.verdict.value}
-    order = (*(name for name in asdict(row) if name not in ("verdict", "note")), "relative_error", "verdict", "note")
+    last = ("verdict", "note", "alternatives")
+    entry = asdict(row) | {"relative_error": row.relative_error, "kind": row.kind.value, "verdict": row.verdict.value}
+    order = (*(name for name in asdict(row) if name not in last), "relative_error", *last)
     return {name: entry[name] for name in order}
 
 
 def _page(result: Reproduction, pictures: dict[str, str]) -> str:
-    """HTML of the report, figures and rows by chapter."""
+    """HTML of the report: scorecard and counts, then figures and rows by chapter."""
     chapters = sorted({row.chapter for row in result.rows})
     return html(
         "reproduction.html",
         version=__version__,
         result=result,
-        counts=_counts(result.rows),
+        counts=counts(result.rows),
+        counts_by_kind=counts_by_kind(result.rows),
+        kind_names={kind.value: name for kind, name in KIND_NAMES.items()},
+        row_ids={row.id for row in result.rows},
         chapters=[
             (
                 chapter,

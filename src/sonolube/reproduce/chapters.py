@@ -26,10 +26,11 @@ from sonolube.reproduce.chapter4.power_rows import power_map_rows
 from sonolube.reproduce.chapter4.skin_replica import skin_replica_figures, skin_replica_rows
 from sonolube.reproduce.chapter4.temperature_figures import temperature_figures
 from sonolube.reproduce.chapter4.temperature_rows import temperature_rows
-from sonolube.reproduce.friction_models.computed_motion import computed_motion_figures, computed_motion_rows
-from sonolube.reproduce.friction_models.mechanisms import mechanism_figures, mechanism_rows
+from sonolube.reproduce.claims import findings
+from sonolube.reproduce.friction_models.computed_motion import computed_motion_figures
+from sonolube.reproduce.friction_models.friction_test_rows import power_map_test_rows, tribometer_test_rows
+from sonolube.reproduce.friction_models.mechanisms import mechanism_figures
 from sonolube.reproduce.friction_models.variant_figures import variant_figures
-from sonolube.reproduce.friction_models.variant_rows import variant_rows
 from sonolube.reproduce.section import ChapterFigure, Reproduction, Section
 from sonolube.validation.comparison import ComparedFit, compare_models
 from sonolube.validation.figures import comparison_figures
@@ -57,16 +58,18 @@ SECTIONS: Final = (
     Section(number="4.3", rows=temperature_rows, figures=temperature_figures),
     Section(number="4.4", rows=skin_replica_rows, figures=skin_replica_figures),
     Section(number="4.5", rows=collar_rows, figures=collar_figures),
-    Section(number="3.3", rows=variant_rows, figures=variant_figures, row_chapters=(2, 4)),
-    Section(number="4.1", rows=mechanism_rows, figures=mechanism_figures),
-    Section(number="3.3", rows=computed_motion_rows, figures=computed_motion_figures, row_chapters=(2, 4)),
+    Section(number="2.3", rows=tribometer_test_rows),
+    Section(number="4.1", rows=power_map_test_rows),
+    Section(number="3.3", figures=variant_figures),
+    Section(number="4.1", figures=mechanism_figures),
+    Section(number="3.3", figures=computed_motion_figures),
     Section(number="3.3", figures=lambda: comparison_figures(published_comparison)),
 )
 """All reproduced sections: those of the chapters, then the friction models on the friction tests of all chapters."""
 
 
 def reproduction(*, chapter: int | None = None) -> Reproduction:
-    """Return the published numbers beside the computed ones, with figures.
+    """Return the findings on the claims, and the published numbers beside the computed ones, with figures.
 
     Parameters
     ----------
@@ -85,18 +88,14 @@ def reproduction(*, chapter: int | None = None) -> Reproduction:
     chapters = sorted({section.chapter for section in SECTIONS})
     if chapter is not None and chapter not in chapters:
         raise UnknownName.among(map(str, chapters), kind="chapter", name=str(chapter))
+    chosen = [section for section in SECTIONS if chapter in (None, section.chapter)]
+    rows = tuple(row for section in chosen for row in section.rows())
     return Reproduction(
-        rows=tuple(
-            row
-            for section in SECTIONS
-            if chapter in (None, *(section.row_chapters or (section.chapter,)))
-            for row in section.rows()
-            if chapter in (None, row.chapter)
-        ),
+        findings=findings(rows),
+        rows=rows,
         figures=tuple(
             ChapterFigure(chapter=section.chapter, **asdict(figure))
-            for section in SECTIONS
-            if chapter in (None, section.chapter)
+            for section in chosen
             for figure in section.figures()
         ),
     )

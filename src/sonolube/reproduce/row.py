@@ -1,21 +1,58 @@
-"""Rows of the reproduction: a published number, the number computed for it, and the verdict of their comparison."""
+"""Rows of the reproduction: a published number, the numbers computed for it, and the verdict of their comparison."""
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import Final
 
 from sonolube.published import ComputedValue, PrintedNumber, PublishedValue, propagate_rounding, published_value
 from sonolube.units import convert
 from sonolube.vocabulary import unit_of
 
 
+class RowKind(StrEnum):
+    """Class of a comparison: what the computed number comes from, and what it is held against."""
+
+    PUBLISHED_FORMULA = "published_formula"
+    PUBLISHED_MODEL = "published_model"
+    DEFAULT_MODEL = "default_model"
+
+
 class Verdict(StrEnum):
     """Outcome of the comparison of a computed with a published number."""
 
     REPRODUCED = "reproduced"
+    TRIVIALLY_MET = "trivially_met"
     MISPRINT = "misprint"
+    NOT_REPRODUCED = "not_reproduced"
     UNDETERMINED = "undetermined"
-    MODEL_DISAGREES = "model_disagrees"
+    NOT_COMPUTED = "not_computed"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Alternative:
+    """Number that another model than that of the row gives for the same published number.
+
+    Parameters
+    ----------
+    computed : float
+        Computed value, in the printed unit.
+    reproduced : bool
+        Whether it is in the interval of the published number.
+    note : str
+        Method of the computation.
+    """
+
+    computed: float
+    reproduced: bool
+    note: str
+
+
+Computed = ComputedValue | float
+"""Computed number, in SI, with or without the interval that the rounding of its inputs leaves."""
+
+_NO_EFFECT: Final = 0.01
+"""Share of the largest reduction that a print leaves open, below which a computed one counts as none. []"""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -26,6 +63,7 @@ class Row:
     ----------
     id : str
         Stable id of the row.
+    kind : RowKind
     chapter : int
         Chapter of the source.
     source : str
@@ -34,6 +72,8 @@ class Row:
         Name in the vocabulary.
     unit : str
         Printed unit.
+    printed : str
+        Printed digits, such as "62.22", "0.379±0.041" or "45.8-48.6"; of a limit of a range, those of the range.
     published : float
         Published value.
     published_low, published_high : float
@@ -44,19 +84,29 @@ class Row:
     verdict : Verdict
     note : str
         Method of the computation, and evidence for the verdict.
+    alternatives : mapping of str to Alternative
+        What other models give for the same number, by name. None of them affects the verdict.
     """
 
     id: str
+    kind: RowKind
     chapter: int
     source: str
     quantity: str
     unit: str
+    printed: str
     published: float
     published_low: float
     published_high: float
     computed: float | None
     verdict: Verdict
     note: str
+    alternatives: Mapping[str, Alternative] = field(default_factory=dict)
+
+    @property
+    def is_upper_limit(self) -> bool:
+        """Whether the print says "less than" the published value."""
+        return self.published_low == 0 < self.published == self.published_high
 
     @property
     def relative_error(self) -> float | None:
@@ -67,7 +117,13 @@ class Row:
 
 
 def comparison_row(
-    published: PublishedValue | str, computed: ComputedValue | float, note: str, *, suffix: str = ""
+    published: PublishedValue | str,
+    computed: Computed,
+    note: str,
+    *,
+    kind: RowKind,
+    suffix: str = "",
+    alternatives: Mapping[str, tuple[Computed, str]] | None = None,
 ) -> Row:
     """Return the row that compares a computed with a published number.
 
@@ -79,27 +135,39 @@ def comparison_row(
         Computed value, in SI.
     note : str
         Method of the computation.
+    kind : RowKind
+        Class of the comparison.
     suffix : str
         Suffix of the row's id, where several numbers are computed for one published number.
+    alternatives : mapping of str to (ComputedValue or float, str), optional
+        Values of other models, in SI, each with its note, by name.
 
     Returns
     -------
     Row
-        `reproduced` within the interval that print and rounding leave; else `misprint` if a correction with evidence
-        is on record and the computed number agrees with it; else `model_disagrees`.
+        `reproduced` within the interval that print, scatter and rounding leave, `trivially_met` if they leave a
+        reduction of zero open, as "less than 10 %" does, and none is computed. Outside it, `misprint` if the row is of
+        a published formula, a correction with evidence is on record and the computed number agrees with it; else
+        `not_reproduced`: that a model misses a test says nothing against the print.
     """
     published = published_value(published) if isinstance(published, str) else published
-    if not isinstance(computed, ComputedValue):
-        computed = ComputedValue(value=computed, low=computed, high=computed)
+    computed = _with_interval(computed)
     if _agree(published.number, computed):
-        verdict = Verdict.REPRODUCED
-    elif published.evidence and (
-        not published.corrected or any(_agree(corrected, computed) for corrected in published.corrected)
-    ):
+        verdict = Verdict.TRIVIALLY_MET if _is_trivial(published, computed) else Verdict.REPRODUCED
+    elif kind is RowKind.PUBLISHED_FORMULA and _meets_correction(published, computed):
         verdict, note = Verdict.MISPRINT, f"{note.rstrip('.')}. {published.evidence}"
     else:
-        verdict = Verdict.MODEL_DISAGREES
-    return _row(published, suffix, _interval(published.number, computed), computed.value, verdict, note)
+        verdict = Verdict.NOT_REPRODUCED
+    others = {
+        name: Alternative(
+            computed=_printed(published, _with_interval(other).value),
+            reproduced=_agree(published.number, _with_interval(other)),
+            note=other_note,
+        )
+        for name, (other, other_note) in (alternatives or {}).items()
+    }
+    interval = _interval(published.number, computed)
+    return _row(published, suffix, interval, computed.value, verdict, note, kind=kind, alternatives=others)
 
 
 def formula_row(
@@ -122,11 +190,11 @@ def formula_row(
     -------
     Row
     """
-    return comparison_row(published, propagate_rounding(formula, *inputs), note)
+    return comparison_row(published, propagate_rounding(formula, *inputs), note, kind=RowKind.PUBLISHED_FORMULA)
 
 
 def range_rows(
-    published: str, low: ComputedValue | float, high: ComputedValue | float, note: str, *, high_note: str = ""
+    published: str, low: Computed, high: Computed, note: str, *, kind: RowKind, high_note: str = ""
 ) -> Iterator[Row]:
     """Yield the rows of the limits of a published range.
 
@@ -138,6 +206,8 @@ def range_rows(
         Computed limits, in SI.
     note : str
         Method of the computation.
+    kind : RowKind
+        Class of the comparison.
     high_note : str
         Method of the computation of the upper limit, if another.
 
@@ -146,12 +216,12 @@ def range_rows(
     Row
     """
     lower, upper = published_value(published).limits()
-    yield comparison_row(lower, low, note)
-    yield comparison_row(upper, high, high_note or note)
+    yield comparison_row(lower, low, note, kind=kind)
+    yield comparison_row(upper, high, high_note or note, kind=kind)
 
 
-def undetermined_row(published: str, missing: str) -> Row:
-    """Return the row of a published number that cannot be computed.
+def undetermined_row(published: str, missing: str, *, kind: RowKind = RowKind.PUBLISHED_FORMULA) -> Row:
+    """Return the row of a published number that nobody can compute, for an input of it is not printed.
 
     Parameters
     ----------
@@ -159,14 +229,63 @@ def undetermined_row(published: str, missing: str) -> Row:
         Id of the published number.
     missing : str
         Inputs that are not printed.
+    kind : RowKind
+        Class of the comparison that they would allow.
 
     Returns
     -------
     Row
     """
+    return _row_without_number(published, Verdict.UNDETERMINED, f"Missing: {missing}", kind=kind)
+
+
+def not_computed_row(published: str, missing: str, *, kind: RowKind) -> Row:
+    """Return the row of a published number that this installation cannot compute.
+
+    Parameters
+    ----------
+    published : str
+        Id of the published number.
+    missing : str
+        Part that is not installed, and how to install it.
+    kind : RowKind
+        Class of the comparison that the part would allow.
+
+    Returns
+    -------
+    Row
+    """
+    return _row_without_number(published, Verdict.NOT_COMPUTED, f"Not computed: {missing}", kind=kind)
+
+
+def _row_without_number(published: str, verdict: Verdict, note: str, *, kind: RowKind) -> Row:
+    """Return a row without a computed number."""
     value = published_value(published)
-    interval = value.number.low, value.number.high
-    return _row(value, "", interval, None, Verdict.UNDETERMINED, f"Missing: {missing}")
+    return _row(value, "", (value.number.low, value.number.high), None, verdict, note, kind=kind)
+
+
+def _with_interval(computed: Computed) -> ComputedValue:
+    """Return a computed number with its interval, empty if none is given."""
+    if isinstance(computed, ComputedValue):
+        return computed
+    return ComputedValue(value=computed, low=computed, high=computed)
+
+
+def _meets_correction(published: PublishedValue, computed: ComputedValue) -> bool:
+    """Return whether there is evidence against a print, and its correction, unless in words, is the computed number."""
+    if not published.evidence:
+        return False
+    return not published.corrected or any(_agree(corrected, computed) for corrected in published.corrected)
+
+
+def _is_trivial(published: PublishedValue, computed: ComputedValue) -> bool:
+    """Return whether print and scatter leave a reduction of zero open, as "less than 10 %", and no more is computed."""
+    number = published.number
+    return (
+        published.quantity.endswith("_reduction")
+        and number.low <= 0 < number.high
+        and abs(computed.value) < _NO_EFFECT * number.high
+    )
 
 
 def _interval(number: PrintedNumber, computed: ComputedValue) -> tuple[float, float]:
@@ -181,6 +300,11 @@ def _agree(number: PrintedNumber, computed: ComputedValue) -> bool:
     return low - slack <= computed.value <= high + slack
 
 
+def _printed(published: PublishedValue, value: float) -> float:
+    """Return a value in the printed unit."""
+    return convert(value, from_unit=unit_of(published.quantity), to_unit=published.unit)
+
+
 def _row(
     published: PublishedValue,
     suffix: str,
@@ -188,23 +312,25 @@ def _row(
     computed: float | None,
     verdict: Verdict,
     note: str,
+    *,
+    kind: RowKind,
+    alternatives: Mapping[str, Alternative] | None = None,
 ) -> Row:
     """Return a row, its numbers converted to the printed unit."""
-
-    def printed(value: float) -> float:
-        return convert(value, from_unit=unit_of(published.quantity), to_unit=published.unit)
-
     low, high = interval
     return Row(
         id=f"{published.id}-{suffix}" if suffix else published.id,
+        kind=kind,
         chapter=published.chapter,
         source=published.source,
         quantity=published.quantity,
         unit=published.unit,
-        published=printed(published.number.value),
-        published_low=printed(low),
-        published_high=printed(high),
-        computed=None if computed is None else printed(computed),
+        printed=published.number.text,
+        published=_printed(published, published.number.value),
+        published_low=_printed(published, low),
+        published_high=_printed(published, high),
+        computed=None if computed is None else _printed(published, computed),
         verdict=verdict,
         note=note,
+        alternatives=alternatives or {},
     )

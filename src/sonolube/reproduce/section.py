@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from sonolube.figure import ReportFigure
+from sonolube.reproduce.claim import Finding
 from sonolube.reproduce.row import Row
 
 
@@ -22,14 +23,16 @@ class ChapterFigure(ReportFigure):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Reproduction:
-    """Rows and figures of the reproduction.
+    """Rows and figures of the reproduction, with the findings on the claims that the rows decide about.
 
     Parameters
     ----------
+    findings : tuple of Finding
     rows : tuple of Row
     figures : tuple of ChapterFigure
     """
 
+    findings: tuple[Finding, ...]
     rows: tuple[Row, ...]
     figures: tuple[ChapterFigure, ...]
 
@@ -46,14 +49,11 @@ class Section:
         Function that returns the rows.
     figures : callable
         Function that returns the figures.
-    row_chapters : tuple of int
-        Chapters of the rows, if others than that of the section.
     """
 
     number: str
     rows: Callable[[], Iterable[Row]] = tuple
     figures: Callable[[], Iterable[ReportFigure]] = tuple
-    row_chapters: tuple[int, ...] = ()
 
     @property
     def chapter(self) -> int:

@@ -10,8 +10,9 @@ ROWS = {row.id: row for row in flextensional_rows()}
 
 
 def test_more_offset_at_the_same_voltage_peak_to_peak_has_no_effect() -> None:
-    levels = {ROWS[f"2.2.6-reduction-level-{level}"].computed for level in (1, 2, 3)}
-    assert len(levels) == 1
+    rows = [row for row in ROWS.values() if row.id.startswith("2.2.6-reduction")]
+    assert len(rows) == 1
+    assert "All three levels have 4 V peak to peak" in rows[0].note
 
 
 def test_the_slow_test_requires_a_gain_of_three_at_resonance() -> None:

@@ -54,7 +54,7 @@ def test_the_mesh_is_fine_enough_for_half_a_printed_digit(horn: Horn) -> None:
 @pytest.mark.parametrize("horn", HORNS)
 def test_one_set_of_assumptions_gives_both_printed_modes(horn: Horn) -> None:
     assert ROWS[f"2.1.3-first-mode-{horn}-assumed"].verdict is Verdict.REPRODUCED
-    assert ROWS[f"2.1.3-first-mode-{horn}-block"].verdict is Verdict.MODEL_DISAGREES
+    assert not ROWS[f"2.1.3-first-mode-{horn}-assumed"].alternatives["plain block"].reproduced
 
 
 def test_no_shape_alone_brings_steel_above_aluminium() -> None:
@@ -168,7 +168,7 @@ def test_the_horn_bends_between_its_pads_as_a_thick_beam(horn: Horn) -> None:
 
 def test_bending_adds_ten_thousand_times_less_friction_than_the_difference_to_be_explained() -> None:
     row = ROWS["2.1.5-coefficient-off-bending"]
-    assert row.verdict is Verdict.MODEL_DISAGREES
+    assert row.verdict is Verdict.NOT_REPRODUCED
     assert row.computed is not None
     assert 0 < row.computed - 0.26 < 1e-4 * (0.55 - 0.26)
 

@@ -58,7 +58,7 @@ def test_the_coupling_factor_follows_from_the_table_itself() -> None:
 
 def test_steel_on_steel_disagrees_at_the_stated_amplitude() -> None:
     row = ROWS["3.1.4-reduction-3"]
-    assert row.verdict is Verdict.MODEL_DISAGREES
+    assert row.verdict is Verdict.NOT_REPRODUCED
     assert "50.0 to 51.1 %" in row.note  # at the other amplitude that is printed for the same welder
 
 

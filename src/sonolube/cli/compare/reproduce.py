@@ -19,7 +19,7 @@ def reproduce(
     out: Annotated[Out, OutputFolder("reproduction.html validation.json figures/*")] = OUT,
     json: Json = False,
 ) -> None:
-    """Every published number beside the one computed, as a report with figures.
+    """Ten claims of the dissertation judged, and every published number beside the computed one, with figures.
 
     Example: sonolube reproduce --chapter 3 --out out
     """
@@ -30,19 +30,19 @@ def reproduce(
 
 @dataclass(frozen=True)
 class ReproductionAnswer(Answer):
-    """Rows of a reproduction by verdict, with the report and its figures."""
+    """Claims of a reproduction with their findings, and its rows, with the report and its figures."""
 
     result: Reproduction
 
     def lines(self) -> list[str]:
-        """Number of rows by verdict, and the rows whose model disagrees."""
+        """Scorecard of the claims, and the number of rows by class and verdict."""
         return summary_lines(self.result)
 
     def object(self) -> dict[str, Any]:
-        """Rows, and their number by verdict."""
+        """Claims, rows, and the number of rows by class and verdict."""
         return validation_object(self.result)
 
     def files(self) -> Mapping[str, str | bytes]:
-        """Report, rows as JSON, and every figure."""
+        """Report, claims and rows as JSON, and every figure."""
         with progress("drawing") as advance:
             return reproduction_files(self.result, advance=advance)

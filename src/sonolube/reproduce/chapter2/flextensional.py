@@ -15,7 +15,7 @@ from sonolube.contact import decay_length, separation
 from sonolube.friction import EMPIRICAL_MEMORY_LENGTH, sine_stick_slip_ratio
 from sonolube.metrics import peak_vibration_velocity
 from sonolube.published import si_value
-from sonolube.reproduce.row import Row, comparison_row, undetermined_row
+from sonolube.reproduce.row import Row, RowKind, comparison_row, undetermined_row
 from sonolube.validation.published_tests import FrictionTest, friction_tests
 
 _LARGEST_GAIN = 20.0  # beyond the strength of the ceramic at this voltage
@@ -66,7 +66,9 @@ def _pulling_force() -> Row:
         "Balance of forces: either plate presses with the same load and rubs with the same coefficient; the actuator's "
         "own weight is left out."
     )
-    return comparison_row("2.2.2-pulling-force-factor", (friction + friction) / friction, note)
+    return comparison_row(
+        "2.2.2-pulling-force-factor", (friction + friction) / friction, note, kind=RowKind.PUBLISHED_FORMULA
+    )
 
 
 def _powers() -> Iterator[Row]:
@@ -79,7 +81,7 @@ def _powers() -> Iterator[Row]:
             frequency=si_value("2.2.2-resonance"),
         )
         note = "D 1.9: capacitance times both voltages times frequency."
-        yield comparison_row(f"2.2.5-power-{level}", float(power), note)
+        yield comparison_row(f"2.2.5-power-{level}", float(power), note, kind=RowKind.PUBLISHED_FORMULA)
 
 
 def _velocities() -> Iterator[Row]:
@@ -90,22 +92,23 @@ def _velocities() -> Iterator[Row]:
         for amplitude in (test.vibration_amplitude, 2 * test.vibration_amplitude)
     )
     note = f"2 pi f a, a half the stroke at this voltage; the whole stroke gives {1e3 * of_stroke:.0f} mm/s."
-    yield comparison_row("2.2.5-vibration-velocity", of_amplitude, note)
+    yield comparison_row("2.2.5-vibration-velocity", of_amplitude, note, kind=RowKind.PUBLISHED_FORMULA)
     note = "Equal speeds of sliding and vibration; of the vibration only the stroke far from resonance is printed."
-    yield comparison_row("2.2.5-speed-of-no-reduction", of_amplitude, note)
+    yield comparison_row("2.2.5-speed-of-no-reduction", of_amplitude, note, kind=RowKind.PUBLISHED_FORMULA)
 
 
 def _saturation() -> Iterator[Row]:
-    """Yield the reduction at three levels, which differ in their highest voltage alone."""
-    yield undetermined_row("2.2.4-reduction", "the friction forces, which are only plotted, and the roughness.")
+    """Yield the reduction at the three levels, which differ in their highest voltage alone."""
+    yield undetermined_row(
+        "2.2.4-reduction", "the friction forces, which are only plotted, and the roughness.", kind=RowKind.DEFAULT_MODEL
+    )
     test, gain = _slow_test(), gain_of_slow_test()
-    for level in (1, 2, 3):
-        note = (
-            f"Asperity stick-slip at {1e3 * test.sliding_speed:g} mm/s, without gain at resonance. Level {level} has "
-            f"the stroke of the others, for all have 4 V peak to peak: saturation is the only difference. A gain of "
-            f"{gain:.2g} would give the measured reduction."
-        )
-        yield comparison_row("2.2.6-reduction", 1 - _ratio(test), note, suffix=f"level-{level}")
+    note = (
+        f"Asperity stick-slip at {1e3 * test.sliding_speed:g} mm/s, without gain at resonance. All three levels have 4 "
+        f"V peak to peak and so one stroke: saturation is the only difference. A gain of {gain:.2g} would give the "
+        "measured reduction."
+    )
+    yield comparison_row("2.2.6-reduction", 1 - _ratio(test), note, kind=RowKind.DEFAULT_MODEL)
 
 
 def _vanishing_reduction() -> Iterator[Row]:
@@ -122,6 +125,9 @@ def _vanishing_reduction() -> Iterator[Row]:
         f"reduction at {1e3 * test.sliding_speed:g} mm/s, with which it still has {100 * reduction:.0f} % at "
         f"{1e3 * fast.sliding_speed:g} mm/s; without gain {1e3 * velocity_ratio * velocity:.0f} mm/s.",
         suffix="asperity-stick-slip",
+        kind=RowKind.DEFAULT_MODEL,
     )
     note = "Asperity stick-slip: memory length over decay length, at any amplitude and frequency."
-    yield comparison_row("2.2.5-littmann-ratio", velocity_ratio, note, suffix="asperity-stick-slip")
+    yield comparison_row(
+        "2.2.5-littmann-ratio", velocity_ratio, note, suffix="asperity-stick-slip", kind=RowKind.DEFAULT_MODEL
+    )

@@ -14,7 +14,7 @@ from sonolube.reproduce.chapter2.poisson_horn import (
     printed_solid,
 )
 from sonolube.reproduce.cube import HORNS, Horn
-from sonolube.reproduce.row import Row, comparison_row
+from sonolube.reproduce.row import Row, RowKind, comparison_row
 from sonolube.validation.contacts import Bodies
 
 REGION_ROWS: Final = {"aluminium": 1, "steel": 4}
@@ -34,15 +34,12 @@ def horn_rows() -> Iterator[Row]:
 
 
 def _modes() -> Iterator[Row]:
-    """Yield the first axial modes of the printed and of the assumed horns."""
+    """Yield the first axial modes of the assumed horns, with those of plain blocks beside them."""
     for horn in HORNS:
         plain, assumed = printed_solid(horn), ASSUMED_SOLIDS[horn]
-        yield comparison_row(
-            f"2.1.3-first-mode-{horn}",
-            axial_mode(printed_shape(), plain).natural_frequency,
+        plain_note = (
             f"Finite elements, a free plain block with E and nu of Table 3.1 and {plain.density:g} kg/m3; the next "
-            "modes, bending 3 and 4, lie 2.2 kHz away or more.",
-            suffix="block",
+            "modes, bending 3 and 4, lie 2.2 kHz away or more."
         )
         yield comparison_row(
             f"2.1.3-first-mode-{horn}",
@@ -50,25 +47,38 @@ def _modes() -> Iterator[Row]:
             f"Finite elements; assumed, and chosen so that both horns agree: {_ASSUMED} "
             f"({assumed.youngs_modulus / 1e9:g} GPa, {assumed.poisson_ratio:g}, {assumed.density:g} kg/m3).",
             suffix="assumed",
+            kind=RowKind.DEFAULT_MODEL,
+            alternatives={"plain block": (axial_mode(printed_shape(), plain).natural_frequency, plain_note)},
         )
 
 
 def _transition_regions() -> Iterator[Row]:
-    """Yield the limits of the transition regions of Table 2.1, driven at 20 kHz and at resonance."""
+    """Yield the limits of the transition regions of Table 2.1, driven at 20 kHz and, beside that, at resonance."""
     for horn in HORNS:
         resonance = axial_mode(assumed_shape(), ASSUMED_SOLIDS[horn]).natural_frequency
-        for suffix, frequency, drive in (
-            ("", si_value("2.1.2-welder-frequency"), "driven on its right end at 20 kHz, below its own resonance"),
-            ("on-resonance", resonance, f"driven at its own {resonance / 1e3:.1f} kHz"),
-        ):
-            friction = horn_friction.friction_on_face(horn, frequency=frequency)
-            for side, limit in zip(("start", "end"), horn_friction.transition_region(friction), strict=True):
-                note = (
-                    "Position at which the friction of a block at 5 mm/s towards the node reverses: finite elements, "
-                    f"the horn of the printed mode ({_ASSUMED}), {drive}; springs of the contact of Table 3.1 with "
-                    f"Mindlin's ratio. The node lies at {friction.node / _INCH:+.2f} in."
-                )
-                yield comparison_row(f"table-2.1-{side}-{REGION_ROWS[horn]}", limit, note, suffix=suffix)
+        driven = _transition_limits(
+            horn, si_value("2.1.2-welder-frequency"), "driven on its right end at 20 kHz, below its own resonance"
+        )
+        resonant = _transition_limits(horn, resonance, f"driven at its own {resonance / 1e3:.1f} kHz")
+        for side, (limit, note), alternative in zip(("start", "end"), driven, resonant, strict=True):
+            yield comparison_row(
+                f"table-2.1-{side}-{REGION_ROWS[horn]}",
+                limit,
+                note,
+                kind=RowKind.DEFAULT_MODEL,
+                alternatives={"driven at resonance": alternative},
+            )
+
+
+def _transition_limits(horn: Horn, frequency: float, drive: str) -> list[tuple[float, str]]:
+    """Return the limits of the transition region of a driven horn in m, each with its note."""
+    friction = horn_friction.friction_on_face(horn, frequency=frequency)
+    note = (
+        "Position at which the friction of a block at 5 mm/s towards the node reverses: finite elements, "
+        f"the horn of the printed mode ({_ASSUMED}), {drive}; springs of the contact of Table 3.1 with "
+        f"Mindlin's ratio. The node lies at {friction.node / _INCH:+.2f} in."
+    )
+    return [(float(limit), note) for limit in horn_friction.transition_region(friction)]
 
 
 def _friction() -> Iterator[Row]:
@@ -88,7 +98,9 @@ def _friction() -> Iterator[Row]:
             "Springs of the contact of Table 3.1 with Mindlin's ratio, at the node of the motion by finite elements, "
             f"the same at every load. The motor force over the intrinsic friction is {driving}."
         )
-        yield comparison_row(published, 1 - friction.at(friction.node), note, suffix="springs")
+        yield comparison_row(
+            published, 1 - friction.at(friction.node), note, suffix="springs", kind=RowKind.DEFAULT_MODEL
+        )
 
 
 def _bending() -> Row:
@@ -104,4 +116,5 @@ def _bending() -> Row:
         f"explains the difference: the bent face rises by {1e6 * slopes['aluminium']:.0f} um/m under {_BENDING_LOAD:g} "
         f"N, that of steel by {1e6 * slopes['steel']:.0f}; pads {1e3 * PAD_DISTANCE:.1f} mm apart are assumed.",
         suffix="bending",
+        kind=RowKind.DEFAULT_MODEL,
     )

@@ -12,7 +12,7 @@ from sonolube.reproduce import formulas
 from sonolube.reproduce.chapter2.tribometer import reductions_of_table_2_3, wear_reductions
 from sonolube.reproduce.chapter2.welder import welder_friction_reductions
 from sonolube.reproduce.plots import single_axes
-from sonolube.reproduce.row import Row, comparison_row, formula_row, undetermined_row
+from sonolube.reproduce.row import Row, RowKind, comparison_row, formula_row, undetermined_row
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -91,15 +91,19 @@ def _summary() -> Iterator[Row]:
         ),
         start=1,
     ):
-        yield comparison_row(f"table-2.14-friction_reduction-{row}", reduction, note)
+        yield comparison_row(f"table-2.14-friction_reduction-{row}", reduction, note, kind=RowKind.PUBLISHED_FORMULA)
     note = "The largest that the rates of Table 2.5 give."
-    yield comparison_row("table-2.14-wear_reduction-1", max(wear_reductions("2.5")), note)
+    yield comparison_row(
+        "table-2.14-wear_reduction-1", max(wear_reductions("2.5")), note, kind=RowKind.PUBLISHED_FORMULA
+    )
     yield formula_row("table-2.14-wear_reduction-2", "Section 2.4.5.", float, "2.4.5-wear-reduction")
     for row in (5, 6):
         yield undetermined_row(f"table-2.14-wear_reduction-{row}", "the worn volumes, shown only as profiles.")
     for measure in ("friction", "wear"):
         cells = (propagate_rounding(float, f"table-2.14-{measure}_reduction-{row}") for row in (1, 2, 5, 6))
-        yield comparison_row(f"2.5.7-{measure}-reduction", max(cells), "The largest of Table 2.14.")
+        yield comparison_row(
+            f"2.5.7-{measure}-reduction", max(cells), "The largest of Table 2.14.", kind=RowKind.PUBLISHED_FORMULA
+        )
 
 
 def _pairs() -> "Figure":

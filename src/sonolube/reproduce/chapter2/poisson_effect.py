@@ -17,7 +17,7 @@ from sonolube.reproduce.chapter2.horn_figures import horn_figures
 from sonolube.reproduce.chapter2.horn_rows import horn_rows
 from sonolube.reproduce.cube import HORNS, STEEL_ON_STEEL_NOTE, Horn, poisson_friction_ratio, poisson_waveguide
 from sonolube.reproduce.plots import axes_row
-from sonolube.reproduce.row import Row, comparison_row
+from sonolube.reproduce.row import Row, RowKind, comparison_row
 from sonolube.validation.contacts import Bodies
 
 if TYPE_CHECKING:
@@ -61,6 +61,7 @@ def _uniform_bar_modes() -> Iterator[Row]:
                 "2.1.2-waveguide-length",
             ),
             f"Half a wave in a uniform bar with E of Table 3.1 and {density:g} kg/m3: no tapers, no rounded edges.",
+            kind=RowKind.PUBLISHED_MODEL,
         )
 
 
@@ -75,6 +76,7 @@ def _friction_reductions() -> Iterator[Row]:
         "2.1.5-reduction-aluminium-horn",
         propagate_rounding(formulas.friction_reduction, "2.1.5-coefficient-off", "2.1.5-coefficient-on"),
         "D 2.1 from both coefficients; D calls all three numbers approximate.",
+        kind=RowKind.PUBLISHED_FORMULA,
     )
     load = np.asarray(si_value("2.1.2-normal-load"))
     tests: tuple[tuple[str, str, Bodies, Horn, str], ...] = (
@@ -91,7 +93,7 @@ def _friction_reductions() -> Iterator[Row]:
             f"Cube, D 3.15, {load:g} N, amplitude of D 2.1.2; with that of D 4.3.5 "
             f"{100 * at_waveguide_amplitude:.1f} %.{remark}"
         )
-        yield comparison_row(published, at_welder_amplitude, note, suffix=suffix)
+        yield comparison_row(published, at_welder_amplitude, note, suffix=suffix, kind=RowKind.PUBLISHED_MODEL)
 
 
 def _paths() -> "Figure":

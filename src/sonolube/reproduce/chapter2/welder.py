@@ -7,7 +7,7 @@ from typing import Final
 from sonolube.contact import SphereOnFlat, hertz_mean_pressure, hertz_peak_pressure, tip_radius_for_pressure
 from sonolube.published import ComputedValue, as_exact, as_setting, propagate_rounding, published_number, si_value
 from sonolube.reproduce import formulas
-from sonolube.reproduce.row import Row, comparison_row, formula_row, range_rows, undetermined_row
+from sonolube.reproduce.row import Row, RowKind, comparison_row, formula_row, range_rows, undetermined_row
 from sonolube.validation.contacts import poisson_contact
 
 _ROUND_TIP: Final = 1  # first row of either tip in Table 2.8
@@ -41,10 +41,14 @@ def _stresses() -> Iterator[Row]:
         ("2.4.2-round-stress", round_worn, round_new),
     ):
         note = "Load over contact area; the worn area is the larger, and its stress the lower."
-        yield from range_rows(published, worn, new, note)
-    yield comparison_row("2.4.2-flat-stress-before", flat_new, "Load over the area before the test.")
-    yield comparison_row("2.4.2-flat-stress-after", flat_worn, "Load over the area after the test.")
-    yield comparison_row("2.4.6-stress", round_new, "Load over the smallest area.")
+        yield from range_rows(published, worn, new, note, kind=RowKind.PUBLISHED_FORMULA)
+    yield comparison_row(
+        "2.4.2-flat-stress-before", flat_new, "Load over the area before the test.", kind=RowKind.PUBLISHED_FORMULA
+    )
+    yield comparison_row(
+        "2.4.2-flat-stress-after", flat_worn, "Load over the area after the test.", kind=RowKind.PUBLISHED_FORMULA
+    )
+    yield comparison_row("2.4.6-stress", round_new, "Load over the smallest area.", kind=RowKind.PUBLISHED_FORMULA)
 
 
 def _stress_range(row: int) -> tuple[ComputedValue, ComputedValue]:
@@ -66,6 +70,7 @@ def _peak_stress() -> Row:
         "2.4.2-round-stress-centre",
         float(hertz_peak_pressure(sphere, normal_load=load) / hertz_mean_pressure(sphere, normal_load=load)),
         "Hertz, peak over mean of any elastic sphere: the least that rounds to the print; that is from an FEA.",
+        kind=RowKind.DEFAULT_MODEL,
     )
 
 
@@ -78,8 +83,15 @@ def _motion() -> Iterator[Row]:
         for row in (1, 2, 3, 4)
     ]
     for row, speed in enumerate(speeds, start=1):
-        yield comparison_row(f"table-2.8-sliding_speed-{row}", speed, "Pi times rotation times groove diameter.")
-    yield comparison_row("2.4.6-sliding-speed", max(speeds), "The largest speed of Table 2.8.")
+        yield comparison_row(
+            f"table-2.8-sliding_speed-{row}",
+            speed,
+            "Pi times rotation times groove diameter.",
+            kind=RowKind.PUBLISHED_FORMULA,
+        )
+    yield comparison_row(
+        "2.4.6-sliding-speed", max(speeds), "The largest speed of Table 2.8.", kind=RowKind.PUBLISHED_FORMULA
+    )
     for published, row in (
         ("table-2.8-sliding_distance-1", _ROUND_TIP),
         ("table-2.8-sliding_distance-3", _FLAT_TIP),
@@ -95,15 +107,24 @@ def _friction() -> Iterator[Row]:
     for tip in (1, 2):
         reductions = welder_friction_reductions(tip)
         note = "D 2.1, lower force with lower and upper with upper."
-        yield from range_rows(f"table-2.9-friction_reduction-{tip}", min(reductions), max(reductions), note)
+        yield from range_rows(
+            f"table-2.9-friction_reduction-{tip}",
+            min(reductions),
+            max(reductions),
+            note,
+            kind=RowKind.PUBLISHED_FORMULA,
+        )
     yield comparison_row(
         "2.4.6-friction-reduction",
         max(welder_friction_reductions(1) + welder_friction_reductions(2)),
         "D 2.1 from the forces of Table 2.9, the largest.",
+        kind=RowKind.PUBLISHED_FORMULA,
     )
     for name, tip in (("round", 1), ("flat", 2)):
         middle = si_value(f"table-2.9-intrinsic_friction_force-{tip}")
-        yield comparison_row(f"2.4.4-friction-{name}", middle, "Middle of the range in Table 2.9.")
+        yield comparison_row(
+            f"2.4.4-friction-{name}", middle, "Middle of the range in Table 2.9.", kind=RowKind.PUBLISHED_FORMULA
+        )
 
 
 def _currents() -> Iterator[Row]:
@@ -111,7 +132,13 @@ def _currents() -> Iterator[Row]:
     for name, tip in (("round", 1), ("flat", 2)):
         currents = (as_exact(f"table-2.9-{state}_motor_current-{tip}") for state in ("intrinsic", "reduced"))
         drop = propagate_rounding(sub, *currents)
-        yield comparison_row("2.4.4-current-drop", drop, "Difference of the currents of Table 2.9.", suffix=name)
+        yield comparison_row(
+            "2.4.4-current-drop",
+            drop,
+            "Difference of the currents of Table 2.9.",
+            suffix=name,
+            kind=RowKind.PUBLISHED_FORMULA,
+        )
 
 
 def _wear() -> Iterator[Row]:
@@ -119,7 +146,9 @@ def _wear() -> Iterator[Row]:
     for row, tip in ((2, _ROUND_TIP), (3, _FLAT_TIP)):
         volume, turns = f"table-2.10-wear_volume-{row}", as_setting(f"table-2.8-revolutions-{tip}")
         yield formula_row(f"table-2.10-wear_volume_per_turn-{row}", "Volume over turns.", truediv, volume, turns)
-        yield comparison_row(f"table-2.10-wear_rate-{row}", _wear_rate(row), "Volume over distance.")
+        yield comparison_row(
+            f"table-2.10-wear_rate-{row}", _wear_rate(row), "Volume over distance.", kind=RowKind.PUBLISHED_FORMULA
+        )
     yield undetermined_row("2.4.5-wear-reduction", "the worn volumes of the two tests with the round tip.")
     round_tip, flat_tip = _wear_rate(2), _wear_rate(3)
     of_printed_rates = si_value("table-2.10-wear_rate-3") / si_value("table-2.10-wear_rate-2")
@@ -131,6 +160,7 @@ def _wear() -> Iterator[Row]:
             high=flat_tip.high / round_tip.low,
         ),
         f"Volumes over distances of Table 2.10; the printed rates give {100 * of_printed_rates:.1f} %.",
+        kind=RowKind.PUBLISHED_FORMULA,
     )
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.constants import epsilon_0
 
 from sonolube.dong2015.bore import BoreMotion
+from sonolube.dong2015.collar import Collar
 from sonolube.dong2015.collar_designs import (
     FINAL_COLLAR,
     FIRST_COLLAR,
@@ -26,7 +27,7 @@ from sonolube.reproduce.chapter4.collar import (
     pulled_rod,
     response_model,
 )
-from sonolube.reproduce.row import Row, comparison_row, range_rows, undetermined_row
+from sonolube.reproduce.row import Row, RowKind, comparison_row, not_computed_row, range_rows, undetermined_row
 
 _BY_FINITE_ELEMENTS: Final = (
     "4.5.2-breathing-mode-first",
@@ -39,7 +40,6 @@ _BY_FINITE_ELEMENTS: Final = (
     "4.5.4-work-reduction",
 )
 _MESH_ERROR: Final = 0.003  # relative, against elements of higher order
-_REVISED: Final = {"hexagon": THIN_HEXAGON_COLLAR, "ring": THIN_RING_COLLAR}
 _ASSUMED: Final = "walls of the outer ring, thickness of the inner one and bolts are assumed"
 _PULLED: Final = (
     f"multi-scale model with the computed structure at its resonance, 28 V; assumed: rod of {ROD_LENGTH:g} m, load from"
@@ -58,10 +58,10 @@ def finite_elements_missing() -> str:
 
 
 def collar_rows() -> Iterator[Row]:
-    """Yield the rows of section 4.5; those by finite elements are undetermined if a package is missing."""
+    """Yield the rows of section 4.5; those by finite elements are not computed if a package is missing."""
     yield from _stack()
     if missing := finite_elements_missing():
-        yield from (undetermined_row(name, missing) for name in _BY_FINITE_ELEMENTS)
+        yield from (not_computed_row(name, missing, kind=RowKind.DEFAULT_MODEL) for name in _BY_FINITE_ELEMENTS)
         return
     yield from _first_design()
     yield from _revised_designs()
@@ -83,7 +83,12 @@ def _stack() -> Iterator[Row]:
         f"d33 sqrt(E/eps) with E = k_p L/A = {modulus * 1e-9:.3g} GPa, as of ceramic alone; the printed factor"
         f" needs {needed * 1e-9:.3g} GPa; end pieces and glue, which soften a stack, would account for the difference"
     )
-    yield comparison_row("table-4.7-coupling_factor-1", charge_constant * float(np.sqrt(modulus / permittivity)), note)
+    yield comparison_row(
+        "table-4.7-coupling_factor-1",
+        charge_constant * float(np.sqrt(modulus / permittivity)),
+        note,
+        kind=RowKind.PUBLISHED_FORMULA,
+    )
     layers = np.sqrt(si_value("table-4.7-capacitance-1") / (permittivity * area / length))
     missing = f"number of layers; C = N^2 eps A/L, ceramic over the whole length, would take {layers:.1f} of them"
     yield undetermined_row("table-4.7-capacitance-1", missing)
@@ -103,39 +108,53 @@ def _first_design() -> Iterator[Row]:
         "of thin rings, and the 27 kHz of the revised designs would take a ring of 59 mm: D's breathing is taken for "
         "the oval mode (erratum N16)"
     )
-    yield comparison_row(at_least, oval, note)
+    yield comparison_row(at_least, oval, note, kind=RowKind.DEFAULT_MODEL)
     yield comparison_row(
         "4.5.2-torsional-mode-first",
         _on_mesh(mode_frequency(FIRST_COLLAR, BoreMotion.DIAGONAL_OVAL)),
         "Mode odd about the stacks with the largest motion of the inner ring: its hole becomes oval along the "
         f"diagonals and its sides rotate; {_ASSUMED}. In a symmetric collar no voltage excites it: its presence in the "
         "impedance requires stacks or bolts that differ",
+        kind=RowKind.DEFAULT_MODEL,
     )
 
 
 def _revised_designs() -> Iterator[Row]:
-    """Yield the modes of the revised designs."""
-    for shape, collar in _REVISED.items():
-        for mode, kind in (("breathing", BoreMotion.OVAL), ("torsional", BoreMotion.DIAGONAL_OVAL)):
-            yield comparison_row(
-                f"4.5.2-{mode}-mode-revised",
+    """Yield the modes of the revised designs: of the hexagon, with those of the ring beside them."""
+    for mode, kind in (("breathing", BoreMotion.OVAL), ("torsional", BoreMotion.DIAGONAL_OVAL)):
+        hexagon, ring = (
+            (
                 _on_mesh(mode_frequency(collar, kind)),
                 f"The {kind} mode of a {shape} of 1 in across flats with a hole of 0.75 in, sizes that D does not"
                 f" print; {_ASSUMED}",
-                suffix=shape,
             )
+            for shape, collar in (("hexagon", THIN_HEXAGON_COLLAR), ("ring", THIN_RING_COLLAR))
+        )
+        yield comparison_row(
+            f"4.5.2-{mode}-mode-revised", *hexagon, kind=RowKind.DEFAULT_MODEL, alternatives={"ring": ring}
+        )
 
 
 def _final_design() -> Iterator[Row]:
-    """Yield the resonances of the final design."""
+    """Yield the resonances of the final design, tuned, with those of round inches beside them."""
     for statement_id, open_top in (("4.5.3-mode-closed-top", False), ("4.5.3-mode-open-top", True)):
-        for suffix, collar, origin in (
-            ("tuned", FINAL_COLLAR, "assumed dimensions fitted to this and the other frequency, none by more than 9 %"),
-            ("guess", NOMINAL_COLLAR, "round inches for what D does not print, nothing fitted"),
-        ):
-            found = main_resonance(response_model(collar, open_top=open_top))
-            note = f"Resonance of the largest k_eff, {found.coupling_factor:.2f}, between 15 and 40 kHz; {origin}"
-            yield comparison_row(statement_id, _on_mesh(found.series_frequency), note, suffix=suffix)
+        tuned, guess = (
+            _resonance(collar, open_top=open_top, origin=origin)
+            for collar, origin in (
+                (FINAL_COLLAR, "assumed dimensions fitted to this and the other frequency, none by more than 9 %"),
+                (NOMINAL_COLLAR, "round inches for what D does not print, nothing fitted"),
+            )
+        )
+        yield comparison_row(
+            statement_id, *tuned, kind=RowKind.DEFAULT_MODEL, alternatives={"dimensions in round inches": guess}
+        )
+
+
+def _resonance(collar: Collar, *, open_top: bool, origin: str) -> tuple[ComputedValue, str]:
+    """Return the main resonance of a collar in Hz, with its note."""
+    found = main_resonance(response_model(collar, open_top=open_top))
+    note = f"Resonance of the largest k_eff, {found.coupling_factor:.2f}, between 15 and 40 kHz; {origin}"
+    return _on_mesh(found.series_frequency), note
 
 
 def _pulled_rod() -> Iterator[Row]:
@@ -143,11 +162,13 @@ def _pulled_rod() -> Iterator[Row]:
     rod = pulled_rod()
     low, high = 1 - rod.ratio_at_pull_speed.max(), 1 - rod.ratio_at_pull_speed.min()
     note = f"At the ends and in the middle of the rod; {_PULLED}"
-    yield from range_rows("4.5.4-reduction", float(low), float(high), note)
+    yield from range_rows("4.5.4-reduction", float(low), float(high), note, kind=RowKind.DEFAULT_MODEL)
     work = rod.work_reduction
     exact = float(np.interp(-si_value("4.5.4-work-reduction"), -work, rod.sliding_speed))
     note = f"{_PULLED}. At {1e3 * exact:.0f} mm/s it would be the printed number"
-    yield comparison_row("4.5.4-work-reduction", float(np.interp(PULL_SPEED, rod.sliding_speed, work)), note)
+    yield comparison_row(
+        "4.5.4-work-reduction", float(np.interp(PULL_SPEED, rod.sliding_speed, work)), note, kind=RowKind.DEFAULT_MODEL
+    )
 
 
 def _on_mesh(frequency: float) -> ComputedValue:

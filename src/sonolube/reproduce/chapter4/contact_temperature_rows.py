@@ -10,7 +10,7 @@ from sonolube.checks import Floats
 from sonolube.materials import material
 from sonolube.published import column_numbers, si_value
 from sonolube.reproduce.chapter4 import temperature_tests as tests
-from sonolube.reproduce.row import Row, comparison_row
+from sonolube.reproduce.row import Row, RowKind, comparison_row
 
 _FRICTION_NOTE: Final = (
     f"Friction kept at {tests.EXAMPLE_FRICTION_RATIO:g} of its dry value at every voltage: in the text it falls "
@@ -40,7 +40,7 @@ def _slopes() -> Row:
         f"the rise per speed falls by {100 * (1 - per_speed[-1] / per_speed[0]):.0f} % from the lowest to the highest "
         f"speed, nearly a straight line. {tests.ASSUMED}."
     )
-    return comparison_row("4.3.4-slope-ratio", low / high, note)
+    return comparison_row("4.3.4-slope-ratio", low / high, note, kind=RowKind.DEFAULT_MODEL)
 
 
 def _at_vibration_start(load: float, speed: float) -> float:
@@ -57,7 +57,7 @@ def _example_by_superimposed_speed() -> Iterator[Row]:
         friction_force=tests.EXAMPLE_FRICTION_RATIO, sliding_speed=speed, vibration_velocity=peaks
     )
     note = f"Explanation of D: heat is proportional to friction times superimposed speed of Table 4.5. {_FRICTION_NOTE}"
-    yield from _example(heat / speed, "by-superimposed-speed", note)
+    yield from _example(heat / speed, "by-superimposed-speed", note, kind=RowKind.PUBLISHED_FORMULA)
 
 
 def _example_by_vibration_heat() -> Iterator[Row]:
@@ -72,7 +72,10 @@ def _example_by_vibration_heat() -> Iterator[Row]:
         f"{_CERAMIC} would lose {100 * np.pi / 4 * _loss_tangent():.1f} % of that power in its ceramic"
     )
     yield from _example(
-        tests.EXAMPLE_FRICTION_RATIO + tests.vibration_heat() / tests.example_heat(), "by-vibration-heat", note
+        tests.EXAMPLE_FRICTION_RATIO + tests.vibration_heat() / tests.example_heat(),
+        "by-vibration-heat",
+        note,
+        kind=RowKind.DEFAULT_MODEL,
     )
 
 
@@ -81,13 +84,13 @@ def _loss_tangent() -> float:
     return material(_CERAMIC).value("loss_tangent")
 
 
-def _example(ratios: Floats, suffix: str, note: str) -> Iterator[Row]:
+def _example(ratios: Floats, suffix: str, note: str, *, kind: RowKind) -> Iterator[Row]:
     """Yield the rows of the example at four voltages from heat with vibration over heat without."""
     for voltage, ratio in zip(tests.voltages(), ratios, strict=True):
         if voltage < 15:
-            yield comparison_row(f"4.3.4-example-cooler-{voltage:g}V", float(ratio), note, suffix=suffix)
+            yield comparison_row(f"4.3.4-example-cooler-{voltage:g}V", float(ratio), note, suffix=suffix, kind=kind)
         elif voltage > 20:
-            yield comparison_row(f"4.3.4-example-warmer-{voltage:g}V", float(1 / ratio), note, suffix=suffix)
+            yield comparison_row(f"4.3.4-example-warmer-{voltage:g}V", float(1 / ratio), note, suffix=suffix, kind=kind)
 
 
 def _low_speed() -> Row:
@@ -102,7 +105,7 @@ def _low_speed() -> Row:
         "heat of vibration by the fraction from the example at 220 mm/s; rises with vibration over those without, from "
         f"5.1 to 25.9 V: {listed}"
     )
-    return comparison_row("4.3.4-low-speed-warmer", float(np.max(1 / ratios)), note)
+    return comparison_row("4.3.4-low-speed-warmer", float(np.max(1 / ratios)), note, kind=RowKind.DEFAULT_MODEL)
 
 
 def _tribometer_peak() -> Row:
@@ -122,7 +125,7 @@ def _tribometer_peak() -> Row:
         f"{tests.ROOM_TEMPERATURE - 273.15 + float(alone):.0f} degC: the measured peak lies between, "
         "depending on the bond of the thermocouple"
     )
-    return comparison_row("4.3.5-tribometer-temperature-peak", peak, note)
+    return comparison_row("4.3.5-tribometer-temperature-peak", peak, note, kind=RowKind.DEFAULT_MODEL)
 
 
 def _waveguide_peak() -> Row:
@@ -154,7 +157,9 @@ def _waveguide_peak() -> Row:
         f"{float(at_one) / 1000 * duration / capacity:.1f} K. So not the waveguide reached that temperature, but the "
         "thermocouple that rubs on it, as in the text"
     )
-    return comparison_row("4.3.5-temperature-peak", first + power * duration / capacity, note)
+    return comparison_row(
+        "4.3.5-temperature-peak", first + power * duration / capacity, note, kind=RowKind.DEFAULT_MODEL
+    )
 
 
 def _foil_peak() -> Row:
@@ -180,4 +185,4 @@ def _foil_peak() -> Row:
         f"effect: the printed {sheltered - 273.15:.0f} degC correspond to a joint of {joint / onward:.2f} times the "
         "loss of the thermocouple, spreading of the heat in the foil included"
     )
-    return comparison_row("4.3.5-foil-temperature-peak", behind, note)
+    return comparison_row("4.3.5-foil-temperature-peak", behind, note, kind=RowKind.DEFAULT_MODEL)

@@ -8,7 +8,7 @@ import numpy as np
 
 from sonolube.figure import ReportFigure
 from sonolube.published import published_number, si_value
-from sonolube.reproduce.row import Row, comparison_row
+from sonolube.reproduce.row import Row, RowKind, comparison_row
 from sonolube.reproduce.tribometer_rigs import IDENTIFIED_NOTE, plate_rig
 from sonolube.rig import load_study
 from sonolube.rig.study_figures import load_figure
@@ -40,14 +40,14 @@ def load_rows() -> Iterator[Row]:
         f"Natural frequency of the arm with the weights for {middle:g} N; {arm.min():.0f} to {arm.max():.0f} Hz over "
         f"all loads. {IDENTIFIED_NOTE}, of which this is one."
     )
-    yield comparison_row("4.1.2-arm-frequency", float(np.interp(middle, loads, arm)), note)
+    yield comparison_row("4.1.2-arm-frequency", float(np.interp(middle, loads, arm)), note, kind=RowKind.DEFAULT_MODEL)
     spread = float(np.ptp(reduction))
     note = f"Largest minus smallest reduction from 3 to 9 N at 25.9 V and 65.5 mm/s. {_NO_EXCITATION}"
-    yield comparison_row("4.1.2-arm-extra-reduction", spread, note)
+    yield comparison_row("4.1.2-arm-extra-reduction", spread, note, kind=RowKind.DEFAULT_MODEL)
     best = float(loads[np.argmax(reduction)])
     for published in ("4.1.2-peak-load-1", "4.1.2-peak-load-2"):
         note = f"The computed reduction is constant to {100 * spread:.2g} %. {_NO_EXCITATION}"
-        yield comparison_row(published, best, note)
+        yield comparison_row(published, best, note, kind=RowKind.DEFAULT_MODEL)
 
 
 def load_figures() -> Iterator[ReportFigure]:

@@ -14,7 +14,7 @@ from sonolube.figure import ReportFigure
 from sonolube.published import column_numbers, published_number, published_value, si_value
 from sonolube.reproduce.chapter4.power_rows import nominal_pressure_rows, power_row
 from sonolube.reproduce.plots import axes_row, line_style
-from sonolube.reproduce.row import Row, comparison_row, undetermined_row
+from sonolube.reproduce.row import Row, RowKind, comparison_row, undetermined_row
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -41,16 +41,23 @@ def lubrication_rows() -> Iterator[Row]:
         "friction under Molykote, which is only drawn (Figs. 4.24 to 4.27); by asperity stick-slip and load sharing a "
         f"film with {float(vibrated_ratio(sliding_speed=si_value(_LIMIT))):.2f} of the dry friction would put the "
         "limit at the printed speed",
+        kind=RowKind.DEFAULT_MODEL,
     )
     limit = replace(published_value(_LIMIT), number=published_number(_LIMIT))
     for pressure in _pressures()[1:]:
         note = f"{_INFERRED}; at this stress predicted, for in the text it holds at every load"
-        yield comparison_row(limit, _limit_speed(float(pressure)), note, suffix=f"at-{1e-6 * pressure:.0f}-MPa")
+        yield comparison_row(
+            limit,
+            _limit_speed(float(pressure)),
+            note,
+            suffix=f"at-{1e-6 * pressure:.0f}-MPa",
+            kind=RowKind.DEFAULT_MODEL,
+        )
     highest = max(_limit_speed(float(pressure)) for pressure in _pressures())
     useless = published_value(_NO_REDUCTION)
     from_zero = replace(useless, number=replace(useless.number, low=0.0, high=useless.number.value))
     note = f"Highest speed at which vibration alone is best at any stress, which must not exceed the print. {_INFERRED}"
-    yield comparison_row(from_zero, highest, note)
+    yield comparison_row(from_zero, highest, note, kind=RowKind.DEFAULT_MODEL)
 
 
 def lubrication_figures() -> Iterator[ReportFigure]:

@@ -17,7 +17,7 @@ from sonolube.figure import COLOURS, LINES, MARKERS, ReportFigure
 from sonolube.published import column_numbers, published_number, si_value
 from sonolube.reproduce.chapter4 import power_map
 from sonolube.reproduce.plots import draw_printed, single_axes
-from sonolube.reproduce.row import Row, comparison_row, undetermined_row
+from sonolube.reproduce.row import Row, RowKind, comparison_row, undetermined_row
 from sonolube.reproduce.tribometer_rigs import IDENTIFIED_NOTE, plate_rig
 from sonolube.validation.contacts import STEEL_YIELD_STRENGTH
 
@@ -53,7 +53,9 @@ def map_rows() -> Iterator[Row]:
     lowest, highest = reduction.isel(voltage_peak_to_peak=0), reduction.isel(voltage_peak_to_peak=-1)
     speed = 1e3 * float(reduction["sliding_speed"][0])
     note = f"Largest at any speed and load; the model gives {float(lowest.max()):.1%}. {_MODEL}"
-    yield comparison_row("4.1.2-reduction-lowest-voltage", float(lowest.max()), note, suffix=_BY_THE_MODEL)
+    yield comparison_row(
+        "4.1.2-reduction-lowest-voltage", float(lowest.max()), note, suffix=_BY_THE_MODEL, kind=RowKind.DEFAULT_MODEL
+    )
     yield comparison_row(
         "4.1.2-reduction-highest-voltage",
         float(highest.isel(sliding_speed=0).max()),
@@ -61,10 +63,13 @@ def map_rows() -> Iterator[Row]:
         f" highest. {_MODEL}; friction falls too much at the lowest voltage and too little at the highest, as in Table"
         " 4.2",
         suffix=_BY_THE_MODEL,
+        kind=RowKind.DEFAULT_MODEL,
     )
     yield _plate_count()
     yield _hardness()
-    yield from (undetermined_row(name, missing) for name, missing in _NOT_COMPUTABLE.items())
+    yield from (
+        undetermined_row(name, missing, kind=RowKind.DEFAULT_MODEL) for name, missing in _NOT_COMPUTABLE.items()
+    )
 
 
 def map_figures() -> Iterator[ReportFigure]:
@@ -147,7 +152,9 @@ def _plate_count() -> Row:
     """Return the number of plates from the loads."""
     loads, step = published_number("4.1.1-normal-load"), si_value("4.1.1-load-step")
     note = f"Loads from {loads.low:g} to {loads.high:g} N by {step:g} N; as many stresses in the captions of appendix B"
-    return comparison_row("4.1.1-plate-count", (loads.high - loads.low) / step + 1, note)
+    return comparison_row(
+        "4.1.1-plate-count", (loads.high - loads.low) / step + 1, note, kind=RowKind.PUBLISHED_FORMULA
+    )
 
 
 def _hardness() -> Row:
@@ -157,7 +164,7 @@ def _hardness() -> Row:
         f"{_TABOR:g} times the {STEEL_YIELD_STRENGTH / 1e6:g} MPa that the separations of D 3.1.4 imply (Tabor); the"
         f" measured hardness is of a steel that yields at {implied / 1e6:.0f} MPa"
     )
-    return comparison_row("4.1.3-hardness-uncoated", _TABOR * STEEL_YIELD_STRENGTH, note)
+    return comparison_row("4.1.3-hardness-uncoated", _TABOR * STEEL_YIELD_STRENGTH, note, kind=RowKind.DEFAULT_MODEL)
 
 
 def _reduction_over_speed() -> "Figure":

@@ -18,7 +18,7 @@ from sonolube.published import (
 from sonolube.reproduce import formulas
 from sonolube.reproduce.chapter4 import power_map
 from sonolube.reproduce.cube import STEEL_ON_STEEL_NOTE
-from sonolube.reproduce.row import Row, comparison_row, formula_row
+from sonolube.reproduce.row import Row, RowKind, comparison_row, formula_row
 from sonolube.validation.efficiency import efficiency_line
 
 _UNIT_OF_LINE = 1e-9  # mW mm2/(N W) in m2/N
@@ -70,7 +70,7 @@ def power_row(published: PublishedValue | str, voltage: float) -> Row:
     """Return the row of a published actuator power at a voltage peak to peak in V."""
     power = float(power_map.actuator_power(voltage_peak_to_peak=voltage))
     note = f"C U_max U_pp f (D 1.9) with U_max = U_pp; U_max = U_pp/2 would give {power / 2:.3g} W"
-    return comparison_row(published, power, note)
+    return comparison_row(published, power, note, kind=RowKind.PUBLISHED_FORMULA)
 
 
 def line_reduction_row(published: str, test: dict[str, float], *, actuator_power: float) -> Row:
@@ -94,7 +94,7 @@ def line_reduction_row(published: str, test: dict[str, float], *, actuator_power
         f"efficiency line at {actuator_power:.3g} W, {test['normal_load']:g} N and {test['sliding_speed'] * 1e3:g} "
         f"mm/s, from {off:.3g} N; the line ends at {power_map.line_end() * 1e3:.0f} mm/s, where it crosses zero"
     )
-    return comparison_row(published, formulas.friction_reduction(off, on), note)
+    return comparison_row(published, formulas.friction_reduction(off, on), note, kind=RowKind.PUBLISHED_MODEL)
 
 
 def _pressure_row(published: PublishedValue | str, load: float, area: PrintedNumber) -> Row:
@@ -112,6 +112,7 @@ def _highest_amplitude() -> Row:
         f"table-4.1-vibration_amplitude-{last}",
         propagate_rounding(lambda a: a / in_wear_tests * voltages[last].value, amplitude),
         f"in proportion to {amplitude.text} um at {in_wear_tests:.3g} V peak to peak, section 2.3.1 and appendix A 3.1",
+        kind=RowKind.PUBLISHED_FORMULA,
     )
 
 
@@ -119,7 +120,9 @@ def _settings_of_the_text() -> Iterator[Row]:
     """Yield diameters, stresses and powers of section 4.1.1."""
     for nth in (1, 2):
         inches = published_number(f"4.1.3-groove-diameter-{nth}")
-        yield comparison_row(f"4.1.1-diameter-{nth}", inches.value, f"{inches.text} in of section 4.1.3")
+        yield comparison_row(
+            f"4.1.1-diameter-{nth}", inches.value, f"{inches.text} in of section 4.1.3", kind=RowKind.PUBLISHED_FORMULA
+        )
     area, load = published_number("4.1.1-nominal-area"), published_number("4.1.1-normal-load")
     for limit, newtons in zip(published_value("4.1.1-stress").limits(), (load.low, load.high), strict=True):
         yield _pressure_row(limit, newtons, area)
@@ -142,7 +145,7 @@ def _example_test() -> Iterator[Row]:
     levels, level = si_value("4.1.1-voltage-count"), si_value("4.1.2-level-duration")
     duration = si_value("4.1.2-vibration-start") + levels * level
     note = f"start of the vibration, then {levels:g} levels of {level:g} s"
-    yield comparison_row("4.1.2-duration", duration, note)
+    yield comparison_row("4.1.2-duration", duration, note, kind=RowKind.PUBLISHED_FORMULA)
 
     off, on, *_ = column_numbers("4.2", "friction_force").values()
     yield formula_row("4.1.2-friction-drop", f"{off.value:g} N less {on.value:g} N", sub, off, on)
@@ -153,7 +156,12 @@ def _reduction_of_mean_forces(point: power_map.ExamplePoint) -> Row:
     off, on = power_map.example_test()["intrinsic_friction_force"], point.friction.value
     note = f"D 2.1 from the mean forces, {off:g} N and {on:g} N"
     # compared within the scatter of D alone: the rounding of the forces would hide that D averaged otherwise, E17
-    return comparison_row(f"table-4.2-friction_reduction-{point.row}", formulas.friction_reduction(off, on), note)
+    return comparison_row(
+        f"table-4.2-friction_reduction-{point.row}",
+        formulas.friction_reduction(off, on),
+        note,
+        kind=RowKind.PUBLISHED_FORMULA,
+    )
 
 
 def _cube_friction(point: power_map.ExamplePoint) -> Row:
@@ -164,7 +172,9 @@ def _cube_friction(point: power_map.ExamplePoint) -> Row:
         f"cube, D 3.15: ratio {friction / off:.3f} of {off:g} N; R_q = 2.12 um of the plates (D 4.1.3);"
         f" {STEEL_ON_STEEL_NOTE}; neither sliding speed nor in-plane motion of the tip enters"
     )
-    return comparison_row(f"table-4.2-friction_force-{point.row}", friction, note, suffix="by-the-cube")
+    return comparison_row(
+        f"table-4.2-friction_force-{point.row}", friction, note, suffix="by-the-cube", kind=RowKind.PUBLISHED_MODEL
+    )
 
 
 def _efficiency(point: power_map.ExamplePoint) -> Row:
@@ -181,7 +191,7 @@ def _efficiency(point: power_map.ExamplePoint) -> Row:
         lambda friction: power_map.point_efficiency(point, friction=friction) + to_zero_speed, point.friction
     )
     note, suffix = note + _surplus_power_note(point), f"at-{point.voltage_peak_to_peak:g}V"
-    return comparison_row("4.1.2-efficiency-intercept", intercept, note, suffix=suffix)
+    return comparison_row("4.1.2-efficiency-intercept", intercept, note, suffix=suffix, kind=RowKind.PUBLISHED_MODEL)
 
 
 def _line_friction(point: power_map.ExamplePoint) -> Row:
@@ -193,7 +203,9 @@ def _line_friction(point: power_map.ExamplePoint) -> Row:
         f"as printed it would rise to {as_printed:.3g} N{_surplus_power_note(point)}"
     )
     friction = float(power_map.line_friction(test, actuator_power=point.actuator_power))
-    return comparison_row(f"table-4.2-friction_force-{point.row}", friction, note, suffix="by-the-line")
+    return comparison_row(
+        f"table-4.2-friction_force-{point.row}", friction, note, suffix="by-the-line", kind=RowKind.PUBLISHED_MODEL
+    )
 
 
 def _line_power(point: power_map.ExamplePoint) -> Row:
@@ -206,7 +218,9 @@ def _line_power(point: power_map.ExamplePoint) -> Row:
     row = next(row for row, voltage in voltages.items() if voltage.value == point.voltage_peak_to_peak)
     note = f"D 4.3 for the {point.friction.text} N of Table 4.2{_surplus_power_note(point)}"
     power_over_scatter = _over_scatter(power, point.friction)
-    return comparison_row(f"table-4.1-actuator_power-{row}", power_over_scatter, note, suffix="by-the-line")
+    return comparison_row(
+        f"table-4.1-actuator_power-{row}", power_over_scatter, note, suffix="by-the-line", kind=RowKind.PUBLISHED_MODEL
+    )
 
 
 def _surplus_power_note(point: power_map.ExamplePoint) -> str:
@@ -225,7 +239,7 @@ def _intrinsic_friction() -> Row:
     test = power_map.example_test()
     off, load = test["intrinsic_friction_force"], test["normal_load"]
     note = f"friction of Table 4.2 at {load:g} N; over that load a coefficient of {off / load:.3f}"
-    return comparison_row("4.1.3-friction-uncoated", off, note)
+    return comparison_row("4.1.3-friction-uncoated", off, note, kind=RowKind.PUBLISHED_FORMULA)
 
 
 def _over_scatter(function: Callable[[float], float], measured: PrintedNumber) -> ComputedValue:

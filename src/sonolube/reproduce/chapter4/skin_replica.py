@@ -18,7 +18,7 @@ from sonolube.friction import FaceVibrationMode, exponential_layer_ratio, linear
 from sonolube.published import PrintedNumber, column_numbers, published_number, published_value, si_value
 from sonolube.reproduce import formulas
 from sonolube.reproduce.plots import single_axes
-from sonolube.reproduce.row import Row, comparison_row, formula_row
+from sonolube.reproduce.row import Row, RowKind, comparison_row, formula_row
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -120,24 +120,42 @@ def _measured_friction() -> Iterator[Row]:
         note = f"D 2.1 from {off.text} N and {on.text} N"
         yield formula_row(f"4.4.3-reduction-{load.text}N", note, formulas.friction_reduction, off, on)
     mean = float(np.mean(coefficients))
-    yield comparison_row("4.4.3-coefficient-on", mean, "mean over the three loads of force over load")
+    yield comparison_row(
+        "4.4.3-coefficient-on", mean, "mean over the three loads of force over load", kind=RowKind.PUBLISHED_FORMULA
+    )
     lowest, *higher = (load.value for load in _loads())
     heads = si_value("4.4.2-total-load-6") / lowest
     for total, each in zip(("9", "12"), higher, strict=True):
-        yield comparison_row(f"4.4.2-total-load-{total}", heads * each, f"{each:g} N on each of {heads:g} heads")
+        yield comparison_row(
+            f"4.4.2-total-load-{total}",
+            heads * each,
+            f"{each:g} N on each of {heads:g} heads",
+            kind=RowKind.PUBLISHED_FORMULA,
+        )
 
 
 def _soft_layers() -> Iterator[Row]:
-    """Yield the friction coefficients with vibration by each soft-layer model."""
-    for fit in soft_layer_fits():
-        for load, ratio in zip(_loads(), fit.computed, strict=True):
-            off = _force("off", load).value
-            published = published_value(f"4.4.3-coefficient-on-{load.text}N")
-            note = (
-                f"{fit.name.capitalize()} layer, one number fitted to the three loads: {fit.parameter} {fit.value:.3g};"
-                f" ratio {ratio:.3f} of {off:g} N over {load.text} N; {_ASSUMED}."
-            )
-            yield comparison_row(replace(published, id=f"soft-{fit.name}-{load.text}N"), ratio * off / load.value, note)
+    """Yield the friction coefficients with vibration by the stiffening layer, with the linear one beside it."""
+    stiffening, linear = soft_layer_fits()
+    for index, load in enumerate(_loads()):
+        (value, note), other = (_soft_layer(fit, index) for fit in (stiffening, linear))
+        published = replace(
+            published_value(f"4.4.3-coefficient-on-{load.text}N"), id=f"soft-{stiffening.name}-{load.text}N"
+        )
+        yield comparison_row(
+            published, value, note, kind=RowKind.DEFAULT_MODEL, alternatives={f"{linear.name} layer": other}
+        )
+
+
+def _soft_layer(fit: SoftLayerFit, index: int) -> tuple[float, str]:
+    """Return the friction coefficient with vibration by a soft-layer model under a load, with its note."""
+    load, ratio = _loads()[index], fit.computed[index]
+    off = _force("off", load).value
+    note = (
+        f"{fit.name.capitalize()} layer, one number fitted to the three loads: {fit.parameter} {fit.value:.3g};"
+        f" ratio {ratio:.3f} of {off:g} N over {load.text} N; {_ASSUMED}."
+    )
+    return ratio * off / load.value, note
 
 
 def _friction_coefficients() -> "Figure":

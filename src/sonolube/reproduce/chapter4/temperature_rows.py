@@ -10,7 +10,7 @@ from sonolube.reproduce import formulas
 from sonolube.reproduce.chapter4.contact_temperature_rows import contact_temperature_rows
 from sonolube.reproduce.chapter4.power_map import example_points
 from sonolube.reproduce.chapter4.power_rows import amplitude_rows, line_reduction_row, nominal_pressure_rows, power_row
-from sonolube.reproduce.row import Row, comparison_row, formula_row
+from sonolube.reproduce.row import Row, RowKind, comparison_row, formula_row
 
 
 def temperature_rows() -> Iterator[Row]:
@@ -36,10 +36,15 @@ def _settings() -> Iterator[Row]:
     yield power_row(highest, voltages[max(voltages)].value)
 
     dry = si_value("4.3.3-motor-start") + si_value("4.3.3-dry-duration")
-    yield comparison_row("4.3.3-vibration-start", dry, "start of the motor and rotation without vibration")
+    yield comparison_row(
+        "4.3.3-vibration-start",
+        dry,
+        "start of the motor and rotation without vibration",
+        kind=RowKind.PUBLISHED_FORMULA,
+    )
     levels, level, cooling = len(voltages), si_value("4.3.3-level-duration"), si_value("4.3.3-cooling-duration")
     note = f"start of the vibration, {levels} levels of {level:g} s and {cooling:g} s of cooling"
-    yield comparison_row("4.3.3-duration", dry + levels * level + cooling, note)
+    yield comparison_row("4.3.3-duration", dry + levels * level + cooling, note, kind=RowKind.PUBLISHED_FORMULA)
 
 
 def _superimposed_speeds() -> Iterator[Row]:
@@ -51,7 +56,7 @@ def _superimposed_speeds() -> Iterator[Row]:
         if speeds[row] == speeds[1]:
             mean = propagate_rounding(lambda v_1: v_1 / np.pi, peak)
             note = f"peak over pi, the half-wave mean; the mean of the modulus would be {2 * mean.value * 1e3:.0f} mm/s"
-            yield comparison_row(f"table-4.5-mean_vibration_velocity-{row}", mean, note)
+            yield comparison_row(f"table-4.5-mean_vibration_velocity-{row}", mean, note, kind=RowKind.PUBLISHED_FORMULA)
         speed = f"table-4.5-superimposed_speed-{row}"
         note = f"sqrt(v_r^2 + (v_1/pi)^2) with {speeds[row].text} and {peak.text} mm/s"
         yield formula_row(speed, note, formulas.superimposed_speed, speeds[row], peak)

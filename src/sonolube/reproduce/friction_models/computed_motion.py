@@ -10,7 +10,7 @@ row of Table 4.2 would require a loss of five sixths of the load.
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Final
 
@@ -22,8 +22,8 @@ from sonolube.dynamics import ExponentialGap, contact_motion as motion_of, stead
 from sonolube.figure import COLOURS, ReportFigure
 from sonolube.friction import FRICTION_MODELS
 from sonolube.published import si_value
+from sonolube.reproduce.friction_models.variant_predictions import Predictions
 from sonolube.reproduce.plots import axes_row, point_style
-from sonolube.reproduce.row import Row, comparison_row
 from sonolube.reproduce.tribometer_rigs import identified_structure
 from sonolube.validation.figures import draw_measured
 from sonolube.validation.published_tests import FrictionTest, friction_tests
@@ -77,19 +77,29 @@ def motion_predictions() -> tuple[MotionPredictions, ...]:
     )
 
 
-def computed_motion_rows() -> Iterator[Row]:
-    """Yield one row for each reduction of both tables, by asperity stick-slip on the computed steady motion."""
-    for prediction in motion_predictions():
-        test = prediction.test
-        ratios = {name: prediction.ratios["asperity_stick_slip", name] for name in MOTIONS}
-        assert test.published is not None
-        by_motion = "; ".join(f"{MOTIONS[name]} {ratio:.4f}" for name, ratio in ratios.items())
-        yield comparison_row(
-            replace(test.published, id=f"friction-model-asperity-stick-slip-on-computed-motion-{test.label}"),
-            1 - ratios["harmonic-balance"],
-            "Friction model asperity_stick_slip with its default parameters. "
-            f"Ratio measured {test.friction_ratio:.3f}; on {by_motion}.",
-        )
+def computed_motion_prediction(test: FrictionTest) -> Predictions:
+    """Return the friction ratio of a test of Table 2.3 or 4.2 by asperity stick-slip on the computed steady motion.
+
+    Parameters
+    ----------
+    test : FrictionTest
+
+    Returns
+    -------
+    dict of str to (float, str)
+        Empty for a test of another table.
+    """
+    predictions: Predictions = {}
+    for one in motion_predictions():
+        if one.test == test:
+            ratios = {name: one.ratios["asperity_stick_slip", name] for name in MOTIONS}
+            by_motion = "; ".join(f"{MOTIONS[name]} {ratio:.4f}" for name, ratio in ratios.items())
+            note = (
+                "Friction model asperity_stick_slip with its default parameters. "
+                f"Ratio measured {test.friction_ratio:.3f}; on {by_motion}."
+            )
+            predictions["asperity-stick-slip on computed motion"] = (ratios["harmonic-balance"], note)
+    return predictions
 
 
 def computed_motion_figures() -> Iterator[ReportFigure]:

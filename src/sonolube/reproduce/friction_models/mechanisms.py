@@ -1,4 +1,4 @@
-"""Mechanisms that could reconcile Table 2.3 with Table 4.2: rows of the reductions of Table 4.2 by each mechanism.
+"""Mechanisms that could reconcile Table 2.3 with Table 4.2: friction ratios of Table 4.2 by each mechanism.
 
 The friction ratio is 0.71 at 87 mm/s and 2.5 um in Table 2.3, 0.04 at 65.5 mm/s and 2.3 um in Table 4.2. Most of the
 difference is that of the roughness, 6 um and 2.12 um (D 4.1.3): with one memory length for both, asperity stick-slip
@@ -23,9 +23,8 @@ from sonolube.checks import Floats
 from sonolube.contact import decay_length, separation
 from sonolube.figure import ReportFigure
 from sonolube.friction import mindlin_memory_length
-from sonolube.reproduce.friction_models.variant_rows import capitalised, parameters_text, ratio_text
+from sonolube.reproduce.friction_models.variant_predictions import Predictions, capitalised, parameters_text, ratio_text
 from sonolube.reproduce.plots import curve_style
-from sonolube.reproduce.row import Row, comparison_row
 from sonolube.validation.assessment import ErrorStatistics, InformationCriteria, information_criteria, prediction_errors
 from sonolube.validation.figures import speed_and_amplitude_panels
 from sonolube.validation.fitting import Fit, fit_variant
@@ -41,7 +40,7 @@ BOTH_TABLES: Final = "AB"
 """Letters of the sets of Tables 2.3 and 4.2."""
 
 REPORTED: Final = ("normal-mindlin", "in-plane-unbounded", "zero-error-unbounded")
-"""Mechanisms with rows in the report; a figure shows more."""
+"""Mechanisms in the rows of the report; a figure shows more."""
 
 _DRAWN: Final = ("normal-mindlin", "normal", "in-plane", "in-plane-unbounded", "slack-string", "zero-error-unbounded")
 
@@ -113,19 +112,29 @@ def speeds_of_no_reduction() -> Floats:
     return np.array([_speed_of_no_reduction(test) for test in friction_tests("B")])
 
 
-def mechanism_rows() -> Iterator[Row]:
-    """Yield one row for each reduction of Table 4.2 and each reported mechanism."""
+def mechanism_predictions(test: FrictionTest) -> Predictions:
+    """Return the friction ratios of a test of Table 4.2 by the reported mechanisms; none of any other test.
+
+    Parameters
+    ----------
+    test : FrictionTest
+
+    Returns
+    -------
+    dict of str to (float, str)
+    """
+    predictions: Predictions = {}
+    if test not in friction_tests("B"):
+        return predictions
     for fit in (mechanism.fit for mechanism in mechanisms() if mechanism.fit.variant.name in REPORTED):
-        for test in friction_tests("B"):
-            ratio = fit.predict(test)
-            assert ratio is not None
-            assert test.published is not None
-            yield comparison_row(
-                replace(test.published, id=f"mechanism-{fit.variant.name}-{test.label}"),
-                1 - ratio,
-                f"{capitalised(fit.variant.description)}; Tables 2.3 and 4.2 fitted together: "
-                f"{parameters_text(fit, BOTH_TABLES) or 'no free parameter'}. {ratio_text(ratio, test.friction_ratio)}",
-            )
+        ratio = fit.predict(test)
+        assert ratio is not None
+        predictions[fit.variant.name] = (
+            ratio,
+            f"{capitalised(fit.variant.description)}; Tables 2.3 and 4.2 fitted together: "
+            f"{parameters_text(fit, BOTH_TABLES) or 'no free parameter'}. {ratio_text(ratio, test.friction_ratio)}",
+        )
+    return predictions
 
 
 def mechanism_figures() -> Iterator[ReportFigure]:

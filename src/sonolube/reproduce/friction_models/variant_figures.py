@@ -9,7 +9,7 @@ from sonolube import friction
 from sonolube.checks import Floats
 from sonolube.contact import load_balanced_motion, sinusoidal_motion
 from sonolube.figure import COLOURS, MARKERS, ReportFigure
-from sonolube.reproduce.friction_models.variant_rows import DEFAULT, reported_fits
+from sonolube.reproduce.friction_models.variant_predictions import DEFAULT, reported_fits
 from sonolube.reproduce.plots import line_style, single_axes
 from sonolube.validation.assessment import (
     FITTED_SETS,
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _HIGHEST: Final = 1.3  # ratios above it are drawn at the edge
+_COLUMNS: Final = 4  # of panels
 _LARGEST_ERROR: Final = 0.5  # limit of the colour scale
 
 
@@ -128,14 +129,19 @@ def _predicted_against_measured() -> "Figure":
     """Draw predicted against measured ratios, one panel for each variant."""
     from matplotlib import pyplot as plt
 
-    figure, panels = plt.subplots(4, 4, figsize=(8.8, 9.2), sharex=True, sharey=True)
-    for axes, fit in zip(panels.flat, reported_fits(), strict=True):
+    fits = reported_fits()
+    rows = -(-len(fits) // _COLUMNS)
+    figure, panels = plt.subplots(rows, _COLUMNS, figsize=(8.8, 2.3 * rows), sharex=True, sharey=True)
+    for axes, fit in zip(panels.flat, fits, strict=False):
         _panel(axes, fit)
-    for axes in panels[-1]:
+        axes.xaxis.set_tick_params(labelbottom=True)
+    for axes in panels.flat[len(fits) :]:
+        axes.set_visible(False)
+    for axes in panels.flat[len(fits) - _COLUMNS : len(fits)]:
         axes.set_xlabel("Measured ratio [-]")
     for axes in panels[:, 0]:
         axes.set_ylabel("Predicted ratio [-]")
-    handles, labels = panels.flat[-1].get_legend_handles_labels()
+    handles, labels = panels.flat[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=len(NORMAL_VIBRATION_SETS), title="Set")
     return figure
 

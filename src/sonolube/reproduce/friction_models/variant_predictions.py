@@ -1,40 +1,48 @@
-"""Rows of the published friction reductions by the variants of the friction models."""
+"""Friction ratios of the published tests by the fitted variants of the friction models."""
 
-from collections.abc import Iterator
-from dataclasses import replace
+from functools import cache
 from typing import Final
 
-from sonolube.reproduce.row import Row, comparison_row
 from sonolube.validation.assessment import FITTED_SETS, SETS_WITHOUT_POWER_MAP
 from sonolube.validation.fitting import Fit, fit_variant
 from sonolube.validation.free_parameters import RIGS
 from sonolube.validation.friction_model_variants import FRICTION_MODEL_VARIANTS
 from sonolube.validation.model_variant import ModelVariant
-from sonolube.validation.published_tests import friction_tests
+from sonolube.validation.published_tests import FrictionTest
 
 DEFAULT: Final = "asperity-stick-slip-fitted"
 """Variant of the default friction model: the least cross-validation error of all."""
 
 REPORTED: Final = ("dong-2015-full-period", DEFAULT, "asperity-stick-slip-in-plane", "bristle-with-holder-per-rig")
-"""Variants with rows in the report; its figures show all."""
+"""Variants in the rows of the report; its figures show all."""
+
+Predictions = dict[str, tuple[float, str]]
+"""Friction ratios of a test, each with the note on its computation, by the name of the model."""
 
 
-def variant_rows() -> Iterator[Row]:
-    """Yield one row for each published friction reduction and each reported variant."""
+def variant_predictions(test: FrictionTest) -> Predictions:
+    """Return the friction ratios of a test by the reported variants that reach it.
+
+    Parameters
+    ----------
+    test : FrictionTest
+
+    Returns
+    -------
+    dict of str to (float, str)
+    """
+    predictions: Predictions = {}
     for fit in reported_fits():
-        if fit.variant.name not in REPORTED:
-            continue
-        for test in friction_tests():
-            ratio = fit.predict(test)
-            if test.published is None or ratio is None:
-                continue
-            published = replace(test.published, id=f"friction-model-{fit.variant.name}-{test.label}")
+        ratio = fit.predict(test) if fit.variant.name in REPORTED else None
+        if ratio is not None:
             fitted = parameters_text(fit, test.set_name) or "no parameter applies to this rig"
             sets = f"; fitted on sets {', '.join(fit.sets)}: {fitted}" if fit.sets else "; nothing fitted"
             note = f"{capitalised(fit.variant.description)}{sets}. {ratio_text(ratio, test.friction_ratio)}"
-            yield comparison_row(published, 1 - ratio, note)
+            predictions[fit.variant.name] = (ratio, note)
+    return predictions
 
 
+@cache
 def reported_fits() -> tuple[Fit, ...]:
     """Return every variant fitted without Table 4.2, or with it if a parameter applies to its rig alone."""
     return tuple(fit_variant(variant, _fitted_sets(variant)) for variant in FRICTION_MODEL_VARIANTS)

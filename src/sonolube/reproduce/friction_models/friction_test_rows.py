@@ -1,0 +1,68 @@
+"""Published friction tests: one row each by the default friction model, with every other variant beside it."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Final
+
+from sonolube.published import PrintedNumber, PublishedValue
+from sonolube.reproduce.friction_models.computed_motion import computed_motion_prediction
+from sonolube.reproduce.friction_models.mechanisms import mechanism_predictions
+from sonolube.reproduce.friction_models.variant_predictions import DEFAULT, Predictions, variant_predictions
+from sonolube.reproduce.row import Row, RowKind, comparison_row
+from sonolube.validation.published_tests import NORMAL_VIBRATION_SETS, FrictionTest, friction_tests
+
+POWER_MAP: Final = "B"
+"""Letter of the set of Table 4.2, of chapter 4; all others are of chapter 2."""
+
+
+def tribometer_test_rows() -> Iterator[Row]:
+    """Yield the rows of the friction tests of chapter 2."""
+    yield from _rows("".join(NORMAL_VIBRATION_SETS).replace(POWER_MAP, ""))
+
+
+def power_map_test_rows() -> Iterator[Row]:
+    """Yield the rows of the friction tests of Table 4.2."""
+    yield from _rows(POWER_MAP)
+
+
+def within_scatter(test: FrictionTest) -> PublishedValue:
+    """Return the friction reduction of a test with the interval of its measurement.
+
+    Parameters
+    ----------
+    test : FrictionTest
+        With a published reduction.
+
+    Returns
+    -------
+    PublishedValue
+        D derives a reduction from forces and prints both, the forces with their scatter. The interval is that of the
+        printed reduction and that of the forces together: where they differ (E16, E17, E27) they are two readings of
+        one test.
+    """
+    assert test.published is not None
+    number, scatter = test.published.number, test.uncertainty or 0.0
+    low, high = (1 - test.friction_ratio + side * scatter for side in (-1, 1))
+    measured: PrintedNumber = replace(number, low=min(number.low, low), high=max(number.high, high))
+    return replace(test.published, number=measured, id=f"friction-model-{DEFAULT}-{test.label}")
+
+
+def _rows(sets: str) -> Iterator[Row]:
+    """Yield the rows of the tests of some sets, given by their letters, that have a printed reduction."""
+    for test in friction_tests(sets):
+        if test.published is None:
+            continue
+        predictions = _predictions(test)
+        ratio, note = predictions.pop(DEFAULT)
+        yield comparison_row(
+            within_scatter(test),
+            1 - ratio,
+            note,
+            kind=RowKind.DEFAULT_MODEL,
+            alternatives={name: (1 - other, other_note) for name, (other, other_note) in predictions.items()},
+        )
+
+
+def _predictions(test: FrictionTest) -> Predictions:
+    """Return the friction ratios of a test by all variants, mechanisms and motions, each with its note, by name."""
+    return variant_predictions(test) | mechanism_predictions(test) | computed_motion_prediction(test)
