@@ -12,9 +12,8 @@ OUT := out
 help: ## list the targets
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1\t/' | expand -t 16
 
-demo: $(VENV)/demo ## operate the reference rig and judge the dissertation's claims; the report goes to out/
-	$(BIN)/sonolube friction examples/rigs/tribometer.toml
-	$(BIN)/sonolube wear examples/rigs/tribometer.toml
+demo: $(VENV)/demo ## predict the reference rig and judge the dissertation's claims; report and figures go to out/
+	$(RUN) $(BIN)/sonolube predict examples/rigs/tribometer.toml --out $(OUT)
 	$(RUN) $(BIN)/sonolube reproduce --out $(OUT)
 
 test: $(VENV)/test ## lint, type-check and run every test

@@ -122,13 +122,13 @@ def calibrations() -> tuple[Calibration, ...]:
     )
 
 
-def hierarchical_calibration(name: str, closures: Sequence[Closure]) -> Calibration:
+def hierarchical_calibration(name: str, closures: tuple[Closure, ...]) -> Calibration:
     """Every published rig left out in turn: hyperparameters and weights by the others alone.
 
     Parameters
     ----------
     name : str
-    closures : sequence of Closure
+    closures : tuple of Closure
 
     Returns
     -------

@@ -136,7 +136,6 @@ def prior_draws(closure: Closure) -> Floats:
     return means + deviations * standard_normals(PRIOR_DRAWS, columns=len(HYPERPARAMETERS), seed=2)
 
 
-@cache
 def rig_log_likelihoods(
     closures: tuple[Closure, ...] = CLOSURES, *, rigs: tuple[TestedRig, ...] | None = None
 ) -> dict[str, Floats]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import cache
 from itertools import combinations
 from typing import TYPE_CHECKING, Final
 
@@ -151,7 +152,13 @@ def _unseen(name: str) -> tuple[TestedRig, tuple[Posterior, ...]]:
     """A published rig, and the posteriors by all others."""
     rigs = published_rigs()
     index = [rig.name for rig in rigs].index(name)
-    return rigs[index], posteriors_without(rig_log_likelihoods(), left_out=(index,))
+    return rigs[index], posteriors_without(_log_likelihoods(), left_out=(index,))
+
+
+@cache
+def _log_likelihoods() -> dict[str, Floats]:
+    """Likelihoods of the published rigs, which take seconds."""
+    return rig_log_likelihoods()
 
 
 def _along(at: Conditions, condition: str, values: Floats) -> Conditions:

@@ -5,6 +5,7 @@ from functools import cache
 from typing import Final
 
 from sonolube.errors import UnknownName
+from sonolube.prediction.published_figures import published_prediction_figures
 from sonolube.reproduce.chapter2.flextensional import flextensional_rows
 from sonolube.reproduce.chapter2.material_pairs import material_pair_figures, material_pair_rows
 from sonolube.reproduce.chapter2.poisson_effect import poisson_effect_figures, poisson_effect_rows
@@ -64,6 +65,7 @@ SECTIONS: Final = (
     Section(number="4.1", figures=mechanism_figures),
     Section(number="3.3", figures=computed_motion_figures),
     Section(number="3.3", figures=lambda: comparison_figures(published_comparison)),
+    Section(number="3.3", figures=published_prediction_figures),
 )
 """All reproduced sections: those of the chapters, then the friction models on the friction tests of all chapters."""
 
