@@ -6,7 +6,6 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.figure import COLOURS
-from sonolube.prediction.calibration import Calibration
 from sonolube.prediction.evidence import published_rigs
 from sonolube.prediction.scores import PROBABILITIES
 
@@ -14,6 +13,8 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+    from sonolube.prediction.calibration import Calibration
 
 _OPACITIES: Final = (0.15, 0.25, 0.4)  # of the bands, the widest first
 _AXES: Final = (
@@ -81,7 +82,7 @@ def _points(axes: "Axes", condition: str, scale: float, prediction: "xr.Dataset"
         axes.errorbar(places, ratio, uncertainty, fmt="s", color=COLOURS[1], ms=5, label="own runs")
 
 
-def calibration_figure(calibrations: tuple[Calibration, ...]) -> "Figure":
+def calibration_figure(calibrations: "tuple[Calibration, ...]") -> "Figure":
     """Draw coverage against probability with its binomial interval, and the scores of each way to predict.
 
     Parameters

@@ -16,7 +16,6 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import logsumexp, ndtri
-from scipy.stats import qmc
 
 from sonolube.checks import Floats, Integers
 from sonolube.prediction.closures import Closure, Conditions
@@ -35,21 +34,34 @@ _BATCH: Final = 256  # rows of hyperparameters at a time, to bound memory
 
 
 def standard_normals(count: int, *, columns: int, seed: int) -> Floats:
-    """Standard normal numbers on a scrambled Sobol' sequence.
+    r"""Standard normal numbers that fill the space more evenly than random ones.
 
     Parameters
     ----------
     count : int
-        A power of two.
     columns : int
     seed : int
-        Of the scrambling.
+        Of the shift of each column.
 
     Returns
     -------
     ndarray, shape (count, columns)
+
+    Notes
+    -----
+    Additive recurrence :math:`u_{nk} = u_{0k} + n\, g^{-k} \bmod 1` with the real root g > 1 of
+    :math:`g^{d+1} = g + 1` in d dimensions, and the normal quantiles of u.
+
+    References
+    ----------
+    .. [1] H. Niederreiter, Random Number Generation and Quasi-Monte Carlo Methods, SIAM 1992, chapter 3.
     """
-    return np.asarray(ndtri(qmc.Sobol(columns, rng=np.random.default_rng(seed)).random(count)))
+    root = 2.0
+    for _ in range(50):
+        root = (1 + root) ** (1 / (columns + 1))
+    steps = root ** -np.arange(1.0, columns + 1)
+    shift = np.random.default_rng(seed).random(columns)
+    return np.asarray(ndtri((shift + np.arange(1, count + 1)[:, None] * steps) % 1.0))
 
 
 def hyperprior(closure: Closure) -> tuple[Floats, Floats]:

@@ -23,7 +23,7 @@ LEARNED_FILE: Final = "learned.json"
 """Name of the data in this package."""
 
 PRIOR_DRAWS: Final = 16384
-"""Draws from the prior, on a Sobol' sequence, with which rigs are left out."""
+"""Evenly spread draws from the prior, with which rigs are left out."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -131,7 +131,7 @@ def posteriors_without(
 
 
 def prior_draws(closure: Closure) -> Floats:
-    """Draws from the prior of the hyperparameters on a Sobol' sequence, shape (`PRIOR_DRAWS`, 5)."""
+    """Draws from the prior of the hyperparameters evenly spread, shape (`PRIOR_DRAWS`, 5)."""
     means, deviations = hyperprior(closure)
     return means + deviations * standard_normals(PRIOR_DRAWS, columns=len(HYPERPARAMETERS), seed=2)
 

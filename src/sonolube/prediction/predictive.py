@@ -5,8 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from scipy.special import logsumexp
-from scipy.stats import chi2
+from scipy.special import chdtrc, logsumexp
 
 from sonolube.checks import Floats, Integers
 from sonolube.prediction.closures import Conditions, UncertainConditions
@@ -174,4 +173,4 @@ def _covariance_of_tests(hyper: Floats, ratio: Floats, own: TestedRig) -> Floats
 def _surprise(pool: _Pool, tests: int) -> float:
     """Probability of deviations as large as those of the tests, by the draws that explain them best."""
     weights = np.exp(pool.log_weights - logsumexp(pool.log_weights))
-    return float(chi2.sf(weights @ pool.deviation, tests))
+    return float(chdtrc(tests, weights @ pool.deviation))

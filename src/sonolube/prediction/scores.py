@@ -3,7 +3,6 @@
 from typing import Final
 
 import numpy as np
-from scipy.stats import binomtest
 
 from sonolube.checks import Floats
 
@@ -96,5 +95,7 @@ def binomial_interval(successes: int, trials: int) -> tuple[float, float]:
     -------
     low, high : float
     """
+    from scipy.stats import binomtest
+
     found = binomtest(successes, trials).proportion_ci(0.95)
     return float(found.low), float(found.high)

@@ -4,7 +4,6 @@ from typing import Final
 
 import numpy as np
 from scipy.special import logsumexp
-from scipy.stats import dirichlet
 
 from sonolube.checks import Floats
 
@@ -80,7 +79,7 @@ def stacking_weights(log_densities: Floats) -> Floats:
     .. [1] Y. Yao, A. Vehtari, D. Simpson and A. Gelman, Bayesian Analysis 13, 917 (2018). doi:10.1214/17-BA1091
     """
     count = log_densities.shape[0]
-    mixtures = dirichlet(np.ones(count)).rvs(_MIXTURES, random_state=np.random.default_rng(0))
+    mixtures = np.random.default_rng(0).dirichlet(np.ones(count), _MIXTURES)
     relative = np.exp(log_densities - log_densities.max(axis=0))
     score = np.log(mixtures @ relative).sum(axis=1)
     return np.asarray(np.exp(score - logsumexp(score)) @ mixtures)
