@@ -12,6 +12,7 @@ OUT := out
 help: ## list the targets
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1\t/' | expand -t 16
 
+# first what a user does with a rig, last what becomes of the dissertation's claims
 demo: $(VENV)/demo ## operate the reference rig and judge the dissertation's claims; the report goes to out/
 	$(BIN)/sonolube friction examples/rigs/tribometer.toml
 	$(BIN)/sonolube wear examples/rigs/tribometer.toml
