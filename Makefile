@@ -12,6 +12,7 @@ OUT := out
 help: ## list the targets
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1\t/' | expand -t 16
 
+# first what a user does with a rig, last what becomes of the dissertation's claims
 demo: $(VENV)/demo ## predict the reference rig and judge the dissertation's claims; report and figures go to out/
 	$(RUN) $(BIN)/sonolube predict examples/rigs/tribometer.toml --out $(OUT)
 	$(RUN) $(BIN)/sonolube reproduce --out $(OUT)

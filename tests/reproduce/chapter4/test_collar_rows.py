@@ -9,11 +9,12 @@ pytest.importorskip("netgen.occ", reason="netgen-mesher is not installed")
 from sonolube.errors import SonolubeError
 from sonolube.fem.solver.cad import MissingPackage
 from sonolube.friction import sine_stick_slip_ratio
-from sonolube.reproduce import Verdict
+from sonolube.reproduce import CLAIMS, ClaimVerdict, Verdict
 from sonolube.reproduce.chapter4 import collar_rows as chapter4_collar
 from sonolube.reproduce.chapter4.collar import pulled_rod
 from sonolube.reproduce.chapter4.collar_figures import collar_figures
 from sonolube.reproduce.chapter4.collar_rows import collar_rows
+from sonolube.reproduce.claim import finding
 
 
 def test_friction_along_the_rod_is_that_of_the_closed_form_at_each_amplitude() -> None:
@@ -48,3 +49,5 @@ def test_without_finite_elements_the_rows_name_the_package_to_install(monkeypatc
     assert {row.verdict for row in rows} == {Verdict.NOT_COMPUTED}
     assert all("pip install sonolube[fem]" in row.note for row in rows)
     assert not list(collar_figures())
+    (claim,) = (each for each in CLAIMS if each.id == "collar")
+    assert finding(claim, {row.id: row for row in rows}).verdict is ClaimVerdict.NOT_COMPUTED
