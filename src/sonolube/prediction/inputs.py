@@ -13,6 +13,8 @@ from sonolube.prediction.closures import Conditions, UncertainConditions
 from sonolube.prediction.evidence import MEASURED_SPREAD
 from sonolube.rig import Distribution, FrictionPoint, Rig, friction_point
 from sonolube.rig.linear_response import rest_separation
+from sonolube.units import format_si
+from sonolube.vocabulary import quantity
 
 _ROUGHNESS_KEY: Final = "contact.roughness.rms_height"
 _FRICTION_KEY: Final = "friction.friction_coefficient"
@@ -35,6 +37,8 @@ class Input:
     ----------
     name : str
         Of the vocabulary.
+    label : str
+        As it is called in a sentence.
     value : float
         Median, in SI.
     spread : float
@@ -46,10 +50,17 @@ class Input:
     """
 
     name: str
+    label: str
     value: float
     spread: float
     reason: str
     remedy: str
+
+    @property
+    def text(self) -> str:
+        """Value, spread and reason in a line."""
+        value = format_si(self.value, quantity(self.name).unit)
+        return f"{self.label} {value} within {100 * self.spread:.0f} % ({self.reason})"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -147,14 +158,28 @@ def _roughness(rig: Rig) -> Input:
     own = rig.uncertainty.get(_ROUGHNESS_KEY)
     if own is not None:
         value, spread = _lognormal(own)
-        return Input(name="rms_height", value=value, spread=spread, reason=f"{own.text} in the rig file", remedy=remedy)
+        return Input(
+            name="rms_height",
+            label="roughness",
+            value=value,
+            spread=spread,
+            reason=f"{own.text} in the rig file",
+            remedy=remedy,
+        )
     assumed = any(_ROUGHNESS_KEY.startswith(key) for key in rig.assumptions)
     spread, reason = (
         (_ASSUMED_ROUGHNESS, "assumed in the rig file, not measured")
         if assumed
         else (_GIVEN_ROUGHNESS, "given without a distribution")
     )
-    return Input(name="rms_height", value=rig.contact.roughness.rms_height, spread=spread, reason=reason, remedy=remedy)
+    return Input(
+        name="rms_height",
+        label="roughness",
+        value=rig.contact.roughness.rms_height,
+        spread=spread,
+        reason=reason,
+        remedy=remedy,
+    )
 
 
 def _amplitude(rig: Rig, point: FrictionPoint) -> Input:
@@ -166,6 +191,7 @@ def _amplitude(rig: Rig, point: FrictionPoint) -> Input:
             spread, reason = _lognormal(own)[1], f"{reason}; {key} {own.text}"
     return Input(
         name="vibration_amplitude",
+        label="amplitude",
         value=point.vibration_amplitude,
         spread=spread,
         reason=reason,
@@ -179,9 +205,17 @@ def _friction(rig: Rig) -> Input:
     own = rig.uncertainty.get(_FRICTION_KEY)
     if own is not None:
         value, spread = _lognormal(own)
-        return Input(name="friction_coefficient", value=value, spread=spread, reason=own.text, remedy=remedy)
+        return Input(
+            name="friction_coefficient",
+            label="dry friction",
+            value=value,
+            spread=spread,
+            reason=own.text,
+            remedy=remedy,
+        )
     return Input(
         name="friction_coefficient",
+        label="dry friction",
         value=rig.friction_coefficient,
         spread=_GIVEN_FRICTION,
         reason="given without a distribution",

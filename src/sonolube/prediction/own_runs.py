@@ -152,6 +152,7 @@ def _intrinsic(runs: "xr.Dataset", loads: Floats) -> Input | None:
     spread = float(np.std(logs, ddof=1) / np.sqrt(logs.size)) if logs.size > 1 else _USUAL_UNCERTAINTY
     return Input(
         name="friction_coefficient",
+        label="dry friction",
         value=float(np.exp(np.mean(logs))),
         spread=max(spread, 0.02),
         reason="forces of the runs without vibration",

@@ -21,7 +21,10 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _CURVE: Final = 33  # points of a curve
-_KNOWN_WELL: Final = {"rms_height": 0.05, "vibration_amplitude": 0.02}
+_KNOWN_WELL: Final = {"rms_height": 0.05, "vibration_amplitude": 0.02}  # spreads by a careful measurement
+_NO_GAIN: Final = 0.95  # share of an interval from which on measuring an input is not worth it
+_NARROWEST: Final = 1e-6  # width of an interval, where all draws are at a limit
+_HOT: Final = 50.0  # K, mean rise of the contact from which metals soften or lubricants change
 
 
 def predict(
@@ -75,13 +78,15 @@ def predict(
         "amplitude": _quantiles(inputs, own, vibration_amplitude=amplitudes),
         "speed": _quantiles(inputs, own, sliding_speed=speeds),
     }
-    spreads = [each.spread for each in (inputs.roughness, inputs.amplitude, inputs.friction)]
+    uncertain = (inputs.roughness, inputs.amplitude, inputs.friction)
     result = xr.Dataset(
         {
             **{name: ("draw", values) for name, values in drawn.items()},
             **{f"friction_ratio_over_{name}": (("level", f"curve_{name}"), each) for name, each in curves.items()},
             **({} if own is None else {name: ("run", values) for name, values in _measured(own).items()}),
-            "input_spread": ("input", spreads),
+            "input_spread": ("input", [each.spread for each in uncertain]),
+            "input_label": ("input", [each.label for each in uncertain]),
+            "remedy": ("input", [each.remedy for each in uncertain]),
             "interval_share_left": ("input", list(least_known.values())),
         },
         coords={
@@ -134,21 +139,11 @@ def statement(prediction: "xr.Dataset") -> tuple[str, str, str]:
     low, high = (100 * each for each in interval(prediction, "friction_reduction"))
     shares = prediction["interval_share_left"].to_series()
     least = str(shares.idxmin())
-    what, remedy = _REMEDIES[least]
+    what, remedy = (prediction[name].sel(input=least).item() for name in ("input_label", "remedy"))
     advice = f"The least known input is the {what}; {remedy} would narrow the interval to {100 * shares[least]:.0f} %."
     if shares[least] > _NO_GAIN:
         advice = "No input measured better would narrow the interval much; runs with vibration would."
     return (f"Friction falls by {max(low, 0):.0f} to {high:.0f} % (80 %).", advice, _limits(prediction))
-
-
-_REMEDIES: Final = {
-    "rms_height": ("roughness", "a scan of the worn track"),
-    "vibration_amplitude": ("amplitude", "a vibrometer on the running rig"),
-    "friction_coefficient": ("dry friction", "a run without vibration"),
-}
-_NARROWEST: Final = 1e-6  # width of an interval, where all draws are at a limit
-_NO_GAIN: Final = 0.95
-_HOT: Final = 50.0  # K, mean rise of the contact from which metals soften or lubricants change
 
 
 def _limits(prediction: "xr.Dataset") -> str:
@@ -265,10 +260,7 @@ def _attributes(rig: Rig, inputs: RigInputs, own: OwnRuns | None, found: RatioDr
         "caveats": "\n".join(caveats),
         "assumptions": "\n".join(f"{key}: {reason}" for key, reason in rig.assumptions.items()),
         "closures": ", ".join(f"{name} {100 * weight:.0f} %" for name, weight in found.weights.items()),
-        "inputs": "\n".join(
-            f"{each.name}: {each.value:.4g}, {100 * each.spread:.0f} % ({each.reason})"
-            for each in (inputs.roughness, inputs.amplitude, inputs.friction)
-        ),
+        "inputs": "\n".join(each.text for each in (inputs.roughness, inputs.amplitude, inputs.friction)),
         "vibration_amplitude": inputs.amplitude.value,
         "sliding_speed": inputs.sliding_speed,
         "runs": 0 if own is None else own.tested.friction_ratio.size,

@@ -72,3 +72,58 @@ def test_a_sweep_counts_the_points_outside(sonolube: Program, rigs: Path, tmp_pa
     answer = sonolube("sweep", rigs / "tribometer.toml", "--set", PRINTED, *options, "--out", tmp_path, "--json").answer
     assert answer["statuses"] == {"periodic": 1, OUTSIDE: 1}
     assert answer["without_result"][0]["reason"].startswith(OUTSIDE)
+
+
+BRASS_ON_STEEL = """
+title = "Brass pin on 304 disc"
+source = "data sheets"
+
+[contact]
+normal_load = "5 N"
+nominal_area = "1 mm2"
+roughness = { rms_height = "0.8 um", summit_radius = "5 um", summit_density = "2e10 /m2" }
+softer = { youngs_modulus = "100 GPa", poisson_ratio = 0.34, yield_strength = "300 MPa" }
+harder = { youngs_modulus = "200 GPa", poisson_ratio = 0.29 }
+
+[friction]
+friction_coefficient = 0.3
+
+[sliding]
+sliding_speed = "200 mm/s"
+
+[drive]
+frequency = "20 kHz"
+
+[vibration]
+vibration_amplitude = "3 um"
+"""
+
+
+def test_beyond_the_gap_at_rest_wear_has_no_number_and_friction_a_ratio_within_what_is_predicted(
+    sonolube: Program, tmp_path: Path
+) -> None:
+    rig = tmp_path / "brass.toml"
+    rig.write_text(BRASS_ON_STEEL, encoding="utf-8")
+    ratio = sonolube("friction", rig, "--json").answer["friction_ratio"]["value"]
+    low, high = sonolube("predict", rig, "--out", tmp_path, "--json").answer["friction_ratio"]["interval_80"]
+    assert low < ratio < high
+    assert low > 0.02
+    assert high < 0.9
+    wear = sonolube("wear", rig, "--json").answer
+    assert wear["wear_reduction"]["value"] is None
+    assert "exceeds the gap at rest" in wear["reason"]
+    assert "smaller amplitude" not in wear["reason"]
+
+
+def test_a_prediction_tells_its_inputs_intervals_and_what_was_measured(
+    sonolube: Program, rigs: Path, tmp_path: Path
+) -> None:
+    ran = sonolube("predict", rigs / "tribometer.toml", "--out", tmp_path)
+    lines = ran.out.splitlines()
+    assert lines[1].startswith("Friction falls by ")
+    assert lines[1].endswith(" % (80 %).")
+    assert any(line.startswith("  measured A-1: friction ratio 0.37") for line in lines)
+    assert any(line.startswith("  input amplitude 2.5 um within 5 % (measured") for line in lines)
+    assert {path.name for path in tmp_path.iterdir()} == {
+        f"tribometer-prediction.{ending}" for ending in ("nc", "png", "svg")
+    }
