@@ -18,6 +18,7 @@ from sonolube.cli.console.outputs import OutputFile, OutputFolder, output_marks
 
 INPUT = "in.dat"
 ARGUMENTS = {  # of every command that writes: the least that it takes, in.dat being an input
+    "predict": (INPUT,),
     "simulate": (INPUT,),
     "response": (INPUT,),
     "transient": (INPUT,),

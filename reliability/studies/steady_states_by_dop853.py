@@ -172,6 +172,7 @@ def _trial(seed: int) -> Record:
     else:
         content["structure"]["tip_damping"] = f"{10 ** rng.uniform(0, 3)!r} N s/m"
     content["drive"]["voltage_offset"] = "0 V"
+    content["vibration"]["amplitude_source"] = "computed"
     points = _drawn(content, rng)
     load, frequency, voltage = points["normal_load"], points["frequency"], points["voltage_peak_to_peak"]
     rig = rig_from(content)

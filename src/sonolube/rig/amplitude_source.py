@@ -292,7 +292,13 @@ def _calibrated(rig: DrivenRig) -> DrivenRig:
             " amplitude computed"
         )
     structure = replace(rig.structure, drive_vector=scale * rig.structure.drive_vector)
-    stack = replace(rig.stack, free_stroke_per_volt=scale * rig.stack.free_stroke_per_volt, coupling_factor=None)
+    try:
+        stack = replace(rig.stack, free_stroke_per_volt=scale * rig.stack.free_stroke_per_volt, coupling_factor=None)
+    except InvalidInput:
+        raise InvalidInput(
+            f"{rig.title}: the measured amplitude of {format_si(wanted, 'm')} is {scale:.3g} times that computed, more"
+            " than the stack can give; check stack and structure, or choose the amplitude computed"
+        ) from None
     return replace(rig, structure=structure, stack=stack, calibration=scale, amplitude_source="measured")
 
 
