@@ -125,6 +125,6 @@ def calibration_figure(calibrations: "tuple[Calibration, ...]") -> "Figure":
     scores.set_yticklabels(
         [one.name.replace(" with ", "\nwith ").replace(" of the ", "\nof the ") for one in calibrations]
     )
-    scores.legend(loc="lower right")
+    scores.legend(loc="upper right")
     figure.legend(*coverage.get_legend_handles_labels(), loc="outside upper center", ncols=2)
     return figure
