@@ -121,7 +121,7 @@ def calibration_figure(calibrations: "tuple[Calibration, ...]") -> "Figure":
             scores.annotate(
                 f"{value:.3f}", (value, height), (3, 0), textcoords="offset points", va="center", fontsize=7
             )
-    scores.set(yticks=heights, xlabel="score (lower is better)", xlim=(0, 1.7))
+    scores.set(yticks=heights, xlabel="score (lower is better)", xlim=(0, 2.1))
     scores.set_yticklabels(
         [one.name.replace(" with ", "\nwith ").replace(" of the ", "\nof the ") for one in calibrations]
     )
