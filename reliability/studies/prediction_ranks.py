@@ -32,7 +32,7 @@ def _trial(seed: int) -> Record:
     true = means + deviations * rng.standard_normal(means.size)
     rigs = {rig.name: _generated(closure, rig, true, rng) for rig in published_rigs()}
     unseen = rigs.pop(_NEW_RIG)
-    weights = importance_weights(rig_log_likelihoods((closure,), rigs=tuple(rigs.values()))[closure.name])
+    weights = importance_weights(rig_log_likelihoods(closure, tuple(rigs.values())))
     draws = prior_draws(closure)
     record: dict[str, object] = {"closure": closure.name, "effective_draws": float(1 / np.sum(weights**2))}
     record |= {

@@ -12,7 +12,7 @@ from sonolube.prediction.closures import CLOSURES, Closure, Conditions
 from sonolube.prediction.evidence import published_rigs
 from sonolube.prediction.hierarchy import RigLikelihood, squared_distances
 from sonolube.prediction.learning import sampled_hyperparameters
-from sonolube.prediction.posterior import evidence_fingerprint, learned, posteriors_without, rig_log_likelihoods
+from sonolube.prediction.posterior import evidence_fingerprint, learned, posteriors_without, published_log_likelihoods
 from sonolube.prediction.stacking import importance_weights, stacking_weights, unseen_log_densities
 
 
@@ -54,8 +54,7 @@ def test_closures_depend_on_amplitude_over_decay_length_alone(closure: Closure) 
 @mark.parametrize("closure", CLOSURES, ids=lambda closure: closure.name)
 def test_an_ensemble_sampler_finds_the_posterior_of_the_weighed_prior_draws(closure: Closure) -> None:
     draws = sampled_hyperparameters(closure, published_rigs(), steps=600)
-    log_likelihoods = rig_log_likelihoods((closure,))[closure.name]
-    (posterior,) = posteriors_without({closure.name: log_likelihoods}, closures=(closure,))
+    (posterior,) = posteriors_without(published_log_likelihoods(), closures=(closure,))
     deviation = posterior.hyperparameters.std(axis=0)
     assert np.all(np.abs(draws.mean(axis=0) - posterior.hyperparameters.mean(axis=0)) < 0.35 * deviation)
     assert draws.std(axis=0) == approx(deviation, rel=0.4)
@@ -64,7 +63,7 @@ def test_an_ensemble_sampler_finds_the_posterior_of_the_weighed_prior_draws(clos
 def test_the_shipped_posterior_is_that_of_the_published_tests() -> None:
     content = json.loads(files("sonolube.prediction").joinpath("learned.json").read_text(encoding="utf-8"))
     assert content["evidence"] == evidence_fingerprint()
-    log_likelihoods = rig_log_likelihoods()
+    log_likelihoods = published_log_likelihoods()
     densities = [unseen_log_densities(log_likelihoods[closure.name]) for closure in CLOSURES]
     assert [one.weight for one in learned().friction] == approx(stacking_weights(np.array(densities)), abs=1e-3)
     for one, other in zip(learned().friction, posteriors_without(log_likelihoods), strict=True):

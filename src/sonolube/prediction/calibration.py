@@ -12,7 +12,7 @@ from scipy.stats import binomtest
 from sonolube.checks import Floats
 from sonolube.prediction.closures import CLOSURES, Closure
 from sonolube.prediction.evidence import TestedRig, published_rigs
-from sonolube.prediction.posterior import posteriors_without, rig_log_likelihoods
+from sonolube.prediction.posterior import posteriors_without, published_log_likelihoods
 from sonolube.prediction.predictive import ratio_draws
 from sonolube.prediction.scores import (
     binomial_interval,
@@ -134,10 +134,9 @@ def hierarchical_calibration(name: str, closures: tuple[Closure, ...]) -> Calibr
     -------
     Calibration
     """
-    log_likelihoods = rig_log_likelihoods(closures)
     predictions: list[UnseenPrediction] = []
     for index, rig in enumerate(published_rigs()):
-        posteriors = posteriors_without(log_likelihoods, left_out=(index,), closures=closures)
+        posteriors = posteriors_without(published_log_likelihoods(), left_out=(index,), closures=closures)
         predictions += _unseen(rig, ratio_draws(posteriors, rig.at, count=_DRAWS).friction_ratio)
     return Calibration(name=name, predictions=tuple(predictions))
 

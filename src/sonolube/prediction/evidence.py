@@ -10,10 +10,8 @@ import numpy as np
 from sonolube.checks import Floats
 from sonolube.contact import decay_length, separation
 from sonolube.prediction.closures import Conditions, UncertainConditions
+from sonolube.rig.amplitude_source import AMPLITUDE_ERROR
 from sonolube.validation.published_tests import FrictionTest, friction_tests
-
-MEASURED_SPREAD: Final = 0.05
-"""Standard deviation of the logarithm of a measured vibration amplitude."""
 
 _RESONANCE: Final = (
     2.0,
@@ -68,7 +66,7 @@ def published_rigs() -> tuple[TestedRig, ...]:
 
 def _rig(name: str, tests: tuple[FrictionTest, ...]) -> TestedRig:
     """One set of tests as a rig."""
-    gain, amplitude_spread = _RESONANCE if name == "H" else (1.0, MEASURED_SPREAD)
+    gain, amplitude_spread = _RESONANCE if name == "H" else (1.0, AMPLITUDE_ERROR)
     lengths = [
         decay_length(test.contact, separation=separation(test.contact, normal_load=test.normal_load)) for test in tests
     ]

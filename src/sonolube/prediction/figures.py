@@ -43,7 +43,7 @@ def prediction_figure(prediction: "xr.Dataset") -> "Figure":
         curves = prediction[f"friction_ratio_over_{name}"]
         draw_bands(axes, places, curves.to_numpy())
         _points(axes, condition, scale, prediction)
-        axes.axvline(scale * prediction.attrs[condition], color="0.4", lw=0.8, ls=":")
+        axes.axvline(scale * prediction.attrs[condition], color="0.4", lw=0.8, ls=":", label="operating point")
         axes.set(xlabel=label, xscale="log", xlim=(places[0], places[-1]), ylim=(-0.05, 1.15))
     panels[0].set_ylabel("friction ratio")
     handles, labels = panels[0].get_legend_handles_labels()

@@ -1,6 +1,6 @@
 """Inputs of a prediction from a rig: values, and how well each is known."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import log
 from typing import Final
 
@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 from sonolube.contact import decay_length
 from sonolube.errors import InvalidInput
 from sonolube.prediction.closures import Conditions, UncertainConditions
-from sonolube.prediction.evidence import MEASURED_SPREAD
 from sonolube.rig import Distribution, FrictionPoint, Rig, friction_point
+from sonolube.rig.amplitude_source import AMPLITUDE_ERROR
 from sonolube.rig.linear_response import rest_separation
 from sonolube.units import format_si
 from sonolube.vocabulary import quantity
@@ -20,7 +20,7 @@ _ROUGHNESS_KEY: Final = "contact.roughness.rms_height"
 _FRICTION_KEY: Final = "friction.friction_coefficient"
 _GIVEN_ROUGHNESS: Final = 0.1
 _ASSUMED_ROUGHNESS: Final = 0.5
-_AMPLITUDE_SPREADS: Final = {"measured": MEASURED_SPREAD, "computed": 0.15, "per-volt": 0.1}
+_AMPLITUDE_SPREADS: Final = {"measured": AMPLITUDE_ERROR, "computed": 0.15, "per-volt": 0.1}
 _GIVEN_FRICTION: Final = 0.1
 _AMPLITUDE_KEYS: Final = {
     "measured": ("vibration.vibration_amplitude",),
@@ -58,7 +58,7 @@ class Input:
 
     @property
     def text(self) -> str:
-        """Value, spread and reason in a line."""
+        """Value, spread and reason in a sentence."""
         value = format_si(self.value, quantity(self.name).unit)
         return f"{self.label} {value} within {100 * self.spread:.0f} % ({self.reason})"
 
@@ -94,6 +94,16 @@ class RigInputs:
     normal_load: float
     voltage_peak_to_peak: float | None
     point: FrictionPoint
+
+    @property
+    def uncertain(self) -> tuple[Input, Input, Input]:
+        """Roughness, amplitude and dry friction."""
+        return self.roughness, self.amplitude, self.friction
+
+    def with_input(self, known: Input) -> "RigInputs":
+        """Return the inputs with the uncertain one of the same name replaced."""
+        roughness, amplitude, friction = (known if known.name == each.name else each for each in self.uncertain)
+        return replace(self, roughness=roughness, amplitude=amplitude, friction=friction)
 
     def at(
         self, *, vibration_amplitude: ArrayLike | None = None, sliding_speed: ArrayLike | None = None
@@ -154,31 +164,19 @@ def rig_inputs(rig: Rig) -> RigInputs:
 
 def _roughness(rig: Rig) -> Input:
     """Root mean square height of the surfaces."""
-    remedy = "a scan of the worn track"
-    own = rig.uncertainty.get(_ROUGHNESS_KEY)
-    if own is not None:
-        value, spread = _lognormal(own)
-        return Input(
-            name="rms_height",
-            label="roughness",
-            value=value,
-            spread=spread,
-            reason=f"{own.text} in the rig file",
-            remedy=remedy,
-        )
     assumed = any(_ROUGHNESS_KEY.startswith(key) for key in rig.assumptions)
-    spread, reason = (
-        (_ASSUMED_ROUGHNESS, "assumed in the rig file, not measured")
-        if assumed
-        else (_GIVEN_ROUGHNESS, "given without a distribution")
+    value, spread, reason = _own_distribution(rig, _ROUGHNESS_KEY) or (
+        rig.contact.roughness.rms_height,
+        _ASSUMED_ROUGHNESS if assumed else _GIVEN_ROUGHNESS,
+        "assumed in the rig file, not measured" if assumed else "given without a distribution",
     )
     return Input(
         name="rms_height",
         label="roughness",
-        value=rig.contact.roughness.rms_height,
+        value=value,
         spread=spread,
         reason=reason,
-        remedy=remedy,
+        remedy="a scan of the worn track",
     )
 
 
@@ -186,8 +184,7 @@ def _amplitude(rig: Rig, point: FrictionPoint) -> Input:
     """Vibration amplitude, by the source that all commands take it from."""
     spread, reason = _AMPLITUDE_SPREADS[point.amplitude_source], point.amplitude_origin
     for key in _AMPLITUDE_KEYS[point.amplitude_source]:
-        own = rig.uncertainty.get(key)
-        if own is not None:
+        if own := rig.uncertainty.get(key):
             spread, reason = _lognormal(own)[1], f"{reason}; {key} {own.text}"
     return Input(
         name="vibration_amplitude",
@@ -201,26 +198,22 @@ def _amplitude(rig: Rig, point: FrictionPoint) -> Input:
 
 def _friction(rig: Rig) -> Input:
     """Intrinsic coefficient of friction."""
-    remedy = "a run without vibration on the same pair"
-    own = rig.uncertainty.get(_FRICTION_KEY)
-    if own is not None:
-        value, spread = _lognormal(own)
-        return Input(
-            name="friction_coefficient",
-            label="dry friction",
-            value=value,
-            spread=spread,
-            reason=own.text,
-            remedy=remedy,
-        )
+    given = (rig.friction_coefficient, _GIVEN_FRICTION, "given without a distribution")
+    value, spread, reason = _own_distribution(rig, _FRICTION_KEY) or given
     return Input(
         name="friction_coefficient",
         label="dry friction",
-        value=rig.friction_coefficient,
-        spread=_GIVEN_FRICTION,
-        reason="given without a distribution",
-        remedy=remedy,
+        value=value,
+        spread=spread,
+        reason=reason,
+        remedy="a run without vibration on the same pair",
     )
+
+
+def _own_distribution(rig: Rig, key: str) -> tuple[float, float, str] | None:
+    """Median, spread and reason by the distribution of the rig file, where it has one."""
+    own = rig.uncertainty.get(key)
+    return None if own is None else (*_lognormal(own), f"{own.text} in the rig file")
 
 
 def _lognormal(distribution: Distribution) -> tuple[float, float]:

@@ -13,7 +13,7 @@ from sonolube.checks import Floats
 from sonolube.prediction.closures import CLOSURES, Closure
 from sonolube.prediction.evidence import TestedRig, published_rigs
 from sonolube.prediction.hierarchy import RigLikelihood, hyperprior, log_hyperprior
-from sonolube.prediction.posterior import LEARNED_FILE, rig_log_likelihoods, write_learned
+from sonolube.prediction.posterior import LEARNED_FILE, published_log_likelihoods, write_learned
 from sonolube.prediction.stacking import stacking_weights, unseen_log_densities
 from sonolube.prediction.wear import WEAR_PRIOR, log_wear_posterior, published_wear
 
@@ -73,7 +73,7 @@ def ensemble_draws(
 
 def learn(path: Path) -> None:
     """Sample all posteriors, weigh the closures, and write what was learned."""
-    log_likelihoods = rig_log_likelihoods()
+    log_likelihoods = published_log_likelihoods()
     densities = [unseen_log_densities(log_likelihoods[closure.name]) for closure in CLOSURES]
     weights = stacking_weights(np.array(densities))
     friction = {

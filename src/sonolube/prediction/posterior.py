@@ -1,4 +1,4 @@
-"""What the published tests say of the hyperparameters: draws and weights by closure, shipped as data."""
+"""Posterior of the hyperparameters given the published tests: draws and weights by closure, shipped as data."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -91,7 +91,7 @@ def write_learned(path: Path, *, friction: Mapping[str, tuple[float, Floats]], w
         },
         "wear": {"draws": _columns(WEAR_HYPERPARAMETERS, wear)},
     }
-    write_atomically(path, json.dumps(content, indent=1) + "\n")
+    write_atomically(path, json.dumps(content).replace("], ", "],\n") + "\n")  # one column a line
 
 
 def evidence_fingerprint() -> str:
@@ -110,7 +110,7 @@ def posteriors_without(
     Parameters
     ----------
     log_likelihoods : mapping of str to ndarray, shape (h, r)
-        By name of the closure, as `rig_log_likelihoods` returns them.
+        By name of the closure, as `published_log_likelihoods` returns them.
     left_out : tuple of int
         Columns of rigs.
     closures : sequence of Closure
@@ -136,26 +136,20 @@ def prior_draws(closure: Closure) -> Floats:
     return means + deviations * standard_normals(PRIOR_DRAWS, columns=len(HYPERPARAMETERS), seed=2)
 
 
-def rig_log_likelihoods(
-    closures: tuple[Closure, ...] = CLOSURES, *, rigs: tuple[TestedRig, ...] | None = None
-) -> dict[str, Floats]:
-    """Logarithm of the likelihood of each rig at each draw from the prior, by name of the closure.
+def rig_log_likelihoods(closure: Closure, rigs: Sequence[TestedRig]) -> Floats:
+    """Logarithm of the likelihood of each rig at each draw from the prior, shape (h, r)."""
+    return np.column_stack([RigLikelihood.of(closure, rig)(prior_draws(closure)) for rig in rigs])
 
-    Parameters
-    ----------
-    closures : tuple of Closure
-    rigs : tuple of TestedRig, optional
-        The published ones where absent.
+
+@cache
+def published_log_likelihoods() -> Mapping[str, Floats]:
+    """Logarithm of the likelihood of each published rig at each draw from the prior, by name of the closure.
 
     Returns
     -------
-    dict of str to ndarray, shape (h, r)
+    mapping of str to ndarray, shape (h, r)
     """
-    known = published_rigs() if rigs is None else rigs
-    return {
-        closure.name: np.column_stack([RigLikelihood.of(closure, rig)(prior_draws(closure)) for rig in known])
-        for closure in closures
-    }
+    return {closure.name: rig_log_likelihoods(closure, published_rigs()) for closure in CLOSURES}
 
 
 def _columns(names: Sequence[str], draws: Floats) -> dict[str, list[float]]:

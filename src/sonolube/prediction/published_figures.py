@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from functools import cache
 from itertools import combinations
 from typing import TYPE_CHECKING, Final
 
@@ -14,7 +13,7 @@ from sonolube.prediction.calibration import calibrations
 from sonolube.prediction.closures import Conditions
 from sonolube.prediction.evidence import TestedRig, published_rigs
 from sonolube.prediction.figures import calibration_figure, draw_bands
-from sonolube.prediction.posterior import Posterior, posteriors_without, rig_log_likelihoods
+from sonolube.prediction.posterior import Posterior, posteriors_without, published_log_likelihoods
 from sonolube.prediction.predictive import ratio_draws
 from sonolube.prediction.scores import LEVELS, central_interval
 
@@ -152,13 +151,7 @@ def _unseen(name: str) -> tuple[TestedRig, tuple[Posterior, ...]]:
     """A published rig, and the posteriors by all others."""
     rigs = published_rigs()
     index = [rig.name for rig in rigs].index(name)
-    return rigs[index], posteriors_without(_log_likelihoods(), left_out=(index,))
-
-
-@cache
-def _log_likelihoods() -> dict[str, Floats]:
-    """Likelihoods of the published rigs, which take seconds."""
-    return rig_log_likelihoods()
+    return rigs[index], posteriors_without(published_log_likelihoods(), left_out=(index,))
 
 
 def _along(at: Conditions, condition: str, values: Floats) -> Conditions:

@@ -13,6 +13,7 @@ from sonolube.prediction.own_runs import OwnRuns, own_runs
 from sonolube.prediction.posterior import learned
 from sonolube.prediction.predictive import RatioDraws, ratio_draws
 from sonolube.prediction.scores import LEVELS, central_interval
+from sonolube.prediction.tested_range import extrapolation_caveats
 from sonolube.rig import Rig, thermal_solid
 from sonolube.thermal import EllipticSource, contact_rise
 from sonolube.vocabulary import quantity
@@ -21,7 +22,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _CURVE: Final = 33  # points of a curve
-_KNOWN_WELL: Final = {"rms_height": 0.05, "vibration_amplitude": 0.02}  # spreads by a careful measurement
+_KNOWN_WELL: Final = {"rms_height": 0.05, "vibration_amplitude": 0.02, "friction_coefficient": 0.03}
+# spreads by a careful measurement
 _NO_GAIN: Final = 0.95  # share of an interval from which on measuring an input is not worth it
 _NARROWEST: Final = 1e-6  # width of an interval, where all draws are at a limit
 _HOT: Final = 50.0  # K, mean rise of the contact from which metals soften or lubricants change
@@ -54,9 +56,9 @@ def predict(
     xarray.Dataset
         Over `draw`: friction ratio, reduction, force and coefficient, wear rate ratio and reduction, and the mean
         temperature rise of the contact where both materials are given. Over `level`: quantiles of the friction ratio
-        along `curve_amplitude` and `curve_speed`. Over `input`: spread of each uncertain input and the share of the
-        80 % interval of the friction ratio that would be left if it were known well. Attributes hold caveats,
-        assumptions, weights of closures and the statement in words.
+        along `curve_amplitude` and `curve_speed`. Over `input`, the least known first: spread of each uncertain input,
+        and the shares of the 80 % intervals of friction ratio and friction force that would be left if it were known
+        well. Attributes hold caveats, assumptions, weights of closures and the statement in words.
 
     Raises
     ------
@@ -69,31 +71,36 @@ def predict(
 
     inputs = rig_inputs(rig)
     own = None if runs is None else own_runs(runs, inputs, title=rig.title)
+    if own is not None and own.friction is not None:
+        inputs = inputs.with_input(own.friction)
     found = _ratios(inputs, own, draws=draws, seed=seed)
-    ratio = found.friction_ratio[:, 0]
-    drawn = _quantities(rig, inputs, own, ratio, pin, disc, seed)
+    drawn = _quantities(rig, inputs, own, found.friction_ratio[:, 0], pin, disc, seed)
     amplitudes, speeds = _curve_points(inputs.amplitude.value), _curve_points(inputs.sliding_speed)
-    least_known = _shares_left(inputs, own, draws=draws, seed=seed)
     curves = {
         "amplitude": _quantiles(inputs, own, vibration_amplitude=amplitudes),
         "speed": _quantiles(inputs, own, sliding_speed=speeds),
     }
-    uncertain = (inputs.roughness, inputs.amplitude, inputs.friction)
+    uncertain = sorted(inputs.uncertain, key=lambda each: -each.spread)
+    shares = np.array([_shares_left(each, inputs, own, drawn, seed=seed) for each in uncertain])
     result = xr.Dataset(
         {
             **{name: ("draw", values) for name, values in drawn.items()},
             **{f"friction_ratio_over_{name}": (("level", f"curve_{name}"), each) for name, each in curves.items()},
             **({} if own is None else {name: ("run", values) for name, values in _measured(own).items()}),
+            "input_value": ("input", [each.value for each in uncertain]),
             "input_spread": ("input", [each.spread for each in uncertain]),
             "input_label": ("input", [each.label for each in uncertain]),
+            "input_text": ("input", [each.text for each in uncertain]),
+            "reason": ("input", [each.reason for each in uncertain]),
             "remedy": ("input", [each.remedy for each in uncertain]),
-            "interval_share_left": ("input", list(least_known.values())),
+            "interval_share_left": ("input", shares[:, 0]),
+            "force_interval_share_left": ("input", shares[:, 1]),
         },
         coords={
             "level": list(LEVELS),
             "curve_amplitude": amplitudes,
             "curve_speed": speeds,
-            "input": list(least_known),
+            "input": [each.name for each in uncertain],
         },
         attrs=_attributes(rig, inputs, own, found),
     )
@@ -140,7 +147,8 @@ def statement(prediction: "xr.Dataset") -> tuple[str, str, str]:
     shares = prediction["interval_share_left"].to_series()
     least = str(shares.idxmin())
     what, remedy = (prediction[name].sel(input=least).item() for name in ("input_label", "remedy"))
-    advice = f"The least known input is the {what}; {remedy} would narrow the interval to {100 * shares[least]:.0f} %."
+    left = f"{100 * shares[least]:.0f} % of its width"
+    advice = f"The least known input is the {what}; {remedy} would narrow the interval to {left}."
     if shares[least] > _NO_GAIN:
         advice = "No input measured better would narrow the interval much; runs with vibration would."
     return (f"Friction falls by {max(low, 0):.0f} to {high:.0f} % (80 %).", advice, _limits(prediction))
@@ -170,9 +178,7 @@ def _quantities(
     rig: Rig, inputs: RigInputs, own: OwnRuns | None, ratio: Floats, pin: str | None, disc: str | None, seed: int
 ) -> dict[str, Floats]:
     """Draws of all quantities that follow from the friction ratio, and of wear."""
-    rng = np.random.default_rng(seed + 1)
-    friction = inputs.friction if own is None or own.friction is None else own.friction
-    intrinsic = friction.value * np.exp(friction.spread * rng.standard_normal(ratio.size))
+    intrinsic = _intrinsic_coefficients(inputs.friction, count=ratio.size, seed=seed)
     measured = np.empty(0) if own is None else own.wear_rate_ratio
     wear = learned().wear.wear_rate_ratios(ratio.size, measured=measured, seed=seed)
     found = {
@@ -222,32 +228,36 @@ def _quantiles(inputs: RigInputs, own: OwnRuns | None, **along: Floats) -> Float
     return np.quantile(found.friction_ratio, LEVELS, axis=0)
 
 
-def _shares_left(inputs: RigInputs, own: OwnRuns | None, *, draws: int, seed: int) -> Mapping[str, float]:
-    """Width of the 80 % interval of the friction ratio if one input were known well, over its width now."""
-    width = max(_width(inputs, own, draws=draws, seed=seed), _NARROWEST)
-    better = {
-        "rms_height": replace(inputs, roughness=_known_well(inputs.roughness)),
-        "vibration_amplitude": replace(inputs, amplitude=_known_well(inputs.amplitude)),
-    }
-    shares = {name: _width(each, own, draws=draws, seed=seed) / width for name, each in better.items()}
-    return shares | {"friction_coefficient": 1.0}  # on which the ratio does not depend
+def _intrinsic_coefficients(friction: Input, *, count: int, seed: int) -> Floats:
+    """Draws of the coefficient of friction without vibration."""
+    return friction.value * np.exp(friction.spread * np.random.default_rng(seed + 1).standard_normal(count))
 
 
-def _known_well(known: Input) -> Input:
-    """Input as a careful measurement gives it."""
-    return replace(known, spread=min(known.spread, _KNOWN_WELL[known.name]))
+def _shares_left(
+    uncertain: Input, inputs: RigInputs, own: OwnRuns | None, drawn: Mapping[str, Floats], *, seed: int
+) -> tuple[float, float]:
+    """Widths of the 80 % intervals of friction ratio and force if one input were known well, over those now."""
+    better = inputs.with_input(replace(uncertain, spread=min(uncertain.spread, _KNOWN_WELL[uncertain.name])))
+    ratio = drawn["friction_ratio"]
+    if better.friction is inputs.friction:
+        ratio = _ratios(better, own, draws=ratio.size, seed=seed).friction_ratio[:, 0]
+    intrinsic = _intrinsic_coefficients(better.friction, count=ratio.size, seed=seed)
+    return (
+        _width(ratio) / max(_width(drawn["friction_ratio"]), _NARROWEST),
+        _width(ratio * intrinsic) / max(_width(drawn["friction_coefficient"]), _NARROWEST),
+    )
 
 
-def _width(inputs: RigInputs, own: OwnRuns | None, *, draws: int, seed: int) -> float:
-    """Width of the 80 % interval of the friction ratio at the operating point."""
-    low, high = central_interval(_ratios(inputs, own, draws=draws, seed=seed).friction_ratio[:, 0], 0.8)
+def _width(draws: Floats) -> float:
+    """Width of the 80 % interval."""
+    low, high = central_interval(draws, 0.8)
     return float(high - low)
 
 
 def _attributes(rig: Rig, inputs: RigInputs, own: OwnRuns | None, found: RatioDraws) -> dict[str, object]:
     """Title, caveats, assumptions, weights of closures and numbers without a distribution."""
     point = inputs.point
-    caveats = list(point.caveats)
+    caveats = [*point.caveats, *extrapolation_caveats(rig, inputs)]
     if own is not None and not found.explained:
         caveats.append(
             f"no closure explains the measured runs (probability {found.surprise:.1g}); check their amplitude, load and"
@@ -260,7 +270,6 @@ def _attributes(rig: Rig, inputs: RigInputs, own: OwnRuns | None, found: RatioDr
         "caveats": "\n".join(caveats),
         "assumptions": "\n".join(f"{key}: {reason}" for key, reason in rig.assumptions.items()),
         "closures": ", ".join(f"{name} {100 * weight:.0f} %" for name, weight in found.weights.items()),
-        "inputs": "\n".join(each.text for each in (inputs.roughness, inputs.amplitude, inputs.friction)),
         "vibration_amplitude": inputs.amplitude.value,
         "sliding_speed": inputs.sliding_speed,
         "runs": 0 if own is None else own.tested.friction_ratio.size,

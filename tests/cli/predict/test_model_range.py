@@ -123,7 +123,10 @@ def test_a_prediction_tells_its_inputs_intervals_and_what_was_measured(
     assert lines[1].startswith("Friction falls by ")
     assert lines[1].endswith(" % (80 %).")
     assert any(line.startswith("  measured A-1: friction ratio 0.37") for line in lines)
-    assert any(line.startswith("  input amplitude 2.5 um within 5 % (measured") for line in lines)
+    (amplitude,) = (line.split("  ") for line in lines if line.startswith("  amplitude "))
+    words = [word.strip() for word in amplitude if word]
+    assert words[:3] == ["amplitude", "2.5 um within 5 %", "a vibrometer on the running rig"]
+    assert words[4].startswith("measured, 2.5 um at 28 V")
     assert {path.name for path in tmp_path.iterdir()} == {
         f"tribometer-prediction.{ending}" for ending in ("nc", "png", "svg")
     }

@@ -21,6 +21,13 @@ from sonolube.rig import Rig
 from sonolube.units import format_si
 from sonolube.vocabulary import quantity
 
+_INPUT_HEADS = [
+    "  least known inputs",
+    "value",
+    "to know it better",
+    "left of the intervals of ratio and force",
+    "known from",
+]
 _PERCENT = ("friction_reduction", "wear_reduction")
 
 
@@ -81,7 +88,7 @@ class PredictionAnswer(Answer):
             f"{self.rig.title}, {format_si(self.rig.normal_load, 'N')}",
             *attributes["statement"].split("\n"),
             *grid([heads, *map(self._row, self._names())]),
-            *(f"  input {line}" for line in attributes["inputs"].split("\n")),
+            *grid([_INPUT_HEADS, *map(self._input_row, self._inputs())]),
             *about,
             *(f"  measured {one.label}: {one.text}" for one in self.measured),
         ]
@@ -92,7 +99,7 @@ class PredictionAnswer(Answer):
             "rig": self.rig.title,
             "statement": self.prediction.attrs["statement"].split("\n"),
             **{name: self._object(name) for name in self._names()},
-            "inputs": self.prediction.attrs["inputs"].split("\n"),
+            "inputs": [one.input_text.item() for one in self._inputs()],
             "measured": [one.object() for one in self.measured],
             "interval_share_left": {
                 str(name): float(share) for name, share in self.prediction["interval_share_left"].to_series().items()
@@ -111,6 +118,17 @@ class PredictionAnswer(Answer):
     def files(self) -> Mapping[str, xr.Dataset]:
         """Draws and curves."""
         return {f"{self.name}.nc": self.prediction}
+
+    def _inputs(self) -> list[xr.Dataset]:
+        """Uncertain inputs, the least known first."""
+        return [self.prediction.sel(input=name) for name in self.prediction["input"].to_numpy()]
+
+    def _input_row(self, one: xr.Dataset) -> list[str]:
+        """Uncertain input with its spread, how to know it better, and what of the intervals would be left."""
+        left = [f"{100 * one[name].item():.0f} %" for name in ("interval_share_left", "force_interval_share_left")]
+        value = format_si(one.input_value.item(), quantity(one.input.item()).unit)
+        known = f"{value} within {100 * one.input_spread.item():.0f} %"
+        return [f"  {one.input_label.item()}", known, one.remedy.item(), " and ".join(left), one.reason.item()]
 
     def _names(self) -> list[str]:
         """Predicted quantities in their order."""
