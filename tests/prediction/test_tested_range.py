@@ -16,7 +16,8 @@ def tribometer(*changes: str) -> Rig:
 
 
 def extrapolation(rig: Rig) -> str:
-    (line,) = (each for each in predict(rig).attrs["caveats"].split("\n") if "extrapolates" in each)
+    caveats: str = predict(rig).attrs["caveats"]
+    (line,) = (each for each in caveats.split("\n") if "extrapolates" in each)
     return line
 
 
