@@ -1,11 +1,12 @@
 """Rig: two bodies in sliding contact, and the actuator that vibrates one of them."""
 
 from collections.abc import Mapping
+from copy import deepcopy
 from dataclasses import dataclass, field
 from html import escape
 from pathlib import Path
 from types import MappingProxyType
-from typing import Final, Literal, Protocol, get_args
+from typing import Any, Final, Literal, Protocol, get_args
 
 from sonolube.actuator import PiezoStack
 from sonolube.actuator.drive import Drive
@@ -51,6 +52,10 @@ class MeasuredUnder:
 
 class RigEntries(Protocol):
     """Entries of the file that a rig was read from."""
+
+    @property
+    def content(self) -> Mapping[str, Any]:
+        """Tables and values as they are written."""
 
     def replaced(self, key: str, value: str | float) -> "Rig":
         """Return the rig of the file with one entry replaced."""
@@ -183,6 +188,16 @@ class Rig:
             If it cannot be written, or the rig was not read from a file.
         """
         return self._file().write(path)
+
+    def content(self) -> dict[str, Any]:
+        """Return the content of the rig's file, its entries as they are written.
+
+        Raises
+        ------
+        InvalidInput
+            If the rig was not read from a file.
+        """
+        return deepcopy(dict(self._file().content))
 
     def table(self) -> list[tuple[str, str]]:
         """Return the main quantities of the rig with their units, as rows of name and text."""
