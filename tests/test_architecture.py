@@ -6,6 +6,7 @@ import subprocess
 import sys
 from collections import Counter
 from pathlib import Path
+from types import ModuleType
 
 import grimp
 import pytest
@@ -86,12 +87,12 @@ def _faces() -> list[str]:
 
 
 @pytest.mark.parametrize("room", _faces())
-def test_every_name_of_a_face_is_there_and_is_no_module(room: str) -> None:
+def test_every_name_of_a_face_is_there_and_means_one_thing(room: str) -> None:
     face = importlib.import_module(room)
     submodules = {module.name for module in pkgutil.iter_modules(face.__path__)}
     assert face.__all__
     assert [name for name in face.__all__ if not hasattr(face, name)] == []
-    assert submodules & set(face.__all__) == set()
+    assert [name for name in submodules & set(face.__all__) if not isinstance(getattr(face, name), ModuleType)] == []
 
 
 def test_a_face_imports_nothing_before_a_name_is_used() -> None:

@@ -36,7 +36,7 @@ def tribometer() -> Rig:
 
 def test_the_steady_vibration_is_drawn_and_stored_over_one_period(tribometer: Rig) -> None:
     result = simulate(tribometer)
-    gap, force = simulation_figure(tribometer, result).axes
+    gap, force = simulation_figure(simulation_dataset(tribometer, result)).axes
     assert gap.lines[0].get_ydata() == approx(1e6 * result.vibration.motions[0].displacement)
     assert force.lines[0].get_ydata() == approx(result.vibration.motions[0].normal_force)
     assert (force.get_xlabel(), force.get_ylabel()) == ("Time [µs]", "Contact force [N]")

@@ -247,7 +247,7 @@ def _computed_map(rig: Rig, kind: str, backend: Backend, **axes: ArrayLike) -> "
     columns["reason"] = np.array(points.reasons)[points.reason].reshape(shape)
     power = columns.pop("actuator_power")
     about = (
-        {"rig": rig.title, "map": kind}
+        {"result": "map", "rig": rig.title, "map": kind}
         | amplitude_labels(rig)
         | ({"device": device_name(backend)} if backend == "gpu" else {})
     )

@@ -193,7 +193,13 @@ def _coordinates(plan: SweepPlan) -> dict[str, tuple[str, NDArray[Any], dict[str
 def _attributes(plan: SweepPlan, device: str) -> dict[str, str]:
     """Attributes of the dataset: title, rig, program version, digest of the plan and device."""
     title = str(plan.content["title"])
-    attributes = {"title": f"Sweep of {title}", "rig": title, "source": f"sonolube {__version__}", "sweep": plan.digest}
+    attributes = {
+        "result": "sweep",
+        "title": f"Sweep of {title}",
+        "rig": title,
+        "source": f"sonolube {__version__}",
+        "sweep": plan.digest,
+    }
     assumed: dict[str, str] = plan.content.get("assumptions", {})
     attributes["assumptions"] = "\n".join(f"{key}: {reason}" for key, reason in assumed.items())
     if (rig := plan.own_rig()) is not None:

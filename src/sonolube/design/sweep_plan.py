@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from sonolube import __version__
 from sonolube.checks import require_finite, require_non_negative, require_positive
 from sonolube.errors import InvalidInput, SonolubeError
-from sonolube.rig import NUMBERS, Rig, read_rig, rig_content, rig_from
+from sonolube.rig import NUMBERS, Rig, read_rig, rig_from
 from sonolube.rig.file.uncertainty import number_keys
 
 OPERATING_CONDITIONS = {
@@ -111,12 +111,12 @@ class SweepPlan:
         return names
 
 
-def grid_plan(rig_file: str | Path, *, over: Mapping[str, ArrayLike], changes: Sequence[str] = ()) -> SweepPlan:
+def grid_plan(rig_file: str | Path | Rig, *, over: Mapping[str, ArrayLike], changes: Sequence[str] = ()) -> SweepPlan:
     """Full factorial design: every value of each key is combined with every value of the others.
 
     Parameters
     ----------
-    rig_file : str or Path
+    rig_file : str, Path or Rig
     over : mapping of str to array_like, shape (n,)
         Values by dotted key of the file, numbers in SI or text.
     changes : sequence of str
@@ -142,12 +142,12 @@ def grid_plan(rig_file: str | Path, *, over: Mapping[str, ArrayLike], changes: S
     return _validated_plan(rig_file, {key: over[key] for key in order}, changes, grid=True)
 
 
-def list_plan(rig_file: str | Path, *, over: Mapping[str, ArrayLike], changes: Sequence[str] = ()) -> SweepPlan:
+def list_plan(rig_file: str | Path | Rig, *, over: Mapping[str, ArrayLike], changes: Sequence[str] = ()) -> SweepPlan:
     """List of points: the i-th values of all keys make the i-th point.
 
     Parameters
     ----------
-    rig_file : str or Path
+    rig_file : str, Path or Rig
     over : mapping of str to array_like, shape (n,)
         Values by dotted key of the file, numbers in SI or text; the same number of each.
     changes : sequence of str
@@ -171,7 +171,7 @@ def list_plan(rig_file: str | Path, *, over: Mapping[str, ArrayLike], changes: S
 
 
 def latin_hypercube_plan(
-    rig_file: str | Path,
+    rig_file: str | Path | Rig,
     *,
     over: Mapping[str, tuple[float, float]],
     points: int,
@@ -182,7 +182,7 @@ def latin_hypercube_plan(
 
     Parameters
     ----------
-    rig_file : str or Path
+    rig_file : str, Path or Rig
     over : mapping of str to pair of float
         Lowest and highest value by dotted key, in SI.
     points : int
@@ -222,20 +222,26 @@ def latin_hypercube_plan(
 
 
 def _validated_plan(
-    rig_file: str | Path, over: Mapping[str, ArrayLike], changes: Sequence[str], *, grid: bool
+    rig_file: str | Path | Rig, over: Mapping[str, ArrayLike], changes: Sequence[str], *, grid: bool
 ) -> SweepPlan:
     """Plan whose rig file, keys and values have been checked."""
     if not over:
         raise InvalidInput("a sweep needs at least one key to vary, such as drive.voltage_peak_to_peak")
     values = {key: np.atleast_1d(np.asarray(array)) for key, array in over.items()}
-    read_rig(rig_file, changes=changes)  # errors in the file itself name the file
-    plan = SweepPlan(content=rig_content(rig_file, changes=changes), values=values, grid=grid)
+    plan = SweepPlan(content=_content(rig_file, changes), values=values, grid=grid)
     for key, array in values.items():
         _check_values(plan, key, array)
     if not grid and len({array.size for array in values.values()}) > 1:
         sizes = ", ".join(f"{array.size} of {key}" for key, array in values.items())
         raise InvalidInput(f"a list of points needs the same number of values of each key, got {sizes}")
     return plan
+
+
+def _content(rig_file: str | Path | Rig, changes: Sequence[str]) -> dict[str, Any]:
+    """Content of the file of a rig."""
+    if isinstance(rig_file, Rig):
+        return rig_file.content()
+    return read_rig(rig_file, changes=changes).content()  # errors in the file itself name the file
 
 
 def _check_values(plan: SweepPlan, key: str, array: NDArray[Any]) -> None:

@@ -266,6 +266,7 @@ def _attributes(rig: Rig, inputs: RigInputs, own: OwnRuns | None, found: RatioDr
     if own is not None:
         caveats += own.caveats
     attributes: dict[str, object] = {
+        "result": "prediction",
         "title": rig.title,
         "caveats": "\n".join(caveats),
         "assumptions": "\n".join(f"{key}: {reason}" for key, reason in rig.assumptions.items()),

@@ -111,7 +111,7 @@ def measurement_object(report: MeasurementReport) -> dict[str, Any]:
 
 def measurement_lines(report: MeasurementReport) -> list[str]:
     """Values, tables and results that were not found of every sheet, as lines of text; caveats apart."""
-    return [line for sheet in report.sheets for line in _sheet_lines(sheet)]
+    return [line for sheet in report.sheets for line in sheet.lines()]
 
 
 def measurement_caveats(report: MeasurementReport) -> list[str]:
@@ -155,24 +155,3 @@ def _table_object(table: Table) -> dict[str, Any]:
 def _finite(cell: float | str | None) -> float | str | None:
     """Cell, or None for a number that JSON has no notation for."""
     return None if isinstance(cell, float) and cell - cell != 0 else cell
-
-
-_SIZE = ("field", "length", "lateral unit", "setting class")  # origins of a scan that text gives as well as the page
-
-
-def _sheet_lines(sheet: Sheet) -> list[str]:
-    """Sheet as lines of text, caveats apart."""
-    width = max((len(value.label) for value in sheet.values), default=0)
-    size = [f"  {name}: {text}" for name, text in sheet.source.items() if name in _SIZE]
-    lines = [sheet.title, *size, *(f"  {value.label:<{width}}  {value.text}" for value in sheet.values)]
-    for table in sheet.tables:
-        lines += ["", f"  {table.title}", *_table_lines(table)]
-    return [*lines, *(f"  not found: {reason}" for reason in sheet.not_found)]
-
-
-def _table_lines(table: Table) -> list[str]:
-    """Table as lines of text, columns aligned to the right."""
-    cells = [[column.label for column in table.columns]]
-    cells += [[column.text(cell) for column, cell in zip(table.columns, row, strict=True)] for row in table.rows]
-    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
-    return ["    " + "  ".join(f"{cell:>{width}}" for cell, width in zip(row, widths, strict=True)) for row in cells]

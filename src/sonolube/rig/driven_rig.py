@@ -11,7 +11,7 @@ from sonolube.rig.record import Rig
 
 
 @final
-@dataclass(frozen=True, kw_only=True, slots=True)
+@dataclass(frozen=True, kw_only=True, slots=True, repr=False)
 class DrivenRig(Rig):
     """A rig with everything that a computed motion needs.
 
@@ -93,4 +93,4 @@ def driven_rig(rig: Rig) -> DrivenRig:
     """
     if isinstance(rig, DrivenRig):
         return rig
-    return DrivenRig(**{field.name: getattr(rig, field.name) for field in fields(rig)})
+    return DrivenRig(**{field.name: getattr(rig, field.name) for field in fields(rig) if field.init})

@@ -4,18 +4,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sonolube.contact import separation
 from sonolube.figure import COLOURS, LINES
 from sonolube.friction import LubricationMethod
 from sonolube.rig.contact_temperature import TemperaturePoint
 from sonolube.rig.linear_response import FrequencyResponse
 from sonolube.rig.lubrication import LubricationMap, LubricationPoint
 from sonolube.rig.record import Rig
-from sonolube.rig.simulation import Simulation
 from sonolube.rig.start_up_transient import StartUp
-from sonolube.rig.vibration import SteadyVibration
 
 if TYPE_CHECKING:
+    import xarray as xr
     from matplotlib.figure import Figure
 
 _CONTACT_LOSS_FORCE = 0.01  # force over load below which contact counts as lost
@@ -24,14 +22,13 @@ _LAST_POINTS = 801  # points drawn of those periods
 _METHOD_COLOURS = {"dry": "0.75", "ultrasonic": "#9ecae1", "lubricant": "#fdd0a2", "combined": "#c7e9c0"}
 
 
-def simulation_figure(rig: Rig, result: Simulation) -> "Figure":
+def simulation_figure(result: "xr.Dataset") -> "Figure":
     """Displacement of the tip and contact force over one repetition of the steady vibration.
 
     Parameters
     ----------
-    rig : Rig
-    result : Simulation
-        Result of `simulate` for the same rig.
+    result : xarray.Dataset
+        As `simulation_dataset` returns it.
 
     Returns
     -------
@@ -40,21 +37,20 @@ def simulation_figure(rig: Rig, result: Simulation) -> "Figure":
     """
     from matplotlib.figure import Figure
 
-    motion, rest = result.vibration.motions[0], float(separation(rig.contact, normal_load=rig.normal_load))
-    microseconds = 1e6 * np.arange(motion.displacement.size) / (motion.displacement.size * motion.frequency)
+    microseconds = 1e6 * result["time"].to_numpy()
+    displacement, normal_force = result["displacement"].to_numpy(), result["normal_force"].to_numpy()
+    rest, load = result.attrs["separation_at_rest_m"], result.attrs["normal_load_N"]
     figure = Figure(figsize=(5.2, 4.6))
     gap, force = figure.subplots(2, 1, sharex=True)
-    gap.plot(microseconds, 1e6 * motion.displacement, color=COLOURS[0])
-    rise = 1e6 * result.vibration.mean_displacement
+    gap.plot(microseconds, 1e6 * displacement, color=COLOURS[0])
+    rise = 1e6 * result.attrs["mean_displacement_m"]
     gap.axhline(rise, color=COLOURS[1], linestyle="--", linewidth=1.0, label=f"mean gap, {1e6 * rest + rise:.2f} µm")
     gap.axhline(0.0, color="0.3", linestyle=":", linewidth=1.0, label=f"gap at rest, {1e6 * rest:.2f} µm")
     gap.set(ylabel="Displacement of the tip\nfrom rest [µm]")
-    force.plot(microseconds, motion.normal_force, color=COLOURS[0])
-    force.axhline(
-        motion.normal_load, color="0.3", linestyle=":", linewidth=1.0, label=f"load, {motion.normal_load:.4g} N"
-    )
+    force.plot(microseconds, normal_force, color=COLOURS[0])
+    force.axhline(load, color="0.3", linestyle=":", linewidth=1.0, label=f"load, {load:.4g} N")
     force.set(ylabel="Contact force [N]", xlabel="Time [µs]", xlim=(0, microseconds[-1]), ylim=(0, None))
-    lost = motion.normal_force < _CONTACT_LOSS_FORCE * motion.normal_load
+    lost = normal_force < _CONTACT_LOSS_FORCE * load
     for axes in (gap, force):
         axes.fill_between(
             microseconds,
@@ -68,7 +64,7 @@ def simulation_figure(rig: Rig, result: Simulation) -> "Figure":
             label="contact lost" if lost.any() else None,
         )
         axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3, borderaxespad=0.2)
-    figure.suptitle(f"{rig.title}\n{_interval_drawn(result.vibration)}", fontsize=9)
+    figure.suptitle(f"{result.attrs['rig']}\n{result.attrs['interval']}", fontsize=9)
     return figure
 
 
@@ -218,12 +214,3 @@ def lubrication_figure(rig: Rig, result: LubricationPoint, surroundings: Lubrica
     figure.legend(handles=[*shown, point], loc="outside lower center", ncols=5)
     figure.suptitle(rig.title, fontsize=9)
     return figure
-
-
-def _interval_drawn(result: SteadyVibration) -> str:
-    """Title that names the interval drawn: a period, several periods, or part of an aperiodic motion."""
-    if result.repetition_periods == 1:
-        return "one period of the drive"
-    if result.repetition_periods:
-        return f"{result.repetition_periods} periods of the drive, after which the motion repeats"
-    return f"a stretch of a motion that does not repeat: {result.attractor}"

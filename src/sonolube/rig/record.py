@@ -1,9 +1,12 @@
 """Rig: two bodies in sliding contact, and the actuator that vibrates one of them."""
 
 from collections.abc import Mapping
+from copy import deepcopy
 from dataclasses import dataclass, field
+from html import escape
+from pathlib import Path
 from types import MappingProxyType
-from typing import Final, Literal, get_args
+from typing import Any, Final, Literal, Protocol, get_args
 
 from sonolube.actuator import PiezoStack
 from sonolube.actuator.drive import Drive
@@ -13,6 +16,7 @@ from sonolube.dynamics import Structure
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.friction.models import FRICTION_MODELS, FrictionModel
 from sonolube.rig.distribution import Distribution
+from sonolube.units import format_si
 
 AmplitudeSource = Literal["measured", "computed", "per-volt"]
 """Where the amplitude of a vibration comes from."""
@@ -46,7 +50,21 @@ class MeasuredUnder:
                 require_positive(**{name: value})
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+class RigEntries(Protocol):
+    """Entries of the file that a rig was read from."""
+
+    @property
+    def content(self) -> Mapping[str, Any]:
+        """Tables and values as they are written."""
+
+    def replaced(self, key: str, value: str | float) -> "Rig":
+        """Return the rig of the file with one entry replaced."""
+
+    def write(self, path: str | Path) -> Path:
+        """Write the file with its entries."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, repr=False)
 class Rig:
     """One experiment or device: contact, load, sliding, friction and, where known, its drive and structure.
 
@@ -111,6 +129,7 @@ class Rig:
     friction_model: FrictionModel = field(default_factory=lambda: FRICTION_MODELS["asperity_stick_slip"]())
     assumptions: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
     uncertainty: Mapping[str, Distribution] = field(default_factory=lambda: MappingProxyType({}))
+    _entries: RigEntries | None = field(init=False, default=None, compare=False)
 
     def __post_init__(self) -> None:
         require_positive(normal_load=self.normal_load, friction_coefficient=self.friction_coefficient)
@@ -125,3 +144,108 @@ class Rig:
             require_positive(capacitance=self.capacitance)
         if not self.title.strip():
             raise InvalidInput("title must not be empty")
+
+    def replace(self, key: str, value: str | float) -> "Rig":
+        """Return the rig with one entry of its file replaced.
+
+        Parameters
+        ----------
+        key : str
+            Dotted key of the rig file, such as "drive.voltage_peak_to_peak".
+        value : str or float
+            As in the file: text with a unit, such as "14 V", or a pure number.
+
+        Returns
+        -------
+        Rig
+
+        Raises
+        ------
+        InvalidInput
+            If the key is unknown or the value is not of its kind, or the rig was not read from a file.
+
+        See Also
+        --------
+        to_toml
+        """
+        return self._file().replaced(key, value)
+
+    def to_toml(self, path: str | Path) -> Path:
+        """Write the rig as a file that `read_rig` reads.
+
+        Parameters
+        ----------
+        path : str or Path
+
+        Returns
+        -------
+        Path
+            Of the file, whose comments are not kept.
+
+        Raises
+        ------
+        InvalidInput
+            If it cannot be written, or the rig was not read from a file.
+        """
+        return self._file().write(path)
+
+    def content(self) -> dict[str, Any]:
+        """Return the content of the rig's file, its entries as they are written.
+
+        Raises
+        ------
+        InvalidInput
+            If the rig was not read from a file.
+        """
+        return deepcopy(dict(self._file().content))
+
+    def table(self) -> list[tuple[str, str]]:
+        """Return the main quantities of the rig with their units, as rows of name and text."""
+        pair, roughness = self.contact.pair, self.contact.roughness
+        rows = [
+            ("normal load", format_si(self.normal_load, "N")),
+            ("sliding speed", format_si(self.sliding_speed, "m/s")),
+            ("friction without vibration", f"coefficient {self.friction_coefficient:.3g}"),
+            ("friction model", self.friction_model.name),
+            ("nominal area", format_si(self.contact.nominal_area, "m2")),
+            ("roughness", f"Rq {format_si(roughness.rms_height, 'm')}"),
+            ("effective modulus", format_si(pair.effective_modulus, "Pa")),
+            ("yield strength", format_si(pair.yield_strength, "Pa")),
+            ("vibration amplitude", self._amplitude_text()),
+        ]
+        if self.drive is not None:
+            voltage = self.drive.voltage_peak_to_peak
+            volts = [] if voltage is None else [f"{format_si(voltage, 'V')} peak to peak"]
+            rows.append(("drive", ", ".join([*volts, format_si(self.drive.frequency, "Hz"), self.drive.waveform])))
+        counts = [f"{len(self.assumptions)} assumptions", f"{len(self.uncertainty)} uncertain entries"]
+        return [*rows, ("stated", ", ".join(counts))]
+
+    def __repr__(self) -> str:
+        width = max(len(name) for name, _ in self.table())
+        return "\n".join([self.title, *(f"  {name:<{width}}  {text}" for name, text in self.table())])
+
+    def _repr_html_(self) -> str:
+        """Table for notebooks."""
+        rows = "".join(f"<tr><th>{escape(name)}</th><td>{escape(text)}</td></tr>" for name, text in self.table())
+        return f"<table><caption>{escape(self.title)}</caption><tbody>{rows}</tbody></table>"
+
+    def _amplitude_text(self) -> str:
+        """Every source that the rig has for its amplitude."""
+        sources = [
+            None if self.vibration_amplitude is None else f"{format_si(self.vibration_amplitude, 'm')} measured",
+            None if self.structure is None else "computed from stack and structure",
+            None if self.amplitude_per_volt is None else f"{format_si(self.amplitude_per_volt, 'm/V')}",
+            None
+            if self.waveguide_amplitude is None
+            else f"{format_si(self.waveguide_amplitude, 'm')} by the waveguide",
+        ]
+        return "; ".join(text for text in sources if text)
+
+    def _file(self) -> RigEntries:
+        """Entries of the file."""
+        if self._entries is None:
+            raise InvalidInput(
+                f"{self.title}: changed in Python since it was read, so that no file describes it; replace entries of"
+                " the rig that read_rig returns"
+            )
+        return self._entries

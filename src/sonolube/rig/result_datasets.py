@@ -8,15 +8,18 @@ from sonolube.contact import separation
 from sonolube.rig.datasets import dataset
 from sonolube.rig.linear_response import FrequencyResponse
 from sonolube.rig.record import Rig
+from sonolube.rig.result_quantities import result_quantities, result_texts
 from sonolube.rig.simulation import Simulation
 from sonolube.rig.start_up_transient import StartUp
+from sonolube.rig.vibration import SteadyVibration
+from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
 def simulation_dataset(rig: Rig, result: Simulation) -> "xr.Dataset":
-    """One repetition of the steady vibration: displacement and contact force over time.
+    """One repetition of the steady vibration, and the friction and wear under it.
 
     Parameters
     ----------
@@ -27,16 +30,25 @@ def simulation_dataset(rig: Rig, result: Simulation) -> "xr.Dataset":
     Returns
     -------
     xarray.Dataset
-        Over `time`; status, attractor, load, separation at rest and mean displacement are attributes.
+        Displacement and contact force over `time`; every quantity of the result as a scalar, NaN outside the range of a
+        model. Attributes hold the texts of the result, its caveats and the assumptions of the rig.
     """
     vibration = result.vibration
     motion = vibration.motions[0]
     time = np.arange(motion.displacement.size) / (motion.displacement.size * motion.frequency)
     values = {"time": time, "displacement": motion.displacement, "normal_force": motion.normal_force}
     labelled = dataset(values, along="time", title=f"Steady motion of {rig.title}")
-    labelled.attrs |= {
-        "status": result.status,
-        "reason": result.reason,
+    for name, value in result_quantities(result).items():
+        if name not in labelled:
+            entry = quantity(name)
+            about = {"units": entry.unit or "1", "long_name": entry.meaning}
+            labelled[name] = ((), np.nan if value is None else value, about)
+    labelled.attrs |= result_texts(result) | {
+        "result": "simulation",
+        "rig": rig.title,
+        "caveats": "\n".join(result.caveats),
+        "assumptions": "\n".join(f"{key}: {reason}" for key, reason in rig.assumptions.items()),
+        "interval": _interval_of(vibration),
         "attractor": vibration.attractor,
         "repetition_periods": vibration.repetition_periods,
         "normal_load_N": motion.normal_load,
@@ -90,3 +102,12 @@ def start_up_dataset(rig: Rig, result: StartUp) -> "xr.Dataset":
         "normal_force": result.trajectory.contact.normal_force,
     }
     return dataset(values, along="time", title=f"Start-up of {rig.title}")
+
+
+def _interval_of(result: SteadyVibration) -> str:
+    """Interval of a steady motion: a period, several periods, or part of an aperiodic motion."""
+    if result.repetition_periods == 1:
+        return "one period of the drive"
+    if result.repetition_periods:
+        return f"{result.repetition_periods} periods of the drive, after which the motion repeats"
+    return f"a stretch of a motion that does not repeat: {result.attractor}"

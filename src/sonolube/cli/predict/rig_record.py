@@ -1,8 +1,7 @@
 """Answer of commands whose result is one record of a rig: every field that is a quantity, with its unit."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields, is_dataclass
-from math import isnan
+from dataclasses import dataclass, field
 from typing import Any
 
 import xarray as xr
@@ -11,6 +10,7 @@ from sonolube.cli.console.answer import Answer, aligned, si
 from sonolube.cli.predict.measured import Measurement
 from sonolube.report import Drawing
 from sonolube.rig import Rig
+from sonolube.rig.result_quantities import result_quantities, result_texts
 from sonolube.units import format_si
 from sonolube.vocabulary import quantities
 
@@ -42,21 +42,23 @@ class RigRecord(Answer):
 
     def lines(self) -> list[str]:
         """Load, quantities with the meaning and unit of the vocabulary, and text but for the status."""
-        known, values = quantities(), self._values()
-        values = [(name, value) for name, value in values if not name.startswith("raw_")]  # for JSON, as is what it is
+        known, values = quantities(), result_quantities(self.result)
         rows = [
             (known[name].meaning, "none" if value is None else format_si(value, known[name].unit))
-            for name, value in values
+            for name, value in values.items()
+            if not name.startswith("raw_")  # for JSON, as is what it is
         ]
         rows += [
-            (_LABELS.get(name, name.replace("_", " ")), text) for name, text in self._texts() if name not in _UNPRINTED
+            (_LABELS.get(name, name.replace("_", " ")), text)
+            for name, text in result_texts(self.result).items()
+            if name not in _UNPRINTED
         ]
         rows += [(f"measured {one.label}", one.text) for one in self.measured]
         return [f"{self.rig.title}, {format_si(self.rig.normal_load, 'N')}", *aligned(rows)]
 
     def object(self) -> dict[str, Any]:
         """Title of the rig, text and quantities."""
-        content = {"rig": self.rig.title, **dict(self._texts()), **si(dict(self._values()))}
+        content = {"rig": self.rig.title, **result_texts(self.result), **si(result_quantities(self.result))}
         return content | {"measured": [one.object() for one in self.measured]} if self.measured else content
 
     def caveats(self) -> Sequence[str]:
@@ -71,25 +73,3 @@ class RigRecord(Answer):
     def files(self) -> Mapping[str, xr.Dataset]:
         """Datasets of the record."""
         return self.datasets
-
-    def _values(self) -> list[tuple[str, float | None]]:
-        """Fields that are quantities of the vocabulary, with their values in SI; None outside the range of a model."""
-        fields = _flat(self.result).items()
-        return [
-            (name, None if isnan(value) else value)
-            for name, value in fields
-            if name in quantities() and isinstance(value, int | float)
-        ]
-
-    def _texts(self) -> list[tuple[str, str]]:
-        """Fields that are text, such as the friction model."""
-        return [(name, value) for name, value in _flat(self.result).items() if isinstance(value, str)]
-
-
-def _flat(record: Any) -> dict[str, Any]:
-    """Fields of a record by name, and those of records within it; of one name the outermost."""
-    own = {each.name: getattr(record, each.name) for each in fields(record)}
-    values: dict[str, Any] = {}
-    for value in own.values():
-        values |= _flat(value) if is_dataclass(value) else {}
-    return values | {name: value for name, value in own.items() if not is_dataclass(value)}

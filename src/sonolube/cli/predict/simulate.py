@@ -29,12 +29,12 @@ def simulate(
     known = loaded_rig(rig, load=load, changes=changes, amplitude=amplitude)
     with progress("simulating"):
         result = rigs.simulate(known)
-    name = f"{rig.stem}-simulation"
+    name, labelled = f"{rig.stem}-simulation", simulation_dataset(known, result)
     answer = RigRecord(
         rig=known,
         result=result,
         measured=measured_on(known, vibration_amplitude=result.vibration.vibration_amplitude),
-        drawings={name: Drawing(draw=lambda: simulation_figure(known, result))},
-        datasets={f"{name}.nc": simulation_dataset(known, result)},
+        drawings={name: Drawing(draw=lambda: simulation_figure(labelled))},
+        datasets={f"{name}.nc": labelled},
     )
     deliver(answer, folder=out, as_json=json)

@@ -16,6 +16,7 @@ from sonolube.friction.models import FRICTION_MODELS, FrictionModel
 from sonolube.materials import material
 from sonolube.rig.driven_rig import driven_rig
 from sonolube.rig.excitation import waveform_of
+from sonolube.rig.file.entries import FileEntries, set_entry, with_entries
 from sonolube.rig.file.modes_file import read_modes
 from sonolube.rig.file.renamed import refuse_former_names
 from sonolube.rig.file.sections import BodySection, ContactSection, RigFile
@@ -109,7 +110,7 @@ def rig_from(content: Mapping[str, Any]) -> Rig:
     refuse_former_names(content)
     file = validated(RigFile, content)
     _require_known_assumptions(file, content)
-    return _rig(file)
+    return with_entries(_rig(file), FileEntries(content, rig_from))
 
 
 def structure_by_stack(path: str | Path) -> tuple[PiezoStack, Callable[[PiezoStack], Structure]]:
@@ -162,16 +163,11 @@ def _refuse_repeated(changes: Sequence[str]) -> None:
 
 
 def _apply(change: str, content: dict[str, Any]) -> None:
-    path, equals, text = change.partition("=")
-    *tables, key = path.strip().split(".")
-    if not equals or not key or not all(tables):
+    key, equals, text = change.partition("=")
+    if not equals:
         raise InvalidInput(f"change {change!r} must look like drive.frequency=22kHz")
-    place = content
-    for table in tables:
-        place = place.setdefault(table, {})
-        if not isinstance(place, dict):
-            raise InvalidInput(f"change {change!r}: {table} is not a table")
-    place[key] = text.strip()
+    with prefixed(f"change {change!r}"):
+        set_entry(content, key, text.strip())
 
 
 def _require_known_assumptions(file: RigFile, content: Mapping[str, Any]) -> None:

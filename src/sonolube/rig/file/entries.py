@@ -1,0 +1,73 @@
+"""Entries of a rig file behind the rig read from it: replaced one by one, and written as a file again."""
+
+from collections.abc import Callable, Mapping
+from copy import deepcopy
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from sonolube.errors import InvalidInput
+from sonolube.files import write_atomically
+from sonolube.rig.file.toml_file import prefixed
+from sonolube.rig.record import Rig
+
+
+@dataclass(frozen=True, slots=True)
+class FileEntries:
+    """Content of the file of a rig.
+
+    Parameters
+    ----------
+    content : mapping
+        Entries as they are written; a file of modes is read in its place.
+    rig_from : callable
+        Reader of such a content.
+    """
+
+    content: Mapping[str, Any]
+    rig_from: Callable[[Mapping[str, Any]], Rig]
+
+    def replaced(self, key: str, value: str | float) -> Rig:
+        """Return the rig of the file with one entry replaced."""
+        content = deepcopy(dict(self.content))
+        set_entry(content, key, value)
+        with prefixed(f"replace({key!r}, {value!r})"):
+            return self.rig_from(content)
+
+    def write(self, path: str | Path) -> Path:
+        """Write the file with its entries."""
+        import tomli_w
+
+        return write_atomically(Path(path), tomli_w.dumps(self.content))
+
+
+def with_entries(rig: Rig, entries: FileEntries) -> Rig:
+    """Return a rig that was just read, with the entries of its file."""
+    object.__setattr__(rig, "_entries", entries)
+    return rig
+
+
+def set_entry(content: dict[str, Any], key: str, value: str | float) -> None:
+    """Set an entry of the content of a file, its tables made where they are missing.
+
+    Parameters
+    ----------
+    content : dict
+    key : str
+        Dotted, such as "drive.frequency".
+    value : str or float
+
+    Raises
+    ------
+    InvalidInput
+        If a part of the key is empty, or names an entry that is no table.
+    """
+    *tables, name = key.strip().split(".")
+    if not name or not all(tables):
+        raise InvalidInput(f"{key!r} is no key of a rig file, such as drive.frequency")
+    place = content
+    for table in tables:
+        place = place.setdefault(table, {})
+        if not isinstance(place, dict):
+            raise InvalidInput(f"{key}: {table} is not a table")
+    place[name] = value

@@ -1,0 +1,67 @@
+"""Figure of a result: the very one that the command of the same name writes."""
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+import xarray as xr
+
+from sonolube.design import map_figure, sweep_figure
+from sonolube.errors import InvalidInput, UnknownName
+from sonolube.figure import publication_style
+from sonolube.prediction.figures import prediction_figure
+from sonolube.report.measured.sheet import Sheet
+from sonolube.rig.figures import simulation_figure
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+FIGURES: Mapping[str, Callable[[xr.Dataset], "Figure"]] = MappingProxyType(
+    {"map": map_figure, "prediction": prediction_figure, "simulation": simulation_figure, "sweep": sweep_figure}
+)
+"""Functions that draw a result, by its attribute `result`."""
+
+
+def plot(result: xr.Dataset | Sheet, *, title: str | None = None) -> "Figure":
+    """Return the figure of a result.
+
+    Parameters
+    ----------
+    result : xarray.Dataset or Sheet
+        Of `simulate`, `predict`, `sweep` or `map`, also read again from its netCDF file; or of a function of `measure`.
+    title : str, optional
+        Of which figure, for a sheet, which has several; the first by default.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InvalidInput
+        If the result is of another kind, or the sheet has no figure.
+    UnknownName
+        If a sheet has no figure of that title.
+    """
+    draw = _sheet_figure(result, title) if isinstance(result, Sheet) else _dataset_figure(result)
+    with publication_style():
+        return draw()
+
+
+def _dataset_figure(result: xr.Dataset) -> "Callable[[], Figure]":
+    """Function that draws a labelled result."""
+    kind = str(result.attrs.get("result")) if isinstance(result, xr.Dataset) else type(result).__name__
+    if kind not in FIGURES:
+        raise InvalidInput(f"plot draws results of {', '.join(FIGURES)} and of measure, got {kind}")
+    return partial(FIGURES[kind], result)
+
+
+def _sheet_figure(result: Sheet, title: str | None) -> "Callable[[], Figure]":
+    """Function that draws a figure of a sheet."""
+    figures = {figure.title: figure.draw for figure in result.figures}
+    if not figures:
+        raise InvalidInput(f"{result.title}: nothing was found that could be drawn")
+    if title is not None and title not in figures:
+        raise UnknownName.among(list(figures), kind="figure", name=title)
+    return figures[title or next(iter(figures))]

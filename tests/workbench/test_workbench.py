@@ -1,0 +1,146 @@
+"""Main tasks in Python: the same numbers and figures as the commands, with units, caveats and assumptions."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from pytest import CaptureFixture, approx, mark, raises
+
+import sonolube as sl
+from sonolube.cli import main
+from sonolube.errors import InvalidInput, UnknownName
+from sonolube.figure import publication_style
+from sonolube.rig.figures import simulation_figure
+
+ROOT = Path(__file__).parents[2]
+RIGS = ROOT / "examples" / "rigs"
+SHARED = ROOT.parent / "shared" / "data"
+VOLTAGE = "drive.voltage_peak_to_peak"
+
+
+def tribometer() -> sl.Rig:
+    return sl.read_rig(RIGS / "tribometer.toml")
+
+
+def answer(capfd: CaptureFixture[str], *arguments: object) -> dict[str, Any]:
+    with raises(SystemExit) as end:
+        main([*map(str, arguments), "--json"])
+    assert not end.value.code
+    content: dict[str, Any] = json.loads(capfd.readouterr().out)
+    return content
+
+
+@mark.parametrize("name", ["tribometer", "power_map", "poisson_al_steel", "welder_round"])
+def test_a_simulation_in_python_has_the_numbers_and_notes_of_the_command(
+    name: str, capfd: CaptureFixture[str], tmp_path: Path
+) -> None:
+    path = RIGS / f"{name}.toml"
+    command, result = answer(capfd, "simulate", path, "--out", tmp_path), sl.simulate(sl.read_rig(path))
+    for quantity in ("friction_ratio", "friction_force", "vibration_amplitude"):
+        assert float(result[quantity]) == command[quantity]["value"]
+        assert result[quantity].attrs["units"] == (command[quantity]["unit"] or "1")
+    assert result.attrs["caveats"].split("\n") == (command["caveats"] or [""])
+    assert result.attrs["status"] == command["status"]
+    assert result.attrs["amplitude_source"] == command["amplitude_source"]
+    (written,) = tmp_path.glob("*.nc")
+    with xr.open_dataset(written) as stored:
+        assert stored["displacement"].to_numpy() == approx(result["displacement"].to_numpy())
+
+
+def test_a_sweep_in_python_is_that_of_the_command_and_of_single_points(
+    capfd: CaptureFixture[str], tmp_path: Path
+) -> None:
+    over = "2V:28V:5"
+    command = answer(capfd, "sweep", RIGS / "tribometer.toml", "--over", f"{VOLTAGE}={over}", "--out", tmp_path)
+    swept = sl.sweep(tribometer(), {VOLTAGE: over})
+    assert float(swept["friction_ratio"].min()) == command["least_friction"]["friction_ratio"]["value"]
+    single = [sl.simulate(tribometer().replace(VOLTAGE, f"{volts} V")) for volts in np.linspace(2, 28, 5)]
+    assert swept["friction_ratio"].to_numpy() == approx([float(one["friction_ratio"]) for one in single], abs=1e-6)
+    assert "identified from resonance" in swept.attrs["assumptions"]
+
+
+def test_numbers_in_si_text_and_drawn_points_make_the_same_kind_of_sweep() -> None:
+    by_text = sl.sweep(tribometer(), {VOLTAGE: "10 V, 20 V"})
+    assert sl.sweep(tribometer(), {VOLTAGE: [10.0, 20.0]}).equals(by_text)
+    drawn = sl.sweep(tribometer(), {VOLTAGE: "10V:20V"}, sample="lhs", points=8, seed=3)
+    assert drawn["friction_ratio"].sizes == {"point": 8}
+    assert float(drawn["voltage_peak_to_peak"].min()) >= 10
+    again = sl.sweep(tribometer(), {VOLTAGE: (10.0, 20.0)}, sample="lhs", points=8, seed=3)
+    assert again["friction_ratio"].equals(drawn["friction_ratio"])
+
+
+def test_a_map_takes_other_axes_and_carries_the_notes_of_the_rig() -> None:
+    mapped = sl.map(
+        sl.read_rig(RIGS / "power_map.toml"),
+        over={"sliding.sliding_speed": "20mm/s:200mm/s:3", "contact.normal_load": [5.0], VOLTAGE: "10V, 20V"},
+    )
+    assert mapped["friction_reduction"].sizes == {"normal_load": 1, "voltage_peak_to_peak": 2, "sliding_speed": 3}
+    assert "assumed" in mapped.attrs["assumptions"] or mapped.attrs["assumptions"]
+    assert mapped.attrs["caveats"]
+
+
+def test_results_and_their_files_draw_the_figure_of_the_command(tmp_path: Path) -> None:
+    result = sl.simulate(tribometer())
+    result.to_netcdf(tmp_path / "kept.nc", engine="h5netcdf")
+    with xr.open_dataset(tmp_path / "kept.nc", engine="h5netcdf") as kept:
+        figures = [sl.plot(result), sl.plot(kept)]
+    with publication_style():
+        figures.append(simulation_figure(result))
+    lines = [[line.get_xydata() for axes in figure.axes for line in axes.lines] for figure in figures]
+    for own, other in zip(lines[0], lines[1], strict=True):
+        assert np.asarray(own) == approx(np.asarray(other))
+    for own, other in zip(lines[0], lines[2], strict=True):
+        assert np.array_equal(own, other)
+
+
+def test_every_kind_of_result_has_its_figure() -> None:
+    rig = tribometer()
+    results = [sl.sweep(rig, {VOLTAGE: "10V:20V:3"}), sl.predict(rig, draws=200)]
+    assert [bool(sl.plot(result).axes) for result in results] == [True, True]
+
+
+def test_what_is_no_result_is_refused_by_name() -> None:
+    with raises(InvalidInput, match="plot draws results of map, prediction, simulation, sweep and of measure"):
+        sl.plot(xr.Dataset())
+    with raises(UnknownName, match="velocity-power"):
+        sl.map(tribometer(), "velocity-powr")
+    with raises(InvalidInput, match=r"over drive\.voltage_peak_to_peak=2V:28V must look like"):
+        sl.sweep(tribometer(), {VOLTAGE: "2V:28V"})
+    with raises(InvalidInput, match="between two ends, got 3 numbers"):
+        sl.sweep(tribometer(), {VOLTAGE: [1.0, 2.0, 3.0]}, sample="lhs")
+
+
+def test_a_measured_surface_has_the_values_of_the_command(capfd: CaptureFixture[str]) -> None:
+    path = SHARED / "surfaces" / "opd-1.opd"
+    (command,) = answer(capfd, "measure", "surface", path)["results"]
+    sheet = sl.measure.surface(path)
+    values = sheet.dataset()
+    for name, value in command["values"].items():
+        assert float(values[name]) == value["value"]
+        assert values[name].attrs["units"] == (value["unit"] or "1")
+    assert sl.plot(sheet).axes
+    assert repr(sheet).startswith(command["title"])
+    assert sheet._repr_html_().count("<tr>") == len(command["values"])
+    with raises(UnknownName):
+        sl.plot(sheet, title="no such figure")
+
+
+def test_importing_the_package_is_fast_to_complete_and_loads_nothing() -> None:
+    code = (
+        "import sys, sonolube as sl\n"
+        "print(dir(sl))\n"
+        "print([name for name in ('numpy', 'scipy', 'numba', 'xarray', 'matplotlib') if name in sys.modules])\n"
+        "print(dir(sl.measure))"
+    )
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    names, loaded, measure = run.stdout.splitlines()
+    assert loaded == "[]"
+    assert {"read_rig", "predict", "simulate", "sweep", "map", "measure", "design", "published", "plot"} <= set(
+        eval(names)
+    )
+    assert eval(measure) == sl.measure.__all__
+    assert not [name for name in (*eval(names), *eval(measure)) if name in ("np", "Path", "dataclass", "Callable")]
