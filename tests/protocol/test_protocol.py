@@ -1,4 +1,4 @@
-"""Protocols: the map test against the dissertation, time lines by hand, faults with their place, bounds, round trips."""
+"""Protocols: the map test of the dissertation, time lines by hand, faults with places, bounds, round trips."""
 
 import json
 import math
@@ -235,11 +235,13 @@ def test_hostile_text_is_read_or_refused_in_one_line(seed: int, tmp_path: Path) 
     path = tmp_path / "protocol.toml"
     path.write_bytes("\n".join(lines).encode(errors="surrogatepass"))
     began = time.perf_counter()
+    told = ""
     try:
         flattened(read_protocol(path))
     except InvalidInput as refusal:
-        assert "\n" not in str(refusal)
-        assert len(str(refusal)) < 5000
+        told = str(refusal)
+    assert "\n" not in told
+    assert len(told) < 5000
     assert time.perf_counter() - began < 5.0
 
 

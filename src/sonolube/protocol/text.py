@@ -132,7 +132,8 @@ def _is_below(place: Sequence[str | int], other: Sequence[str | int]) -> bool:
 
 def _place(parts: Sequence[str | int]) -> str:
     """Step and key of a fault, such as "step 4.2: duration: "."""
-    numbers, keys = [], []
+    numbers: list[str] = []
+    keys: list[str] = []
     inside = False  # of a list of steps
     for part in parts:
         if isinstance(part, int) and inside:
