@@ -1,5 +1,6 @@
 """Command `plan`: the next tests of a rig, replicates and order, protocols, a table to fill and a sheet to print."""
 
+import csv
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -17,6 +18,7 @@ from sonolube.design.test_plan.candidates import Factors, RigLimits
 from sonolube.design.test_plan.comparison import COMPARISONS
 from sonolube.design.test_plan.plan import Procedure, Question, plan_tests, published_distances
 from sonolube.design.test_plan.run_order import BLOCKINGS
+from sonolube.design.test_plan.run_table import has_results
 from sonolube.errors import InvalidInput
 from sonolube.measurement.measured_runs import read_runs
 from sonolube.prediction.inputs import RigInputs, rig_inputs
@@ -108,6 +110,7 @@ def plan(
 
     Example: sonolube plan examples/rigs/power_map.toml --speed 20:200mm/s --points 3
     """
+    _refuse_filled(out / f"{rig.stem}-plan-runs.csv")
     known = loaded_rig(rig, changes=changes, amplitude=amplitude)
     inputs = rig_inputs(known)
     result = plan_tests(
@@ -134,6 +137,18 @@ def plan(
     )
     answer = PlanAnswer(rig=known, plan=result, name=f"{rig.stem}-plan")
     deliver(answer, folder=out, as_json=json, context=context)
+
+
+def _refuse_filled(table: Path) -> None:
+    """Raise for a table of runs that holds results already."""
+    if not table.is_file():
+        return
+    try:
+        filled = has_results(table.read_text(encoding="utf-8-sig"))
+    except (OSError, UnicodeDecodeError, csv.Error):
+        filled = True
+    if filled:
+        raise InvalidInput(f"{table}: holds results, which would be lost; move it, or name another folder by --out")
 
 
 def _factors(

@@ -19,7 +19,7 @@ _LETTERS: Final = {1: ("",), 2: ("-without", "-with")}
 
 
 def run_protocols(plan: TestPlan) -> dict[str, Protocol]:
-    """Protocol of each run, by its name: `run-01`, or `run-01-without` and `run-01-with` on specimens of their own.
+    """Protocol of each run by a name with their number, so that files of another plan are not mistaken for these.
 
     Parameters
     ----------
@@ -28,9 +28,11 @@ def run_protocols(plan: TestPlan) -> dict[str, Protocol]:
     Returns
     -------
     dict of str to Protocol
+        Such as `run-01-of-28`, or `run-01-without-of-28` and `run-01-with-of-28` on specimens of their own.
     """
+    count = len(plan.runs)
     return {
-        f"run-{run.run:0{len(str(len(plan.runs)))}d}{letter}": _protocol(plan, run, specimen, letter)
+        f"run-{run.run:0{len(str(count))}d}{letter}-of-{count}": _protocol(plan, run, specimen, letter)
         for run in plan.runs
         for specimen, letter in zip(run.specimens, _LETTERS[len(run.specimens)], strict=True)
     }

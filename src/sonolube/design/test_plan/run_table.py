@@ -1,5 +1,8 @@
 """Table of the runs of a plan, with empty cells for the results."""
 
+import csv
+import io
+
 from sonolube.design.test_plan.plan import TestPlan
 
 _COLUMNS = (
@@ -30,6 +33,22 @@ def run_table(plan: TestPlan) -> str:
         cells = [f"{scale * getattr(plan.candidates, name)[index]:.6g}" for name, _, scale in known]
         lines.append(",".join([f"{run.run}", f"{run.block}", *cells, *("" for _ in RESULTS)]))
     return "\n".join(lines) + "\n"
+
+
+def has_results(text: str) -> bool:
+    """Whether a table of runs holds any result, which must not be replaced by an empty one.
+
+    Parameters
+    ----------
+    text : str
+        Content of a CSV file; what is no such table counts as one with results.
+
+    Returns
+    -------
+    bool
+    """
+    rows = list(csv.DictReader(io.StringIO(text)))
+    return not rows or any((row.get(name) or "").strip() or name not in row for row in rows for name in RESULTS)
 
 
 def has_voltage(plan: TestPlan) -> bool:
