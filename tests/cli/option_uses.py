@@ -63,7 +63,7 @@ MODES = {
         ),
         {
             "--runs": OWN_RUNS,
-            "--speed": "20,40,60,70mm/s",
+            "--speed": "30,60mm/s",
             "--load": "2,3N",
             "--vibration": "1.2:2.5:3um",
             "--voltage": "10:20:2V",
@@ -78,7 +78,7 @@ MODES = {
             "--measuring-time": "30s",
             "--amplifier-voltage": "25V",
             "--amplifier-power": "5W",
-            "--temperature-rise": "1K",
+            "--temperature-rise": "0.1K",
             "--pin": "aluminium_2024",
             "--disc": "aluminium_2024",
             "--seed": "1",

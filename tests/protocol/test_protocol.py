@@ -92,7 +92,7 @@ def test_a_logarithmic_sweep_has_equal_ratios() -> None:
         "last_frequency": "100 kHz",
         "points": 3,
         "duration": "6 s",
-        "spacing": "log",
+        "scale": "log",
         "voltage_peak_to_peak": "4 V",
     }
     points = flattened(protocol_from(content(sweep)))

@@ -90,7 +90,7 @@ class Acquire(Table):
     channels : tuple of str
         Names, such as friction_force, voltage, current, temperature, gaussmeter.
     sample_rate : float
-        Samples per second and channel, in Hz.
+        Samples per second and channel. [Hz]
     duration : float
         [s]
     """
@@ -148,7 +148,8 @@ class Sweep(Table):
         Number of frequencies, each of the same duration.
     duration : float
         Of all together. [s]
-    spacing : str
+    scale : str
+        Whether steps or ratios are equal.
     voltage_peak_to_peak : float
         [V]
     voltage_offset : float
@@ -161,7 +162,7 @@ class Sweep(Table):
     last_frequency: Hertz
     points: int = Field(ge=2, le=10_000)
     duration: Seconds
-    spacing: Literal["linear", "log"] = "linear"
+    scale: Literal["linear", "log"] = "linear"
     voltage_peak_to_peak: Volts
     voltage_offset: SignedVolts = 0.0
     waveform: Waveform = "sine"

@@ -199,7 +199,7 @@ def _frequencies(step: Sweep, place: str) -> Iterator[_Move]:
     first, last = step.first_frequency, step.last_frequency
     for index in range(step.points):
         share = index / (step.points - 1)
-        frequency = first * (last / first) ** share if step.spacing == "log" else first + (last - first) * share
+        frequency = first * (last / first) ** share if step.scale == "log" else first + (last - first) * share
         changes = {
             "voltage_peak_to_peak": step.voltage_peak_to_peak,
             "voltage_offset": step.voltage_offset,

@@ -95,8 +95,13 @@ def plan(
     amplifier_power: Annotated[
         str | None, typer.Option(metavar="POWER", help="Greatest power of the amplifier.")
     ] = None,
-    temperature_rise: Annotated[
-        str, typer.Option(metavar="TEMPERATURE", help="Greatest rise of the contact by friction; needs both materials.")
+    hottest: Annotated[
+        str,
+        typer.Option(
+            "--temperature-rise",
+            metavar="TEMPERATURE",
+            help="Greatest rise of the contact by friction; needs both materials.",
+        ),
     ] = "50K",
     pin: Annotated[str | None, typer.Option(metavar="MATERIAL", help="Material of the pin, for the heat.")] = None,
     disc: Annotated[str | None, typer.Option(metavar="MATERIAL", help="Material of the disc, for the heat.")] = None,
@@ -128,7 +133,7 @@ def plan(
         limits=RigLimits(
             voltage_maximum=_limit(amplifier_voltage, "V", "--amplifier-voltage"),
             actuator_power=_limit(amplifier_power, "W", "--amplifier-power"),
-            mean_temperature_rise=temperature_difference_to_si(temperature_rise, name="--temperature-rise"),
+            mean_temperature_rise=temperature_difference_to_si(hottest, name="--temperature-rise"),
         ),
         runs=None if runs is None else read_runs(runs),
         pin=pin,

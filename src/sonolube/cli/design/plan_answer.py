@@ -164,7 +164,7 @@ class PlanAnswer(Answer):
             ),
             (
                 "blocks",
-                f"{plan.replicates}, each of every point once in random order; one is {plan.procedure.blocking.title}",
+                f"{plan.replicates}, each of every point once in random order; each is {plan.procedure.blocking.title}",
             ),
         ]
 
