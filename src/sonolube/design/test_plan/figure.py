@@ -80,7 +80,7 @@ def _draw_ratios(axes: "Axes", plan: TestPlan) -> None:
     axes.axhline(1 - plan.question.difference, color="0.4", lw=0.8, ls=":", label="difference to be shown")
     axes.set(xlabel="point of the plan", ylabel="friction ratio", ylim=(-0.03, 1.08), xlim=(0.5, len(points) + 0.5))
     labels = [f"{number}\n{_condition(plan, point)}" for number, point in enumerate(points, 1)]
-    axes.set_xticks(numbers, labels if len(points) <= 6 else [str(number) for number in numbers], fontsize=7)
+    axes.set_xticks(numbers, labels if len(points) <= 4 else [str(number) for number in numbers], fontsize=7)
     axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, fontsize=7)
 
 
