@@ -28,6 +28,7 @@ ARGUMENTS = {  # of every command that writes: the least that it takes, in.dat b
     "impedance compute": ("stack", "--measured", INPUT),
     "sweep": (INPUT, "--of", "speed"),
     "map": (INPUT,),
+    "plan": (INPUT,),
     "uncertainty": (INPUT,),
     "optimise": (INPUT, "--target-friction", "0.15"),
     "control": (INPUT,),

@@ -62,6 +62,7 @@ COMMANDS = (
     Command(_PART, "impedance compute", "predict.impedance:compute"),
     Command(_DESIGN, "sweep", "design.sweep:sweep"),
     Command(_DESIGN, "map", "design.map:map"),
+    Command(_DESIGN, "plan", "design.plan:plan"),
     Command(_DESIGN, "uncertainty", "design.uncertainty:uncertainty"),
     Command(_DESIGN, "optimise", "design.optimise:optimise"),
     Command(_DESIGN, "control", "design.control:control"),

@@ -1,17 +1,35 @@
-"""Command `schema`: JSON schema of rig files."""
+"""Command `schema`: JSON schema of rig files and of protocols."""
 
+from enum import StrEnum
 from json import dumps
+from typing import Annotated
+
+import typer
 
 from sonolube.cli.console.answer import deliver
 from sonolube.cli.console.options import Json
 from sonolube.cli.lookup.listing import Listing
+from sonolube.protocol import protocol_schema
 from sonolube.rig import rig_schema
 
 
-def schema(json: Json = False) -> None:
-    """JSON schema of rig files, for editors and other programs; the same with and without --json.
+class Kind(StrEnum):
+    """Kind of file that a schema describes."""
+
+    RIG = "rig"
+    PROTOCOL = "protocol"
+
+
+_SCHEMAS = {Kind.RIG: rig_schema, Kind.PROTOCOL: protocol_schema}
+
+
+def schema(
+    kind: Annotated[Kind, typer.Argument(help="Files to describe: rigs, or protocols of tests.")] = Kind.RIG,
+    json: Json = False,
+) -> None:
+    """JSON schema of rig files or protocols, for editors and other programs; the same with and without --json.
 
     Example: sonolube schema > rig.schema.json
     """
-    content = rig_schema()
+    content = _SCHEMAS[kind]()
     deliver(Listing(text=dumps(content, indent=2).splitlines(), content=content), as_json=json)

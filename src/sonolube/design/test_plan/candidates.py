@@ -1,0 +1,205 @@
+"""Candidate tests of a rig: every load with every speed and amplitude, and which of them the rig cannot make."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import Final
+
+import numpy as np
+
+from sonolube.checks import Floats, require_positive
+from sonolube.errors import InvalidInput
+from sonolube.prediction.inputs import RigInputs, rig_inputs
+from sonolube.rig import Rig, friction_point, thermal_solid
+from sonolube.thermal import EllipticSource, contact_rise
+from sonolube.units import format_si
+
+MOST_CANDIDATES: Final = 200
+"""Number of candidates among which points are chosen."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Factors:
+    """Values of the factors of a plan.
+
+    Parameters
+    ----------
+    normal_load : ndarray
+        [N]
+    sliding_speed : ndarray
+        [m/s]
+    vibration_amplitude : ndarray
+        [m]
+    """
+
+    normal_load: Floats
+    sliding_speed: Floats
+    vibration_amplitude: Floats
+
+    def __post_init__(self) -> None:
+        require_positive(normal_load=self.normal_load)
+        require_positive(sliding_speed=self.sliding_speed)
+        require_positive(vibration_amplitude=self.vibration_amplitude)
+        count = self.normal_load.size * self.sliding_speed.size * self.vibration_amplitude.size
+        if count > MOST_CANDIDATES:
+            raise InvalidInput(
+                f"the factors have {count} points, but at most {MOST_CANDIDATES} are compared; give fewer values"
+            )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RigLimits:
+    """Limits of amplifier and contact, each None where there is none.
+
+    Parameters
+    ----------
+    voltage_maximum : float or None
+        Magnitude of the drive voltage, its offset included. [V]
+    actuator_power : float or None
+        Power of the amplifier. [W]
+    mean_temperature_rise : float or None
+        Of the contact by friction without vibration. [K]
+    """
+
+    voltage_maximum: float | None = None
+    actuator_power: float | None = None
+    mean_temperature_rise: float | None = None
+
+
+NO_LIMITS: Final = RigLimits()
+"""Limits of a rig that has none."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Candidates:
+    """Candidate tests, arrays of shape (m,).
+
+    Parameters
+    ----------
+    normal_load : ndarray
+        [N]
+    sliding_speed : ndarray
+        [m/s]
+    vibration_amplitude : ndarray
+        [m]
+    voltage_peak_to_peak : ndarray
+        NaN where the rig states no voltage. [V]
+    voltage_offset : ndarray
+        [V]
+    actuator_power : ndarray
+        NaN where it is not known. [W]
+    mean_temperature_rise : ndarray
+        Of the contact by friction without vibration, the greatest; NaN without materials. [K]
+    decay_length : ndarray
+        Over which the normal force falls by a factor of e. [m]
+    refused : tuple of str
+        Why the rig cannot make a test; empty where it can.
+    """
+
+    normal_load: Floats
+    sliding_speed: Floats
+    vibration_amplitude: Floats
+    voltage_peak_to_peak: Floats
+    voltage_offset: Floats
+    actuator_power: Floats
+    mean_temperature_rise: Floats
+    decay_length: Floats
+    refused: tuple[str, ...]
+
+
+def candidate_tests(
+    rig: Rig, inputs: RigInputs, factors: Factors, *, limits: RigLimits, pin: str | None = None, disc: str | None = None
+) -> Candidates:
+    """Candidate tests of a rig with drive, heat, and what exceeds the limits.
+
+    Parameters
+    ----------
+    rig : Rig
+    inputs : RigInputs
+        Of the rig's prediction.
+    factors : Factors
+    limits : RigLimits
+    pin, disc : str, optional
+        Materials of the catalogue, for the temperature rise.
+
+    Returns
+    -------
+    Candidates
+
+    Notes
+    -----
+    The amplitude is proportional to the voltage, as it is where own runs state voltages. The power is that of
+    `sonolube.rig.friction_point` at each voltage; the heat that of the friction without vibration.
+
+    Raises
+    ------
+    MissingProperty, UnknownName
+        For a material without thermal properties.
+    """
+    loads, speeds, amplitudes = np.array(
+        list(product(factors.normal_load, factors.sliding_speed, factors.vibration_amplitude))
+    ).T
+    voltage, offset, power = _driven(rig, inputs, factors.vibration_amplitude)
+    place = np.searchsorted(np.sort(factors.vibration_amplitude), amplitudes)
+    order = np.argsort(factors.vibration_amplitude)[place]
+    lengths = {load: rig_inputs(replace(rig, normal_load=float(load))).decay_length for load in factors.normal_load}
+    heat = inputs.friction.value * loads * speeds
+    found = Candidates(
+        normal_load=loads,
+        sliding_speed=speeds,
+        vibration_amplitude=amplitudes,
+        voltage_peak_to_peak=voltage[order],
+        voltage_offset=offset[order],
+        actuator_power=power[order],
+        mean_temperature_rise=heat * _rise_per_watt(rig, speeds, pin, disc),
+        decay_length=np.array([lengths[load] for load in loads]),
+        refused=(),
+    )
+    return replace(found, refused=tuple("; ".join(reasons) for reasons in _exceeded(found, limits)))
+
+
+def _driven(rig: Rig, inputs: RigInputs, amplitudes: Floats) -> tuple[Floats, Floats, Floats]:
+    """Voltage, its offset, and power of the amplifier at each amplitude; NaN where they are not known."""
+    unknown = np.full(amplitudes.shape, np.nan)
+    if rig.drive is None or inputs.voltage_peak_to_peak is None:
+        return unknown, np.zeros(amplitudes.shape), unknown
+    share = amplitudes / inputs.amplitude.value
+    voltage, offset = share * inputs.voltage_peak_to_peak, share * rig.drive.voltage_offset
+    power = [
+        friction_point(
+            replace(rig, drive=replace(rig.drive, voltage_peak_to_peak=float(one), voltage_offset=float(middle)))
+        ).actuator_power
+        for one, middle in zip(voltage, offset, strict=True)
+    ]
+    return voltage, offset, np.array([np.nan if each is None else each for each in power])
+
+
+def _rise_per_watt(rig: Rig, speeds: Floats, pin: str | None, disc: str | None) -> Floats:
+    """Mean temperature rise of the contact, taken as circular, for a watt of friction at each speed. [K/W]"""
+    if pin is None or disc is None:
+        if pin is not None or disc is not None:
+            raise InvalidInput("the temperature rise needs both materials; give --pin and --disc, or neither")
+        return np.full(speeds.shape, np.nan)
+    radius = float(np.sqrt(rig.contact.nominal_area / np.pi))
+    source = EllipticSource(half_length=radius, half_width=radius)
+    upper, lower = thermal_solid(pin), thermal_solid(disc)
+    found = {
+        speed: float(contact_rise(upper, lower, source, heat_rate=1.0, sliding_speed=speed).mean_temperature_rise)
+        for speed in np.unique(speeds)
+    }
+    return np.array([found[speed] for speed in speeds])
+
+
+def _exceeded(found: Candidates, limits: RigLimits) -> Iterator[list[str]]:
+    """Limits that each candidate exceeds, in words."""
+    checked = (
+        (np.abs(found.voltage_offset) + found.voltage_peak_to_peak / 2, limits.voltage_maximum, "V", "drive reaches"),
+        (found.actuator_power, limits.actuator_power, "W", "amplifier would supply"),
+        (found.mean_temperature_rise, limits.mean_temperature_rise, "K", "contact would be hotter by"),
+    )
+    for index in range(found.normal_load.size):
+        yield [
+            f"{text} {format_si(values[index], unit)}, limit {format_si(limit, unit)}"
+            for values, limit, unit, text in checked
+            if limit is not None and values[index] > limit * (1 + 1e-9)
+        ]

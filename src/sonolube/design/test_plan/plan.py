@@ -1,0 +1,332 @@
+"""Plan of the next tests of a rig: points, replicates, order of the runs and their duration."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from math import ceil
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from sonolube.checks import Floats, require_non_negative, require_positive
+from sonolube.design.test_plan.candidates import NO_LIMITS, Candidates, Factors, RigLimits, candidate_tests
+from sonolube.design.test_plan.closure_outcomes import closure_outcomes
+from sonolube.design.test_plan.comparison import COMPARISONS, Comparison
+from sonolube.design.test_plan.information import Batch, best_batch, mutual_information
+from sonolube.design.test_plan.run_order import BLOCKINGS, Blocking, PlannedRun, randomised_runs
+from sonolube.design.test_plan.scatter import Scatter, assumed_scatter, published_scatter, scatter_of_runs
+from sonolube.errors import InvalidInput
+from sonolube.prediction.closures import Conditions, UncertainConditions
+from sonolube.prediction.inputs import RigInputs, rig_inputs
+from sonolube.prediction.own_runs import own_runs
+from sonolube.prediction.posterior import learned
+from sonolube.prediction.predictive import ratio_draws
+from sonolube.prediction.scores import central_interval
+from sonolube.published import column_numbers
+from sonolube.rig import Rig
+from sonolube.units import format_si
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+MOST_RUNS: Final = 1000
+"""Number of runs of a plan."""
+
+_DRAWS: Final = 4000
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Question:
+    """What the tests shall show, and how surely.
+
+    Parameters
+    ----------
+    difference : float
+        Friction reduction to be shown.
+    power : float
+        Probability to show it where it is there.
+    significance : float
+        Probability to show it where it is not.
+    comparison : Comparison
+    scatter : float or None
+        Of a friction force between runs, relative; by own runs or the dissertation where None.
+    """
+
+    difference: float = 0.1
+    power: float = 0.9
+    significance: float = 0.05
+    comparison: Comparison = COMPARISONS["paired"]
+    scatter: float | None = None
+
+    def __post_init__(self) -> None:
+        if not 0 < self.difference < 1:
+            raise InvalidInput(f"difference must lie between 0 and 1 of the friction, got {self.difference:g}")
+        if self.scatter is not None and not 0 < self.scatter < 1:
+            raise InvalidInput(f"scatter must lie between 0 and 1 of the friction, got {self.scatter:g}")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Procedure:
+    """How each run is made.
+
+    Parameters
+    ----------
+    intrinsic_distance, vibrated_distance : float
+        Sliding distances until friction is steady without and with vibration, in m.
+    measuring_time : float
+        Time in steady friction, without and with vibration, in s.
+    blocking : Blocking
+    """
+
+    intrinsic_distance: float
+    vibrated_distance: float
+    measuring_time: float = 12.0
+    blocking: Blocking = BLOCKINGS["day"]
+
+    def __post_init__(self) -> None:
+        require_non_negative(intrinsic_distance=self.intrinsic_distance, vibrated_distance=self.vibrated_distance)
+        require_positive(measuring_time=self.measuring_time)
+
+    def times(self, speed: float) -> tuple[float, float]:
+        """Durations without and with vibration at a sliding speed, in s, rounded up to whole ones."""
+        distances = self.intrinsic_distance, self.vibrated_distance
+        without, vibrated = (ceil(distance / speed + self.measuring_time) for distance in distances)
+        return float(without), float(vibrated)
+
+
+def published_distances() -> tuple[float, float]:
+    """Longest distances until friction is steady without and with vibration, of D Table 2.3. [m]"""
+    numbers = [number.value for _, number in sorted(column_numbers("2.3", "friction_distance").items())]
+    return max(numbers[::2]), max(numbers[1::2])
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class TestPlan:
+    """Plan of tests of a rig.
+
+    Parameters
+    ----------
+    rig : Rig
+    question : Question
+    procedure : Procedure
+    scatter : Scatter
+    replicates : int
+        Of each point.
+    power : float
+        Of the comparison at one point.
+    candidates : Candidates
+    information : ndarray, shape (m,)
+        Expected information of the replicates at each candidate, in bits.
+    batch : Batch
+        Points of the plan, as indices of candidates.
+    interval : ndarray, shape (2, m)
+        Limits of the predicted friction ratio, 80 %.
+    median : ndarray, shape (m,)
+        Of the predicted friction ratio.
+    chance : ndarray, shape (m,)
+        Probability that the reduction is at least the difference.
+    weights : dict of str to float
+        Probability of each closure.
+    closure_medians : dict of str to ndarray, shape (m,)
+        Friction ratio by each closure.
+    friction_coefficient : float
+        Intrinsic, by the rig or the own runs. []
+    runs : tuple of PlannedRun
+    limits : RigLimits
+    materials : tuple of str or None
+        Of pin and disc.
+    caveats : tuple of str
+    """
+
+    __test__ = False
+
+    rig: Rig
+    question: Question
+    procedure: Procedure
+    scatter: Scatter
+    replicates: int
+    power: float
+    candidates: Candidates
+    information: Floats
+    batch: Batch
+    interval: Floats
+    median: Floats
+    chance: Floats
+    weights: dict[str, float]
+    closure_medians: dict[str, Floats]
+    friction_coefficient: float
+    runs: tuple[PlannedRun, ...]
+    limits: RigLimits
+    materials: tuple[str, str] | None
+    caveats: tuple[str, ...]
+
+    def candidate(self, run: PlannedRun) -> int:
+        """Candidate of a run."""
+        return self.batch.points[run.point]
+
+    @property
+    def duration(self) -> float:
+        """Time of all runs without mounting and cleaning. [s]"""
+        speeds = self.candidates.sliding_speed
+        return sum(sum(self.procedure.times(float(speeds[self.candidate(run)]))) for run in self.runs)
+
+
+def plan_tests(
+    rig: Rig,
+    factors: Factors,
+    *,
+    question: Question,
+    procedure: Procedure,
+    points: int = 4,
+    limits: RigLimits = NO_LIMITS,
+    runs: "xr.Dataset | None" = None,
+    pin: str | None = None,
+    disc: str | None = None,
+    seed: int = 0,
+) -> TestPlan:
+    """Plan the next tests of a rig.
+
+    Parameters
+    ----------
+    rig : Rig
+    factors : Factors
+        Loads, speeds and amplitudes to choose from.
+    question : Question
+    procedure : Procedure
+    points : int
+        Number of conditions to test.
+    limits : RigLimits
+    runs : xarray.Dataset, optional
+        Own measured runs over `run`.
+    pin, disc : str, optional
+        Materials of the catalogue.
+    seed : int
+        Of the order of the runs, and of the draws.
+
+    Returns
+    -------
+    TestPlan
+
+    Raises
+    ------
+    InvalidInput
+        If the rig cannot make enough of the points, no point is predicted to show the difference, or the plan has
+        more than `MOST_RUNS` runs.
+    """
+    inputs = rig_inputs(rig)
+    own = None if runs is None else own_runs(runs, inputs, title=rig.title)
+    if own is not None and own.friction is not None:
+        inputs = replace(inputs, friction=own.friction)
+    scatter = _scatter(question, runs)
+    comparison, deviation = question.comparison, question.comparison.deviation(scatter)
+    needed = {"difference": question.difference, "deviation": deviation, "significance": question.significance}
+    replicates = comparison.replicates(power=question.power, **needed)
+    if points < 1 or points * replicates > MOST_RUNS:
+        raise InvalidInput(f"{points} points with {replicates} replicates; a plan has 1 to {MOST_RUNS} runs")
+    candidates = candidate_tests(rig, inputs, factors, limits=limits, pin=pin, disc=disc)
+    at, tested = _conditions(candidates, inputs), None if own is None else own.tested
+    found = ratio_draws(learned().friction, at, count=_DRAWS, seed=seed, own=tested)
+    chance = np.mean(1 - found.friction_ratio >= question.difference, axis=0)
+    allowed = _allowed(candidates, points)
+    _require_effect(1 - np.median(found.friction_ratio, axis=0)[allowed], question.difference)
+    noise = np.full(at.conditions.sliding_speed.shape, deviation / np.sqrt(replicates))
+    models = closure_outcomes(learned().friction, at, weights=found.weights, own=tested, seed=seed)
+    batch = best_batch(models, count=points, noise=noise, allowed=allowed, seed=seed)
+    singles = [mutual_information(models, np.array([each]), noise=noise, seed=seed) for each in range(noise.size)]
+    order = randomised_runs(points, replicates, blocking=procedure.blocking, specimens=comparison.specimens, seed=seed)
+    plan = TestPlan(
+        rig=rig,
+        question=question,
+        procedure=procedure,
+        scatter=scatter,
+        replicates=replicates,
+        power=float(comparison.power(replicates=replicates, **needed)),
+        candidates=candidates,
+        information=np.array(singles),
+        batch=batch,
+        interval=np.array(central_interval(found.friction_ratio, 0.8)),
+        median=np.median(found.friction_ratio, axis=0),
+        chance=chance,
+        weights=found.weights,
+        closure_medians={each.name: np.median(each.means, axis=0) for each in models},
+        friction_coefficient=inputs.friction.value,
+        runs=order,
+        limits=limits,
+        materials=None if pin is None or disc is None else (pin, disc),
+        caveats=() if own is None else own.caveats,
+    )
+    return replace(plan, caveats=(*_caveats(plan, inputs, explained=found.explained), *plan.caveats))
+
+
+def _scatter(question: Question, runs: "xr.Dataset | None") -> Scatter:
+    """Scatter as given, by own repeats, or of the dissertation."""
+    if question.scatter is not None:
+        return assumed_scatter(question.scatter)
+    own = None if runs is None else scatter_of_runs(runs)
+    return own or published_scatter()
+
+
+def _conditions(candidates: Candidates, inputs: RigInputs) -> UncertainConditions:
+    """Conditions of all candidates with the spread of the rig's inputs."""
+    amplitude = candidates.vibration_amplitude
+    return UncertainConditions(
+        conditions=Conditions(
+            vibration_amplitude=amplitude,
+            frequency=np.full(amplitude.shape, inputs.frequency),
+            sliding_speed=candidates.sliding_speed,
+            decay_length=candidates.decay_length,
+        ),
+        decay_length_spread=inputs.roughness.spread,
+        amplitude_spread=inputs.amplitude.spread,
+    )
+
+
+def _allowed(candidates: Candidates, points: int) -> "np.ndarray[tuple[int], np.dtype[np.int64]]":
+    """Candidates within the limits, at least as many as points."""
+    allowed = np.flatnonzero([not reason for reason in candidates.refused])
+    if allowed.size < points:
+        reason = next((each for each in candidates.refused if each), "")
+        left = f"; of the others: {reason}" if reason else ""
+        raise InvalidInput(
+            f"{points} points to choose among {allowed.size} that the rig can make{left}; give more values or fewer"
+            " points"
+        )
+    return allowed
+
+
+def _require_effect(reductions: Floats, difference: float) -> None:
+    """Raise where no candidate is predicted to show the difference."""
+    largest = float(np.max(reductions))
+    if largest < difference:
+        raise InvalidInput(
+            f"--difference {difference:g} is larger than the effect: the friction reduction predicted is at most"
+            f" {largest:.2g} (median) at any point; show a smaller difference, or vibrate more or slide slower"
+        )
+
+
+def _caveats(plan: TestPlan, inputs: RigInputs, *, explained: bool) -> Iterator[str]:
+    """Reasons for caution about a plan."""
+    if plan.scatter.caveat:
+        yield plan.scatter.caveat
+    refused = [(index, reason) for index, reason in enumerate(plan.candidates.refused) if reason]
+    if refused:
+        index, reason = refused[0]
+        at = plan.candidates
+        first = f"{format_si(at.sliding_speed[index], 'm/s')} and {format_si(at.vibration_amplitude[index], 'm')}"
+        yield f"{len(refused)} of {len(at.refused)} points exceed a limit and are left out, such as {first}: {reason}"
+    if plan.candidates.vibration_amplitude.max() > inputs.amplitude.value * (1 + 1e-9):
+        yield "some amplitudes are above that of the rig file; check that actuator and amplifier reach them"
+    doubtful = [number for number, each in enumerate(plan.batch.points, 1) if plan.chance[each] < 0.5]
+    if doubtful:
+        yield (
+            f"at point {_listed(doubtful)} a reduction of {100 * plan.question.difference:.0f} % is less likely than"
+            " not; it is there to tell the closures apart"
+        )
+    if not explained:
+        yield "no closure explains the measured runs; the information counts their uncertainty as stated"
+    if np.unique(plan.candidates.normal_load).size > 1:
+        yield "closures depend on the load by the separation only; to test the load itself, keep speed and amplitude"
+
+
+def _listed(numbers: Sequence[int]) -> str:
+    """Numbers in words."""
+    return " and ".join(filter(None, [", ".join(map(str, numbers[:-1])), str(numbers[-1])]))

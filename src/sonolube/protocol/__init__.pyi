@@ -1,0 +1,19 @@
+from .record import Limits as Limits, Metadata as Metadata, Protocol as Protocol
+from .steps import (
+    Acquire as Acquire,
+    Check as Check,
+    Drive as Drive,
+    MotorSpeed as MotorSpeed,
+    Prompt as Prompt,
+    Repeat as Repeat,
+    Sweep as Sweep,
+    VoltageSteps as VoltageSteps,
+    Wait as Wait,
+)
+from .text import (
+    protocol_from as protocol_from,
+    protocol_schema as protocol_schema,
+    protocol_text as protocol_text,
+    read_protocol as read_protocol,
+)
+from .time_line import SetPoint as SetPoint, duration as duration, flattened as flattened

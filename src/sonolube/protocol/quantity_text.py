@@ -1,0 +1,104 @@
+"""Quantities of a protocol: text with a unit in the file, SI numbers in the record."""
+
+from dataclasses import dataclass
+from functools import partial
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema, core_schema
+
+from sonolube.units import format_si, to_si, unit_description
+
+
+class Table(BaseModel):
+    """A table of a protocol: unknown keys are refused, and it cannot be changed."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, strict=True)
+
+
+@dataclass(frozen=True)
+class SiText:
+    """Quantity written as text with its unit; to annotate a float with.
+
+    Parameters
+    ----------
+    unit : str
+        SI unit of the number in the record.
+    lowest, highest : float
+        Range of the number; beyond it no test lies.
+    """
+
+    unit: str
+    lowest: float
+    highest: float
+
+    def number(self, value: object) -> float:
+        """Number in SI of a text with a unit.
+
+        Parameters
+        ----------
+        value : object
+            What the file holds.
+
+        Returns
+        -------
+        float
+
+        Raises
+        ------
+        InvalidInput
+            If it is no text, or not a quantity of this kind.
+        ValueError
+            If the number lies beyond the range.
+        """
+        if not isinstance(value, str):
+            raise ValueError(f"{value!r} has no unit; expected {unit_description(self.unit)}")
+        number = to_si(value, unit=self.unit, name="")
+        if not self.lowest <= number <= self.highest:
+            low, high = (format_si(each, self.unit) for each in (self.lowest, self.highest))
+            raise ValueError(f"{value!r} lies beyond any test; expected {low} to {high}")
+        return number
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        """Read text, take a number of the record as it is, and write text to JSON."""
+        return core_schema.no_info_plain_validator_function(
+            self.number,
+            serialization=core_schema.plain_serializer_function_ser_schema(
+                partial(exact_text, unit=self.unit), when_used="json"
+            ),
+        )
+
+    def __get_pydantic_json_schema__(self, core: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        """Text, with the SI unit."""
+        return {"type": "string", "description": unit_description(self.unit), "x-si-unit": self.unit}
+
+
+def exact_text(number: float, *, unit: str) -> str:
+    """Text that reads back as the same number in SI, with a prefixed unit where that is exact.
+
+    Parameters
+    ----------
+    number : float
+        In SI.
+    unit : str
+        SI unit.
+
+    Returns
+    -------
+    str
+    """
+    short = format_si(number, unit, digits=6)
+    return short if to_si(short, unit=unit, name="") == number else f"{number!r} {unit}"
+
+
+Seconds = Annotated[float, SiText("s", 1e-6, 1e7)]
+Hertz = Annotated[float, SiText("Hz", 1e-3, 1e9)]
+Volts = Annotated[float, SiText("V", 0.0, 1e5)]
+SignedVolts = Annotated[float, SiText("V", -1e5, 1e5)]
+Amperes = Annotated[float, SiText("A", 1e-9, 1e4)]
+Newtons = Annotated[float, SiText("N", 1e-9, 1e7)]
+Kelvins = Annotated[float, SiText("K", 1.0, 5000.0)]
+MetresPerSecond = Annotated[float, SiText("m/s", 0.0, 1e3)]
+TurnsPerSecond = Annotated[float, SiText("1/s", 0.0, 1e5)]
+Metres = Annotated[float, SiText("m", 1e-9, 1e3)]
