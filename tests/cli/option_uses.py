@@ -181,7 +181,7 @@ MODES = {
         (str(RIGS / "power_map.toml"), *MAP),
         {
             "--over": "contact.normal_load=3N",
-            "--measured": RUNS,
+            "--runs": RUNS,
             "--form": "svg",
             "--amplitude": "per-volt",
             "--set": "contact.roughness.rms_height=1um",
