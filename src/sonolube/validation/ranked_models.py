@@ -15,6 +15,7 @@ from sonolube.validation.model_variant import ModelVariant
 from sonolube.validation.run_conditions import RunConditions
 
 _SMALLEST_RMS: Final = 1e-6  # of ratios that a model reproduces exactly
+_MOST_PROFILED: Final = 2  # parameters of a variant whose intervals are computed, as in a comparison
 _SMALLEST_ERROR: Final = 1e-3  # of a friction ratio, below which no rig tells models apart
 _LEVEL: Final = 0.05  # of the test of equal errors
 
@@ -28,7 +29,7 @@ class RankedModel:
     fit : Fit
         To all conditions.
     parameters : tuple of FittedParameter
-        With their 95 % intervals and the range of the fits with conditions left out.
+        With the range of the fits with conditions left out; one or two parameters have 95 % intervals.
     fitted, unseen : tuple of float or None
         Friction ratio of each condition by the fit to all, and by the fit without it; None outside the range.
     rms_fit, rms_unseen : float
@@ -110,7 +111,7 @@ def ranked_model(variant: ModelVariant, conditions: tuple[RunConditions, ...]) -
     within = None not in fitted
     return RankedModel(
         fit=fit,
-        parameters=_parameters(fit, tuple(left_out.values()), conditions, with_interval=within),
+        parameters=_parameters(fit, tuple(left_out.values()), conditions, with_interval=within and len(fit.values) <= _MOST_PROFILED),
         fitted=fitted,
         unseen=unseen,
         rms_fit=rms,

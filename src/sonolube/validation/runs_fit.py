@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
     from sonolube.rig import Rig
 
+_FEWEST_CONDITIONS = 5  # from which a ranking counts as decided
 Advance = Callable[[str, int, int], None]
 
 
@@ -55,13 +56,20 @@ class RunsFit:
         return tuple(model for model in self.models if model.tied)
 
     @property
+    def is_decided(self) -> bool:
+        """Whether the runs tell the first model from every other."""
+        return bool(self.models) and not self.tied and len(self.table.conditions) >= _FEWEST_CONDITIONS
+
+    @property
     def verdict(self) -> str:
         """Whether the ranking is decided, in a sentence."""
         if not self.models:
             return "no model applies to these runs"
         best, count = self.models[0], len(self.table.conditions)
         others = [one.name for one in self.tied]
-        if others:
+        if count < _FEWEST_CONDITIONS:
+            text = f"not decided: {count} conditions are too few to rank models; {best.name} leads"
+        elif others:
             text = f"not decided: {count} conditions do not tell {best.name} from {_listed(others)}"
         elif len(self.models) == 1:
             text = f"only {best.name} applies"

@@ -103,7 +103,7 @@ class FitAnswer(Answer):
             "models": [self._model_object(model) for model in self.result.models],
             "rms_of_mean": self.result.rms_of_mean,
             "verdict": self.result.verdict,
-            "decided": bool(self.result.models) and not self.result.tied,
+            "decided": self.result.is_decided,
             "measure_next": [_next_object(one) for one in self.result.next_conditions],
             "not_applicable": self.result.inapplicable,
         }
