@@ -109,9 +109,10 @@ def ranked_model(variant: ModelVariant, conditions: tuple[RunConditions, ...]) -
     unseen = tuple(left_out[one.set_name].predict(one) for one in conditions)
     rms = root_mean_square(_errors(fitted, conditions))
     within = None not in fitted
+    profiled = within and len(fit.values) <= _MOST_PROFILED
     return RankedModel(
         fit=fit,
-        parameters=_parameters(fit, tuple(left_out.values()), conditions, with_interval=within and len(fit.values) <= _MOST_PROFILED),
+        parameters=_parameters(fit, tuple(left_out.values()), conditions, with_interval=profiled),
         fitted=fitted,
         unseen=unseen,
         rms_fit=rms,

@@ -25,6 +25,7 @@ _LABELS: Final = {
     "velocity": ("Peak velocity of the vibration [m/s]", 1.0, "m/s"),
     "sliding_speed": ("Sliding speed [mm/s]", 1e3, "mm/s"),
 }
+_LOWEST, _HIGHEST = -0.05, 1.3  # ratios drawn
 _RATIO: Final = "Friction with over without vibration [-]"
 
 
@@ -68,18 +69,20 @@ def runs_prediction_figure(predictions: tuple[RunsPrediction, ...], table: RunsT
     from matplotlib import pyplot as plt
 
     figure, axes = plt.subplots(figsize=(5.0, 4.6))
-    axes.plot([0, 1.1], [0, 1.1], color="0.5", lw=0.8)
+    axes.plot([0, _HIGHEST], [0, _HIGHEST], color="0.5", lw=0.8)
     errors = [condition.uncertainty or 0.0 for condition in table.conditions]
     shown = [one for one in predictions if one.rms is not None][: len(MARKERS) - 1]
     for index, one in enumerate(shown):
         pairs = zip(one.ratios, table.conditions, errors, strict=True)
         points = [(condition.friction_ratio, ratio, error) for ratio, condition, error in pairs if ratio is not None]
         x, y, spread = np.array(points).T
+        y = np.clip(y, _LOWEST, _HIGHEST)
         name = f"{one.model.name.replace('-', ' ')}, rms {one.rms:.2f}"
         axes.errorbar(
             x, y, xerr=spread, fmt=MARKERS[index], color=COLOURS[index], ms=5, elinewidth=0.8, alpha=0.85, label=name
         )
-    axes.set(xlabel=f"Measured: {_RATIO[0].lower()}{_RATIO[1:]}", ylabel="Predicted [-]", xlim=(0, 1.1))
+    axes.set(xlabel=f"Measured: {_RATIO[0].lower()}{_RATIO[1:]}", ylabel="Predicted, at the edge beyond it [-]")
+    axes.set(xlim=(_LOWEST, _HIGHEST), ylim=(_LOWEST, _HIGHEST), aspect="equal")
     axes.set_title(f"{table.title}: models as published tests fitted them", fontsize=9)
     axes.legend(loc="upper left")
     return figure
