@@ -151,7 +151,7 @@ def test_three_conditions_decide_nothing_and_the_next_one_lies_where_models_diff
             next(model for model in result.models if model.name == name).fit.predict(one.condition)
             for name in (one.first, one.second)
         )
-        assert one.separation > 0
+        assert one.contrast > 0
         assert (first, second) == approx((one.first_ratio, one.second_ratio))
         assert one.condition.strength is not None
         beyond = 2.0 if one.is_beyond else 1.0

@@ -28,8 +28,8 @@ def test_the_table_of_the_package_reads_as_runs_with_a_source_for_each_point(tmp
     gutowski = runs.isel(run=places["Gutowski and Leus"])
     assert float(gutowski["friction_reduction"]) == approx(0.9)
     assert float(gutowski["nominal_pressure"]) == approx(31e3)
-    fast = runs.isel(run=places["Dong 2015, A-3"])  # Table 2.3: 1.253 N to 0.886 N at 87 mm/s
-    assert float(fast["friction_reduction"]) == approx(1 - 0.886 / 1.253, abs=5e-4)
+    fast = runs.isel(run=places["Dong 2015, A-3"])  # D Table 2.3: 1.472 N to 1.041 N at 87 mm/s
+    assert float(fast["friction_reduction"]) == approx(1 - 1.041 / 1.472, abs=1e-6)
     assert float(fast["sliding_speed"]) == approx(0.087)
 
 
@@ -44,7 +44,8 @@ def test_an_extended_table_adds_its_own_points_only(tmp_path: Path) -> None:
     }
     row = ",".join(cells.get(column.name, "") for column in STUDY_COLUMNS)
     (point,), _ = read_studies(written(tmp_path, f"{study_table()}{row}\n"))
-    assert (point.label, point.direction, point.friction_reduction) == ("Mine", "transverse", approx(0.4))
+    assert (point.label, point.direction) == ("Mine", "transverse")
+    assert point.friction_reduction == approx(0.4)
 
 
 def test_a_load_on_an_area_places_a_point_on_the_map_with_an_edge_of_its_own(tmp_path: Path) -> None:

@@ -67,6 +67,8 @@ def own_runs(runs: "xr.Dataset", inputs: RigInputs, *, title: str) -> OwnRuns:
     if count > _MOST_RUNS:
         raise InvalidInput(f"{title}: {count} runs; at most {_MOST_RUNS} update a prediction: average repeats")
     checked_ratios(runs, title=title)
+    if np.any(np.isfinite(setting(runs, "vibration_direction", np.nan))):
+        raise InvalidInput(f"{title}: a prediction is of vibration along the normal; leave out runs with a direction")
     runs, copies = without_copies(runs)
     ratio = checked_ratios(runs, title=title)
     amplitude, speed = _amplitudes(runs, inputs), setting(runs, "sliding_speed", inputs.sliding_speed)

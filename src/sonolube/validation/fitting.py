@@ -86,7 +86,7 @@ def fit_variant(
 
 
 def profile_likelihood_interval(
-    fit: Fit, index: int, *, tests: Tests | None = None, quantile: float = _CHI_SQUARED_95
+    fit: Fit, index: int, *, tests: Tests | None = None, largest_excess: float = _CHI_SQUARED_95
 ) -> tuple[float, float]:
     r"""Return the 95 % profile likelihood interval of one parameter, truncated at its bounds.
 
@@ -97,7 +97,7 @@ def profile_likelihood_interval(
         Index of the parameter.
     tests : tuple of MeasuredConditions, optional
         Tests from which the fitted sets are selected; all published ones where absent.
-    quantile : float
+    largest_excess : float
         Largest excess of the deviance; that of chi squared for many tests by default.
 
     Returns
@@ -125,7 +125,7 @@ def profile_likelihood_interval(
         values[index] = value
         values = _minimise(variant, selected, others, values)
         rms = max(root_mean_square(_residuals(variant, selected, values)), _SMALLEST_RMS)
-        return 2 * len(selected) * float(np.log(rms / least)) - quantile
+        return 2 * len(selected) * float(np.log(rms / least)) - largest_excess
 
     reach = np.pi if parameter.is_angle else np.inf
     limits = max(parameter.low, best - reach), min(parameter.high, best + reach)

@@ -135,7 +135,7 @@ def _parameters(
         FittedParameter(
             parameter=parameter,
             value=value,
-            interval=profile_likelihood_interval(fit, index, tests=conditions, quantile=quantile)
+            interval=profile_likelihood_interval(fit, index, tests=conditions, largest_excess=quantile)
             if with_interval and quantile is not None
             else None,
             leave_one_out_range=(

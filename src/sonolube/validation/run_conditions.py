@@ -57,7 +57,7 @@ class RunConditions:
     friction_ratio : float
         Mean of the repeats. []
     uncertainty : float or None
-        Standard uncertainty of that mean. []
+        Standard uncertainty of that mean.
     repeats : int
     contact : RoughContact or None
     normal_load : float or None
@@ -71,7 +71,7 @@ class RunConditions:
     frequency : float or None
         Frequency of the vibration. [Hz]
     in_plane_amplitude : float or None
-        Amplitude along the sliding direction.
+        Amplitude along the sliding direction. [m]
     vibration_velocity : float or None
         Peak velocity of a vibration in the contact plane. [m/s]
     vibration_direction : float or None
@@ -142,7 +142,7 @@ class RunsTable:
     runs : int
         Number of runs that entered.
     scatter : float or None
-        Standard deviation of repeats under equal conditions; None where there are none. []
+        Standard deviation of repeats under equal conditions; None where there are none.
     caveats : tuple of str
     """
 

@@ -27,8 +27,8 @@ class NextCondition:
     first, second : str
         Names of the models.
     first_ratio, second_ratio : float
-        Friction ratios that they predict. []
-    separation : float
+        Friction ratios that they predict.
+    contrast : float
         Their difference over the root sum square of their unseen errors.
     is_beyond : bool
         Whether the condition is beyond the strengths and speeds of the runs.
@@ -39,7 +39,7 @@ class NextCondition:
     second: str
     first_ratio: float
     second_ratio: float
-    separation: float
+    contrast: float
     is_beyond: bool
 
 
@@ -63,7 +63,7 @@ def next_conditions(
     leaders = (leaders if len(leaders) > 1 else models)[:_LEADERS]
     found = [_most_separating(leaders, conditions, beyond) for beyond in (1.0, _BEYOND)]
     within, beyond = found
-    if beyond is None or (within is not None and beyond.separation < _MUCH_BETTER * within.separation):
+    if beyond is None or (within is not None and beyond.contrast < _MUCH_BETTER * within.contrast):
         return () if within is None else (within,)
     return (beyond,) if within is None else (within, beyond)
 
@@ -82,15 +82,15 @@ def _most_separating(
             place = base.at(strength=strength, sliding_speed=speed)
             ratios = [(model, ratio) for model in models if (ratio := model.fit.predict(place)) is not None]
             for (first, one), (second, other) in combinations(ratios, 2):
-                separation = abs(one - other) / max(hypot(first.rms_unseen, second.rms_unseen), _SMALLEST_RMS)
-                if best is None or separation > best.separation:
+                contrast = abs(one - other) / max(hypot(first.rms_unseen, second.rms_unseen), _SMALLEST_RMS)
+                if best is None or contrast > best.contrast:
                     best = NextCondition(
                         condition=place,
                         first=first.name,
                         second=second.name,
                         first_ratio=one,
                         second_ratio=other,
-                        separation=separation,
+                        contrast=contrast,
                         is_beyond=beyond > 1,
                     )
     return best

@@ -108,7 +108,7 @@ class ComparisonAnswer(Answer):
             *[f"  not fitted: set {letter}: {reason}" for letter, reason in ONLY_PREDICTED.items()],
             *[f"  not reached: {line}" for one in self.fits for line in _refusals(one)],
             *([] if self.rig is None or self.own is None else _rig_lines(self.rig, self.own, self.predictions, width)),
-            *([] if self.table is None else run_lines(self.table, self.of_runs, width)),
+            *([] if self.table is None else run_lines(self.table, self.of_runs, name_width=width)),
         ]
 
     def object(self) -> dict[str, Any]:

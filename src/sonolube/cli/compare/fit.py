@@ -181,7 +181,7 @@ def _next_text(one: NextCondition) -> str:
     where = ", beyond the runs" if one.is_beyond else ""
     return (
         f"{one.condition.settings}{where}: {one.first} has {one.first_ratio:.2f}, {one.second} {one.second_ratio:.2f},"
-        f" {one.separation:.1f} of their errors apart"
+        f" {one.contrast:.1f} of their errors apart"
     )
 
 
@@ -193,7 +193,7 @@ def _next_object(one: NextCondition) -> dict[str, Any]:
         "sliding_speed": one.condition.sliding_speed,
         "models": [one.first, one.second],
         "friction_ratios": [one.first_ratio, one.second_ratio],
-        "separation": one.separation,
+        "contrast": one.contrast,
         "beyond_the_runs": one.is_beyond,
     }
 

@@ -7,14 +7,14 @@ from sonolube.validation.run_conditions import RunsTable
 from sonolube.validation.runs_comparison import RunsPrediction
 
 
-def run_lines(table: RunsTable, predictions: Sequence[RunsPrediction], width: int) -> Iterator[str]:
+def run_lines(table: RunsTable, predictions: Sequence[RunsPrediction], *, name_width: int) -> Iterator[str]:
     """Return the error of each model on own runs, beside the one to expect, and why others do not apply.
 
     Parameters
     ----------
     table : RunsTable
     predictions : sequence of RunsPrediction
-    width : int
+    name_width : int
         Of the names of models.
 
     Returns
@@ -23,13 +23,14 @@ def run_lines(table: RunsTable, predictions: Sequence[RunsPrediction], width: in
     """
     count = len(table.conditions)
     yield f"{table.title}: {table.runs} runs under {count} conditions, by models as published tests fitted them"
-    yield f"  {'model':<{width}}  reached     rms    mean  expected"
+    yield f"  {'model':<{name_width}}  reached     rms    mean  expected"
     for one in predictions:
         if one.rms is None or one.mean is None:
             continue
         expected = "" if one.cross_validated_rms is None else f"{one.cross_validated_rms:.3f}"
         reached = f"{one.reached}/{count}"
-        yield f"  {one.model.name:<{width}}  {reached:>7}  {one.rms:6.3f}  {one.mean:+6.3f}  {expected:>8}".rstrip()
+        errors = f"{one.rms:6.3f}  {one.mean:+6.3f}  {expected:>8}"
+        yield f"  {one.model.name:<{name_width}}  {reached:>7}  {errors}".rstrip()
     reasons: dict[str, list[str]] = {}
     for one in predictions:
         if one.reason:
