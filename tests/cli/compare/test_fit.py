@@ -1,11 +1,13 @@
 """Command `fit`: one example table for every command that reads runs, what a user reads, and refusals."""
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 import xarray as xr
+from pytest import approx
 
 Program = Callable[..., Any]
 RUNS = Path(__file__).parents[3] / "examples" / "tribometer-runs.csv"
@@ -26,6 +28,15 @@ def test_the_fit_ranks_models_names_those_that_miss_an_input_and_says_what_to_me
     with xr.open_dataset(tmp_path / "tribometer-runs-fit.nc") as found:
         assert found.sizes["condition"] == 4
         assert found.attrs["verdict"] == answer["verdict"]
+
+
+def test_the_next_condition_of_runs_by_voltage_is_told_in_volts(tmp_path: Path, sonolube: Program, rigs: Path) -> None:
+    models = ("--model", "kinematic-fitted", "--model", "asperity-stick-slip-fitted")
+    run = sonolube("fit", RUNS, "--rig", rigs / "tribometer.toml", *models, "--out", tmp_path)
+    found = re.search(r"measure next: ([\d.]+) (um|nm), .* \(([\d.]+) V peak to peak\)", run.out)
+    assert found is not None
+    amplitude = float(found[1]) * {"um": 1e-6, "nm": 1e-9}[found[2]]
+    assert float(found[3]) == approx(28 * amplitude / 2.5e-6, rel=0.01)  # the rig has 2.5 um at 28 V
 
 
 def test_without_a_rig_models_without_contact_apply_and_the_others_name_the_rig_file(

@@ -16,7 +16,8 @@ from sonolube.cli.console.progress import progress
 from sonolube.errors import InvalidInput
 from sonolube.measurement.measured_runs import read_runs, runs_help
 from sonolube.report import Drawing
-from sonolube.rig import Rig
+from sonolube.rig import Rig, steady_vibration
+from sonolube.units import format_si
 from sonolube.validation.comparison import FittedParameter, compared_models
 from sonolube.validation.ranked_models import RankedModel
 from sonolube.validation.runs_figures import runs_fit_figure
@@ -59,7 +60,9 @@ def fit(
     table = read_runs(runs)
     with progress("fitting") as advance:
         result = fit_runs(table, known, models=compared_models(models or ()), advance=advance)
-    deliver(FitAnswer(result=result, rig=known, name=f"{runs.stem}-fit"), folder=out, as_json=json)
+    volts = None if known is None or "voltage_peak_to_peak" not in table else _volts_per_amplitude(known)
+    answer = FitAnswer(result=result, rig=known, volts_per_amplitude=volts, name=f"{runs.stem}-fit")
+    deliver(answer, folder=out, as_json=json)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,6 +71,7 @@ class FitAnswer(Answer):
 
     result: RunsFit
     rig: Rig | None
+    volts_per_amplitude: float | None
     name: str
 
     def lines(self) -> list[str]:
@@ -81,7 +85,7 @@ class FitAnswer(Answer):
             *(line for model in models for line in self._model_lines(model, width)),
             f"  {'mean of the other conditions':<{width}}  0  {self.result.rms_of_mean:6.3f}",
             f"  {self.result.verdict}",
-            *(f"  measure next: {_next_text(one)}" for one in self.result.next_conditions),
+            *(f"  measure next: {_next_text(one, self.volts_per_amplitude)}" for one in self.result.next_conditions),
             *(f"  not applicable: {line}" for line in self._inapplicable()),
         ]
 
@@ -176,9 +180,18 @@ def _parameter_object(fitted: FittedParameter) -> dict[str, Any]:
     }
 
 
-def _next_text(one: NextCondition) -> str:
+def _volts_per_amplitude(rig: Rig) -> float | None:
+    """Peak-to-peak voltage per amplitude along the normal, in V/m; None where the rig states no voltage."""
+    volts = None if rig.drive is None else rig.drive.voltage_peak_to_peak
+    amplitude = steady_vibration(rig).vibration_amplitude
+    return None if volts is None or not amplitude > 0 else volts / amplitude
+
+
+def _next_text(one: NextCondition, volts_per_amplitude: float | None) -> str:
     """Next condition in a sentence."""
-    where = ", beyond the runs" if one.is_beyond else ""
+    where, amplitude = ", beyond the runs" if one.is_beyond else "", one.condition.vibration_amplitude
+    if volts_per_amplitude is not None and amplitude is not None:
+        where = f" ({format_si(volts_per_amplitude * amplitude, 'V')} peak to peak){where}"
     return (
         f"{one.condition.settings}{where}: {one.first} has {one.first_ratio:.2f}, {one.second} {one.second_ratio:.2f},"
         f" {one.contrast:.1f} of their errors apart"
