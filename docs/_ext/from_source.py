@@ -26,6 +26,7 @@ from sonolube.friction import FRICTION_MODELS
 from sonolube.materials import Material, SourcedValue, material, material_names
 from sonolube.measurement.file_format import FileFormat
 from sonolube.measurement.impedance.formats import IMPEDANCE_FORMATS
+from sonolube.measurement.measured_runs import RUN_COLUMNS
 from sonolube.measurement.recordings.formats import RECORDING_FORMATS
 from sonolube.measurement.surface_files.formats import SURFACE_FORMATS
 from sonolube.prediction import Calibration, calibrations
@@ -93,6 +94,14 @@ def recording_formats() -> str:
     return _formats(RECORDING_FORMATS.values())
 
 
+def run_columns() -> str:
+    """Columns of a table of runs."""
+    return _grid(
+        ["Column", "Meaning", "Needed"],
+        [[f"`{column.heading}`", _plain(column.meaning), _plain(column.needed)] for column in RUN_COLUMNS],
+    )
+
+
 def impedance_formats() -> str:
     """Return every file format of impedance spectra with its suffixes and content."""
     return _formats(IMPEDANCE_FORMATS.values())
@@ -156,6 +165,7 @@ TABLES: Mapping[str, Callable[[], str]] = {
         materials_with_sources,
         vocabulary,
         recording_formats,
+        run_columns,
         impedance_formats,
         surface_formats,
         asperity_laws,

@@ -42,6 +42,7 @@ ARGUMENTS = {  # of every command that writes: the least that it takes, in.dat b
     "measure impedance": (INPUT,),
     "measure vibration": (INPUT, "--frequency", "22kHz"),
     "compare": (INPUT,),
+    "fit": (INPUT,),
     "identify rig": (INPUT,),
     "literature": (INPUT,),
     "reproduce": (),

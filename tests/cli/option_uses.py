@@ -207,12 +207,22 @@ MODES = {
         "sweep", (RIG, "--of", "waveform"), SWEEP | {"--of": "load", "--from": "5V", "--to": "20V"}
     ),
     "sweep of load": Mode("sweep", (RIG, "--of", "load", "--points", "3"), STUDY | {"--from": "2N", "--to": "5N"}),
+    "fit": Mode(
+        "fit",
+        (OWN_RUNS, "--rig", RIG, "--model", "asperity-stick-slip-fitted"),
+        {
+            "--rig": str(RIGS / "tribometer_uncertain.toml"),
+            "--model": "kinematic",
+            "--amplitude": "computed",
+            "--set": "contact.roughness.rms_height=3um",
+        },
+    ),
     "map": Mode(
         "map",
         (str(RIGS / "power_map.toml"), *MAP),
         {
             "--over": "contact.normal_load=3N",
-            "--measured": RUNS,
+            "--runs": RUNS,
             "--form": "svg",
             "--amplitude": "per-volt",
             "--set": "contact.roughness.rms_height=1um",
@@ -433,10 +443,12 @@ MODES = {
     "compare": Mode(
         "compare",
         (RIG, "--model", "kinematic"),
-        {"--model": "asperity-stick-slip", "--set": "sliding.sliding_speed=50mm/s"} | AMPLITUDE,
+        {"--model": "asperity-stick-slip", "--runs": OWN_RUNS, "--set": "sliding.sliding_speed=50mm/s"} | AMPLITUDE,
     ),
     "compare without a rig": Mode("compare", ("--model", "kinematic"), {"--set": "contact.normal_load=2N"} | AMPLITUDE),
-    "literature": Mode("literature", (RIG,), {"--set": "contact.normal_load=2N"} | AMPLITUDE),
+    "literature": Mode(
+        "literature", (RIG,), {"--set": "contact.normal_load=2N", "--table": "FOLDER/studies.csv"} | AMPLITUDE
+    ),
     "literature without a rig": Mode("literature", (), {"--set": "contact.normal_load=2N"} | AMPLITUDE),
 }
 
@@ -446,6 +458,7 @@ def write_inputs(place: Path) -> None:
     rng = np.random.default_rng(0)
     time = np.arange(0, 20, 0.01)
     force = 0.4 + 0.02 * np.sin(2 * np.pi * time) + 0.01 * rng.standard_normal(time.size)
+    (place / "studies.csv").write_text("study,sliding_speed [mm/s],friction_reduction [%],source\nOwn,50,40,page 3\n")
     _table(place / "friction.csv", "time (s),friction_force (N)", time, force)
     _table(place / "other.csv", "time (s),friction_force (N)", time, 2 * force)
     pulse = np.exp(-(((0.8 * time % 1 - 0.5) / 0.03) ** 2)) + 0.4 * np.exp(-(((0.8 * time % 1 - 0.1) / 0.03) ** 2))

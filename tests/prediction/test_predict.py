@@ -126,6 +126,19 @@ def test_runs_that_cannot_be_are_refused_in_one_line(tmp_path: Path, rows: list[
     assert "\n" not in str(refusal.value)
 
 
+def test_runs_of_vibration_in_the_contact_plane_are_refused(tmp_path: Path) -> None:
+    head = "vibration_amplitude [um],vibration_direction [deg],friction_ratio"
+    with raises(InvalidInput, match="vibration along the normal"):
+        predict(rig(), runs=read_runs(runs_file(tmp_path, "2,90,0.5", head=head)))
+
+
+def test_empty_cells_take_what_the_rig_has(tmp_path: Path) -> None:
+    full = predict(rig(), runs=read_runs(runs_file(tmp_path, "2,20.3,0.5", "2.5,20.3,0.4")))
+    empty = predict(rig(), runs=read_runs(runs_file(tmp_path, "2,,0.5", "2.5,,0.4", "2.5,,")))
+    assert empty["friction_ratio"].to_numpy() == approx(full["friction_ratio"].to_numpy(), abs=1e-12)
+    assert "1 of 3 runs have no friction yet and are left out (line 4)" in empty.attrs["caveats"]
+
+
 def test_runs_without_friction_are_refused_with_the_columns_that_would_do(tmp_path: Path) -> None:
     with raises(InvalidInput, match=r"needs a column friction_reduction \[%\], or friction_ratio"):
         read_runs(runs_file(tmp_path, "2,20", head="vibration_amplitude [um],sliding_speed [mm/s]"))

@@ -76,6 +76,7 @@ COMMANDS = (
     Command(_MEASURE, "measure impedance", "measure.impedance:impedance"),
     Command(_MEASURE, "measure vibration", "measure.vibration:vibration"),
     Command(_COMPARE, "compare", "compare.compare:compare"),
+    Command(_COMPARE, "fit", "compare.fit:fit"),
     Command(_COMPARE, "identify rig", "compare.identify:identify_rig"),
     Command(_COMPARE, "literature", "compare.literature:literature"),
     Command(_COMPARE, "reproduce", "compare.reproduce:reproduce"),

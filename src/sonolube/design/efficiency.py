@@ -1,12 +1,13 @@
 """Efficiency line of a rig from measured runs (D 4.1 to 4.3), and the power that a friction force requires."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.errors import InvalidInput
+from sonolube.measurement.measured_runs import run_caveats
+from sonolube.measurement.run_selection import setting, with_columns
 from sonolube.metrics import (
     EfficiencyFit,
     PowerEstimate,
@@ -48,6 +49,8 @@ class EfficiencyCalibration:
         Sliding speed of that target, in m/s.
     estimate : PowerEstimate or None
         Power that the target requires.
+    caveats : tuple of str
+        About runs that were left out.
     """
 
     rig: Rig
@@ -59,6 +62,7 @@ class EfficiencyCalibration:
     friction_force: float | None
     target_speed: float | None
     estimate: PowerEstimate | None
+    caveats: tuple[str, ...] = ()
 
 
 def calibrate_efficiency(
@@ -102,18 +106,16 @@ def calibrate_efficiency(
     --------
     sonolube.metrics.efficiency_coefficient, sonolube.metrics.fit_efficiency, sonolube.metrics.power_estimate
     """
-    for name in ("sliding_speed", "actuator_power"):
-        if name not in runs:
-            raise InvalidInput(f"measured runs need a column {name}")
-    load = _column_or(runs, "normal_load", rig.normal_load)
-    intrinsic = _column_or(runs, "intrinsic_friction_force", rig.friction_coefficient * load)
+    runs, skipped = with_columns(runs, "sliding_speed", "actuator_power")
+    load = setting(runs, "normal_load", rig.normal_load)
+    intrinsic = setting(runs, "intrinsic_friction_force", rig.friction_coefficient * load)
     reduction = runs["friction_reduction"].values
     speeds = runs["sliding_speed"].values
     coefficients = efficiency_coefficient(
         intrinsic_friction_force=intrinsic,
         reduced_friction_force=(1 - reduction) * intrinsic,
         sliding_speed=speeds,
-        nominal_area=_column_or(runs, "nominal_area", rig.contact.nominal_area),
+        nominal_area=setting(runs, "nominal_area", rig.contact.nominal_area),
         normal_load=load,
         actuator_power=runs["actuator_power"].values,
     )
@@ -142,6 +144,7 @@ def calibrate_efficiency(
         friction_force=friction_force,
         target_speed=target_speed,
         estimate=estimate,
+        caveats=(*run_caveats(runs), *skipped),
     )
 
 
@@ -169,8 +172,3 @@ def efficiency_dataset(calibration: EfficiencyCalibration) -> "xr.Dataset":
         results[f"lowest_{name}"] = ("sliding_speed", low, {"units": "m2/N"})
         results[f"highest_{name}"] = ("sliding_speed", high, {"units": "m2/N"})
     return results
-
-
-def _column_or(runs: "xr.Dataset", name: str, default: Any) -> Any:
-    """Values of a column of the runs, or a default where they have no such column."""
-    return runs[name].values if name in runs else default

@@ -7,11 +7,16 @@ import numpy as np
 from sonolube.design.gaussian_process import FEWEST_RUNS, gaussian_process_map
 from sonolube.design.maps import MAP_LAYOUTS
 from sonolube.errors import InvalidInput
+from sonolube.measurement.measured_runs import run_caveats
+from sonolube.measurement.run_selection import setting, with_columns
+from sonolube.rig import Rig
 from sonolube.vocabulary import quantity
 
 if TYPE_CHECKING:
     import xarray as xr
 
+_STAND_INS = {"actuator_power": "voltage_peak_to_peak"}  # that give an axis
+_BY_THE_RIG = ("nominal_pressure",)  # axes that a rig gives where no column does
 _POINTS = 61  # of the interpolated map along each axis
 _UNCERTAINTY = "friction_reduction_uncertainty"
 
@@ -33,11 +38,45 @@ def require_mappable(runs: "xr.Dataset", *, kind: str) -> None:
     """
     across, up, panel = MAP_LAYOUTS[kind]
     for axis in (across, up):
-        if axis not in runs:
+        if axis not in runs and _STAND_INS.get(axis) not in runs and axis not in _BY_THE_RIG:
             raise InvalidInput(f"measured runs need a column {axis} for a {kind} map")
     several = panel is not None and panel in runs and np.unique(runs[panel].values).size > 1
     if several and runs.sizes["run"] >= FEWEST_RUNS:
         raise InvalidInput(f"measured runs at several values of {panel} make several maps: give one file to each")
+
+
+def runs_on_map(runs: "xr.Dataset", rig: Rig, computed: "xr.Dataset") -> tuple["xr.Dataset", tuple[str, ...]]:
+    """Measured runs with the quantities of both axes of a map, and caveats about those without a place on it.
+
+    Parameters
+    ----------
+    runs : xarray.Dataset
+        Over `run`, as `read_runs` returns them.
+    rig : Rig
+        Whose nominal area gives a stress from a load, its own load where the runs state none.
+    computed : xarray.Dataset
+        Result of a function of `MAPS`, whose powers give that of a voltage.
+
+    Returns
+    -------
+    xarray.Dataset
+    tuple of str
+
+    Raises
+    ------
+    InvalidInput
+        If no run has a place.
+    """
+    across, up, _ = MAP_LAYOUTS[computed.attrs["map"]]
+    if up == "actuator_power":
+        voltage = setting(runs, "voltage_peak_to_peak", np.nan)
+        power = np.interp(voltage, computed["voltage_peak_to_peak"], computed[up], left=np.nan, right=np.nan)
+        runs = runs.assign({up: ("run", setting(runs, up, power))})
+    if up == "nominal_pressure":
+        pressure = setting(runs, "normal_load", rig.normal_load) / rig.contact.nominal_area
+        runs = runs.assign({up: ("run", setting(runs, up, pressure))})
+    placed, skipped = with_columns(runs, across, up)
+    return placed, (*run_caveats(runs), *skipped)
 
 
 def runs_map(runs: "xr.Dataset", *, kind: str) -> "xr.Dataset | None":

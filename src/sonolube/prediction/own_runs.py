@@ -7,6 +7,8 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
+from sonolube.measurement.measured_runs import run_caveats
+from sonolube.measurement.run_selection import checked_ratios, setting, without_copies
 from sonolube.prediction.evidence import TestedRig
 from sonolube.prediction.inputs import Input, RigInputs
 
@@ -14,8 +16,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _MOST_RUNS: Final = 200
-_LARGEST_RATIO: Final = 2.0  # beyond it, vibration along the normal is not what changed
-_SMALLEST_RATIO: Final = -0.2  # of a force whose zero is off
 _USUAL_UNCERTAINTY: Final = 0.05  # of a friction ratio, where neither column nor repeats state it
 _FEWEST_REPEATS: Final = 4  # from which the scatter of repeats is taken
 
@@ -63,25 +63,22 @@ def own_runs(runs: "xr.Dataset", inputs: RigInputs, *, title: str) -> OwnRuns:
     InvalidInput
         If a ratio is beyond what vibration does, or a speed, amplitude or uncertainty is not positive.
     """
-    ratio = 1 - np.asarray(runs["friction_reduction"].to_numpy(), float)
-    if ratio.size > _MOST_RUNS:
-        raise InvalidInput(f"{title}: {ratio.size} runs; at most {_MOST_RUNS} update a prediction: average repeats")
-    outside = (ratio < _SMALLEST_RATIO) | (ratio > _LARGEST_RATIO)
-    if np.any(outside):
-        raise InvalidInput(
-            f"{title}: run {int(np.argmax(outside)) + 1} has a friction ratio of {ratio[np.argmax(outside)]:.3g};"
-            f" vibration gives {_SMALLEST_RATIO:g} to {_LARGEST_RATIO:g}: check zero and sign of the force"
-        )
-    runs, copies = _without_copies(runs)
-    ratio = 1 - np.asarray(runs["friction_reduction"].to_numpy(), float)
-    amplitude, speed = _amplitudes(runs, inputs), _column(runs, "sliding_speed", inputs.sliding_speed)
+    count = runs.sizes["run"]
+    if count > _MOST_RUNS:
+        raise InvalidInput(f"{title}: {count} runs; at most {_MOST_RUNS} update a prediction: average repeats")
+    checked_ratios(runs, title=title)
+    if np.any(np.isfinite(setting(runs, "vibration_direction", np.nan))):
+        raise InvalidInput(f"{title}: a prediction is of vibration along the normal; leave out runs with a direction")
+    runs, copies = without_copies(runs)
+    ratio = checked_ratios(runs, title=title)
+    amplitude, speed = _amplitudes(runs, inputs), setting(runs, "sliding_speed", inputs.sliding_speed)
     for name, values in (("vibration_amplitude", amplitude), ("sliding_speed", speed)):
         if not np.all(values > 0):
             raise InvalidInput(f"{title}: {name} of run {int(np.argmin(values > 0)) + 1} must be positive")
     at = inputs.at(vibration_amplitude=amplitude, sliding_speed=speed)
     uncertainty, caveats = _uncertainty(runs, ratio, amplitude, speed)
-    caveats = (*copies, *caveats)
-    loads = _column(runs, "normal_load", inputs.normal_load)
+    caveats = (*run_caveats(runs), *copies, *caveats)
+    loads = setting(runs, "normal_load", inputs.normal_load)
     if np.any(np.abs(loads / inputs.normal_load - 1) > 0.5):
         caveats += ("some runs have a load far from the rig's; closures do not depend on the load",)
     return OwnRuns(
@@ -94,43 +91,24 @@ def own_runs(runs: "xr.Dataset", inputs: RigInputs, *, title: str) -> OwnRuns:
 
 def _amplitudes(runs: "xr.Dataset", inputs: RigInputs) -> Floats:
     """Amplitude of each run; by its voltage in proportion to the rig's, where only that is stated."""
-    if "vibration_amplitude" in runs:
-        return np.asarray(runs["vibration_amplitude"].to_numpy(), float)
-    if "voltage_peak_to_peak" in runs:
+    amplitude = setting(runs, "vibration_amplitude", np.nan)
+    voltage = setting(runs, "voltage_peak_to_peak", np.nan)
+    by_voltage = np.isnan(amplitude) & np.isfinite(voltage)
+    if np.any(by_voltage):
         if inputs.voltage_peak_to_peak is None:
             raise InvalidInput(
                 "the runs state voltages, but the rig has no drive.voltage_peak_to_peak to scale them by"
             )
-        voltage = np.asarray(runs["voltage_peak_to_peak"].to_numpy(), float)
-        return inputs.amplitude.value * voltage / inputs.voltage_peak_to_peak
-    return np.full(runs.sizes["run"], inputs.amplitude.value)
-
-
-def _without_copies(runs: "xr.Dataset") -> tuple["xr.Dataset", tuple[str, ...]]:
-    """Runs without those that equal an earlier one in every digit, and a caveat about them."""
-    rows = np.column_stack([np.asarray(runs[name].to_numpy(), float) for name in runs.data_vars])
-    first = np.sort(np.unique(rows, axis=0, return_index=True)[1])
-    copies = len(rows) - first.size
-    if not copies:
-        return runs, ()
-    return runs.isel(run=first), (
-        f"{copies} of {len(rows)} runs equal another in every digit; they count as copies, not as repeats",
-    )
-
-
-def _column(runs: "xr.Dataset", name: str, otherwise: float) -> Floats:
-    """Column of the runs, or one value for all."""
-    if name in runs:
-        return np.asarray(runs[name].to_numpy(), float)
-    return np.full(runs.sizes["run"], otherwise)
+        amplitude = np.where(by_voltage, inputs.amplitude.value * voltage / inputs.voltage_peak_to_peak, amplitude)
+    return np.where(np.isnan(amplitude), inputs.amplitude.value, amplitude)
 
 
 def _uncertainty(runs: "xr.Dataset", ratio: Floats, amplitude: Floats, speed: Floats) -> tuple[Floats, tuple[str, ...]]:
     """Standard uncertainty of each ratio: as stated, by the scatter of repeats, or the usual one."""
-    if "friction_reduction_uncertainty" in runs:
-        stated = np.asarray(runs["friction_reduction_uncertainty"].to_numpy(), float)
-        if not np.all(stated > 0):
-            raise InvalidInput("friction_reduction_uncertainty must be positive in every run")
+    stated = setting(runs, "friction_reduction_uncertainty", np.nan)
+    if np.any(stated <= 0):
+        raise InvalidInput("friction_reduction_uncertainty must be positive in every run")
+    if np.all(np.isfinite(stated)):
         return stated, ()
     keys = np.round(np.log(np.stack([amplitude, speed])), 2)
     _, group, counts = np.unique(keys, axis=1, return_inverse=True, return_counts=True)
@@ -138,17 +116,18 @@ def _uncertainty(runs: "xr.Dataset", ratio: Floats, amplitude: Floats, speed: Fl
     if free + 1 >= _FEWEST_REPEATS:
         means = np.bincount(group.ravel(), weights=ratio) / counts
         scatter = float(np.sqrt(np.sum((ratio - means[group.ravel()]) ** 2) / free))
-        return np.full(ratio.size, scatter), ()
-    return np.full(ratio.size, _USUAL_UNCERTAINTY), (
+        return np.where(np.isnan(stated), scatter, stated), ()
+    return np.where(np.isnan(stated), _USUAL_UNCERTAINTY, stated), (
         f"the runs state no uncertainty and hold too few repeats; {_USUAL_UNCERTAINTY:g} is taken for each ratio",
     )
 
 
 def _intrinsic(runs: "xr.Dataset", loads: Floats) -> Input | None:
     """Intrinsic coefficient of friction by the runs' own forces without vibration."""
-    if "intrinsic_friction_force" not in runs:
+    forces = setting(runs, "intrinsic_friction_force", np.nan)
+    if np.all(np.isnan(forces)):
         return None
-    logs = np.log(np.asarray(runs["intrinsic_friction_force"].to_numpy(), float) / loads)
+    logs = np.log((forces / loads)[np.isfinite(forces)])
     spread = float(np.std(logs, ddof=1) / np.sqrt(logs.size)) if logs.size > 1 else _USUAL_UNCERTAINTY
     return Input(
         name="friction_coefficient",
@@ -162,12 +141,8 @@ def _intrinsic(runs: "xr.Dataset", loads: Floats) -> Input | None:
 
 def _wear(runs: "xr.Dataset") -> Floats:
     """Wear rate ratios of the runs that state wear."""
-    if "wear_rate_ratio" in runs:
-        ratios = np.asarray(runs["wear_rate_ratio"].to_numpy(), float)
-    elif "wear_reduction" in runs:
-        ratios = 1 - np.asarray(runs["wear_reduction"].to_numpy(), float)
-    else:
-        return np.empty(0)
+    ratios = setting(runs, "wear_rate_ratio", 1 - setting(runs, "wear_reduction", np.nan))
+    ratios = ratios[np.isfinite(ratios)]
     if not np.all(ratios > 0):
         raise InvalidInput("wear with vibration over wear without must be positive in every run")
     return ratios

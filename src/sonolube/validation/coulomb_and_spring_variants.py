@@ -25,7 +25,7 @@ from sonolube.validation.free_parameters import (
     VIBRATION_DIRECTION,
     per_rig,
 )
-from sonolube.validation.model_variant import NORMAL_VIBRATION, ModelVariant
+from sonolube.validation.model_variant import NORMAL_VIBRATION, SINUSOIDAL_VIBRATION, ModelVariant
 from sonolube.validation.published_tests import FrictionTest, InPlaneTest
 from sonolube.validation.rig_conditions import VibratedRig
 
@@ -183,7 +183,6 @@ def _springs(test: FrictionTest | VibratedRig, mindlin_ratio: float | None) -> f
 
 
 _POPOV_2017: Final = "M. Popov, V. L. Popov and N. V. Popov 2017"
-_AMPLITUDE: Final = ("vibration_amplitude", "frequency", "sliding_speed")
 _IN_PLANE_FRACTION: Final = IN_PLANE_MOTION[0]
 
 LONGITUDINAL_VIBRATION: Final = (
@@ -209,7 +208,7 @@ COULOMB_AND_SPRING_VARIANTS: Final = (
         "Coulomb friction, an unmeasured motion along the sliding alone",
         _coulomb_longitudinal,
         (_IN_PLANE_FRACTION,),
-        required_inputs=_AMPLITUDE,
+        required_inputs=SINUSOIDAL_VIBRATION,
         source="Littmann, Storck and Wallaschek 2001",
     ),
     ModelVariant(
@@ -217,7 +216,7 @@ COULOMB_AND_SPRING_VARIANTS: Final = (
         "Coulomb friction, an unmeasured motion within the plane alone",
         _coulomb_oblique,
         (_IN_PLANE_FRACTION, VIBRATION_DIRECTION),
-        required_inputs=_AMPLITUDE,
+        required_inputs=SINUSOIDAL_VIBRATION,
         source="Kumar and Hutchings 2004",
     ),
     ModelVariant(

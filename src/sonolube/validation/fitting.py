@@ -15,6 +15,7 @@ from sonolube.validation.model_variant import ModelVariant
 from sonolube.validation.published_tests import Conditions, Tests, friction_tests, in_plane_tests
 
 _OUT_OF_RANGE_RESIDUAL: Final = 1.0  # residual of a test outside the range of the model, in fits only
+_SMALLEST_RMS: Final = 1e-6  # of ratios that a model reproduces exactly
 _CHI_SQUARED_95: Final = 3.841  # 95 % quantile of chi squared with one degree of freedom
 
 
@@ -84,7 +85,9 @@ def fit_variant(
     return Fit(variant=variant, sets=sets if free else "", values=tuple(values.tolist()))
 
 
-def profile_likelihood_interval(fit: Fit, index: int, *, tests: Tests | None = None) -> tuple[float, float]:
+def profile_likelihood_interval(
+    fit: Fit, index: int, *, tests: Tests | None = None, largest_excess: float = _CHI_SQUARED_95
+) -> tuple[float, float]:
     r"""Return the 95 % profile likelihood interval of one parameter, truncated at its bounds.
 
     Parameters
@@ -94,6 +97,8 @@ def profile_likelihood_interval(fit: Fit, index: int, *, tests: Tests | None = N
         Index of the parameter.
     tests : tuple of MeasuredConditions, optional
         Tests from which the fitted sets are selected; all published ones where absent.
+    largest_excess : float
+        Largest excess of the deviance; that of chi squared for many tests by default.
 
     Returns
     -------
@@ -113,14 +118,14 @@ def profile_likelihood_interval(fit: Fit, index: int, *, tests: Tests | None = N
     variant, best, selected = fit.variant, fit.values[index], select_tests(fit.sets, tests)
     parameter = variant.parameters[index]
     others = [other for other, one in enumerate(variant.parameters) if other != index and one.applies_to(fit.sets)]
-    least = root_mean_square(_residuals(variant, selected, fit.values))
+    least = max(root_mean_square(_residuals(variant, selected, fit.values)), _SMALLEST_RMS)
 
     def excess(value: float) -> float:
         values = np.array(fit.values)
         values[index] = value
         values = _minimise(variant, selected, others, values)
-        rms = root_mean_square(_residuals(variant, selected, values))
-        return 2 * len(selected) * float(np.log(rms / least)) - _CHI_SQUARED_95
+        rms = max(root_mean_square(_residuals(variant, selected, values)), _SMALLEST_RMS)
+        return 2 * len(selected) * float(np.log(rms / least)) - largest_excess
 
     reach = np.pi if parameter.is_angle else np.inf
     limits = max(parameter.low, best - reach), min(parameter.high, best + reach)

@@ -2,6 +2,7 @@
 
 from dataclasses import asdict, replace
 from functools import cache
+from math import pi
 from typing import Final
 
 from sonolube import friction
@@ -18,7 +19,7 @@ from sonolube.validation.free_parameters import (
     NOMINAL_AREA_FACTOR,
     per_rig,
 )
-from sonolube.validation.model_variant import NORMAL_VIBRATION, ModelVariant
+from sonolube.validation.model_variant import NORMAL_VIBRATION, SINUSOIDAL_VIBRATION, ModelVariant
 from sonolube.validation.published_tests import FrictionTest
 
 
@@ -106,9 +107,11 @@ def _load_balanced(test: FrictionTest, nominal_area_factor: float = 1.0) -> floa
 
 
 def _kinematic(test: FrictionTest, amplitude_fraction: float = 1.0) -> float:
-    """Return the friction ratio by the direction of the relative velocity, D 3.46. []"""
-    model = friction.Kinematic(amplitude_fraction=amplitude_fraction)
-    return float(model.ratio(test.contact, _unbalanced(test), sliding_speed=test.sliding_speed))
+    """Return the friction ratio by the direction of the relative velocity, D 3.46 in closed form. []"""
+    peak_velocity = amplitude_fraction * 2 * pi * test.frequency * test.vibration_amplitude
+    return float(
+        friction.transverse_vibration_ratio(sliding_speed=test.sliding_speed, vibration_velocity=peak_velocity)
+    )
 
 
 def _bristle_with_holder(
@@ -179,14 +182,14 @@ FRICTION_MODEL_VARIANTS: Final = (
         friction_model=friction.Dong2015LoadBalanced,
     ),
     ModelVariant(
-        "kinematic", "cos(theta) alone", _kinematic, required_inputs=NORMAL_VIBRATION, source=_KINEMATIC_SOURCE
+        "kinematic", "cos(theta) alone", _kinematic, required_inputs=SINUSOIDAL_VIBRATION, source=_KINEMATIC_SOURCE
     ),
     ModelVariant(
         "kinematic-fitted",
         "cos(theta) alone with a fraction of the amplitude",
         _kinematic,
         (AMPLITUDE_FRACTION,),
-        required_inputs=NORMAL_VIBRATION,
+        required_inputs=SINUSOIDAL_VIBRATION,
         source=_KINEMATIC_SOURCE,
     ),
     ModelVariant("asperity-stick-slip-mindlin", "asperity stick-slip, memory length after Mindlin", mindlin_stick_slip),

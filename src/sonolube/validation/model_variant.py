@@ -30,7 +30,10 @@ REQUIRED_INPUTS: Final = MappingProxyType(
 )
 """Inputs that a model may require of the conditions, in words."""
 
-NORMAL_VIBRATION: Final = ("contact", "normal_load", "vibration_amplitude", "frequency", "sliding_speed")
+SINUSOIDAL_VIBRATION: Final = ("vibration_amplitude", "frequency", "sliding_speed")
+"""Inputs of a model without contact."""
+
+NORMAL_VIBRATION: Final = ("contact", "normal_load", *SINUSOIDAL_VIBRATION)
 """Inputs of a contact that vibrates along the normal."""
 
 NORMAL_VIBRATION_AND_FRICTION: Final = (*NORMAL_VIBRATION, "friction_coefficient")

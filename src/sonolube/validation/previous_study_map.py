@@ -19,7 +19,9 @@ if TYPE_CHECKING:
     from matplotlib.cm import ScalarMappable
     from matplotlib.figure import Figure
 
-_DIRECTIONS: Final = ("perpendicular", "longitudinal", "in plane", "")
+DIRECTIONS: Final = ("perpendicular", "longitudinal", "in plane", "", "transverse")
+"""Directions of vibration with a marker on the map; empty where it is not stated."""
+
 _DISSERTATION_TESTS: Final = {  # by label of the friction test
     "A-1": "D 2.3.4, slow",
     "A-3": "D 2.3.4, fast",
@@ -29,6 +31,8 @@ _DISSERTATION_TESTS: Final = {  # by label of the friction test
 }
 _LABELLED_LEFT: Final = ("D 2.3.4, slow", "D 4.1.2, 25.9 V")
 _SPEEDS, _PRESSURES = (1e-4, 10.0), (1e3, 1e9)  # limits of the axes in m/s and Pa
+_EDGE, _OWN_EDGE = ("black", 0.6), (COLOURS[1], 1.8)  # of the markers of the package and of a user's own table
+_OWN_UNKNOWN_PRESSURE: Final = 5.5e3  # above those of the package
 _UNKNOWN_PRESSURE, _BAND_EDGE = 2.6e3, 8e3  # ordinate of studies of unknown pressure, and edge of their band
 
 
@@ -74,13 +78,15 @@ def study_points() -> tuple[StudyPoint, ...]:
     return (*previous, *tests)
 
 
-def study_map(added: StudyPoint | None = None) -> "Figure":
-    """Draw the map of friction reductions, with an additional point if given.
+def study_map(added: StudyPoint | None = None, *, others: tuple[StudyPoint, ...] = ()) -> "Figure":
+    """Draw the map of friction reductions, with an additional point and further studies if given.
 
     Parameters
     ----------
     added : StudyPoint or None
         Point of known speed and pressure.
+    others : tuple of StudyPoint
+        Of a table of the user's own, drawn with an edge in colour.
 
     Returns
     -------
@@ -96,17 +102,21 @@ def study_map(added: StudyPoint | None = None) -> "Figure":
     axes.set(xlabel="Sliding speed [m/s]", ylabel="Nominal pressure [Pa]")
     axes.axhspan(_PRESSURES[0], _BAND_EDGE, color="0.92", zorder=0)
     axes.text(_SPEEDS[1] * 0.9, 1.25e3, "pressure not stated", ha="right", color="0.4", fontsize=8)
-    points = study_points()
+    own = study_points()
+    points = (*own, *others)
+    edges = {id(point): _OWN_EDGE for point in others}
     known = [point for point in points if point.sliding_speed]
     for point in known:
         low, high = point.sliding_speed or _SPEEDS
-        pressure = point.nominal_pressure or _UNKNOWN_PRESSURE
+        pressure = point.nominal_pressure or (_OWN_UNKNOWN_PRESSURE if id(point) in edges else _UNKNOWN_PRESSURE)
         if high > low:
             axes.plot([max(low, _SPEEDS[0]), high], [pressure, pressure], color=_colour(shades, point), lw=3, zorder=2)
-        _mark(axes, point, (high, pressure), shades)
-    _draw_unplaced(aside, [point for point in points if point not in known], shades)
-    for direction in (each for each in _DIRECTIONS if any(point.direction == each for point in points)):
+        _mark(axes, point, (high, pressure), shades, edge=edges.get(id(point), _EDGE))
+    _draw_unplaced(aside, [point for point in points if not point.sliding_speed], shades, edges)
+    for direction in (each for each in DIRECTIONS if any(point.direction == each for point in points)):
         axes.plot([], [], _marker(direction), color="0.5", label=direction or "direction not stated")
+    if others:
+        axes.plot([], [], "o", color="0.85", mec=_OWN_EDGE[0], mew=_OWN_EDGE[1], label="own table")
     if added and added.sliding_speed and added.nominal_pressure:
         place, colour = (added.sliding_speed[1], added.nominal_pressure), _colour(shades, added)
         axes.plot(*place, "*", ms=17, mfc=colour, mec=COLOURS[1], mew=1.5, zorder=5, ls="", label=added.label)
@@ -115,18 +125,23 @@ def study_map(added: StudyPoint | None = None) -> "Figure":
     return figure
 
 
-def _draw_unplaced(axes: "Axes", points: list[StudyPoint], shades: "ScalarMappable") -> None:
+def _draw_unplaced(
+    axes: "Axes", points: list[StudyPoint], shades: "ScalarMappable", edges: dict[int, tuple[str, float]]
+) -> None:
     """Draw the studies without speed and pressure in a column of their own."""
     for height, point in enumerate(points):
-        _mark(axes, point, (0.0, -float(height)), shades)
+        _mark(axes, point, (0.0, -float(height)), shades, edge=edges.get(id(point), _EDGE))
     axes.set(xlim=(-0.1, 1), ylim=(0.5 - max(len(points), 5), 0.5), xticks=[], yticks=[])
     axes.spines[:].set_visible(False)
     axes.set_xlabel("neither speed nor\npressure stated", color="0.4", fontsize=8)
 
 
-def _mark(axes: "Axes", point: StudyPoint, place: tuple[float, float], shades: "ScalarMappable") -> None:
+def _mark(
+    axes: "Axes", point: StudyPoint, place: tuple[float, float], shades: "ScalarMappable", *, edge: tuple[str, float]
+) -> None:
     """Draw a point with its label, its marker by direction and its colour by reduction."""
-    axes.plot(*place, _marker(point.direction), ms=8, color=_colour(shades, point), mec="black", mew=0.6, zorder=3)
+    colour, width = edge
+    axes.plot(*place, _marker(point.direction), ms=8, color=_colour(shades, point), mec=colour, mew=width, zorder=3)
     offset, side = (-7, "right") if point.label in _LABELLED_LEFT else (7, "left")
     text = f"{point.label.replace(' and ', chr(10) + 'and ', 1)}, {100 * point.friction_reduction:.0f} %"
     axes.annotate(text, place, (offset, 0), textcoords="offset points", ha=side, va="center", fontsize=7.5)
@@ -139,7 +154,7 @@ def _colour(shades: "ScalarMappable", point: StudyPoint) -> tuple[float, ...]:
 
 def _marker(direction: str) -> str:
     """Return the marker of a direction of vibration."""
-    return MARKERS[_DIRECTIONS.index(direction)]
+    return MARKERS[DIRECTIONS.index(direction)]
 
 
 def _previous_study(study: PreviousStudy) -> StudyPoint:
@@ -152,11 +167,11 @@ def _previous_study(study: PreviousStudy) -> StudyPoint:
         label=study.study,
         direction=study.direction,
         friction_reduction=reduction.value,
-        sliding_speed=_speed_range(speed) if speed else None,
+        sliding_speed=speed_range(speed) if speed else None,
         nominal_pressure=pressure.value if pressure else None,
     )
 
 
-def _speed_range(speed: PrintedNumber) -> tuple[float, float]:
+def speed_range(speed: PrintedNumber) -> tuple[float, float]:
     """Return the limits of a printed range, which coincide for a single number. [m/s]"""
     return (speed.low, speed.high) if "-" in speed.text else (speed.value, speed.value)

@@ -30,6 +30,22 @@ def test_measured_runs_are_drawn_and_interpolated_where_they_are_enough(
         assert float(middle["friction_reduction"]) == approx(0.38, abs=0.01)
 
 
+def test_runs_by_voltage_and_load_have_their_place_by_power_and_stress(
+    tmp_path: Path, sonolube: Program, rigs: Path
+) -> None:
+    runs = tmp_path / "runs.csv"
+    rows = ["10,20,5,0.5", "20,30,5,0.4", "80,30,5,0.2", "20,,5,0.4", "20,30,5,"]
+    runs.write_text("\n".join(["voltage_peak_to_peak [V],sliding_speed [mm/s],normal_load [N],friction_ratio", *rows]))
+    over = ("--over", f"{VOLTS}=5V:25V:3", "--over", "contact.normal_load=5N,6N", "--form", "png")
+    run = sonolube("map", rigs / "power_map.toml", *over, "--runs", runs, "--out", tmp_path)
+    assert "1 of 5 runs have no friction yet" in run.out
+    assert "2 of 4 runs lack sliding_speed or actuator_power" in run.out  # one is beyond the voltages of the map
+    stress = sonolube(
+        "map", rigs / "power_map.toml", "--kind", "velocity-stress", *over, "--runs", runs, "--out", tmp_path
+    )
+    assert "1 of 4 runs lack sliding_speed or nominal_pressure" in stress.out
+
+
 @pytest.mark.parametrize(
     ("head", "row", "line"),
     [

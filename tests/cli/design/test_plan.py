@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from tests.cli.conftest import Program
 
-from sonolube.measurement import measured_runs
 from sonolube.measurement.measured_runs import read_runs
 from sonolube.protocol import duration, flattened, protocol_from, protocol_text, read_protocol
 
@@ -41,8 +40,6 @@ def test_a_filled_table_updates_the_prediction_and_the_next_plan(sonolube: Progr
     head, *lines = table.read_text(encoding="utf-8").splitlines()
     rng = np.random.default_rng(1)
     filled = [f"{line[:-1]}{0.4 + 0.02 * rng.standard_normal():.3f},0.89" for line in lines]
-    if not hasattr(measured_runs, "RUN_COLUMNS"):  # names of runs and blocks are not read yet
-        head, filled = head.partition("block,")[2], [line.split(",", 2)[2] for line in filled]
     table.write_text("\n".join([head, *filled]), encoding="utf-8")
     runs = read_runs(table)
     assert runs.sizes["run"] == len(lines)

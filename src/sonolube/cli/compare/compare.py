@@ -10,11 +10,13 @@ from typing import Annotated, Any
 import typer
 import xarray as xr
 
+from sonolube.cli.compare.own_runs import run_lines, runs_object
 from sonolube.cli.console.answer import Answer, deliver
 from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, loaded_rig
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
 from sonolube.errors import InvalidInput
+from sonolube.measurement.measured_runs import read_runs, runs_help
 from sonolube.report import Drawing
 from sonolube.rig import FrictionPoint, Rig, friction_point
 from sonolube.units import format_si
@@ -31,6 +33,9 @@ from sonolube.validation.comparison import (
 )
 from sonolube.validation.figures import comparison_figures, rig_figure
 from sonolube.validation.rig_conditions import vibrated_rig
+from sonolube.validation.run_conditions import RunsTable, run_conditions
+from sonolube.validation.runs_comparison import RunsPrediction, predict_runs
+from sonolube.validation.runs_figures import runs_prediction_figure
 from sonolube.validation.tables import comparison_csv, comparison_dataset, parameter_text
 
 _PREDICTED = ("friction_ratio", "raw_friction_ratio", "uncertainty", "reason")
@@ -42,6 +47,13 @@ def compare(
     ] = None,
     models: Annotated[
         list[str] | None, typer.Option("--model", metavar="NAME", help="Only this model; may come again.")
+    ] = None,
+    runs: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="RUNS.csv",
+            help=runs_help("Own measured runs, which each model predicts as published tests fitted it"),
+        ),
     ] = None,
     amplitude: Amplitude = None,
     changes: Changes = None,
@@ -58,11 +70,20 @@ def compare(
         )
     known = None if rig is None else loaded_rig(rig, changes=changes, amplitude=amplitude)
     point = None if known is None else vibrated_rig(known)
+    table = None if runs is None else run_conditions(read_runs(runs), known)
     with progress("comparing") as advance:
         fits = compare_models(compared_models(models or ()), advance=advance)
         predictions = () if point is None else predict_rig(fits, point)
     own = None if known is None else friction_point(known)
-    deliver(ComparisonAnswer(fits=fits, rig=known, own=own, predictions=predictions), folder=out, as_json=json)
+    answer = ComparisonAnswer(
+        fits=fits,
+        rig=known,
+        own=own,
+        predictions=predictions,
+        table=table,
+        of_runs=() if table is None else predict_runs(fits, table),
+    )
+    deliver(answer, folder=out, as_json=json)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,6 +94,8 @@ class ComparisonAnswer(Answer):
     rig: Rig | None
     own: FrictionPoint | None
     predictions: tuple[RigPrediction, ...]
+    table: RunsTable | None = None
+    of_runs: tuple[RunsPrediction, ...] = ()
 
     def lines(self) -> list[str]:
         """Errors and fitted parameters of each model, refused tests, and predictions of the rig."""
@@ -85,6 +108,7 @@ class ComparisonAnswer(Answer):
             *[f"  not fitted: set {letter}: {reason}" for letter, reason in ONLY_PREDICTED.items()],
             *[f"  not reached: {line}" for one in self.fits for line in _refusals(one)],
             *([] if self.rig is None or self.own is None else _rig_lines(self.rig, self.own, self.predictions, width)),
+            *([] if self.table is None else run_lines(self.table, self.of_runs, name_width=width)),
         ]
 
     def object(self) -> dict[str, Any]:
@@ -94,13 +118,16 @@ class ComparisonAnswer(Answer):
             "only_predicted": dict(ONLY_PREDICTED),
             "models": [_model_object(one) for one in self.fits],
         }
+        if self.table is not None:
+            content["runs"] = runs_object(self.table, self.of_runs)
         if self.rig is None or self.own is None:
             return content
         return content | {"rig": _rig_object(self.rig, self.own, self.predictions)}
 
     def caveats(self) -> Sequence[str]:
-        """Those of the rig at its operating point."""
-        return () if self.own is None else self.own.caveats
+        """Those of the rig at its operating point, and of own runs."""
+        own = () if self.own is None else self.own.caveats
+        return own if self.table is None else (*own, *self.table.caveats)
 
     def figures(self) -> Mapping[str, Drawing]:
         """Predicted against measured ratios, ratios over speed and amplitude, and the predictions of the rig."""
@@ -111,6 +138,9 @@ class ComparisonAnswer(Answer):
         if self.rig is not None and any(one.friction_ratio is not None for one in self.predictions):
             title = self.rig.title
             drawings["models-on-the-rig"] = Drawing(draw=lambda: rig_figure(self.predictions, title))
+        table = self.table
+        if table is not None and any(one.rms is not None for one in self.of_runs):
+            drawings["models-on-own-runs"] = Drawing(draw=lambda: runs_prediction_figure(self.of_runs, table))
         return drawings
 
     def files(self) -> Mapping[str, str | xr.Dataset]:

@@ -1,7 +1,7 @@
 """Command `literature`: earlier studies that the dissertation reviews, and a rig among them."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -16,6 +16,7 @@ from sonolube.report import Drawing
 from sonolube.rig import Rig, friction_point
 from sonolube.units import format_si
 from sonolube.validation.previous_study_map import StudyPoint, study_map
+from sonolube.validation.study_table import read_studies, study_table
 from sonolube.vocabulary import quantity, unit_of
 
 
@@ -23,12 +24,20 @@ def literature(
     rig: Annotated[
         Path | None, typer.Argument(metavar="RIG.toml", help="A rig to draw among the studies; none by default.")
     ] = None,
+    table: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="STUDIES.csv",
+            help="Further studies to draw on the map, in the columns of studies.csv, which is written; each point with"
+            " study, source and a friction, as in a table of runs.",
+        ),
+    ] = None,
     amplitude: Amplitude = None,
     changes: Changes = None,
-    out: Annotated[Out, OutputFolder("map-of-studies.*")] = OUT,
+    out: Annotated[Out, OutputFolder("map-of-studies.* studies.csv")] = OUT,
     json: Json = False,
 ) -> None:
-    """Earlier studies the dissertation reviews, as a list and a map over speed and pressure, with your rig on it.
+    """Earlier studies the dissertation reviews, as a list, a table and a map over speed and pressure, with your rig.
 
     Example: sonolube literature examples/rigs/tribometer.toml
     """
@@ -51,7 +60,10 @@ def literature(
             sliding_speed=(speed, speed),
             nominal_pressure=known.normal_load / known.contact.nominal_area,
         )
-    answer = LiteratureAnswer(studies=previous_studies(), rig=known, point=point, outside=outside)
+    others, caveats = ((), ()) if table is None else read_studies(table)
+    answer = LiteratureAnswer(
+        studies=previous_studies(), rig=known, point=point, outside=outside, others=others, skipped=caveats
+    )
     deliver(answer, folder=out, as_json=json)
 
 
@@ -63,10 +75,13 @@ class LiteratureAnswer(Answer):
     rig: Rig | None
     point: StudyPoint | None
     outside: str | None
+    others: tuple[StudyPoint, ...] = ()
+    skipped: tuple[str, ...] = ()
 
     def lines(self) -> list[str]:
         """Studies with their text and numbers, and the rig."""
         lines = [line for study in self.studies for line in _study_lines(study)]
+        lines += [f"{point.label}, own table: {_other_text(point)}" for point in self.others]
         for point in [self.point] if self.point else []:
             place = f"{format_si(_speed(point), 'm/s')}, {format_si(point.nominal_pressure or 0.0, 'Pa')}"
             reduction = self.outside or f"computed friction reduction {100 * point.friction_reduction:.0f} %"
@@ -76,6 +91,7 @@ class LiteratureAnswer(Answer):
     def object(self) -> dict[str, Any]:
         """Studies, and speed, pressure and friction reduction of the rig."""
         content: dict[str, Any] = {"studies": [_study_object(study) for study in self.studies]}
+        content["table"] = [asdict(point) for point in self.others]
         if self.point is not None:
             content["rig"] = si(
                 {
@@ -89,7 +105,25 @@ class LiteratureAnswer(Answer):
     def figures(self) -> Mapping[str, Drawing]:
         """Friction reduction of the studies over sliding speed and nominal pressure."""
         point = None if self.outside else self.point
-        return {"map-of-studies": Drawing(draw=lambda: study_map(point))}
+        return {"map-of-studies": Drawing(draw=lambda: study_map(point, others=self.others))}
+
+    def files(self) -> Mapping[str, str]:
+        """Points of the package as a table that users extend."""
+        return {"studies.csv": study_table()}
+
+    def caveats(self) -> Sequence[str]:
+        """Points of an own table that were left out."""
+        return self.skipped
+
+
+def _other_text(point: StudyPoint) -> str:
+    """Friction reduction of a point of an own table, with direction, speed and pressure as far as known."""
+    parts = [f"friction reduction {100 * point.friction_reduction:.0f} %", point.direction or "direction not stated"]
+    if point.sliding_speed is not None:
+        parts.append(format_si(point.sliding_speed[1], "m/s"))
+    if point.nominal_pressure is not None:
+        parts.append(format_si(point.nominal_pressure, "Pa"))
+    return ", ".join(parts)
 
 
 def _speed(point: StudyPoint) -> float:

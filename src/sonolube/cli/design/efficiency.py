@@ -83,11 +83,12 @@ class EfficiencyAnswer(Answer):
         return {"rig": found.rig.title, "runs": found.fit.runs, **si(values)}
 
     def caveats(self) -> Sequence[str]:
-        """Runs whose power was more than the friction needed."""
+        """Runs that were left out, and those whose power was more than the friction needed."""
         saturated = self.calibration.saturated_runs
         if not saturated:
-            return ()
+            return self.calibration.caveats
         return (
+            *self.calibration.caveats,
             f"{saturated} runs left less than a tenth of the friction: power beyond what is needed makes the line low",
         )
 

@@ -23,9 +23,9 @@ from sonolube.design import MAP_LAYOUTS, map_figure, map_page, measured_map_figu
 from sonolube.design.gaussian_process import FEWEST_RUNS
 from sonolube.design.maps import default_axes, panels_text
 from sonolube.design.point_statistics import extreme_point, failure_counts
-from sonolube.design.runs_map import require_mappable, runs_map
+from sonolube.design.runs_map import require_mappable, runs_map, runs_on_map
 from sonolube.errors import InvalidInput
-from sonolube.measurement.measured_runs import read_runs
+from sonolube.measurement.measured_runs import read_runs, runs_help
 from sonolube.report import Drawing, Page, PageTable
 from sonolube.rig import Rig, operating_caveats
 from sonolube.units import format_si
@@ -68,7 +68,15 @@ def map(  # noqa: A001 - the command's name
     ] = None,
     measured: Annotated[
         Path | None,
-        typer.Option(metavar="RUNS.csv", help="Measured runs to draw beside, and to interpolate from six runs on."),
+        typer.Option(
+            "--runs",
+            "--measured",
+            metavar="RUNS.csv",
+            help=runs_help(
+                "Measured runs to draw as points, and to interpolate from six on, with the quantities of both axes; a"
+                " voltage gives its power, a load its stress. Columns"
+            ),
+        ),
     ] = None,
     forms: Annotated[
         list[Form] | None, typer.Option("--form", help="png, pdf, svg or an interactive html; may come again.")
@@ -91,6 +99,9 @@ def map(  # noqa: A001 - the command's name
         require_mappable(runs, kind=kind.value)
     with gpu_warning(), progress("mapping"):
         mapped = design.MAPS[kind.value](known, **axes, backend=backend.value)
+    left_out: tuple[str, ...] = ()
+    if runs is not None:
+        runs, left_out = runs_on_map(runs, known, mapped)
     answer = MapAnswer(
         rig=known,
         rig_file=rig,
@@ -98,6 +109,7 @@ def map(  # noqa: A001 - the command's name
         runs=runs,
         interpolated=None if runs is None else runs_map(runs, kind=kind.value),
         forms=tuple(form.value for form in forms or (Form.PNG, Form.PDF)),
+        left_out=left_out,
     )
     deliver(answer, folder=out, as_json=json, context=context)
 
@@ -112,6 +124,7 @@ class MapAnswer(Answer):
     runs: xr.Dataset | None
     interpolated: xr.Dataset | None
     forms: tuple[str, ...]
+    left_out: tuple[str, ...] = ()
 
     def lines(self) -> list[str]:
         """Greatest reduction, ridge, and points without a result."""
@@ -135,8 +148,8 @@ class MapAnswer(Answer):
         }
 
     def caveats(self) -> Sequence[str]:
-        """Caveats of the rig at its own operating point."""
-        return operating_caveats(self.rig)
+        """Caveats of the rig at its own operating point, and runs without a place on the map."""
+        return (*operating_caveats(self.rig), *self.left_out)
 
     def figures(self) -> Mapping[str, Drawing]:
         """Contours of the map, and those between the measured runs."""

@@ -12,7 +12,7 @@ from sonolube.cli.console.answer import Answer, deliver, grid
 from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Load, Out, RigPath, loaded_rig
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.predict.measured import Measurement, measured_on
-from sonolube.measurement.measured_runs import read_runs
+from sonolube.measurement.measured_runs import read_runs, runs_help
 from sonolube.prediction.figures import prediction_figure
 from sonolube.prediction.rig_prediction import interval, predict as predicted
 from sonolube.prediction.scores import PROBABILITIES
@@ -33,15 +33,7 @@ _PERCENT = ("friction_reduction", "wear_reduction")
 
 def predict(
     rig: RigPath,
-    runs: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="RUNS.csv",
-            help="Own measured runs: friction_reduction [%], friction_ratio, or friction_force with"
-            " intrinsic_friction_force; vibration_amplitude or voltage_peak_to_peak, sliding_speed and wear_reduction"
-            " where they vary.",
-        ),
-    ] = None,
+    runs: Annotated[Path | None, typer.Option(metavar="RUNS.csv", help=runs_help("Own measured runs"))] = None,
     pin: Annotated[
         str | None, typer.Option(metavar="MATERIAL", help="Material of the pin, for the temperature rise.")
     ] = None,

@@ -1,0 +1,126 @@
+"""Measured runs as estimates need them: without copies, within what vibration does, settings of the rig filled in."""
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sonolube.checks import Floats
+from sonolube.errors import InvalidInput
+from sonolube.measurement.measured_runs import heading
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_LARGEST_RATIO: Final = 2.0  # beyond it, vibration along the normal is not what changed
+_SMALLEST_RATIO: Final = -0.2  # of a force whose zero is off
+_MOST_LINES: Final = 6  # named in a caveat
+
+
+def checked_ratios(runs: "xr.Dataset", *, title: str) -> Floats:
+    """Return the friction ratio of each run.
+
+    Parameters
+    ----------
+    runs : xarray.Dataset
+        Over `run`, as `read_runs` returns them.
+    title : str
+        Of the rig or the table, in refusals.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+
+    Raises
+    ------
+    InvalidInput
+        If a ratio is beyond what vibration does: below -0.2 or above 2.
+    """
+    ratio = 1 - np.asarray(runs["friction_reduction"].to_numpy(), float)
+    outside = (ratio < _SMALLEST_RATIO) | (ratio > _LARGEST_RATIO)
+    if np.any(outside):
+        raise InvalidInput(
+            f"{title}: run {int(np.argmax(outside)) + 1} has a friction ratio of {ratio[np.argmax(outside)]:.3g};"
+            f" vibration gives {_SMALLEST_RATIO:g} to {_LARGEST_RATIO:g}: check zero and sign of the force"
+        )
+    return ratio
+
+
+def without_copies(runs: "xr.Dataset") -> tuple["xr.Dataset", tuple[str, ...]]:
+    """Return the runs without those that equal an earlier one in every digit, and a caveat about them.
+
+    Parameters
+    ----------
+    runs : xarray.Dataset
+        Over `run`; names of runs, where they have some, tell equal rows apart.
+
+    Returns
+    -------
+    xarray.Dataset
+    tuple of str
+        Empty where there is no copy.
+    """
+    numbers = [runs[name].to_numpy() for name in runs.data_vars if runs[name].dtype.kind == "f"]
+    columns = [np.nan_to_num(np.asarray(column, float), nan=np.inf) for column in numbers]
+    if "run" in runs.coords:
+        columns.append(np.unique(runs["run"].to_numpy(), return_inverse=True)[1].astype(float))
+    rows = np.column_stack(columns)
+    first = np.sort(np.unique(rows, axis=0, return_index=True)[1])
+    copies = len(rows) - first.size
+    if not copies:
+        return runs, ()
+    return runs.isel(run=first), (
+        f"{copies} of {len(rows)} runs equal another in every digit; they count as copies, not as repeats",
+    )
+
+
+def setting(runs: "xr.Dataset", name: str, otherwise: ArrayLike) -> Floats:
+    """Return a column of the runs, with another value where it is missing or its cell is empty.
+
+    Parameters
+    ----------
+    runs : xarray.Dataset
+    name : str
+        Of the column.
+    otherwise : array_like, shape () or (n,)
+
+    Returns
+    -------
+    ndarray, shape (n,)
+    """
+    other = np.broadcast_to(np.asarray(otherwise, float), (runs.sizes["run"],))
+    if name not in runs:
+        return other.copy()
+    values = np.asarray(runs[name].to_numpy(), float)
+    return np.where(np.isnan(values), other, values)
+
+
+def with_columns(runs: "xr.Dataset", *names: str) -> tuple["xr.Dataset", tuple[str, ...]]:
+    """Return the runs whose cells in some columns are filled in, and a caveat about the others.
+
+    Parameters
+    ----------
+    runs : xarray.Dataset
+    *names : str
+        Of the columns.
+
+    Returns
+    -------
+    xarray.Dataset
+    tuple of str
+
+    Raises
+    ------
+    InvalidInput
+        If a column is missing, or no run has all of them.
+    """
+    for name in names:
+        if name not in runs:
+            raise InvalidInput(f"measured runs need a column {name}: add {heading(name)}")
+    filled = np.all([np.isfinite(runs[name].to_numpy()) for name in names], axis=0)
+    if not filled.any():
+        raise InvalidInput(f"measured runs: no run has {' and '.join(names)}: fill in these columns")
+    if filled.all():
+        return runs, ()
+    count = int((~filled).sum())
+    return runs.isel(run=filled), (f"{count} of {filled.size} runs lack {' or '.join(names)} and are left out",)

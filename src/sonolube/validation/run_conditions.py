@@ -1,0 +1,318 @@
+"""Own measured runs as conditions of model variants: repeats averaged, what they do not state taken from a rig."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from math import cos, isfinite, pi
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from sonolube.checks import Floats
+from sonolube.contact import RoughContact
+from sonolube.errors import InvalidInput
+from sonolube.measurement.measured_runs import run_caveats
+from sonolube.measurement.run_selection import checked_ratios, setting, without_copies
+from sonolube.rig import Rig, steady_vibration
+from sonolube.units import format_si
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_MOST_RUNS: Final = 1000
+_SAME: Final = 0.01  # relative difference of settings that count as one
+_FIRST_LETTER: Final = 0x4E00  # of the groups of conditions; no published set has one so high
+_MOST_GROUPS: Final = 12
+_IN_PLANE: Final = 1e-6  # cosine of an angle that counts as across the sliding
+_SETTINGS: Final = ("vibration_amplitude", "vibration_velocity", "vibration_direction", "frequency", "sliding_speed")
+
+REMEDIES: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        "contact": "a rig file (roughness and materials)",
+        "normal_load": "normal_load [N], or a rig file",
+        "friction_coefficient": "intrinsic_friction_force [N] with normal_load [N], or a rig file",
+        "sliding_speed": "sliding_speed [mm/s], or a rig file",
+        "vibration_amplitude": "vibration_amplitude [um], or a rig file, of a vibration along the normal",
+        "frequency": "frequency [kHz], or a rig file",
+        "in_plane_amplitude": "vibration_direction [deg] of 0, for a vibration along the sliding",
+        "vibration_velocity": "vibration_direction [deg], for a vibration in the contact plane",
+        "vibration_direction": "vibration_direction [deg], for a vibration in the contact plane",
+        "holder_stiffness": "friction.holder_stiffness of a rig file",
+        "holder_mass": "a mass that moves with the holder, which no rig file states",
+    }
+)
+"""What to add where a required input of a model is missing, by its name in `REQUIRED_INPUTS`."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RunConditions:
+    """Own measured friction ratio under one condition; inputs that are not known are None.
+
+    Parameters
+    ----------
+    label : str
+        Settings in words.
+    set_name : str
+        One character for the conditions that cross-validation leaves out together.
+    friction_ratio : float
+        Mean of the repeats. []
+    uncertainty : float or None
+        Standard uncertainty of that mean.
+    repeats : int
+    contact : RoughContact or None
+    normal_load : float or None
+        Force pressing the bodies together. [N]
+    friction_coefficient : float or None
+        Coefficient of friction without vibration. []
+    sliding_speed : float or None
+        Sliding speed. [m/s]
+    vibration_amplitude : float or None
+        Amplitude along the surface normal. [m]
+    frequency : float or None
+        Frequency of the vibration. [Hz]
+    in_plane_amplitude : float or None
+        Amplitude along the sliding direction. [m]
+    vibration_velocity : float or None
+        Peak velocity of a vibration in the contact plane. [m/s]
+    vibration_direction : float or None
+        Angle between that vibration and the sliding. [rad]
+    holder_stiffness : float or None
+        Stiffness of the holder along the sliding direction. [N/m]
+    """
+
+    label: str
+    set_name: str
+    friction_ratio: float
+    uncertainty: float | None
+    repeats: int
+    contact: RoughContact | None = None
+    normal_load: float | None = None
+    friction_coefficient: float | None = None
+    sliding_speed: float | None = None
+    vibration_amplitude: float | None = None
+    frequency: float | None = None
+    in_plane_amplitude: float | None = None
+    vibration_velocity: float | None = None
+    vibration_direction: float | None = None
+    holder_stiffness: float | None = None
+
+    @property
+    def strength(self) -> float | None:
+        """Amplitude along the normal, in m, else the peak velocity in the plane, in m/s; None if neither is known."""
+        return self.vibration_velocity if self.vibration_amplitude is None else self.vibration_amplitude
+
+    def at(self, *, strength: float | None = None, sliding_speed: float | None = None) -> "RunConditions":
+        """Return these conditions at another strength of the vibration or sliding speed.
+
+        Parameters
+        ----------
+        strength : float, optional
+            As the property.
+        sliding_speed : float, optional
+            Sliding speed. [m/s]
+
+        Returns
+        -------
+        RunConditions
+        """
+        other = self if sliding_speed is None else replace(self, sliding_speed=sliding_speed)
+        if strength is None or self.strength is None:
+            return other
+        scaled = ("vibration_amplitude", "vibration_velocity", "in_plane_amplitude")
+        factor = strength / self.strength
+        known = {name: getattr(other, name) for name in scaled}
+        return replace(other, **{name: factor * value for name, value in known.items() if value is not None})
+
+    @property
+    def settings(self) -> str:
+        """Strength and sliding speed in words."""
+        unit = "m/s" if self.vibration_amplitude is None else "m"
+        parts = [(self.strength, unit), (self.sliding_speed, "m/s")]
+        return ", ".join(format_si(value, each) for value, each in parts if value is not None)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RunsTable:
+    """Own runs by their conditions.
+
+    Parameters
+    ----------
+    title : str
+    conditions : tuple of RunConditions
+    runs : int
+        Number of runs that entered.
+    scatter : float or None
+        Standard deviation of repeats under equal conditions; None where there are none.
+    caveats : tuple of str
+    """
+
+    title: str
+    conditions: tuple[RunConditions, ...]
+    runs: int
+    scatter: float | None
+    caveats: tuple[str, ...]
+
+
+def run_conditions(runs: "xr.Dataset", rig: Rig | None = None) -> RunsTable:
+    """Return own runs as conditions of model variants, repeats averaged.
+
+    Parameters
+    ----------
+    runs : xarray.Dataset
+        Over `run`, as `sonolube.measurement.measured_runs.read_runs` returns them.
+    rig : Rig, optional
+        Gives contact, and where the runs do not, load, speed, frequency, friction without vibration and the amplitude
+        of a voltage.
+
+    Returns
+    -------
+    RunsTable
+        Conditions within 1 % of each other are one.
+
+    Raises
+    ------
+    InvalidInput
+        If a ratio is beyond what vibration does, a setting is not positive, or a voltage has no rig to scale it.
+    """
+    title = str(runs.attrs.get("title", "runs")).removesuffix(", in %")
+    if runs.sizes["run"] > _MOST_RUNS:
+        raise InvalidInput(f"{title}: {runs.sizes['run']} runs; at most {_MOST_RUNS} are fitted: average repeats")
+    checked_ratios(runs, title=title)
+    runs, copies = without_copies(runs)
+    ratio = checked_ratios(runs, title=title)
+    inputs = _inputs(runs, rig)
+    for name in ("vibration_amplitude", "vibration_velocity", "frequency", "sliding_speed", "normal_load"):
+        if np.any(inputs[name] <= 0):
+            raise InvalidInput(f"{title}: {name} of run {int(np.argmax(inputs[name] <= 0)) + 1} must be positive")
+    group, first = _groups(inputs)
+    stated = setting(runs, "friction_reduction_uncertainty", np.nan)
+    scatter = _scatter(ratio, group)
+    conditions = []
+    for index, run in enumerate(first):
+        members = group == index
+        conditions.append(
+            _condition(
+                {name: float(values[run]) for name, values in inputs.items()}
+                | {"friction_coefficient": float(np.mean(inputs["friction_coefficient"][members]))},
+                rig,
+                friction_ratio=float(np.mean(ratio[members])),
+                uncertainty=_uncertainty(stated[members], scatter),
+                repeats=int(members.sum()),
+            )
+        )
+    lettered = tuple(
+        replace(one, set_name=chr(_FIRST_LETTER + place % _MOST_GROUPS), label=one.settings or f"condition {place + 1}")
+        for place, one in enumerate(conditions)
+    )
+    return RunsTable(
+        title=title, conditions=lettered, runs=ratio.size, scatter=scatter, caveats=(*run_caveats(runs), *copies)
+    )
+
+
+def _inputs(runs: "xr.Dataset", rig: Rig | None) -> dict[str, Floats]:
+    """Settings of each run, those of the rig where it states none, NaN where nothing does."""
+    speed = np.nan if rig is None or not rig.sliding_speed > 0 else rig.sliding_speed
+    frequency = np.nan if rig is None or rig.drive is None else rig.drive.frequency
+    load = setting(runs, "normal_load", np.nan if rig is None else rig.normal_load)
+    dry = setting(runs, "intrinsic_friction_force", np.nan) / load
+    coefficient = float(np.nanmean(dry)) if np.any(np.isfinite(dry)) else np.nan
+    if rig is not None and not isfinite(coefficient):
+        coefficient = rig.friction_coefficient
+    return {
+        "vibration_amplitude": _amplitudes(runs, rig),
+        "vibration_velocity": setting(runs, "vibration_velocity", np.nan),
+        "vibration_direction": setting(runs, "vibration_direction", np.nan),
+        "frequency": setting(runs, "frequency", frequency),
+        "sliding_speed": setting(runs, "sliding_speed", speed),
+        "normal_load": load,
+        "friction_coefficient": np.where(np.isfinite(dry), dry, coefficient),
+    }
+
+
+def _amplitudes(runs: "xr.Dataset", rig: Rig | None) -> Floats:
+    """Amplitude of each run; by its voltage in proportion to the rig's where only that is stated, else the rig's."""
+    amplitude = setting(runs, "vibration_amplitude", np.nan)
+    voltage = setting(runs, "voltage_peak_to_peak", np.nan)
+    unknown = np.isnan(amplitude) & np.isnan(setting(runs, "vibration_velocity", np.nan))
+    if rig is None:
+        if np.any(unknown & np.isfinite(voltage)):
+            raise InvalidInput(
+                "the runs state voltages: add a column vibration_amplitude [um], or a rig file that scales them (--rig)"
+            )
+        return amplitude
+    by_voltage = unknown & np.isfinite(voltage)
+    if not np.any(unknown):
+        return amplitude
+    own = steady_vibration(rig).vibration_amplitude
+    volts = None if rig.drive is None else rig.drive.voltage_peak_to_peak
+    if np.any(by_voltage):
+        if volts is None:
+            raise InvalidInput(
+                "the runs state voltages, but the rig has no drive.voltage_peak_to_peak to scale them by"
+            )
+        amplitude = np.where(by_voltage, own * voltage / volts, amplitude)
+    return np.where(unknown & ~by_voltage, own, amplitude)
+
+
+def _groups(inputs: dict[str, Floats]) -> tuple[np.ndarray, np.ndarray]:
+    """Number of the condition of each run, and the first run of each; settings within 1 % are one."""
+    settings = np.stack([np.nan_to_num(inputs[name], nan=-1.0) for name in (*_SETTINGS, "normal_load")], axis=1)
+    group = np.full(len(settings), -1)
+    first: list[int] = []
+    for run, each in enumerate(settings):
+        same = np.flatnonzero(np.isclose(settings[first], each, rtol=_SAME, atol=0).all(axis=1))
+        if not same.size:
+            first.append(run)
+        group[run] = same[0] if same.size else len(first) - 1
+    return group, np.array(first)
+
+
+def _scatter(ratio: Floats, group: np.ndarray) -> float | None:
+    """Pooled standard deviation of repeats."""
+    counts = np.bincount(group)
+    free = ratio.size - counts.size
+    if not free:
+        return None
+    means = np.bincount(group, weights=ratio) / counts
+    return float(np.sqrt(np.sum((ratio - means[group]) ** 2) / free))
+
+
+def _uncertainty(stated: Floats, scatter: float | None) -> float | None:
+    """Standard uncertainty of the mean of repeats: by their scatter, else as stated."""
+    if scatter is not None:
+        return scatter / float(np.sqrt(stated.size))
+    return float(np.sqrt(np.sum(stated**2))) / stated.size if np.all(np.isfinite(stated)) else None
+
+
+def _condition(
+    inputs: dict[str, float], rig: Rig | None, *, friction_ratio: float, uncertainty: float | None, repeats: int
+) -> RunConditions:
+    """Conditions of one group of repeats; a stated direction means a vibration in the contact plane."""
+    known: dict[str, Any] = {name: value if isfinite(value) else None for name, value in inputs.items()}
+    amplitude, velocity, frequency = (
+        known.pop("vibration_amplitude"),
+        known.pop("vibration_velocity"),
+        known["frequency"],
+    )
+    if amplitude is None and velocity is not None and frequency is not None:
+        amplitude = velocity / (2 * pi * frequency)
+    if velocity is None and amplitude is not None and frequency is not None:
+        velocity = 2 * pi * frequency * amplitude
+    direction = known["vibration_direction"]
+    if direction is None:
+        motion = {"vibration_amplitude": amplitude}
+    else:
+        along = amplitude if abs(abs(cos(direction)) - 1) < _IN_PLANE else None
+        motion = {"vibration_velocity": velocity, "in_plane_amplitude": along}
+    stiffness = getattr(rig.friction_model, "holder_stiffness", None) if rig else None
+    return RunConditions(
+        label="",
+        set_name="",
+        friction_ratio=friction_ratio,
+        uncertainty=uncertainty,
+        repeats=repeats,
+        contact=None if rig is None else rig.contact,
+        holder_stiffness=stiffness if stiffness is not None and isfinite(stiffness) else None,
+        **known,
+        **motion,
+    )

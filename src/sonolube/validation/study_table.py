@@ -1,0 +1,164 @@
+"""Earlier studies as an open table: the points of the package as CSV, and a table of a user's own beside them."""
+
+import csv
+import io
+from math import isfinite
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from sonolube.errors import InvalidInput, UnknownName
+from sonolube.measurement.measured_runs import RUN_COLUMNS, read_runs, run_caveats
+from sonolube.measurement.run_selection import checked_ratios, setting
+from sonolube.published import PreviousStudy, previous_studies
+from sonolube.units import convert
+from sonolube.validation.previous_study_map import DIRECTIONS, StudyPoint, speed_range
+from sonolube.validation.published_tests import NORMAL_VIBRATION_SETS, FrictionTest, friction_tests
+from sonolube.vocabulary import quantity
+
+Row = dict[str, str | float | None]
+_QUANTITIES: Final = (
+    "lowest_speed",
+    "sliding_speed",
+    "normal_load",
+    "nominal_area",
+    "nominal_pressure",
+    "frequency",
+    "vibration_amplitude",
+    "vibration_velocity",
+    "friction_reduction",
+    "friction_reduction_uncertainty",
+)
+_NAMES: Final = ("study", "direction", *_QUANTITIES, "source", "note")
+STUDY_COLUMNS: Final = tuple(column for name in _NAMES for column in RUN_COLUMNS if column.name == name)
+"""Columns of a table of studies, of those of a table of runs."""
+
+
+def study_table() -> str:
+    """Return the points of the package as CSV in `STUDY_COLUMNS`: earlier studies, then every test of D.
+
+    Returns
+    -------
+    str
+        A row for each study with a quoted friction reduction; a quantity that is not printed has an empty cell.
+    """
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow([column.heading for column in STUDY_COLUMNS])
+    for row in _rows():
+        writer.writerow([_cell(row.get(column.name), column.name, column.unit) for column in STUDY_COLUMNS])
+    return text.getvalue()
+
+
+def read_studies(path: Path) -> tuple[tuple[StudyPoint, ...], tuple[str, ...]]:
+    """Return the points of a user's table of studies that are not among those of the package, and caveats.
+
+    Parameters
+    ----------
+    path : Path
+        CSV in columns of `STUDY_COLUMNS`, among them `study`, `source` and a friction.
+
+    Returns
+    -------
+    tuple of StudyPoint
+    tuple of str
+
+    Raises
+    ------
+    InvalidInput
+        If the table cannot be read, or a point names no study or no source.
+    UnknownName
+        If a direction of vibration is none of those of the map.
+    """
+    runs = read_runs(path)
+    texts = {name: _texts(runs[name].to_numpy() if name in runs else None, runs.sizes["run"]) for name in _NAMES[:2]}
+    sources = _texts(runs["source"].to_numpy() if "source" in runs else None, runs.sizes["run"])
+    for name, cells in (("study", texts["study"]), ("source", sources)):
+        if not all(cells):
+            raise InvalidInput(f"{path}: every point needs a {name}: run {cells.index('') + 1} names none")
+    for direction in texts["direction"]:
+        if direction not in DIRECTIONS:
+            raise UnknownName.among(filter(None, DIRECTIONS), kind="direction", name=direction)
+    reduction = 1 - checked_ratios(runs, title=str(path))
+    speed = setting(runs, "sliding_speed", np.nan)
+    slowest = setting(runs, "lowest_speed", speed)
+    pressure = setting(
+        runs, "nominal_pressure", setting(runs, "normal_load", np.nan) / setting(runs, "nominal_area", np.nan)
+    )
+    known = {(row["study"], row["direction"], f"{_percent(row):.4g}") for row in _rows()}
+    points = tuple(
+        StudyPoint(
+            label=study,
+            direction=direction,
+            friction_reduction=float(reduction[index]),
+            sliding_speed=(float(slowest[index]), float(speed[index])) if isfinite(speed[index]) else None,
+            nominal_pressure=float(pressure[index]) if isfinite(pressure[index]) else None,
+        )
+        for index, (study, direction) in enumerate(zip(texts["study"], texts["direction"], strict=True))
+        if (study, direction, f"{100 * reduction[index]:.4g}") not in known
+    )
+    return points, run_caveats(runs)
+
+
+def _texts(cells: "np.ndarray | None", count: int) -> list[str]:
+    """Return the texts of a column; empty ones where there is none."""
+    return [""] * count if cells is None else [str(cell) for cell in cells]
+
+
+def _rows() -> list[Row]:
+    """Return the rows of earlier studies with a friction reduction, then those of the tests of D."""
+    studies = (study for study in previous_studies() if study.number("friction_reduction"))
+    return [*map(_of_study, studies), *map(_of_test, friction_tests())]
+
+
+def _percent(row: Row) -> float:
+    """Return the friction reduction of a row in percent."""
+    reduction = row["friction_reduction"]
+    assert isinstance(reduction, float)
+    return 100 * reduction
+
+
+def _of_study(study: PreviousStudy) -> Row:
+    """Return the row of an earlier study: its highest friction reduction with the numbers that D quotes."""
+    row: Row = {
+        "study": study.study,
+        "direction": study.direction,
+        "source": f"D {study.section}, its references {', '.join(map(str, study.references))}",
+        "note": "; ".join(
+            f"{entry.quantity} {entry.relation} {entry.number.text} {entry.unit}"
+            for entry in study.numbers
+            if entry.quantity in _QUANTITIES and entry.relation != "="
+        ),
+    }
+    for name in _QUANTITIES:
+        number = study.number(name)
+        if number is not None:
+            row[name] = number.value
+    speed = study.number("sliding_speed")
+    if speed is not None:
+        row["lowest_speed"], row["sliding_speed"] = speed_range(speed)
+    return row
+
+
+def _of_test(test: FrictionTest) -> Row:
+    """Return the row of a test of D."""
+    return {
+        "study": f"Dong 2015, {test.label}",
+        "direction": "perpendicular",
+        "sliding_speed": test.sliding_speed,
+        "normal_load": test.normal_load,
+        "nominal_area": test.contact.nominal_area,
+        "frequency": test.frequency,
+        "vibration_amplitude": test.vibration_amplitude,
+        "friction_reduction": 1 - test.friction_ratio,
+        "friction_reduction_uncertainty": test.uncertainty,
+        "source": f"D, {NORMAL_VIBRATION_SETS[test.set_name]}",
+    }
+
+
+def _cell(value: "str | float | None", name: str, unit: str) -> str:
+    """Return a value as the cell of its column, a number in the unit of the heading."""
+    if value is None or isinstance(value, str):
+        return value or ""
+    return f"{convert(value, from_unit=quantity(name).unit, to_unit=unit) if unit else value:.6g}"

@@ -1,0 +1,108 @@
+"""Tables of measured runs: every column, empty cells, references without vibration, copies, refusals in one line."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pytest import approx
+
+from sonolube.errors import InvalidInput
+from sonolube.measurement.measured_runs import RUN_COLUMNS, read_runs, run_caveats
+from sonolube.measurement.run_selection import checked_ratios, setting, with_columns, without_copies
+from sonolube.units import to_si
+from sonolube.vocabulary import quantities
+
+
+def table(folder: Path, text: str) -> Path:
+    path = folder / "runs.csv"
+    path.write_text(text)
+    return path
+
+
+def test_a_table_with_every_column_is_read_in_si(tmp_path: Path) -> None:
+    head = ",".join(column.heading for column in RUN_COLUMNS)
+    row = ",".join("a" if column.is_text else "2" for column in RUN_COLUMNS)
+    runs = read_runs(table(tmp_path, f"{head}\n{row}\n"))
+    for column in RUN_COLUMNS:
+        if column.is_text:
+            assert str(runs[column.name][0].item()) == "a"
+        else:
+            expected = to_si(f"2 {column.unit}", unit=quantities()[column.name].unit, name=column.name)
+            assert float(runs[column.name][0]) == approx(expected)
+
+
+def test_empty_cells_are_not_measured_and_empty_results_are_left_out_with_their_lines(tmp_path: Path) -> None:
+    text = "run,sliding_speed [mm/s],normal_load [N],friction_ratio\n1,20,,0.5\n2,30,3,\n3,40,3,0.7\n4,50,3,\n"
+    runs = read_runs(table(tmp_path, text))
+    assert runs["friction_reduction"].to_numpy() == approx([0.5, 0.3])
+    assert setting(runs, "normal_load", 5.0) == approx([5.0, 3.0])
+    assert run_caveats(runs) == ("2 of 4 runs have no friction yet and are left out (line 3, 5)",)
+
+
+def test_a_plan_without_results_is_refused_with_the_columns_to_fill_in(tmp_path: Path) -> None:
+    text = "run,sliding_speed [mm/s],friction_force [N],intrinsic_friction_force [N]\n1,20,,\n2,30,,\n"
+    with pytest.raises(InvalidInput, match=r"no run has a result yet: fill in friction_reduction \[%\], or") as refusal:
+        read_runs(table(tmp_path, text))
+    assert "\n" not in str(refusal.value)
+
+
+def test_each_row_takes_its_friction_from_the_columns_it_has(tmp_path: Path) -> None:
+    head = "friction_reduction [%],friction_ratio,friction_force [N],intrinsic_friction_force [N]"
+    runs = read_runs(table(tmp_path, f"{head}\n40,,,\n,0.7,,\n,,0.5,2\n"))
+    assert runs["friction_reduction"].to_numpy() == approx([0.4, 0.3, 0.75])
+
+
+def test_rows_at_amplitude_zero_give_the_dry_friction_of_their_speed(tmp_path: Path) -> None:
+    rows = ["0,20,1.0", "0,20,1.2", "2,20,0.55", "0,40,2", "2,40,1"]
+    text = "\n".join(["vibration_amplitude [um],sliding_speed [mm/s],friction_force [N]", *rows])
+    runs = read_runs(table(tmp_path, text))
+    assert runs["friction_reduction"].to_numpy() == approx([0.5, 0.5])
+    assert runs["intrinsic_friction_force"].to_numpy() == approx([1.1, 2.0])
+
+
+def test_uncertain_forces_and_wear_rates_give_those_of_their_ratios(tmp_path: Path) -> None:
+    head = (
+        "friction_force [N],intrinsic_friction_force [N],friction_force_uncertainty [N],"
+        "intrinsic_friction_force_uncertainty [N],wear_rate [mm3/m],intrinsic_wear_rate [mm3/m]"
+    )
+    runs = read_runs(table(tmp_path, f"{head}\n1,2,0.06,0.16,1,4\n"))
+    assert float(runs["friction_reduction_uncertainty"][0]) == approx(np.hypot(0.03, 0.04))
+    assert float(runs["wear_rate_ratio"][0]) == approx(0.25)
+
+
+def test_equal_rows_are_copies_unless_their_names_differ(tmp_path: Path) -> None:
+    rows = "sliding_speed [mm/s],friction_ratio{}\n" + "20,0.5{}\n" * 3
+    kept, caveats = without_copies(read_runs(table(tmp_path, rows.format("", "", "", ""))))
+    assert kept.sizes["run"] == 1
+    assert caveats[0].startswith("2 of 3 runs equal another in every digit")
+    kept, caveats = without_copies(read_runs(table(tmp_path, rows.format(",run", ",a", ",b", ",c"))))
+    assert kept.sizes["run"] == 3
+    assert caveats == ()
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("sliding_speed [N],friction_ratio\n1,0.5\n", r"line 2: sliding_speed"),
+        ("speed [mm/s],friction_ratio\n1,0.5\n", r"column 'speed \[mm/s\]' must name a quantity"),
+        ("run,run,friction_ratio\n1,1,0.5\n", "two columns are named run"),
+        ("friction_force [N],intrinsic_friction_force [N]\n1,-2\n", "intrinsic_friction_force must be positive"),
+        ("run\n1\n", r"needs a column friction_reduction \[%\]"),
+    ],
+)
+def test_tables_that_cannot_be_read_are_refused_in_one_line(tmp_path: Path, text: str, message: str) -> None:
+    with pytest.raises(InvalidInput, match=message) as refusal:
+        read_runs(table(tmp_path, text))
+    assert "\n" not in str(refusal.value)
+
+
+def test_a_ratio_beyond_what_vibration_does_is_refused_with_its_run(tmp_path: Path) -> None:
+    runs = read_runs(table(tmp_path, "friction_ratio\n0.5\n3.5\n"))
+    with pytest.raises(InvalidInput, match=r"run 2 has a friction ratio of 3\.5"):
+        checked_ratios(runs, title="mine")
+
+
+def test_a_missing_column_is_named_with_its_unit(tmp_path: Path) -> None:
+    runs = read_runs(table(tmp_path, "friction_ratio\n0.5\n"))
+    with pytest.raises(InvalidInput, match=r"need a column actuator_power: add actuator_power \[W\]"):
+        with_columns(runs, "actuator_power")

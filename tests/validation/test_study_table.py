@@ -1,0 +1,79 @@
+"""Earlier studies as a table: written in the columns of runs, read again, extended by own ones, drawn on the map."""
+
+from pathlib import Path
+
+import pytest
+from pytest import approx
+
+from sonolube.errors import InvalidInput, UnknownName
+from sonolube.figure import publication_style
+from sonolube.measurement.measured_runs import read_runs
+from sonolube.validation.previous_study_map import study_map
+from sonolube.validation.study_table import STUDY_COLUMNS, read_studies, study_table
+
+OWN = "study,direction,sliding_speed [mm/s],normal_load [N],nominal_area [mm2],friction_ratio,source\n{}\n"
+
+
+def written(folder: Path, text: str) -> Path:
+    path = folder / "studies.csv"
+    path.write_text(text)
+    return path
+
+
+def test_the_table_of_the_package_reads_as_runs_with_a_source_for_each_point(tmp_path: Path) -> None:
+    runs = read_runs(written(tmp_path, study_table()))
+    assert len(STUDY_COLUMNS) == 14
+    assert all(str(source) for source in runs["source"].to_numpy())
+    places = {str(study): place for place, study in enumerate(runs["study"].to_numpy())}
+    gutowski = runs.isel(run=places["Gutowski and Leus"])
+    assert float(gutowski["friction_reduction"]) == approx(0.9)
+    assert float(gutowski["nominal_pressure"]) == approx(31e3)
+    fast = runs.isel(run=places["Dong 2015, A-3"])  # D Table 2.3: 1.472 N to 1.041 N at 87 mm/s
+    assert float(fast["friction_reduction"]) == approx(1 - 1.041 / 1.472, abs=1e-6)
+    assert float(fast["sliding_speed"]) == approx(0.087)
+
+
+def test_an_extended_table_adds_its_own_points_only(tmp_path: Path) -> None:
+    assert read_studies(written(tmp_path, study_table())) == ((), ())
+    cells = {
+        "study": "Mine",
+        "direction": "transverse",
+        "sliding_speed": "50",
+        "friction_reduction": "40",
+        "source": "p. 3",
+    }
+    row = ",".join(cells.get(column.name, "") for column in STUDY_COLUMNS)
+    (point,), _ = read_studies(written(tmp_path, f"{study_table()}{row}\n"))
+    assert (point.label, point.direction) == ("Mine", "transverse")
+    assert point.friction_reduction == approx(0.4)
+
+
+def test_a_load_on_an_area_places_a_point_on_the_map_with_an_edge_of_its_own(tmp_path: Path) -> None:
+    import matplotlib.pyplot as plt
+
+    rows = 'Mine,transverse,50,10,4,0.6,"notebook, p. 3"\nElsewhere,,,,,0.3,"notebook, p. 4"'
+    points, _ = read_studies(written(tmp_path, OWN.format(rows)))
+    assert points[0].nominal_pressure == approx(2.5e6)
+    with publication_style():
+        figure = study_map(others=points)
+    aside, axes, _ = figure.axes
+    assert "own table" in axes.get_legend_handles_labels()[1]
+    assert any("Elsewhere" in text.get_text() for text in aside.texts)
+    plt.close(figure)
+
+
+@pytest.mark.parametrize(
+    ("row", "error", "message"),
+    [
+        ("Mine,transverse,50,10,4,0.6,", InvalidInput, "every point needs a source: run 1 names none"),
+        (",transverse,50,10,4,0.6,p. 3", InvalidInput, "every point needs a study: run 1 names none"),
+        ("Mine,sideways,50,10,4,0.6,p. 3", UnknownName, "sideways"),
+        ("Mine,transverse,50,10,4,,p. 3", InvalidInput, "no run has a result yet"),
+    ],
+)
+def test_points_without_a_source_or_a_number_are_refused_in_one_line(
+    tmp_path: Path, row: str, error: type[Exception], message: str
+) -> None:
+    with pytest.raises(error, match=message) as refusal:
+        read_studies(written(tmp_path, OWN.format(row)))
+    assert "\n" not in str(refusal.value)
