@@ -130,4 +130,4 @@ def test_models_that_differ_by_more_than_their_errors_are_told_in_one_line(
 
 
 def test_an_amplitude_without_a_rig_is_refused(sonolube: Program) -> None:
-    assert "--amplitude is of one: name one" in sonolube("compare", "--amplitude", "computed").refusal
+    assert "--amplitude needs a rig; name its file" in sonolube("compare", "--amplitude", "computed").refusal

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sonolube import __version__
+from sonolube.units import format_si
 from sonolube.validation.comparison import DATA_SETS, ComparedFit, FittedParameter
 from sonolube.validation.free_parameters import RIGS
 
@@ -119,12 +120,14 @@ def comparison_csv(fits: tuple[ComparedFit, ...]) -> str:
     return text.getvalue()
 
 
-def parameter_text(fitted: FittedParameter) -> str:
+def parameter_text(fitted: FittedParameter, *, left_out: str = "one set") -> str:
     """Return a fitted parameter as text: rig, value, and interval or leave-one-out range.
 
     Parameters
     ----------
     fitted : FittedParameter
+    left_out : str
+        What was left out for the range, such as "one set" or "one condition".
 
     Returns
     -------
@@ -132,10 +135,13 @@ def parameter_text(fitted: FittedParameter) -> str:
     """
     parameter = fitted.parameter
     rig = next((name for name, letters in RIGS.items() if letters == parameter.applicable_sets), None)
-    unit = f" {parameter.unit}" if parameter.unit else ""
-    text = f"{parameter.name}{f' of the {rig} rig' if rig else ''} {fitted.value:.3g}{unit}"
+
+    def text_of(value: float) -> str:
+        return format_si(value, parameter.unit)
+
+    text = f"{parameter.name}{f' of the {rig} rig' if rig else ''} {text_of(fitted.value)}"
     if fitted.interval:
-        text += f" (95 %: {fitted.interval[0]:.3g} to {fitted.interval[1]:.3g})"
+        text += f" (95 %: {' to '.join(map(text_of, fitted.interval))})"
     elif fitted.leave_one_out_range:
-        text += f" (one set left out: {fitted.leave_one_out_range[0]:.3g} to {fitted.leave_one_out_range[1]:.3g})"
+        text += f" ({left_out} left out: {' to '.join(map(text_of, fitted.leave_one_out_range))})"
     return text + (", at its bound" if fitted.at_bound else "")

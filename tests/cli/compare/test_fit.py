@@ -84,4 +84,4 @@ def test_runs_that_cannot_be_fitted_are_refused_in_one_line(
 
 
 def test_changes_without_a_rig_are_refused(sonolube: Program) -> None:
-    assert "name one by --rig" in sonolube("fit", RUNS, "--set", "contact.normal_load=2N").refusal
+    assert "--set needs a rig; name its file" in sonolube("fit", RUNS, "--set", "contact.normal_load=2N").refusal

@@ -12,10 +12,9 @@ import xarray as xr
 
 from sonolube.cli.compare.own_runs import run_lines, runs_object
 from sonolube.cli.console.answer import Answer, deliver
-from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, loaded_rig
+from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, optional_rig
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
-from sonolube.errors import InvalidInput
 from sonolube.measurement.measured_runs import read_runs, runs_help
 from sonolube.report import Drawing
 from sonolube.rig import FrictionPoint, Rig, friction_point
@@ -64,11 +63,7 @@ def compare(
 
     Example: sonolube compare examples/rigs/tribometer.toml --model asperity-stick-slip --model kinematic
     """
-    if rig is None and (changes or amplitude):
-        raise InvalidInput(
-            "--set changes a rig, and --amplitude is of one: name one, such as examples/rigs/tribometer.toml"
-        )
-    known = None if rig is None else loaded_rig(rig, changes=changes, amplitude=amplitude)
+    known = optional_rig(rig, changes=changes, amplitude=amplitude)
     point = None if known is None else vibrated_rig(known)
     table = None if runs is None else run_conditions(read_runs(runs), known)
     with progress("comparing") as advance:
@@ -200,17 +195,20 @@ def _rig_lines(rig: Rig, own: FrictionPoint, predictions: tuple[RigPrediction, .
 
 def _disagreement(predictions: tuple[RigPrediction, ...]) -> Iterator[str]:
     """Line where the two models that differ most for their errors differ by more than these."""
-    known = [(one.friction_ratio, one.uncertainty, one.model.name) for one in predictions if one.uncertainty]
-    pairs = [
-        (abs(first[0] - second[0]) / hypot(first[1], second[1]), first, second)
-        for first, second in combinations([(r, u, name) for r, u, name in known if r is not None and u], 2)
+    known = [
+        (one.model.name, one.friction_ratio, one.uncertainty)
+        for one in predictions
+        if one.friction_ratio is not None and one.uncertainty
     ]
-    beyond, first, second = max(pairs, default=(0.0, ("", 0.0, ""), ("", 0.0, "")), key=lambda pair: pair[0])
-    if beyond > 1:
-        yield (
-            f"  models differ by more than their errors: {first[2]} {first[0]:.2f} +- {first[1]:.2f},"
-            f" {second[2]} {second[0]:.2f} +- {second[1]:.2f}"
-        )
+
+    def distance(pair: tuple[tuple[str, float, float], tuple[str, float, float]]) -> float:
+        (_, ratio, error), (_, other_ratio, other_error) = pair
+        return abs(ratio - other_ratio) / hypot(error, other_error)
+
+    farthest = max(combinations(known, 2), key=distance, default=None)
+    if farthest is not None and distance(farthest) > 1:
+        texts = [f"{name} {ratio:.2f} +- {error:.2f}" for name, ratio, error in farthest]
+        yield f"  models differ by more than their errors: {', '.join(texts)}"
 
 
 def _model_object(one: ComparedFit) -> dict[str, Any]:

@@ -10,10 +10,9 @@ import typer
 import xarray as xr
 
 from sonolube.cli.console.answer import Answer, deliver
-from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, loaded_rig
+from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, optional_rig
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
-from sonolube.errors import InvalidInput
 from sonolube.measurement.measured_runs import read_runs, runs_help
 from sonolube.report import Drawing
 from sonolube.rig import Rig, steady_vibration
@@ -54,9 +53,7 @@ def fit(
 
     Example: sonolube fit examples/tribometer-runs.csv --rig examples/rigs/tribometer.toml
     """
-    if rig is None and (changes or amplitude):
-        raise InvalidInput("--set changes a rig, and --amplitude is of one: name one by --rig")
-    known = None if rig is None else loaded_rig(rig, changes=changes, amplitude=amplitude)
+    known = optional_rig(rig, changes=changes, amplitude=amplitude)
     table = read_runs(runs)
     with progress("fitting") as advance:
         result = fit_runs(table, known, models=compared_models(models or ()), advance=advance)
@@ -141,7 +138,7 @@ class FitAnswer(Answer):
             f"  {aicc:>6}{about}".rstrip()
         )
         for parameter in model.parameters:
-            yield f"      {parameter_text(parameter)}"
+            yield f"      {parameter_text(parameter, left_out='one condition')}"
 
     def _model_object(self, model: RankedModel) -> dict[str, Any]:
         """Model for JSON."""

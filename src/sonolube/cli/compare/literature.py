@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from sonolube.cli.console.answer import Answer, deliver, si
-from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, loaded_rig
+from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, optional_rig
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.errors import InvalidInput
 from sonolube.published import PreviousStudy, Statement, previous_studies
@@ -41,13 +41,9 @@ def literature(
 
     Example: sonolube literature examples/rigs/tribometer.toml
     """
-    if rig is None and (changes or amplitude):
-        raise InvalidInput(
-            "--set changes a rig, and --amplitude is of one: name one, such as examples/rigs/tribometer.toml"
-        )
-    known = point = outside = None
-    if rig is not None:
-        known = loaded_rig(rig, changes=changes, amplitude=amplitude)
+    known = optional_rig(rig, changes=changes, amplitude=amplitude)
+    point = outside = None
+    if rig is not None and known is not None:
         speed = known.sliding_speed
         if not speed > 0:
             raise InvalidInput(f"{rig}: the map needs a sliding.sliding_speed above 0")

@@ -193,3 +193,21 @@ def loaded_rig(
         to_si(load, unit="N", name="--load")
         replaced.append(f"contact.normal_load={load}")
     return read_rig(path, changes=replaced)
+
+
+def optional_rig(
+    path: Path | None, *, changes: list[str] | None, amplitude: AmplitudeSource | None = None
+) -> "Rig | None":
+    """Rig of a file with entries replaced, or None where no file is named.
+
+    Raises
+    ------
+    InvalidInput
+        If entries or the source of the amplitude are given without a rig, or as `read_rig`.
+    """
+    if path is not None:
+        return loaded_rig(path, changes=changes, amplitude=amplitude)
+    if changes or amplitude:
+        option = "--set" if changes else "--amplitude"
+        raise InvalidInput(f"{option} needs a rig; name its file, such as examples/rigs/tribometer.toml")
+    return None
