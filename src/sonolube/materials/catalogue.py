@@ -1,5 +1,6 @@
 """Catalogue of materials: scalar properties of each, every one with its source."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -65,6 +66,8 @@ class Material:
         Its identifier in rig files and results, such as "m50".
     title : str
         Its name in prose.
+    family : str
+        Its kind, such as "steel", "brass", "ceramic" or "polymer": materials of one family rub alike.
     properties : mapping of str to SourcedValue
         Its scalar properties, by their vocabulary names.
     crystal_structure : SourcedText or None
@@ -73,6 +76,7 @@ class Material:
 
     name: str
     title: str
+    family: str
     properties: Mapping[str, SourcedValue]
     crystal_structure: SourcedText | None = None
 
@@ -131,7 +135,7 @@ def material(name: str) -> Material:
     Parameters
     ----------
     name : str
-        Such as "stainless_steel_316" or its alias "ss316".
+        Such as "stainless_steel_316" or its alias "ss316"; case, spaces and hyphens do not matter, as in "AISI 316".
 
     Returns
     -------
@@ -143,14 +147,20 @@ def material(name: str) -> Material:
         If the catalogue has no such material, with the closest name.
     """
     try:
-        return _materials()[_names_by_alias().get(name, name)]
+        return _materials()[_names_by_key()[_key(name)]]
     except KeyError:
-        raise UnknownName.among((*material_names(), *_names_by_alias()), kind="material", name=name) from None
+        aliases = (alias for entry in _entries().values() for alias in entry.get("aliases", ()))
+        raise UnknownName.among((*_entries(), *aliases), kind="material", name=name) from None
 
 
 def material_names() -> tuple[str, ...]:
     """Return the names of all materials, including piezoelectric ceramics, in alphabetical order."""
     return tuple(sorted(_materials()))
+
+
+def material_families() -> tuple[str, ...]:
+    """Return the families of all materials, in alphabetical order."""
+    return tuple(sorted({each.family for each in _materials().values()}))
 
 
 _FILES = ("engineering.toml", "piezo.toml")
@@ -164,10 +174,20 @@ def _materials() -> Mapping[str, Material]:
 
 
 @cache
-def _names_by_alias() -> Mapping[str, str]:
-    """Return the name of the material that each alias stands for."""
-    entries = {name: entry for file_name in _FILES for name, entry in read_property_file(file_name).entries.items()}
-    return {alias: name for name, entry in entries.items() for alias in entry.get("aliases", ())}
+def _entries() -> Mapping[str, Mapping[str, Any]]:
+    """Return the entries of all property files by name."""
+    return {name: entry for file_name in _FILES for name, entry in read_property_file(file_name).entries.items()}
+
+
+@cache
+def _names_by_key() -> Mapping[str, str]:
+    """Return the names of the materials by the keys of their names and aliases."""
+    return {_key(each): name for name, entry in _entries().items() for each in (name, *entry.get("aliases", ()))}
+
+
+def _key(name: str) -> str:
+    """Return a name without case, spaces and punctuation."""
+    return re.sub(r"[\W_]+", "", name.lower())
 
 
 def _material(name: str, entry: Mapping[str, Any], sources: Mapping[str, str]) -> Material:
@@ -176,6 +196,7 @@ def _material(name: str, entry: Mapping[str, Any], sources: Mapping[str, str]) -
     return Material(
         name=name,
         title=entry["title"],
+        family=entry["family"],
         properties=MappingProxyType(
             {key: SourcedValue(**_cited(value, sources)) for key, value in entry["properties"].items()}
         ),

@@ -1,0 +1,290 @@
+"""Roughness from a finish: a process, an ISO grade, Ra or Rz; and the summits that are typical of a height."""
+
+import math
+import re
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+from sonolube.checks import require_positive
+from sonolube.errors import InvalidInput, UnknownName
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SurfaceFinish:
+    """Range of the arithmetic mean roughness of a finish.
+
+    Parameters
+    ----------
+    name : str
+        Its identifier, such as "ground", "N6" or "ground N6".
+    title : str
+        Its name in prose.
+    roughness_average_low, roughness_average_high : float
+        Range of the arithmetic mean roughness Ra. [m]
+    source : str
+        Table from which it was read.
+    note : str
+        Further remarks, such as a grade that the process does not give.
+    """
+
+    name: str
+    title: str
+    roughness_average_low: float
+    roughness_average_high: float
+    source: str
+    note: str = ""
+
+    @property
+    def arithmetic_mean_height(self) -> float:
+        """Geometric mean of the range. [m]"""
+        return math.sqrt(self.roughness_average_low * self.roughness_average_high)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RmsHeightEstimate:
+    """Root-mean-square height estimated from another roughness parameter, with the range of the relation.
+
+    Parameters
+    ----------
+    rms_height : float
+        Estimate of Rq. [m]
+    low, high : float
+        Range of Rq over finishing processes, in metres.
+    source : str
+        Source of the relation and of its range.
+    """
+
+    rms_height: float
+    low: float
+    high: float
+    source: str
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class TypicalSummits:
+    """Summits of a finished surface of which only the height is known.
+
+    Parameters
+    ----------
+    summit_radius : float
+        Median of the mean radius of asperity summits. [m]
+    summit_density : float
+        Median of the areal density of asperity summits. [1/m2]
+    radius_factor, density_factor : float
+        Factors of the median, up and down, within which 95 of 100 such surfaces lie: two standard deviations of a
+        lognormal distribution.
+    reason : str
+        Why the factors are as wide as they are.
+    """
+
+    summit_radius: float
+    summit_density: float
+    radius_factor: float
+    density_factor: float
+    reason: str
+
+
+def surface_finish(text: str) -> SurfaceFinish:
+    """Return the range of roughness of a finish in words.
+
+    Parameters
+    ----------
+    text : str
+        A process such as "ground", a roughness grade of ISO 1302 such as "N6", or both, "ground N6", where the grade
+        gives the roughness.
+
+    Returns
+    -------
+    SurfaceFinish
+
+    Raises
+    ------
+    UnknownName
+        If it is neither a process nor a grade, with the closest name.
+    InvalidInput
+        If it is empty, or has two grades.
+    """
+    words = text.split()
+    grades = [word.upper() for word in words if word.upper() in _grades()]
+    process = "_".join(word.lower().replace("-", "_") for word in words if word.upper() not in _grades())
+    if len(grades) > 1 or not (grades or process):
+        raise InvalidInput(f'surface finish must be a process, a grade, or both, such as "ground N6"; got {text!r}')
+    if process and process not in _processes():
+        raise UnknownName.among(surface_finish_names(), kind="surface finish", name=process)
+    if not grades:
+        return _processes()[process]
+    grade = _grades()[grades[0]]
+    return _graded(_processes()[process], grade) if process else grade
+
+
+def surface_finish_names() -> tuple[str, ...]:
+    """Return the names of the processes in alphabetical order, then the grades from fine to rough."""
+    return (*sorted({each.name for each in _processes().values()}), *_grades())
+
+
+def rms_height_from_roughness_average(*, arithmetic_mean_height: float) -> RmsHeightEstimate:
+    r"""Root-mean-square height from the arithmetic mean roughness of a surface of Gaussian heights.
+
+    Parameters
+    ----------
+    arithmetic_mean_height : float
+        Ra, also called roughness average. [m]
+
+    Returns
+    -------
+    RmsHeightEstimate
+
+    Raises
+    ------
+    InvalidInput
+        If the roughness is not positive and finite.
+
+    Notes
+    -----
+    .. math:: R_q = \sqrt{\pi/2}\,R_a
+
+    for Gaussian heights. The ratio is :math:`\pi/(2\sqrt2) = 1.11` for a sine and more for heights with rare deep
+    scratches.
+    """
+    height = float(require_positive(arithmetic_mean_height=arithmetic_mean_height))
+    least, typical, largest = _RMS_PER_AVERAGE
+    return RmsHeightEstimate(
+        rms_height=typical * height, low=least * height, high=largest * height, source=_AVERAGE_SOURCE
+    )
+
+
+def rms_height_from_maximum_height(*, mean_section_height: float) -> RmsHeightEstimate:
+    """Root-mean-square height from the maximum height of a section.
+
+    Parameters
+    ----------
+    mean_section_height : float
+        Rz: height from the deepest pit to the highest peak of a section, mean over the sections. [m]
+
+    Returns
+    -------
+    RmsHeightEstimate
+
+    Raises
+    ------
+    InvalidInput
+        If the height is not positive and finite.
+    """
+    height = float(require_positive(mean_section_height=mean_section_height))
+    least, typical, largest = _MAXIMUM_PER_RMS
+    return RmsHeightEstimate(
+        rms_height=height / typical, low=height / largest, high=height / least, source=_MAXIMUM_SOURCE
+    )
+
+
+def typical_summits(*, rms_height: float) -> TypicalSummits:
+    r"""Likely radius and density of the summits of a finished surface of which only the rms height is known.
+
+    Parameters
+    ----------
+    rms_height : float
+        Root-mean-square height of the surface, Rq. [m]
+
+    Returns
+    -------
+    TypicalSummits
+
+    Raises
+    ------
+    InvalidInput
+        If the height is not positive and finite.
+
+    Notes
+    -----
+    A slope that is typical of the height gives the second moment, and a typical roughness parameter
+    :math:`\beta = \eta R_q R_s` the bandwidth of an isotropic Gaussian surface, [1]_
+
+    .. math:: \alpha = \left(\frac{16 \sqrt{3\pi}\,\beta}{1}\right)^2 , \qquad
+        R_s = \frac38 \sqrt{\frac{\pi}{\alpha}} \frac{R_q}{m_2} , \qquad
+        \eta = \frac{\beta}{R_q R_s} .
+
+    References
+    ----------
+    .. [1] P. R. Nayak, J. Lubr. Technol. 93, 398 (1971). doi:10.1115/1.3451608
+    """
+    height = float(require_positive(rms_height=rms_height))
+    slope = _SLOPE_SCALE * (height / 1e-6) ** _SLOPE_EXPONENT
+    bandwidth = (16 * math.sqrt(3 * math.pi) * _ROUGHNESS_PARAMETER) ** 2
+    radius = 3 / 8 * math.sqrt(math.pi / bandwidth) * height / slope**2
+    return TypicalSummits(
+        summit_radius=radius,
+        summit_density=_ROUGHNESS_PARAMETER / (height * radius),
+        radius_factor=4.0,
+        density_factor=4.0,
+        reason=_SUMMIT_REASON,
+    )
+
+
+_RMS_PER_AVERAGE = (1.1, math.sqrt(math.pi / 2), 1.4)
+_AVERAGE_SOURCE = "Gaussian heights: sqrt(pi/2)"
+_MAXIMUM_PER_RMS = (3.2, 5.0, 7.0)
+_MAXIMUM_SOURCE = "Ceratizit, Surface quality: Rz over Ra 5 to 10 over the grades of ISO 1302"
+_SLOPE_SCALE, _SLOPE_EXPONENT = 0.15, 0.5
+_ROUGHNESS_PARAMETER = 0.04
+_SUMMIT_REASON = "surfaces of one height differ in slope by a factor of about two, which the radius squares"
+
+
+def _graded(process: SurfaceFinish, grade: SurfaceFinish) -> SurfaceFinish:
+    """Return the finish of a process held to a grade, with a note where the process does not give it."""
+    apart = (
+        grade.roughness_average_high < process.roughness_average_low
+        or grade.roughness_average_low > process.roughness_average_high
+    )
+    low, high = 1e6 * process.roughness_average_low, 1e6 * process.roughness_average_high
+    note = f"{process.title.lower()} surfaces have Ra {low:g} to {high:g} um in usual practice: check the grade"
+    return replace(
+        grade,
+        name=f"{process.name} {grade.name}",
+        title=f"{process.title}, grade {grade.name} of ISO 1302",
+        note=note if apart else grade.note,
+    )
+
+
+@cache
+def _content() -> Mapping[str, Any]:
+    """Return the content of the file of finishes."""
+    return tomllib.loads(files("sonolube.surfaces").joinpath("finishes.toml").read_text(encoding="utf-8"))
+
+
+@cache
+def _grades() -> Mapping[str, SurfaceFinish]:
+    """Return the grades of ISO 1302 by name, each from half its limit to its limit."""
+    content = _content()
+    return {
+        name: SurfaceFinish(
+            name=name,
+            title=f"Grade {name} of ISO 1302",
+            roughness_average_low=limit / 2,
+            roughness_average_high=limit,
+            source=content["sources"]["iso_1302"],
+            note="the grade is the upper limit; a surface below half of it has the next finer grade",
+        )
+        for name, limit in content["grades"].items()
+    }
+
+
+@cache
+def _processes() -> Mapping[str, SurfaceFinish]:
+    """Return the processes by name and alias."""
+    content = _content()
+    return {
+        re.sub(r"[\s-]+", "_", each): SurfaceFinish(
+            name=name,
+            title=entry["title"],
+            roughness_average_low=entry["low"],
+            roughness_average_high=entry["high"],
+            source=content["sources"][entry["source"]],
+            note=entry.get("note", ""),
+        )
+        for name, entry in content["processes"].items()
+        for each in (name, *entry.get("aliases", ()))
+    }
