@@ -157,7 +157,7 @@ def test_every_material_belongs_to_a_family_that_is_no_material() -> None:
 
 
 def test_metals_are_two_to_six_times_as_hard_as_they_are_strong() -> None:
-    # Tabor: 2.8 to 3.2 times the flow stress. D's steels are cold worked beside yield strengths of annealed bar, and the
+    # Tabor: 2.8 to 3.2 times the flow stress. D has cold-worked steels beside yield strengths of annealed bar, and the
     # annealed tool steel hardens by work: their notes say so.
     excused = {
         name: material(name).property("hardness").note
