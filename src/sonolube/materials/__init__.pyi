@@ -3,7 +3,18 @@ from .catalogue import (
     SourcedText as SourcedText,
     SourcedValue as SourcedValue,
     material as material,
+    material_families as material_families,
     material_names as material_names,
+)
+from .hardness import (
+    YieldStrengthEstimate as YieldStrengthEstimate,
+    yield_strength_from_hardness as yield_strength_from_hardness,
+)
+from .pair_friction import (
+    DryFriction as DryFriction,
+    FrictionPair as FrictionPair,
+    dry_friction as dry_friction,
+    dry_friction_pairs as dry_friction_pairs,
 )
 from .piezoelectric import (
     PiezoCeramic as PiezoCeramic,

@@ -1,5 +1,6 @@
 """Catalogue of materials: scalar properties of each, every one with its source."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -65,16 +66,22 @@ class Material:
         Its identifier in rig files and results, such as "m50".
     title : str
         Its name in prose.
+    family : str
+        Its kind, such as "steel", "brass", "ceramic" or "polymer": materials of one family rub alike.
     properties : mapping of str to SourcedValue
         Its scalar properties, by their vocabulary names.
     crystal_structure : SourcedText or None
         Its crystal structure, where a source states it.
+    aliases : tuple of str
+        Further names by which it is found.
     """
 
     name: str
     title: str
+    family: str
     properties: Mapping[str, SourcedValue]
     crystal_structure: SourcedText | None = None
+    aliases: tuple[str, ...] = ()
 
     def property(self, property_name: str) -> SourcedValue:
         """Return a property with its unit and source.
@@ -131,7 +138,7 @@ def material(name: str) -> Material:
     Parameters
     ----------
     name : str
-        Such as "stainless_steel_316" or its alias "ss316".
+        Such as "stainless_steel_316" or its alias "ss316"; case, spaces and punctuation do not matter ("AISI 316").
 
     Returns
     -------
@@ -143,14 +150,20 @@ def material(name: str) -> Material:
         If the catalogue has no such material, with the closest name.
     """
     try:
-        return _materials()[_names_by_alias().get(name, name)]
+        return _materials()[_names_by_key()[_key(name)]]
     except KeyError:
-        raise UnknownName.among((*material_names(), *_names_by_alias()), kind="material", name=name) from None
+        names = (each for known in _materials().values() for each in (known.name, *known.aliases))
+        raise UnknownName.among(names, kind="material", name=name) from None
 
 
 def material_names() -> tuple[str, ...]:
     """Return the names of all materials, including piezoelectric ceramics, in alphabetical order."""
     return tuple(sorted(_materials()))
+
+
+def material_families() -> tuple[str, ...]:
+    """Return the families of all materials, in alphabetical order."""
+    return tuple(sorted({each.family for each in _materials().values()}))
 
 
 _FILES = ("engineering.toml", "piezo.toml")
@@ -164,10 +177,14 @@ def _materials() -> Mapping[str, Material]:
 
 
 @cache
-def _names_by_alias() -> Mapping[str, str]:
-    """Return the name of the material that each alias stands for."""
-    entries = {name: entry for file_name in _FILES for name, entry in read_property_file(file_name).entries.items()}
-    return {alias: name for name, entry in entries.items() for alias in entry.get("aliases", ())}
+def _names_by_key() -> Mapping[str, str]:
+    """Return the names of the materials by the keys of their names and aliases."""
+    return {_key(each): known.name for known in _materials().values() for each in (known.name, *known.aliases)}
+
+
+def _key(name: str) -> str:
+    """Return a name without case, spaces and punctuation."""
+    return re.sub(r"[\W_]+", "", name.lower())
 
 
 def _material(name: str, entry: Mapping[str, Any], sources: Mapping[str, str]) -> Material:
@@ -176,10 +193,12 @@ def _material(name: str, entry: Mapping[str, Any], sources: Mapping[str, str]) -
     return Material(
         name=name,
         title=entry["title"],
+        family=entry["family"],
         properties=MappingProxyType(
             {key: SourcedValue(**_cited(value, sources)) for key, value in entry["properties"].items()}
         ),
         crystal_structure=SourcedText(**_cited(structure, sources)) if structure else None,
+        aliases=tuple(entry.get("aliases", ())),
     )
 
 

@@ -23,6 +23,16 @@ from .correlation import (
     correlation_lengths as correlation_lengths,
 )
 from .features import FeatureParameters as FeatureParameters, feature_parameters as feature_parameters
+from .finish import (
+    RmsHeightEstimate as RmsHeightEstimate,
+    SurfaceFinish as SurfaceFinish,
+    TypicalSummits as TypicalSummits,
+    rms_height_from_maximum_height as rms_height_from_maximum_height,
+    rms_height_from_roughness_average as rms_height_from_roughness_average,
+    surface_finish as surface_finish,
+    surface_finish_names as surface_finish_names,
+    typical_summits as typical_summits,
+)
 from .form_removal import fit_form as fit_form, remove_form as remove_form
 from .gaussian_filter import (
     band_pass as band_pass,

@@ -47,7 +47,7 @@ def test_a_model_that_suits_no_test_is_listed_and_not_drawn(tmp_path: Path, sono
     ("arguments", "line"),
     [
         (("--model", "stickslip"), "did you mean asperity-stick-slip"),
-        (("--set", "contact.normal_load=4N"), "--set changes a rig"),
+        (("--set", "contact.normal_load=4N"), "--set needs a rig"),
         (("RIG", "--set", "sliding.sliding_speed=0mm/s", *QUICK), "sliding_speed is 0"),
     ],
 )
