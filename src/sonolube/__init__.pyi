@@ -1,9 +1,11 @@
 from . import design as design, published as published
+from .measurement.measured_runs import read_runs as read_runs
 from .prediction.rig_prediction import predict as predict
 from .rig.file.reader import read_rig as read_rig
 from .rig.record import Rig as Rig
+from .validation.runs_fit import fit_runs as fit_runs
 from .workbench import measure as measure
 from .workbench.figures import plot as plot
-from .workbench.results import map as map, simulate as simulate, sweep as sweep
+from .workbench.results import compare as compare, map as map, simulate as simulate, sweep as sweep
 
 __version__: str

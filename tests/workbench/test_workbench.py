@@ -103,8 +103,27 @@ def test_every_kind_of_result_has_its_figure() -> None:
     assert [bool(sl.plot(result).axes) for result in results] == [True, True]
 
 
+def test_a_comparison_has_the_rigs_ratios_of_the_command_and_its_figure(
+    capfd: CaptureFixture[str], tmp_path: Path
+) -> None:
+    names, path = ("kinematic", "asperity-stick-slip"), RIGS / "tribometer.toml"
+    options = [option for name in names for option in ("--model", name)]
+    command = answer(capfd, "compare", path, *options, "--out", tmp_path)
+    result = sl.compare(sl.read_rig(path), models=names)
+    for each in command["rig"]["predictions"]:
+        assert float(result["rig_friction_ratio"].sel(model=each["model"])) == each["friction_ratio"]
+    assert [label.get_text() for label in sl.plot(result).axes[0].get_yticklabels()][-1] == "asperity stick slip"
+    without = sl.compare(models=names)
+    assert {axes.get_title().split("\n")[0] for axes in sl.plot(without).axes} == {"kinematic", "asperity stick slip"}
+
+
+def test_a_fit_of_own_runs_has_its_figure() -> None:
+    fitted = sl.fit_runs(sl.read_runs(ROOT / "examples" / "tribometer-runs.csv"), tribometer())
+    assert sl.plot(fitted).axes
+
+
 def test_what_is_no_result_is_refused_by_name() -> None:
-    with raises(InvalidInput, match="plot draws results of map, prediction, simulation, sweep and of measure"):
+    with raises(InvalidInput, match=r"plot draws results of comparison, map, .* and of measure and fit"):
         sl.plot(xr.Dataset())
     with raises(UnknownName, match="velocity-power"):
         sl.map(tribometer(), "velocity-powr")

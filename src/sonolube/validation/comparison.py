@@ -34,10 +34,14 @@ from sonolube.validation.rig_conditions import VibratedRig
 
 Advance = Callable[[str, int, int], None]
 
-COMPARED_MODELS: Final = (*FRICTION_MODEL_VARIANTS, *COULOMB_AND_SPRING_VARIANTS, *DAHL_AND_LUGRE_VARIANTS)
+COMPARED_MODELS: Final[tuple[ModelVariant, ...]] = (
+    *FRICTION_MODEL_VARIANTS,
+    *COULOMB_AND_SPRING_VARIANTS,
+    *DAHL_AND_LUGRE_VARIANTS,
+)
 """All model variants: of the friction models of this program and of the literature."""
 
-DATA_SETS: Final = {**NORMAL_VIBRATION_SETS, **IN_PLANE_VIBRATION_SETS}
+DATA_SETS: Final[dict[str, str]] = {**NORMAL_VIBRATION_SETS, **IN_PLANE_VIBRATION_SETS}
 """Content of each set of tests, by its letter."""
 
 ONLY_PREDICTED: Final = {"H": "its amplitude at resonance is not known; it is predicted only"}

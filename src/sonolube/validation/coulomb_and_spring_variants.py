@@ -185,7 +185,7 @@ def _springs(test: FrictionTest | VibratedRig, mindlin_ratio: float | None) -> f
 _POPOV_2017: Final = "M. Popov, V. L. Popov and N. V. Popov 2017"
 _IN_PLANE_FRACTION: Final = IN_PLANE_MOTION[0]
 
-LONGITUDINAL_VIBRATION: Final = (
+LONGITUDINAL_VIBRATION: Final[tuple[str, ...]] = (
     "contact",
     "normal_load",
     "friction_coefficient",

@@ -9,10 +9,12 @@ from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats
 from sonolube.figure import COLOURS, LINES, MARKERS, ReportFigure
-from sonolube.validation.comparison import DATA_SETS, ComparedFit, RigPrediction
+from sonolube.validation.comparison import DATA_SETS, ComparedFit
 from sonolube.validation.published_tests import FrictionTest, friction_tests
+from sonolube.validation.tables import comparison_dataset
 
 if TYPE_CHECKING:
+    import xarray as xr
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -49,7 +51,7 @@ def comparison_figures(compared: Callable[[], tuple[ComparedFit, ...]]) -> Itera
         "that differs; set H by the fit to all. On the line both would agree; ratios outside the frame are drawn "
         "at its edge. k fitted parameters, rms errors of the fit and of the cross-validation (CV). The "
         f"{_PANELS} models of the lowest corrected Akaike criterion.",
-        draw=lambda: _predicted_against_measured(assessed()[:_PANELS]),
+        draw=lambda: predicted_against_measured_figure(comparison_dataset(compared())),
     )
     yield ReportFigure(
         name="models-over-speed-and-amplitude",
@@ -60,14 +62,28 @@ def comparison_figures(compared: Callable[[], tuple[ComparedFit, ...]]) -> Itera
     )
 
 
-def rig_figure(predictions: tuple[RigPrediction, ...], title: str) -> "Figure":
+def comparison_figure(result: "xr.Dataset") -> "Figure":
+    """Draw the friction ratio of the rig of a comparison by every model; without a rig the predicted ratios of tests.
+
+    Parameters
+    ----------
+    result : xarray.Dataset
+        As `comparison_dataset` returns it.
+
+    Returns
+    -------
+    Figure
+    """
+    return rig_figure(result) if "rig_friction_ratio" in result else predicted_against_measured_figure(result)
+
+
+def rig_figure(result: "xr.Dataset") -> "Figure":
     """Draw the friction ratio of a rig by every applicable model, with its cross-validation error.
 
     Parameters
     ----------
-    predictions : tuple of RigPrediction
-    title : str
-        Name of the rig.
+    result : xarray.Dataset
+        As `comparison_dataset` returns it with predictions of a rig; the attribute `rig` names it.
 
     Returns
     -------
@@ -75,19 +91,19 @@ def rig_figure(predictions: tuple[RigPrediction, ...], title: str) -> "Figure":
     """
     from matplotlib import pyplot as plt
 
-    known = [(one.model.name, one.friction_ratio, one.uncertainty or 0.0) for one in predictions[::-1]]
-    rows = [(name, ratio, error) for name, ratio, error in known if ratio is not None]
-    figure, axes = plt.subplots(figsize=(5.6, 1.3 + 0.22 * len(rows)))
-    ratios = np.array([min(ratio, _HIGHEST_OF_RIG) for _, ratio, _ in rows])
-    errors = np.array([error for _, _, error in rows])
-    axes.errorbar(ratios, range(len(rows)), xerr=errors, fmt="o", color=COLOURS[0], ecolor="0.6", capsize=2.5)
-    for row, (_, ratio, _) in enumerate(rows):
+    known = result.isel(model=slice(None, None, -1)).dropna("model", subset=["rig_friction_ratio"])
+    names, ratios = known["model"].to_numpy(), known["rig_friction_ratio"].to_numpy()
+    errors = np.nan_to_num(known["rig_uncertainty"].to_numpy())
+    figure, axes = plt.subplots(figsize=(5.6, 1.3 + 0.22 * names.size))
+    places = np.minimum(ratios, _HIGHEST_OF_RIG)
+    axes.errorbar(places, range(names.size), xerr=errors, fmt="o", color=COLOURS[0], ecolor="0.6", capsize=2.5)
+    for row, ratio in enumerate(ratios):
         if ratio > _HIGHEST_OF_RIG:
             axes.annotate(f"{ratio:.1f} →", (_HIGHEST_OF_RIG, row), ha="right", va="bottom", fontsize=7)
     axes.axvline(1.0, color="0.5", lw=0.8, ls="--")
-    axes.set_yticks(range(len(rows)), labels=[name.replace("-", " ") for name, _, _ in rows])
-    axes.set(xlabel="Friction with over without vibration [-]", xlim=(-0.1, 1.6), ylim=(-0.7, len(rows) - 0.3))
-    axes.set_title(f"{title}\nbars: rms error of the cross-validation", fontsize=9)
+    axes.set_yticks(range(names.size), labels=[name.replace("-", " ") for name in names])
+    axes.set(xlabel="Friction with over without vibration [-]", xlim=(-0.1, 1.6), ylim=(-0.7, names.size - 0.3))
+    axes.set_title(f"{result.attrs.get('rig', '')}\nbars: rms error of the cross-validation", fontsize=9)
     return figure
 
 
@@ -137,49 +153,62 @@ def draw_measured(
     axes.errorbar(x, ratios, yerr=errors, fmt=fmt, color=color, capsize=3, zorder=5, label=label)
 
 
-def _predicted_against_measured(fits: list[ComparedFit]) -> "Figure":
-    """Draw predicted against measured ratios, one panel for each model."""
+def predicted_against_measured_figure(result: "xr.Dataset") -> "Figure":
+    """Draw predicted against measured ratios, one panel for each of the first models that could be assessed.
+
+    Parameters
+    ----------
+    result : xarray.Dataset
+        As `comparison_dataset` returns it.
+
+    Returns
+    -------
+    Figure
+    """
     from matplotlib import pyplot as plt
     from matplotlib.lines import Line2D
 
-    columns = min(4, len(fits))
-    rows = -(-len(fits) // columns)
+    assessed = result.dropna("model", subset=["rms"]).isel(model=slice(_PANELS))
+    count = assessed.sizes["model"]
+    columns = min(4, count)
+    rows = -(-count // columns)
     legend_columns = 1 if columns < 3 else 2
     width = max(2.15 * columns + 0.6, 4.9)
     height = rows * (min(width / columns, 2.6) + 0.25) + 0.4 + 1.8 / legend_columns
     figure, grid = plt.subplots(rows, columns, figsize=(width, height), sharex=True, sharey=True, squeeze=False)
-    for axes, one in zip(grid.flat, fits, strict=False):
-        _panel(axes, one)
-    for axes in grid.flat[len(fits) :]:
+    for index, axes in enumerate(grid.flat[:count]):
+        _panel(axes, assessed.isel(model=index))
+    for axes in grid.flat[count:]:
         axes.set_visible(False)
     for axes in grid[:, 0]:
         axes.set_ylabel("Predicted friction ratio [-]")
     for column in range(columns):
-        lowest = max(row for row in range(rows) if row * columns + column < len(fits))
+        lowest = max(row for row in range(rows) if row * columns + column < count)
         grid[lowest, column].set_xlabel("Measured friction ratio [-]")
         grid[lowest, column].tick_params(labelbottom=True)
-    shown = sorted({p.test.set_name for one in fits for p in one.predictions if p.fitted is not None})
+    fitted = assessed["test"].to_numpy()[assessed["fitted_ratio"].notnull().any("model").to_numpy()]
     handles = [
         Line2D([], [], ls="", color=colour, marker=marker, label=f"{letter}: {DATA_SETS[letter]}")
-        for letter, (colour, marker) in ((letter, _STYLES[letter]) for letter in shown)
+        for letter, (colour, marker) in ((letter, _STYLES[letter]) for letter in sorted({test[0] for test in fitted}))
     ]
     figure.legend(handles=handles, loc="outside lower center", ncols=legend_columns)
     return figure
 
 
-def _panel(axes: "Axes", one: ComparedFit) -> None:
+def _panel(axes: "Axes", one: "xr.Dataset") -> None:
     """Draw the predictions of one model against the measured ratios."""
-    assert one.assessment is not None
     axes.plot([0, _HIGH], [0, _HIGH], color="0.5", lw=0.8)
-    for prediction in one.predictions:
-        colour, marker = _STYLES[prediction.test.set_name]
-        for ratio, face in ((prediction.cross_validated, "none"), (prediction.fitted, colour)):
-            if ratio is not None:
-                place = prediction.test.friction_ratio, min(max(ratio, _LOW), _HIGH)
+    for test in one["test"].to_numpy():
+        colour, marker = _STYLES[test[0]]  # by the letter of its set
+        row = one.sel(test=test)
+        for name, face in (("cross_validated_ratio", "none"), ("fitted_ratio", colour)):
+            if row[name].notnull():
+                place = float(row["friction_ratio"]), min(max(float(row[name]), _LOW), _HIGH)
                 axes.plot(*place, ls="", marker=marker, color=colour, mfc=face, ms=4.5, clip_on=False)
-    fit, cross_validation = one.assessment.fit_errors.rms, one.assessment.cross_validation_errors.rms
-    statistics = f"k = {len(one.parameters)}, rms {fit:.2f}, CV {cross_validation:.2f}"
-    axes.set_title(f"{one.model.name.replace('-', ' ')}\n{statistics}", fontsize=8)
+    errors = f"rms {float(one['rms']):.2f}, CV {float(one['rms_cross_validated']):.2f}"
+    axes.set_title(
+        f"{one['model'].item().replace('-', ' ')}\nk = {int(one['fitted_parameters'])}, {errors}", fontsize=8
+    )
     axes.set(xlim=(0, _HIGH), ylim=(_LOW, _HIGH), aspect="equal", xticks=(0, 0.5, 1), yticks=(0, 0.5, 1))
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from sonolube import __version__
 from sonolube.units import format_si
-from sonolube.validation.comparison import DATA_SETS, ComparedFit, FittedParameter
+from sonolube.validation.comparison import DATA_SETS, ComparedFit, FittedParameter, RigPrediction
 from sonolube.validation.free_parameters import RIGS
 
 if TYPE_CHECKING:
@@ -28,12 +28,14 @@ _HEADS = (
 )
 
 
-def comparison_dataset(fits: tuple[ComparedFit, ...]) -> "xr.Dataset":
+def comparison_dataset(fits: tuple[ComparedFit, ...], predictions: tuple[RigPrediction, ...] = ()) -> "xr.Dataset":
     """Return measured, fitted and cross-validated friction ratios over models and tests, with error statistics.
 
     Parameters
     ----------
     fits : tuple of ComparedFit
+    predictions : tuple of RigPrediction
+        Of a rig, by the same models; none where there is no rig.
 
     Returns
     -------
@@ -48,6 +50,17 @@ def comparison_dataset(fits: tuple[ComparedFit, ...]) -> "xr.Dataset":
     def variable(dimensions: Any, values: Iterable[Any], long_name: str) -> tuple[Any, Any, dict[str, str]]:
         return dimensions, np.array([*values], dtype=np.float64), {"units": "1", "long_name": long_name}
 
+    rig_variables: dict[str, Any] = {}
+    if predictions:
+        rig_variables = {
+            "rig_friction_ratio": variable(
+                "model", (one.friction_ratio for one in predictions), "Friction ratio of the rig by the fit to all sets"
+            ),
+            "rig_uncertainty": variable(
+                "model", (one.uncertainty for one in predictions), "Root mean square error of the cross-validation"
+            ),
+            "rig_reason": ("model", [one.reason or "" for one in predictions], {"long_name": "Why there is no ratio"}),
+        }
     return xr.Dataset(
         {
             "friction_ratio": variable(
@@ -79,10 +92,16 @@ def comparison_dataset(fits: tuple[ComparedFit, ...]) -> "xr.Dataset":
                 (one.assessment.cross_validation_errors.rms if one.assessment else None for one in fits),
                 "Root mean square error with each set predicted by a fit to the others",
             ),
+            "fitted_parameters": ("model", [len(one.parameters) for one in fits], {"long_name": "Fitted parameters"}),
             "aicc": variable("model", (one.aicc for one in fits), "Akaike criterion corrected for small samples"),
+            **rig_variables,
         },
         coords={"model": [one.model.name for one in fits], "test": [test.label for test in tests]},
-        attrs={"title": "Models of friction under vibration against experiment", "source": f"sonolube {__version__}"},
+        attrs={
+            "result": "comparison",
+            "title": "Models of friction under vibration against experiment",
+            "source": f"sonolube {__version__}",
+        },
     )
 
 

@@ -13,23 +13,33 @@ from sonolube.figure import publication_style
 from sonolube.prediction.figures import prediction_figure
 from sonolube.report.measured.sheet import Sheet
 from sonolube.rig.figures import simulation_figure
+from sonolube.validation.figures import comparison_figure
+from sonolube.validation.runs_figures import runs_fit_figure
+from sonolube.validation.runs_fit import RunsFit
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 FIGURES: Mapping[str, Callable[[xr.Dataset], "Figure"]] = MappingProxyType(
-    {"map": map_figure, "prediction": prediction_figure, "simulation": simulation_figure, "sweep": sweep_figure}
+    {
+        "comparison": comparison_figure,
+        "map": map_figure,
+        "prediction": prediction_figure,
+        "simulation": simulation_figure,
+        "sweep": sweep_figure,
+    }
 )
 """Functions that draw a result, by its attribute `result`."""
 
 
-def plot(result: xr.Dataset | Sheet, *, title: str | None = None) -> "Figure":
+def plot(result: xr.Dataset | Sheet | RunsFit, *, title: str | None = None) -> "Figure":
     """Return the figure of a result.
 
     Parameters
     ----------
-    result : xarray.Dataset or Sheet
-        Of `simulate`, `predict`, `sweep` or `map`, also read again from its netCDF file; or of a function of `measure`.
+    result : xarray.Dataset, Sheet or RunsFit
+        Of `simulate`, `predict`, `sweep`, `map` or `compare`, also read again from its netCDF file; of a function of
+        `measure`; or of `fit`.
     title : str, optional
         Of which figure, for a sheet, which has several; the first by default.
 
@@ -44,16 +54,24 @@ def plot(result: xr.Dataset | Sheet, *, title: str | None = None) -> "Figure":
     UnknownName
         If a sheet has no figure of that title.
     """
-    draw = _sheet_figure(result, title) if isinstance(result, Sheet) else _dataset_figure(result)
     with publication_style():
-        return draw()
+        return _drawer(result, title)()
+
+
+def _drawer(result: xr.Dataset | Sheet | RunsFit, title: str | None) -> "Callable[[], Figure]":
+    """Function that draws a result."""
+    if isinstance(result, Sheet):
+        return _sheet_figure(result, title)
+    if isinstance(result, RunsFit):
+        return partial(runs_fit_figure, result)
+    return _dataset_figure(result)
 
 
 def _dataset_figure(result: xr.Dataset) -> "Callable[[], Figure]":
     """Function that draws a labelled result."""
     kind = str(result.attrs.get("result")) if isinstance(result, xr.Dataset) else type(result).__name__
     if kind not in FIGURES:
-        raise InvalidInput(f"plot draws results of {', '.join(FIGURES)} and of measure, got {kind}")
+        raise InvalidInput(f"plot draws results of {', '.join(FIGURES)} and of measure and fit, got {kind}")
     return partial(FIGURES[kind], result)
 
 

@@ -1,6 +1,6 @@
 """Results of a rig as labelled datasets: steady vibration, sweep, map and comparison of models."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -13,11 +13,14 @@ from sonolube.design.ranges import ends_of, values_of
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.rig import Rig, operating_caveats, simulate as simulated
 from sonolube.rig.result_datasets import simulation_dataset
+from sonolube.validation.comparison import compare_models, compared_models, predict_rig
+from sonolube.validation.rig_conditions import vibrated_rig
+from sonolube.validation.tables import comparison_dataset
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["map", "simulate", "sweep"]
+__all__ = ["compare", "map", "simulate", "sweep"]
 
 
 def simulate(rig: Rig) -> "xr.Dataset":
@@ -119,9 +122,41 @@ def map(  # noqa: A001 - the name of the command
         if name not in axes:
             raise UnknownName.among(list(axes), kind="axis of this map", name=name)
         axes[name] = np.asarray(values_of(key, values) if isinstance(values, str) else values, float)
-    assumptions = "\n".join(f"{key}: {reason}" for key, reason in rig.assumptions.items())
     mapped: xr.Dataset = MAPS[kind](rig, **axes)
-    return mapped.assign_attrs(caveats="\n".join(operating_caveats(rig)), assumptions=assumptions)
+    return mapped.assign_attrs(_notes(rig))
+
+
+def compare(rig: Rig | None = None, *, models: Sequence[str] = ()) -> "xr.Dataset":
+    """Models of friction under vibration against every published test: fitted, cross-validated, and for a rig.
+
+    Parameters
+    ----------
+    rig : Rig, optional
+        That every applicable model predicts too.
+    models : sequence of str
+        Names of models; all where empty.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `model` and `test`: fitted and cross-validated ratios and their errors; ratio and uncertainty for the rig.
+
+    Raises
+    ------
+    UnknownName
+        If there is no such model.
+    """
+    fits = compare_models(compared_models(models))
+    if rig is None:
+        return comparison_dataset(fits)
+    labelled = comparison_dataset(fits, predict_rig(fits, vibrated_rig(rig)))
+    return labelled.assign_attrs(rig=rig.title, **_notes(rig))
+
+
+def _notes(rig: Rig) -> dict[str, str]:
+    """Caveats and assumptions of a rig, as attributes."""
+    assumptions = "\n".join(f"{key}: {reason}" for key, reason in rig.assumptions.items())
+    return {"caveats": "\n".join(operating_caveats(rig)), "assumptions": assumptions}
 
 
 def _ends(key: str, values: str | ArrayLike) -> tuple[float, float]:

@@ -131,8 +131,7 @@ class ComparisonAnswer(Answer):
             every = comparison_figures(lambda: self.fits)
             drawings = {figure.name: Drawing(draw=figure.draw, caption=figure.caption) for figure in every}
         if self.rig is not None and any(one.friction_ratio is not None for one in self.predictions):
-            title = self.rig.title
-            drawings["models-on-the-rig"] = Drawing(draw=lambda: rig_figure(self.predictions, title))
+            drawings["models-on-the-rig"] = Drawing(draw=lambda: rig_figure(self._dataset()))
         table = self.table
         if table is not None and any(one.rms is not None for one in self.of_runs):
             drawings["models-on-own-runs"] = Drawing(draw=lambda: runs_prediction_figure(self.of_runs, table))
@@ -140,7 +139,12 @@ class ComparisonAnswer(Answer):
 
     def files(self) -> Mapping[str, str | xr.Dataset]:
         """Errors as CSV, and every ratio as netCDF."""
-        return {"models.csv": comparison_csv(self.fits), "models.nc": comparison_dataset(self.fits)}
+        return {"models.csv": comparison_csv(self.fits), "models.nc": self._dataset()}
+
+    def _dataset(self) -> xr.Dataset:
+        """Every ratio and error over models and tests, and the predictions of the rig."""
+        labelled = comparison_dataset(self.fits, self.predictions)
+        return labelled if self.rig is None else labelled.assign_attrs(rig=self.rig.title)
 
 
 def _error_lines(one: ComparedFit, width: int) -> Iterator[str]:
