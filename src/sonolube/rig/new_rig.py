@@ -1,13 +1,407 @@
-"""A first rig from what people know: materials, shape of the pin, load, speed, vibration and finish; TOML text.
+"""A first rig file from what people know: materials, shape of the pin, load, speed, vibration and finish.
 
-What nobody has measured yet, such as dry friction and roughness, stands as a distribution with its reason.
+What nobody has measured yet, such as dry friction and roughness, is a distribution with its reason.
 """
 
-from typing import Final
+import json
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from math import log, pi
+from typing import Final, Protocol
 
-_STATED_AMPLITUDE_FACTOR: Final = 1.15
-_DATA_SHEET_FACTOR: Final = 1.33
-_SCAN_FACTOR: Final = 1.1
-_SCANNED_SUMMITS_FACTOR: Final = 1.5
-_MEASURED_FRICTION: Final = "normal 5 %"
+from sonolube.actuator import CatalogueActuator
+from sonolube.checks import require_positive
+from sonolube.contact import ElasticBody, SphereOnFlat, contact_pair, hertz_contact_radius
+from sonolube.errors import InvalidInput, MissingProperty
+from sonolube.materials import Material, dry_friction, material, yield_strength_from_hardness
+from sonolube.rig.file.guidance import guidance
+from sonolube.rig.file.reader import rig_from
+from sonolube.rig.known_surface import KnownSurface, lognormal_text, surfaces_in_contact
+from sonolube.rig.record import Rig
+from sonolube.rig.stated_surface import deviation_of_range
+from sonolube.units import format_si
+from sonolube.vocabulary import quantity
+
+_HEAD: Final = "# Written by sonolube new. Replace what you measure, and remove its line from [uncertainty]."
+_STATED_AMPLITUDE: Final = 0.15
+_DATA_SHEET_STROKE: Final = 0.3
 _LARGEST_AMPLITUDE: Final = 1e-3
+_MEASURED_FRICTION: Final = "normal 5 %"
+
+
+class PinShape(Protocol):
+    """Shape of the end of a pin."""
+
+    @property
+    def text(self) -> str:
+        """The shape in words."""
+
+    def nominal_area(self, *, effective_modulus: float, normal_load: float) -> float:
+        """Return the nominal contact area. [m2]"""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FlatPin:
+    """Pin with a flat end.
+
+    Parameters
+    ----------
+    diameter : float
+        Of the flat, in m.
+    """
+
+    diameter: float
+
+    def __post_init__(self) -> None:
+        require_positive(diameter=self.diameter)
+
+    @property
+    def text(self) -> str:
+        """The shape in words."""
+        return f"flat of {format_si(self.diameter, 'm')} in diameter"
+
+    def nominal_area(self, *, effective_modulus: float, normal_load: float) -> float:
+        """Return the area of the flat. [m2]"""
+        return pi * self.diameter**2 / 4
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RoundPin:
+    """Ball, or pin with a crowned end.
+
+    Parameters
+    ----------
+    tip_radius : float
+        Radius of the ball or crown. [m]
+    """
+
+    tip_radius: float
+
+    def __post_init__(self) -> None:
+        require_positive(tip_radius=self.tip_radius)
+
+    @property
+    def text(self) -> str:
+        """The shape in words."""
+        return f"Hertzian circle of a tip radius of {format_si(self.tip_radius, 'm')} before wear, which enlarges it"
+
+    def nominal_area(self, *, effective_modulus: float, normal_load: float) -> float:
+        """Return the area of the Hertzian circle. [m2]"""
+        sphere = SphereOnFlat(tip_radius=self.tip_radius, effective_modulus=effective_modulus)
+        return pi * float(hertz_contact_radius(sphere, normal_load=normal_load)) ** 2
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Entries:
+    """Part of a rig file.
+
+    Parameters
+    ----------
+    tables : mapping of str to mapping
+        Values of keys as TOML, by table.
+    assumptions, uncertainty : mapping of str to str
+        By dotted key.
+    """
+
+    tables: Mapping[str, Mapping[str, str]]
+    assumptions: Mapping[str, str] = field(default_factory=dict)
+    uncertainty: Mapping[str, str] = field(default_factory=dict)
+
+
+class Vibration(Protocol):
+    """What vibrates the contact."""
+
+    def entries(self, frequency: float) -> Entries:
+        """Return the part of a rig file at a frequency in Hz."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class StatedAmplitude:
+    """Vibration of a stated amplitude.
+
+    Parameters
+    ----------
+    vibration_amplitude : float
+        Zero to peak. [m]
+    """
+
+    vibration_amplitude: float
+
+    def __post_init__(self) -> None:
+        if float(require_positive(vibration_amplitude=self.vibration_amplitude)) > _LARGEST_AMPLITUDE:
+            given = format_si(self.vibration_amplitude, "m")
+            raise InvalidInput(f"vibration_amplitude {given} is beyond any ultrasonic vibration: expected up to 1 mm")
+
+    def entries(self, frequency: float) -> Entries:
+        """Return the tables drive and vibration."""
+        key = "vibration.vibration_amplitude"
+        return Entries(
+            tables={
+                "drive": {"frequency": _si(frequency, "Hz")},
+                "vibration": {"vibration_amplitude": _si(self.vibration_amplitude, "m")},
+            },
+            assumptions={key: "as stated, taken as not measured under this load: 15 %"},
+            uncertainty={key: f"lognormal {100 * _STATED_AMPLITUDE:g} %"},
+        )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class DrivenActuator:
+    """Actuator of the catalogue at a voltage, below its resonance.
+
+    Parameters
+    ----------
+    actuator : CatalogueActuator
+    voltage_peak_to_peak : float
+        Difference of the highest and the lowest voltage. [V]
+    """
+
+    actuator: CatalogueActuator
+    voltage_peak_to_peak: float
+
+    def __post_init__(self) -> None:
+        voltage = float(require_positive(voltage_peak_to_peak=self.voltage_peak_to_peak))
+        low, high = self.actuator.lowest_voltage, self.actuator.highest_voltage
+        if low is not None and high is not None and voltage > high - low:
+            span = format_si(high - low, "V")
+            raise InvalidInput(f"voltage_peak_to_peak {voltage:g} V exceeds {span}, the range of {self.actuator.name}")
+
+    def entries(self, frequency: float) -> Entries:
+        """Return the tables drive and actuator.
+
+        Raises
+        ------
+        InvalidInput
+            If the frequency is not below the resonance of the free actuator.
+        """
+        shown = self.actuator
+        if frequency >= shown.resonance_frequency:
+            resonance = format_si(shown.resonance_frequency, "Hz")
+            raise InvalidInput(
+                f"frequency must lie below {resonance}, the resonance of {shown.name}; else give its amplitude"
+            )
+        key = "actuator.amplitude_per_volt"
+        per_volt = shown.stroke / shown.stroke_voltage / 2  # stroke is from end to end
+        return Entries(
+            tables={
+                "drive": {
+                    "voltage_peak_to_peak": _si(self.voltage_peak_to_peak, "V"),
+                    "frequency": _si(frequency, "Hz"),
+                },
+                "actuator": {
+                    "capacitance": _si(shown.free_capacitance, "F"),
+                    "amplitude_per_volt": _si(per_volt, "m/V"),
+                },
+            },
+            assumptions={key: f"half the free stroke per volt of {shown.title}; load and resonance are left out: 30 %"},
+            uncertainty={key: f"lognormal {100 * _DATA_SHEET_STROKE:g} %"},
+        )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class KnownRig:
+    """What is known of a rig before anything is measured on it.
+
+    Parameters
+    ----------
+    pin, disc : str
+        Materials of the catalogue.
+    shape : PinShape
+    normal_load : float
+        Force pressing the bodies together. [N]
+    sliding_speed : float
+        Mean sliding speed. [m/s]
+    frequency : float
+        Of the vibration. [Hz]
+    vibration : Vibration
+    pin_surface, disc_surface : KnownSurface
+    friction_coefficient : float or None
+        Measured without vibration; the range of the pair where None. []
+    """
+
+    pin: str
+    disc: str
+    shape: PinShape
+    normal_load: float
+    sliding_speed: float
+    frequency: float
+    vibration: Vibration
+    pin_surface: KnownSurface
+    disc_surface: KnownSurface
+    friction_coefficient: float | None = None
+
+    def __post_init__(self) -> None:
+        require_positive(normal_load=self.normal_load, sliding_speed=self.sliding_speed, frequency=self.frequency)
+        if self.friction_coefficient is not None:
+            require_positive(friction_coefficient=self.friction_coefficient)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class LeastKnown:
+    """Uncertain entry of a rig.
+
+    Parameters
+    ----------
+    key : str
+        Dotted key of the file.
+    deviation : float
+        Standard deviation of its logarithm, in nepers.
+    text : str
+        Its distribution.
+    remedy : str
+        How to measure it.
+    """
+
+    key: str
+    deviation: float
+    text: str
+    remedy: str
+
+
+def new_rig_text(known: KnownRig) -> str:
+    """Return a rig file of what is known, as TOML with comments.
+
+    Parameters
+    ----------
+    known : KnownRig
+
+    Returns
+    -------
+    str
+        Entries that nobody measured are in its table `uncertainty`, each with its reason in `assumptions`.
+
+    Raises
+    ------
+    InvalidInput
+        If a value is impossible.
+    MissingProperty
+        If the catalogue lacks a property of a material, or no dry friction is known of the pair.
+    """
+    parts = [_contact(known), _friction(known), known.vibration.entries(known.frequency)]
+    pin, disc = material(known.pin), material(known.disc)
+    tables: dict[str, Mapping[str, str]] = {
+        "": {"title": json.dumps(f"{pin.title} pin on {disc.title} disc"), "source": '"what was known before a test"'}
+    }
+    for part in parts:
+        tables |= part.tables
+    tables["uncertainty"] = _quoted([part.uncertainty for part in parts])
+    tables["assumptions"] = _quoted([part.assumptions for part in parts])
+    text = "\n".join([_HEAD, *(_table(name, entries) for name, entries in tables.items())])
+    rig_from(tomllib.loads(text))
+    return text
+
+
+def least_known(rig: Rig, *, count: int = 3) -> Sequence[LeastKnown]:
+    """Return the uncertain entries of a rig that are known least, by the standard deviation of their logarithm.
+
+    Parameters
+    ----------
+    rig : Rig
+    count : int
+        Number of entries.
+
+    Returns
+    -------
+    sequence of LeastKnown
+        The least known first; of entries that one measurement gives, the least known one.
+    """
+    entries: dict[str, LeastKnown] = {}
+    for key, law in rig.uncertainty.items():
+        low, high = (float(each) for each in law.quantile((0.1587, 0.8413)))
+        remedy = guidance()[name].obtain if (name := key.rpartition(".")[2]) in guidance() else "a measurement"
+        one = LeastKnown(key=key, deviation=log(high / low) / 2, text=law.text, remedy=remedy)
+        if remedy not in entries or entries[remedy].deviation < one.deviation:
+            entries[remedy] = one
+    return sorted(entries.values(), key=lambda one: -one.deviation)[:count]
+
+
+def _contact(known: KnownRig) -> Entries:
+    """Return the tables of the contact: load, area, roughness, and both bodies, the softer by its hardness."""
+    pin, disc = material(known.pin), material(known.disc)
+    softer, harder = (disc, pin) if _hardness(disc) < _hardness(pin) else (pin, disc)
+    strength = yield_strength_from_hardness(hardness=_hardness(softer))
+    pair = contact_pair(softer=_body(softer), harder=_body(harder), yield_strength=strength.yield_strength)
+    area = known.shape.nominal_area(effective_modulus=pair.effective_modulus, normal_load=known.normal_load)
+    surface = surfaces_in_contact(known.pin_surface, known.disc_surface)
+    roughness, place = surface.roughness, "contact.roughness"
+    roles = {"softer": "pin", "harder": "disc"} if softer is pin else {"softer": "disc", "harder": "pin"}
+    hardness = f"{_hardness(softer) / 9.80665e6:.0f} HV"
+    return Entries(
+        tables={
+            "contact": {"normal_load": _si(known.normal_load, "N"), "nominal_area": _si(area, "m2")},
+            place: {
+                "rms_height": _si(roughness.rms_height, "m"),
+                "summit_radius": _si(roughness.summit_radius, "m"),
+                "summit_density": _si(roughness.summit_density, "1/m2"),
+            },
+            "contact.softer": {
+                "material": json.dumps(softer.name),
+                "role": json.dumps(roles["softer"]),
+                "yield_strength": _si(strength.yield_strength, "Pa"),
+            },
+            "contact.harder": {"material": json.dumps(harder.name), "role": json.dumps(roles["harder"])},
+        },
+        assumptions={
+            "contact.nominal_area": known.shape.text,
+            f"{place}.rms_height": surface.height_reason,
+            f"{place}.summit_radius": surface.summit_reason,
+            f"{place}.summit_density": surface.summit_reason,
+            "contact.softer.yield_strength": f"from {hardness} of the catalogue; {strength.source}; {strength.reason}",
+        },
+        uncertainty={
+            f"{place}.rms_height": lognormal_text(surface.height_deviation),
+            f"{place}.summit_radius": lognormal_text(surface.radius_deviation),
+            f"{place}.summit_density": lognormal_text(surface.density_deviation),
+            "contact.softer.yield_strength": lognormal_text(deviation_of_range(strength.low, strength.high)),
+        },
+    )
+
+
+def _friction(known: KnownRig) -> Entries:
+    """Return the tables of dry friction and sliding."""
+    key, sliding = "friction.friction_coefficient", {"sliding_speed": _si(known.sliding_speed, "m/s")}
+    if known.friction_coefficient is not None:
+        value, reason, law = known.friction_coefficient, "as stated, taken as measured: 5 %", _MEASURED_FRICTION
+    else:
+        pair = dry_friction(known.pin, known.disc)
+        value, law = (pair.low + pair.high) / 2, f"uniform {pair.low:g} to {pair.high:g}"
+        reason = "; ".join(part for part in ("range of the pair", pair.source, pair.condition, pair.note) if part)
+    return Entries(
+        tables={"friction": {"friction_coefficient": f"{value:.4g}"}, "sliding": sliding},
+        assumptions={key: reason},
+        uncertainty={key: law},
+    )
+
+
+def _hardness(body: Material) -> float:
+    """Return the hardness of a material, or three times its yield strength where the catalogue lacks it. [Pa]"""
+    try:
+        return body.value("hardness")
+    except MissingProperty:
+        return 3 * body.value("yield_strength")
+
+
+def _body(body: Material) -> ElasticBody:
+    return ElasticBody(youngs_modulus=body.value("youngs_modulus"), poisson_ratio=body.value("poisson_ratio"))
+
+
+def _si(value: float, unit: str) -> str:
+    """Return a quantity as a TOML value."""
+    return json.dumps(format_si(value, unit, digits=4))
+
+
+def _quoted(parts: Sequence[Mapping[str, str]]) -> dict[str, str]:
+    """Return texts by dotted key as keys and values of TOML."""
+    return {json.dumps(key): json.dumps(text) for part in parts for key, text in part.items()}
+
+
+def _table(name: str, entries: Mapping[str, str]) -> str:
+    """Return a table as TOML, each quantity with its meaning as a comment."""
+    lines = [f"[{name}]"] if name else []
+    return "\n".join([*lines, *(f"{key} = {value}{_comment(key)}" for key, value in entries.items())]) + "\n"
+
+
+def _comment(key: str) -> str:
+    advice = guidance().get(key)
+    return "" if advice is None else f"  # {quantity(key).meaning}; from {advice.obtain}"

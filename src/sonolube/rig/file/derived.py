@@ -49,7 +49,9 @@ def with_derived(content: Mapping[str, Any], file: RigFile) -> dict[str, Any]:
         If the file gives a distribution of what a number follows from.
     """
     section = file.contact
-    contact, reasons, laws = dict(content["contact"]), {}, {}
+    contact = dict(content["contact"])
+    reasons: dict[str, str] = {}
+    laws: dict[str, str] = {}
     if isinstance(section.roughness, StatedRoughnessSection):
         contact["roughness"], more_reasons, more_laws = _roughness(section.roughness)
         reasons, laws = {**reasons, **more_reasons}, {**laws, **more_laws}
