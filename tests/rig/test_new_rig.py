@@ -91,6 +91,16 @@ def test_a_scan_gives_the_height_of_its_levelled_map(tmp_path: Path) -> None:
     assert "disc.asc" in found.height_reason
 
 
+def test_a_ratio_that_the_catalogue_lacks_is_assumed_and_said() -> None:
+    rig = rig_of(replace(KNOWN, pin="brass_c38500"))
+    assert "0.33 assumed" in rig.assumptions["contact.softer.poisson_ratio"]
+
+
+def test_what_is_no_metal_has_the_strength_of_its_data_sheet() -> None:
+    rig = rig_of(replace(KNOWN, pin="pet"))  # it has both; Tabor's relation is of metals
+    assert rig.contact.pair.yield_strength == approx(material("pet").value("yield_strength"), rel=1e-3)
+
+
 def test_an_actuator_vibrates_with_half_its_stroke_at_its_voltage() -> None:
     shown = catalogue_actuator("sa050510")
     rig = rig_of(replace(KNOWN, vibration=DrivenActuator(actuator=shown, voltage_peak_to_peak=40.0)))
@@ -130,5 +140,6 @@ def test_the_inputs_known_least_come_first_and_each_measurement_once() -> None:
     rig = rig_of(KNOWN)
     listed = least_known(rig)
     assert [one.deviation for one in listed] == sorted((one.deviation for one in listed), reverse=True)
-    assert listed[0].deviation == approx(log(2), rel=0.01)  # summits of the height: a factor of four for 95 of 100
+    factor = typical_summits(rms_height=GROUND.roughness.rms_height).radius_factor  # holds 95 of 100
+    assert listed[0].deviation == approx(log(factor) / 2, rel=0.01)
     assert len({one.remedy for one in listed}) == len(listed) == 3

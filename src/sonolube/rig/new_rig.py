@@ -27,6 +27,10 @@ _HEAD: Final = "# Written by sonolube new. Replace what you measure, and remove 
 _STATED_AMPLITUDE: Final = 0.15
 _DATA_SHEET_STROKE: Final = 0.3
 _LARGEST_AMPLITUDE: Final = 1e-3
+_CATALOGUE_STRENGTH: Final = 0.15
+_NO_METALS: Final = ("ceramic", "coating", "glass", "piezo_ceramic", "polymer")
+_POISSON_RATIO: Final = 0.33
+_POISSON_REASON: Final = "not in the catalogue; 0.33 assumed: 0.25 to 0.4 changes the effective modulus by 5 %"
 _MEASURED_FRICTION: Final = "normal 5 %"
 
 
@@ -320,13 +324,13 @@ def _contact(known: KnownRig) -> Entries:
     """Return the tables of the contact: load, area, roughness, and both bodies, the softer by its hardness."""
     pin, disc = material(known.pin), material(known.disc)
     softer, harder = (disc, pin) if _hardness(disc) < _hardness(pin) else (pin, disc)
-    strength = yield_strength_from_hardness(hardness=_hardness(softer))
-    pair = contact_pair(softer=_body(softer), harder=_body(harder), yield_strength=strength.yield_strength)
+    strength, deviation, strength_reason = _yield_strength(softer)
+    pair = contact_pair(softer=_body(softer), harder=_body(harder), yield_strength=strength)
     area = known.shape.nominal_area(effective_modulus=pair.effective_modulus, normal_load=known.normal_load)
     surface = surfaces_in_contact(known.pin_surface, known.disc_surface)
     roughness, place = surface.roughness, "contact.roughness"
     roles = {"softer": "pin", "harder": "disc"} if softer is pin else {"softer": "disc", "harder": "pin"}
-    hardness = f"{_hardness(softer) / 9.80665e6:.0f} HV"
+    assumed = {"softer": _assumed(softer), "harder": _assumed(harder)}
     return Entries(
         tables={
             "contact": {"normal_load": _si(known.normal_load, "N"), "nominal_area": _si(area, "m2")},
@@ -338,22 +342,28 @@ def _contact(known: KnownRig) -> Entries:
             "contact.softer": {
                 "material": json.dumps(softer.name),
                 "role": json.dumps(roles["softer"]),
-                "yield_strength": _si(strength.yield_strength, "Pa"),
+                "yield_strength": _si(strength, "Pa"),
+                **assumed["softer"],
             },
-            "contact.harder": {"material": json.dumps(harder.name), "role": json.dumps(roles["harder"])},
+            "contact.harder": {
+                "material": json.dumps(harder.name),
+                "role": json.dumps(roles["harder"]),
+                **assumed["harder"],
+            },
         },
         assumptions={
             "contact.nominal_area": known.shape.text,
             f"{place}.rms_height": surface.height_reason,
             f"{place}.summit_radius": surface.summit_reason,
             f"{place}.summit_density": surface.summit_reason,
-            "contact.softer.yield_strength": f"from {hardness} of the catalogue; {strength.source}; {strength.reason}",
+            "contact.softer.yield_strength": strength_reason,
+            **{f"contact.{body}.{key}": _POISSON_REASON for body, keys in assumed.items() for key in keys},
         },
         uncertainty={
             f"{place}.rms_height": lognormal_text(surface.height_deviation),
             f"{place}.summit_radius": lognormal_text(surface.radius_deviation),
             f"{place}.summit_density": lognormal_text(surface.density_deviation),
-            "contact.softer.yield_strength": lognormal_text(deviation_of_range(strength.low, strength.high)),
+            "contact.softer.yield_strength": lognormal_text(deviation),
         },
     )
 
@@ -382,8 +392,30 @@ def _hardness(body: Material) -> float:
         return 3 * body.value("yield_strength")
 
 
+def _yield_strength(body: Material) -> tuple[float, float, str]:
+    """Return the yield strength of a material in Pa, the standard deviation of its logarithm, and where it is from.
+
+    Tabor's relation holds for metals; of others the catalogue's strength comes first.
+    """
+    has_strength = "yield_strength" in body.properties
+    if "hardness" not in body.properties or (body.family in _NO_METALS and has_strength):
+        found = body.property("yield_strength")
+        return found.value, _CATALOGUE_STRENGTH, f"of the catalogue, {found.source}; 15 % between batches assumed"
+    hardness = body.value("hardness")
+    estimate = yield_strength_from_hardness(hardness=hardness)
+    beyond = "; beyond the metals that the relation is of" if body.family in _NO_METALS else ""
+    reason = f"from {hardness / 9.80665e6:.0f} HV of the catalogue; {estimate.source}; {estimate.reason}{beyond}"
+    return estimate.yield_strength, deviation_of_range(estimate.low, estimate.high), reason
+
+
+def _assumed(body: Material) -> dict[str, str]:
+    """Return properties that the catalogue lacks and that are assumed, as TOML: Poisson's ratio."""
+    return {} if "poisson_ratio" in body.properties else {"poisson_ratio": f"{_POISSON_RATIO:g}"}
+
+
 def _body(body: Material) -> ElasticBody:
-    return ElasticBody(youngs_modulus=body.value("youngs_modulus"), poisson_ratio=body.value("poisson_ratio"))
+    ratio = body.value("poisson_ratio") if "poisson_ratio" in body.properties else _POISSON_RATIO
+    return ElasticBody(youngs_modulus=body.value("youngs_modulus"), poisson_ratio=ratio)
 
 
 def _si(value: float, unit: str) -> str:

@@ -18,7 +18,7 @@ from sonolube.cli import main
 from sonolube.rig import read_rig
 
 PROGRAM = str(Path(sys.executable).parent / "sonolube")
-PIN, DISC = "aluminium_2024", "stainless_steel_304"
+PIN, DISC = "brass_c36000", "stainless_steel_304"
 KNOWN = (
     *("--pin", PIN, "--disc", DISC, "--load", "5N", "--speed", "0.2m/s", "--frequency", "20kHz"),
     *("--amplitude", "3um", "--finish", "ground N6"),
@@ -141,11 +141,15 @@ def test_off_a_terminal_the_missing_options_are_named(capsys: CaptureFixture[str
         (("--speed", "5N"), "--speed 5N is a force; expected a speed"),
         (("--finish", "N66"), "unknown surface finish 'n66'"),
         (("--shape", "cone 3mm"), "--shape 'cone 3mm' must be 'flat' with its diameter or 'ball' with its radius"),
-        (("--actuator", "sa050510"), "--actuator and --voltage belong together"),
+        (("--voltage", "40V"), "--actuator and --voltage belong together"),
+        (
+            ("--pin", "ptfe", "--disc", "silicon_carbide"),
+            "no dry friction is known of ptfe on silicon_carbide;",
+        ),
         (("--actuator", "sa050510", "--voltage", "40V"), "give either --amplitude or --actuator, got both"),
         (("--pin-finish", "N6", "--pin-scan", "pin.opd"), "give either --pin-finish or --pin-scan, got both"),
         (("--scan", "none.opd"), "none.opd"),
-        (("--friction", "-0.4"), "friction_coefficient must be positive"),
+        (("--friction", "-0.4"), "--friction -0.4 must be positive"),
     ],
 )
 def test_what_cannot_be_is_refused_in_one_line(change: tuple[str, ...], line: str, capsys: CaptureFixture[str]) -> None:

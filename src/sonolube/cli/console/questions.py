@@ -25,14 +25,11 @@ class Question:
         What is asked for, with an example.
     default : str
         Answer that an empty line stands for.
-    is_needed : bool
-        Whether the command refuses to run without it off a terminal; else the default is taken.
     """
 
     option: str
     text: str
     default: str
-    is_needed: bool = True
 
 
 def is_terminal() -> bool:

@@ -13,8 +13,8 @@ from sonolube.cli.console.answer import Answer, deliver, grid
 from sonolube.cli.console.options import Json
 from sonolube.cli.console.outputs import OutputFile
 from sonolube.cli.console.questions import Question, ask, is_terminal
-from sonolube.errors import InvalidInput
-from sonolube.materials import material
+from sonolube.errors import InvalidInput, MissingProperty
+from sonolube.materials import dry_friction, material
 from sonolube.rig import Rig, rig_from
 from sonolube.rig.file.plausible import plausible_si
 from sonolube.rig.known_surface import KnownSurface, finished_surface, scanned_surface
@@ -39,7 +39,6 @@ _SHAPE = Question(
     option="--shape",
     text="End of the pin: flat with its diameter or ball with its radius, such as 'ball 5mm'",
     default="flat 3mm",
-    is_needed=False,
 )
 _LOAD = Question(option="--load", text="Normal load, such as 5N", default="5N")
 _SPEED = Question(option="--speed", text="Sliding speed, such as 0.2m/s", default="0.1m/s")
@@ -53,13 +52,15 @@ _PIN_FINISH = Question(
     option="--pin-finish",
     text="Finish of the pin, such as turned, N7 or 'ground N6', or the file of a scan",
     default="ground",
-    is_needed=False,
 )
 _DISC_FINISH = Question(
     option="--disc-finish",
     text="Finish of the disc, such as turned, N7 or 'ground N6', or the file of a scan",
     default="ground",
-    is_needed=False,
+)
+
+_FRICTION = Question(
+    option="--friction", text="Coefficient of friction without vibration, of which nothing is known here", default="0.4"
 )
 
 
@@ -111,9 +112,10 @@ def new(
     driven = _driven(amplitude, actuator, voltage)
     given = {_PIN: pin, _DISC: disc, _LOAD: load, _SPEED: speed, _FREQUENCY: frequency, _AMPLITUDE: driven}
     _refuse_missing(given)
+    materials = _value(_PIN, pin, _material), _value(_DISC, disc, _material)
     known = KnownRig(
-        pin=_value(_PIN, pin, _material),
-        disc=_value(_DISC, disc, _material),
+        pin=materials[0],
+        disc=materials[1],
         shape=_value(_SHAPE, shape, _shape),
         normal_load=_value(_LOAD, load, _quantity("N", "--load")),
         sliding_speed=_value(_SPEED, speed, _quantity("m/s", "--speed")),
@@ -121,7 +123,7 @@ def new(
         vibration=_value(_AMPLITUDE, driven, _vibration),
         pin_surface=_value(_PIN_FINISH, _text(pin_scan) or pin_finish or finish, _surface),
         disc_surface=_value(_DISC_FINISH, _text(scan) or disc_finish or finish, _surface),
-        friction_coefficient=None if friction is None else plausible_si(friction, unit="", name="--friction"),
+        friction_coefficient=_friction_coefficient(friction, pin=materials[0], disc=materials[1]),
     )
     text = new_rig_text(known)
     rig = rig_from(tomllib.loads(text))
@@ -206,6 +208,21 @@ def _quantity(unit: str, option: str) -> Callable[[str], float]:
         return value
 
     return read
+
+
+def _friction_coefficient(text: str | None, *, pin: str, disc: str) -> float | None:
+    """Coefficient of dry friction that is given, or asked for where none is known of the pair; else None."""
+    read = _quantity("", "--friction")
+    if text is not None:
+        return read(text)
+    try:
+        dry_friction(pin, disc)
+    except MissingProperty as refusal:
+        if is_terminal():
+            return ask(_FRICTION, read)
+        reason = str(refusal).partition(":")[0]
+        raise InvalidInput(f"{reason}; measure it without vibration, and give --friction") from None
+    return None
 
 
 def _shape(text: str) -> PinShape:
