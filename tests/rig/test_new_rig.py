@@ -13,8 +13,10 @@ from sonolube.actuator import catalogue_actuator
 from sonolube.errors import InvalidInput
 from sonolube.materials import material
 from sonolube.rig import Rig, friction_point, rig_from
-from sonolube.rig.known_surface import finished_surface, scanned_surface, surfaces_in_contact
-from sonolube.rig.new_rig import DrivenActuator, FlatPin, KnownRig, RoundPin, StatedAmplitude, least_known, new_rig_text
+from sonolube.rig.new_rig.known_surface import finished_surface, scanned_surface, surfaces_in_contact
+from sonolube.rig.new_rig.pin_and_vibration import DrivenActuator, FlatPin, RoundPin, StatedAmplitude
+from sonolube.rig.new_rig.rig_text import KnownRig, least_known, new_rig_text
+from sonolube.surfaces import typical_summits
 
 GROUND = finished_surface("ground N6")
 KNOWN = KnownRig(

@@ -142,10 +142,7 @@ def test_off_a_terminal_the_missing_options_are_named(capsys: CaptureFixture[str
         (("--finish", "N66"), "unknown surface finish 'n66'"),
         (("--shape", "cone 3mm"), "--shape 'cone 3mm' must be 'flat' with its diameter or 'ball' with its radius"),
         (("--voltage", "40V"), "--actuator and --voltage belong together"),
-        (
-            ("--pin", "ptfe", "--disc", "silicon_carbide"),
-            "no dry friction is known of ptfe on silicon_carbide;",
-        ),
+        (("--pin", "ptfe", "--disc", "silicon_carbide"), "no dry friction is known of ptfe on silicon_carbide;"),
         (("--actuator", "sa050510", "--voltage", "40V"), "give either --amplitude or --actuator, got both"),
         (("--pin-finish", "N6", "--pin-scan", "pin.opd"), "give either --pin-finish or --pin-scan, got both"),
         (("--scan", "none.opd"), "none.opd"),

@@ -17,19 +17,16 @@ from sonolube.errors import InvalidInput, MissingProperty
 from sonolube.materials import dry_friction, material
 from sonolube.rig import Rig, rig_from
 from sonolube.rig.file.plausible import plausible_si
-from sonolube.rig.known_surface import KnownSurface, finished_surface, scanned_surface
-from sonolube.rig.new_rig import (
+from sonolube.rig.new_rig.known_surface import KnownSurface, finished_surface, scanned_surface
+from sonolube.rig.new_rig.pin_and_vibration import (
     DrivenActuator,
     FlatPin,
-    KnownRig,
-    LeastKnown,
     PinShape,
     RoundPin,
     StatedAmplitude,
     Vibration,
-    least_known,
-    new_rig_text,
 )
+from sonolube.rig.new_rig.rig_text import KnownRig, LeastKnown, least_known, new_rig_text
 
 Value = TypeVar("Value")
 
@@ -74,7 +71,9 @@ def new(
     ] = None,
     load: Annotated[str | None, typer.Option(metavar="FORCE", help="Normal load.")] = None,
     speed: Annotated[str | None, typer.Option(metavar="SPEED", help="Sliding speed.")] = None,
-    frequency: Annotated[str | None, typer.Option(metavar="FREQUENCY", help="Frequency of the vibration.")] = None,
+    at: Annotated[
+        str | None, typer.Option("--frequency", metavar="FREQUENCY", help="Frequency of the vibration.")
+    ] = None,
     amplitude: Annotated[
         str | None, typer.Option(metavar="LENGTH", help="Vibration amplitude normal to the contact, zero to peak.")
     ] = None,
@@ -110,7 +109,7 @@ def new(
     _refuse_two({"--pin-finish": pin_finish, "--pin-scan": pin_scan})
     _refuse_two({"--disc-finish": disc_finish, "--scan": scan})
     driven = _driven(amplitude, actuator, voltage)
-    given = {_PIN: pin, _DISC: disc, _LOAD: load, _SPEED: speed, _FREQUENCY: frequency, _AMPLITUDE: driven}
+    given = {_PIN: pin, _DISC: disc, _LOAD: load, _SPEED: speed, _FREQUENCY: at, _AMPLITUDE: driven}
     _refuse_missing(given)
     materials = _value(_PIN, pin, _material), _value(_DISC, disc, _material)
     known = KnownRig(
@@ -119,7 +118,7 @@ def new(
         shape=_value(_SHAPE, shape, _shape),
         normal_load=_value(_LOAD, load, _quantity("N", "--load")),
         sliding_speed=_value(_SPEED, speed, _quantity("m/s", "--speed")),
-        frequency=_value(_FREQUENCY, frequency, _quantity("Hz", "--frequency")),
+        frequency=_value(_FREQUENCY, at, _quantity("Hz", "--frequency")),
         vibration=_value(_AMPLITUDE, driven, _vibration),
         pin_surface=_value(_PIN_FINISH, _text(pin_scan) or pin_finish or finish, _surface),
         disc_surface=_value(_DISC_FINISH, _text(scan) or disc_finish or finish, _surface),

@@ -8,7 +8,7 @@ from sonolube.errors import InvalidInput
 from sonolube.materials import yield_strength_from_hardness
 from sonolube.rig.file.contact_section import STATED_HEIGHTS, BodySection, StatedRoughnessSection
 from sonolube.rig.file.sections import RigFile
-from sonolube.rig.stated_surface import (
+from sonolube.rig.file.stated_surface import (
     StatedHeight,
     deviation_of_range,
     height_from_maximum_height,
@@ -91,9 +91,9 @@ def _roughness(section: StatedRoughnessSection) -> tuple[dict[str, Any], dict[st
 
 def _height(section: StatedRoughnessSection) -> StatedHeight:
     if section.roughness_average is not None:
-        return height_from_roughness_average(section.roughness_average)
+        return height_from_roughness_average(roughness_average=section.roughness_average)
     if section.maximum_height is not None:
-        return height_from_maximum_height(section.maximum_height)
+        return height_from_maximum_height(maximum_height=section.maximum_height)
     assert section.finish is not None  # the check of the section
     return height_of_finish(section.finish)
 

@@ -36,14 +36,34 @@ def deviation_of_range(low: float, high: float) -> float:
     return log(high / low) / 4
 
 
-def height_from_roughness_average(roughness_average: float) -> StatedHeight:
-    """Return the root mean square height of a surface by its Ra."""
+def height_from_roughness_average(*, roughness_average: float) -> StatedHeight:
+    """Return the root mean square height of a surface by its Ra.
+
+    Parameters
+    ----------
+    roughness_average : float
+        Arithmetic mean roughness. [m]
+
+    Returns
+    -------
+    StatedHeight
+    """
     found = rms_height_from_roughness_average(arithmetic_mean_height=roughness_average)
     return _stated(found, f"Ra {format_si(roughness_average, 'm')}")
 
 
-def height_from_maximum_height(maximum_height: float) -> StatedHeight:
-    """Return the root mean square height of a surface by its Rz."""
+def height_from_maximum_height(*, maximum_height: float) -> StatedHeight:
+    """Return the root mean square height of a surface by its Rz.
+
+    Parameters
+    ----------
+    maximum_height : float
+        Maximum height of a section, mean over the sections. [m]
+
+    Returns
+    -------
+    StatedHeight
+    """
     found = rms_height_from_maximum_height(mean_section_height=maximum_height)
     return _stated(found, f"Rz {format_si(maximum_height, 'm')}")
 

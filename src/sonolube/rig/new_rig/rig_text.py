@@ -6,201 +6,28 @@ What nobody has measured yet, such as dry friction and roughness, is a distribut
 import json
 import tomllib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from math import log, pi
-from typing import Final, Protocol
+from dataclasses import dataclass
+from math import log
+from typing import Final
 
-from sonolube.actuator import CatalogueActuator
 from sonolube.checks import require_positive
-from sonolube.contact import ElasticBody, SphereOnFlat, contact_pair, hertz_contact_radius
-from sonolube.errors import InvalidInput, MissingProperty
+from sonolube.contact import ElasticBody, contact_pair
+from sonolube.errors import MissingProperty
 from sonolube.materials import Material, dry_friction, material, yield_strength_from_hardness
 from sonolube.rig.file.guidance import guidance
 from sonolube.rig.file.reader import rig_from
-from sonolube.rig.known_surface import KnownSurface, lognormal_text, surfaces_in_contact
+from sonolube.rig.file.stated_surface import deviation_of_range
+from sonolube.rig.new_rig.known_surface import KnownSurface, lognormal_text, surfaces_in_contact
+from sonolube.rig.new_rig.pin_and_vibration import Entries, PinShape, Vibration, toml_text
 from sonolube.rig.record import Rig
-from sonolube.rig.stated_surface import deviation_of_range
-from sonolube.units import format_si
 from sonolube.vocabulary import quantity
 
 _HEAD: Final = "# Written by sonolube new. Replace what you measure, and remove its line from [uncertainty]."
-_STATED_AMPLITUDE: Final = 0.15
-_DATA_SHEET_STROKE: Final = 0.3
-_LARGEST_AMPLITUDE: Final = 1e-3
 _CATALOGUE_STRENGTH: Final = 0.15
 _NO_METALS: Final = ("ceramic", "coating", "glass", "piezo_ceramic", "polymer")
 _POISSON_RATIO: Final = 0.33
 _POISSON_REASON: Final = "not in the catalogue; 0.33 assumed: 0.25 to 0.4 changes the effective modulus by 5 %"
 _MEASURED_FRICTION: Final = "normal 5 %"
-
-
-class PinShape(Protocol):
-    """Shape of the end of a pin."""
-
-    @property
-    def text(self) -> str:
-        """The shape in words."""
-
-    def nominal_area(self, *, effective_modulus: float, normal_load: float) -> float:
-        """Return the nominal contact area. [m2]"""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class FlatPin:
-    """Pin with a flat end.
-
-    Parameters
-    ----------
-    diameter : float
-        Of the flat, in m.
-    """
-
-    diameter: float
-
-    def __post_init__(self) -> None:
-        require_positive(diameter=self.diameter)
-
-    @property
-    def text(self) -> str:
-        """The shape in words."""
-        return f"flat of {format_si(self.diameter, 'm')} in diameter"
-
-    def nominal_area(self, *, effective_modulus: float, normal_load: float) -> float:
-        """Return the area of the flat. [m2]"""
-        return pi * self.diameter**2 / 4
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class RoundPin:
-    """Ball, or pin with a crowned end.
-
-    Parameters
-    ----------
-    tip_radius : float
-        Radius of the ball or crown. [m]
-    """
-
-    tip_radius: float
-
-    def __post_init__(self) -> None:
-        require_positive(tip_radius=self.tip_radius)
-
-    @property
-    def text(self) -> str:
-        """The shape in words."""
-        return f"Hertzian circle of a tip radius of {format_si(self.tip_radius, 'm')} before wear, which enlarges it"
-
-    def nominal_area(self, *, effective_modulus: float, normal_load: float) -> float:
-        """Return the area of the Hertzian circle. [m2]"""
-        sphere = SphereOnFlat(tip_radius=self.tip_radius, effective_modulus=effective_modulus)
-        return pi * float(hertz_contact_radius(sphere, normal_load=normal_load)) ** 2
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Entries:
-    """Part of a rig file.
-
-    Parameters
-    ----------
-    tables : mapping of str to mapping
-        Values of keys as TOML, by table.
-    assumptions, uncertainty : mapping of str to str
-        By dotted key.
-    """
-
-    tables: Mapping[str, Mapping[str, str]]
-    assumptions: Mapping[str, str] = field(default_factory=dict)
-    uncertainty: Mapping[str, str] = field(default_factory=dict)
-
-
-class Vibration(Protocol):
-    """What vibrates the contact."""
-
-    def entries(self, frequency: float) -> Entries:
-        """Return the part of a rig file at a frequency in Hz."""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class StatedAmplitude:
-    """Vibration of a stated amplitude.
-
-    Parameters
-    ----------
-    vibration_amplitude : float
-        Zero to peak. [m]
-    """
-
-    vibration_amplitude: float
-
-    def __post_init__(self) -> None:
-        if float(require_positive(vibration_amplitude=self.vibration_amplitude)) > _LARGEST_AMPLITUDE:
-            given = format_si(self.vibration_amplitude, "m")
-            raise InvalidInput(f"vibration_amplitude {given} is beyond any ultrasonic vibration: expected up to 1 mm")
-
-    def entries(self, frequency: float) -> Entries:
-        """Return the tables drive and vibration."""
-        key = "vibration.vibration_amplitude"
-        return Entries(
-            tables={
-                "drive": {"frequency": _si(frequency, "Hz")},
-                "vibration": {"vibration_amplitude": _si(self.vibration_amplitude, "m")},
-            },
-            assumptions={key: "as stated, taken as not measured under this load: 15 %"},
-            uncertainty={key: f"lognormal {100 * _STATED_AMPLITUDE:g} %"},
-        )
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class DrivenActuator:
-    """Actuator of the catalogue at a voltage, below its resonance.
-
-    Parameters
-    ----------
-    actuator : CatalogueActuator
-    voltage_peak_to_peak : float
-        Difference of the highest and the lowest voltage. [V]
-    """
-
-    actuator: CatalogueActuator
-    voltage_peak_to_peak: float
-
-    def __post_init__(self) -> None:
-        voltage = float(require_positive(voltage_peak_to_peak=self.voltage_peak_to_peak))
-        low, high = self.actuator.lowest_voltage, self.actuator.highest_voltage
-        if low is not None and high is not None and voltage > high - low:
-            span = format_si(high - low, "V")
-            raise InvalidInput(f"voltage_peak_to_peak {voltage:g} V exceeds {span}, the range of {self.actuator.name}")
-
-    def entries(self, frequency: float) -> Entries:
-        """Return the tables drive and actuator.
-
-        Raises
-        ------
-        InvalidInput
-            If the frequency is not below the resonance of the free actuator.
-        """
-        shown = self.actuator
-        if frequency >= shown.resonance_frequency:
-            resonance = format_si(shown.resonance_frequency, "Hz")
-            raise InvalidInput(
-                f"frequency must lie below {resonance}, the resonance of {shown.name}; else give its amplitude"
-            )
-        key = "actuator.amplitude_per_volt"
-        per_volt = shown.stroke / shown.stroke_voltage / 2  # stroke is from end to end
-        return Entries(
-            tables={
-                "drive": {
-                    "voltage_peak_to_peak": _si(self.voltage_peak_to_peak, "V"),
-                    "frequency": _si(frequency, "Hz"),
-                },
-                "actuator": {
-                    "capacitance": _si(shown.free_capacitance, "F"),
-                    "amplitude_per_volt": _si(per_volt, "m/V"),
-                },
-            },
-            assumptions={key: f"half the free stroke per volt of {shown.title}; load and resonance are left out: 30 %"},
-            uncertainty={key: f"lognormal {100 * _DATA_SHEET_STROKE:g} %"},
-        )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -333,16 +160,16 @@ def _contact(known: KnownRig) -> Entries:
     assumed = {"softer": _assumed(softer), "harder": _assumed(harder)}
     return Entries(
         tables={
-            "contact": {"normal_load": _si(known.normal_load, "N"), "nominal_area": _si(area, "m2")},
+            "contact": {"normal_load": toml_text(known.normal_load, "N"), "nominal_area": toml_text(area, "m2")},
             place: {
-                "rms_height": _si(roughness.rms_height, "m"),
-                "summit_radius": _si(roughness.summit_radius, "m"),
-                "summit_density": _si(roughness.summit_density, "1/m2"),
+                "rms_height": toml_text(roughness.rms_height, "m"),
+                "summit_radius": toml_text(roughness.summit_radius, "m"),
+                "summit_density": toml_text(roughness.summit_density, "1/m2"),
             },
             "contact.softer": {
                 "material": json.dumps(softer.name),
                 "role": json.dumps(roles["softer"]),
-                "yield_strength": _si(strength, "Pa"),
+                "yield_strength": toml_text(strength, "Pa"),
                 **assumed["softer"],
             },
             "contact.harder": {
@@ -370,7 +197,7 @@ def _contact(known: KnownRig) -> Entries:
 
 def _friction(known: KnownRig) -> Entries:
     """Return the tables of dry friction and sliding."""
-    key, sliding = "friction.friction_coefficient", {"sliding_speed": _si(known.sliding_speed, "m/s")}
+    key, sliding = "friction.friction_coefficient", {"sliding_speed": toml_text(known.sliding_speed, "m/s")}
     if known.friction_coefficient is not None:
         value, reason, law = known.friction_coefficient, "as stated, taken as measured: 5 %", _MEASURED_FRICTION
     else:
@@ -416,11 +243,6 @@ def _assumed(body: Material) -> dict[str, str]:
 def _body(body: Material) -> ElasticBody:
     ratio = body.value("poisson_ratio") if "poisson_ratio" in body.properties else _POISSON_RATIO
     return ElasticBody(youngs_modulus=body.value("youngs_modulus"), poisson_ratio=ratio)
-
-
-def _si(value: float, unit: str) -> str:
-    """Return a quantity as a TOML value."""
-    return json.dumps(format_si(value, unit, digits=4))
 
 
 def _quoted(parts: Sequence[Mapping[str, str]]) -> dict[str, str]:

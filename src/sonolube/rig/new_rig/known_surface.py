@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Final
 
 from sonolube.measurement.surface_files.reader import read_height_map
-from sonolube.rig.stated_surface import height_of_finish
+from sonolube.rig.file.stated_surface import height_of_finish
 from sonolube.surfaces import (
     Roughness,
     combined_roughness,
@@ -28,10 +28,8 @@ class KnownSurface:
     ----------
     roughness : Roughness
         Height, summit radius and summit density: medians.
-    height_deviation : float
-        Standard deviation of the logarithm of the height. []
-    radius_deviation, density_deviation : float
-        The same of radius and density of the summits.
+    height_deviation, radius_deviation, density_deviation : float
+        Standard deviations of the logarithms of height, radius and density of the summits.
     height_reason, summit_reason : str
         Where they come from.
     """
