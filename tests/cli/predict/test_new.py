@@ -100,7 +100,7 @@ def test_questions_on_a_terminal_give_the_same_rig_as_options() -> None:
 
 
 def test_an_empty_answer_takes_the_default_that_the_question_shows() -> None:
-    code, screen = conversation(["new", "rig.toml", *KNOWN[4:]], ["", ""])
+    code, screen = conversation(["new", "rig.toml", *KNOWN[4:]], ["", "", ""])
     assert code == 0, screen
     assert "Material of the pin, such as aluminium_2024 [stainless_steel_304]: " in screen
     rig = read_rig("rig.toml")
@@ -108,7 +108,7 @@ def test_an_empty_answer_takes_the_default_that_the_question_shows() -> None:
 
 
 def test_an_answer_that_cannot_be_read_is_asked_for_again() -> None:
-    code, screen = conversation(["new", "rig.toml", *KNOWN[2:]], ["aluminium_2042", PIN])
+    code, screen = conversation(["new", "rig.toml", *KNOWN[2:]], ["aluminium_2042", PIN, ""])
     assert code == 0, screen
     assert "unknown material 'aluminium_2042'; did you mean aluminium_2024?" in screen
     assert screen.count("Material of the pin") == 2

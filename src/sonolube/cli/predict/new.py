@@ -110,18 +110,18 @@ def new(
     _refuse_two({"--disc-finish": disc_finish, "--scan": scan})
     driven = _driven(amplitude, actuator, voltage)
     given = {_PIN: pin, _DISC: disc, _LOAD: load, _SPEED: speed, _FREQUENCY: at, _AMPLITUDE: driven}
-    _refuse_missing(given)
-    materials = _value(_PIN, pin, _material), _value(_DISC, disc, _material)
+    asks = _asks(given)
+    materials = _value(_PIN, pin, _material, asks=asks), _value(_DISC, disc, _material, asks=asks)
     known = KnownRig(
         pin=materials[0],
         disc=materials[1],
-        shape=_value(_SHAPE, shape, _shape),
-        normal_load=_value(_LOAD, load, _quantity("N", "--load")),
-        sliding_speed=_value(_SPEED, speed, _quantity("m/s", "--speed")),
-        frequency=_value(_FREQUENCY, at, _quantity("Hz", "--frequency")),
-        vibration=_value(_AMPLITUDE, driven, _vibration),
-        pin_surface=_value(_PIN_FINISH, _text(pin_scan) or pin_finish or finish, _surface),
-        disc_surface=_value(_DISC_FINISH, _text(scan) or disc_finish or finish, _surface),
+        shape=_value(_SHAPE, shape, _shape, asks=asks),
+        normal_load=_value(_LOAD, load, _quantity("N", "--load"), asks=asks),
+        sliding_speed=_value(_SPEED, speed, _quantity("m/s", "--speed"), asks=asks),
+        frequency=_value(_FREQUENCY, at, _quantity("Hz", "--frequency"), asks=asks),
+        vibration=_value(_AMPLITUDE, driven, _vibration, asks=asks),
+        pin_surface=_value(_PIN_FINISH, _text(pin_scan) or pin_finish or finish, _surface, asks=asks),
+        disc_surface=_value(_DISC_FINISH, _text(scan) or disc_finish or finish, _surface, asks=asks),
         friction_coefficient=_friction_coefficient(friction, pin=materials[0], disc=materials[1]),
     )
     text = new_rig_text(known)
@@ -163,11 +163,12 @@ class NewRigAnswer(Answer):
         return {self.path.name: self.text}
 
 
-def _refuse_missing(given: Mapping[Question, str | None]) -> None:
-    """Refuse options that are missing where nobody can be asked."""
+def _asks(given: Mapping[Question, str | None]) -> bool:
+    """Whether to ask for what the options leave out; refuse missing ones where nobody can be asked."""
     missing = [question.option for question, text in given.items() if text is None]
     if missing and not is_terminal():
         raise InvalidInput(f"missing {', '.join(missing)}; give them, or answer the questions on a terminal")
+    return bool(missing)
 
 
 def _refuse_two(given: Mapping[str, object]) -> None:
@@ -177,11 +178,11 @@ def _refuse_two(given: Mapping[str, object]) -> None:
         raise InvalidInput(f"give either {' or '.join(both)}, got both")
 
 
-def _value(question: Question, text: str | None, read: Callable[[str], Value]) -> Value:
-    """Value of an option, or of the answer to its question; of its default where nobody can be asked."""
+def _value(question: Question, text: str | None, read: Callable[[str], Value], *, asks: bool) -> Value:
+    """Value of an option, or of the answer to its question; of its default where nothing is asked."""
     if text is not None:
         return read(text)
-    return ask(question, read) if is_terminal() else read(question.default)
+    return ask(question, read) if asks else read(question.default)
 
 
 def _driven(amplitude: str | None, actuator: str | None, voltage: str | None) -> str | None:
