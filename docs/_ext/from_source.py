@@ -23,7 +23,15 @@ from sphinx.util.docutils import SphinxDirective
 from sonolube.cli import main
 from sonolube.contact import ASPERITY_LAWS, HEIGHT_DISTRIBUTIONS
 from sonolube.friction import FRICTION_MODELS
-from sonolube.materials import Material, SourcedValue, material, material_names
+from sonolube.materials import (
+    DryFriction,
+    Material,
+    SourcedValue,
+    dry_friction_pairs,
+    material,
+    material_families,
+    material_names,
+)
 from sonolube.measurement.file_format import FileFormat
 from sonolube.measurement.impedance.formats import IMPEDANCE_FORMATS
 from sonolube.measurement.recordings.formats import RECORDING_FORMATS
@@ -33,6 +41,7 @@ from sonolube.prediction.scores import PROBABILITIES
 from sonolube.published import errata
 from sonolube.rig import read_rig, rig_schema
 from sonolube.rig.file.json_schema import tables_of
+from sonolube.surfaces import surface_finish, surface_finish_names
 from sonolube.units import format_si, unit_description
 from sonolube.vocabulary import quantities
 from sonolube.wear import WEAR_MODELS
@@ -76,8 +85,36 @@ def errata_of_d() -> str:
 
 
 def materials_with_sources() -> str:
-    """Materials with their properties and sources, as sections."""
-    return "\n\n".join(_material(material(name)) for name in material_names())
+    """Materials with their properties and sources, as sections by family."""
+    every = [material(name) for name in material_names()]
+    return "\n\n".join(
+        "\n\n".join([f"## {_words(family)}", *(_material(each) for each in every if each.family == family)])
+        for family in material_families()
+    )
+
+
+def dry_friction_by_pair() -> str:
+    """Ranges of the coefficient of dry friction by pair of materials or families."""
+    rows = [
+        [*(", ".join(sorted(map(_words, side))) for side in each.sides), _range(each.friction), _source(each.friction)]
+        for each in dry_friction_pairs()
+    ]
+    return _grid(["", "on", "Coefficient", "Source"], rows)
+
+
+def surface_finishes() -> str:
+    """Ranges of Ra of processes and grades."""
+    finishes = [surface_finish(name) for name in surface_finish_names()]
+    rows = [
+        [
+            f"`{each.name}`",
+            each.title,
+            f"{1e6 * each.roughness_average_low:g} to {1e6 * each.roughness_average_high:g} um",
+            _plain("; ".join(filter(None, (each.source, each.note)))),
+        ]
+        for each in finishes
+    ]
+    return _grid(["Name", "Finish", "Ra", "Source"], rows)
 
 
 def vocabulary() -> str:
@@ -154,6 +191,8 @@ TABLES: Mapping[str, Callable[[], str]] = {
         example_rigs,
         errata_of_d,
         materials_with_sources,
+        dry_friction_by_pair,
+        surface_finishes,
         vocabulary,
         recording_formats,
         impedance_formats,
@@ -296,10 +335,20 @@ def _material(shown: Material) -> str:
     if shown.crystal_structure:
         structure = shown.crystal_structure
         rows.append(["crystal structure", _plain(structure.text), _plain(structure.source)])
-    return f"## {shown.title}\n\n`{shown.name}`\n\n" + _grid(["Property", "Value", "Source"], rows)
+    names = ", ".join(f"`{name}`" for name in (shown.name, *shown.aliases))
+    return f"### {_plain(shown.title)}\n\n{names}\n\n" + _grid(["Property", "Value", "Source"], rows)
 
 
-def _source(known: SourcedValue) -> str:
+def _words(name: str) -> str:
+    """Return a name with spaces and a capital."""
+    return name.replace("_", " ").capitalize()
+
+
+def _range(known: DryFriction) -> str:
+    return f"{known.low:g} to {known.high:g}"
+
+
+def _source(known: SourcedValue | DryFriction) -> str:
     return _plain("; ".join(filter(None, (known.source, known.condition, known.note))))
 
 

@@ -10,7 +10,12 @@ from .hardness import (
     YieldStrengthEstimate as YieldStrengthEstimate,
     yield_strength_from_hardness as yield_strength_from_hardness,
 )
-from .pair_friction import DryFriction as DryFriction, dry_friction as dry_friction
+from .pair_friction import (
+    DryFriction as DryFriction,
+    FrictionPair as FrictionPair,
+    dry_friction as dry_friction,
+    dry_friction_pairs as dry_friction_pairs,
+)
 from .piezoelectric import (
     PiezoCeramic as PiezoCeramic,
     coupling_factors as coupling_factors,

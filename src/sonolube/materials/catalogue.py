@@ -72,6 +72,8 @@ class Material:
         Its scalar properties, by their vocabulary names.
     crystal_structure : SourcedText or None
         Its crystal structure, where a source states it.
+    aliases : tuple of str
+        Further names by which it is found.
     """
 
     name: str
@@ -79,6 +81,7 @@ class Material:
     family: str
     properties: Mapping[str, SourcedValue]
     crystal_structure: SourcedText | None = None
+    aliases: tuple[str, ...] = ()
 
     def property(self, property_name: str) -> SourcedValue:
         """Return a property with its unit and source.
@@ -135,7 +138,7 @@ def material(name: str) -> Material:
     Parameters
     ----------
     name : str
-        Such as "stainless_steel_316" or its alias "ss316"; case, spaces and hyphens do not matter, as in "AISI 316".
+        Such as "stainless_steel_316" or its alias "ss316"; case, spaces and punctuation do not matter ("AISI 316").
 
     Returns
     -------
@@ -149,8 +152,8 @@ def material(name: str) -> Material:
     try:
         return _materials()[_names_by_key()[_key(name)]]
     except KeyError:
-        aliases = (alias for entry in _entries().values() for alias in entry.get("aliases", ()))
-        raise UnknownName.among((*_entries(), *aliases), kind="material", name=name) from None
+        names = (each for known in _materials().values() for each in (known.name, *known.aliases))
+        raise UnknownName.among(names, kind="material", name=name) from None
 
 
 def material_names() -> tuple[str, ...]:
@@ -174,15 +177,9 @@ def _materials() -> Mapping[str, Material]:
 
 
 @cache
-def _entries() -> Mapping[str, Mapping[str, Any]]:
-    """Return the entries of all property files by name."""
-    return {name: entry for file_name in _FILES for name, entry in read_property_file(file_name).entries.items()}
-
-
-@cache
 def _names_by_key() -> Mapping[str, str]:
     """Return the names of the materials by the keys of their names and aliases."""
-    return {_key(each): name for name, entry in _entries().items() for each in (name, *entry.get("aliases", ()))}
+    return {_key(each): known.name for known in _materials().values() for each in (known.name, *known.aliases)}
 
 
 def _key(name: str) -> str:
@@ -201,6 +198,7 @@ def _material(name: str, entry: Mapping[str, Any], sources: Mapping[str, str]) -
             {key: SourcedValue(**_cited(value, sources)) for key, value in entry["properties"].items()}
         ),
         crystal_structure=SourcedText(**_cited(structure, sources)) if structure else None,
+        aliases=tuple(entry.get("aliases", ())),
     )
 
 

@@ -56,7 +56,7 @@ def yield_strength_from_hardness(*, hardness: float) -> YieldStrengthEstimate:
     .. math:: H = c\,Y
 
     with c = 2.8 to 3.2 for the flow stress at a strain of 0.08, the strain of a Vickers indentation. [1]_ [2]_ Over the
-    0.2 % proof stress the factor is 2 to 6: metals that harden by work yield early. Not for ceramics, glass or polymers.
+    0.2 % proof stress the factor is 2 to 6: metals that harden by work yield early. Not for ceramics or polymers.
 
     References
     ----------

@@ -1,7 +1,7 @@
 """Ranges of the coefficient of dry friction by pair of materials, each with its source."""
 
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
@@ -34,6 +34,22 @@ class DryFriction:
     note: str = ""
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FrictionPair:
+    """One entry of the table of dry friction.
+
+    Parameters
+    ----------
+    sides : tuple of two frozensets of str
+        Names of materials or families on each side.
+    friction : DryFriction
+        Friction between any of the one side and any of the other.
+    """
+
+    sides: tuple[frozenset[str], frozenset[str]]
+    friction: DryFriction
+
+
 def dry_friction(first: str, second: str) -> DryFriction:
     """Return the range of the coefficient of dry friction of a pair of materials.
 
@@ -56,7 +72,7 @@ def dry_friction(first: str, second: str) -> DryFriction:
         If no source is known for the pair.
     """
     one, other = material(first), material(second)
-    known = [(_specificity(pair, one, other), pair) for pair in _pairs()]
+    known = [(_specificity(pair, one, other), pair) for pair in dry_friction_pairs()]
     specificity, best = max(known, key=lambda each: each[0])
     if not specificity:
         raise MissingProperty(
@@ -66,31 +82,23 @@ def dry_friction(first: str, second: str) -> DryFriction:
     return best.friction
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class _Pair:
-    """One entry of the table: both sides, by names of materials or families, and the friction between them."""
-
-    sides: tuple[frozenset[str], frozenset[str]]
-    friction: DryFriction
-
-
 @cache
-def _pairs() -> Sequence[_Pair]:
-    """Return all entries of the table."""
+def dry_friction_pairs() -> tuple[FrictionPair, ...]:
+    """Return all entries of the table of dry friction."""
     content = tomllib.loads(files("sonolube.materials").joinpath("dry_friction.toml").read_text(encoding="utf-8"))
-    return [_pair(entry, content["sources"]) for entry in content["pair"]]
+    return tuple(_pair(entry, content["sources"]) for entry in content["pair"])
 
 
-def _pair(entry: Mapping[str, Any], sources: Mapping[str, str]) -> _Pair:
+def _pair(entry: Mapping[str, Any], sources: Mapping[str, str]) -> FrictionPair:
     """Return one entry of the table with its sources spelt out."""
     numbers = {key: value for key, value in entry.items() if key not in ("first", "second", "source")}
     cited = "; ".join(sources[key] for key in entry["source"])
-    return _Pair(
+    return FrictionPair(
         sides=(frozenset(entry["first"]), frozenset(entry["second"])), friction=DryFriction(source=cited, **numbers)
     )
 
 
-def _specificity(pair: _Pair, one: Material, other: Material) -> int:
+def _specificity(pair: FrictionPair, one: Material, other: Material) -> int:
     """Return 0 where an entry is not of two materials, else more the more of both it names."""
     left, right = pair.sides
     return max(_match(left, one) * _match(right, other), _match(left, other) * _match(right, one))

@@ -204,7 +204,7 @@ def typical_summits(*, rms_height: float) -> TypicalSummits:
     Notes
     -----
     The mean absolute slope of a profile is taken from the height as :math:`m = 0.125\,(R_q/\mathrm{\mu m})^{0.402}`,
-    one of the correlations that [2]_ reviews (its coefficients from memory); the others give 0.6 to 1.2 times as much at
+    one of the correlations that [2]_ reviews (coefficients from memory); the others give 0.6 to 1.2 times as much at
     1 um. With the variance of slopes :math:`m_2 = \pi m^2/2` and a roughness parameter
     :math:`\beta = \eta R_q R_s = 0.04`, from 0.03 to 0.05 for most surfaces, the isotropic Gaussian surface [1]_ has
 
@@ -237,8 +237,8 @@ def typical_summits(*, rms_height: float) -> TypicalSummits:
 
 
 # least, typical and largest ratio, and source
-_RMS_PER_AVERAGE = (1.05, math.sqrt(math.pi / 2), 1.42)
-_AVERAGE_SOURCE = "Rq = sqrt(pi/2) Ra for Gaussian heights; 1.05 to 1.42 Ra on the surfaces of D Tables 2.4 and 2.10"
+_RMS_PER_AVERAGE = (1.04, math.sqrt(math.pi / 2), 1.43)
+_AVERAGE_SOURCE = "Rq = sqrt(pi/2) Ra for Gaussian heights; 1.04 to 1.43 Ra on the surfaces of D Tables 2.4 and 2.10"
 _MAXIMUM_PER_RMS = (2 * math.sqrt(2), 4.5, 6.4)
 _MAXIMUM_SOURCE = (
     "Rz = 4 to 8 Ra, turned to lapped, by MetricMech, Surface finish chart, with Rq = sqrt(pi/2) Ra; 2.8 Rq for a sine"

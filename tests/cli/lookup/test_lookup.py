@@ -33,3 +33,22 @@ def test_the_schema_is_the_same_with_and_without_json(sonolube: Program) -> None
     plain = sonolube("schema").out
     assert json.loads(plain) == rig_schema()
     assert sonolube("schema", "--json").out == plain
+
+
+def test_materials_are_listed_by_family_with_what_a_contact_needs(sonolube: Program) -> None:
+    lines = sonolube("materials").out.splitlines()
+    assert lines[0].split()[0] == "name"
+    families = [line for index, line in enumerate(lines) if index and not lines[index - 1]]
+    assert {"brass", "stainless steel", "cast iron", "polymer", "piezo ceramic"} <= set(families)
+    assert families == sorted(families)
+    row = next(line for line in lines if line.startswith("brass_c36000"))
+    assert "97 GPa" in row
+    assert "310 MPa" in row
+    assert lines.index(row) > lines.index("brass")
+
+
+def test_a_material_is_shown_by_any_of_its_names(sonolube: Program) -> None:
+    shown = sonolube("materials", "AISI 304").out
+    assert shown.startswith("stainless_steel_304: Stainless steel AISI 304")
+    assert "ss304" in shown.splitlines()[1]
+    assert sonolube("materials", "brass", "--json").answer["family"] == "brass"

@@ -1,15 +1,19 @@
 """Command `materials`: properties of materials and piezo ceramics with their sources."""
 
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Annotated, Any
 
 import typer
 
-from sonolube.cli.console.answer import aligned, deliver
+from sonolube.cli.console.answer import aligned, deliver, grid
 from sonolube.cli.console.options import Json
 from sonolube.cli.lookup.listing import Listing
-from sonolube.materials import Material, SourcedValue, material, material_names
+from sonolube.materials import Material, SourcedValue, material, material_families, material_names
 from sonolube.units import format_si
+
+_HEADS = ("name", "Young's modulus", "hardness", "yield strength", "title")
+_QUANTITIES = ("youngs_modulus", "hardness", "yield_strength")
 
 
 def materials(
@@ -20,13 +24,28 @@ def materials(
     Example: sonolube materials aluminium_2024
     """
     if name is None:
-        every = {each: material(each) for each in material_names()}
-        width = max(map(len, every))
-        text = [f"{each:<{width}}  {shown.title}" for each, shown in every.items()]
-        deliver(Listing(text=text, content={each: _object(shown) for each, shown in every.items()}), as_json=json)
+        every = [material(each) for each in material_names()]
+        deliver(Listing(text=_by_family(every), content={each.name: _object(each) for each in every}), as_json=json)
     else:
         shown = material(name)
         deliver(Listing(text=_lines(shown), content=_object(shown)), as_json=json)
+
+
+def _by_family(every: Sequence[Material]) -> list[str]:
+    """Rows of the list under headings of the families, alphabetically."""
+    columns = grid([_HEADS, *map(_row, every)])
+    rows = dict(zip((each.name for each in every), columns[1:], strict=True))
+    lines = [columns[0]]
+    for family in material_families():
+        lines += ["", family.replace("_", " "), *(rows[each.name] for each in every if each.family == family)]
+    return lines
+
+
+def _row(shown: Material) -> list[str]:
+    """Row of the list: name, main properties and title."""
+    known = shown.properties
+    cells = [format_si(known[key].value, known[key].unit) if key in known else "-" for key in _QUANTITIES]
+    return [shown.name, *cells, shown.title]
 
 
 def _lines(shown: Material) -> list[str]:
@@ -34,7 +53,8 @@ def _lines(shown: Material) -> list[str]:
     rows = [(key, _property(known)) for key, known in shown.properties.items()]
     if shown.crystal_structure:
         rows.append(("crystal_structure", f"{shown.crystal_structure.text}, {shown.crystal_structure.source}"))
-    return [f"{shown.name}: {shown.title}", *aligned(rows)]
+    also = [f"  also {', '.join(shown.aliases)}"] if shown.aliases else []
+    return [f"{shown.name}: {shown.title}", *also, *aligned(rows)]
 
 
 def _property(known: SourcedValue) -> str:
@@ -47,6 +67,8 @@ def _object(shown: Material) -> dict[str, Any]:
     """Material for JSON."""
     return {
         "title": shown.title,
+        "family": shown.family,
+        "aliases": list(shown.aliases),
         "properties": {key: asdict(known) for key, known in shown.properties.items()},
         "crystal_structure": asdict(shown.crystal_structure) if shown.crystal_structure else None,
     }
