@@ -4,6 +4,7 @@ import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from shlex import quote
 from typing import Annotated, Any, TypeVar
 
 import typer
@@ -145,7 +146,7 @@ class NewRigAnswer(Answer):
         return [
             self.rig.title,
             *grid([["  least known", "distribution", "to measure it"], *rows]),
-            f"  next: sonolube predict {self.path}",
+            f"  next: sonolube predict {quote(str(self.path))}",
         ]
 
     def object(self) -> dict[str, Any]:
@@ -155,7 +156,6 @@ class NewRigAnswer(Answer):
             "text": self.text,
             "uncertainty": {key: law.text for key, law in self.rig.uncertainty.items()},
             "least_known": {one.key: one.remedy for one in self.least_known},
-            "next": f"sonolube predict {self.path}",
         }
 
     def files(self) -> Mapping[str, str]:
