@@ -13,6 +13,38 @@ class InvalidInput(SonolubeError, ValueError):
     """A value without meaning for its argument."""
 
 
+class SeveralFaults(InvalidInput):
+    """Several faults of one input, which the program prints one to a line.
+
+    Parameters
+    ----------
+    faults : iterable of str
+        Each in one line that names its place.
+    rest : int
+        Number of further faults, which are not listed.
+    where : str
+        What has the faults, such as a file.
+    """
+
+    def __init__(self, faults: Iterable[str], *, rest: int = 0, where: str = "") -> None:
+        self.faults, self.rest, self.where = tuple(faults), rest, where
+        super().__init__("; ".join([self.heading, *self.lines]))
+
+    @property
+    def heading(self) -> str:
+        """What has how many faults."""
+        return f"{self.where}: {len(self.faults) + self.rest} faults".removeprefix(": ")
+
+    @property
+    def lines(self) -> list[str]:
+        """Faults, a line each, and the number of further ones."""
+        return [*self.faults, *([f"... and {self.rest} more"] if self.rest else [])]
+
+    def at(self, place: str) -> "SeveralFaults":
+        """Return the same faults with a place before what has them."""
+        return SeveralFaults(self.faults, rest=self.rest, where=f"{place}: {self.where}".removesuffix(": "))
+
+
 class OutsideRange(InvalidInput):
     """A meaningful value outside the range of the requested model."""
 

@@ -218,7 +218,9 @@ def _registry() -> Any:
     """Return the registry of pint, made once."""
     import pint
 
-    return pint.UnitRegistry(cache_folder=None)
+    registry: Any = pint.UnitRegistry(cache_folder=None)
+    registry.define("vickers_hardness = 9.80665e6 pascal = HV")  # kilogram-force per mm2, ISO 6507-1
+    return registry
 
 
 @lru_cache(1024)

@@ -23,10 +23,14 @@ STUDY = {"--over": OVER[1], "--of": "waveform", "--from": "", "--to": "", "--poi
 DRAWN = {"--sample": "lhs", "--seed": "1", "--workers": "1", "--scheduler": "local", "--chunk": "7", "--backend": "gpu"}
 SWEEP = STUDY | DRAWN | {"--set": "contact.normal_load=2N", "--amplitude": "computed"}
 SHEETS = {"--test-sheet": "FOLDER/sheet.toml", "--report": "OUT/page.html"}
+KNOWN = (
+    *("--pin", "aluminium_2024", "--disc", "stainless_steel_316", "--load", "5N", "--speed", "0.2m/s"),
+    *("--frequency", "20kHz", "--friction", "0.4"),
+)
 MAP = ("--over", "sliding.sliding_speed=10mm/s,20mm/s", "--over", "drive.voltage_peak_to_peak=5V,10V")
 
 # Options that say how an answer is computed or kept: the answer stays the same.
-EXECUTION = {"--workers", "--scheduler", "--chunk", "--backend", "--keep"}
+EXECUTION = {"--force", "--workers", "--scheduler", "--chunk", "--backend", "--keep"}
 # Options of the place of files, which every run here gives.
 PLACES = {"--out", "--json", "--help"}
 # A run takes a minute; tests of these commands try them.
@@ -85,6 +89,31 @@ MODES = {
             "--amplitude": "per-volt",
             "--set": "friction.friction_coefficient=0.5",
         },
+    ),
+    "new": Mode(
+        "new",
+        ("OUT/rig.toml", *KNOWN, "--amplitude", "3um"),
+        {
+            "--pin": "m50",
+            "--disc": "m50",
+            "--shape": "ball 5mm",
+            "--load": "6N",
+            "--speed": "0.1m/s",
+            "--frequency": "21kHz",
+            "--amplitude": "2um",
+            "--finish": "N8",
+            "--pin-finish": "N8",
+            "--disc-finish": "N8",
+            "--scan": "FOLDER/plate.asc",
+            "--pin-scan": "FOLDER/plate.asc",
+            "--friction": "0.3",
+        },
+        ("--force",),
+    ),
+    "new with an actuator": Mode(
+        "new",
+        ("OUT/rig.toml", *KNOWN, "--actuator", "sa050510", "--voltage", "40V"),
+        {"--actuator": "sa030318", "--voltage": "50V"},
     ),
     "friction": Mode("friction", (RIG,), VIBRATED | {"--model": "kinematic"}),
     "wear": Mode("wear", (RIG,), VIBRATED),
@@ -493,6 +522,8 @@ def write_inputs(place: Path) -> None:
     x = np.arange(96.0)
     plate = 1e-6 * (np.sin(x / 3)[:, np.newaxis] + np.cos(x / 7) + 0.3 * rng.standard_normal((96, 96)))
     np.save(place / "plate.npy", plate - 1e-9 * (x - 48) ** 2)
+    header = "Channel: Height\nWidth: 96 um\nHeight: 96 um\nValue units: m"
+    np.savetxt(place / "plate.asc", plate, header=header)
     valley = -4e-5 * np.clip(1 - ((x - 48) / 12) ** 2, 0, None) + 1e-7 * rng.standard_normal((96, 96))
     np.save(place / "groove.npy", valley)
     for name, depth in (("ring", 1.0), ("deeper", 2.0)):

@@ -93,3 +93,17 @@ def test_numbers_survive_as_they_were_typed(tmp_path: Path) -> None:
     drive = read_rig(written).drive
     assert drive is not None
     assert drive.frequency == approx(21950.0)
+
+
+def test_a_replaced_finish_is_read_as_a_file_with_the_other_finish(tmp_path: Path) -> None:
+    text = (RIGS / "tribometer.toml").read_text(encoding="utf-8")
+    start, end = text.index("rms_height"), text.index("[contact.pair]")
+    path = tmp_path / "rig.toml"
+    path.write_text(f'{text[:start]}finish = "ground N6"\n\n{text[end:]}', encoding="utf-8")
+    replaced = read_rig(path).replace("contact.roughness.finish", "N8")
+    changed = read_rig(path, changes=["contact.roughness.finish=N8"])
+    assert replaced.contact.roughness == changed.contact.roughness
+    assert dict(replaced.assumptions) == dict(changed.assumptions)
+    assert {key: one.text for key, one in replaced.uncertainty.items()} == {
+        key: one.text for key, one in changed.uncertainty.items()
+    }

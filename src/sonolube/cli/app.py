@@ -1,4 +1,4 @@
-"""Program `sonolube`: its commands from their table, exit codes, and the one line of a refusal."""
+"""Program `sonolube`: its commands from their table, exit codes, and the lines of a refusal."""
 
 import io
 import os
@@ -10,12 +10,13 @@ import typer
 from sonolube import __version__
 from sonolube.cli.commands import COMMANDS, GROUPS, MOVED_COMMANDS, RENAMED_OPTIONS, Command
 from sonolube.cli.console.outputs import with_checked_files
-from sonolube.errors import SonolubeError
+from sonolube.errors import SeveralFaults, SonolubeError
 from sonolube.printable_text import printable
 from sonolube.threads import threads_running
 
 _BAD_INPUT, _INTERRUPTED = 2, 130  # exit codes
 _LONGEST = 1200  # characters of a refusal, which may quote the input
+_LONGEST_FAULT = 300  # characters of one fault among several
 _LONGEST_COMMAND = 60  # characters of a name of a command
 _HELP = (
     "Ultrasonic lubrication: friction and wear of two surfaces of which one vibrates.\n\n"
@@ -77,6 +78,8 @@ def run(arguments: Sequence[str] | None = None) -> None:
         if command in MOVED_COMMANDS:
             raise SonolubeError(MOVED_COMMANDS[command])
         code = program(arguments)(args=arguments, prog_name="sonolube", standalone_mode=False)
+    except SeveralFaults as refusal:
+        code = _refuse(command, refusal.heading, refusal.lines)
     except (SonolubeError, OSError) as refusal:
         code = _refuse(command, str(refusal))
     except typer.TyperException as refusal:
@@ -136,13 +139,18 @@ def _usage_error(command: str, refusal: typer.TyperException) -> str:
     return str(getattr(refusal, "format_message", refusal.__str__)())
 
 
-def _refuse(command: str, reason: str) -> int:
-    """Print a refusal as one line on standard error, and return the exit code of bad input."""
-    text = _shortened(printable(" ".join(reason.replace("Value error, ", "").split())), _LONGEST)
-    if text:
-        named = _shortened(printable(" ".join(command.split())), _LONGEST_COMMAND)
-        typer.echo(f"{f'sonolube {named}'.strip()}: {text}", err=True)
+def _refuse(command: str, reason: str, faults: Sequence[str] = ()) -> int:
+    """Print a refusal as one line on standard error, and its faults one below the other; return the exit code."""
+    if text := _one_line(reason, _LONGEST):
+        named = _one_line(command, _LONGEST_COMMAND)
+        lines = [f"{f'sonolube {named}'.strip()}: {text}", *(f"  {_one_line(each, _LONGEST_FAULT)}" for each in faults)]
+        typer.echo("\n".join(lines), err=True)
     return _BAD_INPUT
+
+
+def _one_line(text: str, longest: int) -> str:
+    """Text as it is shown in one line."""
+    return _shortened(printable(" ".join(text.replace("Value error, ", "").split())), longest)
 
 
 def _shortened(text: str, longest: int) -> str:

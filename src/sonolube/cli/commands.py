@@ -49,6 +49,7 @@ class Command:
 
 
 COMMANDS = (
+    Command(_PREDICT, "new", "predict.new:new"),
     Command(_PREDICT, "predict", "predict.predict:predict"),
     Command(_PREDICT, "contact", "predict.contact:contact"),
     Command(_PREDICT, "friction", "predict.friction:friction"),

@@ -104,6 +104,8 @@ class Rig:
         What the stack drives, where it is known.
     friction_model : FrictionModel
         Model of friction under vibration, with its parameters.
+    pin_material, disc_material : str or None
+        Name in the catalogue of materials, where the rig states it.
     assumptions : mapping of str to str
         Which entries no source gives, and what was assumed instead and why.
     uncertainty : mapping of str to Distribution
@@ -127,6 +129,8 @@ class Rig:
     stack: PiezoStack | None = None
     structure: Structure | None = None
     friction_model: FrictionModel = field(default_factory=lambda: FRICTION_MODELS["asperity_stick_slip"]())
+    pin_material: str | None = None
+    disc_material: str | None = None
     assumptions: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
     uncertainty: Mapping[str, Distribution] = field(default_factory=lambda: MappingProxyType({}))
     _entries: RigEntries | None = field(init=False, default=None, compare=False)

@@ -8,6 +8,7 @@ from sonolube.cli.console.answer import deliver
 from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, RigPath, loaded_rig
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.predict.rig_record import RigRecord
+from sonolube.errors import InvalidInput
 from sonolube.report import Drawing
 from sonolube.rig import temperature_point, thermal_solid
 from sonolube.rig.figures import temperature_figure
@@ -17,8 +18,16 @@ from sonolube.thermal.flash_models import FLASH_MODELS
 
 def thermal(
     rig: RigPath,
-    pin: Annotated[str, typer.Option(metavar="MATERIAL", help="Material of the pin, which the contact stays on.")],
-    disc: Annotated[str, typer.Option(metavar="MATERIAL", help="Material of the disc, which the contact moves over.")],
+    pin: Annotated[
+        str | None,
+        typer.Option(metavar="MATERIAL", help="Material of the pin, which the contact stays on; by default the rig's."),
+    ] = None,
+    disc: Annotated[
+        str | None,
+        typer.Option(
+            metavar="MATERIAL", help="Material of the disc, which the contact moves over; by default the rig's."
+        ),
+    ] = None,
     test_time: Annotated[str, typer.Option("--duration", metavar="TIME", help="Duration of the test.")] = "50s",
     capacity: Annotated[
         str, typer.Option("--heat-capacity", metavar="CAPACITY", help="Heat capacity of the pin.")
@@ -42,8 +51,8 @@ def thermal(
     known = loaded_rig(rig, changes=changes, amplitude=amplitude)
     result = temperature_point(
         known,
-        pin=thermal_solid(pin),
-        disc=thermal_solid(disc),
+        pin=thermal_solid(_material(pin or known.pin_material, "pin")),
+        disc=thermal_solid(_material(disc or known.disc_material, "disc")),
         heat_capacity=plausible_si(capacity, unit="J/K", name="--heat-capacity"),
         thermal_conductance=plausible_si(conductance, unit="W/K", name="--conductance"),
         duration=plausible_si(test_time, unit="s", name="--duration"),
@@ -53,3 +62,10 @@ def thermal(
     drawing = Drawing(draw=lambda: temperature_figure(known, result))
     answer = RigRecord(rig=known, result=result, drawings={f"{rig.stem}-thermal": drawing})
     deliver(answer, folder=out, as_json=json)
+
+
+def _material(name: str | None, role: str) -> str:
+    """Material of a body, given or of the rig."""
+    if name is None:
+        raise InvalidInput(f'--{role}: missing; give it, or contact.softer.role = "pin" or "disc" in the rig file')
+    return name

@@ -8,6 +8,7 @@ from typing import Any
 
 from sonolube.errors import InvalidInput
 from sonolube.files import write_atomically
+from sonolube.rig.file.derived import DERIVED_SUMMITS, REPLACED, ROUGHNESS, TYPICAL
 from sonolube.rig.file.toml_file import prefixed
 from sonolube.rig.record import Rig
 
@@ -56,6 +57,7 @@ def set_entry(content: dict[str, Any], key: str, value: str | float) -> None:
     key : str
         Dotted, such as "drive.frequency".
     value : str or float
+        Where a number follows from it, such as the rms height from a finish, it takes the place of that number.
 
     Raises
     ------
@@ -70,4 +72,18 @@ def set_entry(content: dict[str, Any], key: str, value: str | float) -> None:
         place = place.setdefault(table, {})
         if not isinstance(place, dict):
             raise InvalidInput(f"{key}: {table} is not a table")
+    if key.strip() in REPLACED:
+        _forget(content, place, REPLACED[key.strip()])
     place[name] = value
+
+
+def _forget(content: dict[str, Any], place: dict[str, Any], number: str) -> None:
+    """Remove a number, what else it could follow from, and what was derived with it, from a file."""
+    table = number.rpartition(".")[0]
+    assumptions, uncertainty = content.get("assumptions", {}), content.get("uncertainty", {})
+    derived = [key for key in DERIVED_SUMMITS if str(assumptions.get(key, "")).startswith(TYPICAL)]
+    siblings = [each for each in REPLACED if REPLACED[each] == number]
+    for each in (number, *siblings, *(derived if table == ROUGHNESS else ())):
+        place.pop(each.rpartition(".")[2], None)
+        assumptions.pop(each, None)
+        uncertainty.pop(each, None)

@@ -5,26 +5,24 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+from pydantic import ValidationError
+
 from sonolube.actuator import PiezoStack
 from sonolube.actuator.drive import Drive
 from sonolube.actuator.waveguide import BarWaveguide, normal_amplitude
-from sonolube.contact import ASPERITY_LAWS, HEIGHT_DISTRIBUTIONS, RoughContact
-from sonolube.contact.pair import ContactPair, ElasticBody, contact_pair, identical_materials_mindlin_ratio
 from sonolube.dynamics import Structure
-from sonolube.errors import InvalidInput, MissingProperty
-from sonolube.friction.models import FRICTION_MODELS, FrictionModel
-from sonolube.materials import material
+from sonolube.errors import InvalidInput
 from sonolube.rig.driven_rig import driven_rig
-from sonolube.rig.excitation import waveform_of
+from sonolube.rig.file.contact_section import RoughnessSection
+from sonolube.rig.file.derived import REPLACED, with_derived
 from sonolube.rig.file.entries import FileEntries, set_entry, with_entries
 from sonolube.rig.file.modes_file import read_modes
 from sonolube.rig.file.renamed import refuse_former_names
-from sonolube.rig.file.sections import BodySection, ContactSection, RigFile
+from sonolube.rig.file.sections import RigFile
 from sonolube.rig.file.structures import ModesSection, PinOnDiscSection
 from sonolube.rig.file.toml_file import prefixed, validated
 from sonolube.rig.file.uncertainty import distributions_of
-from sonolube.rig.record import MeasuredUnder, Rig
-from sonolube.surfaces import Roughness
+from sonolube.rig.record import Rig
 from sonolube.toml_text import read_toml, require_plain_content
 
 
@@ -76,8 +74,13 @@ def rig_content(path: str | Path, *, changes: Sequence[str] = ()) -> dict[str, A
     with prefixed(str(path)):
         content = read_toml(path, kind="a rig file")
         _refuse_repeated(changes)
-        for change in changes:
+        stated = [change for change in changes if _key(change) in REPLACED]
+        for change in stated:
             _apply(change, content)
+        content = _with_numbers(content)
+        for change in changes:
+            if change not in stated:
+                _apply(change, content)
         require_plain_content(content)
         return _with_modes(content, path.parent)
 
@@ -108,6 +111,7 @@ def rig_from(content: Mapping[str, Any]) -> Rig:
         In one line that names the key and the value.
     """
     refuse_former_names(content)
+    content = with_derived(content, validated(RigFile, content))
     file = validated(RigFile, content)
     _require_known_assumptions(file, content)
     return with_entries(_rig(file), FileEntries(content, rig_from))
@@ -155,8 +159,20 @@ def _with_modes(content: dict[str, Any], folder: Path) -> dict[str, Any]:
     return content
 
 
+def _with_numbers(content: dict[str, Any]) -> dict[str, Any]:
+    """Return the content with the numbers that follow from what it states, where it is valid."""
+    try:
+        return with_derived(content, RigFile.model_validate(content))
+    except ValidationError:
+        return content  # its reader says what is wrong
+
+
+def _key(change: str) -> str:
+    return change.partition("=")[0].strip()
+
+
 def _refuse_repeated(changes: Sequence[str]) -> None:
-    keys = [change.partition("=")[0].strip() for change in changes]
+    keys = [_key(change) for change in changes]
     for place, key in enumerate(keys):
         if key in keys[:place]:
             raise InvalidInput(f"{key} is to be replaced twice, the second time by {changes[place]!r}; give it once")
@@ -180,22 +196,19 @@ def _require_known_assumptions(file: RigFile, content: Mapping[str, Any]) -> Non
 
 
 def _rig(file: RigFile) -> Rig:
-    drive = None
-    if file.drive is not None:
-        with prefixed("drive"):
-            drive = Drive(**file.drive.model_dump())
-            waveform_of(drive)
+    drive = None if file.drive is None else file.drive.drive()
     stack, structure = _stack_and_structure(file)
+    assert isinstance(file.contact.roughness, RoughnessSection)  # a stated one was replaced
     rig = Rig(
         title=file.title,
         source=file.source,
-        contact=_contact(file.contact),
+        contact=file.contact.contact(file.contact.roughness),
         normal_load=file.contact.normal_load,
         friction_coefficient=file.friction.friction_coefficient,
-        friction_model=_friction_model(file),
+        friction_model=file.friction.friction_model(),
         sliding_speed=file.sliding.sliding_speed,
         vibration_amplitude=None if file.vibration is None else file.vibration.vibration_amplitude,
-        measured_under=_measured_under(file),
+        measured_under=None if file.vibration is None else file.vibration.measured_under(),
         amplitude_per_volt=None if file.actuator is None else file.actuator.amplitude_per_volt,
         waveguide_amplitude=_waveguide_amplitude(file, drive),
         amplitude_source=None if file.vibration is None else file.vibration.amplitude_source,
@@ -203,73 +216,20 @@ def _rig(file: RigFile) -> Rig:
         capacitance=file.actuator.capacitance if file.actuator else None,
         stack=stack,
         structure=structure,
+        pin_material=file.contact.material_of("pin"),
+        disc_material=file.contact.material_of("disc"),
         assumptions=MappingProxyType(dict(file.assumptions)),
         uncertainty=distributions_of(file),
     )
     return rig if structure is None else driven_rig(rig)
 
 
-def _friction_model(file: RigFile) -> FrictionModel:
-    with prefixed("friction"):
-        return FRICTION_MODELS[file.friction.model](**file.friction.model_parameters())
-
-
 def _stack_and_structure(file: RigFile) -> tuple[PiezoStack | None, Structure | None]:
     if file.stack is None or file.structure is None:
         return None, None
-    with prefixed("stack"):
-        stack = PiezoStack(**file.stack.model_dump())
+    stack = file.stack.stack()
     with prefixed("structure"):
         return stack, file.structure.structure(stack)
-
-
-def _contact(section: ContactSection) -> RoughContact:
-    with prefixed("contact.roughness"):
-        roughness = Roughness(**section.roughness.model_dump())
-    pair = _pair(section)
-    with prefixed("contact"):
-        return RoughContact(
-            roughness=roughness,
-            pair=pair,
-            nominal_area=section.nominal_area,
-            heights=HEIGHT_DISTRIBUTIONS[section.height_distribution],
-            asperity=ASPERITY_LAWS[section.asperity_law],
-        )
-
-
-def _pair(section: ContactSection) -> ContactPair:
-    if section.pair is not None:
-        with prefixed("contact.pair"):
-            ratio = identical_materials_mindlin_ratio(poisson_ratio=section.pair.poisson_ratio)
-            return ContactPair(**section.pair.model_dump(), mindlin_ratio=ratio)
-    assert section.softer is not None  # the file's own check
-    assert section.harder is not None
-    with prefixed("contact.softer"):
-        softer = _body(section.softer)
-        yield_strength = _property(section.softer, "yield_strength")
-    with prefixed("contact.harder"):
-        harder = _body(section.harder)
-    return contact_pair(softer=softer, harder=harder, yield_strength=yield_strength)
-
-
-def _body(section: BodySection) -> ElasticBody:
-    return ElasticBody(**{name: _property(section, name) for name in ("youngs_modulus", "poisson_ratio")})
-
-
-def _property(section: BodySection, name: str) -> float:
-    given: float | None = getattr(section, name)
-    if given is not None:
-        return given
-    if section.material is None:
-        raise MissingProperty(f"{name}: missing; give it, or name a material")
-    return material(section.material).value(name)
-
-
-def _measured_under(file: RigFile) -> MeasuredUnder | None:
-    if file.vibration is None or file.vibration.vibration_amplitude is None:
-        return None
-    with prefixed("vibration"):
-        return MeasuredUnder(**file.vibration.model_dump(include={"voltage_peak_to_peak", "frequency", "normal_load"}))
 
 
 def _waveguide_amplitude(file: RigFile, drive: Drive | None) -> float | None:

@@ -1,12 +1,22 @@
 """Base of the sections of a rig file: quantities are read from text with a unit, unknown keys are refused."""
 
 from dataclasses import dataclass
-from typing import Any, get_args
+from typing import Any, Self, get_args
 
-from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo, field_validator
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
+    ValidationInfo,
+    field_validator,
+    model_validator,
+)
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
+from sonolube.errors import SonolubeError
+from sonolube.rig.file.guidance import guidance
 from sonolube.rig.file.plausible import require_plausible
 from sonolube.units import to_si, unit_description
 from sonolube.variants import VariantTable
@@ -40,7 +50,20 @@ class Section(BaseModel):
         known = cls.quantity_of(info.field_name or "")
         if known is None or value is None:
             return value
+        if isinstance(value, str) and value.rstrip().endswith("HV") and known.name != "hardness":
+            raise ValueError(f"{value} is a hardness; expected {unit_description(known.unit)}")
         return quantity_in_si(value, unit=known.unit)
+
+    @model_validator(mode="after")
+    def _possible(self) -> Self:
+        try:
+            self.require_possible()
+        except SonolubeError as refusal:
+            raise ValueError(str(refusal)) from None
+        return self
+
+    def require_possible(self) -> None:
+        """Refuse values that are read but that nothing can have, each section its own."""
 
     @classmethod
     def quantity_of(cls, name: str) -> Quantity | None:
@@ -103,9 +126,11 @@ def quantity_in_si(value: object, *, unit: str) -> float:
 
 
 def _schema_of(known: Quantity) -> dict[str, Any]:
+    advice = guidance().get(known.name)
+    described = f"{known.meaning}; {unit_description(known.unit)}"
     return {
         "type": "string" if known.unit else ["number", "string"],
         "title": known.meaning,
-        "description": f"{known.meaning}; {unit_description(known.unit)}",
+        "description": described if advice is None else f"{described}; {advice.text}",
         "x-si-unit": known.unit,
     }

@@ -5,60 +5,17 @@ from typing import TYPE_CHECKING, Annotated, Literal, Self
 
 from pydantic import Field, create_model, field_validator, model_validator
 
-from sonolube.contact import ASPERITY_LAWS, HEIGHT_DISTRIBUTIONS
-from sonolube.friction.models import FRICTION_MODELS
+from sonolube.actuator import PiezoStack
+from sonolube.actuator.drive import Drive
+from sonolube.checks import require_non_negative, require_positive
+from sonolube.errors import InvalidInput
+from sonolube.friction.models import FRICTION_MODELS, FrictionModel
+from sonolube.rig.excitation import waveform_of
+from sonolube.rig.file.contact_section import ContactSection, Text
 from sonolube.rig.file.section import NameIn, Section
 from sonolube.rig.file.structures import StructureSection
-from sonolube.rig.record import AmplitudeSource
+from sonolube.rig.record import AmplitudeSource, MeasuredUnder
 from sonolube.vocabulary import Quantity
-
-Text = Annotated[str, Field(min_length=1, max_length=1000)]
-
-
-class RoughnessSection(Section):
-    """Combined roughness of both surfaces."""
-
-    rms_height: float
-    summit_radius: float
-    summit_density: float
-
-
-class BodySection(Section):
-    """One body: a material of the catalogue, its own properties, or a material with some properties replaced."""
-
-    material: Text | None = None
-    youngs_modulus: float | None = None
-    poisson_ratio: float | None = None
-    yield_strength: float | None = None
-
-
-class PairSection(Section):
-    """Both bodies together, where only their combined properties are known."""
-
-    effective_modulus: float
-    poisson_ratio: float
-    yield_strength: float
-
-
-class ContactSection(Section):
-    """The contact: its load, its bodies and their roughness."""
-
-    normal_load: float
-    nominal_area: float
-    roughness: RoughnessSection
-    softer: BodySection | None = None
-    harder: BodySection | None = None
-    pair: PairSection | None = None
-    height_distribution: Annotated[str, NameIn(HEIGHT_DISTRIBUTIONS)] = "exponential"
-    asperity_law: Annotated[str, NameIn(ASPERITY_LAWS)] = "chang_etsion_bogy"
-
-    @model_validator(mode="after")
-    def _one_description_of_the_bodies(self) -> Self:
-        both_bodies = self.softer is not None and self.harder is not None
-        any_body = self.softer is not None or self.harder is not None
-        if both_bodies == (self.pair is not None) or any_body != both_bodies:
-            raise ValueError("give either both tables contact.softer and contact.harder, or the table contact.pair")
-        return self
 
 
 class FrictionKeys(Section):
@@ -74,21 +31,22 @@ class FrictionKeys(Section):
         ),
     ] = "asperity_stick_slip"
 
-    @model_validator(mode="after")
-    def _parameters_of_the_model(self) -> Self:
+    def require_possible(self) -> None:
+        """Refuse a coefficient that is not positive, and parameters of other models than the one chosen."""
+        require_positive(friction_coefficient=self.friction_coefficient)
         own = {each.name for each in FRICTION_MODELS[self.model].parameters()}
         for key, models in _MODELS_BY_PARAMETER.items():
             if getattr(self, key) is not None and key not in own:
                 others = " and ".join(models) + (" does" if len(models) == 1 else " do")
-                raise ValueError(f"friction.{key}: model {self.model} does not take it; {others}")
+                raise InvalidInput(f"friction.{key}: model {self.model} does not take it; {others}")
         if getattr(self, "in_plane_phase", None) is not None and not getattr(self, "in_plane_fraction", None):
-            raise ValueError("friction.in_plane_phase: needs friction.in_plane_fraction, the size of that motion")
-        return self
+            raise InvalidInput("friction.in_plane_phase: needs friction.in_plane_fraction, the size of that motion")
+        self.friction_model()
 
-    def model_parameters(self) -> dict[str, float]:
-        """Return the parameters of the model that the file gives, in SI."""
+    def friction_model(self) -> FrictionModel:
+        """Return the model with the parameters that the file gives."""
         given = {key: getattr(self, key) for key in _MODELS_BY_PARAMETER}
-        return {key: value for key, value in given.items() if value is not None}
+        return FRICTION_MODELS[self.model](**{key: value for key, value in given.items() if value is not None})
 
 
 def _parameters() -> tuple[dict[str, Quantity], dict[str, list[str]]]:
@@ -124,6 +82,10 @@ class SlidingSection(Section):
 
     sliding_speed: float
 
+    def require_possible(self) -> None:
+        """Refuse a negative speed."""
+        require_non_negative(sliding_speed=self.sliding_speed)
+
 
 class DriveSection(Section):
     """Voltage on the actuator, with its ramp at switch-on."""
@@ -136,12 +98,29 @@ class DriveSection(Section):
     ramp_duration: float = 0.0
     ramp_shape: Literal["linear", "cosine"] = "linear"
 
+    def require_possible(self) -> None:
+        """Refuse voltages, frequencies, ramps and samples that no drive has."""
+        self.drive()
+
+    def drive(self) -> Drive:
+        """Return the drive."""
+        drive = Drive(**self.model_dump())
+        waveform_of(drive)
+        return drive
+
 
 class ActuatorSection(Section):
     """Amplitude and capacitance of an actuator."""
 
     capacitance: float | None = None
     amplitude_per_volt: float | None = None
+
+    def require_possible(self) -> None:
+        """Refuse a capacitance that is not positive and a negative amplitude."""
+        if self.capacitance is not None:
+            require_positive(capacitance=self.capacitance)
+        if self.amplitude_per_volt is not None:
+            require_non_negative(amplitude_per_volt=self.amplitude_per_volt)
 
 
 class StackSection(Section):
@@ -156,6 +135,14 @@ class StackSection(Section):
     highest_voltage: float | None = None
     preload: float | None = None
     coupling_factor: float | None = None
+
+    def require_possible(self) -> None:
+        """Refuse constants that no stack has."""
+        self.stack()
+
+    def stack(self) -> PiezoStack:
+        """Return the stack."""
+        return PiezoStack(**self.model_dump())
 
 
 class WaveguideSection(Section):
@@ -177,12 +164,20 @@ class VibrationSection(Section):
     normal_load: float | None = None
     amplitude_source: AmplitudeSource | None = None
 
-    @model_validator(mode="after")
-    def _conditions_of_a_measurement(self) -> Self:
+    def require_possible(self) -> None:
+        """Refuse a negative amplitude, and conditions of a measurement that is not there or has none."""
         conditions = (self.voltage_peak_to_peak, self.frequency, self.normal_load)
         if self.vibration_amplitude is None and any(value is not None for value in conditions):
-            raise ValueError("drive and load of a measurement need vibration_amplitude")
-        return self
+            raise InvalidInput("drive and load of a measurement need vibration_amplitude")
+        if self.vibration_amplitude is not None:
+            require_non_negative(vibration_amplitude=self.vibration_amplitude)
+        self.measured_under()
+
+    def measured_under(self) -> MeasuredUnder | None:
+        """Return drive and load of the measurement; None where there is none."""
+        if self.vibration_amplitude is None:
+            return None
+        return MeasuredUnder(**self.model_dump(include={"voltage_peak_to_peak", "frequency", "normal_load"}))
 
 
 class RigFile(Section):

@@ -1,16 +1,25 @@
-"""Refusals of the content of a TOML file in one line that names the key."""
+"""Refusals of the content of a TOML file: every fault in one line that names the key."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import cache
 from typing import Any, TypeVar
 
 from pydantic import ValidationError
+from pydantic_core import ErrorDetails
 
-from sonolube.errors import InvalidInput, SonolubeError, suggestion
+from sonolube.errors import InvalidInput, SeveralFaults, SonolubeError, suggestion
+from sonolube.rig.file.contact_section import ROUGHNESS_KINDS
+from sonolube.rig.file.guidance import guidance
 from sonolube.rig.file.json_schema import tables_of
 from sonolube.rig.file.section import Section
 from sonolube.rig.file.structures import STRUCTURES
+from sonolube.vocabulary import quantity
 
+TABLE_KINDS = {"structure": STRUCTURES, "roughness": ROUGHNESS_KINDS}
+"""Kinds of tables by key: of those keys that hold one of several kinds."""
+
+_MOST = 20  # faults that are listed
 _Content = TypeVar("_Content", bound=Section)
 
 
@@ -34,6 +43,8 @@ def prefixed(place: str) -> Iterator[None]:
     """
     try:
         yield
+    except SeveralFaults as refusal:
+        raise refusal.at(place) from None
     except SonolubeError as refusal:
         raise InvalidInput(f"{place}: {refusal}") from None
 
@@ -55,43 +66,95 @@ def validated(file: type[_Content], content: Mapping[str, Any]) -> _Content:
     Raises
     ------
     InvalidInput
-        In one line that names the key and the value.
+        In one line that names the key and the value; a `SeveralFaults` with a line each where several are wrong.
     """
     try:
         return file.model_validate(content)
     except ValidationError as refusal:
-        complaints = refusal.errors(include_url=False, include_context=False)
-    # a misspelt key explains the one that is missing
-    first = min(complaints, key=lambda complaint: complaint["type"] != "extra_forbidden")
-    rest = f" (and {len(complaints) - 1} more)" if len(complaints) > 1 else ""
-    reason = _reason(file, first["type"], first["loc"], first["msg"])
-    raise InvalidInput(f"{_dotted(first['loc'])}: {reason}{rest}".removeprefix(": "))
+        found = _complaints(file, refusal, content)
+    faults = [_fault(file, each) for each in found[:_MOST]]
+    raise InvalidInput(faults[0]) if len(found) == 1 else SeveralFaults(faults, rest=len(found) - len(faults))
 
 
-def _dotted(place: Sequence[str | int]) -> str:
-    """Return the dotted key of a place in the file, without the kind that chose among tables."""
-    parts = [str(part) for part in place]
-    if parts[:1] == ["structure"] and len(parts) > 1 and parts[1] in STRUCTURES:
-        del parts[1]
-    return ".".join(parts)
+def _complaints(file: type[Section], refusal: ValidationError, content: Mapping[str, Any]) -> list[ErrorDetails]:
+    """Return what is wrong, misspelt keys first; the keys of a missing table stand in its place.
+
+    A key that an unknown one of its table is like is misspelt and not missing.
+    """
+    complaints = _details(refusal)
+    while tables := [each["loc"] for each in complaints if each["type"] == "missing" and _keys(file, each["loc"])]:
+        for place in tables:
+            content = _with_table(content, _without_tags(place))
+        try:
+            file.model_validate(content)
+            break  # of these tables no key is required
+        except ValidationError as deeper:
+            complaints = _details(deeper)
+    unknown = [each for each in complaints if each["type"] == "extra_forbidden"]
+    meant = {(*each["loc"][:-1], _meant(file, each["loc"])) for each in unknown[:_MOST]}
+    return unknown + [each for each in complaints if _is_other(each, meant)]
 
 
-def _reason(file: type[Section], kind: str, place: Sequence[str | int], message: str) -> str:
-    if kind == "extra_forbidden":
-        *tables, key = place
-        close = suggestion(str(key), _known_keys(file, tables))
-        return f"unknown key; {close}".removesuffix("; ")
-    return "missing" if kind == "missing" else message.removeprefix("Value error, ").strip()
+def _details(refusal: ValidationError) -> list[ErrorDetails]:
+    return refusal.errors(include_url=False, include_context=False)
 
 
-def _known_keys(file: type[Section], tables: Sequence[str | int]) -> list[str]:
+def _is_other(complaint: ErrorDetails, meant: Collection[tuple[str | int, ...]]) -> bool:
+    """Return whether a complaint is neither of an unknown key nor of a missing one that was misspelt."""
+    kind = complaint["type"]
+    return kind != "extra_forbidden" and not (kind == "missing" and complaint["loc"] in meant)
+
+
+def _with_table(content: Mapping[str, Any], place: Sequence[str | int]) -> dict[str, Any]:
+    """Return the content with an empty table at a place that has none."""
+    key, *rest = place
+    inner = content.get(str(key), {})
+    return {**content, str(key): _with_table(inner, rest) if rest else inner}
+
+
+def _without_tags(place: Sequence[str | int]) -> list[str | int]:
+    """Return a place in the file without the kinds that chose among tables."""
+    return [part for at, part in enumerate(place) if not (at and part in TABLE_KINDS.get(str(place[at - 1]), ()))]
+
+
+def _fault(file: type[Section], complaint: ErrorDetails) -> str:
+    """Return a complaint in one line: the dotted key and what is wrong with it."""
+    place = complaint["loc"]
+    reason = str(complaint["msg"]).removeprefix("Value error, ").strip()
+    if complaint["type"] == "extra_forbidden":
+        reason = f"unknown key; {suggestion(str(place[-1]), _keys(file, place[:-1]))}".removesuffix("; ")
+    elif complaint["type"] == "missing":
+        reason = _missing(str(place[-1]))
+    return f"{'.'.join(map(str, _without_tags(place)))}: {reason}".removeprefix(": ")
+
+
+def _missing(key: str) -> str:
+    """Return what a missing key means and how to obtain it, where that is known."""
+    if key not in guidance():
+        return "missing"
+    meaning = quantity(key).meaning
+    is_named = "'" in meaning.split()[0]  # such as Young's modulus
+    return f"missing: {meaning if is_named else meaning[0].lower() + meaning[1:]}; {guidance()[key].text}"
+
+
+def _meant(file: type[Section], place: Sequence[str | int]) -> str:
+    """Return the known key of a table that an unknown one is like; empty where none is."""
+    return suggestion(str(place[-1]), _keys(file, place[:-1])).removeprefix("did you mean ").removesuffix("?")
+
+
+def _keys(file: type[Section], tables: Sequence[str | int]) -> list[str]:
     """Return the keys of a table; the kind of a structure, and the place in a list, follow its table's name."""
-    schema = file.model_json_schema()
+    schema = _schema(file)
     places = [schema]
     for name in tables:
         if name in STRUCTURES:
             places = [place for place in places if place["properties"]["kind"]["const"] == name]
-        elif isinstance(name, str):
+        elif isinstance(name, str) and name not in ROUGHNESS_KINDS:
             entries = [place.get("properties", {}).get(name, {}) for place in places]
             places = [schema["$defs"][known] for entry in entries for known in tables_of(entry)]
     return [key for place in places for key in place.get("properties", {})]
+
+
+@cache
+def _schema(file: type[Section]) -> dict[str, Any]:
+    return file.model_json_schema()

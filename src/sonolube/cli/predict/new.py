@@ -1,0 +1,252 @@
+"""Command `new`: a first rig file from what is known before a test, by options or questions on a terminal."""
+
+import tomllib
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from shlex import quote
+from typing import Annotated, Any, TypeVar
+
+import typer
+
+from sonolube.actuator import catalogue_actuator
+from sonolube.cli.console.answer import Answer, deliver, grid
+from sonolube.cli.console.options import Json
+from sonolube.cli.console.outputs import OutputFile
+from sonolube.cli.console.questions import Question, ask, is_terminal
+from sonolube.errors import InvalidInput, MissingProperty
+from sonolube.materials import dry_friction, material
+from sonolube.rig import Rig, rig_from
+from sonolube.rig.file.plausible import plausible_si
+from sonolube.rig.new_rig.known_surface import KnownSurface, finished_surface, scanned_surface
+from sonolube.rig.new_rig.pin_and_vibration import (
+    DrivenActuator,
+    FlatPin,
+    PinShape,
+    RoundPin,
+    StatedAmplitude,
+    Vibration,
+)
+from sonolube.rig.new_rig.rig_text import KnownRig, LeastKnown, least_known, new_rig_text
+
+Value = TypeVar("Value")
+
+_PIN = Question(option="--pin", text="Material of the pin, such as aluminium_2024", default="stainless_steel_304")
+_DISC = Question(option="--disc", text="Material of the disc, such as m50", default="stainless_steel_304")
+_SHAPE = Question(
+    option="--shape",
+    text="End of the pin: flat with its diameter or ball with its radius, such as 'ball 5mm'",
+    default="flat 3mm",
+)
+_LOAD = Question(option="--load", text="Normal load, such as 5N", default="5N")
+_SPEED = Question(option="--speed", text="Sliding speed, such as 0.2m/s", default="0.1m/s")
+_FREQUENCY = Question(option="--frequency", text="Frequency of the vibration, such as 22kHz", default="20kHz")
+_AMPLITUDE = Question(
+    option="--amplitude",
+    text="Vibration amplitude, zero to peak, such as 3um; or an actuator and its voltage, such as 'sa050510 50V'",
+    default="1um",
+)
+_PIN_FINISH = Question(
+    option="--pin-finish",
+    text="Finish of the pin, such as turned, N7 or 'ground N6', or the file of a scan",
+    default="ground",
+)
+_DISC_FINISH = Question(
+    option="--disc-finish",
+    text="Finish of the disc, such as turned, N7 or 'ground N6', or the file of a scan",
+    default="ground",
+)
+
+_FRICTION = Question(
+    option="--friction", text="Coefficient of friction without vibration, of which nothing is known here", default="0.4"
+)
+
+
+def new(
+    out: Annotated[Path, typer.Argument(metavar="[OUT.toml]", help="File to write."), OutputFile()] = Path("rig.toml"),
+    pin: Annotated[str | None, typer.Option(metavar="MATERIAL", help="Material of the pin.")] = None,
+    disc: Annotated[str | None, typer.Option(metavar="MATERIAL", help="Material of the disc.")] = None,
+    shape: Annotated[
+        str | None,
+        typer.Option(metavar="SHAPE", help="End of the pin: 'flat DIAMETER' or 'ball RADIUS'; 'flat 3mm' by default."),
+    ] = None,
+    load: Annotated[str | None, typer.Option(metavar="FORCE", help="Normal load.")] = None,
+    speed: Annotated[str | None, typer.Option(metavar="SPEED", help="Sliding speed.")] = None,
+    at: Annotated[
+        str | None, typer.Option("--frequency", metavar="FREQUENCY", help="Frequency of the vibration.")
+    ] = None,
+    amplitude: Annotated[
+        str | None, typer.Option(metavar="LENGTH", help="Vibration amplitude normal to the contact, zero to peak.")
+    ] = None,
+    actuator: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Actuator of `sonolube actuators`, in place of the amplitude.")
+    ] = None,
+    voltage: Annotated[
+        str | None, typer.Option(metavar="VOLTAGE", help="Voltage of the actuator, peak to peak.")
+    ] = None,
+    finish: Annotated[
+        str | None,
+        typer.Option(metavar="FINISH", help="Finish of pin and disc, such as 'ground N6'; 'ground' by default."),
+    ] = None,
+    pin_finish: Annotated[str | None, typer.Option(metavar="FINISH", help="Finish of the pin.")] = None,
+    disc_finish: Annotated[str | None, typer.Option(metavar="FINISH", help="Finish of the disc.")] = None,
+    scan: Annotated[Path | None, typer.Option(metavar="FILE", help="Scan of the disc, in place of its finish.")] = None,
+    pin_scan: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Scan of the pin, in place of its finish.")
+    ] = None,
+    friction: Annotated[
+        str | None,
+        typer.Option(metavar="NUMBER", help="Coefficient of dry friction, where it was measured; else by the pair."),
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace the file where it exists.")] = False,
+    json: Json = False,
+) -> None:
+    """A first rig file from what is known before a test: asks on a terminal for what the options leave out.
+
+    Example: sonolube new rig.toml --pin m50 --disc m50 --load 5N --speed 0.2m/s --frequency 20kHz --amplitude 3um
+    """
+    if out.exists() and not force:
+        raise InvalidInput(f"{out}: exists; name another file, or give --force to replace it")
+    _refuse_two({"--pin-finish": pin_finish, "--pin-scan": pin_scan})
+    _refuse_two({"--disc-finish": disc_finish, "--scan": scan})
+    driven = _driven(amplitude, actuator, voltage)
+    given = {_PIN: pin, _DISC: disc, _LOAD: load, _SPEED: speed, _FREQUENCY: at, _AMPLITUDE: driven}
+    asks = _asks(given)
+    materials = _value(_PIN, pin, _material, asks=asks), _value(_DISC, disc, _material, asks=asks)
+    known = KnownRig(
+        pin=materials[0],
+        disc=materials[1],
+        shape=_value(_SHAPE, shape, _shape, asks=asks),
+        normal_load=_value(_LOAD, load, _quantity("N", "--load"), asks=asks),
+        sliding_speed=_value(_SPEED, speed, _quantity("m/s", "--speed"), asks=asks),
+        frequency=_value(_FREQUENCY, at, _quantity("Hz", "--frequency"), asks=asks),
+        vibration=_value(_AMPLITUDE, driven, _vibration, asks=asks),
+        pin_surface=_value(_PIN_FINISH, _text(pin_scan) or pin_finish or finish, _surface, asks=asks),
+        disc_surface=_value(_DISC_FINISH, _text(scan) or disc_finish or finish, _surface, asks=asks),
+        friction_coefficient=_friction_coefficient(friction, pin=materials[0], disc=materials[1]),
+    )
+    text = new_rig_text(known)
+    rig = rig_from(tomllib.loads(text))
+    answer = NewRigAnswer(rig=rig, text=text, least_known=least_known(rig), path=out)
+    deliver(answer, folder=out.parent, as_json=json)
+
+
+@dataclass(frozen=True, kw_only=True)
+class NewRigAnswer(Answer):
+    """New rig file with what it assumes, the inputs known least, and the next command."""
+
+    rig: Rig
+    text: str
+    least_known: Sequence[LeastKnown]
+    path: Path
+
+    def lines(self) -> list[str]:
+        """Title, the inputs known least with how to measure them, and the next command."""
+        rows = [[f"  {one.key}", one.text, one.remedy] for one in self.least_known]
+        return [
+            self.rig.title,
+            *grid([["  least known", "distribution", "to measure it"], *rows]),
+            f"  next: sonolube predict {quote(str(self.path))}",
+        ]
+
+    def object(self) -> dict[str, Any]:
+        """Title, text of the file and the inputs known least."""
+        return {
+            "rig": self.rig.title,
+            "text": self.text,
+            "uncertainty": {key: law.text for key, law in self.rig.uncertainty.items()},
+            "least_known": {one.key: one.remedy for one in self.least_known},
+        }
+
+    def files(self) -> Mapping[str, str]:
+        """Rig file."""
+        return {self.path.name: self.text}
+
+
+def _asks(given: Mapping[Question, str | None]) -> bool:
+    """Whether to ask for what the options leave out; refuse missing ones where nobody can be asked."""
+    missing = [question.option for question, text in given.items() if text is None]
+    if missing and not is_terminal():
+        raise InvalidInput(f"missing {', '.join(missing)}; give them, or answer the questions on a terminal")
+    return bool(missing)
+
+
+def _refuse_two(given: Mapping[str, object]) -> None:
+    """Refuse two options for one thing."""
+    both = [option for option, value in given.items() if value is not None]
+    if len(both) > 1:
+        raise InvalidInput(f"give either {' or '.join(both)}, got both")
+
+
+def _value(question: Question, text: str | None, read: Callable[[str], Value], *, asks: bool) -> Value:
+    """Value of an option, or of the answer to its question; of its default where nothing is asked."""
+    if text is not None:
+        return read(text)
+    return ask(question, read) if asks else read(question.default)
+
+
+def _driven(amplitude: str | None, actuator: str | None, voltage: str | None) -> str | None:
+    """What vibrates the contact as one text, from the options for it."""
+    _refuse_two({"--amplitude": amplitude, "--actuator": actuator})
+    if (actuator is None) != (voltage is None):
+        raise InvalidInput("--actuator and --voltage belong together: give both or neither")
+    return amplitude if actuator is None else f"{actuator} {voltage}"
+
+
+def _material(text: str) -> str:
+    """Name of a material of the catalogue."""
+    return material(text).name
+
+
+def _quantity(unit: str, option: str) -> Callable[[str], float]:
+    """Reader of a positive quantity."""
+
+    def read(text: str) -> float:
+        value = plausible_si(text, unit=unit, name=option)
+        if not value > 0:
+            raise InvalidInput(f"{option} {text} must be positive")
+        return value
+
+    return read
+
+
+def _friction_coefficient(text: str | None, *, pin: str, disc: str) -> float | None:
+    """Coefficient of dry friction that is given, or asked for where none is known of the pair; else None."""
+    read = _quantity("", "--friction")
+    if text is not None:
+        return read(text)
+    try:
+        dry_friction(pin, disc)
+    except MissingProperty as refusal:
+        if is_terminal():
+            return ask(_FRICTION, read)
+        reason = str(refusal).partition(":")[0]
+        raise InvalidInput(f"{reason}; measure it without vibration, and give --friction") from None
+    return None
+
+
+def _shape(text: str) -> PinShape:
+    """Shape of the pin, such as flat 3mm."""
+    kind, _, size = text.strip().partition(" ")
+    if kind not in ("flat", "ball") or not size:
+        raise InvalidInput(f"--shape {text!r} must be 'flat' with its diameter or 'ball' with its radius")
+    length = _quantity("m", "--shape")(size)
+    return FlatPin(diameter=length) if kind == "flat" else RoundPin(tip_radius=length)
+
+
+def _vibration(text: str) -> Vibration:
+    """Amplitude such as 3um, or an actuator with its voltage such as sa050510 50V."""
+    if text[:1].isalpha():
+        name, _, voltage = text.partition(" ")
+        volts = _quantity("V", "--voltage")(voltage)
+        return DrivenActuator(actuator=catalogue_actuator(name), voltage_peak_to_peak=volts)
+    return StatedAmplitude(vibration_amplitude=_quantity("m", "--amplitude")(text))
+
+
+def _surface(text: str) -> KnownSurface:
+    """Surface by the file of a scan, or by its finish."""
+    return scanned_surface(text) if Path(text).suffix else finished_surface(text)
+
+
+def _text(path: Path | None) -> str | None:
+    return None if path is None else str(path)

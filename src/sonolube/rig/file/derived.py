@@ -1,0 +1,121 @@
+"""Entries of a rig file in place of what it states instead: rms height of Ra, Rz or finish, strength of hardness."""
+
+from collections.abc import Mapping
+from math import exp
+from typing import Any, Final
+
+from sonolube.errors import InvalidInput
+from sonolube.materials import yield_strength_from_hardness
+from sonolube.rig.file.contact_section import STATED_HEIGHTS, BodySection, StatedRoughnessSection
+from sonolube.rig.file.sections import RigFile
+from sonolube.rig.file.stated_surface import (
+    StatedHeight,
+    deviation_of_range,
+    height_from_maximum_height,
+    height_from_roughness_average,
+    height_of_finish,
+)
+from sonolube.surfaces import typical_summits
+
+ROUGHNESS: Final = "contact.roughness"
+"""Table of the roughness."""
+
+TYPICAL: Final = "typical of the height"
+"""Beginning of the assumption about summits that the file does not give."""
+
+_BODIES: Final = ("softer", "harder")
+
+REPLACED: Final[Mapping[str, str]] = {
+    **{f"{ROUGHNESS}.{name}": f"{ROUGHNESS}.rms_height" for name in STATED_HEIGHTS},
+    **{f"contact.{body}.hardness": f"contact.{body}.yield_strength" for body in _BODIES},
+}
+"""Keys of what a file may state instead of a number, each with the key of the number."""
+
+DERIVED_SUMMITS: Final = (f"{ROUGHNESS}.summit_radius", f"{ROUGHNESS}.summit_density")
+"""Keys that follow from the height where the file does not give them."""
+
+
+def with_derived(content: Mapping[str, Any], file: RigFile) -> dict[str, Any]:
+    """Return the content of a rig file with the numbers that follow from what it states.
+
+    Parameters
+    ----------
+    content : mapping
+        The file as TOML gives it.
+    file : RigFile
+        The same, validated.
+
+    Returns
+    -------
+    dict
+        Each derived number has an assumption with the relation and a distribution with its spread, unless the file
+        gives one; content that states all numbers is returned as it is.
+
+    Raises
+    ------
+    InvalidInput
+        If the file gives a distribution of what a number follows from.
+    """
+    section = file.contact
+    contact = dict(content["contact"])
+    reasons: dict[str, str] = {}
+    laws: dict[str, str] = {}
+    if isinstance(section.roughness, StatedRoughnessSection):
+        contact["roughness"], more_reasons, more_laws = _roughness(section.roughness)
+        reasons, laws = {**reasons, **more_reasons}, {**laws, **more_laws}
+    for name in _BODIES:
+        body: BodySection | None = getattr(section, name)
+        if body is not None and body.hardness is not None:
+            contact[name], more_reasons, more_laws = _body(contact[name], name, body.hardness)
+            reasons, laws = {**reasons, **more_reasons}, {**laws, **more_laws}
+    if not reasons:
+        return dict(content)
+    for key in file.uncertainty:
+        if key in REPLACED:
+            raise InvalidInput(f"uncertainty.{key}: give the distribution of {REPLACED[key]}, which follows from it")
+    own = {REPLACED.get(key, key): text for key, text in file.assumptions.items()}
+    merged = {key: f"{own[key]}; {reason}" if key in own else reason for key, reason in reasons.items()}
+    return {**content, "contact": contact, "assumptions": own | merged, "uncertainty": laws | dict(file.uncertainty)}
+
+
+def _roughness(section: StatedRoughnessSection) -> tuple[dict[str, Any], dict[str, str], dict[str, str]]:
+    """Return the table of the roughness, reasons and distributions of what is derived."""
+    height = _height(section)
+    summits = typical_summits(rms_height=height.rms_height)
+    table: dict[str, Any] = {"rms_height": f"{height.rms_height!r} m"}
+    reasons = {f"{ROUGHNESS}.rms_height": height.reason}
+    laws = {f"{ROUGHNESS}.rms_height": f"lognormal factor {height.factor:.4g}"}
+    for name, unit, factor in (
+        ("summit_radius", "m", summits.radius_factor),
+        ("summit_density", "/m2", summits.density_factor),
+    ):
+        given: float | None = getattr(section, name)
+        table[name] = f"{getattr(summits, name) if given is None else given!r} {unit}"
+        if given is None:
+            reasons[f"{ROUGHNESS}.{name}"] = f"{TYPICAL}; {summits.reason}"
+            laws[f"{ROUGHNESS}.{name}"] = f"lognormal factor {factor**0.5:.4g}"
+    return table, reasons, laws
+
+
+def _height(section: StatedRoughnessSection) -> StatedHeight:
+    if section.roughness_average is not None:
+        return height_from_roughness_average(roughness_average=section.roughness_average)
+    if section.maximum_height is not None:
+        return height_from_maximum_height(maximum_height=section.maximum_height)
+    assert section.finish is not None  # the check of the section
+    return height_of_finish(section.finish)
+
+
+def _body(
+    table: Mapping[str, Any], name: str, hardness: float
+) -> tuple[dict[str, Any], dict[str, str], dict[str, str]]:
+    """Return the table of a body, reason and distribution of its yield strength."""
+    found = yield_strength_from_hardness(hardness=hardness)
+    rest = {key: value for key, value in table.items() if key != "hardness"}
+    key = f"contact.{name}.yield_strength"
+    law = f"lognormal factor {exp(deviation_of_range(found.low, found.high)):.4g}"
+    return (
+        rest | {"yield_strength": f"{found.yield_strength!r} Pa"},
+        {key: f"from the hardness; {found.source}"},
+        {key: law} if name == "softer" else {},  # the strength of the harder body enters no model
+    )

@@ -1,0 +1,147 @@
+"""New rigs from what is known: roughness, contact area, softer body, distributions and the inputs known least."""
+
+import tomllib
+from dataclasses import replace
+from math import exp, hypot, log, pi
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pytest import approx, raises
+
+from sonolube.actuator import catalogue_actuator
+from sonolube.errors import InvalidInput
+from sonolube.materials import material
+from sonolube.rig import Rig, friction_point, rig_from
+from sonolube.rig.new_rig.known_surface import finished_surface, scanned_surface, surfaces_in_contact
+from sonolube.rig.new_rig.pin_and_vibration import DrivenActuator, FlatPin, RoundPin, StatedAmplitude
+from sonolube.rig.new_rig.rig_text import KnownRig, least_known, new_rig_text
+from sonolube.surfaces import typical_summits
+
+GROUND = finished_surface("ground N6")
+KNOWN = KnownRig(
+    pin="aluminium_2024",
+    disc="stainless_steel_316",
+    shape=FlatPin(diameter=2e-3),
+    normal_load=5.0,
+    sliding_speed=0.2,
+    frequency=20e3,
+    vibration=StatedAmplitude(vibration_amplitude=3e-6),
+    pin_surface=GROUND,
+    disc_surface=GROUND,
+    friction_coefficient=0.4,
+)
+
+
+def rig_of(known: KnownRig) -> Rig:
+    return rig_from(tomllib.loads(new_rig_text(known)))
+
+
+def test_a_new_rig_has_load_speed_and_vibration_as_known_and_gives_friction() -> None:
+    rig = rig_of(KNOWN)
+    assert (rig.normal_load, rig.sliding_speed, rig.vibration_amplitude) == approx((5.0, 0.2, 3e-6))
+    assert rig.drive is not None
+    assert rig.drive.frequency == 20e3
+    assert friction_point(rig).vibration_amplitude == approx(3e-6)
+
+
+def test_a_ball_touches_on_the_hertzian_circle_of_its_load() -> None:
+    # a^3 = 3 F R/(4 E*), with 1/E* = (1 - 0.33^2)/73 GPa + (1 - 0.29^2)/200 GPa
+    modulus = 1 / ((1 - 0.33**2) / 73e9 + (1 - 0.29**2) / 200e9)
+    radius = (3 * 5.0 * 5e-3 / (4 * modulus)) ** (1 / 3)
+    rig = rig_of(replace(KNOWN, shape=RoundPin(tip_radius=5e-3)))
+    assert rig.contact.nominal_area == approx(pi * radius**2, rel=1e-3)
+    assert rig_of(KNOWN).contact.nominal_area == approx(pi * 1e-6, rel=1e-3)
+
+
+def test_the_softer_body_is_the_one_of_less_hardness_whichever_is_the_pin() -> None:
+    strength = material("aluminium_2024").value("hardness") / 3
+    for pin, disc in (("aluminium_2024", "stainless_steel_316"), ("stainless_steel_316", "aluminium_2024")):
+        rig = rig_of(replace(KNOWN, pin=pin, disc=disc))
+        assert rig.contact.pair.yield_strength == approx(strength, rel=1e-3)
+        assert (rig.pin_material, rig.disc_material) == (pin, disc)
+
+
+def test_heights_of_both_surfaces_add_as_variances() -> None:
+    smooth, rough = finished_surface("N4"), finished_surface("N8")
+    both = surfaces_in_contact(smooth, rough)
+    heights = smooth.roughness.rms_height, rough.roughness.rms_height
+    assert both.roughness.rms_height == approx(hypot(*heights))
+    assert surfaces_in_contact(rough, smooth).roughness.rms_height == both.roughness.rms_height
+    assert both.height_deviation == approx(rough.height_deviation, rel=0.01)  # the rougher one decides
+
+
+def test_two_equal_finishes_are_known_better_together_by_the_root_of_two() -> None:
+    assert surfaces_in_contact(GROUND, GROUND).height_deviation == approx(GROUND.height_deviation / np.sqrt(2))
+
+
+def test_a_grade_spans_its_range_of_roughness() -> None:
+    # N6: Ra 0.4 um to 0.8 um; Gaussian heights have Rq = sqrt(pi/2) Ra
+    height, factor = GROUND.roughness.rms_height, exp(GROUND.height_deviation)
+    assert height == approx(np.sqrt(pi / 2) * np.sqrt(0.4e-6 * 0.8e-6))
+    assert factor >= 2**0.25  # the range of the grade holds 95 of 100; the relation adds to it
+
+
+def test_a_scan_gives_the_height_of_its_levelled_map(tmp_path: Path) -> None:
+    pytest.importorskip("SurfaceTopography", exc_type=ImportError)
+    rough = 0.5 * np.random.default_rng(1).standard_normal((48, 48))
+    tilted = rough + 0.2 * np.arange(48)  # um
+    header = "Channel: Height\nWidth: 48 um\nHeight: 48 um\nValue units: um"
+    np.savetxt(tmp_path / "disc.asc", tilted, header=header, fmt="%.6f")
+    found = scanned_surface(tmp_path / "disc.asc")
+    assert found.roughness.rms_height == approx(rough.std() * 1e-6, rel=0.01)
+    assert "disc.asc" in found.height_reason
+
+
+def test_a_ratio_that_the_catalogue_lacks_is_assumed_and_said() -> None:
+    rig = rig_of(replace(KNOWN, pin="brass_c38500"))
+    assert "0.33 assumed" in rig.assumptions["contact.softer.poisson_ratio"]
+
+
+def test_what_is_no_metal_has_the_strength_of_its_data_sheet() -> None:
+    rig = rig_of(replace(KNOWN, pin="pet"))  # it has both; Tabor's relation is of metals
+    assert rig.contact.pair.yield_strength == approx(material("pet").value("yield_strength"), rel=1e-3)
+
+
+def test_an_actuator_vibrates_with_half_its_stroke_at_its_voltage() -> None:
+    shown = catalogue_actuator("sa050510")
+    rig = rig_of(replace(KNOWN, vibration=DrivenActuator(actuator=shown, voltage_peak_to_peak=40.0)))
+    expected = shown.stroke / shown.stroke_voltage * 40.0 / 2
+    assert friction_point(rig).vibration_amplitude == approx(expected, rel=1e-3)
+    assert rig.capacitance == approx(shown.free_capacitance, rel=1e-3)
+
+
+def test_an_actuator_beyond_its_voltage_or_its_resonance_is_refused() -> None:
+    shown = catalogue_actuator("sa050510")
+    with raises(InvalidInput, match="voltage_peak_to_peak 4000 V exceeds"):
+        DrivenActuator(actuator=shown, voltage_peak_to_peak=4000.0)
+    driven = DrivenActuator(actuator=shown, voltage_peak_to_peak=40.0)
+    with raises(InvalidInput, match="frequency must lie below 150 kHz, the resonance of sa050510"):
+        new_rig_text(replace(KNOWN, vibration=driven, frequency=200e3))
+
+
+def test_an_amplitude_of_metres_is_refused() -> None:
+    with raises(InvalidInput, match="vibration_amplitude 3 m is beyond any ultrasonic vibration"):
+        StatedAmplitude(vibration_amplitude=3.0)
+
+
+def test_what_nobody_measured_has_a_distribution_and_a_reason() -> None:
+    rig = rig_of(KNOWN)
+    assert set(rig.uncertainty) == {
+        "contact.roughness.rms_height",
+        "contact.roughness.summit_radius",
+        "contact.roughness.summit_density",
+        "contact.softer.yield_strength",
+        "friction.friction_coefficient",
+        "vibration.vibration_amplitude",
+    }
+    assert set(rig.uncertainty) <= set(rig.assumptions)
+
+
+def test_the_inputs_known_least_come_first_and_each_measurement_once() -> None:
+    rig = rig_of(KNOWN)
+    listed = least_known(rig)
+    assert [one.deviation for one in listed] == sorted((one.deviation for one in listed), reverse=True)
+    factor = typical_summits(rms_height=GROUND.roughness.rms_height).radius_factor  # holds 95 of 100
+    assert listed[0].deviation == approx(log(factor) / 2, rel=0.01)
+    assert len({one.remedy for one in listed}) == len(listed) == 3
