@@ -6,6 +6,7 @@ from .rig.record import Rig as Rig
 from .validation.runs_fit import fit_runs as fit_runs
 from .workbench import measure as measure
 from .workbench.figures import plot as plot
+from .workbench.first_rig import new_rig as new_rig
 from .workbench.results import compare as compare, map as map, simulate as simulate, sweep as sweep
 
 __version__: str

@@ -117,6 +117,21 @@ def test_a_comparison_has_the_rigs_ratios_of_the_command_and_its_figure(
     assert {axes.get_title().split("\n")[0] for axes in sl.plot(without).axes} == {"kinematic", "asperity stick slip"}
 
 
+def test_a_new_rig_is_that_of_the_command_and_predicts_with_its_own_materials(
+    capfd: CaptureFixture[str], tmp_path: Path
+) -> None:
+    known: dict[str, Any] = {"pin": "brass", "disc": "304", "load": "5 N", "speed": "0.2 m/s", "frequency": "20 kHz"}
+    options = [text for key, value in known.items() for text in (f"--{key}", value)]
+    path = tmp_path / "rig.toml"
+    answer(capfd, "new", path, *options, "--amplitude", "3um", "--finish", "ground N6")
+    rig = sl.new_rig(**known, amplitude="3 um", finish="ground N6")
+    assert rig.table() == sl.read_rig(path).table()
+    prediction = sl.predict(rig, draws=300)
+    assert "Heat of friction" in prediction.attrs["statement"]
+    with_names = sl.predict(rig, draws=300, pin="brass", disc="304")
+    assert prediction["mean_temperature_rise"].equals(with_names["mean_temperature_rise"])
+
+
 def test_a_fit_of_own_runs_has_its_figure() -> None:
     fitted = sl.fit_runs(sl.read_runs(ROOT / "examples" / "tribometer-runs.csv"), tribometer())
     assert sl.plot(fitted).axes

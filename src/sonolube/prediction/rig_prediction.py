@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from sonolube.checks import Floats
-from sonolube.errors import InvalidInput
+from sonolube.errors import InvalidInput, MissingProperty
 from sonolube.prediction.inputs import Input, RigInputs, rig_inputs
 from sonolube.prediction.own_runs import OwnRuns, own_runs
 from sonolube.prediction.posterior import learned
@@ -46,7 +46,7 @@ def predict(
     runs : xarray.Dataset, optional
         Own measured runs over `run`, as `sonolube.measurement.read_runs` returns them.
     pin, disc : str, optional
-        Materials of the catalogue, for the temperature rise of the contact.
+        Materials of the catalogue, for the temperature rise of the contact; by default those of the rig.
     draws : int
         Equally probable outcomes.
     seed : int
@@ -74,7 +74,8 @@ def predict(
     if own is not None and own.friction is not None:
         inputs = inputs.with_input(own.friction)
     found = _ratios(inputs, own, draws=draws, seed=seed)
-    drawn = _quantities(rig, inputs, own, found.friction_ratio[:, 0], pin, disc, seed)
+    heating = _contact_heating(rig, pin, disc)
+    drawn = _quantities(rig, inputs, own, found.friction_ratio[:, 0], heating, seed)
     amplitudes, speeds = _curve_points(inputs.amplitude.value), _curve_points(inputs.sliding_speed)
     curves = {
         "amplitude": _quantiles(inputs, own, vibration_amplitude=amplitudes),
@@ -102,7 +103,7 @@ def predict(
             "curve_speed": speeds,
             "input": [each.name for each in uncertain],
         },
-        attrs=_attributes(rig, inputs, own, found),
+        attrs=_attributes(rig, inputs, own, found) | {"heat": heating if isinstance(heating, str) else ""},
     )
     for name in drawn:
         entry = quantity(name)
@@ -161,7 +162,7 @@ def _limits(prediction: "xr.Dataset") -> str:
         high = interval(prediction, "mean_temperature_rise")[1]
         parts.append(f"Heat of friction {'limits' if high > _HOT else 'does not limit'}: at most {high:.2g} K (80 %)")
     else:
-        parts.append("Heat is not computed: name the materials of pin and disc")
+        parts.append(f"Heat is not computed: {prediction.attrs['heat']}")
     power = prediction.attrs.get("actuator_power")
     unknown = "power is not known: capacitance or voltage is missing"
     parts.append(unknown if power is None else f"the amplifier supplies {power:.3g} W")
@@ -175,7 +176,7 @@ def _ratios(inputs: RigInputs, own: OwnRuns | None, *, draws: int, seed: int) ->
 
 
 def _quantities(
-    rig: Rig, inputs: RigInputs, own: OwnRuns | None, ratio: Floats, pin: str | None, disc: str | None, seed: int
+    rig: Rig, inputs: RigInputs, own: OwnRuns | None, ratio: Floats, heating: float | str, seed: int
 ) -> dict[str, Floats]:
     """Draws of all quantities that follow from the friction ratio, and of wear."""
     intrinsic = _intrinsic_coefficients(inputs.friction, count=ratio.size, seed=seed)
@@ -189,11 +190,8 @@ def _quantities(
         "wear_rate_ratio": wear,
         "wear_reduction": 1 - wear,
     }
-    if pin is not None and disc is not None:
-        per_watt = _rise_per_watt(rig, pin, disc)
-        found["mean_temperature_rise"] = per_watt * found["friction_force"] * rig.sliding_speed
-    elif pin is not None or disc is not None:
-        raise InvalidInput("the temperature rise needs both materials; give pin and disc, or neither")
+    if not isinstance(heating, str):
+        found["mean_temperature_rise"] = heating * found["friction_force"] * rig.sliding_speed
     return found
 
 
@@ -208,11 +206,23 @@ def _measured(own: OwnRuns) -> dict[str, Floats]:
     }
 
 
-def _rise_per_watt(rig: Rig, pin: str, disc: str) -> float:
-    """Mean temperature rise of the contact, taken as circular, for a watt of friction. [K/W]"""
+def _contact_heating(rig: Rig, pin: str | None, disc: str | None) -> float | str:
+    """Mean temperature rise of the contact, taken as circular, for a watt of friction, in K/W; or why it is unknown."""
+    named = pin is not None or disc is not None
+    pin, disc = pin or rig.pin_material, disc or rig.disc_material
+    if pin is None or disc is None:
+        if named:
+            raise InvalidInput("the temperature rise needs both materials; give pin and disc, or neither")
+        return "name the materials of pin and disc"
+    try:
+        solids = thermal_solid(pin), thermal_solid(disc)
+    except MissingProperty as missing:
+        if named:
+            raise
+        return str(missing)
     radius = float(np.sqrt(rig.contact.nominal_area / np.pi))
     source = EllipticSource(half_length=radius, half_width=radius)
-    rise = contact_rise(thermal_solid(pin), thermal_solid(disc), source, heat_rate=1.0, sliding_speed=rig.sliding_speed)
+    rise = contact_rise(*solids, source, heat_rate=1.0, sliding_speed=rig.sliding_speed)
     return float(rise.mean_temperature_rise)
 
 

@@ -9,7 +9,6 @@ from typing import Annotated, Any, TypeVar
 
 import typer
 
-from sonolube.actuator import catalogue_actuator
 from sonolube.cli.console.answer import Answer, deliver, grid
 from sonolube.cli.console.options import Json
 from sonolube.cli.console.outputs import OutputFile
@@ -17,17 +16,8 @@ from sonolube.cli.console.questions import Question, ask, is_terminal
 from sonolube.errors import InvalidInput, MissingProperty
 from sonolube.materials import dry_friction, material
 from sonolube.rig import Rig, rig_from
-from sonolube.rig.file.plausible import plausible_si
-from sonolube.rig.new_rig.known_surface import KnownSurface, finished_surface, scanned_surface
-from sonolube.rig.new_rig.pin_and_vibration import (
-    DrivenActuator,
-    FlatPin,
-    PinShape,
-    RoundPin,
-    StatedAmplitude,
-    Vibration,
-)
 from sonolube.rig.new_rig.rig_text import KnownRig, LeastKnown, least_known, new_rig_text
+from sonolube.rig.new_rig.stated_text import pin_shape, reader, surface_of, vibration_of
 
 Value = TypeVar("Value")
 
@@ -116,13 +106,13 @@ def new(
     known = KnownRig(
         pin=materials[0],
         disc=materials[1],
-        shape=_value(_SHAPE, shape, _shape, asks=asks),
-        normal_load=_value(_LOAD, load, _quantity("N", "--load"), asks=asks),
-        sliding_speed=_value(_SPEED, speed, _quantity("m/s", "--speed"), asks=asks),
-        frequency=_value(_FREQUENCY, at, _quantity("Hz", "--frequency"), asks=asks),
-        vibration=_value(_AMPLITUDE, driven, _vibration, asks=asks),
-        pin_surface=_value(_PIN_FINISH, _text(pin_scan) or pin_finish or finish, _surface, asks=asks),
-        disc_surface=_value(_DISC_FINISH, _text(scan) or disc_finish or finish, _surface, asks=asks),
+        shape=_value(_SHAPE, shape, pin_shape, asks=asks),
+        normal_load=_value(_LOAD, load, reader("N", name="--load"), asks=asks),
+        sliding_speed=_value(_SPEED, speed, reader("m/s", name="--speed"), asks=asks),
+        frequency=_value(_FREQUENCY, at, reader("Hz", name="--frequency"), asks=asks),
+        vibration=_value(_AMPLITUDE, driven, vibration_of, asks=asks),
+        pin_surface=_value(_PIN_FINISH, _text(pin_scan) or pin_finish or finish, surface_of, asks=asks),
+        disc_surface=_value(_DISC_FINISH, _text(scan) or disc_finish or finish, surface_of, asks=asks),
         friction_coefficient=_friction_coefficient(friction, pin=materials[0], disc=materials[1]),
     )
     text = new_rig_text(known)
@@ -198,21 +188,9 @@ def _material(text: str) -> str:
     return material(text).name
 
 
-def _quantity(unit: str, option: str) -> Callable[[str], float]:
-    """Reader of a positive quantity."""
-
-    def read(text: str) -> float:
-        value = plausible_si(text, unit=unit, name=option)
-        if not value > 0:
-            raise InvalidInput(f"{option} {text} must be positive")
-        return value
-
-    return read
-
-
 def _friction_coefficient(text: str | None, *, pin: str, disc: str) -> float | None:
     """Coefficient of dry friction that is given, or asked for where none is known of the pair; else None."""
-    read = _quantity("", "--friction")
+    read = reader("", name="--friction")
     if text is not None:
         return read(text)
     try:
@@ -223,29 +201,6 @@ def _friction_coefficient(text: str | None, *, pin: str, disc: str) -> float | N
         reason = str(refusal).partition(":")[0]
         raise InvalidInput(f"{reason}; measure it without vibration, and give --friction") from None
     return None
-
-
-def _shape(text: str) -> PinShape:
-    """Shape of the pin, such as flat 3mm."""
-    kind, _, size = text.strip().partition(" ")
-    if kind not in ("flat", "ball") or not size:
-        raise InvalidInput(f"--shape {text!r} must be 'flat' with its diameter or 'ball' with its radius")
-    length = _quantity("m", "--shape")(size)
-    return FlatPin(diameter=length) if kind == "flat" else RoundPin(tip_radius=length)
-
-
-def _vibration(text: str) -> Vibration:
-    """Amplitude such as 3um, or an actuator with its voltage such as sa050510 50V."""
-    if text[:1].isalpha():
-        name, _, voltage = text.partition(" ")
-        volts = _quantity("V", "--voltage")(voltage)
-        return DrivenActuator(actuator=catalogue_actuator(name), voltage_peak_to_peak=volts)
-    return StatedAmplitude(vibration_amplitude=_quantity("m", "--amplitude")(text))
-
-
-def _surface(text: str) -> KnownSurface:
-    """Surface by the file of a scan, or by its finish."""
-    return scanned_surface(text) if Path(text).suffix else finished_surface(text)
 
 
 def _text(path: Path | None) -> str | None:

@@ -35,10 +35,10 @@ def predict(
     rig: RigPath,
     runs: Annotated[Path | None, typer.Option(metavar="RUNS.csv", help=runs_help("Own measured runs"))] = None,
     pin: Annotated[
-        str | None, typer.Option(metavar="MATERIAL", help="Material of the pin, for the temperature rise.")
+        str | None, typer.Option(metavar="MATERIAL", help="Material of the pin, for the heat; by default the rig's.")
     ] = None,
     disc: Annotated[
-        str | None, typer.Option(metavar="MATERIAL", help="Material of the disc, for the temperature rise.")
+        str | None, typer.Option(metavar="MATERIAL", help="Material of the disc, for the heat; by default the rig's.")
     ] = None,
     load: Load = None,
     amplitude: Amplitude = None,

@@ -1,0 +1,70 @@
+"""New rig from what is known before a test, as `sonolube new` writes it."""
+
+import tomllib
+
+from sonolube.materials import material
+from sonolube.rig import Rig, rig_from
+from sonolube.rig.new_rig.rig_text import KnownRig, new_rig_text
+from sonolube.rig.new_rig.stated_text import pin_shape, reader, surface_of, vibration_of
+
+
+def new_rig(
+    *,
+    pin: str,
+    disc: str,
+    load: str,
+    speed: str,
+    frequency: str,
+    amplitude: str,
+    shape: str = "flat 3mm",
+    finish: str = "ground",
+    pin_finish: str | None = None,
+    disc_finish: str | None = None,
+    friction: float | None = None,
+) -> Rig:
+    """Return a rig from what is known before a test; what nobody measured has a distribution with its reason.
+
+    Parameters
+    ----------
+    pin, disc : str
+        Materials of the catalogue, such as "brass" or "304".
+    load, speed, frequency : str
+        With units, such as "5 N", "0.2 m/s" and "20 kHz".
+    amplitude : str
+        Zero to peak, such as "3 um"; or an actuator of the catalogue with its voltage, such as "sa050510 50V".
+    shape : str
+        End of the pin, such as "flat 3mm" by its diameter or "ball 5mm" by its radius.
+    finish : str
+        Of both surfaces, such as "ground N6", or the file of a scan.
+    pin_finish, disc_finish : str, optional
+        Of one surface.
+    friction : float, optional
+        Coefficient of dry friction, where it was measured; else by the pair. []
+
+    Returns
+    -------
+    Rig
+        Whose `to_toml` writes the file.
+
+    Raises
+    ------
+    InvalidInput
+        If a text cannot be read or a value is impossible.
+    MissingProperty
+        If the catalogue lacks a property of a material, or no dry friction is known of the pair.
+    UnknownName
+        If there is no such material, actuator or finish.
+    """
+    known = KnownRig(
+        pin=material(pin).name,
+        disc=material(disc).name,
+        shape=pin_shape(shape, name="shape"),
+        normal_load=reader("N", name="load")(load),
+        sliding_speed=reader("m/s", name="speed")(speed),
+        frequency=reader("Hz", name="frequency")(frequency),
+        vibration=vibration_of(amplitude, name="amplitude"),
+        pin_surface=surface_of(pin_finish or finish),
+        disc_surface=surface_of(disc_finish or finish),
+        friction_coefficient=friction,
+    )
+    return rig_from(tomllib.loads(new_rig_text(known)))
