@@ -8,7 +8,7 @@ from hypothesis import given, strategies as st
 from pytest import approx
 
 from sonolube.errors import InvalidInput
-from sonolube.units import convert, format_si, temperature_difference_to_si, to_si
+from sonolube.units import convert, format_like, format_si, temperature_difference_to_si, to_si
 
 
 @pytest.mark.parametrize(
@@ -103,3 +103,22 @@ def test_a_rise_of_temperature_is_no_temperature() -> None:
 def test_a_share_is_no_angle() -> None:
     with pytest.raises(InvalidInput, match="40 % is a pure number; expected a speed"):
         to_si("40 %", unit="m/s", name="speed")
+
+
+def test_angles_are_written_in_degrees() -> None:
+    assert format_si(math.pi / 2, "rad") == "90 deg"
+    assert format_si(0.65, "rad") == "37.2 deg"
+
+
+def test_a_column_has_the_prefix_of_its_largest_value() -> None:
+    assert format_like([462e-9, 1.39e-6, 924e-9], "m") == ["0.462 um", "1.39 um", "0.924 um"]
+    assert format_like([2e-6, 3e-11, math.nan], "m") == ["2 um", "30 pm", "nan m"]
+    assert format_like([0.2, 12.0, -3.0], "") == ["0.2", "12", "-3"]
+    assert format_like([65.5e-3, 0.2], "m/s") == ["65.5 mm/s", "200 mm/s"]
+    assert format_like([0.0, 5.0], "N") == ["0 N", "5 N"]
+
+
+@given(st.lists(st.floats(1e-9, 1e6), min_size=1, max_size=5), st.sampled_from(["m", "N", "Pa", "m2", "kg", "rad"]))
+def test_values_of_a_column_are_those_of_single_texts(values: list[float], unit: str) -> None:
+    for value, text in zip(values, format_like(values, unit), strict=True):
+        assert to_si(text, unit=unit, name="value") == approx(value, rel=6e-3)

@@ -2,6 +2,7 @@
 
 import math
 import re
+from collections.abc import Sequence
 from decimal import Decimal
 from functools import cache, lru_cache
 from typing import Any
@@ -119,7 +120,7 @@ def unit_description(unit: str) -> str:
 
 
 def format_si(value: float, unit: str, *, digits: int = 3) -> str:
-    """Return an SI value as text with a prefixed unit, such as "2.5 um" for 2.5e-6 m.
+    """Return an SI value as text with a prefixed unit, such as "2.5 um" for 2.5e-6 m; angles in degrees.
 
     Parameters
     ----------
@@ -136,6 +137,8 @@ def format_si(value: float, unit: str, *, digits: int = 3) -> str:
     """
     if unit == "kg" and 0 < abs(value) < 1:
         return format_si(1e3 * value, "g", digits=digits)
+    if unit == "rad":
+        return f"{math.degrees(value):.{digits}g} deg"
     if not unit or value == 0 or not math.isfinite(value):
         return f"{value:.{digits}g} {unit}".rstrip()
     power = {"m2": 2, "m3": 3}.get(unit, 1)
@@ -153,6 +156,36 @@ def format_si(value: float, unit: str, *, digits: int = 3) -> str:
     scaled = float(f"{value / 10.0 ** (3 * power * step):.{digits}g}")
     number = f"{Decimal(repr(scaled)):f}" if 1e-5 <= abs(scaled) < 1e-4 else f"{scaled:.15g}"
     return f"{number} {prefix}{unit}"
+
+
+def format_like(values: Sequence[float], unit: str, *, digits: int = 3) -> list[str]:
+    """Return SI values as text with one prefixed unit for all, that of the largest, as in a column of a table.
+
+    Parameters
+    ----------
+    values : sequence of float
+        Values in SI.
+    unit : str
+        SI unit.
+    digits : int
+        Number of significant digits.
+
+    Returns
+    -------
+    list of str
+        A value below a thousandth of the largest has a prefix of its own.
+    """
+    largest = max((abs(value) for value in values if math.isfinite(value)), default=0.0)
+    if not largest or not unit:
+        return [format_si(value, unit, digits=digits) for value in values]
+    number, prefixed = format_si(largest, unit, digits=15).split(" ", 1)
+    scale = float(number) / largest
+    return [
+        f"{Decimal(repr(float(f'{value * scale:.{digits}g}'))):f} {prefixed}".replace(".0 ", " ")
+        if largest / 1000 <= abs(value) <= largest
+        else format_si(value, unit, digits=digits)
+        for value in values
+    ]
 
 
 def _number_and_unit(text: str) -> tuple[float, str] | None:

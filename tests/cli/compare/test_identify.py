@@ -29,7 +29,10 @@ def once(identification: Identification, monkeypatch: MonkeyPatch) -> None:
 def test_the_file_written_is_a_rig_that_simulates(tmp_path: Path, sonolube: Program, rigs: Path) -> None:
     path = tmp_path / "identified.toml"
     run = sonolube("identify", "rig", rigs / "tribometer.toml", "--out", path)
-    assert (run.code, run.out) == (0, f"  {path}\n")
+    assert run.code == 0
+    assert run.out.splitlines()[-1] == f"  {path}"
+    assert any(line.split()[:3] == ["tip_mass", "109", "g"] for line in run.out.splitlines())
+    assert any(line.startswith("  facts that do not hold: ") for line in run.out.splitlines())
     simulated = sonolube("simulate", path, "--out", tmp_path, "--json").answer
     assert simulated["vibration_amplitude"]["value"] == approx(2.5e-6, rel=0.02)
 

@@ -54,3 +54,13 @@ def test_a_resonance_that_tracking_loses_is_a_caveat(tmp_path: Path, sonolube: P
     options = ("--friction", "1.5N", "--warming", "150K", "--warming-time", "10ms", "--duration", "0.1s", "--json")
     caveats = sonolube("control", rigs / "collar.toml", *options, "--out", tmp_path).answer["caveats"]
     assert sum("lost the resonance" in caveat for caveat in caveats) == 1
+
+
+def test_a_target_may_be_a_coefficient_or_a_force(sonolube: Program, rigs: Path, tmp_path: Path) -> None:
+    targets = [
+        sonolube("control", rigs / "tribometer.toml", "--friction", text, "--out", tmp_path, "--json").answer
+        for text in ("0.2", "0.6N")
+    ]
+    assert targets[0] == targets[1]
+    refused = sonolube("control", rigs / "tribometer.toml", "--friction", "-1N", "--out", tmp_path)
+    assert "--friction -1N must be positive" in refused.refusal

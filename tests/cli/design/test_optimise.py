@@ -40,8 +40,8 @@ def test_a_front_of_tolerant_designs_is_drawn(tmp_path: Path, sonolube: Program,
 @pytest.mark.parametrize(
     ("arguments", "line"),
     [
-        (("--target-friction", "0.9"), "must lie between nought and friction without vibration, 0.341"),
-        (("--target-friction", "2N"), "must lie between nought and friction without vibration, 1.023 N"),
+        (("--target-friction", "0.9"), "must lie below friction without vibration, 0.341"),
+        (("--target-friction", "2N"), "must lie below friction without vibration, 0.341 or 1.02 N"),
         (("--target-friction", "0.1", "--actuator", "sa0505"), "unknown actuator 'sa0505'; did you mean"),
         (("--target-friction", "0.1", "--over", "contact.normal_load=1N:2N"), "choose over drive.frequency"),
         (("--target-friction", "0.1", "--over", "drive.waveform=saw"), "none of sine, square"),

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from sonolube.actuator import PiezoStack
-from sonolube.cli.console.answer import Answer, deliver, si
+from sonolube.cli.console.answer import Answer, deliver, grid, si
 from sonolube.cli.console.options import Json
 from sonolube.cli.console.outputs import OutputFile
 from sonolube.cli.console.progress import progress
@@ -16,6 +16,7 @@ from sonolube.errors import InvalidInput
 from sonolube.identification import Identification, rig_tables
 from sonolube.rig import read_rig, with_tables
 from sonolube.rig.facts_file import identify_from_facts
+from sonolube.units import format_si
 from sonolube.validation.tribometer import tribometer_identification, tribometer_stack
 from sonolube.vocabulary import quantities
 
@@ -65,8 +66,37 @@ class IdentificationAnswer(Answer):
     file_name: str | None
 
     def lines(self) -> list[str]:
-        """The rig file itself where no file is written."""
-        return self.text.splitlines() if self.file_name is None else []
+        """Findings; as comments before the rig file itself where no file is written."""
+        if self.file_name is not None:
+            return self._findings()
+        return [*(f"# {line}".rstrip() for line in self._findings()), *self.text.splitlines()]
+
+    def _findings(self) -> list[str]:
+        """Parameters with their ranges, facts that hold and that do not, conflicts and what the facts leave open."""
+        found = self.identification
+        known = quantities()
+        parameters = [
+            [
+                f"  {name}",
+                *(
+                    format_si(value, known[name].unit if name in known else "")
+                    for value in (estimate.value, estimate.lower, estimate.upper)
+                ),
+            ]
+            for name, estimate in found.estimates.items()
+        ]
+        satisfied = [fact.name for fact in found.facts if fact.name in found.satisfied]
+        missed = [fact.name for fact in found.facts if fact.name not in found.satisfied]
+        return [
+            *grid([["  parameter", "estimate", "lowest", "highest"], *parameters]),
+            f"  facts that hold: {', '.join(satisfied) or 'none'}",
+            *([f"  facts that do not hold: {', '.join(missed)}"] if missed else []),
+            *(f"  contradict each other: {', '.join(sorted(conflict))}" for conflict in found.conflicts),
+            *(
+                "  not determined: " + " ".join(f"{name}^{power:.2g}" for name, power in direction.exponents.items())
+                for direction in found.unidentifiable_directions
+            ),
+        ]
 
     def object(self) -> dict[str, Any]:
         """Stack, parameters with their ranges, facts with their misses, conflicts and free directions."""

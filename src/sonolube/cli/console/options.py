@@ -195,6 +195,35 @@ def loaded_rig(
     return read_rig(path, changes=replaced)
 
 
+def friction_force(text: str, *, normal_load: float, option: str) -> float:
+    """Friction force of an option that takes a coefficient or a force.
+
+    Parameters
+    ----------
+    text : str
+        Such as "0.1" or "0.3N".
+    normal_load : float
+        Force pressing the bodies together. [N]
+    option : str
+        Name of the option, for the error message.
+
+    Returns
+    -------
+    float
+        In N.
+
+    Raises
+    ------
+    InvalidInput
+        If the text is neither a pure number nor a force, or not positive.
+    """
+    is_force = text.strip()[-1:].isalpha()
+    value = to_si(text, unit="N" if is_force else "", name=option) * (1.0 if is_force else normal_load)
+    if not value > 0:
+        raise InvalidInput(f"{option} {text} must be positive, a coefficient such as 0.2 or a force such as 0.6N")
+    return value
+
+
 def optional_rig(
     path: Path | None, *, changes: list[str] | None, amplitude: AmplitudeSource | None = None
 ) -> "Rig | None":

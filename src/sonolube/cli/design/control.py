@@ -20,6 +20,7 @@ from sonolube.cli.console.options import (
     Out,
     RigPath,
     TypedNumber,
+    friction_force,
     loaded_rig,
     refuse_unused,
     si_option,
@@ -67,7 +68,11 @@ def control(
     context: typer.Context,
     rig: RigPath,
     friction: Annotated[
-        float | None, si_option("N", "Target of the friction; half way to the least by default.")
+        str | None,
+        typer.Option(
+            metavar="FRICTION",
+            help="Target, a coefficient or a force, such as 0.2 or 0.6N; half way to the least by default.",
+        ),
     ] = None,
     feed_forward: Annotated[FeedForward, typer.Option(help="Map from friction to voltage.")] = FeedForward.MODEL,
     efficiency: Annotated[
@@ -118,8 +123,11 @@ def control(
     if warming == 0:
         refuse_unused(context, "warming_constant", because="without --warming")
     swing = known.drive.voltage_peak_to_peak if known.drive is not None else None
+    target = None
+    if friction is not None:
+        target = friction_force(friction, normal_load=known.normal_load, option="--friction")
     settings = ControlSettings(
-        friction_force=friction,
+        friction_force=target,
         amplifier=Amplifier(
             voltage_maximum=_value_or(swing or 0.0, voltage_limit),
             current_maximum=_value_or(inf, current_limit),

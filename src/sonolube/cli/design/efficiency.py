@@ -9,7 +9,7 @@ import typer
 import xarray as xr
 
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
-from sonolube.cli.console.options import OUT, Changes, Json, Out, refuse_unused, si_option
+from sonolube.cli.console.options import OUT, Changes, Json, Out, friction_force, refuse_unused, si_option
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.rig_text import rig_settings
 from sonolube.design.efficiency import EfficiencyCalibration, calibrate_efficiency, efficiency_dataset
@@ -33,7 +33,12 @@ def efficiency(
     runs: Annotated[Path, typer.Argument(metavar="RUNS.csv", help="Measured runs, a row each.")],
     rig: Annotated[Path, typer.Option(metavar="RIG.toml", help="The rig, for what the table of runs does not give.")],
     friction: Annotated[
-        float | None, si_option("N", "Target of the friction, for its power.", "--target-friction")
+        str | None,
+        typer.Option(
+            "--target-friction",
+            metavar="FRICTION",
+            help="Target, a coefficient or a force, such as 0.1 or 0.5N, for its power.",
+        ),
     ] = None,
     speed: Annotated[float | None, si_option("m/s", "Sliding speed of that target.")] = None,
     level: Annotated[float, typer.Option(help="Confidence level.", min=0.5, max=0.9999)] = 0.95,
@@ -48,8 +53,11 @@ def efficiency(
     if friction is None:
         refuse_unused(context, "speed", because="without --target-friction, whose power is at this speed")
     known = read_rig(rig, changes=changes or ())
+    target = None
+    if friction is not None:
+        target = friction_force(friction, normal_load=known.normal_load, option="--target-friction")
     calibration = calibrate_efficiency(
-        known, read_runs(runs), friction_force=friction, sliding_speed=speed, confidence_level=level
+        known, read_runs(runs), friction_force=target, sliding_speed=speed, confidence_level=level
     )
     answer = EfficiencyAnswer(calibration=calibration, rig_file=rig, name=f"{runs.stem}-efficiency")
     deliver(answer, folder=out, as_json=json, context=context)

@@ -6,13 +6,14 @@ from pathlib import Path
 from typing import Any
 
 from sonolube.actuator import CatalogueActuator, PreloadBolt, catalogue_actuator, catalogue_names, read_catalogue
+from sonolube.cli.console.options import friction_force
 from sonolube.cli.console.ranges import ends_by_key, values_by_key
 from sonolube.design.optimisation import OWN_ACTUATOR, DesignSpace, HalfWaveHorn
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.materials import material
 from sonolube.rig import Rig, structure_entries
 from sonolube.rig.driven_rig import driven_rig
-from sonolube.units import to_si
+from sonolube.units import format_si, to_si
 
 _WAVEFORMS = ("sine", "square", "triangle", "sawtooth")
 _THREAD = re.compile(r"M(\d+(?:\.\d+)?)x(.+)")
@@ -37,15 +38,12 @@ def friction_ratio(rig: Rig, target: str) -> float:
     InvalidInput
         If the target does not lie between zero and the friction without vibration.
     """
-    is_force = bool(re.search(r"[A-Za-z]\s*$", target.strip()))
-    intrinsic = rig.friction_coefficient * (rig.normal_load if is_force else 1.0)
-    value = to_si(target, unit="N" if is_force else "", name="--target-friction")
-    if not 0 < value < intrinsic:
-        limit = f"{intrinsic:.4g}{' N' if is_force else ''}"
-        raise InvalidInput(
-            f"--target-friction {target} must lie between nought and friction without vibration, {limit}"
-        )
-    return value / intrinsic
+    force = friction_force(target, normal_load=rig.normal_load, option="--target-friction")
+    intrinsic = rig.friction_coefficient * rig.normal_load
+    if not force < intrinsic:
+        limit = f"{rig.friction_coefficient:.4g} or {format_si(intrinsic, 'N')}"
+        raise InvalidInput(f"--target-friction {target} must lie below friction without vibration, {limit}")
+    return force / intrinsic
 
 
 def horn(material_name: str | None, limit: float | None) -> HalfWaveHorn | None:

@@ -15,7 +15,7 @@ from sonolube.protocol import Protocol, protocol_text
 from sonolube.report import Drawing, Page, PageTable
 from sonolube.report.pin_on_disc_sheet import pin_on_disc_checklist
 from sonolube.rig import Rig
-from sonolube.units import format_si
+from sonolube.units import format_like, format_si
 
 _HEADS = (
     "point",
@@ -193,12 +193,12 @@ class PlanAnswer(Answer):
 
     def _conditions(self, point: int) -> list[str]:
         """Load, speed, voltage and amplitude of a candidate."""
-        at = self.plan.candidates
+        at, points = self.plan.candidates, list(self.plan.batch.points)
+        columns = ((at.normal_load, "N"), (at.sliding_speed, "m/s"), (at.voltage_peak_to_peak, "V"))
+        place = points.index(point)
         return [
-            format_si(at.normal_load[point], "N"),
-            format_si(at.sliding_speed[point], "m/s"),
-            _text(at.voltage_peak_to_peak[point], "V"),
-            format_si(at.vibration_amplitude[point], "m"),
+            format_like([float(values[each]) for each in points], unit)[place].replace("nan V", "-")
+            for values, unit in (*columns, (at.vibration_amplitude, "m"))
         ]
 
     def _run_heads(self) -> tuple[str, ...]:

@@ -15,6 +15,7 @@ from sonolube.units import format_si
 from sonolube.vocabulary import quantities
 
 _UNPRINTED = ("status", "amplitude_source")  # the amplitude's origin names the source
+_LEAST_FORCE = 1e-6  # of the load, below which a friction force means nothing
 _LABELS = {"amplitude_origin": "amplitude", "energy_balance": "energy"}
 
 
@@ -44,7 +45,7 @@ class RigRecord(Answer):
         """Load, quantities with the meaning and unit of the vocabulary, and text but for the status."""
         known, values = quantities(), result_quantities(self.result)
         rows = [
-            (known[name].meaning, "none" if value is None else format_si(value, known[name].unit))
+            (known[name].meaning, self._text(value, known[name].unit))
             for name, value in values.items()
             if not name.startswith("raw_")  # for JSON, as is what it is
         ]
@@ -73,3 +74,10 @@ class RigRecord(Answer):
     def files(self) -> Mapping[str, xr.Dataset]:
         """Datasets of the record."""
         return self.datasets
+
+    def _text(self, value: float | None, unit: str) -> str:
+        """Quantity as text; a force that is nothing beside the load is said to be so."""
+        least = _LEAST_FORCE * self.rig.normal_load
+        if unit == "N" and value is not None and 0 < abs(value) < least:
+            return f"below {format_si(least, unit)}"
+        return "none" if value is None else format_si(value, unit)

@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, ParamSpec
 
 from sonolube.errors import InvalidInput
-from sonolube.units import format_si
+from sonolube.units import format_like, format_si
 from sonolube.vocabulary import quantities
 
 if TYPE_CHECKING:
@@ -91,11 +91,14 @@ class Column:
     label: str
     unit: str = ""
 
-    def text(self, cell: Cell) -> str:
-        """Cell as text with its unit; empty for None."""
-        if cell is None or (isinstance(cell, float) and not math.isfinite(cell)):
-            return ""
-        return cell if isinstance(cell, str) else format_si(cell, self.unit, digits=4)
+    def texts(self, cells: Sequence[Cell]) -> list[str]:
+        """Cells as text with the unit and one prefix; empty for None and what is not finite."""
+        numbers = [cell for cell in cells if isinstance(cell, float | int) and math.isfinite(cell)]
+        formatted = iter(format_like(numbers, self.unit, digits=4))
+        return [
+            cell if isinstance(cell, str) else "" if cell is None or not math.isfinite(cell) else next(formatted)
+            for cell in cells
+        ]
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,12 +112,16 @@ class Table:
 
     def lines(self) -> list[str]:
         """Return the table as lines of text, columns aligned to the right."""
-        cells = [[column.label for column in self.columns]]
-        cells += [[column.text(cell) for column, cell in zip(self.columns, row, strict=True)] for row in self.rows]
+        cells = [[column.label for column in self.columns], *self.texts()]
         widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
         return [
             "    " + "  ".join(f"{cell:>{width}}" for cell, width in zip(row, widths, strict=True)) for row in cells
         ]
+
+    def texts(self) -> list[list[str]]:
+        """Return the rows as text, the quantities of a column with one prefix."""
+        columns = [column.texts([row[place] for row in self.rows]) for place, column in enumerate(self.columns)]
+        return [list(row) for row in zip(*columns, strict=True)]
 
     def by_column(self) -> "Iterator[tuple[Column, list[float] | list[str]]]":
         """Yield each column with its cells: numbers, NaN where there is none, or text."""
