@@ -5,11 +5,12 @@ from functools import cache
 from typing import Any, Literal, get_args
 
 from sonolube.errors import GpuUnused, InvalidInput
+from sonolube.extras import EXTRAS
 
 Backend = Literal["cpu", "gpu"]
 """Processor of a batch: the CPU alone, or an NVIDIA GPU with the CPU for the points that it does not solve."""
 
-_INSTALL = "pip install 'sonolube[gpu]'"
+_INSTALL = EXTRAS["gpu"].command
 
 
 def usable_backend(backend: Backend) -> Backend:
