@@ -61,6 +61,16 @@ def device_name(backend: Backend) -> str:
     return _gpu()[0] if backend == "gpu" else ""
 
 
+def gpu_obstacle() -> str:
+    """Return the reason why no GPU can be used, with its remedy; an empty text where one can.
+
+    Returns
+    -------
+    str
+    """
+    return _gpu()[1]
+
+
 @cache
 def _gpu() -> tuple[str, str]:
     """Return the name of the GPU and an empty text, or an empty text and the reason why no GPU can be used."""
