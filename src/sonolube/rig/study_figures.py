@@ -59,7 +59,7 @@ def speed_figure(study: "xr.Dataset") -> "Figure":
 
 def frequency_figure(study: "xr.Dataset") -> "Figure":
     """Return amplitude and friction ratio over frequency, and friction ratio over the power of the amplifier."""
-    figure, ((amplitude, ratio, power),) = _panels(1, 3, size=(10.2, 3.5))
+    figure, ((amplitude, ratio, power),) = _panels(1, 3, size=(6.85, 2.7))
     tips = []
     for index, curve in enumerate(_curves(study)):
         style = _style(index)
@@ -75,7 +75,7 @@ def frequency_figure(study: "xr.Dataset") -> "Figure":
         power.legend(loc="lower left")
     amplitude.set(xscale="log", yscale="log", xlabel="Drive frequency [kHz]", ylabel="Vibration amplitude [µm]")
     ratio.set(xscale="log", xlabel="Drive frequency [kHz]", ylabel=_RATIO)
-    power.set(xscale="log", xlabel="Power of the amplifier, D 1.9 [W]", ylabel=_RATIO)
+    power.set(xscale="log", xlabel="Power of the\namplifier, D 1.9 [W]", ylabel=_RATIO)
     ratio.set_ylim(bottom=0)
     power.set_ylim(bottom=0)
     amplitude.legend(loc="upper left", title="peak to peak", title_fontsize=8)

@@ -9,7 +9,7 @@ import xarray as xr
 
 from sonolube.design import map_figure, sweep_figure
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.figure import publication_style
+from sonolube.figure import fit_to_style, publication_style
 from sonolube.prediction.figures import prediction_figure
 from sonolube.report.measured.sheet import Sheet
 from sonolube.rig.figures import simulation_figure
@@ -23,7 +23,7 @@ FIGURES: Mapping[str, Callable[[xr.Dataset], "Figure"]] = MappingProxyType(
 """Functions that draw a result, by its attribute `result`."""
 
 
-def plot(result: xr.Dataset | Sheet, *, title: str | None = None) -> "Figure":
+def plot(result: xr.Dataset | Sheet, *, title: str | None = None, style: str | None = None) -> "Figure":
     """Return the figure of a result.
 
     Parameters
@@ -32,6 +32,8 @@ def plot(result: xr.Dataset | Sheet, *, title: str | None = None) -> "Figure":
         Of `simulate`, `predict`, `sweep` or `map`, also read again from its netCDF file; or of a function of `measure`.
     title : str, optional
         Of which figure, for a sheet, which has several; the first by default.
+    style : str, optional
+        Key of `sonolube.figure.FIGURE_STYLES`: "journal" or "slides".
 
     Returns
     -------
@@ -45,8 +47,10 @@ def plot(result: xr.Dataset | Sheet, *, title: str | None = None) -> "Figure":
         If a sheet has no figure of that title.
     """
     draw = _sheet_figure(result, title) if isinstance(result, Sheet) else _dataset_figure(result)
-    with publication_style():
-        return draw()
+    with publication_style(style):
+        figure = draw()
+        fit_to_style(figure)
+        return figure
 
 
 def _dataset_figure(result: xr.Dataset) -> "Callable[[], Figure]":
