@@ -1,4 +1,4 @@
-"""Figures of commands at their final size: widths of a column or a page, legible text, nothing cut off or overlapping."""
+"""Figures of commands at their final size: of a column or a page, legible, nothing cut off or overlapping."""
 
 import itertools
 from collections.abc import Iterator
@@ -28,7 +28,6 @@ COMMANDS = {
     "simulate": ("simulate", TRIBOMETER),
     "response": ("response", TRIBOMETER),
     "literature": ("literature", TRIBOMETER),
-    "transient": ("transient", TRIBOMETER),
 }
 
 

@@ -18,7 +18,7 @@ def test_the_collar_gets_a_controller_its_source_and_its_page(tmp_path: Path, so
     assert answer["phase_margin"]["value"] == approx(1.07, abs=0.01)
     assert answer["settling_time"]["value"] < 0.01
     assert "quality factor 50" in answer["assumptions"]["resonance"]
-    assert {Path(name).suffix for name in answer["files"]} == {".html", ".png", ".svg", ".nc", ".c", ".csv"}
+    assert {Path(name).suffix for name in answer["files"]} == {".html", ".png", ".svg", ".pdf", ".nc", ".c", ".csv"}
     assert all(Path(name).stat().st_size > 0 for name in answer["files"])
     assert not re.search(r"https?:", (tmp_path / "control.html").read_text(encoding="utf-8"), re.IGNORECASE)
 
