@@ -2,12 +2,15 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
+RIVAL := .venv-surfalize
 INSTALL := $(BIN)/uv pip install --quiet --compile-bytecode --python $(BIN)/python
 RUN := OPENBLAS_NUM_THREADS=1 MPLBACKEND=Agg
 OUT := out
+# surfalize (GPL) is run as a program of its own, by the tests and benchmarks that compare with it, where `make surfalize` has put it
+export SURFALIZE_PYTHON ?= $(abspath $(wildcard $(RIVAL)/bin/python))
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint docs bench reliability lock clean
+.PHONY: help demo test surfalize lint docs bench reliability lock clean
 
 help: ## list the targets
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1\t/' | expand -t 16
@@ -22,6 +25,8 @@ test: $(VENV)/test ## lint, type-check and run every test
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(RUN) $(BIN)/python -m pytest -n 2
+
+surfalize: $(RIVAL)/installed ## install surfalize beside sonolube, for the tests that compare with it
 
 lint: $(VENV)/test ## mend what ruff can mend, then check style, types and architecture
 	$(BIN)/ruff check --fix .
@@ -50,9 +55,11 @@ lock: $(VENV)/uv ## pin and hash every dependency for Python 3.11 to 3.13
 	    pyproject.toml --group test --group docs -c requirements/test.txt -o requirements/docs.txt
 	$(BIN)/uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-annotate \
 	    pyproject.toml --group test --group bench -c requirements/test.txt -o requirements/bench.txt
+	echo "surfalize>=0.19" | $(BIN)/uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-annotate \
+	    - -o requirements/surfalize.txt
 
 clean: ## remove the environment and everything generated
-	rm -rf $(VENV) $(OUT) .mypy_cache .pytest_cache .ruff_cache .hypothesis .import_linter_cache .benchmarks
+	rm -rf $(VENV) $(RIVAL) $(OUT) .mypy_cache .pytest_cache .ruff_cache .hypothesis .import_linter_cache .benchmarks
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # -- environments: one, which grows as targets ask for more
@@ -74,6 +81,11 @@ $(VENV)/demo: $(VENV)/runtime requirements/demo.txt
 
 $(VENV)/test: $(VENV)/runtime requirements/test.txt
 	$(INSTALL) --require-hashes -r requirements/test.txt
+	@touch $@
+
+$(RIVAL)/installed: $(VENV)/uv requirements/surfalize.txt
+	test -x $(RIVAL)/bin/python || $(PYTHON) -m venv $(RIVAL)
+	$(BIN)/uv pip install --quiet --python $(RIVAL)/bin/python --require-hashes -r requirements/surfalize.txt
 	@touch $@
 
 $(VENV)/docs: $(VENV)/test requirements/docs.txt

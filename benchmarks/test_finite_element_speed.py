@@ -84,14 +84,14 @@ CASES = [
 """Bodies, and the largest element edge in m at the re-entrant edges of the collar; the last takes minutes."""
 
 SONOLUBE = f"""
-import json, resource, sys, time
+import json, sys, time
 sys.path.insert(0, {str(Path(__file__).parent)!r})
+from peak_memory import peak_memory
 from test_finite_element_speed import elastic_frequencies
 wall, processor = time.perf_counter(), time.process_time()
 frequencies = elastic_frequencies(sys.argv[1])
 wall, processor = time.perf_counter() - wall, time.process_time() - processor
-peak = 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-print(json.dumps(dict(wall=wall, processor=processor, peak=peak, frequencies=frequencies.tolist())))
+print(json.dumps(dict(wall=wall, processor=processor, peak=peak_memory(), frequencies=frequencies.tolist())))
 """
 PROGRAMS = Path(__file__).with_name("finite_element_programs.py")
 

@@ -96,7 +96,7 @@ print(json.dumps(medians))
 def surfalize_medians() -> dict[str, float]:
     python = os.environ.get("SURFALIZE_PYTHON")
     if not python:
-        pytest.skip("SURFALIZE_PYTHON names no Python that has surfalize")
+        pytest.skip("surfalize is not installed beside sonolube: make surfalize")
     with TemporaryDirectory() as folder:
         path = Path(folder) / "height.npy"
         np.save(path, SURFACE.height * 1e6)

@@ -7,9 +7,17 @@ from pathlib import Path
 
 import pytest
 from hypothesis import settings
+from tests import skips
 
 settings.register_profile("patient", deadline=None)
 settings.load_profile("patient")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Count the tests that skip, where a run allows few."""
+    if not config.pluginmanager.is_registered(skips):
+        config.pluginmanager.register(skips)
+
 
 _PACKAGE = Path(__file__).parents[1] / "src" / "sonolube"
 

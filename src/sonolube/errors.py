@@ -85,6 +85,10 @@ class UnknownName(SonolubeError, LookupError):
         return cls(f"unknown {kind} {name!r}; {suggestion(name, names) or 'known: ' + ', '.join(names)}")
 
 
+class MissingPackage(InvalidInput, ImportError):
+    """A package of an optional part of the installation is not installed."""
+
+
 class ModelRangeWarning(UserWarning):
     """A result outside the range in which its model was verified."""
 

@@ -2,13 +2,15 @@
 
 import io
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from sonolube.errors import UnknownName
 from sonolube.files import write_atomically
 from sonolube.printable_text import printable
 
@@ -22,7 +24,9 @@ MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 LINES = ("-", "--", "-.", ":", (0, (5, 1)), (0, (3, 1, 1, 1)), (0, (1, 1)))
 
 _AXES = ("xaxis", "yaxis", "zaxis")
-_STYLE = {
+_INCH = 25.4  # mm
+_NARROW = 4.7  # inches: a figure drawn no wider fits one column
+_COMMON = {
     "axes.formatter.min_exponent": 4,
     "axes.axisbelow": True,
     "axes.grid": True,
@@ -31,17 +35,76 @@ _STYLE = {
     "figure.constrained_layout.use": True,
     "figure.dpi": 110,
     "font.family": "DejaVu Sans",
-    "font.size": 9,
     "grid.alpha": 0.25,
-    "grid.linewidth": 0.6,
-    "legend.fontsize": 8,
     "legend.frameon": False,
-    "lines.linewidth": 1.6,
-    "lines.markersize": 5,
-    "savefig.dpi": 200,
+    "pdf.fonttype": 42,
     "svg.fonttype": "none",
     "svg.hashsalt": "sonolube",
 }
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FigureStyle:
+    """Sizes of figures for one use.
+
+    Parameters
+    ----------
+    column_width, page_width : float
+        Widths in mm of a figure of one column and of the whole page.
+    largest_height : float
+        Greatest height, in mm.
+    smallest_text : float
+        Least size of any text, in points.
+    settings : mapping
+        Of matplotlib, beside those that all styles share.
+    """
+
+    column_width: float
+    page_width: float
+    largest_height: float
+    smallest_text: float
+    settings: Mapping[str, float]
+
+
+FIGURE_STYLES: Mapping[str, FigureStyle] = MappingProxyType(
+    {
+        "journal": FigureStyle(
+            column_width=85.0,
+            page_width=174.0,
+            largest_height=230.0,
+            smallest_text=7.0,
+            settings={
+                "font.size": 8.5,
+                "grid.linewidth": 0.6,
+                "legend.fontsize": 7.5,
+                "lines.linewidth": 1.4,
+                "lines.markersize": 4.5,
+                "savefig.dpi": 300,
+                "xtick.labelsize": 8,
+                "ytick.labelsize": 8,
+            },
+        ),
+        "slides": FigureStyle(
+            column_width=254.0,
+            page_width=254.0,
+            largest_height=143.0,
+            smallest_text=13.0,
+            settings={
+                "font.size": 15,
+                "grid.linewidth": 0.9,
+                "legend.fontsize": 13.5,
+                "lines.linewidth": 2.4,
+                "lines.markersize": 8,
+                "savefig.dpi": 200,
+                "xtick.labelsize": 13.5,
+                "ytick.labelsize": 13.5,
+            },
+        ),
+    }
+)
+"""Styles by name: widths and sizes of text for the columns of a journal, or for slides of 16:9."""
+
+_in_use = "journal"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -67,13 +130,72 @@ class ReportFigure:
 
 
 @contextmanager
-def publication_style() -> Iterator[None]:
-    """Apply the style of sonolube to figures drawn in this context."""
+def figure_style(style: str) -> Iterator[None]:
+    """Draw all figures of this context in a style.
+
+    Parameters
+    ----------
+    style : str
+        Key of `FIGURE_STYLES`.
+
+    Raises
+    ------
+    UnknownName
+        If there is no such style.
+    """
+    global _in_use
+    if style not in FIGURE_STYLES:
+        raise UnknownName.among(FIGURE_STYLES, kind="style of figures", name=style)
+    before, _in_use = _in_use, style
+    try:
+        yield
+    finally:
+        _in_use = before
+
+
+@contextmanager
+def publication_style(style: str | None = None) -> Iterator[None]:
+    """Apply the style of sonolube to figures drawn in this context.
+
+    Parameters
+    ----------
+    style : str, optional
+        Key of `FIGURE_STYLES`; that of the context of `figure_style` where absent, "journal" without one.
+
+    Raises
+    ------
+    UnknownName
+        If there is no such style.
+    """
     import matplotlib as mpl
     from cycler import cycler
 
-    with mpl.rc_context(_STYLE | {"axes.prop_cycle": cycler(color=COLOURS)}):  # type: ignore[arg-type]
-        yield
+    with figure_style(_in_use if style is None else style):
+        settings = _COMMON | dict(FIGURE_STYLES[_in_use].settings) | {"axes.prop_cycle": cycler(color=COLOURS)}
+        with mpl.rc_context(settings):  # type: ignore[arg-type]
+            yield
+
+
+def fit_to_style(figure: "Figure") -> None:
+    """Give a figure the width of a column or of the page of the style in use, and no text below its least size.
+
+    Parameters
+    ----------
+    figure : Figure
+        Changed in place, before it is first rendered. It gets the width of a column if it was drawn no wider than 4.7
+        inches, else that of the page. Its height stays within the greatest one; where the figure is made narrower, it
+        falls by the root of the ratio, for text does not shrink.
+    """
+    from matplotlib.text import Text
+
+    style = FIGURE_STYLES[_in_use]
+    width, height = figure.get_size_inches()
+    target = (style.column_width if width <= _NARROW else style.page_width) / _INCH
+    enlarged = style.page_width / FIGURE_STYLES["journal"].page_width
+    height *= enlarged * min(target / (enlarged * width), 1.0) ** 0.5
+    figure.set_size_inches(target, min(height, style.largest_height / _INCH))
+    for text in figure.findobj(Text):
+        text.set_fontsize(max(text.get_fontsize(), style.smallest_text))
 
 
 def render_figure(figure: "Figure", file_format: str, *, resolution: float | None = None) -> bytes:

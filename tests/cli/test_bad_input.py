@@ -167,7 +167,7 @@ def test_files_may_begin_with_the_mark_that_windows_writes(desk: Path, capsys: C
     with raises(SystemExit) as end:
         main(("efficiency", "runs.csv", "--rig", "rig.toml", "--out", "Läufe"))
     assert end.value.code == 0, capsys.readouterr().err
-    assert {path.suffix for path in (desk / "Läufe").iterdir()} == {".html", ".png", ".svg", ".nc"}
+    assert {path.suffix for path in (desk / "Läufe").iterdir()} == {".html", ".png", ".svg", ".pdf", ".nc"}
 
 
 @pytest.mark.usefixtures("desk")

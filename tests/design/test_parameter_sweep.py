@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from pytest import approx, raises
+from pytest import MonkeyPatch, approx, raises
 
 from sonolube.design import SweepPlan, grid_plan, latin_hypercube_plan, list_plan, sweep
 from sonolube.errors import InvalidInput
@@ -179,12 +179,10 @@ def test_a_list_of_points_needs_equal_numbers_of_values() -> None:
         list_plan(RIG_FILE, over={VOLTS: [1.0, 2.0], SPEEDS: [0.1]})
 
 
-def test_a_cluster_without_dask_names_the_package_to_install() -> None:
-    try:
-        import distributed  # noqa: F401
-    except ImportError:
-        with raises(InvalidInput, match=r"pip install 'sonolube\[cluster\]'"):
-            sweep(small_plan(), scheduler="local")
+def test_a_cluster_without_dask_names_the_package_to_install(monkeypatch: MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with raises(InvalidInput, match=r"pip install 'sonolube\[cluster\]'"):
+        sweep(small_plan(), scheduler="local")
 
 
 def test_a_local_cluster_gives_the_same_bits() -> None:

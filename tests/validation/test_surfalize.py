@@ -48,7 +48,7 @@ SURFACE = gaussian_surface(
 def theirs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, float]:
     python = os.environ.get("SURFALIZE_PYTHON")
     if not python:
-        pytest.skip("SURFALIZE_PYTHON names no Python that has surfalize")
+        pytest.skip("surfalize is not installed beside sonolube: make surfalize")
     path: Path = tmp_path_factory.mktemp("surfalize") / "height.npy"
     np.save(path, 1e6 * SURFACE.height)
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}

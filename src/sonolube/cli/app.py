@@ -9,6 +9,7 @@ import typer
 
 from sonolube import __version__
 from sonolube.cli.commands import COMMANDS, GROUPS, MOVED_COMMANDS, RENAMED_OPTIONS, Command
+from sonolube.cli.console.figure_style import with_figure_style
 from sonolube.cli.console.outputs import with_checked_files
 from sonolube.errors import SeveralFaults, SonolubeError
 from sonolube.printable_text import printable
@@ -105,7 +106,7 @@ def _function(command: Command, words: Sequence[str]) -> Callable[..., None]:
     """Function of a command that is called; for others one with the same help, whose module is not imported."""
     name = command.name.split()
     if list(words[: len(name)]) == name:
-        return with_checked_files(command.function)
+        return with_figure_style(with_checked_files(command.function))
 
     def not_called() -> None:
         pass

@@ -85,6 +85,7 @@ COMMANDS = (
     Command(_LOOKUP, "actuators", "lookup.actuators:actuators"),
     Command(_LOOKUP, "published", "lookup.published:published"),
     Command(_LOOKUP, "schema", "lookup.schema:schema"),
+    Command(_LOOKUP, "doctor", "lookup.doctor:doctor"),
 )
 
 GROUPS = {

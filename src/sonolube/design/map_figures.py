@@ -7,7 +7,7 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.design.maps import MAP_LAYOUTS, panels_text, same_panels
-from sonolube.errors import InvalidInput
+from sonolube.extras import missing_package
 from sonolube.units import format_si
 
 if TYPE_CHECKING:
@@ -137,8 +137,8 @@ def map_page(computed: "xr.Dataset") -> str:
 
     Raises
     ------
-    InvalidInput
-        If Plotly is missing.
+    MissingPackage
+        If Plotly is not installed.
 
     See Also
     --------
@@ -148,9 +148,7 @@ def map_page(computed: "xr.Dataset") -> str:
         from plotly.graph_objects import Contour
         from plotly.subplots import make_subplots
     except ImportError:
-        raise InvalidInput(
-            "an interactive map needs Plotly, which is not installed: pip install 'sonolube[web]', or take PNG or PDF"
-        ) from None
+        raise missing_package("web", remedy="take PNG or PDF") from None
     x_name, y_name, panel = MAP_LAYOUTS[computed.attrs["map"]]
     parts, panel = _panels(computed, panel)
     columns = _columns(len(parts))

@@ -16,6 +16,7 @@ from sonolube.design.sweep_dataset import MemoryDatasetWriter, NetCDFDatasetWrit
 from sonolube.design.sweep_plan import OPERATING_CONDITIONS, SweepPlan
 from sonolube.dynamics.backend import Backend, device_name, usable_backend
 from sonolube.errors import InvalidInput, SonolubeError
+from sonolube.extras import EXTRAS, missing_package
 from sonolube.friction import SINE_TOLERANCE
 from sonolube.rig import NUMBERS, STATUSES, PointBatch, point_batch
 from sonolube.rig.operating_vibrations import REFUSED
@@ -90,6 +91,8 @@ def sweep(
     """
     if chunk_points < 1 or workers < 1:
         raise InvalidInput(f"chunk_points and workers must be at least 1, got {chunk_points} and {workers}")
+    if scheduler is not None and not EXTRAS["cluster"].is_installed:
+        raise missing_package("cluster", remedy="leave the scheduler out")
     backend = usable_backend(backend)
     device, store = device_name(backend), None
     if folder is not None:
@@ -231,12 +234,9 @@ def _executor(workers: int, scheduler: str | None) -> Iterator[Executor]:
         with thread_pool(workers) as pool:
             yield pool
         return
-    try:
-        from distributed import Client, LocalCluster
-    except ImportError:
-        raise InvalidInput(
-            "a cluster needs Dask, which is not installed: pip install 'sonolube[cluster]', or leave the scheduler out"
-        ) from None
-    local = LocalCluster(n_workers=workers, threads_per_worker=1) if scheduler == "local" else None
-    with local or nullcontext(), Client(local or scheduler) as client:
+    import distributed
+
+    cluster: Any = distributed  # it has annotations in part
+    local = cluster.LocalCluster(n_workers=workers, threads_per_worker=1) if scheduler == "local" else None
+    with local or nullcontext(), cluster.Client(local or scheduler) as client:
         yield client.get_executor(pure=False)

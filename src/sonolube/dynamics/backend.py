@@ -5,11 +5,12 @@ from functools import cache
 from typing import Any, Literal, get_args
 
 from sonolube.errors import GpuUnused, InvalidInput
+from sonolube.extras import EXTRAS
 
 Backend = Literal["cpu", "gpu"]
 """Processor of a batch: the CPU alone, or an NVIDIA GPU with the CPU for the points that it does not solve."""
 
-_INSTALL = "pip install 'sonolube[gpu]'"
+_INSTALL = EXTRAS["gpu"].command
 
 
 def usable_backend(backend: Backend) -> Backend:
@@ -58,6 +59,16 @@ def device_name(backend: Backend) -> str:
     str
     """
     return _gpu()[0] if backend == "gpu" else ""
+
+
+def gpu_obstacle() -> str:
+    """Return the reason why no GPU can be used, with its remedy; an empty text where one can.
+
+    Returns
+    -------
+    str
+    """
+    return _gpu()[1]
 
 
 @cache

@@ -9,6 +9,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from pathlib import Path
 
 import numpy as np
 from numba.core.event import Event, Listener, install_listener
@@ -19,6 +20,29 @@ from sonolube.dynamics.harmonic_balance.floquet_kernel import monodromy_power_no
 from sonolube.dynamics.harmonic_balance.harmonic_kernel import newton_solve
 from sonolube.dynamics.kernels.contact_kernel import KernelVariant, LawParameters
 from sonolube.interruption import undone_at_signal
+
+_KERNELS = (newton_solve, monodromy_power_norms, elliptic_averages)
+
+
+def compiled_code_folder() -> Path:
+    """Return the folder in which numba keeps the compiled kernels; without a place for it the import fails.
+
+    Returns
+    -------
+    Path
+    """
+    return Path(newton_solve.stats.cache_path)
+
+
+def is_compiled() -> bool:
+    """Return whether every kernel of a steady state and its friction has been compiled and kept, for any contact law.
+
+    Returns
+    -------
+    bool
+    """
+    names = [(Path(each.stats.cache_path), f"*.{each.py_func.__name__}-*.nbi") for each in _KERNELS]
+    return all(any(folder.glob(name)) for folder, name in names)
 
 
 class CompileProcess(Listener):

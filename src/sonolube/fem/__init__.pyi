@@ -42,7 +42,6 @@ from .ritz import (
     rectangular_section as rectangular_section,
     ritz_frequencies as ritz_frequencies,
 )
-from .solver.cad import MissingPackage as MissingPackage
 from .solver.convergence import (
     ConvergedModes as ConvergedModes,
     converged_modes as converged_modes,

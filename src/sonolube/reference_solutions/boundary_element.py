@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sonolube.checks import Floats, require_positive
 from sonolube.errors import InvalidInput
+from sonolube.extras import missing_package
 from sonolube.surfaces import HeightMap
 
 _PERIMETER_CORRECTION = (math.pi - 1 + math.log(2)) / 24  # area per pixel edge of the contact's outline, in pixels [2]
@@ -129,9 +130,7 @@ def _system(surface: HeightMap, modulus: float, periodic: bool) -> Any:
         from ContactMechanics.Factory import make_system
         from SurfaceTopography import Topography
     except ImportError:
-        raise InvalidInput(
-            'boundary elements require ContactMechanics: pip install "sonolube[boundary-element]"'
-        ) from None
+        raise missing_package("boundary-element") from None
     points = surface.height.T.shape
     sizes = (points[0] * surface.spacing_x, points[1] * surface.spacing_y)
     substrate = (PeriodicFFTElasticHalfSpace if periodic else FreeFFTElasticHalfSpace)(points, modulus, sizes)

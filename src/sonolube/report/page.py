@@ -8,7 +8,7 @@ from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 from sonolube import __version__
-from sonolube.figure import publication_style, render_figure
+from sonolube.figure import fit_to_style, publication_style, render_figure
 from sonolube.printable_text import printable
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ class Drawing:
 
     draw: "Callable[[], Figure]"
     caption: str = ""
-    forms: tuple[str, ...] = ("png", "svg")
+    forms: tuple[str, ...] = ("png", "svg", "pdf")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -97,6 +97,7 @@ def drawn(drawing: Drawing, *, forms: Sequence[str]) -> dict[str, bytes]:
 
     with publication_style():
         figure = drawing.draw()
+        fit_to_style(figure)
     try:
         return {form: render_figure(figure, form) for form in forms}
     finally:

@@ -32,7 +32,7 @@ def reproduction_files(
     figures: dict[str, str | bytes] = {}
     pictures: dict[str, str] = {}
     for done, figure in enumerate(result.figures, start=1):
-        contents = drawn(Drawing(draw=figure.draw), forms=("png", "svg"))
+        contents = drawn(Drawing(draw=figure.draw), forms=("png", "svg", "pdf"))
         figures |= {f"figures/{figure.name}.{form}": content for form, content in contents.items()}
         pictures[figure.name] = embedded(contents["png"])
         advance(figure.title, done, len(result.figures))

@@ -30,7 +30,7 @@ def voltage_figure(study: "xr.Dataset") -> "Figure":
         _, f = _whole_period(study["normal_force"].values[point])
         period.plot(turns, 1e6 * x, linestyle=LINES[index], color=COLOURS[index])
         force.plot(turns, f, linestyle=LINES[index], color=COLOURS[index], label=label)
-    period.set(xlabel="Time over the period", ylabel="Displacement of the tip [µm]")
+    period.set(xlabel="Time over the period", ylabel="Tip displacement [µm]")
     force.set(xlabel="Time over the period", ylabel="Normal contact force [N]")
     force.legend(loc="upper left", title="peak to peak", title_fontsize=8)
     ratio.plot(volts, study["friction_ratio"], color=COLOURS[0])
@@ -59,7 +59,7 @@ def speed_figure(study: "xr.Dataset") -> "Figure":
 
 def frequency_figure(study: "xr.Dataset") -> "Figure":
     """Return amplitude and friction ratio over frequency, and friction ratio over the power of the amplifier."""
-    figure, ((amplitude, ratio, power),) = _panels(1, 3, size=(10.2, 3.5))
+    figure, ((amplitude, ratio, power),) = _panels(1, 3, size=(6.85, 2.7))
     tips = []
     for index, curve in enumerate(_curves(study)):
         style = _style(index)
@@ -75,7 +75,7 @@ def frequency_figure(study: "xr.Dataset") -> "Figure":
         power.legend(loc="lower left")
     amplitude.set(xscale="log", yscale="log", xlabel="Drive frequency [kHz]", ylabel="Vibration amplitude [µm]")
     ratio.set(xscale="log", xlabel="Drive frequency [kHz]", ylabel=_RATIO)
-    power.set(xscale="log", xlabel="Power of the amplifier, D 1.9 [W]", ylabel=_RATIO)
+    power.set(xscale="log", xlabel="Power of the\namplifier, D 1.9 [W]", ylabel=_RATIO)
     ratio.set_ylim(bottom=0)
     power.set_ylim(bottom=0)
     amplitude.legend(loc="upper left", title="peak to peak", title_fontsize=8)
@@ -107,7 +107,7 @@ def waveform_figure(study: "xr.Dataset") -> "Figure":
     for index in np.argsort(ratios):
         ratio.bar(names[index], ratios[index], color=COLOURS[index], width=0.6)
         ratio.annotate(f"{ratios[index]:.3g}", (names[index], ratios[index]), ha="center", va="bottom", fontsize=8)
-    period.set(xlabel="Time over the period", ylabel="Displacement of the tip [µm]")
+    period.set(xlabel="Time over the period", ylabel="Tip displacement [µm]")
     period.legend(loc="upper center")
     ratio.set(xlabel="Waveform, all of the same swing", ylabel=_RATIO)
     ratio.grid(visible=False, axis="x")

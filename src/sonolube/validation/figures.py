@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from textwrap import wrap
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 _PANELS: Final = 12  # variants with a panel of predicted against measured ratios
 _CURVES: Final = 6  # variants drawn over speed and amplitude
 _POINTS: Final = 40
+_TITLE_WIDTH: Final = 22  # characters of a line above a panel
 _STYLES: Final = {
     letter: (COLOURS[index % len(COLOURS)], (*MARKERS, "<", ">")[index]) for index, letter in enumerate(DATA_SETS)
 }
@@ -191,6 +193,11 @@ def predicted_against_measured_figure(result: "xr.Dataset") -> "Figure":
         Line2D([], [], ls="", color=colour, marker=marker, label=f"{letter}: {DATA_SETS[letter]}")
         for letter, (colour, marker) in ((letter, _STYLES[letter]) for letter in sorted({test[0] for test in fitted}))
     ]
+    handles += [
+        Line2D([], [], ls="", color="0.3", marker="o", label="filled: fitted, k free parameters, rms error"),
+        Line2D([], [], ls="", color="0.3", marker="o", mfc="none", label="open: its set left out, rms error CV"),
+        Line2D([], [], color="0.5", lw=0.8, label="predicted as measured"),
+    ]
     figure.legend(handles=handles, loc="outside lower center", ncols=legend_columns)
     return figure
 
@@ -206,9 +213,8 @@ def _panel(axes: "Axes", one: "xr.Dataset") -> None:
                 place = float(row["friction_ratio"]), min(max(float(row[name]), _LOW), _HIGH)
                 axes.plot(*place, ls="", marker=marker, color=colour, mfc=face, ms=4.5, clip_on=False)
     errors = f"rms {float(one['rms']):.2f}, CV {float(one['rms_cross_validated']):.2f}"
-    axes.set_title(
-        f"{one['model'].item().replace('-', ' ')}\nk = {int(one['fitted_parameters'])}, {errors}", fontsize=8
-    )
+    name = "\n".join(wrap(one["model"].item().replace("-", " "), _TITLE_WIDTH))
+    axes.set_title(f"{name}\nk = {int(one['fitted_parameters'])}, {errors}", fontsize=7.5)
     axes.set(xlim=(0, _HIGH), ylim=(_LOW, _HIGH), aspect="equal", xticks=(0, 0.5, 1), yticks=(0, 0.5, 1))
 
 

@@ -9,7 +9,7 @@ import xarray as xr
 
 from sonolube.design import map_figure, sweep_figure
 from sonolube.errors import InvalidInput, UnknownName
-from sonolube.figure import publication_style
+from sonolube.figure import fit_to_style, publication_style
 from sonolube.prediction.figures import prediction_figure
 from sonolube.report.measured.sheet import Sheet
 from sonolube.rig.figures import simulation_figure
@@ -32,7 +32,7 @@ FIGURES: Mapping[str, Callable[[xr.Dataset], "Figure"]] = MappingProxyType(
 """Functions that draw a result, by its attribute `result`."""
 
 
-def plot(result: xr.Dataset | Sheet | RunsFit, *, title: str | None = None) -> "Figure":
+def plot(result: xr.Dataset | Sheet | RunsFit, *, title: str | None = None, style: str | None = None) -> "Figure":
     """Return the figure of a result.
 
     Parameters
@@ -42,6 +42,8 @@ def plot(result: xr.Dataset | Sheet | RunsFit, *, title: str | None = None) -> "
         `measure`; or of `fit`.
     title : str, optional
         Of which figure, for a sheet, which has several; the first by default.
+    style : str, optional
+        Key of `sonolube.figure.FIGURE_STYLES`: "journal" or "slides".
 
     Returns
     -------
@@ -54,8 +56,10 @@ def plot(result: xr.Dataset | Sheet | RunsFit, *, title: str | None = None) -> "
     UnknownName
         If a sheet has no figure of that title.
     """
-    with publication_style():
-        return _drawer(result, title)()
+    with publication_style(style):
+        figure = _drawer(result, title)()
+        fit_to_style(figure)
+        return figure
 
 
 def _drawer(result: xr.Dataset | Sheet | RunsFit, title: str | None) -> "Callable[[], Figure]":

@@ -24,7 +24,7 @@ def test_errors_fits_and_predictions_of_a_rig_are_in_the_answer(tmp_path: Path, 
     predicted = {one["model"]: one for one in answer["rig"]["predictions"]}
     assert predicted["kinematic"]["uncertainty"] == approx(kinematic["errors"]["rms_cross_validated"])
     assert "the stiffness of the holder" in predicted["dahl-driven"]["reason"]
-    assert {Path(file).suffix for file in answer["files"]} == {".png", ".svg", ".csv", ".nc"}
+    assert {Path(file).suffix for file in answer["files"]} == {".png", ".svg", ".pdf", ".csv", ".nc"}
     assert all(Path(file).stat().st_size > 0 for file in answer["files"])
 
 

@@ -63,7 +63,7 @@ def test_page_figures_and_files_are_written_and_listed_after_caveats_and_assumpt
     tmp_path: Path, capsys: CaptureFixture[str]
 ) -> None:
     deliver(Pendulum(), folder=tmp_path)
-    names = ["pendulum.html", "swing.png", "swing.svg", "table.csv", "data.nc"]
+    names = ["pendulum.html", "swing.png", "swing.svg", "swing.pdf", "table.csv", "data.nc"]
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted(names)
     assert capsys.readouterr().out.splitlines() == [
         "pendulum",

@@ -30,6 +30,12 @@ TO_A_FILE = [
     if isinstance(kind, OutputFile)
 ]
 TO_A_FOLDER = [name for name in WRITERS if name not in dict(TO_A_FILE)]
+IN_A_FOLDER = [
+    (name, kind)
+    for name in TO_A_FOLDER
+    for kind in KINDS_INSIDE
+    if kind != "link to a pipe" and (name != "reproduce" or "input" not in kind)  # reproduce reads no file
+]
 
 
 @pytest.fixture
@@ -88,13 +94,10 @@ def test_a_folder_that_is_none_is_refused(name: str, kind: str, capfd: CaptureFi
 
 
 @mark.usefixtures("desk")
-@mark.parametrize("kind", [kind for kind in KINDS_INSIDE if kind != "link to a pipe"])
-@mark.parametrize("name", TO_A_FOLDER)
+@mark.parametrize(("name", "kind"), IN_A_FOLDER)
 def test_a_file_in_the_folder_that_must_not_be_replaced_is_refused(
     name: str, kind: str, capfd: CaptureFixture[str]
 ) -> None:
-    if name == "reproduce" and "input" in kind:
-        pytest.skip("it reads no file")
     for number, inside in enumerate(names_inside(name)):
         folder = Path(f"out{number}")
         path = folder / inside

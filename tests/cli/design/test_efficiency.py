@@ -24,7 +24,7 @@ def test_runs_drawn_about_the_published_line_give_it_back_within_its_errors(
         assert answer[name]["value"] == approx(truth, abs=2.1 * answer[f"{name}_uncertainty"]["value"])
     power = (0.89 - 0.4) * 0.0655 * 0.126e-6 / (5 * (0.672e-9 - 2.93e-9 * 0.0655))  # D 4.3
     assert answer["lowest_power"]["value"] < power < answer["highest_power"]["value"]
-    assert {Path(path).suffix for path in answer["files"]} == {".html", ".png", ".svg", ".nc"}
+    assert {Path(path).suffix for path in answer["files"]} == {".html", ".png", ".svg", ".pdf", ".nc"}
 
 
 def test_a_speed_beyond_the_runs_is_refused(call: tuple[object, ...], sonolube: Program) -> None:

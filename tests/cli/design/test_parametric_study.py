@@ -14,7 +14,7 @@ def test_the_point_of_least_friction_is_in_the_answer_and_all_points_are_in_the_
 ) -> None:
     ends = ["--from", "10V", "--to", "30V", "--points", "3"]
     answer = sonolube("sweep", rigs / "tribometer.toml", "--of", "voltage", *ends, "--json", "--out", tmp_path).answer
-    assert sorted(Path(name).suffix for name in answer["files"]) == [".nc", ".png", ".svg"]
+    assert sorted(Path(name).suffix for name in answer["files"]) == [".nc", ".pdf", ".png", ".svg"]
     assert sorted(Path(name) for name in answer["files"]) == sorted(tmp_path.iterdir())
     (best,) = answer["least_friction"]
     assert best["voltage_peak_to_peak"] == {"value": 30.0, "unit": "V"}

@@ -103,7 +103,9 @@ def test_a_sweep_draws_friction_over_its_keys(
 ) -> None:
     options = [word for key in over for word in ("--over", key)]
     answer = sonolube("sweep", rigs / "tribometer.toml", *options, "--json", "--out", tmp_path).answer
-    assert [Path(path).name for path in answer["files"]] == ["sweep.html", "sweep.png", "sweep.svg", "sweep.nc"]
+    assert [Path(path).name for path in answer["files"]] == [
+        f"sweep.{kind}" for kind in ("html", "png", "svg", "pdf", "nc")
+    ]
     drawing = (tmp_path / "sweep.svg").read_text(encoding="utf-8")
     assert "Drive voltage, peak to peak [V]" in drawing
     assert ("Sliding speed [mm/s]" in drawing) == (len(over) == 2)

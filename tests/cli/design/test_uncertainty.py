@@ -42,7 +42,8 @@ def test_statistics_and_ranking_are_in_the_answer_and_in_the_files(
     assert {row["key"] for row in ranking} == set(answer["uncertain"])
     assert ranking[0]["first"]["value"] == max(row["first"]["value"] for row in ranking)
     assert all(row["deviation_if_known"] <= 1.001 * ranking[-1]["deviation_if_known"] for row in ranking)
-    assert [Path(path).suffix for path in answer["files"]] == [".html", ".png", ".svg", ".png", ".svg", ".nc"]
+    figure = [".png", ".svg", ".pdf"]
+    assert [Path(path).suffix for path in answer["files"]] == [".html", *figure, *figure, ".nc"]
     with xr.open_dataset(answer["files"][-1]) as samples:
         assert samples["friction_ratio"].shape == (9, 32)
 

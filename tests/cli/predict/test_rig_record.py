@@ -69,7 +69,7 @@ def test_a_command_on_motion_answers_with_status_or_files_and_writes_them_whole(
     files = [Path(name) for name in result["files"]]
     assert sorted(files) == sorted(tmp_path.iterdir())
     assert all(path.stat().st_size > 1000 for path in files)
-    assert sorted(path.suffix for path in files) == [".nc", ".png", ".svg"]
+    assert sorted(path.suffix for path in files) == [".nc", ".pdf", ".png", ".svg"]
 
 
 def test_heat_and_regime_answer_with_the_figure_they_wrote(tmp_path: Path, sonolube: Program, rigs: Path) -> None:

@@ -7,7 +7,7 @@ from pytest import approx
 pytest.importorskip("netgen.occ", reason="netgen-mesher is not installed")
 
 from sonolube.errors import SonolubeError
-from sonolube.fem.solver.cad import MissingPackage
+from sonolube.extras import missing_package
 from sonolube.friction import sine_stick_slip_ratio
 from sonolube.reproduce import CLAIMS, ClaimVerdict, Verdict
 from sonolube.reproduce.chapter4 import collar_rows as chapter4_collar
@@ -41,13 +41,13 @@ def test_friction_falls_most_in_the_middle_of_the_rod_and_the_work_reduction_lie
 
 def test_without_finite_elements_the_rows_name_the_package_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     def unavailable() -> SonolubeError:
-        raise MissingPackage("finite elements need netgen-mesher; install it with: pip install sonolube[fem]")
+        raise missing_package("fem")
 
     monkeypatch.setattr(chapter4_collar, "cad_kernel", unavailable)
     rows = [row for row in collar_rows() if row.id.startswith("4.5")]
     assert len(rows) == 8
     assert {row.verdict for row in rows} == {Verdict.NOT_COMPUTED}
-    assert all("pip install sonolube[fem]" in row.note for row in rows)
+    assert all("pip install 'sonolube[fem]'" in row.note for row in rows)
     assert not list(collar_figures())
     (claim,) = (each for each in CLAIMS if each.id == "collar")
     assert finding(claim, {row.id: row for row in rows}).verdict is ClaimVerdict.NOT_COMPUTED

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     Content = str | bytes | xr.Dataset | Path
 
-_UNLISTED = ("rig", "out", "json", "keep")  # arguments that a page lists otherwise, or that change no number
+_UNLISTED = ("rig", "out", "json", "keep", "style")  # arguments that a page lists otherwise, or that change no number
 
 
 class Answer(Protocol):

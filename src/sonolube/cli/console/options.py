@@ -22,6 +22,13 @@ class AmplitudeSource(StrEnum):
     PER_VOLT = "per-volt"
 
 
+class FigureStyleName(StrEnum):
+    """Sizes of figures, and of what is written in them."""
+
+    JOURNAL = "journal"
+    SLIDES = "slides"
+
+
 RigPath = Annotated[Path, typer.Argument(metavar="RIG.toml", help="The rig, as a TOML file.")]
 Changes = Annotated[
     list[str] | None,
@@ -37,6 +44,10 @@ Amplitude = Annotated[
         metavar="measured|computed|per-volt",
         help="Source of the amplitude; by default measured, else computed from stack and structure, else per volt.",
     ),
+]
+Style = Annotated[
+    FigureStyleName,
+    typer.Option("--style", help="Sizes of figures: for the columns of a journal (85 and 174 mm), or for slides."),
 ]
 Sizes = Annotated[
     list[str] | None, typer.Option("--set", metavar="SIZE=VALUE", help="A size of the part, such as length=127mm.")

@@ -108,7 +108,7 @@ def map(  # noqa: A001 - the command's name
         mapped=mapped,
         runs=runs,
         interpolated=None if runs is None else runs_map(runs, kind=kind.value),
-        forms=tuple(form.value for form in forms or (Form.PNG, Form.PDF)),
+        forms=tuple(form.value for form in forms or (Form.PNG, Form.SVG, Form.PDF)),
         left_out=left_out,
     )
     deliver(answer, folder=out, as_json=json, context=context)

@@ -46,7 +46,7 @@ _CLOUD_CAPTION = (
     " and the interval of 90 %."
 )
 _OVER_ONLY = ("sample", "seed", "workers", "scheduler", "chunk", "backend")  # options without meaning for --of
-_FILES = ("sweep.nc", "sweep.json", "sweep.html", "sweep.png", "sweep.svg")
+_FILES = ("sweep.nc", "sweep.json", "sweep.html", "sweep.png", "sweep.svg sweep.pdf")
 _OF_ONLY = ("lowest", "highest", "voltages")  # options without meaning for --over
 
 

@@ -10,17 +10,13 @@ from tempfile import TemporaryFile
 from threading import RLock
 from typing import Any
 
-from sonolube.errors import SonolubeError
+from sonolube.extras import missing_package
 
 MILLIMETRE = 1e-3
 """Length unit of the CAD kernel, in m."""
 
 _STREAMS = (1, 2)  # file descriptors of standard output and error
 _REDIRECTION = RLock()  # file descriptors belong to the process, not to a thread
-
-
-class MissingPackage(SonolubeError, ImportError):
-    """An optional package needed for finite elements is not installed."""
 
 
 def cad_kernel() -> Any:
@@ -38,7 +34,7 @@ def cad_kernel() -> Any:
     try:
         return import_module("netgen.occ")
     except ImportError:
-        raise MissingPackage("bodies and their meshes need netgen-mesher: pip install sonolube[fem]") from None
+        raise missing_package("fem") from None
 
 
 @contextmanager

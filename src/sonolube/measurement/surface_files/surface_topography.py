@@ -11,6 +11,7 @@ import numpy as np
 
 from sonolube.checks import Floats
 from sonolube.errors import InvalidInput
+from sonolube.extras import missing_package
 from sonolube.measurement.limits import require_values
 from sonolube.measurement.surface_files.regular_grid import even_profile
 from sonolube.measurement.surface_files.stated_sizes import require_stated_sizes
@@ -81,10 +82,7 @@ class SurfaceTopographyFormats:
             try:
                 from SurfaceTopography.IO import readers
             except ImportError:
-                raise InvalidInput(
-                    f"{path}: neither Wyko OPD, NanoFocus NMS, NPY nor XYZ text; for other formats: "
-                    'pip install "sonolube[surfaces]", which brings SurfaceTopography'
-                ) from None
+                raise missing_package("surfaces", context=str(path)) from None
             format_name = ""
             try:
                 require_stated_sizes(path)

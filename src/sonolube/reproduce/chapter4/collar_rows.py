@@ -17,7 +17,8 @@ from sonolube.dong2015.collar_designs import (
     THIN_RING_COLLAR,
 )
 from sonolube.dong2015.collar_tuning import main_resonance
-from sonolube.fem.solver.cad import MissingPackage, cad_kernel
+from sonolube.errors import MissingPackage
+from sonolube.fem.solver.cad import cad_kernel
 from sonolube.published import ComputedValue, published_value, si_value
 from sonolube.reproduce.chapter4.collar import (
     LOAD_AT_ENDS,

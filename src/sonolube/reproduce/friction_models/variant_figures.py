@@ -1,6 +1,7 @@
 """Figures of the variants of the friction models: over speed, against measured ratios, and errors by test."""
 
 from collections.abc import Iterator
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
 
 _HIGHEST: Final = 1.3  # ratios above it are drawn at the edge
 _COLUMNS: Final = 4  # of panels
+_TITLE_WIDTH: Final = 22  # characters of a line above a panel
 _LARGEST_ERROR: Final = 0.5  # limit of the colour scale
 
 
@@ -131,7 +133,7 @@ def _predicted_against_measured() -> "Figure":
 
     fits = reported_fits()
     rows = -(-len(fits) // _COLUMNS)
-    figure, panels = plt.subplots(rows, _COLUMNS, figsize=(8.8, 2.3 * rows), sharex=True, sharey=True)
+    figure, panels = plt.subplots(rows, _COLUMNS, figsize=(6.85, 2.05 * rows + 0.5), sharex=True, sharey=True)
     for axes, fit in zip(panels.flat, fits, strict=False):
         _panel(axes, fit)
         axes.xaxis.set_tick_params(labelbottom=True)
@@ -142,15 +144,16 @@ def _predicted_against_measured() -> "Figure":
     for axes in panels[:, 0]:
         axes.set_ylabel("Predicted ratio [-]")
     handles, labels = panels.flat[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=len(NORMAL_VIBRATION_SETS), title="Set")
+    figure.legend(handles, labels, loc="outside lower center", ncols=-(-len(handles) // 2))
     return figure
 
 
 def _panel(axes: "Axes", fit: Fit) -> None:
     """Draw the predictions of one variant against the measured ratios."""
     line = np.array([0.0, 1.1])
-    axes.fill_between(line, line - 0.1, line + 0.1, color="0.9", zorder=0)
-    axes.plot(line, line, color="0.5", lw=0.8, zorder=1)
+    axes.fill_between(line, line - 0.1, line + 0.1, color="0.9", zorder=0, label="within 0.1")
+    axes.plot(line, line, color="0.5", lw=0.8, zorder=1, label="as measured")
+    axes.plot([], [], "^", color="0.3", mfc="white", ms=5, label=f"above {_HIGHEST:g}")
     for index, letter in enumerate(NORMAL_VIBRATION_SETS):
         predicted = [(test, fit.predict(test)) for test in friction_tests(letter)]
         in_range = [(test, ratio) for test, ratio in predicted if ratio is not None]
@@ -159,13 +162,14 @@ def _panel(axes: "Axes", fit: Fit) -> None:
         measured, ratios = [test.friction_ratio for test, _ in inside], [ratio for _, ratio in inside]
         style: dict[str, Any] = {"color": colour, "mfc": colour if index < 7 else "white", "ms": 4.5, "elinewidth": 0.7}
         scatter = [test.uncertainty or 0.0 for test, _ in inside]
-        axes.errorbar(measured, ratios, xerr=scatter, fmt=marker, **style, label=letter)
+        axes.errorbar(measured, ratios, xerr=scatter, fmt=marker, **style, label=f"set {letter}")
         beyond = [test.friction_ratio for test, ratio in in_range if ratio > _HIGHEST]
         axes.plot(beyond, [_HIGHEST - 0.04] * len(beyond), "^", color=colour, mfc="white", ms=5)
     errors = prediction_errors(fit, friction_tests(SETS_WITHOUT_POWER_MAP))
     text = f"rms {errors.rms:.2g}" + (f", {len(errors.out_of_range)} out of range" if errors.out_of_range else "")
     axes.set(xlim=(0, 1.1), ylim=(-0.1, _HIGHEST))
-    axes.set_title(f"{fit.variant.name.replace('-', ' ')}\n{text}", fontsize=7)
+    name = "\n".join(wrap(fit.variant.name.replace("-", " "), _TITLE_WIDTH))
+    axes.set_title(f"{name}\n{text}", fontsize=7.5)
 
 
 def _errors_by_test() -> "Figure":
@@ -176,7 +180,7 @@ def _errors_by_test() -> "Figure":
     assessments = [assess_variant(variant, FITTED_SETS) for variant in FRICTION_MODEL_VARIANTS]
     predicted = [[assessment.fit.predict(test) for test in tests] for assessment in assessments]
     errors = np.array(predicted, dtype=np.float64) - [test.friction_ratio for test in tests]
-    figure, (axes, beside) = plt.subplots(1, 2, figsize=(11.0, 5.4), sharey=True, width_ratios=(15, 7.5))
+    figure, (axes, below) = plt.subplots(2, 1, figsize=(6.85, 1.9 + 0.4 * len(names)))
     image = axes.imshow(errors, cmap="RdBu_r", vmin=-_LARGEST_ERROR, vmax=_LARGEST_ERROR, aspect="auto")
     for (row, column), error in np.ndenumerate(errors):
         if np.isfinite(error):
@@ -190,9 +194,11 @@ def _errors_by_test() -> "Figure":
     axes.grid(visible=False)
     axes.set_xlabel("Test and its measured friction ratio [-]")
     axes.xaxis.set_label_position("top")
-    _draw_statistics(beside, assessments)
+    _draw_statistics(below, assessments)
+    below.set_yticks(range(len(names)), labels=names)
+    below.set_ylim(axes.get_ylim())
     label = "Predicted minus measured friction ratio [-]"
-    figure.colorbar(image, ax=axes, label=label, location="bottom", fraction=0.03, pad=0.02, extend="both")
+    figure.colorbar(image, ax=axes, label=label, location="right", fraction=0.03, pad=0.02, extend="both")
     return figure
 
 
@@ -216,6 +222,6 @@ def _draw_statistics(axes: "Axes", assessments: list[Assessment]) -> None:
     axes.set_xlim(-0.5, len(heads) - 0.5)
     axes.set_xticks(range(len(heads)), labels=heads)
     axes.xaxis.tick_top()
-    axes.tick_params(length=0, labelsize=8, labelleft=False)
+    axes.tick_params(length=0, labelsize=8)
     axes.spines[:].set_visible(False)
     axes.grid(visible=False)

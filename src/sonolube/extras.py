@@ -1,0 +1,97 @@
+"""Optional parts of the installation: the packages that each brings, what needs them, and how it is installed."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib.util import find_spec
+from types import MappingProxyType
+
+from sonolube.errors import MissingPackage
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Extra:
+    """One optional part of the installation, as in ``pip install 'sonolube[fem]'``.
+
+    Parameters
+    ----------
+    name : str
+        As in the brackets.
+    package : str
+        Package that it brings, as its users call it.
+    modules : tuple of str
+        Modules that have to be found for the part to work.
+    needed_by : str
+        What needs it, at the beginning of a sentence.
+    """
+
+    name: str
+    package: str
+    modules: tuple[str, ...]
+    needed_by: str
+
+    @property
+    def command(self) -> str:
+        """Command that installs it."""
+        return f"pip install 'sonolube[{self.name}]'"
+
+    @property
+    def is_installed(self) -> bool:
+        """Whether its modules are found; none is imported."""
+        return all(_is_found(module) for module in self.modules)
+
+
+_ALL = (
+    Extra(
+        name="fem",
+        package="netgen-mesher",
+        modules=("netgen",),
+        needed_by="Bodies and their meshes, in modes, horn design and impedance compute,",
+    ),
+    Extra(
+        name="surfaces",
+        package="SurfaceTopography",
+        modules=("SurfaceTopography",),
+        needed_by="Surface files of other formats than Wyko OPD, NanoFocus NMS, NPY and XYZ text",
+    ),
+    Extra(
+        name="boundary-element",
+        package="ContactMechanics",
+        modules=("ContactMechanics", "SurfaceTopography"),
+        needed_by="Boundary elements on height maps",
+    ),
+    Extra(name="web", package="Plotly", modules=("plotly",), needed_by="Interactive maps"),
+    Extra(name="cluster", package="Dask", modules=("distributed",), needed_by="Sweeps on a cluster"),
+    Extra(name="gpu", package="numba-cuda", modules=("numba_cuda",), needed_by="Vibrations on an NVIDIA GPU"),
+)
+EXTRAS: Mapping[str, Extra] = MappingProxyType({extra.name: extra for extra in _ALL})
+"""The optional parts by name."""
+
+
+def missing_package(name: str, *, context: str = "", remedy: str = "") -> MissingPackage:
+    """Error of an optional part that is not installed, in one line with the command that installs it.
+
+    Parameters
+    ----------
+    name : str
+        Key of `EXTRAS`.
+    context : str
+        What is refused, such as the path of a file, before the line.
+    remedy : str
+        Another way out, such as "take PNG or PDF", after the line.
+
+    Returns
+    -------
+    MissingPackage
+    """
+    extra = EXTRAS[name]
+    line = f"{extra.needed_by} need {extra.package}, which is not installed: {extra.command}"
+    line = f"{context}: {line}" if context else line[:1].lower() + line[1:]
+    return MissingPackage(f"{line}, or {remedy}" if remedy else line)
+
+
+def _is_found(module: str) -> bool:
+    """Whether a module can be imported, as far as that is known without importing it."""
+    try:
+        return find_spec(module) is not None
+    except (ImportError, ValueError):  # a module that was set to None or has no spec
+        return False
