@@ -6,6 +6,7 @@ from decimal import Decimal
 from functools import cache, lru_cache
 from typing import Any
 
+from sonolube.common_units import COMMON_FACTORS
 from sonolube.errors import InvalidInput
 from sonolube.unit_grammar import canonical_unit
 
@@ -169,6 +170,9 @@ def _shortened(text: str) -> str:
 
 def _converted(number: float, written_unit: str, unit: str, *, name: str, text: str) -> float:
     """Return a number in another unit; the errors quote the name and the text of the value."""
+    factor = COMMON_FACTORS.get(unit, {}).get(written_unit)
+    if factor is not None:
+        return number * factor
     import numpy as np
     import pint
 

@@ -9,10 +9,14 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numba.core.event import Event, Listener, install_listener
 
+if TYPE_CHECKING:
+    from numba.core.event import Event
+
+from sonolube.compilation import runs_plain
 from sonolube.dynamics.friction_average.elliptic_kernel import elliptic_averages, friction_workspace, sum_precision
 from sonolube.dynamics.friction_average.elliptic_quadrature import elliptic_nodes
 from sonolube.dynamics.harmonic_balance.floquet_kernel import monodromy_power_norms, period_workspace
@@ -21,7 +25,7 @@ from sonolube.dynamics.kernels.contact_kernel import KernelVariant, LawParameter
 from sonolube.interruption import undone_at_signal
 
 
-class CompileProcess(Listener):
+class CompileProcess:
     """Process that compiles the kernels after `newton_solve`, started when numba begins to compile that one.
 
     Parameters
@@ -38,16 +42,16 @@ class CompileProcess(Listener):
         self._code = f"from {__name__} import compile_remaining_kernels; compile_remaining_kernels{arguments}"
         self._process: subprocess.Popen[bytes] | None = None
 
-    def on_start(self, event: Event) -> None:
+    def on_start(self, event: "Event") -> None:
         """Start the process; where that fails, the caller compiles the remaining kernels itself."""
-        if event.data["dispatcher"] is newton_solve and self._process is None:
+        if event.data["dispatcher"] is newton_solve.compiled and self._process is None:
             silent, command = subprocess.DEVNULL, [sys.executable, "-P", "-c", self._code]
             with suppress(OSError):
                 self._process = subprocess.Popen(command, stdin=silent, stdout=silent, stderr=silent)
 
-    def on_end(self, event: Event) -> None:
+    def on_end(self, event: "Event") -> None:
         """Wait for the process after `newton_solve`: it is ahead with the kernels that the caller requires next."""
-        if event.data["dispatcher"] is newton_solve:
+        if event.data["dispatcher"] is newton_solve.compiled:
             self.wait()
 
     def wait(self) -> int | None:
@@ -79,11 +83,14 @@ def compile_in_parallel(variant: KernelVariant, *, stability: bool, tolerance: f
         It has ended when the context has.
     """
     process = CompileProcess(variant, stability, tolerance)
-    if (os.cpu_count() or 1) == 1 or not sys.executable or getattr(sys, "frozen", False):
+    if runs_plain(1) or (os.cpu_count() or 1) == 1 or not sys.executable or getattr(sys, "frozen", False):
         yield process  # not listening, and hence never started
         return
+    from numba.core.event import Listener, install_listener
+
+    listener: Any = type("CompileListener", (Listener,), {"on_start": process.on_start, "on_end": process.on_end})()
     try:
-        with undone_at_signal(process.stop), install_listener("numba:compile", process):
+        with undone_at_signal(process.stop), install_listener("numba:compile", listener):
             yield process
         process.wait()
     finally:

@@ -5,10 +5,9 @@ from dataclasses import dataclass
 from itertools import combinations
 from math import hypot, isfinite
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-import xarray as xr
 
 from sonolube.cli.console.answer import Answer, deliver
 from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, loaded_rig
@@ -32,6 +31,10 @@ from sonolube.validation.comparison import (
 from sonolube.validation.figures import comparison_figures, rig_figure
 from sonolube.validation.rig_conditions import vibrated_rig
 from sonolube.validation.tables import comparison_csv, comparison_dataset, parameter_text
+
+if TYPE_CHECKING:
+    import xarray as xr
+
 
 _PREDICTED = ("friction_ratio", "raw_friction_ratio", "uncertainty", "reason")
 
@@ -113,7 +116,7 @@ class ComparisonAnswer(Answer):
             drawings["models-on-the-rig"] = Drawing(draw=lambda: rig_figure(self.predictions, title))
         return drawings
 
-    def files(self) -> Mapping[str, str | xr.Dataset]:
+    def files(self) -> "Mapping[str, str | xr.Dataset]":
         """Errors as CSV, and every ratio as netCDF."""
         return {"models.csv": comparison_csv(self.fits), "models.nc": comparison_dataset(self.fits)}
 
