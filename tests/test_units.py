@@ -3,11 +3,14 @@
 import contextlib
 import math
 
+import pint
 import pytest
 from hypothesis import given, strategies as st
 from pytest import approx
 
+from sonolube.common_units import COMMON_FACTORS
 from sonolube.errors import InvalidInput
+from sonolube.unit_grammar import canonical_unit
 from sonolube.units import convert, format_si, temperature_difference_to_si, to_si
 
 
@@ -103,3 +106,13 @@ def test_a_rise_of_temperature_is_no_temperature() -> None:
 def test_a_share_is_no_angle() -> None:
     with pytest.raises(InvalidInput, match="40 % is a pure number; expected a speed"):
         to_si("40 %", unit="m/s", name="speed")
+
+
+def test_the_units_that_are_read_without_pint_have_its_values_to_the_last_bit() -> None:
+    registry = pint.UnitRegistry(cache_folder=None)
+    for unit, known in COMMON_FACTORS.items():
+        for written, factor in known.items():
+            one = registry.Unit(canonical_unit(written))
+            for number in (1.0, 0.3, 417.0):
+                expected = registry.Quantity(number, one).to(canonical_unit(unit)).magnitude
+                assert to_si(f"{number} {written}", unit=unit, name="") == number * factor == expected, written

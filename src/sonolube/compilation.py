@@ -10,7 +10,7 @@ from contextvars import ContextVar
 from functools import cached_property, update_wrapper
 from threading import RLock
 from types import FunctionType
-from typing import Any, Generic, ParamSpec, TypeVar
+from typing import Any, Generic, ParamSpec, TypeVar, cast
 
 P = ParamSpec("P")
 R = TypeVar("R", covariant=True)
@@ -48,14 +48,13 @@ class Kernel(Generic[P, R]):
 
         with _BUILDING:
             inner = {name: each.compiled for name, each in self._kernels().items()}
-            compiled: Callable[P, R] = numba.njit(**self._options)(self._with_globals(inner))
-            return compiled
+            return cast("Callable[P, R]", numba.njit(**self._options)(self._with_globals(inner)))
 
     @cached_property
     def interpreted(self) -> Callable[P, R]:
         """The same statements as plain Python, some hundred times slower, without any time to compile or load."""
         inner: dict[str, Any] = {name: each.interpreted for name, each in self._kernels().items()}
-        return self._with_globals(inner | self._plain)
+        return cast("Callable[P, R]", self._with_globals(inner | self._plain))
 
     def for_points(self, count: int, *, most: int = 4) -> Callable[P, R]:
         """Return the way to run that suits a number of points: plain Python for at most so many in `few_points`."""

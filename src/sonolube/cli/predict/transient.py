@@ -8,6 +8,7 @@ from sonolube.cli.console.answer import Answer, aligned, deliver, si
 from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, RigPath, TypedNumber, loaded_rig, si_option
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
+from sonolube.compilation import few_points
 from sonolube.report import Drawing
 from sonolube.rig import Rig, StartUp, resolved_vibration, start_up
 from sonolube.rig.figures import start_up_figure
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 _QUANTITIES = ("settling_time", "vibration_amplitude", "mean_displacement", "beat_frequency")
 
 
+@few_points()
 def transient(
     rig: RigPath,
     run_time: Annotated[float, si_option("s", "Time that is integrated.", "--duration")] = TypedNumber("0.1s", "s"),

@@ -145,7 +145,7 @@ def _table() -> _Table:
     return _Table(ratio, beta[0], beta[1] - beta[0], speed[0], speed[1] - speed[0])
 
 
-@kernel(cache=True, nogil=True, error_model="numpy")
+@kernel(cache=True, nogil=True, error_model="numpy", no_cfunc_wrapper=True, _nrt=False)
 def _write_ratios(
     table: _Table,
     tolerance: float,
@@ -176,7 +176,7 @@ def _write_ratios(
             ratio[i] = 1 - _deficit(harmonics[j], mean[j], s, nodes, weights)
 
 
-@kernel(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False)
 def _interpolated(table: _Table, beta: float, s: float) -> float:
     """Return the ratio under a sine by bicubic interpolation in the table, infinity outside of it."""
     if s >= beta:
@@ -195,14 +195,14 @@ def _interpolated(table: _Table, beta: float, s: float) -> float:
     return total
 
 
-@kernel(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False)
 def _cubic_weights(t: float) -> tuple[float, float, float, float]:
     """Return the weights at t of the cubic Lagrange polynomial through values at 0, 1, 2 and 3."""
     a, b, c, d = t, t - 1, t - 2, t - 3
     return -b * c * d / 6, a * c * d / 2, -a * b * d / 2, a * b * c / 6
 
 
-@kernel(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False)
 def _deficit(harmonics: Complexes, mean: float, s: float, nodes: Floats, weights: Floats) -> float:
     """Return the friction deficit of sticking elements over the load, for a motion that closes once in a period."""
     count = harmonics.size
@@ -228,7 +228,7 @@ def _deficit(harmonics: Complexes, mean: float, s: float, nodes: Floats, weights
     return total / (2 * pi)
 
 
-@kernel(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False)
 def _closing_phase(harmonics: Complexes, count: int, s: float, fastest: float, side: float) -> float:
     """Return the phase before (-1) or after (1) that of fastest closing at which the gap closes at the rate s."""
     inside, outside = fastest, fastest + side * pi
@@ -248,7 +248,7 @@ def _closing_phase(harmonics: Complexes, count: int, s: float, fastest: float, s
     return phase
 
 
-@kernel(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False)
 def _opening_phase(harmonics: Complexes, count: int, s: float, level: float, low: float, high: float) -> float:
     """Return the phase between two at which the height of the gap above the slide has risen to a level."""
     phase: float = low
@@ -275,7 +275,7 @@ def _opening_phase(harmonics: Complexes, count: int, s: float, level: float, low
     return phase
 
 
-@kernel(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False)
 def _displacement_derivatives(harmonics: Complexes, count: int, phase: float) -> tuple[float, float, float, float]:
     """Return the displacement about the mean and its first three derivatives with respect to the phase."""
     cosine, sine = cos(phase), sin(phase)
