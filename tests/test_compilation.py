@@ -3,11 +3,14 @@
 import math
 import subprocess
 import sys
+import tempfile
 from dataclasses import fields, replace
 from pathlib import Path
 
+import numba
 import numpy as np
 import pytest
+from numba.core import caching
 from pytest import approx
 from scipy.special import i0e, wrightomega
 
@@ -16,7 +19,7 @@ from sonolube.contact import GaussianHeights, normal_force
 from sonolube.contact.greenwood_williamson import log_normal_force
 from sonolube.dynamics.harmonic_balance.bessel import wright_omega
 from sonolube.friction import sine_stick_slip_ratio
-from sonolube.friction.oscillating_contact.bessel import scaled_bessel_i0
+from sonolube.friction.scaled_bessel import scaled_bessel_i0
 from sonolube.rig import read_rig, simulate
 from sonolube.rig.result_quantities import result_quantities
 
@@ -50,6 +53,21 @@ def test_a_division_by_zero_is_left_to_the_compiled_kernel() -> None:
 
     with few_points():
         assert inverse.for_points(1)(0.0) == math.inf
+
+
+def test_kernels_are_kept_among_temporary_files_where_no_other_folder_can_be_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    @kernel(cache=True)
+    def doubled(value: float) -> float:
+        return 2 * value
+
+    own = [each for each in caching.CacheImpl._locator_classes if "UserProvided" in each.__name__]
+    monkeypatch.setattr(caching.CacheImpl, "_locator_classes", own)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setattr(numba.config, "CACHE_DIR", "")
+    assert doubled(4.0) == 8.0
+    assert list(tmp_path.glob("sonolube-kernels-*/*/*.nbi"))
 
 
 @pytest.mark.parametrize("rig", ["tribometer", "welder_flat", "poisson_al_steel", "collar"])

@@ -2,6 +2,7 @@
 
 import contextlib
 import math
+from typing import Any
 
 import pint
 import pytest
@@ -109,7 +110,7 @@ def test_a_share_is_no_angle() -> None:
 
 
 def test_the_units_that_are_read_without_pint_have_its_values_to_the_last_bit() -> None:
-    registry = pint.UnitRegistry(cache_folder=None)
+    registry: Any = pint.UnitRegistry(cache_folder=None)
     for unit, known in COMMON_FACTORS.items():
         for written, factor in known.items():
             one = registry.Unit(canonical_unit(written))

@@ -4,6 +4,7 @@ numba is imported with the first compiled call, so that commands of one operatin
 load it nor compile anything. There is one source of each kernel: both ways run the same statements.
 """
 
+import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -48,7 +49,14 @@ class Kernel(Generic[P, R]):
 
         with _BUILDING:
             inner = {name: each.compiled for name, each in self._kernels().items()}
-            return cast("Callable[P, R]", numba.njit(**self._options)(self._with_globals(inner)))
+            function = self._with_globals(inner)
+            try:
+                return cast("Callable[P, R]", numba.njit(**self._options)(function))
+            except RuntimeError:  # neither the package's folder nor the user's cache can be written
+                config: Any = numba.config
+                config.CACHE_DIR = _private_folder()
+                caching = {"cache": bool(config.CACHE_DIR)}
+                return cast("Callable[P, R]", numba.njit(**self._options | caching)(function))
 
     @cached_property
     def interpreted(self) -> Callable[P, R]:
@@ -86,6 +94,23 @@ class Kernel(Generic[P, R]):
         copy = FunctionType(own.__code__, own.__globals__ | changed, own.__name__, own.__defaults__, own.__closure__)
         copy.__module__, copy.__qualname__ = own.__module__, own.__qualname__
         return copy
+
+
+def _private_folder() -> str:
+    """Return a folder for compiled kernels among temporary files that nobody else can write; empty without one."""
+    import stat
+    import tempfile
+    from pathlib import Path
+
+    user = os.getuid() if hasattr(os, "getuid") else 0
+    folder = Path(tempfile.gettempdir()) / f"sonolube-kernels-{user}"
+    try:
+        folder.mkdir(mode=stat.S_IRWXU, exist_ok=True)
+        found = folder.lstat()
+    except OSError:
+        return ""
+    shared = hasattr(os, "getuid") and (found.st_uid != user or stat.S_IMODE(found.st_mode) & ~stat.S_IRWXU)
+    return "" if shared or not stat.S_ISDIR(found.st_mode) else str(folder)
 
 
 def kernel(*, plain: dict[str, Any] | None = None, **options: Any) -> Callable[[Callable[P, R]], Kernel[P, R]]:

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_non_negative, require_positive, require_within
-from sonolube.friction.oscillating_contact.bessel import scaled_bessel_i0
+from sonolube.friction.scaled_bessel import scaled_bessel_i0
 
 _QUADRATURE = np.polynomial.legendre.leggauss(64)  # over equal areas
 

@@ -83,8 +83,8 @@ def wright_omega(argument: Floats) -> Floats:
     .. [1] P. W. Lawrence, R. M. Corless and D. J. Jeffrey, ACM Trans. Math. Softw. 38, 20 (2012), equation 6.
     """
     z = np.maximum(argument, -700.0)  # below it w is exp(z), which underflows
-    above = np.maximum(z, 1.0)
-    w = np.where(z < -1.5, np.exp(np.minimum(z, 1.0)), np.where(z < 1.0, np.exp((z - 1) / 2), above - np.log(above)))
+    above, below = np.maximum(z, 1.0), np.minimum(z, 1.0)
+    w = np.where(z < -1.5, np.exp(below), np.where(z < 1.0, np.exp((below - 1) / 2), above - np.log(above)))
     for _ in range(3):
         r = z - w - np.log(w)
         q = 2 * (1 + w) * (1 + w + 2 / 3 * r)

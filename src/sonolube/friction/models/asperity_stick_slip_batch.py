@@ -12,7 +12,7 @@ from sonolube.compilation import kernel
 from sonolube.contact.gap_motion import GapMotionBatch
 from sonolube.errors import InvalidInput
 from sonolube.friction.models.asperity_stick_slip_sine import EMPIRICAL_MEMORY_LENGTH, sine_stick_slip_ratio
-from sonolube.friction.oscillating_contact.bessel import scaled_bessel_i0
+from sonolube.friction.scaled_bessel import scaled_bessel_i0
 
 SINE_TOLERANCE = 8e-5
 """Largest error of a friction ratio by neglecting the higher harmonics of a vibration. []"""

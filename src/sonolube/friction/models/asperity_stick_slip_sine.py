@@ -8,8 +8,8 @@ from numpy.typing import ArrayLike
 from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.compilation import kernel
 from sonolube.contact.rough import RoughContact, decay_length, separation
-from sonolube.friction.oscillating_contact.bessel import scaled_bessel_i0
 from sonolube.friction.oscillating_contact.stick_slip_phases import half_stick_phase
+from sonolube.friction.scaled_bessel import scaled_bessel_i0
 
 EMPIRICAL_MEMORY_LENGTH = 1.5e-6
 """Memory length of an asperity: sliding distance in which its tangential force reaches the friction limit. [m]
