@@ -165,15 +165,19 @@ def log_normal_force(
 
     Parameters
     ----------
-    roughness, pair, nominal_area, heights, asperity
-        As of `greenwood_williamson_integrals`.
+    roughness : Roughness
+    pair : ContactPair
+    nominal_area : float
+        Area over which the summits are distributed. [m2]
+    heights : HeightDistribution
+    asperity : AsperityLaw
     h : ndarray, shape (n,)
-        Separation over R_q. []
+        Separation over R_q.
 
     Returns
     -------
     ndarray, shape (n,)
-        Of the force in N; that of the table to 1e-10.
+        That of the table to 1e-10, for forces in N.
     """
     w, per_height = _per_height(roughness, pair, nominal_area, heights, asperity)
     return _log_integrals(heights, h, w, per_height)[:, 0]

@@ -43,19 +43,7 @@ def progress(title: str) -> Iterator[Advance]:
 
 
 def time_left(elapsed: float, done: int, total: int | None) -> str:
-    """Time left in words if the rest goes on at the same pace, such as "about 12 s left"; empty while unknown.
-
-    Parameters
-    ----------
-    elapsed : float
-        Time since the start. [s]
-    done, total : int
-        Parts of the work; None for an unknown total.
-
-    Returns
-    -------
-    str
-    """
+    """Time left in words if the rest goes on at the same pace, such as "about 12 s left"; empty while unknown."""
     if not total or not 0 < done <= total:
         return ""
     left = elapsed * (total - done) / done
