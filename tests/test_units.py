@@ -2,12 +2,16 @@
 
 import contextlib
 import math
+from typing import Any
 
+import pint
 import pytest
 from hypothesis import given, strategies as st
 from pytest import approx
 
+from sonolube.common_units import COMMON_FACTORS
 from sonolube.errors import InvalidInput
+from sonolube.unit_grammar import canonical_unit
 from sonolube.units import convert, format_like, format_si, temperature_difference_to_si, to_si
 
 
@@ -122,3 +126,13 @@ def test_a_column_has_the_prefix_of_its_largest_value() -> None:
 def test_values_of_a_column_are_those_of_single_texts(values: list[float], unit: str) -> None:
     for value, text in zip(values, format_like(values, unit), strict=True):
         assert to_si(text, unit=unit, name="value") == approx(value, rel=6e-3)
+
+
+def test_the_units_that_are_read_without_pint_have_its_values_to_the_last_bit() -> None:
+    registry: Any = pint.UnitRegistry(cache_folder=None)
+    for unit, known in COMMON_FACTORS.items():
+        for written, factor in known.items():
+            one = registry.Unit(canonical_unit(written))
+            for number in (1.0, 0.3, 417.0):
+                expected = registry.Quantity(number, one).to(canonical_unit(unit)).magnitude
+                assert to_si(f"{number} {written}", unit=unit, name="") == number * factor == expected, written

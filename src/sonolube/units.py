@@ -7,6 +7,7 @@ from decimal import Decimal
 from functools import cache, lru_cache
 from typing import Any
 
+from sonolube.common_units import CELSIUS_ORIGIN, COMMON_FACTORS
 from sonolube.errors import InvalidInput
 from sonolube.unit_grammar import canonical_unit
 
@@ -202,6 +203,11 @@ def _shortened(text: str) -> str:
 
 def _converted(number: float, written_unit: str, unit: str, *, name: str, text: str) -> float:
     """Return a number in another unit; the errors quote the name and the text of the value."""
+    factor = COMMON_FACTORS.get(unit, {}).get(written_unit)
+    if factor is not None:
+        return number * factor
+    if (written_unit, unit) == ("degC", "K"):
+        return number + CELSIUS_ORIGIN
     import numpy as np
     import pint
 

@@ -28,7 +28,8 @@ states = steady_state(
     voltage_amplitude=14.0, stability={stability}, relative_tolerance={tolerance}, workers=2,
 )
 friction_averages(states, sliding_speed=[0.1])
-print([sum(kernel.stats.cache_misses.values()) for kernel in (newton_solve, monodromy_power_norms, elliptic_averages)])
+kernels = [kernel.compiled for kernel in (newton_solve, monodromy_power_norms, elliptic_averages)]
+print([sum(kernel.stats.cache_misses.values()) for kernel in kernels])
 """
 
 
@@ -51,7 +52,7 @@ def begin_to_compile(kernel: object) -> None:
 
 
 def interrupted() -> None:
-    begin_to_compile(newton_solve)
+    begin_to_compile(newton_solve.compiled)
     raise KeyboardInterrupt
 
 
@@ -63,7 +64,7 @@ def test_an_interrupted_caller_kills_the_second_process() -> None:
 
 def test_no_process_is_started_when_another_kernel_is_compiled() -> None:
     with compile_in_parallel(UNDAMPED, stability=True, tolerance=1e-6) as process:
-        begin_to_compile(monodromy_power_norms)
+        begin_to_compile(monodromy_power_norms.compiled)
     assert process.wait() is None
 
 
@@ -81,5 +82,5 @@ def test_the_caller_works_where_no_second_process_can_be_started(
 ) -> None:
     monkeypatch.setattr(where, name, value, raising=False)
     with compile_in_parallel(UNDAMPED, stability=True, tolerance=1e-6) as process:
-        begin_to_compile(newton_solve)
+        begin_to_compile(newton_solve.compiled)
     assert process.wait() is None

@@ -136,17 +136,8 @@ def greenwood_williamson_integrals(
     -------
     GreenwoodWilliamsonIntegrals
     """
-    Rq, Rs = roughness.rms_height, roughness.summit_radius
-    w_c = critical_interference(asperity, pair, summit_radius=Rs) / Rq
     deviation = heights.standard_deviation
-    w, weights = _quadrature([each * w_c for each in asperity.breakpoints], standard_deviation=deviation)
-    force = asperity_force(asperity, pair, summit_radius=Rs, interference=w * Rq)
-    area = asperity_area(asperity, pair, summit_radius=Rs, interference=w * Rq)
-    summits = roughness.summit_density * nominal_area * weights
-    elastic, plastic = w < w_c, w >= w_c
-    integrands = [force * elastic, force * plastic, area * elastic, area * plastic, np.ones_like(w)]
-    per_height = summits[:, None] * np.stack(integrands, axis=1)
-
+    w, per_height = _per_height(roughness, pair, nominal_area, heights, asperity)
     if isinstance(heights, ExponentialHeights):
         logs = _log_integrals(heights, np.zeros(1), w, per_height)[0]
         rates = heights.decay * np.array([1, 1, 1, 0, 0])
@@ -159,6 +150,56 @@ def greenwood_williamson_integrals(
         lowest, highest = float(h[0]), float(h[-1])
     names = ("force", "area", "count", "elastic_load_fraction", "elastic_area_fraction")
     return GreenwoodWilliamsonIntegrals(lowest=lowest, highest=highest, **dict(zip(names, functions, strict=True)))
+
+
+def log_normal_force(
+    *,
+    roughness: Roughness,
+    pair: ContactPair,
+    nominal_area: float,
+    heights: HeightDistribution,
+    asperity: AsperityLaw,
+    h: Floats,
+) -> Floats:
+    """Return the logarithm of the force of all asperities at a few separations, integrated without a table.
+
+    Parameters
+    ----------
+    roughness : Roughness
+    pair : ContactPair
+    nominal_area : float
+        Area over which the summits are distributed. [m2]
+    heights : HeightDistribution
+    asperity : AsperityLaw
+    h : ndarray, shape (n,)
+        Separation over R_q.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        That of the table to 1e-10, for forces in N.
+    """
+    w, per_height = _per_height(roughness, pair, nominal_area, heights, asperity)
+    return _log_integrals(heights, h, w, per_height)[:, 0]
+
+
+def _per_height(
+    roughness: Roughness, pair: ContactPair, nominal_area: float, heights: HeightDistribution, asperity: AsperityLaw
+) -> tuple[Floats, Floats]:
+    """Return interferences over R_q, and what summits at each add to the integrals per density of the heights.
+
+    The columns are elastic and plastic force, elastic and plastic area, and number.
+    """
+    Rq, Rs = roughness.rms_height, roughness.summit_radius
+    w_c = critical_interference(asperity, pair, summit_radius=Rs) / Rq
+    deviation = heights.standard_deviation
+    w, weights = _quadrature([each * w_c for each in asperity.breakpoints], standard_deviation=deviation)
+    force = asperity_force(asperity, pair, summit_radius=Rs, interference=w * Rq)
+    area = asperity_area(asperity, pair, summit_radius=Rs, interference=w * Rq)
+    summits = roughness.summit_density * nominal_area * weights
+    elastic, plastic = w < w_c, w >= w_c
+    integrands = [force * elastic, force * plastic, area * elastic, area * plastic, np.ones_like(w)]
+    return w, summits[:, None] * np.stack(integrands, axis=1)
 
 
 def _log_integrals(heights: HeightDistribution, h: Floats, w: Floats, per_height: Floats) -> Floats:

@@ -1,13 +1,12 @@
 """Validity range of the statistical contact model: caveats of a contact, and the range of exponential heights."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 
 from sonolube.checks import Floats, require_finite
-from sonolube.contact.greenwood_williamson import TABLE_RANGE
+from sonolube.contact.greenwood_williamson import TABLE_RANGE, log_normal_force
 from sonolube.contact.height_distribution import MINIMUM_ROUGHNESS_PARAMETER, ExponentialHeights, GaussianHeights
 from sonolube.contact.rough import RoughContact, contact_count, normal_force, real_contact_area
 from sonolube.errors import InvalidInput
@@ -20,6 +19,9 @@ MAXIMUM_AREA_FRACTION = 0.1
 
 MINIMUM_CONTACT_COUNT = 30
 """Number of asperities in contact below which the mean of the model is not representative of one contact. []"""
+
+
+_HALVINGS = 48  # of the bracket of an end of the range, to rounding
 
 
 def exponential_validity_range(contact: RoughContact, *, factor: float = 2.0) -> tuple[float, float] | None:
@@ -58,11 +60,11 @@ def exponential_validity_range(contact: RoughContact, *, factor: float = 2.0) ->
     gaussian = replace(contact, heights=heights)
     is_exponential = isinstance(contact.heights, ExponentialHeights)
     exponential = contact if is_exponential else replace(contact, heights=ExponentialHeights())
+    parts = {part.name: getattr(gaussian, part.name) for part in fields(gaussian)}
 
-    def log_ratio(h: ArrayLike) -> Floats:
-        d = np.multiply(h, roughness.rms_height)
-        loads = (normal_force(each, separation=d) for each in (gaussian, exponential))
-        return np.subtract(*(np.log(load) for load in loads))
+    def log_ratio(h: Floats) -> Floats:
+        load = normal_force(exponential, separation=h * roughness.rms_height)
+        return log_normal_force(**parts, h=h) - np.log(load)
 
     # within the table, and short of where the loads underflow
     h = heights.standard_deviation * np.linspace(TABLE_RANGE[0] + 0.01, 20, 1000)
@@ -72,7 +74,11 @@ def exponential_validity_range(contact: RoughContact, *, factor: float = 2.0) ->
         return None
 
     def separation_at(level: float, low: int, high: int) -> float:
-        return float(brentq(lambda x: float(log_ratio(x)) - level, h[low], h[high]))
+        ends, rising = h[[low, high]], ratios[low] < level
+        for _ in range(_HALVINGS):
+            middle = ends.mean(keepdims=True)
+            ends[0 if (log_ratio(middle) < level) == rising else 1] = middle[0]
+        return float(ends.mean())
 
     highest = separation_at(-tolerance, peak, -1)
     lowest = separation_at(tolerance, peak, -1) if ratios[peak] > tolerance else separation_at(-tolerance, 0, peak)

@@ -6,8 +6,7 @@ Each pair of states belongs to two poles of the structure: a complex conjugate p
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import schur
-from scipy.sparse.csgraph import connected_components
+from numpy.typing import NDArray
 
 from sonolube.checks import Floats
 from sonolube.dynamics.linear import modes
@@ -15,6 +14,8 @@ from sonolube.dynamics.structure import Structure
 from sonolube.errors import InvalidInput
 
 _UNCOUPLED = 1e-12  # modal damping between two modes, over the largest, that is rounding
+_COINCIDENT = 1e-9  # relative distance of poles that cannot be told apart
+_SHIFT, _ITERATIONS = 1e-4, 5  # of inverse iteration; each iteration divides the error by the shift at least once
 _WORST_CONDITION = 1e7  # largest condition number of the change of basis, which costs as many digits
 
 
@@ -75,8 +76,7 @@ def first_order_modes(structure: Structure) -> FirstOrderModes:
     -----
     A mode that the damping does not couple to others (a rigid-body mode for example) is a pair by itself, with its
     modal displacement and velocity as states. The coupled modes are sorted into pairs of poles; the invariant plane of
-    each pair is spanned by an orthonormal basis from an ordered real Schur form, which stays well conditioned for
-    critically damped pairs.
+    each pair is spanned by an orthonormal basis, which stays well conditioned for critically damped pairs.
     """
     natural, n = modes(structure), structure.coordinates
     omega, shapes = 2 * np.pi * natural.natural_frequency, natural.shapes
@@ -88,9 +88,7 @@ def first_order_modes(structure: Structure) -> FirstOrderModes:
     modal_matrix[modal, 0, modal, 1], modal_matrix[modal, 1, modal, 0] = rate, -(omega**2) / rate
     modal_matrix[:, 1, :, 1] = -damping * rate / rate[:, np.newaxis]
     basis = np.zeros((n, 2, n, 2))
-    coupled, member_of = connected_components(damping != 0, directed=False)
-    for component in range(coupled):
-        members = np.flatnonzero(member_of == component)
+    for members in _coupled_groups(damping != 0):
         inside = np.ix_(members, np.arange(2), members, np.arange(2))
         side = 2 * members.size
         planes = np.eye(2) if side == 2 else _invariant_planes(modal_matrix[inside].reshape(side, side))
@@ -115,6 +113,15 @@ def first_order_modes(structure: Structure) -> FirstOrderModes:
     )
 
 
+def _coupled_groups(coupled: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
+    """Return the groups of modes that are coupled, directly or through others, in the order of their first modes."""
+    reached = coupled | coupled.T | np.eye(len(coupled), dtype=bool)
+    for _ in range(len(coupled).bit_length()):  # each product doubles the length of the paths
+        reached = reached @ reached
+    first = reached.argmax(axis=1)
+    return [np.flatnonzero(first == each) for each in np.unique(first)]
+
+
 def _invariant_planes(matrix: Floats) -> Floats:
     """Return orthonormal bases of two-dimensional invariant subspaces of a state matrix, as columns."""
     poles = np.linalg.eigvals(matrix)
@@ -133,15 +140,15 @@ def _invariant_planes(matrix: Floats) -> Floats:
 
 
 def _invariant_plane(matrix: Floats, pair: tuple[complex, complex]) -> Floats:
-    """Return an orthonormal basis of the invariant subspace of one pair of poles, by an ordered real Schur form."""
-    # select the two nearest: reordering a real Schur form keeps conjugates together and perturbs poles by rounding
+    """Return an orthonormal basis of the invariant subspace of one pair of poles, by inverse iteration with both."""
+    # the two nearest poles of the matrix are the pair, and the next one must be another
     nearest = np.sort(np.abs(np.linalg.eigvals(matrix)[:, np.newaxis] - np.array(pair)).min(axis=1))
-    bound = (nearest[1] + nearest[2]) / 2
-
-    def selected(real: float, imaginary: float = 0.0) -> bool:
-        return bool(min(abs(complex(real, imaginary) - pole) for pole in pair) <= bound)
-
-    _, vectors, count = schur(matrix, sort=selected)
-    if count != 2:
-        raise InvalidInput(f"damping_matrix makes {count} poles of the structure coincide; change a damper slightly")
-    return np.asarray(vectors[:, :2], dtype=np.float64)
+    if nearest[2] <= _COINCIDENT * np.abs(pair).max():
+        raise InvalidInput("damping_matrix makes poles of the structure coincide; change a damper slightly")
+    side = len(matrix)
+    offset = _SHIFT * nearest[2]  # from the poles, at which the matrix is singular
+    shifted = [matrix - (pole + offset) * np.eye(side) for pole in pair]
+    plane = np.linalg.qr(np.cos(np.multiply.outer(np.arange(1.0, side + 1), [1.0, 2.0])))[0]
+    for _ in range(_ITERATIONS):
+        plane = np.linalg.qr(np.linalg.solve(shifted[0], np.linalg.solve(shifted[1], plane)).real)[0]
+    return plane

@@ -237,7 +237,8 @@ def _averages(states: SteadyStates, speeds: Floats, workers: int, selected: NDAr
         def average(chunk: slice, alike: Integers = alike, nodes: EllipticNodes = nodes) -> None:
             work = friction_workspace(int(count[alike].max()), precise)
             chosen = alike[chunk]
-            elliptic_averages(*variant, law, settings, parts, count, rows, chosen, precise, nodes, work, averages)
+            averages_of = elliptic_averages.for_points(chosen.size * speeds.size)
+            averages_of(*variant, law, settings, parts, count, rows, chosen, precise, nodes, work, averages)
 
         map_chunks(average, alike.size, workers)
     if not has_two_extrema[selected].all():

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eigh
 
 from sonolube.actuator import ButterworthVanDyke, CircuitResonances, MotionalBranch, circuit_resonances
 from sonolube.checks import Complexes, Floats
@@ -75,7 +74,7 @@ def modes(structure: Structure) -> Modes:
     The damping ratios are exact for modal (classical) damping and otherwise correct to first order in the damping;
     `poles` are exact for any damping.
     """
-    squares, shapes = eigh(structure.stiffness_matrix, structure.mass_matrix)
+    squares, shapes = _generalised_eigh(structure.stiffness_matrix, structure.mass_matrix)
     rigid = squares <= _RIGID * squares[-1]
     omega = np.sqrt(np.where(rigid, 0.0, squares))
     shapes = shapes * np.where(structure.contact_vector @ shapes < 0, -1.0, 1.0)
@@ -88,6 +87,14 @@ def modes(structure: Structure) -> Modes:
         shapes=shapes,
         rigid=rigid,
     )
+
+
+def _generalised_eigh(stiffness: Floats, mass: Floats) -> tuple[Floats, Floats]:
+    """Return the eigenvalues and eigenvectors of K and M, of unit modal mass, with the Cholesky factor of M."""
+    factor = np.linalg.cholesky(mass)
+    reduced = np.linalg.solve(factor, np.linalg.solve(factor, stiffness).T)
+    squares, vectors = np.linalg.eigh((reduced + reduced.T) / 2)
+    return squares, np.linalg.solve(factor.T, vectors)
 
 
 def poles(structure: Structure) -> Complexes:

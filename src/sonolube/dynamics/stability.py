@@ -1,7 +1,6 @@
 """Stability of periodic vibrations: Floquet multipliers of the linearised motion."""
 
 import numpy as np
-from scipy.linalg import block_diag, expm
 
 from sonolube.checks import Complexes, Floats
 from sonolube.dynamics.harmonic_balance.receptance import PoleResidueModel, pole_residue_model
@@ -57,6 +56,8 @@ def floquet_multipliers(states: SteadyStates, *, kicks: int = 512) -> Complexes:
 
 def _monodromy_matrix(model: PoleResidueModel, states: SteadyStates, index: tuple[int, ...], kicks: int) -> Floats:
     """Return the monodromy matrix of one steady state on the pairs of states, from mid-kick to mid-kick."""
+    from scipy.linalg import block_diag, expm
+
     pairs = model.trace.size
     step = 1 / states.frequency[index] / kicks
     drift = block_diag(*(expm(step * matrix) for matrix in model.state_matrix))

@@ -10,10 +10,14 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numba.core.event import Event, Listener, install_listener
 
+if TYPE_CHECKING:
+    from numba.core.event import Event
+
+from sonolube.compilation import runs_plain
 from sonolube.dynamics.friction_average.elliptic_kernel import elliptic_averages, friction_workspace, sum_precision
 from sonolube.dynamics.friction_average.elliptic_quadrature import elliptic_nodes
 from sonolube.dynamics.harmonic_balance.floquet_kernel import monodromy_power_norms, period_workspace
@@ -31,7 +35,7 @@ def compiled_code_folder() -> Path:
     -------
     Path
     """
-    return Path(newton_solve.stats.cache_path)
+    return newton_solve.cache_folder
 
 
 def is_compiled() -> bool:
@@ -41,11 +45,11 @@ def is_compiled() -> bool:
     -------
     bool
     """
-    names = [(Path(each.stats.cache_path), f"*.{each.py_func.__name__}-*.nbi") for each in _KERNELS]
+    names = [(each.cache_folder, f"*.{each.py_func.__name__}-*.nbi") for each in _KERNELS]
     return all(any(folder.glob(name)) for folder, name in names)
 
 
-class CompileProcess(Listener):
+class CompileProcess:
     """Process that compiles the kernels after `newton_solve`, started when numba begins to compile that one.
 
     Parameters
@@ -62,16 +66,16 @@ class CompileProcess(Listener):
         self._code = f"from {__name__} import compile_remaining_kernels; compile_remaining_kernels{arguments}"
         self._process: subprocess.Popen[bytes] | None = None
 
-    def on_start(self, event: Event) -> None:
+    def on_start(self, event: "Event") -> None:
         """Start the process; where that fails, the caller compiles the remaining kernels itself."""
-        if event.data["dispatcher"] is newton_solve and self._process is None:
+        if event.data["dispatcher"] is newton_solve.compiled and self._process is None:
             silent, command = subprocess.DEVNULL, [sys.executable, "-P", "-c", self._code]
             with suppress(OSError):
                 self._process = subprocess.Popen(command, stdin=silent, stdout=silent, stderr=silent)
 
-    def on_end(self, event: Event) -> None:
+    def on_end(self, event: "Event") -> None:
         """Wait for the process after `newton_solve`: it is ahead with the kernels that the caller requires next."""
-        if event.data["dispatcher"] is newton_solve:
+        if event.data["dispatcher"] is newton_solve.compiled:
             self.wait()
 
     def wait(self) -> int | None:
@@ -103,11 +107,14 @@ def compile_in_parallel(variant: KernelVariant, *, stability: bool, tolerance: f
         It has ended when the context has.
     """
     process = CompileProcess(variant, stability, tolerance)
-    if (os.cpu_count() or 1) == 1 or not sys.executable or getattr(sys, "frozen", False):
+    if runs_plain(1) or (os.cpu_count() or 1) == 1 or not sys.executable or getattr(sys, "frozen", False):
         yield process  # not listening, and hence never started
         return
+    from numba.core.event import Listener, install_listener
+
+    listener: Any = type("CompileListener", (Listener,), {"on_start": process.on_start, "on_end": process.on_end})()
     try:
-        with undone_at_signal(process.stop), install_listener("numba:compile", process):
+        with undone_at_signal(process.stop), install_listener("numba:compile", listener):
             yield process
         process.wait()
     finally:

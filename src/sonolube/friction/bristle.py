@@ -12,11 +12,10 @@ by a spring, mass and damper, whose displacement adds to the relative velocity v
 import math
 from dataclasses import dataclass
 
-import numba
 import numpy as np
-from scipy.linalg import expm
 
 from sonolube.checks import Floats, require_non_negative
+from sonolube.compilation import kernel
 from sonolube.errors import InvalidInput
 
 __all__ = ["RIGID", "Holder"]  # the kernels serve this room only
@@ -90,12 +89,14 @@ def holder_propagators(holder: Holder, step: float) -> tuple[Floats, Floats, Flo
     rates = np.zeros((4, 4))
     rates[:2] = np.array([[0, 1, 0, 0], [-K / m, -c / m, 1 / m, 0]])
     rates[2, 3] = 1 / step
+    from scipy.linalg import expm
+
     propagator = expm(rates * step)
     by_last = np.ascontiguousarray(propagator[:2, 3])
     return np.ascontiguousarray(propagator[:2, :2]), propagator[:2, 2] - by_last, by_last
 
 
-@numba.njit(cache=True)
+@kernel(cache=True)
 def _force_after_slide(force: float, k: float, limit: float, slide: float, exponent: float) -> float:
     """Return the force after a slide at constant stiffness and limit, before the clipping to the next limit."""
     if exponent == 0.0 or slide == 0.0:
@@ -106,7 +107,7 @@ def _force_after_slide(force: float, k: float, limit: float, slide: float, expon
     return asymptote + (force - asymptote) * math.exp(-k * abs(slide) / limit)
 
 
-@numba.njit(cache=True)
+@kernel(cache=True)
 def mean_force_massless_holder(k: Floats, limit: Floats, slides: Floats, steady: Floats, exponent: float) -> Floats:
     """Return the mean force of a bristle on a holder without mass over its steady period, for each sliding speed.
 
@@ -143,7 +144,7 @@ def mean_force_massless_holder(k: Floats, limit: Floats, slides: Floats, steady:
     return means
 
 
-@numba.njit(cache=True)
+@kernel(cache=True)
 def mean_force_inertial_holder(
     k: Floats,
     limit: Floats,
@@ -203,7 +204,7 @@ def mean_force_inertial_holder(
     return means, settled
 
 
-@numba.njit(cache=True)
+@kernel(cache=True)
 def _period(
     state: Floats,
     k: Floats,

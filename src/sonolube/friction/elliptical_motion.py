@@ -6,11 +6,11 @@ follow the vibration along the normal; the contact has a normal stiffness and, w
 
 from math import acos, cos, pi, sin
 
-import numba
 import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
+from sonolube.compilation import kernel
 
 
 def contact_time_fraction(
@@ -128,7 +128,7 @@ def elliptical_traction_ratio(
     ).reshape(load.shape)
 
 
-@numba.njit(cache=True)
+@kernel(cache=True)
 def _half_contact_phases(load_ratio: Floats) -> Floats:
     """Return half the phase of contact for each load over the amplitude of the force."""
     phases = np.empty(load_ratio.size)
@@ -137,7 +137,7 @@ def _half_contact_phases(load_ratio: Floats) -> Floats:
     return phases
 
 
-@numba.njit(cache=True)
+@kernel(cache=True)
 def _half_contact_phase(load_ratio: float) -> float:
     """Return the root h of sin h - h cos h = pi times the load over the amplitude of the force, by Halley's method."""
     if load_ratio >= 1.0:
@@ -156,14 +156,14 @@ def _half_contact_phase(load_ratio: float) -> float:
     return h
 
 
-@numba.njit(cache=True)
+@kernel(cache=True)
 def _force_integral(low: float, high: float, half: float, offset: float) -> float:
     """Return the integral of max(cos x + offset, 0), which vanishes beyond +-half, over an interval."""
     low, high = max(low, -half), min(high, half)
     return sin(high) - sin(low) + offset * (high - low) if high > low else 0.0
 
 
-@numba.njit(cache=True)
+@kernel(cache=True)
 def _traction(load_ratio: Floats, amplitude_ratio: Floats, v_1: Floats, v: Floats, lag: Floats) -> Floats:
     """Return the mean traction over the friction, from load and force amplitude over each other, velocities and lag."""
     ratio = np.empty(load_ratio.size)

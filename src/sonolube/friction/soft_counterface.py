@@ -19,9 +19,9 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import i0e
 
 from sonolube.checks import Floats, require_non_negative, require_positive, require_within
+from sonolube.friction.scaled_bessel import scaled_bessel_i0
 
 _QUADRATURE = np.polynomial.legendre.leggauss(64)  # over equal areas
 
@@ -95,7 +95,7 @@ def exponential_layer_ratio(
     motion, area = _patches(mode)
     beta = np.multiply.outer(a / length, motion)
     largest = beta.max(axis=-1, keepdims=True)  # taken out of both sums against overflow
-    load = (i0e(beta) * np.exp(beta - largest)) @ area
+    load = (scaled_bessel_i0(beta) * np.exp(beta - largest)) @ area
     return np.asarray((np.exp(-beta) @ area) * np.exp(-largest[..., 0]) / load)
 
 

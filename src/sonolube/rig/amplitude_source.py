@@ -1,12 +1,14 @@
 """Source of a rig's vibration: measured, computed or per volt, resolved in one place for every command."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
 
 import numpy as np
 
-from sonolube.contact import separation
-from sonolube.dynamics import Status, steady_state
+from sonolube.actuator import Drive
+from sonolube.contact import RoughContact, separation
+from sonolube.dynamics import Status, Structure, steady_state
 from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.rig.driven_rig import DrivenRig, driven_rig
 from sonolube.rig.excitation import voltage_harmonics
@@ -279,14 +281,11 @@ def _calibrated(rig: DrivenRig) -> DrivenRig:
         )
     sine = replace(rig, drive=replace(rig.drive, waveform="sine", waveform_samples=None))
     by = rig if stated.voltage_peak_to_peak is None and stated.frequency is None else sine
-    scale, last = 1.0, (0.0, -wanted)
-    for _ in range(_ROUNDS):
-        error = _amplitude(by, volts, f, load, scale) - wanted
-        if not abs(error) > _CLOSE * wanted:
-            break
-        step = (scale - last[0]) / (error - last[1]) * error
-        last, scale = (scale, error), scale - step
-    if not np.isfinite(error) or abs(error) > 1e3 * _CLOSE * wanted or not scale > 0:
+    measurement = _Measurement(
+        rig=by, by=(by.structure, by.contact, by.drive), amplitude=wanted, volts=volts, frequency=f, load=load
+    )
+    scale = _drive_scale(measurement)
+    if scale is None:
         raise InvalidInput(
             f"{rig.title}: no scale of its drive gives the measured amplitude of {format_si(wanted, 'm')}; choose the"
             " amplitude computed"
@@ -300,6 +299,32 @@ def _calibrated(rig: DrivenRig) -> DrivenRig:
             " than the stack can give; check stack and structure, or choose the amplitude computed"
         ) from None
     return replace(rig, structure=structure, stack=stack, calibration=scale, amplitude_source="measured")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Measurement:
+    """An amplitude measured under a voltage, frequency and load; the rig counts by what gives its motion."""
+
+    rig: DrivenRig = field(compare=False)
+    by: tuple[Structure, RoughContact, Drive]
+    amplitude: float
+    volts: float
+    frequency: float
+    load: float
+
+
+@lru_cache(maxsize=64)
+def _drive_scale(at: _Measurement) -> float | None:
+    """Return the factor on the drive at which the computed amplitude is the measured one, by secants; None for none."""
+    scale, last = 1.0, (0.0, -at.amplitude)
+    for _ in range(_ROUNDS):
+        error = _amplitude(at.rig, at.volts, at.frequency, at.load, scale) - at.amplitude
+        if not abs(error) > _CLOSE * at.amplitude:
+            break
+        step = (scale - last[0]) / (error - last[1]) * error
+        last, scale = (scale, error), scale - step
+    found = np.isfinite(error) and abs(error) <= 1e3 * _CLOSE * at.amplitude and scale > 0
+    return scale if found else None
 
 
 def _amplitude(rig: DrivenRig, volts: float, frequency: float, load: float, scale: float) -> float:

@@ -6,7 +6,6 @@ from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import ndtr, ndtri
 
 from sonolube.checks import Floats, require_positive, require_within
 from sonolube.errors import InvalidInput
@@ -44,10 +43,14 @@ class Normal:
 
     def below(self, value: ArrayLike) -> Floats:
         """Return the cumulative probability at a value. []"""
+        from scipy.special import ndtr
+
         return np.asarray(ndtr((np.asarray(value) - self.middle) / self.deviation))
 
     def quantile(self, share: ArrayLike) -> Floats:
         """Return the quantile of a probability."""
+        from scipy.special import ndtri
+
         return np.asarray(self.middle + self.deviation * ndtri(share))
 
 
@@ -73,11 +76,15 @@ class LogNormal:
 
     def below(self, value: ArrayLike) -> Floats:
         """Return the cumulative probability at a value. []"""
+        from scipy.special import ndtr
+
         with np.errstate(divide="ignore"):
             return np.asarray(ndtr(np.log(np.maximum(value, 0) / self.median) / math.log(self.factor)))
 
     def quantile(self, share: ArrayLike) -> Floats:
         """Return the quantile of a probability."""
+        from scipy.special import ndtri
+
         return np.asarray(self.median * np.exp(math.log(self.factor) * ndtri(share)))
 
 

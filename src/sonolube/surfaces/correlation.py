@@ -2,12 +2,12 @@
 
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import fft
 
 from sonolube.checks import Floats, require_finite
+from sonolube.compilation import kernel
 from sonolube.errors import InvalidInput
 from sonolube.surfaces.height_map import HeightMap
 
@@ -136,7 +136,7 @@ def _sums_of_products(value: Floats, half_y: int, half_x: int) -> Floats:
     return sums
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@kernel(cache=True, nogil=True, error_model="numpy")
 def _first_decay(
     correlation: Floats, per_x: Floats, per_y: Floats, threshold: float, distance: Floats, decayed: NDArray[np.bool_]
 ) -> None:

@@ -2,11 +2,11 @@
 
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.checks import Floats, require_within
+from sonolube.compilation import kernel
 from sonolube.errors import InvalidInput
 from sonolube.surfaces.grid_kernel import count_sum_and_extremes
 from sonolube.surfaces.height_map import HeightMap
@@ -97,7 +97,7 @@ def _significant_peaks(height: Floats, descending: NDArray[np.int64], least: flo
     return np.flatnonzero(significant)
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@kernel(cache=True, nogil=True, error_model="numpy")
 def _watershed(
     height: Floats,
     descending: NDArray[np.int64],
@@ -136,7 +136,7 @@ def _watershed(
         foot[peak] = z[pixel]
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel(cache=True, error_model="numpy")
 def _peak_of(hill: NDArray[np.int32], pixel: int) -> int:
     """Peak of a pixel's hill: the root of its tree, with path halving."""
     while hill[pixel] != pixel:

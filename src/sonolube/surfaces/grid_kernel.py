@@ -1,16 +1,16 @@
 """Compiled sums over the measured pixels of a height map, and its local maxima; missing pixels are NaN."""
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.checks import Floats
+from sonolube.compilation import kernel
 
 __all__: list[str] = []  # used in this room only
 _LANES = 8  # running extremes side by side, one vector register
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
+@kernel(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
 def count_sum_and_extremes(height: Floats) -> tuple[int, float, float, float]:
     """Number of measured pixels, and sum, minimum and maximum of their heights."""
     rows, columns = height.shape
@@ -39,7 +39,7 @@ def count_sum_and_extremes(height: Floats) -> tuple[int, float, float, float]:
     return count, total, lowest.min(), highest.max()
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
+@kernel(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
 def central_moment_sums(height: Floats, mean: float) -> tuple[float, float, float, float]:
     """Sums of the absolute value, square, cube and fourth power of the deviation from `mean`."""
     first, second, third, fourth = 0.0, 0.0, 0.0, 0.0
@@ -61,7 +61,7 @@ def central_moment_sums(height: Floats, mean: float) -> tuple[float, float, floa
     return first, second, third, fourth
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
+@kernel(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
 def gradient_and_area_sums(height: Floats, spacing_x: float, spacing_y: float) -> tuple[int, float, float]:
     """Number of cells of four measured pixels, and sums over them of squared gradient and excess area.
 
@@ -92,7 +92,7 @@ def gradient_and_area_sums(height: Floats, spacing_x: float, spacing_y: float) -
     return int(cells), squares, excess
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
+@kernel(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
 def row_difference_sums(height: Floats) -> tuple[float, float, float, float]:
     """Number and sum of squares of first differences along rows, then of second differences."""
     firsts, slopes, seconds, curvatures = 0.0, 0.0, 0.0, 0.0
@@ -111,7 +111,7 @@ def row_difference_sums(height: Floats) -> tuple[float, float, float, float]:
     return firsts, slopes, seconds, curvatures
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
+@kernel(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
 def column_difference_sums(height: Floats) -> tuple[float, float, float, float]:
     """Number and sum of squares of first differences along columns, then of second differences."""
     firsts, slopes, seconds, curvatures = 0.0, 0.0, 0.0, 0.0
@@ -131,7 +131,7 @@ def column_difference_sums(height: Floats) -> tuple[float, float, float, float]:
     return firsts, slopes, seconds, curvatures
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@kernel(cache=True, nogil=True, error_model="numpy")
 def local_maxima(height: Floats) -> tuple[int, NDArray[np.int64]]:
     """Number of measured pixels with eight measured neighbours, and flat indices of those higher than all eight."""
     rows, columns = height.shape

@@ -7,12 +7,12 @@ zero, so that edges and holes require no extrapolation. A term that a neighbourh
 from collections.abc import Iterator
 from typing import NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 from scipy import fft
 
 from sonolube.checks import Complexes, Floats
+from sonolube.compilation import kernel
 
 REACH = 3.2  # in widths of the weight, which is 1e-14 there
 _STRIP = 1 << 21  # pixels per strip, which bounds the memory
@@ -156,13 +156,13 @@ def _line(count: int, width: float, order: int) -> tuple[Complexes, Floats]:
     size = fft.next_fast_len(count + reach, real=True)
     k = np.arange(-reach, reach + 1)
     power = np.arange(2 * order + 1)[:, None]
-    kernel = np.zeros((power.size, size))
-    kernel[:, -k % size] = np.exp(-np.pi * (k / width) ** 2) * (k / min(width, count)) ** power
-    spectra = fft.fft(kernel)
+    wavelet = np.zeros((power.size, size))
+    wavelet[:, -k % size] = np.exp(-np.pi * (k / width) ** 2) * (k / min(width, count)) ** power
+    spectra = fft.fft(wavelet)
     return spectra, np.real(fft.ifft(spectra * fft.fft(np.ones(count), size)))[:, :count]
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@kernel(cache=True, nogil=True, error_model="numpy")
 def _constant_terms(
     moments: Floats, values: Floats, table: NDArray[np.int64], least_weight: float, fitted: Floats
 ) -> None:

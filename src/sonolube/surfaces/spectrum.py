@@ -4,11 +4,11 @@ import math
 from dataclasses import asdict, dataclass
 from typing import Literal
 
-import numba
 import numpy as np
 from scipy import fft
 
 from sonolube.checks import Floats, require_positive
+from sonolube.compilation import kernel
 from sonolube.errors import InvalidInput
 from sonolube.surfaces.height_map import HeightMap
 
@@ -322,7 +322,7 @@ def _multiplicity(points: int) -> Floats:
     return multiplicity
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
+@kernel(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
 def _apply_window(height: Floats, weight_y: Floats, weight_x: Floats, weighted: Floats) -> float:
     """Write weighted deviations from the weighted mean, zero where missing; return the sum of squared weights."""
     rows, columns = height.shape
@@ -348,7 +348,7 @@ def _apply_window(height: Floats, weight_y: Floats, weight_x: Floats, weighted: 
     return squares
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
+@kernel(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
 def _apply_window_to_rows(height: Floats, weight: Floats, weighted: Floats) -> Floats:
     """As `_apply_window`, for each row separately; return the sum of squared weights of each row."""
     squares = np.zeros(height.shape[0])
@@ -369,7 +369,7 @@ def _apply_window_to_rows(height: Floats, weight: Floats, weighted: Floats) -> F
     return squares
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@kernel(cache=True, nogil=True, error_model="numpy")
 def _ring_sums(kx: Floats, ky: Floats, multiplicity: Floats, density: Floats, per_width: float, sums: Floats) -> None:
     """Add number, wavenumber and density of the points in each ring to `sums`, the origin left out."""
     for row in range(ky.size):

@@ -11,12 +11,12 @@ Up to s = 2 the ascending series of both Bessel functions are summed (DLMF 10.31
 from collections.abc import Callable
 from math import exp, log, sqrt
 
-import numba
 import numpy as np
 from numpy.polynomial import Chebyshev, Polynomial
 from scipy.special import digamma, factorial, k0e, k1e
 
 from sonolube.checks import Floats
+from sonolube.compilation import kernel
 
 __all__: list[str] = []  # used within this package only
 
@@ -38,7 +38,7 @@ _NEGATIVE_U = _polynomial_in_inverse(lambda s: np.sqrt(s) * (k0e(s) + k1e(s)))
 _POSITIVE_U = _polynomial_in_inverse(lambda s: s * np.sqrt(s) * (k1e(s) - k0e(s)))
 
 
-@numba.njit(cache=True)
+@kernel(cache=True)
 def moving_band_integrals(first: Floats, last: Floats) -> Floats:
     """Return the integrals of exp(-t) K0(abs t) from each `first` to its `last`."""
     integrals = np.empty(first.size)
@@ -47,7 +47,7 @@ def moving_band_integrals(first: Floats, last: Floats) -> Floats:
     return integrals
 
 
-@numba.njit(cache=True)
+@kernel(cache=True)
 def _integral_from_zero(u: float) -> float:
     """Return the integral of exp(-t) K0(abs t) from 0 to u."""
     s = abs(u)
@@ -63,7 +63,7 @@ def _integral_from_zero(u: float) -> float:
     return 1 + exp(-u) * (u * k0 - k1)
 
 
-@numba.njit(cache=True)
+@kernel(cache=True)
 def _polynomial(coefficients: Floats, x: float) -> float:
     """Return a polynomial's value by Horner's scheme, lowest coefficient first."""
     total = coefficients[-1]

@@ -9,23 +9,29 @@ sliding and the conductivity k. With the Peclet number Pe the limits are
     \frac{\Delta T}{\bar q b/k} \to \frac{c_\infty}{\sqrt{\mathrm{Pe}}} \quad (\mathrm{Pe} \to \infty) .
 """
 
+import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from scipy.special import beta, ellipk
 
 from sonolube.checks import require_positive
 
+
+def _beta(a: float, b: float) -> float:
+    """Return the beta function."""
+    return math.gamma(a) * math.gamma(b) / math.gamma(a + b)
+
+
 _PEAK_HIGH_PECLET_UNIFORM = float(2 / np.sqrt(np.pi))  # half-space heated for the time of passage of the whole length
 _MEAN_TO_PEAK_RECTANGLE = 2 / 3  # mean of sqrt(x) over its end value
-_MEAN_TO_PEAK_ELLIPSE = float(4 / (3 * np.pi) * beta(1 / 2, 7 / 4))  # the same, averaged over all chords
+_MEAN_TO_PEAK_ELLIPSE = 4 / (3 * math.pi) * _beta(1 / 2, 7 / 4)  # the same, averaged over all chords
 _MEAN_TO_CENTRE_ELLIPSE = 8 / (3 * np.pi)  # at rest, for any ratio of axes: mean and centre scale alike
 # Flux q = 3/2 sqrt(1 - x^2) of its mean along the middle chord: the maximum, over s, of the integral up to s of
 # q/sqrt(2 pi (s - x)), which lies 0.652 half lengths behind the centre.
 _PEAK_HIGH_PECLET_HERTZ = 2.3210497325 / float(np.sqrt(np.pi))
-_MEAN_TO_PEAK_HERTZ = float(16 / (5 * np.pi) * beta(1 / 2, 9 / 4) / np.sqrt(np.pi)) / _PEAK_HIGH_PECLET_HERTZ
+_MEAN_TO_PEAK_HERTZ = 16 / (5 * math.pi) * _beta(1 / 2, 9 / 4) / math.sqrt(math.pi) / _PEAK_HIGH_PECLET_HERTZ
 _MEAN_TO_CENTRE_HERTZ = 3 / 4  # at rest, for any ratio of axes
 
 
@@ -121,6 +127,8 @@ class EllipticSource(HeatSource):
     @property
     def peak_low_peclet(self) -> float:
         """Dimensionless rise at the centre of the stationary source, Pe = 0. []"""
+        from scipy.special import ellipk
+
         short, long = sorted((self.half_length, self.half_width))
         return float(2 / np.pi * ellipk(1 - (short / long) ** 2) * short / self.half_length)
 
@@ -177,6 +185,8 @@ class HertzianSource(HeatSource):
     @property
     def peak_low_peclet(self) -> float:
         """Dimensionless rise at the centre of the stationary source, Pe = 0. []"""
+        from scipy.special import ellipk
+
         short, long = sorted((self.half_length, self.half_width))
         return float(3 / 4 * ellipk(1 - (short / long) ** 2) * short / self.half_length)
 

@@ -5,10 +5,9 @@ from dataclasses import dataclass
 from itertools import combinations
 from math import hypot, isfinite
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-import xarray as xr
 
 from sonolube.cli.compare.own_runs import run_lines, runs_object
 from sonolube.cli.console.answer import Answer, deliver
@@ -36,6 +35,10 @@ from sonolube.validation.run_conditions import RunsTable, run_conditions
 from sonolube.validation.runs_comparison import RunsPrediction, predict_runs
 from sonolube.validation.runs_figures import runs_prediction_figure
 from sonolube.validation.tables import comparison_csv, comparison_dataset, parameter_text
+
+if TYPE_CHECKING:
+    import xarray as xr
+
 
 _PREDICTED = ("friction_ratio", "raw_friction_ratio", "uncertainty", "reason")
 
@@ -137,7 +140,7 @@ class ComparisonAnswer(Answer):
             drawings["models-on-own-runs"] = Drawing(draw=lambda: runs_prediction_figure(self.of_runs, table))
         return drawings
 
-    def files(self) -> Mapping[str, str | xr.Dataset]:
+    def files(self) -> "Mapping[str, str | xr.Dataset]":
         """Errors as CSV, and every ratio as netCDF."""
         return {"models.csv": comparison_csv(self.fits), "models.nc": self._dataset()}
 

@@ -5,11 +5,10 @@ from dataclasses import dataclass
 from enum import StrEnum
 from math import degrees, inf
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 import typer
-import xarray as xr
 
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
 from sonolube.cli.console.options import (
@@ -51,6 +50,10 @@ from sonolube.report import Drawing, Page, PageTable
 from sonolube.rig import Rig, operating_caveats
 from sonolube.units import format_si
 from sonolube.validation.efficiency import efficiency_line
+
+if TYPE_CHECKING:
+    import xarray as xr
+
 
 _LEAST_GAIN_MARGIN = 1.7  # lower limit of textbooks
 _TABLE_ROWS = 12  # of the lookup table on the page
@@ -255,7 +258,7 @@ class ControlAnswer(Answer):
             )
         return drawings
 
-    def files(self) -> Mapping[str, str | xr.Dataset]:
+    def files(self) -> "Mapping[str, str | xr.Dataset]":
         """Run as netCDF, controller as C source, and its lookup table."""
         controller, title = self.study.controller, self.rig.title
         return {

@@ -3,10 +3,9 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-import xarray as xr
 
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
 from sonolube.cli.console.options import OUT, Changes, Json, Out, friction_force, refuse_unused, si_option
@@ -18,6 +17,10 @@ from sonolube.measurement.measured_runs import read_runs
 from sonolube.report import Drawing, Page
 from sonolube.rig import read_rig
 from sonolube.units import format_si
+
+if TYPE_CHECKING:
+    import xarray as xr
+
 
 _PRINTED_UNIT = 1e9  # m2/N in mW mm2/(N W), the unit of D
 _FITTED = ("slope_uncertainty", "intercept_uncertainty", "efficiency_deviation", "lowest_speed", "highest_speed")
@@ -109,7 +112,7 @@ class EfficiencyAnswer(Answer):
         caption = _CAPTION.format(runs=self.calibration.fit.runs)
         return {self.name: Drawing(draw=lambda: efficiency_figure(self.calibration), caption=caption)}
 
-    def files(self) -> Mapping[str, xr.Dataset]:
+    def files(self) -> "Mapping[str, xr.Dataset]":
         """Line and bands as netCDF."""
         return {f"{self.name}.nc": efficiency_dataset(self.calibration)}
 

@@ -4,10 +4,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-import xarray as xr
 
 from sonolube import design
 from sonolube.checks import Floats
@@ -30,6 +29,10 @@ from sonolube.report import Drawing, Page, PageTable
 from sonolube.rig import Rig, operating_caveats
 from sonolube.units import format_si
 from sonolube.vocabulary import quantity
+
+if TYPE_CHECKING:
+    import xarray as xr
+
 
 _AXIS_KEYS = ("sliding.sliding_speed", "contact.normal_load", "drive.voltage_peak_to_peak", "drive.frequency")
 _MEASURED_CAPTION = "Friction reduction between the measured runs alone by a Gaussian process, with its uncertainty."
@@ -120,9 +123,9 @@ class MapAnswer(Answer):
 
     rig: Rig
     rig_file: Path
-    mapped: xr.Dataset
-    runs: xr.Dataset | None
-    interpolated: xr.Dataset | None
+    mapped: "xr.Dataset"
+    runs: "xr.Dataset | None"
+    interpolated: "xr.Dataset | None"
     forms: tuple[str, ...]
     left_out: tuple[str, ...] = ()
 
@@ -166,7 +169,7 @@ class MapAnswer(Answer):
             )
         return drawings
 
-    def files(self) -> Mapping[str, str | xr.Dataset]:
+    def files(self) -> "Mapping[str, str | xr.Dataset]":
         """Interactive page where it is wanted, and the datasets."""
         files: dict[str, str | xr.Dataset] = {}
         if Form.HTML in self.forms:
@@ -245,7 +248,7 @@ def _axes(rig: Rig, kind: str, over: list[str] | None) -> dict[str, Floats]:
     return axes
 
 
-def _greatest(mapped: xr.Dataset) -> dict[str, float]:
+def _greatest(mapped: "xr.Dataset") -> dict[str, float]:
     """Greatest reduction and the quantities where it occurs; empty where no point has a result."""
     point = extreme_point(mapped, outcome="friction_reduction", highest=True)
     if point is None:
@@ -253,7 +256,7 @@ def _greatest(mapped: xr.Dataset) -> dict[str, float]:
     return {name: float(point[name]) for name in _SHOWN if name in point and point[name].ndim == 0}
 
 
-def _ridge(mapped: xr.Dataset) -> str:
+def _ridge(mapped: "xr.Dataset") -> str:
     """Range of the sufficient power; empty where the map does not reach it."""
     if "saturation_power" not in mapped or mapped["saturation_power"].isnull().all():
         return ""
@@ -261,7 +264,7 @@ def _ridge(mapped: xr.Dataset) -> str:
     return f"{format_si(low, 'W')} to {format_si(high, 'W')}"
 
 
-def _panel_tables(mapped: xr.Dataset, panel: str | None) -> list[PageTable]:
+def _panel_tables(mapped: "xr.Dataset", panel: str | None) -> list[PageTable]:
     """Greatest reduction at each load or voltage, and the ridge where the map has one; none where all are the same."""
     if panel is None or panels_text(mapped):
         return []

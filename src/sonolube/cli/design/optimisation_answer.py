@@ -4,9 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from math import log
 from pathlib import Path
-from typing import Any
-
-import xarray as xr
+from typing import TYPE_CHECKING, Any
 
 from sonolube.actuator import MatchingNetwork
 from sonolube.cli.console.answer import Answer, aligned, grid, si
@@ -27,6 +25,10 @@ from sonolube.design.optimisation.evaluation import LIMITS
 from sonolube.report import Drawing, Page, PageTable
 from sonolube.units import format_si
 from sonolube.vocabulary import quantity
+
+if TYPE_CHECKING:
+    import xarray as xr
+
 
 _DESIGN_QUANTITIES = (
     "vibration_amplitude",
@@ -131,7 +133,7 @@ class OptimisationAnswer(Answer):
         )
         return drawings
 
-    def files(self) -> Mapping[str, str | xr.Dataset]:
+    def files(self) -> "Mapping[str, str | xr.Dataset]":
         """All designs as netCDF, and the best as a rig file."""
         source = self.rig_file.read_text(encoding="utf-8-sig")
         return {

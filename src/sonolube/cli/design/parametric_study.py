@@ -5,10 +5,9 @@ from dataclasses import dataclass
 from enum import StrEnum
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from sonolube import rig as rigs
 from sonolube.checks import Floats, require_positive
@@ -25,6 +24,10 @@ from sonolube.units import format_si, to_si
 from sonolube.vocabulary import quantity
 
 Rows = Iterator[tuple[str, str]]
+
+if TYPE_CHECKING:
+    import xarray as xr
+
 
 OUTCOMES = ("friction_ratio", "vibration_amplitude", "actuator_power", "dissipated_power")
 """Quantities that the answer of a sweep has of a point."""
@@ -117,7 +120,7 @@ class ParametricStudyAnswer(Answer):
 
     rig: Rig
     of: str
-    study: xr.Dataset
+    study: "xr.Dataset"
     name: str
 
     def lines(self) -> list[str]:
@@ -155,7 +158,7 @@ class ParametricStudyAnswer(Answer):
 
         return {self.name: Drawing(draw=draw)}
 
-    def files(self) -> Mapping[str, xr.Dataset]:
+    def files(self) -> "Mapping[str, xr.Dataset]":
         """Every point as netCDF."""
         return {f"{self.name}.nc": self.study}
 
@@ -166,7 +169,7 @@ class ParametricStudyAnswer(Answer):
 
 def _study(
     rig: Rig, of: str, lowest: str | None, highest: str | None, points: int | None, voltages: list[str] | None
-) -> Callable[..., xr.Dataset]:
+) -> "Callable[..., xr.Dataset]":
     """Function that runs the study, all options read and checked; it takes `advance`."""
     if of not in ("speed",):
         gap_law_of(moved_rig(rig))
@@ -217,7 +220,7 @@ def _present_ratio(rig: Rig) -> float:
     return float(own.friction_ratio)
 
 
-def _voltage_rows(study: xr.Dataset) -> Rows:
+def _voltage_rows(study: "xr.Dataset") -> Rows:
     """Least friction, voltage at which contact is lost, and power of the amplifier."""
     for best in _best_points(study):
         yield "least friction", f"ratio {_text(best, 'friction_ratio')} at {_text(best, 'voltage_peak_to_peak')}"
@@ -226,7 +229,7 @@ def _voltage_rows(study: xr.Dataset) -> Rows:
     yield "amplifier", f"up to {format_si(float(study['actuator_power'].max()), 'W')}, D 1.9"
 
 
-def _speed_rows(study: xr.Dataset) -> Rows:
+def _speed_rows(study: "xr.Dataset") -> Rows:
     """Range of the friction ratio at each voltage."""
     for index in range(study.sizes["voltage_peak_to_peak"]):
         curve = study.isel(voltage_peak_to_peak=index)
@@ -234,7 +237,7 @@ def _speed_rows(study: xr.Dataset) -> Rows:
         yield f"at {_text(curve, 'voltage_peak_to_peak')}", f"ratio {low:.3g} to {high:.3g}, slow to fast"
 
 
-def _frequency_rows(study: xr.Dataset) -> Rows:
+def _frequency_rows(study: "xr.Dataset") -> Rows:
     """Least friction at each voltage."""
     for best in _best_points(study):
         at = f"{_text(best, 'frequency', digits=4)}, {_text(best, 'vibration_amplitude')}"
@@ -242,7 +245,7 @@ def _frequency_rows(study: xr.Dataset) -> Rows:
         yield f"at {_text(best, 'voltage_peak_to_peak')}", text
 
 
-def _power_rows(study: xr.Dataset) -> Rows:
+def _power_rows(study: "xr.Dataset") -> Rows:
     """Least power that the friction ratio takes, of the amplifier and dissipated."""
     for name, label in (("actuator_power", "least power, D 1.9"), ("dissipated_power", "least dissipation")):
         if not study[name].isnull().all():
@@ -251,7 +254,7 @@ def _power_rows(study: xr.Dataset) -> Rows:
             yield label, f"{_text(least, name)} at {at} for friction ratio {_text(least, 'friction_ratio')}"
 
 
-def _waveform_rows(study: xr.Dataset) -> Rows:
+def _waveform_rows(study: "xr.Dataset") -> Rows:
     """Friction ratio of each waveform, the least first."""
     for index in study["friction_ratio"].values.argsort():
         one = study.isel(waveform=int(index))
@@ -259,14 +262,14 @@ def _waveform_rows(study: xr.Dataset) -> Rows:
         yield str(one["waveform"].values), text
 
 
-def _load_rows(study: xr.Dataset) -> Rows:
+def _load_rows(study: "xr.Dataset") -> Rows:
     """Range of the friction ratio and of the natural frequency of the loading arm."""
     ratios, arm = study["friction_ratio"], study["natural_frequency"]
     yield "friction ratio", f"{float(ratios.min()):.4g} to {float(ratios.max()):.4g}"
     yield "arm's frequency", f"{format_si(float(arm.min()), 'Hz')} to {format_si(float(arm.max()), 'Hz')}"
 
 
-_ROWS: dict[str, Callable[[xr.Dataset], Rows]] = {
+_ROWS: "dict[str, Callable[[xr.Dataset], Rows]]" = {
     "voltage": _voltage_rows,
     "speed": _speed_rows,
     "frequency": _frequency_rows,
@@ -276,7 +279,7 @@ _ROWS: dict[str, Callable[[xr.Dataset], Rows]] = {
 }
 
 
-def _best_points(study: xr.Dataset) -> Iterator[xr.Dataset]:
+def _best_points(study: "xr.Dataset") -> "Iterator[xr.Dataset]":
     """Point of least friction of each curve that has a result."""
     dims = study["friction_ratio"].dims
     curves = [study] if len(dims) == 1 else [study.isel({dims[0]: i}) for i in range(study.sizes[dims[0]])]
@@ -286,18 +289,18 @@ def _best_points(study: xr.Dataset) -> Iterator[xr.Dataset]:
             yield best
 
 
-def _point_object(point: xr.Dataset) -> dict[str, Any]:
+def _point_object(point: "xr.Dataset") -> dict[str, Any]:
     """Coordinates and outcomes of a point, for JSON."""
     names = [str(name) for name in (*point.coords, *OUTCOMES) if point[name].ndim == 0 and not _missing(point, name)]
     waveform = {"waveform": str(point["waveform"].values)} if "waveform" in names else {}
     return waveform | si({name: float(point[name]) for name in names if name != "waveform"})
 
 
-def _missing(point: xr.Dataset, name: Any) -> bool:
+def _missing(point: "xr.Dataset", name: Any) -> bool:
     """Whether a number of a point is not known, as heat of a sine that no structure gives."""
     return bool(point[name].dtype.kind == "f" and np.isnan(point[name]))
 
 
-def _text(point: xr.Dataset, name: str, *, digits: int = 3) -> str:
+def _text(point: "xr.Dataset", name: str, *, digits: int = 3) -> str:
     """Quantity of a point with its unit."""
     return format_si(float(point[name]), quantity(name).unit, digits=digits)

@@ -1,14 +1,16 @@
 """Tables of a page that count points by status and by the reason of their failure."""
 
 from collections.abc import Mapping
-
-import xarray as xr
+from typing import TYPE_CHECKING
 
 from sonolube.design.point_statistics import status_counts
 from sonolube.report import PageTable
 
+if TYPE_CHECKING:
+    import xarray as xr
 
-def status_tables(points: xr.Dataset, failures: Mapping[str, int]) -> list[PageTable]:
+
+def status_tables(points: "xr.Dataset", failures: Mapping[str, int]) -> list[PageTable]:
     """Number of points of each status, and of those without a result by reason, where there are any.
 
     Parameters

@@ -5,11 +5,10 @@ from dataclasses import dataclass
 from enum import StrEnum
 from glob import escape
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 import typer
-import xarray as xr
 
 from sonolube import design
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
@@ -39,6 +38,10 @@ from sonolube.report import Drawing, Page
 from sonolube.rig import Rig, operating_caveats
 from sonolube.units import format_si
 from sonolube.vocabulary import unit_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
 
 _CAPTIONS = {1: "Results of the rig over the key that was swept.", 2: "Friction over both keys that were swept."}
 _CLOUD_CAPTION = (
@@ -164,7 +167,7 @@ class SweepAnswer(Answer):
 
     plan: SweepPlan
     rig_file: Path
-    result: xr.Dataset
+    result: "xr.Dataset"
     data_file: Path
     rig: Rig | None = None
 

@@ -1,9 +1,8 @@
 """Uncertain entries of a rig as text and JSON: their distributions, or the posterior of an identified structure."""
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from sonolube.design.identified_structure import IdentifiedStructure
 from sonolube.design.uncertainty_summary import BAND
@@ -11,18 +10,22 @@ from sonolube.rig import Distribution, Rig
 from sonolube.units import format_si
 from sonolube.vocabulary import quantity
 
+if TYPE_CHECKING:
+    import xarray as xr
+
+
 _LEAST_TRUNCATION = 1e-4  # fraction of a distribution that is cut off, from which on it is printed
 _LEAST_EXPONENT = 0.1  # of a parameter in a free direction, from which on it is printed
 
 
-def distributions(rig: Rig, result: xr.Dataset, structure: IdentifiedStructure | None) -> dict[str, Distribution]:
+def distributions(rig: Rig, result: "xr.Dataset", structure: IdentifiedStructure | None) -> dict[str, Distribution]:
     """Distributions that samples were drawn from, by key, those of an identified structure apart."""
     joint = {} if structure is None else structure.draws_by_key()
     drawn = result.attrs["uncertain"]
     return {key: law for key, law in rig.uncertainty.items() if key in drawn and key not in joint}
 
 
-def entry_rows(rig: Rig, result: xr.Dataset, structure: IdentifiedStructure | None) -> list[tuple[str, str]]:
+def entry_rows(rig: Rig, result: "xr.Dataset", structure: IdentifiedStructure | None) -> list[tuple[str, str]]:
     """Uncertain entries with their distributions, or with median and 90 % interval of their posterior."""
     rows = []
     for key, law in distributions(rig, result, structure).items():

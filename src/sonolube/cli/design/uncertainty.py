@@ -4,11 +4,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 import typer
-import xarray as xr
 
 from sonolube.checks import Floats
 from sonolube.cli.console.answer import Answer, aligned, deliver
@@ -44,6 +43,10 @@ from sonolube.report import Drawing, Page, PageTable
 from sonolube.rig import Rig, operating_caveats, read_rig
 from sonolube.units import format_si
 from sonolube.vocabulary import quantity, unit_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
 
 _SAMPLES_CAPTION = "Histogram of the samples that have a result, quantiles with intervals of 95 %, and the mean."
 _BAND_CAPTION = "Median of the samples and their intervals over the keys that were swept."
@@ -126,7 +129,7 @@ class UncertaintyAnswer(Answer):
 
     rig: Rig
     rig_file: Path
-    result: xr.Dataset
+    result: "xr.Dataset"
     structure: IdentifiedStructure | None
 
     def lines(self) -> list[str]:
@@ -197,7 +200,7 @@ class UncertaintyAnswer(Answer):
         ranking = Drawing(draw=lambda: sobol_figure(result, outcome_indices(result)), caption=_SOBOL_CAPTION)
         return {self._name: outcome, f"{self._name}-sobol": ranking}
 
-    def files(self) -> Mapping[str, xr.Dataset]:
+    def files(self) -> "Mapping[str, xr.Dataset]":
         """Samples as netCDF."""
         return {f"{self._name}.nc": self.result}
 

@@ -3,9 +3,11 @@
 from sonolube.cli.console.answer import deliver
 from sonolube.cli.console.options import Changes, Json, Load, RigPath, loaded_rig
 from sonolube.cli.predict.rig_record import RigRecord
+from sonolube.compilation import few_points
 from sonolube.rig import contact_point
 
 
+@few_points()
 def contact(rig: RigPath, load: Load = None, changes: Changes = None, json: Json = False) -> None:
     """Contact of the rig at rest: separation, real area, stiffness.
 

@@ -8,6 +8,7 @@ from sonolube.cli.console.answer import deliver
 from sonolube.cli.console.options import Amplitude, Changes, Json, Load, RigPath, loaded_rig
 from sonolube.cli.predict.measured import measured_on
 from sonolube.cli.predict.rig_record import RigRecord
+from sonolube.compilation import few_points
 from sonolube.friction import FRICTION_MODELS, FrictionModel
 from sonolube.rig import friction_point
 
@@ -21,6 +22,7 @@ def _described(model: type[FrictionModel]) -> str:
 _MODEL_HELP = f"Friction model instead of the rig's own: {'; '.join(map(_described, FRICTION_MODELS.values()))}."
 
 
+@few_points()
 def friction(
     rig: RigPath,
     load: Load = None,

@@ -3,11 +3,10 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 import typer
-import xarray as xr
 
 from sonolube.checks import require_positive
 from sonolube.cli.console.answer import Answer, deliver, si
@@ -24,6 +23,10 @@ from sonolube.measurement.impedance.spectrum import ImpedanceSpectrum
 from sonolube.report import Drawing
 from sonolube.rig import dataset
 from sonolube.units import format_si
+
+if TYPE_CHECKING:
+    import xarray as xr
+
 
 _FILES = "{part}-impedance.* {part}-impedance-free.* {part}-impedance-clamped.* {part}-modes-*.vtu"
 
@@ -156,7 +159,7 @@ class ImpedanceAnswer(Answer):
         draw = lambda: impedance_figure(self.spectra, title=title, measured=measured)  # noqa: E731
         return {f"{self._stem()}-impedance": Drawing(draw=draw)}
 
-    def files(self) -> Mapping[str, str | xr.Dataset]:
+    def files(self) -> "Mapping[str, str | xr.Dataset]":
         """Table and dataset of each spectrum, and its coupled modes where they are wanted."""
         stem = self._stem()
         files: dict[str, str | xr.Dataset] = {}

@@ -3,15 +3,15 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-import xarray as xr
 
 from sonolube.cli.console.answer import Answer, deliver, grid
 from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Load, Out, RigPath, loaded_rig
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.predict.measured import Measurement, measured_on
+from sonolube.compilation import few_points
 from sonolube.measurement.measured_runs import read_runs, runs_help
 from sonolube.prediction.figures import prediction_figure
 from sonolube.prediction.rig_prediction import interval, predict as predicted
@@ -20,6 +20,10 @@ from sonolube.report import Drawing
 from sonolube.rig import Rig
 from sonolube.units import format_si
 from sonolube.vocabulary import quantity
+
+if TYPE_CHECKING:
+    import xarray as xr
+
 
 _INPUT_HEADS = [
     "  least known inputs",
@@ -31,6 +35,7 @@ _INPUT_HEADS = [
 _PERCENT = ("friction_reduction", "wear_reduction")
 
 
+@few_points()
 def predict(
     rig: RigPath,
     runs: Annotated[Path | None, typer.Option(metavar="RUNS.csv", help=runs_help("Own measured runs"))] = None,
@@ -64,7 +69,7 @@ class PredictionAnswer(Answer):
     """Prediction of a rig with its intervals, in words, numbers, a figure and a dataset of draws."""
 
     rig: Rig
-    prediction: xr.Dataset
+    prediction: "xr.Dataset"
     measured: Sequence[Measurement]
     name: str
 
@@ -107,15 +112,15 @@ class PredictionAnswer(Answer):
         """Friction ratio over amplitude and speed with its intervals."""
         return {self.name: Drawing(draw=lambda: prediction_figure(self.prediction))}
 
-    def files(self) -> Mapping[str, xr.Dataset]:
+    def files(self) -> "Mapping[str, xr.Dataset]":
         """Draws and curves."""
         return {f"{self.name}.nc": self.prediction}
 
-    def _inputs(self) -> list[xr.Dataset]:
+    def _inputs(self) -> "list[xr.Dataset]":
         """Uncertain inputs, the least known first."""
         return [self.prediction.sel(input=name) for name in self.prediction["input"].to_numpy()]
 
-    def _input_row(self, one: xr.Dataset) -> list[str]:
+    def _input_row(self, one: "xr.Dataset") -> list[str]:
         """Uncertain input with its spread, how to know it better, and what of the intervals would be left."""
         left = [f"{100 * one[name].item():.0f} %" for name in ("interval_share_left", "force_interval_share_left")]
         value = format_si(one.input_value.item(), quantity(one.input.item()).unit)

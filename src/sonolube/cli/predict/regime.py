@@ -9,6 +9,7 @@ import typer
 from sonolube.cli.console.answer import Answer, deliver, si
 from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, RigPath, loaded_rig
 from sonolube.cli.console.outputs import OutputFolder
+from sonolube.compilation import few_points
 from sonolube.errors import InvalidInput
 from sonolube.friction import BoundaryLubricant
 from sonolube.materials import material
@@ -22,6 +23,7 @@ from sonolube.wear import WearMechanismAssessment
 _QUANTITIES = ("vibration_amplitude", "sliding_speed", "nominal_pressure", "asperity_load_fraction")
 
 
+@few_points()
 def regime(
     rig: RigPath,
     film: Annotated[float, typer.Option("--film-coefficient", help="Coefficient of friction of the lubricant film.")],

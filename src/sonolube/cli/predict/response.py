@@ -2,9 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any
-
-import xarray as xr
+from typing import TYPE_CHECKING, Annotated, Any
 
 from sonolube.checks import Floats
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
@@ -17,6 +15,9 @@ from sonolube.rig import FrequencyResponse, Rig, frequency_grid, frequency_respo
 from sonolube.rig.figures import response_figure
 from sonolube.rig.result_datasets import response_dataset
 from sonolube.units import format_si
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def response(
@@ -78,7 +79,7 @@ class ResponseAnswer(Answer):
         """FrequencyResponse over frequency."""
         return {self.name: Drawing(draw=lambda: response_figure(self.rig, self.result))}
 
-    def files(self) -> Mapping[str, xr.Dataset]:
+    def files(self) -> "Mapping[str, xr.Dataset]":
         """FrequencyResponse over frequency as netCDF."""
         return {f"{self.name}.nc": response_dataset(self.rig, self.result)}
 

@@ -2,9 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
-
-import xarray as xr
+from typing import TYPE_CHECKING, Any
 
 from sonolube.cli.console.answer import Answer, aligned, si
 from sonolube.cli.predict.measured import Measurement
@@ -13,6 +11,10 @@ from sonolube.rig import Rig
 from sonolube.rig.result_quantities import result_quantities, result_texts
 from sonolube.units import format_si
 from sonolube.vocabulary import quantities
+
+if TYPE_CHECKING:
+    import xarray as xr
+
 
 _UNPRINTED = ("status", "amplitude_source")  # the amplitude's origin names the source
 _LEAST_FORCE = 1e-6  # of the load, below which a friction force means nothing
@@ -39,7 +41,7 @@ class RigRecord(Answer):
     result: Any
     measured: Sequence[Measurement] = ()
     drawings: Mapping[str, Drawing] = field(default_factory=dict)
-    datasets: Mapping[str, xr.Dataset] = field(default_factory=dict)
+    datasets: "Mapping[str, xr.Dataset]" = field(default_factory=dict)
 
     def lines(self) -> list[str]:
         """Load, quantities with the meaning and unit of the vocabulary, and text but for the status."""
@@ -71,7 +73,7 @@ class RigRecord(Answer):
         """Figures of the record."""
         return self.drawings
 
-    def files(self) -> Mapping[str, xr.Dataset]:
+    def files(self) -> "Mapping[str, xr.Dataset]":
         """Datasets of the record."""
         return self.datasets
 

@@ -9,11 +9,13 @@ from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
 from sonolube.cli.predict.measured import measured_on
 from sonolube.cli.predict.rig_record import RigRecord
+from sonolube.compilation import few_points
 from sonolube.report import Drawing
 from sonolube.rig.figures import simulation_figure
 from sonolube.rig.result_datasets import simulation_dataset
 
 
+@few_points()
 def simulate(
     rig: RigPath,
     load: Load = None,

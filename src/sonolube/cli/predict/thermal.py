@@ -8,6 +8,7 @@ from sonolube.cli.console.answer import deliver
 from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, RigPath, loaded_rig
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.predict.rig_record import RigRecord
+from sonolube.compilation import few_points
 from sonolube.errors import InvalidInput
 from sonolube.report import Drawing
 from sonolube.rig import temperature_point, thermal_solid
@@ -16,6 +17,7 @@ from sonolube.rig.file.plausible import plausible_si
 from sonolube.thermal.flash_models import FLASH_MODELS
 
 
+@few_points()
 def thermal(
     rig: RigPath,
     pin: Annotated[

@@ -3,9 +3,11 @@
 from sonolube.cli.console.answer import deliver
 from sonolube.cli.console.options import Amplitude, Changes, Json, Load, RigPath, loaded_rig
 from sonolube.cli.predict.rig_record import RigRecord
+from sonolube.compilation import few_points
 from sonolube.rig import wear_point
 
 
+@few_points()
 def wear(
     rig: RigPath, load: Load = None, amplitude: Amplitude = None, changes: Changes = None, json: Json = False
 ) -> None:

@@ -2,11 +2,11 @@
 
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from sonolube.checks import Floats, require_non_negative, require_positive, require_within
+from sonolube.compilation import kernel
 from sonolube.errors import InvalidInput, OutsideRange
 from sonolube.rig import Rig, operating_points
 from sonolube.rig.driven_rig import require_drive
@@ -304,7 +304,7 @@ def stick_slip_motion(mass: MassOnBelt, *, duration: float, steps_per_period: in
     )
 
 
-@numba.njit(cache=True)
+@kernel(cache=True)
 def _integrate(
     count: int,
     h: float,
@@ -342,7 +342,7 @@ def _integrate(
     return x, v, sticking
 
 
-@numba.njit(cache=True)
+@kernel(cache=True)
 def _acceleration(
     x: float,
     v: float,

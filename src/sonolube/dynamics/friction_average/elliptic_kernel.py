@@ -5,10 +5,10 @@ The nodes are those of `sonolube.dynamics.friction_average.elliptic_quadrature`.
 
 from typing import Any, NamedTuple
 
-import numba
 import numpy as np
 
 from sonolube.checks import Floats, Integers
+from sonolube.compilation import kernel
 from sonolube.dynamics.friction_average.elliptic_quadrature import NODES_PER_PASS, EllipticNodes
 from sonolube.dynamics.kernels.contact_kernel import CompileTimeInt, LawParameters, contact_force_rows
 from sonolube.dynamics.kernels.simd import INLINED, INNER, KERNEL, LANES, block_maximum, gather
@@ -54,7 +54,7 @@ def friction_workspace(harmonics: int, speeds: Floats) -> FrictionWorkspace:
     return FrictionWorkspace(np.empty((17, LANES)), np.empty((2 * harmonics, LANES)), nodes, sums)
 
 
-@numba.njit(**KERNEL)
+@kernel(**KERNEL)
 def elliptic_averages(
     kind: CompileTimeInt,
     damped: CompileTimeInt,
@@ -106,7 +106,7 @@ def elliptic_averages(
         _average_block(kind, damped, law, settings, harmonics, count, table_row, block, speeds, nodes, work, averages)
 
 
-@numba.njit(**INLINED)
+@kernel(**INLINED)
 def _average_block(
     kind: CompileTimeInt,
     damped: CompileTimeInt,
@@ -142,7 +142,7 @@ def _average_block(
                 averages[which, block[lane], s] = sums[which, s, lane]
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def _motion_at(cosine: float, sine: float, weight: float, motion: Floats, h: int, rows: Floats) -> None:
     """Write displacement, velocity and weight at a node, mapped so that the nodes cluster at the extrema."""
     z_re, z_im, p_re, p_im = rows[Z_RE], rows[Z_IM], rows[POWER_RE], rows[POWER_IM]
@@ -170,7 +170,7 @@ def _motion_at(cosine: float, sine: float, weight: float, motion: Floats, h: int
         v[lane] *= rows[OMEGA, lane]
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def _store_node(rows: Floats, node: Floats) -> None:
     """Store squared velocity, weight, and contact force times weight over the dead load at a node."""
     for lane in range(LANES):
@@ -179,7 +179,7 @@ def _store_node(rows: Floats, node: Floats) -> None:
         node[2, lane] = rows[FORCE, lane] * rows[WEIGHT, lane] / rows[LOAD, lane]
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def _accumulate(speeds: Floats, nodes: Floats, sums: Floats) -> None:
     """Add the contributions of four nodes to the averages at every sliding speed."""
     for s in range(speeds.size):

@@ -7,11 +7,11 @@ sliding speed; for a motion with two extrema, a Moebius map of the unit circle f
 What remains is analytic in a wide strip, in which the trapezoidal rule converges geometrically.
 """
 
+import math
 from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import ellipkm1
 
 from sonolube.checks import Complexes, Floats, Integers
 
@@ -61,12 +61,20 @@ def elliptic_nodes(extra: int, tolerance: float = 1e-6) -> EllipticNodes:
     cosine, sine, weight = np.zeros((3, ratios.size, count.max()))
     for row, (ratio, nodes) in enumerate(zip(ratios, count, strict=True)):
         complement = ratio**2 / (1 + ratio**2)
-        u = 4 * ellipkm1(complement) * (np.arange(nodes) + 0.5) / nodes
+        u = 4 * _complete_integral(complement) * (np.arange(nodes) + 0.5) / nodes
         phase = _jacobi_amplitude(u, complement)
         density = np.sqrt(complement + (1 - complement) * np.cos(phase) ** 2)
         cosine[row, :nodes], sine[row, :nodes] = np.cos(phase), np.sin(phase)
         weight[row, :nodes] = density / density.sum()
     return EllipticNodes(cosine, sine, weight, count)
+
+
+def _complete_integral(complement: float) -> float:
+    """Return the complete elliptic integral K(1 - complement) by the arithmetic-geometric mean."""
+    mean, root = 1.0, math.sqrt(complement)
+    while abs(mean - root) > 1e-15 * mean:
+        mean, root = 0.5 * (mean + root), math.sqrt(mean * root)
+    return 0.5 * math.pi / mean
 
 
 def _jacobi_amplitude(u: Floats, complement: float) -> Floats:

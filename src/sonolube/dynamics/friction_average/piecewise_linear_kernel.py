@@ -1,9 +1,9 @@
 """Friction averages of motions with any number of extrema, by quadrature exact for a piecewise linear velocity."""
 
-import numba
 import numpy as np
 
 from sonolube.checks import Complexes, Floats, Integers
+from sonolube.compilation import kernel
 from sonolube.dynamics.friction_average.elliptic_kernel import EQUILIBRIUM, LOAD, MEAN, OMEGA
 from sonolube.dynamics.kernels.contact_kernel import CompileTimeInt, LawParameters, contact_force
 from sonolube.dynamics.kernels.simd import ALLOCATING_KERNEL, INNER
@@ -11,7 +11,7 @@ from sonolube.dynamics.kernels.simd import ALLOCATING_KERNEL, INNER
 _CELLS_PER_HARMONIC, _FEWEST_CELLS = 256, 4096
 
 
-@numba.njit(**ALLOCATING_KERNEL)
+@kernel(**ALLOCATING_KERNEL)
 def piecewise_linear_averages(
     kind: CompileTimeInt,
     damped: CompileTimeInt,
@@ -42,7 +42,7 @@ def piecewise_linear_averages(
         _average(kind, damped, law, omega, load, equilibrium, mean, own, speeds, rapidity, plain, weighted)
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def _average(
     kind: CompileTimeInt,
     damped: CompileTimeInt,
@@ -89,7 +89,7 @@ def _average(
         last_velocity, last_force = velocity, force
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def _displacement_and_slope(own: Complexes, phase: float) -> tuple[float, float]:
     """Return displacement about the mean and its derivative by phase."""
     cosine, sine = np.cos(phase), np.sin(phase)

@@ -117,7 +117,7 @@ class TabulatedGap:
         """Return the equilibrium position on the table under a dead load, in cells."""
         load = np.asarray(normal_load, dtype=np.float64)
         positions = np.empty(load.size)
-        positions_of(self.cells, np.log(load).ravel(), positions)
+        positions_of.for_points(load.size, most=64)(self.cells, np.log(load).ravel(), positions)
         return positions.reshape(load.shape)
 
     def force_derivatives(self, displacement: Floats, normal_load: float) -> dict[str, Floats]:
@@ -129,6 +129,6 @@ class TabulatedGap:
         """Return the force, in N, and its logarithmic decay per displacement, in 1/m."""
         position = self.equilibrium_coordinate(normal_load) + self.kernel_parameter * np.asarray(displacement)
         logs, slopes = np.empty((2, position.size))
-        log_forces(self.cells, position.ravel(), logs, slopes)
+        log_forces.for_points(position.size, most=2048)(self.cells, position.ravel(), logs, slopes)
         force = np.exp(np.clip(logs, -LARGEST_LOG_FORCE, LARGEST_LOG_FORCE))
         return force.reshape(position.shape), -self.kernel_parameter * slopes.reshape(position.shape)

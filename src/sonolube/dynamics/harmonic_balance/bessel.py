@@ -1,6 +1,7 @@
-"""Modified Bessel functions I_0 and I_1 by polynomial approximations, with errors below 2e-6.
+"""Modified Bessel functions I_0 and I_1 by polynomial approximations, with errors below 2e-6, and Wright's function.
 
-They are the mean and the first harmonic of an exponential contact force under a sinusoidal displacement.
+They are the mean and the first harmonic of an exponential contact force under a sinusoidal displacement, and its mean
+on a structure with a static stiffness.
 """
 
 import numpy as np
@@ -59,6 +60,36 @@ def log_bessel_i0(argument: Floats) -> Floats:
     near, far = _scaled_arguments(argument)
     large = argument + np.log(_polynomial(LARGE_0, far) / np.sqrt(np.maximum(argument, BEND)))
     return np.asarray(np.where(argument < BEND, np.log(_polynomial(SMALL_0, near)), large))
+
+
+def wright_omega(argument: Floats) -> Floats:
+    r"""Return Wright's omega function of a real argument, the solution w of w + ln w = z, to rounding.
+
+    Parameters
+    ----------
+    argument : ndarray
+        z.
+
+    Returns
+    -------
+    ndarray, shape of `argument`
+
+    Notes
+    -----
+    Three steps of fourth order from exp(z), below z = 1, or from z - ln z.
+
+    References
+    ----------
+    .. [1] P. W. Lawrence, R. M. Corless and D. J. Jeffrey, ACM Trans. Math. Softw. 38, 20 (2012), equation 6.
+    """
+    z = np.maximum(argument, -700.0)  # below it w is exp(z), which underflows
+    above, below = np.maximum(z, 1.0), np.minimum(z, 1.0)
+    w = np.where(z < -1.5, np.exp(below), np.where(z < 1.0, np.exp((below - 1) / 2), above - np.log(above)))
+    for _ in range(3):
+        r = z - w - np.log(w)
+        q = 2 * (1 + w) * (1 + w + 2 / 3 * r)
+        w = w * (1 + r / (1 + w) * (q - r) / (q - 2 * r))
+    return np.asarray(np.where(argument < -700.0, 0.0, w))
 
 
 def _scaled_arguments(argument: Floats) -> tuple[Floats, Floats]:

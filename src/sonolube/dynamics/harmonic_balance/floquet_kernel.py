@@ -12,10 +12,10 @@ hide growth. The monodromy matrix is then squared until only its largest multipl
 
 from typing import NamedTuple
 
-import numba
 import numpy as np
 
 from sonolube.checks import Floats, Integers
+from sonolube.compilation import kernel
 from sonolube.dynamics.kernels.contact_kernel import (
     CompileTimeInt,
     LawParameters,
@@ -80,7 +80,7 @@ def period_workspace(states: int, harmonics: int) -> PeriodWorkspace:
     )
 
 
-@numba.njit(**KERNEL)
+@kernel(**KERNEL)
 def monodromy_power_norms(
     kind: CompileTimeInt,
     damped: CompileTimeInt,
@@ -136,7 +136,7 @@ def monodromy_power_norms(
             powers[block[lane]], norms[block[lane]] = work.size[0, lane], work.size[1, lane]
 
 
-@numba.njit(**INLINED)
+@kernel(**INLINED)
 def _monodromy_matrix(
     kind: CompileTimeInt,
     damped: CompileTimeInt,
@@ -171,7 +171,7 @@ def _monodromy_matrix(
                 _drift(damped, pairs, pair, work.drift, matrix, contact, j)
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def _motion_at(damped: CompileTimeInt, phase: float, h: int, motion: Floats, wave: Floats, rows: Floats) -> None:
     """Write the displacement and, with damping, the velocity at a phase; force and stiffness serve as scratch."""
     for k in range(h + 1):
@@ -187,7 +187,7 @@ def _motion_at(damped: CompileTimeInt, phase: float, h: int, motion: Floats, wav
             rows[VELOCITY, lane] = rows[OMEGA, lane] * (rows[FORCE, lane] + rows[STIFFNESS, lane])
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def _impulses(damped: CompileTimeInt, gain: float, kicks: int, rows: Floats) -> None:
     r"""Replace stiffness and damping by the impulses of one kick per displacement and per velocity.
 
@@ -209,7 +209,7 @@ def _impulses(damped: CompileTimeInt, gain: float, kicks: int, rows: Floats) -> 
             rows[DAMPING, lane] *= -duration * factor
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def _kick(damped: CompileTimeInt, rows: Floats, contact: Floats, j: int) -> None:
     """Write the impulse on the j-th disturbance, and reset its displacement and velocity at the contact."""
     for lane in range(LANES):
@@ -221,7 +221,7 @@ def _kick(damped: CompileTimeInt, rows: Floats, contact: Floats, j: int) -> None
             contact[1, j, lane] = 0.0
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def _drift(
     damped: CompileTimeInt, pairs: Floats, pair: int, drift: Floats, matrix: Floats, contact: Floats, j: int
 ) -> None:
@@ -238,7 +238,7 @@ def _drift(
             contact[1, j, lane] += pairs[pair, VELOCITY_OUTPUT] * first + pairs[pair, VELOCITY_OUTPUT + 1] * second
 
 
-@numba.njit(**INLINED)
+@kernel(**INLINED)
 def _square_repeatedly(matrix: Floats, square: Floats, size: Floats) -> None:
     """Square the matrix 22 times, scaled to a norm near one by powers of two; write these and the last norm."""
     states, taken, norm = matrix.shape[0], size[0], size[1]
@@ -265,7 +265,7 @@ def _square_repeatedly(matrix: Floats, square: Floats, size: Floats) -> None:
                     matrix[i, j, lane] *= norm[lane]
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def _square(matrix: Floats, square: Floats) -> None:
     """Replace a matrix by its square."""
     size = matrix.shape[0]

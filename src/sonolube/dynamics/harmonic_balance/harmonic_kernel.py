@@ -15,10 +15,10 @@ contact hardly couples them. In the transforms between time and frequency (AFT),
 
 from typing import NamedTuple
 
-import numba
 import numpy as np
 
 from sonolube.checks import Floats, Integers
+from sonolube.compilation import kernel
 from sonolube.dynamics.harmonic_balance.newton_kernel import newton_step
 from sonolube.dynamics.harmonic_balance.receptance import contact_receptances
 from sonolube.dynamics.kernels.contact_kernel import (
@@ -113,7 +113,7 @@ def harmonic_workspace(harmonics: int, coupled: int, samples: int) -> HarmonicWo
     )
 
 
-@numba.njit(**KERNEL)
+@kernel(**KERNEL)
 def newton_solve(
     kind: CompileTimeInt,
     damped: CompileTimeInt,
@@ -172,7 +172,7 @@ def newton_solve(
         )
 
 
-@numba.njit(**INLINED)
+@kernel(**INLINED)
 def _solve_block(
     kind: CompileTimeInt,
     damped: CompileTimeInt,
@@ -221,7 +221,7 @@ def _solve_block(
     _scatter(iterates, block, h, unknown, spectra[0], outcome)
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def _tabulate_waves(count: int, waves: Floats) -> None:
     """Write cosines and sines of j k 2 pi / count."""
     for j in range(count // 2 + 1):
@@ -230,7 +230,7 @@ def _tabulate_waves(count: int, waves: Floats) -> None:
             waves[0, j, k], waves[1, j, k] = np.cos(phase), np.sin(phase)
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def _sample_pair(
     kind: CompileTimeInt,
     damped: CompileTimeInt,
@@ -268,7 +268,7 @@ def _sample_pair(
         linear_combination(here, weight, mirrored, weight, sums[quantity, max(2 * j - 1, 0)])
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def _transform(waves: Floats, sums: Floats, half: int, quantities: int, rows: int, spectra: Floats) -> None:
     r"""Write the Fourier coefficients of force, stiffness and damping, a number of rows of each.
 
@@ -282,7 +282,7 @@ def _transform(waves: Floats, sums: Floats, half: int, quantities: int, rows: in
             weighted_row_sum(spectra[quantity, row], waves[part, (row + 1) // 2], sums[quantity], part, half)
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def _stiffness_from_force(length: float, rows: int, spectra: Floats) -> None:
     """Write the spectrum of a stiffness that is the force over a length."""
     for row in range(rows):
@@ -290,7 +290,7 @@ def _stiffness_from_force(length: float, rows: int, spectra: Floats) -> None:
             spectra[1, row, lane] = spectra[0, row, lane] / length
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def _residual(
     static_stiffness: float,
     unknown: Floats,
@@ -314,7 +314,7 @@ def _residual(
             residual[r, lane] = unknown[r, lane] - free[r, lane] - 2 * (g_re * im + g_im * re)
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def _update(unknown: Floats, step: Floats, rows: int, lanes: Floats, factor: Floats, allowed: float) -> bool:
     """Subtract the Newton step, limited to a few decay lengths; return whether all steps were within the allowed norm.
 
@@ -339,7 +339,7 @@ def _update(unknown: Floats, step: Floats, rows: int, lanes: Floats, factor: Flo
     return small == LANES
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def _assess(
     poles: Floats,
     block: Integers,
@@ -380,7 +380,7 @@ def _assess(
         outcome[block[lane]] = result
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def _scatter(iterates: Iterates, block: Integers, h: int, unknown: Floats, spectrum: Floats, outcome: Integers) -> None:
     """Write mean, harmonics and force harmonics of the points of a block that did not diverge."""
     mean, harmonics, force = iterates.mean, iterates.harmonics, iterates.force_harmonics

@@ -9,12 +9,11 @@ motion with a force of amplitude :math:`\Phi(a)`, and the amplitudes are the roo
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import wrightomega
 
 from sonolube.checks import Complexes, Floats, Integers
 from sonolube.dynamics.gap_laws.exponential import ExponentialGap
 from sonolube.dynamics.gap_laws.protocol import GapLaw, force_decay_length
-from sonolube.dynamics.harmonic_balance.bessel import bessel_ratio, log_bessel_i0
+from sonolube.dynamics.harmonic_balance.bessel import bessel_ratio, log_bessel_i0, wright_omega
 from sonolube.dynamics.harmonic_balance.harmonic_kernel import Truncation
 from sonolube.dynamics.harmonic_balance.receptance import CONTACT_PER_FORCE, PoleResidueModel, receptance
 from sonolube.dynamics.harmonic_balance.truncation import default_truncation, sinusoidal_truncation
@@ -226,7 +225,7 @@ def _held_mean(motions: _SinusoidalMotions, floating_mean: Floats) -> tuple[Floa
     """
     spring_force = motions.static_stiffness * motions.decay_length
     unloaded = motions.static_displacement - motions.load / motions.static_stiffness
-    stretch = wrightomega(np.log(motions.load / spring_force) + (floating_mean - unloaded) / motions.decay_length)
+    stretch = wright_omega(np.log(motions.load / spring_force) + (floating_mean - unloaded) / motions.decay_length)
     return unloaded + motions.decay_length * stretch, spring_force * stretch
 
 

@@ -1,14 +1,14 @@
 """One step of Newton's method for harmonic balance, on SIMD rows: Jacobian, elimination and substitution."""
 
-import numba
 import numpy as np
 
 from sonolube.checks import Floats
+from sonolube.compilation import kernel
 from sonolube.dynamics.kernels.contact_kernel import CompileTimeInt
 from sonolube.dynamics.kernels.simd import INLINED, INNER, LANES, subtract_product
 
 
-@numba.njit(**INLINED)
+@kernel(**INLINED)
 def newton_step(
     damped: CompileTimeInt,
     static_stiffness: float,
@@ -37,7 +37,7 @@ def newton_step(
                 subtract_product(spare[part, j], step[j], step[2 * k - 1 + part])
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def _mean_row(
     damped: CompileTimeInt, static_stiffness: float, spectra: Floats, omega: Floats, n: int, row: Floats
 ) -> None:
@@ -54,7 +54,7 @@ def _mean_row(
                 row[2 * j, lane] -= j * omega[lane] * drag[2 * j - 1, lane]
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def _harmonic_rows(
     damped: CompileTimeInt, receptance: Floats, spectra: Floats, omega: Floats, k: int, n: int, rows: Floats
 ) -> None:
@@ -95,7 +95,7 @@ def _harmonic_rows(
             rows[1, 2 * j, lane] = own + g_re * (p_re - q_re) - g_im * (p_im - q_im)
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def _eliminate(matrix: Floats, rows: int, step: Floats) -> None:
     """Replace residuals by the Newton step by Gaussian elimination without pivoting.
 

@@ -8,10 +8,10 @@ over the uncoupled pairs of states of `FirstOrderModes`.
 from functools import lru_cache
 from typing import NamedTuple
 
-import numba
 import numpy as np
 
 from sonolube.checks import Complexes, Floats
+from sonolube.compilation import kernel
 from sonolube.dynamics.first_order_modes import first_order_modes
 from sonolube.dynamics.kernels.simd import INNER, LANES
 from sonolube.dynamics.linear import modes, static_contact
@@ -138,7 +138,7 @@ def receptance(model: PoleResidueModel, response: int, omega: Floats) -> Complex
     return np.asarray(real + 1j * imaginary)
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def contact_receptances(poles: Floats, omega: Floats, order: float, receptances: Floats) -> None:
     """Write the contact receptance at a multiple of the angular frequency of each SIMD lane.
 

@@ -26,12 +26,13 @@ from sonolube.dynamics.harmonic_balance.harmonic_kernel import (
 )
 from sonolube.dynamics.harmonic_balance.initial_guess import InitialGuess, initial_guess
 from sonolube.dynamics.harmonic_balance.receptance import CHARGE_PER_VOLT, CONTACT_PER_VOLT, receptance
-from sonolube.dynamics.kernels.simd import uniform_blocks
+from sonolube.dynamics.kernels.simd import LANES, uniform_blocks
 
 MOST_HARMONICS = 64
 """Largest number of harmonics of the contact. []"""
 _MOST_SAMPLES, _MOST_COUPLED = 2048, 32
 _REFINEMENTS, _ITERATIONS = 9, 12
+_FEW_SAMPLES = 4096  # samples times harmonics of all points, up to which plain Python takes less than compiling
 _VOLTAGE_STEPS = 24  # of the continuation from a low voltage
 _DISTINCT = 1e-4  # relative difference of amplitude above which two solutions are distinct
 
@@ -114,10 +115,12 @@ def _refine(problem: BatchProblem, iterates: Iterates, truncation: Truncation) -
     pending = np.arange(points)
     for attempt in range(_REFINEMENTS):
         iterates = _with_capacity(iterates, int(truncation.harmonics[pending].max(initial=0)))
-        chosen = uniform_blocks(pending, *truncation)
-        work = harmonic_workspace(*(int(values[chosen].max()) for values in truncation))
+        finest = [int(values[pending].max()) for values in truncation]
+        sampled = pending.size * finest[0] * finest[2]
+        chosen = uniform_blocks(pending, *truncation, lanes=newton_solve.lanes(sampled, LANES, most=_FEW_SAMPLES))
+        work = harmonic_workspace(*finest)
         numbers, steps = np.array(truncation), _ITERATIONS + 4 * attempt
-        newton_solve(
+        newton_solve.for_points(sampled, most=_FEW_SAMPLES)(
             *variant, poles, stiffness, law, iterates, numbers, chosen, problem.tolerance, steps, outcome, work
         )
         pending = np.flatnonzero(outcome != CONVERGED)

@@ -6,10 +6,10 @@ never compiled. The classes behind the numbers are those of `sonolube.dynamics.g
 
 from typing import NamedTuple
 
-import numba
 import numpy as np
 
 from sonolube.checks import Floats
+from sonolube.compilation import kernel
 from sonolube.dynamics.kernels.force_table import log_force_at
 from sonolube.dynamics.kernels.simd import INNER, LANES, exponentials
 
@@ -38,13 +38,13 @@ class KernelVariant(NamedTuple):
     damped: CompileTimeInt  # 1 with damping, 0 without
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def stiffness_follows_force(kind: CompileTimeInt, damped: CompileTimeInt) -> bool:
     """Return whether the stiffness is proportional to the force, so that one Fourier transform serves both."""
     return len(kind) == EXPONENTIAL and len(damped) == 0
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def velocity_over_omega(damped: CompileTimeInt, motion: Floats, h: int, velocity: Floats) -> None:
     """Write the harmonics i k X_k of the velocity over omega, in the rows of a motion; nothing without damping."""
     if len(damped) == 1:
@@ -54,7 +54,7 @@ def velocity_over_omega(damped: CompileTimeInt, motion: Floats, h: int, velocity
                 velocity[2 * k, lane] = k * motion[2 * k - 1, lane]
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def contact_force_rows(
     kind: CompileTimeInt,
     damped: CompileTimeInt,
@@ -112,7 +112,7 @@ def contact_force_rows(
             slope[lane] *= factor
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def _tabulated_rows(
     law: LawParameters, equilibrium: Floats, x: Floats, force: Floats, slope: Floats, scratch: Floats
 ) -> None:
@@ -124,7 +124,7 @@ def _tabulated_rows(
         slope[lane] = -law.parameter * scratch[lane] * force[lane]
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def contact_force(
     kind: CompileTimeInt,
     damped: CompileTimeInt,

@@ -6,10 +6,10 @@ line after the last point. A row holds the polynomial coefficients of ln F, lowe
 start of its piece.
 """
 
-import numba
 import numpy as np
 
 from sonolube.checks import Floats
+from sonolube.compilation import kernel
 from sonolube.dynamics.kernels.simd import INNER, KERNEL
 
 _NEWTON_STEPS = 60
@@ -44,7 +44,7 @@ def table_cells(log_force: Floats, log_slope: Floats) -> Floats:
     return cells
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def log_force_at(cells: Floats, position: float) -> tuple[float, float]:
     """Return the logarithm of the force, in N, and its derivative per cell at one position."""
     row, last = np.floor(position) + 1.0, cells.shape[0] - 1.0
@@ -56,7 +56,7 @@ def log_force_at(cells: Floats, position: float) -> tuple[float, float]:
     return value, cells[at, 1] + u * (2 * second + 3 * u * third)
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def position_of(cells: Floats, log_force: float) -> float:
     """Return the position at which the logarithm of the force has a value, by bisection over cells, then Newton."""
     row, beyond = 0, cells.shape[0]
@@ -86,7 +86,7 @@ def position_of(cells: Floats, log_force: float) -> float:
     return float(row - 1.0 + u)
 
 
-@numba.njit(**KERNEL)
+@kernel(**KERNEL)
 def log_forces(cells: Floats, positions: Floats, values: Floats, slopes: Floats) -> None:
     """Write the logarithm of the force, in N, and its derivative per cell at many positions.
 
@@ -103,7 +103,7 @@ def log_forces(cells: Floats, positions: Floats, values: Floats, slopes: Floats)
         values[i], slopes[i] = log_force_at(cells, positions[i])
 
 
-@numba.njit(**KERNEL)
+@kernel(**KERNEL)
 def positions_of(cells: Floats, log_forces: Floats, positions: Floats) -> None:
     """Write the positions at which the logarithm of the force has many values.
 

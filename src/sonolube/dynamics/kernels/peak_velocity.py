@@ -1,16 +1,16 @@
 """Peak velocity of periodic motions given by their displacement harmonics."""
 
-import numba
 import numpy as np
 
 from sonolube.checks import Complexes, Floats
+from sonolube.compilation import kernel
 from sonolube.dynamics.kernels.simd import INNER, KERNEL
 
 _WEAK_HARMONICS = 0.5  # sum of k^3 |X_k|, k > 1, over |X_1| up to which the velocity has one maximum and one minimum
 _SAMPLES_PER_HARMONIC = 32  # for every other motion
 
 
-@numba.njit(**KERNEL)
+@kernel(**KERNEL)
 def peak_velocities(omega: Floats, harmonics: Complexes, peak: Floats) -> None:
     r"""Write the largest magnitude of the velocity of each motion.
 
@@ -49,7 +49,7 @@ def peak_velocities(omega: Floats, harmonics: Complexes, peak: Floats) -> None:
         peak[point] = omega[point] * fastest
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def _extremum(own: Complexes, phase: float) -> float:
     """Return the magnitude of dx/dtheta at its extremum near a phase, by Newton's method on the second derivative."""
     first = 0.0
@@ -61,7 +61,7 @@ def _extremum(own: Complexes, phase: float) -> float:
     return abs(first)
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def _phase_derivatives(own: Complexes, phase: float) -> tuple[float, float, float]:
     """Return the first three derivatives of the displacement with respect to the phase."""
     cosine, sine = np.cos(phase), np.sin(phase)

@@ -7,10 +7,10 @@ overlap, and no operation mixes lanes.
 
 from typing import Any
 
-import numba
 import numpy as np
 
 from sonolube.checks import Floats, Integers
+from sonolube.compilation import kernel
 
 LANES = 128
 """Points per block. []"""
@@ -27,6 +27,7 @@ KERNEL: dict[str, Any] = {
     "error_model": "numpy",
     "no_cfunc_wrapper": True,
     "_nrt": False,
+    "plain": {"LANES": 1},  # points run one by one as plain Python
 }
 ALLOCATING_KERNEL: dict[str, Any] = KERNEL | {"_nrt": True}
 INNER: dict[str, Any] = {  # functions that only kernels call, compiled without any Python interface
@@ -35,6 +36,7 @@ INNER: dict[str, Any] = {  # functions that only kernels call, compiled without 
     "no_cfunc_wrapper": True,
     "no_cpython_wrapper": True,
     "_nrt": False,
+    "plain": KERNEL["plain"],
 }
 # Large functions with a single call site: inlined into their caller, they are compiled once instead of twice.
 INLINED: dict[str, Any] = INNER | {"inline": "always"}
@@ -44,7 +46,7 @@ _SCALE = 2.0**-_HALVINGS
 _LARGEST_EXPONENT = 700.0
 
 
-def uniform_blocks(chosen: Integers, *keys: Integers) -> Integers:
+def uniform_blocks(chosen: Integers, *keys: Integers, lanes: int = LANES) -> Integers:
     """Return points in blocks of `LANES`, those of a block with equal keys, so that no result depends on other points.
 
     Parameters
@@ -53,6 +55,8 @@ def uniform_blocks(chosen: Integers, *keys: Integers) -> Integers:
         Points of a batch.
     keys : ndarrays of int, shape (p,)
         Of all points of the batch; the last one sorts first.
+    lanes : int
+        Points per block.
 
     Returns
     -------
@@ -64,11 +68,11 @@ def uniform_blocks(chosen: Integers, *keys: Integers) -> Integers:
     changed = np.any([np.diff(key[order]) != 0 for key in own], axis=0)
     ends = np.r_[np.flatnonzero(changed) + 1, chosen.size][: chosen.size]
     repeats = np.ones(chosen.size, dtype=np.int64)
-    repeats[ends[:-1] - 1] += -np.diff(ends, prepend=0)[:-1] % LANES
+    repeats[ends[:-1] - 1] += -np.diff(ends, prepend=0)[:-1] % lanes
     return np.asarray(np.repeat(chosen[order], repeats))
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def block_maximum(values: Integers, block: Integers) -> int:
     """Return the largest of the values at the points of a block."""
     largest = np.int64(0)
@@ -77,7 +81,7 @@ def block_maximum(values: Integers, block: Integers) -> int:
     return int(largest)
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def gather(table: Floats, block: Integers, rows: Floats) -> None:
     """Write each column of a table at the points of a block as a row; zeros beyond the table's width.
 
@@ -89,7 +93,7 @@ def gather(table: Floats, block: Integers, rows: Floats) -> None:
             rows[row, lane] = table[point, row] if row < table.shape[1] else 0.0
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def exponentials(argument: Floats, result: Floats) -> None:
     r"""Write exp(argument), the argument clipped to -700 ... 700, with relative error below 4e-13 for arguments < 100.
 
@@ -115,7 +119,7 @@ def exponentials(argument: Floats, result: Floats) -> None:
         result[lane] = series
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def weighted_row_sum(target: Floats, coefficients: Floats, sources: Floats, part: int, last: int) -> None:
     """Write the sum over k = 0 ... last of coefficients[k] * sources[2 k - 1 + part], four terms at a time.
 
@@ -136,28 +140,28 @@ def weighted_row_sum(target: Floats, coefficients: Floats, sources: Floats, part
             target[lane] += one + two
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def linear_combination(a: Floats, alpha: float, b: Floats, beta: float, target: Floats) -> None:
     """Write alpha * a + beta * b."""
     for lane in range(LANES):
         target[lane] = alpha * a[lane] + beta * b[lane]
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def add_absolute(source: Floats, target: Floats) -> None:
     """Add the absolute values of one row to another."""
     for lane in range(LANES):
         target[lane] += abs(source[lane])
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def add_products(a: Floats, b: Floats, c: Floats, d: Floats, target: Floats) -> None:
     """Add a * b + c * d to another row."""
     for lane in range(LANES):
         target[lane] += a[lane] * b[lane] + c[lane] * d[lane]
 
 
-@numba.njit(**INNER)
+@kernel(**INNER)
 def subtract_product(a: Floats, b: Floats, target: Floats) -> None:
     """Subtract a * b from another row."""
     for lane in range(LANES):

@@ -15,7 +15,6 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import expm
 
 from sonolube.checks import Complexes, Floats
 from sonolube.dynamics.first_order_modes import FirstOrderModes
@@ -292,6 +291,8 @@ def _interpolation(time: Floats, sampled_at: Floats, theta: float) -> Floats:
     exponents = harmonics + [0.0j] * (sampled_at.size - len(harmonics))
     companion = np.diag(np.ones(sampled_at.size - 1), 1)
     companion[-1] = -np.poly(np.array(exponents)).real[:0:-1]
+    from scipy.linalg import expm
+
     basis = expm(np.multiply.outer(np.concatenate([time, sampled_at]), companion))[:, 0, :]
     return np.asarray(np.linalg.solve(basis[time.size :].T, basis[: time.size].T).T)
 

@@ -7,10 +7,10 @@ number of pairs of states, are passed as the lengths of tuples.
 
 from typing import Any
 
-import numba
 import numpy as np
 
 from sonolube.checks import Floats
+from sonolube.compilation import kernel
 from sonolube.dynamics.kernels.contact_kernel import EXPONENTIAL, HERTZ, LINEAR
 from sonolube.dynamics.kernels.force_table import log_force_at
 from sonolube.dynamics.time_marching.row_layout import LANES, STATISTICS, row_layout
@@ -23,7 +23,7 @@ SWEEPS = 8
 """Fixed-point iterations of a start without history; each reduces the error by the force's own feedback. []"""
 
 
-@numba.njit(cache=True, fastmath=_FASTMATH, error_model="numpy")
+@kernel(fastmath=_FASTMATH, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def exponential(argument: float) -> float:
     """Return exp(argument) with a relative error of 1e-13, the argument clipped to -32 ... 32."""
     u = min(max(argument, -_LARGEST_EXPONENT), _LARGEST_EXPONENT) / 256
@@ -41,7 +41,7 @@ def exponential(argument: float) -> float:
     return power
 
 
-@numba.njit(cache=True, fastmath=_FASTMATH, error_model="numpy")
+@kernel(fastmath=_FASTMATH, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def _contact_force(
     kind: tuple[int, ...], damped: tuple[int, ...], cells: Floats, x: float, v: float, lanes: Floats, law: int
 ) -> Any:
@@ -61,7 +61,7 @@ def _contact_force(
     return force
 
 
-@numba.njit(cache=True, fastmath=_FASTMATH, error_model="numpy")
+@kernel(fastmath=_FASTMATH, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def _step(
     pairs: tuple[int, ...],
     kind: tuple[int, ...],
@@ -110,7 +110,7 @@ def _step(
             lanes[statistics + 7 * LANES] = min(lanes[statistics + 7 * LANES], force)
 
 
-@numba.njit(cache=True, fastmath=_FASTMATH, error_model="numpy")
+@kernel(fastmath=_FASTMATH, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def _complete_state(pairs: tuple[int, ...], lanes: Floats) -> None:
     """Write the state from the auxiliary state y and the recent forces."""
     at = row_layout(pairs)
@@ -123,7 +123,7 @@ def _complete_state(pairs: tuple[int, ...], lanes: Floats) -> None:
             lanes[at.state + k * LANES + lane] = total
 
 
-@numba.njit(cache=True, fastmath=_FASTMATH, error_model="numpy")
+@kernel(fastmath=_FASTMATH, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def _free_motion(pairs: tuple[int, ...], lanes: Floats, table: Floats, step: int) -> None:
     """Write the contact's motion now and at the next four steps without contact force; overwrites the state."""
     at, row = row_layout(pairs), 2 * len(pairs) * LANES
@@ -142,7 +142,7 @@ def _free_motion(pairs: tuple[int, ...], lanes: Floats, table: Floats, step: int
             lanes[at.x_free + ahead * LANES + lane], lanes[at.v_free + ahead * LANES + lane] = x, v
 
 
-@numba.njit(cache=True, fastmath=_FASTMATH, error_model="numpy")
+@kernel(fastmath=_FASTMATH, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def _collocate(
     pairs: tuple[int, ...], kind: tuple[int, ...], damped: tuple[int, ...], cells: Floats, lanes: Floats
 ) -> None:
@@ -168,7 +168,7 @@ def _collocate(
                 lanes[at.forces_ahead + ahead] = force - lanes[law]
 
 
-@numba.njit(cache=True, fastmath=_FASTMATH, error_model="numpy")
+@kernel(fastmath=_FASTMATH, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def _restart(
     pairs: tuple[int, ...],
     kind: tuple[int, ...],
@@ -199,7 +199,7 @@ def _restart(
                 lanes[at.y + k * LANES + lane] -= lanes[added] * change
 
 
-@numba.njit(cache=True, fastmath=_FASTMATH, error_model="numpy")
+@kernel(fastmath=_FASTMATH, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def _ramp_factors(factor: Floats, time: float, ramp_steps: Floats, cosine_shaped: bool) -> None:
     """Write the ramp factor of every lane at a time in steps."""
     for lane in range(LANES):
@@ -209,7 +209,7 @@ def _ramp_factors(factor: Floats, time: float, ramp_steps: Floats, cosine_shaped
             factor[lane] = 0.5 - 0.5 * np.cos(np.pi * factor[lane])
 
 
-@numba.njit(cache=True, fastmath=_FASTMATH, error_model="numpy")
+@kernel(fastmath=_FASTMATH, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def _combine_ramp(
     table: Floats, constant: Floats, linear: Floats, quadratic: Floats, level: Floats, slope: Floats, bend: Floats
 ) -> None:
@@ -218,7 +218,7 @@ def _combine_ramp(
         table[lane] = level[lane] * constant[lane] + slope[lane] * linear[lane] + bend[lane] * quadratic[lane]
 
 
-@numba.njit(cache=True, fastmath=_FASTMATH, error_model="numpy")
+@kernel(fastmath=_FASTMATH, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def _tabulate_drive(
     drive: Floats, table: Floats, steps: int, states: int, first: int, ramp_steps: Floats, cosine_shaped: bool
 ) -> None:
@@ -246,7 +246,7 @@ def _tabulate_drive(
             )
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def _mark_restarts(lanes: Floats, mark: int, now: int, step: int, ramp_steps: Floats, jumps: Any) -> bool:
     """Mark the lanes that restart before a step: all at time 0 and at a jump, one where its ramp has just ended."""
     all_lanes = now == 0
@@ -260,7 +260,7 @@ def _mark_restarts(lanes: Floats, mark: int, now: int, step: int, ramp_steps: Fl
     return any_lane
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def _reset_statistics(lanes: Floats, statistics: int) -> None:
     """Reset the statistics at the start of a window."""
     lanes[statistics : statistics + STATISTICS * LANES] = 0.0
@@ -269,7 +269,7 @@ def _reset_statistics(lanes: Floats, statistics: int) -> None:
         lanes[row : row + LANES], lanes[row + LANES : row + 2 * LANES] = -np.inf, np.inf
 
 
-@numba.njit(cache=True)
+@kernel(no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def _copy(lanes: Floats, first: int, target: Floats) -> None:
     """Copy consecutive rows of the lanes in use."""
     for k in range(target.shape[0]):
@@ -277,7 +277,7 @@ def _copy(lanes: Floats, first: int, target: Floats) -> None:
             target[k, lane] = lanes[first + k * LANES + lane]
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@kernel(cache=True, nogil=True, error_model="numpy", no_cfunc_wrapper=True)
 def march_lanes(
     pairs: tuple[int, ...],
     kind: tuple[int, ...],

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-import numba
+from sonolube.compilation import kernel
 
 LANES = 32
 """Trajectories marched side by side. []"""
@@ -34,7 +34,7 @@ class RowLayout(NamedTuple):
     end: int
 
 
-@numba.njit(cache=True)
+@kernel(cache=True)
 def row_layout(pairs: tuple[int, ...]) -> RowLayout:
     """Return the index at which each group of rows starts, in the order of the groups."""
     pair, fixed = 2 * len(pairs) * LANES, 12 * 2 * len(pairs) * LANES

@@ -4,11 +4,11 @@ The friction force has constant magnitude and the direction of the relative velo
 stiffness are in `dahl_under_vibration` and `sonolube.friction.oscillating_contact`.
 """
 
-import numba
 import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
+from sonolube.compilation import kernel
 
 
 def parallel_vibration_ratio(*, sliding_speed: ArrayLike, vibration_velocity: ArrayLike) -> Floats:
@@ -140,7 +140,7 @@ def _speeds(sliding_speed: ArrayLike, vibration_velocity: ArrayLike) -> tuple[Fl
     return (require_positive(sliding_speed=sliding_speed), require_non_negative(vibration_velocity=vibration_velocity))
 
 
-@numba.njit(cache=True)
+@kernel(cache=True)
 def _oblique(v_r: Floats, v_1: Floats, cosine: Floats, sine: Floats) -> Floats:
     """Return the mean cosine of the angle between relative velocity and sliding direction over a period."""
     ratios = np.ones(v_r.size)
@@ -169,7 +169,7 @@ def _oblique(v_r: Floats, v_1: Floats, cosine: Floats, sine: Floats) -> Floats:
     return ratios
 
 
-@numba.njit(cache=True)
+@kernel(cache=True)
 def _complete_integral(k_c: float, p: float, a: float, b: float) -> float:
     """Return Bulirsch's integral cel(k_c, p, a, b) for p > 0 by his arithmetic-geometric mean.
 

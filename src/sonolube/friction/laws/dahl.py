@@ -3,11 +3,11 @@
 import math
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_positive
+from sonolube.compilation import kernel
 from sonolube.friction.laws.sampled_motion import integrate_rows, require_increasing
 
 
@@ -138,7 +138,7 @@ def dahl_friction_history(
     return K * integrate_rows(_deformation_history, times, velocities, start, K / F_c)
 
 
-@numba.njit(cache=True)
+@kernel(cache=True)
 def _deformation_history(times: Floats, velocities: Floats, start: float, rate: float) -> Floats:
     """Return the deformation along one sampled motion; `rate` is K/F_c."""
     deformation = np.empty_like(velocities)
@@ -155,7 +155,7 @@ def _deformation_history(times: Floats, velocities: Floats, start: float, rate: 
     return deformation
 
 
-@numba.njit(cache=True)
+@kernel(cache=True)
 def _deformation_after_slide(delta: float, distance: float, rate: float) -> float:
     """Return the deformation after a slide in one direction."""
     decay = -rate * abs(distance)

@@ -2,11 +2,11 @@
 
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive
+from sonolube.compilation import kernel
 from sonolube.errors import InvalidInput
 from sonolube.friction.laws.sampled_motion import integrate_rows, require_increasing
 
@@ -180,7 +180,7 @@ def _steady_deflection(law: LuGreFriction, v: Floats) -> Floats:
     return (F_c + (F_s - F_c) * np.exp(-((v / law.stribeck_velocity) ** 2))) / law.bristle_stiffness
 
 
-@numba.njit(cache=True)
+@kernel(cache=True)
 def _deflection_history(
     times: Floats,
     velocities: Floats,

@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 from math import ceil, cos, exp, hypot, pi, sin, sqrt
 
-import numba
 import numpy as np
 
 from sonolube.checks import Floats, require_finite, require_non_negative, require_positive, require_within
+from sonolube.compilation import kernel
 from sonolube.errors import InvalidInput
 from sonolube.friction.bristle import Holder
 from sonolube.friction.laws.dahl import DahlFriction
@@ -154,7 +154,7 @@ def _highest_rate(
     return float(max(omega, sqrt((K + stiffness) / m), (c + damping + viscous) / m, slip) / (2 * pi))
 
 
-@numba.njit(cache=True)
+@kernel(cache=True)
 def _derivatives(
     state: Floats,
     rates: Floats,
@@ -178,7 +178,7 @@ def _derivatives(
     rates[1] = (K * elongation + c * rates[0] - stiffness * z_x - damping * rates[2] - viscous * x) / m
 
 
-@numba.njit(cache=True)
+@kernel(cache=True)
 def _drive_force(
     constants: tuple[float, float, float, float, float, float],
     spring: tuple[float, float, float],

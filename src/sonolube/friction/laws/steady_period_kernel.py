@@ -1,14 +1,14 @@
 """Mean force over the steady period of a bristle law that is linear in the deformation between reversals (kernel)."""
 
-import numba
 import numpy as np
 
 from sonolube.checks import Floats
+from sonolube.compilation import kernel
 
 __all__: list[str] = []  # kernel of this room
 
 
-@numba.njit(cache=True)
+@kernel(cache=True)
 def steady_period_mean_force(stiffness: Floats, limit: Floats, slides: Floats, durations: Floats) -> Floats:
     """Return the mean force of each row of steps over its steady period.
 

@@ -4,11 +4,11 @@ from dataclasses import dataclass
 from math import cos, exp, pi, sin
 from typing import ClassVar, final
 
-import numba
 import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, Integers, require_positive
+from sonolube.compilation import kernel
 from sonolube.contact.gap_motion import (
     GapMotion,
     GapMotionBatch,
@@ -177,7 +177,7 @@ class AsperityStickSlip(FrictionModel):
         )
 
 
-@numba.njit(cache=True)
+@kernel(cache=True)
 def _sampled_ratio(x: Floats, slides: Floats, steady: Floats, nodes: Floats, weights: Floats) -> Floats:
     """Return the mean friction over the mean limit, for gaps, vibration slides and steady slides in decay lengths."""
     lowest, highest = x.min(), x.max()
@@ -208,7 +208,7 @@ def _sampled_ratio(x: Floats, slides: Floats, steady: Floats, nodes: Floats, wei
     return ratio
 
 
-@numba.njit(cache=True)
+@kernel(cache=True)
 def _element_force(x: Floats, slides: Floats, steady: float, y: float, force: Floats) -> float:
     """Return the mean force of the element in contact below gap y, and write it at every phase, widest gap first."""
     n = x.size

@@ -4,15 +4,15 @@ from functools import cache
 from math import atan2, cos, exp, log, pi, sin, sqrt
 from typing import NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.special import i0e
 
 from sonolube.checks import Complexes, Floats, require_positive
+from sonolube.compilation import kernel
 from sonolube.contact.gap_motion import GapMotionBatch
 from sonolube.errors import InvalidInput
 from sonolube.friction.models.asperity_stick_slip_sine import EMPIRICAL_MEMORY_LENGTH, sine_stick_slip_ratio
+from sonolube.friction.scaled_bessel import scaled_bessel_i0
 
 SINE_TOLERANCE = 8e-5
 """Largest error of a friction ratio by neglecting the higher harmonics of a vibration. []"""
@@ -107,11 +107,12 @@ def batched_stick_slip_ratio(
     cubes = np.arange(2, harmonics.shape[1] + 1) ** 3
     closes_once = np.abs(harmonics[:, 1:]) @ cubes <= _MAXIMUM_CUBIC_SUM * beta
     # mean normal force of the sine about this mean, over the load
-    load_ratio = i0e(beta) * np.exp(beta - mean)
+    load_ratio = scaled_bessel_i0(beta) * np.exp(beta - mean)
     slide = 1 / (2 * np.pi * f * memory)
     ratio = np.empty(v_r.shape)
     table = _table() if tolerance >= SINE_TOLERANCE else _NO_TABLE
-    _write_ratios(
+    write_ratios = _write_ratios.for_points(v_r.size)
+    write_ratios(
         table, tolerance, harmonics, mean, beta, higher, closes_once, load_ratio, slide, v_r, which, *_NODES, ratio
     )
     beyond = np.flatnonzero(np.isinf(ratio))
@@ -144,7 +145,7 @@ def _table() -> _Table:
     return _Table(ratio, beta[0], beta[1] - beta[0], speed[0], speed[1] - speed[0])
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@kernel(cache=True, nogil=True, error_model="numpy", no_cfunc_wrapper=True, _nrt=False)
 def _write_ratios(
     table: _Table,
     tolerance: float,
@@ -175,7 +176,7 @@ def _write_ratios(
             ratio[i] = 1 - _deficit(harmonics[j], mean[j], s, nodes, weights)
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False)
 def _interpolated(table: _Table, beta: float, s: float) -> float:
     """Return the ratio under a sine by bicubic interpolation in the table, infinity outside of it."""
     if s >= beta:
@@ -194,14 +195,14 @@ def _interpolated(table: _Table, beta: float, s: float) -> float:
     return total
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False)
 def _cubic_weights(t: float) -> tuple[float, float, float, float]:
     """Return the weights at t of the cubic Lagrange polynomial through values at 0, 1, 2 and 3."""
     a, b, c, d = t, t - 1, t - 2, t - 3
     return -b * c * d / 6, a * c * d / 2, -a * b * d / 2, a * b * c / 6
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False)
 def _deficit(harmonics: Complexes, mean: float, s: float, nodes: Floats, weights: Floats) -> float:
     """Return the friction deficit of sticking elements over the load, for a motion that closes once in a period."""
     count = harmonics.size
@@ -227,7 +228,7 @@ def _deficit(harmonics: Complexes, mean: float, s: float, nodes: Floats, weights
     return total / (2 * pi)
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False)
 def _closing_phase(harmonics: Complexes, count: int, s: float, fastest: float, side: float) -> float:
     """Return the phase before (-1) or after (1) that of fastest closing at which the gap closes at the rate s."""
     inside, outside = fastest, fastest + side * pi
@@ -247,7 +248,7 @@ def _closing_phase(harmonics: Complexes, count: int, s: float, fastest: float, s
     return phase
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False)
 def _opening_phase(harmonics: Complexes, count: int, s: float, level: float, low: float, high: float) -> float:
     """Return the phase between two at which the height of the gap above the slide has risen to a level."""
     phase: float = low
@@ -274,7 +275,7 @@ def _opening_phase(harmonics: Complexes, count: int, s: float, level: float, low
     return phase
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False)
 def _displacement_derivatives(harmonics: Complexes, count: int, phase: float) -> tuple[float, float, float, float]:
     """Return the displacement about the mean and its first three derivatives with respect to the phase."""
     cosine, sine = cos(phase), sin(phase)

@@ -2,14 +2,14 @@
 
 from math import acos, asin, cos, exp, pi, sin, sqrt
 
-import numba
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import i0e
 
 from sonolube.checks import Floats, require_non_negative, require_positive
+from sonolube.compilation import kernel
 from sonolube.contact.rough import RoughContact, decay_length, separation
 from sonolube.friction.oscillating_contact.stick_slip_phases import half_stick_phase
+from sonolube.friction.scaled_bessel import scaled_bessel_i0
 
 EMPIRICAL_MEMORY_LENGTH = 1.5e-6
 """Memory length of an asperity: sliding distance in which its tangential force reaches the friction limit. [m]
@@ -124,10 +124,11 @@ def sine_stick_slip_ratio(
     beta = a / length
     scaled_speed = v_r * length / D_c  # v times omega a, which may be 0
     v = np.minimum(scaled_speed / np.maximum(2 * pi * f * a, scaled_speed), 1.0)
-    return _harmonic_ratio(beta.ravel(), v.ravel(), i0e(beta).ravel(), *_PHASES).reshape(beta.shape)
+    harmonic_ratio = _harmonic_ratio.for_points(beta.size)
+    return harmonic_ratio(beta.ravel(), v.ravel(), scaled_bessel_i0(beta).ravel(), *_PHASES).reshape(beta.shape)
 
 
-@numba.njit(cache=True)
+@kernel(cache=True)
 def _harmonic_ratio(beta: Floats, v: Floats, i0e_beta: Floats, nodes: Floats, weights: Floats) -> Floats:
     """Return the friction ratio for each amplitude over decay length and each reduced speed."""
     ratio = np.ones(beta.size)

@@ -4,11 +4,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar, final
 
-import numba
 import numpy as np
 from numpy.typing import ArrayLike
 
 from sonolube.checks import Floats, require_positive
+from sonolube.compilation import kernel
 from sonolube.contact.gap_motion import GapMotion, richardson_period_mean
 from sonolube.contact.rough import RoughContact
 from sonolube.friction.models.model import FrictionModel, parameter
@@ -124,7 +124,7 @@ def kinematic_mean(
     return richardson_period_mean(mean, motion).reshape(v_r.shape)
 
 
-@numba.njit(cache=True)
+@kernel(cache=True)
 def _weighted_cosine(weights: Floats, velocity: Floats, speeds: Floats) -> Floats:
     """Return the mean of weight times v_r/sqrt(v_r^2 + v^2), both linear between samples, exactly for any v_r."""
     n = weights.size

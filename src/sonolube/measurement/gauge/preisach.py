@@ -9,10 +9,10 @@ relays that are up, the output is
 
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 
 from sonolube.checks import Floats
+from sonolube.compilation import kernel
 from sonolube.errors import InvalidInput
 
 
@@ -125,7 +125,7 @@ def _in_levels(plane: PreisachPlane, values: Floats) -> Floats:
     return np.ascontiguousarray((values - plane.lowest) / (plane.highest - plane.lowest) * plane.levels)
 
 
-@numba.njit(cache=True)
+@kernel(cache=True)
 def _add_triangle(high: float, low: float, levels: int, factor: float, fractions: Floats) -> None:
     """Add the fraction of each cell with relays of alpha up to `high` and beta from `low` on."""
     cell = 0
@@ -140,7 +140,7 @@ def _add_triangle(high: float, low: float, levels: int, factor: float, fractions
             cell += 1
 
 
-@numba.njit(cache=True)
+@kernel(cache=True)
 def _advance(x: float, extrema: Floats, last: int) -> int:
     """Move the input to x and return the place of the current input in `extrema`.
 
@@ -159,7 +159,7 @@ def _advance(x: float, extrema: Floats, last: int) -> int:
     return last
 
 
-@numba.njit(cache=True)
+@kernel(cache=True)
 def _fill_row(extrema: Floats, last: int, levels: int, row: Floats) -> None:
     """Fill a row with the fractions of all cells for the stored extrema."""
     row[:] = 0.0
@@ -170,7 +170,7 @@ def _fill_row(extrema: Floats, last: int, levels: int, row: Floats) -> None:
             _add_triangle(extrema[place - 1], extrema[place], levels, -1.0, row)
 
 
-@numba.njit(cache=True)
+@kernel(cache=True)
 def _fill_fractions(x: Floats, levels: int, fractions: Floats) -> None:
     """Fill the fractions of all cells along a history of the input."""
     extrema, last = np.zeros(x.size + 2), 0
@@ -179,7 +179,7 @@ def _fill_fractions(x: Floats, levels: int, fractions: Floats) -> None:
         _fill_row(extrema, last, levels, fractions[sample])
 
 
-@numba.njit(cache=True)
+@kernel(cache=True)
 def _output(x: Floats, levels: int, weights: Floats) -> Floats:
     """Return the weighted sum of the fractions along a history of the input."""
     extrema, last = np.zeros(x.size + 2), 0

@@ -1,0 +1,92 @@
+"""Seconds of whole commands: the first run with no compiled kernel on disk, and later runs.
+
+    python benchmarks/command_times.py [--runs 3] [--only WORD ...]
+
+prints a table for `docs/speed.md`. Each command runs in a process and a folder of its own; the cache of kernels is a
+new folder for each command, so that its first run compiles all that it needs. Processor time is that of the process and
+of those that it starts; later runs are medians.
+"""
+
+import argparse
+import os
+import resource
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
+RIG = str(EXAMPLES / "rigs" / "tribometer.toml")
+COMMANDS = (
+    ("--version",),
+    ("materials",),
+    ("actuators",),
+    ("published",),
+    ("schema",),
+    ("contact", RIG),
+    ("friction", RIG),
+    ("wear", RIG),
+    ("simulate", RIG),
+    ("predict", RIG),
+    ("response", RIG, "--from", "15kHz", "--to", "35kHz"),
+    ("transient", RIG, "--duration", "0.06s"),
+    ("thermal", RIG, "--pin", "stainless_steel_316", "--disc", "aluminium_2024"),
+    ("regime", RIG, "--film-coefficient", "0.25", "--asperity-pressure", "10MPa"),
+    ("sweep", RIG, "--over", "drive.voltage_peak_to_peak=2V:28V:27"),
+    ("map", str(EXAMPLES / "rigs" / "power_map.toml"), "--kind", "velocity-power"),
+    ("uncertainty", str(EXAMPLES / "rigs" / "tribometer_uncertain.toml"), "--samples", "256"),
+    ("optimise", RIG, "--target-friction", "0.15"),
+    ("control", RIG, "--friction", "0.5N", "--factor", "1.15", "--warming", "40K"),
+    ("efficiency", str(EXAMPLES / "efficiency-runs.csv"), "--rig", str(EXAMPLES / "rigs" / "power_map.toml")),
+    ("compare", RIG),
+    ("literature", RIG),
+    ("identify", "rig", RIG, "--facts", str(EXAMPLES / "facts" / "tribometer.toml"), "--out", "my.toml"),
+    ("modes", "block", "--set", "length=127mm", "--set", "width=60.96mm", "--set", "thickness=25.4mm"),
+    ("horn", "design", "--frequency", "20kHz", "--material", "titanium_6al4v", "--set", "end_radius=10mm"),
+    ("impedance", "compute", "tribometer_actuator", "--clamp", "back.-z", "--to", "40kHz"),
+)
+
+
+def run_once(arguments: tuple[str, ...], cache: str) -> tuple[float, float]:
+    """Return wall and processor time of one run of a command. [s]"""
+    program = [str(Path(sys.executable).with_name("sonolube")), *arguments]
+    with tempfile.TemporaryDirectory() as folder:
+        before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
+        done = subprocess.run(
+            program,
+            cwd=folder,
+            env=os.environ | {"NUMBA_CACHE_DIR": cache},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        wall, after = time.perf_counter() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
+    if done.returncode:
+        sys.exit(f"{' '.join(program)}: {done.stderr}")
+    return wall, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def main() -> None:
+    """Measure the commands and print their table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--runs", type=int, default=3, help="later runs of which the median is taken")
+    parser.add_argument("--only", nargs="*", default=[], help="only commands with one of these words in their name")
+    chosen = parser.parse_args()
+    sys.stdout.write("| command | first run, s | its processor time, s | later runs, s | their processor time, s |\n")
+    sys.stdout.write("|---|---|---|---|---|\n")
+    for arguments in COMMANDS:
+        name = " ".join(word if "/" not in word else Path(word).name for word in arguments)
+        if chosen.only and not any(word in arguments[:2] for word in chosen.only):
+            continue
+        with tempfile.TemporaryDirectory() as cache:
+            cold = run_once(arguments, cache)
+            warm = [run_once(arguments, cache) for _ in range(chosen.runs)]
+        wall, processor = (statistics.median(column) for column in zip(*warm, strict=True))
+        sys.stdout.write(f"| `{name}` | {cold[0]:.1f} | {cold[1]:.1f} | {wall:.2f} | {processor:.2f} |\n")
+        sys.stdout.flush()
+
+
+if __name__ == "__main__":
+    main()
