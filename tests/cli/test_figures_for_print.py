@@ -11,7 +11,7 @@ from matplotlib.text import Text
 from pytest import MonkeyPatch, approx
 from tests.cli.conftest import Program
 
-from sonolube.figure import FIGURE_STYLES
+from sonolube.figure import FIGURE_STYLES, render_figure
 from sonolube.report import page
 
 RIGS = Path(__file__).parents[2] / "examples" / "rigs"
@@ -35,7 +35,7 @@ COMMANDS = {
 def figures(monkeypatch: MonkeyPatch) -> list[Figure]:
     """Every figure that a command renders."""
     rendered: list[Figure] = []
-    render = page.render_figure
+    render = render_figure
 
     def keep(figure: Figure, form: str) -> bytes:
         content = render(figure, form)
@@ -75,14 +75,14 @@ def test_a_figure_has_a_width_of_its_style_and_text_that_can_be_read(
         width, height = 25.4 * figure.get_size_inches()
         assert width == approx(known.column_width, abs=0.01) or width == approx(known.page_width, abs=0.01)
         assert height <= known.largest_height + 0.01
-        assert min(text.get_fontsize() for text in shown(figure)) >= known.smallest_text
+        assert min(float(text.get_fontsize()) for text in shown(figure)) >= known.smallest_text
         assert_readable(figure)
 
 
 def assert_readable(figure: Figure) -> None:
     """Labels within the figure, and no label of a tick on the next."""
     canvas = FigureCanvasAgg(figure)
-    canvas.draw()
+    canvas.draw()  # type: ignore[no-untyped-call]
     edge = figure.bbox.padded(2.0)
     labels = [text for axes in figure.axes for text in (axes.xaxis.label, axes.yaxis.label, axes.title)]
     for text in (each for each in labels if each.get_text()):

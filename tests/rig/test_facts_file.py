@@ -7,17 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from pytest import approx, raises
+from tests.identified import identified_tribometer
 
 from sonolube.errors import InvalidInput, SonolubeError, UnknownName
 from sonolube.identification import identify, pin_on_disc_model
 from sonolube.rig import read_rig, with_tables
 from sonolube.rig.facts_file import identified_tables, read_facts, rig_forward_model
-from sonolube.validation.tribometer import (
-    tribometer_identification,
-    tribometer_problem,
-    tribometer_stack,
-    tribometer_test,
-)
+from sonolube.validation.tribometer import tribometer_problem, tribometer_stack, tribometer_test
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 FACTS = EXAMPLES / "facts" / "tribometer.toml"
@@ -122,7 +118,7 @@ def test_the_example_has_the_forward_model_of_the_published_facts_bit_for_bit() 
 def test_the_example_gives_the_identification_of_the_published_facts_bit_for_bit() -> None:
     problem = read_facts(FACTS)
     found = identify(rig_forward_model(RIG, problem), facts=problem.facts, bounds=problem.bounds)
-    expected = tribometer_identification()
+    expected = identified_tribometer()
     assert found.estimates == expected.estimates
     assert found.observed == expected.observed
     assert found.directions == expected.directions

@@ -4,18 +4,13 @@ import math
 
 import pytest
 from pytest import approx
+from tests.identified import identified_tribometer
 
 from sonolube.contact import decay_length
 from sonolube.identification import Identification
 from sonolube.published import ComputedValue, PrintedNumber, propagate_rounding, published_number, si_value
 from sonolube.validation.contacts import wear_contact
-from sonolube.validation.tribometer import (
-    IDENTIFIED,
-    tribometer_identification,
-    tribometer_problem,
-    tribometer_stack,
-    tribometer_test,
-)
+from sonolube.validation.tribometer import IDENTIFIED, tribometer_problem, tribometer_stack, tribometer_test
 
 PROBLEM = tribometer_problem()
 FACTS = {fact.name: fact for fact in PROBLEM.facts}
@@ -24,7 +19,7 @@ GRAVITY = 9.80665  # m/s2
 
 @pytest.fixture(scope="module")
 def found() -> Identification:
-    return tribometer_identification()
+    return identified_tribometer()
 
 
 def test_facts_are_the_printed_numbers() -> None:

@@ -7,16 +7,16 @@ from typing import Any
 
 import pytest
 from pytest import MonkeyPatch, approx
+from tests.identified import identified_tribometer
 
 from sonolube.identification import Identification
-from sonolube.validation.tribometer import tribometer_identification
 
 Program = Callable[..., Any]
 
 
 @pytest.fixture(scope="module")
 def identification() -> Identification:
-    return tribometer_identification()
+    return identified_tribometer()
 
 
 @pytest.fixture
