@@ -1,17 +1,21 @@
-"""Contents of files of natural modes: VTK grid, table of shapes at points, and animated GIF."""
+"""Contents of files of natural modes: VTK grid, shapes at points, structure for a rig file, and animated GIF."""
 
 import io
+import json
 import math
 from collections.abc import Sequence
 
 import numpy as np
 
-from sonolube.checks import Floats
-from sonolube.errors import InvalidInput
+from sonolube.checks import Floats, require_positive
+from sonolube.errors import InvalidInput, UnknownName
 from sonolube.fem.figures import MODE_COLOURS, mode_figure
+from sonolube.fem.parts.transducers import Transducer
 from sonolube.fem.solver.convergence import ConvergedModes
 from sonolube.fem.solver.model import DIRECTIONS
 from sonolube.fem.solver.postprocessing import interpolate_at_points
+from sonolube.fem.solver.reduction import reduce_model
+from sonolube.fem.solver.structure_conversion import contact_structure
 from sonolube.fem.vtk_export import vtu_text
 from sonolube.figure import render_figure
 
@@ -91,6 +95,74 @@ def shapes_table(found: ConvergedModes, names: Sequence[str], points: Floats, *,
     header = ", ".join(f"{names[row]} at {found.natural_frequency[row]:.1f} Hz" for row in rows)
     np.savetxt(text, (shapes / np.abs(shapes).max(axis=1, keepdims=True)).T, fmt="%.6g", delimiter=",", header=header)
     return text.getvalue()
+
+
+def structure_modes(
+    found: ConvergedModes, transducer: Transducer, *, contact: str, body_mass: float | None, command: str
+) -> str:
+    """Modes of a transducer with static correction, as TOML for the table `structure` of a rig file.
+
+    Parameters
+    ----------
+    found : ConvergedModes
+        Natural modes of the transducer.
+    transducer : Transducer
+    contact : str
+        Output at the contact.
+    body_mass : float or None
+        Mass of a free rigid body that rests on the contact, where it is not held. [kg]
+    command : str
+        What computes them again.
+
+    Returns
+    -------
+    str
+        As `sonolube.rig` reads it.
+
+    Raises
+    ------
+    UnknownName
+        If there is no such output.
+    """
+    if contact not in transducer.outputs:
+        raise UnknownName.among(transducer.outputs, kind="output", name=contact)
+    output, rows = transducer.outputs[contact], list(elastic_rows(found))
+    reduced = transducer.whole(reduce_model(found.model, count=len(rows), outputs={contact: output}))
+    # the face's normal points to the other body; faces of negative normal end in "-x", "-y" or "-z"
+    structure = contact_structure(
+        reduced, contact=contact, outwards=1.0 if output.face.endswith(f"-{output.along}") else -1.0
+    )
+    omega = np.sqrt(np.diag(structure.stiffness_matrix))
+    doubled = np.diag(structure.damping_matrix)
+    columns = {
+        "natural_frequency": omega / (2 * np.pi),
+        "damping_ratio": np.divide(doubled, 2 * omega, out=np.zeros_like(omega), where=omega > 0),
+        "drive_participation": structure.drive_vector,
+        "contact_participation": structure.contact_vector,
+    }
+    if body_mass is not None:
+        at_rest = {"contact_participation": 1 / np.sqrt(float(require_positive(body_mass=body_mass)))}
+        columns = {name: np.append(values, at_rest.get(name, 0.0)) for name, values in columns.items()}
+    change = np.abs(found.modes.natural_frequency[rows] / found.natural_frequency[rows] - 1)
+    error = float((found.frequency_error[rows] + change).max())
+    assumptions = [
+        f"damping is that of the assumed loss tangents of the materials; {found.nodes[-1]} nodes",
+        *(f"{size.name}: {size.source}" for size in transducer.dimensions if not size.printed),
+    ]
+    return "\n".join(
+        [
+            f"# Modes for [structure] of a rig file: {len(rows)} elastic ones, those without deformation, and the",
+            "# static correction for all others. Shapes have a modal mass of 1 kg.",
+            f"command = {json.dumps(command)}",
+            f"frequency_error = {error:.2g}",
+            "assumptions = [",
+            *(f"  {json.dumps(text, ensure_ascii=False)}," for text in assumptions),
+            "]",
+            f"clamped_capacitance = {json.dumps(f'{structure.clamped_capacitance:.9g} F')}",
+            *(f"{name} = [{', '.join(f'{value:.9g}' for value in values)}]" for name, values in columns.items()),
+            "",
+        ]
+    )
 
 
 def mode_animation(found: ConvergedModes, shape: Floats, *, title: str) -> bytes:
