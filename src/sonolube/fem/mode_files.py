@@ -3,11 +3,12 @@
 import io
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from sonolube.checks import Floats, require_positive
+from sonolube.checks import Floats, require_non_negative, require_positive
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.fem.figures import MODE_COLOURS, mode_figure
 from sonolube.fem.parts.transducers import Transducer
@@ -97,8 +98,49 @@ def shapes_table(found: ConvergedModes, names: Sequence[str], points: Floats, *,
     return text.getvalue()
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SupportedBody:
+    """Rigid body that rests on a contact, on a spring and damper of its own, such as the hand that holds it.
+
+    Parameters
+    ----------
+    body_mass : float
+        Mass. [kg]
+    spring_stiffness : float
+        Stiffness of its support; zero for a free body. [N/m]
+    viscous_damping : float
+        Damping of its support, which needs a spring. [N s/m]
+
+    Raises
+    ------
+    InvalidInput
+        If the mass is not positive, a value negative, or damping given without a spring.
+    """
+
+    body_mass: float
+    spring_stiffness: float = 0.0
+    viscous_damping: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_positive(body_mass=self.body_mass)
+        require_non_negative(spring_stiffness=self.spring_stiffness, viscous_damping=self.viscous_damping)
+        if self.viscous_damping and not self.spring_stiffness:
+            raise InvalidInput("viscous_damping of a body without a spring has no damping ratio; give spring_stiffness")
+
+    @property
+    def mode(self) -> Mapping[str, float]:
+        """Its mode, by the columns of a file of modes."""
+        critical = 2 * math.sqrt(self.spring_stiffness * self.body_mass)
+        return {
+            "natural_frequency": math.sqrt(self.spring_stiffness / self.body_mass) / (2 * math.pi),
+            "damping_ratio": self.viscous_damping / critical if critical else 0.0,
+            "drive_participation": 0.0,
+            "contact_participation": 1 / math.sqrt(self.body_mass),
+        }
+
+
 def structure_modes(
-    found: ConvergedModes, transducer: Transducer, *, contact: str, body_mass: float | None, command: str
+    found: ConvergedModes, transducer: Transducer, *, contact: str, body: SupportedBody | None, command: str
 ) -> str:
     """Modes of a transducer with static correction, as TOML for the table `structure` of a rig file.
 
@@ -109,8 +151,8 @@ def structure_modes(
     transducer : Transducer
     contact : str
         Output at the contact.
-    body_mass : float or None
-        Mass of a free rigid body that rests on the contact, where it is not held. [kg]
+    body : SupportedBody or None
+        Rigid body that rests on the contact; held where None.
     command : str
         What computes them again.
 
@@ -140,9 +182,8 @@ def structure_modes(
         "drive_participation": structure.drive_vector,
         "contact_participation": structure.contact_vector,
     }
-    if body_mass is not None:
-        at_rest = {"contact_participation": 1 / np.sqrt(float(require_positive(body_mass=body_mass)))}
-        columns = {name: np.append(values, at_rest.get(name, 0.0)) for name, values in columns.items()}
+    if body is not None:
+        columns = {name: np.append(values, body.mode[name]) for name, values in columns.items()}
     change = np.abs(found.modes.natural_frequency[rows] / found.natural_frequency[rows] - 1)
     error = float((found.frequency_error[rows] + change).max())
     assumptions = [

@@ -11,7 +11,7 @@ import typer
 from sonolube.checks import Floats
 from sonolube.cli.console import parts
 from sonolube.cli.console.answer import Answer, deliver, si
-from sonolube.cli.console.options import OUT, Json, Out, Sizes, refuse_unused, si_option
+from sonolube.cli.console.options import OUT, Json, Out, Sizes, TypedNumber, refuse_unused, si_option
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
 from sonolube.errors import InvalidInput, UnknownName
@@ -27,6 +27,7 @@ from sonolube.fem import (
 )
 from sonolube.fem.figures import mode_figure
 from sonolube.fem.mode_files import (
+    SupportedBody,
     elastic_rows,
     frequency_text,
     mode_animation,
@@ -39,7 +40,7 @@ from sonolube.report import Drawing
 from sonolube.units import format_si
 from sonolube.vocabulary import quantity
 
-_OF_STRUCTURE = ("sizes", "count", "clamp", "tolerance", "contact", "body")
+_OF_STRUCTURE = ("sizes", "count", "clamp", "tolerance", "contact", "body", "body_stiffness", "body_damping")
 # arguments that change the modes of a structure
 
 
@@ -77,8 +78,14 @@ def modes(
         ),
     ] = None,
     body: Annotated[
-        float | None, si_option("kg", "Of a free body that rests on the contact; held where absent.", "--body-mass")
+        float | None, si_option("kg", "Of a body that rests on the contact; held where absent.", "--body-mass")
     ] = None,
+    body_stiffness: Annotated[
+        float, si_option("N/m", "Of the spring that holds that body; none where absent.", "--body-stiffness")
+    ] = TypedNumber("0N/m", "N/m"),
+    body_damping: Annotated[float, si_option("N s/m", "Of the damper beside it.", "--body-damping")] = TypedNumber(
+        "0N s/m", "N s/m"
+    ),
     vtu: Annotated[bool, typer.Option("--vtu", help="Write the modes for ParaView too.")] = False,
     animate: Annotated[bool, typer.Option("--animate", help="Draw each mode as an animated GIF too.")] = False,
     out: Annotated[Out, OutputFolder("{part}-*.png {part}-*.gif {part}-shapes.csv {part}-modes.*")] = OUT,
@@ -96,9 +103,16 @@ def modes(
         refuse_unused(context, "toward", because="without --points, at which the component is written")
     if contact is None:
         refuse_unused(context, "body", because="without --contact, on which it rests")
+    if body is None:
+        refuse_unused(context, "body_stiffness", "body_damping", because="without --body-mass, which it holds")
     transducer = parts.named_transducer(part, sizes or []) if is_transducer else None
     if contact is not None:
         _require_output(part, transducer, contact)
+    held = (
+        None
+        if body is None
+        else SupportedBody(body_mass=body, spring_stiffness=body_stiffness, viscous_damping=body_damping)
+    )
     geometry = parts.named_part(part, sizes or [])
     given = dict(zip(parts.ELASTIC_PROPERTIES, (stiffness, contraction, mass), strict=True))
     properties = {name: value for name, value in given.items() if value is not None}
@@ -123,9 +137,7 @@ def modes(
         structure = None
         if transducer is not None and contact is not None:
             advance("reduction", len(found.nodes), len(found.nodes) + 1)
-            structure = structure_modes(
-                found, transducer, contact=contact, body_mass=body, command=_command(context, part)
-            )
+            structure = structure_modes(found, transducer, contact=contact, body=held, command=_command(context, part))
     along = axis or parts.longest_axis(found.model.mesh)
     answer = ModesAnswer(
         part=part,

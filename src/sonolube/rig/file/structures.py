@@ -9,6 +9,7 @@ from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 from sonolube.actuator import PiezoStack
 from sonolube.dynamics import Structure
 from sonolube.dynamics.chain import Damper, LumpedChain, Spring, chain_structure, modal_structure, pin_on_disc_chain
+from sonolube.errors import InvalidInput
 from sonolube.rig.file.section import Section, quantity_in_si
 
 Name = Annotated[str, Field(min_length=1)]
@@ -174,7 +175,8 @@ class ModesSection(Section):
 
     def structure(self, stack: PiezoStack) -> Structure:
         """Return the structure; the stack is part of its modes."""
-        assert self.clamped_capacitance is not None  # the file's own check
+        if self.clamped_capacitance is None:
+            raise InvalidInput("the file of the modes has not been read, or has no clamped_capacitance; give it here")
         return modal_structure(
             frequencies=self.natural_frequency or (),
             damping_ratios=self.damping_ratio or (),
