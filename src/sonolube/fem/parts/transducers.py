@@ -67,7 +67,7 @@ class Transducer:
     fixed : tuple of FixedSupport
         Planes of symmetry, where the geometry is a part of the whole; only modes even about them are found.
     copies : int
-        Number of equal parts that make up the whole. []
+        Number of equal parts that make up the whole.
     dimensions : tuple of SourcedDimension
         Sources of the default dimensions; empty for transducers without a published description.
     """
