@@ -183,6 +183,23 @@ MODES = {
     "modes of a transducer": Mode(
         "modes", ("stack", "--count", "1", "--tolerance", "0.5"), {"--material": "aluminium_2024"}
     ),
+    "modes for a rig": Mode(
+        "modes",
+        (
+            "stack",
+            "--count",
+            "1",
+            "--tolerance",
+            "0.5",
+            "--contact",
+            "tip",
+            "--body-mass",
+            "1kg",
+            "--body-stiffness",
+            "100N/m",
+        ),
+        {"--contact": "back", "--body-mass": "2kg", "--body-stiffness": "200N/m", "--body-damping": "2N*s/m"},
+    ),
     "impedance of a part": Mode(
         "impedance compute",
         ("block", *BAR, "--points", "5", "--tolerance", "0.9", "--to", "120kHz"),

@@ -74,4 +74,11 @@ def test_centre_and_rim_of_the_cutter_head_move_against_each_other_at_twenty_kil
 def test_the_default_stack_is_the_ring_stack_of_table_4_7() -> None:
     # 12 mm long, 10 mm outside and 5 mm inside
     assert DONG_2015_TRANSDUCERS["stack"]().geometry.volume == approx(np.pi * (5e-3**2 - 2.5e-3**2) * 12e-3, rel=1e-3)
-    assert set(TRANSDUCERS) | set(DONG_2015_TRANSDUCERS) == {"cutter_head", "stack", "tribometer_actuator"}
+    assert set(TRANSDUCERS) | set(DONG_2015_TRANSDUCERS) == {
+        "collar",
+        "cutter_head",
+        "poisson_horn_aluminium",
+        "poisson_horn_steel",
+        "stack",
+        "tribometer_actuator",
+    }

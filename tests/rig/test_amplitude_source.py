@@ -136,10 +136,10 @@ def test_the_computed_motion_of_a_measured_amplitude_has_that_amplitude_under_th
 
 
 def test_a_measured_amplitude_is_proportional_to_the_voltage_where_nothing_is_computed() -> None:
-    changes = ["vibration.vibration_amplitude=2um", "vibration.voltage_peak_to_peak=28V"]
-    rig = read_rig(RIGS / "collar.toml", changes=[*changes, "drive.voltage_peak_to_peak=14V"])
+    changes = ["vibration.vibration_amplitude=2um", "vibration.voltage_peak_to_peak=4V"]
+    rig = read_rig(RIGS / "flextensional.toml", changes=[*changes, "drive.voltage_peak_to_peak=2V"])
     assert friction_point(rig).vibration_amplitude == approx(1e-6)
-    assert operating_points(rig, voltage_peak_to_peak=[7.0, 28.0]).vibration_amplitude == approx([0.5e-6, 2e-6])
+    assert operating_points(rig, voltage_peak_to_peak=[1.0, 4.0]).vibration_amplitude == approx([0.5e-6, 2e-6])
 
 
 def test_a_stated_amplitude_holds_at_its_own_frequency_only() -> None:
@@ -150,9 +150,9 @@ def test_a_stated_amplitude_holds_at_its_own_frequency_only() -> None:
 
 def test_a_source_that_the_rig_lacks_is_refused_with_those_that_it_has() -> None:
     with raises(InvalidInput, match=r"no amplitude computed: give the tables stack and structure.*; it has per-volt"):
-        friction_point(chosen("collar", "computed"))
+        friction_point(chosen("flextensional", "computed"))
     with raises(InvalidInput, match=r"no amplitude measured: give vibration\.vibration_amplitude"):
-        friction_point(chosen("collar", "measured"))
+        friction_point(chosen("flextensional", "measured"))
 
 
 def test_amplitudes_that_differ_by_more_than_their_error_are_told_in_one_line() -> None:

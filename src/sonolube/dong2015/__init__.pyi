@@ -22,6 +22,7 @@ from .collar_designs import (
     THIN_HEXAGON_COLLAR as THIN_HEXAGON_COLLAR,
     THIN_RING_COLLAR as THIN_RING_COLLAR,
 )
+from .collar_transducer import COLLAR_DIMENSIONS as COLLAR_DIMENSIONS, collar_element as collar_element
 from .collar_tuning import (
     Resonance as Resonance,
     frequency_sensitivities as frequency_sensitivities,
@@ -31,6 +32,11 @@ from .collar_tuning import (
     tuned_collar as tuned_collar,
 )
 from .cutter import CUTTER_HEAD_DIMENSIONS as CUTTER_HEAD_DIMENSIONS, cutter_head as cutter_head
+from .poisson_horn import (
+    POISSON_HORN_DIMENSIONS as POISSON_HORN_DIMENSIONS,
+    POISSON_HORN_SOLIDS as POISSON_HORN_SOLIDS,
+    poisson_horn as poisson_horn,
+)
 from .transducers import DONG_2015_TRANSDUCERS as DONG_2015_TRANSDUCERS
 from .tribometer import (
     TRIBOMETER_ACTUATOR_DIMENSIONS as TRIBOMETER_ACTUATOR_DIMENSIONS,

@@ -2,7 +2,7 @@
 
 import io
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -114,6 +114,7 @@ def supported_spectra(
             relative_tolerance=relative_tolerance,
             advance=advance,
         )
+        port = replace(port, reduction=transducer.whole(port.reduction))
         return SupportedSpectrum(port=port, response=harmonic_response(port.reduction, frequency=frequency))
 
     spectra = {"free": spectrum(())}

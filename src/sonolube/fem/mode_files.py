@@ -1,17 +1,22 @@
-"""Contents of files of natural modes: VTK grid, table of shapes at points, and animated GIF."""
+"""Contents of files of natural modes: VTK grid, shapes at points, structure for a rig file, and animated GIF."""
 
 import io
+import json
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from sonolube.checks import Floats
-from sonolube.errors import InvalidInput
+from sonolube.checks import Floats, require_non_negative, require_positive
+from sonolube.errors import InvalidInput, UnknownName
 from sonolube.fem.figures import MODE_COLOURS, mode_figure
+from sonolube.fem.parts.transducers import Transducer
 from sonolube.fem.solver.convergence import ConvergedModes
 from sonolube.fem.solver.model import DIRECTIONS
 from sonolube.fem.solver.postprocessing import interpolate_at_points
+from sonolube.fem.solver.reduction import reduce_model
+from sonolube.fem.solver.structure_conversion import contact_structure
 from sonolube.fem.vtk_export import vtu_text
 from sonolube.figure import render_figure
 
@@ -91,6 +96,114 @@ def shapes_table(found: ConvergedModes, names: Sequence[str], points: Floats, *,
     header = ", ".join(f"{names[row]} at {found.natural_frequency[row]:.1f} Hz" for row in rows)
     np.savetxt(text, (shapes / np.abs(shapes).max(axis=1, keepdims=True)).T, fmt="%.6g", delimiter=",", header=header)
     return text.getvalue()
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SupportedBody:
+    """Rigid body that rests on a contact, on a spring and damper of its own, such as the hand that holds it.
+
+    Parameters
+    ----------
+    body_mass : float
+        Mass. [kg]
+    spring_stiffness : float
+        Stiffness of its support; zero for a free body. [N/m]
+    viscous_damping : float
+        Damping of its support, which needs a spring. [N s/m]
+
+    Raises
+    ------
+    InvalidInput
+        If the mass is not positive, a value negative, or damping given without a spring.
+    """
+
+    body_mass: float
+    spring_stiffness: float = 0.0
+    viscous_damping: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_positive(body_mass=self.body_mass)
+        require_non_negative(spring_stiffness=self.spring_stiffness, viscous_damping=self.viscous_damping)
+        if self.viscous_damping and not self.spring_stiffness:
+            raise InvalidInput("viscous_damping of a body without a spring has no damping ratio; give spring_stiffness")
+
+    @property
+    def mode(self) -> Mapping[str, float]:
+        """Its mode, by the columns of a file of modes."""
+        critical = 2 * math.sqrt(self.spring_stiffness * self.body_mass)
+        return {
+            "natural_frequency": math.sqrt(self.spring_stiffness / self.body_mass) / (2 * math.pi),
+            "damping_ratio": self.viscous_damping / critical if critical else 0.0,
+            "drive_participation": 0.0,
+            "contact_participation": 1 / math.sqrt(self.body_mass),
+        }
+
+
+def structure_modes(
+    found: ConvergedModes, transducer: Transducer, *, contact: str, body: SupportedBody | None, command: str
+) -> str:
+    """Modes of a transducer with static correction, as TOML for the table `structure` of a rig file.
+
+    Parameters
+    ----------
+    found : ConvergedModes
+        Natural modes of the transducer.
+    transducer : Transducer
+    contact : str
+        Output at the contact.
+    body : SupportedBody or None
+        Rigid body that rests on the contact; held where None.
+    command : str
+        What computes them again.
+
+    Returns
+    -------
+    str
+        As `sonolube.rig` reads it.
+
+    Raises
+    ------
+    UnknownName
+        If there is no such output.
+    """
+    if contact not in transducer.outputs:
+        raise UnknownName.among(transducer.outputs, kind="output", name=contact)
+    output, rows = transducer.outputs[contact], list(elastic_rows(found))
+    reduced = transducer.whole(reduce_model(found.model, count=len(rows), outputs={contact: output}))
+    # the face's normal points to the other body; faces of negative normal end in "-x", "-y" or "-z"
+    structure = contact_structure(
+        reduced, contact=contact, outwards=1.0 if output.face.endswith(f"-{output.along}") else -1.0
+    )
+    omega = np.sqrt(np.diag(structure.stiffness_matrix))
+    doubled = np.diag(structure.damping_matrix)
+    columns = {
+        "natural_frequency": omega / (2 * np.pi),
+        "damping_ratio": np.divide(doubled, 2 * omega, out=np.zeros_like(omega), where=omega > 0),
+        "drive_participation": structure.drive_vector,
+        "contact_participation": structure.contact_vector,
+    }
+    if body is not None:
+        columns = {name: np.append(values, body.mode[name]) for name, values in columns.items()}
+    change = np.abs(found.modes.natural_frequency[rows] / found.natural_frequency[rows] - 1)
+    error = float((found.frequency_error[rows] + change).max())
+    assumptions = [
+        f"damping is that of the assumed loss tangents of the materials; {found.nodes[-1]} nodes",
+        *(f"{size.name}: {size.source}" for size in transducer.dimensions if not size.printed),
+    ]
+    return "\n".join(
+        [
+            f"# Modes for [structure] of a rig file: {len(rows)} elastic ones, those without deformation, and the",
+            "# static correction for all others. Shapes have a modal mass of 1 kg.",
+            f"command = {json.dumps(command)}",
+            f"frequency_error = {error:.2g}",
+            "assumptions = [",
+            *(f"  {json.dumps(text, ensure_ascii=False)}," for text in assumptions),
+            "]",
+            f"clamped_capacitance = {json.dumps(f'{structure.clamped_capacitance:.9g} F')}",
+            *(f"{name} = [{', '.join(f'{value:.9g}' for value in values)}]" for name, values in columns.items()),
+            "",
+        ]
+    )
 
 
 def mode_animation(found: ConvergedModes, shape: Floats, *, title: str) -> bytes:

@@ -20,11 +20,12 @@ _ROUGHNESS_KEY: Final = "contact.roughness.rms_height"
 _FRICTION_KEY: Final = "friction.friction_coefficient"
 _GIVEN_ROUGHNESS: Final = 0.1
 _ASSUMED_ROUGHNESS: Final = 0.5
-_AMPLITUDE_SPREADS: Final = {"measured": AMPLITUDE_ERROR, "computed": 0.15, "per-volt": 0.1}
+_AMPLITUDE_SPREADS: Final = {"measured": AMPLITUDE_ERROR, "computed": 0.15, "waveguide": 0.15, "per-volt": 0.1}
 _GIVEN_FRICTION: Final = 0.1
 _AMPLITUDE_KEYS: Final = {
     "measured": ("vibration.vibration_amplitude",),
     "computed": ("stack.free_stroke_per_volt",),
+    "waveguide": ("waveguide.axial_amplitude",),
     "per-volt": ("actuator.amplitude_per_volt",),
 }
 

@@ -1,4 +1,4 @@
-"""Source of a rig's vibration: measured, computed or per volt, resolved in one place for every command."""
+"""Source of a rig's vibration: measured, computed, waveguide or per volt, resolved in one place for all commands."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -30,7 +30,7 @@ class ResolvedVibration:
 
     Parameters
     ----------
-    source : {"measured", "computed", "per-volt"}
+    source : {"measured", "computed", "waveguide", "per-volt"}
         Where the amplitude comes from.
     text : str
         The same in words, with the numbers behind it.
@@ -67,7 +67,8 @@ def available_sources(rig: Rig) -> tuple[AmplitudeSource, ...]:
     """
     present = {
         "measured": rig.vibration_amplitude is not None and (rig.structure is not None or _measured_here(rig)),
-        "computed": rig.structure is not None or rig.waveguide_amplitude is not None,
+        "computed": rig.structure is not None,
+        "waveguide": rig.waveguide_amplitude is not None,
         "per-volt": rig.amplitude_per_volt is not None
         and rig.drive is not None
         and rig.drive.voltage_peak_to_peak is not None,
@@ -76,7 +77,7 @@ def available_sources(rig: Rig) -> tuple[AmplitudeSource, ...]:
 
 
 def resolved_vibration(rig: Rig) -> ResolvedVibration:
-    """Return the source of a rig's vibration: the one that it names, else measured, computed, per volt in this order.
+    """Return the source of a rig's vibration: the one that it names, else measured, computed, waveguide, per volt.
 
     Parameters
     ----------
@@ -194,11 +195,13 @@ def _measured(rig: Rig) -> ResolvedVibration:
 
 
 def _computed(rig: Rig) -> ResolvedVibration:
-    if rig.structure is not None:
-        text = "computed from stack and structure"
-        return ResolvedVibration(source="computed", text=text, driven=driven_rig(rig), sine_amplitude=None)
+    text = "computed from stack and structure"
+    return ResolvedVibration(source="computed", text=text, driven=driven_rig(rig), sine_amplitude=None)
+
+
+def _of_waveguide(rig: Rig) -> ResolvedVibration:
     text = "computed from the waveguide"
-    return ResolvedVibration(source="computed", text=text, driven=None, sine_amplitude=rig.waveguide_amplitude)
+    return ResolvedVibration(source="waveguide", text=text, driven=None, sine_amplitude=rig.waveguide_amplitude)
 
 
 def _per_volt(rig: Rig) -> ResolvedVibration:
@@ -216,6 +219,7 @@ def _per_volt(rig: Rig) -> ResolvedVibration:
 _RESOLVED: dict[AmplitudeSource, Callable[[Rig], ResolvedVibration]] = {
     "measured": _measured,
     "computed": _computed,
+    "waveguide": _of_waveguide,
     "per-volt": _per_volt,
 }
 
@@ -228,7 +232,8 @@ def _missing_measurement(rig: Rig) -> str:
 
 _MISSING: dict[AmplitudeSource, Callable[[Rig], str]] = {
     "measured": _missing_measurement,
-    "computed": lambda rig: "give the tables stack and structure, or waveguide",
+    "computed": lambda rig: "give the tables stack and structure",
+    "waveguide": lambda rig: "give the table waveguide",
     "per-volt": lambda rig: "give actuator.amplitude_per_volt and drive.voltage_peak_to_peak",
 }
 

@@ -50,7 +50,7 @@ class TemperaturePoint:
         Name of the friction model.
     vibration_amplitude : float
         Vibration normal to the contact, zero to peak. [m]
-    amplitude_source : {"measured", "computed", "per-volt"}
+    amplitude_source : {"measured", "computed", "waveguide", "per-volt"}
         Where the amplitude comes from.
     amplitude_origin : str
         The same in words, with the numbers behind it.

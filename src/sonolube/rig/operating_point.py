@@ -21,7 +21,7 @@ class VibrationOrigin:
     ----------
     amplitude : float
         Zero to peak, in m.
-    source : {"measured", "computed", "per-volt"}
+    source : {"measured", "computed", "waveguide", "per-volt"}
     text : str
         The source in words.
     """
@@ -94,7 +94,7 @@ class FrictionPoint:
         Source of the friction model.
     vibration_amplitude : float
         Vibration normal to the contact, zero to peak. [m]
-    amplitude_source : {"measured", "computed", "per-volt"}
+    amplitude_source : {"measured", "computed", "waveguide", "per-volt"}
         Where the amplitude comes from.
     amplitude_origin : str
         The same in words, with the numbers behind it.
@@ -146,7 +146,7 @@ class WearPoint:
         Name of the wear model.
     vibration_amplitude : float
         Vibration normal to the contact, zero to peak. [m]
-    amplitude_source : {"measured", "computed", "per-volt"}
+    amplitude_source : {"measured", "computed", "waveguide", "per-volt"}
         Where the amplitude comes from.
     amplitude_origin : str
         The same in words, with the numbers behind it.

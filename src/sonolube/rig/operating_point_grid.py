@@ -84,7 +84,7 @@ class OperatingPoints:
         Mean electrical power that stays in stack, dampers and contact. [W]
     gap_closed : ndarray of bool
         Whether the mean planes touch within the period, where the contact model no longer holds.
-    amplitude_source : {"measured", "computed", "per-volt"}
+    amplitude_source : {"measured", "computed", "waveguide", "per-volt"}
         Where the amplitude comes from.
     amplitude_origin : str
         The same in words.

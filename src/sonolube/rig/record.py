@@ -18,7 +18,7 @@ from sonolube.friction.models import FRICTION_MODELS, FrictionModel
 from sonolube.rig.distribution import Distribution
 from sonolube.units import format_si
 
-AmplitudeSource = Literal["measured", "computed", "per-volt"]
+AmplitudeSource = Literal["measured", "computed", "waveguide", "per-volt"]
 """Where the amplitude of a vibration comes from."""
 
 AMPLITUDE_SOURCES: Final[tuple[AmplitudeSource, ...]] = get_args(AmplitudeSource)
@@ -90,7 +90,7 @@ class Rig:
         Amplitude per volt peak to peak, where it is known. [m/V]
     waveguide_amplitude : float or None
         Amplitude computed from the waveguide, where the rig has one, in m.
-    amplitude_source : {"measured", "computed", "per-volt"} or None
+    amplitude_source : {"measured", "computed", "waveguide", "per-volt"} or None
         Source of the amplitude; the first of these that the rig has where None.
     calibration : float or None
         Factor by which the drive of the structure was scaled to the measured amplitude, where it was.

@@ -34,7 +34,7 @@ class SteadyVibration:
 
     Parameters
     ----------
-    amplitude_source : {"measured", "computed", "per-volt"}
+    amplitude_source : {"measured", "computed", "waveguide", "per-volt"}
         Where the amplitude comes from.
     amplitude_origin : str
         The same in words, with the numbers behind it.

@@ -1,5 +1,6 @@
 """Command `modes`: frequencies against bar theory, files for other programs, and refusals."""
 
+import tomllib
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
@@ -13,6 +14,8 @@ pytest.importorskip("netgen.occ", reason="netgen-mesher is not installed")
 
 from sonolube.fem.mode_files import frequency_text
 from sonolube.measurement.vibration import modal_assurance_criterion
+from sonolube.rig import read_rig
+from sonolube.rig.driven_rig import driven_rig
 
 Program = Callable[..., Any]
 
@@ -126,3 +129,20 @@ def test_modes_come_as_animations_grids_and_shapes_at_points(sonolube: Program, 
     image = pytest.importorskip("PIL.Image")
     with image.open(next(tmp_path.glob("*.gif"))) as animation:
         assert animation.n_frames > 8
+
+
+def test_a_file_of_modes_is_written_and_read_by_the_rig_that_names_it(
+    tmp_path: Path, sonolube: Program, rigs: Path
+) -> None:
+    call = ("modes", "stack", "--count", "1", "--tolerance", "0.5", "--contact", "tip", "--body-mass", "1kg")
+    answer = sonolube(*call, "--body-stiffness", "4kN/m", "--body-damping", "20N*s/m", "--out", tmp_path, "--json")
+    (path,) = (Path(name) for name in answer.answer["files"] if name.endswith(".toml"))
+    stated = tomllib.loads(path.read_text(encoding="utf-8"))
+    assert stated["command"].startswith("sonolube modes stack --count 1 --tolerance 0.5 --contact tip --body-mass 1kg")
+    assert stated["natural_frequency"][-1] == approx(np.sqrt(4e3) / (2 * np.pi))
+    assert stated["damping_ratio"][-1] == approx(20 / (2 * np.sqrt(4e3)))
+    text = (rigs / "collar.toml").read_text(encoding="utf-8").replace("modes/collar-modes.toml", path.name)
+    (tmp_path / "rig.toml").write_text(text, encoding="utf-8")
+    assert driven_rig(read_rig(tmp_path / "rig.toml")).structure.coordinates == len(stated["natural_frequency"])
+    assert "has no drive" in sonolube("modes", "cylinder", "--set", "radius=1mm", "--contact", "tip").refusal
+    assert "unknown output of stack 'tp'; did you mean tip?" in sonolube("modes", "stack", "--contact", "tp").refusal

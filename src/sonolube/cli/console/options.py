@@ -19,6 +19,7 @@ class AmplitudeSource(StrEnum):
 
     MEASURED = "measured"
     COMPUTED = "computed"
+    WAVEGUIDE = "waveguide"
     PER_VOLT = "per-volt"
 
 
@@ -41,8 +42,9 @@ Amplitude = Annotated[
     AmplitudeSource | None,
     typer.Option(
         "--amplitude",
-        metavar="measured|computed|per-volt",
-        help="Source of the amplitude; by default measured, else computed from stack and structure, else per volt.",
+        metavar="measured|computed|waveguide|per-volt",
+        help="Source of the amplitude; by default measured, else computed from stack and structure, else waveguide, "
+        "else per volt.",
     ),
 ]
 Style = Annotated[

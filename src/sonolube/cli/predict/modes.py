@@ -11,15 +11,37 @@ import typer
 from sonolube.checks import Floats
 from sonolube.cli.console import parts
 from sonolube.cli.console.answer import Answer, deliver, si
-from sonolube.cli.console.options import OUT, Json, Out, Sizes, refuse_unused, si_option
+from sonolube.cli.console.options import OUT, Json, Out, Sizes, TypedNumber, refuse_unused, si_option
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
-from sonolube.fem import ConvergedModes, Electrodes, FixedSupport, Model, converged_modes, generate_mesh, mode_names
+from sonolube.errors import InvalidInput, UnknownName
+from sonolube.fem import (
+    ConvergedModes,
+    Electrodes,
+    FixedSupport,
+    Model,
+    Transducer,
+    converged_modes,
+    generate_mesh,
+    mode_names,
+)
 from sonolube.fem.figures import mode_figure
-from sonolube.fem.mode_files import elastic_rows, frequency_text, mode_animation, mode_title, modes_grid, shapes_table
+from sonolube.fem.mode_files import (
+    SupportedBody,
+    elastic_rows,
+    frequency_text,
+    mode_animation,
+    mode_title,
+    modes_grid,
+    shapes_table,
+    structure_modes,
+)
 from sonolube.report import Drawing
 from sonolube.units import format_si
 from sonolube.vocabulary import quantity
+
+_OF_STRUCTURE = ("sizes", "count", "clamp", "tolerance", "contact", "body", "body_stiffness", "body_damping")
+# arguments that change the modes of a structure
 
 
 def modes(
@@ -49,9 +71,24 @@ def modes(
     toward: Annotated[
         str | None, typer.Option(metavar="x|y|z", help="Component at the points; that of the axis by default.")
     ] = None,
+    contact: Annotated[
+        str | None,
+        typer.Option(
+            metavar="OUTPUT", help="Write the modes for a rig file, with the contact at an output such as tip."
+        ),
+    ] = None,
+    body: Annotated[
+        float | None, si_option("kg", "Of a body that rests on the contact; held where absent.", "--body-mass")
+    ] = None,
+    body_stiffness: Annotated[
+        float, si_option("N/m", "Of the spring that holds that body; none where absent.", "--body-stiffness")
+    ] = TypedNumber("0N/m", "N/m"),
+    body_damping: Annotated[float, si_option("N s/m", "Of the damper beside it.", "--body-damping")] = TypedNumber(
+        "0N s/m", "N s/m"
+    ),
     vtu: Annotated[bool, typer.Option("--vtu", help="Write the modes for ParaView too.")] = False,
     animate: Annotated[bool, typer.Option("--animate", help="Draw each mode as an animated GIF too.")] = False,
-    out: Annotated[Out, OutputFolder("{part}-*.png {part}-*.gif {part}-shapes.csv {part}-modes.vtu")] = OUT,
+    out: Annotated[Out, OutputFolder("{part}-*.png {part}-*.gif {part}-shapes.csv {part}-modes.*")] = OUT,
     json: Json = False,
 ) -> None:
     """Natural modes of a part: frequencies with their errors, names and pictures.
@@ -64,12 +101,25 @@ def modes(
         refuse_unused(context, "material", because=f"for {part}, which has its own; it is for other parts")
     if points is None:
         refuse_unused(context, "toward", because="without --points, at which the component is written")
+    if contact is None:
+        refuse_unused(context, "body", because="without --contact, on which it rests")
+    if body is None:
+        refuse_unused(context, "body_stiffness", "body_damping", because="without --body-mass, which it holds")
+    transducer = parts.named_transducer(part, sizes or []) if is_transducer else None
+    if contact is not None:
+        _require_output(part, transducer, contact)
+    held = (
+        None
+        if body is None
+        else SupportedBody(body_mass=body, spring_stiffness=body_stiffness, viscous_damping=body_damping)
+    )
     geometry = parts.named_part(part, sizes or [])
     given = dict(zip(parts.ELASTIC_PROPERTIES, (stiffness, contraction, mass), strict=True))
     properties = {name: value for name, value in given.items() if value is not None}
     media = parts.named_media(part, sizes or [], material, properties=properties)
-    electrodes = parts.named_transducer(part, sizes or []).electrodes if is_transducer else Electrodes()
-    fixed = tuple(FixedSupport(face=face) for face in clamp or ())
+    electrodes = Electrodes() if transducer is None else transducer.electrodes
+    planes = () if transducer is None else transducer.fixed
+    fixed = (*planes, *(FixedSupport(face=face) for face in clamp or ()))
     scanned = None if points is None else parts.points_in_metres(points)
 
     def model_at(element_size: float) -> Model:
@@ -84,6 +134,10 @@ def modes(
             relative_tolerance=tolerance,
             advance=advance,
         )
+        structure = None
+        if transducer is not None and contact is not None:
+            advance("reduction", len(found.nodes), len(found.nodes) + 1)
+            structure = structure_modes(found, transducer, contact=contact, body=held, command=_command(context, part))
     along = axis or parts.longest_axis(found.model.mesh)
     answer = ModesAnswer(
         part=part,
@@ -94,8 +148,30 @@ def modes(
         direction=toward or along,
         with_grid=vtu,
         with_animations=animate,
+        structure=structure,
     )
     deliver(answer, folder=out, as_json=json)
+
+
+def _require_output(part: str, transducer: Transducer | None, contact: str) -> None:
+    """Refuse a contact of a part without a drive, or at an output that it lacks."""
+    if transducer is None:
+        known = ", ".join(parts.ALL_TRANSDUCERS)
+        raise InvalidInput(f"--contact {contact}: {part} has no drive; it is for transducers: {known}")
+    if contact not in transducer.outputs:
+        raise UnknownName.among(transducer.outputs, kind=f"output of {part}", name=contact)
+
+
+def _command(context: typer.Context, part: str) -> str:
+    """Command that computes the same modes again, without the options of its files."""
+    given = [
+        (option.opts[0], context.params[option.name])
+        for option in context.command.params
+        if option.name in _OF_STRUCTURE
+        and getattr(context.get_parameter_source(option.name), "name", "DEFAULT") != "DEFAULT"
+    ]
+    words = [f"{name} {each}" for name, value in given for each in (value if isinstance(value, list) else [value])]
+    return " ".join(["sonolube modes", part, *words])
 
 
 def _described(material: str, properties: Mapping[str, float]) -> str:
@@ -119,6 +195,7 @@ class ModesAnswer(Answer):
     direction: str
     with_grid: bool
     with_animations: bool
+    structure: str | None
 
     def lines(self) -> list[str]:
         """Name and natural frequency with its error of every elastic mode."""
@@ -170,12 +247,14 @@ class ModesAnswer(Answer):
         }
 
     def files(self) -> Mapping[str, str | bytes]:
-        """Shapes at points, grid and animations, as far as they are wanted."""
+        """Shapes at points, structure for a rig file, grid and animations, as far as they are wanted."""
         files: dict[str, str | bytes] = {}
         stem = Path(self.part).stem
         if self.points is not None:
             table = shapes_table(self.found, self.names, self.points, direction=self.direction)
             files[f"{stem}-shapes.csv"] = table
+        if self.structure is not None:
+            files[f"{stem}-modes.toml"] = self.structure
         if self.with_grid:
             files[f"{stem}-modes.vtu"] = modes_grid(self.found, self.names)
         if self.with_animations:

@@ -7,9 +7,11 @@ spring with mass in parallel with the stack. Its thread, its preload and the com
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from types import MappingProxyType
+
+import numpy as np
 
 from sonolube.checks import require_non_negative, require_positive
 from sonolube.errors import InvalidInput
@@ -19,7 +21,7 @@ from sonolube.fem.solver.geometry import Geometry, bond, translate
 from sonolube.fem.solver.medium import Medium, medium_from_material, poled_medium
 from sonolube.fem.solver.mesh import Mesh
 from sonolube.fem.solver.model import DIRECTIONS, Electrodes, FixedSupport, Model
-from sonolube.fem.solver.reduction import Output
+from sonolube.fem.solver.reduction import Output, ReducedModel
 from sonolube.materials import material, piezo_ceramic
 
 _RINGS = 8  # even, so that both ends of a stack are grounded; 0.5 % in frequency for a quarter wave
@@ -62,6 +64,10 @@ class Transducer:
         Driven and grounded faces.
     outputs : mapping of str to Output
         Displacements of interest: "tip", the working end, and "back".
+    fixed : tuple of FixedSupport
+        Planes of symmetry, where the geometry is a part of the whole; only modes even about them are found.
+    copies : int
+        Number of equal parts that make up the whole.
     dimensions : tuple of SourcedDimension
         Sources of the default dimensions; empty for transducers without a published description.
     """
@@ -70,6 +76,8 @@ class Transducer:
     media: Mapping[str, Medium]
     electrodes: Electrodes
     outputs: Mapping[str, Output]
+    fixed: tuple[FixedSupport, ...] = ()
+    copies: int = 1
     dimensions: tuple[SourcedDimension, ...] = field(default=())
 
     def model(self, mesh: Mesh, *, fixed: tuple[FixedSupport, ...] = ()) -> Model:
@@ -79,13 +87,32 @@ class Transducer:
         ----------
         mesh : Mesh
         fixed : tuple of FixedSupport
-            Displacement boundary conditions.
+            Displacement boundary conditions besides the planes of symmetry.
 
         Returns
         -------
         Model
         """
-        return Model(mesh=mesh, media=self.media, electrodes=self.electrodes, fixed=fixed)
+        return Model(mesh=mesh, media=self.media, electrodes=self.electrodes, fixed=(*self.fixed, *fixed))
+
+    def whole(self, part: ReducedModel) -> ReducedModel:
+        """Reduced model of the whole, from that of the part that the geometry is.
+
+        Parameters
+        ----------
+        part : ReducedModel
+
+        Returns
+        -------
+        ReducedModel
+            The whole has the charge and the mass of all copies at the displacement of one.
+        """
+        return replace(
+            part,
+            drive=np.sqrt(self.copies) * part.drive,
+            clamped_capacitance=self.copies * part.clamped_capacitance,
+            participation=part.participation / np.sqrt(self.copies),
+        )
 
 
 def stack_transducer(

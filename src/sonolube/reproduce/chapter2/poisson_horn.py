@@ -57,7 +57,7 @@ class HornShape:
     length, width, thickness : float
         Extent along, across, and across the sliding face. [m]
     taper_length : float
-        Length of either end over which the thickness falls symmetrically, in m.
+        Length of either end over which the thickness falls symmetrically. [m]
     end_thickness_ratio : float
         Thickness of the ends over that of the middle.
     wedge : float

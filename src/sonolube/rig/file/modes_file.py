@@ -1,32 +1,51 @@
-"""Files of modes: one row to a mode, a column to each of its properties, as a rig file's structure names them."""
+"""Files of modes: lists that a command computed (TOML), or a table with a row to a mode (CSV)."""
 
 import csv
 import io
 from pathlib import Path
+from typing import Any
+
+from pydantic import Field
 
 from sonolube.errors import InvalidInput, suggestion
+from sonolube.rig.file.section import Section
 from sonolube.rig.file.structures import MODE_LISTS
-from sonolube.rig.file.toml_file import prefixed
-from sonolube.toml_text import text_of
+from sonolube.rig.file.toml_file import prefixed, validated
+from sonolube.toml_text import read_toml, text_of
 from sonolube.units import convert
 
 _UNITS = {"natural_frequency": "Hz", "damping_ratio": "", "drive_participation": "N/V", "contact_participation": ""}
+_ORIGIN = {"command", "frequency_error", "assumptions"}
 
 
-def read_modes(path: Path) -> dict[str, list[float]]:
-    """Read the modes of a structure from a CSV file.
+class ModesFile(Section):
+    """A file of modes as `sonolube modes --contact` writes it."""
+
+    command: str = Field(min_length=1, description="Command that computed the modes")
+    frequency_error: float = Field(gt=0, lt=1, description="Estimated relative error of the natural frequencies")
+    assumptions: list[str] = Field(default_factory=list, description="What was assumed, such as damping")
+    natural_frequency: list[float]
+    damping_ratio: list[float]
+    drive_participation: list[float]
+    contact_participation: list[float]
+    clamped_capacitance: float
+
+
+def read_modes(path: Path) -> dict[str, Any]:
+    """Read the modes of a structure from a file.
 
     Parameters
     ----------
     path : Path
-        Its first row names the columns, each with its unit in brackets, such as ``natural_frequency [kHz]``; the other
-        columns are ``damping_ratio``, ``drive_participation [N/V]`` and ``contact_participation``, the last two for
-        shapes of a modal mass of 1 kg. Lines that begin with ``#`` are comments.
+        A file of the ending .toml as `sonolube modes --contact` writes it, or a table: its first row names the columns,
+        each with its unit in brackets, such as ``natural_frequency [kHz]``; the other columns are ``damping_ratio``,
+        ``drive_participation [N/V]`` and ``contact_participation``, the last two for shapes of a modal mass of 1 kg.
+        Lines that begin with ``#`` are comments.
 
     Returns
     -------
-    dict of str to list of float
-        The four columns by name, in SI.
+    dict
+        The four columns by name, as lists in SI; of a TOML file also `clamped_capacitance`, as it is written.
 
     Raises
     ------
@@ -34,6 +53,10 @@ def read_modes(path: Path) -> dict[str, list[float]]:
         If the file cannot be read, a column is missing or unknown, or an entry is no number.
     """
     with prefixed(str(path)):
+        if path.suffix == ".toml":
+            content = read_toml(path, kind="a file of modes")
+            validated(ModesFile, content)
+            return {key: value for key, value in content.items() if key not in _ORIGIN}
         return _modes(text_of(path, kind="a file of modes"))
 
 

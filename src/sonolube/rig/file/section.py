@@ -1,7 +1,7 @@
 """Base of the sections of a rig file: quantities are read from text with a unit, unknown keys are refused."""
 
 from dataclasses import dataclass
-from typing import Any, Self, get_args
+from typing import Any, Self, get_args, get_origin
 
 from pydantic import (
     BaseModel,
@@ -80,7 +80,9 @@ class Section(BaseModel):
             None for text, tables and lists.
         """
         field = cls.model_fields.get(name)
-        if field is None or float not in (field.annotation, *get_args(field.annotation)):
+        if field is None or get_origin(field.annotation) is list:
+            return None
+        if float not in (field.annotation, *get_args(field.annotation)):
             return None
         return next((each for each in field.metadata if isinstance(each, Quantity)), quantities().get(name))
 

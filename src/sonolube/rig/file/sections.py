@@ -221,8 +221,12 @@ class RigFile(Section):
                 "no vibration: give vibration.vibration_amplitude, actuator.amplitude_per_volt, the table waveguide or"
                 " the tables stack and structure"
             )
-        if self.waveguide is not None and self.structure is not None:
-            raise ValueError("the tables waveguide and structure both compute the vibration: give one")
+        named = self.vibration is not None and self.vibration.amplitude_source is not None
+        if self.waveguide is not None and self.structure is not None and not named:
+            raise ValueError(
+                "the tables waveguide and structure both compute the vibration: say which in"
+                ' vibration.amplitude_source, "waveguide" or "computed"'
+            )
         if self.waveguide is not None and self.drive is None:
             raise ValueError("the table waveguide needs drive.frequency")
         return self

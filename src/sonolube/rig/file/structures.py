@@ -9,6 +9,7 @@ from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 from sonolube.actuator import PiezoStack
 from sonolube.dynamics import Structure
 from sonolube.dynamics.chain import Damper, LumpedChain, Spring, chain_structure, modal_structure, pin_on_disc_chain
+from sonolube.errors import InvalidInput
 from sonolube.rig.file.section import Section, quantity_in_si
 
 Name = Annotated[str, Field(min_length=1)]
@@ -148,7 +149,7 @@ class ModesSection(Section):
 
     kind: Literal["modes"]
     file: Name | None = Field(
-        default=None, description="CSV file with a column for each of the lists, relative to the rig's folder"
+        default=None, description="File that sonolube modes --contact wrote, or CSV file, relative to the rig's folder"
     )
     natural_frequency: list[float] | None = Field(default=None, description="Of each mode, in Hz; 0 for rigid ones")
     damping_ratio: list[float] | None = Field(default=None, description="Damping over critical damping of each mode")
@@ -158,7 +159,7 @@ class ModesSection(Section):
     contact_participation: list[float] | None = Field(
         default=None, description="Displacement of the contact in each shape, for a modal mass of 1 kg"
     )
-    clamped_capacitance: float
+    clamped_capacitance: float | None = None
 
     @model_validator(mode="after")
     def _file_or_lists(self) -> Self:
@@ -168,10 +169,14 @@ class ModesSection(Section):
         if self.file is None and len(given) < len(MODE_LISTS):
             missing = next(name for name in MODE_LISTS if name not in given)
             raise ValueError(f"give the file of the modes, or all of their lists; {missing} is missing")
+        if self.file is None and self.clamped_capacitance is None:
+            raise ValueError("clamped_capacitance is missing")
         return self
 
     def structure(self, stack: PiezoStack) -> Structure:
         """Return the structure; the stack is part of its modes."""
+        if self.clamped_capacitance is None:
+            raise InvalidInput("the file of the modes has not been read, or has no clamped_capacitance; give it here")
         return modal_structure(
             frequencies=self.natural_frequency or (),
             damping_ratios=self.damping_ratio or (),

@@ -1,0 +1,185 @@
+"""Poisson horn of D 2.1 on an ultrasonic transducer: a quarter of it, symmetric about the middles of its faces.
+
+D prints the three sizes of the horn and the frequency and amplitude of the welder (Dukane 220) that drives it. The
+taper and the solids of the horn are those with which it has the printed frequencies of its first axial mode; the
+transducer is a bolted stack between two steel cylinders, of common sizes, as long as gives the whole the frequency of
+the welder. Block and pads press on opposite faces, so that bending is left out.
+"""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from types import MappingProxyType
+from typing import Any, Final
+
+from sonolube.errors import UnknownName
+from sonolube.fem.parts.bodies import extruded_polygon
+from sonolube.fem.parts.transducers import SourcedDimension, Transducer, stack_bodies, stack_from_bodies
+from sonolube.fem.solver.cad import MILLIMETRE, cad_kernel
+from sonolube.fem.solver.geometry import Geometry, single_body
+from sonolube.fem.solver.medium import Medium, isotropic_medium
+from sonolube.fem.solver.model import FixedSupport
+from sonolube.fem.solver.reduction import Output
+
+_FAR: Final = 1e3  # mm, beyond any horn
+_PAD: Final = 5e-3  # m, half the edge of the patch that the block touches, 1 cm2 in the rigs
+_LOSS: Final = 1e-3  # loss tangent of the horns, assumed: a quality factor of 1000
+
+POISSON_HORN_SOLIDS: Final[Mapping[str, Medium]] = MappingProxyType(
+    {
+        "aluminium": isotropic_medium(youngs_modulus=70e9, poisson_ratio=0.33, density=2700.0, elastic_loss=_LOSS),
+        "steel": isotropic_medium(youngs_modulus=205e9, poisson_ratio=0.28, density=7850.0, elastic_loss=_LOSS),
+    }
+)
+"""Solids of both horns: handbook constants, with which they have the printed frequencies."""
+
+_PRINTED: Final = "printed, D 2.1.2"
+_COMMON: Final = "assumed: common size of a transducer for 2 kW at 20 kHz"
+_FITTED: Final = "chosen for a resonance of the whole at 20 kHz, the frequency of the welder, D 2.1.2"
+
+POISSON_HORN_DIMENSIONS: Final = (
+    SourcedDimension(name="length", value=127e-3, source=_PRINTED, printed=True),
+    SourcedDimension(name="width", value=60.96e-3, source=_PRINTED, printed=True),
+    SourcedDimension(name="thickness", value=25.4e-3, source=_PRINTED, printed=True),
+    SourcedDimension(
+        name="taper_length", value=25.4e-3, source="assumed: the flat face ends 1.5 in off the middle, D Table 2.1"
+    ),
+    SourcedDimension(
+        name="end_thickness", value=19.05e-3, source="with it both horns have their printed frequencies, D 2.1.3"
+    ),
+    SourcedDimension(name="outer_radius", value=25e-3, source=_COMMON),
+    SourcedDimension(name="inner_radius", value=10e-3, source=_COMMON),
+    SourcedDimension(name="stack_length", value=24e-3, source=_COMMON),
+    SourcedDimension(name="stack_layers", value=4.0, source=_COMMON),
+    SourcedDimension(name="rod_radius", value=6e-3, source=_COMMON),
+    SourcedDimension(name="back_length", value=30e-3, source=_COMMON),
+    SourcedDimension(name="front_length", value=34.5e-3, source=_FITTED),
+)
+"""Sizes of horn and transducer with their sources."""
+
+
+def poisson_horn(
+    *,
+    solid: str,
+    length: float = 127e-3,
+    width: float = 60.96e-3,
+    thickness: float = 25.4e-3,
+    taper_length: float = 25.4e-3,
+    end_thickness: float = 19.05e-3,
+    outer_radius: float = 25e-3,
+    inner_radius: float = 10e-3,
+    stack_length: float = 24e-3,
+    stack_layers: float = 4.0,
+    rod_radius: float = 6e-3,
+    back_length: float = 30e-3,
+    front_length: float = 34.5e-3,
+    ceramic: str = "pzt4",
+    metal: str = "stainless_steel_304",
+) -> Transducer:
+    """Poisson horn of D 2.1 on a bolted stack between two cylinders, its axis along z.
+
+    Parameters
+    ----------
+    solid : str
+        Name of the horn's solid in `POISSON_HORN_SOLIDS`.
+    length, width, thickness : float
+        Extent of the horn along z, x and y. [m]
+    taper_length : float
+        Length of either end over which the thickness falls symmetrically. [m]
+    end_thickness : float
+        Thickness of both ends. [m]
+    outer_radius, inner_radius : float
+        Radii of the rings of ceramic; the outer one is that of both cylinders. [m]
+    stack_length : float
+        Total length of the rings. [m]
+    stack_layers : float
+        Number of rings. []
+    rod_radius : float
+        Radius of the rod through the rings. [m]
+    back_length, front_length : float
+        Lengths of both cylinders. [m]
+    ceramic, metal : str
+        Names of the materials of rings and cylinders.
+
+    Returns
+    -------
+    Transducer
+        A quarter of the whole, of positive x and y. Outputs: "tip", the free end of the horn; "back", that of the
+        transducer; "contact", a patch of 1 cm2 in the middle of the sliding face, along its normal y.
+
+    Raises
+    ------
+    InvalidInput
+        If a size does not fit.
+    UnknownName
+        If there is no such solid.
+
+    References
+    ----------
+    .. [1] D 2.1.2 and 2.1.3.
+    """
+    if solid not in POISSON_HORN_SOLIDS:
+        raise UnknownName.among(POISSON_HORN_SOLIDS, kind="solid of a Poisson horn", name=solid)
+    bodies = stack_bodies(
+        outer_radius=outer_radius,
+        inner_radius=inner_radius,
+        length=stack_length,
+        rod_radius=rod_radius,
+        back_length=back_length,
+        front_length=front_length,
+    )
+    foot = stack_length + front_length
+    sections = [
+        ("entry", 0.0, taper_length, (end_thickness, thickness)),
+        ("lower", taper_length, length / 2 - _PAD, (thickness, thickness)),
+        ("middle", length / 2 - _PAD, length / 2 + _PAD, (thickness, thickness)),
+        ("upper", length / 2 + _PAD, length - taper_length, (thickness, thickness)),
+        ("tip", length - taper_length, length, (thickness, end_thickness)),
+    ]
+    prisms = {name: _prism(foot + start, foot + end, ends, width) for name, start, end, ends in sections}
+    patch = _within(_PAD / MILLIMETRE)
+    pieces = {"pad": prisms["middle"] * patch, "beside": prisms.pop("middle") - patch, **prisms}
+    shapes = {name: body.shape for name, body in bodies.items()} | pieces
+    made = stack_from_bodies(
+        {name: _quarter(shape, name) for name, shape in shapes.items()},
+        stack_layers=stack_layers,
+        ceramic=ceramic,
+        metal=metal,
+    )
+    return replace(
+        made,
+        media={**made.media, **dict.fromkeys(pieces, POISSON_HORN_SOLIDS[solid])},
+        outputs={**made.outputs, "contact": Output(face="pad.+y", along="y")},
+        fixed=tuple(
+            FixedSupport(face=f"{region}.-{plane}", along=plane)
+            for region in made.geometry.regions
+            for plane in ("y" if region == "beside" else "xy")
+        ),
+        copies=4,
+        dimensions=tuple(
+            replace(size, value=front_length) if size.source == _FITTED else size for size in POISSON_HORN_DIMENSIONS
+        ),
+    )
+
+
+def _within(reach: float) -> Any:
+    """Box of the CAD kernel within a distance of the plane x = 0; in mm."""
+    return cad_kernel().Box((-reach, -_FAR, -_FAR), (reach, _FAR, _FAR))
+
+
+def _prism(foot: float, top: float, thickness: tuple[float, float], width: float) -> Any:
+    """Section of the horn along z whose thickness along y changes linearly; all in m."""
+    occ = cad_kernel()
+    low, high = (size / 2 / MILLIMETRE for size in thickness)
+    z, end, half = (size / MILLIMETRE for size in (foot, top, width / 2))
+    outline = [(-low, z), (low, z), (high, end), (-high, end)]
+    # drawn in the plane x-y and extruded along z, then turned: x, y, z become y, z, x
+    return (
+        extruded_polygon(outline, foot=-half, top=half)
+        .Rotate(occ.Axis(occ.Pnt(0, 0, 0), occ.X), 90)
+        .Rotate(occ.Axis(occ.Pnt(0, 0, 0), occ.Z), 90)
+    )
+
+
+def _quarter(shape: Any, name: str) -> Geometry:
+    """Quarter of a body, of positive x and y."""
+    return single_body(shape * cad_kernel().Box((0, 0, -_FAR), (_FAR, _FAR, _FAR)), name)
