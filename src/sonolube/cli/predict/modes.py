@@ -1,5 +1,6 @@
 """Command `modes`: natural modes of a part by finite elements, with pictures, grids, shapes and animations."""
 
+import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -216,6 +217,7 @@ class ModesAnswer(Answer):
             "material": self.material,
             "rigid_motions": found.modes.rigid_body_count,
             "nodes": list(found.nodes),
+            **({} if self.structure is None else {"structure": tomllib.loads(self.structure)}),
             "modes": [
                 {
                     "name": self.names[row],
