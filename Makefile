@@ -55,7 +55,7 @@ lock: $(VENV)/uv ## pin and hash every dependency for Python 3.11 to 3.13
 	    pyproject.toml --group test --group docs -c requirements/test.txt -o requirements/docs.txt
 	$(BIN)/uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-annotate \
 	    pyproject.toml --group test --group bench -c requirements/test.txt -o requirements/bench.txt
-	echo "surfalize>=0.19" | $(BIN)/uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-annotate \
+	echo "surfalize>=0.19.2" | $(BIN)/uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-annotate \
 	    - -o requirements/surfalize.txt
 
 clean: ## remove the environment and everything generated

@@ -1,4 +1,4 @@
-"""surfalize 0.19 (GPL, run as another program): ISO 25178 parameters of one surface by both."""
+"""surfalize 0.19.2 (GPL, run as another program): ISO 25178 parameters of one surface by both."""
 
 import json
 import os
