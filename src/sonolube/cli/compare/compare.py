@@ -144,7 +144,7 @@ class ComparisonAnswer(Answer):
         """Errors as CSV, and every ratio as netCDF."""
         return {"models.csv": comparison_csv(self.fits), "models.nc": self._dataset()}
 
-    def _dataset(self) -> xr.Dataset:
+    def _dataset(self) -> "xr.Dataset":
         """Every ratio and error over models and tests, and the predictions of the rig."""
         labelled = comparison_dataset(self.fits, self.predictions)
         return labelled if self.rig is None else labelled.assign_attrs(rig=self.rig.title)
