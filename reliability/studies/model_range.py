@@ -59,7 +59,7 @@ def _beyond(rig: Rig, ratio: float) -> bool:
 
 def _stated(rig: Rig) -> dict[str, int]:
     """Counts for a sine of the amplitude of a rig, without its structure."""
-    known = {each.name: getattr(rig, each.name) for each in fields(rig)}
+    known = {each.name: getattr(rig, each.name) for each in fields(rig) if each.init}
     sine: dict[str, Any] = known | {"stack": None, "structure": None, "amplitude_source": "measured"}
     point = friction_point(Rig(**sine))
     outside = point.status == OUTSIDE_MODEL_RANGE

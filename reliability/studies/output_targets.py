@@ -52,7 +52,7 @@ IN_THE_WAY = ("pipe", "device", "link to a pipe", "dangling link", "loop", "belo
 KINDS_OF_FILE = ("input", "link to an input", "second name of an input", "folder", *IN_THE_WAY)
 KINDS_OF_FOLDER = ("input", "link to an input", *IN_THE_WAY)
 KINDS_INSIDE = ("link to an input", "second name of an input", "folder", "pipe", "link to a pipe", "dangling link")
-_POSITIONAL = ("new",)  # commands whose output is an argument
+POSITIONAL = ("new",)  # commands whose output is an argument
 _LONGEST = 2.0  # s of processor time, all modules being imported before
 _STEMS = dict.fromkeys(("rig", "part", "shape", "runs"), "in") | {"of": "speed", "kind": "velocity-power"}
 
@@ -115,7 +115,7 @@ def _trial(seed: int) -> Record:
         code: object = "did not end"
         try:
             with redirect_stdout(out), redirect_stderr(err):
-                main([*name.split(), *ARGUMENTS[name], *([] if name in _POSITIONAL else [option]), target])
+                main([*name.split(), *ARGUMENTS[name], *([] if name in POSITIONAL else [option]), target])
         except SystemExit as end:
             code = end.code
         text = err.getvalue()

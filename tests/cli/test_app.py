@@ -65,7 +65,7 @@ def assert_refused(run: subprocess.CompletedProcess[str], line: str) -> None:
             "--pin and --disc belong together",
         ),
         (["contact"], "sonolube contact: Missing argument 'RIG.toml'"),
-        (["fricton", "RIG"], "sonolube fricton: No such command 'fricton'. Did you mean 'friction'?"),
+        (["fricton", "RIG"], "sonolube fricton: No such command 'fricton'. Did you mean 'friction', 'fit'?"),
         (
             ["study", "RIG", "--of", "voltage"],
             "sonolube study: now part of sweep: sonolube sweep RIG.toml --of voltage|speed|",

@@ -146,7 +146,7 @@ def test_a_friction_that_no_vibration_gives_is_refused(friction: str, capsys: Ca
         ("\n".join([f"{HEAD},{HEAD}", *(f"{row},{row}" for row in ROWS)]), "two columns are named sliding_speed"),
         ("\n".join([HEAD, "1e300,1,3,50", *ROWS]), "sliding_speed '1e300' lies beyond any run"),
         ("\n".join([HEAD, "nan,1,3,50", *ROWS]), "line 2: sliding_speed"),
-        ("\n".join([HEAD, "40,,3,50", *ROWS]), "line 2: actuator_power '' is no number"),
+        ("\n".join([HEAD, "40,some,3,50", *ROWS]), "line 2: actuator_power 'some' is no number"),
         ("\n".join([HEAD, '"40,1,3,50', *ROWS]), "..."),
     ],
 )

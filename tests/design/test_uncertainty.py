@@ -64,7 +64,7 @@ def test_the_sobol_indices_of_a_product_of_entries_have_their_closed_form(tmp_pa
         tmp_path,
         '"contact.normal_load" = "normal 10 %"\n"friction.friction_coefficient" = "uniform 30 %"\n'
         '"contact.nominal_area" = "normal 5 %"',
-        "poisson_al_steel",
+        "cutter_head",
     )
     result = propagate(path, outcome="intrinsic_friction_force", samples=64, indices=True)
     found = sobol_indices(result["intrinsic_friction_force"].values)
@@ -77,7 +77,7 @@ def test_the_sobol_indices_of_a_product_of_entries_have_their_closed_form(tmp_pa
 
 
 def test_uncertainty_of_a_rig_without_structure_propagates_through_its_wear_model(tmp_path: Path) -> None:
-    path = rig_with(tmp_path, '"contact.roughness.rms_height" = "normal 5 %"', "poisson_al_steel")
+    path = rig_with(tmp_path, '"contact.roughness.rms_height" = "normal 5 %"', "cutter_head")
     found = propagate(path, outcome="wear_rate_ratio", samples=32)
     height = float(found["rms_height"][5])
     known = wear_point(read_rig(path, changes=[f"contact.roughness.rms_height={height!r} m"]))
@@ -138,7 +138,7 @@ def test_figures_carry_units_and_uncertain_keys(tmp_path: Path) -> None:
     band = band_figure(propagate(UNCERTAIN, samples=32, over={SPEED: np.geomspace(0.01, 0.2, 5)}))
     assert band.axes[0].get_xlabel() == "Sliding speed [mm/s]"
     assert band.axes[0].get_xscale() == "log"
-    path = rig_with(tmp_path, '"friction.friction_coefficient" = "normal 5 %"', "poisson_al_steel")
+    path = rig_with(tmp_path, '"friction.friction_coefficient" = "normal 5 %"', "cutter_head")
     result = propagate(path, samples=32, outcome="friction_force", indices=True)
     bars = sobol_figure(result, sobol_indices(result["friction_force"].values))
     assert [label.get_text() for label in bars.axes[0].get_yticklabels()] == ["friction.friction_coefficient"]

@@ -32,7 +32,7 @@ from .collar_tuning import (
     tuned_collar as tuned_collar,
 )
 from .cutter import CUTTER_HEAD_DIMENSIONS as CUTTER_HEAD_DIMENSIONS, cutter_head as cutter_head
-from .poisson_horn import (
+from .horn import (
     POISSON_HORN_DIMENSIONS as POISSON_HORN_DIMENSIONS,
     POISSON_HORN_SOLIDS as POISSON_HORN_SOLIDS,
     poisson_horn as poisson_horn,

@@ -6,7 +6,7 @@ from types import MappingProxyType
 
 from sonolube.dong2015.collar_transducer import collar_element
 from sonolube.dong2015.cutter import cutter_head
-from sonolube.dong2015.poisson_horn import poisson_horn
+from sonolube.dong2015.horn import poisson_horn
 from sonolube.dong2015.tribometer import tribometer_actuator
 from sonolube.fem.parts.transducers import Transducer, stack_transducer
 

@@ -20,7 +20,7 @@ def new_rig(
     finish: str = "ground",
     pin_finish: str | None = None,
     disc_finish: str | None = None,
-    friction: float | None = None,
+    friction_coefficient: float | None = None,
 ) -> Rig:
     """Return a rig from what is known before a test; what nobody measured has a distribution with its reason.
 
@@ -28,8 +28,10 @@ def new_rig(
     ----------
     pin, disc : str
         Materials of the catalogue, such as "brass" or "304".
-    load, speed, frequency : str
-        With units, such as "5 N", "0.2 m/s" and "20 kHz".
+    load, speed : str
+        With units, such as "5 N" and "0.2 m/s".
+    frequency : str
+        With its unit, such as "20 kHz". [Hz]
     amplitude : str
         Zero to peak, such as "3 um"; or an actuator of the catalogue with its voltage, such as "sa050510 50V".
     shape : str
@@ -38,7 +40,7 @@ def new_rig(
         Of both surfaces, such as "ground N6", or the file of a scan.
     pin_finish, disc_finish : str, optional
         Of one surface.
-    friction : float, optional
+    friction_coefficient : float, optional
         Coefficient of dry friction, where it was measured; else by the pair. []
 
     Returns
@@ -65,6 +67,6 @@ def new_rig(
         vibration=vibration_of(amplitude, name="amplitude"),
         pin_surface=surface_of(pin_finish or finish),
         disc_surface=surface_of(disc_finish or finish),
-        friction_coefficient=friction,
+        friction_coefficient=friction_coefficient,
     )
     return rig_from(tomllib.loads(new_rig_text(known)))

@@ -24,7 +24,7 @@ def test_the_fit_ranks_models_names_those_that_miss_an_input_and_says_what_to_me
     assert "4 conditions are too few" in answer["verdict"]
     assert "vibration_direction [deg]" in answer["not_applicable"]["coulomb-in-plane"]
     assert answer["measure_next"][0]["contrast"] > 1
-    assert {Path(path).suffix for path in answer["files"]} == {".png", ".svg", ".nc"}
+    assert {Path(path).suffix for path in answer["files"]} == {".png", ".svg", ".pdf", ".nc"}
     with xr.open_dataset(tmp_path / "tribometer-runs-fit.nc") as found:
         assert found.sizes["condition"] == 4
         assert found.attrs["verdict"] == answer["verdict"]

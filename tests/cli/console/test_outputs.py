@@ -12,6 +12,7 @@ from reliability.studies.output_targets import (
     KINDS_INSIDE,
     KINDS_OF_FILE,
     KINDS_OF_FOLDER,
+    POSITIONAL,
     hostile,
     names_inside,
     snapshot,
@@ -81,7 +82,8 @@ def test_a_file_that_must_not_be_replaced_is_refused(
     name: str, argument: str, kind: str, capfd: CaptureFixture[str]
 ) -> None:
     target = hostile(kind, Path("target"))
-    line = refusal(capfd, *name.split(), *ARGUMENTS[name], f"--{argument}", str(target))
+    option = [] if name in POSITIONAL else [f"--{argument}"]
+    line = refusal(capfd, *name.split(), *ARGUMENTS[name], *option, str(target))
     assert f"{target}: cannot be written: " in line
 
 

@@ -128,5 +128,5 @@ def test_a_prediction_tells_its_inputs_intervals_and_what_was_measured(
     assert words[:3] == ["amplitude", "2.5 um within 5 %", "a vibrometer on the running rig"]
     assert words[4].startswith("measured, 2.5 um at 28 V")
     assert {path.name for path in tmp_path.iterdir()} == {
-        f"tribometer-prediction.{ending}" for ending in ("nc", "png", "svg")
+        f"tribometer-prediction.{ending}" for ending in ("nc", "png", "svg", "pdf")
     }

@@ -3,12 +3,12 @@
 import os
 import platform
 import re
-import shutil
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, requires, version
 from pathlib import Path
+from shutil import which
 from typing import Any, ClassVar
 
 import typer
@@ -176,7 +176,7 @@ def _version(package: str) -> str:
 
 def _found(names: Sequence[str]) -> str:
     """Path of the first of these programs, empty where there is none."""
-    return next((path for name in names if (path := shutil.which(name))), "")
+    return next((path for name in names if (path := which(name))), "")
 
 
 def _is_writable(folder: Path) -> bool:

@@ -50,7 +50,7 @@ Test = Annotated[
 Measure = Callable[[Path], "Sheet"]
 
 _PATTERN = re.compile(r"[*?[]")  # of a shell, where it did not replace the pattern itself
-_UNLISTED = ("files", "test", "report", "json")  # arguments that are listed otherwise, or that change no number
+_UNLISTED = ("files", "test", "report", "json", "style")  # listed otherwise, or changing no number
 _SETTINGS = {"--apply": "applied to"}  # names of settings that are not those of their options
 
 
