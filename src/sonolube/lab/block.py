@@ -1,0 +1,106 @@
+"""Channels of an acquisition and blocks of their samples."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sonolube.errors import UnknownName
+from sonolube.vocabulary import unit_of
+
+CHANNEL_QUANTITIES: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        "friction_force": "friction_force",
+        "normal_load": "normal_load",
+        "voltage": "voltage",
+        "current": "current",
+        "temperature": "temperature",
+        "gaussmeter": "magnetic_flux_density",
+        "displacement": "displacement",
+    }
+)
+"""Quantity of the vocabulary that each channel of a protocol measures; recordings are named by the quantity."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Channel:
+    """Channel of an acquisition.
+
+    Parameters
+    ----------
+    name : str
+        As protocols name it, such as gaussmeter.
+    quantity : str
+        Of the vocabulary, whose SI unit the samples have.
+    lowest, highest : float
+        Range of sensor and input, in SI; samples at an end of it are saturated.
+    """
+
+    name: str
+    quantity: str
+    lowest: float = -np.inf
+    highest: float = np.inf
+
+    @property
+    def unit(self) -> str:
+        """SI unit of the samples."""
+        return unit_of(self.quantity)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Block:
+    """Samples of all channels that were taken one after the other on a hardware clock.
+
+    Parameters
+    ----------
+    first_sample : int
+        Number of the first sample since the acquisition started, from 0, by the counter of the hardware.
+    sample_rate : float
+        Of each channel. [Hz]
+    values : ndarray, shape (samples, channels)
+        In SI, channels in the order in which they were asked for.
+    """
+
+    first_sample: int
+    sample_rate: float
+    values: NDArray[np.float64]
+
+    @property
+    def samples(self) -> int:
+        """Number of samples of each channel."""
+        return int(self.values.shape[0])
+
+    @property
+    def next_sample(self) -> int:
+        """Number that the first sample of the next block must have."""
+        return self.first_sample + self.samples
+
+    @property
+    def start(self) -> float:
+        """Time of the first sample since the acquisition started. [s]"""
+        return self.first_sample / self.sample_rate
+
+
+def quantity_of(channel: str) -> str:
+    """Quantity of the vocabulary that a channel of a protocol measures.
+
+    Parameters
+    ----------
+    channel : str
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    UnknownName
+        If no channel has the name.
+    """
+    try:
+        return CHANNEL_QUANTITIES[channel]
+    except KeyError:
+        raise UnknownName.among(CHANNEL_QUANTITIES, kind="channel", name=channel) from None
