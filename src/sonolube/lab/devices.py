@@ -1,7 +1,7 @@
 """Devices of a test rig: an acquisition, a source of the drive voltage and a motor, as protocols of a few methods.
 
-A device answers in SI and raises `DeviceError` alone. What it measures comes in blocks that its own clock has timed; the
-program never polls single samples.
+A device answers in SI and raises `DeviceError` alone. What it measures comes in blocks that its own clock has timed;
+the program never polls single samples.
 """
 
 from collections.abc import Mapping, Sequence
