@@ -9,3 +9,18 @@ from .devices import (
     Motor as Motor,
     SamplesLost as SamplesLost,
 )
+from .interlocks import Interlock as Interlock, Trip as Trip, first_trip as first_trip, interlocks_for as interlocks_for
+from .runner import RunControl as RunControl, RunResult as RunResult, run_protocol as run_protocol
+from .sampling import BLOCK_DURATION as BLOCK_DURATION, Recorder as Recorder, Sampling as Sampling
+from .set_points import require_possible as require_possible
+from .states import (
+    OUTCOMES as OUTCOMES,
+    TRANSITIONS as TRANSITIONS,
+    Action as Action,
+    Event as Event,
+    RunState as RunState,
+    State as State,
+    Transition as Transition,
+    after as after,
+    transition_table as transition_table,
+)

@@ -15,8 +15,9 @@ CHANNEL_QUANTITIES: Final[Mapping[str, str]] = MappingProxyType(
     {
         "friction_force": "friction_force",
         "normal_load": "normal_load",
-        "voltage": "voltage",
-        "current": "current",
+        "voltage": "stack_voltage",
+        "voltage_peak_to_peak": "voltage_peak_to_peak",
+        "current": "stack_current",
         "temperature": "temperature",
         "gaussmeter": "magnetic_flux_density",
         "displacement": "displacement",

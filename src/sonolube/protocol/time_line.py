@@ -40,6 +40,10 @@ class SetPoint:
     waveform : str
     channels : tuple of str
         Channels that are recorded.
+    sample_rate : float or None
+        Of the recording. [Hz]
+    recorded_until : float or None
+        Time at which the recording ends. [s]
     """
 
     time: float
@@ -52,6 +56,8 @@ class SetPoint:
     frequency: float | None = None
     waveform: str = "sine"
     channels: tuple[str, ...] = ()
+    sample_rate: float | None = None
+    recorded_until: float | None = None
 
     @property
     def voltage_maximum(self) -> float:
@@ -98,12 +104,34 @@ def flattened(protocol: Protocol) -> tuple[SetPoint, ...]:
                 start, end = format_si(now, "s"), format_si(until, "s")
                 raise InvalidInput(f"step {move.step}: starts to record at {start}, while another lasts until {end}")
             until = now + move.records.duration
+            state = replace(state, sample_rate=move.records.sample_rate, recorded_until=until)
         elif state.channels and now >= until:
-            state = replace(state, channels=())
+            state = replace(state, channels=(), sample_rate=None, recorded_until=None)
         state = replace(state, time=now, step=move.step, kind=move.kind, **move.changes)
         points.append(state)
         now += move.lasts
     return (*points, SetPoint(time=max(now, until), step="", kind="end"))
+
+
+def step_at(protocol: Protocol, place: str) -> Step:
+    """Step of a protocol by its place.
+
+    Parameters
+    ----------
+    protocol : Protocol
+    place : str
+        As in `SetPoint.step`, such as "4.2" for the second step of a repeat.
+
+    Returns
+    -------
+    step
+    """
+    first, *rest = (int(number) - 1 for number in place.split("."))
+    step = protocol.steps[first]
+    for number in rest:
+        assert isinstance(step, Repeat)
+        step = step.steps[number]
+    return step
 
 
 def duration(protocol: Protocol) -> float:
