@@ -35,6 +35,7 @@ ARGUMENTS = {  # of every command that writes: the least that it takes, in.dat b
     "control": (INPUT,),
     "efficiency": (INPUT, "--rig", "rig.toml"),
     "horn design": ("--frequency", "20kHz", "--material", "titanium_6al4v", "--shape", INPUT),
+    "horn face": ("steel",),
     "measure friction": (INPUT,),
     "measure rotation": (INPUT, "--groove-diameter", "50mm"),
     "measure calibration": (INPUT,),
@@ -54,7 +55,11 @@ KINDS_OF_FOLDER = ("input", "link to an input", *IN_THE_WAY)
 KINDS_INSIDE = ("link to an input", "second name of an input", "folder", "pipe", "link to a pipe", "dangling link")
 POSITIONAL = ("new",)  # commands whose output is an argument
 _LONGEST = 2.0  # s of processor time, all modules being imported before
-_STEMS = dict.fromkeys(("rig", "part", "shape", "runs"), "in") | {"of": "speed", "kind": "velocity-power"}
+_STEMS = dict.fromkeys(("rig", "part", "shape", "runs"), "in") | {
+    "of": "speed",
+    "kind": "velocity-power",
+    "horn": "steel",
+}
 
 
 def hostile(kind: str, path: Path) -> Path:

@@ -10,7 +10,7 @@ import pytest
 from pytest import CaptureFixture, MonkeyPatch, raises
 
 from sonolube.cli import main
-from sonolube.cli.console import answer
+from sonolube.cli.console import answer, progress
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.targets import expect_target
 
@@ -54,6 +54,12 @@ def sonolube(capfd: CaptureFixture[str]) -> Program:
         return Run(code=int(end.value.code or 0), out=out, err=err)
 
     return run
+
+
+@pytest.fixture(autouse=True)
+def no_progress_on_a_slow_machine(monkeypatch: MonkeyPatch) -> None:
+    """Tell no progress of work that takes less than a minute, so that what is on standard error is a refusal."""
+    monkeypatch.setattr(progress, "SHORT", 60.0)
 
 
 @pytest.fixture(autouse=True)

@@ -378,6 +378,9 @@ MODES = {
     "efficiency for a target": Mode(
         "efficiency", (RUNS, "--rig", str(RIGS / "power_map.toml"), "--target-friction", "0.8N"), {"--speed": "50mm/s"}
     ),
+    "horn face": Mode(
+        "horn face", ("aluminium",), {"--frequency": "20.5kHz", "--amplitude": "5um", "--sliding-speed": "20mm/s"}
+    ),
     "horn": Mode(
         "horn design",
         ("--frequency", "20kHz", "--material", "titanium_6al4v", "--shape", "cylinder", "--tolerance", "0.3"),

@@ -69,6 +69,7 @@ COMMANDS = (
     Command(_DESIGN, "control", "design.control:control"),
     Command(_DESIGN, "efficiency", "design.efficiency:efficiency"),
     Command(_DESIGN, "horn design", "design.horn:design"),
+    Command(_DESIGN, "horn face", "design.horn_face:face"),
     Command(_MEASURE, "measure friction", "measure.friction:friction"),
     Command(_MEASURE, "measure rotation", "measure.rotation:rotation"),
     Command(_MEASURE, "measure calibration", "measure.calibration:calibration"),

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from sonolube.checks import Floats
+from sonolube.checks import Floats, require_positive
 from sonolube.design.horn_shapes import TunableBody
 from sonolube.errors import InvalidInput
 from sonolube.fem import Medium, Model, NamedMode, TunedMode, generate_mesh, mode_names, tuned_mode
@@ -111,6 +111,7 @@ def tuned_horn(
     --------
     horn_body, body_from_geometry, amplitude_limits, loaded_frequency
     """
+    require_positive(relative_tolerance=relative_tolerance)
 
     def model_at(length: float, element_size: float) -> Model:
         geometry = body.geometry_at(length)

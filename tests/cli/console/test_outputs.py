@@ -9,6 +9,7 @@ import pytest
 from pytest import CaptureFixture, MonkeyPatch, mark, raises
 from reliability.studies.output_targets import (
     ARGUMENTS,
+    INPUT,
     KINDS_INSIDE,
     KINDS_OF_FILE,
     KINDS_OF_FOLDER,
@@ -35,7 +36,7 @@ IN_A_FOLDER = [
     (name, kind)
     for name in TO_A_FOLDER
     for kind in KINDS_INSIDE
-    if kind != "link to a pipe" and (name != "reproduce" or "input" not in kind)  # reproduce reads no file
+    if kind != "link to a pipe" and (INPUT in ARGUMENTS[name] or "input" not in kind)
 ]
 
 

@@ -24,6 +24,7 @@ KNOWN = (
     *("--amplitude", "3um", "--finish", "ground N6"),
 )
 _LONGEST = 60.0  # s
+_REACTION = 0.2  # s; what is typed before a line editor has set the terminal may be lost
 
 
 @pytest.fixture(autouse=True)
@@ -55,6 +56,7 @@ def conversation(arguments: Sequence[str], answers: Sequence[str], *, end: bytes
             screen += part
         if typed and screen[seen:].rstrip(b" ").endswith(b"]:"):
             seen = len(screen)
+            time.sleep(_REACTION)
             os.write(terminal, typed.pop(0))
     else:
         os.kill(process, signal.SIGKILL)

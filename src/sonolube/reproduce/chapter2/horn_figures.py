@@ -8,7 +8,7 @@ import numpy as np
 from sonolube.fem import trajectory_ellipse
 from sonolube.figure import COLOURS, MARKERS, ReportFigure
 from sonolube.published import published_number, si_value
-from sonolube.reproduce.chapter2.horn_friction import FACE_END, driven_face, friction_on_face
+from sonolube.reproduce.chapter2.horn_friction import FACE_END, FaceFriction, driven_face, friction_on_face
 from sonolube.reproduce.chapter2.horn_rows import REGION_ROWS
 from sonolube.reproduce.chapter2.horn_sensitivity import frequency_changes, node_positions
 from sonolube.reproduce.chapter2.poisson_horn import FaceMotion, axial_mode, printed_shape, printed_solid
@@ -141,6 +141,30 @@ def _friction() -> "Figure":
     return figure
 
 
+def face_friction_figure(horn: Horn, friction: FaceFriction) -> "Figure":
+    """Figure of the friction along the face of a horn, with the transition region of Table 2.1.
+
+    Parameters
+    ----------
+    horn : str
+        Material of the horn.
+    friction : FaceFriction
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    figure, axes = single_axes((5.0, 3.2))
+    _draw_transition_region(axes, horn, color="0.8", unit=1e-3)
+    axes.plot(1e3 * friction.position, 100 * friction.ratio, color=COLOURS[0], label="computed")
+    axes.axhline(0, color="black", lw=0.8)
+    axes.axvline(1e3 * friction.node, color="black", lw=0.8, ls=":", label="node of the axial motion")
+    axes.set(xlabel="Position along the face, from its centre [mm]", ylabel="Friction over that at rest [%]")
+    axes.set(xlim=(-1e3 * FACE_END, 1e3 * FACE_END), title=f"{horn} horn; below zero the face drives the block")
+    figure.legend(loc="outside lower center", ncols=3)
+    return figure
+
+
 def _nodes() -> "Figure":
     """Draw the position of the node of the steel horn under single asymmetries."""
     figure, axes = single_axes((7.2, 2.6))
@@ -154,9 +178,9 @@ def _nodes() -> "Figure":
     return figure
 
 
-def _draw_transition_region(axes: "Axes", horn: Horn, *, color: str, alpha: float = 1.0) -> None:
-    """Draw the transition region of a horn in Table 2.1 as a band."""
-    start, end = (si_value(f"table-2.1-{side}-{REGION_ROWS[horn]}") / _INCH for side in ("start", "end"))
+def _draw_transition_region(axes: "Axes", horn: Horn, *, color: str, alpha: float = 1.0, unit: float = _INCH) -> None:
+    """Draw the transition region of a horn in Table 2.1 as a band, over positions in a unit of that many metres."""
+    start, end = (si_value(f"table-2.1-{side}-{REGION_ROWS[horn]}") / unit for side in ("start", "end"))
     axes.axvspan(start, end, color=color, alpha=alpha, lw=0, label="transition region, Table 2.1")
 
 

@@ -50,9 +50,13 @@ class FaceFriction:
 
 
 def driven_face(
-    horn: Horn, *, frequency: float, elastic_loss: float = poisson_horn.ELASTIC_LOSS
+    horn: Horn,
+    *,
+    frequency: float,
+    axial_amplitude: float | None = None,
+    elastic_loss: float = poisson_horn.ELASTIC_LOSS,
 ) -> poisson_horn.FaceMotion:
-    """Return the motion of the face of a horn at the full amplitude of the welder, by the assumed shape and solid.
+    """Return the motion of the face of a horn by the assumed shape and solid.
 
     Parameters
     ----------
@@ -60,6 +64,8 @@ def driven_face(
         Material of the horn.
     frequency : float
         Frequency of the drive. [Hz]
+    axial_amplitude : float, optional
+        Of the driven end, zero to peak; the full amplitude of the welder by default. [m]
     elastic_loss : float
         Loss tangent of the stiffness. []
 
@@ -71,7 +77,7 @@ def driven_face(
         poisson_horn.assumed_shape(),
         poisson_horn.ASSUMED_SOLIDS[horn],
         frequency=frequency,
-        axial_amplitude=si_value("2.1.2-welder-amplitude"),
+        axial_amplitude=si_value("2.1.2-welder-amplitude") if axial_amplitude is None else axial_amplitude,
         elastic_loss=elastic_loss,
     )
 
@@ -83,7 +89,9 @@ def spring_contact(horn: Horn, *, bodies: Bodies = "aluminium_steel") -> tuple[S
     return springs, float(decay_length(rough))
 
 
-def friction_on_face(horn: Horn, *, frequency: float) -> FaceFriction:
+def friction_on_face(
+    horn: Horn, *, frequency: float, axial_amplitude: float | None = None, sliding_speed: float | None = None
+) -> FaceFriction:
     """Return the friction along the face of a driven horn.
 
     Parameters
@@ -92,17 +100,24 @@ def friction_on_face(horn: Horn, *, frequency: float) -> FaceFriction:
         Material of the horn.
     frequency : float
         Frequency of the drive. [Hz]
+    axial_amplitude : float, optional
+        Of the driven end, zero to peak; the full amplitude of the welder by default. [m]
+    sliding_speed : float, optional
+        That of the tests by default. [m/s]
 
     Returns
     -------
     FaceFriction
     """
     contact, approach = spring_contact(horn)
-    return friction_along(driven_face(horn, frequency=frequency), contact, approach=approach)
+    motion = driven_face(horn, frequency=frequency, axial_amplitude=axial_amplitude)
+    return friction_along(motion, contact, approach=approach, sliding_speed=sliding_speed)
 
 
-def friction_along(motion: poisson_horn.FaceMotion, contact: SpringContact, *, approach: float) -> FaceFriction:
-    """Return the friction of a block that slides along a moving face towards its node at the speed of D 2.1.2.
+def friction_along(
+    motion: poisson_horn.FaceMotion, contact: SpringContact, *, approach: float, sliding_speed: float | None = None
+) -> FaceFriction:
+    """Return the friction of a block that slides along a moving face towards its node.
 
     Parameters
     ----------
@@ -110,6 +125,8 @@ def friction_along(motion: poisson_horn.FaceMotion, contact: SpringContact, *, a
     contact : SpringContact
     approach : float
         Approach at which the springs carry the load. [m]
+    sliding_speed : float, optional
+        That of the tests of D 2.1.2 by default. [m/s]
 
     Returns
     -------
@@ -124,7 +141,7 @@ def friction_along(motion: poisson_horn.FaceMotion, contact: SpringContact, *, a
         contact,
         approach=approach,
         frequency=motion.frequency,
-        sliding_speed=si_value("2.1.2-sliding-speed"),
+        sliding_speed=si_value("2.1.2-sliding-speed") if sliding_speed is None else sliding_speed,
         normal_amplitude=np.abs(normal),
         in_plane_amplitude=np.abs(axial),
         in_plane_phase=np.angle(normal / (towards * axial)),  # of the block relative to the face
@@ -134,7 +151,10 @@ def friction_along(motion: poisson_horn.FaceMotion, contact: SpringContact, *, a
 
 
 def transition_region(friction: FaceFriction) -> tuple[float, float]:
-    """Return the limits of the transition region about the node, in which friction resists in both directions. [m]"""
+    """Return the limits of the transition region about the node, in which friction resists in both directions. [m]
+
+    A limit is NaN where the face drives the block nowhere on its side.
+    """
     middle = int(np.argmin(np.abs(friction.position - friction.node)))
     outwards = slice(middle, None, -1), slice(middle, None)
     left, right = (_first_reversal(friction.position[side], friction.ratio[side]) for side in outwards)
@@ -144,7 +164,8 @@ def transition_region(friction: FaceFriction) -> tuple[float, float]:
 def _first_reversal(position: Floats, ratio: Floats) -> float:
     """Return the first position at which the friction ratio changes sign, by linear interpolation. [m]"""
     after = int(np.argmax(ratio < 0))
-    assert after, "the face drives the block nowhere"
+    if not after:
+        return float("nan")
     before = after - 1
     fraction = ratio[before] / (ratio[before] - ratio[after])
     return float(position[before] + fraction * (position[after] - position[before]))
