@@ -28,6 +28,40 @@ def undone_at_signal(undo: Callable[[], object]) -> Iterator[None]:
         del _UNDO[key]
 
 
+@contextmanager
+def asked_by_signal(ask: Callable[[str], object]) -> Iterator[None]:
+    """Let the first SIGINT, SIGTERM or SIGHUP inside a `with` block ask for an orderly end; a second acts as outside.
+
+    Parameters
+    ----------
+    ask : callable
+        Takes what the signal means, such as "interrupted". It runs between two instructions of the block.
+
+    Notes
+    -----
+    Signals that are ignored stay ignored; outside the main thread of a process nothing changes.
+    """
+    former: dict[int, signal._HANDLER] = {}
+
+    def first(number: int, frame: FrameType | None) -> None:
+        restore()
+        ask(_MEANINGS[signal.Signals(number).name])
+
+    def restore() -> None:
+        while former:
+            signal.signal(*former.popitem())
+
+    for name in _MEANINGS:
+        number = getattr(signal, name, None)  # Windows has no SIGHUP
+        if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
+            with suppress(ValueError):
+                former[number] = signal.signal(number, first)
+    try:
+        yield
+    finally:
+        restore()
+
+
 def end_program_at_signals() -> None:
     """Let SIGINT, SIGTERM and SIGHUP end this process with one line and the exit status 128 + number of the signal.
 

@@ -1,5 +1,6 @@
 """Runner: protocols on a simulated rig, and every way in which a run can end."""
 
+import signal
 import threading
 from collections.abc import Mapping
 from dataclasses import replace
@@ -239,3 +240,20 @@ def test_progress_tells_step_time_and_friction() -> None:
     )
     assert told[-1] == ("step 6, voltage steps, 400 mN", 32_500, 32_500)
     assert [done for _, done, _ in told] == sorted(done for _, done, _ in told)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_the_run_after_the_present_block_and_handlers_are_as_before(number: signal.Signals) -> None:
+    before = signal.getsignal(number)
+
+    class Signalled(SimulatedRig):
+        def read(self, samples: int) -> Block:
+            if self.total == 1000:
+                signal.raise_signal(number)
+            return super().read(samples)
+
+    result, _, record = run(protocol(), Signalled())
+    assert result.outcome == "stopped"
+    assert result.reason in ("interrupted", "terminated")
+    assert sum(record.samples()) == 1020
+    assert signal.getsignal(number) is before

@@ -8,7 +8,7 @@ from threading import Event as Signal
 from typing import Final
 
 from sonolube.errors import SonolubeError
-from sonolube.interruption import undone_at_signal
+from sonolube.interruption import asked_by_signal, undone_at_signal
 from sonolube.lab.devices import DeviceError, Devices, DriveSetting
 from sonolube.lab.interlocks import Trip, interlocks_for
 from sonolube.lab.sampling import BLOCK_DURATION, Recorder, Sampling
@@ -127,8 +127,9 @@ def run_protocol(
     asked, motor and drive are off, and the clock stands.
     """
     require_possible(protocol, devices)
-    run = _Run(protocol, devices, recorder, operator, control or RunControl())
-    with undone_at_signal(run.switch_off):
+    control = control or RunControl()
+    run = _Run(protocol, devices, recorder, operator, control)
+    with undone_at_signal(run.switch_off), asked_by_signal(control.stop):
         return run.complete(advance)
 
 
