@@ -1,0 +1,4 @@
+from .disturbances import UNDISTURBED as UNDISTURBED, Disturbances as Disturbances
+from .faults import Fault as Fault
+from .friction_draw import FrictionDraw as FrictionDraw, FrictionLevel as FrictionLevel
+from .tribometer import VirtualTribometer as VirtualTribometer, virtual_tribometer as virtual_tribometer

@@ -1,0 +1,111 @@
+"""Friction of one virtual rig: a draw from the prediction of the rig, the same for all settings of a test."""
+
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Final
+
+import numpy as np
+
+from sonolube.errors import InvalidInput
+from sonolube.lab.devices import DriveSetting
+from sonolube.prediction import learned
+from sonolube.prediction.inputs import rig_inputs
+from sonolube.prediction.predictive import ratio_draws
+from sonolube.rig import Rig, wear_point
+
+_DRAWS: Final = 64  # of which one is taken
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FrictionLevel:
+    """Mean friction, wear and power at one setting of drive and motor.
+
+    Parameters
+    ----------
+    friction_force : float
+        Worn in, in N.
+    friction_ratio : float
+        Over that without vibration. []
+    vibration_amplitude : float
+        Zero to peak. [m]
+    wear_rate : float
+        Volume per sliding distance. [m2]
+    actuator_power : float
+        Drawn by the actuator, in W; 0 where the rig does not say.
+    """
+
+    friction_force: float
+    friction_ratio: float
+    vibration_amplitude: float
+    wear_rate: float
+    actuator_power: float
+
+
+class FrictionDraw:
+    """Friction of one specimen of a rig, drawn once.
+
+    Parameters
+    ----------
+    rig : Rig
+        With a drive.
+    seed : int
+
+    Raises
+    ------
+    InvalidInput
+        If the rig has no drive, does not slide or does not vibrate.
+
+    Notes
+    -----
+    Coefficient of friction and friction ratio are one draw of those that `sonolube predict` gives for the rig: from
+    the posterior of the population, with the spreads of the rig's inputs. The wear rate is that of the rig's wear model
+    without scatter, the same as without vibration where the model gives none.
+    """
+
+    def __init__(self, rig: Rig, *, seed: int) -> None:
+        self._inputs = rig_inputs(rig)
+        self._rig, self._seed = rig, seed
+        rng = np.random.default_rng(seed)
+        friction = self._inputs.friction
+        self.friction_coefficient = float(friction.value * np.exp(friction.spread * rng.standard_normal()))
+        self._row = int(rng.integers(_DRAWS))
+        self.at = lru_cache(maxsize=1024)(self._at)
+
+    def _at(self, setting: DriveSetting | None, sliding_speed: float) -> FrictionLevel:
+        """Level at a setting of the drive, None for off, and a sliding speed. [m/s]"""
+        without = self.friction_coefficient * self._rig.normal_load
+        intrinsic_wear = float(wear_point(self._rig).intrinsic_wear_rate)
+        if setting is None or not sliding_speed > 0:
+            return FrictionLevel(
+                friction_force=without,
+                friction_ratio=1.0,
+                vibration_amplitude=0.0,
+                wear_rate=intrinsic_wear,
+                actuator_power=0.0,
+            )
+        rig = self._set(setting, sliding_speed)
+        inputs = rig_inputs(rig)
+        draws = ratio_draws(learned().friction, inputs.at(), count=_DRAWS, seed=self._seed)
+        ratio = float(draws.friction_ratio[self._row, 0])
+        worn = wear_point(rig).wear_rate
+        return FrictionLevel(
+            friction_force=ratio * without,
+            friction_ratio=ratio,
+            vibration_amplitude=inputs.amplitude.value,
+            wear_rate=intrinsic_wear if worn is None or not np.isfinite(worn) else float(worn),
+            actuator_power=inputs.point.actuator_power or 0.0,
+        )
+
+    def _set(self, setting: DriveSetting, sliding_speed: float) -> Rig:
+        """Return the rig under a setting."""
+        drive = self._rig.drive
+        if drive is None:
+            raise InvalidInput(f"{self._rig.title}: a virtual tribometer needs a drive; give the table drive")
+        changed = replace(
+            drive,
+            voltage_peak_to_peak=setting.voltage_peak_to_peak,
+            voltage_offset=setting.voltage_offset,
+            frequency=setting.frequency,
+            waveform=setting.waveform,
+        )
+        return replace(self._rig, drive=changed, sliding_speed=sliding_speed)

@@ -1,0 +1,167 @@
+"""Signals of a virtual test over time, closed forms and recursions that go on from block to block."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from sonolube.checks import Floats
+from sonolube.compilation import kernel
+
+
+@dataclass(frozen=True, slots=True)
+class Approach:
+    """Exponential approach of a value to its target, from a time on.
+
+    Parameters
+    ----------
+    start : float
+        Time. [s]
+    value : float
+        At that time.
+    target : float
+    time_constant : float
+        [s]
+    """
+
+    start: float
+    value: float
+    target: float
+    time_constant: float
+
+    def at(self, time: Floats) -> Floats:
+        """Value at times at or after the start."""
+        return np.asarray(self.target + (self.value - self.target) * np.exp(-(time - self.start) / self.time_constant))
+
+    def integral(self, time: Floats) -> Floats:
+        """Integral of the value from the start to times after it."""
+        since = time - self.start
+        left = -np.expm1(-since / self.time_constant)
+        return np.asarray(self.target * since + (self.value - self.target) * self.time_constant * left)
+
+    def towards(self, target: float, *, time: float) -> "Approach":
+        """Return the approach to another target from a time on."""
+        return Approach(time, float(self.at(np.asarray(time))), target, self.time_constant)
+
+
+def waveform(phase: Floats, shape: str) -> Floats:
+    """Waveform between -1 and 1 over its phase in periods.
+
+    Parameters
+    ----------
+    phase : ndarray
+    shape : {"sine", "square", "triangle", "sawtooth"}
+
+    Returns
+    -------
+    ndarray
+    """
+    turn = phase % 1.0
+    match shape:
+        case "square":
+            return np.where(turn < 0.5, 1.0, -1.0)
+        case "triangle":
+            return np.asarray(1 - 4 * np.abs((turn + 0.25) % 1.0 - 0.5))
+        case "sawtooth":
+            return np.asarray(2 * ((turn + 0.5) % 1.0) - 1)
+    return np.asarray(np.sin(2 * np.pi * turn))
+
+
+def hall_pulses(revolutions: Floats, *, magnets: int, width: float = 0.06) -> Floats:
+    """Signal of a Hall probe by magnets at the rim of a disc, of height 1.
+
+    Parameters
+    ----------
+    revolutions : ndarray
+    magnets : int
+    width : float
+        Standard deviation of a pulse over the distance between magnets. []
+
+    Returns
+    -------
+    ndarray
+    """
+    from_centre = (revolutions * magnets) % 1.0 - 0.5
+    return np.asarray(np.exp(-0.5 * (from_centre / width) ** 2))
+
+
+def sawtooth_of_stick_slip(distance: Floats, *, pitch: float) -> Floats:
+    """Force between slips over the drawn distance: a straight rise from -1/2 to 1/2, then a fall.
+
+    Parameters
+    ----------
+    distance : ndarray
+        Drawn by the holder. [m]
+    pitch : float
+        Fall of the force over the stiffness of the holder. [m]
+
+    Returns
+    -------
+    ndarray
+    """
+    return np.asarray((distance / pitch) % 1.0 - 0.5)
+
+
+@dataclass(slots=True)
+class ColouredNoise:
+    """Noise of unit variance by a recursion over white noise, which goes on from block to block.
+
+    Parameters
+    ----------
+    generator : numpy.random.Generator
+    feedback : tuple of float
+        Coefficients a_1, a_2 of x_n = a_1 x_(n-1) + a_2 x_(n-2) + w_n.
+    """
+
+    generator: np.random.Generator
+    feedback: tuple[float, float] = (0.0, 0.0)
+    _state: Floats = field(default_factory=lambda: np.zeros(2))
+
+    def next(self, samples: int) -> Floats:
+        """Next samples."""
+        from scipy.signal import lfilter
+
+        white = self.generator.standard_normal(samples)
+        first, second = self.feedback
+        if (first, second) == (0.0, 0.0):
+            return white
+        variance = (1 - second) / ((1 + second) * ((1 - second) ** 2 - first**2))
+        found, self._state = lfilter([1 / np.sqrt(variance)], [1.0, -first, -second], white, zi=self._state)
+        return np.asarray(found)
+
+
+def correlated(time_constant: float, *, sample_rate: float) -> tuple[float, float]:
+    """Feedback of noise whose correlation falls exponentially over a time constant. [s]"""
+    return float(np.exp(-1 / (time_constant * sample_rate))), 0.0
+
+
+def resonant(frequency: float, *, damping_ratio: float, sample_rate: float) -> tuple[float, float]:
+    """Feedback of noise at the natural frequency of a damped oscillator; white where it is not resolved.
+
+    Parameters
+    ----------
+    frequency : float
+        [Hz]
+    damping_ratio : float
+        []
+    sample_rate : float
+        [Hz]
+
+    Returns
+    -------
+    tuple of float
+    """
+    if frequency > 0.4 * sample_rate:
+        return 0.0, 0.0
+    angle = 2 * np.pi * frequency / sample_rate
+    decay = np.exp(-damping_ratio * angle)
+    return float(2 * decay * np.cos(angle * np.sqrt(1 - damping_ratio**2))), float(-(decay**2))
+
+
+@kernel(cache=True)
+def play(values: Floats, half_width: float, state: float) -> Floats:
+    """Backlash: the output stays until the input has gone half its width away; from a state on."""
+    found = np.empty(values.size)
+    for index in range(values.size):
+        state = min(max(state, values[index] - half_width), values[index] + half_width)
+        found[index] = state
+    return found

@@ -1,0 +1,195 @@
+"""Virtual tribometer: acquisition, drive source and motor that share one clock and one virtual rig."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from sonolube.lab.block import Block, Channel
+from sonolube.lab.devices import DeviceError, Devices, DriveSetting
+from sonolube.lab.virtual_tribometer.disturbances import Disturbances
+from sonolube.lab.virtual_tribometer.faults import Fault
+from sonolube.lab.virtual_tribometer.friction_draw import FrictionDraw
+from sonolube.lab.virtual_tribometer.simulation import CHANNELS, VOLTAGE_MAXIMUM, VirtualRig
+from sonolube.rig import Rig
+from sonolube.units import format_si
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+GROOVE_DIAMETER: Final = 0.05
+"""Of the circle under the pin, where none is given. [m]"""
+
+_TURNS: Final = 20.0  # 1/s, of the motor
+
+
+def virtual_tribometer(
+    rig: Rig,
+    *,
+    seed: int,
+    real_time: bool = False,
+    disturbances: Disturbances | None = None,
+    groove_diameter: float = GROOVE_DIAMETER,
+    fault: Fault | None = None,
+) -> "VirtualTribometer":
+    """Virtual tribometer of a rig.
+
+    Parameters
+    ----------
+    rig : Rig
+        With a drive.
+    seed : int
+        Of everything that is drawn: the same seed gives the same samples, whatever the size of the blocks.
+    real_time : bool
+        Whether blocks come when the clock on the wall says; else as fast as they can be computed.
+    disturbances : Disturbances, optional
+        Of tests with the rig; those of this test scatter about them. The usual ones by default.
+    groove_diameter : float
+        Of the circle under the pin. [m]
+    fault : Fault, optional
+        Of the hardware.
+
+    Returns
+    -------
+    VirtualTribometer
+
+    Raises
+    ------
+    InvalidInput
+        If the rig does not slide, does not vibrate or has no drive.
+    """
+    streams = np.random.SeedSequence(seed).spawn(len(CHANNELS) + 4)
+    drawn = (disturbances or Disturbances()).drawn(np.random.default_rng(streams[-1]))
+    virtual = VirtualRig(rig, FrictionDraw(rig, seed=seed), drawn, streams, groove_diameter, real_time, fault)
+    described = {
+        "device": "virtual tribometer",
+        "rig": rig.title,
+        "seed": str(seed),
+        "disturbances": str(asdict(drawn)),
+    }
+    return VirtualTribometer(virtual, described, groove_diameter)
+
+
+class VirtualTribometer:
+    """A virtual rig with its devices; made by `virtual_tribometer`."""
+
+    def __init__(self, virtual: VirtualRig, description: Mapping[str, str], groove_diameter: float) -> None:
+        self._virtual = virtual
+        self.devices = Devices(
+            acquisition=_Acquisition(virtual),
+            drive=_Drive(virtual),
+            motor=_Motor(virtual),
+            description=description,
+            groove_diameter=groove_diameter,
+            simulated=True,
+        )
+
+    def truth(self) -> "xr.Dataset":
+        """What the recording was made of: friction of each setting, worn in, and every size that was drawn.
+
+        Returns
+        -------
+        xarray.Dataset
+            Over `setting`: start time, speed, voltage, amplitude, friction force and ratio; the wear volume and the
+            sizes are attributes, in SI.
+        """
+        return self._virtual.truth()
+
+
+class _Acquisition:
+    """Inputs of the virtual tribometer."""
+
+    name = "virtual acquisition"
+
+    def __init__(self, rig: VirtualRig) -> None:
+        self._rig = rig
+
+    @property
+    def channels(self) -> Mapping[str, Channel]:
+        """Channels that can be recorded."""
+        return self._rig.channels
+
+    def connect(self) -> None:
+        """Nothing to reserve."""
+
+    def start(self, channels: Sequence[str], *, sample_rate: float) -> float:
+        """Start to sample."""
+        unknown = [name for name in channels if name not in self.channels]
+        if unknown or not channels:
+            raise DeviceError(f"{self.name}: no channel {', '.join(unknown) or 'named'}; known: {', '.join(CHANNELS)}")
+        if not 0 < sample_rate <= 10e6:
+            raise DeviceError(f"{self.name}: sample_rate must lie between 0 and 10 MHz, got {sample_rate:g} Hz")
+        self._rig.start(channels, sample_rate)
+        return sample_rate
+
+    def read(self, samples: int) -> Block:
+        """Next samples."""
+        return self._rig.read(samples)
+
+    def stop(self) -> None:
+        """Stop to sample."""
+        self._rig.stop()
+
+    def close(self) -> None:
+        """Nothing to release."""
+        self._rig.stop()
+
+
+class _Drive:
+    """Generator and amplifier of the virtual tribometer."""
+
+    name = "virtual amplifier"
+    voltage_maximum = VOLTAGE_MAXIMUM
+
+    def __init__(self, rig: VirtualRig) -> None:
+        self._rig = rig
+
+    def connect(self) -> None:
+        """Connect with the output off."""
+        self.off()
+
+    def drive(self, setting: DriveSetting) -> None:
+        """Set the output."""
+        reached = abs(setting.voltage_offset) + setting.voltage_peak_to_peak / 2
+        if reached > VOLTAGE_MAXIMUM:
+            raise DeviceError(
+                f"{self.name}: {format_si(reached, 'V')} is more than its {format_si(VOLTAGE_MAXIMUM, 'V')}"
+            )
+        self._rig.drive(setting if setting.voltage_peak_to_peak > 0 else None)
+
+    def off(self) -> None:
+        """Switch the output off."""
+        self._rig.drive(None)
+
+    def close(self) -> None:
+        """Leave the output off."""
+        self.off()
+
+
+class _Motor:
+    """Motor of the virtual tribometer."""
+
+    name = "virtual motor"
+    rotation_speed_maximum = _TURNS
+
+    def __init__(self, rig: VirtualRig) -> None:
+        self._rig = rig
+
+    def connect(self) -> None:
+        """Connect with the motor at rest."""
+        self.off()
+
+    def turn(self, rotation_speed: float) -> None:
+        """Set the speed."""
+        if not 0 <= rotation_speed <= _TURNS:
+            raise DeviceError(f"{self.name}: {rotation_speed:.4g} 1/s is not between 0 and its {_TURNS:g} 1/s")
+        self._rig.turn(rotation_speed)
+
+    def off(self) -> None:
+        """Stop."""
+        self._rig.turn(0.0)
+
+    def close(self) -> None:
+        """Leave the motor at rest."""
+        self.off()
