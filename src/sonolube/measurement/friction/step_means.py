@@ -114,7 +114,27 @@ def wobble_columns(
         speed = refined_speed(places, values, rotation_speed=1.0, harmonics=harmonics)
     if not speed or speed * float(places[-1][-1] - places[0][0]) < 1:
         return None, 0.0
-    return [harmonic_columns(revolutions=speed * place, harmonics=harmonics) for place in sought], speed
+    waves = [harmonic_columns(revolutions=speed * place, harmonics=harmonics) for place in sought]
+    return _additive_or_proportional(parts, waves), speed
+
+
+def _additive_or_proportional(parts: SampledParts, waves: list[Floats]) -> list[Floats]:
+    """Return harmonics of one amplitude in all parts, or of one in proportion to the force, whichever fits better.
+
+    A tilted gauge adds the same wobble at every level; a load that varies with the turn, or a track that does, wobbles
+    the force in proportion.
+    """
+    levels = np.array([np.mean(force) for force in parts.forces])
+    if not (levels > 0).all():
+        return waves
+    proportional = [wave * level / levels.max() for wave, level in zip(waves, levels, strict=True)]
+
+    def left(columns: list[Floats]) -> float:
+        """Return the sum of squares that remains of the blocks."""
+        rest = parts.averaged(without_wobble(parts, columns))
+        return float(sum(np.sum((y - y.mean()) ** 2) for y in rest))
+
+    return min(waves, proportional, key=left)
 
 
 def without_wobble(parts: SampledParts, waves: Sequence[Floats] | None) -> list[Floats]:
@@ -153,7 +173,8 @@ def mean_of_parts(
 
     .. math:: F = \mu_j + \sum_k (a_k \cos k\theta + b_k \sin k\theta) + c\,e^{-(t - t_0)/\tau} + d\,t + s_j(t) ,
 
-    with a level for each part j, the harmonics of the rotation, run-in and drift where they exceed 3.5 standard errors,
+    with a level for each part j, the harmonics of the rotation (of one amplitude, or in proportion to the level, as
+    fits better), run-in and drift where they exceed 3.5 standard errors,
     and the sawteeth :math:`s_j` of the bursts of stick-slip with their shift of the level. The mean of a part is its
     level with drift and with the share of the bursts' shifts, without run-in and wobble. Its standard error is from
     `correlated_regression` of what remains, weighted where the noise differs between parts.
