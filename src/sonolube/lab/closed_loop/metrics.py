@@ -34,7 +34,7 @@ class HoldMetrics:
     voltage_peak_to_peak : float
         Mean over the last half. [V]
     saturated_fraction : float
-        Share of the intervals of the phase at the highest voltage or at none. []
+        Share of the intervals of the phase at the highest voltage or at none.
     """
 
     start_time: float

@@ -49,9 +49,9 @@ class FrictionHold:
     run_in : float
         Time of sliding without vibration before it, in s.
     offset_ratio : float
-        Mean voltage over peak-to-peak voltage; one half never pulls at the actuator. []
+        Mean voltage over peak-to-peak voltage; one half never pulls at the actuator.
     averaging : float
-        Part of each interval, at its end, whose mean is the measured friction. []
+        Part of each interval, at its end, whose mean is the measured friction.
     sample_rate : float
         Of the acquisition. [Hz]
     groove_diameter : float or None

@@ -1,4 +1,4 @@
-from .drive_load import DriveLoad as DriveLoad, drive_load as drive_load
+from .amplifier_load import DriveLoad as DriveLoad, drive_load as drive_load
 from .figure import dry_run_figure as dry_run_figure
 from .heating import Heating as Heating, HeatingAssumptions as HeatingAssumptions
 from .planned_run import dry_run as dry_run

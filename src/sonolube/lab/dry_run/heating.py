@@ -30,7 +30,7 @@ class HeatingAssumptions:
     actuator_conductance : float
         Heat that leaves the actuator per kelvin, in W/K; 20 cm2 in an air stream at 50 W/(m2 K).
     loss_factor : float
-        Heat of the actuator over its capacitive power. []
+        Heat of the actuator over its capacitive power.
     ambient_temperature : float
         In K; 21 degC by D Table 2.2.
     pin_material, disc_material : str or None

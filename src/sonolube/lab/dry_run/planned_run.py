@@ -9,7 +9,7 @@ import numpy as np
 
 from sonolube.design.control import Amplifier
 from sonolube.errors import InvalidInput, SonolubeError
-from sonolube.lab.dry_run.drive_load import OFF, DriveLoad, drive_load
+from sonolube.lab.dry_run.amplifier_load import OFF, DriveLoad, drive_load
 from sonolube.lab.dry_run.findings import caveats_of, refusals_of
 from sonolube.lab.dry_run.heating import HeatedInterval, Heating, HeatingAssumptions, RubbedBodies, heating_over
 from sonolube.lab.dry_run.record import PROMPT_DURATIONS, DryRun, PlannedPoint, PlannedRecording
@@ -39,7 +39,7 @@ def dry_run(
     heating : HeatingAssumptions, optional
         Thermal properties that a rig file does not hold.
     prompt_durations : mapping of str to float
-        Time that an operator needs, by the task of a prompt. [s]
+        Time that an operator needs, by the task of a prompt, in s.
 
     Returns
     -------

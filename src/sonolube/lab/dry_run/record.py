@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Final
 
-from sonolube.lab.dry_run.drive_load import DriveLoad
+from sonolube.lab.dry_run.amplifier_load import DriveLoad
 from sonolube.lab.dry_run.heating import Heating
 from sonolube.protocol import Protocol, SetPoint
 
