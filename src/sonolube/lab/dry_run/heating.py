@@ -32,7 +32,7 @@ class HeatingAssumptions:
     loss_factor : float
         Heat of the actuator over its capacitive power.
     ambient_temperature : float
-        In K; 21 degC by D Table 2.2.
+        21 degC by D Table 2.2. [K]
     pin_material, disc_material : str or None
         Of the catalogue, instead of those of rig and protocol.
 
