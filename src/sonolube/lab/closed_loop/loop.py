@@ -78,7 +78,7 @@ class _Loop:
         self._locks = interlocks_for(hold.limits, channels)
         watched = [lock.channel.name for lock in self._locks]
         self._names = list(dict.fromkeys([*(name for name in _RECORDED if name in channels), *watched]))
-        self._present = RunState()
+        self._present, self._is_recording = RunState(), False
         self._next_sample, self._rate, self._count = 0, 0.0, 0
         self._rows: list[tuple[float, float, float, float]] = []
         self._run_in_means: list[float] = []
@@ -130,6 +130,7 @@ class _Loop:
             raise DeviceError(f"{acquisition.name}: {refusal}") from None
         if self._recorder is not None:
             self._recorder.begin([acquisition.channels[name] for name in self._names], sample_rate=self._rate)
+            self._is_recording = True
 
     def _running_in(self) -> float:
         """Slide without vibration, and return the friction of the last interval. [N]"""
@@ -210,15 +211,16 @@ class _Loop:
     def _close(self) -> None:
         """Switch everything off, release the devices and close the record."""
         failures, devices = self.switch_off(), self._devices
-        for close in (devices.acquisition.stop, devices.drive.close, devices.motor.close, devices.acquisition.close):
+        closes = [devices.acquisition.stop, devices.drive.close, devices.motor.close, devices.acquisition.close]
+        if self._recorder is not None and self._is_recording:
+            closes.insert(0, self._recorder.end)
+        for close in closes:
             try:
                 close()
             except Exception as failure:  # the others must be released; the outputs are off already
                 self._happens(Event.DEVICE_ERROR, str(failure))
         self._happens(Event.NOT_OFF if failures else Event.OFF, "; ".join(failures))
         if self._recorder is not None:
-            if self._rate:
-                self._recorder.end()
             self._recorder.finish(self._present.outcome, reason=self._present.reason)
 
     def _result(self) -> HeldFriction:
