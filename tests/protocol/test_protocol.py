@@ -13,11 +13,19 @@ from hypothesis import given, settings, strategies as st
 from reliability.hostile_text import HOSTILE
 
 from sonolube.errors import InvalidInput
-from sonolube.protocol import duration, flattened, protocol_from, protocol_schema, protocol_text, read_protocol
+from sonolube.protocol import (
+    duration,
+    flattened,
+    protocol_from,
+    protocol_path,
+    protocol_schema,
+    protocol_text,
+    read_protocol,
+)
 from sonolube.published import column_numbers, si_value
 
 ROOT = Path(__file__).parents[2]
-MAP_TEST = ROOT / "examples" / "protocols" / "map_test.toml"
+MAP_TEST = protocol_path("map_test")
 LIMITS = {"voltage_maximum": "100 V", "duration_maximum": "2000 h"}
 
 

@@ -1,3 +1,8 @@
+from .library import (
+    protocol_by_name_or_file as protocol_by_name_or_file,
+    protocol_names as protocol_names,
+    protocol_path as protocol_path,
+)
 from .record import Limits as Limits, Metadata as Metadata, Protocol as Protocol
 from .steps import (
     Acquire as Acquire,

@@ -1,0 +1,11 @@
+from .amplifier_load import DriveLoad as DriveLoad, drive_load as drive_load
+from .figure import dry_run_figure as dry_run_figure
+from .heating import Heating as Heating, HeatingAssumptions as HeatingAssumptions
+from .planned_run import dry_run as dry_run
+from .record import (
+    PROMPT_DURATIONS as PROMPT_DURATIONS,
+    DryRun as DryRun,
+    PlannedPoint as PlannedPoint,
+    PlannedRecording as PlannedRecording,
+)
+from .text import dry_run_lines as dry_run_lines
