@@ -231,6 +231,18 @@ def locked_folder(folder: Path, *, purpose: str) -> Iterator[None]:
             _release(handle, place)
 
 
+def is_locked(folder: Path) -> bool:
+    """Whether a process, this one included, is at work in a folder by `locked_folder`."""
+    try:
+        handle = os.open(folder / _LOCK, os.O_RDWR)
+    except OSError:
+        return False
+    try:
+        return _lock(handle) is False
+    finally:
+        os.close(handle)
+
+
 @contextmanager
 def _unfinished(path: Path, folder: Path, mode: int) -> Iterator[UnfinishedFile]:
     """Yield a new file in a folder, which is removed at the end unless it has been completed."""

@@ -2,6 +2,7 @@
 
 import csv
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -158,9 +159,25 @@ def read_runs(path: Path) -> "xr.Dataset":
     InvalidInput
         Naming the file, the column and the cell, if the table cannot be read or holds no friction.
     """
+    return runs_of_rows(path, _rows(path))
+
+
+def runs_of_rows(path: Path, rows: Sequence[list[str]]) -> "xr.Dataset":
+    """Measured runs from the rows of a table, its header first, as `read_runs`.
+
+    Parameters
+    ----------
+    path : Path
+        Of the table, for messages and title.
+    rows : sequence of list of str
+
+    Returns
+    -------
+    xarray.Dataset
+    """
     import xarray as xr
 
-    header, *rows = _rows(path)
+    header, *rows = rows
     columns, texts = _read_columns(path, header, rows)
     columns, without = _with_references(columns)
     _derive_wear(columns)

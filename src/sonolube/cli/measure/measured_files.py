@@ -222,6 +222,8 @@ def files_of(paths: Sequence[Path]) -> list[Path]:
             files.append(path)
             continue
         inside = [each for each in path.iterdir() if each.is_file() and not each.name.startswith(".")]
+        if path / "documents.jsonl" in inside:  # the folder of a run of the laboratory
+            inside = [each for each in inside if each.suffix == ".nc"]
         inside.sort(key=_by_numbers)
         if not inside:
             raise InvalidInput(f"{path}: holds no file")

@@ -14,7 +14,7 @@ _ORIGIN_KEYS = ("title", "file_name", "file_format", "sha256", "begun")
 COLUMN_ATTRIBUTES = ("units", "unit", "sample_rate", "_FillValue")
 """Attributes of a variable that are read."""
 
-FILE_ATTRIBUTES = ("sample_rate", *_ORIGIN_KEYS, *(f"original_{key}" for key in _ORIGIN_KEYS))
+FILE_ATTRIBUTES = ("sample_rate", "caveats", *_ORIGIN_KEYS, *(f"original_{key}" for key in _ORIGIN_KEYS))
 """Attributes of a file that are read."""
 
 
@@ -59,7 +59,13 @@ def table_from_attributes(
     if not columns:
         raise InvalidInput(f"{path}: holds no vector of numbers")
     origin = _origin(attributes)
-    return RawTable(columns=tuple(columns), format_name=format_name, begun=origin.pop("begun", ""), origin=origin)
+    return RawTable(
+        columns=tuple(columns),
+        format_name=format_name,
+        begun=origin.pop("begun", ""),
+        origin=origin,
+        caveats=tuple(filter(None, _text(attributes.get("caveats", "")).split("\n"))),
+    )
 
 
 def _origin(attributes: Mapping[str, Any]) -> dict[str, str]:
@@ -68,5 +74,10 @@ def _origin(attributes: Mapping[str, Any]) -> dict[str, str]:
     for key in _ORIGIN_KEYS:
         value = attributes.get(f"original_{key}", attributes.get(key))
         if value is not None:
-            origin[key] = value.decode(errors="replace") if isinstance(value, bytes) else str(value)
+            origin[key] = _text(value)
     return origin
+
+
+def _text(value: object) -> str:
+    """Return an attribute as text."""
+    return value.decode(errors="replace") if isinstance(value, bytes) else str(value)

@@ -1,0 +1,13 @@
+from .exports import EXPORT_FORMATS as EXPORT_FORMATS, export_run as export_run
+from .raw_blocks import RawPart as RawPart, raw_blocks as raw_blocks, scan_raw as scan_raw
+from .recorder import RunRecorder as RunRecorder, new_run as new_run
+from .recovery import Recovery as Recovery, recover_run as recover_run
+from .run import (
+    Note as Note,
+    Run as Run,
+    RunSummary as RunSummary,
+    read_run as read_run,
+    run_folders as run_folders,
+    run_summary as run_summary,
+    runs_in as runs_in,
+)

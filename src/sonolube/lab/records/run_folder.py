@@ -1,0 +1,200 @@
+"""Folder of a run: the names of its files, its facts, and the SHA-256 of what it was given."""
+
+import hashlib
+import json
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any, Final
+
+from sonolube.errors import InvalidInput
+from sonolube.files import write_atomically
+from sonolube.growing_files import new_folder
+
+PROTOCOL: Final = "protocol.toml"
+RUN: Final = "run.json"
+DOCUMENTS: Final = "documents.jsonl"
+TRUTH: Final = "truth/truth.nc"
+RESERVE: Final = ".reserve"
+"""File that is removed when a run ends, so that its last documents fit on a full disk."""
+
+Fact = str | float | int | bool
+Facts = Mapping[str, Fact]
+
+_FORMAT: Final = 1
+_RESERVED_BYTES: Final = 1 << 16
+_LONGEST_NAME: Final = 60
+_PLAIN_NAME: Final = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,99}")
+_LARGEST_TEXT: Final = 1 << 24  # bytes of run.json
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RunFacts:
+    """What was known when a run began.
+
+    Parameters
+    ----------
+    title : str
+    begun : float
+        Of the clock of the computer, since 1970. [s]
+    facts : mapping of str to str, float, int or bool
+    versions : mapping of str to str
+        Of sonolube, python and numpy.
+    files : mapping of str to str
+        SHA-256 of each file that the run was given, by name.
+    referenced : tuple of str
+        Recordings that lie elsewhere, of a run that was taken in.
+    """
+
+    title: str
+    begun: float
+    facts: Facts
+    versions: Mapping[str, str]
+    files: Mapping[str, str]
+    referenced: tuple[str, ...] = ()
+
+
+def raw_path(folder: Path, part: int) -> Path:
+    """File of the raw blocks of a part of the recording, from 1."""
+    return folder / "raw" / f"blocks-{part}.bin"
+
+
+def recording_path(folder: Path, part: int) -> Path:
+    """File of a part of the recording, from 1, as netCDF."""
+    return folder / ("recording.nc" if part == 1 else f"recording-{part}.nc")
+
+
+def raw_parts(folder: Path) -> list[int]:
+    """Numbers of the parts that have raw blocks, ascending."""
+    found = (re.fullmatch(r"blocks-(\d{1,9})\.bin", path.name) for path in (folder / "raw").glob("blocks-*.bin"))
+    return sorted(int(match[1]) for match in found if match)
+
+
+def make_run_folder(
+    parent: Path, *, title: str, begun: float, texts: Mapping[str, str], facts: Facts, referenced: Mapping[str, str]
+) -> tuple[Path, RunFacts]:
+    """Make the folder of a new run with the texts it is given, its facts, and room for its last documents.
+
+    Parameters
+    ----------
+    parent : Path
+    title : str
+    begun : float
+        Since 1970. [s]
+    texts : mapping of str to str
+        By name of the file.
+    facts : mapping of str to str, float, int or bool
+    referenced : mapping of str to str
+        SHA-256 of recordings that lie elsewhere, by path.
+
+    Returns
+    -------
+    folder : Path
+        Named by the time in UTC and the title; none is ever made twice.
+    known : RunFacts
+
+    Raises
+    ------
+    InvalidInput
+        If the name of a file leads out of the folder, a fact is no plain value, or the folder cannot be written.
+    """
+    for name in texts:
+        if not _PLAIN_NAME.fullmatch(name) or name in (RUN, DOCUMENTS) or name.startswith("recording"):
+            raise InvalidInput(f"file {name!r} of a run must have a plain name other than those of the record")
+    plain = {name: _plain(name, value) for name, value in facts.items()}
+    stamp = datetime.fromtimestamp(begun, UTC).strftime("%Y%m%dT%H%M%SZ")
+    words = re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-")[:_LONGEST_NAME].strip("-") or "run"
+    folder = new_folder(parent, f"{stamp}-{words}")
+    known = RunFacts(
+        title=title,
+        begun=begun,
+        facts=plain,
+        versions=_versions(),
+        files={name: sha256(text.encode()) for name, text in texts.items()} | dict(referenced),
+        referenced=tuple(referenced),
+    )
+    new_folder(folder, "raw")
+    for name, text in texts.items():
+        write_atomically(folder / name, text)
+    content = {"format": _FORMAT} | {name: getattr(known, name) for name in RunFacts.__slots__}
+    write_atomically(folder / RUN, json.dumps(content, indent=1, allow_nan=False) + "\n")
+    write_atomically(folder / RESERVE, bytes(_RESERVED_BYTES))
+    return folder, known
+
+
+def read_run_facts(folder: Path) -> RunFacts:
+    """Read what was known when a run began.
+
+    Parameters
+    ----------
+    folder : Path
+
+    Returns
+    -------
+    RunFacts
+
+    Raises
+    ------
+    InvalidInput
+        If the folder holds no run, or its run.json is damaged.
+    """
+    path = folder / RUN
+    try:
+        if path.stat().st_size > _LARGEST_TEXT:
+            raise ValueError
+        content: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+        return RunFacts(
+            title=str(content["title"]),
+            begun=float(content["begun"]),
+            facts={str(name): value for name, value in content["facts"].items() if isinstance(value, Fact)},
+            versions={str(name): str(value) for name, value in content["versions"].items()},
+            files={str(name): str(value) for name, value in content["files"].items()},
+            referenced=tuple(map(str, content.get("referenced", ()))),
+        )
+    except OSError:
+        raise InvalidInput(f"{folder}: holds no run: it has no file {RUN}") from None
+    except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
+        raise InvalidInput(f"{path}: is damaged; restore it, or remove the folder") from None
+
+
+def changed_files(folder: Path, known: RunFacts) -> list[str]:
+    """Names of the files that a run was given and that are missing or not as they were."""
+    return [name for name, digest in known.files.items() if _digest_of(folder / name) != digest]
+
+
+def sha256(content: bytes) -> str:
+    """SHA-256 of bytes in hexadecimal digits."""
+    return hashlib.sha256(content).hexdigest()
+
+
+def _digest_of(path: Path) -> str:
+    """SHA-256 of a file; empty where it cannot be read."""
+    try:
+        with path.open("rb") as stream:
+            return hashlib.file_digest(stream, "sha256").hexdigest()
+    except (OSError, ValueError):
+        return ""
+
+
+def _plain(name: str, value: object) -> Fact:
+    """Fact as JSON holds it; refuse what it cannot."""
+    item = getattr(value, "item", None)
+    plain = item() if callable(item) else value
+    if isinstance(plain, float) and plain - plain != 0:
+        plain = str(plain)  # infinite or not a number
+    if not isinstance(plain, Fact):
+        raise InvalidInput(f"fact {name!r} must be a text, a number or a truth value, got {type(value).__name__}")
+    return plain
+
+
+def _versions() -> dict[str, str]:
+    """Versions of what computes."""
+    import platform
+
+    import numpy as np
+
+    from sonolube import __version__
+
+    return {"sonolube": __version__, "python": platform.python_version(), "numpy": np.__version__}
