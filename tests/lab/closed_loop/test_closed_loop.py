@@ -292,9 +292,7 @@ def test_every_sample_is_recorded_and_a_full_disk_ends_the_loop() -> None:
 
 
 @pytest.mark.parametrize("broken", ["begin", "end"])
-def test_a_record_that_fails_leaves_everything_off_and_is_finished(
-    broken: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_record_that_fails_ends_the_loop_with_everything_off(broken: str, monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(*_: Any, **__: Any) -> None:
         raise InvalidInput("record: no space left on device")
 
@@ -302,8 +300,8 @@ def test_a_record_that_fails_leaves_everything_off_and_is_finished(
     monkeypatch.setattr(record, broken, fail)
     found = hold_friction(hold(controller(), duration=0.5), rig.devices(), recorder=record)
     assert (rig.is_off, found.is_safe) == (True, True)
-    assert record.outcome == found.outcome
-    assert found.outcome == ("failed" if broken == "begin" else "completed")
+    assert record.outcome == found.outcome == "failed"
+    assert "no space left" in found.reason
 
 
 @pytest.mark.parametrize(

@@ -92,6 +92,7 @@ class _Loop:
             self._happens(Event.PREPARED)
             self._sample()
             self._control_friction(self._running_in(), advance)
+            self._end_recording()
             self._happens(Event.COMPLETED)
         except _Ended as end:
             self._happens(Event.TRIP, str(end))
@@ -208,13 +209,22 @@ class _Loop:
         if self._recorder is not None:
             self._recorder.append(block)
 
+    def _end_recording(self) -> None:
+        """Record no more."""
+        if self._recorder is not None and self._is_recording:
+            self._is_recording = False
+            self._recorder.end()
+
     def _close(self) -> None:
         """Switch everything off, release the devices and close the record."""
         failures, devices = self.switch_off(), self._devices
-        closes = [devices.acquisition.stop, devices.drive.close, devices.motor.close, devices.acquisition.close]
-        if self._recorder is not None and self._is_recording:
-            closes.insert(0, self._recorder.end)
-        for close in closes:
+        for close in (
+            self._end_recording,
+            devices.acquisition.stop,
+            devices.drive.close,
+            devices.motor.close,
+            devices.acquisition.close,
+        ):
             try:
                 close()
             except Exception as failure:  # the others must be released; the outputs are off already
