@@ -1,4 +1,4 @@
-"""Every file is written by sonolube.files or sonolube.growing_files: no other module opens, moves or removes one, by itself or by a library."""
+"""Files are written by sonolube.files and growing_files: no other module opens, moves or removes one."""
 
 import ast
 from collections.abc import Iterator

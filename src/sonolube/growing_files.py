@@ -1,4 +1,4 @@
-"""Files that grow: appended to by whole pieces, or held by a database; everything else is written by `sonolube.files`."""
+"""Files that grow: appended to by whole pieces, or held by a database; `sonolube.files` writes everything else."""
 
 import os
 import time
@@ -13,7 +13,7 @@ from sonolube.errors import InvalidInput
 from sonolube.targets import expect_target, refusal
 
 if TYPE_CHECKING:
-    import sqlite3
+    from sqlite3 import Connection as Connection
 
 _FLAGS: Final = os.O_RDWR | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
 _SYNC_INTERVAL: Final = 1.0  # s, between two requests that the disk keeps what was appended
@@ -37,8 +37,8 @@ class AppendedFile:
 
     Notes
     -----
-    A piece is in the hands of the operating system when `append` returns, so that the end of this process loses nothing.
-    About once a second, and at the end, the disk is asked to keep it; a loss of power costs the last second.
+    A piece is in the hands of the operating system when `append` returns, so that the end of this process loses
+    nothing. About once a second, and at the end, the disk is asked to keep it; a loss of power costs the last second.
     """
 
     def __init__(self, path: Path, *, length: int | None = None) -> None:
@@ -153,7 +153,7 @@ def new_folder(parent: Path, name: str) -> Path:
 
 
 @contextmanager
-def database(path: Path | None) -> "Iterator[sqlite3.Connection]":
+def database(path: Path | None) -> "Iterator[Connection]":
     """Provide a database of SQLite, made where it is missing; changes are kept at the end of the `with` block.
 
     Parameters

@@ -11,10 +11,10 @@ import typer
 
 from sonolube.cli.compare.own_runs import run_lines, runs_object
 from sonolube.cli.console.answer import Answer, deliver
-from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, optional_rig
+from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, measured_runs, optional_rig
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
-from sonolube.measurement.measured_runs import read_runs, runs_help
+from sonolube.measurement.measured_runs import runs_help
 from sonolube.report import Drawing
 from sonolube.rig import FrictionPoint, Rig, friction_point
 from sonolube.units import format_si
@@ -68,7 +68,7 @@ def compare(
     """
     known = optional_rig(rig, changes=changes, amplitude=amplitude)
     point = None if known is None else vibrated_rig(known)
-    table = None if runs is None else run_conditions(read_runs(runs), known)
+    table = None if runs is None else run_conditions(measured_runs(runs), known)
     with progress("comparing") as advance:
         fits = compare_models(compared_models(models or ()), advance=advance)
         predictions = () if point is None else predict_rig(fits, point)

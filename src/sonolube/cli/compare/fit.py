@@ -10,10 +10,10 @@ import typer
 import xarray as xr
 
 from sonolube.cli.console.answer import Answer, deliver
-from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, optional_rig
+from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, measured_runs, optional_rig
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
-from sonolube.measurement.measured_runs import read_runs, runs_help
+from sonolube.measurement.measured_runs import runs_help
 from sonolube.report import Drawing
 from sonolube.rig import Rig, steady_vibration
 from sonolube.units import format_si
@@ -54,7 +54,7 @@ def fit(
     Example: sonolube fit examples/tribometer-runs.csv --rig examples/rigs/tribometer.toml
     """
     known = optional_rig(rig, changes=changes, amplitude=amplitude)
-    table = read_runs(runs)
+    table = measured_runs(runs)
     with progress("fitting") as advance:
         result = fit_runs(table, known, models=compared_models(models or ()), advance=advance)
     volts = None if known is None or "voltage_peak_to_peak" not in table else _volts_per_amplitude(known)

@@ -11,6 +11,8 @@ from sonolube.errors import InvalidInput
 from sonolube.units import temperature_difference_to_si, to_si, unit_description
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from sonolube.rig import Rig
 
 
@@ -235,6 +237,28 @@ def friction_force(text: str, *, normal_load: float, option: str) -> float:
     if not value > 0:
         raise InvalidInput(f"{option} {text} must be positive, a coefficient such as 0.2 or a force such as 0.6N")
     return value
+
+
+def measured_runs(path: Path) -> "xr.Dataset":
+    """Measured runs of an option that takes a table of runs, or a query of the catalogue of runs.
+
+    Parameters
+    ----------
+    path : Path
+        A CSV file, or a text such as ``catalogue:material=brass,load=5N``.
+
+    Returns
+    -------
+    xarray.Dataset
+        As `sonolube.measurement.measured_runs.read_runs` returns them.
+    """
+    if str(path).startswith("catalogue:"):
+        from sonolube.lab.catalogue import catalogued_runs
+
+        return catalogued_runs(str(path))
+    from sonolube.measurement.measured_runs import read_runs
+
+    return read_runs(path)
 
 
 def optional_rig(

@@ -8,12 +8,20 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
-from sonolube.cli.console.options import OUT, Changes, Json, Out, friction_force, refuse_unused, si_option
+from sonolube.cli.console.options import (
+    OUT,
+    Changes,
+    Json,
+    Out,
+    friction_force,
+    measured_runs,
+    refuse_unused,
+    si_option,
+)
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.rig_text import rig_settings
 from sonolube.design.efficiency import EfficiencyCalibration, calibrate_efficiency, efficiency_dataset
 from sonolube.design.efficiency_figures import efficiency_figure
-from sonolube.measurement.measured_runs import read_runs
 from sonolube.report import Drawing, Page
 from sonolube.rig import read_rig
 from sonolube.units import format_si
@@ -60,7 +68,7 @@ def efficiency(
     if friction is not None:
         target = friction_force(friction, normal_load=known.normal_load, option="--target-friction")
     calibration = calibrate_efficiency(
-        known, read_runs(runs), friction_force=target, sliding_speed=speed, confidence_level=level
+        known, measured_runs(runs), friction_force=target, sliding_speed=speed, confidence_level=level
     )
     answer = EfficiencyAnswer(calibration=calibration, rig_file=rig, name=f"{runs.stem}-efficiency")
     deliver(answer, folder=out, as_json=json, context=context)

@@ -12,7 +12,17 @@ from sonolube import design
 from sonolube.checks import Floats
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
 from sonolube.cli.console.backend import Backend, BackendName, gpu_warning
-from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, RigPath, loaded_rig, refuse_replaced
+from sonolube.cli.console.options import (
+    OUT,
+    Amplitude,
+    Changes,
+    Json,
+    Out,
+    RigPath,
+    loaded_rig,
+    measured_runs,
+    refuse_replaced,
+)
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
 from sonolube.cli.console.ranges import values_by_key
@@ -24,7 +34,7 @@ from sonolube.design.maps import default_axes, panels_text
 from sonolube.design.point_statistics import extreme_point, failure_counts
 from sonolube.design.runs_map import require_mappable, runs_map, runs_on_map
 from sonolube.errors import InvalidInput
-from sonolube.measurement.measured_runs import read_runs, runs_help
+from sonolube.measurement.measured_runs import runs_help
 from sonolube.report import Drawing, Page, PageTable
 from sonolube.rig import Rig, operating_caveats
 from sonolube.units import format_si
@@ -97,7 +107,7 @@ def map(  # noqa: A001 - the command's name
     known = loaded_rig(rig, changes=changes, amplitude=amplitude)
     refuse_replaced(changes, over)
     axes = _axes(known, kind.value, over)
-    runs = None if measured is None else read_runs(measured)
+    runs = None if measured is None else measured_runs(measured)
     if runs is not None:
         require_mappable(runs, kind=kind.value)
     with gpu_warning(), progress("mapping"):

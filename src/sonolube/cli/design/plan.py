@@ -10,7 +10,7 @@ import typer
 
 from sonolube.checks import Floats
 from sonolube.cli.console.answer import deliver
-from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, RigPath, loaded_rig
+from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, RigPath, loaded_rig, measured_runs
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.design.factor_values import factor_values
 from sonolube.cli.design.plan_answer import PlanAnswer
@@ -20,7 +20,6 @@ from sonolube.design.test_plan.plan import Procedure, Question, plan_tests, publ
 from sonolube.design.test_plan.run_order import BLOCKINGS
 from sonolube.design.test_plan.run_table import has_results
 from sonolube.errors import InvalidInput
-from sonolube.measurement.measured_runs import read_runs
 from sonolube.prediction.inputs import RigInputs, rig_inputs
 from sonolube.rig import Rig
 from sonolube.units import temperature_difference_to_si, to_si
@@ -135,7 +134,7 @@ def plan(
             actuator_power=_limit(amplifier_power, "W", "--amplifier-power"),
             mean_temperature_rise=temperature_difference_to_si(hottest, name="--temperature-rise"),
         ),
-        runs=None if runs is None else read_runs(runs),
+        runs=None if runs is None else measured_runs(runs),
         pin=pin,
         disc=disc,
         seed=seed,

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from sonolube.cli.console.answer import Answer, deliver, grid
-from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Load, Out, RigPath, loaded_rig
+from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Load, Out, RigPath, loaded_rig, measured_runs
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.predict.measured import Measurement, measured_on
 from sonolube.compilation import few_points
-from sonolube.measurement.measured_runs import read_runs, runs_help
+from sonolube.measurement.measured_runs import runs_help
 from sonolube.prediction.figures import prediction_figure
 from sonolube.prediction.rig_prediction import interval, predict as predicted
 from sonolube.prediction.scores import PROBABILITIES
@@ -57,7 +57,7 @@ def predict(
     Example: sonolube predict examples/rigs/tribometer.toml --pin stainless_steel_316 --disc aluminium_2024
     """
     known = loaded_rig(rig, load=load, changes=changes, amplitude=amplitude)
-    own = None if runs is None else read_runs(runs)
+    own = None if runs is None else measured_runs(runs)
     result = predicted(known, runs=own, pin=pin, disc=disc, seed=seed)
     measured = measured_on(known, vibration_amplitude=result.attrs["vibration_amplitude"])
     answer = PredictionAnswer(rig=known, prediction=result, measured=measured, name=f"{rig.stem}-prediction")

@@ -1,12 +1,11 @@
 """Index of runs in a database beside their folders; the folders are the truth, and the index is rebuilt from them."""
 
 import json
-import sqlite3
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from sonolube.errors import InvalidInput
 from sonolube.files import is_locked
@@ -14,6 +13,9 @@ from sonolube.growing_files import database, set_database_aside
 from sonolube.lab.catalogue.entry import CatalogueEntry, catalogue_entry
 from sonolube.lab.catalogue.query import RunQuery
 from sonolube.lab.records import RunSummary, run_folders
+
+if TYPE_CHECKING:
+    from sonolube.growing_files import Connection
 
 CATALOGUE: Final = "catalogue.sqlite"
 """Name of the index beside the folders of runs."""
@@ -77,7 +79,7 @@ def query_runs(parent: Path, query: RunQuery | None = None) -> FoundRuns:
 
 
 @contextmanager
-def _opened(path: Path, caveats: list[str]) -> Iterator[sqlite3.Connection]:
+def _opened(path: Path, caveats: list[str]) -> "Iterator[Connection]":
     """Provide the index, rebuilt where it is damaged or old, in memory where none can be written."""
     place: Path | None = path
     try:
@@ -129,7 +131,7 @@ class _Foreign(Exception):
     """A database of another program."""
 
 
-def _refresh(connection: sqlite3.Connection, folders: list[Path], caveats: list[str]) -> None:
+def _refresh(connection: "Connection", folders: list[Path], caveats: list[str]) -> None:
     """Bring the index up to date with the folders."""
     known = dict(connection.execute("SELECT folder, stamp FROM runs").fetchall())
     for name in known.keys() - {folder.name for folder in folders}:

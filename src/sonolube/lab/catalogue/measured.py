@@ -33,12 +33,12 @@ _HEADER: Final = (
 
 
 def catalogued_runs(text: str) -> "xr.Dataset":
-    """Measured runs that a query of the catalogue finds, as `sonolube.measurement.measured_runs.read_runs`.
+    r"""Measured runs that a query of the catalogue finds, as `sonolube.measurement.measured_runs.read_runs`.
 
     Parameters
     ----------
     text : str
-        Such as ``catalogue:material=brass,load=3N..6N,in=runs``; conditions by commas, a comma within one as ``\\,``.
+        Such as ``catalogue:material=brass,load=3N..6N,in=runs``; conditions by commas, a comma within one as ``\,``.
 
     Returns
     -------
@@ -65,7 +65,9 @@ def catalogued_runs(text: str) -> "xr.Dataset":
         raise InvalidInput(f"{text}: no friction can be measured: {refused[-1]}")
     runs = runs_of_rows(Path(text), [list(_HEADER), *rows])
     caveats = [line for line in (str(runs.attrs.get("caveats", "")), *refused) if line]
-    return runs.assign_attrs(title=f"{text.removeprefix(CATALOGUE_PREFIX) or 'all runs'}, in %", caveats="\n".join(caveats))
+    return runs.assign_attrs(
+        title=f"{text.removeprefix(CATALOGUE_PREFIX) or 'all runs'}, in %", caveats="\n".join(caveats)
+    )
 
 
 def _conditions(text: str) -> tuple[Path, dict[str, list[str]]]:

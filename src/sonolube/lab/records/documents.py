@@ -108,8 +108,10 @@ class DocumentLog:
     def note(self, kind: str, *, time: float, sample: int | None, facts: Mapping[str, Any]) -> None:
         """Write what happened as an event."""
         if not self._has_notes:
-            keys = {name: {"dtype": "string", "shape": [], "source": "sonolube"} for name in ("kind", "facts")}
-            keys["sample"] = {"dtype": "integer", "shape": [], "source": "sonolube"}
+            texts: dict[str, Any] = dict.fromkeys(
+                ("kind", "facts"), {"dtype": "string", "shape": [], "source": "sonolube"}
+            )
+            keys = texts | {"sample": {"dtype": "integer", "shape": [], "source": "sonolube"}}
             self._describe(_NOTES, self._notes, time, keys)
             self._has_notes = True
         number = self._counts.get(_NOTES, 0) + 1

@@ -8,11 +8,7 @@ from typing import Final
 from sonolube.errors import InvalidInput, UnknownName
 from sonolube.lab.records.documents import read_documents
 from sonolube.lab.records.recorded_part import RecordedPart, recorded_part
-from sonolube.lab.records.recording_files import (
-    write_csv_recording,
-    write_netcdf_recording,
-    write_tdms_recording,
-)
+from sonolube.lab.records.recording_files import write_csv_recording, write_netcdf_recording, write_tdms_recording
 from sonolube.lab.records.run_folder import RunFacts, raw_parts, read_run_facts
 
 _WRITERS: Final[Mapping[str, tuple[str, Callable[[RecordedPart, RunFacts, Path], Path]]]] = MappingProxyType(

@@ -1,7 +1,7 @@
-"""Raw blocks of a recording: a file to which blocks are appended as they come, each with its counters and checksums.
+r"""Raw blocks of a recording: a file to which blocks are appended as they come, with counters and checksums.
 
-The header is the mark ``SNLBLK1\\n``, the length of a text (4 bytes), that text (JSON: sample rate, channels with
-quantity, unit and range, time of the begin), and its CRC-32 (4 bytes). Each record is the mark ``\\xb5BLK``, sequence
+The header is the mark ``SNLBLK1\n``, the length of a text (4 bytes), that text (JSON: sample rate, channels with
+quantity, unit and range, time of the begin), and its CRC-32 (4 bytes). Each record is the mark ``\xb5BLK``, sequence
 number and first sample (8 bytes each), number of samples (4 bytes), CRC-32 of the samples and CRC-32 of all before it
 (4 bytes each), then the samples, channel beside channel, as 64-bit floats. All numbers are little-endian.
 """
@@ -9,6 +9,7 @@ number and first sample (8 bytes each), number of samples (4 bytes), CRC-32 of t
 import json
 import struct
 import zlib
+from collections import deque
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -168,10 +169,7 @@ def scan_raw(path: Path) -> RawPart:
     InvalidInput
         If the file cannot be read, or its header is damaged.
     """
-    part = None
-    for part, _ in _walk(path):
-        pass
-    assert part is not None  # the header at least
+    ((part, _),) = deque(_walk(path), maxlen=1)
     return part
 
 

@@ -1,4 +1,4 @@
-"""Part of a recording without a pause: its raw blocks with the drive voltage as it was set, in pieces of many samples."""
+"""Part of a recording without a pause: its raw blocks with the drive voltage as it was set, in long pieces."""
 
 import json
 from collections.abc import Iterator, Mapping
@@ -65,7 +65,7 @@ class RecordedPart:
         return found
 
     def pieces(self) -> Iterator[tuple[Floats, list[Floats]]]:
-        """Yield the time since the first sample, in s, and the columns in the order of `variables`, many rows at once."""
+        """Yield the time since the first sample, in s, and the columns in the order of `variables`, many rows each."""
         blocks: list[Block] = []
         rows = 0
         for block in raw_blocks(self.path):

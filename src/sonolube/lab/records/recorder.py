@@ -18,6 +18,7 @@ from sonolube.lab.records.run import RunSummary, run_summary
 from sonolube.lab.records.run_clock import RunClock
 from sonolube.lab.records.run_folder import (
     PROTOCOL,
+    PURPOSE,
     RESERVE,
     TRUTH,
     Facts,
@@ -32,8 +33,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _RIGS: Final = ".rigs"  # folder of the locks of rigs
-PURPOSE: Final = "run"
-"""What the lock of a run's folder is for."""
 
 
 def new_run(
@@ -71,12 +70,9 @@ def new_run(
             locks.enter_context(locked_folder(parent / _RIGS / rig, purpose=f"run on rig {rig}"))
         clock = RunClock()
         texts = {PROTOCOL: protocol, **(files or {})}
-        folder, begun = make_run_folder(
-            parent, title=title, begun=clock.begun, texts=texts, facts=known, referenced={}
-        )
+        folder, begun = make_run_folder(parent, title=title, begun=clock.begun, texts=texts, facts=known, referenced={})
         locks.enter_context(locked_folder(folder, purpose=PURPOSE))
-        recorder = RunRecorder(folder, begun, clock, locks.pop_all())
-    return recorder
+        return RunRecorder(folder, begun, clock, locks.pop_all())
 
 
 class RunRecorder:
@@ -153,7 +149,9 @@ class RunRecorder:
         if self._file is None:
             raise InvalidInput("no part of the recording has begun; begin it before blocks are appended")
         if block.values.ndim != 2 or block.values.shape[1] != len(self._channels) or not block.samples:
-            raise InvalidInput(f"block has the shape {block.values.shape}, but {len(self._channels)} channels are recorded")
+            raise InvalidInput(
+                f"block has the shape {block.values.shape}, but {len(self._channels)} channels are recorded"
+            )
         if block.first_sample < (self._next or 0):
             raise InvalidInput(f"block begins at sample {block.first_sample}, but {self._next} was expected")
         try:

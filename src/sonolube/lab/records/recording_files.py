@@ -45,7 +45,7 @@ def write_netcdf_recording(part: RecordedPart, known: RunFacts, path: Path) -> P
 
 
 def write_tdms_recording(part: RecordedPart, known: RunFacts, path: Path) -> Path:
-    """Write a part of a recording as TDMS, as `write_netcdf_recording`; a channel `time` is added where samples lack."""
+    """Write a part of a recording as TDMS, as `write_netcdf_recording`; with a channel `time` where samples lack."""
     from nptdms import ChannelObject, GroupObject, RootObject, TdmsWriter
 
     quantities = part.variables

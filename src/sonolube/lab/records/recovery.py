@@ -1,4 +1,4 @@
-"""Recovery of runs whose program was killed: the damaged end is kept aside, the recording and last documents written."""
+"""Recovery of runs whose program was killed: the damaged end is kept aside, recording and documents completed."""
 
 from contextlib import suppress
 from dataclasses import dataclass
@@ -11,11 +11,11 @@ from sonolube.growing_files import AppendedFile
 from sonolube.lab.records.documents import DocumentLog, read_documents
 from sonolube.lab.records.raw_blocks import RawPart, scan_raw
 from sonolube.lab.records.recorded_part import recorded_part
-from sonolube.lab.records.recorder import PURPOSE
 from sonolube.lab.records.recording_files import write_netcdf_recording
 from sonolube.lab.records.run import RunSummary, run_summary
 from sonolube.lab.records.run_folder import (
     DOCUMENTS,
+    PURPOSE,
     RESERVE,
     RunFacts,
     raw_parts,

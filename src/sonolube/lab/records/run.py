@@ -313,11 +313,13 @@ def _caveats(folder: Path, known: RunFacts, documents: ReadDocuments, summary: R
     if not documents.is_whole:
         found.append(f"the end of {DOCUMENTS} is damaged")
     if summary.gaps:
-        found.append(f"samples are missing at {summary.gaps} places")
+        found.append("samples are missing: " + (f"{summary.gaps} gaps" if summary.gaps > 1 else "a gap"))
     if summary.outcome not in (RUNNING, UNFINISHED):
-        for part in numbered_parts(documents):
-            if raw_path(folder, part).is_file() and not recording_path(folder, part).is_file() and summary.samples:
-                found.append(f"part {part} of the recording is in raw blocks only; sonolube lab recover writes it")
+        found += [
+            f"part {part} of the recording is in raw blocks only; sonolube lab recover writes it"
+            for part in numbered_parts(documents)
+            if raw_path(folder, part).is_file() and not recording_path(folder, part).is_file() and summary.samples
+        ]
     jumps = sum(event["data"]["kind"] == "clock jump" for event in documents.of("event"))
     if jumps:
         found.append(f"the clock of the computer was set {jumps} times during the run; times are by sample counters")

@@ -17,6 +17,8 @@ PROTOCOL: Final = "protocol.toml"
 RUN: Final = "run.json"
 DOCUMENTS: Final = "documents.jsonl"
 TRUTH: Final = "truth/truth.nc"
+PURPOSE: Final = "run"
+"""What the lock of the folder is for."""
 RESERVE: Final = ".reserve"
 """File that is removed when a run ends, so that its last documents fit on a full disk."""
 

@@ -1,0 +1,109 @@
+"""Command `lab show`: a run with its facts, events, gaps and outcome, and a figure of its channels."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from sonolube.cli.console.answer import Answer, aligned, deliver
+from sonolube.cli.console.options import Json
+from sonolube.cli.console.outputs import OutputFolder
+from sonolube.lab.records import Note, Run, read_run
+from sonolube.units import format_si
+
+if TYPE_CHECKING:
+    from sonolube.report import Drawing
+
+_MOST_EVENTS = 40
+
+
+def show(
+    run: Annotated[Path, typer.Argument(metavar="RUN", help="Folder of the run.")],
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for a figure of the channels."), OutputFolder("{run}-channels.*")
+    ] = None,
+    json: Json = False,
+) -> None:
+    """A recorded run: facts, events, gaps, outcome, and a figure of its channels.
+
+    Example: sonolube lab show runs/20261123T014210Z-map-test --out out
+    """
+    deliver(ShownRun(run=read_run(run), has_figure=out is not None), folder=out or Path(), as_json=json)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ShownRun(Answer):
+    """Record of a run."""
+
+    run: Run
+    has_figure: bool
+
+    def lines(self) -> list[str]:
+        """Outcome, facts and events."""
+        summary, known = self.run.summary, self.run.known
+        rows = [
+            ("begun", f"{summary.begun_text} UTC"),
+            ("outcome", summary.outcome + (f": {summary.reason}" if summary.reason else "")),
+            ("channels", ", ".join(summary.channels) or "none"),
+            ("recorded", f"{summary.samples} samples, {format_si(summary.duration, 's')}, gaps: {summary.gaps}"),
+            *((name, str(value)) for name, value in known.facts.items()),
+            *((f"version of {name}", value) for name, value in known.versions.items()),
+            *((name, f"sha256 {digest[:16]}...") for name, digest in known.files.items()),
+        ]
+        notes = self.run.notes
+        events = [(_moment(note, summary.begun), _event(note)) for note in notes[:_MOST_EVENTS]]
+        more = [f"  ... and {len(notes) - _MOST_EVENTS} more events"] if len(notes) > _MOST_EVENTS else []
+        return [f"{summary.folder.name}: {summary.title}", *aligned(rows), "events", *aligned(events), *more]
+
+    def object(self) -> dict[str, Any]:
+        """Record for JSON, in SI."""
+        summary, known = self.run.summary, self.run.known
+        notes = [
+            {"kind": note.kind, "time": note.time, "sample": note.sample, "facts": dict(note.facts)}
+            for note in self.run.notes
+        ]
+        return {
+            "folder": str(summary.folder),
+            "title": summary.title,
+            "begun": summary.begun_text,
+            "outcome": summary.outcome,
+            "reason": summary.reason,
+            "channels": list(summary.channels),
+            "samples": summary.samples,
+            "duration": summary.duration,
+            "gaps": summary.gaps,
+            "facts": dict(known.facts),
+            "versions": dict(known.versions),
+            "sha256": dict(known.files),
+            "recordings": [str(path) for path in self.run.recordings],
+            "events": notes,
+        }
+
+    def caveats(self) -> Sequence[str]:
+        """What speaks against the record."""
+        return self.run.caveats
+
+    def figures(self) -> "Mapping[str, Drawing]":
+        """Channels over time, where a folder for them is named."""
+        if not (self.has_figure and self.run.recordings):
+            return {}
+        from sonolube.cli.lab.channels_figure import channels_figure
+        from sonolube.report import Drawing
+
+        recording, title = self.run.dataset(), self.run.summary.title
+        caption = f"{title}: the range of the samples of each channel over time."
+        name = f"{self.run.folder.resolve().name}-channels"
+        return {name: Drawing(draw=lambda: channels_figure(recording), caption=caption)}
+
+
+def _moment(note: Note, begun: float) -> str:
+    """Time of an event since the begin of the run."""
+    return f"{note.time - begun:.3f} s" + ("" if note.sample is None else f", sample {note.sample}")
+
+
+def _event(note: Note) -> str:
+    """Event in words."""
+    facts = ", ".join(f"{name} {value}" for name, value in note.facts.items() if value != "")
+    return f"{note.kind}: {facts}".removesuffix(": ")
