@@ -108,9 +108,8 @@ class DocumentLog:
     def note(self, kind: str, *, time: float, sample: int | None, facts: Mapping[str, Any]) -> None:
         """Write what happened as an event."""
         if not self._has_notes:
-            texts: dict[str, Any] = dict.fromkeys(
-                ("kind", "facts"), {"dtype": "string", "shape": [], "source": "sonolube"}
-            )
+            text: dict[str, Any] = {"dtype": "string", "shape": [], "source": "sonolube"}
+            texts: dict[str, Any] = {"kind": text, "facts": text}
             keys = texts | {"sample": {"dtype": "integer", "shape": [], "source": "sonolube"}}
             self._describe(_NOTES, self._notes, time, keys)
             self._has_notes = True

@@ -1,4 +1,8 @@
 from .disturbances import UNDISTURBED as UNDISTURBED, Disturbances as Disturbances
 from .faults import Fault as Fault
 from .friction_draw import FrictionDraw as FrictionDraw, FrictionLevel as FrictionLevel
-from .tribometer import VirtualTribometer as VirtualTribometer, virtual_tribometer as virtual_tribometer
+from .tribometer import (
+    GROOVE_DIAMETER as GROOVE_DIAMETER,
+    VirtualTribometer as VirtualTribometer,
+    virtual_tribometer as virtual_tribometer,
+)

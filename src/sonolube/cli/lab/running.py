@@ -1,0 +1,236 @@
+"""What `lab run` and `lab virtual` share: the operator, the record of a run, and its answer."""
+
+import select
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from shlex import quote
+from typing import Any
+
+import typer
+
+from sonolube.cli.console.answer import Answer, aligned, si
+from sonolube.cli.console.progress import progress
+from sonolube.cli.console.questions import is_terminal
+from sonolube.errors import InvalidInput
+from sonolube.lab import RunControl, RunResult, State, require_possible, run_protocol
+from sonolube.lab.devices import Devices
+from sonolube.lab.records import Run, new_run, read_run
+from sonolube.lab.virtual_tribometer import GROOVE_DIAMETER, VirtualTribometer, virtual_tribometer
+from sonolube.printable_text import printable
+from sonolube.protocol import Prompt, Protocol, flattened, protocol_text
+from sonolube.rig import Rig
+from sonolube.units import format_si
+
+_POLL = 0.1  # s, between two looks at requests to end while an operator is asked
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunPlan:
+    """A run to be made.
+
+    Parameters
+    ----------
+    protocol : Protocol
+    name : str
+        Of the protocol.
+    rig : Rig or None
+    rig_file : Path or None
+    device_file : Path or None
+        None for the virtual tribometer.
+    seed : int
+    real_time : bool
+    confirmed : bool
+        Whether prompts are taken as confirmed.
+    tags : sequence of str
+    """
+
+    protocol: Protocol
+    name: str
+    rig: Rig | None
+    rig_file: Path | None
+    device_file: Path | None = None
+    seed: int = 0
+    real_time: bool = False
+    confirmed: bool = False
+    tags: Sequence[str] = ()
+
+
+def virtual_rig(plan: RunPlan) -> VirtualTribometer:
+    """Virtual tribometer of a plan's rig.
+
+    Raises
+    ------
+    InvalidInput
+        If the plan names no rig.
+    """
+    if plan.rig is None:
+        raise InvalidInput("--device virtual needs --rig RIG.toml, whose friction it takes")
+    diameter = plan.protocol.metadata.groove_diameter or GROOVE_DIAMETER
+    return virtual_tribometer(plan.rig, seed=plan.seed, real_time=plan.real_time, groove_diameter=diameter)
+
+
+def run_and_record(plan: RunPlan, devices: Devices, *, out: Path, virtual: VirtualTribometer | None) -> "RunAnswer":
+    """Run a plan on devices with its record below a folder, and tell how it went.
+
+    Parameters
+    ----------
+    plan : RunPlan
+    devices : Devices
+    out : Path
+        Folder of all runs.
+    virtual : VirtualTribometer or None
+        Whose truth is kept too.
+
+    Returns
+    -------
+    RunAnswer
+
+    Raises
+    ------
+    InvalidInput
+        If the devices cannot do what the protocol says, nobody can answer its prompts, or another run is at work.
+    """
+    require_possible(plan.protocol, devices)
+    confirmed = plan.confirmed or devices.simulated
+    if not confirmed and _has_prompts(plan.protocol) and not is_terminal():
+        raise InvalidInput("the protocol asks an operator; run it on a terminal, or take its prompts as done by --yes")
+    recorder = new_run(
+        out,
+        title=plan.protocol.title,
+        protocol=protocol_text(plan.protocol),
+        files=_files(plan),
+        facts=_facts(plan, devices),
+    )
+    control = RunControl()
+    with progress("running") as advance:
+        result = run_protocol(
+            plan.protocol,
+            devices,
+            recorder,
+            operator=(lambda prompt: True) if confirmed else Operator(control),
+            control=control,
+            advance=advance,
+        )
+    if virtual is not None:
+        recorder.store_truth(virtual.truth())
+    return RunAnswer(result=result, run=read_run(recorder.folder), simulated=devices.simulated, rig_=plan.rig)
+
+
+@dataclass(frozen=True, slots=True)
+class Operator:
+    """Person at the terminal who confirms prompts; requests to end the run are heard meanwhile.
+
+    Parameters
+    ----------
+    control : RunControl
+    """
+
+    control: RunControl
+
+    def __call__(self, prompt: Prompt) -> bool:
+        """Show a prompt, and return whether it is confirmed by an empty line or by yes."""
+        sys.stderr.write(printable(f"\r\x1b[K{prompt.task}: {prompt.text}\n  done? [Y/n] "))
+        sys.stderr.flush()
+        while not self.control.stop_reason:
+            if select.select([sys.stdin], [], [], _POLL)[0]:
+                answer = sys.stdin.readline()
+                return bool(answer) and answer.strip().lower() in ("", "y", "yes")
+        return False
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunAnswer(Answer):
+    """How a run ended, and where its record is."""
+
+    result: RunResult
+    run: Run
+    simulated: bool
+    rig_: Rig | None
+
+    def lines(self) -> list[str]:
+        """Outcome, what was recorded, and the next command."""
+        summary = self.run.summary
+        outcome = summary.outcome + (f": {summary.reason}" if summary.reason else "")
+        rows = [
+            ("outcome", outcome),
+            ("motor and drive", "off" if self.result.state is State.SAFE else "NOT confirmed off: cut the power"),
+            ("recorded", f"{format_si(summary.duration, 's')}, {summary.samples} samples of each channel"),
+            ("channels", ", ".join(summary.channels)),
+            ("record", str(summary.folder)),
+        ]
+        names = [quote(str(path)) for path in self.run.recordings]
+        after = [f"  next: sonolube measure friction {' '.join(names)}"] if names else []
+        return [summary.title + (" (virtual)" if self.simulated else ""), *aligned(rows), *after]
+
+    def object(self) -> dict[str, Any]:
+        """Outcome, folder and recordings."""
+        summary = self.run.summary
+        return {
+            "title": summary.title,
+            "outcome": summary.outcome,
+            "reason": summary.reason,
+            "state": self.result.state.value,
+            "simulated": self.simulated,
+            "folder": str(summary.folder),
+            "recordings": [str(path) for path in self.run.recordings],
+            "samples": summary.samples,
+            **si({"duration": summary.duration}, unit="s"),
+        }
+
+    def caveats(self) -> Sequence[str]:
+        """What speaks against the record."""
+        told = ("friction is drawn from the prediction of the rig: no measurement",) if self.simulated else ()
+        return (*self.run.caveats, *told)
+
+    def assumptions(self) -> Mapping[str, str]:
+        """Assumptions of the rig file, where the friction is that of the rig."""
+        return {} if self.rig_ is None or not self.simulated else self.rig_.assumptions
+
+    @property
+    def exit_code(self) -> int:
+        """0 for a completed run, 1 for one that ended before."""
+        return 0 if self.run.summary.outcome == "completed" else 1
+
+
+def exit_as(answer: RunAnswer) -> None:
+    """End the program with 1 where a run ended before its protocol.
+
+    Raises
+    ------
+    typer.Exit
+    """
+    if answer.exit_code:
+        raise typer.Exit(answer.exit_code)
+
+
+def _has_prompts(protocol: Protocol) -> bool:
+    """Whether a protocol asks an operator."""
+    return any(point.kind == "prompt" for point in flattened(protocol))
+
+
+def _files(plan: RunPlan) -> dict[str, str]:
+    """Texts of the files that the run was given, by the name under which they are kept."""
+    given = {"rig.toml": plan.rig_file, "devices.toml": plan.device_file}
+    return {name: path.read_text(encoding="utf-8-sig") for name, path in given.items() if path is not None}
+
+
+def _facts(plan: RunPlan, devices: Devices) -> dict[str, str | float | int | bool]:
+    """What is known of the run, for its record and the catalogue."""
+    rig = plan.rig
+    facts: dict[str, str | float | int | bool] = {
+        "protocol": plan.name,
+        "simulated": devices.simulated,
+        **{f"device_{name.replace(' ', '_')}": text for name, text in devices.description.items()},
+    }
+    if plan.tags:
+        facts["tags"] = ", ".join(plan.tags)
+    if devices.simulated:
+        facts["seed"] = plan.seed
+    if rig is not None:
+        facts |= {"normal_load": rig.normal_load, "rig_title": rig.title}
+        facts |= {name: value for name in ("pin_material", "disc_material") if (value := getattr(rig, name))}
+        if not devices.simulated:
+            facts["rig"] = rig.title
+    return facts
