@@ -132,7 +132,7 @@ class DocumentLog:
         """Write the description of a part of the recording, and where its blocks are."""
         name = part_name(part)
         uid = str(uuid4())
-        keys = {
+        keys: dict[str, Any] = {
             channel.name: {
                 "dtype": "number",
                 "dtype_numpy": "<f8",
