@@ -43,6 +43,8 @@ ARGUMENTS = {  # of every command that writes: the least that it takes, in.dat b
     "measure groove": (INPUT,),
     "measure impedance": (INPUT,),
     "measure vibration": (INPUT, "--frequency", "22kHz"),
+    "lab show": (INPUT,),
+    "lab export": (INPUT,),
     "compare": (INPUT,),
     "fit": (INPUT,),
     "identify rig": (INPUT,),

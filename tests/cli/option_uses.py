@@ -7,6 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from sonolube.lab import Block, Channel
+from sonolube.lab.records import new_run
+
 ROOT = Path(__file__).parents[2]
 RIGS = ROOT / "examples" / "rigs"
 RIG = str(RIGS / "tribometer.toml")
@@ -495,6 +498,27 @@ MODES = {
         {"--model": "asperity-stick-slip", "--runs": OWN_RUNS, "--set": "sliding.sliding_speed=50mm/s"} | AMPLITUDE,
     ),
     "compare without a rig": Mode("compare", ("--model", "kinematic"), {"--set": "contact.normal_load=2N"} | AMPLITUDE),
+    "lab runs": Mode(
+        "lab runs",
+        ("FOLDER/runs",),
+        {
+            "--material": "m50",
+            "--load": "6N..",
+            "--speed": "1m/s",
+            "--since": "2100-01-01",
+            "--until": "2000-01-01",
+            "--tag": "map",
+            "--text": "first",
+            "--outcome": "stopped",
+            "--fact": "normal_load=3",
+        },
+    ),
+    "lab runs taken in": Mode(
+        "lab runs",
+        ("OUT/runs", "--add", "FOLDER/friction.csv"),
+        {"--add": "FOLDER/other.csv", "--fact": "normal_load=3"},
+    ),
+    "lab export": Mode("lab export", ("FOLDER/runs/first",), {"--format": "csv"}),
     "literature": Mode(
         "literature", (RIG,), {"--set": "contact.normal_load=2N", "--table": "FOLDER/studies.csv"} | AMPLITUDE
     ),
@@ -532,6 +556,12 @@ def write_inputs(place: Path) -> None:
             f'[axis]\ncolumn = "time (s)"\nunit = "s"\ngain = 2.0\n{more}[channels.{quantity}]\n'
             f'column = "{column.get(name, "left (um)")}"\nunit = "{unit}"\ngain = {gain}\n'
         )
+    for name, outcome in (("first", "completed"), ("second", "stopped")):
+        facts = {"pin_material": "brass", "normal_load": 5.0, "sliding_speed": 0.02, "tags": name}
+        recorder = new_run(place / "runs", title=name, protocol="", facts=facts)
+        recorder.begin([Channel(name="friction_force", quantity="friction_force")], sample_rate=100.0)
+        recorder.append(Block(first_sample=0, sample_rate=100.0, values=force[:, np.newaxis]))
+        recorder.finish(outcome).folder.rename(place / "runs" / name)
     (place / "points.csv").write_text("0,0,0\n5,1,0\n")
     (place / "shapes.csv").write_text("1,0\n0.5,1\n")
     (place / "sheet.toml").write_bytes((ROOT / "examples" / "test-sheet.toml").read_bytes())

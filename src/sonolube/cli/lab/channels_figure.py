@@ -42,4 +42,5 @@ def channels_figure(recording: "xr.Dataset") -> "Figure":
         symbol = name.replace("_", " ") if known is None else known.meaning.split(",")[0]
         axes.set_ylabel(f"{symbol}\n[{recording[name].attrs.get('units', '1')}]")
     grid[-1, 0].set_xlabel("time [s]")
+    figure.align_ylabels()
     return figure

@@ -108,10 +108,13 @@ class DocumentLog:
     def note(self, kind: str, *, time: float, sample: int | None, facts: Mapping[str, Any]) -> None:
         """Write what happened as an event."""
         if not self._has_notes:
-            text: dict[str, Any] = {"dtype": "string", "shape": [], "source": "sonolube"}
-            texts: dict[str, Any] = {"kind": text, "facts": text}
-            keys = texts | {"sample": {"dtype": "integer", "shape": [], "source": "sonolube"}}
-            self._describe(_NOTES, self._notes, time, keys)
+            types = {"kind": "string", "sample": "integer", "facts": "string"}
+            self._describe(
+                _NOTES,
+                self._notes,
+                time,
+                {name: {"dtype": kind, "shape": [], "source": "sonolube"} for name, kind in types.items()},
+            )
             self._has_notes = True
         number = self._counts.get(_NOTES, 0) + 1
         data = {"kind": kind, "sample": sample, "facts": json.dumps(facts, default=_plain)}
@@ -132,7 +135,7 @@ class DocumentLog:
         """Write the description of a part of the recording, and where its blocks are."""
         name = part_name(part)
         uid = str(uuid4())
-        keys: dict[str, Any] = {
+        keys: dict[str, dict[str, Any]] = {
             channel.name: {
                 "dtype": "number",
                 "dtype_numpy": "<f8",
@@ -144,42 +147,23 @@ class DocumentLog:
             for channel in channels
         }
         self._describe(name, uid, time, keys)
-        path = raw_path(self._folder, part)
         for column, channel in enumerate(channels):
-            self._write(
-                "stream_resource",
-                {
-                    "uid": f"{uid}-{column}",
-                    "run_start": self._run,
-                    "data_key": channel.name,
-                    "mimetype": _MIME,
-                    "uri": f"file://localhost{path.resolve().as_posix()}",
-                    "parameters": {
-                        "file": path.relative_to(self._folder).as_posix(),
-                        "column": column,
-                        "sample_rate": sample_rate,
-                    },
-                },
-            )
+            self._locate(part, f"{uid}-{column}", column, channel.name, sample_rate)
 
-    def end_part(self, earlier: ReadDocuments, part: int, *, samples: int) -> None:
-        """Write how many samples of a part there are, unless `earlier` tells it already."""
+    def end_part(self, earlier: ReadDocuments, part: int, *, samples: int, sample_rate: float) -> None:
+        """Write how many samples of a part there are, and where, unless `earlier` tells it already."""
         name = part_name(part)
         described = [each for each in earlier.of("descriptor") if each.get("name") == name]
-        if not described or not samples or stream_counts(earlier).get(name):
+        if not described or not samples:
             return
         uid = str(described[0]["uid"])
-        for column in range(len(described[0]["data_keys"])):
-            self._write(
-                "stream_datum",
-                {
-                    "uid": f"{uid}-{column}/0",
-                    "stream_resource": f"{uid}-{column}",
-                    "descriptor": uid,
-                    "indices": {"start": 0, "stop": samples},
-                    "seq_nums": {"start": 1, "stop": samples + 1},
-                },
-            )
+        known = {each["uid"] for kind in ("stream_resource", "stream_datum") for each in earlier.of(kind)}
+        for column, channel in enumerate(described[0]["data_keys"]):
+            resource = f"{uid}-{column}"
+            if resource not in known:
+                self._locate(part, resource, column, channel, sample_rate)
+            if f"{resource}/0" not in known:
+                self._count(uid, resource, samples)
         self._counts[name] = samples
 
     def stop(self, outcome: str, *, reason: str, time: float) -> None:
@@ -200,6 +184,35 @@ class DocumentLog:
     def close(self) -> None:
         """Close the file."""
         self._file.close()
+
+    def _locate(self, part: int, uid: str, column: int, channel: str, sample_rate: float) -> None:
+        """Write where the samples of a channel are."""
+        path = raw_path(self._folder, part)
+        place = {"file": path.relative_to(self._folder).as_posix(), "column": column, "sample_rate": sample_rate}
+        self._write(
+            "stream_resource",
+            {
+                "uid": uid,
+                "run_start": self._run,
+                "data_key": channel,
+                "mimetype": _MIME,
+                "uri": f"file://localhost{path.resolve().as_posix()}",
+                "parameters": place,
+            },
+        )
+
+    def _count(self, descriptor: str, resource: str, samples: int) -> None:
+        """Write how many samples of a channel there are."""
+        self._write(
+            "stream_datum",
+            {
+                "uid": f"{resource}/0",
+                "stream_resource": resource,
+                "descriptor": descriptor,
+                "indices": {"start": 0, "stop": samples},
+                "seq_nums": {"start": 1, "stop": samples + 1},
+            },
+        )
 
     def _describe(self, name: str, uid: str, time: float, keys: Mapping[str, Mapping[str, Any]]) -> None:
         """Write the description of a stream."""

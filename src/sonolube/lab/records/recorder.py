@@ -179,7 +179,7 @@ class RunRecorder:
         file, self._file = self._file, None
         try:
             file.close()
-            self._log.end_part(read_documents(self.folder), self._part, samples=self._samples)
+            self._describe_part()
         except InvalidInput as failure:
             self._fail(failure)
             raise
@@ -254,11 +254,16 @@ class RunRecorder:
             ended = "failed" if self._failure else outcome
             why = "; ".join(dict.fromkeys(filter(None, (reason, self._failure))))
             with suppress(InvalidInput):  # without a last document, a run counts as unfinished and can be recovered
-                self._log.end_part(read_documents(self.folder), self._part, samples=self._samples)
+                self._describe_part()
                 self._log.stop(ended, reason=why, time=self._clock.now())
                 self._log.close()
         self._summary = run_summary(self.folder)
         return self._summary
+
+    def _describe_part(self) -> None:
+        """Write how many samples the latest part has, unless that is written."""
+        earlier = read_documents(self.folder)
+        self._log.end_part(earlier, self._part, samples=self._samples, sample_rate=self._rate)
 
     def _write_recordings(self) -> None:
         """Write all parts as netCDF."""

@@ -1,5 +1,6 @@
 """Parts of a recording as files, streamed: netCDF as `sonolube measure` reads it, LabVIEW's TDMS, and CSV."""
 
+import io
 import json
 from collections.abc import Mapping
 from contextlib import ExitStack
@@ -69,7 +70,8 @@ def write_csv_recording(part: RecordedPart, known: RunFacts, path: Path) -> Path
     with unfinished_file(path) as file:
         file.write((",".join(heads) + "\n").encode())
         for time, columns in part.pieces():
-            np.savetxt(file, np.stack([time, *columns], 1), fmt=_CSV_DIGITS, delimiter=",")
+            np.savetxt(text := io.BytesIO(), np.stack([time, *columns], 1), fmt=_CSV_DIGITS, delimiter=",")
+            file.write(text.getvalue())
             file.check()
         file.complete()
     return path

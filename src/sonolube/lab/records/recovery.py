@@ -107,7 +107,7 @@ def _close_documents(folder: Path, known: RunFacts, parts: dict[int, RawPart]) -
         for number, part in parts.items():
             if f"recording-{number}" not in described:
                 log.part(number, part.channels, sample_rate=part.sample_rate, time=part.begun)
-            log.end_part(read_documents(folder), number, samples=part.samples)
+            log.end_part(read_documents(folder), number, samples=part.samples, sample_rate=part.sample_rate)
         last = max((part.begun + part.duration for part in parts.values()), default=known.begun)
         log.stop("interrupted", reason="the program ended before the run", time=last)
     finally:
