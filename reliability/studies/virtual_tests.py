@@ -1,7 +1,6 @@
 """Virtual map tests through the analysis of friction at voltage steps: is what is returned what was recorded?"""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
