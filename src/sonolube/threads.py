@@ -6,6 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from typing import TypeVar
 
+from sonolube.compilation import thread_initializer
 from sonolube.errors import InvalidInput
 
 Result = TypeVar("Result")
@@ -27,7 +28,7 @@ def thread_pool(workers: int) -> Iterator[ThreadPoolExecutor]:
     ------
     concurrent.futures.ThreadPoolExecutor
     """
-    pool, interrupted = ThreadPoolExecutor(workers, _NAME), False
+    pool, interrupted = ThreadPoolExecutor(workers, _NAME, thread_initializer()), False
     try:
         yield pool
     except KeyboardInterrupt:

@@ -1,5 +1,6 @@
 """The command `sonolube`: its entry, which imports nothing heavy before it can be interrupted."""
 
+import gc
 import sys
 
 try:
@@ -11,6 +12,12 @@ except KeyboardInterrupt:  # the handler of signals is not yet in place
     raise SystemExit(130) from None
 
 __all__ = ["main"]
+
+_COLLECTIONS = (
+    100_000,
+    50,
+    100,
+)  # objects and rounds between collections of garbage, of which imports and numba make little
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -30,6 +37,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """
     if arguments is None:
         end_program_at_signals()
+        gc.set_threshold(*_COLLECTIONS)
     from sonolube.cli.app import run
 
     run(arguments)

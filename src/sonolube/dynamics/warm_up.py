@@ -63,7 +63,7 @@ class CompileProcess:
 
     def __init__(self, variant: KernelVariant, stability: bool, tolerance: float) -> None:
         arguments = len(variant.kind), len(variant.damped), stability, tolerance
-        self._code = f"from {__name__} import compile_remaining_kernels; compile_remaining_kernels{arguments}"
+        self._code = f"import gc; gc.disable(); from {__name__} import compile_remaining_kernels; compile_remaining_kernels{arguments}"
         self._process: subprocess.Popen[bytes] | None = None
 
     def on_start(self, event: "Event") -> None:

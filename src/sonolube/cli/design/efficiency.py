@@ -11,6 +11,7 @@ from sonolube.cli.console.answer import Answer, aligned, deliver, si
 from sonolube.cli.console.options import OUT, Changes, Json, Out, friction_force, refuse_unused, si_option
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.rig_text import rig_settings
+from sonolube.compilation import few_points
 from sonolube.design.efficiency import EfficiencyCalibration, calibrate_efficiency, efficiency_dataset
 from sonolube.design.efficiency_figures import efficiency_figure
 from sonolube.measurement.measured_runs import read_runs
@@ -31,6 +32,7 @@ _CAPTION = (
 )
 
 
+@few_points()
 def efficiency(
     context: typer.Context,
     runs: Annotated[Path, typer.Argument(metavar="RUNS.csv", help="Measured runs, a row each.")],
