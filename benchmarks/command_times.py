@@ -44,7 +44,17 @@ COMMANDS = (
     ("literature", RIG),
     ("identify", "rig", RIG, "--facts", str(EXAMPLES / "facts" / "tribometer.toml"), "--out", "my.toml"),
     ("modes", "block", "--set", "length=127mm", "--set", "width=60.96mm", "--set", "thickness=25.4mm"),
-    ("horn", "design", "--frequency", "20kHz", "--material", "titanium_6al4v", "--set", "end_radius=10mm"),
+    (
+        "horn",
+        "design",
+        "stepped_horn",
+        "--frequency",
+        "20kHz",
+        "--material",
+        "titanium_6al4v",
+        "--set",
+        "end_radius=10mm",
+    ),
     ("impedance", "compute", "tribometer_actuator", "--clamp", "back.-z", "--to", "40kHz"),
 )
 

@@ -89,8 +89,8 @@ class Kernel(Generic[P, R]):
         most : int
             Largest number for which, inside `few_points`, plain Python takes less than loading the compiled kernel.
         at_first : int
-            Largest number, of all calls inside `few_points`, for which plain Python takes less than compiling the kernel,
-            which is not there yet.
+            Largest number, of all calls inside `few_points`, for which plain Python takes less than compiling the
+            kernel, which is not there yet.
         """
         if not self._runs_plain(count, most, at_first):
             return self.compiled
