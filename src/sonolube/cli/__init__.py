@@ -1,6 +1,7 @@
 """The command `sonolube`: its entry, which imports nothing heavy before it can be interrupted."""
 
 import gc
+import os
 import sys
 
 try:
@@ -13,11 +14,9 @@ except KeyboardInterrupt:  # the handler of signals is not yet in place
 
 __all__ = ["main"]
 
-_COLLECTIONS = (
-    100_000,
-    50,
-    100,
-)  # objects and rounds between collections of garbage, of which imports and numba make little
+_COLLECTIONS = 100_000, 50, 100  # between collections of garbage, of which imports and compilation make little
+_THREADS = {"OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"}
+# by which a user chooses threads of linear algebra: on the small blocks here they cost several times what they save
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -38,6 +37,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     if arguments is None:
         end_program_at_signals()
         gc.set_threshold(*_COLLECTIONS)
+        if not _THREADS & os.environ.keys():
+            os.environ["OPENBLAS_NUM_THREADS"] = "1"  # read when numpy is imported
     from sonolube.cli.app import run
 
     run(arguments)
