@@ -77,7 +77,8 @@ class Kernel(Generic[P, R]):
         """Whether numba has compiled the kernel in this process, or kept it on disk, for any set of types."""
         dispatcher: Any = self.compiled
         name = f"*.{self.py_func.__name__}-*.nbi"
-        return bool(dispatcher.signatures) or any(self.cache_folder.glob(name))
+        folder = dispatcher.stats.cache_path  # none where the kernel is not kept
+        return bool(dispatcher.signatures) or (folder is not None and any(Path(folder).glob(name)))
 
     def for_points(self, count: int, *, most: int = 4, at_first: int = 0) -> Callable[P, R]:
         """Return the way to run that suits a number of points, and count them.
