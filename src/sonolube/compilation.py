@@ -72,14 +72,6 @@ class Kernel(Generic[P, R]):
         inner: dict[str, Any] = {name: each.interpreted for name, each in self._kernels().items()}
         return cast("Callable[P, R]", self._with_globals(inner | self._plain))
 
-    @property
-    def is_compiled(self) -> bool:
-        """Whether numba has compiled the kernel in this process, or kept it on disk, for any set of types."""
-        dispatcher: Any = self.compiled
-        name = f"*.{self.py_func.__name__}-*.nbi"
-        folder = dispatcher.stats.cache_path  # none where the kernel is not kept
-        return bool(dispatcher.signatures) or (folder is not None and any(Path(folder).glob(name)))
-
     def for_points(self, count: int, *, most: int = 4, at_first: int = 0) -> Callable[P, R]:
         """Return the way to run that suits a number of points, and count them.
 
@@ -91,7 +83,7 @@ class Kernel(Generic[P, R]):
             Largest number for which, inside `few_points`, plain Python takes less than loading the compiled kernel.
         at_first : int
             Largest number, of all calls inside `few_points`, for which plain Python takes less than compiling the
-            kernel, which is not there yet.
+            kernel. It runs so where the compiled kernel is there too, lest the last digits depend on that.
         """
         if not self._runs_plain(count, most, at_first):
             return self.compiled
@@ -110,9 +102,7 @@ class Kernel(Generic[P, R]):
         if run is None:
             return False
         total = run.get(id(self), 0) + count
-        if count <= most and total <= _PLAIN_CALLS * most:
-            return True
-        return total <= at_first and not self.is_compiled
+        return total <= at_first or (count <= most and total <= _PLAIN_CALLS * most)
 
     def _guarded(self, *arguments: P.args, **named: P.kwargs) -> R:
         """Run as plain Python; compiled where a number leaves the range, which Python refuses and numba does not."""
@@ -176,8 +166,8 @@ def kernel(*, plain: dict[str, Any] | None = None, **options: Any) -> Callable[[
 def few_points() -> Iterator[None]:
     """Run kernels as plain Python inside a `with` block where that takes less than loading or compiling them.
 
-    For commands, of which most compute few points: `Kernel.for_points` decides by the numbers of points alone, and by
-    whether the compiled kernel is there.
+    For commands, of which most compute few points. `Kernel.for_points` decides by the numbers of points alone; threads
+    run compiled kernels unless they are given `thread_initializer`, lest their order decide.
     """
     before = _POINTS_RUN.set({})
     try:

@@ -16,19 +16,22 @@ _LARGEST_CHUNK = 16384  # points that a thread treats together at most, to bound
 
 
 @contextmanager
-def thread_pool(workers: int) -> Iterator[ThreadPoolExecutor]:
+def thread_pool(workers: int, *, single_task: bool = False) -> Iterator[ThreadPoolExecutor]:
     """Provide a thread pool whose exit waits for submitted work, except after a keyboard interrupt.
 
     Parameters
     ----------
     workers : int
         Number of threads, at least 1.
+    single_task : bool
+        Whether the pool gets one task alone, which then shares the `few_points` of the caller.
 
     Yields
     ------
     concurrent.futures.ThreadPoolExecutor
     """
-    pool, interrupted = ThreadPoolExecutor(workers, _NAME, thread_initializer()), False
+    initializer = thread_initializer() if single_task else None
+    pool, interrupted = ThreadPoolExecutor(workers, _NAME, initializer), False
     try:
         yield pool
     except KeyboardInterrupt:
@@ -69,7 +72,7 @@ def map_chunks(function: Callable[[slice], Result], points: int, workers: int) -
         raise InvalidInput(f"workers must be at least 1, got {workers!r}")
     size = min(_LARGEST_CHUNK, max(-(-points // workers), 1))
     chunks = [slice(start, start + size) for start in range(0, max(points, 1), size)]
-    if workers == 1:
+    if workers == 1 or len(chunks) == 1:
         return [function(chunk) for chunk in chunks]
     with thread_pool(workers) as pool:
         return list(pool.map(function, chunks))

@@ -116,7 +116,7 @@ def sweep(
                 done += stored.status.size
         if advance is not None and done:
             advance(done, plan.points)
-        with _executor(workers, scheduler) as pool:
+        with _executor(workers, scheduler, single_task=plan.points <= chunk_points) as pool:
             for chunk, batch in _computed_chunks(
                 pool, partial(compute_points, plan, backend=backend), plan.points, missing, chunk_points, 2 * workers
             ):
@@ -228,10 +228,10 @@ def _computed_chunks(
 
 
 @contextmanager
-def _executor(workers: int, scheduler: str | None) -> Iterator[Executor]:
+def _executor(workers: int, scheduler: str | None, *, single_task: bool) -> Iterator[Executor]:
     """Yield a thread pool, or an executor of a Dask cluster."""
     if scheduler is None:
-        with thread_pool(workers) as pool:
+        with thread_pool(workers, single_task=single_task) as pool:
             yield pool
         return
     import distributed

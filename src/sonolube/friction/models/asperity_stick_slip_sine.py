@@ -20,7 +20,7 @@ Five of the tests have a printed roughness, that of the others is by comparison 
 the length is 1.35 um, 0.97 to 1.99 um."""
 
 _PHASES = np.polynomial.legendre.leggauss(32)
-_FEW = 4000  # points for which plain Python takes less than compiling
+_FEW = 1000  # points for which plain Python takes less than compiling
 _NEGLIGIBLE = 40.0  # exponent beyond which the load of elements is negligible
 
 
