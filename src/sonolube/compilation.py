@@ -176,9 +176,11 @@ def few_points() -> Iterator[None]:
         _POINTS_RUN.reset(before)
 
 
-def thread_initializer() -> Callable[[], None]:
-    """Return a function that a thread calls first, so that it shares the `few_points` of its creator."""
+def thread_initializer() -> Callable[[], None] | None:
+    """Return a function that a thread calls first, so that it shares the `few_points` of its creator; None outside."""
     run = _POINTS_RUN.get()
+    if run is None:
+        return None
 
     def share() -> None:
         _POINTS_RUN.set(run)

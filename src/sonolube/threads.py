@@ -16,22 +16,23 @@ _LARGEST_CHUNK = 16384  # points that a thread treats together at most, to bound
 
 
 @contextmanager
-def thread_pool(workers: int, *, single_task: bool = False) -> Iterator[ThreadPoolExecutor]:
+def thread_pool(workers: int, *, few_points: bool = False) -> Iterator[ThreadPoolExecutor]:
     """Provide a thread pool whose exit waits for submitted work, except after a keyboard interrupt.
 
     Parameters
     ----------
     workers : int
         Number of threads, at least 1.
-    single_task : bool
-        Whether the pool gets one task alone, which then shares the `few_points` of the caller.
+    few_points : bool
+        Whether all tasks together are of few points. Inside `sonolube.compilation.few_points` one thread then does them
+        in their order, and shares it.
 
     Yields
     ------
     concurrent.futures.ThreadPoolExecutor
     """
-    initializer = thread_initializer() if single_task else None
-    pool, interrupted = ThreadPoolExecutor(workers, _NAME, initializer), False
+    initializer = thread_initializer() if few_points else None
+    pool, interrupted = ThreadPoolExecutor(1 if initializer else workers, _NAME, initializer), False
     try:
         yield pool
     except KeyboardInterrupt:
