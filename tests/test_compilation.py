@@ -1,6 +1,7 @@
 """Kernels give the same numbers compiled and as plain Python, and commands of one point load no compiler."""
 
 import math
+import os
 import subprocess
 import sys
 import tempfile
@@ -17,11 +18,13 @@ from scipy.special import i0e, wrightomega
 from sonolube.compilation import few_points, kernel
 from sonolube.contact import GaussianHeights, normal_force
 from sonolube.contact.greenwood_williamson import log_normal_force
+from sonolube.design import grid_plan, sweep
 from sonolube.dynamics.harmonic_balance.bessel import wright_omega
 from sonolube.friction import sine_stick_slip_ratio
 from sonolube.friction.scaled_bessel import scaled_bessel_i0
 from sonolube.rig import read_rig, simulate
 from sonolube.rig.result_quantities import result_quantities
+from sonolube.threads import map_chunks
 
 RIGS = Path(__file__).parents[1] / "examples" / "rigs"
 
@@ -53,6 +56,51 @@ def test_a_division_by_zero_is_left_to_the_compiled_kernel() -> None:
 
     with few_points():
         assert inverse.for_points(1)(0.0) == math.inf
+
+
+def test_a_kernel_runs_as_plain_python_until_that_took_as_much_work_as_compiling_it() -> None:
+    @kernel()
+    def tripled(value: float) -> float:
+        return 3 * value
+
+    def is_plain(count: int) -> bool:
+        return tripled.for_points(count, most=1, at_first=100) != tripled.compiled
+
+    assert not is_plain(1)  # outside a command
+    with few_points():
+        assert [is_plain(count) for count in (60, 30, 30, 10)] == [True, True, False, True]
+        tripled(1.0)  # that it is compiled changes nothing, lest the last digits depend on it
+        assert [is_plain(count) for count in (2, 1)] == [False, False]
+
+
+@pytest.mark.parametrize(("points", "plain"), [(1, [True]), (4, [False] * 4)])
+def test_threads_that_share_work_run_compiled_kernels_lest_their_order_decide(points: int, plain: list[bool]) -> None:
+    @kernel()
+    def quartered(value: float) -> float:
+        return value / 4
+
+    with few_points():
+        assert map_chunks(lambda chunk: quartered.for_points(1) != quartered.compiled, points, workers=4) == plain
+
+
+def test_a_sweep_is_the_same_compiled_and_as_plain_python_and_compiles_nothing_at_first(tmp_path: Path) -> None:
+    rig = read_rig(RIGS / "tribometer.toml")
+    volts = np.linspace(2.0, 28.0, 5)
+
+    def numbers() -> list[np.ndarray]:
+        swept = sweep(grid_plan(rig, over={"drive.voltage_peak_to_peak": volts}))
+        return [each.to_numpy() for each in swept.data_vars.values() if each.dtype.kind == "f"]
+
+    compiled = numbers()
+    with few_points():
+        plain = numbers()
+    for each, other in zip(compiled, plain, strict=True):
+        np.testing.assert_allclose(each, other, rtol=1e-9)
+    program = Path(sys.executable).with_name("sonolube")
+    over = ("--over", "drive.voltage_peak_to_peak=2V:28V:27")
+    cache = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "cache")}
+    subprocess.run([program, "sweep", RIGS / "tribometer.toml", *over], cwd=tmp_path, env=cache, check=True)
+    assert not list((tmp_path / "cache").rglob("*.nbi"))
 
 
 def test_kernels_are_kept_among_temporary_files_where_no_other_folder_can_be_written(

@@ -28,7 +28,7 @@ _USES: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
     (("modes",), ("", "--set", "--material")),
     (("modes", "block"), ("--set", "length=", "--clamp", "--axis", "--points")),
     (("impedance", "compute", "block"), ("--set", "--from", "--to", "--points", "--ceramic", "--poled")),
-    (("horn", "design", "--frequency", "20kHz"), ("--material", "--shape")),
+    (("horn", "design", "--frequency", "20kHz"), ("", "--material", "--gain", "--amplitude")),
     (("measure", "friction"), ("", "--mapping", "--window", "--sliding-speed", "--torque-constant")),
     (("measure", "surface"), ("", "--spacing", "--length-unit", "--form", "--long-cutoff")),
     (("measure", "impedance"), ("", "--branches", "--sweep", "--stack-of")),

@@ -34,7 +34,7 @@ ARGUMENTS = {  # of every command that writes: the least that it takes, in.dat b
     "optimise": (INPUT, "--target-friction", "0.15"),
     "control": (INPUT,),
     "efficiency": (INPUT, "--rig", "rig.toml"),
-    "horn design": ("--frequency", "20kHz", "--material", "titanium_6al4v", "--shape", INPUT),
+    "horn design": (INPUT, "--frequency", "20kHz", "--material", "titanium_6al4v"),
     "horn face": ("steel",),
     "measure friction": (INPUT,),
     "measure rotation": (INPUT, "--groove-diameter", "50mm"),

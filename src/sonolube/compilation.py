@@ -17,7 +17,8 @@ from typing import Any, Generic, ParamSpec, TypeVar, cast
 P = ParamSpec("P")
 R = TypeVar("R", covariant=True)
 
-_FEW_POINTS: ContextVar[bool] = ContextVar("few_points", default=False)
+_PLAIN_CALLS = 8  # calls of the largest size that run as plain Python though a compiled kernel may be there
+_POINTS_RUN: ContextVar[dict[int, int] | None] = ContextVar("points_run", default=None)
 _BUILDING = RLock()
 
 
@@ -71,13 +72,37 @@ class Kernel(Generic[P, R]):
         inner: dict[str, Any] = {name: each.interpreted for name, each in self._kernels().items()}
         return cast("Callable[P, R]", self._with_globals(inner | self._plain))
 
-    def for_points(self, count: int, *, most: int = 4) -> Callable[P, R]:
-        """Return the way to run that suits a number of points: plain Python for at most so many in `few_points`."""
-        return self._guarded if runs_plain(count, most=most) else self.compiled
+    def for_points(self, count: int, *, most: int = 4, at_first: int = 0) -> Callable[P, R]:
+        """Return the way to run that suits a number of points, and count them.
 
-    def lanes(self, count: int, compiled: int, *, most: int = 4) -> int:
+        Parameters
+        ----------
+        count : int
+            Number of points, or of any unit of work.
+        most : int
+            Largest number for which, inside `few_points`, plain Python takes less than loading the compiled kernel.
+        at_first : int
+            Largest number, of all calls inside `few_points`, for which plain Python takes less than compiling the
+            kernel. It runs so where the compiled kernel is there too, lest the last digits depend on that.
+        """
+        if not self._runs_plain(count, most, at_first):
+            return self.compiled
+        run = _POINTS_RUN.get()
+        if run is not None:
+            run[id(self)] = run.get(id(self), 0) + count
+        return self._guarded
+
+    def lanes(self, count: int, compiled: int, *, most: int = 4, at_first: int = 0) -> int:
         """Return the points of a block of SIMD lanes: one where `for_points` runs as plain Python."""
-        return 1 if runs_plain(count, most=most) else compiled
+        return 1 if self._runs_plain(count, most, at_first) else compiled
+
+    def _runs_plain(self, count: int, most: int, at_first: int) -> bool:
+        """Return whether this many further points run as plain Python."""
+        run = _POINTS_RUN.get()
+        if run is None:
+            return False
+        total = run.get(id(self), 0) + count
+        return total <= at_first or (count <= most and total <= _PLAIN_CALLS * most)
 
     def _guarded(self, *arguments: P.args, **named: P.kwargs) -> R:
         """Run as plain Python; compiled where a number leaves the range, which Python refuses and numba does not."""
@@ -139,14 +164,30 @@ def kernel(*, plain: dict[str, Any] | None = None, **options: Any) -> Callable[[
 
 @contextmanager
 def few_points() -> Iterator[None]:
-    """Run kernels of a few points as plain Python inside a `with` block: for commands of one operating point."""
-    before = _FEW_POINTS.set(True)
+    """Run kernels as plain Python inside a `with` block where that takes less than loading or compiling them.
+
+    For commands, of which most compute few points. `Kernel.for_points` decides by the numbers of points alone; threads
+    run compiled kernels unless they are given `thread_initializer`, lest their order decide.
+    """
+    before = _POINTS_RUN.set({})
     try:
         yield
     finally:
-        _FEW_POINTS.reset(before)
+        _POINTS_RUN.reset(before)
+
+
+def thread_initializer() -> Callable[[], None] | None:
+    """Return a function that a thread calls first, so that it shares the `few_points` of its creator; None outside."""
+    run = _POINTS_RUN.get()
+    if run is None:
+        return None
+
+    def share() -> None:
+        _POINTS_RUN.set(run)
+
+    return share
 
 
 def runs_plain(count: int, *, most: int = 4) -> bool:
-    """Return whether kernels of this many points run as plain Python."""
-    return _FEW_POINTS.get() and count <= most
+    """Return whether so few points run without compiled code or special functions, which would have to be loaded."""
+    return _POINTS_RUN.get() is not None and count <= most

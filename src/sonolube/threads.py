@@ -6,6 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from typing import TypeVar
 
+from sonolube.compilation import thread_initializer
 from sonolube.errors import InvalidInput
 
 Result = TypeVar("Result")
@@ -15,19 +16,23 @@ _LARGEST_CHUNK = 16384  # points that a thread treats together at most, to bound
 
 
 @contextmanager
-def thread_pool(workers: int) -> Iterator[ThreadPoolExecutor]:
+def thread_pool(workers: int, *, few_points: bool = False) -> Iterator[ThreadPoolExecutor]:
     """Provide a thread pool whose exit waits for submitted work, except after a keyboard interrupt.
 
     Parameters
     ----------
     workers : int
         Number of threads, at least 1.
+    few_points : bool
+        Whether all tasks together are of few points. Inside `sonolube.compilation.few_points` one thread then does them
+        in their order, and shares it.
 
     Yields
     ------
     concurrent.futures.ThreadPoolExecutor
     """
-    pool, interrupted = ThreadPoolExecutor(workers, _NAME), False
+    initializer = thread_initializer() if few_points else None
+    pool, interrupted = ThreadPoolExecutor(1 if initializer else workers, _NAME, initializer), False
     try:
         yield pool
     except KeyboardInterrupt:
@@ -68,7 +73,7 @@ def map_chunks(function: Callable[[slice], Result], points: int, workers: int) -
         raise InvalidInput(f"workers must be at least 1, got {workers!r}")
     size = min(_LARGEST_CHUNK, max(-(-points // workers), 1))
     chunks = [slice(start, start + size) for start in range(0, max(points, 1), size)]
-    if workers == 1:
+    if workers == 1 or len(chunks) == 1:
         return [function(chunk) for chunk in chunks]
     with thread_pool(workers) as pool:
         return list(pool.map(function, chunks))

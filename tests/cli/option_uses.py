@@ -386,11 +386,12 @@ MODES = {
     ),
     "horn": Mode(
         "horn design",
-        ("--frequency", "20kHz", "--material", "titanium_6al4v", "--shape", "cylinder", "--tolerance", "0.3"),
+        ("stepped_horn", "--frequency", "20kHz", "--material", "titanium_6al4v", "--tolerance", "0.3"),
         {
             "--frequency": "30kHz",
             "--material": "aluminium_2024",
-            "--shape": "conical",
+            "--gain": "2",
+            "--amplitude": "20um",
             "--set": "radius=10mm",
             "--tune": "radius",
             "--mode": "axial 2",

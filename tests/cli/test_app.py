@@ -110,6 +110,17 @@ def test_commands_that_are_not_called_are_not_imported(arguments: list[str]) -> 
     assert run.stderr.splitlines()[-1] == "[]"
 
 
+@pytest.mark.parametrize(("chosen", "threads"), [({}, "1"), ({"OPENBLAS_NUM_THREADS": "3"}, "3")])
+def test_linear_algebra_has_one_thread_unless_the_user_chooses(chosen: dict[str, str], threads: str) -> None:
+    code = (
+        "import os, sys\nsys.argv = ['sonolube', '--version']\nfrom sonolube.cli import main\n"
+        "try: main()\nexcept SystemExit: print(os.environ['OPENBLAS_NUM_THREADS'])"
+    )
+    kept = {name: value for name, value in os.environ.items() if "NUM_THREADS" not in name}
+    run = subprocess.run([sys.executable, "-c", code], env=kept | chosen, capture_output=True, text=True, check=True)
+    assert run.stdout.split()[-1] == threads
+
+
 def test_options_of_a_command_are_completed() -> None:
     words = {"COMP_WORDS": "sonolube friction --mo", "COMP_CWORD": "2", "_SONOLUBE_COMPLETE": "complete_bash"}
     assert installed(**words).stdout.split() == ["--model"]

@@ -1,5 +1,7 @@
 """The command `sonolube`: its entry, which imports nothing heavy before it can be interrupted."""
 
+import gc
+import os
 import sys
 
 try:
@@ -11,6 +13,10 @@ except KeyboardInterrupt:  # the handler of signals is not yet in place
     raise SystemExit(130) from None
 
 __all__ = ["main"]
+
+_COLLECTIONS = 100_000, 50, 100  # between collections of garbage, of which imports and compilation make little
+_THREADS = {"OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"}
+# by which a user chooses threads of linear algebra: on the small blocks here they cost several times what they save
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -30,6 +36,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """
     if arguments is None:
         end_program_at_signals()
+        gc.set_threshold(*_COLLECTIONS)
+        if not _THREADS & os.environ.keys():
+            os.environ["OPENBLAS_NUM_THREADS"] = "1"  # read when numpy is imported
     from sonolube.cli.app import run
 
     run(arguments)

@@ -38,6 +38,7 @@ def program(arguments: Sequence[str]) -> typer.Typer:
     typer.Typer
     """
     words = [*arguments, *_words_to_complete()]
+    called = [command for command in COMMANDS if _is_called(command, words)] or COMMANDS
     app = typer.Typer(
         name="sonolube",
         no_args_is_help=True,
@@ -47,7 +48,7 @@ def program(arguments: Sequence[str]) -> typer.Typer:
     )
     app.callback(invoke_without_command=True)(_version)
     groups: dict[str, typer.Typer] = {}
-    for command in COMMANDS:
+    for command in called:
         *group, name = command.name.split()
         if not group:
             app.command(name, rich_help_panel=command.panel)(_function(command, words))
@@ -104,8 +105,7 @@ def _print_everything() -> None:
 
 def _function(command: Command, words: Sequence[str]) -> Callable[..., None]:
     """Function of a command that is called; for others one with the same help, whose module is not imported."""
-    name = command.name.split()
-    if list(words[: len(name)]) == name:
+    if _is_called(command, words):
         return with_figure_style(with_checked_files(command.function))
 
     def not_called() -> None:
@@ -113,6 +113,12 @@ def _function(command: Command, words: Sequence[str]) -> Callable[..., None]:
 
     not_called.__doc__ = command.help
     return not_called
+
+
+def _is_called(command: Command, words: Sequence[str]) -> bool:
+    """Whether the words begin with the name of a command."""
+    name = command.name.split()
+    return list(words[: len(name)]) == name
 
 
 def _words_to_complete() -> list[str]:

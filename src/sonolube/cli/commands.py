@@ -110,5 +110,8 @@ MOVED_COMMANDS = {
 }
 """Commands of earlier versions, each with its replacement."""
 
-RENAMED_OPTIONS = {("friction", "--closure"): "--model"}
-"""Options of earlier versions by command, each with its new name."""
+RENAMED_OPTIONS = {
+    ("friction", "--closure"): "--model",
+    ("horn", "--shape"): "the argument PART, such as sonolube horn design stepped_horn",
+}
+"""Options of earlier versions by the first word of their command, each with its new name."""

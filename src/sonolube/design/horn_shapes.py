@@ -1,16 +1,19 @@
 """Shapes of ultrasonic horns as bodies with one adjustable length, sized by the wavelength where no size is given."""
 
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
+from scipy.optimize import brentq
+
 from sonolube.actuator import ThinHorn, thin_conical_horn, thin_exponential_horn, thin_stepped_horn
 from sonolube.checks import require_positive
-from sonolube.errors import UnknownName
+from sonolube.errors import InvalidInput, UnknownName
 from sonolube.fem import PARTS, Geometry, adjust_length
 from sonolube.fem.parts.length_adjustment import extent_along
 
+_SMALLEST_END = 0.1  # of the radius, of a working end that is chosen by the gain
 _RADIUS_RATIO = 0.08  # default radius over the wavelength; plane sections need it well below a quarter
 _POISSON_HORN = {"width": 60.96e-3, "thickness": 25.4e-3}  # D 2.1.3
 _NOT_SIZES = ("slots",)
@@ -50,7 +53,13 @@ class TunableBody:
 
 
 def horn_body(
-    shape: str, *, frequency: float, wave_speed: float, sizes: Mapping[str, float], tune: str = "length"
+    shape: str,
+    *,
+    frequency: float,
+    wave_speed: float,
+    sizes: Mapping[str, float],
+    tune: str = "length",
+    gain: float | None = None,
 ) -> TunableBody:
     """Horn of a named shape, with default sizes by the wavelength.
 
@@ -66,6 +75,8 @@ def horn_body(
         Given sizes, in SI; that of the tuned length is its initial value.
     tune : str
         Name of the length that is tuned.
+    gain : float, optional
+        Displacement gain of the thin bar, at least 1, by which `end_radius` is chosen.
 
     Returns
     -------
@@ -76,26 +87,31 @@ def horn_body(
     ------
     UnknownName
         If the shape or a size of it is unknown.
+    InvalidInput
+        If a gain is given beside `end_radius`, of a shape without that size, or is beyond the shape.
 
     See Also
     --------
     body_from_geometry
     """
     if shape not in SHAPES:
-        raise UnknownName.among(SHAPES, kind="horn shape", name=shape)
-    part, axis, size_rule = SHAPES[shape]
-    known = [name for name in inspect.signature(PARTS[part]).parameters if name not in _NOT_SIZES]
+        raise UnknownName.among(SHAPES, kind="horn", name=shape)
+    axis, size_rule = SHAPES[shape]
+    known = [name for name in inspect.signature(PARTS[shape]).parameters if name not in _NOT_SIZES]
     for name in (*sizes, tune):
         if name not in known:
-            raise UnknownName.among(known, kind=f"size of a {part}", name=name)
+            raise UnknownName.among(known, kind=f"size of a {shape}", name=name)
     wavelength = float(require_positive(wave_speed=wave_speed) / require_positive(frequency=frequency))
+    if gain is not None:
+        radius = _end_radius(shape, gain, wavelength, sizes, known, frequency=frequency, wave_speed=wave_speed)
+        sizes = {**sizes, "end_radius": radius}
     given = size_rule(wavelength, sizes) | dict(sizes)
     thin = _thin_horn(shape, given, frequency=frequency, wave_speed=wave_speed)
     initial = sizes.get(tune, given.get(tune, thin.length))
     fixed = {name: value for name, value in ({"length": thin.length} | given).items() if name != tune}
     return TunableBody(
-        name=part,
-        geometry_at=lambda length: PARTS[part](**{tune: length}, **fixed),
+        name=shape,
+        geometry_at=lambda length: PARTS[shape](**{tune: length}, **fixed),
         length=float(initial),
         axis=axis,
         sizes=fixed,
@@ -137,15 +153,47 @@ def _with_length(geometry: Geometry, axis: str, length: float) -> Geometry:
     return adjust_length(geometry, axis=axis, length=length)
 
 
+def _end_radius(
+    shape: str,
+    gain: float,
+    wavelength: float,
+    sizes: Mapping[str, float],
+    known: Sequence[str],
+    *,
+    frequency: float,
+    wave_speed: float,
+) -> float:
+    """Radius of the working end with which the thin bar has a displacement gain."""
+    if "end_radius" in sizes or "end_radius" not in known:
+        reason = "is chosen by end_radius; give one of them" if "end_radius" in sizes else f"{shape} has only gain 1"
+        raise InvalidInput(f"gain {gain:g}: {reason}")
+    rule = SHAPES[shape][1]
+    radius = (rule(wavelength, sizes) | dict(sizes))["radius"]
+
+    def excess(share: float) -> float:
+        own = {**sizes, "end_radius": share * radius}
+        return (
+            _thin_horn(shape, rule(wavelength, own) | own, frequency=frequency, wave_speed=wave_speed).displacement_gain
+            - gain
+        )
+
+    most = gain + excess(_SMALLEST_END)
+    if not 1.0 <= gain <= most:
+        raise InvalidInput(
+            f"gain {gain:g}: a {shape} has 1 to {most:.3g} for ends of {_SMALLEST_END:.0%} of its radius"
+        )
+    return radius * float(brentq(excess, _SMALLEST_END, 1.0)) if gain > 1.0 else radius
+
+
 def _thin_horn(shape: str, sizes: Mapping[str, float], *, frequency: float, wave_speed: float) -> ThinHorn:
     """Half-wave horn of a shape by the theory of thin bars."""
     wave = {"frequency": frequency, "wave_speed": wave_speed}
     if shape in {"block", "cylinder"}:
         return thin_exponential_horn(radius=1.0, end_radius=1.0, **wave)
     radii = {"radius": sizes["radius"], "end_radius": sizes["end_radius"]}
-    if shape in {"stepped", "booster"}:
+    if shape in {"stepped_horn", "booster"}:
         return thin_stepped_horn(**radii, end_length=sizes["end_length"], **wave)
-    return (thin_conical_horn if shape == "conical" else thin_exponential_horn)(**radii, **wave)
+    return (thin_conical_horn if shape == "conical_horn" else thin_exponential_horn)(**radii, **wave)
 
 
 def _round_sizes(wavelength: float, sizes: Mapping[str, float], end_ratio: float = 0.5) -> dict[str, float]:
@@ -168,12 +216,12 @@ def _booster_sizes(wavelength: float, sizes: Mapping[str, float]) -> dict[str, f
     return radii | flange | {"end_length": wavelength / 4}
 
 
-SHAPES: Mapping[str, tuple[str, str, SizeRule]] = {
-    "block": ("block", "x", lambda _wavelength, _sizes: dict(_POISSON_HORN)),
-    "booster": ("booster", "z", _booster_sizes),
-    "conical": ("conical_horn", "z", _round_sizes),
-    "cylinder": ("cylinder", "z", lambda wavelength, _sizes: {"radius": _RADIUS_RATIO * wavelength}),
-    "exponential": ("exponential_horn", "z", _round_sizes),
-    "stepped": ("stepped_horn", "z", _stepped_sizes),
+SHAPES: Mapping[str, tuple[str, SizeRule]] = {
+    "block": ("x", lambda _wavelength, _sizes: dict(_POISSON_HORN)),
+    "booster": ("z", _booster_sizes),
+    "conical_horn": ("z", _round_sizes),
+    "cylinder": ("z", lambda wavelength, _sizes: {"radius": _RADIUS_RATIO * wavelength}),
+    "exponential_horn": ("z", _round_sizes),
+    "stepped_horn": ("z", _stepped_sizes),
 }
-"""Horn shapes by name: the part of `PARTS`, its axis of vibration, and the rule for its default sizes."""
+"""Horn shapes by their name in `PARTS`: the axis of vibration, and the rule for its default sizes."""

@@ -31,6 +31,9 @@ CHUNK_POINTS = 100_000
 _FINE, _FINE_POINTS = 1e-7, 200_000  # error of friction ratios, and the points of a sweep up to which it is kept
 
 
+_FEW_POINTS = 512  # of a sweep, for which plain Python takes less than compiling
+
+
 def sweep(
     plan: SweepPlan,
     *,
@@ -116,7 +119,7 @@ def sweep(
                 done += stored.status.size
         if advance is not None and done:
             advance(done, plan.points)
-        with _executor(workers, scheduler) as pool:
+        with _executor(workers, scheduler, few_points=plan.points <= _FEW_POINTS) as pool:
             for chunk, batch in _computed_chunks(
                 pool, partial(compute_points, plan, backend=backend), plan.points, missing, chunk_points, 2 * workers
             ):
@@ -228,10 +231,10 @@ def _computed_chunks(
 
 
 @contextmanager
-def _executor(workers: int, scheduler: str | None) -> Iterator[Executor]:
+def _executor(workers: int, scheduler: str | None, *, few_points: bool) -> Iterator[Executor]:
     """Yield a thread pool, or an executor of a Dask cluster."""
     if scheduler is None:
-        with thread_pool(workers) as pool:
+        with thread_pool(workers, few_points=few_points) as pool:
             yield pool
         return
     import distributed

@@ -63,7 +63,8 @@ class CompileProcess:
 
     def __init__(self, variant: KernelVariant, stability: bool, tolerance: float) -> None:
         arguments = len(variant.kind), len(variant.damped), stability, tolerance
-        self._code = f"from {__name__} import compile_remaining_kernels; compile_remaining_kernels{arguments}"
+        call = f"from {__name__} import compile_remaining_kernels; compile_remaining_kernels{arguments}"
+        self._code = f"import gc; gc.disable(); {call}"  # numba makes many objects, of which little is garbage
         self._process: subprocess.Popen[bytes] | None = None
 
     def on_start(self, event: "Event") -> None:

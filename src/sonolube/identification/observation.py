@@ -1,6 +1,6 @@
 """Forward models of structures: which observable was observed under which conditions, for each fact."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from sonolube.checks import Floats
@@ -86,7 +86,7 @@ def structure_model(structure: ParametricStructure, observations: Mapping[str, O
             conditions: SmallVibration(structure.matrices(parameters, masses), conditions)
             for conditions, masses in added.items()
         }
-        return {name: evaluate(parameters, vibrations) for name, evaluate in evaluators.items()}
+        return _Observables(evaluators, parameters, vibrations)
 
     return model
 
@@ -119,6 +119,30 @@ def observable_unit(observable: str, parameters: Mapping[str, object]) -> str:
             raise InvalidInput(f"{observable} is a ratio of {first} and {second}; take two parameters of one unit")
         return ""
     return parameter_unit(observable) if observable in parameters else _observable(observable, parameters).unit
+
+
+class _Observables(Mapping[str, Floats]):
+    """Observables by name, each computed when it is first asked for: a search of few facts asks for few."""
+
+    def __init__(
+        self,
+        evaluators: Mapping[str, _Evaluate],
+        parameters: Mapping[str, Floats],
+        vibrations: Mapping[Conditions, SmallVibration],
+    ) -> None:
+        self._evaluators, self._arguments = evaluators, (parameters, vibrations)
+        self._known: dict[str, Floats] = {}
+
+    def __getitem__(self, name: str) -> Floats:
+        if name not in self._known:
+            self._known[name] = self._evaluators[name](*self._arguments)
+        return self._known[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._evaluators)
+
+    def __len__(self) -> int:
+        return len(self._evaluators)
 
 
 def _evaluator(observation: Observation, parameters: tuple[str, ...], *, fact: str) -> _Evaluate:

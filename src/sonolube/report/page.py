@@ -2,6 +2,7 @@
 
 import base64
 import platform
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
@@ -93,15 +94,14 @@ def drawn(drawing: Drawing, *, forms: Sequence[str]) -> dict[str, bytes]:
     -------
     dict of str to bytes
     """
-    import matplotlib.pyplot as plt
-
     with publication_style():
         figure = drawing.draw()
         fit_to_style(figure)
     try:
         return {form: render_figure(figure, form) for form in forms}
     finally:
-        plt.close(figure)
+        if "matplotlib.pyplot" in sys.modules:  # where it was not imported, it knows no figure
+            sys.modules["matplotlib.pyplot"].close(figure)
 
 
 def rendered_files(

@@ -47,6 +47,7 @@ NUMBERS = (
 )
 """Numbers of an operating point, the columns of a batch."""
 
+_FEW = 2000  # points for which plain Python takes less than compiling
 _REFUSED = STATUSES.index(REFUSED)
 _REASONS = {
     "periodic": "the vibration repeats with the drive",
@@ -226,7 +227,8 @@ def _shifted(reason: NDArray[np.int16], refusal: NDArray[np.int16]) -> NDArray[n
 
 def _measures(states: SteadyStates) -> Floats:
     velocity = np.empty(states.frequency.size)
-    peak_velocities(2 * np.pi * states.frequency, states.harmonics, velocity)
+    of_points = peak_velocities.for_points(velocity.size, at_first=_FEW)
+    of_points(2 * np.pi * states.frequency, states.harmonics, velocity)
     velocity[states.status == Status.NOT_CONVERGED] = np.nan
     return np.stack([velocity if name == "vibration_velocity" else getattr(states, name) for name in VIBRATION_NUMBERS])
 

@@ -14,6 +14,7 @@ from sonolube.cli.console.answer import Answer, deliver
 from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, measured_runs, optional_rig
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
+from sonolube.compilation import few_points
 from sonolube.measurement.measured_runs import runs_help
 from sonolube.report import Drawing
 from sonolube.rig import FrictionPoint, Rig, friction_point
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
 _PREDICTED = ("friction_ratio", "raw_friction_ratio", "uncertainty", "reason")
 
 
+@few_points()
 def compare(
     rig: Annotated[
         Path | None, typer.Argument(metavar="[RIG.toml]", help="A rig that every applicable model predicts too.")

@@ -13,6 +13,7 @@ from sonolube.cli.console.answer import Answer, deliver
 from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, measured_runs, optional_rig
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
+from sonolube.compilation import few_points
 from sonolube.measurement.measured_runs import runs_help
 from sonolube.report import Drawing
 from sonolube.rig import Rig, steady_vibration
@@ -31,6 +32,7 @@ _CAPTION = (
 )
 
 
+@few_points()
 def fit(
     runs: Annotated[Path, typer.Argument(metavar="RUNS.csv", help=runs_help("Own measured runs, a row each"))],
     rig: Annotated[

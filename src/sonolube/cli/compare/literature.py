@@ -10,6 +10,7 @@ import typer
 from sonolube.cli.console.answer import Answer, deliver, si
 from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, optional_rig
 from sonolube.cli.console.outputs import OutputFolder
+from sonolube.compilation import few_points
 from sonolube.errors import InvalidInput
 from sonolube.published import PreviousStudy, Statement, previous_studies
 from sonolube.report import Drawing
@@ -20,6 +21,7 @@ from sonolube.validation.study_table import read_studies, study_table
 from sonolube.vocabulary import quantity, unit_of
 
 
+@few_points()
 def literature(
     rig: Annotated[
         Path | None, typer.Argument(metavar="RIG.toml", help="A rig to draw among the studies; none by default.")

@@ -183,7 +183,14 @@ def ceramic_of(part: str, ceramic: str | None) -> str:
 
 
 def named_horn(
-    shape: str, sizes: Sequence[str], *, frequency: float, solid: Material, tune: str, axis: str | None
+    shape: str,
+    sizes: Sequence[str],
+    *,
+    frequency: float,
+    solid: Material,
+    tune: str,
+    axis: str | None,
+    gain: float | None = None,
 ) -> "TunableBody":
     """Horn by its shape and sizes, or of a STEP file.
 
@@ -200,6 +207,8 @@ def named_horn(
         Size that is tuned.
     axis : str or None
         Axis of the part of a STEP file; its longest where absent.
+    gain : float, optional
+        Displacement gain by which the radius of the working end is chosen.
 
     Returns
     -------
@@ -212,7 +221,7 @@ def named_horn(
         return body_from_geometry(geometry, axis=axis or longest_axis(generate_mesh(geometry, element_size=_COARSE)))
     lengths = {name: to_si(text, unit="m", name=name) for name, text in _texts_by_name(sizes).items()}
     speed = (solid.value("youngs_modulus") / solid.value("density")) ** 0.5
-    return horn_body(shape, frequency=frequency, wave_speed=speed, sizes=lengths, tune=tune)
+    return horn_body(shape, frequency=frequency, wave_speed=speed, sizes=lengths, tune=tune, gain=gain)
 
 
 def sizes_in_si(part: str, function: Callable[..., Any], sizes: Sequence[str]) -> dict[str, float]:

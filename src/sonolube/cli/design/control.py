@@ -27,6 +27,7 @@ from sonolube.cli.console.options import (
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.progress import progress
 from sonolube.cli.console.rig_text import amplitude_object, amplitude_rows, operating_point, rig_settings
+from sonolube.compilation import few_points
 from sonolube.design.control import (
     Amplifier,
     ControlDesign,
@@ -67,6 +68,7 @@ class FeedForward(StrEnum):
     NONE = "none"
 
 
+@few_points()
 def control(
     context: typer.Context,
     rig: RigPath,

@@ -20,6 +20,7 @@ from sonolube.cli.console.options import (
 )
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.console.rig_text import rig_settings
+from sonolube.compilation import few_points
 from sonolube.design.efficiency import EfficiencyCalibration, calibrate_efficiency, efficiency_dataset
 from sonolube.design.efficiency_figures import efficiency_figure
 from sonolube.report import Drawing, Page
@@ -39,6 +40,7 @@ _CAPTION = (
 )
 
 
+@few_points()
 def efficiency(
     context: typer.Context,
     runs: Annotated[Path, typer.Argument(metavar="RUNS.csv", help="Measured runs, a row each.")],

@@ -31,13 +31,20 @@ def design(
     context: typer.Context,
     target: Annotated[float, si_option("Hz", "Frequency of the tuned mode, such as 20kHz.", "--frequency")],
     material: Annotated[str, typer.Option(metavar="NAME", help="Material of the horn.")],
-    shape: Annotated[
+    part: Annotated[
         str,
-        typer.Option(metavar="SHAPE", help="block, booster, conical, cylinder, exponential, stepped, or a STEP file."),
-    ] = "stepped",
+        typer.Argument(
+            metavar="PART",
+            help="block, booster, conical_horn, cylinder, exponential_horn, stepped_horn, or a STEP file.",
+        ),
+    ] = "stepped_horn",
     sizes: Annotated[
         list[str] | None,
         typer.Option("--set", metavar="SIZE=VALUE", help="A size, such as radius=20mm; others are chosen."),
+    ] = None,
+    gain: Annotated[
+        float | None,
+        typer.Option(metavar="RATIO", help="Displacement gain by which the radius of the working end is chosen."),
     ] = None,
     tune: Annotated[str, typer.Option(metavar="SIZE", help="Length that is tuned.")] = "length",
     mode: Annotated[str, typer.Option(metavar="NAME", help="Mode that is tuned.")] = "axial 1",
@@ -45,20 +52,23 @@ def design(
         str | None, typer.Option(metavar="x|y|z", help="Axis of the part of a STEP file; its longest by default.")
     ] = None,
     tool: Annotated[float, si_option("kg", "Of a tool on the working face.", "--tool-mass")] = TypedNumber("10g", "kg"),
+    amplitude: Annotated[
+        float | None, si_option("m", "Of the working face, for the peak stress at it, such as 20um.", "--amplitude")
+    ] = None,
     tolerance: Annotated[float, typer.Option(metavar="RATIO", help="Largest relative error of the frequency.")] = 0.003,
-    out: Annotated[Out, OutputFolder("horn-{shape}-axis.* horn-{shape}-mode.*")] = OUT,
+    out: Annotated[Out, OutputFolder("{part}-axis.* {part}-mode.*")] = OUT,
     json: Json = False,
 ) -> None:
     """Tune a horn's length to a frequency, and compute its gain, node, stress, face and neighbouring modes.
 
-    Example: sonolube horn design --frequency 20kHz --material titanium_6al4v --set end_radius=10mm
+    Example: sonolube horn design stepped_horn --frequency 20kHz --material titanium_6al4v --set end_radius=10mm
     """
-    if is_step(shape):
-        refuse_unused(context, "tune", because="for a STEP file, which is cut off or extended at its far end")
+    if is_step(part):
+        refuse_unused(context, "tune", "gain", because="for a STEP file, which is cut off or extended at its far end")
     else:
-        refuse_unused(context, "axis", because=f"for the shape {shape}; it is for STEP files")
+        refuse_unused(context, "axis", because=f"for {part}; it is for STEP files")
     solid = materials.material(material)
-    body = named_horn(shape, sizes or [], frequency=target, solid=solid, tune=tune, axis=axis)
+    body = named_horn(part, sizes or [], frequency=target, solid=solid, tune=tune, axis=axis, gain=gain)
     with progress("tuning") as advance:
         found = tuned_horn(
             body,
@@ -68,7 +78,7 @@ def design(
             relative_tolerance=tolerance,
             advance=advance,
         )
-    answer = HornAnswer(design=found, material=solid, tool_mass=tool, name=f"horn-{Path(shape).stem}")
+    answer = HornAnswer(design=found, material=solid, tool_mass=tool, amplitude=amplitude, name=Path(part).stem)
     deliver(answer, folder=out, as_json=json)
 
 
@@ -79,6 +89,7 @@ class HornAnswer(Answer):
     design: HornDesign
     material: Material
     tool_mass: float
+    amplitude: float | None
     name: str
 
     def lines(self) -> list[str]:
@@ -101,6 +112,7 @@ class HornAnswer(Answer):
             ("node", f"{1e3 * design.node_position:.1f} mm from the driven face"),
             ("face", f"Umin/Umax {design.face_uniformity:.3f}, asymmetry {design.face_asymmetry:.2g}"),
             ("peak stress", f"{1e-12 * design.stress_per_displacement:.2f} MPa per um of the working face"),
+            *self._stress_rows(),
             *((_LIMITS[name], f"{1e6 * value:.0f} um, zero to peak") for name, value in self._amplitudes().items()),
             ("tool", f"{1e3 * self.tool_mass:g} g on the face: {self._loaded() - mode.frequency:+.0f} Hz"),
         ]
@@ -122,6 +134,11 @@ class HornAnswer(Answer):
             **si({name: getattr(design, name) for name in _QUANTITIES}),
             **si({"tool_mass": self.tool_mass, "loaded_frequency": self._loaded()}),
             **si({"stress_change": design.stress_change}, unit=""),
+            **(
+                {}
+                if self.amplitude is None
+                else si({"vibration_amplitude": self.amplitude, "peak_stress": self._peak_stress()})
+            ),
             "amplitude_limits": si(self._amplitudes(), unit="m"),
             "neighbours": [
                 {"name": name, **si({"frequency": at}), **si({"gap": at / frequency - 1}, unit="")}
@@ -149,6 +166,18 @@ class HornAnswer(Answer):
                 draw=lambda: mode_figure(mode.model.mesh, mode.displacement, title=title), forms=("png",)
             ),
         }
+
+    def _stress_rows(self) -> list[tuple[str, str]]:
+        """Peak stress at the amplitude that was asked for, beside each strength."""
+        if self.amplitude is None:
+            return []
+        shares = [f"{self.amplitude / at:.0%} of the {_LIMITS[name]}" for name, at in self._amplitudes().items()]
+        stress = f"{1e-6 * self._peak_stress():.0f} MPa"
+        return [(f"at {1e6 * self.amplitude:g} um", ", ".join([stress, *shares]))]
+
+    def _peak_stress(self) -> float:
+        """Peak stress at the amplitude that was asked for. [Pa]"""
+        return self.design.stress_per_displacement * (self.amplitude or 0.0)
 
     def _loaded(self) -> float:
         """Frequency with the tool on the working face."""

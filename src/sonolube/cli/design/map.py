@@ -28,6 +28,7 @@ from sonolube.cli.console.progress import progress
 from sonolube.cli.console.ranges import values_by_key
 from sonolube.cli.console.rig_text import amplitude_object, amplitude_rows, friction_model_text, rig_settings
 from sonolube.cli.design.status_tables import status_tables
+from sonolube.compilation import few_points
 from sonolube.design import MAP_LAYOUTS, map_figure, map_page, measured_map_figure
 from sonolube.design.gaussian_process import FEWEST_RUNS
 from sonolube.design.maps import default_axes, panels_text
@@ -67,6 +68,7 @@ class Form(StrEnum):
     HTML = "html"
 
 
+@few_points()
 def map(  # noqa: A001 - the command's name
     context: typer.Context,
     rig: RigPath,

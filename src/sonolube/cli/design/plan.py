@@ -14,6 +14,7 @@ from sonolube.cli.console.options import OUT, Amplitude, Changes, Json, Out, Rig
 from sonolube.cli.console.outputs import OutputFolder
 from sonolube.cli.design.factor_values import factor_values
 from sonolube.cli.design.plan_answer import PlanAnswer
+from sonolube.compilation import few_points
 from sonolube.design.test_plan.candidates import Factors, RigLimits
 from sonolube.design.test_plan.comparison import COMPARISONS
 from sonolube.design.test_plan.plan import Procedure, Question, plan_tests, published_distances
@@ -43,6 +44,7 @@ class BlockName(StrEnum):
     PAIR = "pair"
 
 
+@few_points()
 def plan(
     context: typer.Context,
     rig: RigPath,

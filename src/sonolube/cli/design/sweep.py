@@ -29,6 +29,7 @@ from sonolube.cli.console.ranges import ends_by_key, values_by_key
 from sonolube.cli.console.rig_text import amplitude_object, amplitude_rows
 from sonolube.cli.design.parametric_study import OUTCOMES, Parameter, parametric_study
 from sonolube.cli.design.status_tables import status_tables
+from sonolube.compilation import few_points
 from sonolube.design import SweepPlan, grid_plan, latin_hypercube_plan, list_plan, sweep_figure, swept_variables
 from sonolube.design.point_statistics import extreme_place, extreme_point, failure_counts, status_counts
 from sonolube.dynamics.backend import usable_backend
@@ -61,6 +62,7 @@ class Sample(StrEnum):
     LIST = "list"
 
 
+@few_points()
 def sweep(
     context: typer.Context,
     rig: RigPath,

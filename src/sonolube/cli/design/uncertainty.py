@@ -18,6 +18,7 @@ from sonolube.cli.console.ranges import values_by_key
 from sonolube.cli.console.rig_text import amplitude_object, amplitude_rows, rig_settings
 from sonolube.cli.design.status_tables import status_tables
 from sonolube.cli.design.uncertain_entries import agreement, distributions, entry_rows, free_lines, posterior_object
+from sonolube.compilation import few_points
 from sonolube.design import (
     IntervalEstimate,
     SampleStatistics,
@@ -53,6 +54,7 @@ _BAND_CAPTION = "Median of the samples and their intervals over the keys that we
 _SOBOL_CAPTION = "Contribution of each uncertain entry to the variance, with intervals of 95 %."
 
 
+@few_points()
 def uncertainty(
     context: typer.Context,
     rig: RigPath,

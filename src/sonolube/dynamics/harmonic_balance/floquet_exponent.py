@@ -1,5 +1,7 @@
 """Stability of periodic motions: the largest Floquet exponent of each point of a batch."""
 
+from typing import Final
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,7 +15,7 @@ from sonolube.dynamics.kernels.simd import LANES, uniform_blocks
 STABILITY_THRESHOLD = 1e-6
 """Floquet exponent per period above which a motion counts as unstable, beyond rounding. []"""
 _KICKS_PER_RADIAN = 8  # of the structure's fastest mode
-_FEW_KICKS = 1024  # of all points, up to which plain Python takes less than compiling
+_FEW: Final = {"most": 1024, "at_first": 10_000}  # kicks for which plain Python takes less than loading and compiling
 _HARMONICS_STEP = 4  # to which numbers of harmonics are rounded up
 _MOST_KICKS = 2**22  # per period, which take seconds
 
@@ -76,7 +78,7 @@ def floquet_exponents(
     kicks = np.maximum(samples, needed.astype(np.int64))
     kicks, count = _rounded_up(kicks), -(-count // _HARMONICS_STEP) * _HARMONICS_STEP  # so that few are alone
     steps = int(kicks.sum())
-    lanes = monodromy_power_norms.lanes(steps, LANES, most=_FEW_KICKS)
+    lanes = monodromy_power_norms.lanes(steps, LANES, **_FEW)
     chosen = uniform_blocks(np.arange(omega.size), count, kicks, lanes=lanes)
     settings = np.stack([omega, load, gap_law.equilibrium_coordinate(load), mean], axis=1)
     drift = _transition_matrices(model, 2 * np.pi / (kicks * omega))
@@ -84,7 +86,7 @@ def floquet_exponents(
     pairs = np.hstack([model.contact_input, model.displacement_output, model.velocity_output])
     parts = np.ascontiguousarray(harmonics).view(np.float64)
     powers, norms = np.empty((2, omega.size))
-    power_norms = monodromy_power_norms.for_points(steps, most=_FEW_KICKS)
+    power_norms = monodromy_power_norms.for_points(steps, **_FEW)
     power_norms(*variant, law, pairs, settings, drift, parts, count, kicks, chosen, work, powers, norms)
     return np.asarray((powers * np.log(2.0) + 0.5 * np.log(norms)) / 2.0 ** (SQUARINGS - 1))
 

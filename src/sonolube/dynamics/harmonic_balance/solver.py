@@ -1,5 +1,7 @@
 """Solver of a chunk of steady states: initial guess, Newton's method with adaptive truncation, voltage continuation."""
 
+from typing import Final
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -32,7 +34,8 @@ MOST_HARMONICS = 64
 """Largest number of harmonics of the contact. []"""
 _MOST_SAMPLES, _MOST_COUPLED = 2048, 32
 _REFINEMENTS, _ITERATIONS = 9, 12
-_FEW_SAMPLES = 4096  # samples times harmonics of all points, up to which plain Python takes less than compiling
+_POINT = 500  # work of a point as plain Python beside its samples times harmonics, in units of these
+_FEW: Final = {"most": 4600, "at_first": 2_000_000}  # work for which plain Python takes less than loading and compiling
 _VOLTAGE_STEPS = 24  # of the continuation from a low voltage
 _DISTINCT = 1e-4  # relative difference of amplitude above which two solutions are distinct
 
@@ -116,11 +119,11 @@ def _refine(problem: BatchProblem, iterates: Iterates, truncation: Truncation) -
     for attempt in range(_REFINEMENTS):
         iterates = _with_capacity(iterates, int(truncation.harmonics[pending].max(initial=0)))
         finest = [int(values[pending].max()) for values in truncation]
-        sampled = pending.size * finest[0] * finest[2]
-        chosen = uniform_blocks(pending, *truncation, lanes=newton_solve.lanes(sampled, LANES, most=_FEW_SAMPLES))
+        sampled = pending.size * (_POINT + finest[0] * finest[2])
+        chosen = uniform_blocks(pending, *truncation, lanes=newton_solve.lanes(sampled, LANES, **_FEW))
         work = harmonic_workspace(*finest)
         numbers, steps = np.array(truncation), _ITERATIONS + 4 * attempt
-        newton_solve.for_points(sampled, most=_FEW_SAMPLES)(
+        newton_solve.for_points(sampled, **_FEW)(
             *variant, poles, stiffness, law, iterates, numbers, chosen, problem.tolerance, steps, outcome, work
         )
         pending = np.flatnonzero(outcome != CONVERGED)

@@ -17,6 +17,7 @@ from sonolube.friction.scaled_bessel import scaled_bessel_i0
 SINE_TOLERANCE = 8e-5
 """Largest error of a friction ratio by neglecting the higher harmonics of a vibration. []"""
 
+_FEW = 2000  # points for which plain Python takes less than compiling
 _LOG_BETA, _LOG_SPEED = (-6.0, 4.1), (-11.0, 0.0)  # ranges of the table of sines
 _ROWS, _COLUMNS = 300, 330
 _NODES = np.polynomial.legendre.leggauss(32)
@@ -111,7 +112,7 @@ def batched_stick_slip_ratio(
     slide = 1 / (2 * np.pi * f * memory)
     ratio = np.empty(v_r.shape)
     table = _table() if tolerance >= SINE_TOLERANCE else _NO_TABLE
-    write_ratios = _write_ratios.for_points(v_r.size)
+    write_ratios = _write_ratios.for_points(v_r.size, at_first=_FEW)
     write_ratios(
         table, tolerance, harmonics, mean, beta, higher, closes_once, load_ratio, slide, v_r, which, *_NODES, ratio
     )

@@ -20,6 +20,7 @@ Five of the tests have a printed roughness, that of the others is by comparison 
 the length is 1.35 um, 0.97 to 1.99 um."""
 
 _PHASES = np.polynomial.legendre.leggauss(32)
+_FEW = 1000  # points for which plain Python takes less than compiling
 _NEGLIGIBLE = 40.0  # exponent beyond which the load of elements is negligible
 
 
@@ -124,7 +125,7 @@ def sine_stick_slip_ratio(
     beta = a / length
     scaled_speed = v_r * length / D_c  # v times omega a, which may be 0
     v = np.minimum(scaled_speed / np.maximum(2 * pi * f * a, scaled_speed), 1.0)
-    harmonic_ratio = _harmonic_ratio.for_points(beta.size)
+    harmonic_ratio = _harmonic_ratio.for_points(beta.size, at_first=_FEW)
     return harmonic_ratio(beta.ravel(), v.ravel(), scaled_bessel_i0(beta).ravel(), *_PHASES).reshape(beta.shape)
 
 

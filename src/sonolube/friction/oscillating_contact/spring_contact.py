@@ -8,6 +8,7 @@ for all directions, `compliant_guide` for a slider on a guide with spring and ma
 published approximations.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -140,13 +141,15 @@ def load_balanced_approach(contact: SpringContact, *, approach: ArrayLike, norma
     """
     a = require_non_negative(normal_amplitude=normal_amplitude)
     u, a = np.broadcast_arrays(require_positive(approach=approach), a)
-    load = mean_normal_forces(contact, u, np.zeros_like(a))
-    low, high = np.minimum(-a, u), u.copy()
+    load = mean_normal_forces(contact, u, np.zeros_like(a)).ravel()
+    force = _force_of_approach(contact, a.ravel())
+    low, high = np.minimum(-a, u).ravel(), u.flatten()
     for _ in range(60):
         middle = (low + high) / 2
-        too_high = mean_normal_forces(contact, middle, a) > load
-        high, low = np.where(too_high, middle, high), np.where(too_high, low, middle)
-    return np.asarray((low + high) / 2)
+        too_high = force(middle) > load
+        np.copyto(high, middle, where=too_high)
+        np.copyto(low, middle, where=~too_high)
+    return np.asarray((low + high) / 2).reshape(u.shape)
 
 
 def require_contact(*, approach: ArrayLike, normal_amplitude: ArrayLike) -> tuple[Floats, Floats]:
@@ -184,8 +187,19 @@ def require_contact(*, approach: ArrayLike, normal_amplitude: ArrayLike) -> tupl
 
 def mean_normal_forces(contact: SpringContact, u: Floats, a: Floats) -> Floats:
     """Return the mean normal force in units of one spring (flat), or of the springs per length (parabolic)."""
+    return _force_of_approach(contact, a.ravel())(u.ravel()).reshape(u.shape)
+
+
+def _force_of_approach(contact: SpringContact, a: Floats) -> Callable[[Floats], Floats]:
+    """Return the mean normal forces of these amplitudes, shape (n,), as a function of the mean approaches."""
     flat = contact.profile == "flat"
     power, factor = (1.0, 1.0) if flat else (1.5, 2 / 3)
-    scale = np.where(a > 0, a, 1.0)
-    moving = scale**power * profile_mean_limits((u / scale).ravel(), flat, *NODES).reshape(u.shape)
-    return np.where(a > 0, moving, factor * np.maximum(u, 0.0) ** power)
+    moves = a > 0
+    all_move, scale = bool(moves.all()), np.where(moves, a, 1.0)
+    unit, limits = scale**power, profile_mean_limits.compiled
+
+    def force(u: Floats) -> Floats:
+        moving = unit * limits(u / scale, flat, *NODES)
+        return moving if all_move else np.where(moves, moving, factor * np.maximum(u, 0.0) ** power)
+
+    return force
