@@ -56,7 +56,7 @@ def _run(cell: Cell, space: dict[str, Any]) -> tuple[str, list[Figure]]:
         exec(compile(tree, "cell", "exec"), space)
         value = eval(compile(last, "cell", "eval"), space) if last else None
         if value is not None and not isinstance(value, Figure):
-            print(value)
+            printed.write(f"{value}\n")
     figures = [value] if isinstance(value, Figure) else [plt.figure(number) for number in plt.get_fignums()]
     plt.close("all")
     return printed.getvalue().rstrip(), figures

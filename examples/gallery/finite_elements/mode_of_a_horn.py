@@ -9,7 +9,7 @@ from sonolube.fem.figures import mode_figure
 from sonolube.figure import publication_style
 from sonolube.materials import material
 
-horn = fem.stepped_horn(radius=20e-3, end_radius=11.5e-3, length=0.125, end_length=0.0625, edge_radius=5e-3)
+horn = fem.stepped_horn(radius=20e-3, end_radius=11.3e-3, length=0.0598, end_length=0.0634, edge_radius=8e-3)
 mesh = fem.generate_mesh(horn, element_size=12e-3)
 model = fem.Model(
     mesh=mesh, media={name: fem.medium_from_material(material("titanium_6al4v")) for name in mesh.regions}

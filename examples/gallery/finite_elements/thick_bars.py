@@ -18,6 +18,7 @@ thin = np.sqrt(modulus / density) / (2 * length)
 
 
 def first_axial(diameter: float) -> float:
+    """Return the first axial frequency of a free cylinder in Hz."""
     mesh = fem.generate_mesh(fem.cylinder(radius=diameter / 2, length=length), element_size=0.03)
     model = fem.Model(mesh=mesh, media={"cylinder": fem.medium_from_material(titanium)})
     modes = fem.natural_modes(model, count=16)

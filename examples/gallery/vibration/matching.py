@@ -10,10 +10,10 @@ import numpy as np
 from sonolube import actuator
 from sonolube.figure import publication_style
 
-branch = actuator.MotionalBranch(resistance=40.0, inductance=60e-3, capacitance=1.05e-9)
-circuit = actuator.ButterworthVanDyke(parallel_capacitance=6e-9, branches=(branch,))
+branch = actuator.MotionalBranch(resistance=400.0, inductance=60e-3, capacitance=1.05e-9)
+circuit = actuator.ButterworthVanDyke(parallel_capacitance=20e-9, branches=(branch,))
 resonance = actuator.circuit_resonances(circuit).series_frequency[0]
-frequency = np.linspace(0.985, 1.015, 600) * resonance
+frequency = np.linspace(0.95, 1.05, 600) * resonance
 at_resonance = actuator.circuit_admittance(circuit, frequency=resonance)
 network = actuator.parallel_inductor(admittance=at_resonance, frequency=resonance)
 admittance = actuator.circuit_admittance(circuit, frequency=frequency)
