@@ -35,6 +35,7 @@ napoleon_use_rtype = False
 mathjax3_config = {"options": {"enableMenu": False}}  # the menu offers parts that would come from elsewhere
 
 html_theme = "furo"
+pygments_dark_style = "monokai"
 html_title = f"sonolube {release}"
 html_show_sphinx = False
 html_show_copyright = False

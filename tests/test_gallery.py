@@ -6,9 +6,9 @@ import tempfile
 from pathlib import Path
 
 import pytest
-from docs._ext.notebooks import cells_of, executed
-from docs._ext.pictures import figure_of
 from matplotlib.figure import Figure
+from notebooks import cells_of, executed
+from pictures import figure_of
 
 ROOT = Path(__file__).parents[1]
 SCRIPTS = sorted((ROOT / "examples" / "gallery").glob("*/*.py"))

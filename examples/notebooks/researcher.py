@@ -3,8 +3,8 @@
 # %% [markdown]
 # # Own runs against the models
 #
-# For a researcher with a table of runs: which models predict runs that they have not seen, whether the ranking is
-# decided, and what to measure next.
+# For a researcher with a table of runs: which models predict runs that they have not
+# seen, whether the ranking is decided, and what to measure next.
 
 # %%
 import numpy as np
@@ -25,13 +25,15 @@ for volts, speed, force, still in zip(
 # %% [markdown]
 # ## Ranking
 #
-# Each model is fitted to all conditions but one and predicts the one left out. A model that wins by this has not
-# won by its number of parameters.
+# Each model is fitted to all conditions but one and predicts the one left out. A
+# model that wins by this has not won by its number of parameters.
 
 # %%
 fit = sl.fit_runs(runs, rig)
 for model in fit.models[:5]:
-    print(f"{model.name:38s} rms of the fit {model.rms_fit:.3f}, of unseen conditions {model.rms_unseen:.3f}")
+    print(
+        f"{model.name:38s} rms of the fit {model.rms_fit:.3f}, of unseen conditions {model.rms_unseen:.3f}"
+    )
 print(f"mean of the other conditions: {fit.rms_of_mean:.3f}")
 print(fit.verdict)
 
@@ -45,7 +47,9 @@ sl.plot(fit)
 
 # %%
 following = fit.next_conditions[0]
-print(f"{following.first} says {following.first_ratio:.2f}, {following.second} says {following.second_ratio:.2f}")
+print(
+    f"{following.first} says {following.first_ratio:.2f}, {following.second} says {following.second_ratio:.2f}"
+)
 print(following.condition.settings)
 
 # %% [markdown]
