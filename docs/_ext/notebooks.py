@@ -86,7 +86,7 @@ def _written(script: Path, folder: Path) -> str:
 
 def jupyter(cells: list[Cell]) -> str:
     """Return cells as a Jupyter file (nbformat 4.4), without output."""
-    content = [
+    content: list[dict[str, Any]] = [
         {"cell_type": "markdown", "metadata": {}, "source": cell.text}
         if cell.is_markdown
         else {"cell_type": "code", "metadata": {}, "source": cell.text, "outputs": [], "execution_count": None}
