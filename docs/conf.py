@@ -19,6 +19,7 @@ extensions = [
     "sphinx-mathjax-offline",
     "from_source",
     "gallery",
+    "line_breaks",
     "reference_lists",
 ]
 myst_enable_extensions = ["amsmath", "colon_fence", "deflist", "dollarmath"]
@@ -35,7 +36,7 @@ napoleon_use_rtype = False
 mathjax3_config = {"options": {"enableMenu": False}}  # the menu offers parts that would come from elsewhere
 
 html_theme = "furo"
-pygments_dark_style = "monokai"
+pygments_dark_style = "github-dark"
 html_title = f"sonolube {release}"
 html_show_sphinx = False
 html_show_copyright = False
