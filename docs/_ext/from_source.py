@@ -9,8 +9,11 @@ import re
 import shlex
 import shutil
 import tempfile
+import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import chdir, contextmanager, redirect_stderr, redirect_stdout
+from html import escape
+from importlib.resources import files
 from itertools import chain
 from pathlib import Path
 from typing import Any, ClassVar
@@ -40,11 +43,11 @@ from sonolube.measurement.surface_files.formats import SURFACE_FORMATS
 from sonolube.prediction import Calibration, calibrations
 from sonolube.prediction.scores import PROBABILITIES
 from sonolube.published import errata
-from sonolube.rig import read_rig, rig_schema
+from sonolube.rig import Rig, available_sources, read_rig, rig_schema
 from sonolube.rig.file.json_schema import tables_of
 from sonolube.surfaces import surface_finish, surface_finish_names
 from sonolube.units import format_si, unit_description
-from sonolube.vocabulary import quantities
+from sonolube.vocabulary import quantities, quantity
 from sonolube.wear import WEAR_MODELS
 
 DOCS = Path(__file__).parents[1]
@@ -69,12 +72,19 @@ def example_rigs() -> str:
                 _plain(rig.source),
                 format_si(rig.normal_load, "N"),
                 format_si(rig.sliding_speed, "m/s"),
-                format_si(rig.vibration_amplitude, "m"),
+                _amplitude(rig),
                 f"{len(rig.assumptions)}",
             ]
             for name, rig in rigs.items()
         ],
     )
+
+
+def _amplitude(rig: Rig) -> str:
+    """Return the amplitude of a rig as its file states it, else by which source it is computed."""
+    if rig.vibration_amplitude is not None:
+        return format_si(rig.vibration_amplitude, "m")
+    return available_sources(rig)[0] if available_sources(rig) else "none"
 
 
 def errata_of_d() -> str:
@@ -124,6 +134,24 @@ def vocabulary() -> str:
         ["Name", "Symbol", "Unit", "Meaning"],
         [[f"`{each.name}`", f"${each.symbol}$", each.unit, _plain(each.meaning)] for each in quantities().values()],
     )
+
+
+def glossary() -> str:
+    """Quantities of the vocabulary by topic, as definitions."""
+    text = files("sonolube").joinpath("vocabulary.toml").read_text(encoding="utf-8")
+    parts = re.split(r"^# -- (.*)$", text, flags=re.MULTILINE)[1:]
+    return "\n\n".join(_topic(*part) for part in zip(parts[::2], parts[1::2], strict=True))
+
+
+def _topic(title: str, entries: str) -> str:
+    """Quantities of one topic, by their meaning."""
+    known = sorted((quantity(name) for name in tomllib.loads(entries)), key=lambda each: each.meaning.lower())
+    terms = [f"{_plain(each.meaning)}\n: ${each.symbol}$ {_unit(each.unit)}, `{each.name}`" for each in known]
+    return "\n\n".join([f"## {title[0].upper()}{title[1:]}", *terms])
+
+
+def _unit(unit: str) -> str:
+    return f"in {_plain(unit)}" if unit else "(a pure number)"
 
 
 def recording_formats() -> str:
@@ -203,6 +231,7 @@ TABLES: Mapping[str, Callable[[], str]] = {
         dry_friction_by_pair,
         surface_finishes,
         vocabulary,
+        glossary,
         recording_formats,
         run_columns,
         impedance_formats,
@@ -233,9 +262,19 @@ class Answer(SphinxDirective):
         code, printed = answer(command)
         if code != (2 if "refused" in self.options else 0):
             raise self.error(f"exit code {code}:\n{printed}")
-        block = nodes.literal_block(text=f"$ {command}\n{printed}")
-        block["language"] = "console"
-        return [block]
+        lines = [_line("command", f"$ {command}"), *(_line(_kind(line), line) for line in printed.splitlines())]
+        return [nodes.raw("", f'<pre class="answer">{"".join(lines)}</pre>', format="html")]
+
+
+def _line(kind: str, text: str) -> str:
+    """Line of an answer in HTML."""
+    return f'<span class="{kind}">{escape(text, quote=False)}</span>'
+
+
+def _kind(line: str) -> str:
+    """Whether a line of an answer is a row of a table, which keeps its columns, or text, which wraps."""
+    columns = re.split(r"\s{2,}", line.strip())
+    return "row" if len(columns) > 2 else "text"
 
 
 def answer(command: str) -> tuple[object, str]:

@@ -138,12 +138,12 @@ def runs_help(beginning: str) -> str:
     return f"{beginning}: {FRICTION_COLUMNS}; {settings}, normal_load and others where they vary; cells may be empty."
 
 
-def read_runs(path: Path) -> "xr.Dataset":
+def read_runs(path: str | Path) -> "xr.Dataset":
     """Measured runs from a CSV file whose header names quantities, such as `sliding_speed [mm/s]`.
 
     Parameters
     ----------
-    path : Path
+    path : str or Path
         With columns of `RUN_COLUMNS` or of the vocabulary, among them `friction_reduction`, `friction_ratio`, or
         `friction_force` and `intrinsic_friction_force`. An empty cell is not measured. Rows at an amplitude, velocity
         or voltage of 0 give the friction without vibration of the rows of the same speed and load that state none.
@@ -159,6 +159,7 @@ def read_runs(path: Path) -> "xr.Dataset":
     InvalidInput
         Naming the file, the column and the cell, if the table cannot be read or holds no friction.
     """
+    path = Path(path)
     return runs_of_rows(path, _rows(path))
 
 

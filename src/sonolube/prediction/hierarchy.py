@@ -4,7 +4,7 @@ For one closure with the parameter theta, test i on rig r has the friction ratio
 
     R_i = f(x_i; theta_r, l_r) + delta_r(x_i) + e_i,    e_i ~ N(0, u_i^2),
     ln theta_r ~ N(mu, tau^2),    ln (a/l)_r ~ N(ln (a/l) - kappa, s_l^2 + s_a^2),
-    delta_r = w(f) g_r,    g_r ~ Gaussian process, sigma^2 exp(-|Delta ln(a, v)|^2 / (2 lambda^2)).
+    delta_r = w(f) g_r,    g_r ~ Gaussian process, sigma^2 exp(-d^2 / (2 lambda^2)), d the distance in (ln a, ln v).
 
 The factor exp(kappa) on the decay length l is common to all rigs: l follows from an assumed distribution of heights.
 The discrepancy delta vanishes with the reduction, such as without vibration: w rises from 0 at f = 1 to 1 at f <= 0.8.

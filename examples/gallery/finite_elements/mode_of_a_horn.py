@@ -1,0 +1,25 @@
+"""Axial mode of a stepped horn
+
+A stepped titanium horn in its first axial mode, coloured by displacement: the thin end moves most, and the node
+lies near the step.
+"""
+
+from sonolube import fem
+from sonolube.fem.figures import mode_figure
+from sonolube.figure import publication_style
+from sonolube.materials import material
+
+horn = fem.stepped_horn(radius=20e-3, end_radius=11.3e-3, length=0.0598, end_length=0.0634, edge_radius=8e-3)
+mesh = fem.generate_mesh(horn, element_size=12e-3)
+model = fem.Model(
+    mesh=mesh, media={name: fem.medium_from_material(material("titanium_6al4v")) for name in mesh.regions}
+)
+modes = fem.natural_modes(model, count=12)
+names = fem.mode_names(model, modes, axis="z")
+row = names.index("axial 1")
+with publication_style():
+    figure = mode_figure(mesh, modes.shapes[row], title=f"axial 1, {1e-3 * modes.natural_frequency[row]:.1f} kHz")
+    figure.axes[0].zaxis.labelpad = 14
+
+if __name__ == "__main__":
+    figure.savefig("mode-of-a-horn.png", dpi=150)

@@ -1,0 +1,14 @@
+"""Reductions of friction in the literature
+
+Speed and pressure of earlier studies and of D, with the direction of the vibration and the reduction of
+friction that each measured.
+"""
+
+from sonolube.figure import publication_style
+from sonolube.validation.previous_study_map import study_map
+
+with publication_style():
+    figure = study_map(None)
+
+if __name__ == "__main__":
+    figure.savefig("previous-studies.png", dpi=150)

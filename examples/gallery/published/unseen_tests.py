@@ -1,0 +1,14 @@
+"""Prediction of tests not seen
+
+Every published rig predicted from all the others: bands of 50, 80 and 95 % and the measured ratio. A prediction
+is worth something where the points fall inside as often as the bands say.
+"""
+
+from sonolube.figure import publication_style
+from sonolube.prediction.published_figures import unseen_figure
+
+with publication_style():
+    figure = unseen_figure()
+
+if __name__ == "__main__":
+    figure.savefig("unseen-tests.png", dpi=150)
