@@ -34,7 +34,7 @@ def ours(folder: Path) -> tuple[Append, Callable[[], object]]:
 def hdf5(folder: Path) -> tuple[Append, Callable[[], object]]:
     """Dataset that grows, flushed after each block, so that a killed process loses no block."""
     file = h5py.File(folder / "rival.h5", "w")
-    data = file.create_dataset("data", (0, len(CHANNELS)), maxshape=(None, len(CHANNELS)), chunks=VALUES.shape)
+    data = file.create_dataset("data", (0, len(CHANNELS)), "f8", maxshape=(None, len(CHANNELS)), chunks=VALUES.shape)
 
     def append(number: int) -> None:
         data.resize((number + 1) * SAMPLES, axis=0)

@@ -130,8 +130,8 @@ def _measures(records: Sequence[Record]) -> list[Measure]:
 
 STUDY = Study(
     title="Recordings killed",
-    question="A process records a run of one to three parts, and SIGKILL ends it at a random moment, from its first step to"
-    " the writing of the recording. The run is recovered: nothing that `append` had taken is lost, no sample is wrong.",
+    question="A process records a run of one to three parts, and SIGKILL ends it at a random moment, from its first"
+    " step to the end. Recovered, it lacks nothing that `append` had taken, and has no wrong sample.",
     sources=("growing_files.py", "files.py", "lab/records/*.py", "lab/block.py"),
     trials=200,
     sample=3,

@@ -558,7 +558,12 @@ def write_inputs(place: Path) -> None:
             f'column = "{column.get(name, "left (um)")}"\nunit = "{unit}"\ngain = {gain}\n'
         )
     for name, outcome in (("first", "completed"), ("second", "stopped")):
-        facts = {"pin_material": "brass", "normal_load": 5.0, "sliding_speed": 0.02, "tags": name}
+        facts: dict[str, str | float] = {
+            "pin_material": "brass",
+            "normal_load": 5.0,
+            "sliding_speed": 0.02,
+            "tags": name,
+        }
         recorder = new_run(place / "runs", title=name, protocol="", facts=facts)
         recorder.begin([Channel(name="friction_force", quantity="friction_force")], sample_rate=100.0)
         recorder.append(Block(first_sample=0, sample_rate=100.0, values=force[:, np.newaxis]))

@@ -83,13 +83,7 @@ def test_each_condition_finds_its_runs(tmp_path: Path, condition: str, value: st
     folders = [
         run_of(tmp_path),
         run_of(tmp_path, normal_load=6.0, tags="map, first"),
-        run_of(
-            tmp_path,
-            title="Other",
-            protocol=PROTOCOL.replace("brass_c360", "aluminium_2024").replace("Voltage", "V"),
-            normal_load=12.0,
-            tags="Map",
-        ),
+        run_of(tmp_path, title="Other", protocol=other, normal_load=12.0, tags="Map"),
     ]
     assert names(tmp_path, **{condition: value}) == [folders[index].name for index in finds]
 
@@ -100,7 +94,7 @@ def test_dates_bound_the_runs(tmp_path: Path, monkeypatch: MonkeyPatch) -> None:
         run_of(tmp_path)
     assert len(names(tmp_path, since="2026-11-01")) == 2
     assert names(tmp_path, since="2026-11-20") == ["20261130T005320Z-voltage-steps"]
-    assert names(tmp_path, until="2026-11-20T00:00+01:00") == ["20261118T104640Z-voltage-steps"]
+    assert names(tmp_path, until="2026-11-20T00:00+01:00") == ["20261118T110640Z-voltage-steps"]
 
 
 def test_new_changed_and_removed_folders_are_followed(tmp_path: Path) -> None:
