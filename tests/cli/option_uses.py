@@ -30,10 +30,27 @@ KNOWN = (
     *("--pin", "aluminium_2024", "--disc", "stainless_steel_316", "--load", "5N", "--speed", "0.2m/s"),
     *("--frequency", "20kHz", "--friction", "0.4"),
 )
+_SHORT_PROTOCOL = """title = "short"
+source = "none"
+
+[limits]
+voltage_maximum = "30 V"
+duration_maximum = "2 s"
+
+[[steps]]
+kind = "acquire"
+channels = ["friction_force"]
+sample_rate = "400 Hz"
+duration = "{duration}"
+
+[[steps]]
+kind = "motor_speed"
+sliding_speed = "50 mm/s"
+"""
 MAP = ("--over", "sliding.sliding_speed=10mm/s,20mm/s", "--over", "drive.voltage_peak_to_peak=5V,10V")
 
 # Options that say how an answer is computed or kept: the answer stays the same.
-EXECUTION = {"--force", "--workers", "--scheduler", "--chunk", "--backend", "--keep"}
+EXECUTION = {"--force", "--real-time", "--yes", "--workers", "--scheduler", "--chunk", "--backend", "--keep"}
 # Options of the place of files, which every run here gives.
 PLACES = {"--out", "--json", "--help"}
 # A run takes a minute; tests of these commands try them.
@@ -499,6 +516,17 @@ MODES = {
         {"--model": "asperity-stick-slip", "--runs": OWN_RUNS, "--set": "sliding.sliding_speed=50mm/s"} | AMPLITUDE,
     ),
     "compare without a rig": Mode("compare", ("--model", "kinematic"), {"--set": "contact.normal_load=2N"} | AMPLITUDE),
+    "lab run": Mode(
+        "lab run",
+        ("FOLDER/short.toml", "--rig", str(RIGS / "power_map.toml")),
+        {"--rig": RIG, "--device": "FOLDER/devices.toml", "--seed": "1", "--tag": "mine"},
+        ("--real-time", "--dry-run", "--yes"),
+    ),
+    "lab virtual": Mode(
+        "lab virtual",
+        (str(RIGS / "power_map.toml"), "--protocol", "FOLDER/short.toml"),
+        {"--protocol": "FOLDER/shorter.toml", "--seed": "1", "--format": "csv"},
+    ),
     "lab runs": Mode(
         "lab runs",
         ("FOLDER/runs",),
@@ -568,6 +596,8 @@ def write_inputs(place: Path) -> None:
         recorder.begin([Channel(name="friction_force", quantity="friction_force")], sample_rate=100.0)
         recorder.append(Block(first_sample=0, sample_rate=100.0, values=force[:, np.newaxis]))
         recorder.finish(outcome).folder.rename(place / "runs" / name)
+    for name, duration in (("short", "1 s"), ("shorter", "0.7 s")):
+        (place / f"{name}.toml").write_text(_SHORT_PROTOCOL.format(duration=duration))
     (place / "points.csv").write_text("0,0,0\n5,1,0\n")
     (place / "shapes.csv").write_text("1,0\n0.5,1\n")
     (place / "sheet.toml").write_bytes((ROOT / "examples" / "test-sheet.toml").read_bytes())

@@ -4,6 +4,7 @@ import contextlib
 import hashlib
 import io
 import json
+import re
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -19,6 +20,7 @@ from sonolube.cli.commands import COMMANDS
 
 pytestmark = pytest.mark.slow
 
+_TIME_OF_RUN = re.compile(r"\d{8}T\d{6}Z")  # in the name of its folder
 CASES = [
     pytest.param(name, option, id=f"{name}{option}")
     for name, mode in MODES.items()
@@ -59,11 +61,11 @@ def outcome(command: str, arguments: tuple[str, ...], folder: Path, place: str) 
     if code not in (0, 1):
         assert errors.getvalue().count("\n") == 1, errors.getvalue()
         return Outcome(code, errors.getvalue(), "", ())
-    content = json.loads(answer.getvalue())
+    content = json.loads(_TIME_OF_RUN.sub("TIME", answer.getvalue().replace(str(out), "OUT")))
     for key in ("settings", "files", "version"):
         content.pop(key, None)
     written = sorted(path for path in out.rglob("*") if path.is_file()) if out.exists() else []
-    names = tuple(f"{path.name} {_numbers(path)}" for path in written)
+    names = tuple(f"{_TIME_OF_RUN.sub('TIME', path.name)} {_numbers(path)}" for path in written)
     return Outcome(0, errors.getvalue(), json.dumps(content, sort_keys=True), names)
 
 

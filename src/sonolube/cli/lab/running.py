@@ -23,6 +23,7 @@ from sonolube.protocol import Prompt, Protocol, flattened, protocol_text
 from sonolube.rig import Rig
 from sonolube.units import format_si
 
+_MOST_SAMPLES = 10_000_000  # of a recording whose mean is told
 _POLL = 0.1  # s, between two looks at requests to end while an operator is asked
 
 
@@ -153,11 +154,13 @@ class RunAnswer(Answer):
         """Outcome, what was recorded, and the next command."""
         summary = self.run.summary
         outcome = summary.outcome + (f": {summary.reason}" if summary.reason else "")
+        mean = self._mean_friction()
         rows = [
             ("outcome", outcome),
             ("motor and drive", "off" if self.result.state is State.SAFE else "NOT confirmed off: cut the power"),
             ("recorded", f"{format_si(summary.duration, 's')}, {summary.samples} samples of each channel"),
             ("channels", ", ".join(summary.channels)),
+            *(() if mean is None else (("mean friction", format_si(mean, "N", digits=3)),)),
             ("record", str(summary.folder)),
         ]
         names = [quote(str(path)) for path in self.run.recordings]
@@ -177,7 +180,16 @@ class RunAnswer(Answer):
             "recordings": [str(path) for path in self.run.recordings],
             "samples": summary.samples,
             **si({"duration": summary.duration}, unit="s"),
+            "tags": self.run.facts.get("tags", ""),
+            **si({"friction_force": self._mean_friction()}),
         }
+
+    def _mean_friction(self) -> float | None:
+        """Mean friction force over a recording of moderate length; None without one."""
+        if not self.run.recordings or self.run.summary.samples > _MOST_SAMPLES:
+            return None
+        recording = self.run.dataset()
+        return float(recording["friction_force"].mean()) if "friction_force" in recording else None
 
     def caveats(self) -> Sequence[str]:
         """What speaks against the record."""

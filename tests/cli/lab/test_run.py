@@ -1,0 +1,124 @@
+"""Commands `lab run` and `lab virtual`: a protocol on the virtual tribometer, its record, and every refusal."""
+
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from pytest import approx
+
+from sonolube.lab.records import read_run
+from sonolube.protocol import protocol_names
+
+Program = Callable[..., Any]
+
+
+def test_a_virtual_test_is_measured_as_a_real_one_and_returns_what_it_was_given(
+    sonolube: Program, rigs: Path, tmp_path: Path
+) -> None:
+    made = sonolube("lab", "virtual", rigs / "power_map.toml", "--seed", "3", "--out", tmp_path, "--json").answer
+    assert (made["outcome"], made["state"], made["samples"]) == ("completed", "safe", 13_000)
+    (recording,) = made["recordings"]
+    measured = sonolube("measure", "friction", recording, "--json").answer
+    rows = measured["results"][0]["tables"]["steps"]["rows"]
+    truth = xr.open_dataset(Path(made["folder"]) / "truth" / "truth.nc")
+    sliding = truth.where(truth["sliding_speed"] > 0, drop=True)
+    for row in rows:
+        nearest = int(np.argmin(np.abs(sliding["voltage_peak_to_peak"].to_numpy() - row["voltage_peak_to_peak"])))
+        known = float(sliding["friction_force"][nearest])
+        assert row["friction_force"] == approx(known, abs=5 * row["friction_force_uncertainty"])
+    assert [row["voltage_peak_to_peak"] for row in rows] == approx([0, 5.1, 10.3, 15.5, 20.7, 25.9])
+    assert made["caveats"][-1] == "friction is drawn from the prediction of the rig: no measurement"
+
+
+def test_a_plan_is_run_measured_and_fitted(sonolube: Program, rigs: Path, tmp_path: Path) -> None:
+    planned = sonolube("plan", rigs / "power_map.toml", "--out", tmp_path / "plan", "--json").answer
+    (first, *_) = sorted(path for path in map(Path, planned["files"]) if path.suffix == ".toml")
+    ran = sonolube("lab", "run", first, "--rig", rigs / "power_map.toml", "--out", tmp_path / "runs", "--json").answer
+    assert ran["outcome"] == "completed"
+    assert sonolube("measure", "friction", *ran["recordings"], "--json").code == 0
+
+
+def test_a_second_run_has_a_folder_of_its_own(sonolube: Program, rigs: Path, tmp_path: Path) -> None:
+    protocol = tmp_path / "short.toml"
+    protocol.write_text(SHORT)
+    options = (protocol, "--rig", rigs / "power_map.toml", "--out", tmp_path / "runs", "--json")
+    folders = [sonolube("lab", "run", *options).answer["folder"] for _ in range(2)]
+    assert len(set(folders)) == 2
+    assert [read_run(Path(folder)).summary.outcome for folder in folders] == ["completed"] * 2
+
+
+@pytest.mark.parametrize("name", protocol_names())
+def test_a_dry_run_of_every_protocol_tells_time_and_data_and_touches_nothing(
+    name: str, sonolube: Program, rigs: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    ran = sonolube("lab", "run", name, "--rig", rigs / "tribometer.toml", "--dry-run")
+    assert ran.code == 0
+    assert "duration " in ran.out
+    assert not any(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        (["lab", "run", "map_tst"], "unknown protocol 'map_tst'; did you mean map_test?"),
+        (["lab", "run", "map_test"], "--device virtual needs --rig RIG.toml"),
+        (["lab", "virtual", "RIG", "--format", "xls"], "unknown format 'xls'"),
+        (["lab", "run", "map_test", "--rig", "RIG", "--dry-run", "--seed", "1"], "--seed"),
+        (["lab", "virtual", "none.toml"], "none.toml: no such file"),
+    ],
+)
+def test_bad_input_is_one_line_and_makes_no_folder(
+    arguments: list[str], line: str, sonolube: Program, rigs: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    words = [rigs / "power_map.toml" if word == "RIG" else word for word in arguments]
+    assert line in sonolube(*words).refusal
+    assert not any(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_a_run_in_order(number: signal.Signals, rigs: Path, tmp_path: Path) -> None:
+    code = (
+        "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        "import sonolube.cli; sonolube.cli.main()"
+    )
+    words = ["lab", "run", "map_test", "--rig", str(rigs / "power_map.toml"), "--real-time", "--out", str(tmp_path)]
+    with subprocess.Popen([sys.executable, "-c", code, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as run:
+        while not list(tmp_path.rglob("*.raw")) + list(tmp_path.rglob("raw/*")):
+            assert run.poll() is None
+            time.sleep(0.02)
+        time.sleep(0.5)
+        run.send_signal(number)
+        run.communicate(timeout=60)
+    assert run.returncode == 1
+    (folder,) = (path for path in tmp_path.iterdir() if (path / "run.json").exists())
+    found = read_run(folder).summary
+    assert (found.outcome, found.reason) == ("stopped", "interrupted" if number == signal.SIGINT else "terminated")
+    assert found.samples > 0
+
+
+SHORT = """title = "short"
+source = "none"
+
+[limits]
+voltage_maximum = "30 V"
+duration_maximum = "2 s"
+
+[[steps]]
+kind = "acquire"
+channels = ["friction_force"]
+sample_rate = "400 Hz"
+duration = "1 s"
+
+[[steps]]
+kind = "motor_speed"
+sliding_speed = "50 mm/s"
+"""
