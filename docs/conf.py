@@ -19,7 +19,7 @@ extensions = [
     "sphinx-mathjax-offline",
     "from_source",
     "gallery",
-    "line_breaks",
+    "narrow_screens",
     "reference_lists",
 ]
 myst_enable_extensions = ["amsmath", "colon_fence", "deflist", "dollarmath"]

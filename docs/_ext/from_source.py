@@ -84,7 +84,7 @@ def _amplitude(rig: Rig) -> str:
     """Return the amplitude of a rig as its file states it, else by which source it is computed."""
     if rig.vibration_amplitude is not None:
         return format_si(rig.vibration_amplitude, "m")
-    return available_sources(rig)[0] if available_sources(rig) else "none"
+    return rig.amplitude_source or next(iter(available_sources(rig)), "none")
 
 
 def errata_of_d() -> str:

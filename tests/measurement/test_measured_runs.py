@@ -31,6 +31,11 @@ def test_a_table_with_every_column_is_read_in_si(tmp_path: Path) -> None:
             assert float(runs[column.name][0]) == approx(expected)
 
 
+def test_a_path_may_be_text(tmp_path: Path) -> None:
+    path = table(tmp_path, "friction_ratio\n0.5\n")
+    assert read_runs(str(path)).equals(read_runs(path))
+
+
 def test_empty_cells_are_not_measured_and_empty_results_are_left_out_with_their_lines(tmp_path: Path) -> None:
     text = "run,sliding_speed [mm/s],normal_load [N],friction_ratio\n1,20,,0.5\n2,30,3,\n3,40,3,0.7\n4,50,3,\n"
     runs = read_runs(table(tmp_path, text))
