@@ -36,6 +36,7 @@ from sonolube.lab.closed_loop import (
     hold_friction,
     hold_metrics,
 )
+from sonolube.lab.virtual_tribometer import virtual_tribometer
 from sonolube.protocol import Limits
 from sonolube.rig import read_rig
 
@@ -340,3 +341,24 @@ def test_the_figure_shows_friction_drive_and_speed_with_units(held: HeldFriction
         assert render_figure(figure, "png")
     assert [axes.get_ylabel()[-3:] for axes in figure.axes] == ["[N]", "[V]", "/s]"]
     assert figure.get_size_inches()[0] * 25.4 == pytest.approx(174, abs=1)
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_friction_of_the_virtual_tribometer_is_held_under_a_step_of_speed(seed: int) -> None:
+    rig = read_rig(TRIBOMETER)
+    virtual = virtual_tribometer(rig, seed=seed)
+    reference = 0.8 * virtual.truth().attrs["friction_coefficient"] * rig.normal_load
+    settings = ControlSettings(
+        amplifier=Amplifier(voltage_maximum=28.0), sample_interval=INTERVAL, dead_time=0.0, duration=10.0
+    )
+    wanted = hold(
+        design_control(rig, settings).controller,
+        friction_force=reference,
+        speeds=(SpeedStep(time=0.0, sliding_speed=SLOW), SpeedStep(time=6.0, sliding_speed=1.3 * SLOW)),
+        duration=12.0,
+    )
+    found = hold_friction(wanted, virtual.devices)
+    assert (found.outcome, found.is_safe) == ("completed", True)
+    for phase in hold_metrics(found):
+        assert phase.friction_force == pytest.approx(reference, rel=0.02)
+        assert phase.tracking_error < SCATTER

@@ -7,7 +7,7 @@ import numpy as np
 
 from sonolube.design.control import initial_state, next_voltage
 from sonolube.errors import InvalidInput, SonolubeError
-from sonolube.interruption import undone_at_signal
+from sonolube.interruption import asked_by_signal, undone_at_signal
 from sonolube.lab.block import Block
 from sonolube.lab.closed_loop.record import FrictionHold, HeldFriction
 from sonolube.lab.devices import DeviceError, Devices, DriveSetting, SamplesLost
@@ -64,8 +64,9 @@ def hold_friction(
     that of its voltage; a mean over the whole interval delays the measurement by up to half of it.
     """
     _require_possible(hold, devices)
-    loop = _Loop(hold, devices, recorder, control or RunControl())
-    with undone_at_signal(loop.switch_off):
+    control = control or RunControl()
+    loop = _Loop(hold, devices, recorder, control)
+    with undone_at_signal(loop.switch_off), asked_by_signal(control.stop):
         return loop.complete(advance)
 
 
