@@ -28,7 +28,7 @@ class AppendedFile:
     path : Path
         Of a new file, in a folder that exists.
     length : int, optional
-        Of an existing file instead, which is cut to this length first. [byte]
+        Of an existing file instead, which is cut to this length in bytes first.
 
     Raises
     ------

@@ -43,7 +43,7 @@ class SetPoint:
     sample_rate : float or None
         Of the recording. [Hz]
     recorded_until : float or None
-        Time at which the recording ends. [s]
+        Time at which the recording ends, in s.
     """
 
     time: float

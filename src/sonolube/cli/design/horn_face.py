@@ -32,7 +32,9 @@ _ASSUMED = {
 
 def face(
     horn: Annotated[str, typer.Argument(metavar="HORN", help="Material of the horn: aluminium or steel.")],
-    frequency: Annotated[float, si_option("Hz", "Of the drive on the horn's end.")] = TypedNumber("20kHz", "Hz"),
+    at: Annotated[float, si_option("Hz", "Of the drive on the horn's end.", "--frequency")] = TypedNumber(
+        "20kHz", "Hz"
+    ),
     amplitude: Annotated[float, si_option("m", "Of the driven end, zero to peak.")] = TypedNumber("8.5um", "m"),
     speed: Annotated[float, si_option("m/s", "Of the block towards the node.", "--sliding-speed")] = TypedNumber(
         "5mm/s", "m/s"
@@ -45,11 +47,11 @@ def face(
     Example: sonolube horn face aluminium
     """
     body = _horn(horn)
-    for name, value in (("--frequency", frequency), ("--amplitude", amplitude), ("--sliding-speed", speed)):
+    for name, value in (("--frequency", at), ("--amplitude", amplitude), ("--sliding-speed", speed)):
         if not value > 0:
             raise InvalidInput(f"{name} must be positive")
     with progress("solving"):
-        found = friction_on_face(body, frequency=frequency, axial_amplitude=amplitude, sliding_speed=speed)
+        found = friction_on_face(body, frequency=at, axial_amplitude=amplitude, sliding_speed=speed)
     deliver(FaceAnswer(horn=body, friction=found), folder=out, as_json=json)
 
 

@@ -59,7 +59,7 @@ class RunSummary:
     folder : Path
     title : str
     begun : float
-        Since 1970. [s]
+        Since 1970, in s.
     outcome : str
         completed, stopped, failed, interrupted, running or unfinished.
     reason : str

@@ -25,11 +25,11 @@ class Disturbances:
     stick_slip_share : float
         Fall of the force at a slip without vibration, over its mean; zero for steady sliding.
     holder_stiffness : float
-        Of the holder of the pin, by which force rises while the pin sticks, in N/m; as in the design of controllers.
+        Of the holder of the pin, by which force rises while the pin sticks, as in the design of controllers. [N/m]
     holder_mass : float
-        Mass that swings on it, in kg.
+        Mass that swings on it. [kg]
     holder_damping_ratio : float
-        Of that motion. []
+        Of that motion.
     friction_noise : float
         Standard deviation of slow fluctuations of friction, over its mean.
     noise_time : float
@@ -51,7 +51,7 @@ class Disturbances:
     vibration_time : float
         Time constant with which the vibration follows the drive, in s.
     ambient_temperature : float
-        In K.
+        [K]
     heat_share : float
         Share of the power drawn by the actuator that heats it: losses of hard ceramics of several per cent.
     thermal_resistance : float

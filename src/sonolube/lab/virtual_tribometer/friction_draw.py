@@ -25,7 +25,7 @@ class FrictionLevel:
     Parameters
     ----------
     friction_force : float
-        Worn in, in N.
+        Worn in. [N]
     friction_ratio : float
         Over that without vibration. []
     vibration_amplitude : float
@@ -33,7 +33,7 @@ class FrictionLevel:
     wear_rate : float
         Volume per sliding distance. [m2]
     actuator_power : float
-        Drawn by the actuator, in W; 0 where the rig does not say.
+        Drawn by the actuator; 0 where the rig does not say. [W]
     """
 
     friction_force: float

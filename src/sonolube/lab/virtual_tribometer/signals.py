@@ -15,10 +15,11 @@ class Approach:
     Parameters
     ----------
     start : float
-        Time. [s]
+        Time, in s.
     value : float
         At that time.
     target : float
+        Reached in the end.
     time_constant : float
         [s]
     """
@@ -43,19 +44,20 @@ class Approach:
         return Approach(time, float(self.at(np.asarray(time))), target, self.time_constant)
 
 
-def waveform(phase: Floats, shape: str) -> Floats:
-    """Waveform between -1 and 1 over its phase in periods.
+def waveform(*, periods: Floats, shape: str) -> Floats:
+    """Waveform between -1 and 1 over its periods.
 
     Parameters
     ----------
-    phase : ndarray
+    periods : ndarray
+        Phase over a full turn.
     shape : {"sine", "square", "triangle", "sawtooth"}
 
     Returns
     -------
     ndarray
     """
-    turn = phase % 1.0
+    turn = periods % 1.0
     match shape:
         case "square":
             return np.where(turn < 0.5, 1.0, -1.0)
@@ -66,33 +68,34 @@ def waveform(phase: Floats, shape: str) -> Floats:
     return np.asarray(np.sin(2 * np.pi * turn))
 
 
-def hall_pulses(revolutions: Floats, *, magnets: int, width: float = 0.06) -> Floats:
+def hall_pulses(*, revolutions: Floats, magnets: int, pulse: float = 0.06) -> Floats:
     """Signal of a Hall probe by magnets at the rim of a disc, of height 1.
 
     Parameters
     ----------
     revolutions : ndarray
+        []
     magnets : int
-    width : float
-        Standard deviation of a pulse over the distance between magnets. []
+    pulse : float
+        Standard deviation of a pulse over the distance between magnets.
 
     Returns
     -------
     ndarray
     """
     from_centre = (revolutions * magnets) % 1.0 - 0.5
-    return np.asarray(np.exp(-0.5 * (from_centre / width) ** 2))
+    return np.asarray(np.exp(-0.5 * (from_centre / pulse) ** 2))
 
 
-def sawtooth_of_stick_slip(distance: Floats, *, pitch: float) -> Floats:
+def sawtooth_of_stick_slip(*, distance: Floats, pitch: float) -> Floats:
     """Force between slips over the drawn distance: a straight rise from -1/2 to 1/2, then a fall.
 
     Parameters
     ----------
     distance : ndarray
-        Drawn by the holder. [m]
+        Drawn by the holder, in m.
     pitch : float
-        Fall of the force over the stiffness of the holder. [m]
+        Fall of the force over the stiffness of the holder, in m.
 
     Returns
     -------
@@ -129,12 +132,24 @@ class ColouredNoise:
         return np.asarray(found)
 
 
-def correlated(time_constant: float, *, sample_rate: float) -> tuple[float, float]:
-    """Feedback of noise whose correlation falls exponentially over a time constant. [s]"""
+def correlated(*, time_constant: float, sample_rate: float) -> tuple[float, float]:
+    """Feedback of noise whose correlation falls exponentially.
+
+    Parameters
+    ----------
+    time_constant : float
+        Over which it falls by a factor e. [s]
+    sample_rate : float
+        [Hz]
+
+    Returns
+    -------
+    tuple of float
+    """
     return float(np.exp(-1 / (time_constant * sample_rate))), 0.0
 
 
-def resonant(frequency: float, *, damping_ratio: float, sample_rate: float) -> tuple[float, float]:
+def resonant(*, frequency: float, damping_ratio: float, sample_rate: float) -> tuple[float, float]:
     """Feedback of noise at the natural frequency of a damped oscillator; white where it is not resolved.
 
     Parameters

@@ -115,9 +115,9 @@ class VirtualRig:
         self._began_at = monotonic()
         sizes = self._sizes
         feedback = {
-            "friction noise": correlated(sizes.noise_time, sample_rate=sample_rate),
+            "friction noise": correlated(time_constant=sizes.noise_time, sample_rate=sample_rate),
             "ringing": resonant(
-                sizes.natural_frequency, damping_ratio=sizes.holder_damping_ratio, sample_rate=sample_rate
+                frequency=sizes.natural_frequency, damping_ratio=sizes.holder_damping_ratio, sample_rate=sample_rate
             ),
         }
         kinds = (*CHANNELS, *feedback)
@@ -254,7 +254,7 @@ class VirtualRig:
         fall = sizes.stick_slip_share * mean
         if fall > 0:
             sticks = self._setting is None
-            force += sticks * fall * sawtooth_of_stick_slip(distance, pitch=fall / sizes.holder_stiffness)
+            force += sticks * fall * sawtooth_of_stick_slip(distance=distance, pitch=fall / sizes.holder_stiffness)
         turning = self._turning.at(time)
         drawn = sizes.holder_stiffness * (distance - self._began_to_slide)  # while the pin still sticks
         force = np.minimum(force, drawn) * (turning / (turning + _STANDS))
@@ -275,7 +275,7 @@ class VirtualRig:
         if setting is None:
             return self._sizes.voltage_noise * noise
         half = setting.voltage_peak_to_peak / 2
-        wave = waveform(self._phase(time, setting), setting.waveform)
+        wave = waveform(periods=self._phase(time, setting), shape=setting.waveform)
         return setting.voltage_offset + half * (wave + self._sizes.voltage_noise * noise)
 
     def _monitor(self, time: Floats) -> Floats:
@@ -290,12 +290,11 @@ class VirtualRig:
         if setting is None or capacitance is None:
             return noise
         step = 1 / (400 * setting.frequency)
-        before, after = (
-            waveform(self._phase(time + shift, setting), setting.waveform) for shift in (-step / 2, step / 2)
-        )
+        phases = (self._phase(time + shift, setting) for shift in (-step / 2, step / 2))
+        before, after = (waveform(periods=phase, shape=setting.waveform) for phase in phases)
         return noise + capacitance * setting.voltage_peak_to_peak / 2 * (after - before) / step
 
     def _flux(self, time: Floats) -> Floats:
         """Reading of the Hall probe."""
-        pulses = hall_pulses(self._turned(time), magnets=self._sizes.magnets)
+        pulses = hall_pulses(revolutions=self._turned(time), magnets=self._sizes.magnets)
         return _PULSE * (pulses + self._white("gaussmeter", self._sizes.flux_noise, time))
