@@ -24,10 +24,12 @@ class RunQuery:
     ----------
     materials : tuple of str
         Of pin or disc, by a part of the name.
-    normal_load, sliding_speed : (float, float) or None
-        Lowest and highest. [N], [m/s]
+    normal_load : (float, float) or None
+        Lowest and highest. [N]
+    sliding_speed : (float, float) or None
+        Lowest and highest. [m/s]
     since, until : float or None
-        Of the begin, since 1970. [s]
+        Of the begin, in s since 1970.
     tags : tuple of str
     texts : tuple of str
         Each found anywhere in title, facts, protocol and notes.

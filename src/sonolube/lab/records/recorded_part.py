@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from sonolube.lab.block import Block
 from sonolube.lab.records.documents import ReadDocuments, part_name
-from sonolube.lab.records.raw_blocks import RawPart, raw_blocks, scan_raw
+from sonolube.lab.records.raw_blocks import RawPart, read_raw_blocks, scan_raw
 from sonolube.lab.records.run_folder import raw_path
 
 Floats = NDArray[np.float64]
@@ -32,7 +32,7 @@ class RecordedPart:
         What they hold.
     voltages : tuple of (int, float)
         Sample from which a drive voltage was set, and its peak-to-peak value; none where the drive was not used, or its
-        voltage is a channel. [V]
+        voltage is a channel, in V.
     """
 
     path: Path
@@ -68,7 +68,7 @@ class RecordedPart:
         """Yield the time since the first sample, in s, and the columns in the order of `variables`, many rows each."""
         blocks: list[Block] = []
         rows = 0
-        for block in raw_blocks(self.path):
+        for block in read_raw_blocks(self.path):
             blocks.append(block)
             rows += block.samples
             if rows >= _ROWS:
