@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from reliability.study import Measure, Record, Study
-from sonolube.lab.records import read_blocks, read_run, recover_run, run_folders
+from sonolube.lab.records import read_raw_blocks, read_run, recover_run, run_folders
 from sonolube.measurement.recordings.reader import read_recording
 
 _WRITER = """
@@ -62,7 +62,7 @@ def _lost_and_wrong(folder: Path, told: dict[int, int]) -> tuple[int, int]:
         if part < 1:
             continue
         found = 0
-        for block in read_blocks(folder / "raw" / f"blocks-{part}.bin"):
+        for block in read_raw_blocks(folder / "raw" / f"blocks-{part}.bin"):
             numbers = np.arange(block.first_sample, block.next_sample, dtype=np.float64)
             wrong += int(np.sum(block.values != numbers[:, None] * [1.0, -1.0] + part))
             found += block.samples

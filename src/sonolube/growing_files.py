@@ -27,8 +27,8 @@ class AppendedFile:
     ----------
     path : Path
         Of a new file, in a folder that exists.
-    length : int, optional
-        Of an existing file instead, which is cut to this length in bytes first.
+    keep : int, optional
+        Bytes of an existing file that are kept, which is continued instead.
 
     Raises
     ------
@@ -41,13 +41,13 @@ class AppendedFile:
     nothing. About once a second, and at the end, the disk is asked to keep it; a loss of power costs the last second.
     """
 
-    def __init__(self, path: Path, *, length: int | None = None) -> None:
+    def __init__(self, path: Path, *, keep: int | None = None) -> None:
         self._path = path
         target = expect_target(path)
         try:
-            self._handle = os.open(target, _FLAGS | (os.O_CREAT | os.O_EXCL if length is None else 0), 0o666)
-            if length is not None:
-                os.ftruncate(self._handle, length)
+            self._handle = os.open(target, _FLAGS | (os.O_CREAT | os.O_EXCL if keep is None else 0), 0o666)
+            if keep is not None:
+                os.ftruncate(self._handle, keep)
         except OSError as failure:
             raise refusal(path, failure.strerror) from None
         self.length = os.lseek(self._handle, 0, os.SEEK_END)

@@ -8,7 +8,7 @@ from hypothesis import HealthCheck, given, settings, strategies as st
 from tests.lab.records.recorded import CHANNELS, RATE, block_of, values_of
 
 from sonolube.errors import InvalidInput
-from sonolube.lab.records import read_blocks, scan_raw
+from sonolube.lab.records import read_raw_blocks, scan_raw
 from sonolube.lab.records.raw_blocks import raw_header, raw_record
 
 HEADER = raw_header(CHANNELS, sample_rate=RATE, begun=1.8e9)
@@ -32,7 +32,7 @@ def file_of(folder: Path, content: bytes) -> Path:
 def true_samples(path: Path) -> list[int]:
     """Numbers of the samples of a file, each of which has its own values."""
     numbers: list[int] = []
-    for block in read_blocks(path):
+    for block in read_raw_blocks(path):
         assert np.array_equal(block.values, values_of(block.first_sample, block.samples))
         numbers += range(block.first_sample, block.next_sample)
     assert numbers == sorted(set(numbers))

@@ -29,7 +29,7 @@ class RunQuery:
     sliding_speed : (float, float) or None
         Lowest and highest. [m/s]
     since, until : float or None
-        Of the begin, since 1970, in s.
+        Of the begin, in s since 1970.
     tags : tuple of str
     texts : tuple of str
         Each found anywhere in title, facts, protocol and notes.

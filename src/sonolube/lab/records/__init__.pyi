@@ -1,5 +1,5 @@
 from .exports import EXPORT_FORMATS as EXPORT_FORMATS, export_run as export_run
-from .raw_blocks import RawPart as RawPart, read_blocks as read_blocks, scan_raw as scan_raw
+from .raw_blocks import RawPart as RawPart, read_raw_blocks as read_raw_blocks, scan_raw as scan_raw
 from .recorder import RunRecorder as RunRecorder, new_run as new_run
 from .recovery import Recovery as Recovery, recover_run as recover_run
 from .run import (

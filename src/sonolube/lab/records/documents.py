@@ -83,7 +83,7 @@ class DocumentLog:
 
     def __init__(self, folder: Path, *, earlier: ReadDocuments | None = None) -> None:
         self._folder = folder
-        self._file = AppendedFile(folder / DOCUMENTS, length=None if earlier is None else earlier.whole_bytes)
+        self._file = AppendedFile(folder / DOCUMENTS, keep=None if earlier is None else earlier.whole_bytes)
         starts = [] if earlier is None else earlier.of("start")
         self._run = str(starts[0]["uid"]) if starts else str(uuid4())
         descriptors = {} if earlier is None else {str(each.get("name")): each for each in earlier.of("descriptor")}

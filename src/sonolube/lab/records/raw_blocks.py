@@ -57,7 +57,7 @@ class RawPart:
     sample_rate : float
         [Hz]
     begun : float
-        Since 1970, in s.
+        In s since 1970.
     header_bytes : int
         Length of the header.
     samples : int
@@ -104,7 +104,7 @@ def raw_header(channels: Sequence[Channel], *, sample_rate: float, begun: float)
     sample_rate : float
         [Hz]
     begun : float
-        Time of the first sample since 1970, in s.
+        Time of the first sample, in s since 1970.
 
     Returns
     -------
@@ -173,7 +173,7 @@ def scan_raw(path: Path) -> RawPart:
     return part
 
 
-def read_blocks(path: Path) -> Iterator[Block]:
+def read_raw_blocks(path: Path) -> Iterator[Block]:
     """Yield the whole blocks of a file, one at a time; what is damaged is left out, and so a gap.
 
     Parameters

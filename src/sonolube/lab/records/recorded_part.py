@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from sonolube.lab.block import Block
 from sonolube.lab.records.documents import ReadDocuments, part_name
-from sonolube.lab.records.raw_blocks import RawPart, read_blocks, scan_raw
+from sonolube.lab.records.raw_blocks import RawPart, read_raw_blocks, scan_raw
 from sonolube.lab.records.run_folder import raw_path
 
 Floats = NDArray[np.float64]
@@ -68,7 +68,7 @@ class RecordedPart:
         """Yield the time since the first sample, in s, and the columns in the order of `variables`, many rows each."""
         blocks: list[Block] = []
         rows = 0
-        for block in read_blocks(self.path):
+        for block in read_raw_blocks(self.path):
             blocks.append(block)
             rows += block.samples
             if rows >= _ROWS:

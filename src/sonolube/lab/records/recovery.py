@@ -1,12 +1,13 @@
 """Recovery of runs whose program was killed: the damaged end is kept aside, recording and documents completed."""
 
+import time
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
 from sonolube.errors import InvalidInput
-from sonolube.files import clear_unfinished, locked_folder, remove_file, unfinished_file
+from sonolube.files import clear_unfinished, is_locked, locked_folder, remove_file, unfinished_file
 from sonolube.growing_files import AppendedFile
 from sonolube.lab.records.documents import DocumentLog, read_documents
 from sonolube.lab.records.raw_blocks import RawPart, scan_raw
@@ -25,6 +26,8 @@ from sonolube.lab.records.run_folder import (
 )
 
 _COPIED: Final = 1 << 20  # bytes at a time
+_PATIENCE: Final = 1.0  # s
+_POLL: Final = 0.02  # s
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -65,6 +68,7 @@ def recover_run(folder: Path) -> Recovery:
     if known.referenced:
         return Recovery(summary=run_summary(folder), done=())
     done: list[str] = []
+    _wait_for_the_end(folder)
     with locked_folder(folder, purpose=PURPOSE):
         documents = read_documents(folder)
         if not documents.is_whole:
@@ -77,6 +81,13 @@ def recover_run(folder: Path) -> Recovery:
         _write_missing(folder, known, parts, done)
         remove_file(folder / RESERVE)
     return Recovery(summary=run_summary(folder), done=tuple(done))
+
+
+def _wait_for_the_end(folder: Path) -> None:
+    """Wait a moment where the lock is held: what a killed process has just started may hold it until it begins."""
+    latest = time.monotonic() + _PATIENCE
+    while is_locked(folder) and time.monotonic() < latest:
+        time.sleep(_POLL)
 
 
 def _mended_parts(folder: Path, done: list[str]) -> dict[int, RawPart]:
@@ -134,5 +145,5 @@ def _set_aside(path: Path, length: int) -> str:
             file.write(piece)
         file.complete()
     size = path.stat().st_size - length
-    AppendedFile(path, length=length).close()
+    AppendedFile(path, keep=length).close()
     return f"{size} bytes of an unfinished entry cut off {path.name}, kept in {aside.name}"

@@ -59,7 +59,7 @@ class RunSummary:
     folder : Path
     title : str
     begun : float
-        Since 1970, in s.
+        In s since 1970.
     outcome : str
         completed, stopped, failed, interrupted, running or unfinished.
     reason : str

@@ -40,7 +40,7 @@ class RunFacts:
     ----------
     title : str
     begun : float
-        Of the clock of the computer, since 1970, in s.
+        Of the clock of the computer, in s since 1970.
     facts : mapping of str to str, float, int or bool
     versions : mapping of str to str
         Of sonolube, python and numpy.
@@ -84,7 +84,7 @@ def make_run_folder(
     parent : Path
     title : str
     begun : float
-        Since 1970, in s.
+        In s since 1970.
     texts : mapping of str to str
         By name of the file.
     facts : mapping of str to str, float, int or bool
