@@ -7,6 +7,7 @@ from pathlib import Path
 
 from sonolube.errors import SonolubeError
 from sonolube.lab.records import Run, RunSummary, read_run
+from sonolube.printable_text import printable
 from sonolube.protocol import Protocol, flattened, protocol_from
 
 
@@ -66,7 +67,7 @@ def catalogue_entry(folder: Path) -> CatalogueEntry:
         normal_load=_number(run, "normal_load", None if protocol is None else protocol.metadata.normal_load),
         sliding_speed=_number(run, "sliding_speed", None if protocol is None else _speed(run, protocol)),
         tags=tuple(filter(None, tags)),
-        text="\n".join([folder.name, run.summary.title, run.summary.reason, run.protocol, *facts, *notes]),
+        text=printable("\n".join([folder.name, run.summary.title, run.summary.reason, run.protocol, *facts, *notes])),
     )
 
 

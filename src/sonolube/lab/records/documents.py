@@ -20,6 +20,7 @@ _NAMES: Final = ("start", "descriptor", "event", "stream_resource", "stream_datu
 _NOTES: Final = "notes"
 _MIME: Final = "application/x-sonolube-blocks"
 _LARGEST_LINE: Final = 1 << 24
+_MOST_SAMPLES: Final = 1 << 53
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -269,7 +270,9 @@ def _has_what_is_read(name: str, document: Document) -> bool:
         if name == "event":
             return isinstance(document["data"]["kind"], str) and isinstance(document["data"]["facts"], str)
         if name == "stream_datum":
-            return isinstance(document["indices"]["stop"], int)
+            return isinstance(stop := document["indices"]["stop"], int) and 0 <= stop < _MOST_SAMPLES
+        if name == "stream_resource":
+            return isinstance(document["parameters"], dict)
         if name == "descriptor":
             return isinstance(document["data_keys"], dict)
         return name != "stop" or isinstance(document["exit_status"], str)

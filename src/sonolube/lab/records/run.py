@@ -12,6 +12,7 @@ from sonolube.files import is_locked
 from sonolube.lab.records.documents import EXIT_STATUS, ReadDocuments, numbered_parts, part_name, read_documents
 from sonolube.lab.records.run_folder import (
     DOCUMENTS,
+    LATEST,
     PROTOCOL,
     RUN,
     RunFacts,
@@ -24,6 +25,7 @@ from sonolube.lab.records.run_folder import (
 if TYPE_CHECKING:
     import xarray as xr
 
+_FASTEST: Final = 1e15  # Hz
 RUNNING: Final = "running"
 UNFINISHED: Final = "unfinished"
 """Outcome of a run whose program was killed and that was not recovered yet."""
@@ -281,15 +283,15 @@ def _parts(documents: ReadDocuments) -> tuple[dict[str, int], dict[str, float]]:
         counts[uid] = max(counts.get(uid, 0), int(datum["indices"]["stop"]))
         describes[str(datum.get("stream_resource"))] = uid
     for resource in documents.of("stream_resource"):
-        rate = (resource.get("parameters") or {}).get("sample_rate")
-        if resource["uid"] in describes and isinstance(rate, int | float):
+        rate = resource["parameters"].get("sample_rate")
+        if resource["uid"] in describes and isinstance(rate, int | float) and 0 < rate < _FASTEST:
             rates[describes[resource["uid"]]] = float(rate)
     return counts, rates
 
 
 def _note(event: Mapping[str, Any]) -> Note:
     """Event as a note."""
-    data = event["data"]
+    data, time = event["data"], event.get("time")
     try:
         facts = json.loads(data["facts"])
     except (ValueError, RecursionError):
@@ -297,7 +299,7 @@ def _note(event: Mapping[str, Any]) -> Note:
     sample = data.get("sample")
     return Note(
         kind=data["kind"],
-        time=float(event.get("time") or 0.0),
+        time=float(time) if isinstance(time, int | float) and abs(time) < LATEST else 0.0,
         sample=sample if isinstance(sample, int) else None,
         facts=facts if isinstance(facts, dict) else {},
     )

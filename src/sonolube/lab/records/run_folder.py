@@ -12,6 +12,7 @@ from typing import Any, Final
 from sonolube.errors import InvalidInput
 from sonolube.files import write_atomically
 from sonolube.growing_files import new_folder
+from sonolube.printable_text import printable
 
 PROTOCOL: Final = "protocol.toml"
 RUN: Final = "run.json"
@@ -25,7 +26,11 @@ RESERVE: Final = ".reserve"
 Fact = str | float | int | bool
 Facts = Mapping[str, Fact]
 
+LATEST: Final = 1e11
+"""Time in s since 1970 beyond which no run began."""
+
 _FORMAT: Final = 1
+_LARGEST_NUMBER: Final = 1e300
 _RESERVED_BYTES: Final = 1 << 16
 _LONGEST_NAME: Final = 60
 _PLAIN_NAME: Final = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,99}")
@@ -147,18 +152,32 @@ def read_run_facts(folder: Path) -> RunFacts:
         if path.stat().st_size > _LARGEST_TEXT:
             raise ValueError
         content: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+        begun = float(content["begun"])
+        if not 0 <= begun < LATEST:
+            raise ValueError
         return RunFacts(
-            title=str(content["title"]),
-            begun=float(content["begun"]),
-            facts={str(name): value for name, value in content["facts"].items() if isinstance(value, Fact)},
+            title=printable(str(content["title"])),
+            begun=begun,
+            facts={printable(str(name)): _fact(value) for name, value in content["facts"].items()},
             versions={str(name): str(value) for name, value in content["versions"].items()},
             files={str(name): str(value) for name, value in content["files"].items()},
-            referenced=tuple(map(str, content.get("referenced", ()))),
+            referenced=tuple(printable(str(name)) for name in content.get("referenced", ())),
         )
     except OSError:
         raise InvalidInput(f"{folder}: holds no run: it has no file {RUN}") from None
-    except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
+    except (ValueError, TypeError, KeyError, AttributeError, OverflowError, RecursionError):
         raise InvalidInput(f"{path}: is damaged; restore it, or remove the folder") from None
+
+
+def _fact(value: object) -> Fact:
+    """Fact as it was read; raises ValueError where it is none."""
+    if isinstance(value, str):
+        return printable(value)
+    if isinstance(value, bool):
+        return value
+    if isinstance(value, int | float) and abs(value) < _LARGEST_NUMBER:
+        return value
+    raise ValueError
 
 
 def changed_files(folder: Path, known: RunFacts) -> list[str]:
@@ -173,6 +192,8 @@ def sha256(content: bytes) -> str:
 
 def _digest_of(path: Path) -> str:
     """SHA-256 of a file; empty where it cannot be read."""
+    if not path.is_file():
+        return ""  # a pipe would wait for ever
     try:
         with path.open("rb") as stream:
             return hashlib.file_digest(stream, "sha256").hexdigest()
