@@ -11,6 +11,7 @@ _PART = "Predict a part"
 _DESIGN = "Design"
 _MEASURE = "Measure"
 _COMPARE = "Compare and identify"
+_LAB = "Laboratory"
 _LOOKUP = "Look up"
 
 
@@ -82,6 +83,7 @@ COMMANDS = (
     Command(_COMPARE, "identify rig", "compare.identify:identify_rig"),
     Command(_COMPARE, "literature", "compare.literature:literature"),
     Command(_COMPARE, "reproduce", "compare.reproduce:reproduce"),
+    Command(_LAB, "lab check", "lab.check:check"),
     Command(_LOOKUP, "materials", "lookup.materials:materials"),
     Command(_LOOKUP, "actuators", "lookup.actuators:actuators"),
     Command(_LOOKUP, "published", "lookup.published:published"),
@@ -93,6 +95,7 @@ GROUPS = {
     "impedance": "Impedance of piezoelectric parts, by finite elements.",
     "horn": "Design horns and other resonators.",
     "measure": "Measure what instruments recorded: friction, surfaces, spectra, vibration.",
+    "lab": "Laboratory: run protocols on a rig, and keep their records.",
     "identify": "Identify the parameters of a model from published facts.",
 }
 """Help of each group of commands."""
