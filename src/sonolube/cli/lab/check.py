@@ -84,7 +84,7 @@ class CheckAnswer(Answer):
 
     def caveats(self) -> Sequence[str]:
         """That no driver has met hardware."""
-        return ("the drivers were tested on stand-ins, not on hardware: watch the first run, with a hand on the switch",)
+        return ("the drivers were tested on stand-ins, never on hardware: keep a hand on the switch in the first run",)
 
 
 def _readings(device_map: DeviceMap) -> dict[str, tuple[float, str]]:

@@ -25,11 +25,8 @@ class Kind(StrEnum):
 _SCHEMAS = {Kind.RIG: rig_schema, Kind.PROTOCOL: protocol_schema, Kind.DEVICES: device_map_schema}
 
 
-def schema(
-    kind: Annotated[Kind, typer.Argument(help="Files to describe: rigs, protocols of tests, or maps of devices.")] = Kind.RIG,
-    json: Json = False,
-) -> None:
-    """JSON schema of rig files, protocols or device maps, for editors and other programs; the same with and without --json.
+def schema(kind: Annotated[Kind, typer.Argument(help="Files to describe.")] = Kind.RIG, json: Json = False) -> None:
+    """JSON schema of rig files, protocols or device maps, for editors and programs; the same with and without --json.
 
     Example: sonolube schema > rig.schema.json
     """

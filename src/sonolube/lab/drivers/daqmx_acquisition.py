@@ -39,7 +39,7 @@ class AnalogueInput:
     terminal : str
         Such as Dev1/ai0.
     voltage_range : float
-        Magnitude of the voltage that the input takes. [V]
+        Magnitude of the voltage that the input takes, in V.
     scale : SensorScale
         Voltage to quantity.
     wiring : str
@@ -68,7 +68,7 @@ class DaqmxAcquisition:
         As NI-DAQmx calls it, such as Dev1.
     inputs : sequence of AnalogueInput
     sample_rate_maximum : float
-        Of all channels together, since most devices have one converter for all. [Hz]
+        Of all channels together, since most devices have one converter for all; in Hz.
     """
 
     def __init__(self, *, device: str, inputs: Sequence[AnalogueInput], sample_rate_maximum: float) -> None:

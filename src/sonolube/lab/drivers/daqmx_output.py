@@ -20,7 +20,7 @@ SAMPLES_PER_PERIOD: Final = 20
 
 _LONGEST_BUFFER: Final = 100_000  # samples
 _SHORTEST_BUFFER: Final = 1000  # samples, so that the driver refills it seldom
-_FREQUENCY_ERROR: Final = 1e-6
+_FREQUENCY_ERROR: Final = 1e-5  # a fifth of that of the clocks of such devices
 
 _SHAPES: Final[Mapping[str, Any]] = MappingProxyType(
     {  # of a phase in periods, between -1 and 1
@@ -40,7 +40,7 @@ class DaqmxOutput:
     terminal : str
         Such as Dev1/ao0.
     voltage_range : float
-        Magnitude that it can give. [V]
+        Magnitude that it can give, in V.
     """
 
     def __init__(self, *, terminal: str, voltage_range: float) -> None:
@@ -55,11 +55,17 @@ class DaqmxOutput:
         return self._library is not None
 
     def open(self) -> None:
-        """Find driver and device."""
-        if self._library is None:
-            library = daqmx_library()
-            require_device(library, self._terminal.partition("/")[0], name=self.name)
-            self._library = library
+        """Find driver and device, and give 0 V."""
+        if self._library is not None:
+            return
+        library = daqmx_library()
+        require_device(library, self._terminal.partition("/")[0], name=self.name)
+        self._library = library
+        try:
+            self.hold(0.0)
+        except BaseException:
+            self.close()
+            raise
 
     def hold(self, voltage: float) -> None:
         """Give a steady voltage. [V]"""
@@ -77,7 +83,7 @@ class DaqmxOutput:
             self._add_channel(task)
             task.timing.cfg_samp_clk_timing(sample_rate, sample_mode=continuous, samps_per_chan=_SHORTEST_BUFFER)
             rate = float(task.timing.samp_clk_rate)
-            periods, samples = whole_periods(setting.frequency, sample_rate=rate, device=self.name)
+            periods, samples = whole_periods(frequency=setting.frequency, sample_rate=rate, device=self.name)
             volts = offset + amplitude / 2 * waveform_samples(setting.waveform, periods=periods, samples=samples)
             task.timing.cfg_samp_clk_timing(sample_rate, sample_mode=continuous, samps_per_chan=samples)
             task.write(volts, auto_start=False)
@@ -85,8 +91,7 @@ class DaqmxOutput:
 
     def close(self) -> None:
         """Release the device."""
-        with suppress(DeviceError):
-            self._release()
+        self._release()
         self._library = None
 
     def _add_channel(self, task: Any) -> None:
@@ -97,7 +102,7 @@ class DaqmxOutput:
         """End the waveform; the output stays at its last voltage until it is given another."""
         task, self._task = self._task, None
         if task is not None:
-            with daqmx_errors(self.name):
+            with suppress(DeviceError), daqmx_errors(self.name):  # what follows fails too where that matters
                 task.close()
 
 
@@ -121,9 +126,7 @@ class DaqmxDrive:
 
     def connect(self) -> None:
         """Find the device, and set the output to 0 V."""
-        if not self._output.is_open:
-            self._output.open()
-            self._output.hold(0.0)
+        self._output.open()
 
     def drive(self, setting: DriveSetting) -> None:
         """Set the output, which rests for some ms between two settings."""
@@ -133,11 +136,17 @@ class DaqmxDrive:
         if setting.voltage_peak_to_peak == 0:
             self.off()
         else:
-            self._output.repeat(setting, amplitude=amplitude, offset=offset, sample_rate=self._sample_rate)
+            try:
+                self._output.repeat(setting, amplitude=amplitude, offset=offset, sample_rate=self._sample_rate)
+            except DeviceError:
+                with suppress(DeviceError):
+                    self.off()
+                raise
 
     def off(self) -> None:
         """Set the output to 0 V."""
-        _hold_after_all(self._output, 0.0)
+        if self._output.is_open:
+            self._output.hold(0.0)
 
     def close(self) -> None:
         """Set the output to 0 V and release the device."""
@@ -154,9 +163,9 @@ class DaqmxMotor:
     terminal : str
         Such as Dev1/ao1.
     rotation_speed_maximum : float
-        Of the disc. [1/s]
+        Of the disc, in 1/s.
     voltage_at_maximum : float
-        At which the disc turns at that speed; 0 V is rest. [V]
+        At which the disc turns at that speed; 0 V is rest; in V.
     """
 
     def __init__(self, *, terminal: str, rotation_speed_maximum: float, voltage_at_maximum: float) -> None:
@@ -167,13 +176,11 @@ class DaqmxMotor:
 
     def connect(self) -> None:
         """Find the device, and let the motor rest."""
-        if not self._output.is_open:
-            self._output.open()
-            self._output.hold(0.0)
+        self._output.open()
 
     def turn(self, rotation_speed: float) -> None:
         """Set the speed of the disc, 0 to stop. [1/s]"""
-        require_speed(rotation_speed, self.rotation_speed_maximum, device=self.name)
+        require_speed(rotation_speed=rotation_speed, highest=self.rotation_speed_maximum, device=self.name)
         if not self._output.is_open:
             raise DeviceError(f"{self.name}: connect it before turning")
         share = min(rotation_speed / self.rotation_speed_maximum, 1.0)
@@ -181,7 +188,8 @@ class DaqmxMotor:
 
     def off(self) -> None:
         """Set the output to 0 V."""
-        _hold_after_all(self._output, 0.0)
+        if self._output.is_open:
+            self._output.hold(0.0)
 
     def close(self) -> None:
         """Set the output to 0 V and release the device."""
@@ -190,7 +198,7 @@ class DaqmxMotor:
         self._output.close()
 
 
-def whole_periods(frequency: float, *, sample_rate: float, device: str) -> tuple[int, int]:
+def whole_periods(*, frequency: float, sample_rate: float, device: str) -> tuple[int, int]:
     """Numbers of periods and of samples of a buffer that can be repeated without a step.
 
     Parameters
@@ -207,7 +215,7 @@ def whole_periods(frequency: float, *, sample_rate: float, device: str) -> tuple
     Raises
     ------
     DeviceError
-        If a period has fewer than 20 samples, or no buffer meets the frequency within 1 ppm.
+        If a period has fewer than 20 samples, or no buffer meets the frequency within 10 ppm.
     """
     if frequency * SAMPLES_PER_PERIOD > sample_rate * (1 + 1e-9):
         most = format_si(sample_rate / SAMPLES_PER_PERIOD, "Hz")
@@ -235,12 +243,3 @@ def waveform_samples(waveform: str, *, periods: int, samples: int) -> NDArray[np
     """
     shape = _SHAPES[waveform](np.arange(samples) * periods % samples / samples)
     return np.asarray(shape, dtype=np.float64)
-
-
-def _hold_after_all(output: DaqmxOutput, voltage: float) -> None:
-    """Give a steady voltage, also where the waveform before could not be ended; nothing where it is closed."""
-    if output.is_open:
-        try:
-            output.hold(voltage)
-        except DeviceError:
-            output.hold(voltage)

@@ -21,7 +21,7 @@ _TEXT: Final = 500
 
 Text = Annotated[str, Field(max_length=_TEXT)]
 Line = Annotated[str, Field(min_length=1, max_length=80)]
-Resource = Annotated[str, Field(min_length=1, max_length=200, pattern=r"^[!-~]+::[!-~]+$")]
+Resource = Annotated[str, Field(min_length=1, max_length=200, pattern=r"^(TCPIP|USB|GPIB|ASRL)[!-~]*::(INSTR|SOCKET)$")]
 Output = Annotated[str, Field(pattern=r"^[\w-]+/ao\d+$")]
 Range = Annotated[float, SiText("V", 1e-3, 1e3)]
 HighVoltage = Annotated[float, SiText("V", 1e-3, 1e5)]
@@ -41,7 +41,7 @@ class ChannelEntry(Table):
     input : str
         Such as ai0.
     input_range : float
-        Magnitude of the voltage. [V]
+        Magnitude of the voltage, in V.
     wiring : str
     gain : str or None
         Quantity per voltage, such as 20 N/V.
@@ -103,7 +103,7 @@ class AcquisitionEntry(Table):
     description : str
         Model and serial number.
     sample_rate_maximum : float
-        Of all channels together. [Hz]
+        Of all channels together, in Hz.
     channels : tuple of ChannelEntry
     """
 
@@ -226,7 +226,7 @@ class LineMotorEntry(_MotorEntry):
         Of a serial port, 8 data bits without parity.
     termination : str
     speed_unit : float
-        Speed of the disc for which 1 stands in commands, such as 1 rpm. [1/s]
+        Speed of the disc for which 1 stands in commands, such as 1 rpm; in 1/s.
     decimals : int
     speed_command, speed_answer : str
         `{speed}` stands for the number.
@@ -236,7 +236,7 @@ class LineMotorEntry(_MotorEntry):
     at_connect : tuple of ExchangeEntry
     description : str
     rotation_speed_maximum : float
-        Of the disc. [1/s]
+        Of the disc, in 1/s.
     groove_diameter : float
         Of the circle under the pin. [m]
     """
@@ -272,10 +272,10 @@ class DaqmxMotorEntry(_MotorEntry):
     output : str
         Such as Dev1/ao1.
     voltage_at_maximum : float
-        At which it turns at rotation_speed_maximum; 0 V is rest. [V]
+        At which it turns at rotation_speed_maximum; 0 V is rest; in V.
     description : str
     rotation_speed_maximum : float
-        Of the disc. [1/s]
+        Of the disc, in 1/s.
     groove_diameter : float
         Of the circle under the pin. [m]
     """
@@ -310,7 +310,7 @@ class MapEntries(Table):
 
     @model_validator(mode="after")
     def _require_different_outputs(self) -> Self:
-        is_daqmx = isinstance(self.drive, DaqmxDriveEntry) and isinstance(self.motor, DaqmxMotorEntry)
-        if is_daqmx and self.drive.output == self.motor.output:
-            raise ValueError(f"drive and motor both have the output {self.drive.output}")
+        drive, motor = self.drive, self.motor
+        if isinstance(drive, DaqmxDriveEntry) and isinstance(motor, DaqmxMotorEntry) and drive.output == motor.output:
+            raise ValueError(f"drive and motor both have the output {drive.output}")
         return self

@@ -45,11 +45,12 @@ class FunctionGenerator:
         self.voltage_maximum = limits.voltage_maximum
         self._line, self._limits = connection, limits
         self._output, self._source = f"OUTP{output}", f"SOUR{output}"
+        self._is_connected = False
         self._set: dict[str, float | str] = {}  # empty where the generator may have lost its settings
 
     def connect(self) -> None:
         """Open the connection, and set the generator up with its output off."""
-        if self._line.is_open:
+        if self._is_connected:
             return
         self._line.open()
         try:
@@ -57,6 +58,7 @@ class FunctionGenerator:
         except BaseException:
             self._line.close()
             raise
+        self._is_connected = True
 
     def drive(self, setting: DriveSetting) -> None:
         """Set the output; where the generator refuses, it ends off."""
@@ -67,13 +69,14 @@ class FunctionGenerator:
         if 0 < amplitude < LEAST_AMPLITUDE:
             least = format_si(LEAST_AMPLITUDE * self._limits.amplifier_gain, "V")
             raise DeviceError(f"{self.name}: less than {least} peak to peak at the actuator refused; it gives no less")
-        if not self._line.is_open:
+        if not self._is_connected:
             raise DeviceError(f"{self.name}: connect it before driving")
         if amplitude == 0:
             self.off()
             return
         try:
             if not self._set:
+                self._line.open()
                 self._set_up()
             self._send_setting(setting, amplitude=amplitude, offset=offset)
         except DeviceLost:
@@ -86,20 +89,23 @@ class FunctionGenerator:
 
     def off(self) -> None:
         """Switch the output off, over a new connection where the present one is lost, and wait for the confirmation."""
-        if not self._line.is_open:
+        if not self._is_connected:
             return
         self._set.pop("output", None)
-        try:
-            self._switch_off()
-        except DeviceLost:
-            self._set = {}
-            self._line.open()
-            self._switch_off()
+        if self._set:
+            try:
+                self._switch_off()
+                return
+            except DeviceError:
+                self._set = {}
+        self._line.open()
+        self._switch_off()
 
     def close(self) -> None:
         """Switch the output off and close the connection."""
         with suppress(DeviceError):
             self.off()
+        self._is_connected = False
         self._line.close()
 
     def _switch_off(self) -> None:

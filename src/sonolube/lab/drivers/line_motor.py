@@ -41,7 +41,7 @@ class LineProtocol:
     query : Exchange or None
         Asks for the set speed, with `{speed}` in the answer.
     speed_unit : float
-        Speed of the disc for which 1 stands, gears included. [1/s]
+        Speed of the disc for which 1 stands, gears included; in 1/s.
     decimals : int
         Of the number.
     """
@@ -66,18 +66,19 @@ class LineMotor:
     connection : VisaConnection
     protocol : LineProtocol
     rotation_speed_maximum : float
-        Of the disc. [1/s]
+        Of the disc, in 1/s.
     """
 
     def __init__(self, connection: VisaConnection, *, protocol: LineProtocol, rotation_speed_maximum: float) -> None:
         self.name = connection.name
         self.rotation_speed_maximum = rotation_speed_maximum
         self._line, self._protocol = connection, protocol
-        self._is_set_up = False
+        self._is_connected = False
+        self._is_set_up = False  # also where the controller may have lost what it was told
 
     def connect(self) -> None:
         """Open the connection, stop the motor, and send what the controller needs first."""
-        if self._line.is_open:
+        if self._is_connected:
             return
         self._line.open()
         try:
@@ -85,25 +86,28 @@ class LineMotor:
         except BaseException:
             self._line.close()
             raise
+        self._is_connected = True
 
     def turn(self, rotation_speed: float) -> None:
         """Set the speed of the disc, 0 to stop; where the controller refuses, it is told to stop. [1/s]"""
-        require_speed(rotation_speed, self.rotation_speed_maximum, device=self.name)
+        require_speed(rotation_speed=rotation_speed, highest=self.rotation_speed_maximum, device=self.name)
         number = self._protocol.number(rotation_speed)
         if rotation_speed > 0 and float(number) == 0:
             least = format_si(self._protocol.speed_unit * 10.0**-self._protocol.decimals, "1/s")
             raise DeviceError(f"{self.name}: {format_si(rotation_speed, '1/s')} refused; its smallest step is {least}")
-        if not self._line.is_open:
+        if not self._is_connected:
             raise DeviceError(f"{self.name}: connect it before turning")
         if rotation_speed == 0:
             self.off()
             return
         try:
             if not self._is_set_up:
+                self._line.open()
                 self._set_up()
             self._exchange(_filled(self._protocol.speed.command, number), _filled(self._protocol.speed.answer, number))
             self._require_set(number)
         except DeviceLost:
+            self._is_set_up = False
             raise
         except DeviceError:
             self.off()
@@ -111,19 +115,22 @@ class LineMotor:
 
     def off(self) -> None:
         """Stop, over a new connection where the present one is lost, and wait for the answer."""
-        if not self._line.is_open:
+        if not self._is_connected:
             return
-        try:
-            self._stop()
-        except DeviceLost:
-            self._is_set_up = False
-            self._line.open()
-            self._stop()
+        if self._is_set_up:
+            try:
+                self._stop()
+                return
+            except DeviceError:
+                self._is_set_up = False
+        self._line.open()
+        self._stop()
 
     def close(self) -> None:
         """Stop and close the connection."""
         with suppress(DeviceError):
             self.off()
+        self._is_connected = False
         self._line.close()
 
     def _set_up(self) -> None:

@@ -66,13 +66,15 @@ class DriveLimits:
         return setting.voltage_peak_to_peak / self.amplifier_gain, setting.voltage_offset / self.amplifier_gain
 
 
-def require_speed(rotation_speed: float, highest: float, *, device: str) -> None:
+def require_speed(*, rotation_speed: float, highest: float, device: str) -> None:
     """Raise where a motor cannot turn at a speed.
 
     Parameters
     ----------
-    rotation_speed, highest : float
+    rotation_speed : float
         [1/s]
+    highest : float
+        In 1/s.
     device : str
         Name in errors.
 

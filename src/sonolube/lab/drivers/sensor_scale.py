@@ -58,7 +58,7 @@ class TabulatedScale:
     Parameters
     ----------
     voltages : ndarray, shape (points,)
-        Increasing. [V]
+        Increasing, in V.
     readings : ndarray, shape (points,)
         In SI.
     """
