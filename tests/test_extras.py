@@ -42,7 +42,7 @@ def test_every_extra_of_the_project_has_its_line_in_the_package() -> None:
     declared = PROJECT["optional-dependencies"]
     assert declared.keys() == EXTRAS.keys()
     for name, extra in EXTRAS.items():
-        assert {module.lower().replace("_", "-") for module in extra.modules if module != "netgen"} <= (
+        assert {module.lower().replace("_", "-") for module in extra.modules} - {"netgen", "serial"} <= (
             names(declared[name]) | names(declared["surfaces"])
         )
 
@@ -55,7 +55,14 @@ def test_every_package_that_is_imported_is_required_and_every_extra_is_used() ->
     imported = imported_distributions()
     assert {module for module, called in imported.items() if not called & (required | optional | implied)} == set()
     used = {name for called in imported.values() for name in called}
-    assert optional - {"netgen-mesher", "dask", "numba-cuda"} <= used  # by import_module, distributed and numba.cuda
+    by_others = {
+        "netgen-mesher",
+        "dask",
+        "numba-cuda",
+        "pyvisa-py",
+        "pyserial",
+    }  # import_module, distributed, numba, pyvisa
+    assert optional - by_others <= used
 
 
 def test_boundary_elements_without_their_library_name_the_command_that_installs_it(monkeypatch: MonkeyPatch) -> None:

@@ -62,6 +62,13 @@ _ALL = (
     Extra(name="web", package="Plotly", modules=("plotly",), needed_by="Interactive maps"),
     Extra(name="cluster", package="Dask", modules=("distributed",), needed_by="Sweeps on a cluster"),
     Extra(name="gpu", package="numba-cuda", modules=("numba_cuda",), needed_by="Vibrations on an NVIDIA GPU"),
+    Extra(name="daqmx", package="nidaqmx", modules=("nidaqmx",), needed_by="Devices of NI-DAQmx"),
+    Extra(
+        name="visa",
+        package="pyvisa-py",
+        modules=("pyvisa", "pyvisa_py", "serial"),
+        needed_by="Function generators and motor controllers",
+    ),
 )
 EXTRAS: Mapping[str, Extra] = MappingProxyType({extra.name: extra for extra in _ALL})
 """The optional parts by name."""

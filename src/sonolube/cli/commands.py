@@ -89,6 +89,7 @@ COMMANDS = (
     Command(_LAB, "lab show", "lab.show:show"),
     Command(_LAB, "lab recover", "lab.recover:recover"),
     Command(_LAB, "lab export", "lab.export:export"),
+    Command(_LAB, "lab check", "lab.check:check"),
     Command(_LOOKUP, "materials", "lookup.materials:materials"),
     Command(_LOOKUP, "actuators", "lookup.actuators:actuators"),
     Command(_LOOKUP, "published", "lookup.published:published"),
@@ -100,7 +101,7 @@ GROUPS = {
     "impedance": "Impedance of piezoelectric parts, by finite elements.",
     "horn": "Design horns and other resonators.",
     "measure": "Measure what instruments recorded: friction, surfaces, spectra, vibration.",
-    "lab": "Laboratory: run protocols, and look after what was recorded.",
+    "lab": "Laboratory: run protocols on a rig, and keep their records.",
     "identify": "Identify the parameters of a model from published facts.",
 }
 """Help of each group of commands."""

@@ -1,4 +1,4 @@
-"""Command `schema`: JSON schema of rig files and of protocols."""
+"""Command `schema`: JSON schema of rig files, protocols and device maps."""
 
 from enum import StrEnum
 from json import dumps
@@ -9,6 +9,7 @@ import typer
 from sonolube.cli.console.answer import deliver
 from sonolube.cli.console.options import Json
 from sonolube.cli.lookup.listing import Listing
+from sonolube.lab.drivers import device_map_schema
 from sonolube.protocol import protocol_schema
 from sonolube.rig import rig_schema
 
@@ -18,16 +19,14 @@ class Kind(StrEnum):
 
     RIG = "rig"
     PROTOCOL = "protocol"
+    DEVICES = "devices"
 
 
-_SCHEMAS = {Kind.RIG: rig_schema, Kind.PROTOCOL: protocol_schema}
+_SCHEMAS = {Kind.RIG: rig_schema, Kind.PROTOCOL: protocol_schema, Kind.DEVICES: device_map_schema}
 
 
-def schema(
-    kind: Annotated[Kind, typer.Argument(help="Files to describe: rigs, or protocols of tests.")] = Kind.RIG,
-    json: Json = False,
-) -> None:
-    """JSON schema of rig files or protocols, for editors and other programs; the same with and without --json.
+def schema(kind: Annotated[Kind, typer.Argument(help="Files to describe.")] = Kind.RIG, json: Json = False) -> None:
+    """JSON schema of rig files, protocols or device maps, for editors and programs; the same with and without --json.
 
     Example: sonolube schema > rig.schema.json
     """

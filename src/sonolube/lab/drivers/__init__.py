@@ -1,0 +1,5 @@
+"""Drivers of devices: NI-DAQmx, SCPI function generators, motor controllers, and the map that names those of a rig."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

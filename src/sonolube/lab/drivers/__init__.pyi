@@ -1,0 +1,13 @@
+from .daqmx_acquisition import AnalogueInput as AnalogueInput, DaqmxAcquisition as DaqmxAcquisition
+from .daqmx_output import DaqmxDrive as DaqmxDrive, DaqmxMotor as DaqmxMotor
+from .device_map import (
+    DeviceMap as DeviceMap,
+    device_map_schema as device_map_schema,
+    read_device_map as read_device_map,
+)
+from .function_generator import FunctionGenerator as FunctionGenerator
+from .line_motor import Exchange as Exchange, LineMotor as LineMotor, LineProtocol as LineProtocol
+from .output_limits import DriveLimits as DriveLimits
+from .readiness import first_block as first_block, missing_parts as missing_parts, unfulfilled as unfulfilled
+from .sensor_scale import LinearScale as LinearScale, SensorScale as SensorScale, TabulatedScale as TabulatedScale
+from .visa_connection import VisaConnection as VisaConnection

@@ -1,0 +1,107 @@
+"""What is missing to run a device map or a protocol on it, and a first look at the devices with everything off."""
+
+from contextlib import ExitStack
+from math import ceil
+
+from sonolube.errors import SonolubeError
+from sonolube.extras import EXTRAS
+from sonolube.lab.block import Block
+from sonolube.lab.devices import DeviceError, Devices
+from sonolube.lab.drivers.daqmx_library import DRIVER_REMEDY, daqmx_errors, daqmx_library
+from sonolube.lab.drivers.device_map import DeviceMap
+from sonolube.lab.set_points import require_possible
+from sonolube.protocol import Protocol, flattened
+from sonolube.units import format_si
+
+BLOCK_DURATION = 0.1
+"""Of the first look. [s]"""
+
+
+def missing_parts(device_map: DeviceMap) -> tuple[str, ...]:
+    """Packages and drivers that a device map needs and that are not installed, each with its remedy.
+
+    Parameters
+    ----------
+    device_map : DeviceMap
+
+    Returns
+    -------
+    tuple of str
+    """
+    missing = [
+        f"{EXTRAS[name].package} is not installed: {EXTRAS[name].command}"
+        for name in device_map.extras
+        if not EXTRAS[name].is_installed
+    ]
+    if "daqmx" in device_map.extras and EXTRAS["daqmx"].is_installed and not _has_daqmx_driver():
+        missing.append(f"the driver NI-DAQmx is not installed: {DRIVER_REMEDY}")
+    return tuple(missing)
+
+
+def unfulfilled(device_map: DeviceMap, protocol: Protocol) -> tuple[str, ...]:
+    """What a protocol asks for and the devices of a map cannot give.
+
+    Parameters
+    ----------
+    device_map : DeviceMap
+    protocol : Protocol
+
+    Returns
+    -------
+    tuple of str
+        Each with its step; of voltages, speeds and channels the first.
+    """
+    faults: dict[str, None] = {}
+    try:
+        require_possible(protocol, device_map.devices())
+    except SonolubeError as refusal:
+        faults[str(refusal)] = None
+    highest = device_map.frequency_maximum
+    total = device_map.entries.acquisition.sample_rate_maximum
+    for point in flattened(protocol):
+        if point.frequency is not None and point.frequency > highest * (1 + 1e-9):
+            wanted, most = format_si(point.frequency, "Hz"), format_si(highest, "Hz")
+            faults[f"step {point.step}: drives at {wanted}; the drive gives at most {most}"] = None
+        if point.sample_rate is not None and point.sample_rate * len(point.channels) > total * (1 + 1e-9):
+            wanted = f"{len(point.channels)} channels at {format_si(point.sample_rate, 'Hz')}"
+            faults[f"step {point.step}: records {wanted}; the device takes {format_si(total, 'Hz')} in all"] = None
+    return tuple(faults)
+
+
+def first_block(devices: Devices, *, sample_rate: float) -> Block:
+    """Connect all devices, read one block of all channels with motor and drive off, and release the devices.
+
+    Parameters
+    ----------
+    devices : Devices
+    sample_rate : float
+        Of each channel. [Hz]
+
+    Returns
+    -------
+    Block
+
+    Raises
+    ------
+    DeviceError
+        If a device is missing or does not answer; the others are off and released then.
+    """
+    with ExitStack() as after:
+        for device in (devices.drive, devices.motor, devices.acquisition):
+            after.callback(device.close)
+            device.connect()
+        devices.drive.off()
+        devices.motor.off()
+        rate = devices.acquisition.start(list(devices.acquisition.channels), sample_rate=sample_rate)
+        return devices.acquisition.read(max(ceil(BLOCK_DURATION * rate), 1))
+
+
+def _has_daqmx_driver() -> bool:
+    """Whether the driver of NI-DAQmx answers."""
+    try:
+        library = daqmx_library()
+        with daqmx_errors("NI-DAQmx"):
+            library.system.System.local().driver_version  # noqa: B018
+    except (DeviceError, ImportError):
+        return False
+    return True
