@@ -10,7 +10,7 @@ import typer
 from sonolube.cli.console.answer import Answer, deliver, si
 from sonolube.cli.console.options import Json, refuse_unused
 from sonolube.cli.lab.running import RunPlan, exit_as, run_and_record, virtual_rig
-from sonolube.errors import InvalidInput
+from sonolube.lab.drivers import read_device_map
 from sonolube.lab.dry_run import DryRun, dry_run, dry_run_lines
 from sonolube.protocol import Protocol, protocol_by_name_or_file
 from sonolube.rig import Rig, read_rig
@@ -44,14 +44,23 @@ def run(
         refuse_unused(context, "seed", "real_time", "yes", "tag", "out", because="with --dry-run, which runs nothing")
         deliver(DryAnswer(protocol=read, rig=known, found=dry_run(read, rig=known)), as_json=json)
         return
-    if device != "virtual":
-        raise InvalidInput(f"--device {device}: no driver of an instrument is part of this version; use virtual")
-    name = Path(protocol).stem
+    on_hardware = device != "virtual"
+    if on_hardware:
+        refuse_unused(context, "seed", "real_time", because="with --device MAP.toml, whose tests take their time")
     plan = RunPlan(
-        protocol=read, name=name, rig=known, rig_file=rig, seed=seed, real_time=real_time, confirmed=yes, tags=tag or ()
+        protocol=read,
+        name=Path(protocol).stem,
+        rig=known,
+        rig_file=rig,
+        device_file=Path(device) if on_hardware else None,
+        seed=seed,
+        real_time=real_time,
+        confirmed=yes,
+        tags=tag or (),
     )
-    virtual = virtual_rig(plan)
-    answer = run_and_record(plan, virtual.devices, out=out, virtual=virtual)
+    virtual = None if on_hardware else virtual_rig(plan)
+    devices = read_device_map(Path(device)).devices() if virtual is None else virtual.devices
+    answer = run_and_record(plan, devices, out=out, virtual=virtual)
     deliver(answer, as_json=json)
     exit_as(answer)
 
