@@ -495,6 +495,9 @@ MODES = {
         {"--model": "asperity-stick-slip", "--runs": OWN_RUNS, "--set": "sliding.sliding_speed=50mm/s"} | AMPLITUDE,
     ),
     "compare without a rig": Mode("compare", ("--model", "kinematic"), {"--set": "contact.normal_load=2N"} | AMPLITUDE),
+    "lab check": Mode(
+        "lab check", (str(ROOT / "examples" / "lab" / "devices.toml"),), {"--protocol": "map_test"}, ("--connect",)
+    ),
     "literature": Mode(
         "literature", (RIG,), {"--set": "contact.normal_load=2N", "--table": "FOLDER/studies.csv"} | AMPLITUDE
     ),

@@ -222,6 +222,20 @@ def test_a_protocol_runs_to_its_end_and_leaves_everything_off(stand_in: StandIn)
 
 
 @every_stand_in
+def test_a_run_that_loses_samples_ends_with_everything_off_and_keeps_those_before(stand_in: StandIn) -> None:
+    def overrun(doing: str, *_: int) -> None:
+        if "wait" in doing:
+            stand_in.overrun()
+
+    record = MemoryRecord()
+    result = run_protocol(protocol(), stand_in.devices, record, operator=lambda _: True, advance=overrun)
+    assert (result.state, result.outcome) == (State.SAFE, "failed")
+    assert "samples were not read in time and are lost (NI-DAQmx -200279)" in result.reason
+    assert 600 < sum(record.samples()) < 1000
+    assert (stand_in.voltage(), stand_in.rotation_speed()) == (0.0, 0.0)
+
+
+@every_stand_in
 def test_a_run_whose_devices_are_lost_says_that_they_may_be_on(stand_in: StandIn) -> None:
     def unplug(doing: str, *_: int) -> None:
         if "wait" in doing:

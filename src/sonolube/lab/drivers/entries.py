@@ -154,7 +154,7 @@ class GeneratorEntry(_DriveEntry):
     description, amplifier : str
         Model and serial number.
     amplifier_gain : float
-        [-]
+        []
     voltage_maximum : float
         Magnitude at the actuator, offset included. [V]
     frequency_maximum : float

@@ -17,7 +17,7 @@ class DriveLimits:
     Parameters
     ----------
     amplifier_gain : float
-        Voltage at the actuator per voltage of the output. [-]
+        Voltage at the actuator per voltage of the output. []
     actuator_voltage : float
         Greatest magnitude at the actuator, offset included. [V]
     output_voltage : float
