@@ -66,7 +66,8 @@ def test_a_map_is_read_and_its_devices_are_made_without_their_libraries(monkeypa
 
 
 def test_no_library_of_an_instrument_is_imported_before_it_is_needed() -> None:
-    code = "import sys, sonolube.lab.drivers as d; d.read_device_map; print({'nidaqmx', 'pyvisa', 'serial'} & {*sys.modules})"
+    libraries = "{'nidaqmx', 'pyvisa', 'serial'}"
+    code = f"import sys, sonolube.lab.drivers as d; d.read_device_map; print({libraries} & {{*sys.modules}})"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert run.stdout.strip() == "set()"
 
