@@ -548,6 +548,9 @@ MODES = {
         {"--add": "FOLDER/other.csv", "--fact": "normal_load=3"},
     ),
     "lab export": Mode("lab export", ("FOLDER/runs/first",), {"--format": "csv"}),
+    "lab check": Mode(
+        "lab check", (str(ROOT / "examples" / "lab" / "devices.toml"),), {"--protocol": "map_test"}, ("--connect",)
+    ),
     "literature": Mode(
         "literature", (RIG,), {"--set": "contact.normal_load=2N", "--table": "FOLDER/studies.csv"} | AMPLITUDE
     ),

@@ -11,12 +11,14 @@ from sonolube.dynamics.backend import _gpu
 from sonolube.extras import EXTRAS
 
 RIG = str(Path(__file__).parents[2] / "examples" / "rigs" / "tribometer.toml")
+DEVICES = str(Path(__file__).parents[2] / "examples" / "lab" / "devices.toml")
 SPEEDS = ("--over", "sliding.sliding_speed=20mm/s,50mm/s")
 VOLTS = ("--over", "drive.voltage_peak_to_peak=5V,10V")
 NEEDING = {
     "fem": ("modes", "block", "--set", "length=20mm", "--set", "width=10mm", "--set", "thickness=5mm"),
     "surfaces": ("measure", "surface", "plate.sur"),
     "web": ("map", RIG, *SPEEDS, *VOLTS, "--form", "html"),
+    "daqmx": ("lab", "check", DEVICES, "--connect"),
     "cluster": ("sweep", RIG, *SPEEDS, "--scheduler", "local"),
 }
 

@@ -40,7 +40,8 @@ groove_diameter = "50 mm"
 class StandIn:
     """A rig, and what its actuator and disc get.
 
-    `was_on` makes motor and drive run before anybody connects; `unplug` takes power and cable from all devices.
+    `was_on` makes motor and drive run before anybody connects; `unplug` takes power and cable from all devices;
+    `overrun` lets the buffer of the inputs run full.
     """
 
     devices: Devices
@@ -48,6 +49,7 @@ class StandIn:
     voltage: Callable[[], float]
     rotation_speed: Callable[[], float]
     unplug: Callable[[], None]
+    overrun: Callable[[], None]
 
 
 def voltages(terminal: str, numbers: NDArray[np.int64]) -> NDArray[np.float64]:
@@ -71,6 +73,7 @@ def analogue_rig(folder: Path) -> Iterator[StandIn]:
             voltage=lambda: GAIN * float(np.abs(card.outputs["Dev1/ao0"]).max()),
             rotation_speed=lambda: float(card.outputs["Dev1/ao1"][0]) / 10.0 * 5.0,
             unplug=lambda: setattr(card, "unplugged", -88709),
+            overrun=lambda: card.errors.update(read_analog_f64=-200279),
         )
         for device in (devices.drive, devices.motor, devices.acquisition):
             device.close()
@@ -107,6 +110,7 @@ def instrument_rig(folder: Path) -> Iterator[StandIn]:
             voltage=lambda: GAIN * generator.peak,
             rotation_speed=lambda: controller.counts * 0.1 / 60,
             unplug=unplug,
+            overrun=lambda: card.errors.update(read_analog_f64=-200279),
         )
         for device in (devices.drive, devices.motor, devices.acquisition):
             device.close()

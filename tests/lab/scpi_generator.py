@@ -39,7 +39,7 @@ MODULATIONS = ("AM", "FM", "PM", "FSK", "SWE", "BURS")
 
 @dataclass
 class Generator:
-    """State of one output: as the manual says, errors go into a queue and leave the state as it was."""
+    """State of one output; as the manual says, a value beyond a limit is clipped, and an error goes into the queue."""
 
     identity: str = "Agilent Technologies,33522A,MY50001234,2.03-1.19-2.00-52-00"
     is_on: bool = False
@@ -139,14 +139,14 @@ class Generator:
             self.errors.append('-224,"Illegal parameter value"')
         elif self.frequency > FUNCTIONS[value]:
             self.errors.append('-221,"Settings conflict; frequency reduced for new function"')
-        else:
+            self.frequency = FUNCTIONS[value]
+        if value in FUNCTIONS:
             self.function = value
 
     def _set_frequency(self, value: str) -> None:
         if float(value) > FUNCTIONS[self.function]:
             self.errors.append('-222,"Data out of range; value clipped to upper limit"')
-        else:
-            self.frequency = float(value)
+        self.frequency = min(float(value), FUNCTIONS[self.function])
 
     def _set_levels(self, text: str, name: str) -> None:
         least = 2e-3 if self.load == "INF" else 1e-3
@@ -156,11 +156,14 @@ class Generator:
         reach = self.limits if self.are_limits_on else (-highest, highest)
         if levels["amplitude"] < least * (1 - 1e-6):
             self.errors.append('-222,"Data out of range; value clipped to lower limit"')
+            self.amplitude = least
         elif not (
             reach[0] - 1e-6 <= levels["offset"] - levels["amplitude"] / 2
             and levels["offset"] + levels["amplitude"] / 2 <= reach[1] + 1e-6
         ):
             self.errors.append('-221,"Settings conflict; amplitude has been adjusted due to offset"')
+            self.offset = min(max(levels["offset"], reach[0] + least / 2), reach[1] - least / 2)
+            self.amplitude = min(levels["amplitude"], 2 * (reach[1] - self.offset), 2 * (self.offset - reach[0]))
         else:
             self.amplitude, self.offset = levels["amplitude"], levels["offset"]
 

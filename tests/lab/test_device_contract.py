@@ -11,13 +11,20 @@ from tests.lab.rig_stand_ins import HARDWARE, StandIn
 from tests.lab.simulated_rig import MemoryRecord, SimulatedRig
 
 from sonolube.lab import DeviceError, DeviceLost, Devices, DriveSetting, State, run_protocol
+from sonolube.lab.virtual_tribometer import virtual_tribometer
 from sonolube.protocol import Protocol, protocol_from
+from sonolube.rig import read_rig
+
+TRIBOMETER = Path(__file__).parents[2] / "examples" / "rigs" / "tribometer.toml"
 
 SETTING = DriveSetting(voltage_peak_to_peak=28.0, voltage_offset=10.0, frequency=22e3)
 CHANNELS = ("temperature", "friction_force")
 
 # Further rigs that the contract holds for, one a line: a name, and what makes the devices.
-SIMULATED: Mapping[str, Callable[[], Devices]] = {"noting": lambda: SimulatedRig().devices()}
+SIMULATED: Mapping[str, Callable[[], Devices]] = {
+    "noting": lambda: SimulatedRig().devices(),
+    "virtual": lambda: virtual_tribometer(read_rig(TRIBOMETER), seed=1).devices,
+}
 HOLDING_LIMITS = HARDWARE.keys() | (SIMULATED.keys() - {"noting"})
 
 Rig = AbstractContextManager[StandIn]
@@ -218,6 +225,20 @@ def test_a_protocol_runs_to_its_end_and_leaves_everything_off(stand_in: StandIn)
     result = run_protocol(protocol(), stand_in.devices, record, operator=lambda _: True)
     assert (result.state, result.outcome, result.reason) == (State.SAFE, "completed", "")
     assert record.samples() == [1000]
+    assert (stand_in.voltage(), stand_in.rotation_speed()) == (0.0, 0.0)
+
+
+@every_stand_in
+def test_a_run_that_loses_samples_ends_with_everything_off_and_keeps_those_before(stand_in: StandIn) -> None:
+    def overrun(doing: str, *_: int) -> None:
+        if "wait" in doing:
+            stand_in.overrun()
+
+    record = MemoryRecord()
+    result = run_protocol(protocol(), stand_in.devices, record, operator=lambda _: True, advance=overrun)
+    assert (result.state, result.outcome) == (State.SAFE, "failed")
+    assert "samples were not read in time and are lost (NI-DAQmx -200279)" in result.reason
+    assert 600 < sum(record.samples()) < 1000
     assert (stand_in.voltage(), stand_in.rotation_speed()) == (0.0, 0.0)
 
 

@@ -73,13 +73,17 @@ def test_a_dry_run_of_every_protocol_tells_time_and_data_and_touches_nothing(
         (["lab", "virtual", "RIG", "--format", "xls"], "unknown format 'xls'"),
         (["lab", "run", "map_test", "--rig", "RIG", "--dry-run", "--seed", "1"], "--seed"),
         (["lab", "virtual", "none.toml"], "none.toml: no such file"),
+        (["lab", "run", "map_test", "--device", "none.toml"], "none.toml: no such file"),
+        (["lab", "run", "map_test", "--device", "MAP"], "the driver NI-DAQmx is not installed: "),
+        (["lab", "run", "map_test", "--device", "MAP", "--seed", "1"], "--seed"),
     ],
 )
 def test_bad_input_is_one_line_and_makes_no_folder(
     arguments: list[str], line: str, sonolube: Program, rigs: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    words = [rigs / "power_map.toml" if word == "RIG" else word for word in arguments]
+    known = {"RIG": rigs / "power_map.toml", "MAP": rigs.parent / "lab" / "devices.toml"}
+    words = [known.get(word, word) for word in arguments]
     assert line in sonolube(*words).refusal
     assert not any(tmp_path.iterdir())
 

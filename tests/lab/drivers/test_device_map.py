@@ -1,17 +1,19 @@
 """Device maps: the example, every fault at once, calibrations, and what is beyond the devices."""
 
 import json
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
-from pytest import approx, raises
+from pytest import MonkeyPatch, approx, raises
 from tests.lab.rig_stand_ins import EXAMPLE
 from tests.protocol.schema_faults import schema_faults
 
-from sonolube.errors import InvalidInput, SeveralFaults
-from sonolube.lab.drivers import device_map_schema, read_device_map, unfulfilled
+from sonolube.errors import InvalidInput, MissingPackage, SeveralFaults
+from sonolube.lab.drivers import device_map_schema, missing_parts, read_device_map, unfulfilled
 from sonolube.lab.drivers.sensor_scale import tabulated_scale
 from sonolube.protocol import protocol_by_name_or_file
 
@@ -46,6 +48,28 @@ def test_the_example_names_its_devices_channels_and_limits() -> None:
     assert not devices.simulated
     assert "MY50001234" in devices.description["drive hardware"]
     assert set(read.files) == {"devices.toml", LOADS}
+
+
+def test_a_map_is_read_and_its_devices_are_made_without_their_libraries(monkeypatch: MonkeyPatch) -> None:
+    for name in ("nidaqmx", "pyvisa", "pyvisa_py", "serial"):
+        monkeypatch.setitem(sys.modules, name, None)
+    read = read_device_map(EXAMPLE)
+    assert [line.rpartition(": ")[2] for line in missing_parts(read)] == [
+        "pip install 'sonolube[daqmx]'",
+        "pip install 'sonolube[visa]'",
+    ]
+    devices = read.devices()
+    for device in (devices.acquisition, devices.drive, devices.motor):
+        with raises(MissingPackage, match=r"pip install 'sonolube\["):
+            device.connect()
+        device.close()
+
+
+def test_no_library_of_an_instrument_is_imported_before_it_is_needed() -> None:
+    libraries = "{'nidaqmx', 'pyvisa', 'serial'}"
+    code = f"import sys, sonolube.lab.drivers as d; d.read_device_map; print({libraries} & {{*sys.modules}})"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout.strip() == "set()"
 
 
 def test_the_input_of_the_amplifier_can_be_the_tighter_limit(tmp_path: Path) -> None:

@@ -171,7 +171,7 @@ def test_the_simulated_generator_takes_long_forms_and_queues_errors() -> None:
     generator.answer(":SOURce1:VOLTage:OFFSet 2.5")
     assert (generator.load, generator.offset) == ("INF", 2.5)
     generator.answer("VOLT 19;:NOTHING 1;:FREQ 5")
-    assert generator.frequency == 1000.0
+    assert (generator.amplitude, generator.frequency) == (15.0, 1000.0)
     assert generator.answer("SYSTem:ERRor?") == '-221,"Settings conflict; amplitude has been adjusted due to offset"'
     assert generator.answer("SYST:ERR?") == '-113,"Undefined header"'
     assert generator.answer("SYST:ERR?") == '+0,"No error"'

@@ -9,6 +9,7 @@ import typer
 
 from sonolube.cli.console.answer import Answer, aligned, deliver, si
 from sonolube.cli.console.options import Json
+from sonolube.errors import InvalidInput, SonolubeError
 from sonolube.lab.drivers import DeviceMap, first_block, missing_parts, read_device_map, unfulfilled
 from sonolube.protocol import protocol_by_name_or_file
 from sonolube.units import format_si
@@ -92,6 +93,9 @@ def _readings(device_map: DeviceMap) -> dict[str, tuple[float, str]]:
     devices = device_map.devices()
     channels = devices.acquisition.channels
     highest = device_map.entries.acquisition.sample_rate_maximum / len(channels)
-    block = first_block(devices, sample_rate=min(_SAMPLE_RATE, highest))
+    try:
+        block = first_block(devices, sample_rate=min(_SAMPLE_RATE, highest))
+    except SonolubeError as failure:
+        raise InvalidInput(f"--connect: {failure}") from None
     means = block.values.mean(axis=0)
     return {name: (float(mean), channels[name].unit) for name, mean in zip(channels, means, strict=True)}

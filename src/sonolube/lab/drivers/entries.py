@@ -154,13 +154,13 @@ class GeneratorEntry(_DriveEntry):
     description, amplifier : str
         Model and serial number.
     amplifier_gain : float
-        [-]
+        []
     voltage_maximum : float
         Magnitude at the actuator, offset included. [V]
     frequency_maximum : float
-        [Hz]
+        In Hz.
     output_maximum : float
-        Magnitude that the amplifier takes. [V]
+        Magnitude that the amplifier takes, in V.
     """
 
     driver: Literal["scpi"]

@@ -84,7 +84,8 @@ class FunctionGenerator:
             raise
         except DeviceError:
             self._set = {}
-            self.off()
+            with suppress(DeviceError):  # who drives it switches it off again, and hears of that
+                self.off()
             raise
 
     def off(self) -> None:

@@ -110,7 +110,8 @@ class LineMotor:
             self._is_set_up = False
             raise
         except DeviceError:
-            self.off()
+            with suppress(DeviceError):  # who drives it switches it off again, and hears of that
+                self.off()
             raise
 
     def off(self) -> None:

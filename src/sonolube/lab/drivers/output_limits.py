@@ -17,13 +17,13 @@ class DriveLimits:
     Parameters
     ----------
     amplifier_gain : float
-        Voltage at the actuator per voltage of the output. [-]
+        Voltage at the actuator per voltage of the output. []
     actuator_voltage : float
-        Greatest magnitude at the actuator, offset included. [V]
+        Greatest magnitude at the actuator, offset included; in V.
     output_voltage : float
-        Greatest magnitude that the output gives and the amplifier takes. [V]
+        Greatest magnitude that the output gives and the amplifier takes, in V.
     frequency_maximum : float
-        [Hz]
+        In Hz.
     """
 
     amplifier_gain: float

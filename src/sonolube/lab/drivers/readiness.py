@@ -87,7 +87,7 @@ def first_block(devices: Devices, *, sample_rate: float) -> Block:
         If a device is missing or does not answer; the others are off and released then.
     """
     with ExitStack() as after:
-        for device in (devices.drive, devices.motor, devices.acquisition):
+        for device in (devices.acquisition, devices.drive, devices.motor):
             after.callback(device.close)
             device.connect()
         devices.drive.off()
