@@ -178,9 +178,11 @@ def test_a_broken_gauge_trips_the_limit_of_the_force(kind: str, reason: str) -> 
 
 def test_devices_refuse_what_they_cannot_give() -> None:
     devices = tribometer().devices
-    with raises(DeviceError, match="250 V is more than its 200 V"):
+    for device in (devices.drive, devices.motor, devices.acquisition):
+        device.connect()
+    with raises(DeviceError, match="250 V is refused; it gives 0 to 200 V"):
         devices.drive.drive(DriveSetting(voltage_peak_to_peak=500.0, frequency=22e3))
-    with raises(DeviceError, match="not between 0 and its 20 1/s"):
+    with raises(DeviceError, match="30 1/s is refused; it turns at 0 to 20 1/s"):
         devices.motor.turn(30.0)
     with raises(DeviceError, match="no channel noise"):
         devices.acquisition.start(["noise"], sample_rate=100.0)

@@ -22,6 +22,7 @@ GROOVE_DIAMETER: Final = 0.05
 """Of the circle under the pin, where none is given. [m]"""
 
 _TURNS: Final = 20.0  # 1/s, of the motor
+_FASTEST: Final = 10e6  # Hz, of acquisition and generator
 
 
 def virtual_tribometer(
@@ -97,29 +98,54 @@ class VirtualTribometer:
         return self._virtual.truth()
 
 
-class _Acquisition:
+class _Connected:
+    """A device of the virtual rig, which does nothing before it is connected."""
+
+    name = ""
+
+    def __init__(self, rig: VirtualRig) -> None:
+        self._rig, self._is_connected = rig, False
+
+    def connect(self) -> None:
+        """Connect with everything off."""
+        self._is_connected = True
+        self.off()
+
+    def off(self) -> None:
+        """Switch off what the device has."""
+
+    def close(self) -> None:
+        """Switch off and disconnect."""
+        self.off()
+        self._is_connected = False
+
+    def _require_connected(self) -> None:
+        """Refuse to act before `connect`."""
+        if not self._is_connected:
+            raise DeviceError(f"{self.name}: is not connected; call connect first")
+
+
+class _Acquisition(_Connected):
     """Inputs of the virtual tribometer."""
 
     name = "virtual acquisition"
-
-    def __init__(self, rig: VirtualRig) -> None:
-        self._rig = rig
 
     @property
     def channels(self) -> Mapping[str, Channel]:
         """Channels that can be recorded."""
         return self._rig.channels
 
-    def connect(self) -> None:
-        """Nothing to reserve."""
-
     def start(self, channels: Sequence[str], *, sample_rate: float) -> float:
         """Start to sample."""
+        self._require_connected()
         unknown = [name for name in channels if name not in self.channels]
         if unknown or not channels:
             raise DeviceError(f"{self.name}: no channel {', '.join(unknown) or 'named'}; known: {', '.join(CHANNELS)}")
-        if not 0 < sample_rate <= 10e6:
-            raise DeviceError(f"{self.name}: sample_rate must lie between 0 and 10 MHz, got {sample_rate:g} Hz")
+        if not 0 < sample_rate <= _FASTEST:
+            most = format_si(_FASTEST, "Hz")
+            raise DeviceError(
+                f"{self.name}: sample_rate of {sample_rate:g} Hz is refused; it must be above 0 and up to {most}"
+            )
         self._rig.start(channels, sample_rate)
         return sample_rate
 
@@ -131,65 +157,46 @@ class _Acquisition:
         """Stop to sample."""
         self._rig.stop()
 
-    def close(self) -> None:
-        """Nothing to release."""
+    def off(self) -> None:
+        """Stop to sample."""
         self._rig.stop()
 
 
-class _Drive:
+class _Drive(_Connected):
     """Generator and amplifier of the virtual tribometer."""
 
     name = "virtual amplifier"
     voltage_maximum = VOLTAGE_MAXIMUM
 
-    def __init__(self, rig: VirtualRig) -> None:
-        self._rig = rig
-
-    def connect(self) -> None:
-        """Connect with the output off."""
-        self.off()
-
     def drive(self, setting: DriveSetting) -> None:
         """Set the output."""
+        self._require_connected()
         reached = abs(setting.voltage_offset) + setting.voltage_peak_to_peak / 2
-        if reached > VOLTAGE_MAXIMUM:
-            raise DeviceError(
-                f"{self.name}: {format_si(reached, 'V')} is more than its {format_si(VOLTAGE_MAXIMUM, 'V')}"
-            )
+        if not (setting.voltage_peak_to_peak >= 0 and reached <= VOLTAGE_MAXIMUM):
+            wanted, most = format_si(reached, "V"), format_si(VOLTAGE_MAXIMUM, "V")
+            raise DeviceError(f"{self.name}: {wanted} is refused; it gives 0 to {most}, the offset included")
+        if not 0 < setting.frequency <= _FASTEST:
+            raise DeviceError(f"{self.name}: a frequency of {setting.frequency:g} Hz is refused")
         self._rig.drive(setting if setting.voltage_peak_to_peak > 0 else None)
 
     def off(self) -> None:
         """Switch the output off."""
         self._rig.drive(None)
 
-    def close(self) -> None:
-        """Leave the output off."""
-        self.off()
 
-
-class _Motor:
+class _Motor(_Connected):
     """Motor of the virtual tribometer."""
 
     name = "virtual motor"
     rotation_speed_maximum = _TURNS
 
-    def __init__(self, rig: VirtualRig) -> None:
-        self._rig = rig
-
-    def connect(self) -> None:
-        """Connect with the motor at rest."""
-        self.off()
-
     def turn(self, rotation_speed: float) -> None:
         """Set the speed."""
+        self._require_connected()
         if not 0 <= rotation_speed <= _TURNS:
-            raise DeviceError(f"{self.name}: {rotation_speed:.4g} 1/s is not between 0 and its {_TURNS:g} 1/s")
+            raise DeviceError(f"{self.name}: {rotation_speed:.4g} 1/s is refused; it turns at 0 to {_TURNS:g} 1/s")
         self._rig.turn(rotation_speed)
 
     def off(self) -> None:
         """Stop."""
         self._rig.turn(0.0)
-
-    def close(self) -> None:
-        """Leave the motor at rest."""
-        self.off()
